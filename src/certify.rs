@@ -1,0 +1,240 @@
+//! Certification: what is reported is computed again, design by design, by the scalar f64 reference.
+//!
+//! The reference walks every scenario of a design to the end, so it also knows which scenario is the worst for each column. A
+//! design that it finds infeasible, or whose objectives differ from what the sweep saw, stops the program.
+
+use crate::error::{Error, Result};
+use crate::models::{OUTPUTS, Prepared, Status, Worse, judge, to_si};
+use crate::plan::{Plan, worst_end};
+use crate::reduce::{KeyRule, Points};
+use crate::study::{Constraint, Quantity, Study};
+
+/// Why a column is in the tables.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Role {
+    /// An objective (its number).
+    Objective(usize),
+    /// A constraint (its number).
+    Constraint(usize),
+    /// Asked for by the report.
+    Report,
+}
+
+/// A column of the result tables: a quantity at its worst scenario.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// Name of the column: the quantity's, with `_constrained` added where an objective of the same quantity has another worst
+    /// end.
+    pub name: String,
+    /// The quantity.
+    pub quantity: Quantity,
+    /// Why it is there; the first reason if there are several.
+    pub role: Role,
+    /// What makes a scenario worse.
+    worst: Worst,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Worst {
+    End(Worse),
+    Margin(Constraint),
+}
+
+impl Worst {
+    /// How bad a value is: the scenario with the largest number is the worst.
+    fn badness(self, value: f64) -> f64 {
+        match self {
+            Self::End(Worse::Higher) => value,
+            Self::End(Worse::Lower) => -value,
+            Self::Margin(constraint) => -constraint.margin(value),
+        }
+    }
+
+    /// Do both choose the same scenario?
+    fn same(self, other: Self) -> bool {
+        let end = |worst| match worst {
+            Self::End(worse) => Some(worse),
+            Self::Margin(Constraint { low: Some(_), high: None, .. }) => Some(Worse::Lower),
+            Self::Margin(Constraint { low: None, high: Some(_), .. }) => Some(Worse::Higher),
+            Self::Margin(_) => None,
+        };
+        end(self).is_some() && end(self) == end(other)
+    }
+}
+
+/// The columns of a study's tables: objectives, constraints, report columns, in file order, each quantity once where one column
+/// serves all.
+pub fn columns(study: &Study) -> Vec<Column> {
+    let model = study.model;
+    let mut columns: Vec<Column> = Vec::new();
+    let objectives = study.objectives.iter().enumerate().map(|(n, it)| (it.quantity, Role::Objective(n), Worst::End(it.goal.worse())));
+    let constraints = study.constraints.iter().enumerate().map(|(n, it)| (it.quantity, Role::Constraint(n), Worst::Margin(*it)));
+    let report = study.report.columns.iter().map(|&it| (it, Role::Report, Worst::End(worst_end(study, it))));
+    for (quantity, role, worst) in objectives.chain(constraints).chain(report) {
+        let held = columns.iter().find(|it| it.quantity == quantity);
+        let name = quantity.name(model).to_owned();
+        match held {
+            // A column for the report only repeats what is there; a constraint's worst scenario may be another one.
+            Some(held) if role == Role::Report || held.worst.same(worst) => {}
+            Some(_) => columns.push(Column { name: name + "_constrained", quantity, role, worst }),
+            None => columns.push(Column { name, quantity, role, worst }),
+        }
+    }
+    columns
+}
+
+/// A value and the scenario in which it is taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AtWorst {
+    /// The value, in its unit; `None` if it has no meaning in any scenario.
+    pub value: Option<f64>,
+    /// The scenario: the lowest index of equally bad ones.
+    pub scenario: u64,
+}
+
+/// A design with everything that the tables say of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Design index.
+    pub index: u64,
+    /// Does it satisfy everything in every scenario?
+    pub feasible: bool,
+    /// All inputs in their units; those of scenarios as in scenario 0.
+    pub inputs: Vec<f64>,
+    /// One entry per column.
+    pub columns: Vec<AtWorst>,
+}
+
+/// Computes the rows of designs, in the order given, on several threads.
+pub fn rows(plan: &Plan, columns: &[Column], designs: &[u64], threads: usize) -> Vec<Row> {
+    let mut order: Vec<(u64, usize)> = designs.iter().enumerate().map(|(at, &design)| (plan.position_of(design), at)).collect();
+    order.sort_unstable();
+    let share = order.len().div_ceil(threads.max(1)).max(1);
+    let mut rows: Vec<(usize, Row)> = std::thread::scope(|scope| {
+        let parts = order.chunks(share).map(|part| {
+            scope.spawn(move || {
+                let mut reference = Reference::new(plan, columns);
+                part.iter().map(|&(position, at)| (at, reference.row(position))).collect::<Vec<_>>()
+            })
+        });
+        let parts: Vec<_> = parts.collect();
+        parts.into_iter().flat_map(|part| part.join().expect("the reference does not panic")).collect()
+    });
+    rows.sort_unstable_by_key(|(at, _)| *at);
+    rows.into_iter().map(|(_, row)| row).collect()
+}
+
+/// Computes the rows of the front and checks each against what the sweep saw; sorted by the objectives, best first, then index.
+///
+/// # Errors
+/// [`Error::Certificate`] if the reference disagrees.
+pub fn front(plan: &Plan, columns: &[Column], points: &Points, threads: usize) -> Result<Vec<Row>> {
+    let mut rows = rows(plan, columns, &points.indices, threads);
+    let objectives = &plan.study.objectives;
+    // Objectives are the first columns, unless two objectives share a quantity.
+    let column_of: Vec<usize> = objectives
+        .iter()
+        .map(|objective| columns.iter().position(|it| it.quantity == objective.quantity).expect("every objective has a column"))
+        .collect();
+    for (row, keys) in rows.iter().zip(points.keys.chunks(objectives.len().max(1))) {
+        check_feasible(row)?;
+        for ((objective, &column), &seen) in objectives.iter().zip(&column_of).zip(keys) {
+            let value = row.columns[column].value.unwrap_or(f64::NAN);
+            if KeyRule::from(objective).key(value) != seen {
+                let name = objective.quantity.name(plan.study.model);
+                return Err(Error::Certificate(format!(
+                    "{name} of design {}: the sweep compared {seen}, the f64 reference gives {value}",
+                    row.index
+                )));
+            }
+        }
+    }
+    rows.sort_by(|a, b| {
+        let by_objective = objectives.iter().zip(&column_of).map(|(objective, &column)| {
+            let badness = |row: &Row| Worst::End(objective.goal.worse()).badness(row.columns[column].value.unwrap_or(f64::NAN));
+            badness(a).total_cmp(&badness(b))
+        });
+        by_objective.into_iter().find(|ordering| ordering.is_ne()).unwrap_or_else(|| a.index.cmp(&b.index))
+    });
+    Ok(rows)
+}
+
+/// The reference must agree that a reported design is feasible.
+///
+/// # Errors
+/// [`Error::Certificate`].
+pub fn check_feasible(row: &Row) -> Result<()> {
+    if row.feasible {
+        return Ok(());
+    }
+    Err(Error::Certificate(format!("design {}: the sweep found it feasible, the f64 reference does not", row.index)))
+}
+
+/// The scalar f64 evaluation of designs over all scenarios; keeps what the slow inputs of one row prepare.
+struct Reference<'p> {
+    plan: &'p Plan,
+    columns: &'p [Column],
+    wanted: u64,
+    row: Option<u64>,
+    prepared: Vec<Prepared>,
+}
+
+impl<'p> Reference<'p> {
+    fn new(plan: &'p Plan, columns: &'p [Column]) -> Self {
+        let asked = columns.iter().map(|it| it.quantity).chain(plan.study.constraints.iter().map(|it| it.quantity));
+        let wanted = asked.fold(0, |set, quantity| match quantity {
+            Quantity::Output(output) => set | 1 << output,
+            Quantity::Input(_) => set,
+        });
+        Self { plan, columns, wanted, row: None, prepared: Vec::new() }
+    }
+
+    fn row(&mut self, position: u64) -> Row {
+        let plan = self.plan;
+        let model = plan.study.model;
+        let index = plan.design_at(position);
+        let mut inputs = plan.space.inputs(index, 0);
+        let first = inputs.clone();
+        let row = position / plan.fast.count();
+        if self.row != Some(row) {
+            self.row = Some(row);
+            self.prepared.clear();
+        }
+        let mut feasible = true;
+        let mut worst = vec![(f64::NEG_INFINITY, AtWorst { value: None, scenario: 0 }); self.columns.len()];
+        for q in 0..plan.slow_scenarios.count() {
+            plan.slow_scenarios.set(q, &mut inputs);
+            for t in 0..plan.fast_scenarios.count() {
+                plan.fast_scenarios.set(t, &mut inputs);
+                let si = to_si(model, &inputs);
+                if self.prepared.len() as u64 == q {
+                    self.prepared.push(model.kernel.prepare(&si));
+                }
+                let prepared = &self.prepared[q as usize];
+                let mut outputs = [0.0; OUTPUTS];
+                model.kernel.finish(prepared, &si, self.wanted, &mut outputs);
+                let (status, present) = judge(model, &model.kernel.conditions(prepared, &si));
+                let value = |quantity| match quantity {
+                    Quantity::Input(input) => Some(inputs[input]),
+                    Quantity::Output(output) => {
+                        let value = model.outputs[output].unit.from_si(outputs[output]);
+                        (present >> output & 1 == 1 && value.is_finite()).then_some(value)
+                    }
+                };
+                feasible &= status == Status::Ok;
+                feasible &= plan.study.constraints.iter().all(|it| value(it.quantity).is_some_and(|value| it.holds(value)));
+                let scenario = plan.slow_scenarios.source_index(q) + plan.fast_scenarios.source_index(t);
+                for (column, (badness, at)) in self.columns.iter().zip(&mut worst) {
+                    let Some(value) = value(column.quantity) else { continue };
+                    let this = column.worst.badness(value);
+                    if at.value.is_none() || this > *badness || (this == *badness && scenario < at.scenario) {
+                        (*badness, *at) = (this, AtWorst { value: Some(value + 0.0), scenario });
+                    }
+                }
+            }
+        }
+        // An objective or tracked quantity without a meaning makes a design infeasible, as in the sweep.
+        let complete = self.columns.iter().zip(&worst).all(|(column, (_, at))| column.role == Role::Report || at.value.is_some());
+        Row { index, feasible: feasible && complete, inputs: first, columns: worst.into_iter().map(|(_, at)| at).collect() }
+    }
+}

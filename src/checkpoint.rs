@@ -1,0 +1,258 @@
+//! What a killed run leaves behind: a manifest of finished ranges and the certified state that belongs to them.
+//!
+//! A save writes the state under a new name and then replaces the manifest, which names the state and its checksum, in one
+//! step: at any moment the manifest on disk and the state it names belong together.
+
+use crate::error::{Error, Result};
+use crate::reduce::State;
+use crate::study::{Study, differences};
+use crate::tiles::{Ranges, Shard};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::fs::{self, File};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Version of the checkpoint's layout; another one is refused.
+const VERSION: u32 = 1;
+const MANIFEST: &str = "manifest.json";
+const LOCK: &str = "lock";
+
+/// What was finished before.
+#[derive(Debug)]
+pub struct Progress {
+    /// Positions that were judged.
+    pub done: Ranges,
+    /// What remains of them.
+    pub state: State,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Manifest {
+    version: u32,
+    program: String,
+    study_hash: String,
+    study: Study,
+    description: Value,
+    study_text: String,
+    designs: u64,
+    shard: Shard,
+    /// Finished positions, of `0..designs` in the sweep's order.
+    done: Ranges,
+    /// File with the state of the finished positions, and its CRC-32; none before the first save.
+    state: Option<(String, u32)>,
+    saves: u64,
+}
+
+/// A checkpoint folder that this process writes.
+#[derive(Debug)]
+pub struct Checkpoint {
+    folder: PathBuf,
+    manifest: Manifest,
+    progress: Option<Progress>,
+    /// Held while the folder is in use, so that no second run writes to it.
+    _lock: File,
+}
+
+impl Checkpoint {
+    /// Starts a checkpoint in `folder`; what an earlier run left there is dropped.
+    ///
+    /// # Errors
+    /// [`Error::Io`]; [`Error::Checkpoint`] if another process is using the folder.
+    pub fn create(folder: &Path, study: &Study, text: &str, shard: Shard, designs: u64) -> Result<Self> {
+        fs::create_dir_all(folder).map_err(Error::io(folder))?;
+        let lock = lock(folder)?;
+        remove_contents(folder)?;
+        let manifest = Manifest {
+            version: VERSION,
+            program: env!("CARGO_PKG_VERSION").to_owned(),
+            study_hash: study.hash(),
+            study: study.clone(),
+            description: study.describe(),
+            study_text: text.to_owned(),
+            designs,
+            shard,
+            done: Ranges::default(),
+            state: None,
+            saves: 0,
+        };
+        let checkpoint = Self { folder: folder.to_owned(), manifest, progress: None, _lock: lock };
+        checkpoint.write_manifest()?;
+        Ok(checkpoint)
+    }
+
+    /// Takes up the checkpoint in `folder`, of whatever study it is.
+    ///
+    /// # Errors
+    /// [`Error::Checkpoint`] if there is none, it is damaged, of another version, or in use.
+    pub fn open(folder: &Path) -> Result<Self> {
+        let refuse = |problem: String| Error::Checkpoint { path: folder.to_owned(), problem };
+        let path = folder.join(MANIFEST);
+        let text = fs::read_to_string(&path).map_err(|source| match source.kind() {
+            std::io::ErrorKind::NotFound => refuse("there is no checkpoint here".to_owned()),
+            _ => Error::Io { path: path.clone(), source },
+        })?;
+        let version = serde_json::from_str::<Value>(&text).ok().and_then(|value| value["version"].as_u64());
+        if version.is_some_and(|version| version != u64::from(VERSION)) {
+            return Err(refuse("the checkpoint was written by another version of beltspace; start again with --force".to_owned()));
+        }
+        let manifest: Manifest =
+            serde_json::from_str(&text).map_err(|error| refuse(format!("the manifest is damaged ({error}); start again with --force")))?;
+        let lock = lock(folder)?;
+        let progress = match &manifest.state {
+            None => None,
+            Some((name, checksum)) => {
+                let damaged = || refuse(format!("{name} does not match its checksum; start again with --force"));
+                let bytes = fs::read(folder.join(name)).map_err(Error::io(&folder.join(name)))?;
+                if crc32fast::hash(&bytes) != *checksum {
+                    return Err(damaged());
+                }
+                let state = postcard::from_bytes(&bytes).map_err(|_| damaged())?;
+                Some(Progress { done: manifest.done.clone(), state })
+            }
+        };
+        Ok(Self { folder: folder.to_owned(), manifest, progress, _lock: lock })
+    }
+
+    /// Is there a checkpoint in `folder`?
+    pub fn exists(folder: &Path) -> bool {
+        folder.join(MANIFEST).exists()
+    }
+
+    /// Refuses a checkpoint of another study or shard, saying what changed.
+    ///
+    /// # Errors
+    /// [`Error::Checkpoint`].
+    pub fn require(&self, study: &Study, shard: Shard) -> Result<()> {
+        let refuse = |problem: String| Err(Error::Checkpoint { path: self.folder.clone(), problem });
+        if self.manifest.study_hash != study.hash() {
+            let changed = differences(&self.manifest.description, &study.describe()).join("; ");
+            return refuse(format!("the checkpoint is of another study ({changed}); restore the study, or start again with --force"));
+        }
+        if self.manifest.shard != shard {
+            let (was, is) = (self.manifest.shard, shard);
+            return refuse(format!("the checkpoint is of shard {was}, not {is}; use --shard {was}, or start again with --force"));
+        }
+        Ok(())
+    }
+
+    /// Was anything finished before?
+    pub fn has_progress(&self) -> bool {
+        self.progress.as_ref().is_some_and(|progress| progress.done.count() > 0)
+    }
+
+    /// What was finished before, once.
+    pub fn take_progress(&mut self) -> Option<Progress> {
+        self.progress.take()
+    }
+
+    /// The study that it is of.
+    pub fn study(&self) -> &Study {
+        &self.manifest.study
+    }
+
+    /// The text of that study's file.
+    pub fn study_text(&self) -> &str {
+        &self.manifest.study_text
+    }
+
+    /// The study's hash.
+    pub fn study_hash(&self) -> &str {
+        &self.manifest.study_hash
+    }
+
+    /// What its study asks for.
+    pub fn description(&self) -> &Value {
+        &self.manifest.description
+    }
+
+    /// The shard that it is of.
+    pub fn shard(&self) -> Shard {
+        self.manifest.shard
+    }
+
+    /// Number of designs of the whole study.
+    pub fn designs(&self) -> u64 {
+        self.manifest.designs
+    }
+
+    /// Keeps the state of the finished ranges.
+    ///
+    /// # Errors
+    /// [`Error::Io`]; what was kept before is then still whole.
+    pub fn save(&mut self, done: &Ranges, state: &State) -> Result<()> {
+        let bytes = postcard::to_stdvec(state).expect("plain numbers and vectors can be written");
+        let old = self.manifest.state.take();
+        self.manifest.saves += 1;
+        let name = format!("state-{}.bin", self.manifest.saves);
+        let path = self.folder.join(&name);
+        write_through(&path, &bytes)?;
+        self.manifest.done = done.clone();
+        self.manifest.state = Some((name, crc32fast::hash(&bytes)));
+        self.write_manifest()?;
+        if let Some((old, _)) = old {
+            let old = self.folder.join(old);
+            fs::remove_file(&old).map_err(Error::io(&old))?;
+        }
+        Ok(())
+    }
+
+    fn write_manifest(&self) -> Result<()> {
+        let text = serde_json::to_string_pretty(&self.manifest).expect("a manifest has string keys and finite numbers");
+        replace(&self.folder.join(MANIFEST), text.as_bytes())
+    }
+
+    /// Removes the folder: the run is complete and its result written.
+    ///
+    /// # Errors
+    /// [`Error::Io`].
+    pub fn remove(self) -> Result<()> {
+        fs::remove_dir_all(&self.folder).map_err(Error::io(&self.folder))
+    }
+}
+
+fn lock(folder: &Path) -> Result<File> {
+    let path = folder.join(LOCK);
+    let file = File::create(&path).map_err(Error::io(&path))?;
+    match file.try_lock() {
+        Ok(()) => Ok(file),
+        Err(fs::TryLockError::WouldBlock) => Err(Error::Checkpoint {
+            path: folder.to_owned(),
+            problem: "another beltspace is running here; wait for it or use another --out".to_owned(),
+        }),
+        Err(fs::TryLockError::Error(source)) => Err(Error::Io { path, source }),
+    }
+}
+
+fn remove_contents(folder: &Path) -> Result<()> {
+    for entry in fs::read_dir(folder).map_err(Error::io(folder))? {
+        let entry = entry.map_err(Error::io(folder))?;
+        if entry.file_name() != LOCK {
+            let path = entry.path();
+            let removed = if path.is_dir() { fs::remove_dir_all(&path) } else { fs::remove_file(&path) };
+            removed.map_err(Error::io(&path))?;
+        }
+    }
+    Ok(())
+}
+
+fn write_through(path: &Path, bytes: &[u8]) -> Result<()> {
+    let write = || -> std::io::Result<()> {
+        let mut file = File::create(path)?;
+        file.write_all(bytes)?;
+        file.sync_all()
+    };
+    write().map_err(Error::io(path))
+}
+
+/// Writes a file so that it is either the old one or the new one, whole, whatever happens meanwhile.
+///
+/// # Errors
+/// [`Error::Io`]; the old file is then untouched.
+pub fn replace(path: &Path, bytes: &[u8]) -> Result<()> {
+    let mut temporary = path.as_os_str().to_owned();
+    temporary.push(".writing");
+    let temporary = PathBuf::from(temporary);
+    write_through(&temporary, bytes)?;
+    fs::rename(&temporary, path).map_err(Error::io(path))
+}

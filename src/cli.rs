@@ -1,0 +1,140 @@
+//! Every option of the command line.
+
+use beltspace::tiles::Shard;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// Explores belt-drive designs by the billion: every combination, judged in its worst case, down to the exact Pareto front.
+#[derive(Debug, Parser)]
+#[command(version, max_term_width = 110, arg_required_else_help = true, disable_help_subcommand = true)]
+#[command(after_help = "Start with:  beltspace models metal-cvt --study > my.toml;  beltspace check my.toml;  beltspace sweep my.toml")]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// List the models, or one model's inputs, outputs, units, ranges and sources
+    Models(Models),
+    /// Evaluate one design: every input, output and margin
+    Eval(Eval),
+    /// Look at a study without running it: designs, scenarios, inert axes, memory, expected time, warnings
+    Check {
+        /// Study file
+        study: PathBuf,
+    },
+    /// Judge every design of a study and write the result directory
+    Sweep(Sweep),
+    /// Put the shards of a study together: the same result as one run
+    Merge(Merge),
+    /// Print a completion script for a shell
+    Completions {
+        /// Shell
+        shell: clap_complete::Shell,
+    },
+}
+
+/// Options of `models`.
+#[derive(Debug, Args)]
+pub struct Models {
+    /// Name of a model; without it, all are listed
+    pub name: Option<String>,
+    /// Print JSON
+    #[arg(long, conflicts_with = "study")]
+    pub json: bool,
+    /// Print a study to start from
+    #[arg(long, requires = "name")]
+    pub study: bool,
+}
+
+/// Options of `eval`.
+#[derive(Debug, Args)]
+pub struct Eval {
+    /// Name of a model, or a study file
+    #[arg(value_name = "MODEL|STUDY")]
+    pub target: String,
+    /// Set an input; a unit may follow the number ("0.25 in"). May be repeated
+    #[arg(long, value_name = "NAME=VALUE", conflicts_with = "design")]
+    pub set: Vec<String>,
+    /// Start from a named set of inputs instead of the defaults
+    #[arg(long, conflicts_with = "design")]
+    pub preset: Option<String>,
+    /// Design of a study, by its index
+    #[arg(long, value_name = "N")]
+    pub design: Option<u64>,
+    /// Scenario of a study, by its index; without it the worst over all scenarios
+    #[arg(long, value_name = "K", requires = "design")]
+    pub scenario: Option<u64>,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+    /// Write the values along the belt as CSV
+    #[arg(long, value_name = "FILE.csv")]
+    pub profile: Option<PathBuf>,
+    /// Draw the values along the belt as SVG
+    #[arg(long, value_name = "FILE.svg")]
+    pub plot: Option<PathBuf>,
+}
+
+/// What judges the designs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Engine {
+    /// The fastest that is there
+    Auto,
+    /// The processor, in f64
+    Cpu,
+}
+
+/// Options of `sweep`.
+#[derive(Debug, Args)]
+pub struct Sweep {
+    /// Study file
+    pub study: PathBuf,
+    /// Result directory [default: results/<study name>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// What judges the designs
+    #[arg(long, value_enum, default_value = "auto")]
+    pub engine: Engine,
+    /// Worker threads [default: one per core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub threads: Option<u16>,
+    /// Go on from the checkpoint of an interrupted run (from the start if there is none)
+    #[arg(long)]
+    pub resume: bool,
+    /// Run only part K of N; `merge` puts the parts together
+    #[arg(long, value_name = "K/N")]
+    pub shard: Option<Shard>,
+    /// Print nothing but errors
+    #[arg(long)]
+    pub quiet: bool,
+    /// Replace an existing result or checkpoint
+    #[arg(long, conflicts_with = "resume")]
+    pub force: bool,
+    /// Designs between two looks at the clock; changes no result (for testing)
+    #[arg(long, hide = true, default_value_t = 65_536, value_parser = clap::value_parser!(u64).range(1..))]
+    pub tile: u64,
+}
+
+/// Options of `merge`.
+#[derive(Debug, Args)]
+pub struct Merge {
+    /// Directories of all shards of one study
+    #[arg(required = true, value_name = "DIR")]
+    pub shards: Vec<PathBuf>,
+    /// Result directory
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// Worker threads [default: one per core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub threads: Option<u16>,
+    /// Print nothing but errors
+    #[arg(long)]
+    pub quiet: bool,
+    /// Replace an existing result
+    #[arg(long)]
+    pub force: bool,
+}

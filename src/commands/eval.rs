@@ -1,0 +1,272 @@
+//! `beltspace eval`: one design, of a model or of a study.
+
+use super::{find_model, read_study};
+use crate::cli;
+use crate::terminal::{self, Grid, bold, dim, short};
+use beltspace::certify;
+use beltspace::checkpoint::replace;
+use beltspace::error::{Error, Result};
+use beltspace::export::{Data, Table, TableColumn, csv_text};
+use beltspace::models::{Evaluation, Model, Profile, Status, evaluate};
+use beltspace::pictures::{self, Quantity, Series};
+use beltspace::plan::Plan;
+use beltspace::study::{Quantity as Which, Study, number, value_of};
+use beltspace::units::parse_value;
+use serde_json::{Map, Value, json};
+use std::path::Path;
+
+pub fn run(request: &cli::Eval) -> Result<()> {
+    let path = Path::new(&request.target);
+    if beltspace::models::find(&request.target).is_none() && (path.extension().is_some_and(|it| it == "toml") || path.exists()) {
+        return of_study(request, path);
+    }
+    let model = find_model(&request.target)?;
+    if request.design.is_some() {
+        return Err(Error::Request(format!("--design numbers the designs of a study, and {} is a model; use --set", model.name)));
+    }
+    let inputs = inputs_of(model, request)?;
+    print_one(model, &inputs, None, request)
+}
+
+/// Defaults, then the preset, then every `--set`.
+fn inputs_of(model: &Model, request: &cli::Eval) -> Result<Vec<f64>> {
+    let mut inputs = model.defaults();
+    if let Some(name) = &request.preset {
+        let names: Vec<_> = model.presets.iter().map(|(name, _)| *name).collect();
+        let known = if names.is_empty() { "it has none".to_owned() } else { format!("presets are: {}", names.join(", ")) };
+        let preset = model.presets.iter().find(|(it, _)| it == name);
+        let (_, values) = preset.ok_or_else(|| Error::Request(format!("{} has no preset \"{name}\"; {known}", model.name)))?;
+        for (input, value) in *values {
+            inputs[model.input(input).expect("a preset names inputs of its model")] = *value;
+        }
+    }
+    let mut problems = Vec::new();
+    for assignment in &request.set {
+        match parse_assignment(model, assignment) {
+            Ok((input, value)) => inputs[input] = value,
+            Err(problem) => problems.push(problem),
+        }
+    }
+    if problems.is_empty() { Ok(inputs) } else { Err(Error::Request(problems.join("\n       "))) }
+}
+
+fn parse_assignment(model: &Model, assignment: &str) -> std::result::Result<(usize, f64), String> {
+    let (name, text) = assignment.split_once('=').ok_or_else(|| format!("--set \"{assignment}\": write NAME=VALUE"))?;
+    let (name, text) = (name.trim(), text.trim());
+    let Some(number) = model.input(name) else {
+        let nearest =
+            model.inputs.iter().map(|it| it.name).max_by(|a, b| strsim::jaro_winkler(a, name).total_cmp(&strsim::jaro_winkler(b, name)));
+        let kind = if model.output(name).is_some() { "is an output" } else { "is no input" };
+        return Err(format!("{name} {kind} of {}; did you mean {}?", model.name, nearest.unwrap_or_default()));
+    };
+    let input = &model.inputs[number];
+    let value = match input.word.filter(|(word, _)| *word == text) {
+        Some((_, value)) => value,
+        None => parse_value(text, input.unit).map_err(|error| format!("{name}: {error}"))?,
+    };
+    if input.accepts(value) {
+        return Ok((number, value));
+    }
+    let whole = if input.integer && value.fract() != 0.0 { "must be a whole number" } else { "is out of range" };
+    let word = input.word.map_or(String::new(), |(word, _)| format!(", or \"{word}\""));
+    Err(format!("{name} = {text} {whole}; it is {}{word}", input.valid.in_words()))
+}
+
+/// Prints one design in one scenario.
+fn print_one(model: &Model, inputs: &[f64], of_study: Option<(u64, u64)>, request: &cli::Eval) -> Result<()> {
+    let evaluation = evaluate(model, inputs);
+    for input in
+        model.inputs.iter().zip(inputs).filter(|(it, value)| it.word_for(**value).is_none() && !(it.usual.0..=it.usual.1).contains(*value))
+    {
+        let (input, value) = input;
+        terminal::remark(
+            "note",
+            &format!("{} = {value} lies outside {} to {}, which the source covers", input.name, input.usual.0, input.usual.1),
+        );
+    }
+    along_the_belt(model, inputs, &evaluation, request)?;
+    let reason = evaluation.status.reason(model);
+    if request.json {
+        let mut object = json!({ "model": model.name, "inputs": named_inputs(model, inputs), "outputs": named_outputs(model, &evaluation), "status": reason });
+        if let Some((design, scenario)) = of_study {
+            object["design"] = design.into();
+            object["scenario"] = scenario.into();
+        }
+        return terminal::print(&format!("{object:#}\n"));
+    }
+    let mut table = Grid::default();
+    for (input, &value) in model.inputs.iter().zip(inputs) {
+        let text = input.word_for(value).map_or_else(|| short(value), str::to_owned);
+        table.row([input.name.to_owned(), text, dim(input.doc)]);
+    }
+    let mut results = Grid::default();
+    for (output, value) in model.outputs.iter().zip(&evaluation.outputs) {
+        results.row([output.name.to_owned(), value.map_or("-".to_owned(), short), dim(output.doc)]);
+    }
+    let why = match evaluation.status {
+        Status::Ok => String::new(),
+        Status::Failed(condition) => format!("  (unless: {})", model.conditions[condition].doc),
+    };
+    terminal::print(&format!(
+        "{}\n{}\n{}\n{}\n{} {reason}{why}\n",
+        bold("inputs"),
+        table.indented(2),
+        bold("outputs"),
+        results.indented(2),
+        bold("status")
+    ))
+}
+
+fn named_inputs(model: &Model, inputs: &[f64]) -> Map<String, Value> {
+    model.inputs.iter().enumerate().map(|(at, input)| (input.name.to_owned(), value_of(model, at, inputs[at]))).collect()
+}
+
+fn named_outputs(model: &Model, evaluation: &Evaluation) -> Map<String, Value> {
+    let present = model.outputs.iter().zip(&evaluation.outputs).filter_map(|(output, value)| Some((output.name, (*value)?)));
+    present.map(|(name, value)| (name.to_owned(), number(value))).collect()
+}
+
+/// Writes `--profile` and `--plot`.
+fn along_the_belt(model: &Model, inputs: &[f64], evaluation: &Evaluation, request: &cli::Eval) -> Result<()> {
+    if request.profile.is_none() && request.plot.is_none() {
+        return Ok(());
+    }
+    let Some(profile) = model.profile else {
+        let with: Vec<_> = beltspace::models::MODELS.iter().filter(|it| it.profile.is_some()).map(|it| it.name).collect();
+        return Err(Error::Request(format!(
+            "{} has no values along the belt for --profile and --plot; models that have: {}",
+            model.name,
+            with.join(", ")
+        )));
+    };
+    if evaluation.status != Status::Ok {
+        return Err(Error::Request(format!("no values along the belt: the status is \"{}\"", evaluation.status.reason(model))));
+    }
+    let Profile { columns, rows } = profile(inputs);
+    let column = |at: usize| rows.iter().map(|row| row[at]).collect::<Vec<_>>();
+    if let Some(path) = &request.profile {
+        let columns = columns.iter().enumerate().map(|(at, (name, unit))| TableColumn {
+            unit: unit.symbol.to_owned(),
+            ..TableColumn::new(name, "profile", "", Data::Number(column(at).into_iter().map(Some).collect()))
+        });
+        replace(path, &csv_text(&Table { columns: columns.collect() }))?;
+    }
+    if let Some(path) = &request.plot {
+        let quantity = |at: usize| Quantity::new(columns[at].0, columns[at].1.symbol);
+        let panel = |at: usize| (quantity(at), vec![Series { label: String::new(), x: column(0), y: column(at) }]);
+        let panels: Vec<_> = (1..columns.len()).map(panel).collect();
+        replace(path, pictures::curves(model.summary, &quantity(0), &panels).as_bytes())?;
+    }
+    Ok(())
+}
+
+fn of_study(request: &cli::Eval, path: &Path) -> Result<()> {
+    let (study, _) = read_study(path)?;
+    if !request.set.is_empty() || request.preset.is_some() {
+        return Err(Error::Request("--set and --preset are for models; a study's designs are numbered: use --design N".to_owned()));
+    }
+    let plan = Plan::new(study);
+    let model = plan.study.model;
+    let (designs, scenarios) = (plan.designs(), plan.scenarios());
+    let design = request.design.ok_or_else(|| Error::Request(format!("which design? use --design N, from 0 to {}", designs - 1)))?;
+    if design >= designs {
+        return Err(Error::Request(format!("there is no design {design}; the study's designs are 0 to {}", designs - 1)));
+    }
+    if let Some(scenario) = request.scenario.or((scenarios == 1).then_some(0)) {
+        if scenario >= scenarios {
+            return Err(Error::Request(format!("there is no scenario {scenario}; the study's scenarios are 0 to {}", scenarios - 1)));
+        }
+        return print_one(model, &plan.space.inputs(design, scenario), Some((design, scenario)), request);
+    }
+    if request.profile.is_some() || request.plot.is_some() {
+        return Err(Error::Request(format!("values along the belt are of one scenario; add --scenario K, from 0 to {}", scenarios - 1)));
+    }
+    print_worst(&plan, design, request.json)
+}
+
+/// Prints a design's inputs, every output at its worst scenario, and the constraints with their margins.
+fn print_worst(plan: &Plan, design: u64, as_json: bool) -> Result<()> {
+    let study = &plan.study;
+    let model = study.model;
+    // The study's own columns plus every output: ask for them as report columns.
+    let mut everything = Study::clone(study);
+    everything.report.columns = (0..model.outputs.len()).map(Which::Output).collect();
+    let columns = certify::columns(&everything);
+    let row = certify::rows(plan, &columns, &[design], 1).remove(0);
+    let statuses = (0..plan.scenarios()).map(|scenario| (scenario, evaluate(model, &plan.space.inputs(design, scenario)).status));
+    let failed = statuses.filter(|(_, status)| *status != Status::Ok).collect::<Vec<_>>();
+    let status = failed.first().map_or(Status::Ok, |(_, status)| *status).reason(model);
+
+    let varied: Vec<usize> = study.operation.iter().chain(&study.uncertainty).flat_map(|axis| axis.inputs()).copied().collect();
+    let inputs = (0..model.inputs.len()).filter(|input| !varied.contains(input));
+    let at_worst = |quantity: Which, suffix: &str| {
+        let name = format!("{}{suffix}", quantity.name(model));
+        columns.iter().position(|column| column.name == name).map(|at| row.columns[at])
+    };
+    let constraints = study.constraints.iter().map(|constraint| {
+        let worst = at_worst(constraint.quantity, "_constrained").or_else(|| at_worst(constraint.quantity, ""));
+        (constraint, worst.filter(|it| it.value.is_some()))
+    });
+    if as_json {
+        let inputs: Map<_, _> =
+            inputs.map(|input| (model.inputs[input].name.to_owned(), value_of(model, input, row.inputs[input]))).collect();
+        let outputs = columns
+            .iter()
+            .zip(&row.columns)
+            .filter_map(|(column, at)| Some((column.name.clone(), json!({ "value": number(at.value?), "scenario": at.scenario }))));
+        let constraints = constraints.map(|(constraint, worst)| {
+            let value = worst.and_then(|it| it.value);
+            json!({
+                "of": constraint.quantity.name(model), "bounds": constraint.in_words(), "value": value.map(number),
+                "margin": value.map(|value| number(constraint.margin(value))), "scenario": worst.map(|it| it.scenario),
+                "holds": value.is_some_and(|value| constraint.holds(value)),
+            })
+        });
+        let object = json!({
+            "model": model.name, "design": design, "inputs": inputs, "outputs": outputs.collect::<Map<_, _>>(),
+            "constraints": constraints.collect::<Vec<_>>(), "status": status, "feasible": row.feasible,
+            "scenarios": plan.scenarios(), "scenarios_not_ok": failed.len(),
+        });
+        return terminal::print(&format!("{object:#}\n"));
+    }
+    let mut table = Grid::default();
+    for input in inputs {
+        let value = row.inputs[input];
+        let text = model.inputs[input].word_for(value).map_or_else(|| short(value), str::to_owned);
+        table.row([model.inputs[input].name.to_owned(), text, dim(model.inputs[input].doc)]);
+    }
+    let mut results = Grid::default();
+    results.row(["", "worst", "in scenario", ""].map(str::to_owned));
+    for (column, at) in columns.iter().zip(&row.columns) {
+        let value = at.value.map_or("-".to_owned(), short);
+        results.row([column.name.clone(), value, at.scenario.to_string(), dim(column.quantity.doc(model))]);
+    }
+    let mut margins = Grid::default();
+    for (constraint, worst) in constraints {
+        let value = worst.and_then(|it| it.value);
+        let verdict = match value {
+            Some(value) if constraint.holds(value) => "holds".to_owned(),
+            Some(_) => bold("violated"),
+            None => bold("no value"),
+        };
+        let margin = value.map_or("-".to_owned(), |value| short(constraint.margin(value)));
+        margins.row([constraint.quantity.name(model).to_owned(), constraint.in_words(), verdict, "margin".to_owned(), margin]);
+    }
+    let not_ok = failed.first().map_or(String::new(), |(scenario, _)| {
+        format!(" in scenario {scenario} ({} of {} scenarios are not ok)", failed.len(), plan.scenarios())
+    });
+    terminal::print(&format!(
+        "{} {design}, worst of {} scenarios\n\n{}\n{}\n{}\n{}\n{}\n{}\n{} {status}{not_ok}\n{} {}\n",
+        bold("design"),
+        plan.scenarios(),
+        bold("inputs"),
+        table.indented(2),
+        bold("outputs"),
+        results.indented(2),
+        bold("constraints"),
+        margins.indented(2),
+        bold("status"),
+        bold("feasible"),
+        if row.feasible { "yes" } else { "no" },
+    ))
+}

@@ -1,0 +1,122 @@
+//! `beltspace models`: what there is.
+
+use super::find_model;
+use crate::cli;
+use crate::terminal::{self, Grid, bold};
+use beltspace::error::Result;
+use beltspace::models::{Input, MODELS, Model, Range, Worse};
+use beltspace::study::number;
+use serde_json::{Map, Value, json};
+
+pub fn run(request: &cli::Models) -> Result<()> {
+    let model = request.name.as_deref().map(find_model).transpose()?;
+    let text = match (model, request.json) {
+        (Some(model), _) if request.study => model.starter.to_owned(),
+        (Some(model), true) => format!("{:#}\n", describe(model)),
+        (None, true) => format!("{:#}\n", MODELS.iter().map(|model| describe(model)).collect::<Value>()),
+        (Some(model), false) => page(model),
+        (None, false) => list(),
+    };
+    terminal::print(&text)
+}
+
+fn list() -> String {
+    let mut grid = Grid::default();
+    for model in MODELS {
+        grid.row([bold(model.name), model.summary.to_owned()]);
+    }
+    format!(
+        "{}\nInputs, outputs, units, ranges and sources of one:  beltspace models NAME\nA study to start from:  beltspace models NAME --study\n",
+        grid.indented(0)
+    )
+}
+
+fn page(model: &Model) -> String {
+    let mut inputs = Grid::default();
+    inputs.row(["input", "default", "usual", "valid", "", "source"].map(bold));
+    for input in model.inputs {
+        let (low, high) = input.usual;
+        let default = input.word_for(input.default).map_or_else(|| input.default.to_string(), str::to_owned);
+        inputs.row([
+            input.name.to_owned(),
+            default,
+            format!("{low} to {high}"),
+            valid(input),
+            input.doc.to_owned(),
+            input.source.to_owned(),
+        ]);
+    }
+    let mut outputs = Grid::default();
+    outputs.row(["output", "symbol", "equation", ""].map(bold));
+    for output in model.outputs {
+        outputs.row([output.name, output.symbol, output.source, output.doc].map(str::to_owned));
+    }
+    let mut statuses = Grid::default();
+    statuses.row([bold("status"), String::new()]);
+    for condition in model.conditions.iter().filter(|condition| !condition.quiet) {
+        statuses.row([condition.reason.to_owned(), format!("unless: {}", condition.doc)]);
+    }
+    let presets: Vec<_> = model.presets.iter().map(|(name, _)| *name).collect();
+    let presets = if presets.is_empty() { String::new() } else { format!("presets: {}\n\n", presets.join(", ")) };
+    format!(
+        "{}  {}\n\n{}\n\n{}\n{}\n{}\n{presets}{} {}\n",
+        bold(model.name),
+        model.summary,
+        model.source,
+        inputs.indented(2),
+        outputs.indented(2),
+        statuses.indented(2),
+        bold("Not in the model:"),
+        model.limits,
+    )
+}
+
+fn valid(input: &Input) -> String {
+    let whole = if input.integer { "whole, " } else { "" };
+    let word = input.word.map_or(String::new(), |(word, _)| format!(", or \"{word}\""));
+    format!("{whole}{}{word}", input.valid.in_words())
+}
+
+/// A model as JSON: everything of the table.
+fn describe(model: &Model) -> Value {
+    let range = |range: &Range| {
+        json!({
+            "low": number(range.low),
+            "includes_low": range.includes_low,
+            "high": range.high.is_finite().then(|| number(range.high)),
+            "includes_high": range.includes_high,
+        })
+    };
+    let inputs = model.inputs.iter().map(|input| {
+        json!({
+            "name": input.name, "symbol": input.symbol, "unit": input.unit.symbol,
+            "default": beltspace::study::value_of(model, model.input(input.name).unwrap_or(0), input.default),
+            "valid": range(&input.valid), "usual": [number(input.usual.0), number(input.usual.1)], "integer": input.integer,
+            "word": input.word.map(|(word, _)| word), "doc": input.doc, "source": input.source,
+        })
+    });
+    let outputs = model.outputs.iter().map(|output| {
+        json!({
+            "name": output.name, "symbol": output.symbol, "unit": output.unit.symbol,
+            "worst": if output.worse == Worse::Higher { "highest" } else { "lowest" },
+            "doc": output.doc, "source": output.source,
+        })
+    });
+    let conditions = model.conditions.iter().filter(|it| !it.quiet).map(|condition| {
+        let absent = condition.invalidates.iter().filter(|name| model.output(name).is_some()).collect::<Vec<_>>();
+        json!({ "status": condition.reason, "unless": condition.doc, "absent": absent })
+    });
+    let presets: Map<_, _> = model
+        .presets
+        .iter()
+        .map(|(name, values)| {
+            let values: Map<_, _> = values.iter().map(|(input, value)| ((*input).to_owned(), number(*value))).collect();
+            ((*name).to_owned(), Value::from(values))
+        })
+        .collect();
+    json!({
+        "name": model.name, "summary": model.summary, "source": model.source, "limits": model.limits,
+        "inputs": inputs.collect::<Vec<_>>(), "outputs": outputs.collect::<Vec<_>>(),
+        "statuses": conditions.collect::<Vec<_>>(), "presets": presets,
+    })
+}

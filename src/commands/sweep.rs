@@ -1,0 +1,132 @@
+//! `beltspace sweep`: the main job.
+
+use super::{read_study, threads};
+use crate::cli;
+use crate::terminal::{self, progress::Bar, report};
+use beltspace::checkpoint::Checkpoint;
+use beltspace::error::{Error, Result};
+use beltspace::export::{MARK, Outcome, RunRecord};
+use beltspace::plan::Plan;
+use beltspace::reduce::Reduction;
+use beltspace::screen::{Tables, Tally};
+use beltspace::sweep::{Control, Options, Swept, sweep};
+use beltspace::tiles::Shard;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+
+/// Folder of the checkpoint within a result directory.
+pub const CHECKPOINT: &str = "checkpoint";
+
+pub fn run(request: &cli::Sweep) -> Result<()> {
+    let (study, text) = read_study(&request.study)?;
+    let shard = request.shard.unwrap_or(Shard::WHOLE);
+    let out = request.out.clone().unwrap_or_else(|| default_out(&request.study, request.shard));
+    refuse_to_overwrite(&out, request.force)?;
+    let plan = Plan::new(study);
+    let mut checkpoint = open_checkpoint(&out, &plan, &text, shard, request)?;
+    let resumed = checkpoint.has_progress();
+    let options = Options { threads: threads(request.threads), tile: request.tile, shard, ..Options::default() };
+
+    let control = Arc::new(Control::default());
+    stop_on_ctrl_c(&control)?;
+    let tables = Tables::new(&plan);
+    let tally = Tally::new(&plan, &tables, options.threads);
+    let reduction = Reduction::new(&plan, &tally.histogram_ranges(&plan));
+    let bar = Bar::start(&control, shard.range(plan.designs()), request.quiet);
+    let swept = sweep(&plan, &tables, &reduction, &options, Some(&mut checkpoint), &control);
+    bar.finish();
+    let swept = swept.map_err(|error| name_the_way_back(error, &out, request))?;
+
+    if request.shard.is_some() {
+        return finish_shard(&plan, &out, &swept, shard, request.quiet);
+    }
+    let Swept { state, designs, time } = swept;
+    let outcome = Outcome::certify(&plan, state, tally, options.threads)?;
+    let origin = if resumed { "resumed from a checkpoint" } else { "one run" }.to_owned();
+    let record = RunRecord {
+        engine: "cpu",
+        threads: options.threads,
+        designs,
+        scenarios: plan.scenarios(),
+        time,
+        origin,
+        certified: outcome.front.len() + outcome.top.len(),
+    };
+    outcome.write(&out, &text, &record)?;
+    checkpoint.remove()?;
+    if request.quiet { Ok(()) } else { terminal::print(&report::summary(&outcome, &record, &out)) }
+}
+
+/// `results/<study name>`, of a shard `results/<study name>-K-of-N`.
+fn default_out(study: &Path, shard: Option<Shard>) -> PathBuf {
+    let stem = study.file_stem().unwrap_or(study.as_os_str()).to_string_lossy();
+    let suffix = shard.map_or(String::new(), |shard| format!("-{}-of-{}", shard.number, shard.of));
+    Path::new("results").join(format!("{stem}{suffix}"))
+}
+
+/// A finished result stays unless `--force` says otherwise.
+pub fn refuse_to_overwrite(out: &Path, force: bool) -> Result<()> {
+    if out.is_file() {
+        return Err(Error::Request(format!("{} is a file; name a directory with --out", out.display())));
+    }
+    if out.join(MARK).exists() && !force {
+        return Err(Error::Request(format!(
+            "{} holds a finished result; replace it with --force, or write to another --out",
+            out.display()
+        )));
+    }
+    Ok(())
+}
+
+fn open_checkpoint(out: &Path, plan: &Plan, text: &str, shard: Shard, request: &cli::Sweep) -> Result<Checkpoint> {
+    let folder = out.join(CHECKPOINT);
+    if Checkpoint::exists(&folder) && !request.force {
+        if !request.resume {
+            return Err(Error::Request(format!(
+                "{} holds an unfinished run; go on with --resume, or start again with --force",
+                out.display()
+            )));
+        }
+        let checkpoint = Checkpoint::open(&folder)?;
+        checkpoint.require(&plan.study, shard)?;
+        return Ok(checkpoint);
+    }
+    Checkpoint::create(&folder, &plan.study, text, shard, plan.designs())
+}
+
+/// The first Ctrl-C ends the sweep in good order, the second at once.
+fn stop_on_ctrl_c(control: &Arc<Control>) -> Result<()> {
+    let control = Arc::clone(control);
+    let handler = move || {
+        if control.stop.swap(true, Ordering::Relaxed) {
+            std::process::exit(1);
+        }
+    };
+    ctrlc::set_handler(handler).map_err(|error| Error::Request(format!("cannot listen for Ctrl-C: {error}")))
+}
+
+fn name_the_way_back(error: Error, out: &Path, request: &cli::Sweep) -> Error {
+    match error {
+        Error::Stopped { .. } => {
+            let shard = request.shard.map_or(String::new(), |shard| format!(" --shard {shard}"));
+            let resume = format!("beltspace sweep {} --out {}{shard} --resume", request.study.display(), out.display());
+            Error::Stopped { checkpoint: out.join(CHECKPOINT).display().to_string(), resume }
+        }
+        other => other,
+    }
+}
+
+fn finish_shard(plan: &Plan, out: &Path, swept: &Swept, shard: Shard, quiet: bool) -> Result<()> {
+    if quiet {
+        return Ok(());
+    }
+    terminal::print(&format!(
+        "shard {shard} of \"{}\": {} designs, {} feasible, {} front points, in {}\nput the shards together with: beltspace merge DIR... --out DIR\n",
+        plan.study.title,
+        terminal::grouped(shard.range(plan.designs()).end - shard.range(plan.designs()).start),
+        terminal::grouped(swept.state.feasible),
+        terminal::grouped(swept.state.front.len() as u64),
+        out.display(),
+    ))
+}

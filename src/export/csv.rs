@@ -1,0 +1,43 @@
+//! CSV files: header with units, dot decimals, shortest numbers, empty for absent.
+
+use super::number::plain;
+use super::table::{Data, Table};
+use crate::plan::Plan;
+use csv::Writer;
+
+const IN_MEMORY: &str = "writing into memory does not fail";
+
+/// A table as CSV.
+pub fn write(table: &Table) -> Vec<u8> {
+    let mut writer = Writer::from_writer(Vec::new());
+    writer.write_record(table.columns.iter().map(|column| column.name.as_str())).expect(IN_MEMORY);
+    for row in 0..table.rows() {
+        let cells = table.columns.iter().map(|column| match &column.data {
+            Data::Whole(values) => values[row].to_string(),
+            Data::Number(values) => values[row].map_or(String::new(), plain),
+            Data::Text(values) => values[row].clone(),
+        });
+        writer.write_record(cells).expect(IN_MEMORY);
+    }
+    writer.into_inner().expect(IN_MEMORY)
+}
+
+/// Every scenario with its inputs. Rows are written as they are made: scenarios can be many.
+pub fn scenarios(plan: &Plan) -> Vec<u8> {
+    let study = &plan.study;
+    let axes = study.operation.iter().chain(&study.uncertainty);
+    let inputs: Vec<usize> = axes.flat_map(|axis| axis.inputs()).copied().collect();
+    let mut writer = Writer::from_writer(Vec::new());
+    let names = inputs.iter().map(|&input| study.model.inputs[input].name);
+    writer.write_record(std::iter::once("scenario").chain(names)).expect(IN_MEMORY);
+    let mut values = study.fixed.clone();
+    for scenario in 0..plan.scenarios() {
+        plan.space.scenarios.set(scenario, &mut values);
+        let cells = inputs.iter().map(|&input| match study.model.inputs[input].word_for(values[input]) {
+            Some(word) => word.to_owned(),
+            None => plain(values[input]),
+        });
+        writer.write_record(std::iter::once(scenario.to_string()).chain(cells)).expect(IN_MEMORY);
+    }
+    writer.into_inner().expect(IN_MEMORY)
+}

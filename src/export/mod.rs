@@ -1,0 +1,146 @@
+//! The result directory: the same bytes whatever ran the study, but for `run.json`.
+
+mod csv;
+mod number;
+mod parquet;
+mod pictures;
+mod summary;
+mod table;
+mod tables;
+
+pub use csv::write as csv_text;
+pub use number::plain;
+pub use summary::{Knee, RunRecord, Summary};
+pub use table::{Data, Table, TableColumn};
+
+use crate::certify::{self, Column, Row};
+use crate::checkpoint::replace;
+use crate::error::{Error, Result};
+use crate::plan::Plan;
+use crate::reduce::State;
+use crate::screen::Tally;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+/// Maps of more cells are written as Parquet rather than CSV.
+const CSV_CELLS: u64 = 100_000;
+/// The file whose presence makes a directory a result.
+pub const MARK: &str = "summary.json";
+
+/// A finished, certified sweep: everything that the result directory says.
+#[derive(Debug)]
+pub struct Outcome<'p> {
+    /// The study, laid out.
+    pub plan: &'p Plan,
+    /// What the sweep kept.
+    pub state: State,
+    /// What limits feasibility.
+    pub tally: Tally,
+    /// Columns of the tables.
+    pub columns: Vec<Column>,
+    /// The front, objectives best first, then index.
+    pub front: Vec<Row>,
+    /// The best designs by one quantity, best first.
+    pub top: Vec<Row>,
+}
+
+impl<'p> Outcome<'p> {
+    /// Certifies what a sweep kept.
+    ///
+    /// # Errors
+    /// [`Error::Certificate`] if the f64 reference disagrees with the sweep.
+    pub fn certify(plan: &'p Plan, state: State, tally: Tally, threads: usize) -> Result<Self> {
+        let columns = certify::columns(&plan.study);
+        let front = certify::front(plan, &columns, &state.front, threads)?;
+        let top = state.top.as_ref().map_or(Vec::new(), |top| certify::rows(plan, &columns, &top.indices(), threads));
+        top.iter().try_for_each(certify::check_feasible)?;
+        Ok(Self { plan, state, tally, columns, front, top })
+    }
+
+    /// The files of the result, by name, in the order in which they are written; [`MARK`] last.
+    ///
+    /// # Errors
+    /// [`Error::Io`] from the table writers.
+    fn files(&self, text: &str) -> Result<Vec<(String, Vec<u8>)>> {
+        let study = &self.plan.study;
+        let json = |value: &serde_json::Value| (format!("{value:#}") + "\n").into_bytes();
+        let mut files = vec![
+            ("study.toml".to_owned(), text.as_bytes().to_vec()),
+            ("study.json".to_owned(), json(&study.describe())),
+            ("scenarios.csv".to_owned(), csv::scenarios(self.plan)),
+        ];
+        if !study.objectives.is_empty() {
+            let table = tables::designs(self, &self.front);
+            files.push(("front.csv".to_owned(), csv::write(&table)));
+            files.push(("front.parquet".to_owned(), parquet::write(&table)?));
+            files.push(("front.svg".to_owned(), pictures::front(self).into_bytes()));
+        }
+        if study.report.top.is_some() {
+            files.push(("top.csv".to_owned(), csv::write(&tables::designs(self, &self.top))));
+        }
+        let mut names = BTreeSet::new();
+        let mut unique = |name: String| {
+            let candidates = std::iter::once(name.clone()).chain((2..).map(|n| format!("{name}-{n}")));
+            candidates.into_iter().find(|name| names.insert(name.clone())).expect("numbers do not run out")
+        };
+        for (spec, histogram) in study.report.histograms.iter().zip(&self.state.histograms) {
+            let name = unique(format!("histogram-{}", spec.of.name(study.model)));
+            files.push((format!("{name}.csv"), csv::write(&tables::histogram(histogram))));
+            files.push((format!("{name}.svg"), pictures::histogram(study, spec, histogram).into_bytes()));
+        }
+        for (spec, map) in study.report.maps.iter().zip(&self.state.maps) {
+            let name = unique(format!("map-{}", tables::map_value(study, spec).0));
+            let (width, height) = map.size();
+            let table = tables::map(self.plan, spec, map);
+            if width * height > CSV_CELLS {
+                files.push((format!("{name}.parquet"), parquet::write(&table)?));
+            } else {
+                files.push((format!("{name}.csv"), csv::write(&table)));
+            }
+            files.push((format!("{name}.svg"), pictures::map(study, spec, map, &table).into_bytes()));
+        }
+        files.push((MARK.to_owned(), json(&Summary::new(self).to_json())));
+        Ok(files)
+    }
+
+    /// Writes the result directory. Each file is either whole or not there, and [`MARK`] comes last.
+    ///
+    /// # Errors
+    /// [`Error::Io`].
+    pub fn write(&self, folder: &Path, text: &str, run: &RunRecord) -> Result<()> {
+        fs::create_dir_all(folder).map_err(Error::io(folder))?;
+        let files = self.files(text)?;
+        // An older result stops being one before its files are replaced, and none of its files outlives it.
+        let keep: BTreeSet<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+        remove_if_there(&folder.join(MARK))?;
+        for entry in fs::read_dir(folder).map_err(Error::io(folder))? {
+            let entry = entry.map_err(Error::io(folder))?;
+            let name = entry.file_name().to_string_lossy().into_owned();
+            if !keep.contains(name.as_str()) && is_ours(&name) {
+                remove_if_there(&entry.path())?;
+            }
+        }
+        let (mark, others) = files.split_last().expect("a result has files");
+        for (name, bytes) in others {
+            replace(&folder.join(name), bytes)?;
+        }
+        replace(&folder.join("run.json"), (format!("{:#}", run.to_json()) + "\n").as_bytes())?;
+        replace(&folder.join(&mark.0), &mark.1)
+    }
+}
+
+/// Is this a name that a result directory may have, so that an older result's file may go?
+fn is_ours(name: &str) -> bool {
+    let fixed = ["front.csv", "front.parquet", "front.svg", "top.csv", "scenarios.csv", "study.toml", "study.json", "run.json"];
+    let (stem, extension) = name.rsplit_once('.').unwrap_or((name, ""));
+    let picture = (stem.starts_with("histogram-") || stem.starts_with("map-")) && ["csv", "parquet", "svg"].contains(&extension);
+    fixed.contains(&name) || picture || extension == "writing"
+}
+
+fn remove_if_there(path: &Path) -> Result<()> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(Error::io(path)(error)),
+        _ => Ok(()),
+    }
+}

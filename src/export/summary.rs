@@ -1,0 +1,160 @@
+//! What a study found, in one page: `summary.json`, and `run.json` on how it was found.
+
+use super::Outcome;
+use crate::study::{Goal, Objective, number, value_of};
+use serde_json::{Map, Value, json};
+use std::time::Duration;
+
+/// The design of the front nearest to the ideal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Knee {
+    /// Its row in the front table.
+    pub row: usize,
+    /// Its distance to the ideal, objectives scaled to [0, 1] over the front.
+    pub distance: f64,
+}
+
+/// Numbers that describe a front and a sweep.
+#[derive(Debug)]
+pub struct Summary<'a> {
+    outcome: &'a Outcome<'a>,
+    /// Best of each objective on the front; `None` without a front.
+    pub ideal: Option<Vec<f64>>,
+    /// Least distance to the ideal; of equals the lowest index.
+    pub knee: Option<Knee>,
+}
+
+impl<'a> Summary<'a> {
+    /// Describes an outcome.
+    pub fn new(outcome: &'a Outcome<'a>) -> Self {
+        let mut summary = Self { outcome, ideal: None, knee: None };
+        let points = summary.points();
+        let objectives = &outcome.plan.study.objectives;
+        if points.is_empty() || objectives.is_empty() {
+            return summary;
+        }
+        let ends = |objective: usize| {
+            let values = points.iter().map(|point| point[objective]);
+            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
+        };
+        let ends: Vec<_> = (0..objectives.len()).map(ends).collect();
+        let best = |(objective, (low, high)): (&Objective, &(f64, f64))| if objective.goal == Goal::Min { *low } else { *high };
+        let ideal: Vec<f64> = objectives.iter().zip(&ends).map(best).collect();
+        let distance = |point: &[f64]| {
+            let scaled = point.iter().zip(&ideal).zip(&ends).map(
+                |((value, ideal), (low, high))| {
+                    if high > low { (value - ideal) / (high - low) } else { 0.0 }
+                },
+            );
+            scaled.map(|it| it * it).sum::<f64>().sqrt()
+        };
+        let ranked = points.iter().enumerate().map(|(row, point)| Knee { row, distance: distance(point) });
+        let index = |knee: &Knee| outcome.front[knee.row].index;
+        summary.knee = ranked.min_by(|a, b| a.distance.total_cmp(&b.distance).then(index(a).cmp(&index(b))));
+        summary.ideal = Some(ideal);
+        summary
+    }
+
+    /// The objective values of the front's designs, in table order.
+    pub fn points(&self) -> Vec<Vec<f64>> {
+        let columns: Vec<usize> = self.outcome.objective_columns();
+        let value = |row: &crate::certify::Row, column: usize| row.columns[column].value.expect("a certified design has its objectives");
+        self.outcome.front.iter().map(|row| columns.iter().map(|&column| value(row, column)).collect()).collect()
+    }
+
+    /// As JSON, in a fixed order.
+    pub fn to_json(&self) -> Value {
+        let Outcome { plan, state, tally, front, .. } = self.outcome;
+        let study = &plan.study;
+        let model = study.model;
+        let names: Vec<_> = study.objectives.iter().map(|objective| objective.quantity.name(model)).collect();
+        let named =
+            |values: &[f64]| -> Map<_, _> { names.iter().zip(values).map(|(name, &value)| ((*name).to_owned(), number(value))).collect() };
+        let points = self.points();
+        let knee = self.knee.map(|knee| {
+            let row = &front[knee.row];
+            let inputs = study.design.iter().flat_map(|axis| axis.inputs());
+            let inputs: Map<_, _> = inputs.map(|&input| (model.inputs[input].name.to_owned(), value_of(model, input, row.inputs[input]))).collect();
+            json!({ "design_index": row.index, "distance": number(knee.distance), "inputs": inputs, "objectives": named(&points[knee.row]) })
+        });
+        let extremes = names.iter().zip(state.extremes.least.iter().zip(&state.extremes.largest)).filter_map(|(name, (least, largest))| {
+            let end = |it: &crate::reduce::Extreme| json!({ "value": number(it.value), "design_index": it.index });
+            Some(((*name).to_owned(), json!({ "least": end(least.as_ref()?), "largest": end(largest.as_ref()?) })))
+        });
+        let conditions = model.conditions.iter().zip(&tally.conditions).filter(|(condition, _)| !condition.quiet);
+        let constraints = study.constraints.iter().zip(tally.constraints.iter().zip(&tally.only)).map(|(constraint, (violated, only))| {
+            json!({ "of": constraint.quantity.name(model), "bounds": constraint.in_words(), "violated": violated, "only": only })
+        });
+        json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "model": model.name,
+            "title": study.title,
+            "study_hash": study.hash(),
+            "designs": plan.designs(),
+            "scenarios": plan.scenarios(),
+            "feasible": state.feasible,
+            "front": front.len(),
+            "ideal": self.ideal.as_deref().map(named),
+            "knee": knee,
+            "extremes": extremes.collect::<Map<_, _>>(),
+            "tally": {
+                "of": "a fixed sample of the designs; one design may count in several places",
+                "sampled": tally.sampled,
+                "feasible": tally.feasible,
+                "status": conditions.map(|(condition, &count)| (condition.reason.to_owned(), count.into())).collect::<Map<_, Value>>(),
+                "constraints": constraints.collect::<Vec<_>>(),
+            },
+        })
+    }
+}
+
+impl Outcome<'_> {
+    /// Position of each objective among the columns.
+    pub fn objective_columns(&self) -> Vec<usize> {
+        let column = |objective: &Objective| self.columns.iter().position(|column| column.quantity == objective.quantity);
+        self.plan.study.objectives.iter().map(|objective| column(objective).expect("every objective has a column")).collect()
+    }
+}
+
+/// How a result came about: the only file of a result that differs from run to run.
+#[derive(Clone, Debug)]
+pub struct RunRecord {
+    /// What judged the designs.
+    pub engine: &'static str,
+    /// Worker threads.
+    pub threads: usize,
+    /// Designs judged by this run.
+    pub designs: u64,
+    /// Scenarios of each.
+    pub scenarios: u64,
+    /// Time that this run took to judge them.
+    pub time: Duration,
+    /// Was it resumed from a checkpoint, or merged from shards?
+    pub origin: String,
+    /// Designs that the f64 reference certified.
+    pub certified: usize,
+}
+
+impl RunRecord {
+    /// Designs per second.
+    #[allow(clippy::cast_precision_loss, reason = "a rate for people")]
+    pub fn rate(&self) -> f64 {
+        self.designs as f64 / self.time.as_secs_f64().max(1e-9)
+    }
+
+    /// As JSON.
+    pub fn to_json(&self) -> Value {
+        json!({
+            "program": concat!("beltspace ", env!("CARGO_PKG_VERSION")),
+            "engine": self.engine,
+            "origin": self.origin,
+            "threads": self.threads,
+            "designs": self.designs,
+            "scenarios": self.scenarios,
+            "seconds": self.time.as_secs_f64(),
+            "designs_per_second": self.rate(),
+            "certified_designs": self.certified,
+            "platform": format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+        })
+    }
+}

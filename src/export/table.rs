@@ -1,0 +1,59 @@
+//! A table of results, before it becomes CSV or Parquet.
+
+/// Values of one column.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Data {
+    /// Indices and counts.
+    Whole(Vec<u64>),
+    /// Numbers; absent where they have no meaning.
+    Number(Vec<Option<f64>>),
+    /// Words.
+    Text(Vec<String>),
+}
+
+/// A column with what a reader of the file wants to know about it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TableColumn {
+    /// Name, with the unit.
+    pub name: String,
+    /// Unit; empty for plain numbers.
+    pub unit: String,
+    /// `design`, `objective`, `constraint`, `report`, `index`, ...
+    pub role: &'static str,
+    /// `min` or `max` for an objective, the bounds in words for a constraint, else empty.
+    pub direction: String,
+    /// What it is, in a sentence.
+    pub description: String,
+    /// One value per row.
+    pub data: Data,
+}
+
+impl TableColumn {
+    /// A column that needs no more than a name and a sentence.
+    pub fn index(name: &str, description: &str, values: Vec<u64>) -> Self {
+        Self::new(name, "index", description, Data::Whole(values))
+    }
+
+    /// A column without unit and direction.
+    pub fn new(name: &str, role: &'static str, description: &str, data: Data) -> Self {
+        Self { name: name.to_owned(), unit: String::new(), role, direction: String::new(), description: description.to_owned(), data }
+    }
+}
+
+/// Columns of equal length.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    /// The columns.
+    pub columns: Vec<TableColumn>,
+}
+
+impl Table {
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.columns.first().map_or(0, |column| match &column.data {
+            Data::Whole(values) => values.len(),
+            Data::Number(values) => values.len(),
+            Data::Text(values) => values.len(),
+        })
+    }
+}

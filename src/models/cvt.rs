@@ -1,0 +1,446 @@
+//! The V-belt variator: geometry, axial forces, stress and torque capacity, shared by the rubber and the metal belt.
+//!
+//! Source: H. S. Kim, K. W. Kim, on ratio, torque load and axial force of rubber and metal V-belt CVTs; equation numbers
+//! below are that paper's. Symbols: mu friction; a groove angle, both flanks together; R ratio `r_driven / r_driver` (the paper
+//! defines none: R > 1 is underdrive); A centre distance; L belt length; `r_s` the smaller radius (the paper's r1 in (18)-(28));
+//! `r0 = L / 2 pi` the radius at which the belt is free of bending; lambda the traction coefficient (F1 - F2)/(F1 + F2).
+//!
+//! One traction coefficient governs both belts. The metal belt's `x = T/P2` of (24) is it too: entry compression P1 = 0 gives
+//! `x = (1 + lambda)/(2 lambda)`.
+//!
+//! # Repairs of the printed equations
+//! - (8), (11): the denominator is printed `mu - tan(a/2)`; (6), (15), (16) and Table 2 show `mu + tan(a/2)`.
+//! - (13): the exponent is `mu_e theta_a`, consistent with (12).
+//! - (16): the middle line has a stray factor 2; its last line is right.
+//! - Text after (4): the second symbol is F_N. The text's "(2)" for the coefficient x means (24).
+//! - (28), the metal capacity constant, equals the consistent constant only at the slip limit, where `(x-1)(e-1) = 1`. With x
+//!   fixed and larger friction or wrap it needs an entry compression P1 < 0, which cannot be, and overstates. Both constants
+//!   are given: `torque_coefficient` and `printed_torque_coefficient`, with `entry_compression` = P1/P2.
+//! - Table 1 prints 20.5 and 112.9 N/mm, while (21) and (28) with the printed radii (r0 163, r1 45 for both) give 18.503 and
+//!   107.06. Rubber with its own radius at R = 2 (56.6) and r0 163 gives 20.5; metal with its own r0 (97.56) gives 112.9 at
+//!   r1 = 30.58. Its index "16" disagrees with 20.5/112.9 = 18 %.
+//! - Table 2's index 34 disagrees with 4720/15 780 = 30 %; its T = 2800 is not `(1 + 0.58)/(2 * 0.58) * 2000 = 2724`.
+//! - The paper's forces for the metal belt fit mu = 0.11, its slip limit fits mu = 0.08: its two data sets disagree. Measured
+//!   slip of the rubber belt at lambda = 0.8 is not predicted (the model gives 0.985).
+//! - The paper's "safety factor 2" is `sigma_y = 2 sigma_t`; with `sigma_b = sigma_t` at the optimum thickness the combined
+//!   stress is exactly `sigma_y`.
+
+use super::description::{Condition, Output, Worse};
+use super::formula::{CONDITIONS, OUTPUTS, bits, record};
+use crate::real::Real;
+use crate::units::{self, Unit};
+use std::f64::consts::PI;
+
+/// The number that stands for traction "limit": the belt is squeezed just enough not to slip.
+pub const LIMIT: f64 = -1.0;
+
+record! {
+    /// Inputs of either belt, in SI units; `sections` counts the load-carrying sections: 1 rubber belt, or 2 packs of n bands.
+    Drive {
+        friction, groove_angle, ratio, belt_length, centre_distance, width, thickness, sections, elastic_modulus, strength,
+        traction, torque,
+    }
+}
+
+record! {
+    /// What depends on friction, groove angle, ratio, belt length, centre distance and traction only.
+    Prepared {
+        driver_radius, driven_radius, driver_wrap, driven_wrap, effective_friction, traction_limit, driver_traction_limit,
+        slip_margin, active_arc, driver_axial_coefficient, driven_axial_coefficient, traction, curvature, smaller_radius,
+        free_ratio, printed_pull, entry_compression, length_margin, root_margin, overlap_margin, wedge_margin,
+    }
+}
+
+record! {
+    /// Outputs of either belt; the last two are the metal belt's.
+    Result {
+        driver_radius, driven_radius, driver_wrap, driven_wrap, effective_friction, traction_limit, driver_traction_limit,
+        slip_margin, active_arc, driver_axial_coefficient, driven_axial_coefficient, belt_force, tight_force, slack_force,
+        driver_axial_force, driven_axial_force, axial_force, tensile_stress, bending_stress, max_stress, stress_margin,
+        optimum_thickness, torque_coefficient, torque_capacity, capacity_axial_force, printed_torque_coefficient,
+        entry_compression,
+    }
+}
+
+const OUT: Result<usize> = Result::NUMBER;
+
+/// Axial force of one pulley per unit of belt force and wrap angle, (1) and (6): radial friction only, self-locked arc, each
+/// sheave pressed by half of the belt's radial load. `sine` and `cosine` are those of half the groove angle.
+pub fn wedge_factor<R: Real>(friction: R, sine: R, cosine: R) -> R {
+    // (1 - mu tan)/(mu + tan), multiplied by the cosine: no division by a cosine that may vanish.
+    (cosine - friction * sine) / (friction * cosine + sine)
+}
+
+/// `exp(mu_e wrap) - 1`, the tension ratio at gross slip less one; the exponent is kept where f64 can hold the result.
+fn slip_pull<R: Real>(effective_friction: R, wrap: R) -> R {
+    (effective_friction * wrap).min(R::constant(700.0)).exp_m1()
+}
+
+/// Largest traction coefficient without gross slip, from (12) with `theta_a` = wrap: `tanh(mu_e wrap / 2)`.
+pub fn traction_limit<R: Real>(effective_friction: R, wrap: R) -> R {
+    let pull = slip_pull(effective_friction, wrap);
+    pull / (pull + R::constant(2.0))
+}
+
+/// Thickness of the largest torque capacity, (19) and (26) with `sigma_t = sigma_y / 2`; radii and result in one length unit.
+pub fn optimum_thickness<R: Real>(strength: R, elastic_modulus: R, smaller_radius: R, free_ratio: R) -> R {
+    strength / elastic_modulus * smaller_radius * free_ratio
+}
+
+/// Torque capacity at the optimum thickness per product of radii, (20) and (27) with one traction coefficient:
+/// `2 lambda/(1 + lambda) sigma_y^2/(2 E) r0/(r0 - r_s) width`; `width` is b for rubber and 2 n b for metal. At the slip limit
+/// it is the papers' C_R (21).
+pub fn torque_coefficient<R: Real>(traction: R, strength: R, elastic_modulus: R, free_ratio: R, width: R) -> R {
+    traction / (R::constant(1.0) + traction) * strength.squared() / elastic_modulus * free_ratio * width
+}
+
+/// The metal belt's C_M exactly as printed, (28): `(x-1)/x (e-1) sigma_y^2/E n r0/(r0 - r_s) b`. `pull` is `(x-1)/x (e-1)`,
+/// `width` is 2 n b.
+pub fn printed_torque_coefficient<R: Real>(pull: R, strength: R, elastic_modulus: R, free_ratio: R, width: R) -> R {
+    pull * strength.squared() / elastic_modulus * free_ratio * width / R::constant(2.0)
+}
+
+/// Pitch radius of the driver of an open belt: the root of `2 A cos g + pi (1 + R) r + 2 g (R - 1) r = L`, `sin g = (R - 1) r/A`.
+///
+/// The length is increasing and convex in r, and the start is at or above the root, so Newton's steps never overshoot.
+fn driver_radius<R: Real>(belt: &Drive<R>) -> R {
+    let [one, two, pi] = [1.0, 2.0, PI].map(R::constant);
+    let Drive { ratio, belt_length, centre_distance, .. } = *belt;
+    let step = ratio - one;
+    let both = pi * (one + ratio);
+    // Beyond A/|R - 1| one pulley would lie inside the other. Equal pulleys have no such end: any large one serves.
+    let largest = centre_distance / step.abs().max(R::constant(1e-9));
+    let start = (belt_length - two * centre_distance) / both;
+    R::monotone_root((R::constant(0.0), largest), start, |radius| {
+        let sine = (step * radius / centre_distance).min(one).max(-one);
+        let lean = sine.asin();
+        let free = two * centre_distance * ((one - sine) * (one + sine)).sqrt();
+        (free + both * radius + two * lean * step * radius - belt_length, both + two * lean * step)
+    })
+}
+
+/// First stage for either belt.
+#[inline(always)]
+pub(super) fn prepare<R: Real>(belt: &Drive<R>) -> Prepared<R> {
+    let [one, two, four, pi] = [1.0, 2.0, 4.0, PI].map(R::constant);
+    let Drive { friction, groove_angle, ratio, belt_length, centre_distance, .. } = *belt;
+
+    let driver_radius = driver_radius(belt);
+    let driven_radius = ratio * driver_radius;
+    let lean = ((driven_radius - driver_radius) / centre_distance).min(one).max(-one).asin();
+    let driver_wrap = pi - two * lean;
+    let driven_wrap = pi + two * lean;
+
+    let (sine, cosine) = ((groove_angle / two).sin(), (groove_angle / two).cos());
+    let effective_friction = friction / sine;
+    let wedge = wedge_factor(friction, sine, cosine);
+
+    let driven_pull = slip_pull(effective_friction, driven_wrap);
+    let traction_limit = driven_pull / (driven_pull + two);
+    let traction = R::select(belt.traction, belt.traction, traction_limit);
+    // (12): log((1 + lambda)/(1 - lambda)), exact also for small lambda; at the limit the whole wrap is active.
+    let arc = ((two * traction / (one - traction)).ln_1p() / effective_friction).min(driven_wrap);
+    let active_arc = R::select(belt.traction, arc, driven_wrap);
+
+    let smaller_radius = driver_radius.min(driven_radius);
+    let free_radius = belt_length / (two * pi);
+    let slack_share = (one - traction) / (one + traction);
+    Prepared {
+        driver_radius,
+        driven_radius,
+        driver_wrap,
+        driven_wrap,
+        effective_friction,
+        traction_limit,
+        driver_traction_limit: self::traction_limit(effective_friction, driver_wrap),
+        slip_margin: one - traction / traction_limit,
+        active_arc,
+        // (4), (15) and (5), (16)
+        driver_axial_coefficient: (one + traction) / four * driver_wrap * wedge,
+        driven_axial_coefficient: (one - traction) / four * (driven_wrap - active_arc) * wedge + traction / (two * friction) * cosine,
+        traction,
+        curvature: one / smaller_radius - one / free_radius,
+        smaller_radius,
+        free_ratio: free_radius / (free_radius - smaller_radius),
+        // (28) with x = (1 + lambda)/(2 lambda): (x - 1)/x = (1 - lambda)/(1 + lambda)
+        printed_pull: slack_share * driven_pull,
+        // P1/P2 = 1 - (x - 1)(e - 1), in the form that is exactly 0 at the limit: (lambda - limit)(e + 1)/(2 lambda)
+        entry_compression: (traction - traction_limit) * (driven_pull + two) / (two * R::select(-traction, one, traction)),
+        length_margin: belt_length - two * centre_distance,
+        // The length at the largest radius, times |R - 1|, less the belt's.
+        root_margin: two * pi * centre_distance * ratio.max(one) - belt_length * (ratio - one).abs(),
+        overlap_margin: centre_distance - driver_radius - driven_radius,
+        wedge_margin: cosine - friction * sine,
+    }
+}
+
+/// Margins of [`CONDITION_TABLE`].
+#[inline(always)]
+pub(super) fn conditions<R: Real>(prepared: &Prepared<R>, belt: &Drive<R>) -> [R; CONDITIONS] {
+    let one = R::constant(1.0);
+    let mut margins = [one; CONDITIONS];
+    margins[0] = prepared.length_margin;
+    margins[1] = prepared.root_margin;
+    margins[2] = prepared.overlap_margin;
+    margins[3] = prepared.wedge_margin;
+    margins[4] = prepared.traction_limit - prepared.traction;
+    // Without traction only a torque of zero can be carried.
+    margins[5] = R::select(-belt.torque, one, prepared.traction);
+    margins[6] = prepared.traction;
+    margins
+}
+
+/// Outputs that are read straight from [`Prepared`].
+const FROM_PREPARED: u64 = bits(&[
+    OUT.driver_radius,
+    OUT.driven_radius,
+    OUT.driver_wrap,
+    OUT.driven_wrap,
+    OUT.effective_friction,
+    OUT.traction_limit,
+    OUT.driver_traction_limit,
+    OUT.slip_margin,
+    OUT.active_arc,
+    OUT.driver_axial_coefficient,
+    OUT.driven_axial_coefficient,
+    OUT.entry_compression,
+]);
+const FROM_TORQUE: u64 = bits(&[
+    OUT.belt_force,
+    OUT.tight_force,
+    OUT.slack_force,
+    OUT.driver_axial_force,
+    OUT.driven_axial_force,
+    OUT.axial_force,
+    OUT.tensile_stress,
+    OUT.max_stress,
+    OUT.stress_margin,
+]);
+const CAPACITY: u64 = bits(&[OUT.torque_capacity, OUT.capacity_axial_force]);
+const AT_OPTIMUM: u64 = bits(&[OUT.optimum_thickness, OUT.torque_coefficient, OUT.printed_torque_coefficient]);
+
+/// Second stage for either belt.
+#[inline(always)]
+pub(super) fn finish<R: Real>(p: &Prepared<R>, belt: &Drive<R>, wanted: u64, out: &mut [R; OUTPUTS]) {
+    let [one, two] = [1.0, 2.0].map(R::constant);
+    if wanted & FROM_PREPARED != 0 {
+        out[OUT.driver_radius] = p.driver_radius;
+        out[OUT.driven_radius] = p.driven_radius;
+        out[OUT.driver_wrap] = p.driver_wrap;
+        out[OUT.driven_wrap] = p.driven_wrap;
+        out[OUT.effective_friction] = p.effective_friction;
+        out[OUT.traction_limit] = p.traction_limit;
+        out[OUT.driver_traction_limit] = p.driver_traction_limit;
+        out[OUT.slip_margin] = p.slip_margin;
+        out[OUT.active_arc] = p.active_arc;
+        out[OUT.driver_axial_coefficient] = p.driver_axial_coefficient;
+        out[OUT.driven_axial_coefficient] = p.driven_axial_coefficient;
+        out[OUT.entry_compression] = p.entry_compression;
+    }
+    let width = belt.sections * belt.width;
+    let area = width * belt.thickness;
+    let bending_stress = belt.elastic_modulus * belt.thickness / two * p.curvature; // (18)
+    out[OUT.bending_stress] = bending_stress;
+    if wanted & FROM_TORQUE != 0 {
+        let belt_force = belt.torque / p.driver_radius; // (3), (14)
+        // F1 + F2 = P/lambda; with lambda = 0 it is 0 for P = 0 and has no meaning otherwise (condition "no traction").
+        let force_sum = belt_force / R::select(-p.traction, one, p.traction);
+        let tight_force = force_sum * (one + p.traction) / two;
+        let driver_axial_force = p.driver_axial_coefficient * force_sum;
+        let driven_axial_force = p.driven_axial_coefficient * force_sum;
+        let tensile_stress = tight_force / area; // (17), (22)
+        let max_stress = tensile_stress + bending_stress;
+        out[OUT.belt_force] = belt_force;
+        out[OUT.tight_force] = tight_force;
+        out[OUT.slack_force] = force_sum * (one - p.traction) / two;
+        out[OUT.driver_axial_force] = driver_axial_force;
+        out[OUT.driven_axial_force] = driven_axial_force;
+        out[OUT.axial_force] = driver_axial_force.max(driven_axial_force);
+        out[OUT.tensile_stress] = tensile_stress;
+        out[OUT.max_stress] = max_stress;
+        out[OUT.stress_margin] = one - max_stress / belt.strength;
+    }
+    if wanted & CAPACITY != 0 {
+        // A belt that bending alone overstrains carries nothing: capacity 0, not an error.
+        let tight_capacity = (belt.strength - bending_stress).max(R::constant(0.0)) * area;
+        let per_tight = two / (one + p.traction);
+        out[OUT.torque_capacity] = tight_capacity * (per_tight * p.traction * p.driver_radius);
+        out[OUT.capacity_axial_force] = tight_capacity * (per_tight * p.driver_axial_coefficient.max(p.driven_axial_coefficient));
+    }
+    if wanted & AT_OPTIMUM != 0 {
+        let Drive { strength, elastic_modulus, .. } = *belt;
+        out[OUT.optimum_thickness] = optimum_thickness(strength, elastic_modulus, p.smaller_radius, p.free_ratio);
+        out[OUT.torque_coefficient] = torque_coefficient(p.traction, strength, elastic_modulus, p.free_ratio, width);
+        out[OUT.printed_torque_coefficient] = printed_torque_coefficient(p.printed_pull, strength, elastic_modulus, p.free_ratio, width);
+    }
+}
+
+/// Everything but the effective friction needs a belt that closes around two pulleys.
+const NEEDS_GEOMETRY: &[&str] = &[
+    "driver_radius_mm",
+    "driven_radius_mm",
+    "driver_wrap_deg",
+    "driven_wrap_deg",
+    "traction_limit",
+    "driver_traction_limit",
+    "slip_margin",
+    "active_arc_deg",
+    "driver_axial_coefficient",
+    "driven_axial_coefficient",
+    "belt_force_N",
+    "tight_force_N",
+    "slack_force_N",
+    "driver_axial_force_N",
+    "driven_axial_force_N",
+    "axial_force_N",
+    "tensile_stress_MPa",
+    "bending_stress_MPa",
+    "max_stress_MPa",
+    "stress_margin",
+    "optimum_thickness_mm",
+    "torque_coefficient_N_per_mm",
+    "torque_capacity_Nm",
+    "capacity_axial_force_N",
+    "printed_torque_coefficient_N_per_mm",
+    "entry_compression",
+];
+
+/// Conditions of either belt, in the order of [`conditions`].
+pub(super) const CONDITION_TABLE: &[Condition] = &[
+    condition("belt too short", true, NEEDS_GEOMETRY, "The belt is longer than twice the centre distance."),
+    condition("no geometry", true, NEEDS_GEOMETRY, "Pulleys of this ratio exist whose belt has this length."),
+    condition("pulleys overlap", true, NEEDS_GEOMETRY, "The radii add up to less than the centre distance."),
+    condition(
+        "friction beyond the wedge",
+        true,
+        &[
+            "driver_axial_coefficient",
+            "driven_axial_coefficient",
+            "driver_axial_force_N",
+            "driven_axial_force_N",
+            "axial_force_N",
+            "capacity_axial_force_N",
+        ],
+        "friction * tan(groove_angle/2) is below 1: beyond, the wedge would need no axial force.",
+    ),
+    condition(
+        "slip",
+        false,
+        &[
+            "active_arc_deg",
+            "driver_axial_coefficient",
+            "driven_axial_coefficient",
+            "belt_force_N",
+            "tight_force_N",
+            "slack_force_N",
+            "driver_axial_force_N",
+            "driven_axial_force_N",
+            "axial_force_N",
+            "tensile_stress_MPa",
+            "max_stress_MPa",
+            "stress_margin",
+            "torque_coefficient_N_per_mm",
+            "torque_capacity_Nm",
+            "capacity_axial_force_N",
+            "printed_torque_coefficient_N_per_mm",
+            "entry_compression",
+        ],
+        "The traction is at most the traction limit of the driven pulley: beyond, the belt slips as a whole.",
+    ),
+    condition(
+        "no traction",
+        true,
+        &[
+            "tight_force_N",
+            "slack_force_N",
+            "driver_axial_force_N",
+            "driven_axial_force_N",
+            "axial_force_N",
+            "tensile_stress_MPa",
+            "max_stress_MPa",
+            "stress_margin",
+        ],
+        "A torque needs a traction above 0.",
+    ),
+    Condition {
+        quiet: true,
+        ..condition("no entry compression", true, &["entry_compression"], "Without traction there is no compression to compare with.")
+    },
+];
+
+const fn condition(reason: &'static str, strict: bool, invalidates: &'static [&'static str], doc: &'static str) -> Condition {
+    Condition { reason, strict, quiet: false, invalidates, doc }
+}
+
+const fn output(name: &'static str, symbol: &'static str, unit: Unit, worse: Worse, source: &'static str, doc: &'static str) -> Output {
+    Output { name, symbol, unit, worse, doc, source }
+}
+
+use Worse::{Higher, Lower};
+use units::{DEGREE, MEGAPASCAL, MILLIMETRE, NEWTON, NEWTON_METRE, NEWTON_PER_MILLIMETRE, NONE};
+
+/// Outputs of either belt, in the order of [`Result`].
+pub(super) const OUTPUT_TABLE: &[Output] = &[
+    output("driver_radius_mm", "r_driver", MILLIMETRE, Lower, "open belt", "Pitch radius of the driver pulley."),
+    output("driven_radius_mm", "r_driven", MILLIMETRE, Lower, "open belt", "Pitch radius of the driven pulley."),
+    output("driver_wrap_deg", "theta_driver", DEGREE, Lower, "open belt", "Wrap angle on the driver pulley."),
+    output("driven_wrap_deg", "theta_driven", DEGREE, Lower, "open belt", "Wrap angle on the driven pulley."),
+    output("effective_friction", "mu_e", NONE, Lower, "mu/sin(a/2)", "Friction of the wedge against sliding along the belt."),
+    output("traction_limit", "lambda_max", NONE, Lower, "(12), (13)", "Traction at which the belt slips on the driven pulley."),
+    output("driver_traction_limit", "", NONE, Lower, "(12), (13)", "Traction at which the belt would slip on the driver pulley."),
+    output("slip_margin", "", NONE, Lower, "1 - lambda/lambda_max", "Distance to gross slip, relative; 0 at the limit."),
+    output("active_arc_deg", "theta_a", DEGREE, Higher, "(12)", "Part of the driven wrap over which the belt force changes."),
+    output("driver_axial_coefficient", "S~_driver", NONE, Higher, "(4), (15)", "Axial force of the driver per sum of belt forces."),
+    output("driven_axial_coefficient", "S~_driven", NONE, Higher, "(5), (16)", "Axial force of the driven pulley per sum of belt forces."),
+    output("belt_force_N", "P", NEWTON, Higher, "(3), (14)", "Force that the belt transmits, F1 - F2."),
+    output("tight_force_N", "F1", NEWTON, Higher, "P(1+lambda)/(2 lambda)", "Belt force on the tight side."),
+    output("slack_force_N", "F2", NEWTON, Lower, "P(1-lambda)/(2 lambda)", "Belt force on the slack side."),
+    output("driver_axial_force_N", "S_driver", NEWTON, Higher, "(1), (6)", "Axial force that the driver needs."),
+    output("driven_axial_force_N", "S_driven", NEWTON, Higher, "(2), (11)", "Axial force that the driven pulley needs."),
+    output("axial_force_N", "S", NEWTON, Higher, "larger of S_driver, S_driven", "The larger of the two axial forces."),
+    output("tensile_stress_MPa", "sigma_t", MEGAPASCAL, Higher, "(17), (22)", "Tensile stress of the tight side."),
+    output("bending_stress_MPa", "sigma_b", MEGAPASCAL, Higher, "(18)", "Bending stress on the smaller pulley."),
+    output("max_stress_MPa", "sigma_max", MEGAPASCAL, Higher, "sigma_t + sigma_b", "Largest stress in the belt."),
+    output("stress_margin", "", NONE, Lower, "1 - sigma_max/sigma_y", "Distance to the strength, relative."),
+    output(
+        "optimum_thickness_mm",
+        "h*",
+        MILLIMETRE,
+        Lower,
+        "(19), (26)",
+        "Thickness of the largest torque capacity; the stress there is the strength, half of it bending (the paper's safety factor 2).",
+    ),
+    output(
+        "torque_coefficient_N_per_mm",
+        "C",
+        NEWTON_PER_MILLIMETRE,
+        Lower,
+        "(20), (21), (27)",
+        "Torque capacity at the optimum thickness per product of smaller and driver radius.",
+    ),
+    output(
+        "torque_capacity_Nm",
+        "T_cap",
+        NEWTON_METRE,
+        Lower,
+        "r_driver (sigma_y - sigma_b) A 2 lambda/(1+lambda)",
+        "Driver torque at which the largest stress is the strength.",
+    ),
+    output("capacity_axial_force_N", "S_cap", NEWTON, Higher, "(4), (5), (15), (16)", "The larger axial force at the torque capacity."),
+    output(
+        "printed_torque_coefficient_N_per_mm",
+        "C_M",
+        NEWTON_PER_MILLIMETRE,
+        Lower,
+        "(28)",
+        "The metal belt's constant as printed: overstated wherever the entry compression is negative.",
+    ),
+    output(
+        "entry_compression",
+        "P1/P2",
+        NONE,
+        Lower,
+        "1 - (x-1)(e-1)",
+        "Block compression at the entry that (28) implies: negative is not physical, 0 only at the slip limit.",
+    ),
+];

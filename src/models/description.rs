@@ -1,0 +1,193 @@
+//! What a model says of itself: the table behind `beltspace models`, the study file, the result columns and the docs.
+
+use super::formula::Kernel;
+use crate::units::Unit;
+
+/// Numbers that an input may take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    /// Lower end.
+    pub low: f64,
+    /// Upper end; infinite if there is none.
+    pub high: f64,
+    /// Does the lower end itself belong to the range?
+    pub includes_low: bool,
+    /// Does the upper end itself belong to the range?
+    pub includes_high: bool,
+}
+
+impl Range {
+    /// All numbers greater than zero.
+    pub const POSITIVE: Self = Self { low: 0.0, high: f64::INFINITY, includes_low: false, includes_high: false };
+    /// Zero and all greater numbers.
+    pub const NOT_NEGATIVE: Self = Self { low: 0.0, high: f64::INFINITY, includes_low: true, includes_high: false };
+
+    /// Numbers strictly between two ends.
+    pub const fn between(low: f64, high: f64) -> Self {
+        Self { low, high, includes_low: false, includes_high: false }
+    }
+
+    /// Numbers from `low` inclusive to `high` exclusive.
+    pub const fn from_until(low: f64, high: f64) -> Self {
+        Self { low, high, includes_low: true, includes_high: false }
+    }
+
+    /// Does `value` lie in the range? NaN and infinity never do.
+    pub fn contains(&self, value: f64) -> bool {
+        let above = value > self.low || (self.includes_low && value == self.low);
+        let below = value < self.high || (self.includes_high && value == self.high);
+        value.is_finite() && above && below
+    }
+
+    /// The range in words: `greater than 0`, `at least 0 and less than 1`.
+    pub fn in_words(&self) -> String {
+        let low = if self.includes_low { format!("at least {}", self.low) } else { format!("greater than {}", self.low) };
+        if self.high.is_infinite() {
+            return low;
+        }
+        let high = if self.includes_high { format!("at most {}", self.high) } else { format!("less than {}", self.high) };
+        format!("{low} and {high}")
+    }
+}
+
+/// One input of a model. Its name carries the unit.
+#[derive(Clone, Copy, Debug)]
+pub struct Input {
+    /// Name in study files, on the command line and in results, such as `groove_angle_deg`.
+    pub name: &'static str,
+    /// Symbol in the source.
+    pub symbol: &'static str,
+    /// Unit of the values.
+    pub unit: Unit,
+    /// Value where none is given.
+    pub default: f64,
+    /// What the formula accepts.
+    pub valid: Range,
+    /// What the source covers: outside, `check` warns and the sweep goes on.
+    pub usual: (f64, f64),
+    /// Only whole numbers make sense.
+    pub integer: bool,
+    /// A word that stands for a value (`"limit"`), and the number that encodes it.
+    pub word: Option<(&'static str, f64)>,
+    /// What it is, in a sentence.
+    pub doc: &'static str,
+    /// Where the default and the usual range come from.
+    pub source: &'static str,
+}
+
+impl Input {
+    /// The value as a person writes it, if it is the input's word.
+    pub fn word_for(&self, value: f64) -> Option<&'static str> {
+        self.word.filter(|(_, encoded)| *encoded == value).map(|(word, _)| word)
+    }
+
+    /// May the input take this value (its word included)?
+    pub fn accepts(&self, value: f64) -> bool {
+        self.word_for(value).is_some() || (self.valid.contains(value) && (!self.integer || value.fract() == 0.0))
+    }
+}
+
+/// Which end of a value's scatter over the scenarios is the worst, where no objective or constraint says so.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Worse {
+    /// The largest value (stresses, forces).
+    Higher,
+    /// The least value (margins, capacities).
+    Lower,
+}
+
+/// One output of a model. Its name carries the unit.
+#[derive(Clone, Copy, Debug)]
+pub struct Output {
+    /// Name in study files and results.
+    pub name: &'static str,
+    /// Symbol in the source.
+    pub symbol: &'static str,
+    /// Unit of the values.
+    pub unit: Unit,
+    /// The worse end.
+    pub worse: Worse,
+    /// What it is, in a sentence.
+    pub doc: &'static str,
+    /// The equation it comes from.
+    pub source: &'static str,
+}
+
+/// A condition under which the formula, or a part of it, has a meaning: a signed margin that must not be negative.
+#[derive(Clone, Copy, Debug)]
+pub struct Condition {
+    /// The status of a design that fails it, such as `slip`.
+    pub reason: &'static str,
+    /// Must the margin be greater than zero (rather than at least zero)?
+    pub strict: bool,
+    /// Fails without making the status other than ok: only the outputs it invalidates are absent.
+    pub quiet: bool,
+    /// Outputs that have no meaning when it fails.
+    pub invalidates: &'static [&'static str],
+    /// What it means, in a sentence.
+    pub doc: &'static str,
+}
+
+/// Values along a belt: one column against which the others are read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Profile {
+    /// Column names with their units, the first being the position.
+    pub columns: Vec<(&'static str, Unit)>,
+    /// One row per position, values in the columns' units.
+    pub rows: Vec<Vec<f64>>,
+}
+
+/// A model: everything that the rest of the program knows about it.
+pub struct Model {
+    /// Name in study files and on the command line.
+    pub name: &'static str,
+    /// One line on what it computes.
+    pub summary: &'static str,
+    /// Where the formula comes from.
+    pub source: &'static str,
+    /// What the model does not cover, in plain sentences.
+    pub limits: &'static str,
+    /// Its inputs; the position is the input's number.
+    pub inputs: &'static [Input],
+    /// Its outputs; the position is the output's number.
+    pub outputs: &'static [Output],
+    /// Its conditions, the first failing one being the status.
+    pub conditions: &'static [Condition],
+    /// Named sets of inputs that differ from the defaults.
+    pub presets: &'static [(&'static str, &'static [(&'static str, f64)])],
+    /// A study to start from, in the study file's language.
+    pub starter: &'static str,
+    /// The formula, instantiated for every number type.
+    pub kernel: &'static dyn Kernel,
+    /// Values along the belt for inputs in their units, where the model has such.
+    pub profile: Option<fn(&[f64]) -> Profile>,
+}
+
+impl Model {
+    /// Number of the input of that name.
+    pub fn input(&self, name: &str) -> Option<usize> {
+        self.inputs.iter().position(|input| input.name == name)
+    }
+
+    /// Number of the output of that name.
+    pub fn output(&self, name: &str) -> Option<usize> {
+        self.outputs.iter().position(|output| output.name == name)
+    }
+
+    /// The defaults of all inputs, in their units.
+    pub fn defaults(&self) -> Vec<f64> {
+        self.inputs.iter().map(|input| input.default).collect()
+    }
+}
+
+impl std::fmt::Debug for Model {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_tuple("Model").field(&self.name).finish()
+    }
+}
+
+impl PartialEq for Model {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}

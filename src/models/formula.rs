@@ -1,0 +1,204 @@
+//! The two stages of a formula, and the same formula behind a table of functions for every number type.
+
+use super::description::Model;
+use crate::real::{Dependence, LANES, Lanes, Real, RunningError};
+
+/// Most inputs that a model may have.
+pub const INPUTS: usize = 48;
+/// Most values that the first stage may hand to the second.
+pub const PREPARED: usize = 24;
+/// Most outputs that a model may have.
+pub const OUTPUTS: usize = 32;
+/// Most conditions that a model may have.
+pub const CONDITIONS: usize = 8;
+
+/// A model's formula in two stages, over any [`Real`]. All values are in SI units.
+///
+/// `prepare` holds what is dear (geometry, transcendental functions, solves) and should read as few inputs as the physics
+/// allows: a sweep runs it once for every combination of the inputs that it reads. `finish` is the inner loop.
+pub trait Formula {
+    /// First stage: what depends on the slow inputs only.
+    fn prepare<R: Real>(inputs: &[R; INPUTS]) -> [R; PREPARED];
+    /// Signed margins of the model's conditions, in the order of its table.
+    fn conditions<R: Real>(prepared: &[R; PREPARED], inputs: &[R; INPUTS]) -> [R; CONDITIONS];
+    /// Second stage: writes the outputs whose bit is set in `wanted` (and may write others).
+    fn finish<R: Real>(prepared: &[R; PREPARED], inputs: &[R; INPUTS], wanted: u64, outputs: &mut [R; OUTPUTS]);
+}
+
+/// The set of outputs with these numbers.
+pub const fn bits(numbers: &[usize]) -> u64 {
+    let (mut set, mut i) = (0, 0);
+    while i < numbers.len() {
+        set |= 1 << numbers[i];
+        i += 1;
+    }
+    set
+}
+
+/// Which inputs each part of a formula depends on: bit `i` for input number `i`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reach {
+    /// What the first stage reads and passes on.
+    pub prepared: u64,
+    /// Each output.
+    pub outputs: [u64; OUTPUTS],
+    /// Each condition.
+    pub conditions: [u64; CONDITIONS],
+}
+
+/// Many designs that share their slow inputs, evaluated together: what varies, what is asked, and where it goes.
+pub struct Columns<'a> {
+    /// Number of designs, at most the length of every column rounded down to a multiple of [`LANES`] after rounding up `count`.
+    pub count: usize,
+    /// Inputs that differ between the designs, by number, in SI units.
+    pub varying: &'a [(usize, Vec<f64>)],
+    /// Outputs asked for, by number.
+    pub outputs: &'a [usize],
+    /// Conditions asked for, by number.
+    pub conditions: &'a [usize],
+}
+
+/// A formula instantiated for every number type, behind one table of functions.
+pub trait Kernel: Sync {
+    /// First stage in f64.
+    fn prepare(&self, inputs: &[f64; INPUTS]) -> [f64; PREPARED];
+    /// Margins of the conditions in f64.
+    fn conditions(&self, prepared: &[f64; PREPARED], inputs: &[f64; INPUTS]) -> [f64; CONDITIONS];
+    /// Second stage in f64.
+    fn finish(&self, prepared: &[f64; PREPARED], inputs: &[f64; INPUTS], wanted: u64, outputs: &mut [f64; OUTPUTS]);
+    /// Second stage for many designs at once: same bits as [`Kernel::finish`].
+    ///
+    /// `results` has one column per asked output (in the output's unit), then one per asked condition (the margin).
+    fn finish_columns(
+        &self,
+        model: &Model,
+        prepared: &[f64; PREPARED],
+        inputs: &[f64; INPUTS],
+        columns: &Columns<'_>,
+        results: &mut [Vec<f64>],
+    );
+    /// What depends on what.
+    fn reach(&self, inputs: &[Dependence; INPUTS]) -> Reach;
+    /// Outputs and condition margins in f32 with bounds on their errors.
+    fn bounded(&self, inputs: &[RunningError; INPUTS]) -> ([RunningError; OUTPUTS], [RunningError; CONDITIONS]);
+    /// Outputs and condition margins in f32, as a shader computes them.
+    fn twin(&self, inputs: &[f32; INPUTS]) -> ([f32; OUTPUTS], [f32; CONDITIONS]);
+}
+
+/// Both stages with every output, over any number type.
+pub fn run<F: Formula, R: Real>(inputs: &[R; INPUTS]) -> ([R; OUTPUTS], [R; CONDITIONS]) {
+    let prepared = F::prepare(inputs);
+    let mut outputs = [R::constant(0.0); OUTPUTS];
+    F::finish(&prepared, inputs, u64::MAX, &mut outputs);
+    (outputs, F::conditions(&prepared, inputs))
+}
+
+impl<F: Formula + Sync> Kernel for F {
+    fn prepare(&self, inputs: &[f64; INPUTS]) -> [f64; PREPARED] {
+        F::prepare(inputs)
+    }
+
+    fn conditions(&self, prepared: &[f64; PREPARED], inputs: &[f64; INPUTS]) -> [f64; CONDITIONS] {
+        F::conditions(prepared, inputs)
+    }
+
+    fn finish(&self, prepared: &[f64; PREPARED], inputs: &[f64; INPUTS], wanted: u64, outputs: &mut [f64; OUTPUTS]) {
+        F::finish(prepared, inputs, wanted, outputs);
+    }
+
+    fn finish_columns(
+        &self,
+        model: &Model,
+        prepared: &[f64; PREPARED],
+        inputs: &[f64; INPUTS],
+        columns: &Columns<'_>,
+        results: &mut [Vec<f64>],
+    ) {
+        finish_columns::<F>(prepared, inputs, columns, results);
+        for (&output, result) in columns.outputs.iter().zip(results) {
+            let unit = model.outputs[output].unit;
+            if !unit.is_si() {
+                result[..columns.count].iter_mut().for_each(|value| *value = unit.from_si(*value));
+            }
+        }
+    }
+
+    fn reach(&self, inputs: &[Dependence; INPUTS]) -> Reach {
+        let (outputs, conditions) = run::<F, Dependence>(inputs);
+        let prepared = F::prepare(inputs).iter().fold(0, |set, value| set | value.inputs);
+        Reach { prepared, outputs: outputs.map(|value| value.inputs), conditions: conditions.map(|value| value.inputs) }
+    }
+
+    fn bounded(&self, inputs: &[RunningError; INPUTS]) -> ([RunningError; OUTPUTS], [RunningError; CONDITIONS]) {
+        run::<F, RunningError>(inputs)
+    }
+
+    fn twin(&self, inputs: &[f32; INPUTS]) -> ([f32; OUTPUTS], [f32; CONDITIONS]) {
+        run::<F, f32>(inputs)
+    }
+}
+
+/// The inner loop: eight designs at a time, compiled once per instruction set and chosen when the program runs.
+///
+/// Only `+ - * / min max` and selections are vectorised, which round alike on every instruction set, and nothing contracts a
+/// product and a sum, so the choice never changes a bit.
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+fn finish_columns<F: Formula>(prepared: &[f64; PREPARED], inputs: &[f64; INPUTS], columns: &Columns<'_>, results: &mut [Vec<f64>]) {
+    let prepared = prepared.map(Lanes::splat);
+    let mut inputs = inputs.map(Lanes::splat);
+    let mut outputs = [Lanes::splat(0.0); OUTPUTS];
+    let wanted = bits(columns.outputs);
+    for first in (0..columns.count).step_by(LANES) {
+        for (input, column) in columns.varying {
+            inputs[*input].0.copy_from_slice(&column[first..first + LANES]);
+        }
+        if wanted != 0 {
+            F::finish(&prepared, &inputs, wanted, &mut outputs);
+            for (&output, result) in columns.outputs.iter().zip(&mut *results) {
+                result[first..first + LANES].copy_from_slice(&outputs[output].0);
+            }
+        }
+        if !columns.conditions.is_empty() {
+            let margins = F::conditions(&prepared, &inputs);
+            for (&condition, result) in columns.conditions.iter().zip(&mut results[columns.outputs.len()..]) {
+                result[first..first + LANES].copy_from_slice(&margins[condition].0);
+            }
+        }
+    }
+}
+
+/// A struct of values of one type with named fields, read from and numbered like an array: the names of a model's inputs and
+/// of what `prepare` passes on.
+macro_rules! record {
+    ($(#[$doc:meta])* $name:ident { $($field:ident),* $(,)? }) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug)]
+        pub(super) struct $name<T> { $(pub $field: T),* }
+
+        impl $name<usize> {
+            /// The position of every field.
+            pub const NUMBER: Self = {
+                let mut next = 0;
+                $(let $field = next; next += 1;)*
+                let _ = next;
+                Self { $($field),* }
+            };
+        }
+
+        #[allow(dead_code, reason = "some records are only read, some only written")]
+        impl<T: Copy> $name<T> {
+            #[inline(always)]
+            pub fn read<const N: usize>(values: &[T; N]) -> Self {
+                Self { $($field: values[$name::<usize>::NUMBER.$field]),* }
+            }
+
+            #[inline(always)]
+            pub fn to_array<const N: usize>(self, padding: T) -> [T; N] {
+                let mut values = [padding; N];
+                $(values[$name::<usize>::NUMBER.$field] = self.$field;)*
+                values
+            }
+        }
+    };
+}
+pub(super) use record;

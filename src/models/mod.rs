@@ -1,0 +1,33 @@
+//! The models: what each needs, gives and means, in one place per model.
+//!
+//! A model is a table of inputs, outputs and conditions, and a formula in two stages over [`Real`](crate::real::Real).
+//! Adding one is one file here, one line in [`MODELS`] and one golden case; every generic test loops over the list.
+
+mod cvt;
+mod description;
+mod evaluation;
+mod formula;
+mod metal_cvt;
+mod pulley_load;
+mod rubber_cvt;
+
+pub(crate) use crate::real::LANES;
+pub use cvt::{optimum_thickness, printed_torque_coefficient, torque_coefficient, traction_limit, wedge_factor};
+pub use description::{Condition, Input, Model, Output, Profile, Range, Worse};
+pub use evaluation::{Evaluation, Status, evaluate, evaluate_decided};
+pub(crate) use evaluation::{holds, input_to_si, judge, to_si};
+pub use formula::{CONDITIONS, Columns, Formula, INPUTS, Kernel, OUTPUTS, PREPARED, Reach};
+
+/// What `prepare` hands to `finish`.
+pub type Prepared = [f64; PREPARED];
+
+/// Every model, in the order in which `beltspace models` lists them.
+pub const MODELS: &[&Model] = &[&rubber_cvt::MODEL, &metal_cvt::MODEL, &pulley_load::MODEL];
+
+/// The model of that name.
+pub fn find(name: &str) -> Option<&'static Model> {
+    MODELS.iter().copied().find(|model| model.name == name)
+}
+
+#[cfg(test)]
+mod tests;

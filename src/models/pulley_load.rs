@@ -1,0 +1,282 @@
+//! Loads of a V-belt on one pulley.
+//!
+//! Source: K.-S. Lee et al., on a design and analysis system for V-belt pulleys; equation numbers are that paper's. Symbols:
+//! R_b mean radius; n speed; P power; w belt mass per length; beta groove angle; N grooves; theta_w wrap; T_t, T_s tight and
+//! slack tension, totals over the grooves like w and P; T_c = w v^2.
+//!
+//! Friction has one total coefficient whose direction, `friction_direction_deg`, turns from around the circumference (0) to
+//! along the flank (90, excluded). At 45 degrees it is the paper's "mu both ways", with a total sqrt(2) times the paper's mu;
+//! at 0 it is the usual `mu' = mu / sin(beta/2)`, which presses harder on the flanks: the paper's choice is not the safe one.
+//!
+//! # Repairs of the printed equations
+//! - Section 2.1 swaps the names of tight and slack tension; nomenclature and equations are right.
+//! - g is in m/s^2; with w in kgf/m, `w v^2/g` is in kgf unless w is read as kg/m, which is what is done here.
+//! - F is a force per length in the nomenclature but `F ds` a force in (4).
+//! - (8), (13): the right side is `log(...)/theta`.
+//! - Section 2.6 cites the belt's (4) for the pulley's own centrifugal load.
+//! - The second friction component acts along the flank, inwards and towards the groove's mid-plane: the loads balance
+//!   exactly only then (the paper's "radial" taken literally is 0.67 % off in its example).
+
+use super::description::{Condition, Input, Model, Output, Profile, Range, Worse};
+use super::formula::{CONDITIONS, Formula, INPUTS, OUTPUTS, PREPARED, bits, record};
+use crate::real::Real;
+use crate::units::{
+    self, DEGREE, KILOGRAM_PER_METRE, KILOWATT, METRE_PER_SECOND, MILLIMETRE, NEWTON, NEWTON_METRE, NEWTON_PER_MILLIMETRE, NONE, Unit,
+};
+
+record! {
+    /// Inputs in the order of the table, in SI units.
+    Inputs {
+        power, speed, slack_tension, wrap_angle, mean_radius, groove_angle, groove_count, belt_mass, friction_limit,
+        friction_direction,
+    }
+}
+
+record! {
+    /// What needs transcendental functions; the last two are condition margins.
+    Prepared {
+        belt_speed, effective_tension, centrifugal_tension, effective_friction, friction_used, torque, resultant_force,
+        slack_end_line_force, tight_end_line_force, flank_per_line, lift_margin, balance_margin,
+    }
+}
+
+record! {
+    /// Outputs in the order of the table.
+    Result {
+        belt_speed, tight_tension, effective_tension, centrifugal_tension, effective_friction, friction_used, friction_margin,
+        torque, resultant_force, slack_end_line_force, tight_end_line_force, slack_end_flank_force, tight_end_flank_force,
+    }
+}
+
+const OUT: Result<usize> = Result::NUMBER;
+
+const fn input(
+    name: &'static str,
+    symbol: &'static str,
+    unit: Unit,
+    default: f64,
+    usual: (f64, f64),
+    doc: &'static str,
+    source: &'static str,
+) -> Input {
+    Input { name, symbol, unit, default, valid: Range::POSITIVE, usual, integer: false, word: None, doc, source }
+}
+
+const fn output(name: &'static str, symbol: &'static str, unit: Unit, worse: Worse, source: &'static str, doc: &'static str) -> Output {
+    Output { name, symbol, unit, worse, doc, source }
+}
+
+use Worse::{Higher, Lower};
+
+const PAPER: &str = "paper, Table 1";
+
+/// The model.
+pub const MODEL: Model = Model {
+    name: "pulley-load",
+    summary: "V-belt pulley: tensions, friction and line loads over the wrap",
+    source: "K.-S. Lee et al.: design and analysis system for V-belt pulleys, eqs (1)-(16)",
+    limits: "The belt load is the steady one: no shock, no vibration, no heat. Friction acts in one direction all over the wrap. \
+             What the load does to the pulley is not part of this model.",
+    inputs: &[
+        Input { valid: Range::NOT_NEGATIVE, ..input("power_kW", "P", KILOWATT, 3.0, (0.1, 50.0), "Power that the belt transmits.", PAPER) },
+        input("speed_rpm", "n", units::RPM, 3000.0, (100.0, 10_000.0), "Speed of the pulley.", PAPER),
+        input("slack_tension_N", "T_s", NEWTON, 700.0, (50.0, 3000.0), "Tension of the slack side, all grooves together.", PAPER),
+        Input {
+            valid: Range { high: 360.0, includes_high: true, ..Range::POSITIVE },
+            ..input("wrap_angle_deg", "theta_w", DEGREE, 88.0, (30.0, 240.0), "Angle over which the belt touches the pulley.", PAPER)
+        },
+        input("mean_radius_mm", "R_b", MILLIMETRE, 60.0, (20.0, 300.0), "Radius at which the belt pulls.", "chosen; not printed"),
+        Input {
+            valid: Range::between(0.0, 180.0),
+            ..input("groove_angle_deg", "beta", DEGREE, 36.0, (32.0, 40.0), "Angle between the two flanks of a groove.", "SAE J636")
+        },
+        Input { integer: true, ..input("groove_count", "N", NONE, 1.0, (1.0, 12.0), "Number of grooves that share the load.", "chosen") },
+        input("belt_mass_kg_per_m", "w", KILOGRAM_PER_METRE, 0.11, (0.03, 1.0), "Mass of all belts per length.", "13 mm belt, 1300 kg/m3"),
+        input("friction_limit", "mu_max", NONE, 0.3, (0.25, 0.5), "Total friction that is available.", "dry rubber on steel, customary"),
+        Input {
+            valid: Range::from_until(0.0, 90.0),
+            ..input(
+                "friction_direction_deg",
+                "gamma",
+                DEGREE,
+                45.0,
+                (0.0, 45.0),
+                "Direction of friction from around the circumference (0) towards along the flank; the paper's is 45.",
+                "paper, (16)",
+            )
+        },
+    ],
+    outputs: &[
+        output("belt_speed_m_per_s", "v", METRE_PER_SECOND, Higher, "(2)", "Speed of the belt."),
+        output("tight_tension_N", "T_t", NEWTON, Higher, "(2), (15)", "Tension of the tight side."),
+        output("effective_tension_N", "T_e", NEWTON, Higher, "T_t - T_s", "Tension that transmits the power."),
+        output("centrifugal_tension_N", "T_c", NEWTON, Higher, "w v^2", "Tension that bends the moving belt and presses nothing."),
+        output("effective_friction", "mu'", NONE, Higher, "(13)", "Friction of the wedge that the load needs."),
+        output("friction_used", "mu", NONE, Higher, "(12)", "Total coefficient of friction that the load needs."),
+        output("friction_margin", "", NONE, Lower, "1 - friction_used/friction_limit", "Distance to the available friction, relative."),
+        output("torque_Nm", "", NEWTON_METRE, Higher, "(T_t - T_s) R_b", "Torque on the pulley."),
+        output("resultant_force_N", "", NEWTON, Higher, "vectors T_t - T_c, T_s - T_c", "Force of the belt on the shaft."),
+        output("slack_end_line_force_N_per_mm", "Q(0)", NEWTON_PER_MILLIMETRE, Higher, "(9)", "Radial load per length at the slack end."),
+        output(
+            "tight_end_line_force_N_per_mm",
+            "Q(theta_w)",
+            NEWTON_PER_MILLIMETRE,
+            Higher,
+            "(9)",
+            "Radial load per length at the tight end.",
+        ),
+        output(
+            "slack_end_flank_force_N_per_mm",
+            "R(0)",
+            NEWTON_PER_MILLIMETRE,
+            Higher,
+            "(10)",
+            "Normal force per flank and length at the slack end.",
+        ),
+        output(
+            "tight_end_flank_force_N_per_mm",
+            "R(theta_w)",
+            NEWTON_PER_MILLIMETRE,
+            Higher,
+            "(10)",
+            "Normal force per flank and length at the tight end.",
+        ),
+    ],
+    conditions: &[
+        Condition {
+            reason: "belt lifts",
+            strict: true,
+            quiet: false,
+            invalidates: &[
+                "effective_friction",
+                "friction_used",
+                "friction_margin",
+                "resultant_force_N",
+                "slack_end_line_force_N_per_mm",
+                "tight_end_line_force_N_per_mm",
+                "slack_end_flank_force_N_per_mm",
+                "tight_end_flank_force_N_per_mm",
+            ],
+            doc: "The slack tension exceeds the centrifugal tension: otherwise the belt lifts off.",
+        },
+        Condition {
+            reason: "no friction balances the load",
+            strict: true,
+            quiet: false,
+            invalidates: &["friction_used", "friction_margin", "slack_end_flank_force_N_per_mm", "tight_end_flank_force_N_per_mm"],
+            doc: "Friction in this direction can carry the load: cos(gamma) > mu' sin(gamma) cos(beta/2).",
+        },
+    ],
+    presets: &[],
+    starter: include_str!("../../studies/pulley-load.toml"),
+    kernel: &PulleyLoad,
+    profile: Some(profile),
+};
+
+struct PulleyLoad;
+
+impl Formula for PulleyLoad {
+    fn prepare<R: Real>(inputs: &[R; INPUTS]) -> [R; PREPARED] {
+        let [one, two] = [1.0, 2.0].map(R::constant);
+        let i = Inputs::read(inputs);
+        let belt_speed = i.mean_radius * i.speed;
+        let effective_tension = i.power / belt_speed;
+        let centrifugal_tension = i.belt_mass * belt_speed.squared();
+        // What presses the belt on the pulley at either end of the wrap.
+        let slack_pressing = i.slack_tension - centrifugal_tension;
+        let tight_pressing = slack_pressing + effective_tension;
+        // (13): log((T_t - T_c)/(T_s - T_c)), exact also for a small load.
+        let effective_friction = (effective_tension / slack_pressing).ln_1p() / i.wrap_angle;
+
+        let (sine, cosine) = ((i.groove_angle / two).sin(), (i.groove_angle / two).cos());
+        let (along, across) = (i.friction_direction.cos(), i.friction_direction.sin() * cosine);
+        let balance_margin = along - effective_friction * across;
+        let friction_used = effective_friction * sine / balance_margin;
+        let both = slack_pressing.squared() + tight_pressing.squared();
+        // The two strands pull at an angle of pi - theta_w to each other. The square cannot be negative but for rounding.
+        let resultant = (both - two * slack_pressing * tight_pressing * i.wrap_angle.cos()).max(R::constant(0.0));
+        Prepared {
+            belt_speed,
+            effective_tension,
+            centrifugal_tension,
+            effective_friction,
+            friction_used,
+            torque: effective_tension * i.mean_radius,
+            resultant_force: resultant.sqrt(),
+            slack_end_line_force: slack_pressing / i.mean_radius,
+            tight_end_line_force: tight_pressing / i.mean_radius,
+            flank_per_line: one / (two * (sine + friction_used * across)), // (10), for one groove
+            lift_margin: slack_pressing,
+            balance_margin,
+        }
+        .to_array(R::constant(0.0))
+    }
+
+    #[inline(always)]
+    fn conditions<R: Real>(prepared: &[R; PREPARED], _inputs: &[R; INPUTS]) -> [R; CONDITIONS] {
+        let p = Prepared::read(prepared);
+        let mut margins = [R::constant(1.0); CONDITIONS];
+        margins[0] = p.lift_margin;
+        margins[1] = p.balance_margin;
+        margins
+    }
+
+    #[inline(always)]
+    fn finish<R: Real>(prepared: &[R; PREPARED], inputs: &[R; INPUTS], wanted: u64, out: &mut [R; OUTPUTS]) {
+        let p = Prepared::read(prepared);
+        let i = Inputs::read(inputs);
+        const MARGIN: u64 = bits(&[OUT.friction_margin]);
+        const FLANK: u64 = bits(&[OUT.slack_end_flank_force, OUT.tight_end_flank_force]);
+        if wanted & MARGIN != 0 {
+            out[OUT.friction_margin] = R::constant(1.0) - p.friction_used / i.friction_limit;
+        }
+        if wanted & FLANK != 0 {
+            let flank_per_line = p.flank_per_line / i.groove_count;
+            out[OUT.slack_end_flank_force] = p.slack_end_line_force * flank_per_line;
+            out[OUT.tight_end_flank_force] = p.tight_end_line_force * flank_per_line;
+        }
+        out[OUT.belt_speed] = p.belt_speed;
+        out[OUT.tight_tension] = i.slack_tension + p.effective_tension;
+        out[OUT.effective_tension] = p.effective_tension;
+        out[OUT.centrifugal_tension] = p.centrifugal_tension;
+        out[OUT.effective_friction] = p.effective_friction;
+        out[OUT.friction_used] = p.friction_used;
+        out[OUT.torque] = p.torque;
+        out[OUT.resultant_force] = p.resultant_force;
+        out[OUT.slack_end_line_force] = p.slack_end_line_force;
+        out[OUT.tight_end_line_force] = p.tight_end_line_force;
+    }
+}
+
+/// Tension, line force and flank force over the wrap, (14), (9), (10): from the slack end (0) to the tight end, a row a degree
+/// or a little closer. `inputs` are in their units and must have status ok.
+fn profile(inputs: &[f64]) -> Profile {
+    let mut si = [0.0; INPUTS];
+    for ((si, &value), input) in si.iter_mut().zip(inputs).zip(MODEL.inputs) {
+        *si = input.unit.to_si(value);
+    }
+    let i = Inputs::read(&si);
+    let p = Prepared::read(&PulleyLoad::prepare(&si));
+    let steps = inputs[Inputs::NUMBER.wrap_angle].ceil();
+    let count = steps as u32;
+    let rows = (0..=count).map(|step| {
+        let part = f64::from(step) / steps;
+        let pressing = libm::exp(p.effective_friction * i.wrap_angle * part) * p.lift_margin;
+        let line_force = pressing / i.mean_radius;
+        vec![
+            inputs[Inputs::NUMBER.wrap_angle] * part,
+            pressing + p.centrifugal_tension,
+            NEWTON_PER_MILLIMETRE.from_si(line_force),
+            NEWTON_PER_MILLIMETRE.from_si(line_force * p.flank_per_line / i.groove_count),
+        ]
+    });
+    Profile {
+        columns: vec![
+            ("wrap_position_deg", DEGREE),
+            ("tension_N", NEWTON),
+            ("line_force_N_per_mm", NEWTON_PER_MILLIMETRE),
+            ("flank_force_N_per_mm", NEWTON_PER_MILLIMETRE),
+        ],
+        rows: rows.collect(),
+    }
+}

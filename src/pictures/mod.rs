@@ -1,0 +1,174 @@
+//! Pictures: plain data in, the text of one self-contained SVG file out.
+//!
+//! [`front`] draws a Pareto front, [`histogram`] a histogram, [`heatmap`] a map over two axes and
+//! [`curves`] profiles over a common abscissa. None of them reads or writes a file, and the same
+//! input always gives the same bytes: no clock, no random names, no hash-map order, and no
+//! transcendental function from the system in a position or a tick.
+//!
+//! A picture is 900 px wide on a white ground, uses colours that colour-blind readers can tell
+//! apart, and loads nothing from elsewhere, so it reads alike as a file in a browser and inside a
+//! page. Input without any data gives a picture that says so; values that are not finite are left
+//! out.
+
+mod axis;
+mod colour_bar;
+mod colours;
+mod contours;
+mod curves;
+mod header;
+mod heatmap;
+mod histogram;
+mod levels;
+mod number;
+mod panel;
+mod range;
+mod raster;
+mod scatter;
+mod scatter_grid;
+mod sheet;
+mod staircase;
+mod thinning;
+mod words;
+
+pub use curves::curves;
+pub use heatmap::heatmap;
+pub use histogram::histogram;
+pub use scatter::front;
+
+/// One quantity on an axis.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Quantity {
+    /// Name as in study files, with its unit as suffix: `axial_force_N`.
+    pub name: String,
+    /// Unit as in the suffix (`N_per_mm`) or written out (`N/mm`); empty for dimensionless ones.
+    pub unit: String,
+}
+
+/// Which values of an objective are better.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Goal {
+    /// Lower is better.
+    Min,
+    /// Higher is better.
+    Max,
+}
+
+/// A quantity to be optimised.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Objective {
+    /// What is optimised.
+    pub quantity: Quantity,
+    /// In which direction.
+    pub goal: Goal,
+}
+
+/// One line in a panel of [`curves`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// Name in the legend; the same label has the same colour in every panel.
+    pub label: String,
+    /// Abscissae, in the unit of the common quantity.
+    pub x: Vec<f64>,
+    /// Ordinates, in the unit of the panel's quantity; as many as `x`.
+    pub y: Vec<f64>,
+}
+
+impl Quantity {
+    /// A quantity from its name and unit (empty if dimensionless).
+    pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
+        Self { name: name.into(), unit: unit.into() }
+    }
+
+    /// Text for an axis: `axial force [N]` for `axial_force_N` in `N`.
+    pub fn label(&self) -> String {
+        self.label_in_powers_of_ten(0)
+    }
+
+    /// As [`label`](Self::label), for numbers given in units of a power of ten:
+    /// `axial force [10⁶ N]`, never broken between power and unit.
+    fn label_in_powers_of_ten(&self, exponent: i32) -> String {
+        let name = self.plain_name();
+        let unit = self.plain_unit();
+        let power = match exponent {
+            0 => String::new(),
+            _ => format!("10{}", number::superscript(exponent)),
+        };
+        match (power.is_empty(), unit.is_empty()) {
+            (true, true) => name,
+            (true, false) => format!("{name} [{unit}]"),
+            (false, true) => format!("{name} [{power}]"),
+            (false, false) => format!("{name} [{power}\u{a0}{unit}]"),
+        }
+    }
+
+    /// The unit as one writes it: `N/mm`, `mm²`.
+    fn plain_unit(&self) -> String {
+        words::clean(&self.unit).replace("_per_", "/").replace("m2", "m²").replace("m3", "m³")
+    }
+
+    /// The name without its unit suffix, words separated by spaces.
+    fn plain_name(&self) -> String {
+        let suffix = unit_as_suffix(&self.unit);
+        let stem = self
+            .name
+            .strip_suffix(&suffix)
+            .and_then(|stem| stem.strip_suffix('_'))
+            .filter(|stem| !suffix.is_empty() && !stem.is_empty())
+            .unwrap_or(&self.name);
+        words::clean(&stem.replace('_', " "))
+    }
+}
+
+impl Goal {
+    /// Words for an axis label; the arrow points along the axis towards better values, also on a
+    /// vertical axis, whose label is turned to read upwards.
+    fn words(self) -> &'static str {
+        match self {
+            Goal::Min => "← lower is better",
+            Goal::Max => "higher is better →",
+        }
+    }
+
+    /// Orders the better of two values first.
+    fn better_first(self, a: f64, b: f64) -> std::cmp::Ordering {
+        match self {
+            Goal::Min => a.total_cmp(&b),
+            Goal::Max => b.total_cmp(&a),
+        }
+    }
+}
+
+/// A unit as names spell it, so that `N/mm` strips `_N_per_mm` and `°` strips `_deg`.
+fn unit_as_suffix(unit: &str) -> String {
+    unit.replace('/', "_per_").replace('²', "2").replace('³', "3").replace(['µ', 'μ'], "u").replace('°', "deg").replace([' ', '·'], "")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_carry_the_unit_once() {
+        for (name, unit, label) in [
+            ("axial_force_N", "N", "axial force [N]"),
+            ("line_force_N_per_mm", "N/mm", "line force [N/mm]"),
+            ("line_force_N_per_mm", "N_per_mm", "line force [N/mm]"),
+            ("cord_area_mm2", "mm2", "cord area [mm²]"),
+            ("driver_wrap_deg", "deg", "driver wrap [deg]"),
+            ("torque_Nm", "N m", "torque [N m]"),
+            ("stress_margin", "", "stress margin"),
+            ("N", "N", "N [N]"),
+            ("", "", ""),
+        ] {
+            assert_eq!(Quantity::new(name, unit).label(), label);
+        }
+    }
+
+    #[test]
+    fn powers_of_ten_stand_in_front_of_the_unit() {
+        let force = Quantity::new("axial_force_N", "N");
+        assert_eq!(force.label_in_powers_of_ten(6), "axial force [10⁶\u{a0}N]");
+        let share = Quantity::new("share", "");
+        assert_eq!(share.label_in_powers_of_ten(-12), "share [10⁻¹²]");
+    }
+}

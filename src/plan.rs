@@ -1,0 +1,227 @@
+//! How a study is swept: what is slow and what is fast, what is followed over the scenarios, and where each value comes from.
+//!
+//! The formula itself is asked which inputs each of its parts depends on. Design axes that `prepare` reads are slow, the others
+//! fast; a *row* is one combination of the slow axes with all combinations of the fast ones. An output that no fast design axis
+//! touches is one number for the whole row, so it is evaluated once per row and scenario and never in the inner loop.
+
+use crate::models::{INPUTS, Reach, Worse, input_to_si};
+use crate::real::Dependence;
+use crate::space::{Product, Space};
+use crate::study::{Best, Goal, Quantity, Study};
+
+/// Most combinations of the fast design axes that one row has, so that their values can be kept in a table.
+pub const FAST_DESIGNS: u64 = 1 << 15;
+
+/// A quantity whose worst scenario is followed, with the end that is worst.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tracked {
+    /// What is followed.
+    pub quantity: Quantity,
+    /// Which end of its scatter is the worst.
+    pub worse: Worse,
+}
+
+/// Where a value of one row comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// An input that is the same for the whole row.
+    RowInput(usize),
+    /// An output that is the same for the whole row.
+    RowOutput(usize),
+    /// An input that the fast design axes set; it does not change with the scenario.
+    LaneInput(usize),
+    /// An output that differs within the row: its position among [`Plan::lane_outputs`].
+    LaneOutput(usize),
+}
+
+impl Source {
+    /// Is the value the same for all designs of a row?
+    pub fn is_row(self) -> bool {
+        matches!(self, Self::RowInput(_) | Self::RowOutput(_))
+    }
+}
+
+/// A study laid out for sweeping.
+#[derive(Debug)]
+pub struct Plan {
+    /// The study.
+    pub study: Study,
+    /// Its designs and scenarios.
+    pub space: Space,
+    /// Design axes that `prepare` reads.
+    pub slow: Product,
+    /// The other design axes.
+    pub fast: Product,
+    /// Scenario axes that `prepare` reads.
+    pub slow_scenarios: Product,
+    /// The other scenario axes.
+    pub fast_scenarios: Product,
+    /// Quantities whose worst value is needed while sweeping, without duplicates.
+    pub tracked: Vec<(Tracked, Source)>,
+    /// Positions of the objectives among `tracked`.
+    pub objectives: Vec<usize>,
+    /// Source of each constraint.
+    pub constraints: Vec<Source>,
+    /// Outputs evaluated once per row and scenario, as a bit set.
+    pub row_outputs: u64,
+    /// Outputs evaluated for every design and scenario.
+    pub lane_outputs: Vec<usize>,
+    /// Conditions that are the same for the whole row.
+    pub row_conditions: Vec<usize>,
+    /// Conditions evaluated for every design and scenario.
+    pub lane_conditions: Vec<usize>,
+    /// What depends on what.
+    pub reach: Reach,
+}
+
+/// The worst end under an objective, else under what the report asks of the quantity, else by nature.
+fn quantities_to_track(study: &Study) -> Vec<Tracked> {
+    let mut tracked: Vec<Tracked> = Vec::new();
+    let mut track = |quantity, worse| {
+        let entry = Tracked { quantity, worse };
+        if !tracked.contains(&entry) {
+            tracked.push(entry);
+        }
+    };
+    for objective in &study.objectives {
+        track(objective.quantity, objective.goal.worse());
+    }
+    if let Some(top) = study.report.top {
+        track(top.by, top.goal.worse());
+    }
+    for histogram in &study.report.histograms {
+        track(histogram.of, worst_end(study, histogram.of));
+    }
+    for map in &study.report.maps {
+        if let Best::Value(quantity, goal) = map.value {
+            track(quantity, goal.worse());
+        }
+    }
+    tracked
+}
+
+/// The end of a quantity's scatter that its worst value is: by its objective if it has one, else by nature.
+pub fn worst_end(study: &Study, quantity: Quantity) -> Worse {
+    let goal = study.objectives.iter().find(|objective| objective.quantity == quantity).map(|objective| objective.goal);
+    goal.map_or(quantity.worse(study.model), Goal::worse)
+}
+
+impl Plan {
+    /// Lays out a study.
+    pub fn new(study: Study) -> Self {
+        let space = Space::new(&study);
+        let reach = study.model.kernel.reach(&dependences(&study, &space));
+        let (slow, fast) = space.designs.split(reach.prepared);
+        // The values of the fast axes are tabulated: what would make the table too large is walked with the slow axes.
+        let (outer, fast) = fast.narrow(FAST_DESIGNS);
+        let slow = slow.with(&outer);
+        let (slow_scenarios, fast_scenarios) = space.scenarios.split(reach.prepared);
+        let lane_inputs = fast.inputs();
+        let mut row_outputs = 0u64;
+        let mut lane_outputs = Vec::new();
+        let mut used_outputs = 0u64;
+        let mut source = |quantity| match quantity {
+            Quantity::Input(input) if lane_inputs >> input & 1 == 1 => Source::LaneInput(input),
+            Quantity::Input(input) => Source::RowInput(input),
+            Quantity::Output(output) => {
+                used_outputs |= 1 << output;
+                if reach.outputs[output] & lane_inputs == 0 {
+                    row_outputs |= 1 << output;
+                    Source::RowOutput(output)
+                } else {
+                    let position = lane_outputs.iter().position(|&it| it == output).unwrap_or_else(|| {
+                        lane_outputs.push(output);
+                        lane_outputs.len() - 1
+                    });
+                    Source::LaneOutput(position)
+                }
+            }
+        };
+        let tracked: Vec<_> = quantities_to_track(&study).into_iter().map(|it| (it, source(it.quantity))).collect();
+        let constraints = study.constraints.iter().map(|constraint| source(constraint.quantity)).collect();
+        let objectives = study.objectives.iter().map(|objective| {
+            let wanted = Tracked { quantity: objective.quantity, worse: objective.goal.worse() };
+            tracked.iter().position(|(it, _)| *it == wanted).expect("every objective is tracked")
+        });
+        let objectives = objectives.collect();
+        // A quiet condition matters only where it takes away an output that is used.
+        let model = study.model;
+        let matters = |number: &usize| {
+            let condition = &model.conditions[*number];
+            !condition.quiet
+                || condition.invalidates.iter().filter_map(|name| model.output(name)).any(|output| used_outputs >> output & 1 == 1)
+        };
+        let (row_conditions, lane_conditions) =
+            (0..model.conditions.len()).filter(matters).partition(|&number| reach.conditions[number] & lane_inputs == 0);
+        Self {
+            slow,
+            fast,
+            slow_scenarios,
+            fast_scenarios,
+            tracked,
+            objectives,
+            constraints,
+            row_outputs,
+            lane_outputs,
+            row_conditions,
+            lane_conditions,
+            reach,
+            space,
+            study,
+        }
+    }
+
+    /// Number of designs.
+    pub fn designs(&self) -> u64 {
+        self.space.designs.count()
+    }
+
+    /// Number of scenarios.
+    pub fn scenarios(&self) -> u64 {
+        self.space.scenarios.count()
+    }
+
+    /// The design index at a position of the sweep: rows of the slow axes outside, the fast axes inside.
+    pub fn design_at(&self, position: u64) -> u64 {
+        let fast = self.fast.count();
+        self.slow.source_index(position / fast) + self.fast.source_index(position % fast)
+    }
+
+    /// The position of the sweep at which a design index is met.
+    pub fn position_of(&self, design: u64) -> u64 {
+        self.slow.index_of(design) * self.fast.count() + self.fast.index_of(design)
+    }
+
+    /// Design axes, by position, that change nothing that the study asks for.
+    pub fn inert_axes(&self) -> Vec<usize> {
+        let study = &self.study;
+        let asked = self.tracked.iter().map(|(it, _)| it.quantity);
+        let asked = asked.chain(study.constraints.iter().map(|it| it.quantity)).chain(study.report.columns.iter().copied());
+        let quantities = asked.fold(0, |set, quantity| {
+            set | match quantity {
+                Quantity::Input(input) => 1 << input,
+                Quantity::Output(output) => self.reach.outputs[output],
+            }
+        });
+        let conditions = self.row_conditions.iter().chain(&self.lane_conditions);
+        let mattering = conditions.fold(quantities, |set, &condition| set | self.reach.conditions[condition]);
+        let on_a_map = |axis: &usize| study.report.maps.iter().any(|map| map.x == *axis || map.y == *axis);
+        let inert = |axis: &usize| study.design[*axis].inputs().iter().all(|&input| mattering >> input & 1 == 0);
+        (0..study.design.len()).filter(inert).filter(|axis| !on_a_map(axis)).collect()
+    }
+}
+
+/// The inputs as the dependence type sees them: fixed numbers, or ranges that an axis covers.
+fn dependences(study: &Study, space: &Space) -> [Dependence; INPUTS] {
+    let mut inputs = [Dependence::fixed(0.0); INPUTS];
+    let si = |input: usize, value: f64| input_to_si(&study.model.inputs[input], value);
+    for (input, &value) in study.fixed.iter().enumerate() {
+        inputs[input] = Dependence::fixed(si(input, value));
+    }
+    for product in [&space.designs, &space.scenarios] {
+        product.for_each_range(|input, (least, largest)| {
+            inputs[input] = Dependence::varied(input, si(input, least), si(input, largest));
+        });
+    }
+    inputs
+}

@@ -1,0 +1,117 @@
+//! The number types that the model formulas are generic over.
+//!
+//! A formula is written once, over [`Real`], and evaluated with several instances: `f64` is the reference, `f32` the twin of
+//! what a shader computes, [`Lanes`] eight f64 designs at a time, [`Dependence`] tells which inputs a value depends on, and
+//! [`RunningError`] how far the f32 value may be from the exact one. That is why `Real` has no comparison and no branching:
+//! a formula selects with [`Real::select`], clamps with `min` and `max`, and answers questions with signed margins.
+
+mod dependence;
+mod float;
+mod lanes;
+mod running_error;
+
+pub use dependence::Dependence;
+pub use lanes::{LANES, Lanes};
+pub use running_error::RunningError;
+
+use std::fmt::Debug;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A number that a model formula can be evaluated with.
+///
+/// Angles are in radians, quantities in SI units. Every instance must agree with `f64` in meaning; only the precision, or
+/// what is recorded beside the value, differs.
+pub trait Real:
+    Copy + Debug + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+{
+    /// A number that depends on no input.
+    fn constant(value: f64) -> Self;
+    /// Square root of a number that is not negative.
+    fn sqrt(self) -> Self;
+    /// Magnitude.
+    fn abs(self) -> Self;
+    /// The smaller of two numbers.
+    fn min(self, other: Self) -> Self;
+    /// The larger of two numbers.
+    fn max(self, other: Self) -> Self;
+    /// `exp(self) - 1`, exact to rounding also where `self` is small.
+    fn exp_m1(self) -> Self;
+    /// `log(1 + self)`, exact to rounding also where `self` is small.
+    fn ln_1p(self) -> Self;
+    /// Sine.
+    fn sin(self) -> Self;
+    /// Cosine.
+    fn cos(self) -> Self;
+    /// Arc sine; the caller clamps the argument to [-1, 1].
+    fn asin(self) -> Self;
+    /// `at_least_zero` where `margin >= 0`, else `below_zero`. Both are evaluated: neither may be a NaN that leaks.
+    fn select(margin: Self, at_least_zero: Self, below_zero: Self) -> Self;
+    /// The root of an increasing function, between the ends of `bracket`, found from `start`.
+    ///
+    /// `function` returns value and slope. If there is no root in the bracket the result is some number inside it: the
+    /// caller states the condition under which a root exists as a status of its own.
+    fn monotone_root(bracket: (Self, Self), start: Self, function: impl Fn(Self) -> (Self, Self)) -> Self;
+
+    /// Square.
+    #[inline(always)]
+    fn squared(self) -> Self {
+        self * self
+    }
+}
+
+/// Newton steps kept inside a shrinking bracket: the scalar definition of [`Real::monotone_root`], shared by every instance
+/// that works with plain numbers.
+///
+/// The steps end when they no longer shrink at the level of rounding, so the result does not depend on a tolerance.
+#[inline]
+pub(crate) fn bracketed_newton(bracket: (f64, f64), start: f64, rounding: f64, mut function: impl FnMut(f64) -> (f64, f64)) -> f64 {
+    let (mut low, mut high) = bracket;
+    let mut x = start.max(low).min(high);
+    let mut last_step = f64::INFINITY;
+    for _ in 0..100 {
+        let (value, slope) = function(x);
+        if value > 0.0 {
+            high = x;
+        } else {
+            low = x;
+        }
+        let newton = x - value / slope;
+        let next = if newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
+        let step = (next - x).abs();
+        let at_rounding = step <= 1e4 * rounding * x.abs();
+        x = next;
+        if step == 0.0 || (at_rounding && step >= 0.5 * last_step) {
+            break;
+        }
+        last_step = step;
+    }
+    x
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The cube root of 2, on every instance that has a value.
+    fn cube_root<R: Real>() -> R {
+        let two = R::constant(2.0);
+        R::monotone_root((R::constant(0.0), R::constant(10.0)), R::constant(9.0), |x| (x * x * x - two, R::constant(3.0) * x * x))
+    }
+
+    #[test]
+    fn the_root_of_a_monotone_function_is_found_to_rounding() {
+        let exact = 2f64.powf(1.0 / 3.0);
+        assert!((cube_root::<f64>() - exact).abs() <= 4.0 * f64::EPSILON);
+        assert!((f64::from(cube_root::<f32>()) - exact).abs() <= 4.0 * f64::from(f32::EPSILON));
+        assert_eq!(cube_root::<Lanes>().0, [cube_root::<f64>(); LANES], "lanes must round like the scalar");
+        let bounded = cube_root::<RunningError>();
+        assert!((f64::from(bounded.value) - exact).abs() <= bounded.bound);
+        assert!(bounded.bound < 1e-5, "the bound of a well-conditioned root is useful: {}", bounded.bound);
+    }
+
+    #[test]
+    fn without_a_root_the_result_stays_inside_the_bracket() {
+        let x = f64::monotone_root((1.0, 3.0), 2.0, |x| (x + 1.0, 1.0));
+        assert!((1.0..=3.0).contains(&x), "{x}");
+    }
+}

@@ -1,0 +1,181 @@
+//! "Is there a point at least as good in everything?", answered over a growing set of points.
+//!
+//! Points are minimised in every coordinate. They are kept in trees of doubling size (the logarithmic method of Bentley and
+//! Saxe), each a k-d tree whose nodes know the best corner of what they hold: a node whose corner is not at least as good as
+//! the point asked about cannot hold one that is.
+
+/// Points in a leaf.
+const LEAF: usize = 16;
+/// Points that are searched one by one before they become a tree.
+const BUFFER: usize = 64;
+
+/// A set of points with design indices.
+#[derive(Debug, Default)]
+pub struct Dominance {
+    dimensions: usize,
+    trees: Vec<Tree>,
+    buffer: Points,
+}
+
+/// Coordinates, point after point, and the design index of each.
+#[derive(Clone, Debug, Default)]
+struct Points {
+    keys: Vec<f64>,
+    indices: Vec<u64>,
+}
+
+impl Points {
+    fn key(&self, point: usize, dimensions: usize) -> &[f64] {
+        &self.keys[point * dimensions..][..dimensions]
+    }
+
+    fn push(&mut self, key: &[f64], index: u64) {
+        self.keys.extend_from_slice(key);
+        self.indices.push(index);
+    }
+}
+
+/// A node holds the points `first..last`; an inner node's left child follows it directly.
+#[derive(Debug)]
+struct Node {
+    first: usize,
+    last: usize,
+    right: Option<usize>,
+}
+
+#[derive(Debug)]
+struct Tree {
+    points: Points,
+    nodes: Vec<Node>,
+    /// Best corner of every node.
+    corners: Vec<f64>,
+}
+
+/// Does `a` make `b` superfluous: at least as good everywhere, and better somewhere or the same with a lower index?
+pub fn beats(a: &[f64], a_index: u64, b: &[f64], b_index: u64) -> bool {
+    a.iter().zip(b).all(|(a, b)| a <= b) && (a_index < b_index || a.iter().zip(b).any(|(a, b)| a < b))
+}
+
+impl Dominance {
+    /// An empty set of points with so many coordinates.
+    pub fn new(dimensions: usize) -> Self {
+        Self { dimensions, trees: Vec::new(), buffer: Points::default() }
+    }
+
+    /// Adds a point.
+    pub fn insert(&mut self, key: &[f64], index: u64) {
+        self.buffer.push(key, index);
+        if self.buffer.indices.len() < BUFFER {
+            return;
+        }
+        let mut points = std::mem::take(&mut self.buffer);
+        // Trees of at most the size so far are absorbed, so that sizes double and a point moves a logarithm of times.
+        while let Some(tree) = self.trees.pop_if(|tree| tree.points.indices.len() <= points.indices.len()) {
+            points.keys.extend_from_slice(&tree.points.keys);
+            points.indices.extend_from_slice(&tree.points.indices);
+        }
+        self.trees.push(Tree::new(points, self.dimensions));
+    }
+
+    /// A point of the set that makes this one superfluous, if there is one: its coordinates and index.
+    pub fn beater(&self, key: &[f64], index: u64) -> Option<(&[f64], u64)> {
+        let dimensions = self.dimensions;
+        let beater_of = |points: &'_ Points, point: usize| beats(points.key(point, dimensions), points.indices[point], key, index);
+        for tree in &self.trees {
+            if let Some(point) = tree.find(key, dimensions, beater_of) {
+                return Some((tree.points.key(point, dimensions), tree.points.indices[point]));
+            }
+        }
+        let found = (0..self.buffer.indices.len()).find(|&point| beater_of(&self.buffer, point))?;
+        Some((self.buffer.key(found, dimensions), self.buffer.indices[found]))
+    }
+}
+
+impl Tree {
+    fn new(points: Points, dimensions: usize) -> Self {
+        let mut order: Vec<usize> = (0..points.indices.len()).collect();
+        let mut tree = Self { points: Points::default(), nodes: Vec::new(), corners: Vec::new() };
+        tree.build(&points, &mut order, 0, dimensions);
+        for &point in &order {
+            tree.points.push(points.key(point, dimensions), points.indices[point]);
+        }
+        tree
+    }
+
+    /// Builds the node of `order`, which lies at `first` in the final order, and its children.
+    fn build(&mut self, points: &Points, order: &mut [usize], first: usize, dimensions: usize) {
+        let ends = |dimension: usize, order: &[usize]| {
+            let values = order.iter().map(|&point| points.keys[point * dimensions + dimension]);
+            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
+        };
+        let spans: Vec<_> = (0..dimensions).map(|dimension| ends(dimension, order)).collect();
+        self.corners.extend(spans.iter().map(|span| span.0));
+        let node = self.nodes.len();
+        self.nodes.push(Node { first, last: first + order.len(), right: None });
+        if order.len() <= LEAF {
+            return;
+        }
+        let width = |dimension: &usize| spans[*dimension].1 - spans[*dimension].0;
+        let widest = (0..dimensions).max_by(|a, b| width(a).total_cmp(&width(b))).expect("points have a coordinate");
+        let middle = order.len() / 2;
+        let value = |point: &usize| points.keys[point * dimensions + widest];
+        order.select_nth_unstable_by(middle, |a, b| value(a).total_cmp(&value(b)));
+        let (left, right) = order.split_at_mut(middle);
+        self.build(points, left, first, dimensions);
+        self.nodes[node].right = Some(self.nodes.len());
+        self.build(points, right, first + middle, dimensions);
+    }
+
+    fn find(&self, key: &[f64], dimensions: usize, beats: impl Fn(&Points, usize) -> bool) -> Option<usize> {
+        let mut pending = vec![0];
+        while let Some(number) = pending.pop() {
+            let corner = &self.corners[number * dimensions..][..dimensions];
+            if corner.iter().zip(key).any(|(corner, key)| corner > key) {
+                continue;
+            }
+            let node = &self.nodes[number];
+            match node.right {
+                Some(right) => pending.extend([right, number + 1]),
+                None => {
+                    if let Some(point) = (node.first..node.last).find(|&point| beats(&self.points, point)) {
+                        return Some(point);
+                    }
+                }
+            }
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample::mix;
+
+    #[test]
+    fn the_trees_agree_with_comparing_everything() {
+        for dimensions in 1..=6 {
+            // Few levels, so that ties in single coordinates and equal points are common.
+            let point = |i: u64| -> Vec<f64> { (0..dimensions).map(|d| (mix(i * 8 + d + 1000 * dimensions) % 12) as f64).collect() };
+            let mut set = Dominance::new(dimensions as usize);
+            let points: Vec<_> = (0..700).map(point).collect();
+            for (index, key) in points.iter().enumerate() {
+                let beaten = points[..index].iter().enumerate().any(|(other, it)| beats(it, other as u64, key, index as u64));
+                let found = set.beater(key, index as u64);
+                assert_eq!(found.is_some(), beaten, "{dimensions} dimensions, point {index}");
+                if let Some((by, by_index)) = found {
+                    assert!(beats(by, by_index, key, index as u64));
+                }
+                set.insert(key, index as u64);
+            }
+        }
+    }
+
+    #[test]
+    fn an_equal_point_beats_by_its_lower_index_only() {
+        assert!(beats(&[1.0, 2.0], 3, &[1.0, 2.0], 4));
+        assert!(!beats(&[1.0, 2.0], 4, &[1.0, 2.0], 3));
+        assert!(beats(&[1.0, 2.0], 4, &[1.0, 3.0], 3));
+        assert!(!beats(&[1.0, 2.0], 1, &[0.0, 3.0], 3));
+    }
+}

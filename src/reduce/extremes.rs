@@ -1,0 +1,67 @@
+//! Least and largest worst-scenario value of each objective over the feasible designs.
+
+use crate::screen::{Block, ends};
+use serde::{Deserialize, Serialize};
+
+/// A value and the design that has it; of equal values the lowest index.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Extreme {
+    /// The value, in its unit.
+    pub value: f64,
+    /// The design.
+    pub index: u64,
+}
+
+/// Least and largest value per objective; `None` before the first feasible design.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Extremes {
+    /// Per objective.
+    pub least: Vec<Option<Extreme>>,
+    /// Per objective.
+    pub largest: Vec<Option<Extreme>>,
+}
+
+/// Replaces `held` if `offered` lies further in the direction of `further`, or ties with a lower index.
+fn update(held: &mut Option<Extreme>, offered: Extreme, further: impl Fn(f64, f64) -> bool) {
+    let take = held.is_none_or(|held| further(offered.value, held.value) || (offered.value == held.value && offered.index < held.index));
+    if take {
+        *held = Some(offered);
+    }
+}
+
+impl Extremes {
+    /// Nothing seen yet.
+    pub fn new(objectives: usize) -> Self {
+        Self { least: vec![None; objectives], largest: vec![None; objectives] }
+    }
+
+    /// Takes in a block; `columns` are the positions of the objectives among its values.
+    pub fn absorb(&mut self, block: &Block<'_>, columns: &[usize]) {
+        let lowest_index = || block.row_index + block.offsets.iter().min().copied().unwrap_or(0);
+        for (objective, &column) in columns.iter().enumerate() {
+            let values = block.column(column);
+            let (low, high) = ends(block.alive, values);
+            // Which design it is matters only where the value is new, or old with a chance of a lower index.
+            let sides =
+                [(&mut self.least[objective], low, f64::lt as fn(&f64, &f64) -> bool), (&mut self.largest[objective], high, f64::gt)];
+            for (held, value, further) in sides {
+                if value.is_finite() && held.is_none_or(|it| further(&value, &it.value) || (value == it.value && lowest_index() < it.index))
+                {
+                    let lanes = block.feasible().filter(|&lane| values[lane] == value);
+                    let index = lanes.map(|lane| block.index(lane)).min().expect("the end of a set is one of its members");
+                    update(held, Extreme { value: value + 0.0, index }, |a, b| further(&a, &b));
+                }
+            }
+        }
+    }
+
+    /// Takes in the extremes of other designs.
+    pub fn merge(&mut self, other: &Self) {
+        for (held, offered) in self.least.iter_mut().zip(&other.least) {
+            offered.iter().for_each(|offered| update(held, *offered, |a, b| a < b));
+        }
+        for (held, offered) in self.largest.iter_mut().zip(&other.largest) {
+            offered.iter().for_each(|offered| update(held, *offered, |a, b| a > b));
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! How a quantity's worst value is distributed over the feasible designs.
+
+use crate::screen::Block;
+use serde::{Deserialize, Serialize};
+
+/// Counts per bin. Bin `i` of `n` holds `edge(i) <= value < edge(i + 1)`; the last one also its upper edge.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Histogram {
+    /// Lower edge of the first bin.
+    pub from: f64,
+    /// Upper edge of the last bin.
+    pub to: f64,
+    /// Designs per bin.
+    pub counts: Vec<u64>,
+    /// Designs below the first bin.
+    pub below: u64,
+    /// Designs above the last bin.
+    pub above: u64,
+}
+
+impl Histogram {
+    /// Empty bins over a range that is not empty.
+    pub fn new((from, to): (f64, f64), bins: usize) -> Self {
+        Self { from, to, counts: vec![0; bins], below: 0, above: 0 }
+    }
+
+    /// Lower edge of a bin, or the upper edge of the last.
+    #[allow(clippy::cast_precision_loss, reason = "bins are few")]
+    pub fn edge(&self, bin: usize) -> f64 {
+        if bin == self.counts.len() { self.to } else { self.from + bin as f64 * (self.to - self.from) / self.counts.len() as f64 }
+    }
+
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, reason = "the value is in range")]
+    fn count(&mut self, value: f64) {
+        if value < self.from {
+            self.below += 1;
+        } else if value > self.to {
+            self.above += 1;
+        } else {
+            let bins = self.counts.len();
+            let guess = ((value - self.from) / (self.to - self.from) * bins as f64) as usize;
+            let mut bin = guess.min(bins - 1);
+            // The guess rounds; the edges decide.
+            while bin > 0 && value < self.edge(bin) {
+                bin -= 1;
+            }
+            while bin + 1 < bins && value >= self.edge(bin + 1) {
+                bin += 1;
+            }
+            self.counts[bin] += 1;
+        }
+    }
+
+    /// Takes in a block.
+    pub fn absorb(&mut self, block: &Block<'_>, column: usize) {
+        for lane in block.feasible() {
+            self.count(block.values[column][lane]);
+        }
+    }
+
+    /// Takes in the counts of other designs.
+    pub fn merge(&mut self, other: &Self) {
+        self.counts.iter_mut().zip(&other.counts).for_each(|(count, other)| *count += other);
+        self.below += other.below;
+        self.above += other.above;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edges_decide_and_what_is_outside_is_counted() {
+        let mut histogram = Histogram::new((0.1, 0.7), 6);
+        for bin in 0..=6 {
+            histogram.count(histogram.edge(bin));
+            histogram.count(histogram.edge(bin).next_down());
+        }
+        histogram.count(0.7f64.next_up());
+        assert_eq!(histogram.counts, [2, 2, 2, 2, 2, 3]);
+        assert_eq!((histogram.below, histogram.above), (1, 1));
+    }
+}

@@ -1,0 +1,384 @@
+//! The CPU engine: f64, eight designs at a time.
+//!
+//! For each row (one combination of the slow design axes): `prepare` once per slow scenario, judge what is the same for the
+//! whole row, then run the inner loop over blocks of the fast design axes, scenario by scenario, until no design is left.
+
+use super::Block;
+use super::columns::{any, keep_finite, keep_margin, keep_within, lower, raise};
+use crate::decision::Decision;
+use crate::models::{self, CONDITIONS, Columns, INPUTS, LANES, OUTPUTS, Prepared, Worse};
+use crate::plan::{FAST_DESIGNS, Plan, Source};
+use crate::space::Product;
+use std::ops::Range;
+
+/// Most designs in a block: its columns stay in the first-level cache.
+pub const BLOCK: usize = 512;
+/// Most scenarios, slow or fast, whose settings are kept rather than computed again.
+const TABLE: u64 = 1 << 15;
+
+/// Values that one combination of scenario axes sets: input number, in its unit, in SI.
+type Setting = Vec<(usize, f64, f64)>;
+
+/// The inputs of the designs of one block that the fast axes set.
+#[derive(Debug)]
+pub(super) struct FastBlock {
+    count: usize,
+    offsets: Vec<u64>,
+    /// By input number, in SI units.
+    si: Vec<(usize, Vec<f64>)>,
+    /// By input number, in the input's unit, where the plan tracks or constrains the input itself.
+    own: Vec<(usize, Vec<f64>)>,
+}
+
+/// What all threads of an engine share: made once per plan.
+#[derive(Debug)]
+pub struct Tables {
+    /// Settings of the slow and of the fast scenarios, while they are few.
+    slow_scenarios: Vec<Setting>,
+    fast_scenarios: Vec<Setting>,
+    /// Blocks of the fast design axes, while they are few.
+    blocks: Vec<FastBlock>,
+}
+
+impl Tables {
+    /// The tables of a plan.
+    pub fn new(plan: &Plan) -> Self {
+        let settings = |product: &Product| -> Vec<Setting> {
+            let kept = if product.count() <= TABLE { product.count() } else { 0 };
+            (0..kept).map(|index| setting(plan, product, index)).collect()
+        };
+        let kept = if plan.fast.count() <= FAST_DESIGNS { plan.fast.count() } else { 0 };
+        let blocks = (0..kept).step_by(BLOCK).map(|first| FastBlock::new(plan, first..kept.min(first + BLOCK as u64))).collect();
+        Self { slow_scenarios: settings(&plan.slow_scenarios), fast_scenarios: settings(&plan.fast_scenarios), blocks }
+    }
+}
+
+/// Judges ranges of designs; one per thread.
+#[derive(Debug)]
+pub struct CpuEngine<'p> {
+    plan: &'p Plan,
+    tables: &'p Tables,
+    /// Inputs of the current row and scenario, in their units and in SI.
+    pub(super) own: Vec<f64>,
+    si: [f64; INPUTS],
+    /// The current row, its prepared table and what is the same for all its designs.
+    pub(super) row: Option<u64>,
+    row_feasible: bool,
+    row_worst: Vec<f64>,
+    prepared: Vec<Prepared>,
+    /// Kernel results: lane outputs, then lane condition margins.
+    pub(super) results: Vec<Vec<f64>>,
+    /// The block being judged: which designs are still in, and the worst values so far.
+    alive: Vec<u64>,
+    values: Vec<Vec<f64>>,
+    row_index: u64,
+}
+
+impl<'p> CpuEngine<'p> {
+    /// An engine for a plan and its tables.
+    pub fn new(plan: &'p Plan, tables: &'p Tables) -> Self {
+        let columns = plan.lane_outputs.len() + plan.lane_conditions.len();
+        Self {
+            plan,
+            tables,
+            own: plan.study.fixed.clone(),
+            si: [0.0; INPUTS],
+            row: None,
+            row_feasible: false,
+            row_worst: vec![0.0; plan.tracked.len()],
+            prepared: Vec::new(),
+            results: vec![vec![0.0; BLOCK]; columns],
+            alive: Vec::new(),
+            values: vec![vec![0.0; BLOCK]; plan.tracked.len()],
+            row_index: 0,
+        }
+    }
+
+    /// Judges the designs at `positions` and hands each block with a feasible design to `absorb`.
+    pub fn screen(&mut self, positions: Range<u64>, mut absorb: impl FnMut(&Block<'_>)) {
+        let width = self.plan.fast.count();
+        let mut position = positions.start;
+        while position < positions.end {
+            let (row, first) = (position / width, position % width);
+            let end = width.min(first + (positions.end - position));
+            self.enter_row(row);
+            if self.row_feasible {
+                self.screen_row(first..end, &mut absorb);
+            }
+            position += end - first;
+        }
+    }
+
+    fn screen_row(&mut self, fast: Range<u64>, absorb: &mut impl FnMut(&Block<'_>)) {
+        let tables = self.tables;
+        let mut first = fast.start;
+        while first < fast.end {
+            // A kept block is used whole; the ragged ends of a range and blocks that are not kept are made as they come.
+            let whole = tables.blocks.get(usize::try_from(first / BLOCK as u64).unwrap_or(usize::MAX));
+            match whole {
+                Some(block) if first.is_multiple_of(BLOCK as u64) && first + block.count as u64 <= fast.end => {
+                    self.screen_block(block, absorb);
+                    first += block.count as u64;
+                }
+                _ => {
+                    let to_grid = BLOCK as u64 - first % BLOCK as u64;
+                    let last = fast.end.min(first + to_grid);
+                    self.screen_block(&FastBlock::new(self.plan, first..last), absorb);
+                    first = last;
+                }
+            }
+        }
+    }
+
+    /// Sets the inputs of a row, prepares its scenarios and judges what is the same for all its designs.
+    pub(super) fn enter_row(&mut self, row: u64) {
+        if self.row == Some(row) {
+            return;
+        }
+        self.row = Some(row);
+        self.set_row(row);
+        self.row_feasible = true;
+        for (worst, (tracked, _)) in self.row_worst.iter_mut().zip(&self.plan.tracked) {
+            *worst = least_bad(tracked.worse);
+        }
+        self.prepared.clear();
+        let slow = self.plan.slow_scenarios.count();
+        for q in 0..slow {
+            let prepared = self.prepare(q);
+            if slow <= TABLE {
+                self.prepared.push(prepared);
+            }
+            for t in 0..self.plan.fast_scenarios.count() {
+                self.set_fast_scenario(t);
+                if !self.judge_row_scenario(&prepared) {
+                    self.row_feasible = false;
+                    return;
+                }
+            }
+        }
+    }
+
+    pub(super) fn set_row(&mut self, row: u64) {
+        self.own.copy_from_slice(&self.plan.study.fixed);
+        self.plan.slow.set(row, &mut self.own);
+        self.si = crate::models::to_si(self.plan.study.model, &self.own);
+        self.row_index = self.plan.slow.source_index(row);
+    }
+
+    /// Conditions, constraints and worst values of a row in the current scenario; false if the whole row is out.
+    fn judge_row_scenario(&mut self, prepared: &Prepared) -> bool {
+        let plan = self.plan;
+        let (margins, outputs) = self.row_values(prepared);
+        if !plan.row_conditions.iter().all(|&number| holds(plan, number, margins[number])) {
+            return false;
+        }
+        let value = |source| row_value(plan, source, &self.own, &outputs);
+        let constraints = plan.study.constraints.iter().zip(&plan.constraints);
+        if !constraints.filter(|(_, source)| source.is_row()).all(|(constraint, &source)| {
+            let value = value(source);
+            value.is_finite() && constraint.holds(value)
+        }) {
+            return false;
+        }
+        for ((tracked, source), worst) in plan.tracked.iter().zip(&mut self.row_worst) {
+            if source.is_row() {
+                let value = value(*source);
+                if !value.is_finite() {
+                    return false;
+                }
+                *worst = worse_of(tracked.worse, *worst, value);
+            }
+        }
+        true
+    }
+
+    /// Condition margins and row outputs (SI) in the current scenario.
+    pub(super) fn row_values(&self, prepared: &Prepared) -> ([f64; CONDITIONS], [f64; OUTPUTS]) {
+        let kernel = self.plan.study.model.kernel;
+        let mut outputs = [0.0; OUTPUTS];
+        if self.plan.row_outputs != 0 {
+            kernel.finish(prepared, &self.si, self.plan.row_outputs, &mut outputs);
+        }
+        (kernel.conditions(prepared, &self.si), outputs)
+    }
+
+    /// Judges one block of the current row over all scenarios.
+    pub(super) fn screen_block(&mut self, fast: &FastBlock, absorb: &mut impl FnMut(&Block<'_>)) {
+        let plan = self.plan;
+        let count = fast.count;
+        self.alive.clear();
+        self.alive.resize(count, u64::MAX);
+        for (constraint, source) in plan.study.constraints.iter().zip(&plan.constraints) {
+            if let Source::LaneInput(input) = *source {
+                keep_within(&mut self.alive, fast.own(input), constraint);
+            }
+        }
+        for (((tracked, source), column), &worst) in plan.tracked.iter().zip(&mut self.values).zip(&self.row_worst) {
+            match *source {
+                Source::LaneInput(input) => column[..count].copy_from_slice(&fast.own(input)[..count]),
+                Source::LaneOutput(_) => column[..count].fill(least_bad(tracked.worse)),
+                Source::RowInput(_) | Source::RowOutput(_) => column[..count].fill(worst),
+            }
+        }
+        if !self.results.is_empty() {
+            for q in 0..plan.slow_scenarios.count() {
+                let prepared = self.prepared_for(q);
+                for t in 0..plan.fast_scenarios.count() {
+                    self.set_fast_scenario(t);
+                    self.evaluate(&prepared, fast);
+                    self.judge_block_scenario();
+                }
+                if !any(&self.alive) {
+                    return;
+                }
+            }
+        }
+        if any(&self.alive) {
+            absorb(&Block { row_index: self.row_index, offsets: &fast.offsets, alive: &self.alive, values: &self.values });
+        }
+    }
+
+    /// Runs the inner loop: lane outputs and lane condition margins of a block in the current scenario.
+    pub(super) fn evaluate(&mut self, prepared: &Prepared, fast: &FastBlock) {
+        let plan = self.plan;
+        let columns = Columns { count: fast.count, varying: &fast.si, outputs: &plan.lane_outputs, conditions: &plan.lane_conditions };
+        plan.study.model.kernel.finish_columns(plan.study.model, prepared, &self.si, &columns, &mut self.results);
+    }
+
+    fn judge_block_scenario(&mut self) {
+        let plan = self.plan;
+        let (outputs, margins) = self.results.split_at(plan.lane_outputs.len());
+        let alive = &mut self.alive;
+        for (&number, margins) in plan.lane_conditions.iter().zip(margins) {
+            keep_margin(alive, margins, plan.study.model.conditions[number].strict);
+        }
+        for (constraint, source) in plan.study.constraints.iter().zip(&plan.constraints) {
+            if let Source::LaneOutput(position) = *source {
+                keep_within(alive, &outputs[position], constraint);
+            }
+        }
+        for ((tracked, source), worst) in plan.tracked.iter().zip(&mut self.values) {
+            if let Source::LaneOutput(position) = *source {
+                keep_finite(alive, &outputs[position]);
+                let worst = &mut worst[..alive.len()];
+                match tracked.worse {
+                    Worse::Higher => raise(worst, &outputs[position]),
+                    Worse::Lower => lower(worst, &outputs[position]),
+                }
+            }
+        }
+    }
+
+    /// What `prepare` made of slow scenario `q`, whose inputs become the current ones.
+    pub(super) fn prepared_for(&mut self, q: u64) -> Prepared {
+        match usize::try_from(q).ok().and_then(|q| self.prepared.get(q)).copied() {
+            Some(prepared) => {
+                self.set_slow_scenario(q);
+                prepared
+            }
+            None => self.prepare(q),
+        }
+    }
+
+    pub(super) fn prepare(&mut self, q: u64) -> Prepared {
+        self.set_slow_scenario(q);
+        self.plan.study.model.kernel.prepare(&self.si)
+    }
+
+    fn set_slow_scenario(&mut self, q: u64) {
+        let tables = self.tables;
+        self.apply(tables.slow_scenarios.get(usize::try_from(q).unwrap_or(usize::MAX)), &self.plan.slow_scenarios, q);
+    }
+
+    pub(super) fn set_fast_scenario(&mut self, t: u64) {
+        let tables = self.tables;
+        self.apply(tables.fast_scenarios.get(usize::try_from(t).unwrap_or(usize::MAX)), &self.plan.fast_scenarios, t);
+    }
+
+    fn apply(&mut self, kept: Option<&Setting>, product: &Product, index: u64) {
+        let made;
+        let setting = match kept {
+            Some(setting) => setting,
+            None => {
+                made = setting(self.plan, product, index);
+                &made
+            }
+        };
+        for &(input, own, si) in setting {
+            self.own[input] = own;
+            self.si[input] = si;
+        }
+    }
+}
+
+impl FastBlock {
+    /// The given designs of the fast axes, at most [`BLOCK`].
+    pub(super) fn new(plan: &Plan, designs: impl Iterator<Item = u64>) -> Self {
+        let model = plan.study.model;
+        let set = plan.fast.inputs();
+        let mut columns: Vec<(usize, Vec<f64>)> =
+            (0..model.inputs.len()).filter(|input| set >> input & 1 == 1).map(|input| (input, Vec::with_capacity(BLOCK))).collect();
+        let mut inputs = vec![0.0; model.inputs.len()];
+        let mut offsets = Vec::with_capacity(BLOCK);
+        for design in designs {
+            plan.fast.set(design, &mut inputs);
+            offsets.push(plan.fast.source_index(design));
+            for (input, column) in &mut columns {
+                column.push(inputs[*input]);
+            }
+        }
+        let count = offsets.len();
+        for (_, column) in &mut columns {
+            // Idle lanes repeat the last design, so that they are as harmless as it is.
+            column.resize(count.next_multiple_of(LANES), *column.last().expect("a block has a design"));
+        }
+        let si = columns.iter().map(|(input, column)| {
+            let input_table = &model.inputs[*input];
+            (*input, column.iter().map(|&value| models::input_to_si(input_table, value)).collect())
+        });
+        Self { count, offsets, si: si.collect(), own: columns }
+    }
+
+    pub(super) fn own(&self, input: usize) -> &[f64] {
+        &self.own.iter().find(|(it, _)| *it == input).expect("a lane input is set by a fast axis").1
+    }
+}
+
+/// What one combination of scenario axes sets.
+fn setting(plan: &Plan, product: &Product, index: u64) -> Setting {
+    let model = plan.study.model;
+    let mut inputs = plan.study.fixed.clone();
+    product.set(index, &mut inputs);
+    let set = product.inputs();
+    let each = (0..model.inputs.len()).filter(|input| set >> input & 1 == 1);
+    each.map(|input| (input, inputs[input], models::input_to_si(&model.inputs[input], inputs[input]))).collect()
+}
+
+/// Does a condition hold? In f64 the answer is never unsure.
+pub(super) fn holds(plan: &Plan, condition: usize, margin: f64) -> bool {
+    models::holds(plan.study.model, condition, margin, 0.0) == Decision::Yes
+}
+
+/// A value that is the same for the whole row, in its unit.
+pub(super) fn row_value(plan: &Plan, source: Source, own: &[f64], outputs: &[f64; OUTPUTS]) -> f64 {
+    match source {
+        Source::RowInput(input) => own[input],
+        Source::RowOutput(output) => plan.study.model.outputs[output].unit.from_si(outputs[output]),
+        Source::LaneInput(_) | Source::LaneOutput(_) => unreachable!("asked for row sources only"),
+    }
+}
+
+/// The value that every other one is worse than.
+fn least_bad(worse: Worse) -> f64 {
+    match worse {
+        Worse::Higher => f64::NEG_INFINITY,
+        Worse::Lower => f64::INFINITY,
+    }
+}
+
+fn worse_of(worse: Worse, a: f64, b: f64) -> f64 {
+    match worse {
+        Worse::Higher => a.max(b),
+        Worse::Lower => a.min(b),
+    }
+}

@@ -1,0 +1,47 @@
+//! Screening: every design judged over every scenario, a block of designs of one row at a time.
+//!
+//! An engine turns a range of positions into [`Block`]s; the reducers absorb them and never know where they came from.
+
+mod columns;
+mod cpu;
+mod tally;
+
+pub(crate) use columns::{count, ends};
+pub use cpu::{BLOCK, CpuEngine, Tables};
+pub use tally::{SAMPLE, Tally};
+
+/// Judged designs of one row: who is feasible, and the worst values of what the plan tracks.
+#[derive(Clone, Copy, Debug)]
+pub struct Block<'a> {
+    /// Part of the design index that the row contributes.
+    pub row_index: u64,
+    /// Part of the design index that each lane contributes.
+    pub offsets: &'a [u64],
+    /// All ones for a feasible design, else zero; one entry per design.
+    pub alive: &'a [u64],
+    /// One column per tracked quantity, in its unit; may be longer; meaningful for feasible designs only.
+    pub values: &'a [Vec<f64>],
+}
+
+impl<'a> Block<'a> {
+    /// Number of designs.
+    pub fn count(&self) -> usize {
+        self.alive.len()
+    }
+
+    /// The values of one tracked quantity.
+    pub fn column(&self, column: usize) -> &'a [f64] {
+        &self.values[column][..self.alive.len()]
+    }
+
+    /// Lanes of feasible designs.
+    pub fn feasible(&self) -> impl Iterator<Item = usize> + use<'a> {
+        let alive = self.alive;
+        (0..alive.len()).filter(|&lane| alive[lane] != 0)
+    }
+
+    /// Design index of a lane.
+    pub fn index(&self, lane: usize) -> u64 {
+        self.row_index + self.offsets[lane]
+    }
+}

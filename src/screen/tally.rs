@@ -1,0 +1,197 @@
+//! Why designs are not feasible: a count per status and constraint over a fixed sample of the designs.
+//!
+//! A sweep gives up on a design at the first thing that is wrong with it, so what limits feasibility is counted on a sample of
+//! its own, in f64 and to the end: 65 536 stratified design indices (all designs if fewer), the same whatever ran the sweep.
+
+use super::cpu::{BLOCK, CpuEngine, FastBlock, Tables, holds, row_value};
+use crate::plan::{Plan, Source, Tracked, worst_end};
+use crate::sample::mix;
+use serde::{Deserialize, Serialize};
+
+/// Most designs in the sample.
+pub const SAMPLE: u64 = 65_536;
+
+/// Counts over the sample. A design may fail in several ways and counts in each.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Tally {
+    /// Designs in the sample.
+    pub sampled: u64,
+    /// Of these, feasible.
+    pub feasible: u64,
+    /// Per condition of the model: designs that fail it in some scenario.
+    pub conditions: Vec<u64>,
+    /// Per constraint of the study: designs that violate it in some scenario in which they have a meaning.
+    pub constraints: Vec<u64>,
+    /// Per constraint: designs that would be feasible but for it.
+    pub only: Vec<u64>,
+    /// Per tracked quantity: least and largest worst value of the sample's feasible designs.
+    pub ranges: Vec<Option<(f64, f64)>>,
+}
+
+/// Bit of the first constraint in a lane's set of failures; below are the conditions.
+const FIRST_CONSTRAINT: usize = crate::models::CONDITIONS;
+
+impl Tally {
+    /// Counts the sample of a plan.
+    pub fn new(plan: &Plan, tables: &Tables, threads: usize) -> Self {
+        let mut positions: Vec<u64> = sample(plan.designs()).map(|design| plan.position_of(design)).collect();
+        positions.sort_unstable();
+        let share = positions.len().div_ceil(threads.max(1)).max(1);
+        let parts: Vec<Self> = std::thread::scope(|scope| {
+            let parts: Vec<_> = positions.chunks(share).map(|part| scope.spawn(move || Counter::new(plan, tables).count(part))).collect();
+            parts.into_iter().map(|part| part.join().expect("counting does not panic")).collect()
+        });
+        parts.into_iter().fold(Self::empty(plan), Self::merge)
+    }
+
+    /// The range of every histogram of the study: as given, else what the sample's feasible designs cover.
+    pub fn histogram_ranges(&self, plan: &Plan) -> Vec<(f64, f64)> {
+        let automatic = |of| {
+            let wanted = Tracked { quantity: of, worse: worst_end(&plan.study, of) };
+            let column = plan.tracked.iter().position(|(it, _)| *it == wanted).expect("the plan tracks what histograms are of");
+            match self.ranges[column] {
+                Some((low, high)) if low < high => (low, high),
+                // One value needs a bin around it; without a feasible design any range will do.
+                Some((value, _)) => (value - value.abs().max(1.0) / 2.0, value + value.abs().max(1.0) / 2.0),
+                None => (0.0, 1.0),
+            }
+        };
+        plan.study.report.histograms.iter().map(|it| it.range.unwrap_or_else(|| automatic(it.of))).collect()
+    }
+
+    fn empty(plan: &Plan) -> Self {
+        let constraints = plan.constraints.len();
+        Self {
+            sampled: 0,
+            feasible: 0,
+            conditions: vec![0; plan.study.model.conditions.len()],
+            constraints: vec![0; constraints],
+            only: vec![0; constraints],
+            ranges: vec![None; plan.tracked.len()],
+        }
+    }
+
+    fn merge(mut self, other: Self) -> Self {
+        let add = |to: &mut [u64], from: &[u64]| to.iter_mut().zip(from).for_each(|(to, from)| *to += from);
+        self.sampled += other.sampled;
+        self.feasible += other.feasible;
+        add(&mut self.conditions, &other.conditions);
+        add(&mut self.constraints, &other.constraints);
+        add(&mut self.only, &other.only);
+        for (to, from) in self.ranges.iter_mut().zip(other.ranges) {
+            *to = match (*to, from) {
+                (Some((a, b)), Some((c, d))) => Some((a.min(c), b.max(d))),
+                (either, None) | (None, either) => either,
+            };
+        }
+        self
+    }
+
+    fn count_design(&mut self, failures: u64) {
+        self.sampled += 1;
+        self.feasible += u64::from(failures == 0);
+        for (number, count) in self.conditions.iter_mut().enumerate() {
+            *count += failures >> number & 1;
+        }
+        for (number, (count, only)) in self.constraints.iter_mut().zip(&mut self.only).enumerate() {
+            *count += failures >> (FIRST_CONSTRAINT + number) & 1;
+            *only += u64::from(failures == 1 << (FIRST_CONSTRAINT + number));
+        }
+    }
+}
+
+/// The design indices of the sample: one in each of [`SAMPLE`] equal strata.
+pub(crate) fn sample(designs: u64) -> impl Iterator<Item = u64> {
+    let strata = designs.min(SAMPLE);
+    let edge = move |stratum: u64| (u128::from(designs) * u128::from(stratum) / u128::from(strata)) as u64;
+    (0..strata).map(move |stratum| {
+        let (first, next) = (edge(stratum), edge(stratum + 1));
+        first + mix(stratum) % (next - first)
+    })
+}
+
+/// One thread's share of the counting.
+struct Counter<'p> {
+    plan: &'p Plan,
+    engine: CpuEngine<'p>,
+    tally: Tally,
+}
+
+impl<'p> Counter<'p> {
+    fn new(plan: &'p Plan, tables: &'p Tables) -> Self {
+        Self { plan, engine: CpuEngine::new(plan, tables), tally: Tally::empty(plan) }
+    }
+
+    fn count(mut self, positions: &[u64]) -> Tally {
+        let width = self.plan.fast.count();
+        for row in positions.chunk_by(|a, b| a / width == b / width) {
+            for block in row.chunks(BLOCK) {
+                let fast: Vec<u64> = block.iter().map(|position| position % width).collect();
+                self.count_block(block[0] / width, &fast);
+            }
+        }
+        self.tally
+    }
+
+    fn count_block(&mut self, row: u64, designs: &[u64]) {
+        let plan = self.plan;
+        let fast = FastBlock::new(plan, designs.iter().copied());
+        let mut failures = vec![0u64; designs.len()];
+        self.engine.set_row(row);
+        for q in 0..plan.slow_scenarios.count() {
+            let prepared = self.engine.prepare(q);
+            for t in 0..plan.fast_scenarios.count() {
+                self.engine.set_fast_scenario(t);
+                let (margins, outputs) = self.engine.row_values(&prepared);
+                let failed = plan.row_conditions.iter().filter(|&&number| !holds(plan, number, margins[number]));
+                let row_failures = failed.fold(0u64, |set, &number| set | 1 << number);
+                self.engine.evaluate(&prepared, &fast);
+                for (lane, failures) in failures.iter_mut().enumerate() {
+                    let lane_margins = plan.lane_conditions.iter().zip(&self.engine.results[plan.lane_outputs.len()..]);
+                    let failed = lane_margins.filter(|&(&number, margins)| !holds(plan, number, margins[lane]));
+                    let conditions = failed.fold(row_failures, |set, (&number, _)| set | 1 << number);
+                    *failures |= conditions;
+                    if conditions == 0 {
+                        *failures |= self.violated(lane, &fast, &outputs);
+                    }
+                }
+            }
+        }
+        for &failures in &failures {
+            self.tally.count_design(failures);
+        }
+        if failures.contains(&0) {
+            self.stretch_ranges(row, &fast, &failures);
+        }
+    }
+
+    /// Constraints that a design violates in the current scenario.
+    fn violated(&self, lane: usize, fast: &FastBlock, outputs: &[f64; crate::models::OUTPUTS]) -> u64 {
+        let sources = self.plan.study.constraints.iter().zip(&self.plan.constraints).enumerate();
+        sources.fold(0, |set, (number, (constraint, &source))| {
+            let value = match source {
+                Source::LaneInput(input) => fast.own(input)[lane],
+                Source::LaneOutput(position) => self.engine.results[position][lane],
+                Source::RowInput(_) | Source::RowOutput(_) => row_value(self.plan, source, &self.engine.own, outputs),
+            };
+            let satisfied = value.is_finite() && constraint.holds(value);
+            set | u64::from(!satisfied) << (FIRST_CONSTRAINT + number)
+        })
+    }
+
+    /// Takes the worst values of the block's feasible designs into account.
+    fn stretch_ranges(&mut self, row: u64, fast: &FastBlock, failures: &[u64]) {
+        let ranges = &mut self.tally.ranges;
+        self.engine.row = None;
+        self.engine.enter_row(row);
+        self.engine.screen_block(fast, &mut |block| {
+            for lane in (0..block.count()).filter(|&lane| failures[lane] == 0) {
+                for (range, values) in ranges.iter_mut().zip(block.values) {
+                    let value = values[lane];
+                    let (low, high) = range.unwrap_or((value, value));
+                    *range = Some((low.min(value), high.max(value)));
+                }
+            }
+        });
+    }
+}

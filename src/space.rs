@@ -1,0 +1,198 @@
+//! The space of a study: designs and scenarios by index.
+//!
+//! A design is its index, in file order with the last axis fastest; so is a scenario (operation axes outside, uncertainty axes
+//! inside). A [`Product`] is a set of dimensions walked together; the sweep splits the space into products of its own and asks
+//! each for the index in the study's order.
+
+use crate::sample::Sampler;
+use crate::study::{Axis, Study};
+use std::sync::Arc;
+
+/// One independent direction of a space.
+#[derive(Debug)]
+pub enum Dimension {
+    /// An axis of the study.
+    Axis(Axis),
+    /// Sampled designs: all design axes at once.
+    Sampled(Sampler),
+}
+
+impl Dimension {
+    /// Number of levels, rows or samples.
+    pub fn count(&self) -> u64 {
+        match self {
+            Self::Axis(axis) => axis.count(),
+            Self::Sampled(sampler) => sampler.count(),
+        }
+    }
+
+    /// The inputs that it sets.
+    pub fn inputs(&self) -> &[usize] {
+        match self {
+            Self::Axis(axis) => axis.inputs(),
+            Self::Sampled(sampler) => sampler.inputs(),
+        }
+    }
+
+    /// The value of its input number `column` at `index`.
+    pub fn value(&self, column: usize, index: u64) -> f64 {
+        match self {
+            Self::Axis(axis) => axis.value(column, index),
+            Self::Sampled(sampler) => sampler.value(column, index),
+        }
+    }
+
+    /// Least and largest value of its input number `column`.
+    pub fn ends(&self, column: usize) -> (f64, f64) {
+        match self {
+            Self::Axis(axis) => axis.ends(column),
+            Self::Sampled(sampler) => sampler.ends(column),
+        }
+    }
+}
+
+/// A dimension with its place in a product and in the study's order.
+#[derive(Clone, Debug)]
+struct Place {
+    dimension: Arc<Dimension>,
+    count: u64,
+    /// Distance of two neighbours within this product.
+    stride: u64,
+    /// Distance of two neighbours in the study's index.
+    source_stride: u64,
+}
+
+impl Place {
+    fn digit(&self, index: u64) -> u64 {
+        index / self.stride % self.count
+    }
+}
+
+/// All combinations of some dimensions; the last dimension varies fastest.
+#[derive(Clone, Debug)]
+pub struct Product {
+    places: Vec<Place>,
+    count: u64,
+}
+
+impl Product {
+    /// The product of whole dimensions in the study's order; `None` if there are more combinations than a u64 numbers.
+    fn new(dimensions: impl DoubleEndedIterator<Item = Dimension>) -> Option<Self> {
+        let mut count = 1u64;
+        let mut places = Vec::new();
+        for dimension in dimensions.rev() {
+            let own = dimension.count();
+            places.push(Place { dimension: Arc::new(dimension), count: own, stride: count, source_stride: count });
+            count = count.checked_mul(own)?;
+        }
+        places.reverse();
+        Some(Self { places, count })
+    }
+
+    /// Splits off the dimensions that set any of `inputs` (a bit set): (those, the others), each in unchanged order.
+    pub fn split(&self, inputs: u64) -> (Self, Self) {
+        let sets = |place: &Place| place.dimension.inputs().iter().any(|&input| inputs >> input & 1 == 1);
+        let (with, without): (Vec<_>, Vec<_>) = self.places.iter().cloned().partition(sets);
+        (Self::of(with), Self::of(without))
+    }
+
+    /// Splits off the outer dimensions until at most `limit` combinations (or one dimension) remain: (those, the rest).
+    pub fn narrow(&self, limit: u64) -> (Self, Self) {
+        let mut inner = self.clone();
+        let mut outer = Vec::new();
+        while inner.count > limit && inner.places.len() > 1 {
+            outer.push(inner.places.remove(0));
+            inner = Self::of(inner.places);
+        }
+        (Self::of(outer), inner)
+    }
+
+    /// The product of this and further dimensions, which vary faster.
+    pub fn with(&self, inner: &Self) -> Self {
+        Self::of(self.places.iter().chain(&inner.places).cloned().collect())
+    }
+
+    fn of(mut places: Vec<Place>) -> Self {
+        let mut count = 1;
+        for place in places.iter_mut().rev() {
+            place.stride = count;
+            count *= place.count;
+        }
+        Self { places, count }
+    }
+
+    /// Number of combinations; 1 without any dimension.
+    pub fn count(&self) -> u64 {
+        self.count
+    }
+
+    /// The inputs that it sets, as a bit set.
+    pub fn inputs(&self) -> u64 {
+        self.places.iter().flat_map(|place| place.dimension.inputs()).fold(0, |set, &input| set | 1 << input)
+    }
+
+    /// The index of combination `index` in the study's order, less what the other dimensions contribute.
+    pub fn source_index(&self, index: u64) -> u64 {
+        self.places.iter().map(|place| place.digit(index) * place.source_stride).sum()
+    }
+
+    /// The combination that a study's index stands for in this product.
+    pub fn index_of(&self, source: u64) -> u64 {
+        self.places.iter().map(|place| source / place.source_stride % place.count * place.stride).sum()
+    }
+
+    /// Writes the values of combination `index` into the slots of their inputs.
+    pub fn set(&self, index: u64, inputs: &mut [f64]) {
+        for place in &self.places {
+            let digit = place.digit(index);
+            for (column, &input) in place.dimension.inputs().iter().enumerate() {
+                inputs[input] = place.dimension.value(column, digit);
+            }
+        }
+    }
+
+    /// Calls `each` with every input that is set and its least and largest value.
+    pub fn for_each_range(&self, mut each: impl FnMut(usize, (f64, f64))) {
+        for place in &self.places {
+            for (column, &input) in place.dimension.inputs().iter().enumerate() {
+                each(input, place.dimension.ends(column));
+            }
+        }
+    }
+
+    /// The position in the study's order that a design has along its dimension number `dimension`.
+    pub fn digit(&self, dimension: usize, index: u64) -> u64 {
+        self.places[dimension].digit(index)
+    }
+}
+
+/// The designs and scenarios of a study.
+#[derive(Clone, Debug)]
+pub struct Space {
+    /// All designs.
+    pub designs: Product,
+    /// All scenarios.
+    pub scenarios: Product,
+    fixed: Vec<f64>,
+}
+
+impl Space {
+    /// The space of a study, whose products were checked to be numberable when it was read.
+    pub fn new(study: &Study) -> Self {
+        let numbered = "the size of the space is checked when the study is read";
+        let designs = match study.sample {
+            Some(sample) => Product::new(std::iter::once(Dimension::Sampled(Sampler::new(sample, &study.design)))),
+            None => Product::new(study.design.iter().cloned().map(Dimension::Axis)),
+        };
+        let scenarios = Product::new(study.operation.iter().chain(&study.uncertainty).cloned().map(Dimension::Axis));
+        Self { designs: designs.expect(numbered), scenarios: scenarios.expect(numbered), fixed: study.fixed.clone() }
+    }
+
+    /// All inputs of one design in one scenario, in their units.
+    pub fn inputs(&self, design: u64, scenario: u64) -> Vec<f64> {
+        let mut inputs = self.fixed.clone();
+        self.designs.set(design, &mut inputs);
+        self.scenarios.set(scenario, &mut inputs);
+        inputs
+    }
+}

@@ -1,0 +1,153 @@
+//! The resolved study in words and names: `study.json`, the study's hash, and what changed between two studies.
+
+use super::{Axis, Best, Constraint, Goal, Levels, Quantity, Study};
+use crate::models::Model;
+use serde_json::{Map, Value, json};
+use sha2::{Digest, Sha256};
+
+impl Study {
+    /// Everything that the study asks for, by name and in units; arrays where the order matters.
+    pub fn describe(&self) -> Value {
+        let model = self.model;
+        let taken: Vec<usize> =
+            [&self.design, &self.operation, &self.uncertainty].into_iter().flatten().flat_map(Axis::inputs).copied().collect();
+        let fixed: Map<_, _> = (0..model.inputs.len())
+            .filter(|input| !taken.contains(input))
+            .map(|input| (model.inputs[input].name.to_owned(), value_of(model, input, self.fixed[input])))
+            .collect();
+        let axes = |axes: &[Axis]| Value::from(axes.iter().map(|axis| axis_of(model, axis)).collect::<Vec<_>>());
+        let axis_name = |axis: usize| model.inputs[self.design[axis].inputs()[0]].name;
+        let report = &self.report;
+        json!({
+            "model": model.name,
+            "title": self.title,
+            "design": axes(&self.design),
+            "sample": self.sample,
+            "operation": axes(&self.operation),
+            "uncertainty": axes(&self.uncertainty),
+            "fixed": fixed,
+            "constraints": self.constraints.iter().map(|it| constraint_of(model, it)).collect::<Vec<_>>(),
+            "objectives": self.objectives.iter().map(|it| {
+                json!({ "of": it.quantity.name(model), "goal": it.goal, "resolution": it.resolution })
+            }).collect::<Vec<_>>(),
+            "columns": report.columns.iter().map(|it| it.name(model)).collect::<Vec<_>>(),
+            "top": report.top.map(|top| json!({ "by": top.by.name(model), "goal": top.goal, "count": top.count })),
+            "histograms": report.histograms.iter().map(|it| {
+                json!({ "of": it.of.name(model), "from": it.range.map(|it| it.0), "to": it.range.map(|it| it.1), "bins": it.bins })
+            }).collect::<Vec<_>>(),
+            "maps": report.maps.iter().map(|map| {
+                let (value, best) = match map.value {
+                    Best::Value(quantity, Goal::Min) => (Some(quantity.name(model)), "min"),
+                    Best::Value(quantity, Goal::Max) => (Some(quantity.name(model)), "max"),
+                    Best::Share => (None, "share"),
+                };
+                json!({ "x": axis_name(map.x), "y": axis_name(map.y), "value": value, "best": best })
+            }).collect::<Vec<_>>(),
+            "front_budget": report.front_budget,
+        })
+    }
+
+    /// A hash of what the study asks for: the same for two files that differ in comments and layout only.
+    pub fn hash(&self) -> String {
+        let digest = Sha256::digest(self.describe().to_string());
+        digest.iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+}
+
+/// The parts in which two descriptions differ, as `name: was ..., is ...`.
+pub fn differences(was: &Value, is: &Value) -> Vec<String> {
+    let empty = Map::new();
+    let (was, is) = (was.as_object().unwrap_or(&empty), is.as_object().unwrap_or(&empty));
+    let mut changed = Vec::new();
+    let names: std::collections::BTreeSet<_> = was.keys().chain(is.keys()).collect();
+    for name in names {
+        let (was, is) = (&was.get(name).unwrap_or(&Value::Null), &is.get(name).unwrap_or(&Value::Null));
+        if was == is {
+            continue;
+        }
+        // Of a list only the entries that differ are worth reading.
+        match (was.as_array(), is.as_array()) {
+            (Some(was), Some(is)) if was.len() == is.len() => {
+                changed.extend(was.iter().zip(is).filter(|(was, is)| was != is).map(|(was, is)| format!("{name}: was {was}, is {is}")));
+            }
+            _ => changed.push(format!("{name}: was {was}, is {is}")),
+        }
+    }
+    changed
+}
+
+/// A value as a person writes it: a number, or the input's word.
+pub fn value_of(model: &Model, input: usize, value: f64) -> Value {
+    model.inputs[input].word_for(value).map_or_else(|| number(value), Value::from)
+}
+
+/// A number without a needless ".0".
+#[allow(clippy::cast_possible_truncation, reason = "whole numbers below 2^53 are exact")]
+pub fn number(value: f64) -> Value {
+    if value.fract() == 0.0 && value.abs() < 9e15 { Value::from(value as i64) } else { Value::from(value) }
+}
+
+fn axis_of(model: &Model, axis: &Axis) -> Value {
+    match axis {
+        Axis::Single { input, levels } => {
+            let name = model.inputs[*input].name;
+            let spacing = |log: bool| if log { "log" } else { "linear" };
+            match levels {
+                Levels::List(values) => {
+                    json!({ "input": name, "values": values.iter().map(|&it| value_of(model, *input, it)).collect::<Vec<_>>() })
+                }
+                Levels::Even { from, to, count, log } => {
+                    json!({ "input": name, "from": number(*from), "to": number(*to), "count": count, "spacing": spacing(*log) })
+                }
+                Levels::Step { from, step, count, log } => {
+                    json!({ "input": name, "from": number(*from), "step": number(*step), "count": count, "spacing": spacing(*log) })
+                }
+                Levels::Continuous { from, to, log } => {
+                    json!({ "input": name, "from": number(*from), "to": number(*to), "spacing": spacing(*log) })
+                }
+            }
+        }
+        Axis::Joint { inputs, rows } => {
+            let row = |row: &Vec<f64>| -> Value { inputs.iter().zip(row).map(|(&input, &value)| value_of(model, input, value)).collect() };
+            let names: Vec<_> = inputs.iter().map(|&input| model.inputs[input].name).collect();
+            json!({ "inputs": names, "rows": rows.iter().map(row).collect::<Vec<_>>() })
+        }
+    }
+}
+
+fn constraint_of(model: &Model, constraint: &Constraint) -> Value {
+    let mut value = json!({ "of": constraint.quantity.name(model) });
+    for (bound, inclusive, exclusive) in [(constraint.low, "min", "above"), (constraint.high, "max", "below")] {
+        if let Some((bound, excluded)) = bound {
+            value[if excluded { exclusive } else { inclusive }] = number(bound);
+        }
+    }
+    value
+}
+
+impl Constraint {
+    /// The bounds in words, such as `at least 0 and at most 30000`.
+    pub fn in_words(&self) -> String {
+        let low = self.low.map(|(bound, excluded)| format!("{} {bound}", if excluded { "above" } else { "at least" }));
+        let high = self.high.map(|(bound, excluded)| format!("{} {bound}", if excluded { "below" } else { "at most" }));
+        low.into_iter().chain(high).collect::<Vec<_>>().join(" and ")
+    }
+}
+
+impl Quantity {
+    /// Its unit's symbol.
+    pub fn unit(self, model: &Model) -> &'static str {
+        match self {
+            Self::Input(input) => model.inputs[input].unit.symbol,
+            Self::Output(output) => model.outputs[output].unit.symbol,
+        }
+    }
+
+    /// What it is, in a sentence.
+    pub fn doc(self, model: &Model) -> &'static str {
+        match self {
+            Self::Input(input) => model.inputs[input].doc,
+            Self::Output(output) => model.outputs[output].doc,
+        }
+    }
+}

@@ -1,0 +1,15 @@
+//! A study: one request, read from a file, checked as a whole and resolved to numbers.
+//!
+//! What comes out of [`Study::read`] can be swept: every name is a number of an input or output, every value is in the unit of
+//! its name, every range is expanded to a rule for its levels. The resolved study is also what a checkpoint keeps, so that
+//! shards can be merged without the file they came from.
+
+mod axis;
+mod describe;
+mod read;
+mod resolved;
+
+pub use axis::{Axis, Levels, Method, Sample};
+pub use describe::{differences, number, value_of};
+pub use read::{Problem, StudyErrors};
+pub use resolved::{Best, Constraint, Goal, HistogramSpec, MapSpec, Objective, Quantity, Report, Study, TopSpec};

@@ -1,0 +1,168 @@
+//! Axes of one input, fixed inputs, and who sets which input.
+
+use super::super::axis::{Axis, Levels};
+use super::Reader;
+use super::table::{Entry, Node, TOP_LEVEL_REMEDY, Table, is_top_level, shortened, suggestion};
+use super::value::{input_value, shown};
+use std::collections::HashSet;
+use toml::de::DeValue;
+
+/// The tables that give inputs values.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Role {
+    /// What the engineer chooses.
+    Design,
+    /// What the drive must survive.
+    Operation,
+    /// What nobody knows exactly.
+    Uncertainty,
+    /// What is settled.
+    Fixed,
+}
+
+impl Role {
+    /// Name of the table.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Design => "design",
+            Self::Operation => "operation",
+            Self::Uncertainty => "uncertainty",
+            Self::Fixed => "fixed",
+        }
+    }
+}
+
+/// A place in the file that gives an input values.
+pub(super) struct Claim {
+    /// Number of the input.
+    pub(super) input: usize,
+    /// The table.
+    pub(super) role: Role,
+    /// Byte in the study file.
+    pub(super) at: usize,
+    /// Is it an axis of this input alone?
+    pub(super) single: bool,
+    /// Is one of the values a word?
+    pub(super) word: bool,
+}
+
+impl Reader<'_> {
+    /// The axes of a table, in file order. Those with problems are left out.
+    pub(super) fn axes(&self, role: Role, table: &Table<'_>) -> Vec<Axis> {
+        let axis = |entry: &Entry<'_>| {
+            let joint = entry.key.starts_with("cases") && self.model.input(entry.key).is_none();
+            if joint { self.joint(role, entry) } else { self.single(role, entry) }
+        };
+        table.entries.iter().filter_map(axis).collect()
+    }
+
+    /// The value of every input: fixed or default.
+    pub(super) fn fixed(&self, table: Option<&Table<'_>>) -> Vec<f64> {
+        let mut values = self.model.defaults();
+        for entry in table.iter().flat_map(|table| &table.entries) {
+            let label = format!("fixed input \"{}\"", shortened(entry.key));
+            let Some(number) = self.input(entry.key, entry.key_at, &label) else { continue };
+            let input = &self.model.inputs[number];
+            let value = match entry.node.value {
+                DeValue::Array(_) | DeValue::Table(_) => Err(format!(
+                    "found {}, but a fixed input has one value; several belong into [design], [operation] or [uncertainty]",
+                    entry.node.found()
+                )),
+                _ => input_value(entry.node, input),
+            };
+            let value = value.map_err(|error| self.problems.add(entry.node.at, format!("{label}: {error}"))).ok();
+            let word = value.is_some_and(|value| input.word_for(value).is_some());
+            self.claims.borrow_mut().push(Claim { input: number, role: Role::Fixed, at: entry.key_at, single: false, word });
+            values[number] = value.unwrap_or(values[number]);
+        }
+        values
+    }
+
+    /// Number of the input of that name, with a report if there is none.
+    pub(super) fn input(&self, name: &str, at: usize, label: &str) -> Option<usize> {
+        let found = self.model.input(name);
+        if found.is_none() {
+            self.problems.add(at, format!("{label}: {}", self.no_input(name)));
+            self.misnamed.set(true);
+        }
+        found
+    }
+
+    /// Why there is no input of that name.
+    pub(super) fn no_input(&self, name: &str) -> String {
+        if self.model.output(name).is_some() {
+            return format!(
+                "{name} is an output; outputs can be constrained, made an objective or reported, only inputs can be given values"
+            );
+        }
+        let names: Vec<_> = self.model.inputs.iter().map(|input| input.name).collect();
+        let remedy = match suggestion(name, &names) {
+            _ if is_top_level(name) => TOP_LEVEL_REMEDY.to_owned(),
+            Some(close) => format!("did you mean \"{close}\"?"),
+            None => format!("its inputs are {}", names.join(", ")),
+        };
+        format!("{} has no input \"{}\"; {remedy}", self.model.name, shortened(name))
+    }
+
+    /// An axis of one input.
+    fn single(&self, role: Role, entry: &Entry<'_>) -> Option<Axis> {
+        let label = format!("axis \"{}\"", shortened(entry.key));
+        let number = self.input(entry.key, entry.key_at, &label)?;
+        let input = &self.model.inputs[number];
+        let levels = match entry.node.value {
+            DeValue::Array(_) => self.list(entry.node, number, &label),
+            DeValue::Table(_) => entry.node.table().and_then(|table| self.range(&table, input, &label, role)),
+            DeValue::Boolean(_) | DeValue::Datetime(_) => {
+                let found = entry.node.found();
+                let message = format!(
+                    "{label}: found {found}, wanted a value, a list of values, or a range such as {{ from = 1, to = 2, count = 11 }}"
+                );
+                self.problems.add(entry.node.at, message);
+                None
+            }
+            _ => self.input_value(entry.node, number, &label).map(|value| Levels::List(vec![value])),
+        };
+        let word = matches!(&levels, Some(Levels::List(values)) if values.iter().any(|&value| input.word_for(value).is_some()));
+        self.claims.borrow_mut().push(Claim { input: number, role, at: entry.key_at, single: true, word });
+        Some(Axis::Single { input: number, levels: levels? })
+    }
+
+    /// A value of an input, with a report if it is none.
+    pub(super) fn input_value(&self, node: Node<'_>, number: usize, label: &str) -> Option<f64> {
+        let value = input_value(node, &self.model.inputs[number]);
+        value.map_err(|error| self.problems.add(node.at, format!("{label}: {error}"))).ok()
+    }
+
+    /// Levels as listed.
+    fn list(&self, node: Node<'_>, number: usize, label: &str) -> Option<Levels> {
+        let nodes = node.list()?;
+        if nodes.len() == 0 {
+            self.problems.add(node.at, format!("{label}: the list is empty; give at least one value"));
+        }
+        let (mut values, mut known) = (Vec::new(), HashSet::new());
+        for element in nodes.clone() {
+            let Some(value) = self.input_value(element, number, label) else { continue };
+            if !known.insert(value.to_bits()) {
+                let input = &self.model.inputs[number];
+                let value = input.word_for(value).map_or_else(|| shown(value), |word| format!("\"{word}\""));
+                self.problems.add(element.at, format!("{label}: {value} is listed twice; drop one"));
+            }
+            values.push(value);
+        }
+        (values.len() == nodes.len() && !values.is_empty()).then_some(Levels::List(values))
+    }
+
+    /// Reports inputs that are given values in more than one place, at every place but the first.
+    pub(super) fn check_claims(&self) {
+        let mut claims = self.claims.borrow_mut();
+        claims.sort_by_key(|claim| claim.at);
+        for (index, claim) in claims.iter().enumerate() {
+            if let Some(first) = claims[..index].iter().find(|first| first.input == claim.input) {
+                let name = self.model.inputs[claim.input].name;
+                let line = self.problems.line_number(first.at);
+                let message = format!("\"{name}\" is already set in [{}], line {line}; keep one of the two", first.role.name());
+                self.problems.add(claim.at, message);
+            }
+        }
+    }
+}

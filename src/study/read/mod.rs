@@ -1,0 +1,310 @@
+//! Reads a study file: one walk over its spanned tree that reports everything wrong at once, with line and column.
+//!
+//! | file            | reads                                              |
+//! |-----------------|----------------------------------------------------|
+//! | `syntax.rs`     | TOML, with the statements it does not understand   |
+//! | `table.rs`      | tables, positions, problems                        |
+//! | `value.rs`      | numbers, units, words                              |
+//! | `axes.rs`       | `[design]`, `[operation]`, `[uncertainty]`, `[fixed]` |
+//! | `range.rs`      | `{ from, to, ... }`                                |
+//! | `cases.rs`      | joint axes, from rows or a CSV file                |
+//! | `quantities.rs` | `[constraints]`, `[objectives]`                    |
+//! | `report.rs`     | `[report]`                                         |
+
+mod axes;
+mod cases;
+mod quantities;
+mod range;
+mod report;
+mod syntax;
+mod table;
+mod value;
+
+use super::axis::{Axis, Method, Sample};
+use super::resolved::Study;
+use crate::error::{Error, Result};
+use crate::models::{MODELS, Model, find};
+use axes::{Claim, Role};
+use std::cell::{Cell, RefCell};
+use std::path::Path;
+use table::{Entry, Lines, Node, Problems, Table, list, shortened, suggestion};
+use value::{shown, whole};
+
+/// Most levels of one axis given by a rule: up to here an index is an exact f64.
+const MOST_LEVELS: u64 = 1 << 53;
+/// Most scenarios of a study.
+const MOST_SCENARIOS: u64 = 1 << 32;
+/// What a study file may hold.
+const TOP_LEVEL: &[&str] =
+    &["model", "title", "design", "operation", "uncertainty", "fixed", "constraints", "objectives", "report", "sample"];
+
+/// One thing wrong with a study.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Problem {
+    /// The file: the study's, or that of a CSV file it names.
+    pub file: String,
+    /// Line, from 1.
+    pub line: usize,
+    /// Column in characters, from 1; in a CSV file the field.
+    pub column: usize,
+    /// What is wrong and what would be right.
+    pub message: String,
+}
+
+impl std::fmt::Display for Problem {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}:{}:{}: {}", self.file, self.line, self.column, self.message)
+    }
+}
+
+/// Everything wrong with a study, in file order. Shown as one line per problem.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StudyErrors {
+    /// The problems, at least one.
+    pub problems: Vec<Problem>,
+}
+
+impl std::fmt::Display for StudyErrors {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        for (index, problem) in self.problems.iter().enumerate() {
+            if index > 0 {
+                writeln!(f)?;
+            }
+            write!(f, "{problem}")?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for StudyErrors {}
+
+impl Study {
+    /// Reads and checks a study file; returns the study and its text.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if the file cannot be read, [`Error::Study`] with everything that is wrong with what it says.
+    pub fn read(path: &Path) -> Result<(Self, String)> {
+        let bytes = std::fs::read(path).map_err(Error::io(path))?;
+        let file = path.display().to_string();
+        let text = String::from_utf8(bytes).map_err(|error| {
+            let good = error.utf8_error().valid_up_to();
+            let (line, column) = Lines::new(&String::from_utf8_lossy(&error.as_bytes()[..good])).position(good);
+            let message = "this is not UTF-8 text; save the file in the encoding UTF-8".to_owned();
+            StudyErrors { problems: vec![Problem { file: file.clone(), line, column, message }] }
+        })?;
+        let study = Self::parse(&text, &file, path.parent().unwrap_or(Path::new("")))?;
+        Ok((study, text))
+    }
+
+    /// Checks a study given as text. `file` is its name in messages, `folder` what paths of CSV files are relative to.
+    ///
+    /// # Errors
+    /// Everything that is wrong, in file order.
+    pub fn parse(text: &str, file: &str, folder: &Path) -> std::result::Result<Self, StudyErrors> {
+        let problems = Problems::new(text, file);
+        let study = syntax::understandable(text, &problems).and_then(|text| {
+            // The syntax has been checked on this very text, so that there is nothing left to recover from.
+            let (tree, _) = toml::de::DeTable::parse_recoverable(&text);
+            read_study(&Table::new(tree.get_ref(), 0), &problems, folder)
+        });
+        match (study, problems.into_sorted()) {
+            (Some(study), problems) if problems.is_empty() => Ok(study),
+            (_, mut problems) => {
+                if problems.is_empty() {
+                    // Not reachable as long as every `None` comes with a problem; better said than panicked about.
+                    let message = "the study cannot be understood".to_owned();
+                    problems.push(Problem { file: file.to_owned(), line: 1, column: 1, message });
+                }
+                Err(StudyErrors { problems })
+            }
+        }
+    }
+}
+
+/// What every part of the reader needs.
+struct Reader<'a> {
+    model: &'static Model,
+    problems: &'a Problems<'a>,
+    folder: &'a Path,
+    /// Are the designs sampled?
+    sampled: bool,
+    /// Every place that gives an input values.
+    claims: RefCell<Vec<Claim>>,
+    /// Is an input given values under a wrong name? Then nobody knows which inputs have none.
+    misnamed: Cell<bool>,
+}
+
+/// Walks the whole file. `None` if a problem was reported that leaves no study.
+fn read_study(top: &Table<'_>, problems: &Problems<'_>, folder: &Path) -> Option<Study> {
+    let model = read_model(top, problems);
+    check_top_level(top, model, problems);
+    let title = top.get("title").and_then(|entry| text(entry.node, problems, "title"));
+    let sample_table = section(top, "sample", problems);
+    let sample = sample_table.as_ref().and_then(|table| read_sample(table, problems));
+    let model = model?;
+
+    let reader =
+        Reader { model, problems, folder, sampled: top.get("sample").is_some(), claims: RefCell::default(), misnamed: Cell::default() };
+    let axes = |role: Role| section(top, role.name(), problems).map_or_else(Vec::new, |table| reader.axes(role, &table));
+    let (design, operation, uncertainty) = (axes(Role::Design), axes(Role::Operation), axes(Role::Uncertainty));
+    let fixed = reader.fixed(section(top, "fixed", problems).as_ref());
+    reader.check_claims();
+    reader.check_sizes(top, &design, &[&operation, &uncertainty]);
+
+    let constraints = section(top, "constraints", problems).map_or_else(Vec::new, |table| reader.constraints(&table, &fixed));
+    let objectives_table = section(top, "objectives", problems);
+    let objectives = objectives_table.as_ref().map_or_else(Vec::new, |table| reader.objectives(table, &fixed));
+    let report_table = section(top, "report", problems);
+    let report = reader.report(report_table.as_ref(), objectives_table.as_ref(), &objectives, &design, &fixed);
+    reader.check_purpose(top, objectives_table.as_ref(), report_table.as_ref());
+    let title = title.unwrap_or_else(|| model.summary.to_owned());
+    Some(Study { model, title, design, sample, operation, uncertainty, fixed, constraints, objectives, report })
+}
+
+/// The model that the file names.
+fn read_model(top: &Table<'_>, problems: &Problems<'_>) -> Option<&'static Model> {
+    let names = || list(MODELS.iter().map(|model| model.name));
+    let Some(entry) = top.get("model") else {
+        problems.add_if_complete(0, format!("no model is named; write model = \"...\", models are: {}", names()));
+        return None;
+    };
+    let name = text(entry.node, problems, "model")?;
+    let model = find(&name);
+    if model.is_none() {
+        problems.add(entry.node.at, format!("unknown model \"{}\"; models are: {}", shortened(&name), names()));
+    }
+    model
+}
+
+/// Reports keys at the top level that mean nothing.
+fn check_top_level(top: &Table<'_>, model: Option<&Model>, problems: &Problems<'_>) {
+    for entry in top.unknown(TOP_LEVEL) {
+        let key = entry.key;
+        // The likely mistake: a value of the model written without a table.
+        let misplaced = model.and_then(|model| {
+            if model.input(key).is_some() {
+                Some("it is an input, put it into [design], [operation], [uncertainty] or [fixed]")
+            } else if model.output(key).is_some() {
+                Some("it is an output, put it into [constraints] or [objectives]")
+            } else {
+                None
+            }
+        });
+        let remedy = match (misplaced, suggestion(key, TOP_LEVEL)) {
+            (Some(remedy), _) => remedy.to_owned(),
+            (None, Some(close)) => format!("did you mean \"{close}\"?"),
+            (None, None) => format!("a study has {}", list(TOP_LEVEL)),
+        };
+        problems.add(entry.key_at, format!("unknown key \"{}\"; {remedy}", shortened(key)));
+        if entry.node.table().is_some() {
+            problems.mark_incomplete();
+        }
+    }
+}
+
+/// The table of that name at the top level, if the file has one.
+fn section<'a>(top: &Table<'a>, name: &str, problems: &Problems<'_>) -> Option<Table<'a>> {
+    let entry = top.get(name)?;
+    let table = entry.node.table();
+    if table.is_none() {
+        problems
+            .add(entry.node.at, format!("\"{name}\" must be a table, found {}; write [{name}] on a line of its own", entry.node.found()));
+    }
+    table
+}
+
+/// A text, with a report if it is something else.
+fn text(node: Node<'_>, problems: &Problems<'_>, what: &str) -> Option<String> {
+    let text = node.value.as_str().map(str::to_owned);
+    if text.is_none() {
+        problems.add(node.at, format!("{what}: found {}, wanted a text in quotes", node.found()));
+    }
+    text
+}
+
+/// A text that is one of a few words.
+fn choice<T: Copy>(entry: &Entry<'_>, problems: &Problems<'_>, what: &str, choices: &[(&str, T)]) -> Option<T> {
+    let name = text(entry.node, problems, what)?;
+    let found = choices.iter().find(|(word, _)| *word == name).map(|&(_, value)| value);
+    if found.is_none() {
+        let words: Vec<_> = choices.iter().map(|(word, _)| format!("\"{word}\"")).collect();
+        problems.add(entry.node.at, format!("{what}: unknown {} \"{}\"; write {}", entry.key, shortened(&name), words.join(" or ")));
+    }
+    found
+}
+
+/// The `[sample]` table.
+fn read_sample(table: &Table<'_>, problems: &Problems<'_>) -> Option<Sample> {
+    let methods = [("sobol", Method::Sobol), ("latin-hypercube", Method::LatinHypercube), ("random", Method::Random)];
+    table.check_keys(problems, "[sample]", &["method", "count", "seed"]);
+    let needed = |key: &str, example: &str| {
+        let entry = table.get(key);
+        if entry.is_none() {
+            problems.add_if_complete(table.at, format!("[sample]: \"{key}\" is missing; write {key} = {example}"));
+        }
+        entry
+    };
+    let method = needed("method", "\"sobol\"").and_then(|entry| choice(entry, problems, "[sample]", &methods));
+    let count = needed("count", "100000").and_then(|entry| whole(entry, problems, "[sample]", 1, MOST_LEVELS));
+    let seed = table.get("seed").map_or(Some(0), |entry| whole(entry, problems, "[sample]", 0, u64::MAX));
+    Some(Sample { method: method?, count: count?, seed: seed? })
+}
+
+impl Reader<'_> {
+    /// Can every design and every scenario have a number? Axes with problems are left out and can only make it better.
+    fn check_sizes(&self, top: &Table<'_>, design: &[Axis], scenario: &[&Vec<Axis>]) {
+        let at = |names: &[&str]| names.iter().find_map(|name| top.get(name)).map_or(0, |entry| entry.node.at);
+        let named = self.claims.borrow().iter().any(|claim| claim.role == Role::Design);
+        let problems = self.problems;
+        if design.is_empty() && !named && top.get("design").is_none_or(|entry| entry.node.table().is_some_and(|t| t.entries.is_empty())) {
+            let example = self.model.inputs.first().map_or("", |input| input.name);
+            problems.add_if_complete(
+                at(&["design"]),
+                format!("there is nothing to choose; name at least one input in [design], such as {example} = [...]"),
+            );
+        }
+        if !self.sampled && product(design.iter(), u64::MAX).is_none() {
+            let (size, most) = (size(design.iter()), u64::MAX as f64);
+            problems.add(
+                at(&["design"]),
+                format!("the space has {size:.1e} designs, at most {most:.1e} can be numbered; drop an axis or use fewer levels"),
+            );
+        }
+        let axes = || scenario.iter().flat_map(|axes| axes.iter());
+        if product(axes(), MOST_SCENARIOS).is_none() {
+            let made = format!("[operation] and [uncertainty] make {} scenarios", shown(size(axes())));
+            problems.add(
+                at(&["operation", "uncertainty"]),
+                format!("{made}, at most {MOST_SCENARIOS} can be numbered; drop an axis or use fewer levels"),
+            );
+        }
+    }
+
+    /// A study must ask for something.
+    fn check_purpose(&self, top: &Table<'_>, objectives: Option<&Table<'_>>, report: Option<&Table<'_>>) {
+        let asks = |key: &&str| report.is_some_and(|table| table.get(key).is_some());
+        let broken = top.get("objectives").is_some() && objectives.is_none() || top.get("report").is_some() && report.is_none();
+        let empty = objectives.is_none_or(|table| table.entries.is_empty());
+        if empty && !broken && !["top", "histograms", "maps"].iter().any(asks) {
+            let example = self.some_output();
+            self.problems.add_if_complete(
+                objectives.map_or(0, |table| table.at),
+                format!(
+                    "the study asks for nothing; name an objective in [objectives], such as {example} = \"min\", \
+                     or top, histograms or maps in [report]"
+                ),
+            );
+        }
+    }
+}
+
+/// Number of combinations of the axes, if it is at most `limit`.
+fn product<'a>(axes: impl Iterator<Item = &'a Axis>, limit: u64) -> Option<u64> {
+    axes.map(Axis::count).try_fold(1_u64, u64::checked_mul).filter(|&count| count <= limit)
+}
+
+/// The same as a rough number, however large.
+#[allow(clippy::cast_precision_loss, reason = "for a message")]
+fn size<'a>(axes: impl Iterator<Item = &'a Axis>) -> f64 {
+    axes.map(|axis| axis.count() as f64).product()
+}

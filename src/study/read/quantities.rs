@@ -1,0 +1,184 @@
+//! Inputs and outputs that a study is about: constraints and objectives.
+
+use super::super::resolved::{Constraint, Goal, Objective, Quantity};
+use super::axes::Role;
+use super::table::{Entry, Table, shortened, suggestion};
+use super::value::{measured, shown_in};
+use super::{Reader, choice};
+use crate::units::Unit;
+use toml::de::DeValue;
+
+/// Most objectives of a study.
+const MOST_OBJECTIVES: usize = 6;
+/// The two directions as they are written.
+pub(super) const GOALS: &[(&str, Goal)] = &[("min", Goal::Min), ("max", Goal::Max)];
+
+impl Reader<'_> {
+    /// The input or output of that name.
+    pub(super) fn find_quantity(&self, name: &str) -> Option<Quantity> {
+        self.model.output(name).map(Quantity::Output).or_else(|| self.model.input(name).map(Quantity::Input))
+    }
+
+    /// The input or output of that name, with a report if there is none.
+    pub(super) fn quantity(&self, name: &str, at: usize, label: &str) -> Option<Quantity> {
+        let found = self.find_quantity(name);
+        if found.is_none() {
+            let names: Vec<_> =
+                self.model.outputs.iter().map(|output| output.name).chain(self.model.inputs.iter().map(|input| input.name)).collect();
+            let remedy = match suggestion(name, &names) {
+                Some(close) => format!("did you mean \"{close}\"?"),
+                None => format!("beltspace models {} lists them", self.model.name),
+            };
+            self.problems.add(at, format!("{label}: {} has no input or output \"{}\"; {remedy}", self.model.name, shortened(name)));
+        }
+        found
+    }
+
+    /// The input or output of that name, if all its values are numbers; reports otherwise.
+    pub(super) fn numeric(&self, name: &str, at: usize, label: &str, fixed: &[f64]) -> Option<Quantity> {
+        let quantity = self.quantity(name, at, label)?;
+        let Quantity::Input(number) = quantity else { return Some(quantity) };
+        let input = &self.model.inputs[number];
+        let claims = self.claims.borrow();
+        let mut claimed = claims.iter().filter(|claim| claim.input == number).peekable();
+        let default = claimed.peek().is_none();
+        let Some(word) = input.word.map(|(word, _)| word) else { return Some(quantity) };
+        if default && input.word_for(fixed[number]).is_some() {
+            if self.misnamed.get() {
+                return None;
+            }
+            let message =
+                format!("{label}: \"{name}\" has its default \"{word}\", which is no number; give it numbers as an axis or in [fixed]");
+            self.problems.add_if_complete(at, message);
+            return None;
+        }
+        if let Some(claim) = claimed.find(|claim| claim.word) {
+            let place = format!("[{}], line {}", claim.role.name(), self.problems.line_number(claim.at));
+            self.problems.add(at, format!("{label}: \"{name}\" takes \"{word}\" in {place}, which is no number; give it numbers only"));
+            return None;
+        }
+        Some(quantity)
+    }
+
+    /// The unit of a quantity.
+    pub(super) fn unit(&self, quantity: Quantity) -> Unit {
+        match quantity {
+            Quantity::Input(number) => self.model.inputs[number].unit,
+            Quantity::Output(number) => self.model.outputs[number].unit,
+        }
+    }
+
+    /// A value in a quantity's unit, with a report if it is none.
+    pub(super) fn quantity_value(&self, entry: &Entry<'_>, quantity: Quantity, label: &str) -> Option<f64> {
+        let value = measured(entry.node, self.unit(quantity));
+        value.map_err(|error| self.problems.add(entry.node.at, format!("{label}: {error}"))).ok()
+    }
+
+    /// Is the input a design axis?
+    pub(super) fn is_chosen(&self, number: usize) -> bool {
+        self.claims.borrow().iter().any(|claim| claim.input == number && claim.role == Role::Design)
+    }
+
+    /// The `[constraints]` table.
+    pub(super) fn constraints(&self, table: &Table<'_>, fixed: &[f64]) -> Vec<Constraint> {
+        table.entries.iter().filter_map(|entry| self.constraint(entry, fixed)).collect()
+    }
+
+    fn constraint(&self, entry: &Entry<'_>, fixed: &[f64]) -> Option<Constraint> {
+        let problems = self.problems;
+        let label = format!("constraint \"{}\"", shortened(entry.key));
+        let quantity = self.numeric(entry.key, entry.key_at, &label, fixed)?;
+        let Some(table) = entry.node.table() else {
+            let found = entry.node.found();
+            problems.add(entry.node.at, format!("{label}: found {found}, wanted bounds such as {{ min = 0 }}"));
+            return None;
+        };
+        let known = table.check_keys(problems, &label, &["min", "max", "above", "below"]);
+        if table.entries.is_empty() {
+            problems.add(table.at, format!("{label}: there are no bounds; give min, max, above or below"));
+        }
+        let bound = |inclusive: &str, strict: &str| -> Option<Option<(f64, bool, usize)>> {
+            let (entry, excluded) = match (table.get(inclusive), table.get(strict)) {
+                (Some(first), Some(second)) => {
+                    let at = first.key_at.max(second.key_at);
+                    problems.add(at, format!("{label}: {inclusive} and {strict} are both given; keep one of the two"));
+                    return None;
+                }
+                (Some(entry), None) => (entry, false),
+                (None, Some(entry)) => (entry, true),
+                (None, None) => return Some(None),
+            };
+            self.quantity_value(entry, quantity, &label).map(|value| Some((value, excluded, entry.key_at)))
+        };
+        let (low, high) = (bound("min", "above"), bound("max", "below"));
+        let (low, high) = (low?, high?);
+        if let (Some((least, no_least, at_least)), Some((most, no_most, at_most))) = (low, high)
+            && (least > most || (least == most && (no_least || no_most)))
+        {
+            let unit = self.unit(quantity);
+            let low = format!("{} {}", if no_least { "above" } else { "at least" }, shown_in(least, unit));
+            let high = format!("{} {}", if no_most { "below" } else { "at most" }, shown_in(most, unit));
+            problems.add(at_least.max(at_most), format!("{label}: no value is {low} and {high}; swap or widen the bounds"));
+            return None;
+        }
+        let side = |bound: Option<(f64, bool, usize)>| bound.map(|(value, excluded, _)| (value, excluded));
+        (known && !table.entries.is_empty()).then_some(Constraint { quantity, low: side(low), high: side(high) })
+    }
+
+    /// The `[objectives]` table.
+    pub(super) fn objectives(&self, table: &Table<'_>, fixed: &[f64]) -> Vec<Objective> {
+        if let Some(extra) = table.entries.get(MOST_OBJECTIVES) {
+            let number = table.entries.len();
+            self.problems.add(
+                extra.key_at,
+                format!(
+                    "the study has {number} objectives, at most {MOST_OBJECTIVES} can be weighed; \
+                     make the others constraints or columns of [report]"
+                ),
+            );
+        }
+        table.entries.iter().filter_map(|entry| self.objective(entry, fixed)).collect()
+    }
+
+    fn objective(&self, entry: &Entry<'_>, fixed: &[f64]) -> Option<Objective> {
+        let problems = self.problems;
+        let label = format!("objective \"{}\"", shortened(entry.key));
+        let quantity = self.numeric(entry.key, entry.key_at, &label, fixed);
+        let goal_of = |text: &Entry<'_>| choice(&Entry { key: "goal", key_at: text.key_at, node: text.node }, problems, &label, GOALS);
+        let Some(table) = entry.node.table() else {
+            if !matches!(entry.node.value, DeValue::String(_)) {
+                let found = entry.node.found();
+                problems.add(
+                    entry.node.at,
+                    format!("{label}: found {found}, wanted \"min\", \"max\" or {{ goal = \"min\", resolution = 10 }}"),
+                );
+                return None;
+            }
+            return Some(Objective { goal: goal_of(entry)?, quantity: quantity?, resolution: None });
+        };
+        let known = table.check_keys(problems, &label, &["goal", "resolution"]);
+        let goal = match table.get("goal") {
+            Some(entry) => goal_of(entry),
+            None => {
+                if known {
+                    problems.add(table.at, format!("{label}: there is no goal; write goal = \"min\" or goal = \"max\""));
+                }
+                None
+            }
+        };
+        let quantity = quantity?;
+        let resolution = match table.get("resolution") {
+            None => None,
+            Some(entry) => {
+                let value = self.quantity_value(entry, quantity, &label)?;
+                if value <= 0.0 {
+                    let value = shown_in(value, self.unit(quantity));
+                    problems.add(entry.node.at, format!("{label}: the resolution {value} is no width; it must be greater than 0"));
+                    return None;
+                }
+                Some(value)
+            }
+        };
+        Some(Objective { quantity, goal: goal.filter(|_| known)?, resolution })
+    }
+}

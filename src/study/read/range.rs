@@ -1,0 +1,199 @@
+//! Axes given by a rule: `{ from, to, count }`, `{ from, to, step }`, linear or logarithmic.
+
+use super::super::axis::Levels;
+use super::axes::Role;
+use super::table::Table;
+use super::value::{input_number, measured, shown, shown_in, whole};
+use super::{MOST_LEVELS, Reader, choice};
+use crate::models::Input;
+use crate::units::NONE;
+
+/// Neighbouring levels closer than this, relative to the larger end, would round to the same number.
+const LEAST_STEP: f64 = 4.0 * f64::EPSILON;
+/// What a range may end beyond `to`, relatively: 0.1 + 2 * 0.1 is a little more than 0.3.
+const SLACK: f64 = 1e-12;
+
+/// The two ends, of which at least the product with any number of levels is finite.
+#[derive(Clone, Copy)]
+struct Ends {
+    from: f64,
+    to: f64,
+    log: bool,
+}
+
+impl Ends {
+    /// Distance from end to end: a difference, or decades.
+    fn width(self) -> f64 {
+        if self.log { libm::log10(self.to) - libm::log10(self.from) } else { self.to - self.from }
+    }
+
+    /// Least distance at which levels differ, in the same measure.
+    fn least_step(self) -> f64 {
+        if self.log { LEAST_STEP } else { LEAST_STEP * self.from.abs().max(self.to.abs()) }
+    }
+}
+
+impl Reader<'_> {
+    /// The levels of a range. Reports what is wrong with it.
+    pub(super) fn range(&self, table: &Table<'_>, input: &Input, label: &str, role: Role) -> Option<Levels> {
+        let problems = self.problems;
+        let known = table.check_keys(problems, label, &["from", "to", "count", "step", "spacing"]);
+        let end = |key: &str| match table.get(key) {
+            Some(entry) => {
+                let value = input_number(entry.node, input);
+                value.map_err(|error| problems.add(entry.node.at, format!("{label}: {error}"))).ok()
+            }
+            None => {
+                // An unknown key is likely this one, and has been reported.
+                if known {
+                    problems.add(
+                        table.at,
+                        format!("{label}: a range needs from and to, \"{key}\" is missing; write {{ from = ..., to = ... }}"),
+                    );
+                }
+                None
+            }
+        };
+        let (from, to) = (end("from"), end("to"));
+        let spacings = [("linear", false), ("log", true)];
+        let log = table.get("spacing").map_or(Some(false), |entry| choice(entry, problems, label, &spacings));
+        let count = table.get("count").map(|entry| whole(entry, problems, label, 1, MOST_LEVELS));
+        let step = table.get("step").map(|entry| {
+            let unit = if log == Some(true) { NONE } else { input.unit };
+            let step = measured(entry.node, unit).and_then(|step| self.checked_step(step, input));
+            step.map_err(|error| problems.add(entry.node.at, format!("{label}: {error}"))).ok()
+        });
+        if let (Some(_), Some(entry)) = (count, table.get("step")) {
+            problems.add(entry.key_at, format!("{label}: count and step are both given; keep one of the two"));
+            return None;
+        }
+        if !known {
+            return None;
+        }
+        let ends = Ends { from: from?, to: to?, log: log? };
+        let levels = self.check_ends(ends, input).and_then(|()| match (count, step) {
+            (Some(count), _) => count.map(|count| even(ends, count, input)).transpose(),
+            (_, Some(step)) => step.map(|step| stepped(ends, step, input)).transpose(),
+            (None, None) if input.integer => stepped(ends, 1.0, input).map(Some),
+            (None, None) => self.unruled(ends, role).map(Some),
+        });
+        let levels = levels.map_err(|error| problems.add(table.at, format!("{label}: {error}"))).ok().flatten()?;
+        // The ends are in range, but a step may go beyond by its rounding.
+        let (low, high) = levels.ends();
+        if let Some(beyond) = [low, high].into_iter().find(|&level| !input.accepts(level)) {
+            let range = input.valid.in_words();
+            problems.add(table.at, format!("{label}: the level {} is out of range; it must be {range}; use count", shown(beyond)));
+            return None;
+        }
+        Some(levels)
+    }
+
+    /// A step must lead somewhere, and an integer input to whole numbers.
+    fn checked_step(&self, step: f64, input: &Input) -> Result<f64, String> {
+        if step <= 0.0 {
+            let remedy = "step must be greater than 0; to run downwards use count";
+            return Err(format!("the step {} leads nowhere; {remedy}", shown(step)));
+        }
+        if input.integer && step.fract() != 0.0 {
+            return Err(format!(
+                "the step {} is not a whole number, but {} takes whole numbers only; use step = 1",
+                shown(step),
+                input.name
+            ));
+        }
+        Ok(step)
+    }
+
+    /// What holds for every range.
+    fn check_ends(&self, ends: Ends, input: &Input) -> Result<(), String> {
+        let Ends { from, to, log } = ends;
+        if log && input.integer {
+            return Err("logarithmic levels of a whole number are not whole; list them, such as [1, 10, 100]".to_owned());
+        }
+        if log && (from <= 0.0 || to <= 0.0) {
+            let end = if from <= 0.0 { from } else { to };
+            return Err(format!("logarithmic spacing cannot reach {}; from and to must be greater than 0", shown(end)));
+        }
+        // Levels are computed as i * width / n: that must not overflow.
+        let most = if log { 300.0 } else { 1e290 };
+        if ends.width().abs() > most {
+            return Err(format!("from {} to {} is too wide to compute with; narrow the range", shown(from), shown(to)));
+        }
+        if input.integer && from.abs().max(to.abs()) > MOST_LEVELS as f64 {
+            return Err(format!("whole numbers beyond {} are not exact; narrow the range", shown(MOST_LEVELS as f64)));
+        }
+        Ok(())
+    }
+
+    /// A range with neither count nor step: for sampled designs only.
+    fn unruled(&self, Ends { from, to, log }: Ends, role: Role) -> Result<Levels, String> {
+        let example = format!("{{ from = {}, to = {}, count = 11 }}", shown(from), shown(to));
+        match (role, self.sampled) {
+            (Role::Design, true) if from == to => Err(format!("from and to are both {}; write the value alone", shown(from))),
+            (Role::Design, true) => Ok(Levels::Continuous { from, to, log }),
+            (Role::Design, false) => {
+                Err(format!("a range needs count or step, such as {example}; or sample the designs: add [sample] with method and count"))
+            }
+            _ => Err(format!("a range needs count or step, such as {example}; only [design] can be sampled")),
+        }
+    }
+}
+
+/// `count` levels from end to end.
+#[allow(clippy::cast_precision_loss, reason = "at most 2^53 levels")]
+fn even(ends: Ends, count: u64, input: &Input) -> Result<Levels, String> {
+    let Ends { from, to, log } = ends;
+    let gaps = (count - 1) as f64;
+    match (count, from == to) {
+        (1, true) => return Ok(Levels::Even { from, to, count, log }),
+        (1, false) => {
+            let (low, high) = (shown(from), shown(to));
+            return Err(format!("one level cannot be both {low} and {high}; use count = 2 or more, or the value {low} alone"));
+        }
+        (_, true) => {
+            return Err(format!("from and to are both {}, so all {count} levels would be equal; write the value alone", shown(from)));
+        }
+        _ => {}
+    }
+    if ends.width().abs() / gaps < ends.least_step() {
+        return Err(format!("{count} levels from {} to {} are too close to tell apart; use fewer", shown(from), shown(to)));
+    }
+    if input.integer && (to - from) % gaps != 0.0 {
+        let (low, high) = (shown(from), shown(to));
+        return Err(format!("{count} even levels from {low} to {high} are not all whole numbers; use another count, or step = 1"));
+    }
+    if input.integer && gaps * (to - from).abs() > MOST_LEVELS as f64 {
+        return Err(format!("{count} levels from {} to {} are too many to stay exact; use step", shown(from), shown(to)));
+    }
+    Ok(Levels::Even { from, to, count, log })
+}
+
+/// Levels from `from` by `step` while they do not pass `to`.
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::cast_precision_loss,
+    reason = "checked to be whole and below 2^53"
+)]
+fn stepped(ends: Ends, step: f64, input: &Input) -> Result<Levels, String> {
+    let Ends { from, to, log } = ends;
+    let size = if log { format!("{} decades", shown(step)) } else { shown_in(step, input.unit) };
+    if from > to {
+        return Err(format!("from {} to {} runs downwards, which steps cannot; swap the ends or use count", shown(from), shown(to)));
+    }
+    // A guess by division, which may be off by one: the levels themselves decide.
+    let limit = to + SLACK * to.abs();
+    let guess = (Ends { to: limit, ..ends }.width() / step).floor();
+    if guess >= MOST_LEVELS as f64 {
+        return Err(format!("the step {size} makes {:.1e} levels, at most {MOST_LEVELS} can be numbered; use a larger step", guess + 1.0));
+    }
+    if from < to && step < ends.least_step() {
+        return Err(format!("the step {size} is too small to tell levels up to {} apart; use a larger step", shown(to)));
+    }
+    let rule = |count| Levels::Step { from, step, count, log };
+    let mut count = guess as u64 + 3;
+    while count > 1 && rule(count).value(count - 1) > limit {
+        count -= 1;
+    }
+    Ok(rule(count))
+}

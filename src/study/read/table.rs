@@ -1,0 +1,238 @@
+//! Tables of the file in file order, positions in characters, and the list of problems.
+
+use super::Problem;
+use std::cell::{Cell, RefCell};
+use std::path::Path;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Where the lines of a text start.
+pub(super) struct Lines<'t> {
+    text: &'t str,
+    starts: Vec<usize>,
+}
+
+impl<'t> Lines<'t> {
+    /// Finds the lines.
+    pub(super) fn new(text: &'t str) -> Self {
+        // A byte order mark is invisible in an editor and takes no column.
+        let first = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
+        let starts = std::iter::once(first).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
+        Self { text, starts }
+    }
+
+    /// Index of the line that holds the byte `at`.
+    pub(super) fn index(&self, at: usize) -> usize {
+        self.starts.partition_point(|&start| start <= at).saturating_sub(1)
+    }
+
+    /// Number of lines; text that ends with a line end has an empty last one.
+    pub(super) fn count(&self) -> usize {
+        self.starts.len()
+    }
+
+    /// Byte range of a line, without its line end.
+    pub(super) fn range(&self, index: usize) -> std::ops::Range<usize> {
+        let end = self.starts.get(index + 1).map_or(self.text.len(), |next| next - 1);
+        self.starts[index].min(end)..end
+    }
+
+    /// The line, without its line end.
+    pub(super) fn line(&self, index: usize) -> &'t str {
+        &self.text[self.range(index)]
+    }
+
+    /// Line and column of the byte `at`, from 1, the column in characters. What lies behind the last visible character
+    /// of the text is placed there: an editor has no place beyond.
+    pub(super) fn position(&self, at: usize) -> (usize, usize) {
+        let at = at.min(self.text.trim_end().len()).max(self.starts[0]);
+        let index = self.index(at);
+        let before = &self.text.as_bytes()[self.starts[index]..at];
+        // Bytes that go on with a character are not counted, so that `at` need not be a boundary.
+        (index + 1, 1 + before.iter().filter(|&&byte| byte & 0xC0 != 0x80).count())
+    }
+}
+
+/// The problems found so far.
+pub(super) struct Problems<'t> {
+    pub(super) lines: Lines<'t>,
+    file: &'t str,
+    found: RefCell<Vec<(usize, Problem)>>,
+    incomplete: Cell<bool>,
+}
+
+impl<'t> Problems<'t> {
+    /// None yet in this text.
+    pub(super) fn new(text: &'t str, file: &'t str) -> Self {
+        Self { lines: Lines::new(text), file, found: RefCell::default(), incomplete: Cell::new(false) }
+    }
+
+    /// Adds a problem at a byte of the study file.
+    pub(super) fn add(&self, at: usize, message: impl AsRef<str>) {
+        let (line, column) = self.lines.position(at);
+        self.push(at, self.file.to_owned(), line, column, message.as_ref());
+    }
+
+    /// Adds a problem that consists in something not being there: it may stand in a part that was not understood.
+    pub(super) fn add_if_complete(&self, at: usize, message: impl AsRef<str>) {
+        if !self.incomplete.get() {
+            self.add(at, message);
+        }
+    }
+
+    /// Adds a problem in a CSV file that the study names at the byte `at`.
+    pub(super) fn add_in(&self, at: usize, csv: &str, line: usize, column: usize, message: impl AsRef<str>) {
+        // Named as the study itself is: relative to where the user is.
+        let file = Path::new(self.file).parent().unwrap_or(Path::new("")).join(csv);
+        self.push(at, file.display().to_string(), line, column, message.as_ref());
+    }
+
+    fn push(&self, at: usize, file: String, line: usize, column: usize, message: &str) {
+        // One problem is one line, whatever the file puts into a quoted text.
+        let message = message.chars().flat_map(|c| if c.is_control() { c.escape_default().collect::<Vec<_>>() } else { vec![c] }).collect();
+        self.found.borrow_mut().push((at, Problem { file, line, column, message }));
+    }
+
+    /// Parts of the file are not understood.
+    pub(super) fn mark_incomplete(&self) {
+        self.incomplete.set(true);
+    }
+
+    /// Line number of a byte, for messages that point elsewhere.
+    pub(super) fn line_number(&self, at: usize) -> usize {
+        self.lines.position(at).0
+    }
+
+    /// Number of problems so far.
+    pub(super) fn count(&self) -> usize {
+        self.found.borrow().len()
+    }
+
+    /// All problems in file order.
+    pub(super) fn into_sorted(self) -> Vec<Problem> {
+        let mut found = self.found.into_inner();
+        found.sort_by_key(|&(at, _)| at);
+        let mut problems: Vec<_> = found.into_iter().map(|(_, problem)| problem).collect();
+        problems.dedup();
+        problems
+    }
+}
+
+/// A value and where it starts.
+#[derive(Clone, Copy)]
+pub(super) struct Node<'a> {
+    pub(super) value: &'a DeValue<'a>,
+    pub(super) at: usize,
+}
+
+impl<'a> Node<'a> {
+    /// The value of the tree.
+    pub(super) fn new(value: &'a Spanned<DeValue<'a>>) -> Self {
+        Self { value: value.get_ref(), at: value.span().start }
+    }
+
+    /// As a table.
+    pub(super) fn table(self) -> Option<Table<'a>> {
+        self.value.as_table().map(|table| Table::new(table, self.at))
+    }
+
+    /// As a list.
+    pub(super) fn list(self) -> Option<impl ExactSizeIterator<Item = Node<'a>> + Clone> {
+        self.value.as_array().map(|array| array.iter().map(Node::new))
+    }
+
+    /// What it is, in words.
+    pub(super) fn found(self) -> String {
+        match self.value {
+            DeValue::String(text) => format!("the text \"{}\"", shortened(text)),
+            DeValue::Integer(number) => format!("the number {number}"),
+            DeValue::Float(number) => format!("the number {number}"),
+            DeValue::Boolean(value) => value.to_string(),
+            DeValue::Datetime(_) => "a date or time".to_owned(),
+            DeValue::Array(_) => "a list".to_owned(),
+            DeValue::Table(_) => "a table".to_owned(),
+        }
+    }
+}
+
+/// A key with its value.
+pub(super) struct Entry<'a> {
+    pub(super) key: &'a str,
+    pub(super) key_at: usize,
+    pub(super) node: Node<'a>,
+}
+
+/// A table in file order.
+pub(super) struct Table<'a> {
+    pub(super) entries: Vec<Entry<'a>>,
+    pub(super) at: usize,
+}
+
+impl<'a> Table<'a> {
+    /// The table that starts at the byte `at`.
+    pub(super) fn new(table: &'a DeTable<'a>, at: usize) -> Self {
+        let entry = |(key, value): (&'a Spanned<_>, &'a Spanned<DeValue<'a>>)| {
+            let name: &std::borrow::Cow<'a, str> = key.get_ref();
+            Entry { key: name.as_ref(), key_at: key.span().start, node: Node::new(value) }
+        };
+        let mut entries: Vec<_> = table.iter().map(entry).collect();
+        entries.sort_by_key(|entry| entry.key_at);
+        Self { entries, at }
+    }
+
+    /// The entry of that key.
+    pub(super) fn get(&self, key: &str) -> Option<&Entry<'a>> {
+        self.entries.iter().find(|entry| entry.key == key)
+    }
+
+    /// Entries whose key is none of these.
+    pub(super) fn unknown(&self, allowed: &[&str]) -> impl Iterator<Item = &Entry<'a>> {
+        self.entries.iter().filter(|entry| !allowed.contains(&entry.key))
+    }
+
+    /// Reports keys that are none of these; says whether there was none.
+    pub(super) fn check_keys(&self, problems: &Problems<'_>, label: &str, allowed: &[&str]) -> bool {
+        for entry in self.unknown(allowed) {
+            let remedy = match suggestion(entry.key, allowed) {
+                _ if is_top_level(entry.key) => TOP_LEVEL_REMEDY.to_owned(),
+                Some(close) => format!("did you mean \"{close}\"?"),
+                None if allowed.len() == 1 => format!("allowed is {}", list(allowed)),
+                None => format!("allowed are {}", list(allowed)),
+            };
+            problems.add(entry.key_at, format!("{label}: unknown key \"{}\"; {remedy}", shortened(entry.key)));
+        }
+        self.unknown(allowed).next().is_none()
+    }
+}
+
+/// Does the key belong in front of all tables?
+pub(super) fn is_top_level(key: &str) -> bool {
+    ["model", "title"].contains(&key)
+}
+
+/// What to do about such a key in a table.
+pub(super) const TOP_LEVEL_REMEDY: &str = "it belongs in front of the first table";
+
+/// The name most like `name`, if one is like enough to be what was meant.
+pub(super) fn suggestion<'n>(name: &str, names: &[&'n str]) -> Option<&'n str> {
+    let name = name.to_lowercase();
+    // Nothing that long is a name; the distance takes quadratic time.
+    if name.is_empty() || name.len() > 80 {
+        return None;
+    }
+    let without_unit = names.iter().find(|known| known.to_lowercase().starts_with(&format!("{name}_")));
+    let near = || names.iter().map(|known| (strsim::damerau_levenshtein(&name, &known.to_lowercase()), known)).min_by_key(|&(d, _)| d);
+    let close = || near().filter(|&(distance, _)| distance <= (name.chars().count() / 3).max(1)).map(|(_, known)| known);
+    without_unit.or_else(close).copied()
+}
+
+/// Names one after the other.
+pub(super) fn list<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> String {
+    names.into_iter().map(|name| name.as_ref().to_owned()).collect::<Vec<_>>().join(", ")
+}
+
+/// A text of the user, cut off where it would fill the screen.
+pub(super) fn shortened(text: &str) -> String {
+    const MOST: usize = 60;
+    if text.chars().count() <= MOST { text.to_owned() } else { text.chars().take(MOST).chain("...".chars()).collect() }
+}

@@ -1,0 +1,191 @@
+//! The resolved study.
+
+use super::axis::{Axis, Sample};
+use crate::models::{Model, Worse};
+use serde::{Deserialize, Serialize};
+
+/// An input or output that a constraint, objective, column or picture is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Quantity {
+    /// Number of an input.
+    Input(usize),
+    /// Number of an output.
+    Output(usize),
+}
+
+impl Quantity {
+    /// Its name, with the unit.
+    pub fn name(self, model: &Model) -> &'static str {
+        match self {
+            Self::Input(input) => model.inputs[input].name,
+            Self::Output(output) => model.outputs[output].name,
+        }
+    }
+
+    /// Which end is worse where nobody says so. For an input it hardly matters; the larger one is taken.
+    pub fn worse(self, model: &Model) -> Worse {
+        match self {
+            Self::Input(_) => Worse::Higher,
+            Self::Output(output) => model.outputs[output].worse,
+        }
+    }
+}
+
+/// Direction of an objective.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Goal {
+    /// Less is better.
+    Min,
+    /// More is better.
+    Max,
+}
+
+impl Goal {
+    /// The scatter's worse end under this goal.
+    pub fn worse(self) -> Worse {
+        match self {
+            Self::Min => Worse::Higher,
+            Self::Max => Worse::Lower,
+        }
+    }
+}
+
+/// An objective: what is to be small or large in its worst scenario.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Objective {
+    /// What.
+    pub quantity: Quantity,
+    /// Which way.
+    pub goal: Goal,
+    /// Values in the same step of this width count as equal for dominance.
+    pub resolution: Option<f64>,
+}
+
+/// A constraint: bounds that hold in every scenario.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Constraint {
+    /// What is bounded.
+    pub quantity: Quantity,
+    /// Least value, and whether it is itself excluded.
+    pub low: Option<(f64, bool)>,
+    /// Largest value, and whether it is itself excluded.
+    pub high: Option<(f64, bool)>,
+}
+
+impl Constraint {
+    /// Does the value satisfy the constraint? NaN never does.
+    #[inline(always)]
+    pub fn holds(&self, value: f64) -> bool {
+        let low = self.low.is_none_or(|(bound, excluded)| if excluded { value > bound } else { value >= bound });
+        let high = self.high.is_none_or(|(bound, excluded)| if excluded { value < bound } else { value <= bound });
+        low && high && !value.is_nan()
+    }
+
+    /// Signed distance to the nearest bound, negative outside, in the quantity's unit.
+    pub fn margin(&self, value: f64) -> f64 {
+        let low = self.low.map_or(f64::INFINITY, |(bound, _)| value - bound);
+        let high = self.high.map_or(f64::INFINITY, |(bound, _)| bound - value);
+        low.min(high)
+    }
+}
+
+/// The best designs by one quantity.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TopSpec {
+    /// By which quantity.
+    pub by: Quantity,
+    /// Which way is best.
+    pub goal: Goal,
+    /// How many designs, at least 1.
+    pub count: usize,
+}
+
+/// A histogram of a quantity's worst value over the feasible designs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct HistogramSpec {
+    /// Of which quantity.
+    pub of: Quantity,
+    /// Ends of the first and last bin; `None`: from the fixed sample.
+    pub range: Option<(f64, f64)>,
+    /// Number of bins, at least 1.
+    pub bins: usize,
+}
+
+/// What the designs of a map's cell are condensed to.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Best {
+    /// The best worst-scenario value of a quantity over the cell's feasible designs.
+    Value(Quantity, Goal),
+    /// The share of the cell's designs that are feasible.
+    Share,
+}
+
+/// A map over two design axes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MapSpec {
+    /// Position of the horizontal axis in `Study::design`.
+    pub x: usize,
+    /// Position of the vertical axis in `Study::design`.
+    pub y: usize,
+    /// What is shown.
+    pub value: Best,
+}
+
+/// What else to report.
+#[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
+pub struct Report {
+    /// Further columns of the tables.
+    pub columns: Vec<Quantity>,
+    /// The best designs by one quantity.
+    pub top: Option<TopSpec>,
+    /// Histograms, in file order.
+    pub histograms: Vec<HistogramSpec>,
+    /// Maps, in file order.
+    pub maps: Vec<MapSpec>,
+    /// Most points that a front may have.
+    pub front_budget: u64,
+}
+
+/// A request: which designs to judge, over which scenarios, by what.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Study {
+    /// The model.
+    #[serde(with = "model_by_name")]
+    pub model: &'static Model,
+    /// Title for people.
+    pub title: String,
+    /// Design axes in file order; the last varies fastest in the design index.
+    pub design: Vec<Axis>,
+    /// Sampled designs in place of the product.
+    pub sample: Option<Sample>,
+    /// Operation axes in file order.
+    pub operation: Vec<Axis>,
+    /// Uncertainty axes in file order.
+    pub uncertainty: Vec<Axis>,
+    /// A value for every input, in its unit: what `[fixed]` says, else the default. Unused where an axis sets the input.
+    pub fixed: Vec<f64>,
+    /// Constraints in file order.
+    pub constraints: Vec<Constraint>,
+    /// Objectives in file order.
+    pub objectives: Vec<Objective>,
+    /// What else to report.
+    pub report: Report,
+}
+
+/// A model is stored by its name.
+mod model_by_name {
+    use crate::models::{Model, find};
+    use serde::{Deserialize, Deserializer, Serializer, de::Error};
+
+    pub fn serialize<S: Serializer>(model: &&'static Model, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(model.name)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<&'static Model, D::Error> {
+        let name = String::deserialize(deserializer)?;
+        find(&name).ok_or_else(|| D::Error::custom(format!("unknown model \"{name}\"")))
+    }
+}

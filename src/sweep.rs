@@ -1,0 +1,223 @@
+//! The sweep: ranges of designs handed to threads, their results merged and kept.
+//!
+//! A thread takes a chunk of positions, screens it with reducers of its own (which may drop what the front known so far beats)
+//! and hands the result over as a whole. What is merged is therefore always complete for the ranges that the checkpoint names,
+//! and the result does not depend on how the work was cut.
+
+use crate::checkpoint::{Checkpoint, Progress};
+use crate::error::{Error, Result};
+use crate::plan::Plan;
+use crate::reduce::{Points, Reducers, Reduction, State};
+use crate::screen::{CpuEngine, Tables};
+use crate::tiles::{Ranges, Shard};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+/// How to run; nothing here changes a result.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Worker threads, at least 1.
+    pub threads: usize,
+    /// Designs that a thread works on between looks at the clock.
+    pub tile: u64,
+    /// How long a chunk should take: what a killed run loses per thread.
+    pub chunk: Duration,
+    /// Which part of the study.
+    pub shard: Shard,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+        Self { threads, tile: 1 << 16, chunk: Duration::from_millis(500), shard: Shard::WHOLE }
+    }
+}
+
+/// What others may see and do while a sweep runs.
+#[derive(Debug, Default)]
+pub struct Control {
+    /// Designs judged so far, those of a resumed checkpoint included.
+    pub done: AtomicU64,
+    /// Set to end the sweep after the tiles in work, keeping the checkpoint.
+    pub stop: AtomicBool,
+}
+
+/// What a finished sweep knows.
+#[derive(Debug)]
+pub struct Swept {
+    /// What remains of the designs.
+    pub state: State,
+    /// Designs judged by this run, without what a checkpoint brought.
+    pub designs: u64,
+    /// Time that this run took.
+    pub time: Duration,
+}
+
+/// A first chunk this small calibrates the speed and gives the front something to compare with.
+const FIRST_CHUNK: u64 = 4096;
+
+/// What the threads share.
+struct Work<'a> {
+    todo: Ranges,
+    done: Ranges,
+    reducers: Reducers,
+    /// The front at the last merge, for new chunks to start with.
+    known: Arc<Points>,
+    checkpoint: Option<&'a mut Checkpoint>,
+    failure: Option<Error>,
+    /// Designs per second of one thread, once known.
+    rate: Option<f64>,
+    saved: Instant,
+    saving: Duration,
+    merging: Duration,
+}
+
+/// Sweeps a plan. With a checkpoint, starts from what it holds and keeps it up to date.
+///
+/// # Errors
+/// [`Error::Stopped`] after `control.stop`; [`Error::FrontBudget`]; [`Error::Io`] if the checkpoint cannot be written.
+pub fn sweep(
+    plan: &Plan,
+    tables: &Tables,
+    reduction: &Reduction,
+    options: &Options,
+    mut checkpoint: Option<&mut Checkpoint>,
+    control: &Control,
+) -> Result<Swept> {
+    let start = Instant::now();
+    let whole = options.shard.range(plan.designs());
+    let Progress { done, state } = match checkpoint.as_deref_mut() {
+        Some(checkpoint) => checkpoint.take_progress(),
+        None => None,
+    }
+    .unwrap_or_else(|| Progress { done: Ranges::default(), state: reduction.start().state() });
+    let todo = done.missing_from(whole);
+    let designs = todo.count();
+    control.done.store(done.count(), Ordering::Relaxed);
+    let mut reducers = reduction.restore(state);
+    let known = Arc::new(reducers.front.points().clone());
+    let work = Mutex::new(Work {
+        todo,
+        done,
+        reducers,
+        known,
+        checkpoint,
+        failure: None,
+        rate: None,
+        saved: start,
+        saving: Duration::ZERO,
+        merging: Duration::ZERO,
+    });
+    std::thread::scope(|scope| {
+        for _ in 0..options.threads.max(1) {
+            scope.spawn(|| run_thread(plan, tables, reduction, options, &work, control));
+        }
+    });
+    let mut work = work.into_inner().unwrap_or_else(PoisonError::into_inner);
+    if let Some(failure) = work.failure {
+        return Err(failure);
+    }
+    let state = work.reducers.state();
+    let finished = work.todo.count() == 0 && !control.stop.load(Ordering::Relaxed);
+    if finished {
+        check_budget(plan, &state)?;
+    }
+    if let Some(checkpoint) = work.checkpoint {
+        checkpoint.save(&work.done, &state)?;
+    }
+    if !finished {
+        return Err(Error::Stopped { checkpoint: String::new(), resume: String::new() });
+    }
+    Ok(Swept { state, designs, time: start.elapsed() })
+}
+
+/// A front must keep within the study's budget.
+///
+/// # Errors
+/// [`Error::FrontBudget`].
+pub fn check_budget(plan: &Plan, state: &State) -> Result<()> {
+    if state.front.len() as u64 > plan.study.report.front_budget { Err(over_budget(plan)) } else { Ok(()) }
+}
+
+fn over_budget(plan: &Plan) -> Error {
+    let objective = plan.study.objectives[0];
+    let goal = if objective.goal == crate::study::Goal::Min { "min" } else { "max" };
+    let example = format!("{} = {{ goal = \"{goal}\", resolution = ... }}", objective.quantity.name(plan.study.model));
+    Error::FrontBudget { budget: plan.study.report.front_budget, example }
+}
+
+fn run_thread(plan: &Plan, tables: &Tables, reduction: &Reduction, options: &Options, work: &Mutex<Work<'_>>, control: &Control) {
+    let mut engine = CpuEngine::new(plan, tables);
+    let lock = || work.lock().unwrap_or_else(PoisonError::into_inner);
+    loop {
+        let (chunk, known) = {
+            let mut work = lock();
+            // A large front is dear to merge and to keep: longer chunks then.
+            let seconds = options.chunk.max(10 * (work.saving + work.merging)).as_secs_f64();
+            let size = work.rate.map_or(FIRST_CHUNK as f64, |rate| rate * seconds);
+            // Towards the end chunks shrink, so that the threads finish together.
+            let fair = work.todo.count() / (2 * options.threads as u64).max(1);
+            let size = (size as u64).min(fair).max(options.tile);
+            if control.stop.load(Ordering::Relaxed) || work.failure.is_some() {
+                return;
+            }
+            let size = if work.rate.is_none() { FIRST_CHUNK.min(options.tile) } else { size };
+            match work.todo.take(size) {
+                Some(chunk) => (chunk, Arc::clone(&work.known)),
+                None => return,
+            }
+        };
+        let start = Instant::now();
+        let mut reducers = reduction.start_after(Points::clone(&known));
+        drop(known);
+        let mut position = chunk.start;
+        while position < chunk.end && !control.stop.load(Ordering::Relaxed) {
+            let end = chunk.end.min(position.saturating_add(options.tile));
+            engine.screen(position..end, |block| reduction.absorb(&mut reducers, block));
+            control.done.fetch_add(end - position, Ordering::Relaxed);
+            position = end;
+        }
+        hand_over(plan, chunk.start..position, chunk.end, reducers, start.elapsed(), lock());
+    }
+}
+
+/// Merges a finished chunk (or the part of it that was finished when the run was stopped) and keeps the checkpoint.
+fn hand_over(
+    plan: &Plan,
+    finished: std::ops::Range<u64>,
+    chunk_end: u64,
+    reducers: Reducers,
+    time: Duration,
+    mut work: MutexGuard<'_, Work<'_>>,
+) {
+    if finished.end < chunk_end {
+        work.todo.add(finished.end..chunk_end);
+    }
+    work.rate = Some((finished.end - finished.start) as f64 / time.as_secs_f64().max(1e-9));
+    let merging = Instant::now();
+    let fresh = reducers.into_fresh();
+    let news = !fresh.front.is_empty();
+    work.reducers.merge(fresh);
+    work.done.add(finished);
+    if news {
+        work.known = Arc::new(work.reducers.front.points().clone());
+    }
+    work.merging = merging.elapsed();
+    // The front may shrink again while better designs arrive; well beyond the budget it would only fill the memory.
+    if work.reducers.front.len() as u64 > plan.study.report.front_budget.saturating_mul(4) {
+        work.failure = Some(over_budget(plan));
+        return;
+    }
+    if work.checkpoint.is_some() && work.saved.elapsed() >= Duration::from_millis(200).max(5 * work.saving) {
+        let start = Instant::now();
+        let state = work.reducers.state();
+        let done = work.done.clone();
+        let saved = work.checkpoint.as_mut().map_or(Ok(()), |checkpoint| checkpoint.save(&done, &state));
+        if let Err(failure) = saved {
+            work.failure = Some(failure);
+        }
+        work.saving = start.elapsed();
+        work.saved = Instant::now();
+    }
+}

@@ -1,0 +1,145 @@
+//! The summary of a sweep: what a person wants to know first.
+
+use super::{Grid, bold, dim, grouped, scaled, short, span, width};
+use beltspace::certify::Row;
+use beltspace::export::{Outcome, RunRecord, Summary};
+use beltspace::study::{Axis, Goal};
+use std::path::Path;
+use textplots::{Chart, Plot, Shape};
+
+/// Designs of the front that are shown.
+const SHOWN: usize = 8;
+
+/// The summary as text.
+#[allow(clippy::cast_precision_loss, reason = "shares for people")]
+pub fn summary(outcome: &Outcome<'_>, record: &RunRecord, out: &Path) -> String {
+    let plan = outcome.plan;
+    let study = &plan.study;
+    let feasible = outcome.state.feasible;
+    let share = 100.0 * feasible as f64 / plan.designs() as f64;
+    let mut facts = Grid::default();
+    let mut fact = |what: &str, value: String| facts.row([bold(what), value]);
+    fact(
+        "designs",
+        format!(
+            "{} x {} scenarios in {}, {}designs/s",
+            grouped(plan.designs()),
+            grouped(plan.scenarios()),
+            span(record.time.as_secs_f64()),
+            scaled(record.rate())
+        ),
+    );
+    fact("feasible", format!("{} ({} %)", grouped(feasible), short((share * 100.0).round() / 100.0)));
+    if !study.objectives.is_empty() {
+        fact("front", format!("{} designs, each certified in f64 over every scenario", grouped(outcome.front.len() as u64)));
+    }
+    let mut text = format!("{}\n\n{}", bold(&study.title), facts.indented(0));
+    text.push_str(&limits(outcome));
+    if !outcome.front.is_empty() {
+        text.push_str(&front(outcome));
+        text.push_str(&plot(outcome));
+    }
+    text + &format!("\n{} {}\n", bold("result"), out.display())
+}
+
+/// What limits feasibility, worst first.
+#[allow(clippy::cast_precision_loss, reason = "shares for people")]
+fn limits(outcome: &Outcome<'_>) -> String {
+    let tally = &outcome.tally;
+    let study = &outcome.plan.study;
+    let model = study.model;
+    let statuses = model.conditions.iter().zip(&tally.conditions).filter(|(condition, _)| !condition.quiet);
+    let mut reasons: Vec<(u64, u64, String)> = statuses.map(|(condition, &count)| (count, 0, condition.reason.to_owned())).collect();
+    for (constraint, (&violated, &only)) in study.constraints.iter().zip(tally.constraints.iter().zip(&tally.only)) {
+        let unit = constraint.quantity.unit(model);
+        reasons.push((
+            violated,
+            only,
+            format!("{} {} {unit}", constraint.quantity.name(model), constraint.in_words()).trim_end().to_owned(),
+        ));
+    }
+    reasons.retain(|(count, ..)| *count > 0);
+    reasons.sort_by_key(|(count, ..)| std::cmp::Reverse(*count));
+    if reasons.is_empty() {
+        return String::new();
+    }
+    let percent = |count: u64| format!("{:.1} %", 100.0 * count as f64 / tally.sampled as f64);
+    let mut grid = Grid::default();
+    for (count, only, reason) in reasons {
+        let alone = if only > 0 { dim(&format!("(alone: {})", percent(only))) } else { String::new() };
+        grid.row([reason, format!("fails {}", percent(count)), alone]);
+    }
+    let what = if tally.sampled == outcome.plan.designs() {
+        "of all designs".to_owned()
+    } else {
+        format!("of a sample of {} designs", grouped(tally.sampled))
+    };
+    format!("\n{} {what}\n{}", bold("what limits feasibility,"), grid.indented(2))
+}
+
+/// Ideal, knee and the best designs by the first objective.
+fn front(outcome: &Outcome<'_>) -> String {
+    let study = &outcome.plan.study;
+    let model = study.model;
+    let summary = Summary::new(outcome);
+    let columns = outcome.objective_columns();
+    let inputs: Vec<usize> = study.design.iter().flat_map(Axis::inputs).copied().collect();
+    let mut grid = Grid::default();
+    let goals =
+        study.objectives.iter().map(|it| format!("{} ({})", it.quantity.name(model), if it.goal == Goal::Min { "min" } else { "max" }));
+    let heads = goals.chain(["design".to_owned()]).chain(inputs.iter().map(|&input| model.inputs[input].name.to_owned()));
+    grid.row(std::iter::once(String::new()).chain(heads.map(|head| bold(&head))));
+    if let Some(ideal) = &summary.ideal {
+        grid.row(std::iter::once("ideal".to_owned()).chain(ideal.iter().map(|&value| short(value))));
+    }
+    let mut row = |label: &str, row: &Row| {
+        let objectives = columns.iter().map(|&column| row.columns[column].value.map_or(String::new(), short));
+        let words = inputs
+            .iter()
+            .map(|&input| model.inputs[input].word_for(row.inputs[input]).map_or_else(|| short(row.inputs[input]), str::to_owned));
+        grid.row(std::iter::once(label.to_owned()).chain(objectives).chain([row.index.to_string()]).chain(words));
+    };
+    if let Some(knee) = summary.knee {
+        row("knee", &outcome.front[knee.row]);
+    }
+    for design in outcome.front.iter().take(SHOWN) {
+        row("", design);
+    }
+    let more = outcome.front.len().saturating_sub(SHOWN);
+    let more = if more > 0 {
+        dim(&format!("  ... and {} more, best of the first objective first, in front.csv\n", grouped(more as u64)))
+    } else {
+        String::new()
+    };
+    format!("\n{}\n{}{more}", bold("front"), grid.indented(2))
+}
+
+/// A front of two objectives as a picture of characters, where the terminal is wide enough.
+#[allow(clippy::cast_possible_truncation, reason = "a picture of a few hundred dots")]
+fn plot(outcome: &Outcome<'_>) -> String {
+    let points = Summary::new(outcome).points();
+    let study = &outcome.plan.study;
+    let columns = match width() {
+        Some(width) if study.objectives.len() == 2 && points.len() > 1 && width >= 60 => width.min(100),
+        _ => return String::new(),
+    };
+    let points: Vec<(f32, f32)> = points.iter().map(|point| (point[0] as f32, point[1] as f32)).collect();
+    let (low, high) = points.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), point| (low.min(point.0), high.max(point.0)));
+    if low >= high {
+        return String::new();
+    }
+    // A dot matrix has two dots per character across.
+    let dots = u32::try_from(2 * (columns - 12)).unwrap_or(120);
+    let shape = Shape::Points(&points);
+    let mut chart = Chart::new(dots, 48, low, high);
+    let chart = chart.lineplot(&shape);
+    chart.borders();
+    chart.axis();
+    chart.figures();
+    let name = |objective: usize| study.objectives[objective].quantity.name(study.model);
+    format!(
+        "\n{}\n{chart}{}\n",
+        dim(&format!("{} upwards", name(1))),
+        dim(&format!("{:>width$}", name(0), width = columns.saturating_sub(14)))
+    )
+}

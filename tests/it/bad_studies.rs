@@ -1,0 +1,1231 @@
+//! Study files: broken ones are refused with every problem at its place, good ones mean what they say.
+
+use beltspace::study::{
+    Axis, Best, Constraint, Goal, HistogramSpec, Levels, MapSpec, Method, Objective, Quantity, Report, Sample, Study, TopSpec,
+};
+use std::path::Path;
+
+/// The example of the documentation.
+const EXAMPLE: &str = r#"model = "metal-cvt"
+title = "Push belt for 150 N m: every ratio, friction known to +-20 %"
+[design]
+groove_angle_deg  = { from = 18, to = 30, count = 61 }
+band_thickness_mm = { from = 0.10, to = 0.30, step = 0.005 }
+band_count        = { from = 6, to = 14 }                     # integer axis: step 1
+traction          = { from = 0.30, to = 0.50, count = 11 }    # how hard the pulleys squeeze
+[operation]
+ratio     = { from = 0.5, to = 2.0, count = 31, spacing = "log" }
+torque_Nm = [50, 150]
+[uncertainty]
+friction  = { from = 0.065, to = 0.095, count = 7 }
+[fixed]
+strength_MPa = 800
+[constraints]                          # on outputs or numeric inputs; min, max inclusive; above, below strict
+slip_margin   = { min = 0 }
+stress_margin = { min = 0 }
+[objectives]                           # on outputs or numeric inputs; order matters for row order
+axial_force_N = "min"
+stress_margin = "max"
+slip_margin   = "max"
+band_count    = "min"
+[report]
+columns = ["max_stress_MPa"]
+top = { by = "axial_force_N", count = 20 }
+histograms = [{ of = "axial_force_N", from = 0, to = 60000, bins = 60 }]
+maps = [{ x = "band_thickness_mm", y = "groove_angle_deg", value = "axial_force_N" }]   # best feasible over the other axes
+"#;
+
+fn parse(text: &str) -> Result<Study, beltspace::study::StudyErrors> {
+    Study::parse(text, "study.toml", Path::new("tests"))
+}
+
+/// All problems of a text, one per line, without the file's name.
+fn problems(text: &str) -> Vec<String> {
+    let Err(errors) = parse(text) else { return Vec::new() };
+    errors.to_string().lines().map(|line| line.strip_prefix("study.toml:").unwrap_or(line).to_owned()).collect()
+}
+
+/// The example with other lines: `N| text` puts `text` in place of line N; a second one for the same N goes below.
+fn edited(edits: &[(usize, &str)]) -> String {
+    let mut lines: Vec<Vec<&str>> = EXAMPLE.lines().map(|line| vec![line]).collect();
+    for (index, &(number, text)) in edits.iter().enumerate() {
+        let line = &mut lines[number - 1];
+        if edits[..index].iter().all(|&(other, _)| other != number) {
+            line.clear();
+        }
+        line.push(text);
+    }
+    lines.concat().iter().flat_map(|line| [line, "\n"]).collect()
+}
+
+/// Does a problem read as expected? `[..]` stands for anything: what the system says, or a long list.
+fn reads_as(problem: &str, expected: &str) -> bool {
+    match expected.split_once("[..]") {
+        Some((start, end)) => problem.len() >= start.len() + end.len() && problem.starts_with(start) && problem.ends_with(end),
+        None => problem == expected,
+    }
+}
+
+#[test]
+fn every_broken_study_is_refused_at_its_place_with_a_remedy() {
+    let mut tried = 0;
+    let mut wrong = String::new();
+    for block in BROKEN.split("\n\n") {
+        let lines = block.lines().filter(|line| !line.is_empty() && !line.starts_with('#'));
+        let edit = |line: &'static str| {
+            let (number, text) = line.split_once('|')?;
+            Some((number.parse::<usize>().ok()?, text.strip_prefix(' ').unwrap_or(text)))
+        };
+        let (edits, expected): (Vec<_>, Vec<_>) = lines.partition(|line| edit(line).is_some());
+        let edits: Vec<_> = edits.into_iter().filter_map(edit).collect();
+        let found = problems(&edited(&edits));
+        if found.len() != expected.len() || !found.iter().zip(&expected).all(|(found, expected)| reads_as(found, expected)) {
+            wrong += &format!("{block}\n  but it says\n{}\n\n", found.join("\n"));
+        }
+        for problem in &found {
+            let message = problem.splitn(3, ':').nth(2).unwrap_or("").trim_start();
+            let remedy = message.contains("; ") || message.contains("wanted ") || message.contains("must be ");
+            if !remedy || message.ends_with('.') || message.starts_with(char::is_uppercase) {
+                wrong += &format!("no remedy, or no way to write a message: {problem}\n");
+            }
+        }
+        tried += 1;
+    }
+    assert!(wrong.is_empty(), "{wrong}");
+    assert!(tried >= 50, "{tried}");
+}
+
+#[test]
+fn all_problems_of_a_file_are_reported_in_file_order() {
+    let text = edited(&[
+        (2, "titel = \"x\""),
+        (4, "groove_angel_deg = 20"),
+        (5, "band_thickness_mm = { from = 0.10, to = \"0.3 N\", step = 0 }"),
+        (6, "band_count = [6, 6.5, 7, 7]"),
+        (9, "ratio = { from = 0.5, to = 2.0 }"),
+        (10, "torque_Nm ="),
+        (12, "friction = [0.08, -1, nan]"),
+        (14, "traction = 0.4"),
+        (16, "slip_margin = { min = 1, max = 0, least = 3 }"),
+        (19, "axial_force_N = \"less\""),
+        (24, "columns = [\"band_count\", \"x\"]"),
+        (25, "top = { count = 0 }"),
+        (26, "histograms = [{ of = \"axial_force_N\", to = 3 }, 7]"),
+    ]);
+    let found = problems(&text);
+    let expected = [
+        "2:1: unknown key \"titel\"",
+        "4:1: axis \"groove_angel_deg\": metal-cvt has no input",
+        "5:41: axis \"band_thickness_mm\": \"N\" measures a force",
+        "5:57: axis \"band_thickness_mm\": the step 0",
+        "6:18: axis \"band_count\": 6.5 is not a whole number",
+        "6:26: axis \"band_count\": 7 is listed twice",
+        "9:9: axis \"ratio\": a range needs count or step",
+        "10:12: there is no value behind",
+        "12:19: axis \"friction\": -1 is out of range",
+        "12:23: axis \"friction\": nan cannot be used",
+        "14:1: \"traction\" is already set in [design], line 7",
+        "16:26: constraint \"slip_margin\": no value is at least 1 and at most 0",
+        "16:35: constraint \"slip_margin\": unknown key \"least\"",
+        "19:17: objective \"axial_force_N\": unknown goal \"less\"",
+        "24:12: columns: \"band_count\" is a design input",
+        "24:26: columns: metal-cvt has no input or output \"x\"",
+        "25:7: top: \"by\" is missing",
+        "25:17: top: 0 is out of range",
+        "26:39: histograms: only to is given",
+        "26:49: histograms: found the number 7",
+    ];
+    let fits = found.len() == expected.len() && found.iter().zip(expected).all(|(found, expected)| found.starts_with(expected));
+    assert!(fits, "{}", found.join("\n"));
+}
+
+#[test]
+fn a_study_that_cannot_be_read_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("study.toml");
+    assert!(matches!(Study::read(&path), Err(beltspace::error::Error::Io { .. })));
+    std::fs::write(&path, b"model = \"metal-cvt\"\ntitle = \"\xe4\"\n").unwrap();
+    let error = Study::read(&path).unwrap_err();
+    assert!(error.to_string().ends_with("study.toml:2:10: this is not UTF-8 text; save the file in the encoding UTF-8"), "{error}");
+    std::fs::write(&path, EXAMPLE).unwrap();
+    assert_eq!(Study::read(&path).unwrap().1, EXAMPLE);
+}
+
+#[test]
+fn problems_of_a_csv_file_name_its_line_and_field() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = edited(&[(9, "cases = { csv = \"belts.csv\" }"), (10, "")]);
+    let cases: &[(&str, &[&str])] = &[
+        ("", &["1:1: there are no rows; the first line names inputs, such as [..]"]),
+        ("ratio,torque_Nm\n", &["1:1: there are no rows; [..]"]),
+        ("ratio,torqe_Nm\n1,2\n", &["1:2: metal-cvt has no input \"torqe_Nm\"; did you mean \"torque_Nm\"?"]),
+        ("ratio,slip_margin\n1,2\n", &["1:2: slip_margin is an output; [..]"]),
+        ("ratio,ratio\n1,2\n", &["1:2: \"ratio\" has two columns; drop one"]),
+        ("ratio,\n1,2\n", &["1:2: the column has no name; [..]"]),
+        ("ratio;torque_Nm\n1;2\n", &["1:1: the columns are not separated by commas; [..]"]),
+        ("ratio,torque_Nm\n1,2\n\n1,x\n", &["4:2: column \"torque_Nm\": \"x\" is not a number with a unit; write for example \"12 Nm\""]),
+        ("ratio,torque_Nm\n1,2\n,3\n", &["3:1: column \"ratio\": the field is empty; give a value"]),
+        (
+            "ratio,torque_Nm\n1,2\n0,\"12 mm\"\n",
+            &["3:1: column \"ratio\": 0 is out of range; [..]", "3:2: column \"torque_Nm\": \"mm\" measures [..]"],
+        ),
+        ("ratio,torque_Nm\n1,2\n1\n1,2,3\n", &["3:2: the row has 1 fields, the header has 2; [..]", "4:3: the row has 3 fields, [..]"]),
+        ("ratio,torque_Nm\n1,2\n2,2\n1.0,2000 Nmm\n", &["4:1: the row equals that of line 2; drop one"]),
+        ("ratio,torque_Nm\n1,inf\n", &["2:2: column \"torque_Nm\": \"inf\" is not a number[..]"]),
+    ];
+    for (csv, expected) in cases {
+        std::fs::write(folder.path().join("belts.csv"), csv).unwrap();
+        let errors = Study::parse(&text, "study.toml", folder.path()).unwrap_err().to_string();
+        let found: Vec<_> = errors.lines().map(|line| line.strip_prefix("belts.csv:").unwrap_or(line)).collect();
+        let fits = found.len() == expected.len() && found.iter().zip(*expected).all(|(found, expected)| reads_as(found, expected));
+        assert!(fits, "{csv:?}: {errors}");
+    }
+    // Named from where the user is, as the study is.
+    let errors = Study::parse(&text, "studies/study.toml", folder.path()).unwrap_err();
+    assert_eq!(Path::new(&errors.problems[0].file), Path::new("studies/belts.csv"));
+    // A hopeless file is not reported line by line.
+    std::fs::write(folder.path().join("belts.csv"), format!("ratio\n{}", "x\n".repeat(1000))).unwrap();
+    assert!(Study::parse(&text, "study.toml", folder.path()).unwrap_err().problems.len() < 30);
+}
+
+/// A small random number generator, so that a seed is enough to see a failure again.
+struct SplitMix64(u64);
+
+impl SplitMix64 {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    fn below(&mut self, limit: usize) -> usize {
+        usize::try_from(self.next() % limit.max(1) as u64).unwrap()
+    }
+}
+
+/// Words, numbers, spaces, and every other character alone.
+fn tokens(text: &str) -> Vec<String> {
+    let kind = |c: char| {
+        if c.is_alphanumeric() || "_.-+".contains(c) {
+            1
+        } else if c == ' ' {
+            2
+        } else {
+            0
+        }
+    };
+    let mut tokens: Vec<String> = Vec::new();
+    for c in text.chars() {
+        match tokens.last_mut() {
+            Some(last) if kind(c) != 0 && last.chars().next().map(kind) == Some(kind(c)) => last.push(c),
+            _ => tokens.push(c.to_string()),
+        }
+    }
+    tokens
+}
+
+/// What is put in: things with a meaning at the wrong place, and things with none.
+const SALT: &[&str] = &[
+    "[",
+    "]",
+    "{",
+    "}",
+    "=",
+    ",",
+    "\"",
+    "'",
+    "\"\"\"",
+    "#",
+    "\n",
+    "\r\n",
+    ".",
+    "-",
+    "0",
+    "1e-300",
+    "1e308",
+    "-1e308",
+    "nan",
+    "inf",
+    "true",
+    "1979-05-27",
+    "0x1F",
+    "9007199254740993",
+    "99999999999999999999",
+    "\"limit\"",
+    "\"12 lbf\"",
+    "\"0.1 in\"",
+    "count",
+    "step",
+    "from",
+    "to",
+    "spacing",
+    "\"log\"",
+    "cases",
+    "csv",
+    "ratio",
+    "traction",
+    "[sample]\n",
+    "[design]\n",
+    "[[report.maps]]\n",
+    "é",
+    "\u{feff}",
+    "\u{0}",
+    "\\",
+    "best",
+    "\"share\"",
+    "method",
+    "\"sobol\"",
+];
+
+/// Bytes that matter in TOML, and one that is no text.
+const BYTES: &[u8] = b" \t\n\r[]{}=,.\"'#\\-+0123456789eE_x\x00\xff";
+
+/// One to four changes of tokens or bytes.
+fn mutated(text: &str, random: &mut SplitMix64) -> String {
+    let mut text = text.to_owned();
+    for _ in 0..=random.below(4) {
+        if random.below(2) == 0 {
+            let mut parts = tokens(&text);
+            let (a, b) = (random.below(parts.len()), random.below(parts.len()));
+            let salt = SALT[random.below(SALT.len())].to_owned();
+            match random.below(5) {
+                _ if parts.is_empty() => parts.push(salt),
+                0 => drop(parts.remove(a)),
+                1 => parts.insert(a, salt),
+                2 => parts[a] = salt,
+                3 => parts.insert(b, parts[a].clone()),
+                _ => parts.swap(a, b),
+            }
+            text = parts.concat();
+        } else {
+            let mut bytes = text.into_bytes();
+            let (a, b) = (random.below(bytes.len()), random.below(bytes.len()));
+            let byte = BYTES[random.below(BYTES.len())];
+            match random.below(6) {
+                _ if bytes.is_empty() => bytes.push(byte),
+                0 => drop(bytes.remove(a)),
+                1 => bytes.insert(a, byte),
+                2 => bytes[a] = byte,
+                3 => bytes.insert(b, bytes[a]),
+                4 => bytes.swap(a, b),
+                _ => drop(bytes.drain(a.min(b)..(a.min(b) + 40).min(a.max(b)))),
+            }
+            text = String::from_utf8_lossy(&bytes).into_owned();
+        }
+    }
+    text
+}
+
+#[test]
+fn no_mutation_of_a_study_makes_the_reader_fail() {
+    let sampled = edited(&[
+        (1, "model = \"metal-cvt\"\n[sample]\nmethod = \"latin-hypercube\"\ncount = 1000\nseed = 7"),
+        (2, ""),
+        (4, "groove_angle_deg = { from = 18, to = 30 }"),
+        (9, "cases = [{ ratio = 2, torque_Nm = 150 }, { ratio = 0.5, torque_Nm = \"60 Nm\" }]"),
+        (10, "cases_2 = { csv = \"belts.csv\" }"),
+        (19, "axial_force_N = { goal = \"min\", resolution = \"10 N\" }"),
+        (27, ""),
+    ]);
+    for seed in 0..20_000 {
+        let mut random = SplitMix64(seed);
+        let base = if random.below(4) == 0 { &sampled } else { EXAMPLE };
+        let text = mutated(base, &mut random);
+        let result = std::panic::catch_unwind(|| parse(&text));
+        let Ok(result) = result else { panic!("seed {seed}: panic on\n{text}") };
+        let problems = match result {
+            Ok(study) => {
+                let count = |axes: &[Axis]| axes.iter().map(|axis| u128::from(axis.count())).product::<u128>();
+                assert!((1..=u128::from(u64::MAX)).contains(&count(&study.design)), "seed {seed}:\n{text}");
+                assert!(count(&study.operation) * count(&study.uncertainty) <= 1 << 32, "seed {seed}:\n{text}");
+                for axis in study.design.iter().chain(&study.operation).chain(&study.uncertainty) {
+                    for (column, &input) in axis.inputs().iter().enumerate() {
+                        let (input, last) = (&study.model.inputs[input], axis.count() - 1);
+                        let good = [0, last / 2, last].map(|index| input.accepts(axis.value(column, index)));
+                        assert_eq!(good, [true; 3], "seed {seed}: {axis:?}\n{text}");
+                    }
+                }
+                continue;
+            }
+            Err(errors) => errors.problems,
+        };
+        assert!(!problems.is_empty(), "seed {seed}:\n{text}");
+        let lines: Vec<_> = text.split('\n').collect();
+        let places: Vec<_> = problems.iter().map(|problem| (problem.line, problem.column)).collect();
+        assert!(places.is_sorted(), "seed {seed}: {places:?}\n{text}");
+        for problem in problems {
+            let inside = problem.line >= 1 && problem.column >= 1 && problem.line <= lines.len();
+            assert!(inside && problem.column <= lines[problem.line - 1].chars().count() + 1, "seed {seed}: {problem}\n{text}");
+            assert!(!problem.message.is_empty() && !problem.message.contains(char::is_control), "seed {seed}: {problem}\n{text}");
+            assert_eq!(problem.file, "study.toml");
+        }
+    }
+}
+
+#[test]
+fn sizes_beyond_all_bounds_are_refused_at_once() {
+    let start = std::time::Instant::now();
+    for range in [
+        "{ from = 0.1, to = 0.3, step = 1e-300 }",
+        "{ from = 0.1, to = 0.3, step = 5e-324 }",
+        "{ from = 1e-300, to = 1e300, step = 1e-9, spacing = \"log\" }",
+        "{ from = 1e-5, to = 1e300, step = 1e-300, spacing = \"log\" }",
+        "{ from = 1, to = 1e308, step = 1 }",
+        "{ from = 1, to = 2, count = 18446744073709551615 }",
+        "{ from = 1, to = 2, count = 99999999999999999999999999 }",
+        "{ from = 1e307, to = 1e308, count = 9007199254740992 }",
+    ] {
+        let found = problems(&edited(&[(5, &format!("band_thickness_mm = {range}"))]));
+        assert!(!found.is_empty() && found[0].starts_with("5:"), "{range}: {found:?}");
+    }
+    let deep = format!("model = {}", "[".repeat(100_000));
+    assert!(!problems(&deep).is_empty());
+    let long = format!("model = \"{}\"", "é".repeat(1_000_000));
+    assert!(problems(&long).concat().len() < 1000);
+    assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
+}
+
+/// An axis of one input.
+fn single(study: &Study, name: &str, levels: Levels) -> Axis {
+    Axis::Single { input: study.model.input(name).unwrap(), levels }
+}
+
+#[test]
+fn the_example_means_what_it_says() {
+    let study = parse(EXAMPLE).unwrap();
+    assert_eq!(study.model.name, "metal-cvt");
+    assert_eq!(study.title, "Push belt for 150 N m: every ratio, friction known to +-20 %");
+    let designs: Vec<_> = study.design.iter().map(Axis::count).collect();
+    let scenarios: Vec<_> = study.operation.iter().chain(&study.uncertainty).map(Axis::count).collect();
+    assert_eq!((designs, scenarios), (vec![61, 41, 9, 11], vec![31, 2, 7]));
+    assert_eq!(
+        study.design,
+        [
+            single(&study, "groove_angle_deg", Levels::Even { from: 18.0, to: 30.0, count: 61, log: false }),
+            single(&study, "band_thickness_mm", Levels::Step { from: 0.1, step: 0.005, count: 41, log: false }),
+            single(&study, "band_count", Levels::Step { from: 6.0, step: 1.0, count: 9, log: false }),
+            single(&study, "traction", Levels::Even { from: 0.3, to: 0.5, count: 11, log: false }),
+        ]
+    );
+    let ratio = single(&study, "ratio", Levels::Even { from: 0.5, to: 2.0, count: 31, log: true });
+    assert_eq!(study.operation, [ratio, single(&study, "torque_Nm", Levels::List(vec![50.0, 150.0]))]);
+    assert_eq!(study.uncertainty, [single(&study, "friction", Levels::Even { from: 0.065, to: 0.095, count: 7, log: false })]);
+    let mut fixed = study.model.defaults();
+    fixed[study.model.input("strength_MPa").unwrap()] = 800.0;
+    assert_eq!((study.fixed.clone(), study.sample), (fixed, None));
+    let output = |name| Quantity::Output(study.model.output(name).unwrap());
+    let (force, stress, slip) = (output("axial_force_N"), output("stress_margin"), output("slip_margin"));
+    let constraint = |quantity| Constraint { quantity, low: Some((0.0, false)), high: None };
+    assert_eq!(study.constraints, [constraint(slip), constraint(stress)]);
+    let objective = |quantity, goal| Objective { quantity, goal, resolution: None };
+    let bands = Quantity::Input(study.model.input("band_count").unwrap());
+    let objectives = [(force, Goal::Min), (stress, Goal::Max), (slip, Goal::Max), (bands, Goal::Min)];
+    assert_eq!(study.objectives, objectives.map(|(quantity, goal)| objective(quantity, goal)));
+    assert_eq!(
+        study.report,
+        Report {
+            columns: vec![output("max_stress_MPa")],
+            top: Some(TopSpec { by: force, goal: Goal::Min, count: 20 }),
+            histograms: vec![HistogramSpec { of: force, range: Some((0.0, 60_000.0)), bins: 60 }],
+            maps: vec![MapSpec { x: 1, y: 0, value: Best::Value(force, Goal::Min) }],
+            front_budget: 1_000_000,
+        }
+    );
+}
+
+#[test]
+fn axes_keep_the_order_of_the_file() {
+    let names = ["torque_Nm", "band_count", "strength_MPa", "friction", "ratio"];
+    let axes: String = names.iter().map(|name| format!("{name} = 1\n")).collect();
+    let study = parse(&format!("model = \"metal-cvt\"\n[objectives]\nslip_margin = \"max\"\n[design]\n{axes}")).unwrap();
+    let found: Vec<_> = study.design.iter().map(|axis| study.model.inputs[axis.inputs()[0]].name).collect();
+    assert_eq!(found, names);
+    assert_eq!(study.title, study.model.summary);
+}
+
+#[test]
+fn every_form_of_an_axis_is_understood() {
+    let levels = |name: &str, form: &str| {
+        let text = format!("model = \"metal-cvt\"\n[objectives]\nslip_margin = \"max\"\n[design]\n{name} = {form}\n");
+        match parse(&text).map(|study| study.design[0].clone()) {
+            Ok(Axis::Single { levels, .. }) => levels,
+            other => panic!("{form}: {other:?}"),
+        }
+    };
+    let list = |values: &[f64]| Levels::List(values.to_vec());
+    assert_eq!(levels("band_width_mm", "9"), list(&[9.0]));
+    assert_eq!(levels("band_width_mm", "\"0.25 in\""), list(&[6.35]));
+    assert_eq!(levels("band_width_mm", "[9, 8.5, \"1 cm\"]"), list(&[9.0, 8.5, 10.0]));
+    assert_eq!(levels("traction", "[\"limit\", 0.25, \"40 %\"]"), list(&[-1.0, 0.25, 0.4]));
+    assert_eq!(levels("torque_Nm", "[-0.0, 0x10, 1_000]"), list(&[0.0, 16.0, 1000.0]));
+    let even = |from, to, count, log| Levels::Even { from, to, count, log };
+    assert_eq!(levels("band_width_mm", "{ from = \"1 cm\", to = 5, count = 6 }"), even(10.0, 5.0, 6, false));
+    assert_eq!(levels("ratio", "{ count = 1, from = 2, to = 2.0, spacing = \"linear\" }"), even(2.0, 2.0, 1, false));
+    assert_eq!(levels("ratio", "{ from = 2, to = 0.5, count = 3.0, spacing = \"log\" }"), even(2.0, 0.5, 3, true));
+    assert_eq!(levels("band_count", "{ from = 14, to = 6, count = 5 }"), even(14.0, 6.0, 5, false));
+    let step = |from, step, count, log| Levels::Step { from, step, count, log };
+    assert_eq!(levels("band_count", "{ from = 6, to = 13, step = 3 }"), step(6.0, 3.0, 3, false));
+    assert_eq!(levels("band_width_mm", "{ from = 0.1, to = 0.3, step = 0.1 }"), step(0.1, 0.1, 3, false));
+    assert_eq!(levels("band_width_mm", "{ from = 5, to = 5, step = 1 }"), step(5.0, 1.0, 1, false));
+    assert_eq!(levels("band_width_mm", "{ from = \"1 cm\", to = \"2 cm\", step = \"5 mm\" }"), step(10.0, 5.0, 3, false));
+    assert_eq!(levels("band_width_mm", "{ from = 0.1, to = 100, step = 1, spacing = \"log\" }"), step(0.1, 1.0, 4, true));
+    assert_eq!(levels("band_width_mm", "{ from = 1, to = 9.99, step = 0.5, spacing = \"log\" }"), step(1.0, 0.5, 2, true));
+    // Steps neither lose their last level to rounding nor gain one.
+    for count in 2..400_u32 {
+        for width in [0.1, 0.05, 0.005, 1.0 / 3.0] {
+            let to = 0.1 + f64::from(count - 1) * width;
+            let counted = |to: f64| levels("band_width_mm", &format!("{{ from = 0.1, to = {to}, step = {width} }}")).count();
+            assert_eq!((counted(to), counted(to - 1e-9)), (u64::from(count), u64::from(count - 1)));
+        }
+    }
+}
+
+#[test]
+fn joint_axes_come_from_rows_and_from_a_csv_file() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("data")).unwrap();
+    let csv = "\u{feff}belt_length_mm, centre_distance_mm ,traction\r\n\r\n613,156,limit\r\n\"25 in\",160,0.4\r\n";
+    std::fs::write(folder.path().join("data/belts.csv"), csv).unwrap();
+    let text = "model = \"metal-cvt\"\n[design]\nband_count = [8, 10]\ncases = { csv = \"data/belts.csv\" }\n[operation]\n\
+                cases = [{ ratio = 2, torque_Nm = 150 }, { torque_Nm = \"60 Nm\", ratio = 0.5 }]\ncases_2 = [{ friction = 0.08 }]\n\
+                [objectives]\nslip_margin = \"max\"\n";
+    std::fs::write(folder.path().join("study.toml"), text).unwrap();
+    let (study, read) = Study::read(&folder.path().join("study.toml")).unwrap();
+    assert_eq!(read, text);
+    let joint = |names: &[&str], rows: &[&[f64]]| Axis::Joint {
+        inputs: names.iter().map(|name| study.model.input(name).unwrap()).collect(),
+        rows: rows.iter().map(|row| row.to_vec()).collect(),
+    };
+    let belts = joint(&["belt_length_mm", "centre_distance_mm", "traction"], &[&[613.0, 156.0, -1.0], &[635.0, 160.0, 0.4]]);
+    assert_eq!(study.design[1], belts);
+    assert_eq!(study.operation, [joint(&["ratio", "torque_Nm"], &[&[2.0, 150.0], &[0.5, 60.0]]), joint(&["friction"], &[&[0.08]])]);
+}
+
+#[test]
+fn sampled_designs_take_whole_ranges() {
+    let study = parse(
+        "model = \"metal-cvt\"\n[sample]\nmethod = \"latin-hypercube\"\ncount = 1e6\n\
+         [design]\nratio = { from = 0.5, to = 2, spacing = \"log\" }\nband_count = { from = 6, to = 14 }\n\
+         friction = { from = 0.06, to = 0.1, count = 5 }\n[report]\nhistograms = [{ of = \"slip_margin\" }]\n",
+    );
+    let study = study.unwrap();
+    assert_eq!(study.sample, Some(Sample { method: Method::LatinHypercube, count: 1_000_000, seed: 0 }));
+    let ratio = single(&study, "ratio", Levels::Continuous { from: 0.5, to: 2.0, log: true });
+    let bands = single(&study, "band_count", Levels::Step { from: 6.0, step: 1.0, count: 9, log: false });
+    assert_eq!(study.design[..2], [ratio, bands]);
+    let of = Quantity::Output(study.model.output("slip_margin").unwrap());
+    assert_eq!(study.report.histograms, [HistogramSpec { of, range: None, bins: 50 }]);
+}
+
+#[test]
+fn constraints_objectives_and_reports_are_understood() {
+    let study = parse(
+        "model = \"metal-cvt\"\n[design]\nratio = [1, 2]\nband_count = [8, 9]\nbelt_length_mm = [613, 620]\n[constraints]\n\
+         axial_force_N = { above = 0, max = \"20 kN\" }\nband_width_mm = { below = \"1 in\" }\n[objectives]\n\
+         max_stress_MPa = { goal = \"min\", resolution = \"100 kPa\" }\n[report]\ntop = { by = \"slip_margin\", count = 3 }\n\
+         maps = [{ x = \"belt_length_mm\", y = \"ratio\", value = \"max_stress_MPa\" }, \
+         { x = \"ratio\", y = \"band_count\", best = \"share\" }, \
+         { x = \"ratio\", y = \"band_count\", value = \"axial_force_N\", best = \"max\" }]\nfront_budget = 1e9\n",
+    );
+    let study = study.unwrap();
+    let output = |name| Quantity::Output(study.model.output(name).unwrap());
+    let width = Quantity::Input(study.model.input("band_width_mm").unwrap());
+    let force = Constraint { quantity: output("axial_force_N"), low: Some((0.0, true)), high: Some((20_000.0, false)) };
+    assert_eq!(study.constraints, [force, Constraint { quantity: width, low: None, high: Some((25.4, true)) }]);
+    assert_eq!(study.objectives, [Objective { quantity: output("max_stress_MPa"), goal: Goal::Min, resolution: Some(0.1) }]);
+    // The goal follows from what is worse: a margin is best when large.
+    assert_eq!(study.report.top, Some(TopSpec { by: output("slip_margin"), goal: Goal::Max, count: 3 }));
+    let map = |x, y, value| MapSpec { x, y, value };
+    let maps = [
+        map(2, 0, Best::Value(output("max_stress_MPa"), Goal::Min)),
+        map(0, 1, Best::Share),
+        map(0, 1, Best::Value(output("axial_force_N"), Goal::Max)),
+    ];
+    assert_eq!((study.report.maps.as_slice(), study.report.front_budget), (maps.as_slice(), 1_000_000_000));
+}
+
+/// Broken studies. A block has the lines of the example that are changed (see [`edited`]) and then, one per line, every
+/// problem with its position: `line:column: message`. `[..]` stands for anything.
+const BROKEN: &str = r####"
+# model, title, top level
+1|
+1:1: no model is named; write model = "...", models are: rubber-cvt, metal-cvt, pulley-load
+
+1| model = "cvt2"
+1:9: unknown model "cvt2"; models are: rubber-cvt, metal-cvt, pulley-load
+
+1| model = 5
+1:9: model: found the number 5, wanted a text in quotes
+
+2| title = 7
+2:9: title: found the number 7, wanted a text in quotes
+
+11| [uncertainties]
+11:2: unknown key "uncertainties"; did you mean "uncertainty"?
+
+13| [wishes]
+13:2: unknown key "wishes"; a study has model, title, design, operation, uncertainty, fixed, constraints, objectives, report, sample
+
+1| model = "metal-cvt"
+1| ratio = 1
+2:1: unknown key "ratio"; it is an input, put it into [design], [operation], [uncertainty] or [fixed]
+
+1| model = "metal-cvt"
+1| slip_margin = 1
+2:1: unknown key "slip_margin"; it is an output, put it into [constraints] or [objectives]
+
+13| [[fixed]]
+13:1: "fixed" must be a table, found a list; write [fixed] on a line of its own
+
+# names
+4| groove_angel_deg  = { from = 18, to = 30, count = 61 }
+4:1: axis "groove_angel_deg": metal-cvt has no input "groove_angel_deg"; did you mean "groove_angle_deg"?
+
+4| centre_distance = { from = 18, to = 30, count = 61 }
+4:1: axis "centre_distance": metal-cvt has no input "centre_distance"; did you mean "centre_distance_mm"?
+
+4| zzz = { from = 18, to = 30, count = 61 }
+4:1: axis "zzz": metal-cvt has no input "zzz"; its inputs are friction, groove_angle_deg, [..]
+
+4| slip_margin = { from = 18, to = 30, count = 61 }
+4:1: axis "slip_margin": slip_margin is an output; outputs can be constrained, made an objective or reported, only inputs can be given values
+
+# types
+4| groove_angle_deg  = true
+4:21: axis "groove_angle_deg": found true, wanted a value, a list of values, or a range such as { from = 1, to = 2, count = 11 }
+
+4| groove_angle_deg  = 1979-05-27
+4:21: axis "groove_angle_deg": found a date or time, wanted a value, a list of values, or a range such as { from = 1, to = 2, count = 11 }
+
+4| groove_angle_deg  = [18, [20]]
+4:26: axis "groove_angle_deg": found a list, wanted a number or a text with a unit such as "12 deg"
+
+14| strength_MPa = [800]
+14:16: fixed input "strength_MPa": found a list, but a fixed input has one value; several belong into [design], [operation] or [uncertainty]
+
+14| strength_MPa = { from = 1, to = 2, count = 2 }
+14:16: fixed input "strength_MPa": found a table, but a fixed input has one value; several belong into [design], [operation] or [uncertainty]
+
+# values
+4| groove_angle_deg  = [0, 20]
+4:22: axis "groove_angle_deg": 0 is out of range; it must be greater than 0 and less than 180 (deg)
+
+4| groove_angle_deg  = { from = 18, to = 195, count = 3 }
+4:39: axis "groove_angle_deg": 195 is out of range; it must be greater than 0 and less than 180 (deg)
+
+6| band_count        = [6, 6.5]                    # integer axis: step 1
+6:25: axis "band_count": 6.5 is not a whole number; use 6 or 7
+
+6| band_count        = { from = 0, to = 3 }                    # integer axis: step 1
+6:30: axis "band_count": 0 is out of range; it must be greater than 0
+
+6| band_count        = 0.5                    # integer axis: step 1
+6:21: axis "band_count": 0.5 is not a whole number; use 1
+
+4| groove_angle_deg  = [18, nan]
+4:26: axis "groove_angle_deg": nan cannot be used; give a finite number
+
+4| groove_angle_deg  = -inf
+4:21: axis "groove_angle_deg": -inf cannot be used; give a finite number
+
+4| groove_angle_deg  = 1e999
+4:21: axis "groove_angle_deg": 1e999 cannot be used; give a finite number
+
+14| strength_MPa = "800 mm"
+14:16: fixed input "strength_MPa": "mm" measures a length, but a stress is wanted; use MPa, Pa, kPa, GPa, psi, ksi
+
+14| strength_MPa = "116 kpsi"
+14:16: fixed input "strength_MPa": unknown unit "kpsi"; a stress may be given in MPa, Pa, kPa, GPa, psi, ksi
+
+14| strength_MPa = "strong"
+14:16: fixed input "strength_MPa": "strong" is not a number with a unit; write for example "12 MPa"
+
+14| strength_MPa = -1
+14:16: fixed input "strength_MPa": -1 is out of range; it must be greater than 0 (MPa)
+
+14| traction = "limt"
+14:1: "traction" is already set in [design], line 7; keep one of the two
+14:12: fixed input "traction": "limt" is not a number with a unit; write for example "12"; or write "limit"
+
+# lists
+10| torque_Nm = []
+10:13: axis "torque_Nm": the list is empty; give at least one value
+
+10| torque_Nm = [50, 150, 50.0]
+10:23: axis "torque_Nm": 50 is listed twice; drop one
+
+10| torque_Nm = [50, "0.05 kNm"]
+10:18: axis "torque_Nm": unknown unit "kNm"; a torque may be given in Nm, Nmm, lbf ft, lbf in
+
+7| traction          = ["limit", 0.4, "limit"]    # how hard the pulleys squeeze
+7:36: axis "traction": "limit" is listed twice; drop one
+
+# ranges
+4| groove_angle_deg  = { from = 18, to = 30 }
+4:21: axis "groove_angle_deg": a range needs count or step, such as { from = 18, to = 30, count = 11 }; or sample the designs: add [sample] with method and count
+
+12| friction  = { from = 0.065, to = 0.095 }
+12:13: axis "friction": a range needs count or step, such as { from = 0.065, to = 0.095, count = 11 }; only [design] can be sampled
+
+4| groove_angle_deg  = { from = 18, count = 61 }
+4:21: axis "groove_angle_deg": a range needs from and to, "to" is missing; write { from = ..., to = ... }
+
+4| groove_angle_deg  = { form = 18, to = 30, count = 61 }
+4:23: axis "groove_angle_deg": unknown key "form"; did you mean "from"?
+
+4| groove_angle_deg  = { from = 18, to = 30, n = 61 }
+4:43: axis "groove_angle_deg": unknown key "n"; allowed are from, to, count, step, spacing
+
+4| groove_angle_deg  = { from = 18, to = 30, count = 61, step = 1 }
+4:55: axis "groove_angle_deg": count and step are both given; keep one of the two
+
+4| groove_angle_deg  = { from = 18, to = 30, count = 1 }
+4:21: axis "groove_angle_deg": one level cannot be both 18 and 30; use count = 2 or more, or the value 18 alone
+
+4| groove_angle_deg  = { from = 18, to = 18, count = 2 }
+4:21: axis "groove_angle_deg": from and to are both 18, so all 2 levels would be equal; write the value alone
+
+4| groove_angle_deg  = { from = 18, to = 30, count = 0 }
+4:51: axis "groove_angle_deg": 0 is out of range; count must be a whole number from 1 to 9007199254740992
+
+4| groove_angle_deg  = { from = 18, to = 30, count = 1.5 }
+4:51: axis "groove_angle_deg": found the number 1.5; count must be a whole number from 1 to 9007199254740992
+
+4| groove_angle_deg  = { from = 18, to = 30, count = 1e300 }
+4:51: axis "groove_angle_deg": found the number 1e300; count must be a whole number from 1 to 9007199254740992
+
+4| groove_angle_deg  = { from = 18, to = 30, count = 9007199254740992 }
+4:21: axis "groove_angle_deg": 9007199254740992 levels from 18 to 30 are too close to tell apart; use fewer
+
+5| band_thickness_mm = { from = 0.30, to = 0.10, step = 0.005 }
+5:21: axis "band_thickness_mm": from 0.3 to 0.1 runs downwards, which steps cannot; swap the ends or use count
+
+5| band_thickness_mm = { from = 0.1, to = 0.3, step = 0 }
+5:52: axis "band_thickness_mm": the step 0 leads nowhere; step must be greater than 0; to run downwards use count
+
+5| band_thickness_mm = { from = 0.1, to = 0.3, step = -1 }
+5:52: axis "band_thickness_mm": the step -1 leads nowhere; step must be greater than 0; to run downwards use count
+
+5| band_thickness_mm = { from = 0.1, to = 0.3, step = 1e-300 }
+5:21: axis "band_thickness_mm": the step 1e-300 mm makes 2.0e299 levels, at most 9007199254740992 can be numbered; use a larger step
+
+5| band_thickness_mm = { from = 0.1, to = 0.3, step = 2e-17 }
+5:21: axis "band_thickness_mm": the step 2e-17 mm makes 1.0e16 levels, at most 9007199254740992 can be numbered; use a larger step
+
+5| band_thickness_mm = { from = 0.1, to = 0.3, step = "1 N" }
+5:52: axis "band_thickness_mm": "N" measures a force, but a length is wanted; use mm, um, cm, m, in, ft
+
+9| ratio     = { from = 0.5, to = 2.0, count = 31, spacing = "logarithmic" }
+9:59: axis "ratio": unknown spacing "logarithmic"; write "linear" or "log"
+
+12| friction  = { from = 1e-300, to = 1e300, count = 3, spacing = "log" }
+12:13: axis "friction": from 1e-300 to 1e300 is too wide to compute with; narrow the range
+
+6| band_count        = { from = 6, to = 14, count = 4 }                     # integer axis: step 1
+6:21: axis "band_count": 4 even levels from 6 to 14 are not all whole numbers; use another count, or step = 1
+
+6| band_count        = { from = 6, to = 14, step = 0.5 }                     # integer axis: step 1
+6:49: axis "band_count": the step 0.5 is not a whole number, but band_count takes whole numbers only; use step = 1
+
+6| band_count        = { from = 6, to = 14, spacing = "log" }                     # integer axis: step 1
+6:21: axis "band_count": logarithmic levels of a whole number are not whole; list them, such as [1, 10, 100]
+
+6| band_count        = { from = 6, to = 14.5 }                     # integer axis: step 1
+6:38: axis "band_count": 14.5 is not a whole number; use 14 or 15
+
+7| traction          = { from = "limit", to = 0.50, count = 11 }    # how hard the pulleys squeeze
+7:30: axis "traction": "limit" is a word and no end of a range; use numbers, or list it: ["limit", ...]
+
+# inputs set twice
+14| strength_MPa = 800
+14| ratio = 2
+15:1: "ratio" is already set in [operation], line 9; keep one of the two
+
+14| strength_MPa = 800
+14| torque_Nm = 2
+15:1: "torque_Nm" is already set in [operation], line 10; keep one of the two
+
+12| torque_Nm = { from = 0.065, to = 0.095, count = 7 }
+12:1: "torque_Nm" is already set in [operation], line 10; keep one of the two
+
+# joint axes
+10| cases = []
+10:9: axis "cases": there are no rows; write rows such as [{ friction = ..., groove_angle_deg = ... }]
+
+10| cases = [{}]
+10:10: axis "cases": the row names no input; write { friction = ..., groove_angle_deg = ... }
+
+10| cases = [{ torque_Nm = 50, strength_MPa = 800 }, { torque_Nm = 60 }]
+10:50: axis "cases": this row lacks strength_MPa; give every row the same inputs
+14:1: "strength_MPa" is already set in [operation], line 10; keep one of the two
+
+10| cases = [{ torque_Nm = 50 }, { torque_Nm = 60, band_width_mm = 9 }]
+10:48: axis "cases": "band_width_mm" is missing in the first row; give every row the same inputs
+
+10| cases = [{ torque_Nm = 50, band_width_mm = 9 }, { torque_Nm = 60, band_width_mm = 9 }, { torque_Nm = 50, band_width_mm = 9 }]
+10:88: axis "cases": this row equals that of line 10; drop one
+
+10| cases = [{ torque_Nm = 50 }, { torque_Nm = -5 }]
+10:44: axis "cases": -5 is out of range; it must be at least 0 (Nm)
+
+10| cases = 5
+10:9: axis "cases": found the number 5, wanted rows such as [{ friction = ..., groove_angle_deg = ... }, ...] or { csv = "file.csv" }
+
+10| cases = [5]
+10:10: axis "cases": found the number 5, wanted a row such as { friction = ..., groove_angle_deg = ... }
+
+10| cases = [{ torque = 5 }]
+10:12: axis "cases": metal-cvt has no input "torque"; did you mean "torque_Nm"?
+
+10| cases = { csv = 5 }
+10:17: axis "cases": found the number 5, wanted a text in quotes
+
+10| cases = { file = "a.csv" }
+10:11: axis "cases": unknown key "file"; allowed is csv
+
+10| cases = { csv = "no such file.csv" }
+10:17: axis "cases": cannot read "no such file.csv": [..]; paths count from the folder of the study
+
+10| cases = { csv = "." }
+10:17: axis "cases": "." is not a file; name a CSV file
+
+10| cases_2 = [{ ratio = 1 }, { ratio = 2 }]
+10:14: "ratio" is already set in [operation], line 9; keep one of the two
+
+# sizes
+4| groove_angle_deg  = { from = 18, to = 30, count = 9000000000000 }
+27:9: maps: 41 x 9000000000000 cells are too many, at most 67108864 fit; use fewer levels or choose other axes
+
+7| traction          = { from = 0.30, to = 0.50, count = 9000000000000000 }    # how hard the pulleys squeeze
+7:21: axis "traction": 9000000000000000 levels from 0.3 to 0.5 are too close to tell apart; use fewer
+
+12| friction  = { from = 0.065, to = 0.095, count = 1000000000 }
+8:1: [operation] and [uncertainty] make 62000000000 scenarios, at most 4294967296 can be numbered; drop an axis or use fewer levels
+
+3| [operations]
+3:2: unknown key "operations"; did you mean "operation"?
+
+# constraints
+16| slip_margni = { min = 0 }
+16:1: constraint "slip_margni": metal-cvt has no input or output "slip_margni"; did you mean "slip_margin"?
+
+16| slip_margin = 0
+16:15: constraint "slip_margin": found the number 0, wanted bounds such as { min = 0 }
+
+16| slip_margin = {}
+16:15: constraint "slip_margin": there are no bounds; give min, max, above or below
+
+16| slip_margin = { least = 0 }
+16:17: constraint "slip_margin": unknown key "least"; allowed are min, max, above, below
+
+16| slip_margin = { min = 0, above = 0 }
+16:26: constraint "slip_margin": min and above are both given; keep one of the two
+
+16| slip_margin = { min = 1, max = 0 }
+16:26: constraint "slip_margin": no value is at least 1 and at most 0; swap or widen the bounds
+
+16| slip_margin = { above = 1, max = 1 }
+16:28: constraint "slip_margin": no value is above 1 and at most 1; swap or widen the bounds
+
+16| max_stress_MPa = { max = "5 N" }
+16:26: constraint "max_stress_MPa": "N" measures a force, but a stress is wanted; use MPa, Pa, kPa, GPa, psi, ksi
+
+16| slip_margin = { min = "limit" }
+16:23: constraint "slip_margin": "limit" is not a number with a unit; write for example "12"
+
+16| slip_margin = { max = inf }
+16:23: constraint "slip_margin": inf cannot be used; give a finite number
+
+7| traction          = ["limit", 0.4]
+16| traction = { min = 0.3 }
+16:1: constraint "traction": "traction" takes "limit" in [design], line 7, which is no number; give it numbers only
+
+7| #    # how hard the pulleys squeeze
+16| traction = { min = 0.3 }
+16:1: constraint "traction": "traction" has its default "limit", which is no number; give it numbers as an axis or in [fixed]
+
+# objectives
+19| axial_force_N = "minimise"
+19:17: objective "axial_force_N": unknown goal "minimise"; write "min" or "max"
+
+19| axial_force_N = 1
+19:17: objective "axial_force_N": found the number 1, wanted "min", "max" or { goal = "min", resolution = 10 }
+
+19| axial_force_N = {}
+19:17: objective "axial_force_N": there is no goal; write goal = "min" or goal = "max"
+
+19| axial_force_N = { goal = "min", resolution = 0 }
+19:46: objective "axial_force_N": the resolution 0 N is no width; it must be greater than 0
+
+19| axial_force_N = { goal = "min", resolution = "10 mm" }
+19:46: objective "axial_force_N": "mm" measures a length, but a force is wanted; use N, kN, kgf, lbf
+
+19| axial_force = "min"
+19:1: objective "axial_force": metal-cvt has no input or output "axial_force"; did you mean "axial_force_N"?
+
+19| axial_force_N = "min"
+19| max_stress_MPa = "min"
+19| tight_force_N = "min"
+19| slack_force_N = "min"
+25:1: the study has 7 objectives, at most 6 can be weighed; make the others constraints or columns of [report]
+
+18|
+19|
+20|
+21|
+22|
+25|    # best feasible over the other axes
+26|
+27|
+1:1: the study asks for nothing; name an objective in [objectives], such as belt_force_N = "min", or top, histograms or maps in [report]
+
+# report
+24| columns = "max_stress_MPa"
+24:11: columns: found the text "max_stress_MPa", wanted a list of names such as ["belt_force_N"]
+
+24| columns = ["max_stress_MPa", "max_stress_MPa"]
+24:30: columns: "max_stress_MPa" is listed twice; drop one
+
+24| columns = ["band_count"]
+24:12: columns: "band_count" is a design input, which the tables have anyway; drop it
+
+24| columns = ["max_stress"]
+24:12: columns: metal-cvt has no input or output "max_stress"; did you mean "max_stress_MPa"?
+
+24| columns = [7]
+24:12: columns: found the number 7, wanted a text in quotes
+
+25| top = 20
+25:7: top: found the number 20, wanted a table such as { by = "...", count = 20 }
+
+25| top = { count = 20 }
+25:7: top: "by" is missing; write top = { by = "belt_force_N", count = 20 }
+
+25| top = { by = "axial_force_N" }
+25:7: top: "count" is missing; write top = { by = "belt_force_N", count = 20 }
+
+25| top = { by = "axial_force_N", count = 0 }
+25:39: top: 0 is out of range; count must be a whole number from 1 to 1000000
+
+25| top = { by = "axial_force_N", count = 20, goal = "best" }
+25:50: top: unknown goal "best"; write "min" or "max"
+
+26| histograms = [{ of = "axial_force_N", from = 0 }]
+26:39: histograms: only from is given; give both from and to, or neither
+
+26| histograms = [{ of = "axial_force_N", from = 5, to = 5 }]
+26:49: histograms: there are no bins from 5 N to 5 N; from must be less than to
+
+26| histograms = [{ of = "axial_force_N", bins = 1000000 }]
+26:46: histograms: 1000000 is out of range; bins must be a whole number from 1 to 100000
+
+26| histograms = [{ bins = 10 }]
+26:15: histograms: "of" is missing; write { of = "belt_force_N", bins = 50 }
+
+26| histograms = { of = "axial_force_N", from = 0, to = 60000, bins = 60 }
+26:14: histograms: found a table, wanted a list such as [{ of = "...", bins = 50 }]
+
+26| histograms = []
+26:14: histograms: the list is empty; write [{ of = "...", bins = 50 }] or drop the line
+
+27| maps = [{ x = "band_thickness_mm", y = "band_thickness_mm", value = "axial_force_N" }]   # best feasible over the other axes
+27:40: maps: x and y are the same axis; choose two
+
+27| maps = [{ x = "ratio", y = "band_thickness_mm", value = "axial_force_N" }]   # best feasible over the other axes
+27:15: maps: "ratio" is no design axis; choose one of [design], or put it there
+
+27| maps = [{ x = "slip_margin", y = "band_thickness_mm", value = "axial_force_N" }]   # best feasible over the other axes
+27:15: maps: x must be a design axis; slip_margin is an output; outputs can be constrained, made an objective or reported, only inputs can be given values
+
+27| maps = [{ x = "groove_angle_deg", y = "band_thickness_mm", value = "max_stress_MPa" }]   # best feasible over the other axes
+27:68: maps: "max_stress_MPa" is no objective; say which value is best: best = "min" or best = "max"
+
+27| maps = [{ x = "groove_angle_deg", y = "band_thickness_mm" }]   # best feasible over the other axes
+27:9: maps: "value" is missing; name an objective, or write best = "share"
+
+27| maps = [{ x = "groove_angle_deg", y = "band_thickness_mm", value = "axial_force_N", best = "share" }]   # best feasible over the other axes
+27:60: maps: the share of feasible designs needs no value; drop value or best = "share"
+
+27| maps = [{ x = "groove_angle_deg", y = "band_thickness_mm", value = "axial_force_N", best = "max" }]   # best feasible over the other axes
+27:92: maps: "axial_force_N" is an objective with the other goal; drop best
+
+27| maps = [{ x = "groove_angle_deg", value = "axial_force_N" }]   # best feasible over the other axes
+27:9: maps: "y" is missing; write { x = "...", y = "...", value = "belt_force_N" }
+
+4| groove_angle_deg  = { from = 18, to = 30, count = 100000 }
+5| band_thickness_mm = { from = 0.10, to = 0.30, step = 0.0001 }
+27:9: maps: 2001 x 100000 cells are too many, at most 67108864 fit; use fewer levels or choose other axes
+
+24| columns = ["max_stress_MPa"]
+24| front_budget = 0
+25:16: [report]: 0 is out of range; front_budget must be a whole number from 1 to 1000000000
+
+24| columns = ["max_stress_MPa"]
+24| front_bugdet = 5
+25:1: [report]: unknown key "front_bugdet"; did you mean "front_budget"?
+
+4| cases = [{ groove_angle_deg = 20, band_width_mm = 9 }, { groove_angle_deg = 22, band_width_mm = 8 }]
+27:40: maps: "groove_angle_deg" belongs to a joint axis, which has no direction; choose an axis of one input
+
+# sampled designs
+1| model = "metal-cvt"
+1| sample = "sobol"
+2:10: "sample" must be a table, found the text "sobol"; write [sample] on a line of its own
+28:9: maps: sampled designs lie on no grid, so there is no map; drop it or [sample]
+
+1| model = "metal-cvt"
+1| [sample]
+1| method = "sobol"
+1| count = 1000
+5:1: [sample]: unknown key "title"; it belongs in front of the first table
+30:9: maps: sampled designs lie on no grid, so there is no map; drop it or [sample]
+
+27| [sample]
+27| count = 10   # best feasible over the other axes
+27:1: [sample]: "method" is missing; write method = "sobol"
+
+27| [sample]
+27| method = "halton"
+27| count = 10   # best feasible over the other axes
+28:10: [sample]: unknown method "halton"; write "sobol" or "latin-hypercube" or "random"
+
+27| [sample]
+27| method = "sobol"
+27| count = -1   # best feasible over the other axes
+29:9: [sample]: -1 is out of range; count must be a whole number from 1 to 9007199254740992
+
+27| [sample]
+27| method = "sobol"
+27| count = 9
+27| seed = 0.5   # best feasible over the other axes
+30:8: [sample]: found the number 0.5; seed must be a whole number from 0 to 18446744073709551615
+
+4| groove_angle_deg  = { from = 18, to = 18 }
+27| [sample]
+27| method = "sobol"
+27| count = 9   # best feasible over the other axes
+4:21: axis "groove_angle_deg": from and to are both 18; write the value alone
+
+12| friction  = { from = 0.065, to = 0.095 }
+27| [sample]
+27| method = "sobol"
+27| count = 9   # best feasible over the other axes
+12:13: axis "friction": a range needs count or step, such as { from = 0.065, to = 0.095, count = 11 }; only [design] can be sampled
+
+# syntax
+10| torque_Nm =
+10:12: there is no value behind "="; write one
+
+10| torque_Nm = [50, 150
+10:21: a comma or a closing bracket is missing; write [1, 2] or { from = 1, to = 2 }
+
+10| torque_Nm = [50 150]
+10:14: a comma is missing between two values; write [1, 2] or { from = 1, to = 2 }
+
+10| torque_Nm = 50 Nm
+10:13: a text must be in quotes; write "50 Nm"
+
+10| torque_Nm = limit
+10:13: a text must be in quotes; write "limit"
+
+10| torque_Nm = 1,5
+10:14: the line goes on behind its value; start a new line, and write decimals with a point
+
+10| torque_Nm = .5
+10:13: a number needs digits on both sides of its point; write 0.5 or 5.0
+
+10| torque_Nm = 050
+10:13: a number does not start with 0; drop it
+
+10| torque_Nm [50]
+10:11: this is neither a table nor a value; write [table] or name = value
+
+10| torque_Nm = [50]
+10| torque_Nm = [60]
+11:1: "torque_Nm" is given twice; keep one of the two
+
+4| groove_angle_deg  = { from = 18, to = 30, count = 61
+4:53: a comma or a closing bracket is missing; write [1, 2] or { from = 1, to = 2 }
+
+4| groove_angle_deg  = { from = 18, to = 30 count = 61 }
+4:39: a comma is missing between two values; write [1, 2] or { from = 1, to = 2 }
+
+8| [operation
+8:11: a table's name is not closed; add "]"
+
+8| operation]
+8:10: this is neither a table nor a value; write [table] or name = value
+
+8| [design]
+8:2: "design" is given twice; keep one of the two
+
+2| title = Push belt for 150 N m: every ratio, friction known to +-20 %"
+2:9: a text must be in quotes; write "Push belt for 150 N m: every ratio"
+
+2| title = "Push belt for 150 N m: every ratio, friction known to +-20 %
+2:70: a text is not closed; add the quote it starts with
+
+2| title = """Push belt for 150 N m: every ratio, friction known to +-20 %"
+27:124: a text is not closed; add the quote it starts with
+
+1| model = "metal-cvt"
+1| é = 1
+2:1: a name has letters, digits, "_" and "-" only and is followed by "="; write name = value
+
+10| "torque_Nm" = "é\q"
+10:18: a backslash in a text starts a code; write two of them, or put the text in single quotes
+
+4| groove_angle_deg  = { from = 18, to = 30,, count = 61 }
+4:42: there is nothing between two commas; drop one
+
+10| torque_Nm: [50]
+10:10: a name has letters, digits, "_" and "-" only and is followed by "="; write name = value
+
+# and again, of every kind
+1| model = metal-cvt
+1:9: a text must be in quotes; write "metal-cvt"
+
+2| titel = "Push belt for 150 N m: every ratio, friction known to +-20 %"
+2:1: unknown key "titel"; did you mean "title"?
+
+1| [design]
+1| model = "metal-cvt"
+4:2: "design" is given twice; keep one of the two
+
+4| groove_angle_deg  = { from = 18, to = 30, count = 9000000000000 }
+5| band_thickness_mm = { from = 0.10, to = 0.30, step = 0.000000005 }
+3:1: the space has 3.6e22 designs, at most 1.8e19 can be numbered; drop an axis or use fewer levels
+27:9: maps: 40000001 x 9000000000000 cells are too many, at most 67108864 fit; use fewer levels or choose other axes
+
+7| traction          = { from = 0.30, to = 0.50, count = 11, spacing = log }    # how hard the pulleys squeeze
+7:69: a text must be in quotes; write "log"
+
+9| ratio     = { from = 0, to = 2.0, count = 31, spacing = "log" }
+9:22: axis "ratio": 0 is out of range; it must be greater than 0
+
+12| friction  = { from = 0, to = 1, count = 3, spacing = "log" }
+12:22: axis "friction": 0 is out of range; it must be greater than 0
+
+9| ratio     = { from = 0.5, to = 2.0, step = "0.1 mm", spacing = "log" }
+9:44: axis "ratio": "mm" measures a length, but a plain number is wanted; use %
+
+5| band_thickness_mm = { from = 1e15, to = 2e15, step = 0.2 }
+5:21: axis "band_thickness_mm": the step 0.2 mm is too small to tell levels up to 2000000000000000 apart; use a larger step
+
+5| band_thickness_mm = { from = -1e308, to = 1e308, count = 3 }
+5:30: axis "band_thickness_mm": -1e308 is out of range; it must be greater than 0 (mm)
+
+6| band_count        = { from = 1, to = 1e17 }                     # integer axis: step 1
+6:21: axis "band_count": whole numbers beyond 9007199254740992 are not exact; narrow the range
+
+6| band_count        = "8 mm"                     # integer axis: step 1
+6:21: axis "band_count": "mm" measures a length, but a plain number is wanted; use %
+
+7| #    # how hard the pulleys squeeze
+10| cases = [{ torque_Nm = 50, traction = "limit" }]
+19| traction = "max"
+19:1: objective "traction": "traction" takes "limit" in [operation], line 10, which is no number; give it numbers only
+27:68: maps: "axial_force_N" is no objective; say which value is best: best = "min" or best = "max"
+
+19| axial_force_N = { resolution = 10 }
+19:17: objective "axial_force_N": there is no goal; write goal = "min" or goal = "max"
+
+19| axial_force_N = { goal = "min", resolutoin = 10 }
+19:33: objective "axial_force_N": unknown key "resolutoin"; did you mean "resolution"?
+
+24| columns = ["axial_force_N", "slip_margin"]
+24| maps = 5
+27|    # best feasible over the other axes
+25:8: maps: found the number 5, wanted a list such as [{ x = "...", y = "...", value = "..." }]
+
+10| torque_Nm = [50, 150,,]
+10:22: there is nothing between two commas; drop one
+
+1| model = "metal-cvt" extra
+1:21: the line goes on behind its value; start a new line, and write decimals with a point
+
+10| torque_Nm = [50, "12 lbf"]
+10:18: axis "torque_Nm": "lbf" measures a force, but a torque is wanted; use Nm, Nmm, lbf ft, lbf in
+
+10| torque_Nm = { from = 0, to = 100, count = 3, spacing = "log" }
+10:13: axis "torque_Nm": logarithmic spacing cannot reach 0; from and to must be greater than 0
+
+6| band_count = { from = -5, to = 3 }
+6:23: axis "band_count": -5 is out of range; it must be greater than 0
+
+10| cases = [{ torque_Nm = 50 }, { torqe_Nm = 60 }]
+10:32: axis "cases": metal-cvt has no input "torqe_Nm"; did you mean "torque_Nm"?
+
+10| cases = [{}, { ratio = 1 }]
+10:10: axis "cases": the row names no input; write { friction = ..., groove_angle_deg = ... }
+
+10| cases = [{ torque_Nm = 50 }, 60]
+10:30: axis "cases": found the number 60, wanted a row such as { friction = ..., groove_angle_deg = ... }
+
+14| groove_angle = "20 deg"
+14| "strength_MPa" = 900
+14:1: fixed input "groove_angle": metal-cvt has no input "groove_angle"; did you mean "groove_angle_deg"?
+
+14| cases = [{ strength_MPa = 5 }]
+14:1: fixed input "cases": metal-cvt has no input "cases"; its inputs are friction, groove_angle_deg, [..]
+
+18| [objective]
+18:2: unknown key "objective"; did you mean "objectives"?
+
+19| axial_force_N = { goal = "least" }
+19:26: objective "axial_force_N": unknown goal "least"; write "min" or "max"
+
+22| traction = "limit"
+22:12: objective "traction": unknown goal "limit"; write "min" or "max"
+
+26| histograms = [{ of = "axial_force_N", from = "1 mm", to = "2 kN" }]
+26:46: histograms: "mm" measures a length, but a force is wanted; use N, kN, kgf, lbf
+
+26| histograms = [{ of = "traction" }]
+7|
+26:22: histograms: "traction" has its default "limit", which is no number; give it numbers as an axis or in [fixed]
+
+25| top = { by = "ratoi", count = 3 }
+25:14: top: metal-cvt has no input or output "ratoi"; did you mean "ratio"?
+
+24| columns = ["model"]
+24:12: columns: metal-cvt has no input or output "model"; beltspace models metal-cvt lists them
+
+27| maps = [{ x = 5, y = "groove_angle_deg", best = "share" }]
+27:15: maps: found the number 5, wanted a text in quotes
+
+27| maps = [{ x = "band_count", y = "groove_angle_deg", value = "driver_radius_mm", best = "least" }]
+27:88: maps: unknown best "least"; write "min" or "max" or "share"
+
+12| friction = { from = 0.065, to = 0.095, count = 7 }
+12| [uncertainty.more]
+12| ratio = 2
+13:14: axis "more": metal-cvt has no input "more"; its inputs are friction, groove_angle_deg, [..]
+
+12| friction = [0.065, 0.095
+12|
+12| # a remark
+12:25: a comma or a closing bracket is missing; write [1, 2] or { from = 1, to = 2 }
+
+12| friction = { from = 0.065, to = 0.095,
+12| count = 7
+13:10: a comma or a closing bracket is missing; write [1, 2] or { from = 1, to = 2 }
+
+4| groove_angle_deg = [18, 20
+4| 22]
+4:27: a comma or a closing bracket is missing; write [1, 2] or { from = 1, to = 2 }
+
+4| groove_angle_deg = "18 deg
+4:27: a text is not closed; add the quote it starts with
+
+4| groove_angle_deg = 18 deg
+10| torque_Nm = 050
+13| [fixed
+22| band_count = min
+4:20: a text must be in quotes; write "18 deg"
+10:13: a number does not start with 0; drop it
+13:7: a table's name is not closed; add "]"
+22:14: a text must be in quotes; write "min"
+"####;
