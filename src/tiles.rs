@@ -130,7 +130,7 @@ mod tests {
         }
         assert_eq!(done.0, [0..25, 40..50]);
         assert_eq!(done.missing_from(5..60).0, [25..40, 50..60]);
-        assert_eq!(done.overlap(&Ranges(vec![20..45])).0, [20..25, 40..45]);
+        assert_eq!(done.overlap(&Ranges::of(20..45)).0, [20..25, 40..45]);
         let mut todo = done.missing_from(0..60);
         assert_eq!((todo.take(7), todo.take(100), todo.take(3)), (Some(25..32), Some(32..40), Some(50..53)));
     }

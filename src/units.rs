@@ -255,7 +255,7 @@ mod tests {
         assert_eq!(parse_value("12", NEWTON), Ok(12.0));
         assert_eq!(parse_value(" 1e3 N ", NEWTON), Ok(1000.0));
         assert!((parse_value("12 lbf", NEWTON).unwrap() - 53.378_659_383_126).abs() < 1e-9);
-        assert!((parse_value("200 rad/s", RPM).unwrap() - 1909.859_317_102_744).abs() < 1e-9);
+        assert!((parse_value("200 rad/s", RPM).unwrap() - 1_909.859_317_102_744).abs() < 1e-9);
         assert!((parse_value("100ksi", MEGAPASCAL).unwrap() - 689.475_729_316_836).abs() < 1e-9);
         assert!((parse_value("1 hp", KILOWATT).unwrap() - 0.745_699_871_582_270).abs() < 1e-12);
         assert_eq!(parse_value("8 %", NONE), Ok(0.08));

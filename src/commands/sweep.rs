@@ -22,7 +22,9 @@ pub fn run(request: &cli::Sweep) -> Result<()> {
     let (study, text) = read_study(&request.study)?;
     let shard = request.shard.unwrap_or(Shard::WHOLE);
     let out = request.out.clone().unwrap_or_else(|| default_out(&request.study, request.shard));
-    refuse_to_overwrite(&out, request.force)?;
+    // A checkpoint beside a finished result is an unfinished run that is to replace it.
+    let goes_on = request.resume && Checkpoint::exists(&out.join(CHECKPOINT));
+    refuse_to_overwrite(&out, request.force || goes_on)?;
     let plan = Plan::new(study);
     let mut checkpoint = open_checkpoint(&out, &plan, &text, shard, request)?;
     let resumed = checkpoint.has_progress();

@@ -22,14 +22,21 @@ impl Lanes {
         Self([value; LANES])
     }
 
+    // Plain loops: the library's array functions are not always inlined, and then nothing vectorises.
     #[inline(always)]
-    fn map(self, function: impl Fn(f64) -> f64) -> Self {
-        Self(from_fn(|lane| function(self.0[lane])))
+    fn map(mut self, function: impl Fn(f64) -> f64) -> Self {
+        for lane in 0..LANES {
+            self.0[lane] = function(self.0[lane]);
+        }
+        self
     }
 
     #[inline(always)]
-    fn zip(self, other: Self, function: impl Fn(f64, f64) -> f64) -> Self {
-        Self(from_fn(|lane| function(self.0[lane], other.0[lane])))
+    fn zip(mut self, other: Self, function: impl Fn(f64, f64) -> f64) -> Self {
+        for lane in 0..LANES {
+            self.0[lane] = function(self.0[lane], other.0[lane]);
+        }
+        self
     }
 }
 
@@ -100,7 +107,11 @@ impl Real for Lanes {
     }
     #[inline(always)]
     fn select(margin: Self, at_least_zero: Self, below_zero: Self) -> Self {
-        Self(from_fn(|lane| f64::select(margin.0[lane], at_least_zero.0[lane], below_zero.0[lane])))
+        let mut chosen = below_zero;
+        for lane in 0..LANES {
+            chosen.0[lane] = f64::select(margin.0[lane], at_least_zero.0[lane], below_zero.0[lane]);
+        }
+        chosen
     }
     /// One lane after the other: each must take the very steps that the scalar takes.
     fn monotone_root(bracket: (Self, Self), start: Self, function: impl Fn(Self) -> (Self, Self)) -> Self {

@@ -16,7 +16,7 @@ const BINS: usize = 4096;
 /// Points against which every design is compared first, for three objectives and more.
 const KILLERS: usize = 8;
 /// Least number of waiting designs before they are merged.
-const WAITING: usize = 1024;
+const WAITING: usize = 2048;
 
 /// What an objective becomes for the comparison: less is better, steps of the resolution count as one value.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -133,14 +133,14 @@ enum Filter {
 struct Table {
     low: f64,
     scale: f64,
-    best: Vec<f64>,
+    best: Box<[f64; BINS]>,
 }
 
 impl Table {
     fn new(points: &Points) -> Self {
         let (low, high) = (points.keys[0], points.keys[2 * (points.len() - 1)]);
         let scale = if high > low { (BINS - 2) as f64 / (high - low) } else { 0.0 };
-        let mut table = Self { low, scale: if scale.is_finite() { scale } else { 0.0 }, best: vec![f64::INFINITY; BINS] };
+        let mut table = Self { low, scale: if scale.is_finite() { scale } else { 0.0 }, best: Box::new([f64::INFINITY; BINS]) };
         for key in points.keys.chunks(2) {
             let next = table.bin(key[0]) + 1;
             if next < BINS {
@@ -165,11 +165,24 @@ impl Table {
     }
 }
 
-/// Drops what the table knows to be beaten.
+/// Keeps, of the feasible designs, those that the table does not know to be beaten.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-fn drop_below(table: &Table, alive: &mut [u64], first: &[f64], second: &[f64]) {
-    for ((alive, &first), &second) in alive.iter_mut().zip(first).zip(second) {
-        *alive &= if second < table.best[table.bin(first)] { u64::MAX } else { 0 };
+fn keep_unbeaten(table: &Table, feasible: &[u64], first: &[f64], second: &[f64], alive: &mut [u64]) {
+    // Bins, then look-ups, then comparisons: the first and last vectorise, and nothing branches.
+    const CHUNK: usize = 64;
+    let mut bins = [0; CHUNK];
+    let mut best = [0.0; CHUNK];
+    for start in (0..feasible.len()).step_by(CHUNK) {
+        let end = feasible.len().min(start + CHUNK);
+        for (bin, &key) in bins.iter_mut().zip(&first[start..end]) {
+            *bin = table.bin(key);
+        }
+        for (best, &bin) in best[..end - start].iter_mut().zip(&bins) {
+            *best = table.best[bin & (BINS - 1)];
+        }
+        for (((alive, &feasible), &key), &best) in alive[start..end].iter_mut().zip(&feasible[start..end]).zip(&second[start..end]).zip(&best) {
+            *alive = if key < best { feasible } else { 0 };
+        }
     }
 }
 
@@ -224,8 +237,10 @@ impl Front {
             keys.resize(block.count(), 0.0);
             rule.keys(block.column(column), keys);
         }
-        self.alive.clear();
-        self.alive.extend_from_slice(block.alive);
+        self.alive.resize(block.count(), 0);
+        if !matches!(self.filter, Filter::Table(_)) {
+            self.alive.copy_from_slice(block.alive);
+        }
         match &self.filter {
             Filter::Nothing => {}
             Filter::Best(best) => {
@@ -233,7 +248,7 @@ impl Front {
                     *alive &= if key <= best { u64::MAX } else { 0 };
                 }
             }
-            Filter::Table(table) => drop_below(table, &mut self.alive, &self.keys[0], &self.keys[1]),
+            Filter::Table(table) => keep_unbeaten(table, block.alive, &self.keys[0], &self.keys[1], &mut self.alive),
             Filter::Killers { recent, .. } => {
                 for (killer, _) in recent {
                     drop_dominated(&mut self.alive, killer, &self.keys);
@@ -336,6 +351,10 @@ impl Front {
         all.indices.extend(waiting.indices);
         let mut order: Vec<usize> = (0..all.len()).collect();
         order.sort_unstable_by(|&a, &b| {
+            let first = all.keys[a * dimensions].total_cmp(&all.keys[b * dimensions]);
+            if first.is_ne() {
+                return first;
+            }
             let keys = all.key(a, dimensions).iter().zip(all.key(b, dimensions));
             let by_key = keys.map(|(a, b)| a.total_cmp(b)).find(|ordering| ordering.is_ne());
             // A design that came back with a seed is the same point twice: the known one first, the other is dropped.
@@ -410,7 +429,7 @@ mod tests {
     }
 
     fn rules(dimensions: usize) -> Vec<KeyRule> {
-        let goal = |d: usize| if d % 2 == 0 { Goal::Min } else { Goal::Max };
+        let goal = |d: usize| if d.is_multiple_of(2) { Goal::Min } else { Goal::Max };
         let objective = |d| Objective { quantity: Quantity::Input(0), goal: goal(d), resolution: (d == 3).then_some(3.0) };
         (0..dimensions).map(|d| KeyRule::from(&objective(d))).collect()
     }
@@ -418,7 +437,7 @@ mod tests {
     /// Blocks of designs with `dimensions` values on few levels, some of them infeasible, in a shuffled order.
     fn blocks(dimensions: usize, designs: u64, seed: u64) -> Vec<Owned> {
         let value = |index: u64, d: usize| {
-            let level = mix(seed ^ index * 8 + d as u64) % 40;
+            let level = mix(seed ^ (index * 8 + d as u64)) % 40;
             level as f64 + if d == 0 { (index % 100) as f64 } else { 0.0 }
         };
         let mut blocks: Vec<Owned> = (0..designs)
@@ -426,7 +445,7 @@ mod tests {
             .map(|first| Owned {
                 row_index: first,
                 offsets: (0..100).collect(),
-                alive: (first..first + 100).map(|index| if mix(seed ^ index) % 3 == 0 { 0 } else { u64::MAX }).collect(),
+                alive: (first..first + 100).map(|index| if mix(seed ^ index).is_multiple_of(3) { 0 } else { u64::MAX }).collect(),
                 values: (0..dimensions).map(|d| (first..first + 100).map(|index| value(index, d)).collect()).collect(),
             })
             .collect();

@@ -66,23 +66,36 @@ pub fn any(alive: &[u64]) -> bool {
     alive.iter().fold(0, |any, alive| any | alive) != 0
 }
 
+/// What is out becomes a NaN, which no comparison takes.
+#[inline(always)]
+fn if_in(alive: u64, value: f64) -> f64 {
+    f64::from_bits(value.to_bits() | !alive)
+}
+
 /// Least and largest value of the designs still in; infinite the wrong way round if there are none.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
 pub fn ends(alive: &[u64], values: &[f64]) -> (f64, f64) {
-    let (mut least, mut largest) = ([f64::INFINITY; 8], [f64::NEG_INFINITY; 8]);
-    let (alive_chunks, alive_rest) = alive.as_chunks::<8>();
-    let (value_chunks, value_rest) = values.as_chunks::<8>();
+    const WIDTH: usize = 16;
+    let (mut least, mut largest) = ([f64::INFINITY; WIDTH], [f64::NEG_INFINITY; WIDTH]);
+    let (alive_chunks, alive_rest) = alive.as_chunks::<WIDTH>();
+    let (value_chunks, value_rest) = values.as_chunks::<WIDTH>();
     for (alive, values) in alive_chunks.iter().zip(value_chunks) {
-        for lane in 0..8 {
-            // What is out becomes a NaN, which no comparison takes.
-            let value = f64::from_bits(values[lane].to_bits() | !alive[lane]);
-            least[lane] = if value < least[lane] { value } else { least[lane] };
-            largest[lane] = if value > largest[lane] { value } else { largest[lane] };
+        let mut present = *values;
+        for lane in 0..WIDTH {
+            present[lane] = if_in(alive[lane], values[lane]);
+        }
+        // One loop for each end: a common one is compiled to shuffles that cost more than both.
+        for lane in 0..WIDTH {
+            least[lane] = if present[lane] < least[lane] { present[lane] } else { least[lane] };
+        }
+        for lane in 0..WIDTH {
+            largest[lane] = if present[lane] > largest[lane] { present[lane] } else { largest[lane] };
         }
     }
-    for (_, &value) in alive_rest.iter().zip(value_rest).filter(|(alive, _)| **alive != 0) {
-        least[0] = least[0].min(value);
-        largest[0] = largest[0].max(value);
+    for (lane, (&alive, &value)) in alive_rest.iter().zip(value_rest).enumerate() {
+        let value = if_in(alive, value);
+        least[lane] = if value < least[lane] { value } else { least[lane] };
+        largest[lane] = if value > largest[lane] { value } else { largest[lane] };
     }
     (least.into_iter().fold(f64::INFINITY, f64::min), largest.into_iter().fold(f64::NEG_INFINITY, f64::max))
 }

@@ -213,10 +213,11 @@ impl<'p> CpuEngine<'p> {
                 keep_within(&mut self.alive, fast.own(input), constraint);
             }
         }
-        for (((tracked, source), column), &worst) in plan.tracked.iter().zip(&mut self.values).zip(&self.row_worst) {
+        for (((_, source), column), &worst) in plan.tracked.iter().zip(&mut self.values).zip(&self.row_worst) {
             match *source {
                 Source::LaneInput(input) => column[..count].copy_from_slice(&fast.own(input)[..count]),
-                Source::LaneOutput(_) => column[..count].fill(least_bad(tracked.worse)),
+                // The first scenario overwrites what the block before left here.
+                Source::LaneOutput(_) => {}
                 Source::RowInput(_) | Source::RowOutput(_) => column[..count].fill(worst),
             }
         }
@@ -226,7 +227,7 @@ impl<'p> CpuEngine<'p> {
                 for t in 0..plan.fast_scenarios.count() {
                     self.set_fast_scenario(t);
                     self.evaluate(&prepared, fast);
-                    self.judge_block_scenario();
+                    self.judge_block_scenario(q == 0 && t == 0);
                 }
                 if !any(&self.alive) {
                     return;
@@ -245,7 +246,7 @@ impl<'p> CpuEngine<'p> {
         plan.study.model.kernel.finish_columns(plan.study.model, prepared, &self.si, &columns, &mut self.results);
     }
 
-    fn judge_block_scenario(&mut self) {
+    fn judge_block_scenario(&mut self, first: bool) {
         let plan = self.plan;
         let (outputs, margins) = self.results.split_at(plan.lane_outputs.len());
         let alive = &mut self.alive;
@@ -259,11 +260,16 @@ impl<'p> CpuEngine<'p> {
         }
         for ((tracked, source), worst) in plan.tracked.iter().zip(&mut self.values) {
             if let Source::LaneOutput(position) = *source {
-                keep_finite(alive, &outputs[position]);
+                let output = &outputs[position][..alive.len()];
+                // A constraint on the same output has asked for a finite number already.
+                if !plan.constraints.contains(source) {
+                    keep_finite(alive, output);
+                }
                 let worst = &mut worst[..alive.len()];
                 match tracked.worse {
-                    Worse::Higher => raise(worst, &outputs[position]),
-                    Worse::Lower => lower(worst, &outputs[position]),
+                    _ if first => worst.copy_from_slice(output),
+                    Worse::Higher => raise(worst, output),
+                    Worse::Lower => lower(worst, output),
                 }
             }
         }

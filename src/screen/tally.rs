@@ -18,7 +18,7 @@ pub struct Tally {
     pub sampled: u64,
     /// Of these, feasible.
     pub feasible: u64,
-    /// Per condition of the model: designs that fail it in some scenario.
+    /// Per condition of the model: designs whose status it is in some scenario.
     pub conditions: Vec<u64>,
     /// Per constraint of the study: designs that violate it in some scenario in which they have a meaning.
     pub constraints: Vec<u64>,
@@ -150,7 +150,8 @@ impl<'p> Counter<'p> {
                     let lane_margins = plan.lane_conditions.iter().zip(&self.engine.results[plan.lane_outputs.len()..]);
                     let failed = lane_margins.filter(|&(&number, margins)| !holds(plan, number, margins[lane]));
                     let conditions = failed.fold(row_failures, |set, (&number, _)| set | 1 << number);
-                    *failures |= conditions;
+                    // The first condition that fails is the status; what comes after it may have lost its meaning.
+                    *failures |= conditions & conditions.wrapping_neg();
                     if conditions == 0 {
                         *failures |= self.violated(lane, &fast, &outputs);
                     }

@@ -50,7 +50,7 @@ pub fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::new();
     for (at, digit) in digits.chars().enumerate() {
-        if at > 0 && (digits.len() - at) % 3 == 0 && digits.len() > 4 {
+        if at > 0 && (digits.len() - at).is_multiple_of(3) && digits.len() > 4 {
             text.push(' ');
         }
         text.push(digit);
@@ -102,19 +102,25 @@ impl Grid {
         self.rows.push(cells.into_iter().collect());
     }
 
-    /// The rows as lines, indented. Numbers stand at the right of their column.
+    /// The rows as lines, indented. In a column of numbers they stand at the right.
     pub fn indented(&self, indent: usize) -> String {
+        let is_number = |cell: &str| cell.replace(' ', "").parse::<f64>().is_ok();
         let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
         let width = |column: usize| {
             self.rows.iter().filter_map(|row| row.get(column)).map(|cell| console::measure_text_width(cell)).max().unwrap_or(0)
         };
         let widths: Vec<_> = (0..columns).map(width).collect();
+        let of_numbers = |column: usize| {
+            let cells = self.rows.iter().filter_map(|row| row.get(column)).filter(|cell| !cell.is_empty());
+            2 * cells.clone().filter(|cell| is_number(cell)).count() > cells.count()
+        };
+        let of_numbers: Vec<_> = (0..columns).map(of_numbers).collect();
         let mut text = String::new();
         for row in &self.rows {
             let mut line = " ".repeat(indent);
             for (at, (cell, &width)) in row.iter().zip(&widths).enumerate() {
                 let padding = " ".repeat(width - console::measure_text_width(cell));
-                let number = cell.starts_with(|c: char| c.is_ascii_digit() || c == '-') && cell.replace(' ', "").parse::<f64>().is_ok();
+                let number = of_numbers[at] && is_number(cell);
                 let cell = if number { format!("{padding}{cell}") } else { format!("{cell}{padding}") };
                 line.push_str(&cell);
                 if at + 1 < row.len() {
@@ -150,5 +156,9 @@ mod tests {
         grid.row(["a", "10", "x"].map(str::to_owned));
         grid.row(["bbb", "5", "y"].map(str::to_owned));
         assert_eq!(grid.indented(1), " a    10  x\n bbb   5  y\n");
+        let mut mixed = Grid::default();
+        mixed.row(["what", "12 345"].map(str::to_owned));
+        mixed.row(["time", "about 3 s"].map(str::to_owned));
+        assert_eq!(mixed.indented(0), "what  12 345\ntime  about 3 s\n");
     }
 }

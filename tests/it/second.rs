@@ -40,9 +40,9 @@ const TABLE_2_METAL: &[(&str, f64)] = &[("traction", 0.577), ("torque_Nm", 98.15
 /// CVT Table 1 gives r0 and r1 and 180 degrees of wrap: at R = 1, L = 2 pi r0 and
 /// A = (L - 2 pi r1)/2. The traction is lambda_max, rounded down so that the belt does not slip.
 const TABLE_1_RUBBER: &[(&str, f64)] =
-    &[("belt_length_mm", 1024.159_205_070), ("centre_distance_mm", 370.707_933_124), ("traction", 0.984_54)];
+    &[("belt_length_mm", 1_024.159_205_070), ("centre_distance_mm", 370.707_933_124), ("traction", 0.984_54)];
 const TABLE_1_RUBBER_LARGER_RADIUS: &[(&str, f64)] =
-    &[("belt_length_mm", 1024.159_205_070), ("centre_distance_mm", 334.265_458_342), ("traction", 0.984_54)];
+    &[("belt_length_mm", 1_024.159_205_070), ("centre_distance_mm", 334.265_458_342), ("traction", 0.984_54)];
 /// Here the belt's own r0 and radius at R = 2, with the force ratio of 180 degrees.
 const TABLE_1_RUBBER_OWN_RADII: &[(&str, f64)] = &[("ratio", 2.0), ("traction", 0.984_54)];
 const EQUATION_26: &[(&str, f64)] = &[("belt_length_mm", 613.238_885_981), ("centre_distance_mm", 165.247_773_579)];

@@ -1,0 +1,119 @@
+"""Measures beltspace beside the program an engineer would write, and prints one table; see benches/measures.
+
+Counts, fronts and values are compared, not only times: a disagreement ends the run with exit code 1.
+"""
+import argparse
+import csv
+import json
+import os
+import platform
+import resource
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from datetime import date
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parent))
+import metal_grid  # noqa: E402
+
+STUDY = Path("studies/metal-grid.toml").read_text()
+
+
+def sweep(program, levels, folder, *options):
+    """Sweeps metal-grid with so many levels per axis; returns the result directory and the wall time of the whole command."""
+    study = folder / f"metal-grid-{levels}.toml"
+    study.write_text(STUDY.replace("count = 37", f"count = {levels}"))
+    out = folder / f"result-{levels}"
+    start = time.perf_counter()
+    subprocess.run([program, "sweep", study, "--out", out, "--quiet", "--force", *options], check=True)
+    return out, time.perf_counter() - start
+
+
+def front_of(out):
+    with open(out / "front.csv") as file:
+        rows = [(float(row["torque_capacity_Nm"]) * 1e3, float(row["capacity_axial_force_N"])) for row in csv.DictReader(file)]
+    return np.array(sorted(rows))
+
+
+def beside_numpy(program, levels, folder):
+    """Both programs on the same grid, counts and front values compared."""
+    start = time.perf_counter()
+    count, best = metal_grid.with_numpy(metal_grid.axes(levels))
+    numpy_seconds = time.perf_counter() - start
+    out, seconds = sweep(program, levels, folder)
+    summary = json.loads((out / "summary.json").read_text())
+    ours, theirs = front_of(out), np.column_stack([-best[:, 0], best[:, 1]])
+    theirs = theirs[np.lexsort((theirs[:, 1], theirs[:, 0]))]
+    same = summary["feasible"] == count and len(ours) == len(theirs)
+    worst = float(np.max(np.abs(ours / theirs - 1))) if same else float("nan")
+    if not same or worst > 1e-9:
+        sys.exit(f"{levels} levels: numpy finds {count} feasible, front {len(theirs)}; beltspace {summary['feasible']}, "
+                 f"front {len(ours)}; largest relative difference {worst}")
+    return {"designs": summary["designs"], "feasible": count, "front": len(theirs), "largest_difference": worst,
+            "numpy_seconds": numpy_seconds, "beltspace_seconds": seconds, "ratio": numpy_seconds / seconds}
+
+
+def large(program, folder):
+    """1e10 designs: whole command, and the peak memory of the child."""
+    out, seconds = sweep(program, 174, folder)
+    summary = json.loads((out / "summary.json").read_text())
+    peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
+    return {"designs": summary["designs"], "feasible": summary["feasible"], "front": summary["front"], "seconds": seconds,
+            "designs_per_second": summary["designs"] / seconds, "peak_MB": peak}
+
+
+def answers(program):
+    """Median milliseconds of commands that people wait for."""
+    times = {}
+    for command in (["--help"], ["models"], ["models", "metal-cvt"]):
+        runs = []
+        for _ in range(21):
+            start = time.perf_counter()
+            subprocess.run([program, *command], check=True, stdout=subprocess.DEVNULL)
+            runs.append(1e3 * (time.perf_counter() - start))
+        times[" ".join(command)] = statistics.median(runs)
+    return times
+
+
+def main():
+    arguments = argparse.ArgumentParser()
+    arguments.add_argument("program")
+    arguments.add_argument("--out", type=Path)
+    arguments.add_argument("--skip-large", action="store_true")
+    arguments = arguments.parse_args()
+    record = {"date": date.today().isoformat(), "cores": os.cpu_count(), "machine": processor(), "python": platform.python_version(),
+              "numpy": np.__version__, "command": "benches/measures"}
+    with tempfile.TemporaryDirectory() as folder:
+        folder = Path(folder)
+        # Memory first: the peak is that of the largest child so far.
+        if not arguments.skip_large:
+            record["large"] = large(arguments.program, folder)
+        record["answers_ms"] = answers(arguments.program)
+        sweep(arguments.program, 10, folder)  # the program's pages are read before the clock counts
+        record["beside_numpy"] = [beside_numpy(arguments.program, levels, folder) for levels in (37, 56)]
+    print(f"{record['machine']}, {record['cores']} cores, {record['date']}")
+    for row in record["beside_numpy"]:
+        print(f"metal-grid {row['designs']:>12} designs  feasible {row['feasible']}  front {row['front']}  values within "
+              f"{row['largest_difference']:.1e}  numpy + moocore {row['numpy_seconds']:.2f} s  beltspace "
+              f"{row['beltspace_seconds']:.2f} s  ratio {row['ratio']:.1f}")
+    if "large" in record:
+        row = record["large"]
+        print(f"metal-grid {row['designs']:>12} designs  feasible {row['feasible']}  front {row['front']}  {row['seconds']:.1f} s  "
+              f"{row['designs_per_second']:.3g} designs/s  peak memory {row['peak_MB']:.0f} MB")
+    print("answers: " + ", ".join(f"{command} {ms:.1f} ms" for command, ms in record["answers_ms"].items()))
+    if arguments.out:
+        arguments.out.write_text(json.dumps(record, indent=2) + "\n")
+
+
+def processor():
+    names = [line.split(":", 1)[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")] if os.path.exists("/proc/cpuinfo") else []
+    return names[0] if names else platform.processor()
+
+
+if __name__ == "__main__":
+    main()
