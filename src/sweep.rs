@@ -8,7 +8,7 @@ use crate::checkpoint::{Checkpoint, Progress};
 use crate::error::{Error, Result};
 use crate::plan::Plan;
 use crate::reduce::{Points, Reducers, Reduction, State};
-use crate::screen::{CpuEngine, Tables};
+use crate::screen::{BLOCK, CpuEngine, Tables};
 use crate::tiles::{Ranges, Shard};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -57,6 +57,10 @@ pub struct Swept {
 /// A first chunk this small calibrates the speed and gives the front something to compare with.
 const FIRST_CHUNK: u64 = 4096;
 
+/// Most blocks of the head start, and the share of all designs that it may not exceed.
+const HEAD_START: u64 = 256;
+const HEAD_START_SHARE: u64 = 64;
+
 /// What the threads share.
 struct Work<'a> {
     todo: Ranges,
@@ -91,7 +95,7 @@ pub fn sweep(
         Some(checkpoint) => checkpoint.take_progress(),
         None => None,
     }
-    .unwrap_or_else(|| Progress { done: Ranges::default(), state: reduction.start().state() });
+    .unwrap_or_else(|| Progress { done: Ranges::default(), state: head_start(plan, tables, reduction) });
     let todo = done.missing_from(whole);
     let designs = todo.count();
     control.done.store(done.count(), Ordering::Relaxed);
@@ -130,6 +134,21 @@ pub fn sweep(
         return Err(Error::Stopped { checkpoint: String::new(), resume: String::new() });
     }
     Ok(Swept { state, designs, time: start.elapsed() })
+}
+
+/// The front of a few designs from all over the study, so that the first chunks have something to compare with.
+///
+/// They are designs like any other, judged in f64: the sweep will meet them again and finds them there already.
+fn head_start(plan: &Plan, tables: &Tables, reduction: &Reduction) -> State {
+    let mut seen = reduction.start();
+    let mut engine = CpuEngine::new(plan, tables);
+    for step in 0..(plan.designs() / HEAD_START_SHARE / BLOCK as u64).min(HEAD_START) {
+        let first = plan.spread(step);
+        engine.screen(first..plan.designs().min(first + BLOCK as u64), |block| reduction.absorb(&mut seen, block));
+    }
+    let mut state = reduction.start().state();
+    state.front = seen.front.points().clone();
+    state
 }
 
 /// A front must keep within the study's budget.

@@ -68,8 +68,7 @@ fn trial(plan: &Plan, tables: &Tables) -> f64 {
     let (mut judged, mut step) = (0u64, 0u64);
     let piece = plan.fast.count().clamp(1, 16 * BLOCK as u64);
     while start.elapsed() < TRIAL && (step < 4 || judged < plan.designs()) {
-        // The golden section spreads any number of positions evenly.
-        let first = ((u128::from(plan.designs()) * u128::from(step.wrapping_mul(0x9e37_79b9_7f4a_7c15))) >> 64) as u64;
+        let first = plan.spread(step);
         let first = first / piece * piece;
         let last = plan.designs().min(first + piece);
         engine.screen(first..last, |block| reduction.absorb(&mut reducers, block));

@@ -12,7 +12,7 @@ use multiversion::multiversion;
 use serde::{Deserialize, Serialize};
 
 /// Bins of the two-objective table.
-const BINS: usize = 4096;
+const BINS: usize = 8192;
 /// Points against which every design is compared first, for three objectives and more.
 const KILLERS: usize = 8;
 /// Least number of waiting designs before they are merged.
@@ -180,7 +180,9 @@ fn keep_unbeaten(table: &Table, feasible: &[u64], first: &[f64], second: &[f64],
         for (best, &bin) in best[..end - start].iter_mut().zip(&bins) {
             *best = table.best[bin & (BINS - 1)];
         }
-        for (((alive, &feasible), &key), &best) in alive[start..end].iter_mut().zip(&feasible[start..end]).zip(&second[start..end]).zip(&best) {
+        for (((alive, &feasible), &key), &best) in
+            alive[start..end].iter_mut().zip(&feasible[start..end]).zip(&second[start..end]).zip(&best)
+        {
             *alive = if key < best { feasible } else { 0 };
         }
     }
@@ -350,7 +352,8 @@ impl Front {
         all.keys.extend(waiting.keys);
         all.indices.extend(waiting.indices);
         let mut order: Vec<usize> = (0..all.len()).collect();
-        order.sort_unstable_by(|&a, &b| {
+        // A stable sort takes the points, sorted already, as one run.
+        order.sort_by(|&a, &b| {
             let first = all.keys[a * dimensions].total_cmp(&all.keys[b * dimensions]);
             if first.is_ne() {
                 return first;
