@@ -21,7 +21,7 @@ pub enum Command {
     Models(Models),
     /// Evaluate one design: every input, output and margin
     Eval(Eval),
-    /// Look at a study without running it: designs, scenarios, inert axes, memory, expected time, warnings
+    /// Look at a study without running it: size, inert axes, memory, expected time
     Check {
         /// Study file
         study: PathBuf,

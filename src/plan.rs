@@ -194,7 +194,7 @@ impl Plan {
 
     /// A position for every step, so that any number of steps is spread evenly over the study: multiples of the golden section.
     pub fn spread(&self, step: u64) -> u64 {
-        (u128::from(self.designs()) * u128::from(step.wrapping_mul(0x9e37_79b9_7f4a_7c15)) >> 64) as u64
+        ((u128::from(self.designs()) * u128::from(step.wrapping_mul(0x9e37_79b9_7f4a_7c15))) >> 64) as u64
     }
 
     /// Design axes, by position, that change nothing that the study asks for.

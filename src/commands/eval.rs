@@ -51,20 +51,31 @@ fn inputs_of(model: &Model, request: &cli::Eval) -> Result<Vec<f64>> {
 }
 
 fn parse_assignment(model: &Model, assignment: &str) -> std::result::Result<(usize, f64), String> {
-    let (name, text) = assignment.split_once('=').ok_or_else(|| format!("--set \"{assignment}\": write NAME=VALUE"))?;
-    let (name, text) = (name.trim(), text.trim());
+    let (name, text) = assignment
+        .split_once('=')
+        .map(|(name, text)| (name.trim(), text.trim()))
+        .filter(|(name, _)| !name.is_empty())
+        .ok_or_else(|| format!("--set \"{assignment}\": write NAME=VALUE"))?;
     let Some(number) = model.input(name) else {
-        let nearest =
-            model.inputs.iter().map(|it| it.name).max_by(|a, b| strsim::jaro_winkler(a, name).total_cmp(&strsim::jaro_winkler(b, name)));
-        let kind = if model.output(name).is_some() { "is an output" } else { "is no input" };
-        return Err(format!("{name} {kind} of {}; did you mean {}?", model.name, nearest.unwrap_or_default()));
+        if model.output(name).is_some() {
+            return Err(format!("{name} is an output of {}; only inputs can be set", model.name));
+        }
+        let likeness = |it: &str| strsim::jaro_winkler(it, name);
+        let nearest = model.inputs.iter().map(|it| it.name).max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
+        // Far-off names would only confuse.
+        let remedy = match nearest.filter(|it| likeness(it) > 0.8) {
+            Some(near) => format!("did you mean {near}?"),
+            None => format!("beltspace models {} lists them", model.name),
+        };
+        return Err(format!("{name} is no input of {}; {remedy}", model.name));
     };
     let input = &model.inputs[number];
-    let value = match input.word.filter(|(word, _)| *word == text) {
-        Some((_, value)) => value,
-        None => parse_value(text, input.unit).map_err(|error| format!("{name}: {error}"))?,
-    };
-    if input.accepts(value) {
+    if let Some((_, value)) = input.word.filter(|(word, _)| *word == text) {
+        return Ok((number, value));
+    }
+    let value = parse_value(text, input.unit).map_err(|error| format!("{name}: {error}"))?;
+    // The number that encodes the word is no value of its own.
+    if input.accepts(value) && input.word_for(value).is_none() {
         return Ok((number, value));
     }
     let whole = if input.integer && value.fract() != 0.0 { "must be a whole number" } else { "is out of range" };

@@ -11,17 +11,16 @@ use beltspace::merge::{check_set, merge};
 use beltspace::plan::Plan;
 use beltspace::reduce::Reduction;
 use beltspace::screen::{Tables, Tally};
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 pub fn run(request: &cli::Merge) -> Result<()> {
     refuse_to_overwrite(&request.out, request.force)?;
     let start = Instant::now();
-    let open = |folder: &std::path::PathBuf| {
-        let inside = folder.join(CHECKPOINT);
-        let checkpoint = Checkpoint::open(if Checkpoint::exists(&inside) { &inside } else { folder })?;
-        Ok((folder.clone(), checkpoint))
-    };
-    let shards = request.shards.iter().map(open).collect::<Result<Vec<_>>>()?;
+    let folders = request.shards.iter().map(|folder| checkpoint_in(folder)).collect::<Result<Vec<_>>>()?;
+    refuse_twice(&request.shards, &folders)?;
+    let open = |(named, folder): (&PathBuf, &PathBuf)| Ok((named.clone(), Checkpoint::open(folder)?));
+    let shards = request.shards.iter().zip(&folders).map(open).collect::<Result<Vec<_>>>()?;
     check_set(&shards)?;
     let first = &shards.first().ok_or_else(|| Error::Request("name the directories of the shards".to_owned()))?.1;
     let text = first.study_text().to_owned();
@@ -44,4 +43,21 @@ pub fn run(request: &cli::Merge) -> Result<()> {
     };
     outcome.write(&request.out, &text, &record)?;
     if request.quiet { Ok(()) } else { terminal::print(&report::summary(&outcome, &record, &request.out)) }
+}
+
+/// The checkpoint of a result directory, or the directory itself if it is one.
+fn checkpoint_in(folder: &Path) -> Result<PathBuf> {
+    let found = [folder.join(CHECKPOINT), folder.to_owned()].into_iter().find(|it| Checkpoint::exists(it));
+    found.ok_or_else(|| Error::Request(format!("{}: there is no checkpoint here", folder.display())))
+}
+
+/// A directory named twice would look like one that another run is using.
+fn refuse_twice(named: &[PathBuf], folders: &[PathBuf]) -> Result<()> {
+    let real: Vec<_> = folders.iter().map(|folder| folder.canonicalize().unwrap_or_else(|_| folder.clone())).collect();
+    for (at, folder) in real.iter().enumerate() {
+        if let Some(first) = real[..at].iter().position(|it| it == folder) {
+            return Err(Error::Request(format!("cannot merge: {} and {} are the same shard", named[first].display(), named[at].display())));
+        }
+    }
+    Ok(())
 }

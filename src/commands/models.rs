@@ -2,7 +2,7 @@
 
 use super::find_model;
 use crate::cli;
-use crate::terminal::{self, Grid, bold};
+use crate::terminal::{self, Grid, bold, dim};
 use beltspace::error::Result;
 use beltspace::models::{Input, MODELS, Model, Range, Worse};
 use beltspace::study::number;
@@ -33,24 +33,19 @@ fn list() -> String {
 
 fn page(model: &Model) -> String {
     let mut inputs = Grid::default();
-    inputs.row(["input", "default", "usual", "valid", "", "source"].map(bold));
+    inputs.row(["input", "default", "usual", "valid"].map(bold));
     for input in model.inputs {
         let (low, high) = input.usual;
         let default = input.word_for(input.default).map_or_else(|| input.default.to_string(), str::to_owned);
-        inputs.row([
-            input.name.to_owned(),
-            default,
-            format!("{low} to {high}"),
-            valid(input),
-            input.doc.to_owned(),
-            input.source.to_owned(),
-        ]);
+        inputs.row([input.name.to_owned(), default, format!("{low} to {high}"), valid(input)]);
     }
+    let inputs = described(&inputs, model.inputs.iter().map(|input| format!("{} [{}]", input.doc, input.source)));
     let mut outputs = Grid::default();
-    outputs.row(["output", "symbol", "equation", ""].map(bold));
+    outputs.row(["output", "symbol", "equation"].map(bold));
     for output in model.outputs {
-        outputs.row([output.name, output.symbol, output.source, output.doc].map(str::to_owned));
+        outputs.row([output.name, output.symbol, output.source].map(str::to_owned));
     }
+    let outputs = described(&outputs, model.outputs.iter().map(|output| output.doc.to_owned()));
     let mut statuses = Grid::default();
     statuses.row([bold("status"), String::new()]);
     for condition in model.conditions.iter().filter(|condition| !condition.quiet) {
@@ -63,12 +58,21 @@ fn page(model: &Model) -> String {
         bold(model.name),
         model.summary,
         model.source,
-        inputs.indented(2),
-        outputs.indented(2),
+        inputs,
+        outputs,
         statuses.indented(2),
         bold("Not in the model:"),
         model.limits,
     )
+}
+
+/// A table whose rows but the first are each followed by a sentence: beside the numbers it would not fit a terminal.
+fn described(table: &Grid, sentences: impl Iterator<Item = String>) -> String {
+    let text = table.indented(2);
+    let mut lines = text.lines();
+    let head = lines.next().unwrap_or_default();
+    let rows = lines.zip(sentences).map(|(line, sentence)| format!("{line}\n{}\n", dim(&format!("      {sentence}"))));
+    format!("{head}\n{}", rows.collect::<String>())
 }
 
 fn valid(input: &Input) -> String {

@@ -91,7 +91,8 @@ fn open_checkpoint(out: &Path, plan: &Plan, text: &str, shard: Shard, request: &
             )));
         }
         let checkpoint = Checkpoint::open(&folder)?;
-        checkpoint.require(&plan.study, shard)?;
+        // Nothing has failed: the request and the checkpoint do not go together.
+        checkpoint.require(&plan.study, shard).map_err(|error| Error::Request(error.to_string()))?;
         return Ok(checkpoint);
     }
     Checkpoint::create(&folder, &plan.study, text, shard, plan.designs())
@@ -112,7 +113,8 @@ fn name_the_way_back(error: Error, out: &Path, request: &cli::Sweep) -> Error {
     match error {
         Error::Stopped { .. } => {
             let shard = request.shard.map_or(String::new(), |shard| format!(" --shard {shard}"));
-            let resume = format!("beltspace sweep {} --out {}{shard} --resume", request.study.display(), out.display());
+            let [study, folder] = [&request.study, out].map(terminal::quoted);
+            let resume = format!("beltspace sweep {study} --out {folder}{shard} --resume");
             Error::Stopped { checkpoint: out.join(CHECKPOINT).display().to_string(), resume }
         }
         other => other,

@@ -76,6 +76,19 @@ pub struct Input {
 }
 
 impl Input {
+    /// An input that takes any number greater than zero; other ranges are set in place.
+    pub const fn new(
+        name: &'static str,
+        symbol: &'static str,
+        unit: Unit,
+        default: f64,
+        usual: (f64, f64),
+        doc: &'static str,
+        source: &'static str,
+    ) -> Self {
+        Self { name, symbol, unit, default, valid: Range::POSITIVE, usual, integer: false, word: None, doc, source }
+    }
+
     /// The value as a person writes it, if it is the input's word.
     pub fn word_for(&self, value: f64) -> Option<&'static str> {
         self.word.filter(|(_, encoded)| *encoded == value).map(|(word, _)| word)
@@ -111,6 +124,13 @@ pub struct Output {
     pub doc: &'static str,
     /// The equation it comes from.
     pub source: &'static str,
+}
+
+impl Output {
+    /// An output.
+    pub const fn new(name: &'static str, symbol: &'static str, unit: Unit, worse: Worse, source: &'static str, doc: &'static str) -> Self {
+        Self { name, symbol, unit, worse, doc, source }
+    }
 }
 
 /// A condition under which the formula, or a part of it, has a meaning: a signed margin that must not be negative.

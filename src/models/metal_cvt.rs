@@ -1,9 +1,8 @@
 //! Metal push-belt variator. The formula is [`super::cvt`]'s, with two packs of n bands of width b and thickness h.
 
-use super::cvt::{self, CONDITION_TABLE, Drive, LIMIT, OUTPUT_TABLE, Prepared};
+use super::cvt::{Belt, CONDITION_TABLE, Cvt, Drive, LIMIT, OUTPUT_TABLE, groove_angle, ratio, torque, traction};
 use super::description::{Input, Model};
-use super::formula::{CONDITIONS, Formula, INPUTS, OUTPUTS, PREPARED, record};
-use super::rubber_cvt::{groove_angle, input, ratio, torque, traction};
+use super::formula::{INPUTS, record};
 use crate::real::Real;
 use crate::units::{MEGAPASCAL, MILLIMETRE, NONE};
 
@@ -26,19 +25,27 @@ pub const MODEL: Model = Model {
              for metal belts. Bands that carry torque, centrifugal force, the sliding angle, lubrication, pulley bending and shift \
              dynamics are neglected.",
     inputs: &[
-        input("friction", "mu", NONE, 0.08, (0.05, 0.14), "Coefficient of friction between blocks and pulley.", PAPER),
+        Input::new("friction", "mu", NONE, 0.08, (0.05, 0.14), "Coefficient of friction between blocks and pulley.", PAPER),
         groove_angle(22.0, (18.0, 30.0), "paper; 11 degrees a side is standard"),
         ratio((0.4, 2.5), PAPER),
-        input("belt_length_mm", "L", MILLIMETRE, 613.0, (300.0, 1200.0), "Pitch length of the belt.", PAPER),
-        input("centre_distance_mm", "A", MILLIMETRE, 156.0, (80.0, 300.0), "Distance of the pulley axes.", PAPER),
-        input("band_width_mm", "b", MILLIMETRE, 9.0, (5.0, 20.0), "Width of a band.", PAPER),
-        input("band_thickness_mm", "h", MILLIMETRE, 0.2, (0.1, 0.4), "Thickness of a band.", PAPER),
+        Input::new("belt_length_mm", "L", MILLIMETRE, 613.0, (300.0, 1200.0), "Pitch length of the belt.", PAPER),
+        Input::new("centre_distance_mm", "A", MILLIMETRE, 156.0, (80.0, 300.0), "Distance of the pulley axes.", PAPER),
+        Input::new("band_width_mm", "b", MILLIMETRE, 9.0, (5.0, 20.0), "Width of a band.", PAPER),
+        Input::new("band_thickness_mm", "h", MILLIMETRE, 0.2, (0.1, 0.4), "Thickness of a band.", PAPER),
         Input {
             integer: true,
-            ..input("band_count", "n", NONE, 10.0, (4.0, 14.0), "Bands in each of the two packs.", "paper; a series car of the time has 10")
+            ..Input::new(
+                "band_count",
+                "n",
+                NONE,
+                10.0,
+                (4.0, 14.0),
+                "Bands in each of the two packs.",
+                "paper; a series car of the time has 10",
+            )
         },
-        input("elastic_modulus_MPa", "E", MEGAPASCAL, 2.1e5, (1.8e5, 2.2e5), "Modulus of elasticity of the bands.", PAPER),
-        input("strength_MPa", "sigma_y", MEGAPASCAL, 500.0, (200.0, 2200.0), "Largest permissible stress of a band.", PAPER),
+        Input::new("elastic_modulus_MPa", "E", MEGAPASCAL, 2.1e5, (1.8e5, 2.2e5), "Modulus of elasticity of the bands.", PAPER),
+        Input::new("strength_MPa", "sigma_y", MEGAPASCAL, 500.0, (200.0, 2200.0), "Largest permissible stress of a band.", PAPER),
         traction(LIMIT, "chosen: squeezed just enough"),
         torque(100.0, (10.0, 500.0)),
     ],
@@ -46,41 +53,29 @@ pub const MODEL: Model = Model {
     conditions: CONDITION_TABLE,
     presets: &[],
     starter: include_str!("../../studies/metal-cvt.toml"),
-    kernel: &MetalCvt,
+    kernel: &Cvt(MetalBelt),
     profile: None,
 };
 
-struct MetalCvt;
+struct MetalBelt;
 
-#[inline(always)]
-fn drive<R: Real>(inputs: &[R; INPUTS]) -> Drive<R> {
-    let i = Inputs::read(inputs);
-    Drive {
-        friction: i.friction,
-        groove_angle: i.groove_angle,
-        ratio: i.ratio,
-        belt_length: i.belt_length,
-        centre_distance: i.centre_distance,
-        width: i.band_width,
-        thickness: i.band_thickness,
-        sections: R::constant(2.0) * i.band_count,
-        elastic_modulus: i.elastic_modulus,
-        strength: i.strength,
-        traction: i.traction,
-        torque: i.torque,
-    }
-}
-
-impl Formula for MetalCvt {
-    fn prepare<R: Real>(inputs: &[R; INPUTS]) -> [R; PREPARED] {
-        cvt::prepare(&drive(inputs)).to_array(R::constant(0.0))
-    }
+impl Belt for MetalBelt {
     #[inline(always)]
-    fn conditions<R: Real>(prepared: &[R; PREPARED], inputs: &[R; INPUTS]) -> [R; CONDITIONS] {
-        cvt::conditions(&Prepared::read(prepared), &drive(inputs))
-    }
-    #[inline(always)]
-    fn finish<R: Real>(prepared: &[R; PREPARED], inputs: &[R; INPUTS], wanted: u64, outputs: &mut [R; OUTPUTS]) {
-        cvt::finish(&Prepared::read(prepared), &drive(inputs), wanted, outputs);
+    fn drive<R: Real>(inputs: &[R; INPUTS]) -> Drive<R> {
+        let i = Inputs::read(inputs);
+        Drive {
+            friction: i.friction,
+            groove_angle: i.groove_angle,
+            ratio: i.ratio,
+            belt_length: i.belt_length,
+            centre_distance: i.centre_distance,
+            width: i.band_width,
+            thickness: i.band_thickness,
+            sections: R::constant(2.0) * i.band_count,
+            elastic_modulus: i.elastic_modulus,
+            strength: i.strength,
+            traction: i.traction,
+            torque: i.torque,
+        }
     }
 }

@@ -21,7 +21,7 @@ use super::description::{Condition, Input, Model, Output, Profile, Range, Worse}
 use super::formula::{CONDITIONS, Formula, INPUTS, OUTPUTS, PREPARED, bits, record};
 use crate::real::Real;
 use crate::units::{
-    self, DEGREE, KILOGRAM_PER_METRE, KILOWATT, METRE_PER_SECOND, MILLIMETRE, NEWTON, NEWTON_METRE, NEWTON_PER_MILLIMETRE, NONE, Unit,
+    self, DEGREE, KILOGRAM_PER_METRE, KILOWATT, METRE_PER_SECOND, MILLIMETRE, NEWTON, NEWTON_METRE, NEWTON_PER_MILLIMETRE, NONE,
 };
 
 record! {
@@ -50,22 +50,6 @@ record! {
 
 const OUT: Result<usize> = Result::NUMBER;
 
-const fn input(
-    name: &'static str,
-    symbol: &'static str,
-    unit: Unit,
-    default: f64,
-    usual: (f64, f64),
-    doc: &'static str,
-    source: &'static str,
-) -> Input {
-    Input { name, symbol, unit, default, valid: Range::POSITIVE, usual, integer: false, word: None, doc, source }
-}
-
-const fn output(name: &'static str, symbol: &'static str, unit: Unit, worse: Worse, source: &'static str, doc: &'static str) -> Output {
-    Output { name, symbol, unit, worse, doc, source }
-}
-
 use Worse::{Higher, Lower};
 
 const PAPER: &str = "paper, Table 1";
@@ -78,24 +62,46 @@ pub const MODEL: Model = Model {
     limits: "The belt load is the steady one: no shock, no vibration, no heat. Friction acts in one direction all over the wrap. \
              What the load does to the pulley is not part of this model.",
     inputs: &[
-        Input { valid: Range::NOT_NEGATIVE, ..input("power_kW", "P", KILOWATT, 3.0, (0.1, 50.0), "Power that the belt transmits.", PAPER) },
-        input("speed_rpm", "n", units::RPM, 3000.0, (100.0, 10_000.0), "Speed of the pulley.", PAPER),
-        input("slack_tension_N", "T_s", NEWTON, 700.0, (50.0, 3000.0), "Tension of the slack side, all grooves together.", PAPER),
+        Input {
+            valid: Range::NOT_NEGATIVE,
+            ..Input::new("power_kW", "P", KILOWATT, 3.0, (0.1, 50.0), "Power that the belt transmits.", PAPER)
+        },
+        Input::new("speed_rpm", "n", units::RPM, 3000.0, (100.0, 10_000.0), "Speed of the pulley.", PAPER),
+        Input::new("slack_tension_N", "T_s", NEWTON, 700.0, (50.0, 3000.0), "Tension of the slack side, all grooves together.", PAPER),
         Input {
             valid: Range { high: 360.0, includes_high: true, ..Range::POSITIVE },
-            ..input("wrap_angle_deg", "theta_w", DEGREE, 88.0, (30.0, 240.0), "Angle over which the belt touches the pulley.", PAPER)
+            ..Input::new("wrap_angle_deg", "theta_w", DEGREE, 88.0, (30.0, 240.0), "Angle over which the belt touches the pulley.", PAPER)
         },
-        input("mean_radius_mm", "R_b", MILLIMETRE, 60.0, (20.0, 300.0), "Radius at which the belt pulls.", "chosen; not printed"),
+        Input::new("mean_radius_mm", "R_b", MILLIMETRE, 60.0, (20.0, 300.0), "Radius at which the belt pulls.", "chosen; not printed"),
         Input {
             valid: Range::between(0.0, 180.0),
-            ..input("groove_angle_deg", "beta", DEGREE, 36.0, (32.0, 40.0), "Angle between the two flanks of a groove.", "SAE J636")
+            ..Input::new("groove_angle_deg", "beta", DEGREE, 36.0, (32.0, 40.0), "Angle between the two flanks of a groove.", "SAE J636")
         },
-        Input { integer: true, ..input("groove_count", "N", NONE, 1.0, (1.0, 12.0), "Number of grooves that share the load.", "chosen") },
-        input("belt_mass_kg_per_m", "w", KILOGRAM_PER_METRE, 0.11, (0.03, 1.0), "Mass of all belts per length.", "13 mm belt, 1300 kg/m3"),
-        input("friction_limit", "mu_max", NONE, 0.3, (0.25, 0.5), "Total friction that is available.", "dry rubber on steel, customary"),
+        Input {
+            integer: true,
+            ..Input::new("groove_count", "N", NONE, 1.0, (1.0, 12.0), "Number of grooves that share the load.", "chosen")
+        },
+        Input::new(
+            "belt_mass_kg_per_m",
+            "w",
+            KILOGRAM_PER_METRE,
+            0.11,
+            (0.03, 1.0),
+            "Mass of all belts per length.",
+            "13 mm belt, 1300 kg/m3",
+        ),
+        Input::new(
+            "friction_limit",
+            "mu_max",
+            NONE,
+            0.3,
+            (0.25, 0.5),
+            "Total friction that is available.",
+            "dry rubber on steel, customary",
+        ),
         Input {
             valid: Range::from_until(0.0, 90.0),
-            ..input(
+            ..Input::new(
                 "friction_direction_deg",
                 "gamma",
                 DEGREE,
@@ -107,17 +113,31 @@ pub const MODEL: Model = Model {
         },
     ],
     outputs: &[
-        output("belt_speed_m_per_s", "v", METRE_PER_SECOND, Higher, "(2)", "Speed of the belt."),
-        output("tight_tension_N", "T_t", NEWTON, Higher, "(2), (15)", "Tension of the tight side."),
-        output("effective_tension_N", "T_e", NEWTON, Higher, "T_t - T_s", "Tension that transmits the power."),
-        output("centrifugal_tension_N", "T_c", NEWTON, Higher, "w v^2", "Tension that bends the moving belt and presses nothing."),
-        output("effective_friction", "mu'", NONE, Higher, "(13)", "Friction of the wedge that the load needs."),
-        output("friction_used", "mu", NONE, Higher, "(12)", "Total coefficient of friction that the load needs."),
-        output("friction_margin", "", NONE, Lower, "1 - friction_used/friction_limit", "Distance to the available friction, relative."),
-        output("torque_Nm", "", NEWTON_METRE, Higher, "(T_t - T_s) R_b", "Torque on the pulley."),
-        output("resultant_force_N", "", NEWTON, Higher, "vectors T_t - T_c, T_s - T_c", "Force of the belt on the shaft."),
-        output("slack_end_line_force_N_per_mm", "Q(0)", NEWTON_PER_MILLIMETRE, Higher, "(9)", "Radial load per length at the slack end."),
-        output(
+        Output::new("belt_speed_m_per_s", "v", METRE_PER_SECOND, Higher, "(2)", "Speed of the belt."),
+        Output::new("tight_tension_N", "T_t", NEWTON, Higher, "(2), (15)", "Tension of the tight side."),
+        Output::new("effective_tension_N", "T_e", NEWTON, Higher, "T_t - T_s", "Tension that transmits the power."),
+        Output::new("centrifugal_tension_N", "T_c", NEWTON, Higher, "w v^2", "Tension that bends the moving belt and presses nothing."),
+        Output::new("effective_friction", "mu'", NONE, Higher, "(13)", "Friction of the wedge that the load needs."),
+        Output::new("friction_used", "mu", NONE, Higher, "(12)", "Total coefficient of friction that the load needs."),
+        Output::new(
+            "friction_margin",
+            "",
+            NONE,
+            Lower,
+            "1 - friction_used/friction_limit",
+            "Distance to the available friction, relative.",
+        ),
+        Output::new("torque_Nm", "", NEWTON_METRE, Higher, "(T_t - T_s) R_b", "Torque on the pulley."),
+        Output::new("resultant_force_N", "", NEWTON, Higher, "vectors T_t - T_c, T_s - T_c", "Force of the belt on the shaft."),
+        Output::new(
+            "slack_end_line_force_N_per_mm",
+            "Q(0)",
+            NEWTON_PER_MILLIMETRE,
+            Higher,
+            "(9)",
+            "Radial load per length at the slack end.",
+        ),
+        Output::new(
             "tight_end_line_force_N_per_mm",
             "Q(theta_w)",
             NEWTON_PER_MILLIMETRE,
@@ -125,7 +145,7 @@ pub const MODEL: Model = Model {
             "(9)",
             "Radial load per length at the tight end.",
         ),
-        output(
+        Output::new(
             "slack_end_flank_force_N_per_mm",
             "R(0)",
             NEWTON_PER_MILLIMETRE,
@@ -133,7 +153,7 @@ pub const MODEL: Model = Model {
             "(10)",
             "Normal force per flank and length at the slack end.",
         ),
-        output(
+        Output::new(
             "tight_end_flank_force_N_per_mm",
             "R(theta_w)",
             NEWTON_PER_MILLIMETRE,

@@ -1,7 +1,7 @@
 //! Pictures: plain data in, the text of one self-contained SVG file out.
 //!
-//! [`front`] draws a Pareto front, [`histogram`] a histogram, [`heatmap`] a map over two axes and
-//! [`curves`] profiles over a common abscissa. None of them reads or writes a file, and the same
+//! [`front`] draws a Pareto front, [`histogram()`] a histogram, [`heatmap()`] a map over two axes and
+//! [`curves()`] profiles over a common abscissa. None of them reads or writes a file, and the same
 //! input always gives the same bytes: no clock, no random names, no hash-map order, and no
 //! transcendental function from the system in a position or a tick.
 //!
@@ -62,7 +62,7 @@ pub struct Objective {
     pub goal: Goal,
 }
 
-/// One line in a panel of [`curves`].
+/// One line in a panel of [`curves()`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
     /// Name in the legend; the same label has the same colour in every panel.

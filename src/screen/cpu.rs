@@ -58,6 +58,8 @@ impl Tables {
 pub struct CpuEngine<'p> {
     plan: &'p Plan,
     tables: &'p Tables,
+    /// Inputs of design 0 in scenario 0, in their units.
+    first: Vec<f64>,
     /// Inputs of the current row and scenario, in their units and in SI.
     pub(super) own: Vec<f64>,
     si: [f64; INPUTS],
@@ -78,10 +80,12 @@ impl<'p> CpuEngine<'p> {
     /// An engine for a plan and its tables.
     pub fn new(plan: &'p Plan, tables: &'p Tables) -> Self {
         let columns = plan.lane_outputs.len() + plan.lane_conditions.len();
+        let first = plan.space.inputs(0, 0);
         Self {
             plan,
             tables,
-            own: plan.study.fixed.clone(),
+            own: first.clone(),
+            first,
             si: [0.0; INPUTS],
             row: None,
             row_feasible: false,
@@ -159,7 +163,9 @@ impl<'p> CpuEngine<'p> {
     }
 
     pub(super) fn set_row(&mut self, row: u64) {
-        self.own.copy_from_slice(&self.plan.study.fixed);
+        // What a part of the formula does not depend on may still decide a selection the same way for every value of its axis:
+        // every input must have one of its own values, not the default.
+        self.own.copy_from_slice(&self.first);
         self.plan.slow.set(row, &mut self.own);
         self.si = crate::models::to_si(self.plan.study.model, &self.own);
         self.row_index = self.plan.slow.source_index(row);

@@ -90,6 +90,19 @@ pub fn short(value: f64) -> String {
     beltspace::export::plain(rounded)
 }
 
+/// A path as a shell reads it back as one word.
+pub fn quoted(path: &Path) -> String {
+    let text = path.display().to_string();
+    let plain = |c: char| c.is_alphanumeric() || "/.-_:+=,@%".contains(c) || (cfg!(windows) && c == '\\');
+    if !text.is_empty() && text.chars().all(plain) {
+        text
+    } else if cfg!(windows) {
+        format!("\"{text}\"")
+    } else {
+        format!("'{}'", text.replace('\'', r"'\''"))
+    }
+}
+
 /// Text in columns, each as wide as its widest cell; the last one runs free.
 #[derive(Debug, Default)]
 pub struct Grid {
@@ -148,6 +161,13 @@ mod tests {
         assert_eq!(short(15_779.612_3), "15779.6");
         assert_eq!(span(0.25), "250 ms");
         assert_eq!(span(5400.0), "90 min");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_path_with_spaces_is_quoted() {
+        assert_eq!(quoted(Path::new("results/my-study_2")), "results/my-study_2");
+        assert_eq!(quoted(Path::new("it's here")), r"'it'\''s here'");
     }
 
     #[test]

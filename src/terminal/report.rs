@@ -77,30 +77,26 @@ fn limits(outcome: &Outcome<'_>) -> String {
     format!("\n{} {what}\n{}", bold("what limits feasibility,"), grid.indented(2))
 }
 
-/// Ideal, knee and the best designs by the first objective.
+/// Ideal, knee and the best designs by the first objective, and what the knee is made of.
 fn front(outcome: &Outcome<'_>) -> String {
     let study = &outcome.plan.study;
     let model = study.model;
     let summary = Summary::new(outcome);
     let columns = outcome.objective_columns();
-    let inputs: Vec<usize> = study.design.iter().flat_map(Axis::inputs).copied().collect();
-    let mut grid = Grid::default();
     let goals =
         study.objectives.iter().map(|it| format!("{} ({})", it.quantity.name(model), if it.goal == Goal::Min { "min" } else { "max" }));
-    let heads = goals.chain(["design".to_owned()]).chain(inputs.iter().map(|&input| model.inputs[input].name.to_owned()));
-    grid.row(std::iter::once(String::new()).chain(heads.map(|head| bold(&head))));
+    let mut grid = Grid::default();
+    grid.row(std::iter::once(String::new()).chain(goals.chain(["design".to_owned()]).map(|head| bold(&head))));
     if let Some(ideal) = &summary.ideal {
         grid.row(std::iter::once("ideal".to_owned()).chain(ideal.iter().map(|&value| short(value))));
     }
     let mut row = |label: &str, row: &Row| {
         let objectives = columns.iter().map(|&column| row.columns[column].value.map_or(String::new(), short));
-        let words = inputs
-            .iter()
-            .map(|&input| model.inputs[input].word_for(row.inputs[input]).map_or_else(|| short(row.inputs[input]), str::to_owned));
-        grid.row(std::iter::once(label.to_owned()).chain(objectives).chain([row.index.to_string()]).chain(words));
+        grid.row(std::iter::once(label.to_owned()).chain(objectives).chain([row.index.to_string()]));
     };
-    if let Some(knee) = summary.knee {
-        row("knee", &outcome.front[knee.row]);
+    let knee = summary.knee.map(|knee| &outcome.front[knee.row]);
+    if let Some(knee) = knee {
+        row("knee", knee);
     }
     for design in outcome.front.iter().take(SHOWN) {
         row("", design);
@@ -111,7 +107,14 @@ fn front(outcome: &Outcome<'_>) -> String {
     } else {
         String::new()
     };
-    format!("\n{}\n{}{more}", bold("front"), grid.indented(2))
+    let inputs = knee.map_or(String::new(), |knee| {
+        let each = study.design.iter().flat_map(Axis::inputs).map(|&input| {
+            let value = knee.inputs[input];
+            format!("{} {}", model.inputs[input].name, model.inputs[input].word_for(value).map_or_else(|| short(value), str::to_owned))
+        });
+        format!("\n{} {} (design {})\n", bold("knee:"), each.collect::<Vec<_>>().join(", "), knee.index)
+    });
+    format!("\n{}\n{}{more}{inputs}", bold("front"), grid.indented(2))
 }
 
 /// A front of two objectives as a picture of characters, where the terminal is wide enough.

@@ -25,11 +25,13 @@
 //! - The paper's "safety factor 2" is `sigma_y = 2 sigma_t`; with `sigma_b = sigma_t` at the optimum thickness the combined
 //!   stress is exactly `sigma_y`.
 
-use super::description::{Condition, Output, Worse};
-use super::formula::{CONDITIONS, OUTPUTS, bits, record};
+use super::formula::{CONDITIONS, Formula, INPUTS, OUTPUTS, PREPARED, bits, record};
 use crate::real::Real;
-use crate::units::{self, Unit};
 use std::f64::consts::PI;
+
+mod table;
+
+pub(super) use table::{CONDITION_TABLE, OUTPUT_TABLE, groove_angle, ratio, torque, traction};
 
 /// The number that stands for traction "limit": the belt is squeezed just enough not to slip.
 pub const LIMIT: f64 = -1.0;
@@ -121,7 +123,7 @@ fn driver_radius<R: Real>(belt: &Drive<R>) -> R {
 
 /// First stage for either belt.
 #[inline(always)]
-pub(super) fn prepare<R: Real>(belt: &Drive<R>) -> Prepared<R> {
+fn prepare<R: Real>(belt: &Drive<R>) -> Prepared<R> {
     let [one, two, four, pi] = [1.0, 2.0, 4.0, PI].map(R::constant);
     let Drive { friction, groove_angle, ratio, belt_length, centre_distance, .. } = *belt;
 
@@ -176,7 +178,7 @@ pub(super) fn prepare<R: Real>(belt: &Drive<R>) -> Prepared<R> {
 
 /// Margins of [`CONDITION_TABLE`].
 #[inline(always)]
-pub(super) fn conditions<R: Real>(prepared: &Prepared<R>, belt: &Drive<R>) -> [R; CONDITIONS] {
+fn conditions<R: Real>(prepared: &Prepared<R>, belt: &Drive<R>) -> [R; CONDITIONS] {
     let one = R::constant(1.0);
     let mut margins = [one; CONDITIONS];
     margins[0] = prepared.length_margin;
@@ -188,6 +190,29 @@ pub(super) fn conditions<R: Real>(prepared: &Prepared<R>, belt: &Drive<R>) -> [R
     margins[5] = R::select(-belt.torque, one, prepared.traction);
     margins[6] = prepared.traction;
     margins
+}
+
+/// A belt: where its inputs stand in the common formula.
+pub(super) trait Belt {
+    /// The drive that these inputs describe.
+    fn drive<R: Real>(inputs: &[R; INPUTS]) -> Drive<R>;
+}
+
+/// The formula of a belt.
+pub(super) struct Cvt<B>(pub B);
+
+impl<B: Belt> Formula for Cvt<B> {
+    fn prepare<R: Real>(inputs: &[R; INPUTS]) -> [R; PREPARED] {
+        prepare(&B::drive(inputs)).to_array(R::constant(0.0))
+    }
+    #[inline(always)]
+    fn conditions<R: Real>(prepared: &[R; PREPARED], inputs: &[R; INPUTS]) -> [R; CONDITIONS] {
+        conditions(&Prepared::read(prepared), &B::drive(inputs))
+    }
+    #[inline(always)]
+    fn finish<R: Real>(prepared: &[R; PREPARED], inputs: &[R; INPUTS], wanted: u64, outputs: &mut [R; OUTPUTS]) {
+        finish(&Prepared::read(prepared), &B::drive(inputs), wanted, outputs);
+    }
 }
 
 /// Outputs that are read straight from [`Prepared`].
@@ -221,7 +246,7 @@ const AT_OPTIMUM: u64 = bits(&[OUT.optimum_thickness, OUT.torque_coefficient, OU
 
 /// Second stage for either belt.
 #[inline(always)]
-pub(super) fn finish<R: Real>(p: &Prepared<R>, belt: &Drive<R>, wanted: u64, out: &mut [R; OUTPUTS]) {
+fn finish<R: Real>(p: &Prepared<R>, belt: &Drive<R>, wanted: u64, out: &mut [R; OUTPUTS]) {
     let [one, two] = [1.0, 2.0].map(R::constant);
     if wanted & FROM_PREPARED != 0 {
         out[OUT.driver_radius] = p.driver_radius;
@@ -274,173 +299,3 @@ pub(super) fn finish<R: Real>(p: &Prepared<R>, belt: &Drive<R>, wanted: u64, out
         out[OUT.printed_torque_coefficient] = printed_torque_coefficient(p.printed_pull, strength, elastic_modulus, p.free_ratio, width);
     }
 }
-
-/// Everything but the effective friction needs a belt that closes around two pulleys.
-const NEEDS_GEOMETRY: &[&str] = &[
-    "driver_radius_mm",
-    "driven_radius_mm",
-    "driver_wrap_deg",
-    "driven_wrap_deg",
-    "traction_limit",
-    "driver_traction_limit",
-    "slip_margin",
-    "active_arc_deg",
-    "driver_axial_coefficient",
-    "driven_axial_coefficient",
-    "belt_force_N",
-    "tight_force_N",
-    "slack_force_N",
-    "driver_axial_force_N",
-    "driven_axial_force_N",
-    "axial_force_N",
-    "tensile_stress_MPa",
-    "bending_stress_MPa",
-    "max_stress_MPa",
-    "stress_margin",
-    "optimum_thickness_mm",
-    "torque_coefficient_N_per_mm",
-    "torque_capacity_Nm",
-    "capacity_axial_force_N",
-    "printed_torque_coefficient_N_per_mm",
-    "entry_compression",
-];
-
-/// Conditions of either belt, in the order of [`conditions`].
-pub(super) const CONDITION_TABLE: &[Condition] = &[
-    condition("belt too short", true, NEEDS_GEOMETRY, "The belt is longer than twice the centre distance."),
-    condition("no geometry", true, NEEDS_GEOMETRY, "Pulleys of this ratio exist whose belt has this length."),
-    condition("pulleys overlap", true, NEEDS_GEOMETRY, "The radii add up to less than the centre distance."),
-    condition(
-        "friction beyond the wedge",
-        true,
-        &[
-            "driver_axial_coefficient",
-            "driven_axial_coefficient",
-            "driver_axial_force_N",
-            "driven_axial_force_N",
-            "axial_force_N",
-            "capacity_axial_force_N",
-        ],
-        "friction * tan(groove_angle/2) is below 1: beyond, the wedge would need no axial force.",
-    ),
-    condition(
-        "slip",
-        false,
-        &[
-            "active_arc_deg",
-            "driver_axial_coefficient",
-            "driven_axial_coefficient",
-            "belt_force_N",
-            "tight_force_N",
-            "slack_force_N",
-            "driver_axial_force_N",
-            "driven_axial_force_N",
-            "axial_force_N",
-            "tensile_stress_MPa",
-            "max_stress_MPa",
-            "stress_margin",
-            "torque_coefficient_N_per_mm",
-            "torque_capacity_Nm",
-            "capacity_axial_force_N",
-            "printed_torque_coefficient_N_per_mm",
-            "entry_compression",
-        ],
-        "The traction is at most the traction limit of the driven pulley: beyond, the belt slips as a whole.",
-    ),
-    condition(
-        "no traction",
-        true,
-        &[
-            "tight_force_N",
-            "slack_force_N",
-            "driver_axial_force_N",
-            "driven_axial_force_N",
-            "axial_force_N",
-            "tensile_stress_MPa",
-            "max_stress_MPa",
-            "stress_margin",
-        ],
-        "A torque needs a traction above 0.",
-    ),
-    Condition {
-        quiet: true,
-        ..condition("no entry compression", true, &["entry_compression"], "Without traction there is no compression to compare with.")
-    },
-];
-
-const fn condition(reason: &'static str, strict: bool, invalidates: &'static [&'static str], doc: &'static str) -> Condition {
-    Condition { reason, strict, quiet: false, invalidates, doc }
-}
-
-const fn output(name: &'static str, symbol: &'static str, unit: Unit, worse: Worse, source: &'static str, doc: &'static str) -> Output {
-    Output { name, symbol, unit, worse, doc, source }
-}
-
-use Worse::{Higher, Lower};
-use units::{DEGREE, MEGAPASCAL, MILLIMETRE, NEWTON, NEWTON_METRE, NEWTON_PER_MILLIMETRE, NONE};
-
-/// Outputs of either belt, in the order of [`Result`].
-pub(super) const OUTPUT_TABLE: &[Output] = &[
-    output("driver_radius_mm", "r_driver", MILLIMETRE, Lower, "open belt", "Pitch radius of the driver pulley."),
-    output("driven_radius_mm", "r_driven", MILLIMETRE, Lower, "open belt", "Pitch radius of the driven pulley."),
-    output("driver_wrap_deg", "theta_driver", DEGREE, Lower, "open belt", "Wrap angle on the driver pulley."),
-    output("driven_wrap_deg", "theta_driven", DEGREE, Lower, "open belt", "Wrap angle on the driven pulley."),
-    output("effective_friction", "mu_e", NONE, Lower, "mu/sin(a/2)", "Friction of the wedge against sliding along the belt."),
-    output("traction_limit", "lambda_max", NONE, Lower, "(12), (13)", "Traction at which the belt slips on the driven pulley."),
-    output("driver_traction_limit", "", NONE, Lower, "(12), (13)", "Traction at which the belt would slip on the driver pulley."),
-    output("slip_margin", "", NONE, Lower, "1 - lambda/lambda_max", "Distance to gross slip, relative; 0 at the limit."),
-    output("active_arc_deg", "theta_a", DEGREE, Higher, "(12)", "Part of the driven wrap over which the belt force changes."),
-    output("driver_axial_coefficient", "S~_driver", NONE, Higher, "(4), (15)", "Axial force of the driver per sum of belt forces."),
-    output("driven_axial_coefficient", "S~_driven", NONE, Higher, "(5), (16)", "Axial force of the driven pulley per sum of belt forces."),
-    output("belt_force_N", "P", NEWTON, Higher, "(3), (14)", "Force that the belt transmits, F1 - F2."),
-    output("tight_force_N", "F1", NEWTON, Higher, "P(1+lambda)/(2 lambda)", "Belt force on the tight side."),
-    output("slack_force_N", "F2", NEWTON, Lower, "P(1-lambda)/(2 lambda)", "Belt force on the slack side."),
-    output("driver_axial_force_N", "S_driver", NEWTON, Higher, "(1), (6)", "Axial force that the driver needs."),
-    output("driven_axial_force_N", "S_driven", NEWTON, Higher, "(2), (11)", "Axial force that the driven pulley needs."),
-    output("axial_force_N", "S", NEWTON, Higher, "larger of S_driver, S_driven", "The larger of the two axial forces."),
-    output("tensile_stress_MPa", "sigma_t", MEGAPASCAL, Higher, "(17), (22)", "Tensile stress of the tight side."),
-    output("bending_stress_MPa", "sigma_b", MEGAPASCAL, Higher, "(18)", "Bending stress on the smaller pulley."),
-    output("max_stress_MPa", "sigma_max", MEGAPASCAL, Higher, "sigma_t + sigma_b", "Largest stress in the belt."),
-    output("stress_margin", "", NONE, Lower, "1 - sigma_max/sigma_y", "Distance to the strength, relative."),
-    output(
-        "optimum_thickness_mm",
-        "h*",
-        MILLIMETRE,
-        Lower,
-        "(19), (26)",
-        "Thickness of the largest torque capacity; the stress there is the strength, half of it bending (the paper's safety factor 2).",
-    ),
-    output(
-        "torque_coefficient_N_per_mm",
-        "C",
-        NEWTON_PER_MILLIMETRE,
-        Lower,
-        "(20), (21), (27)",
-        "Torque capacity at the optimum thickness per product of smaller and driver radius.",
-    ),
-    output(
-        "torque_capacity_Nm",
-        "T_cap",
-        NEWTON_METRE,
-        Lower,
-        "r_driver (sigma_y - sigma_b) A 2 lambda/(1+lambda)",
-        "Driver torque at which the largest stress is the strength.",
-    ),
-    output("capacity_axial_force_N", "S_cap", NEWTON, Higher, "(4), (5), (15), (16)", "The larger axial force at the torque capacity."),
-    output(
-        "printed_torque_coefficient_N_per_mm",
-        "C_M",
-        NEWTON_PER_MILLIMETRE,
-        Lower,
-        "(28)",
-        "The metal belt's constant as printed: overstated wherever the entry compression is negative.",
-    ),
-    output(
-        "entry_compression",
-        "P1/P2",
-        NONE,
-        Lower,
-        "1 - (x-1)(e-1)",
-        "Block compression at the entry that (28) implies: negative is not physical, 0 only at the slip limit.",
-    ),
-];

@@ -1,0 +1,86 @@
+//! What designs are compared by.
+
+use crate::study::{Goal, Objective};
+use multiversion::multiversion;
+use serde::{Deserialize, Serialize};
+
+/// What an objective becomes for the comparison: less is better, steps of the resolution count as one value.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct KeyRule {
+    goal: Goal,
+    resolution: Option<f64>,
+}
+
+impl From<&Objective> for KeyRule {
+    fn from(objective: &Objective) -> Self {
+        Self { goal: objective.goal, resolution: objective.resolution }
+    }
+}
+
+impl KeyRule {
+    /// The number that is compared. Zero has one sign, so that equal values are equal bits.
+    #[inline(always)]
+    pub fn key(&self, value: f64) -> f64 {
+        let step = match self.resolution {
+            Some(resolution) => (value / resolution).floor(),
+            None => value,
+        };
+        (if self.goal == Goal::Min { step } else { -step }) + 0.0
+    }
+
+    /// The keys of a column of values.
+    pub(super) fn keys(self, values: &[f64], keys: &mut [f64]) {
+        match (self.resolution, self.goal) {
+            (Some(_), _) => keys.iter_mut().zip(values).for_each(|(key, &value)| *key = self.key(value)),
+            (None, Goal::Min) => signed(values, 1.0, keys),
+            (None, Goal::Max) => signed(values, -1.0, keys),
+        }
+    }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+fn signed(values: &[f64], sign: f64, keys: &mut [f64]) {
+    for (key, &value) in keys.iter_mut().zip(values) {
+        *key = sign * value + 0.0;
+    }
+}
+
+/// Designs of a front with what they are compared by: coordinates point after point, less is better.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Points {
+    /// Coordinates.
+    pub keys: Vec<f64>,
+    /// Design indices.
+    pub indices: Vec<u64>,
+}
+
+impl Points {
+    /// Number of points.
+    pub fn len(&self) -> usize {
+        self.indices.len()
+    }
+
+    /// Are there none?
+    pub fn is_empty(&self) -> bool {
+        self.indices.is_empty()
+    }
+
+    pub(super) fn key(&self, point: usize, dimensions: usize) -> &[f64] {
+        &self.keys[point * dimensions..][..dimensions]
+    }
+
+    /// Number of leading points whose first coordinate is at most `first`; the points must be sorted by it.
+    pub(super) fn not_beyond(&self, first: f64, dimensions: usize) -> usize {
+        let (mut low, mut high) = (0, self.len());
+        while low < high {
+            let middle = (low + high) / 2;
+            if self.keys[middle * dimensions] <= first { low = middle + 1 } else { high = middle }
+        }
+        low
+    }
+
+    pub(super) fn push(&mut self, key: impl IntoIterator<Item = f64>, index: u64) {
+        self.keys.extend(key);
+        self.indices.push(index);
+    }
+}

@@ -1,0 +1,224 @@
+//! The Pareto front: feasible designs that no other one makes superfluous.
+//!
+//! Designs stream in by the billion, so most must be dropped at the cost of a comparison or two: against a table for two
+//! objectives, against the points that dropped the last ones for more. What passes is checked against the front so far, what
+//! passes that waits in a list, and from time to time the list is merged into the front. The result does not depend on the
+//! order of arrival: it is the set of designs that no other one beats, and "beats" is a strict order.
+
+mod filter;
+mod keys;
+
+pub use keys::{KeyRule, Points};
+
+use super::dominance::{Dominance, beats};
+use crate::screen::Block;
+use filter::{Filter, Table};
+
+/// Recent killers that are remembered.
+const KILLERS: usize = 8;
+/// Least number of waiting designs before they are merged.
+const WAITING: usize = 2048;
+
+/// The front of the designs seen so far.
+#[derive(Debug)]
+pub struct Front {
+    rules: Vec<KeyRule>,
+    /// Non-dominated points, sorted by coordinates, then index.
+    points: Points,
+    /// Which of them did not come with [`Front::seeded`].
+    fresh: Vec<bool>,
+    waiting: Points,
+    filter: Filter,
+    /// Coordinates of the block being absorbed, one column per objective.
+    keys: Vec<Vec<f64>>,
+    alive: Vec<u64>,
+}
+
+impl Front {
+    /// An empty front under these objectives.
+    pub fn new(rules: &[KeyRule]) -> Self {
+        Self::seeded(rules, Points::default())
+    }
+
+    /// A front that starts with known points, non-dominated and sorted as another front keeps them.
+    pub fn seeded(rules: &[KeyRule], points: Points) -> Self {
+        let mut front = Self {
+            rules: rules.to_vec(),
+            fresh: vec![false; points.len()],
+            points,
+            waiting: Points::default(),
+            filter: Filter::Nothing,
+            keys: vec![Vec::new(); rules.len()],
+            alive: Vec::new(),
+        };
+        front.refresh_filter();
+        front
+    }
+
+    /// Takes in a block; `objectives` are the positions of the objectives among its values.
+    pub fn absorb(&mut self, block: &Block<'_>, objectives: &[usize]) {
+        if self.rules.is_empty() {
+            return;
+        }
+        for ((keys, rule), &column) in self.keys.iter_mut().zip(&self.rules).zip(objectives) {
+            keys.resize(block.count(), 0.0);
+            rule.keys(block.column(column), keys);
+        }
+        self.alive.resize(block.count(), 0);
+        self.filter.keep(block.alive, &self.keys, &mut self.alive);
+        for first in (0..block.count()).step_by(8) {
+            let last = block.count().min(first + 8);
+            if self.alive[first..last].iter().fold(0, |any, alive| any | alive) == 0 {
+                continue;
+            }
+            for lane in first..last {
+                if self.alive[lane] != 0 {
+                    self.consider(lane, block.index(lane));
+                }
+            }
+        }
+        if self.waiting.len() >= WAITING.max(self.points.len() / 2) {
+            self.merge_waiting();
+        }
+    }
+
+    /// Lets a design that passed the filter wait, unless the front beats it.
+    fn consider(&mut self, lane: usize, index: u64) {
+        let dimensions = self.rules.len();
+        let mut key = [0.0; 8];
+        for (key, keys) in key.iter_mut().zip(&self.keys) {
+            *key = keys[lane];
+        }
+        let key = &key[..dimensions];
+        match &mut self.filter {
+            Filter::Nothing => {}
+            Filter::Best(_) | Filter::Table(_) => {
+                // Sorted by the first coordinate with the second falling: the last point not beyond it is the best candidate.
+                let beyond = self.points.not_beyond(key[0], dimensions);
+                if beyond > 0 && beats(self.points.key(beyond - 1, dimensions), self.points.indices[beyond - 1], key, index) {
+                    return;
+                }
+            }
+            Filter::Killers { recent, next, all } => {
+                if let Some((killer, killer_index)) = all.beater(key, index) {
+                    let killer = (killer.to_vec(), killer_index);
+                    if recent.len() < KILLERS {
+                        recent.push(killer);
+                    } else {
+                        recent[*next % KILLERS] = killer;
+                    }
+                    *next += 1;
+                    return;
+                }
+            }
+        }
+        self.waiting.push(key.iter().copied(), index);
+    }
+
+    /// Takes in points of another front.
+    pub fn merge(&mut self, other: Points) {
+        self.waiting.keys.extend(other.keys);
+        self.waiting.indices.extend(other.indices);
+        self.merge_waiting();
+    }
+
+    /// The points of the front, sorted by coordinates, then index.
+    pub fn points(&mut self) -> &Points {
+        self.merge_waiting();
+        &self.points
+    }
+
+    /// The points that did not come with the seed.
+    pub fn into_fresh(mut self) -> Points {
+        self.merge_waiting();
+        let dimensions = self.rules.len();
+        let mut fresh = Points::default();
+        for point in (0..self.points.len()).filter(|&point| self.fresh[point]) {
+            fresh.push(self.points.key(point, dimensions).iter().copied(), self.points.indices[point]);
+        }
+        fresh
+    }
+
+    /// Number of points, those that wait not counted.
+    pub fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Has it no points yet?
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    /// Sorts what waits into the front and drops what is beaten.
+    fn merge_waiting(&mut self) {
+        if self.waiting.is_empty() {
+            return;
+        }
+        let dimensions = self.rules.len();
+        let waiting = std::mem::take(&mut self.waiting);
+        let mut all = std::mem::take(&mut self.points);
+        self.fresh.resize(all.len() + waiting.len(), true);
+        all.keys.extend(waiting.keys);
+        all.indices.extend(waiting.indices);
+        let mut order: Vec<usize> = (0..all.len()).collect();
+        // A stable sort takes the points, sorted already, as one run.
+        order.sort_by(|&a, &b| {
+            let first = all.keys[a * dimensions].total_cmp(&all.keys[b * dimensions]);
+            if first.is_ne() {
+                return first;
+            }
+            let keys = all.key(a, dimensions).iter().zip(all.key(b, dimensions));
+            let by_key = keys.map(|(a, b)| a.total_cmp(b)).find(|ordering| ordering.is_ne());
+            // A design that came back with a seed is the same point twice: the known one first, the other is dropped.
+            by_key.unwrap_or_else(|| all.indices[a].cmp(&all.indices[b]).then(self.fresh[a].cmp(&self.fresh[b])))
+        });
+        // In this order a point can only be beaten by an earlier one.
+        let mut kept = Dominance::new(dimensions);
+        let mut best_second = f64::INFINITY;
+        let mut fresh = Vec::new();
+        let mut last = None;
+        for point in order {
+            let (key, index) = (all.key(point, dimensions), all.indices[point]);
+            let beaten = last == Some(index)
+                || match dimensions {
+                    1 => !self.points.is_empty(),
+                    2 => key[1] >= best_second,
+                    _ => kept.beater(key, index).is_some(),
+                };
+            last = Some(index);
+            if !beaten {
+                match dimensions {
+                    1 => {}
+                    2 => best_second = key[1],
+                    _ => kept.insert(key, index),
+                }
+                self.points.push(key.iter().copied(), index);
+                fresh.push(self.fresh[point]);
+            }
+        }
+        self.fresh = fresh;
+        self.refresh_filter_with(kept);
+    }
+
+    fn refresh_filter(&mut self) {
+        let mut all = Dominance::new(self.rules.len());
+        if self.rules.len() > 2 {
+            for (key, &index) in self.points.keys.chunks(self.rules.len()).zip(&self.points.indices) {
+                all.insert(key, index);
+            }
+        }
+        self.refresh_filter_with(all);
+    }
+
+    fn refresh_filter_with(&mut self, all: Dominance) {
+        self.filter = match (self.points.is_empty(), self.rules.len()) {
+            (true, _) | (_, 0) => Filter::Nothing,
+            (_, 1) => Filter::Best(self.points.keys[0]),
+            (_, 2) => Filter::Table(Table::new(&self.points)),
+            _ => Filter::Killers { recent: Vec::new(), next: 0, all },
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests;
