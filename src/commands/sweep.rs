@@ -14,6 +14,7 @@ use beltspace::tiles::Shard;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
+use std::time::Duration;
 
 /// Folder of the checkpoint within a result directory.
 pub const CHECKPOINT: &str = "checkpoint";
@@ -32,19 +33,13 @@ pub fn run(request: &cli::Sweep) -> Result<()> {
 
     let control = Arc::new(Control::default());
     stop_on_ctrl_c(&control)?;
-    let tables = Tables::new(&plan);
-    let tally = Tally::new(&plan, &tables, options.threads);
-    let reduction = Reduction::new(&plan, &tally.histogram_ranges(&plan));
     let bar = Bar::start(&control, shard.range(plan.designs()), request.quiet);
-    let swept = sweep(&plan, &tables, &reduction, &options, Some(&mut checkpoint), &control);
+    let done = judge(&plan, &options, &mut checkpoint, &control, request.shard.is_none());
     bar.finish();
-    let swept = swept.map_err(|error| name_the_way_back(error, &out, request))?;
-
-    if request.shard.is_some() {
-        return finish_shard(&plan, &out, &swept, shard, request.quiet);
-    }
-    let Swept { state, designs, time } = swept;
-    let outcome = Outcome::certify(&plan, state, tally, options.threads)?;
+    let (time, designs, outcome) = done.map_err(|error| name_the_way_back(error, &out, request))?;
+    let Some(outcome) = outcome else {
+        return finish_shard(&plan, &out, &checkpoint, request.quiet);
+    };
     let origin = if resumed { "resumed from a checkpoint" } else { "one run" }.to_owned();
     let record = RunRecord {
         engine: "cpu",
@@ -58,6 +53,22 @@ pub fn run(request: &cli::Sweep) -> Result<()> {
     outcome.write(&out, &text, &record)?;
     checkpoint.remove()?;
     if request.quiet { Ok(()) } else { terminal::print(&report::summary(&outcome, &record, &out)) }
+}
+
+/// Sweeps the study and, if it is `whole`, certifies what is to be reported; of a shard, the checkpoint is the result.
+fn judge<'p>(
+    plan: &'p Plan,
+    options: &Options,
+    checkpoint: &mut Checkpoint,
+    control: &Control,
+    whole: bool,
+) -> Result<(Duration, u64, Option<Outcome<'p>>)> {
+    let tables = Tables::new(plan);
+    let tally = Tally::new(plan, &tables, options.threads);
+    let reduction = Reduction::new(plan, &tally.histogram_ranges(plan));
+    let Swept { state, designs, time } = sweep(plan, &tables, &reduction, options, Some(checkpoint), control)?;
+    let outcome = whole.then(|| Outcome::certify(plan, state, tally, options.threads)).transpose()?;
+    Ok((time, designs, outcome))
 }
 
 /// `results/<study name>`, of a shard `results/<study name>-K-of-N`.
@@ -121,16 +132,16 @@ fn name_the_way_back(error: Error, out: &Path, request: &cli::Sweep) -> Error {
     }
 }
 
-fn finish_shard(plan: &Plan, out: &Path, swept: &Swept, shard: Shard, quiet: bool) -> Result<()> {
+fn finish_shard(plan: &Plan, out: &Path, checkpoint: &Checkpoint, quiet: bool) -> Result<()> {
     if quiet {
         return Ok(());
     }
+    let shard = checkpoint.shard();
+    let range = shard.range(plan.designs());
     terminal::print(&format!(
-        "shard {shard} of \"{}\": {} designs, {} feasible, {} front points, in {}\nput the shards together with: beltspace merge DIR... --out DIR\n",
+        "shard {shard} of \"{}\": {} designs, in {}\nput the shards together with: beltspace merge DIR... --out DIR\n",
         plan.study.title,
-        terminal::grouped(shard.range(plan.designs()).end - shard.range(plan.designs()).start),
-        terminal::grouped(swept.state.feasible),
-        terminal::grouped(swept.state.front.len() as u64),
+        terminal::grouped(range.end - range.start),
         out.display(),
     ))
 }

@@ -58,6 +58,19 @@ pub struct Columns<'a> {
     pub conditions: &'a [usize],
 }
 
+/// Room for the inner loop, kept between calls: filling it anew would cost as much as a short block.
+#[derive(Debug)]
+pub struct Scratch {
+    inputs: [Lanes; INPUTS],
+    outputs: [Lanes; OUTPUTS],
+}
+
+impl Default for Scratch {
+    fn default() -> Self {
+        Self { inputs: [Lanes::splat(0.0); INPUTS], outputs: [Lanes::splat(0.0); OUTPUTS] }
+    }
+}
+
 /// A formula instantiated for every number type, behind one table of functions.
 pub trait Kernel: Sync {
     /// First stage in f64.
@@ -75,6 +88,7 @@ pub trait Kernel: Sync {
         prepared: &[f64; PREPARED],
         inputs: &[f64; INPUTS],
         columns: &Columns<'_>,
+        scratch: &mut Scratch,
         results: &mut [Vec<f64>],
     );
     /// What depends on what.
@@ -112,9 +126,13 @@ impl<F: Formula + Sync> Kernel for F {
         prepared: &[f64; PREPARED],
         inputs: &[f64; INPUTS],
         columns: &Columns<'_>,
+        scratch: &mut Scratch,
         results: &mut [Vec<f64>],
     ) {
-        finish_columns::<F>(prepared, inputs, columns, results);
+        for (lanes, &value) in scratch.inputs.iter_mut().zip(inputs).take(model.inputs.len()) {
+            *lanes = Lanes::splat(value);
+        }
+        finish_columns::<F>(prepared, columns, scratch, results);
         for (&output, result) in columns.outputs.iter().zip(results) {
             let unit = model.outputs[output].unit;
             if !unit.is_si() {
@@ -143,23 +161,22 @@ impl<F: Formula + Sync> Kernel for F {
 /// Only `+ - * / min max` and selections are vectorised, which round alike on every instruction set, and nothing contracts a
 /// product and a sum, so the choice never changes a bit.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-fn finish_columns<F: Formula>(prepared: &[f64; PREPARED], inputs: &[f64; INPUTS], columns: &Columns<'_>, results: &mut [Vec<f64>]) {
+fn finish_columns<F: Formula>(prepared: &[f64; PREPARED], columns: &Columns<'_>, scratch: &mut Scratch, results: &mut [Vec<f64>]) {
     let prepared = prepared.map(Lanes::splat);
-    let mut inputs = inputs.map(Lanes::splat);
-    let mut outputs = [Lanes::splat(0.0); OUTPUTS];
+    let Scratch { inputs, outputs } = scratch;
     let wanted = bits(columns.outputs);
     for first in (0..columns.count).step_by(LANES) {
         for (input, column) in columns.varying {
             inputs[*input].0.copy_from_slice(&column[first..first + LANES]);
         }
         if wanted != 0 {
-            F::finish(&prepared, &inputs, wanted, &mut outputs);
+            F::finish(&prepared, inputs, wanted, outputs);
             for (&output, result) in columns.outputs.iter().zip(&mut *results) {
                 result[first..first + LANES].copy_from_slice(&outputs[output].0);
             }
         }
         if !columns.conditions.is_empty() {
-            let margins = F::conditions(&prepared, &inputs);
+            let margins = F::conditions(&prepared, inputs);
             for (&condition, result) in columns.conditions.iter().zip(&mut results[columns.outputs.len()..]) {
                 result[first..first + LANES].copy_from_slice(&margins[condition].0);
             }

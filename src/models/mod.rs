@@ -16,7 +16,7 @@ pub use cvt::{optimum_thickness, printed_torque_coefficient, torque_coefficient,
 pub use description::{Condition, Input, Model, Output, Profile, Range, Worse};
 pub use evaluation::{Evaluation, Status, evaluate, evaluate_decided};
 pub(crate) use evaluation::{holds, input_to_si, judge, to_si};
-pub use formula::{CONDITIONS, Columns, Formula, INPUTS, Kernel, OUTPUTS, PREPARED, Reach};
+pub use formula::{CONDITIONS, Columns, Formula, INPUTS, Kernel, OUTPUTS, PREPARED, Reach, Scratch};
 
 /// What `prepare` hands to `finish`.
 pub type Prepared = [f64; PREPARED];

@@ -19,7 +19,7 @@ pub use map::{Cell, Map};
 pub use top::Top;
 
 use crate::plan::{Plan, Tracked, worst_end};
-use crate::screen::{Block, count};
+use crate::screen::Block;
 use crate::study::{Best, Quantity};
 use serde::{Deserialize, Serialize};
 
@@ -83,7 +83,7 @@ impl Reduction {
 
     /// Takes in a block.
     pub fn absorb(&self, reducers: &mut Reducers, block: &Block<'_>) {
-        reducers.feasible += count(block.alive);
+        reducers.feasible += block.feasible_count;
         reducers.front.absorb(block, &self.objectives);
         reducers.extremes.absorb(block, &self.objectives);
         if let (Some((column, _)), Some(top)) = (&self.top, &mut reducers.top) {

@@ -78,7 +78,7 @@ mod tests {
                 let values = (first..first + 300).map(value).collect();
                 let alive: Vec<u64> = (first..first + 300).map(|index| if index % 3 == 0 { 0 } else { u64::MAX }).collect();
                 let offsets: Vec<u64> = (0..300).collect();
-                top.absorb(&Block { row_index: first, offsets: &offsets, alive: &alive, values: &[values] }, 0);
+                top.absorb(&Block { row_index: first, offsets: &offsets, feasible_count: 200, alive: &alive, values: &[values] }, 0);
             }
             let mut all: Vec<u64> = (0..1200).filter(|index| index % 3 != 0).collect();
             let sign = if goal == Goal::Min { 1.0 } else { -1.0 };

@@ -4,9 +4,9 @@
 //! whole row, then run the inner loop over blocks of the fast design axes, scenario by scenario, until no design is left.
 
 use super::Block;
-use super::columns::{any, keep_finite, keep_margin, keep_within, lower, raise};
+use super::columns::{self, any, keep_finite, keep_margin, keep_within, lower, raise};
 use crate::decision::Decision;
-use crate::models::{self, CONDITIONS, Columns, INPUTS, LANES, OUTPUTS, Prepared, Worse};
+use crate::models::{self, CONDITIONS, Columns, INPUTS, LANES, OUTPUTS, Prepared, Scratch, Worse};
 use crate::plan::{FAST_DESIGNS, Plan, Source};
 use crate::space::Product;
 use std::ops::Range;
@@ -74,6 +74,7 @@ pub struct CpuEngine<'p> {
     alive: Vec<u64>,
     values: Vec<Vec<f64>>,
     row_index: u64,
+    scratch: Scratch,
 }
 
 impl<'p> CpuEngine<'p> {
@@ -95,6 +96,7 @@ impl<'p> CpuEngine<'p> {
             alive: Vec::new(),
             values: vec![vec![0.0; BLOCK]; plan.tracked.len()],
             row_index: 0,
+            scratch: Scratch::default(),
         }
     }
 
@@ -240,8 +242,10 @@ impl<'p> CpuEngine<'p> {
                 }
             }
         }
-        if any(&self.alive) {
-            absorb(&Block { row_index: self.row_index, offsets: &fast.offsets, alive: &self.alive, values: &self.values });
+        let feasible = columns::count(&self.alive);
+        if feasible > 0 {
+            let (row_index, offsets) = (self.row_index, &fast.offsets);
+            absorb(&Block { row_index, offsets, feasible_count: feasible, alive: &self.alive, values: &self.values });
         }
     }
 
@@ -249,14 +253,15 @@ impl<'p> CpuEngine<'p> {
     pub(super) fn evaluate(&mut self, prepared: &Prepared, fast: &FastBlock) {
         let plan = self.plan;
         let columns = Columns { count: fast.count, varying: &fast.si, outputs: &plan.lane_outputs, conditions: &plan.lane_conditions };
-        plan.study.model.kernel.finish_columns(plan.study.model, prepared, &self.si, &columns, &mut self.results);
+        plan.study.model.kernel.finish_columns(plan.study.model, prepared, &self.si, &columns, &mut self.scratch, &mut self.results);
     }
 
     fn judge_block_scenario(&mut self, first: bool) {
         let plan = self.plan;
-        let (outputs, margins) = self.results.split_at(plan.lane_outputs.len());
+        let only = first && plan.space.scenarios.count() == 1;
+        let (outputs, margins) = self.results.split_at_mut(plan.lane_outputs.len());
         let alive = &mut self.alive;
-        for (&number, margins) in plan.lane_conditions.iter().zip(margins) {
+        for (&number, margins) in plan.lane_conditions.iter().zip(&*margins) {
             keep_margin(alive, margins, plan.study.model.conditions[number].strict);
         }
         for (constraint, source) in plan.study.constraints.iter().zip(&plan.constraints) {
@@ -270,6 +275,11 @@ impl<'p> CpuEngine<'p> {
                 // A constraint on the same output has asked for a finite number already.
                 if !plan.constraints.contains(source) {
                     keep_finite(alive, output);
+                }
+                // The only scenario is the worst, and nobody else asks for the column: it changes hands without a copy.
+                if only && plan.tracked.iter().filter(|(_, other)| other == source).count() == 1 {
+                    std::mem::swap(worst, &mut outputs[position]);
+                    continue;
                 }
                 let worst = &mut worst[..alive.len()];
                 match tracked.worse {

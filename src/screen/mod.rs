@@ -6,7 +6,7 @@ mod columns;
 mod cpu;
 mod tally;
 
-pub(crate) use columns::{count, ends};
+pub(crate) use columns::ends;
 pub use cpu::{BLOCK, CpuEngine, Tables};
 pub use tally::{SAMPLE, Tally};
 
@@ -17,6 +17,8 @@ pub struct Block<'a> {
     pub row_index: u64,
     /// Part of the design index that each lane contributes.
     pub offsets: &'a [u64],
+    /// Number of feasible designs, at least 1.
+    pub feasible_count: u64,
     /// All ones for a feasible design, else zero; one entry per design.
     pub alive: &'a [u64],
     /// One column per tracked quantity, in its unit; may be longer; meaningful for feasible designs only.

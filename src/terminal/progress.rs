@@ -44,21 +44,26 @@ fn follow(control: &Control, total: u64, finished: &AtomicBool) {
     let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr_with_hz(10));
     let style = ProgressStyle::with_template("{wide_bar} {percent:>3} %  {msg}").expect("the template is a constant");
     bar.set_style(style.progress_chars("█▉▊▋▌▍▎▏ "));
-    let start = Instant::now();
-    let mut resumed = None;
+    let mut last = 0;
+    // Since when designs have been judged, and how many a checkpoint had brought before: neither counts for the speed.
+    let mut begun: Option<(Instant, u64)> = None;
     while !finished.load(Ordering::Relaxed) {
         let done = control.done.load(Ordering::Relaxed).min(total);
-        // What a checkpoint brought does not count for the speed.
-        let before = *resumed.get_or_insert(done);
-        let rate = (done - before) as f64 / start.elapsed().as_secs_f64().max(1e-3);
-        bar.set_position(done);
-        if control.stop.load(Ordering::Relaxed) {
-            bar.set_message("stopping, keeping what is done ...");
-        } else if rate > 0.0 {
-            bar.set_message(format!("{}designs/s, {} left", scaled(rate), span((total - done) as f64 / rate)));
-        } else {
-            bar.set_message("starting");
+        if done != last && begun.is_none() {
+            begun = Some((Instant::now(), done));
         }
+        last = done;
+        bar.set_position(done);
+        let rate = begun.map_or(0.0, |(since, before)| (done - before) as f64 / since.elapsed().as_secs_f64().max(1e-3));
+        bar.set_message(if control.stop.load(Ordering::Relaxed) {
+            "stopping, keeping what is done ...".to_owned()
+        } else if done == total {
+            "certifying the front ...".to_owned()
+        } else if rate > 0.0 {
+            format!("{}designs/s, {} left", scaled(rate), span((total - done) as f64 / rate))
+        } else {
+            "looking at a sample ...".to_owned()
+        });
         std::thread::sleep(Duration::from_millis(50));
     }
     bar.finish_and_clear();

@@ -22,14 +22,14 @@ pub(super) enum Filter {
 
 impl Filter {
     /// Leaves those of the feasible designs in `alive` that are not known to be beaten. `keys` has a column per objective.
-    pub(super) fn keep(&self, feasible: &[u64], keys: &[Vec<f64>], alive: &mut [u64]) {
+    pub(super) fn keep(&self, feasible: &[u64], keys: &[&[f64]], alive: &mut [u64]) {
         if let Self::Table(table) = self {
-            return keep_unbeaten(table, feasible, &keys[0], &keys[1], alive);
+            return keep_unbeaten(table, feasible, keys[0], keys[1], alive);
         }
         alive.copy_from_slice(feasible);
         match self {
             Self::Best(best) => {
-                for (alive, key) in alive.iter_mut().zip(&keys[0]) {
+                for (alive, key) in alive.iter_mut().zip(keys[0]) {
                     *alive &= if key <= best { u64::MAX } else { 0 };
                 }
             }
@@ -102,7 +102,7 @@ fn keep_unbeaten(table: &Table, feasible: &[u64], first: &[f64], second: &[f64],
 
 /// Drops what `killer` strictly dominates.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-fn drop_dominated(alive: &mut [u64], killer: &[f64], keys: &[Vec<f64>]) {
+fn drop_dominated(alive: &mut [u64], killer: &[f64], keys: &[&[f64]]) {
     const CHUNK: usize = 64;
     for first in (0..alive.len()).step_by(CHUNK) {
         let alive = &mut alive[first..];

@@ -28,20 +28,24 @@ impl KeyRule {
         (if self.goal == Goal::Min { step } else { -step }) + 0.0
     }
 
-    /// The keys of a column of values.
-    pub(super) fn keys(self, values: &[f64], keys: &mut [f64]) {
-        match (self.resolution, self.goal) {
-            (Some(_), _) => keys.iter_mut().zip(values).for_each(|(key, &value)| *key = self.key(value)),
-            (None, Goal::Min) => signed(values, 1.0, keys),
-            (None, Goal::Max) => signed(values, -1.0, keys),
+    /// The keys of a column of values, but for the sign of zero: the values themselves where they serve, else in `scratch`.
+    pub(super) fn keys<'a>(self, values: &'a [f64], scratch: &'a mut Vec<f64>) -> &'a [f64] {
+        if self.resolution.is_none() && self.goal == Goal::Min {
+            return values;
         }
+        scratch.resize(values.len(), 0.0);
+        match self.resolution {
+            Some(_) => scratch.iter_mut().zip(values).for_each(|(key, &value)| *key = self.key(value)),
+            None => negate(values, scratch),
+        }
+        scratch
     }
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-fn signed(values: &[f64], sign: f64, keys: &mut [f64]) {
+fn negate(values: &[f64], keys: &mut [f64]) {
     for (key, &value) in keys.iter_mut().zip(values) {
-        *key = sign * value + 0.0;
+        *key = -value;
     }
 }
 

@@ -14,6 +14,8 @@ use super::dominance::{Dominance, beats};
 use crate::screen::Block;
 use filter::{Filter, Table};
 
+/// Most objectives that a study may have.
+const MOST_OBJECTIVES: usize = 6;
 /// Recent killers that are remembered.
 const KILLERS: usize = 8;
 /// Least number of waiting designs before they are merged.
@@ -29,7 +31,7 @@ pub struct Front {
     fresh: Vec<bool>,
     waiting: Points,
     filter: Filter,
-    /// Coordinates of the block being absorbed, one column per objective.
+    /// Room for the coordinates of a block, one column per objective.
     keys: Vec<Vec<f64>>,
     alive: Vec<u64>,
 }
@@ -60,12 +62,15 @@ impl Front {
         if self.rules.is_empty() {
             return;
         }
-        for ((keys, rule), &column) in self.keys.iter_mut().zip(&self.rules).zip(objectives) {
-            keys.resize(block.count(), 0.0);
-            rule.keys(block.column(column), keys);
+        // Taken out while it is lent to the comparisons below.
+        let mut scratch = std::mem::take(&mut self.keys);
+        let mut keys: [&[f64]; MOST_OBJECTIVES] = [&[]; MOST_OBJECTIVES];
+        for (((key, scratch), rule), &column) in keys.iter_mut().zip(&mut scratch).zip(&self.rules).zip(objectives) {
+            *key = rule.keys(block.column(column), scratch);
         }
+        let keys = &keys[..self.rules.len()];
         self.alive.resize(block.count(), 0);
-        self.filter.keep(block.alive, &self.keys, &mut self.alive);
+        self.filter.keep(block.alive, keys, &mut self.alive);
         for first in (0..block.count()).step_by(8) {
             let last = block.count().min(first + 8);
             if self.alive[first..last].iter().fold(0, |any, alive| any | alive) == 0 {
@@ -73,21 +78,23 @@ impl Front {
             }
             for lane in first..last {
                 if self.alive[lane] != 0 {
-                    self.consider(lane, block.index(lane));
+                    self.consider(keys, lane, block.index(lane));
                 }
             }
         }
+        self.keys = scratch;
         if self.waiting.len() >= WAITING.max(self.points.len() / 2) {
             self.merge_waiting();
         }
     }
 
     /// Lets a design that passed the filter wait, unless the front beats it.
-    fn consider(&mut self, lane: usize, index: u64) {
+    fn consider(&mut self, keys: &[&[f64]], lane: usize, index: u64) {
         let dimensions = self.rules.len();
-        let mut key = [0.0; 8];
-        for (key, keys) in key.iter_mut().zip(&self.keys) {
-            *key = keys[lane];
+        let mut key = [0.0; MOST_OBJECTIVES];
+        for (key, keys) in key.iter_mut().zip(keys) {
+            // Zero has one sign.
+            *key = keys[lane] + 0.0;
         }
         let key = &key[..dimensions];
         match &mut self.filter {

@@ -14,7 +14,8 @@ struct Owned {
 
 impl Owned {
     fn block(&self) -> Block<'_> {
-        Block { row_index: self.row_index, offsets: &self.offsets, alive: &self.alive, values: &self.values }
+        let feasible_count = self.alive.iter().filter(|&&alive| alive != 0).count() as u64;
+        Block { row_index: self.row_index, offsets: &self.offsets, feasible_count, alive: &self.alive, values: &self.values }
     }
 }
 
