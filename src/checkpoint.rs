@@ -27,9 +27,17 @@ pub struct Progress {
     pub state: State,
 }
 
+/// The manifest's file: a manifest that was tampered with would be believed as far as its JSON parses, so it is sealed.
+#[derive(Serialize, Deserialize)]
+struct Sealed {
+    version: u32,
+    /// CRC-32 of the manifest as compact JSON.
+    checksum: u32,
+    manifest: Value,
+}
+
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Manifest {
-    version: u32,
     program: String,
     study_hash: String,
     study: Study,
@@ -64,7 +72,6 @@ impl Checkpoint {
         let lock = lock(folder)?;
         remove_contents(folder)?;
         let manifest = Manifest {
-            version: VERSION,
             program: env!("CARGO_PKG_VERSION").to_owned(),
             study_hash: study.hash(),
             study: study.clone(),
@@ -88,17 +95,22 @@ impl Checkpoint {
     pub fn open(folder: &Path) -> Result<Self> {
         let refuse = |problem: String| Error::Checkpoint { path: folder.to_owned(), problem };
         let path = folder.join(MANIFEST);
-        let text = fs::read_to_string(&path).map_err(|source| match source.kind() {
-            std::io::ErrorKind::NotFound => refuse("there is no checkpoint here".to_owned()),
-            _ => Error::Io { path: path.clone(), source },
-        })?;
-        let version = serde_json::from_str::<Value>(&text).ok().and_then(|value| value["version"].as_u64());
-        if version.is_some_and(|version| version != u64::from(VERSION)) {
+        if !path.exists() {
+            return Err(refuse("there is no checkpoint here".to_owned()));
+        }
+        // Locked before it is read: another run may be replacing it.
+        let lock = lock(folder)?;
+        let text = fs::read_to_string(&path).map_err(Error::io(&path))?;
+        let damaged = |why: String| refuse(format!("the manifest is damaged ({why}); start again with --force"));
+        let value: Value = serde_json::from_str(&text).map_err(|error| damaged(error.to_string()))?;
+        if value["version"].as_u64().is_some_and(|version| version != u64::from(VERSION)) {
             return Err(refuse("the checkpoint was written by another version of beltspace; start again with --force".to_owned()));
         }
-        let manifest: Manifest =
-            serde_json::from_str(&text).map_err(|error| refuse(format!("the manifest is damaged ({error}); start again with --force")))?;
-        let lock = lock(folder)?;
+        let sealed: Sealed = serde_json::from_value(value).map_err(|error| damaged(error.to_string()))?;
+        if crc32fast::hash(sealed.manifest.to_string().as_bytes()) != sealed.checksum {
+            return Err(damaged("it does not match its checksum".to_owned()));
+        }
+        let manifest: Manifest = serde_json::from_value(sealed.manifest).map_err(|error| damaged(error.to_string()))?;
         let progress = match &manifest.state {
             None => None,
             Some((name, checksum)) => {
@@ -198,7 +210,9 @@ impl Checkpoint {
     }
 
     fn write_manifest(&self) -> Result<()> {
-        let text = serde_json::to_string_pretty(&self.manifest).expect("a manifest has string keys and finite numbers");
+        let manifest = serde_json::to_value(&self.manifest).expect("a manifest has string keys and finite numbers");
+        let sealed = Sealed { version: VERSION, checksum: crc32fast::hash(manifest.to_string().as_bytes()), manifest };
+        let text = serde_json::to_string_pretty(&sealed).expect("a value can be written");
         replace(&self.folder.join(MANIFEST), text.as_bytes())
     }
 
@@ -207,6 +221,9 @@ impl Checkpoint {
     /// # Errors
     /// [`Error::Io`].
     pub fn remove(self) -> Result<()> {
+        // The manifest first: without it there is no checkpoint, however much of the rest a kill leaves.
+        let manifest = self.folder.join(MANIFEST);
+        fs::remove_file(&manifest).map_err(Error::io(&manifest))?;
         fs::remove_dir_all(&self.folder).map_err(Error::io(&self.folder))
     }
 }

@@ -57,6 +57,9 @@ pub struct Swept {
 /// A first chunk this small calibrates the speed and gives the front something to compare with.
 const FIRST_CHUNK: u64 = 4096;
 
+/// Least time of a chunk and between two saves.
+const LEAST_CHUNK: Duration = Duration::from_millis(50);
+
 /// Most blocks of the head start, and the share of all designs that it may not exceed.
 const HEAD_START: u64 = 256;
 const HEAD_START_SHARE: u64 = 64;
@@ -70,6 +73,7 @@ struct Work<'a> {
     known: Arc<Points>,
     checkpoint: Option<&'a mut Checkpoint>,
     failure: Option<Error>,
+    start: Instant,
     /// Designs per second of one thread, once known.
     rate: Option<f64>,
     saved: Instant,
@@ -108,6 +112,7 @@ pub fn sweep(
         known,
         checkpoint,
         failure: None,
+        start,
         rate: None,
         saved: start,
         saving: Duration::ZERO,
@@ -172,8 +177,9 @@ fn run_thread(plan: &Plan, tables: &Tables, reduction: &Reduction, options: &Opt
     loop {
         let (chunk, known) = {
             let mut work = lock();
-            // A large front is dear to merge and to keep: longer chunks then.
-            let seconds = options.chunk.max(10 * (work.saving + work.merging)).as_secs_f64();
+            // Short chunks first, so that little is lost early too; a large front is dear to merge and to keep: longer ones then.
+            let young = (work.start.elapsed() / 2).max(LEAST_CHUNK).min(options.chunk);
+            let seconds = young.max(10 * (work.saving + work.merging)).as_secs_f64();
             let size = work.rate.map_or(FIRST_CHUNK as f64, |rate| rate * seconds);
             // Towards the end chunks shrink, so that the threads finish together.
             let fair = work.todo.count() / (2 * options.threads as u64).max(1);
@@ -228,7 +234,7 @@ fn hand_over(
         work.failure = Some(over_budget(plan));
         return;
     }
-    if work.checkpoint.is_some() && work.saved.elapsed() >= Duration::from_millis(200).max(5 * work.saving) {
+    if work.checkpoint.is_some() && work.saved.elapsed() >= LEAST_CHUNK.max(5 * work.saving) {
         let start = Instant::now();
         let state = work.reducers.state();
         let done = work.done.clone();

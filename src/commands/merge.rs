@@ -20,8 +20,10 @@ pub fn run(request: &cli::Merge) -> Result<()> {
     let folders = request.shards.iter().map(|folder| checkpoint_in(folder)).collect::<Result<Vec<_>>>()?;
     refuse_twice(&request.shards, &folders)?;
     let open = |(named, folder): (&PathBuf, &PathBuf)| Ok((named.clone(), Checkpoint::open(folder)?));
-    let shards = request.shards.iter().zip(&folders).map(open).collect::<Result<Vec<_>>>()?;
+    let mut shards = request.shards.iter().zip(&folders).map(open).collect::<Result<Vec<_>>>()?;
     check_set(&shards)?;
+    // Whatever the order they are named in: the first shard's study file becomes the result's.
+    shards.sort_by_key(|(_, shard)| shard.shard().number);
     let first = &shards.first().ok_or_else(|| Error::Request("name the directories of the shards".to_owned()))?.1;
     let text = first.study_text().to_owned();
     let plan = Plan::new(first.study().clone());

@@ -5,7 +5,7 @@ use crate::cli;
 use crate::terminal::{self, progress::Bar, report};
 use beltspace::checkpoint::Checkpoint;
 use beltspace::error::{Error, Result};
-use beltspace::export::{MARK, Outcome, RunRecord};
+use beltspace::export::{MARK, Outcome, RunRecord, in_the_way};
 use beltspace::plan::Plan;
 use beltspace::reduce::Reduction;
 use beltspace::screen::{Tables, Tally};
@@ -27,12 +27,11 @@ pub fn run(request: &cli::Sweep) -> Result<()> {
     let goes_on = request.resume && Checkpoint::exists(&out.join(CHECKPOINT));
     refuse_to_overwrite(&out, request.force || goes_on)?;
     let plan = Plan::new(study);
+    let control = Arc::new(Control::default());
+    stop_on_ctrl_c(&control)?;
     let mut checkpoint = open_checkpoint(&out, &plan, &text, shard, request)?;
     let resumed = checkpoint.has_progress();
     let options = Options { threads: threads(request.threads), tile: request.tile, shard, ..Options::default() };
-
-    let control = Arc::new(Control::default());
-    stop_on_ctrl_c(&control)?;
     let bar = Bar::start(&control, shard.range(plan.designs()), request.quiet);
     let done = judge(&plan, &options, &mut checkpoint, &control, request.shard.is_none());
     bar.finish();
@@ -83,10 +82,22 @@ pub fn refuse_to_overwrite(out: &Path, force: bool) -> Result<()> {
     if out.is_file() {
         return Err(Error::Request(format!("{} is a file; name a directory with --out", out.display())));
     }
-    if out.join(MARK).exists() && !force {
+    if force {
+        return Ok(());
+    }
+    if out.join(MARK).exists() {
         return Err(Error::Request(format!(
             "{} holds a finished result; replace it with --force, or write to another --out",
             out.display()
+        )));
+    }
+    // A checkpoint says whose files these are: those of a run that was killed while it wrote its result.
+    let files = if Checkpoint::exists(&out.join(CHECKPOINT)) { Vec::new() } else { in_the_way(out)? };
+    if !files.is_empty() {
+        return Err(Error::Request(format!(
+            "{} has files that a result would replace ({}); write to another --out, or replace them with --force",
+            out.display(),
+            files.join(", ")
         )));
     }
     Ok(())

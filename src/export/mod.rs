@@ -16,6 +16,7 @@ pub use table::{Data, Table, TableColumn};
 use crate::certify::{self, Column, Row};
 use crate::checkpoint::replace;
 use crate::error::{Error, Result};
+use crate::models::MODELS;
 use crate::plan::Plan;
 use crate::reduce::State;
 use crate::screen::Tally;
@@ -132,10 +133,40 @@ impl<'p> Outcome<'p> {
 
 /// Is this a name that a result directory may have, so that an older result's file may go?
 fn is_ours(name: &str) -> bool {
-    let fixed = ["front.csv", "front.parquet", "front.svg", "top.csv", "scenarios.csv", "study.toml", "study.json", "run.json"];
+    let name = name.strip_suffix(".writing").unwrap_or(name);
+    let fixed = ["front.csv", "front.parquet", "front.svg", "top.csv", "scenarios.csv", "study.toml", "study.json", "run.json", MARK];
     let (stem, extension) = name.rsplit_once('.').unwrap_or((name, ""));
-    let picture = (stem.starts_with("histogram-") || stem.starts_with("map-")) && ["csv", "parquet", "svg"].contains(&extension);
-    fixed.contains(&name) || picture || extension == "writing"
+    let drawn = stem.strip_prefix("histogram-").or_else(|| stem.strip_prefix("map-"));
+    fixed.contains(&name) || (["csv", "parquet", "svg"].contains(&extension) && drawn.is_some_and(is_quantity))
+}
+
+/// Is this the name of a quantity of some model, or of a feasible share, perhaps numbered?
+fn is_quantity(name: &str) -> bool {
+    let known =
+        |name: &str| name == "feasible_share" || MODELS.iter().any(|model| model.input(name).is_some() || model.output(name).is_some());
+    let number = |text: &str| !text.is_empty() && text.bytes().all(|it| it.is_ascii_digit());
+    known(name) || name.rsplit_once('-').is_some_and(|(name, text)| number(text) && known(name))
+}
+
+/// Files of a folder whose names a result would take, in the order of their names.
+///
+/// # Errors
+/// [`Error::Io`] if the folder is there and cannot be read.
+pub fn in_the_way(folder: &Path) -> Result<Vec<String>> {
+    let entries = match fs::read_dir(folder) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
+        entries => entries.map_err(Error::io(folder))?,
+    };
+    let mut names = Vec::new();
+    for entry in entries {
+        let entry = entry.map_err(Error::io(folder))?;
+        if entry.path().is_file() {
+            names.push(entry.file_name().to_string_lossy().into_owned());
+        }
+    }
+    names.retain(|name| is_ours(name));
+    names.sort();
+    Ok(names)
 }
 
 fn remove_if_there(path: &Path) -> Result<()> {

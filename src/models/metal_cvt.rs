@@ -57,7 +57,10 @@ pub const MODEL: Model = Model {
     profile: None,
 };
 
-struct MetalBelt;
+/// The formula.
+pub(super) type Own = Cvt<MetalBelt>;
+
+pub(super) struct MetalBelt;
 
 impl Belt for MetalBelt {
     #[inline(always)]

@@ -21,8 +21,31 @@ pub use formula::{CONDITIONS, Columns, Formula, INPUTS, Kernel, OUTPUTS, PREPARE
 /// What `prepare` hands to `finish`.
 pub type Prepared = [f64; PREPARED];
 
-/// Every model, in the order in which `beltspace models` lists them.
-pub const MODELS: &[&Model] = &[&rubber_cvt::MODEL, &metal_cvt::MODEL, &pulley_load::MODEL];
+/// Something to do with a model's formula over a number type of one's own, which the table of functions in [`Model::kernel`]
+/// cannot offer.
+pub trait Visitor {
+    /// What comes of it.
+    type Output;
+    /// Called with the formula.
+    fn visit<F: Formula>(self) -> Self::Output;
+}
+
+/// The list of models: each is a module with its table `MODEL` and its formula `Own`.
+macro_rules! models {
+    ($($module:ident),* $(,)?) => {
+        /// Every model, in the order in which `beltspace models` lists them.
+        pub const MODELS: &[&Model] = &[$(&$module::MODEL),*];
+
+        /// Calls a visitor with the formula of the model of that name; `None` if there is no such model.
+        pub fn visit<V: Visitor>(name: &str, visitor: V) -> Option<V::Output> {
+            match name {
+                $(_ if name == $module::MODEL.name => Some(visitor.visit::<$module::Own>()),)*
+                _ => None,
+            }
+        }
+    };
+}
+models![rubber_cvt, metal_cvt, pulley_load];
 
 /// The model of that name.
 pub fn find(name: &str) -> Option<&'static Model> {

@@ -193,7 +193,10 @@ pub const MODEL: Model = Model {
     profile: Some(profile),
 };
 
-struct PulleyLoad;
+/// The formula.
+pub(super) type Own = PulleyLoad;
+
+pub(super) struct PulleyLoad;
 
 impl Formula for PulleyLoad {
     fn prepare<R: Real>(inputs: &[R; INPUTS]) -> [R; PREPARED] {

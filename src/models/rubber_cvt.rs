@@ -44,7 +44,10 @@ pub const MODEL: Model = Model {
     profile: None,
 };
 
-struct RubberBelt;
+/// The formula.
+pub(super) type Own = Cvt<RubberBelt>;
+
+pub(super) struct RubberBelt;
 
 impl Belt for RubberBelt {
     #[inline(always)]

@@ -1,0 +1,286 @@
+//! `models` and `eval`: what there is, and one design at a time.
+
+use super::{Csv, SMALL, ask, ask_words, folder_with, json_of, read, write};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::path::Path;
+use tempfile::tempdir;
+
+/// Name, inputs with their defaults, outputs: what the interface promises.
+const MODELS: [(&str, &str, &str); 3] = [
+    (
+        "rubber-cvt",
+        r#"{"friction":0.4,"groove_angle_deg":30,"ratio":1,"belt_length_mm":1066,"centre_distance_mm":260,"belt_width_mm":50,
+            "belt_thickness_mm":10,"elastic_modulus_MPa":600,"strength_MPa":18,"traction":0.8,"torque_Nm":50}"#,
+        VARIATOR_OUTPUTS,
+    ),
+    (
+        "metal-cvt",
+        r#"{"friction":0.08,"groove_angle_deg":22,"ratio":1,"belt_length_mm":613,"centre_distance_mm":156,"band_width_mm":9,
+            "band_thickness_mm":0.2,"band_count":10,"elastic_modulus_MPa":210000,"strength_MPa":500,"traction":"limit","torque_Nm":100}"#,
+        METAL_OUTPUTS,
+    ),
+    (
+        "pulley-load",
+        r#"{"power_kW":3,"speed_rpm":3000,"slack_tension_N":700,"wrap_angle_deg":88,"mean_radius_mm":60,"groove_angle_deg":36,
+            "groove_count":1,"belt_mass_kg_per_m":0.11,"friction_limit":0.3,"friction_direction_deg":45}"#,
+        "belt_speed_m_per_s tight_tension_N effective_tension_N centrifugal_tension_N effective_friction friction_used friction_margin \
+         torque_Nm resultant_force_N slack_end_line_force_N_per_mm tight_end_line_force_N_per_mm slack_end_flank_force_N_per_mm \
+         tight_end_flank_force_N_per_mm",
+    ),
+];
+const VARIATOR_OUTPUTS: &str = "driver_radius_mm driven_radius_mm driver_wrap_deg driven_wrap_deg effective_friction traction_limit \
+    driver_traction_limit slip_margin active_arc_deg driver_axial_coefficient driven_axial_coefficient belt_force_N tight_force_N \
+    slack_force_N driver_axial_force_N driven_axial_force_N axial_force_N tensile_stress_MPa bending_stress_MPa max_stress_MPa \
+    stress_margin optimum_thickness_mm torque_coefficient_N_per_mm torque_capacity_Nm capacity_axial_force_N";
+const METAL_OUTPUTS: &str = "driver_radius_mm driven_radius_mm driver_wrap_deg driven_wrap_deg effective_friction traction_limit \
+    driver_traction_limit slip_margin active_arc_deg driver_axial_coefficient driven_axial_coefficient belt_force_N tight_force_N \
+    slack_force_N driver_axial_force_N driven_axial_force_N axial_force_N tensile_stress_MPa bending_stress_MPa max_stress_MPa \
+    stress_margin optimum_thickness_mm torque_coefficient_N_per_mm torque_capacity_Nm capacity_axial_force_N \
+    printed_torque_coefficient_N_per_mm entry_compression";
+
+fn here() -> &'static Path {
+    Path::new(".")
+}
+
+fn keys(object: &Value) -> Vec<&str> {
+    object.as_object().expect("an object").keys().map(String::as_str).collect()
+}
+
+#[test]
+fn models_are_listed_and_described_in_full() {
+    let list = ask(here(), "models").text();
+    let all = ask(here(), "models --json").json();
+    assert_eq!(all.as_array().map(Vec::len), Some(MODELS.len()));
+    for (at, (model, inputs, outputs)) in MODELS.into_iter().enumerate() {
+        assert!(list.contains(model), "{list}");
+        let described = ask(here(), &format!("models {model} --json")).json();
+        assert_eq!(described, all[at]);
+        assert_eq!(described["name"], model);
+        let defaults: BTreeMap<String, Value> = serde_json::from_str(inputs).expect("the table is JSON");
+        let of_input = |input: &Value| (input["name"].as_str().expect("a name").to_owned(), input["default"].clone());
+        assert_eq!(described["inputs"].as_array().expect("inputs").iter().map(of_input).collect::<BTreeMap<_, _>>(), defaults);
+        let names: Vec<_> = described["outputs"].as_array().expect("outputs").iter().map(|it| it["name"].as_str().expect("name")).collect();
+        assert_eq!(names, outputs.split_whitespace().collect::<Vec<_>>());
+        let page = ask(here(), &format!("models {model}")).text();
+        for name in defaults.keys().map(String::as_str).chain(names) {
+            assert!(page.contains(name), "{name} is missing in\n{page}");
+        }
+        for list in ["inputs", "outputs"] {
+            for entry in described[list].as_array().expect("a list") {
+                // The unit at the end of the name is the unit of the values.
+                let (name, unit) = (entry["name"].as_str().expect("a name"), entry["unit"].as_str().expect("a unit").replace('/', "_per_"));
+                assert!(unit.is_empty() || name.ends_with(&format!("_{unit}")), "{name} in {unit}");
+                for what in ["doc", "source"] {
+                    let text = entry[what].as_str().expect("a text");
+                    assert!(!text.is_empty() && page.contains(text), "{what} of {name}: \"{text}\" is missing in\n{page}");
+                }
+            }
+        }
+        for what in ["status", "Not in the model:", "default", "usual", "valid", "equation"] {
+            assert!(page.contains(what), "{what} is missing in\n{page}");
+        }
+    }
+}
+
+#[test]
+fn the_starter_study_of_every_model_passes_check() {
+    for (model, ..) in MODELS {
+        let study = ask(here(), &format!("models {model} --study")).text();
+        let folder = folder_with("my.toml", &study);
+        let text = ask(folder.path(), "check my.toml").text();
+        assert!(text.contains(model) && text.contains("designs") && text.contains("scenarios"), "{text}");
+        assert!(!text.contains("warning:"), "a starter has nothing to warn of:\n{text}");
+    }
+}
+
+#[test]
+fn a_design_of_defaults_has_every_output() {
+    for (model, inputs, outputs) in MODELS {
+        let object = ask(here(), &format!("eval {model} --json")).json();
+        assert_eq!(keys(&object), ["model", "inputs", "outputs", "status"]);
+        assert_eq!((&object["model"], &object["status"]), (&json!(model), &json!("ok")));
+        assert_eq!(object["inputs"], serde_json::from_str::<Value>(inputs).expect("the table is JSON"));
+        assert_eq!(keys(&object["outputs"]), outputs.split_whitespace().collect::<Vec<_>>());
+        assert!(object["outputs"].as_object().expect("an object").values().all(Value::is_number));
+        let table = ask(here(), &format!("eval {model}")).text();
+        assert!(keys(&object["outputs"]).into_iter().all(|name| table.contains(name)), "{table}");
+        assert!(table.ends_with("status ok\n"), "{table}");
+    }
+}
+
+#[test]
+fn outputs_without_a_meaning_are_absent() {
+    let slip = ask(here(), "eval metal-cvt --set traction=0.9 --json").json();
+    assert_eq!(slip["status"], "slip");
+    let kept = "driver_radius_mm driven_radius_mm driver_wrap_deg driven_wrap_deg effective_friction traction_limit \
+                driver_traction_limit slip_margin bending_stress_MPa optimum_thickness_mm";
+    assert_eq!(keys(&slip["outputs"]), kept.split_whitespace().collect::<Vec<_>>());
+    assert!(slip["outputs"]["slip_margin"].as_f64().is_some_and(|margin| margin < 0.0));
+    let impossible = [
+        ("centre_distance_mm=600", "belt too short"),
+        ("belt_length_mm=3000", "pulleys overlap"),
+        ("belt_length_mm=5000 --set ratio=3", "no geometry"),
+    ];
+    for (set, status) in impossible {
+        let none = ask(here(), &format!("eval rubber-cvt --set {set} --json")).json();
+        assert_eq!((&none["status"], keys(&none["outputs"])), (&json!(status), vec!["effective_friction"]), "{set}");
+        let table = ask(here(), &format!("eval rubber-cvt --set {set}")).text();
+        assert!(table.contains(&format!("status {status}")), "{table}");
+        assert!(table.lines().any(|line| line.trim_start().starts_with("axial_force_N") && line.contains(" - ")), "{table}");
+        assert!(!table.contains("NaN") && !table.contains("inf "), "{table}");
+    }
+    let lifted = ask(here(), "eval pulley-load --set slack_tension_N=20 --json").json();
+    assert_eq!(lifted["status"], "belt lifts");
+    let kept = ["belt_speed_m_per_s", "tight_tension_N", "effective_tension_N", "centrifugal_tension_N", "torque_Nm"];
+    assert_eq!(keys(&lifted["outputs"]), kept);
+    // Too much friction is a negative margin of a design that can be computed.
+    let weak = ask(here(), "eval pulley-load --set friction_limit=0.01 --json").json();
+    assert!(weak["status"] == "ok" && weak["outputs"]["friction_margin"].as_f64().is_some_and(|margin| margin < 0.0), "{weak}");
+}
+
+#[test]
+fn values_may_be_set_in_other_units_and_words() {
+    let words =
+        ["eval", "metal-cvt", "--json", "--set", "band_width_mm=0.25 in", "--set", "torque_Nm = 10 lbf ft", "--set", "strength_MPa=1GPa"];
+    let object = ask_words(here(), &words).json();
+    assert_eq!(object["inputs"]["band_width_mm"], json!(6.35));
+    assert_eq!(object["inputs"]["strength_MPa"], json!(1000));
+    assert!(object["inputs"]["torque_Nm"].as_f64().is_some_and(|torque| (torque - 13.558_179_483_314).abs() < 1e-9));
+    let set = ask(here(), "eval rubber-cvt --json --set traction=limit").json();
+    assert_eq!(set["inputs"]["traction"], "limit");
+    assert_eq!(set["outputs"]["slip_margin"], 0);
+    let table = ask(here(), "eval rubber-cvt --set traction=limit").text();
+    assert!(table.lines().any(|line| line.split_whitespace().take(2).eq(["traction", "limit"])), "{table}");
+    // Beyond what the source covers the program computes, and says so.
+    let far = ask(here(), "eval rubber-cvt --set friction=0.9");
+    assert!(far.err.contains("friction = 0.9 lies outside 0.3 to 0.5"), "{}", far.err);
+    assert_eq!(far.code, Some(0));
+}
+
+#[test]
+fn all_wrong_settings_are_named_at_once() {
+    let words =
+        ["eval", "metal-cvt", "--set", "ratio=-1", "--set", "grove_angle_deg=3", "--set", "band_count=2.5", "--set", "torque_Nm=3 lbf"];
+    let err = ask_words(here(), &[&words[..], &["--set", "slip_margin=1", "--set", "x", "--set", "traction=-1"]].concat()).refusal(2);
+    for expected in [
+        "ratio = -1 is out of range; it is greater than 0",
+        "grove_angle_deg is no input of metal-cvt; did you mean groove_angle_deg?",
+        "band_count = 2.5 must be a whole number",
+        "torque_Nm: \"lbf\" measures a force, but a torque is wanted",
+        "slip_margin is an output of metal-cvt",
+        "--set \"x\": write NAME=VALUE",
+        // The number that stands for the word inside the program means nothing outside.
+        "traction = -1 is out of range; it is at least 0 and less than 1, or \"limit\"",
+    ] {
+        assert!(err.contains(expected), "{expected} is missing in\n{err}");
+    }
+    let far = ask(here(), "eval metal-cvt --set colour=3").refusal(2);
+    assert!(!far.contains("did you mean") && far.contains("beltspace models metal-cvt"), "nothing is near enough to suggest: {far}");
+}
+
+/// Do the tags of an XML text open and close as they should?
+fn nests(xml: &str) -> bool {
+    let mut open = Vec::new();
+    for part in xml.split('<').skip(1) {
+        let Some((tag, _)) = part.split_once('>') else { return false };
+        let name = tag.split_whitespace().next().unwrap_or_default();
+        match (name.strip_prefix('/'), tag.ends_with('/')) {
+            (Some(closed), _) if open.pop() != Some(closed) => return false,
+            (None, false) if !tag.starts_with(['?', '!']) => open.push(name),
+            _ => {}
+        }
+        if tag.matches('"').count() % 2 == 1 {
+            return false;
+        }
+    }
+    open.is_empty() && xml.starts_with("<svg") && !xml.contains("NaN")
+}
+
+#[test]
+fn values_along_the_belt_rise_from_slack_to_tight() {
+    assert!(
+        nests("<svg><a x=\"1\"/><b>t</b></svg>") && !nests("<svg><b></svg>") && !nests("<svg><b></c></svg>") && !nests("<svg a=\"></svg>")
+    );
+    let folder = tempdir().expect("there is room");
+    let object = ask(folder.path(), "eval pulley-load --profile belt.csv --plot belt.svg --json").json();
+    let belt = Csv::read(&folder.path().join("belt.csv"));
+    assert_eq!(belt.header, ["wrap_position_deg", "tension_N", "line_force_N_per_mm", "flank_force_N_per_mm"]);
+    let (angle, tension) = (belt.numbers("wrap_position_deg"), belt.numbers("tension_N"));
+    assert!(angle.len() > 20 && angle.is_sorted() && angle.first() == Some(&0.0) && angle.last() == Some(&88.0), "{angle:?}");
+    assert!(tension.windows(2).all(|pair| pair[0] < pair[1]), "{tension:?}");
+    let output = |name: &str| object["outputs"][name].as_f64().expect("a number");
+    let near = |a: f64, b: f64| (a - b).abs() <= 1e-12 * b.abs();
+    assert!(near(tension[0], 700.0) && near(tension[tension.len() - 1], output("tight_tension_N")));
+    for (column, name) in [("line_force_N_per_mm", "line"), ("flank_force_N_per_mm", "flank")] {
+        let force = belt.numbers(column);
+        assert!(near(force[0], output(&format!("slack_end_{name}_force_N_per_mm"))));
+        assert!(near(force[force.len() - 1], output(&format!("tight_end_{name}_force_N_per_mm"))));
+    }
+    let svg = read(&folder.path().join("belt.svg"));
+    assert!(nests(&svg) && svg.contains("tension"), "{}", &svg[..svg.len().min(400)]);
+    for model in ["metal-cvt", "rubber-cvt"] {
+        let err = ask(folder.path(), &format!("eval {model} --profile none.csv")).refusal(2);
+        assert!(err.contains("models that have: pulley-load"), "{err}");
+    }
+    let err = ask(folder.path(), "eval pulley-load --set slack_tension_N=20 --plot none.svg").refusal(2);
+    assert!(err.contains("belt lifts") && !folder.path().join("none.svg").exists(), "{err}");
+}
+
+#[test]
+fn a_design_of_a_study_is_what_the_front_says() {
+    let folder = folder_with("small.toml", SMALL);
+    let at = folder.path();
+    ask(at, "sweep small.toml --out small").text();
+    let front = Csv::read(&at.join("small/front.csv"));
+    let summary = json_of(&at.join("small/summary.json"));
+    assert!(front.rows.len() > 20, "{}", front.rows.len());
+    let columns = ["axial_force_N", "stress_margin", "band_count", "slip_margin", "stress_margin_constrained", "max_stress_MPa"];
+    for row in [0, 7, front.rows.len() - 1] {
+        let design = front.column("design_index")[row];
+        let object = ask(at, &format!("eval small.toml --design {design} --json")).json();
+        assert_eq!((&object["feasible"], &object["status"]), (&json!(true), &json!("ok")));
+        for name in columns {
+            let said = |column: &str| front.column(column)[row];
+            let worst = &object["outputs"][name];
+            let (value, scenario) = (said(name).parse::<f64>().expect("a number"), said(&format!("{name}_scenario")));
+            assert_eq!(worst["value"].as_f64().map(f64::to_bits), Some(value.to_bits()), "{name} of design {design}");
+            assert_eq!(worst["scenario"].to_string(), scenario, "{name} of design {design}");
+            // The same design in that scenario alone takes that value there.
+            let one = ask(at, &format!("eval small.toml --design {design} --scenario {scenario} --json")).json();
+            let single = one["outputs"].get(name.trim_end_matches("_constrained")).unwrap_or(&one["inputs"]["band_count"]);
+            assert_eq!(single.as_f64().map(f64::to_bits), Some(value.to_bits()), "{name} of design {design} in scenario {scenario}");
+        }
+        for name in ["groove_angle_deg", "band_thickness_mm", "traction"] {
+            assert_eq!(object["inputs"][name].as_f64(), front.column(name)[row].parse().ok());
+        }
+        let table = ask(at, &format!("eval small.toml --design {design}")).text();
+        assert!(table.contains("feasible yes") && table.contains("axial_force_N") && table.contains("holds"), "{table}");
+    }
+    let last = summary["designs"].as_u64().expect("a count") - 1;
+    assert_eq!(last + 1, 13 * 21 * 9 * 5);
+    ask(at, &format!("eval small.toml --design {last}")).text();
+    let err = ask(at, &format!("eval small.toml --design {}", last + 1)).refusal(2);
+    assert!(err.contains(&format!("there is no design {}; the study's designs are 0 to {last}", last + 1)), "{err}");
+    ask(at, "eval small.toml --design 0 --scenario 11").text();
+    let err = ask(at, "eval small.toml --design 0 --scenario 12").refusal(2);
+    assert!(err.contains("there is no scenario 12; the study's scenarios are 0 to 11"), "{err}");
+    // Traction 0.5 slips at the lower friction: not feasible, and the reader is told where.
+    let bad = ask(at, &format!("eval small.toml --design {last} --json")).json();
+    assert_eq!((&bad["feasible"], &bad["status"]), (&json!(false), &json!("slip")), "{bad}");
+    assert!(bad["scenarios_not_ok"].as_u64().is_some_and(|count| 0 < count && count < 12), "{bad}");
+    assert_eq!((&bad["constraints"][0]["of"], &bad["constraints"][0]["holds"]), (&json!("slip_margin"), &json!(false)));
+    let table = ask(at, &format!("eval small.toml --design {last}")).text();
+    assert!(table.contains("feasible no") && table.contains("status slip in scenario 0") && table.contains("violated"), "{table}");
+}
+
+#[test]
+fn a_profile_of_a_study_wants_a_scenario() {
+    let study = ask(here(), "models pulley-load --study").text();
+    let folder = folder_with("load.toml", &study);
+    write(folder.path(), "belt.csv", "old");
+    let err = ask(folder.path(), "eval load.toml --design 90000 --profile belt.csv").refusal(2);
+    assert!(err.contains("add --scenario K, from 0 to 35") && read(&folder.path().join("belt.csv")) == "old", "{err}");
+    ask(folder.path(), "eval load.toml --design 90000 --scenario 0 --profile belt.csv").text();
+    assert!(Csv::read(&folder.path().join("belt.csv")).numbers("tension_N").is_sorted());
+}

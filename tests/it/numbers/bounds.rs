@@ -1,0 +1,196 @@
+//! The f32 twin and its error bound against f64.
+
+use super::{meaningful_si, si};
+use crate::physics::{Region, draw};
+use crate::random::Random;
+use beltspace::decision::Decision;
+use beltspace::models::{INPUTS, MODELS, Model, Status, evaluate, evaluate_decided};
+use beltspace::real::RunningError;
+
+const DESIGNS: usize = 20_000;
+
+fn bits(value: f32) -> u32 {
+    if value.is_nan() { f32::NAN.to_bits() } else { value.to_bits() }
+}
+
+#[test]
+fn the_bounded_value_is_the_twin_bit_by_bit() {
+    for model in MODELS {
+        let random = &mut Random::new(11);
+        for region in [Region::Usual, Region::Wide, Region::Edges] {
+            for _ in 0..2000 {
+                let si = si(model, &draw(model, region, random));
+                let (twins, twin_margins) = model.kernel.twin(&si.map(|value| value as f32));
+                let (outputs, margins) = model.kernel.bounded(&si.map(RunningError::input));
+                for (number, (twin, bounded)) in twins.iter().zip(outputs).enumerate() {
+                    assert_eq!(bits(*twin), bits(bounded.value), "{}: output {number} of {si:?}", model.name);
+                }
+                for (number, (twin, bounded)) in twin_margins.iter().zip(margins).enumerate() {
+                    assert_eq!(bits(*twin), bits(bounded.value), "{}: condition {number} of {si:?}", model.name);
+                }
+            }
+        }
+    }
+}
+
+/// What the bounds of many designs look like.
+#[derive(Default)]
+struct Bounds {
+    checked: usize,
+    /// Values farther from f64 than their bound: how many, and the first.
+    broken: usize,
+    example: String,
+    infinite: usize,
+    /// Per output: bounds relative to the value.
+    relative: Vec<Vec<f64>>,
+    /// Largest share of a bound that was used.
+    used: f64,
+}
+
+/// Compares f32 values with f64 ones, with every bound divided by `shrink`.
+fn compare(model: &Model, region: Region, shrink: f64) -> Bounds {
+    let random = &mut Random::new(12);
+    let mut found = Bounds { relative: vec![Vec::new(); model.outputs.len()], ..Bounds::default() };
+    for _ in 0..DESIGNS {
+        let inputs = draw(model, region, random);
+        let outputs = evaluate_decided(model, &inputs).1;
+        for (number, exact) in meaningful_si(model, &inputs).into_iter().enumerate() {
+            let Some(exact) = exact else { continue };
+            let RunningError { value, bound } = outputs[number];
+            found.checked += 1;
+            if bound.is_infinite() {
+                found.infinite += 1;
+                continue;
+            }
+            // f64 rounds too, though nine orders of magnitude less.
+            let error = (f64::from(value) - exact).abs() - 1e-13 * exact.abs();
+            if error > bound / shrink || value.is_nan() {
+                found.broken += 1;
+                if found.example.is_empty() {
+                    found.example = format!("{} is {value:e}, exactly {exact:e}, bound {bound:e}: {inputs:?}", model.outputs[number].name);
+                }
+            }
+            found.used = found.used.max(error / bound);
+            found.relative[number].push(if exact == 0.0 { f64::INFINITY } else { bound / exact.abs() });
+        }
+    }
+    found
+}
+
+#[test]
+fn an_f32_value_lies_within_its_bound_of_the_f64_value_and_the_bound_is_useful() {
+    for model in MODELS {
+        for region in [Region::Usual, Region::Wide, Region::Edges] {
+            let mut found = compare(model, region, 1.0);
+            eprintln!(
+                "{} {region:?}: {} values, {} without a bound, at most {:.3} of a bound used",
+                model.name, found.checked, found.infinite, found.used
+            );
+            assert_eq!(found.broken, 0, "{} {region:?}: {}", model.name, found.example);
+            assert!(found.checked > 100_000, "{}: only {} values", model.name, found.checked);
+            if region != Region::Usual {
+                continue;
+            }
+            assert!(found.infinite * 1000 < found.checked, "{}: {} of {} have no bound", model.name, found.infinite, found.checked);
+            for (output, bounds) in model.outputs.iter().zip(&mut found.relative) {
+                bounds.sort_by(f64::total_cmp);
+                let median = bounds[bounds.len() / 2];
+                eprintln!("  {}: median relative bound {median:.1e}", output.name);
+                assert!(median < 1e-4, "{}: the median relative bound of {} is {median:e}", model.name, output.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_bound_ten_thousand_times_too_small_is_noticed() {
+    for model in MODELS {
+        let found = compare(model, Region::Usual, 1e4);
+        assert!(found.broken > found.checked / 100, "{}: {} of {}", model.name, found.broken, found.checked);
+    }
+}
+
+/// How many decisions were sure, wrong though sure, and unsure.
+#[derive(Debug, Default)]
+struct Decisions {
+    yes: usize,
+    no: usize,
+    unsure: usize,
+    wrong: Option<String>,
+}
+
+fn decide(model: &Model, designs: impl Iterator<Item = Vec<f64>>) -> Decisions {
+    let mut found = Decisions::default();
+    for inputs in designs {
+        let ok = evaluate(model, &inputs).status == Status::Ok;
+        let decision = evaluate_decided(model, &inputs).0;
+        match decision {
+            Decision::Yes => found.yes += 1,
+            Decision::No => found.no += 1,
+            Decision::Unsure => found.unsure += 1,
+        }
+        if decision == if ok { Decision::No } else { Decision::Yes } {
+            found.wrong.get_or_insert_with(|| format!("{decision:?}, though f64 says ok = {ok}: {inputs:?}"));
+        }
+    }
+    found
+}
+
+#[test]
+fn a_sure_decision_is_the_f64_one_and_most_decisions_are_sure() {
+    for model in MODELS {
+        for region in [Region::Usual, Region::Wide, Region::Edges] {
+            let random = &mut Random::new(13);
+            let found = decide(model, (0..DESIGNS).map(|_| draw(model, region, random)));
+            eprintln!("{} {region:?}: {found:?}", model.name);
+            assert_eq!(found.wrong, None, "{} {region:?}", model.name);
+            if region == Region::Usual {
+                assert!(found.unsure * 200 < DESIGNS, "{}: {found:?}", model.name);
+                assert!(found.yes > DESIGNS / 3 && found.no > 100, "{}: {found:?}", model.name);
+            }
+        }
+    }
+}
+
+/// Moves one input of a design with another status than its neighbour onto the boundary between them.
+fn onto_a_boundary(model: &Model, random: &mut Random) -> Option<Vec<f64>> {
+    let inputs = draw(model, Region::Usual, random);
+    let status = |inputs: &[f64]| evaluate(model, inputs).status == Status::Ok;
+    let input = random.below(model.inputs.len());
+    let table = &model.inputs[input];
+    if table.integer || table.word_for(inputs[input]).is_some() {
+        return None;
+    }
+    let (mut here, mut there) = (inputs.clone(), inputs);
+    there[input] = random.between(table.usual.0, table.usual.1);
+    if status(&here) == status(&there) {
+        return None;
+    }
+    while (here[input] - there[input]).abs() > 1e-12 * here[input].abs() {
+        let mut middle = here.clone();
+        middle[input] = 0.5 * (here[input] + there[input]);
+        if status(&middle) == status(&here) { here = middle } else { there = middle }
+    }
+    Some(here)
+}
+
+#[test]
+fn on_a_boundary_the_decision_is_unsure() {
+    for model in MODELS {
+        let random = &mut Random::new(14);
+        let designs: Vec<_> = std::iter::repeat_with(|| onto_a_boundary(model, random)).flatten().take(500).collect();
+        let found = decide(model, designs.into_iter());
+        assert_eq!(found.wrong, None, "{}", model.name);
+        assert!(found.unsure > 480, "{}: {found:?}", model.name);
+    }
+}
+
+#[test]
+fn a_traction_at_its_limit_is_surely_no_slip() {
+    for model in MODELS.iter().filter(|model| model.input("traction").is_some()) {
+        let mut inputs = model.defaults();
+        inputs[model.input("traction").expect("it is an input")] = -1.0;
+        assert_eq!(evaluate_decided(model, &inputs).0, Decision::Yes, "{}", model.name);
+        assert!(si(model, &inputs).len() == INPUTS);
+    }
+}

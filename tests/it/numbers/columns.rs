@@ -1,0 +1,90 @@
+//! Eight designs at a time must round like one at a time.
+
+use super::si;
+use crate::physics::{Region, draw};
+use crate::random::Random;
+use beltspace::models::{Columns, INPUTS, MODELS, Model, OUTPUTS, Scratch};
+use beltspace::real::{Dependence, LANES};
+
+/// Inputs that may differ between designs that share what is prepared.
+fn fast_inputs(model: &Model) -> Vec<usize> {
+    let mut inputs = [Dependence::fixed(0.0); INPUTS];
+    for (input, table) in model.inputs.iter().enumerate() {
+        inputs[input] = Dependence::varied(input, table.word.map_or(0.0, |(_, word)| word), 1e9);
+    }
+    let slow = model.kernel.reach(&inputs).prepared;
+    (0..model.inputs.len()).filter(|input| slow >> input & 1 == 0).collect()
+}
+
+/// The first value of a batch that differs from the scalar one, with every scalar value changed by `spoil`.
+fn differing(model: &Model, count: usize, scratch: &mut Scratch, random: &mut Random, spoil: fn(f64) -> f64) -> Option<String> {
+    let region = random.pick(&[Region::Usual, Region::Edges, Region::Wide]);
+    let shared = si(model, &draw(model, region, random));
+    let mut fast = fast_inputs(model);
+    random.shuffle(&mut fast);
+    fast.truncate(random.whole(1, fast.len()));
+    let designs: Vec<_> = (0..count)
+        .map(|_| {
+            let other = si(model, &draw(model, region, random));
+            let mut design = shared;
+            fast.iter().for_each(|&input| design[input] = other[input]);
+            design
+        })
+        .collect();
+    let padded = count.next_multiple_of(LANES);
+    let column = |input: usize| (0..padded).map(|lane| designs[lane.min(count - 1)][input]).collect();
+    let varying: Vec<(usize, Vec<f64>)> = fast.iter().map(|&input| (input, column(input))).collect();
+    let mut outputs: Vec<usize> = (0..model.outputs.len()).collect();
+    random.shuffle(&mut outputs);
+    outputs.truncate(random.below(outputs.len() + 1));
+    let conditions: Vec<usize> = (0..model.conditions.len()).filter(|_| random.chance(0.5)).collect();
+    let prepared = model.kernel.prepare(&shared);
+    let mut results = vec![vec![f64::NAN; padded]; outputs.len() + conditions.len()];
+    let columns = Columns { count, varying: &varying, outputs: &outputs, conditions: &conditions };
+    model.kernel.finish_columns(model, &prepared, &shared, &columns, scratch, &mut results);
+    let wanted = outputs.iter().fold(0, |set, output| set | 1 << output);
+    for (lane, design) in designs.iter().enumerate() {
+        let mut scalar = [0.0; OUTPUTS];
+        model.kernel.finish(&prepared, design, wanted, &mut scalar);
+        let margins = model.kernel.conditions(&prepared, design);
+        let of_outputs = outputs.iter().map(|&output| (model.outputs[output].name, model.outputs[output].unit.from_si(scalar[output])));
+        let of_conditions = conditions.iter().map(|&condition| (model.conditions[condition].reason, margins[condition]));
+        for ((name, expected), found) in of_outputs.chain(of_conditions).zip(&results) {
+            let (expected, found) = (spoil(expected), found[lane]);
+            if expected.to_bits() != found.to_bits() && !(expected.is_nan() && found.is_nan()) {
+                return Some(format!("{}: {name} of lane {lane} of {count} is {found:e}, alone {expected:e}", model.name));
+            }
+        }
+    }
+    None
+}
+
+#[test]
+fn a_batch_has_the_same_bits_as_its_designs_alone() {
+    // What one batch leaves behind must not show in the next, be it of another model.
+    let mut scratch = Scratch::default();
+    let random = &mut Random::new(51);
+    for _ in 0..40 {
+        for count in 1..=17 {
+            for model in MODELS {
+                assert_eq!(differing(model, count, &mut scratch, random, |value| value), None);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_last_bit_is_noticed_in_a_batch() {
+    let random = &mut Random::new(52);
+    for model in MODELS {
+        let noticed = (0..50).filter(|_| differing(model, 9, &mut Scratch::default(), random, f64::next_up).is_some()).count();
+        assert!(noticed > 40, "{}: {noticed}", model.name);
+    }
+}
+
+#[test]
+fn every_model_has_inputs_that_its_first_stage_does_not_read() {
+    for model in MODELS {
+        assert!(!fast_inputs(model).is_empty(), "{}", model.name);
+    }
+}

@@ -1,0 +1,268 @@
+//! The models against their second implementation, and against the numbers that the papers print.
+
+use crate::random::Random;
+use crate::second::{GOLDEN, Values, metal_cvt, pulley_load, rubber_cvt};
+use beltspace::models::{Evaluation, MODELS, Model, Status, evaluate, find};
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+
+/// Inputs by name, as the second implementation takes them: a word is the absence of a number.
+fn by_name(model: &Model, inputs: &[f64]) -> BTreeMap<String, f64> {
+    let numbers = model.inputs.iter().zip(inputs).filter(|(input, value)| input.word_for(**value).is_none());
+    numbers.map(|(input, &value)| (input.name.to_owned(), value)).collect()
+}
+
+fn second(model: &Model, inputs: &[f64]) -> (&'static str, Values) {
+    let inputs = by_name(model, inputs);
+    match model.name {
+        "rubber-cvt" => rubber_cvt(&inputs),
+        "metal-cvt" => metal_cvt(&inputs),
+        "pulley-load" => pulley_load(&inputs),
+        other => panic!("{other} has no second implementation"),
+    }
+}
+
+/// Smallest relative distance of these inputs to a point where the status changes.
+fn distance_to_boundary(model: &Model, inputs: &[f64]) -> f64 {
+    let get = |name: &str| inputs[model.input(name).expect("it is an input")];
+    let relative = |margin: f64, scale: f64| (margin / scale).abs();
+    let half_groove = (get("groove_angle_deg") / 2.0).to_radians();
+    let values = second(model, inputs).1;
+    let mut distance = f64::INFINITY;
+    if model.name == "pulley-load" {
+        let speed = get("speed_rpm") * PI / 30.0 * get("mean_radius_mm") / 1000.0;
+        let slack = get("slack_tension_N");
+        distance = distance.min(relative(slack - get("belt_mass_kg_per_m") * speed * speed, slack));
+        let direction = get("friction_direction_deg").to_radians();
+        if let Some(friction) = values.get("effective_friction") {
+            distance = distance.min(relative(direction.cos() - friction * direction.sin() * half_groove.cos(), direction.cos()));
+        }
+        return distance;
+    }
+    let (length, centre, ratio) = (get("belt_length_mm"), get("centre_distance_mm"), get("ratio"));
+    distance = distance.min(relative(length - 2.0 * centre, length));
+    distance = distance.min(relative(2.0 * PI * centre * ratio.max(1.0) - length * (ratio - 1.0).abs(), length));
+    distance = distance.min(relative(get("friction") * half_groove.tan() - 1.0, 1.0));
+    if let Some(driver) = values.get("driver_radius_mm") {
+        distance = distance.min(relative(centre - driver * (1.0 + ratio), centre));
+    }
+    let traction = get("traction");
+    match values.get("traction_limit") {
+        Some(limit) if traction >= 0.0 => distance.min(relative(limit - traction, *limit)),
+        _ => distance,
+    }
+}
+
+/// Which inputs to draw.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Region {
+    /// Over the usual ranges.
+    Usual,
+    /// Well beyond them, where the formula still has a meaning.
+    Wide,
+    /// Usual, but several inputs at a value where something changes.
+    Edges,
+}
+
+/// Random inputs. Three of four belts are given a length that closes around their pulleys.
+pub fn draw(model: &Model, region: Region, random: &mut Random) -> Vec<f64> {
+    let mut inputs: Vec<f64> = Vec::new();
+    for input in model.inputs {
+        let (low, high) = input.usual;
+        let (low, high) = match (region, input.name) {
+            (Region::Wide, "groove_angle_deg") => (2.0, 170.0),
+            (Region::Wide, "traction") => (0.001, 0.999),
+            (Region::Wide, "wrap_angle_deg") => (1.0, 359.0),
+            (Region::Wide, "friction_direction_deg") => (0.0, 89.0),
+            (Region::Wide, "band_count" | "groove_count") => (1.0, 40.0),
+            (Region::Wide, _) => (low / 5.0, high * 5.0),
+            _ => (low, high),
+        };
+        let mut value = if low > 0.0 { random.log_between(low, high) } else { random.between(low, high) };
+        if input.integer {
+            value = value.round();
+        }
+        match input.word {
+            Some((_, encoded)) if random.chance(0.3) => value = encoded,
+            _ => {}
+        }
+        inputs.push(value);
+    }
+    if let (Some(length), true) = (model.input("belt_length_mm"), random.chance(0.75)) {
+        close_the_belt(model, length, &mut inputs, random);
+    }
+    if region == Region::Edges {
+        for _ in 0..2 {
+            put_on_an_edge(model, &mut inputs, random);
+        }
+    }
+    inputs
+}
+
+/// Chooses a driver radius for the belt and the length that goes with it.
+fn close_the_belt(model: &Model, length: usize, inputs: &mut [f64], random: &mut Random) {
+    let get = |name: &str| inputs[model.input(name).expect("it is an input")];
+    let (centre, ratio) = (get("centre_distance_mm"), get("ratio"));
+    let driver = centre / (1.0 + ratio) * random.between(0.05, 0.99);
+    let lean = ((ratio - 1.0) * driver / centre).asin();
+    inputs[length] = 2.0 * centre * lean.cos() + PI * (1.0 + ratio) * driver + 2.0 * lean * (ratio - 1.0) * driver;
+}
+
+fn put_on_an_edge(model: &Model, inputs: &mut [f64], random: &mut Random) {
+    let name = random.pick(model.inputs).name;
+    let at = model.input(name).expect("it is an input");
+    let near = [0.0, 1e-15, -1e-15, 1e-12, -1e-12, 1e-9, -1e-9];
+    match name {
+        "ratio" => inputs[at] = 1.0 + random.pick(&near),
+        "torque_Nm" | "power_kW" => inputs[at] = random.pick(&[0.0, 1e-12]),
+        "traction" => {
+            // Zero, hardly anything, the word, and just below the slip limit.
+            let limit = second(model, inputs).1.get("traction_limit").copied().unwrap_or(0.5);
+            let edges = [0.0, 1e-9, 1e-4, -1.0, limit * (1.0 - 1e-6), limit * (1.0 + 1e-6)];
+            inputs[at] = random.pick(&edges).min(1.0 - 1e-9);
+        }
+        "friction_direction_deg" => inputs[at] = random.pick(&[0.0, 45.0]),
+        "wrap_angle_deg" => inputs[at] = random.pick(&[90.0, 180.0, 270.0]),
+        _ => {}
+    }
+}
+
+/// Outputs that are a difference from one: what matters is how far off they are on the scale of one.
+fn is_margin(name: &str) -> bool {
+    name.ends_with("_margin") || name == "entry_compression"
+}
+
+/// The traction of a belt, its limit where the word stands for it; 0 for what has none.
+fn traction(model: &Model, inputs: &[f64], values: &Values) -> f64 {
+    let given = model.input("traction").map_or(0.0, |input| inputs[input]);
+    if given < 0.0 { values.get("traction_limit").copied().unwrap_or(0.0) } else { given }
+}
+
+/// What one comparison of many designs found.
+#[derive(Debug, Default)]
+struct Comparison {
+    compared: usize,
+    skipped: usize,
+    /// Designs of which three outputs are not compared.
+    cancelled: usize,
+    worst: f64,
+    worst_output: &'static str,
+    statuses: BTreeMap<&'static str, usize>,
+}
+
+/// Status and values of one design in both implementations: the largest error and whose it is, or what they disagree on.
+fn agree(model: &Model, evaluation: &Evaluation, (status, values): &(&str, Values), rest: f64) -> Result<(f64, &'static str), String> {
+    let own = evaluation.status.reason(model);
+    if own != *status {
+        return Err(format!("the status is {own}, should be {status}"));
+    }
+    let mut worst = (0.0, "");
+    for (output, value) in model.outputs.iter().zip(&evaluation.outputs) {
+        let (value, other) = match (*value, values.get(output.name).copied()) {
+            (None, None) => continue,
+            (Some(value), Some(other)) => (value, other),
+            (value, other) => return Err(format!("{} is {value:?}, should be {other:?}", output.name)),
+        };
+        let scale = if is_margin(output.name) { other.abs().max(1.0) } else { other.abs() };
+        let error = if value == other { 0.0 } else { (value - other).abs() / scale };
+        if rest < CANCELLED && HANGS_ON_THE_REST.contains(&output.name) {
+            continue;
+        }
+        if error > 1e-9 || error.is_nan() {
+            return Err(format!("{} is {value:e}, should be {other:e}: {error:e} apart", output.name));
+        }
+        if error > worst.0 {
+            worst = (error, output.name);
+        }
+    }
+    Ok(worst)
+}
+
+/// Below this share of 1 - traction too little of it is left in an f64 to compare what hangs on it.
+const CANCELLED: f64 = 1e-6;
+const HANGS_ON_THE_REST: [&str; 3] = ["slack_force_N", "printed_torque_coefficient_N_per_mm", "entry_compression"];
+
+fn compare(model: &Model, region: Region, count: u64, random: &mut Random) -> Comparison {
+    let mut found = Comparison::default();
+    for number in 0..count {
+        let inputs = draw(model, region, random);
+        if distance_to_boundary(model, &inputs) < 1e-9 {
+            found.skipped += 1;
+            continue;
+        }
+        let expected = second(model, &inputs);
+        let rest = 1.0 - traction(model, &inputs, &expected.1);
+        let (error, output) = agree(model, &evaluate(model, &inputs), &expected, rest)
+            .unwrap_or_else(|problem| panic!("{} {region:?}, design {number}: {problem}: {:?}", model.name, by_name(model, &inputs)));
+        *found.statuses.entry(expected.0).or_default() += 1;
+        found.compared += 1;
+        found.cancelled += usize::from(rest < CANCELLED);
+        if error > found.worst {
+            (found.worst, found.worst_output) = (error, output);
+        }
+    }
+    found
+}
+
+#[test]
+fn the_models_agree_with_their_second_implementation() {
+    for model in MODELS {
+        let mut seen = BTreeMap::<&str, usize>::new();
+        for (region, count) in [(Region::Usual, 10_000), (Region::Wide, 8_000), (Region::Edges, 6_000)] {
+            let found = compare(model, region, count, &mut Random::new(41));
+            eprintln!("{} {region:?}: {found:?}", model.name);
+            assert!(found.skipped * 50 < found.compared, "too many designs lie on a boundary: {found:?}");
+            found.statuses.into_iter().for_each(|(status, count)| *seen.entry(status).or_default() += count);
+        }
+        let every_status = model.conditions.iter().filter(|condition| !condition.quiet).map(|condition| condition.reason).chain(["ok"]);
+        for status in every_status {
+            assert!(seen.get(status).is_some_and(|&count| count >= 10), "{}: hardly any design has the status {status}", model.name);
+        }
+        assert!(seen["ok"] > 10_000, "{}: {seen:?}", model.name);
+    }
+}
+
+#[test]
+fn the_comparison_objects_to_any_wrong_value_and_status() {
+    for model in MODELS {
+        let inputs = model.defaults();
+        let expected = second(model, &inputs);
+        let right = evaluate(model, &inputs);
+        assert!(agree(model, &right, &expected, 1.0).is_ok());
+        for (number, output) in model.outputs.iter().enumerate() {
+            let wrong = |change: &dyn Fn(f64) -> Option<f64>| {
+                let mut wrong = right.clone();
+                wrong.outputs[number] = change(right.outputs[number].expect("defaults have every output"));
+                agree(model, &wrong, &expected, 1.0).is_err()
+            };
+            assert!(wrong(&|value| Some(value + 3e-9 * value.abs().max(f64::from(u8::from(is_margin(output.name)))))), "{}", output.name);
+            assert!(wrong(&|_| None) && wrong(&|_| Some(f64::NAN)), "{}", output.name);
+        }
+        let wrong = Evaluation { status: Status::Failed(0), ..right.clone() };
+        assert!(agree(model, &wrong, &expected, 1.0).is_err());
+    }
+}
+
+#[test]
+fn every_printed_number_comes_out() {
+    for (name, golden) in GOLDEN {
+        let model = find(name).expect("it is a model");
+        let mut inputs = model.defaults();
+        for (input, value) in golden.inputs {
+            inputs[model.input(input).expect("it is an input")] = *value;
+        }
+        let evaluation = evaluate(model, &inputs);
+        let output = model.output(golden.output).expect("it is an output");
+        let value = evaluation.outputs[output].expect("it has a meaning");
+        let error = (value - golden.expected).abs();
+        let (what, source) = (golden.what, golden.source);
+        assert!(error <= golden.tolerance, "{name}: {what} should be {}, is {value} ({source})", golden.expected);
+    }
+}
+
+#[test]
+fn the_printed_numbers_cover_every_model() {
+    for model in MODELS {
+        assert!(GOLDEN.iter().any(|(name, _)| *name == model.name), "{} has no golden value", model.name);
+    }
+}

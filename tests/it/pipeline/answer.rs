@@ -1,0 +1,119 @@
+//! What a result directory says, as cells that are compared bit by bit.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// A cell of a table or a value of the summary.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cell {
+    Absent,
+    /// The bits of a number.
+    Number(u64),
+    Text(String),
+}
+
+impl Cell {
+    pub fn number(value: f64) -> Self {
+        Self::Number((value + 0.0).to_bits())
+    }
+
+    fn parse(text: &str) -> Self {
+        match text.parse::<f64>() {
+            _ if text.is_empty() => Self::Absent,
+            Ok(value) => Self::Number(value.to_bits()),
+            Err(_) => Self::Text(text.to_owned()),
+        }
+    }
+
+    fn shown(&self) -> String {
+        match self {
+            Self::Absent => "nothing".to_owned(),
+            Self::Number(bits) => format!("{:?}", f64::from_bits(*bits)),
+            Self::Text(text) => format!("{text:?}"),
+        }
+    }
+}
+
+/// A count or an index.
+pub fn whole(value: u64) -> Cell {
+    Cell::number(value as f64)
+}
+
+/// Header and rows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Table {
+    pub header: Vec<String>,
+    pub rows: Vec<Vec<Cell>>,
+}
+
+/// All tables by file name, and the summary by path.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Answer {
+    pub tables: BTreeMap<String, Table>,
+    pub summary: BTreeMap<String, Cell>,
+}
+
+impl Answer {
+    /// The first thing in which two answers differ.
+    pub fn difference(&self, found: &Self) -> Option<String> {
+        let (expected_names, names): (Vec<_>, Vec<_>) = (self.tables.keys().collect(), found.tables.keys().collect());
+        if expected_names != names {
+            return Some(format!("expected the tables {expected_names:?}, found {names:?}"));
+        }
+        for (name, expected) in &self.summary {
+            let found = found.summary.get(name).unwrap_or(&Cell::Absent);
+            if found != expected {
+                return Some(format!("summary.json: {name} should be {}, is {}", expected.shown(), found.shown()));
+            }
+        }
+        for (name, expected) in &self.tables {
+            let found = &found.tables[name];
+            if expected.header != found.header {
+                return Some(format!("{name}: expected the columns {:?}, found {:?}", expected.header, found.header));
+            }
+            for (row, (expected, found)) in expected.rows.iter().zip(&found.rows).enumerate() {
+                for (column, (expected, cell)) in self.tables[name].header.iter().zip(expected.iter().zip(found)) {
+                    if expected != cell {
+                        return Some(format!("{name}, row {row}: {column} should be {}, is {}", expected.shown(), cell.shown()));
+                    }
+                }
+            }
+            if expected.rows.len() != found.rows.len() {
+                return Some(format!("{name}: expected {} rows, found {}", expected.rows.len(), found.rows.len()));
+            }
+        }
+        None
+    }
+
+    /// What a result directory says.
+    pub fn read(folder: &Path) -> Self {
+        let mut answer = Self::default();
+        for entry in std::fs::read_dir(folder).expect("there is a result") {
+            let path = entry.expect("it can be listed").path();
+            let name = path.file_name().expect("a file has a name").to_string_lossy().into_owned();
+            if name.ends_with(".csv") {
+                let mut reader = csv::Reader::from_path(&path).expect("it can be opened");
+                let header = reader.headers().expect("a table has a header").iter().map(str::to_owned).collect();
+                let rows = reader.records().map(|row| row.expect("rows are complete").iter().map(Cell::parse).collect());
+                answer.tables.insert(name, Table { header, rows: rows.collect() });
+            }
+        }
+        let summary = std::fs::read_to_string(folder.join("summary.json")).expect("there is a summary");
+        flatten("", &serde_json::from_str(&summary).expect("it is JSON"), &mut answer.summary);
+        answer
+    }
+}
+
+fn flatten(path: &str, value: &serde_json::Value, into: &mut BTreeMap<String, Cell>) {
+    use serde_json::Value;
+    let join = |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
+    let cell = match value {
+        Value::Object(map) => return map.iter().for_each(|(key, value)| flatten(&join(key), value, into)),
+        Value::Array(list) => return list.iter().enumerate().for_each(|(key, value)| flatten(&join(&key.to_string()), value, into)),
+        Value::Null => Cell::Absent,
+        Value::Number(number) => Cell::number(number.as_f64().expect("numbers of a summary are f64")),
+        Value::String(text) => Cell::Text(text.clone()),
+        Value::Bool(value) => Cell::Text(value.to_string()),
+    };
+    into.insert(path.to_owned(), cell);
+}

@@ -1,0 +1,281 @@
+//! What a result directory must say, by brute force.
+
+use super::answer::{Answer, Cell, Table, whole};
+use super::naive::{Evaluated, Failures, front, key, worst_end};
+use beltspace::models::Worse;
+use beltspace::study::{Axis, Best, Goal, Objective, Quantity, Study};
+use std::collections::{BTreeMap, HashMap, HashSet};
+
+/// A column of the design tables.
+struct Column {
+    name: String,
+    quantity: Quantity,
+    /// How bad a value is: more is worse.
+    badness: Box<dyn Fn(f64) -> f64>,
+}
+
+/// Objectives, constraints and report columns in file order, each quantity once unless its worst scenario differs.
+fn columns(study: &Study) -> Vec<Column> {
+    let end = |worse: Worse| -> Box<dyn Fn(f64) -> f64> {
+        if worse == Worse::Higher { Box::new(|value| value) } else { Box::new(|value: f64| -value) }
+    };
+    let mut columns: Vec<Column> = Vec::new();
+    for objective in &study.objectives {
+        let quantity = objective.quantity;
+        columns.push(Column { name: quantity.name(study.model).to_owned(), quantity, badness: end(worst_end(study, quantity)) });
+    }
+    for &constraint in &study.constraints {
+        let quantity = constraint.quantity;
+        let name = quantity.name(study.model);
+        let objective = study.objectives.iter().find(|it| it.quantity == quantity);
+        // A bound on the end that is the objective's worst has its worst scenario too.
+        let served = matches!(
+            (objective.map(|it| it.goal), constraint.low, constraint.high),
+            (Some(Goal::Min), None, Some(_)) | (Some(Goal::Max), Some(_), None)
+        );
+        let margin = move |value: f64| {
+            let low = constraint.low.map_or(f64::INFINITY, |(bound, _)| value - bound);
+            let high = constraint.high.map_or(f64::INFINITY, |(bound, _)| bound - value);
+            -(if low < high { low } else { high })
+        };
+        let suffix = if objective.is_some() { "_constrained" } else { "" };
+        if !served {
+            columns.push(Column { name: format!("{name}{suffix}"), quantity, badness: Box::new(margin) });
+        }
+    }
+    for &quantity in &study.report.columns {
+        if columns.iter().all(|column| column.quantity != quantity) {
+            columns.push(Column { name: quantity.name(study.model).to_owned(), quantity, badness: end(worst_end(study, quantity)) });
+        }
+    }
+    columns
+}
+
+/// The value that an input has in a table.
+fn input_cell(study: &Study, input: usize, value: f64) -> Cell {
+    study.model.inputs[input].word_for(value).map_or(Cell::number(value), |word| Cell::Text(word.to_owned()))
+}
+
+/// A table of designs.
+fn designs_table(study: &Study, evaluated: &Evaluated, designs: &[u64]) -> Table {
+    let columns = columns(study);
+    let inputs: Vec<usize> = study.design.iter().flat_map(Axis::inputs).copied().collect();
+    let input_names = inputs.iter().map(|&input| study.model.inputs[input].name.to_owned());
+    let column_names = columns.iter().flat_map(|column| [column.name.clone(), format!("{}_scenario", column.name)]);
+    let header = std::iter::once("design_index".to_owned()).chain(input_names).chain(column_names).collect();
+    let row = |&design: &u64| {
+        let cases = evaluated.cases(design);
+        let mut row = vec![whole(design)];
+        row.extend(inputs.iter().map(|&input| input_cell(study, input, cases[0].inputs[input])));
+        for column in &columns {
+            let mut worst: Option<(f64, f64, usize)> = None;
+            for (scenario, case) in cases.iter().enumerate() {
+                if let Some(value) = case.value(column.quantity)
+                    && worst.is_none_or(|(badness, _, _)| (column.badness)(value) > badness)
+                {
+                    worst = Some(((column.badness)(value), value, scenario));
+                }
+            }
+            row.push(worst.map_or(Cell::Absent, |(_, value, _)| Cell::number(value)));
+            row.push(whole(worst.map_or(0, |(_, _, scenario)| scenario as u64)));
+        }
+        row
+    };
+    Table { header, rows: designs.iter().map(row).collect() }
+}
+
+/// The answer to a study, and what happened on the way.
+pub struct Expected {
+    pub answer: Answer,
+    pub feasible: Vec<u64>,
+    pub front: Vec<u64>,
+    pub failures: Vec<Failures>,
+    /// Feasible designs that are off the front only because a lower index has the same objective values.
+    pub ties: usize,
+}
+
+impl Expected {
+    pub fn new(study: &Study, evaluated: &Evaluated) -> Self {
+        let failures: Vec<Failures> = (0..evaluated.designs).map(|design| Failures::of(study, evaluated, design)).collect();
+        let feasible: Vec<u64> = (0..evaluated.designs).filter(|&design| failures[design as usize].none()).collect();
+        let keys: Vec<Vec<f64>> = feasible.iter().map(|&design| key(study, evaluated, design)).collect();
+        let front_positions = if study.objectives.is_empty() { Vec::new() } else { front(&keys) };
+        let bits = |position: usize| keys[position].iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+        let on_front: HashSet<Vec<u64>> = front_positions.iter().map(|&position| bits(position)).collect();
+        let ties = (0..keys.len()).filter(|&position| on_front.contains(&bits(position))).count() - front_positions.len();
+        let mut front: Vec<u64> = front_positions.iter().map(|&position| feasible[position]).collect();
+        let value = |design: u64, objective: &Objective| evaluated.worst(design, objective.quantity, worst_end(study, objective.quantity));
+        let signed = |design: u64, objective: &Objective| value(design, objective) * if objective.goal == Goal::Min { 1.0 } else { -1.0 };
+        front.sort_by(|&a, &b| {
+            let differences = study.objectives.iter().map(|it| signed(a, it).partial_cmp(&signed(b, it)).expect("numbers"));
+            differences.fold(std::cmp::Ordering::Equal, std::cmp::Ordering::then).then(a.cmp(&b))
+        });
+        let mut expected = Self { answer: Answer::default(), feasible, front, failures, ties };
+        expected.fill_tables(study, evaluated);
+        expected.fill_summary(study, evaluated);
+        expected
+    }
+
+    fn fill_tables(&mut self, study: &Study, evaluated: &Evaluated) {
+        let model = study.model;
+        let tables = &mut self.answer.tables;
+        let scenario_inputs: Vec<usize> = study.operation.iter().chain(&study.uncertainty).flat_map(Axis::inputs).copied().collect();
+        let names = scenario_inputs.iter().map(|&input| model.inputs[input].name.to_owned());
+        let scenarios = evaluated.cases(0).iter().enumerate().map(|(number, case)| {
+            let inputs = scenario_inputs.iter().map(|&input| input_cell(study, input, case.inputs[input]));
+            std::iter::once(whole(number as u64)).chain(inputs).collect()
+        });
+        let header = std::iter::once("scenario".to_owned()).chain(names).collect();
+        tables.insert("scenarios.csv".to_owned(), Table { header, rows: scenarios.collect() });
+        if !study.objectives.is_empty() {
+            tables.insert("front.csv".to_owned(), designs_table(study, evaluated, &self.front));
+        }
+        if let Some(top) = study.report.top {
+            let worse = if top.goal == Goal::Min { Worse::Higher } else { Worse::Lower };
+            let sign = if top.goal == Goal::Min { 1.0 } else { -1.0 };
+            let mut best = self.feasible.clone();
+            // A stable sort: the lowest index of equals comes first.
+            best.sort_by(|&a, &b| {
+                (sign * evaluated.worst(a, top.by, worse)).partial_cmp(&(sign * evaluated.worst(b, top.by, worse))).expect("numbers")
+            });
+            best.truncate(top.count);
+            tables.insert("top.csv".to_owned(), designs_table(study, evaluated, &best));
+        }
+        let unique = |tables: &BTreeMap<String, Table>, stem: String| {
+            let mut name = format!("{stem}.csv");
+            let mut number = 1;
+            while tables.contains_key(&name) {
+                number += 1;
+                name = format!("{stem}-{number}.csv");
+            }
+            name
+        };
+        for spec in &study.report.histograms {
+            let worst = |&design: &u64| evaluated.worst(design, spec.of, worst_end(study, spec.of));
+            let values: Vec<f64> = self.feasible.iter().map(worst).collect();
+            let name = unique(tables, format!("histogram-{}", spec.of.name(model)));
+            tables.insert(name, histogram(&values, spec.range, spec.bins));
+        }
+        for spec in &study.report.maps {
+            let (x, y) = (&study.design[spec.x], &study.design[spec.y]);
+            let value = match spec.value {
+                Best::Value(quantity, _) => quantity.name(model),
+                Best::Share => "feasible_share",
+            };
+            let mut header = vec![model.inputs[x.inputs()[0]].name, model.inputs[y.inputs()[0]].name, value];
+            header.extend((spec.value != Best::Share).then_some("design_index"));
+            let place = |&design: &u64| {
+                let inputs = &evaluated.cases(design)[0].inputs;
+                (inputs[x.inputs()[0]].to_bits(), inputs[y.inputs()[0]].to_bits())
+            };
+            let (mut all, mut met): (HashMap<_, u64>, HashMap<_, Vec<u64>>) = Default::default();
+            (0..evaluated.designs).for_each(|design| *all.entry(place(&design)).or_default() += 1);
+            self.feasible.iter().for_each(|design| met.entry(place(design)).or_default().push(*design));
+            let mut rows = Vec::new();
+            for (v, u) in (0..y.count()).flat_map(|v| (0..x.count()).map(move |u| (v, u))) {
+                let (x_value, y_value) = (x.value(0, u), y.value(0, v));
+                let place = (x_value.to_bits(), y_value.to_bits());
+                let mut row = vec![Cell::number(x_value), Cell::number(y_value)];
+                let feasible = met.get(&place).map_or(&[][..], Vec::as_slice);
+                match spec.value {
+                    Best::Share => row.push(Cell::number(feasible.len() as f64 / all[&place] as f64)),
+                    Best::Value(quantity, goal) => {
+                        let (worse, sign) = if goal == Goal::Min { (Worse::Higher, 1.0) } else { (Worse::Lower, -1.0) };
+                        let mut best: Option<(f64, u64)> = None;
+                        for &design in feasible {
+                            let value = sign * evaluated.worst(design, quantity, worse);
+                            if best.is_none_or(|(held, _)| value < held) {
+                                best = Some((value, design));
+                            }
+                        }
+                        row.push(best.map_or(Cell::Absent, |(value, _)| Cell::number(sign * value)));
+                        row.push(best.map_or(Cell::Absent, |(_, design)| whole(design)));
+                    }
+                }
+                rows.push(row);
+            }
+            let name = unique(tables, format!("map-{value}"));
+            tables.insert(name, Table { header: header.into_iter().map(str::to_owned).collect(), rows });
+        }
+    }
+
+    fn fill_summary(&mut self, study: &Study, evaluated: &Evaluated) {
+        let value = |design: u64, objective: &Objective| evaluated.worst(design, objective.quantity, worst_end(study, objective.quantity));
+        let mut summary = BTreeMap::new();
+        let mut put = |name: &str, cell: Cell| summary.insert(name.to_owned(), cell);
+        put("designs", whole(evaluated.designs));
+        put("scenarios", whole(evaluated.scenarios));
+        put("feasible", whole(self.feasible.len() as u64));
+        put("front", whole(self.front.len() as u64));
+        put("model", Cell::Text(study.model.name.to_owned()));
+        put("title", Cell::Text(study.title.clone()));
+        put("tally.sampled", whole(evaluated.designs));
+        put("tally.feasible", whole(self.feasible.len() as u64));
+        for (number, condition) in study.model.conditions.iter().enumerate().filter(|(_, condition)| !condition.quiet) {
+            let failed = self.failures.iter().filter(|it| it.statuses.contains(&number)).count();
+            put(&format!("tally.status.{}", condition.reason), whole(failed as u64));
+        }
+        for number in 0..study.constraints.len() {
+            let violated = self.failures.iter().filter(|it| it.constraints.contains(&number)).count();
+            let alone = |it: &&Failures| it.statuses.is_empty() && !it.meaningless && it.constraints == [number];
+            put(&format!("tally.constraints.{number}.violated"), whole(violated as u64));
+            put(&format!("tally.constraints.{number}.only"), whole(self.failures.iter().filter(alone).count() as u64));
+        }
+        if self.front.is_empty() {
+            put("ideal", Cell::Absent);
+            put("knee", Cell::Absent);
+        }
+        let mut scaled = vec![0.0; self.front.len()];
+        for objective in &study.objectives {
+            let name = objective.quantity.name(study.model);
+            for (end, sign) in [("least", 1.0), ("largest", -1.0)] {
+                let further =
+                    |a: &&u64, b: &&u64| (sign * value(**a, objective)).partial_cmp(&(sign * value(**b, objective))).expect("numbers");
+                // Of equal designs `min_by` gives the first.
+                if let Some(&design) = self.feasible.iter().min_by(further) {
+                    put(&format!("extremes.{name}.{end}.value"), Cell::number(value(design, objective)));
+                    put(&format!("extremes.{name}.{end}.design_index"), whole(design));
+                }
+            }
+            let values: Vec<f64> = self.front.iter().map(|&design| value(design, objective)).collect();
+            let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let ideal = if objective.goal == Goal::Min { low } else { high };
+            if !values.is_empty() {
+                put(&format!("ideal.{name}"), Cell::number(ideal));
+            }
+            for (sum, value) in scaled.iter_mut().zip(values) {
+                let distance: f64 = if high > low { (value - ideal) / (high - low) } else { 0.0 };
+                *sum += distance * distance;
+            }
+        }
+        let distances: Vec<(f64, u64)> = scaled.into_iter().map(f64::sqrt).zip(self.front.iter().copied()).collect();
+        if let Some(&(distance, design)) = distances.iter().min_by(|a, b| a.partial_cmp(b).expect("numbers")) {
+            put("knee.distance", Cell::number(distance));
+            put("knee.design_index", whole(design));
+        }
+        self.answer.summary = summary;
+    }
+}
+
+/// Counts per bin, with what lies below and above; without a range over what there is.
+fn histogram(values: &[f64], range: Option<(f64, f64)>, bins: usize) -> Table {
+    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let (from, to) = match range {
+        Some(range) => range,
+        None if values.is_empty() => (0.0, 1.0),
+        None if low < high => (low, high),
+        None => (low - low.abs().max(1.0) / 2.0, low + low.abs().max(1.0) / 2.0),
+    };
+    let edge = |bin: usize| if bin == bins { to } else { from + bin as f64 * (to - from) / bins as f64 };
+    let count = |inside: &dyn Fn(f64) -> bool| whole(values.iter().filter(|&&value| inside(value)).count() as u64);
+    let mut rows = vec![vec![Cell::Absent, Cell::number(from), count(&|value| value < from)]];
+    for bin in 0..bins {
+        let last = bin + 1 == bins;
+        let inside = |value: f64| value >= edge(bin) && if last { value <= to } else { value < edge(bin + 1) };
+        rows.push(vec![Cell::number(edge(bin)), Cell::number(edge(bin + 1)), count(&inside)]);
+    }
+    rows.push(vec![Cell::number(to), Cell::Absent, count(&|value| value > to)]);
+    Table { header: ["from", "to", "designs"].map(str::to_owned).to_vec(), rows }
+}

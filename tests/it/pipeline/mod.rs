@@ -1,0 +1,337 @@
+//! Random small studies, answered by brute force and by the pipeline, which must agree to the last bit however it is run.
+
+mod answer;
+mod expected;
+mod naive;
+mod random_axes;
+mod random_study;
+mod runs;
+
+use crate::random::Random;
+use answer::{Answer, Cell};
+use beltspace::plan::Plan;
+use beltspace::reduce::{State, Top};
+use beltspace::screen::BLOCK;
+use beltspace::study::{Best, Method, Quantity, Study};
+use beltspace::sweep::Options;
+use expected::Expected;
+use naive::Evaluated;
+use random_study::Draft;
+use runs::{Pipeline, differing_file, options};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// How many studies had what, so that the loop cannot come to test nothing.
+type Coverage = BTreeMap<String, usize>;
+
+/// Is this the full stage of the continuous integration?
+fn full() -> bool {
+    std::env::var("BELTSPACE_FULL").is_ok_and(|value| value == "1")
+}
+
+fn studies() -> u64 {
+    if full() { 200 } else { 40 }
+}
+
+/// Do two states say the same? Of the best K one may still hold more than the other.
+fn same(a: &State, b: &State) -> bool {
+    let best = |state: &State| state.top.as_ref().map(Top::indices);
+    let rest = |state: &State| State { top: None, ..state.clone() };
+    best(a) == best(b) && rest(a) == rest(b)
+}
+
+fn parse(text: &str) -> Study {
+    Study::parse(text, "random.toml", Path::new(".")).unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+/// A random study: its text, what it means, and its answer.
+fn study_of(seed: u64) -> (Draft, String, Study, Evaluated) {
+    let mut draft = Draft::new(seed);
+    let study = parse(&draft.text());
+    let evaluated = Evaluated::new(&study);
+    draft.constrain(seed, &study, &evaluated);
+    let text = draft.text();
+    let study = parse(&text);
+    (draft, text, study, evaluated)
+}
+
+#[test]
+fn the_pipeline_gives_what_brute_force_gives_however_it_is_run() {
+    let mut coverage = Coverage::new();
+    let first = std::env::var("BELTSPACE_SEED").ok().and_then(|seed| seed.parse().ok()).unwrap_or(1);
+    for seed in first..first + studies() {
+        let mut text = String::new();
+        let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| check(seed, &mut text, &mut coverage)));
+        if let Err(panic) = result {
+            eprintln!("seed {seed}, study:\n{text}");
+            std::panic::resume_unwind(panic);
+        }
+    }
+    eprintln!("of {} studies: {coverage:#?}", studies());
+    for feature in EVERY_FEATURE {
+        assert!(coverage.get(*feature).is_some_and(|&count| count > 0), "no random study has: {feature}");
+    }
+}
+
+/// Checks one study; `text` is for the message if it fails.
+fn check(seed: u64, text: &mut String, coverage: &mut Coverage) {
+    let (draft, study_text, study, evaluated) = study_of(seed);
+    text.clone_from(&study_text);
+    draft.check_axes(&study);
+    let expected = Expected::new(&study, &evaluated);
+    let plan = Plan::new(study.clone());
+    let pipeline = Pipeline::new(&plan, &study_text);
+    let folder = tempfile::tempdir().expect("a folder can be made");
+
+    let reference_state = pipeline.whole(&Options { threads: 1, ..Options::default() });
+    let reference = pipeline.write(reference_state.clone(), 1, &folder.path().join("whole"));
+    let found = Answer::read(&folder.path().join("whole"));
+    if let Some(difference) = expected.answer.difference(&found) {
+        panic!("seed {seed}: {difference}");
+    }
+    assert_eq!(reference["study.toml"], study_text.as_bytes(), "seed {seed}");
+    for name in expected.answer.tables.keys().filter(|name| !["scenarios.csv", "top.csv"].contains(&name.as_str())) {
+        assert!(reference.contains_key(&name.replace(".csv", ".svg")), "seed {seed}: there is no picture of {name}");
+    }
+
+    let random = &mut Random::new(seed);
+    let mut ways: Vec<(String, State)> = Vec::new();
+    // Handing over tens of thousands of single designs would only measure the lock.
+    let least = evaluated.designs / 2000;
+    for tile in [1, 7, 1000, Options::default().tile].map(|tile| tile.max(least)) {
+        let options = options(random, tile);
+        ways.push((format!("{options:?}"), pipeline.whole(&options)));
+    }
+    ways.push(("shards".to_owned(), pipeline.sharded(random, folder.path())));
+    let written_too = random.below(ways.len());
+    for (number, (way, state)) in ways.into_iter().enumerate() {
+        assert!(same(&state, &reference_state), "seed {seed}: something else is kept with {way}");
+        // The files are a function of the state; writing them through to the disk is what takes time.
+        if !full() && number != written_too {
+            continue;
+        }
+        let files = pipeline.write(state, random.whole(1, 3), &folder.path().join(number.to_string()));
+        if let Some(name) = differing_file(&reference, &files) {
+            panic!("seed {seed}: {name} differs with {way}");
+        }
+    }
+    cover(&draft, &plan, &evaluated, &expected, coverage);
+}
+
+const EVERY_FEATURE: &[&str] = &[
+    "rubber-cvt",
+    "metal-cvt",
+    "pulley-load",
+    "one value",
+    "list",
+    "count",
+    "log count",
+    "step",
+    "log step",
+    "continuous",
+    "whole numbers",
+    "joint axis in design",
+    "joint axis in operation",
+    "joint axis in uncertainty",
+    "sample Sobol",
+    "sample LatinHypercube",
+    "sample Random",
+    "traction limit",
+    "traction limit and numbers on one axis",
+    "inert axis",
+    "several rows of the fast axes",
+    "plateau of capacity 0",
+    "equal objective values",
+    "a bound met exactly, inclusive",
+    "a bound met exactly, strict",
+    "0 objectives",
+    "1 objectives",
+    "2 objectives",
+    "3 objectives",
+    "4 objectives",
+    "5 objectives",
+    "6 objectives",
+    "resolution",
+    "input as objective",
+    "input as constraint",
+    "top",
+    "histogram, range given",
+    "histogram, range automatic",
+    "map of a value",
+    "map of a share",
+    "report columns",
+    "several scenarios",
+    "worst scenario is not the first",
+    "front of at least 2 points",
+    "front of at least 20 points",
+    "head start for the front",
+    "nothing feasible",
+    "some feasible",
+    "all feasible",
+];
+
+/// Counts what a study had.
+fn cover(draft: &Draft, plan: &Plan, evaluated: &Evaluated, expected: &Expected, coverage: &mut Coverage) {
+    let study = &plan.study;
+    let mut had: std::collections::BTreeSet<String> = draft.kinds().collect();
+    let mut note = |feature: &str, there: bool| {
+        if there {
+            had.insert(feature.to_owned());
+        }
+    };
+    note(study.model.name, true);
+    for method in [Method::Sobol, Method::LatinHypercube, Method::Random] {
+        note(&format!("sample {method:?}"), study.sample.is_some_and(|sample| sample.method == method));
+    }
+    if let Some(traction) = study.model.input("traction") {
+        let limit = |case: &naive::Case| case.inputs[traction] < 0.0;
+        let limits = (0..evaluated.designs).flat_map(|design| evaluated.cases(design)).filter(|case| limit(case)).count() as u64;
+        note("traction limit", limits > 0);
+        note("traction limit and numbers on one axis", limits > 0 && limits < evaluated.designs * evaluated.scenarios);
+        let capacity = Quantity::Output(study.model.output("torque_capacity_Nm").expect("both belts have it"));
+        let zero = |design: &&u64| evaluated.cases(**design).iter().any(|case| case.value(capacity) == Some(0.0));
+        let asked = study.objectives.iter().any(|objective| objective.quantity == capacity);
+        note("plateau of capacity 0", asked && expected.feasible.iter().filter(zero).count() >= 2);
+    }
+    note("inert axis", !plan.inert_axes().is_empty());
+    note("several rows of the fast axes", plan.slow.count() > 1 && plan.fast.count() > 1);
+    note("equal objective values", expected.ties > 0);
+    for constraint in &study.constraints {
+        let touches = |design: u64, inclusive: bool| {
+            let bounds = [constraint.low, constraint.high].into_iter().flatten();
+            bounds
+                .filter(|(_, strict)| *strict != inclusive)
+                .any(|(bound, _)| evaluated.cases(design).iter().any(|case| case.value(constraint.quantity) == Some(bound)))
+        };
+        let number = study.constraints.iter().position(|it| it == constraint).expect("it is one of them");
+        let only_this = |design: &u64| expected.failures[*design as usize].constraints == [number];
+        note("a bound met exactly, inclusive", expected.feasible.iter().any(|&design| touches(design, true)));
+        note("a bound met exactly, strict", (0..evaluated.designs).filter(only_this).any(|design| touches(design, false)));
+    }
+    note(&format!("{} objectives", study.objectives.len()), true);
+    let is_input = |quantity: Quantity| matches!(quantity, Quantity::Input(_));
+    note("resolution", study.objectives.iter().any(|it| it.resolution.is_some()));
+    note("input as objective", study.objectives.iter().any(|it| is_input(it.quantity)));
+    note("input as constraint", study.constraints.iter().any(|it| is_input(it.quantity)));
+    note("top", study.report.top.is_some());
+    note("histogram, range given", study.report.histograms.iter().any(|it| it.range.is_some()));
+    note("histogram, range automatic", study.report.histograms.iter().any(|it| it.range.is_none()));
+    note("map of a value", study.report.maps.iter().any(|it| matches!(it.value, Best::Value(..))));
+    note("map of a share", study.report.maps.iter().any(|it| it.value == Best::Share));
+    note("report columns", !study.report.columns.is_empty());
+    note("several scenarios", evaluated.scenarios > 1);
+    let front = expected.answer.tables.get("front.csv");
+    let late = |table: &answer::Table| {
+        let scenario = |(name, cell): (&String, &Cell)| name.ends_with("_scenario") && *cell != Cell::number(0.0);
+        table.rows.iter().any(|row| table.header.iter().zip(row).any(scenario))
+    };
+    note("worst scenario is not the first", front.is_some_and(late));
+    note("front of at least 2 points", expected.front.len() >= 2);
+    note("front of at least 20 points", expected.front.len() >= 20);
+    note("head start for the front", evaluated.designs / 64 >= BLOCK as u64 && expected.front.len() >= 2);
+    let (feasible, designs) = (expected.feasible.len() as u64, evaluated.designs);
+    note("nothing feasible", feasible == 0);
+    note("some feasible", 0 < feasible && feasible < designs);
+    note("all feasible", feasible == designs);
+    for feature in had {
+        *coverage.entry(feature).or_default() += 1;
+    }
+}
+
+/// The first random study whose answer has a front of this size, read from the directory that the pipeline writes.
+fn answered_study(least_front: usize) -> (Expected, Answer) {
+    for seed in 1.. {
+        let (_, text, study, evaluated) = study_of(seed);
+        let expected = Expected::new(&study, &evaluated);
+        let tables = &expected.answer.tables;
+        let enough = tables.keys().any(|name| name.starts_with("histogram")) && tables.keys().any(|name| name.starts_with("map"));
+        if expected.front.len() < least_front || !enough {
+            continue;
+        }
+        return (expected, run(&text, study));
+    }
+    unreachable!("seeds do not run out")
+}
+
+/// What the pipeline says of a study.
+fn run(text: &str, study: Study) -> Answer {
+    let plan = Plan::new(study);
+    let pipeline = Pipeline::new(&plan, text);
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    pipeline.write(pipeline.whole(&Options::default()), 1, folder.path());
+    Answer::read(folder.path())
+}
+
+/// The value of every design decides a selection of the formula the same way, so nothing else depends on the axis: the first
+/// stage must run with a value of the axis all the same, and not with the default. (Found by seed 165.)
+#[test]
+fn an_axis_whose_values_all_choose_the_same_branch_is_not_swept_with_the_default() {
+    for role in ["design", "operation", "uncertainty"] {
+        for (traction, torque) in [("\"limit\"", "50"), ("[0]", "[0]"), ("0.5", "[0, 50]")] {
+            let text = format!(
+                "model = \"rubber-cvt\"\n[design]\nbelt_thickness_mm = [5, 10, 15]\ngroove_angle_deg = [26, 30]\n\
+                 {}traction = {traction}\ntorque_Nm = {torque}\n[objectives]\nstress_margin = \"max\"\n\
+                 axial_force_N = \"min\"\n[report]\ntop = {{ by = \"slack_force_N\", count = 9 }}\n",
+                if role == "design" { String::new() } else { format!("[{role}]\n") }
+            );
+            let study = parse(&text);
+            let expected = Expected::new(&study, &Evaluated::new(&study));
+            assert!(!expected.front.is_empty());
+            assert_eq!(expected.answer.difference(&run(&text, study)), None, "{text}");
+        }
+    }
+}
+
+#[test]
+fn the_comparison_objects_to_a_lost_point_a_wrong_count_and_a_wrong_last_bit() {
+    let (expected, found) = answered_study(5);
+    assert_eq!(expected.answer.difference(&found), None);
+    let objection = |change: &dyn Fn(&mut Answer)| {
+        let mut changed = found.clone();
+        change(&mut changed);
+        expected.answer.difference(&changed)
+    };
+    let table = |answer: &Answer, stem: &str| answer.tables.keys().find(|name| name.starts_with(stem)).expect("it was asked for").clone();
+    let bump = |cell: &mut Cell, how: fn(f64) -> f64| {
+        let Cell::Number(bits) = cell else { panic!("{cell:?} is no number") };
+        *bits = how(f64::from_bits(*bits)).to_bits();
+    };
+
+    // A point of the front lost, one too many, and two in the wrong order.
+    assert!(objection(&|answer| drop(answer.tables.get_mut("front.csv").unwrap().rows.pop())).is_some());
+    assert!(objection(&|answer| drop(answer.tables.get_mut("front.csv").unwrap().rows.remove(0))).is_some());
+    assert!(
+        objection(&|answer| {
+            let rows = &mut answer.tables.get_mut("front.csv").unwrap().rows;
+            rows.push(rows[0].clone());
+        })
+        .is_some()
+    );
+    assert!(objection(&|answer| answer.tables.get_mut("front.csv").unwrap().rows.swap(0, 1)).is_some());
+    // A count off by one.
+    for name in ["feasible", "front", "tally.feasible", "scenarios"] {
+        assert!(objection(&|answer| bump(answer.summary.get_mut(name).unwrap(), |count| count + 1.0)).is_some(), "{name}");
+    }
+    let histogram = table(&found, "histogram");
+    for row in 0..found.tables[&histogram].rows.len() {
+        let changed = objection(&|answer| bump(&mut answer.tables.get_mut(&histogram).unwrap().rows[row][2], |count| count + 1.0));
+        assert!(changed.is_some(), "bin {row}");
+    }
+    // The last bit of any number of the front; a scenario that is another; a map that misses a value.
+    let columns = found.tables["front.csv"].header.len();
+    for column in (0..columns).filter(|&column| matches!(found.tables["front.csv"].rows[2][column], Cell::Number(_))) {
+        let changed = objection(&|answer| bump(&mut answer.tables.get_mut("front.csv").unwrap().rows[2][column], f64::next_up));
+        assert!(changed.is_some(), "column {column}");
+    }
+    assert!(objection(&|answer| bump(answer.summary.get_mut("knee.distance").unwrap(), f64::next_up)).is_some());
+    let map = table(&found, "map");
+    let cell = found.tables[&map].rows.iter().position(|row| row[2] != Cell::Absent).expect("some cell has a value");
+    assert!(objection(&|answer| answer.tables.get_mut(&map).unwrap().rows[cell][2] = Cell::Absent).is_some());
+    assert!(objection(&|answer| drop(answer.tables.remove(&map))).is_some());
+}
+
+#[test]
+fn the_brute_force_front_itself_objects_to_a_dominated_and_a_doubled_point() {
+    let keys = [vec![1.0, 5.0], vec![2.0, 4.0], vec![2.0, 4.0], vec![2.0, 5.0], vec![0.5, 6.0]];
+    assert_eq!(naive::front(&keys), [0, 1, 4], "2 ties with 1, 3 is dominated by 0 and 1");
+}

@@ -1,0 +1,278 @@
+//! Random studies as the text of study files, small enough to be judged one by one.
+
+use super::naive::Evaluated;
+use super::random_axes::{AxisDraft, Generator, three_digits, written};
+use crate::random::Random;
+use beltspace::models::{MODELS, Model, Worse};
+use beltspace::study::{Axis, Quantity, Study};
+use std::fmt::Write;
+
+/// The range of a histogram, where it is given.
+type Ends = Option<(f64, f64)>;
+
+/// A study file in parts.
+pub struct Draft {
+    model: &'static Model,
+    title: String,
+    sample: Option<String>,
+    /// Design, operation, uncertainty.
+    axes: [Vec<AxisDraft>; 3],
+    fixed: Vec<(usize, f64)>,
+    constraints: Vec<String>,
+    /// Quantity, goal, resolution.
+    objectives: Vec<(Quantity, &'static str, Option<f64>)>,
+    /// Quantity, bins, range.
+    histograms: Vec<(Quantity, usize, Ends)>,
+    report: Vec<String>,
+}
+
+const ROLES: [&str; 3] = ["design", "operation", "uncertainty"];
+/// Most evaluations that a small study costs the oracle.
+const MOST_EVALUATIONS: u64 = 30_000;
+
+impl Draft {
+    /// A study without constraints: those are placed once its designs are known.
+    pub fn new(seed: u64) -> Self {
+        let random = &mut Random::new(seed);
+        // What a short loop must not miss goes by the seed, everything else by chance.
+        let turn = seed as usize;
+        let model = MODELS[turn % MODELS.len()];
+        let mut generator = Generator { random, model };
+        let sampled = turn.is_multiple_of(4);
+        // A large one now and then: only those give the front a head start.
+        let large = turn % 20 == 7;
+        let designs = if large { generator.random.between(33e3, 50e3) } else { generator.random.log_between(50.0, 3000.0) };
+        let scenarios = generator.random.log_between(1.0, 40.0).min(MOST_EVALUATIONS as f64 / designs).max(1.0);
+        let mut free: Vec<usize> = (0..model.inputs.len()).collect();
+        generator.random.shuffle(&mut free);
+        let design = generator.axes(0, &mut free, 4, designs, sampled);
+        let operation = generator.axes(1, &mut free, 2, scenarios.sqrt(), false);
+        let uncertainty = generator.axes(2, &mut free, 2, scenarios.sqrt(), false);
+        let fixed = free.into_iter().filter(|_| generator.random.chance(0.2)).collect::<Vec<_>>();
+        let fixed = fixed.into_iter().map(|input| (input, generator.value(input))).collect();
+        let random = generator.random;
+        let sample = sampled.then(|| {
+            let method = ["sobol", "latin-hypercube", "random"][turn / 4 % 3];
+            format!("method = \"{method}\"\ncount = {}\nseed = {}", designs as u64, random.below(1000))
+        });
+        let mut draft = Self {
+            model,
+            title: format!("Random study {seed}"),
+            sample,
+            axes: [design, operation, uncertainty],
+            fixed,
+            constraints: Vec::new(),
+            objectives: Vec::new(),
+            histograms: Vec::new(),
+            report: Vec::new(),
+        };
+        draft.ask(random, [2, 3, 1, 0, 2, 4, 6, 2, 5, 3][turn % 10]);
+        draft
+    }
+
+    /// Names of all quantities with a number: a traction that takes "limit" has none.
+    fn quantities(&self) -> Vec<Quantity> {
+        let written = |input: usize| {
+            let axis = self.axes.iter().flatten().find(|axis| axis.inputs.contains(&input));
+            let fixed = self.fixed.iter().find(|(it, _)| *it == input).map(|(_, value)| *value);
+            match axis {
+                Some(axis) => {
+                    let column = axis.inputs.iter().position(|it| *it == input).expect("it was found");
+                    axis.rows.iter().map(|row| row[column]).collect()
+                }
+                None => vec![fixed.unwrap_or(self.model.inputs[input].default)],
+            }
+        };
+        let has_numbers = |input: &usize| written(*input).iter().all(|&value| self.model.inputs[*input].word_for(value).is_none());
+        let inputs = (0..self.model.inputs.len()).filter(has_numbers).map(Quantity::Input);
+        (0..self.model.outputs.len()).map(Quantity::Output).chain(inputs).collect()
+    }
+
+    /// Draws a quantity: mostly an output, else mostly an input that is chosen.
+    fn draw(&self, random: &mut Random, quantities: &[Quantity]) -> Quantity {
+        let favourites =
+            ["torque_capacity_Nm", "capacity_axial_force_N", "stress_margin", "slip_margin", "axial_force_N", "friction_margin"];
+        let chosen = |it: &&Quantity| matches!(it, Quantity::Input(input) if self.axes[0].iter().any(|axis| axis.inputs.contains(input)));
+        let favourite = |it: &&Quantity| favourites.contains(&it.name(self.model));
+        let output = |it: &&Quantity| matches!(it, Quantity::Output(_));
+        let filtered: Vec<Quantity> = match random.below(20) {
+            0..8 => quantities.iter().filter(favourite).copied().collect(),
+            8..16 => quantities.iter().filter(output).copied().collect(),
+            16..19 => quantities.iter().filter(chosen).copied().collect(),
+            _ => quantities.to_vec(),
+        };
+        if filtered.is_empty() { random.pick(quantities) } else { random.pick(&filtered) }
+    }
+
+    /// Objectives and report.
+    fn ask(&mut self, random: &mut Random, wanted: usize) {
+        let model = self.model;
+        let quantities = self.quantities();
+        let mut objectives: Vec<Quantity> = Vec::new();
+        while objectives.len() < wanted {
+            let quantity = self.draw(random, &quantities);
+            if !objectives.contains(&quantity) {
+                objectives.push(quantity);
+                let natural = if quantity.worse(model) == Worse::Higher { "min" } else { "max" };
+                let goal = if random.chance(0.8) { natural } else { random.pick(&["min", "max"]) };
+                self.objectives.push((quantity, goal, None));
+            }
+        }
+        let goal = |random: &mut Random| random.pick(&["min", "max"]);
+        if random.chance(0.5) || wanted == 0 {
+            let (by, count) = (self.draw(random, &quantities).name(model), random.pick(&[1, 3, 20, 5000]));
+            let goal = if random.chance(0.5) { format!(", goal = \"{}\"", goal(random)) } else { String::new() };
+            self.report.push(format!("top = {{ by = \"{by}\", count = {count}{goal} }}"));
+        }
+        for _ in 0..random.pick(&[0, 0, 1, 2]) {
+            let bins = random.pick(&[1, 7, 50]);
+            self.histograms.push((self.draw(random, &quantities), bins, None));
+        }
+        let mut single: Vec<&str> = self.axes[0].iter().filter(|axis| axis.kind != "joint").map(|axis| axis.key.as_str()).collect();
+        if self.sample.is_none() && single.len() >= 2 {
+            let mut maps = Vec::new();
+            for _ in 0..random.pick(&[0, 1, 1, 3]) {
+                random.shuffle(&mut single);
+                let quantity = self.draw(random, &quantities);
+                let value = match random.below(3) {
+                    0 => "best = \"share\"".to_owned(),
+                    _ if objectives.contains(&quantity) => format!("value = \"{}\"", quantity.name(model)),
+                    _ => format!("value = \"{}\", best = \"{}\"", quantity.name(model), goal(random)),
+                };
+                maps.push(format!("{{ x = \"{}\", y = \"{}\", {value} }}", single[0], single[1]));
+            }
+            if !maps.is_empty() {
+                self.report.push(format!("maps = [{}]", maps.join(", ")));
+            }
+        }
+        let mut columns: Vec<String> = Vec::new();
+        for _ in 0..random.below(4) {
+            let quantity = self.draw(random, &quantities);
+            let chosen = matches!(quantity, Quantity::Input(input) if self.axes[0].iter().any(|axis| axis.inputs.contains(&input)));
+            let name = format!("\"{}\"", quantity.name(model));
+            if !chosen && !columns.contains(&name) {
+                columns.push(name);
+            }
+        }
+        if !columns.is_empty() {
+            self.report.push(format!("columns = [{}]", columns.join(", ")));
+        }
+    }
+
+    /// Places bounds where some designs just touch them, steps of resolution, and ranges of histograms that cut something off.
+    pub fn constrain(&mut self, seed: u64, study: &Study, evaluated: &Evaluated) {
+        let random = &mut Random::new(seed ^ 0xC0_57A1);
+        let quantities = self.quantities();
+        let mut used = Vec::new();
+        for _ in 0..random.pick(&[0, 1, 1, 2, 3]) {
+            let quantity = self.draw(random, &quantities);
+            let high = random.chance(0.5);
+            let worse = if high { Worse::Higher } else { Worse::Lower };
+            let Some(values) = evaluated.sorted_worst_values(study, quantity, worse) else { continue };
+            if used.contains(&quantity) {
+                continue;
+            }
+            used.push(quantity);
+            // Mostly a bound that some design takes in its worst scenario; now and then one that nothing can meet.
+            let quantile = random.between(0.3, 0.98);
+            let place = (quantile * values.len() as f64) as usize;
+            let bound = if high { values[place] } else { values[values.len() - 1 - place] };
+            let impossible = random.chance(0.04);
+            let width = (values[values.len() - 1] - values[0]).abs().max(1.0);
+            let bound = match impossible {
+                true if high => values[0] - width,
+                true => values[values.len() - 1] + width,
+                false => bound,
+            };
+            let key = random.pick(if high { &["max", "below"] } else { &["min", "above"] });
+            let other = match random.below(5) {
+                0 if high => format!(", min = {}", values[0] - 0.1 * width),
+                0 => format!(", max = {}", values[values.len() - 1] + 0.1 * width),
+                _ => String::new(),
+            };
+            let (bound, other) = (bound + 0.0, if impossible { String::new() } else { other });
+            self.constraints.push(format!("{} = {{ {key} = {bound}{other} }}", quantity.name(self.model)));
+        }
+        let worst_values = |quantity: Quantity| {
+            let values = evaluated.sorted_worst_values(study, quantity, quantity.worse(self.model))?;
+            (values[0] < values[values.len() - 1]).then_some(values)
+        };
+        for (quantity, _, resolution) in &mut self.objectives {
+            if random.chance(0.25) {
+                *resolution = worst_values(*quantity)
+                    .map(|values| three_digits((values[values.len() - 1] - values[0]) / random.between(2.0, 40.0)))
+                    .filter(|width| *width > 0.0);
+            }
+        }
+        for (quantity, _, range) in &mut self.histograms {
+            if random.chance(0.5) {
+                // The ends are values that some design has: they belong to the first and the last bin.
+                let ends = worst_values(*quantity).map(|values| (values[values.len() / 10], values[values.len() - 1 - values.len() / 5]));
+                *range = ends.filter(|(low, high)| low < high);
+            }
+        }
+    }
+
+    /// The study file.
+    pub fn text(&self) -> String {
+        let mut text = format!("model = \"{}\"\ntitle = \"{}\"\n", self.model.name, self.title);
+        let mut section = |name: &str, lines: &[String]| {
+            if !lines.is_empty() {
+                write!(text, "\n[{name}]\n{}\n", lines.join("\n")).expect("a text takes everything");
+            }
+        };
+        section("sample", self.sample.as_slice());
+        for (role, axes) in ROLES.iter().zip(&self.axes) {
+            section(role, &axes.iter().map(|axis| format!("{} = {}", axis.key, axis.text)).collect::<Vec<_>>());
+        }
+        let fixed =
+            self.fixed.iter().map(|&(input, value)| format!("{} = {}", self.model.inputs[input].name, written(self.model, input, value)));
+        section("fixed", &fixed.collect::<Vec<_>>());
+        section("constraints", &self.constraints);
+        let objective = |&(quantity, goal, resolution): &(Quantity, &str, Option<f64>)| {
+            let name = quantity.name(self.model);
+            match resolution {
+                Some(resolution) => format!("{name} = {{ goal = \"{goal}\", resolution = {resolution} }}"),
+                None => format!("{name} = \"{goal}\""),
+            }
+        };
+        section("objectives", &self.objectives.iter().map(objective).collect::<Vec<_>>());
+        let histogram = |&(quantity, bins, range): &(Quantity, usize, Ends)| {
+            let range = range.map_or(String::new(), |(low, high)| format!(", from = {low}, to = {high}"));
+            format!("{{ of = \"{}\", bins = {bins}{range} }}", quantity.name(self.model))
+        };
+        let histograms: Vec<_> = self.histograms.iter().map(histogram).collect();
+        let histograms = (!histograms.is_empty()).then(|| format!("histograms = [{}]", histograms.join(", ")));
+        section("report", &self.report.iter().cloned().chain(histograms).collect::<Vec<_>>());
+        text
+    }
+
+    /// The axes of the parsed study must have the values that the text means.
+    pub fn check_axes(&self, study: &Study) {
+        let parsed: [&[Axis]; 3] = [&study.design, &study.operation, &study.uncertainty];
+        for (drafts, axes) in self.axes.iter().zip(parsed) {
+            assert_eq!(drafts.len(), axes.len());
+            for (draft, axis) in drafts.iter().zip(axes) {
+                assert_eq!(draft.inputs, axis.inputs(), "{}", draft.key);
+                if draft.kind == "continuous" {
+                    continue;
+                }
+                assert_eq!(draft.rows.len() as u64, axis.count(), "{} = {}", draft.key, draft.text);
+                for (index, row) in draft.rows.iter().enumerate() {
+                    for (column, &value) in row.iter().enumerate() {
+                        let found = axis.value(column, index as u64);
+                        let close = draft.log && (found - value).abs() <= 1e-13 * value.abs();
+                        assert!(found == value || close, "{} = {}: level {index} is {found}, not {value}", draft.key, draft.text);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Kinds of axes, for the count of what was covered.
+    pub fn kinds(&self) -> impl Iterator<Item = String> + '_ {
+        self.axes.iter().zip(ROLES).flat_map(|(axes, role)| {
+            axes.iter().map(move |axis| if axis.kind == "joint" { format!("joint axis in {role}") } else { axis.kind.to_owned() })
+        })
+    }
+}

@@ -1,0 +1,118 @@
+//! The pipeline, run in every way that must not matter.
+
+use crate::random::Random;
+use beltspace::checkpoint::Checkpoint;
+use beltspace::export::{Outcome, RunRecord};
+use beltspace::merge::{check_set, merge};
+use beltspace::plan::Plan;
+use beltspace::reduce::{Reduction, State};
+use beltspace::screen::{CpuEngine, Tables, Tally};
+use beltspace::sweep::{Control, Options, sweep};
+use beltspace::tiles::{Ranges, Shard};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// A study laid out, with what every run of it needs.
+pub struct Pipeline<'p> {
+    pub plan: &'p Plan,
+    text: &'p str,
+    tables: Tables,
+    tally: Tally,
+    reduction: Reduction,
+}
+
+/// The bytes of a result's files by name, `run.json` left out.
+pub type Files = BTreeMap<String, Vec<u8>>;
+
+impl<'p> Pipeline<'p> {
+    pub fn new(plan: &'p Plan, text: &'p str) -> Self {
+        let tables = Tables::new(plan);
+        let tally = Tally::new(plan, &tables, 2);
+        let reduction = Reduction::new(plan, &tally.histogram_ranges(plan));
+        Self { plan, text, tables, tally, reduction }
+    }
+
+    /// One run over the whole study.
+    pub fn whole(&self, options: &Options) -> State {
+        let control = Control::default();
+        sweep(self.plan, &self.tables, &self.reduction, options, None, &control).expect("the sweep ends").state
+    }
+
+    /// Several shards, each with a checkpoint, some of them resumed from a part of their own, merged in a random order.
+    pub fn sharded(&self, random: &mut Random, folder: &Path) -> State {
+        let of = random.whole(2, 5) as u64;
+        let mut folders = Vec::new();
+        for number in 1..=of {
+            let shard = Shard { number, of };
+            let folder = folder.join(format!("shard-{number}"));
+            let mut checkpoint =
+                Checkpoint::create(&folder, &self.plan.study, self.text, shard, self.plan.designs()).expect("a folder can be made");
+            if random.chance(0.5) {
+                self.begin(random, &mut checkpoint);
+                drop(checkpoint);
+                checkpoint = Checkpoint::open(&folder).expect("a part is kept");
+                checkpoint.require(&self.plan.study, shard).expect("it is of this study and shard");
+            }
+            let options = Options { shard, ..options(random, 7.max(self.plan.designs() / 2000)) };
+            sweep(self.plan, &self.tables, &self.reduction, &options, Some(&mut checkpoint), &Control::default()).expect("the sweep ends");
+            folders.push(folder);
+        }
+        random.shuffle(&mut folders);
+        let open = |folder: PathBuf| {
+            let checkpoint = Checkpoint::open(&folder).expect("a finished shard is kept");
+            (folder, checkpoint)
+        };
+        let shards: Vec<_> = folders.into_iter().map(open).collect();
+        check_set(&shards).expect("the shards are complete");
+        merge(self.plan, &self.reduction, shards).expect("the shards have finished")
+    }
+
+    /// Keeps the state of some positions in the middle of a shard, as a run does that is killed later.
+    fn begin(&self, random: &mut Random, checkpoint: &mut Checkpoint) {
+        let range = checkpoint.shard().range(self.plan.designs());
+        let length = (range.end - range.start) as usize;
+        let first = range.start + random.below(length + 1) as u64;
+        let last = first + random.below((range.end - first) as usize + 1) as u64;
+        let mut reducers = self.reduction.start();
+        CpuEngine::new(self.plan, &self.tables).screen(first..last, |block| self.reduction.absorb(&mut reducers, block));
+        checkpoint.save(&Ranges::of(first..last), &reducers.state()).expect("a part can be kept");
+    }
+
+    /// Certifies and writes a result; returns its files.
+    pub fn write(&self, state: State, threads: usize, folder: &Path) -> Files {
+        let outcome = Outcome::certify(self.plan, state, self.tally.clone(), threads).expect("the reference agrees");
+        let record = RunRecord {
+            engine: "cpu",
+            threads,
+            designs: self.plan.designs(),
+            scenarios: self.plan.scenarios(),
+            time: Duration::from_millis(1),
+            origin: "a test".to_owned(),
+            certified: outcome.front.len() + outcome.top.len(),
+        };
+        outcome.write(folder, self.text, &record).expect("a result can be written");
+        files(folder)
+    }
+}
+
+/// How to run, with chunks so short that there are many.
+pub fn options(random: &mut Random, tile: u64) -> Options {
+    let chunk = Duration::from_micros(random.pick(&[0, 10, 1000]));
+    Options { threads: random.whole(1, 3), tile, chunk, ..Options::default() }
+}
+
+fn files(folder: &Path) -> Files {
+    let read = |entry: std::io::Result<std::fs::DirEntry>| {
+        let path = entry.expect("it can be listed").path();
+        let name = path.file_name().expect("a file has a name").to_string_lossy().into_owned();
+        (name, std::fs::read(path).expect("it can be read"))
+    };
+    std::fs::read_dir(folder).expect("there is a result").map(read).filter(|(name, _)| name != "run.json").collect()
+}
+
+/// The first file in which two results differ.
+pub fn differing_file(a: &Files, b: &Files) -> Option<String> {
+    let names = a.keys().chain(b.keys());
+    names.filter(|name| a.get(*name) != b.get(*name)).map(Clone::clone).next()
+}

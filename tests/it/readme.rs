@@ -1,0 +1,75 @@
+//! The README tells the truth: what it shows is what the program says. Times are the only thing that may differ.
+
+use beltspace::models::MODELS;
+use std::path::Path;
+use std::process::Command;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn readme() -> String {
+    std::fs::read_to_string(root().join("README.md")).expect("the crate has a README")
+}
+
+fn run(arguments: &[&str]) -> (String, String) {
+    let output = Command::new(env!("CARGO_BIN_EXE_beltspace")).args(arguments).current_dir(root()).output().expect("the program starts");
+    (String::from_utf8(output.stdout).expect("text"), String::from_utf8(output.stderr).expect("text"))
+}
+
+/// Lines without those that tell a time.
+fn without_times(text: &str) -> Vec<&str> {
+    text.lines().filter(|line| !line.starts_with("designs ") && !line.starts_with("result ")).map(str::trim_end).collect()
+}
+
+/// The fenced block of the README that starts with this line.
+fn block(start: &str) -> String {
+    let readme = readme();
+    let after = readme.split("```").find(|block| block.lines().nth(1) == Some(start));
+    let block = after.unwrap_or_else(|| panic!("the README has no block that starts with: {start}"));
+    block.lines().skip(2).collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn the_session_is_what_the_program_prints() {
+    let out = tempfile::tempdir().expect("a temporary directory");
+    let (printed, _) = run(&["sweep", "studies/metal-cvt.toml", "--out", out.path().join("my-belt").to_str().expect("a path of characters")]);
+    let shown = block("$ beltspace sweep studies/metal-cvt.toml --out my-belt");
+    assert_eq!(without_times(&shown), without_times(&printed));
+}
+
+#[test]
+fn the_study_is_the_shipped_one() {
+    let study = std::fs::read_to_string(root().join("studies/metal-cvt.toml")).expect("the study is shipped");
+    assert!(readme().contains(study.trim_end()), "the README shows another studies/metal-cvt.toml");
+}
+
+#[test]
+fn the_errors_are_what_the_program_says_of_the_broken_study() {
+    let folder = tempfile::tempdir().expect("a temporary directory");
+    let broken = block("$ cat my.toml");
+    let (study, said) = broken.split_once("$ beltspace check my.toml\n").expect("the block shows file and check");
+    std::fs::write(folder.path().join("my.toml"), study).expect("the study can be written");
+    let output = Command::new(env!("CARGO_BIN_EXE_beltspace")).args(["check", "my.toml"]).current_dir(folder.path()).output().expect("starts");
+    assert_eq!(String::from_utf8_lossy(&output.stderr).trim_end(), said.trim_end());
+}
+
+#[test]
+fn the_commands_are_those_of_the_help() {
+    let (help, _) = run(&["--help"]);
+    let commands = help.split("Commands:").nth(1).and_then(|rest| rest.split("\n\n").next()).expect("the help lists commands");
+    for line in commands.lines().map(str::trim).filter(|line| !line.is_empty()) {
+        assert!(readme().contains(line), "the README lacks: {line}");
+    }
+}
+
+#[test]
+fn every_model_and_what_it_leaves_out_is_named() {
+    // Line ends do not matter: the README is wrapped.
+    let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let readme = words(&readme());
+    for model in MODELS {
+        assert!(readme.contains(&format!("`{}`", model.name)), "{}", model.name);
+        assert!(readme.contains(&words(model.limits)), "{}: {}", model.name, model.limits);
+    }
+}
