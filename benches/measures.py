@@ -7,7 +7,6 @@ import csv
 import json
 import os
 import platform
-import resource
 import statistics
 import subprocess
 import sys
@@ -24,14 +23,30 @@ import metal_grid  # noqa: E402
 STUDY = Path("studies/metal-grid.toml").read_text()
 
 
-def sweep(program, levels, folder, *options):
-    """Sweeps metal-grid with so many levels per axis; returns the result directory and the wall time of the whole command."""
+def peak_of(process):
+    """Largest resident memory of a running process in MB, as the kernel keeps it; rusage would count the parent it was forked from."""
+    peak = 0
+    while process.poll() is None:
+        try:
+            lines = Path(f"/proc/{process.pid}/status").read_text().splitlines()
+            peak = max([peak] + [int(line.split()[1]) for line in lines if line.startswith("VmHWM")])
+        except OSError:
+            pass
+        time.sleep(0.02)
+    if process.returncode:
+        sys.exit(f"{process.args}: exit code {process.returncode}")
+    return peak / 1024
+
+
+def sweep(program, levels, folder):
+    """Sweeps metal-grid with so many levels per axis; returns the result directory, the wall time of the whole command and its
+    peak memory in MB."""
     study = folder / f"metal-grid-{levels}.toml"
     study.write_text(STUDY.replace("count = 37", f"count = {levels}"))
     out = folder / f"result-{levels}"
     start = time.perf_counter()
-    subprocess.run([program, "sweep", study, "--out", out, "--quiet", "--force", *options], check=True)
-    return out, time.perf_counter() - start
+    peak = peak_of(subprocess.Popen([program, "sweep", study, "--out", out, "--quiet", "--force"]))
+    return out, time.perf_counter() - start, peak
 
 
 def front_of(out):
@@ -45,7 +60,7 @@ def beside_numpy(program, levels, folder):
     start = time.perf_counter()
     count, best = metal_grid.with_numpy(metal_grid.axes(levels))
     numpy_seconds = time.perf_counter() - start
-    out, seconds = sweep(program, levels, folder)
+    out, seconds, _ = sweep(program, levels, folder)
     summary = json.loads((out / "summary.json").read_text())
     ours, theirs = front_of(out), np.column_stack([-best[:, 0], best[:, 1]])
     theirs = theirs[np.lexsort((theirs[:, 1], theirs[:, 0]))]
@@ -60,9 +75,8 @@ def beside_numpy(program, levels, folder):
 
 def large(program, folder):
     """1e10 designs: whole command, and the peak memory of the child."""
-    out, seconds = sweep(program, 174, folder)
+    out, seconds, peak = sweep(program, 174, folder)
     summary = json.loads((out / "summary.json").read_text())
-    peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
     return {"designs": summary["designs"], "feasible": summary["feasible"], "front": summary["front"], "seconds": seconds,
             "designs_per_second": summary["designs"] / seconds, "peak_MB": peak}
 
@@ -84,18 +98,17 @@ def main():
     arguments = argparse.ArgumentParser()
     arguments.add_argument("program")
     arguments.add_argument("--out", type=Path)
-    arguments.add_argument("--skip-large", action="store_true")
+    arguments.add_argument("--short", action="store_true", help="leave out what takes minutes: 1e9 designs in numpy, 1e10 here")
     arguments = arguments.parse_args()
     record = {"date": date.today().isoformat(), "cores": os.cpu_count(), "machine": processor(), "python": platform.python_version(),
               "numpy": np.__version__, "command": "benches/measures"}
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
-        # Memory first: the peak is that of the largest child so far.
-        if not arguments.skip_large:
+        if not arguments.short:
             record["large"] = large(arguments.program, folder)
         record["answers_ms"] = answers(arguments.program)
         sweep(arguments.program, 10, folder)  # the program's pages are read before the clock counts
-        record["beside_numpy"] = [beside_numpy(arguments.program, levels, folder) for levels in (37, 56)]
+        record["beside_numpy"] = [beside_numpy(arguments.program, levels, folder) for levels in ((37, 56) if arguments.short else (37, 56, 100))]
     print(f"{record['machine']}, {record['cores']} cores, {record['date']}")
     for row in record["beside_numpy"]:
         print(f"metal-grid {row['designs']:>12} designs  feasible {row['feasible']}  front {row['front']}  values within "

@@ -18,10 +18,13 @@ pub enum Decision {
 impl Decision {
     /// Is `margin` (known to within `±bound`) at least zero?
     ///
-    /// A NaN margin or bound is never a yes: a formula that has lost its meaning must not make a design feasible.
+    /// A NaN margin or bound is never a yes: a formula that has lost its meaning must not make a design feasible. Unless the
+    /// bound is 0 it may have lost it to rounding only, which is for the reference to say.
     pub fn at_least_zero(margin: f64, bound: f64) -> Self {
-        if margin.is_nan() || bound.is_nan() {
+        if margin.is_nan() && bound == 0.0 {
             Self::No
+        } else if !bound.is_finite() {
+            Self::Unsure
         } else if margin >= bound {
             Self::Yes
         } else if margin < -bound {
@@ -33,8 +36,10 @@ impl Decision {
 
     /// Is `margin` (known to within `±bound`) greater than zero?
     pub fn above_zero(margin: f64, bound: f64) -> Self {
-        if margin.is_nan() || bound.is_nan() {
+        if margin.is_nan() && bound == 0.0 {
             Self::No
+        } else if !bound.is_finite() {
+            Self::Unsure
         } else if margin > bound {
             Self::Yes
         } else if margin <= -bound {
@@ -69,12 +74,15 @@ mod tests {
     }
 
     #[test]
-    fn a_bound_around_zero_is_unsure_and_nan_is_no() {
+    fn a_bound_around_zero_is_unsure_and_nan_is_never_yes() {
         assert_eq!(Decision::at_least_zero(0.1, 0.2), Decision::Unsure);
         assert_eq!(Decision::at_least_zero(-0.2, 0.2), Decision::Unsure);
         assert_eq!(Decision::above_zero(-0.2, 0.2), Decision::No);
         assert_eq!(Decision::at_least_zero(f64::NAN, 0.0), Decision::No);
-        assert_eq!(Decision::above_zero(1.0, f64::NAN), Decision::No);
+        assert_eq!(Decision::above_zero(1.0, f64::NAN), Decision::Unsure);
+        assert_eq!(Decision::at_least_zero(f64::NAN, f64::INFINITY), Decision::Unsure, "lost to rounding, perhaps");
+        assert_eq!(Decision::at_least_zero(f64::INFINITY, f64::INFINITY), Decision::Unsure, "an overflow says nothing");
+        assert_eq!(Decision::above_zero(f64::NEG_INFINITY, f64::INFINITY), Decision::Unsure);
     }
 
     #[test]

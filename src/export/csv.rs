@@ -13,7 +13,7 @@ pub fn write(table: &Table) -> Vec<u8> {
     writer.write_record(table.columns.iter().map(|column| column.name.as_str())).expect(IN_MEMORY);
     for row in 0..table.rows() {
         let cells = table.columns.iter().map(|column| match &column.data {
-            Data::Whole(values) => values[row].to_string(),
+            Data::Whole(values) => values[row].map_or(String::new(), |value| value.to_string()),
             Data::Number(values) => values[row].map_or(String::new(), plain),
             Data::Text(values) => values[row].clone(),
         });

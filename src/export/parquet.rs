@@ -24,7 +24,7 @@ pub fn write(table: &Table) -> Result<Vec<u8>> {
     let failed = |error: ParquetError| Error::Io { path: PathBuf::from("Parquet table"), source: std::io::Error::other(error) };
     let fields = table.columns.iter().map(|column| {
         let (physical, repetition, logical) = match column.data {
-            Data::Whole(_) => (Physical::INT64, Repetition::REQUIRED, None),
+            Data::Whole(_) => (Physical::INT64, Repetition::OPTIONAL, None),
             Data::Number(_) => (Physical::DOUBLE, Repetition::OPTIONAL, None),
             Data::Text(_) => (Physical::BYTE_ARRAY, Repetition::REQUIRED, Some(LogicalType::String)),
         };
@@ -65,14 +65,14 @@ fn write_group(
         let mut to = group.next_column()?.expect("the schema has this column");
         match &column.data {
             Data::Whole(values) => {
-                let values: Vec<i64> = values[rows.clone()].iter().map(|&value| value.cast_signed()).collect();
-                to.typed::<Int64Type>().write_batch(&values, None, None)?;
+                let values = &values[rows.clone()];
+                let present: Vec<i64> = values.iter().flatten().map(|value| value.cast_signed()).collect();
+                to.typed::<Int64Type>().write_batch(&present, Some(&levels(values)), None)?;
             }
             Data::Number(values) => {
                 let values = &values[rows.clone()];
                 let present: Vec<f64> = values.iter().flatten().copied().collect();
-                let levels: Vec<i16> = values.iter().map(|value| i16::from(value.is_some())).collect();
-                to.typed::<DoubleType>().write_batch(&present, Some(&levels), None)?;
+                to.typed::<DoubleType>().write_batch(&present, Some(&levels(values)), None)?;
             }
             Data::Text(values) => {
                 let values: Vec<ByteArray> = values[rows.clone()].iter().map(|value| ByteArray::from(value.as_str())).collect();
@@ -83,6 +83,11 @@ fn write_group(
     }
     group.close()?;
     Ok(())
+}
+
+/// Parquet's way to say which values of an optional column are there.
+fn levels<T>(values: &[Option<T>]) -> Vec<i16> {
+    values.iter().map(|value| i16::from(value.is_some())).collect()
 }
 
 #[cfg(test)]
@@ -103,7 +108,7 @@ mod tests {
         let words = (0..70_000).map(|i| format!("w{i}")).collect();
         let table = Table {
             columns: vec![
-                TableColumn::index("index", "", (0..70_000).collect()),
+                TableColumn::index("index", "", (0..70_000).map(Some)),
                 number,
                 TableColumn::new("word", "design", "", Data::Text(words)),
             ],

@@ -3,8 +3,8 @@
 /// Values of one column.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Data {
-    /// Indices and counts.
-    Whole(Vec<u64>),
+    /// Indices and counts; absent where there is nothing to point at.
+    Whole(Vec<Option<u64>>),
     /// Numbers; absent where they have no meaning.
     Number(Vec<Option<f64>>),
     /// Words.
@@ -30,8 +30,8 @@ pub struct TableColumn {
 
 impl TableColumn {
     /// A column that needs no more than a name and a sentence.
-    pub fn index(name: &str, description: &str, values: Vec<u64>) -> Self {
-        Self::new(name, "index", description, Data::Whole(values))
+    pub fn index(name: &str, description: &str, values: impl IntoIterator<Item = Option<u64>>) -> Self {
+        Self::new(name, "index", description, Data::Whole(values.into_iter().collect()))
     }
 
     /// A column without unit and direction.

@@ -11,8 +11,7 @@ use crate::study::{Axis, Best, Goal, MapSpec, Study};
 pub fn designs(outcome: &Outcome<'_>, rows: &[Row]) -> Table {
     let study = &outcome.plan.study;
     let model = study.model;
-    let mut columns =
-        vec![TableColumn::index("design_index", "Index of the design in the study.", rows.iter().map(|row| row.index).collect())];
+    let mut columns = vec![TableColumn::index("design_index", "Index of the design in the study.", rows.iter().map(|row| Some(row.index)))];
     for &input in study.design.iter().flat_map(Axis::inputs) {
         let table = &model.inputs[input];
         let values = rows.iter().map(|row| row.inputs[input]);
@@ -43,7 +42,7 @@ pub fn designs(outcome: &Outcome<'_>, rows: &[Row]) -> Table {
                 Data::Number(rows.iter().map(|row| row.columns[at].value).collect()),
             )
         });
-        let scenarios = rows.iter().map(|row| row.columns[at].scenario).collect();
+        let scenarios = rows.iter().map(|row| row.columns[at].value.map(|_| row.columns[at].scenario));
         columns.push(TableColumn::index(&format!("{}_scenario", column.name), "The scenario in which it is the worst.", scenarios));
     }
     Table { columns }
@@ -55,7 +54,7 @@ pub fn histogram(histogram: &Histogram) -> Table {
     let edges = |shift: usize| (0..bins).map(move |bin| Some(histogram.edge(bin + shift)));
     let from = std::iter::once(None).chain(edges(0)).chain([Some(histogram.to)]).collect();
     let to = std::iter::once(Some(histogram.from)).chain(edges(1)).chain([None]).collect();
-    let counts = std::iter::once(histogram.below).chain(histogram.counts.iter().copied()).chain([histogram.above]).collect();
+    let counts = std::iter::once(histogram.below).chain(histogram.counts.iter().copied()).chain([histogram.above]).map(Some).collect();
     Table {
         columns: vec![
             TableColumn::new("from", "bin", "Lower edge of the bin, included.", Data::Number(from)),
@@ -97,8 +96,11 @@ pub fn map(plan: &Plan, spec: &MapSpec, map: &Map) -> Table {
         TableColumn { unit: unit.to_owned(), ..TableColumn::new(name, "value", "The best over all other axes.", values) },
     ];
     if spec.value != Best::Share {
-        let designs = cells.map(|cell| map.cell(cell).map(|cell| cell.index as f64)).collect();
-        columns.push(TableColumn::new("design_index", "index", "The design that has it.", Data::Number(designs)));
+        columns.push(TableColumn::index(
+            "design_index",
+            "The design that has it.",
+            cells.map(|cell| map.cell(cell).map(|cell| cell.index)),
+        ));
     }
     Table { columns }
 }

@@ -47,6 +47,13 @@ impl RunningError {
         Self { value, bound: if bound.is_nan() { f64::INFINITY } else { bound } }
     }
 
+    /// The one of two numbers that is the smaller or larger, with its own bound if it surely is: a clamp that surely holds is
+    /// exact.
+    fn chosen_over(self, other: Self) -> Self {
+        let sure = (f64::from(self.value) - f64::from(other.value)).abs() > self.bound + other.bound;
+        Self { value: self.value, bound: if sure { self.bound } else { self.bound.max(other.bound) } }
+    }
+
     /// A function that is monotone over the argument's uncertainty: its own uncertainty is read at the ends.
     fn monotone(self, value: f32, function: impl Fn(f64) -> f64, relative: f64) -> Self {
         let centre = function(f64::from(self.value));
@@ -103,10 +110,10 @@ impl Real for RunningError {
         Self { value: f32::abs(self.value), bound: self.bound }
     }
     fn min(self, other: Self) -> Self {
-        Self { value: Real::min(self.value, other.value), bound: self.bound.max(other.bound) }
+        if other.value < self.value { other.chosen_over(self) } else { self.chosen_over(other) }
     }
     fn max(self, other: Self) -> Self {
-        Self { value: Real::max(self.value, other.value), bound: self.bound.max(other.bound) }
+        if other.value > self.value { other.chosen_over(self) } else { self.chosen_over(other) }
     }
     fn exp_m1(self) -> Self {
         self.monotone(Real::exp_m1(self.value), libm::expm1, FUNCTION)
@@ -125,7 +132,8 @@ impl Real for RunningError {
     }
     fn select(margin: Self, at_least_zero: Self, below_zero: Self) -> Self {
         let (chosen, other) = if margin.value >= 0.0 { (at_least_zero, below_zero) } else { (below_zero, at_least_zero) };
-        if f64::from(margin.value).abs() > margin.bound {
+        // A margin that is exact decides at zero too: a traction or torque of 0 is no borderline case.
+        if margin.bound == 0.0 || f64::from(margin.value).abs() > margin.bound {
             return chosen;
         }
         // The exact margin may lie on the other side: the exact result may be the other branch.

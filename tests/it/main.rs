@@ -4,9 +4,19 @@
 mod bad_studies;
 /// The binary: exit codes, messages, files, interrupted runs.
 mod command_line;
+/// Identities of the V-belt variator, and the tables of its paper.
+mod identities;
+/// The models over every number type: f32 with bounds, intervals, dependence, columns.
+mod numbers;
+/// The models against their second implementation.
+mod physics;
 /// Random small studies, by brute force and by the pipeline.
 mod pipeline;
+/// The loads on a V-belt pulley as vectors.
+mod pulley_balance;
 /// A random number generator for seeded tests.
 mod random;
+/// The README, held against what the program says.
+mod readme;
 /// Independent second implementations of the models, and printed golden values.
 mod second;

@@ -45,7 +45,13 @@ impl Pulley {
         let (mut force, mut torque) = ([0.0; 2], 0.0);
         // Simpson's rule over the wrap.
         for step in 0..=steps {
-            let weight = if step == 0 || step == steps { 1.0 } else if step % 2 == 1 { 4.0 } else { 2.0 } * 1.0;
+            let weight = if step == 0 || step == steps {
+                1.0
+            } else if step % 2 == 1 {
+                4.0
+            } else {
+                2.0
+            };
             let length = weight * wrap / f64::from(steps) / 3.0 * radius;
             let angle = wrap * f64::from(step) / f64::from(steps);
             let normal = flanks * start * (growth * angle).exp();

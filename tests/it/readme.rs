@@ -33,7 +33,8 @@ fn block(start: &str) -> String {
 #[test]
 fn the_session_is_what_the_program_prints() {
     let out = tempfile::tempdir().expect("a temporary directory");
-    let (printed, _) = run(&["sweep", "studies/metal-cvt.toml", "--out", out.path().join("my-belt").to_str().expect("a path of characters")]);
+    let (printed, _) =
+        run(&["sweep", "studies/metal-cvt.toml", "--out", out.path().join("my-belt").to_str().expect("a path of characters")]);
     let shown = block("$ beltspace sweep studies/metal-cvt.toml --out my-belt");
     assert_eq!(without_times(&shown), without_times(&printed));
 }
@@ -50,7 +51,8 @@ fn the_errors_are_what_the_program_says_of_the_broken_study() {
     let broken = block("$ cat my.toml");
     let (study, said) = broken.split_once("$ beltspace check my.toml\n").expect("the block shows file and check");
     std::fs::write(folder.path().join("my.toml"), study).expect("the study can be written");
-    let output = Command::new(env!("CARGO_BIN_EXE_beltspace")).args(["check", "my.toml"]).current_dir(folder.path()).output().expect("starts");
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_beltspace")).args(["check", "my.toml"]).current_dir(folder.path()).output().expect("starts");
     assert_eq!(String::from_utf8_lossy(&output.stderr).trim_end(), said.trim_end());
 }
 

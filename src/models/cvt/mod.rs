@@ -155,7 +155,8 @@ fn prepare<R: Real>(belt: &Drive<R>) -> Prepared<R> {
         effective_friction,
         traction_limit,
         driver_traction_limit: self::traction_limit(effective_friction, driver_wrap),
-        slip_margin: one - traction / traction_limit,
+        // At the limit the margin is 0 whatever the limit is, also where rounding makes that hard to tell.
+        slip_margin: R::select(belt.traction, one - traction / traction_limit, R::constant(0.0)),
         active_arc,
         // (4), (15) and (5), (16)
         driver_axial_coefficient: (one + traction) / four * driver_wrap * wedge,
@@ -185,7 +186,7 @@ fn conditions<R: Real>(prepared: &Prepared<R>, belt: &Drive<R>) -> [R; CONDITION
     margins[1] = prepared.root_margin;
     margins[2] = prepared.overlap_margin;
     margins[3] = prepared.wedge_margin;
-    margins[4] = prepared.traction_limit - prepared.traction;
+    margins[4] = R::select(belt.traction, prepared.traction_limit - prepared.traction, R::constant(0.0));
     // Without traction only a torque of zero can be carried.
     margins[5] = R::select(-belt.torque, one, prepared.traction);
     margins[6] = prepared.traction;

@@ -4,7 +4,7 @@ use super::{meaningful_si, si};
 use crate::physics::{Region, draw};
 use crate::random::Random;
 use beltspace::decision::Decision;
-use beltspace::models::{INPUTS, MODELS, Model, Status, evaluate, evaluate_decided};
+use beltspace::models::{MODELS, Model, Status, evaluate, evaluate_decided, find};
 use beltspace::real::RunningError;
 
 const DESIGNS: usize = 20_000;
@@ -71,7 +71,9 @@ fn compare(model: &Model, region: Region, shrink: f64) -> Bounds {
                 }
             }
             found.used = found.used.max(error / bound);
-            found.relative[number].push(if exact == 0.0 { f64::INFINITY } else { bound / exact.abs() });
+            if exact != 0.0 {
+                found.relative[number].push(bound / exact.abs());
+            }
         }
     }
     found
@@ -94,6 +96,7 @@ fn an_f32_value_lies_within_its_bound_of_the_f64_value_and_the_bound_is_useful()
             assert!(found.infinite * 1000 < found.checked, "{}: {} of {} have no bound", model.name, found.infinite, found.checked);
             for (output, bounds) in model.outputs.iter().zip(&mut found.relative) {
                 bounds.sort_by(f64::total_cmp);
+                assert!(bounds.len() > 1000, "{}: {} is hardly ever anything but 0", model.name, output.name);
                 let median = bounds[bounds.len() / 2];
                 eprintln!("  {}: median relative bound {median:.1e}", output.name);
                 assert!(median < 1e-4, "{}: the median relative bound of {} is {median:e}", model.name, output.name);
@@ -186,11 +189,48 @@ fn on_a_boundary_the_decision_is_unsure() {
 }
 
 #[test]
-fn a_traction_at_its_limit_is_surely_no_slip() {
+fn a_traction_at_its_limit_surely_does_not_slip_and_has_no_margin() {
     for model in MODELS.iter().filter(|model| model.input("traction").is_some()) {
-        let mut inputs = model.defaults();
-        inputs[model.input("traction").expect("it is an input")] = -1.0;
-        assert_eq!(evaluate_decided(model, &inputs).0, Decision::Yes, "{}", model.name);
-        assert!(si(model, &inputs).len() == INPUTS);
+        let random = &mut Random::new(15);
+        let margin = model.output("slip_margin").expect("it is an output");
+        let mut sure = 0;
+        for _ in 0..1000 {
+            let mut inputs = draw(model, Region::Usual, random);
+            inputs[model.input("traction").expect("it is an input")] = -1.0;
+            let (decision, outputs) = evaluate_decided(model, &inputs);
+            sure += usize::from(decision != Decision::Unsure);
+            if decision == Decision::Yes {
+                assert_eq!((outputs[margin].value, outputs[margin].bound), (0.0, 0.0), "{}: {inputs:?}", model.name);
+            }
+        }
+        assert!(sure > 990, "{}: {sure}", model.name);
+    }
+}
+
+#[test]
+fn a_traction_or_torque_of_exactly_zero_is_no_borderline_case() {
+    for model in MODELS.iter().filter(|model| model.input("traction").is_some()) {
+        let decision = |traction: f64, torque: f64| {
+            let mut inputs = model.defaults();
+            inputs[model.input("traction").expect("it is an input")] = traction;
+            inputs[model.input("torque_Nm").expect("it is an input")] = torque;
+            evaluate_decided(model, &inputs).0
+        };
+        assert_eq!(decision(0.0, 0.0), Decision::Yes, "{}", model.name);
+        assert_eq!(decision(0.0, 50.0), Decision::No, "{}", model.name);
+        assert_eq!(decision(0.3, 0.0), Decision::Yes, "{}", model.name);
+    }
+}
+
+#[test]
+fn a_capacity_of_zero_is_known_to_be_zero() {
+    let model = find("rubber-cvt").expect("it is a model");
+    let mut inputs = model.defaults();
+    inputs[model.input("belt_thickness_mm").expect("it is an input")] = 40.0;
+    let outputs = evaluate_decided(model, &inputs).1;
+    for name in ["torque_capacity_Nm", "capacity_axial_force_N"] {
+        let capacity = outputs[model.output(name).expect("it is an output")];
+        // Nothing but what may be flushed to zero.
+        assert!(capacity.value == 0.0 && capacity.bound < 1e-30, "{name}: {capacity:?}");
     }
 }

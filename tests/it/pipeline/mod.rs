@@ -58,6 +58,7 @@ fn study_of(seed: u64) -> (Draft, String, Study, Evaluated) {
 #[test]
 fn the_pipeline_gives_what_brute_force_gives_however_it_is_run() {
     let mut coverage = Coverage::new();
+    // Another first seed tries other studies, or one that failed at once.
     let first = std::env::var("BELTSPACE_SEED").ok().and_then(|seed| seed.parse().ok()).unwrap_or(1);
     for seed in first..first + studies() {
         let mut text = String::new();
