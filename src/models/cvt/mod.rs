@@ -20,6 +20,10 @@
 //!   107.06. Rubber with its own radius at R = 2 (56.6) and r0 163 gives 20.5; metal with its own r0 (97.56) gives 112.9 at
 //!   r1 = 30.58. Its index "16" disagrees with 20.5/112.9 = 18 %.
 //! - Table 2's index 34 disagrees with 4720/15 780 = 30 %; its T = 2800 is not `(1 + 0.58)/(2 * 0.58) * 2000 = 2724`.
+//! - Text and tables disagree on the ratio of the two belts' capacities: 5 to 6 in the abstract, 6 to 7 and 1/6 to 1/7 in the text,
+//!   5.5 from Table 1.
+//! - The measured x = 1.36 (lambda 0.581) and Table 2's 0.58 exceed the slip limit 0.5774 at mu = 0.08 by a hair: evaluated as
+//!   designs they slip; (6) and (28) with these numbers are reproduced by [`wedge_factor`] and [`printed_torque_coefficient`].
 //! - The paper's forces for the metal belt fit mu = 0.11, its slip limit fits mu = 0.08: its two data sets disagree. Measured
 //!   slip of the rubber belt at lambda = 0.8 is not predicted (the model gives 0.985).
 //! - The paper's "safety factor 2" is `sigma_y = 2 sigma_t`; with `sigma_b = sigma_t` at the optimum thickness the combined
