@@ -19,15 +19,16 @@ pub fn summary(outcome: &Outcome<'_>, record: &RunRecord, out: &Path) -> String 
     let share = 100.0 * feasible as f64 / plan.designs() as f64;
     let mut facts = Grid::default();
     let mut fact = |what: &str, value: String| facts.row([bold(what), value]);
+    let (designs, time, rate) = (grouped(plan.designs()), span(record.time.as_secs_f64()), record.rate());
     fact(
         "designs",
-        format!(
-            "{} x {} scenarios in {}, {}designs/s",
-            grouped(plan.designs()),
-            grouped(plan.scenarios()),
-            span(record.time.as_secs_f64()),
-            scaled(record.rate())
-        ),
+        match plan.scenarios() {
+            1 => format!("{designs} in {time}, {}designs/s", scaled(rate)),
+            scenarios => {
+                let judged = scaled(rate * scenarios as f64);
+                format!("{designs} x {} scenarios in {time}, {}designs/s, up to {judged}evaluations/s", grouped(scenarios), scaled(rate))
+            }
+        },
     );
     fact("feasible", format!("{} ({} %)", grouped(feasible), short((share * 100.0).round() / 100.0)));
     if !study.objectives.is_empty() {
