@@ -110,6 +110,10 @@ fn a_run_killed_again_and_again_ends_with_the_same_result() {
     let folder = folder_with("large.toml", &large());
     let out = folder.path().join("out");
     let plain = large_result();
+    // Machines differ in speed: a run's life is a share of what a whole one takes here and now.
+    let begun = Instant::now();
+    plain_run(&large());
+    let whole = begun.elapsed().as_millis() as usize;
     let mut random = Random::new(0xdead);
     let (mut kills, mut resumed) = (0, 0);
     let cut_short = loop {
@@ -117,9 +121,9 @@ fn a_run_killed_again_and_again_ends_with_the_same_result() {
         let mut child = start(folder.path(), &format!("sweep large.toml --out out --resume --threads {threads} --tile {tile}"));
         // The first one hardly starts, every other one may save nothing; later ones live longer, so that this ends.
         let patience = match kills {
-            0 => random.whole(0, 60),
-            odd if odd % 2 == 1 => random.whole(700, 900) + 60 * kills,
-            _ => random.whole(100, 700),
+            0 => random.whole(0, whole / 20),
+            odd if odd % 2 == 1 => random.whole(whole / 6, whole / 5) + whole / 20 * kills,
+            _ => random.whole(whole / 20, whole / 8),
         };
         let deadline = Instant::now() + Duration::from_millis(patience as u64);
         if !wait_until(&mut child, || Instant::now() >= deadline) {
