@@ -51,12 +51,6 @@ impl Ranges {
         Self(missing)
     }
 
-    /// Positions that both sets have.
-    pub fn overlap(&self, other: &Self) -> Self {
-        let overlaps = self.0.iter().flat_map(|a| other.0.iter().map(move |b| a.start.max(b.start)..a.end.min(b.end)));
-        Self(overlaps.filter(|range| !range.is_empty()).collect())
-    }
-
     /// Removes and returns at most `count` leading positions.
     pub fn take(&mut self, count: u64) -> Option<Range<u64>> {
         let first = self.0.first_mut()?;
@@ -130,7 +124,6 @@ mod tests {
         }
         assert_eq!(done.0, [0..25, 40..50]);
         assert_eq!(done.missing_from(5..60).0, [25..40, 50..60]);
-        assert_eq!(done.overlap(&Ranges::of(20..45)).0, [20..25, 40..45]);
         let mut todo = done.missing_from(0..60);
         assert_eq!((todo.take(7), todo.take(100), todo.take(3)), (Some(25..32), Some(32..40), Some(50..53)));
     }

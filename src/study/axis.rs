@@ -70,11 +70,6 @@ impl Levels {
         }
     }
 
-    /// All values, in order.
-    pub fn values(&self) -> impl Iterator<Item = f64> + '_ {
-        (0..self.count()).map(|index| self.value(index))
-    }
-
     /// Least and largest value.
     pub fn ends(&self) -> (f64, f64) {
         match self {
