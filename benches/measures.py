@@ -21,6 +21,10 @@ sys.path.insert(0, str(Path(__file__).parent))
 import metal_grid  # noqa: E402
 
 STUDY = Path("studies/metal-grid.toml").read_text()
+# Designs per second of the device kernel's inner loop, if nothing but its arithmetic counted: about 130 operations on f32 a design
+# (10 for the values, the rest for bounds, decisions and 16 comparisons with the front), at 67e9 operations/s, which lavapipe was
+# measured to make on two cores. Bytes do not count: a row's 1100 designs share what is loaded.
+FLOOR = 67e9 / 130
 
 
 def peak_of(process):
@@ -38,14 +42,14 @@ def peak_of(process):
     return peak / 1024
 
 
-def sweep(program, levels, folder):
-    """Sweeps metal-grid with so many levels per axis; returns the result directory, the wall time of the whole command and its
-    peak memory in MB."""
+def sweep(program, levels, folder, engine="cpu"):
+    """Sweeps metal-grid with so many levels per axis on an engine; returns the result directory, the wall time of the whole command
+    and its peak memory in MB."""
     study = folder / f"metal-grid-{levels}.toml"
     study.write_text(STUDY.replace("count = 37", f"count = {levels}"))
-    out = folder / f"result-{levels}"
+    out = folder / f"result-{levels}-{engine}"
     start = time.perf_counter()
-    peak = peak_of(subprocess.Popen([program, "sweep", study, "--out", out, "--quiet", "--force"]))
+    peak = peak_of(subprocess.Popen([program, "sweep", study, "--engine", engine, "--out", out, "--quiet", "--force"]))
     return out, time.perf_counter() - start, peak
 
 
@@ -69,8 +73,26 @@ def beside_numpy(program, levels, folder):
     if not same or worst > 1e-9:
         sys.exit(f"{levels} levels: numpy finds {count} feasible, front {len(theirs)}; beltspace {summary['feasible']}, "
                  f"front {len(ours)}; largest relative difference {worst}")
+    device = on_device(program, levels, folder, out)
     return {"designs": summary["designs"], "feasible": count, "front": len(theirs), "largest_difference": worst,
-            "numpy_seconds": numpy_seconds, "beltspace_seconds": seconds, "ratio": numpy_seconds / seconds}
+            "numpy_seconds": numpy_seconds, "beltspace_seconds": seconds, "ratio": numpy_seconds / seconds,
+            "gpu": device, "gpu_ratio": numpy_seconds / device["seconds"]}
+
+
+def on_device(program, levels, folder, expected=None):
+    """The same sweep with --engine gpu; its files must be those of the processor, but for run.json."""
+    out, seconds, peak = sweep(program, levels, folder, "gpu")
+    if expected is not None:
+        for file in expected.iterdir():
+            if file.name != "run.json" and file.read_bytes() != (out / file.name).read_bytes():
+                sys.exit(f"{levels} levels: {file.name} differs between --engine gpu and --engine cpu")
+    run = json.loads((out / "run.json").read_text())
+    device = run["device"]
+    return {"designs": run["designs"], "seconds": seconds, "sweep_seconds": run["seconds"], "designs_per_second": run["designs"] / seconds,
+            "peak_MB": peak, "adapter": device["adapter"], "driver": device["driver"], "tiles": device["tiles"],
+            "unsure_designs": device["unsure_designs"], "survivors": device["survivors"],
+            "survivors_per_tile": device["survivors"] / device["tiles"],
+            "share_of_floor": run["designs"] / run["seconds"] / FLOOR}
 
 
 def large(program, folder):
@@ -99,9 +121,15 @@ def main():
     arguments.add_argument("program")
     arguments.add_argument("--out", type=Path)
     arguments.add_argument("--short", action="store_true", help="leave out what takes minutes: 1e9 designs in numpy, 1e10 here")
+    arguments.add_argument("--device", action="store_true", help="only 1e11 designs with --engine gpu: ten minutes on a software device")
     arguments = arguments.parse_args()
     record = {"date": date.today().isoformat(), "cores": os.cpu_count(), "machine": processor(), "python": platform.python_version(),
               "numpy": np.__version__, "command": "benches/measures"}
+    if arguments.device:
+        with tempfile.TemporaryDirectory() as folder:
+            record["device_large"] = on_device(arguments.program, 309, Path(folder))
+        print_device(record["device_large"])
+        return write(arguments.out, record)
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
         if not arguments.short:
@@ -114,13 +142,24 @@ def main():
         print(f"metal-grid {row['designs']:>12} designs  feasible {row['feasible']}  front {row['front']}  values within "
               f"{row['largest_difference']:.1e}  numpy + moocore {row['numpy_seconds']:.2f} s  beltspace "
               f"{row['beltspace_seconds']:.2f} s  ratio {row['ratio']:.1f}")
+        print_device(row["gpu"], f"  ratio {row['gpu_ratio']:.1f}")
     if "large" in record:
         row = record["large"]
         print(f"metal-grid {row['designs']:>12} designs  feasible {row['feasible']}  front {row['front']}  {row['seconds']:.1f} s  "
               f"{row['designs_per_second']:.3g} designs/s  peak memory {row['peak_MB']:.0f} MB")
     print("answers: " + ", ".join(f"{command} {ms:.1f} ms" for command, ms in record["answers_ms"].items()))
-    if arguments.out:
-        arguments.out.write_text(json.dumps(record, indent=2) + "\n")
+    write(arguments.out, record)
+
+
+def print_device(row, end=""):
+    print(f"  --engine gpu on {row['adapter']}: {row['designs']} designs in {row['seconds']:.2f} s  {row['designs_per_second']:.3g} designs/s, "
+          f"{100 * row['share_of_floor']:.0f} % of the floor  unsure {row['unsure_designs']}  survivors per tile "
+          f"{row['survivors_per_tile']:.0f}  peak memory {row['peak_MB']:.0f} MB{end}")
+
+
+def write(out, record):
+    if out:
+        out.write_text(json.dumps(record, indent=2) + "\n")
 
 
 def processor():

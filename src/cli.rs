@@ -30,6 +30,14 @@ pub enum Command {
     Sweep(Sweep),
     /// Put the shards of a study together: the same result as one run
     Merge(Merge),
+    /// Compare a GPU with f64: errors per output, wrong decisions, promise kept or not
+    Verify(Verify),
+    /// List the GPUs of this machine, their limits, and whether their drivers can be trusted
+    Adapters {
+        /// Print JSON
+        #[arg(long)]
+        json: bool,
+    },
     /// Print a completion script for a shell
     Completions {
         /// Shell
@@ -82,8 +90,10 @@ pub struct Eval {
 /// What judges the designs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Engine {
-    /// The fastest that is there
+    /// A GPU where there is one and the study is large enough for it, else the processor
     Auto,
+    /// A GPU, or a driver that does its work in software; f64 decides what it cannot
+    Gpu,
     /// The processor, in f64
     Cpu,
 }
@@ -99,6 +109,9 @@ pub struct Sweep {
     /// What judges the designs
     #[arg(long, value_enum, default_value = "auto")]
     pub engine: Engine,
+    /// GPU to use: a part of its name [default: the best, see `adapters`]
+    #[arg(long, value_name = "NAME")]
+    pub adapter: Option<String>,
     /// Worker threads [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
     pub threads: Option<u16>,
@@ -117,6 +130,35 @@ pub struct Sweep {
     /// Designs between two looks at the clock; changes no result (for testing)
     #[arg(long, hide = true, default_value_t = 65_536, value_parser = clap::value_parser!(u64).range(1..))]
     pub tile: u64,
+    /// Write the GPU's kernel for this study as WGSL, and stop
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["resume", "force", "shard", "out"])]
+    pub emit_shader: Option<PathBuf>,
+    /// For testing: make the GPU's value of an output wrong by this part of it; the sweep must fail
+    #[arg(long, value_name = "OUTPUT=PART")]
+    pub perturb: Vec<String>,
+}
+
+/// Options of `verify`.
+#[derive(Debug, Args)]
+pub struct Verify {
+    /// Study file, or name of a model
+    #[arg(value_name = "STUDY|MODEL")]
+    pub target: String,
+    /// Points to compare
+    #[arg(long, value_name = "N", default_value_t = 200_000, value_parser = clap::value_parser!(u64).range(8..=100_000_000))]
+    pub samples: u64,
+    /// Seed of the random points
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    pub seed: u64,
+    /// GPU to use: a part of its name [default: the best, see `adapters`]
+    #[arg(long, value_name = "NAME")]
+    pub adapter: Option<String>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    /// For testing: make the GPU's value of an output wrong by this part of it; the comparison must fail
+    #[arg(long, value_name = "OUTPUT=PART")]
+    pub perturb: Vec<String>,
 }
 
 /// Options of `merge`.

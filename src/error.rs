@@ -32,6 +32,17 @@ pub enum Error {
         /// An objective of the study with a resolution.
         example: String,
     },
+    /// A graphics device failed; the run's checkpoint is kept.
+    #[error("{device}: {problem}")]
+    Gpu {
+        /// Name of the adapter.
+        device: String,
+        /// What went wrong.
+        problem: String,
+    },
+    /// What a device computed is farther from f64 than promised: nothing that it says can be used.
+    #[error("{0}")]
+    Promise(String),
     /// What was computed twice does not agree: the program is wrong and says so rather than report it.
     #[error("{0}; this is a fault of the program, please report it with the study")]
     Certificate(String),
@@ -63,7 +74,13 @@ impl Error {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Study(_) | Self::Request(_) => 2,
-            Self::Io { .. } | Self::Stopped { .. } | Self::FrontBudget { .. } | Self::Certificate(_) | Self::Checkpoint { .. } => 1,
+            Self::Io { .. }
+            | Self::Stopped { .. }
+            | Self::FrontBudget { .. }
+            | Self::Gpu { .. }
+            | Self::Promise(_)
+            | Self::Certificate(_)
+            | Self::Checkpoint { .. } => 1,
         }
     }
 }

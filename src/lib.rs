@@ -7,8 +7,9 @@
 //!
 //! A [`study`] names a [model](models), which of its inputs the engineer chooses (the design), which the drive must survive (the
 //! operation) and which nobody knows exactly (the uncertainty). The [`plan`] splits the [`space`] into what is slow and what is
-//! fast, [`screen`] judges it eight designs at a time, [`reduce`] keeps what matters of it, [`sweep`] runs that on every core with
-//! a [`checkpoint`], [`certify`] computes what is reported once more with the scalar f64 reference, and [`export`] writes it.
+//! fast, [`screen`] judges it, eight designs at a time in f64 or on a graphics device ([`gpu`]) in f32 with error bounds,
+//! [`reduce`] keeps what matters of it, [`sweep`] runs that with a [`checkpoint`], [`certify`] computes what is reported once more
+//! with the scalar f64 reference, and [`export`] writes it.
 //! A module imports only what stands to its left, and `models`, `real`, `units` and `error`.
 //!
 //! ```
@@ -46,6 +47,7 @@ pub mod checkpoint;
 pub mod decision;
 pub mod error;
 pub mod export;
+pub mod gpu;
 pub mod merge;
 pub mod models;
 pub mod pictures;
@@ -59,3 +61,4 @@ pub mod study;
 pub mod sweep;
 pub mod tiles;
 pub mod units;
+pub mod verify;

@@ -9,6 +9,7 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let cli = cli::Cli::parse();
+    keep_the_loader_quiet();
     match commands::run(cli.command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
@@ -17,3 +18,17 @@ fn main() -> ExitCode {
         }
     }
 }
+
+/// A layer of Mesa's Vulkan loader looks for a display and complains on standard error where there is none. What it is for, a
+/// choice among graphics cards, is made by this program itself.
+#[cfg(target_os = "linux")]
+#[allow(unsafe_code, reason = "the only way to tell the loader")]
+fn keep_the_loader_quiet() {
+    if std::env::var_os("XDG_RUNTIME_DIR").is_none() && std::env::var_os("NODEVICE_SELECT").is_none() {
+        // SAFETY: the program has one thread yet.
+        unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+fn keep_the_loader_quiet() {}

@@ -217,7 +217,7 @@ impl Plan {
 }
 
 /// The inputs as the dependence type sees them: fixed numbers, or ranges that an axis covers.
-fn dependences(study: &Study, space: &Space) -> [Dependence; INPUTS] {
+pub(crate) fn dependences(study: &Study, space: &Space) -> [Dependence; INPUTS] {
     let mut inputs = [Dependence::fixed(0.0); INPUTS];
     let si = |input: usize, value: f64| input_to_si(&study.model.inputs[input], value);
     for (input, &value) in study.fixed.iter().enumerate() {

@@ -151,6 +151,16 @@ impl Product {
         }
     }
 
+    /// Its dimensions, outermost first, each with the distance of two neighbours in the study's index.
+    pub(crate) fn dimensions(&self) -> impl ExactSizeIterator<Item = (&Dimension, u64)> {
+        self.places.iter().map(|place| (&*place.dimension, place.source_stride))
+    }
+
+    /// The position of combination `index` along each dimension, outermost first.
+    pub(crate) fn digits(&self, index: u64) -> Vec<u64> {
+        self.places.iter().map(|place| place.digit(index)).collect()
+    }
+
     /// Calls `each` with every input that is set and its least and largest value.
     pub fn for_each_range(&self, mut each: impl FnMut(usize, (f64, f64))) {
         for place in &self.places {

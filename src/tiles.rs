@@ -51,6 +51,11 @@ impl Ranges {
         Self(missing)
     }
 
+    /// The first range.
+    pub fn first(&self) -> Option<Range<u64>> {
+        self.0.first().cloned()
+    }
+
     /// Removes and returns at most `count` leading positions.
     pub fn take(&mut self, count: u64) -> Option<Range<u64>> {
         let first = self.0.first_mut()?;

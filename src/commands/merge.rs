@@ -42,6 +42,7 @@ pub fn run(request: &cli::Merge) -> Result<()> {
         time: start.elapsed(),
         origin: format!("merged from {count} shards; the time is that of merging"),
         certified: outcome.front.len() + outcome.top.len(),
+        device: None,
     };
     outcome.write(&request.out, &text, &record)?;
     if request.quiet { Ok(()) } else { terminal::print(&report::summary(&outcome, &record, &request.out)) }

@@ -1,10 +1,13 @@
 //! What each command does. A command reads its request, finds everything that is wrong with it, then works.
 
+mod adapters;
 mod check;
+mod engine;
 mod eval;
 mod merge;
 mod models;
 mod sweep;
+mod verify;
 
 use crate::cli::{Cli, Command};
 use crate::terminal;
@@ -22,6 +25,8 @@ pub fn run(command: Command) -> Result<()> {
         Command::Check { study } => check::run(&study),
         Command::Sweep(request) => sweep::run(&request),
         Command::Merge(request) => merge::run(&request),
+        Command::Verify(request) => verify::run(&request),
+        Command::Adapters { json } => adapters::run(json),
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "beltspace", &mut script);

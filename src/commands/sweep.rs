@@ -1,16 +1,18 @@
 //! `beltspace sweep`: the main job.
 
-use super::{read_study, threads};
+use super::{engine, read_study, threads};
 use crate::cli;
 use crate::terminal::{self, progress::Bar, report};
-use beltspace::checkpoint::Checkpoint;
+use beltspace::checkpoint::{Checkpoint, replace};
 use beltspace::error::{Error, Result};
 use beltspace::export::{MARK, Outcome, RunRecord, in_the_way};
 use beltspace::plan::Plan;
 use beltspace::reduce::Reduction;
+use beltspace::screen::gpu::{Wrong, kernel_of};
 use beltspace::screen::{Tables, Tally};
-use beltspace::sweep::{Control, Options, Swept, sweep};
+use beltspace::sweep::{Control, DeviceRecord, OnDevice, Options, Swept, sweep, sweep_on_device};
 use beltspace::tiles::Shard;
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -27,27 +29,34 @@ pub fn run(request: &cli::Sweep) -> Result<()> {
     let goes_on = request.resume && Checkpoint::exists(&out.join(CHECKPOINT));
     refuse_to_overwrite(&out, request.force || goes_on)?;
     let plan = Plan::new(study);
+    let wrong = Wrong { perturb: engine::perturbations(plan.study.model, &request.perturb)?, ..Wrong::default() };
+    if let Some(file) = &request.emit_shader {
+        return emit_shader(&plan, &wrong, threads(request.threads), file);
+    }
+    let device = engine::choose(&plan, request.engine, request.adapter.as_deref(), wrong)?;
     let control = Arc::new(Control::default());
     stop_on_ctrl_c(&control)?;
     let mut checkpoint = open_checkpoint(&out, &plan, &text, shard, request)?;
     let resumed = checkpoint.has_progress();
     let options = Options { threads: threads(request.threads), tile: request.tile, shard, ..Options::default() };
     let bar = Bar::start(&control, shard.range(plan.designs()), request.quiet);
-    let done = judge(&plan, &options, &mut checkpoint, &control, request.shard.is_none());
+    let on = device.as_ref().map(|it| &it.on);
+    let done = judge(&plan, &options, &mut checkpoint, &control, request.shard.is_none(), on);
     bar.finish();
-    let (time, designs, outcome) = done.map_err(|error| name_the_way_back(error, &out, request))?;
+    let (time, designs, outcome, did) = done.map_err(|error| name_the_way_back(error, &out, request))?;
     let Some(outcome) = outcome else {
         return finish_shard(&plan, &out, &checkpoint, request.quiet);
     };
     let origin = if resumed { "resumed from a checkpoint" } else { "one run" }.to_owned();
     let record = RunRecord {
-        engine: "cpu",
+        engine: if device.is_some() { "gpu" } else { "cpu" },
         threads: options.threads,
         designs,
         scenarios: plan.scenarios(),
         time,
         origin,
         certified: outcome.front.len() + outcome.top.len(),
+        device: device.zip(did).map(|(device, did)| describe_device(&device, &did)),
     };
     outcome.write(&out, &text, &record)?;
     checkpoint.remove()?;
@@ -61,13 +70,37 @@ fn judge<'p>(
     checkpoint: &mut Checkpoint,
     control: &Control,
     whole: bool,
-) -> Result<(Duration, u64, Option<Outcome<'p>>)> {
+    on: Option<&OnDevice>,
+) -> Result<(Duration, u64, Option<Outcome<'p>>, Option<DeviceRecord>)> {
     let tables = Tables::new(plan);
     let tally = Tally::new(plan, &tables, options.threads);
     let reduction = Reduction::new(plan, &tally.histogram_ranges(plan));
-    let Swept { state, designs, time } = sweep(plan, &tables, &reduction, options, Some(checkpoint), control)?;
+    let (Swept { state, designs, time }, did) = match on {
+        None => (sweep(plan, &tables, &reduction, options, Some(checkpoint), control)?, None),
+        Some(on) => {
+            let (swept, did) = sweep_on_device(plan, &tables, &reduction, options, Some(checkpoint), control, on)?;
+            (swept, Some(did))
+        }
+    };
     let outcome = whole.then(|| Outcome::certify(plan, state, tally, options.threads)).transpose()?;
-    Ok((time, designs, outcome))
+    Ok((time, designs, outcome, did))
+}
+
+/// The device, its driver and what it did, for `run.json`.
+fn describe_device(device: &engine::Trusted, did: &DeviceRecord) -> Value {
+    let mut record = did.to_json();
+    let (adapter, self_test) = (&device.adapter, device.report.to_json());
+    for (name, value) in [("adapter", &adapter.name), ("driver", &adapter.driver), ("backend", &adapter.backend)] {
+        record[name] = value.clone().into();
+    }
+    record["self_test"] = self_test;
+    record
+}
+
+/// Writes the kernel of a study.
+fn emit_shader(plan: &Plan, wrong: &Wrong, threads: usize, file: &Path) -> Result<()> {
+    let ranges = Tally::new(plan, &Tables::new(plan), threads).histogram_ranges(plan);
+    replace(file, kernel_of(plan, &ranges, &wrong.perturb)?.as_bytes())
 }
 
 /// `results/<study name>`, of a shard `results/<study name>-K-of-N`.
@@ -132,13 +165,16 @@ fn stop_on_ctrl_c(control: &Arc<Control>) -> Result<()> {
 }
 
 fn name_the_way_back(error: Error, out: &Path, request: &cli::Sweep) -> Error {
+    let shard = request.shard.map_or(String::new(), |shard| format!(" --shard {shard}"));
+    let [study, folder] = [&request.study, out].map(terminal::quoted);
+    let resume = format!("beltspace sweep {study} --out {folder}{shard} --resume");
+    let checkpoint = out.join(CHECKPOINT).display().to_string();
     match error {
-        Error::Stopped { .. } => {
-            let shard = request.shard.map_or(String::new(), |shard| format!(" --shard {shard}"));
-            let [study, folder] = [&request.study, out].map(terminal::quoted);
-            let resume = format!("beltspace sweep {study} --out {folder}{shard} --resume");
-            Error::Stopped { checkpoint: out.join(CHECKPOINT).display().to_string(), resume }
+        Error::Stopped { .. } => Error::Stopped { checkpoint, resume },
+        Error::Gpu { device, problem } => {
+            Error::Gpu { device, problem: format!("{problem}; what is done is kept in {checkpoint}, go on with: {resume} --engine cpu") }
         }
+        Error::Promise(problem) => Error::Promise(format!("{problem}; nothing that it counted is kept, go on with: {resume} --engine cpu")),
         other => other,
     }
 }

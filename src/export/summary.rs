@@ -133,6 +133,8 @@ pub struct RunRecord {
     pub origin: String,
     /// Designs that the f64 reference certified.
     pub certified: usize,
+    /// What a device did in it, if there was one.
+    pub device: Option<Value>,
 }
 
 impl RunRecord {
@@ -154,6 +156,7 @@ impl RunRecord {
             "seconds": self.time.as_secs_f64(),
             "designs_per_second": self.rate(),
             "certified_designs": self.certified,
+            "device": self.device,
             "platform": format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
         })
     }

@@ -124,14 +124,24 @@ pub struct Output {
     pub doc: &'static str,
     /// The equation it comes from.
     pub source: &'static str,
+    /// How far f32 may be from f64, in units of its running error bound: at least four times the worst that was seen.
+    pub promise: f64,
 }
 
 impl Output {
-    /// An output.
+    /// An output that is promised to its running error bound; a larger promise is set with [`Output::promising`].
     pub const fn new(name: &'static str, symbol: &'static str, unit: Unit, worse: Worse, source: &'static str, doc: &'static str) -> Self {
-        Self { name, symbol, unit, worse, doc, source }
+        Self { name, symbol, unit, worse, doc, source, promise: 1.0 }
+    }
+
+    /// The same output with another promise: where few roundings add up, some value comes close to the bound itself.
+    pub const fn promising(self, promise: f64) -> Self {
+        Self { promise, ..self }
     }
 }
+
+/// What the margin of a condition is promised to, in units of its running error bound; some are single differences of inputs.
+pub const CONDITION_PROMISE: f64 = 4.5;
 
 /// A condition under which the formula, or a part of it, has a meaning: a signed margin that must not be negative.
 #[derive(Clone, Copy, Debug)]
@@ -179,6 +189,8 @@ pub struct Model {
     pub starter: &'static str,
     /// The formula, instantiated for every number type.
     pub kernel: &'static dyn Kernel,
+    /// The formula in WGSL: the texts that make it up, what is shared first.
+    pub shader: &'static [&'static str],
     /// Values along the belt for inputs in their units, where the model has such.
     pub profile: Option<fn(&[f64]) -> Profile>,
 }

@@ -17,12 +17,25 @@ pub const CONDITIONS: usize = 8;
 /// `prepare` holds what is dear (geometry, transcendental functions, solves) and should read as few inputs as the physics
 /// allows: a sweep runs it once for every combination of the inputs that it reads. `finish` is the inner loop.
 pub trait Formula {
+    /// Names of what the formula reads and writes, for its twin in WGSL.
+    const FIELDS: Fields;
     /// First stage: what depends on the slow inputs only.
     fn prepare<R: Real>(inputs: &[R; INPUTS]) -> [R; PREPARED];
     /// Signed margins of the model's conditions, in the order of its table.
     fn conditions<R: Real>(prepared: &[R; PREPARED], inputs: &[R; INPUTS]) -> [R; CONDITIONS];
     /// Second stage: writes the outputs whose bit is set in `wanted` (and may write others).
     fn finish<R: Real>(prepared: &[R; PREPARED], inputs: &[R; INPUTS], wanted: u64, outputs: &mut [R; OUTPUTS]);
+}
+
+/// The names of a formula's values, in the order of its arrays.
+#[derive(Clone, Copy, Debug)]
+pub struct Fields {
+    /// Of the inputs.
+    pub inputs: &'static [&'static str],
+    /// Of what the first stage passes on.
+    pub prepared: &'static [&'static str],
+    /// Of the outputs; there may be more than the model lists.
+    pub outputs: &'static [&'static str],
 }
 
 /// The set of outputs with these numbers.
@@ -44,6 +57,15 @@ pub struct Reach {
     pub outputs: [u64; OUTPUTS],
     /// Each condition.
     pub conditions: [u64; CONDITIONS],
+}
+
+/// What a formula's second stage and conditions read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reads {
+    /// Values that the first stage passes on: bit `i` for value number `i`.
+    pub prepared: u64,
+    /// Inputs: bit `i` for input number `i`.
+    pub inputs: u64,
 }
 
 /// Many designs that share their slow inputs, evaluated together: what varies, what is asked, and where it goes.
@@ -73,6 +95,8 @@ impl Default for Scratch {
 
 /// A formula instantiated for every number type, behind one table of functions.
 pub trait Kernel: Sync {
+    /// The names of the formula's values.
+    fn fields(&self) -> Fields;
     /// First stage in f64.
     fn prepare(&self, inputs: &[f64; INPUTS]) -> [f64; PREPARED];
     /// Margins of the conditions in f64.
@@ -93,6 +117,8 @@ pub trait Kernel: Sync {
     );
     /// What depends on what.
     fn reach(&self, inputs: &[Dependence; INPUTS]) -> Reach;
+    /// What the second stage and the conditions read, to give the outputs in `wanted`.
+    fn reads(&self, inputs: &[Dependence; INPUTS], wanted: u64) -> Reads;
     /// Outputs and condition margins in f32 with bounds on their errors.
     fn bounded(&self, inputs: &[RunningError; INPUTS]) -> ([RunningError; OUTPUTS], [RunningError; CONDITIONS]);
     /// Outputs and condition margins in f32, as a shader computes them.
@@ -108,6 +134,10 @@ pub fn run<F: Formula, R: Real>(inputs: &[R; INPUTS]) -> ([R; OUTPUTS], [R; COND
 }
 
 impl<F: Formula + Sync> Kernel for F {
+    fn fields(&self) -> Fields {
+        F::FIELDS
+    }
+
     fn prepare(&self, inputs: &[f64; INPUTS]) -> [f64; PREPARED] {
         F::prepare(inputs)
     }
@@ -145,6 +175,20 @@ impl<F: Formula + Sync> Kernel for F {
         let (outputs, conditions) = run::<F, Dependence>(inputs);
         let prepared = F::prepare(inputs).iter().fold(0, |set, value| set | value.inputs);
         Reach { prepared, outputs: outputs.map(|value| value.inputs), conditions: conditions.map(|value| value.inputs) }
+    }
+
+    fn reads(&self, inputs: &[Dependence; INPUTS], wanted: u64) -> Reads {
+        let union = |prepared: &[Dependence; PREPARED], inputs: &[Dependence; INPUTS]| {
+            let mut outputs = [Dependence::fixed(0.0); OUTPUTS];
+            F::finish(prepared, inputs, wanted, &mut outputs);
+            let asked = outputs.iter().enumerate().filter(|(output, _)| wanted >> output & 1 == 1).map(|(_, value)| value.inputs);
+            asked.chain(F::conditions(prepared, inputs).iter().map(|margin| margin.inputs)).fold(0, |all, set| all | set)
+        };
+        // Once with a bit for each value passed on and none for the inputs, once the other way round.
+        let passed: [Dependence; PREPARED] = std::array::from_fn(|field| Dependence::varied(field, f64::NEG_INFINITY, f64::INFINITY));
+        let silent = inputs.map(Dependence::without_inputs);
+        let unknown = [Dependence::within(0, f64::NEG_INFINITY, f64::INFINITY); PREPARED];
+        Reads { prepared: union(&passed, &silent), inputs: union(&unknown, inputs) }
     }
 
     fn bounded(&self, inputs: &[RunningError; INPUTS]) -> ([RunningError; OUTPUTS], [RunningError; CONDITIONS]) {
@@ -193,6 +237,10 @@ macro_rules! record {
         pub(super) struct $name<T> { $(pub $field: T),* }
 
         impl $name<usize> {
+            /// The name of every field.
+            #[allow(dead_code, reason = "some records are private to the Rust code")]
+            pub const NAMES: &'static [&'static str] = &[$(stringify!($field)),*];
+
             /// The position of every field.
             pub const NUMBER: Self = {
                 let mut next = 0;

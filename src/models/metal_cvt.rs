@@ -1,6 +1,6 @@
 //! Metal push-belt variator. The formula is [`super::cvt`]'s, with two packs of n bands of width b and thickness h.
 
-use super::cvt::{Belt, CONDITION_TABLE, Cvt, Drive, LIMIT, OUTPUT_TABLE, groove_angle, ratio, torque, traction};
+use super::cvt::{Belt, CONDITION_TABLE, Cvt, Drive, LIMIT, OUTPUT_TABLE, SHADER, groove_angle, ratio, torque, traction};
 use super::description::{Input, Model};
 use super::formula::{INPUTS, record};
 use crate::real::Real;
@@ -55,6 +55,7 @@ pub const MODEL: Model = Model {
     starter: include_str!("../../studies/metal-cvt.toml"),
     kernel: &Cvt(MetalBelt),
     profile: None,
+    shader: &[SHADER, include_str!("../../shaders/models/metal-cvt.wgsl")],
 };
 
 /// The formula.
@@ -63,6 +64,8 @@ pub(super) type Own = Cvt<MetalBelt>;
 pub(super) struct MetalBelt;
 
 impl Belt for MetalBelt {
+    const INPUT_NAMES: &'static [&'static str] = Inputs::<usize>::NAMES;
+
     #[inline(always)]
     fn drive<R: Real>(inputs: &[R; INPUTS]) -> Drive<R> {
         let i = Inputs::read(inputs);

@@ -13,10 +13,10 @@ mod rubber_cvt;
 
 pub(crate) use crate::real::LANES;
 pub use cvt::{optimum_thickness, printed_torque_coefficient, torque_coefficient, traction_limit, wedge_factor};
-pub use description::{Condition, Input, Model, Output, Profile, Range, Worse};
+pub use description::{CONDITION_PROMISE, Condition, Input, Model, Output, Profile, Range, Worse};
 pub use evaluation::{Evaluation, Status, evaluate, evaluate_decided};
 pub(crate) use evaluation::{holds, input_to_si, judge, to_si};
-pub use formula::{CONDITIONS, Columns, Formula, INPUTS, Kernel, OUTPUTS, PREPARED, Reach, Scratch};
+pub use formula::{CONDITIONS, Columns, Fields, Formula, INPUTS, Kernel, OUTPUTS, PREPARED, Reach, Reads, Scratch};
 
 /// What `prepare` hands to `finish`.
 pub type Prepared = [f64; PREPARED];

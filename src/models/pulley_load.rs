@@ -18,7 +18,7 @@
 //!   exactly only then (the paper's "radial" taken literally is 0.67 % off in its example).
 
 use super::description::{Condition, Input, Model, Output, Profile, Range, Worse};
-use super::formula::{CONDITIONS, Formula, INPUTS, OUTPUTS, PREPARED, bits, record};
+use super::formula::{CONDITIONS, Fields, Formula, INPUTS, OUTPUTS, PREPARED, bits, record};
 use crate::real::Real;
 use crate::units::{
     self, DEGREE, KILOGRAM_PER_METRE, KILOWATT, METRE_PER_SECOND, MILLIMETRE, NEWTON, NEWTON_METRE, NEWTON_PER_MILLIMETRE, NONE,
@@ -53,6 +53,9 @@ const OUT: Result<usize> = Result::NUMBER;
 use Worse::{Higher, Lower};
 
 const PAPER: &str = "paper, Table 1";
+
+/// A handful of roundings: some value uses up all of its running error bound.
+const SIMPLE: f64 = 4.5;
 
 /// The model.
 pub const MODEL: Model = Model {
@@ -113,12 +116,13 @@ pub const MODEL: Model = Model {
         },
     ],
     outputs: &[
-        Output::new("belt_speed_m_per_s", "v", METRE_PER_SECOND, Higher, "(2)", "Speed of the belt."),
-        Output::new("tight_tension_N", "T_t", NEWTON, Higher, "(2), (15)", "Tension of the tight side."),
-        Output::new("effective_tension_N", "T_e", NEWTON, Higher, "T_t - T_s", "Tension that transmits the power."),
-        Output::new("centrifugal_tension_N", "T_c", NEWTON, Higher, "w v^2", "Tension that bends the moving belt and presses nothing."),
-        Output::new("effective_friction", "mu'", NONE, Higher, "(13)", "Friction of the wedge that the load needs."),
-        Output::new("friction_used", "mu", NONE, Higher, "(12)", "Total coefficient of friction that the load needs."),
+        Output::new("belt_speed_m_per_s", "v", METRE_PER_SECOND, Higher, "(2)", "Speed of the belt.").promising(SIMPLE),
+        Output::new("tight_tension_N", "T_t", NEWTON, Higher, "(2), (15)", "Tension of the tight side.").promising(SIMPLE),
+        Output::new("effective_tension_N", "T_e", NEWTON, Higher, "T_t - T_s", "Tension that transmits the power.").promising(SIMPLE),
+        Output::new("centrifugal_tension_N", "T_c", NEWTON, Higher, "w v^2", "Tension that bends the moving belt and presses nothing.")
+            .promising(SIMPLE),
+        Output::new("effective_friction", "mu'", NONE, Higher, "(13)", "Friction of the wedge that the load needs.").promising(SIMPLE),
+        Output::new("friction_used", "mu", NONE, Higher, "(12)", "Total coefficient of friction that the load needs.").promising(SIMPLE),
         Output::new(
             "friction_margin",
             "",
@@ -126,9 +130,11 @@ pub const MODEL: Model = Model {
             Lower,
             "1 - friction_used/friction_limit",
             "Distance to the available friction, relative.",
-        ),
-        Output::new("torque_Nm", "", NEWTON_METRE, Higher, "(T_t - T_s) R_b", "Torque on the pulley."),
-        Output::new("resultant_force_N", "", NEWTON, Higher, "vectors T_t - T_c, T_s - T_c", "Force of the belt on the shaft."),
+        )
+        .promising(SIMPLE),
+        Output::new("torque_Nm", "", NEWTON_METRE, Higher, "(T_t - T_s) R_b", "Torque on the pulley.").promising(SIMPLE),
+        Output::new("resultant_force_N", "", NEWTON, Higher, "vectors T_t - T_c, T_s - T_c", "Force of the belt on the shaft.")
+            .promising(SIMPLE),
         Output::new(
             "slack_end_line_force_N_per_mm",
             "Q(0)",
@@ -136,7 +142,8 @@ pub const MODEL: Model = Model {
             Higher,
             "(9)",
             "Radial load per length at the slack end.",
-        ),
+        )
+        .promising(SIMPLE),
         Output::new(
             "tight_end_line_force_N_per_mm",
             "Q(theta_w)",
@@ -144,7 +151,8 @@ pub const MODEL: Model = Model {
             Higher,
             "(9)",
             "Radial load per length at the tight end.",
-        ),
+        )
+        .promising(SIMPLE),
         Output::new(
             "slack_end_flank_force_N_per_mm",
             "R(0)",
@@ -152,7 +160,8 @@ pub const MODEL: Model = Model {
             Higher,
             "(10)",
             "Normal force per flank and length at the slack end.",
-        ),
+        )
+        .promising(SIMPLE),
         Output::new(
             "tight_end_flank_force_N_per_mm",
             "R(theta_w)",
@@ -160,7 +169,8 @@ pub const MODEL: Model = Model {
             Higher,
             "(10)",
             "Normal force per flank and length at the tight end.",
-        ),
+        )
+        .promising(SIMPLE),
     ],
     conditions: &[
         Condition {
@@ -191,6 +201,7 @@ pub const MODEL: Model = Model {
     starter: include_str!("../../studies/pulley-load.toml"),
     kernel: &PulleyLoad,
     profile: Some(profile),
+    shader: &[include_str!("../../shaders/models/pulley-load.wgsl")],
 };
 
 /// The formula.
@@ -199,6 +210,8 @@ pub(super) type Own = PulleyLoad;
 pub(super) struct PulleyLoad;
 
 impl Formula for PulleyLoad {
+    const FIELDS: Fields = Fields { inputs: Inputs::<usize>::NAMES, prepared: Prepared::<usize>::NAMES, outputs: Result::<usize>::NAMES };
+
     fn prepare<R: Real>(inputs: &[R; INPUTS]) -> [R; PREPARED] {
         let [one, two] = [1.0, 2.0].map(R::constant);
         let i = Inputs::read(inputs);

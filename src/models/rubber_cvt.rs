@@ -1,6 +1,6 @@
 //! Rubber V-belt variator. The formula is [`super::cvt`]'s, with one belt section of width b and thickness h.
 
-use super::cvt::{Belt, CONDITION_TABLE, Cvt, Drive, OUTPUT_TABLE, groove_angle, ratio, torque, traction};
+use super::cvt::{Belt, CONDITION_TABLE, Cvt, Drive, OUTPUT_TABLE, SHADER, groove_angle, ratio, torque, traction};
 use super::description::{Input, Model};
 use super::formula::{INPUTS, record};
 use crate::real::Real;
@@ -42,6 +42,7 @@ pub const MODEL: Model = Model {
     starter: include_str!("../../studies/rubber-cvt.toml"),
     kernel: &Cvt(RubberBelt),
     profile: None,
+    shader: &[SHADER, include_str!("../../shaders/models/rubber-cvt.wgsl")],
 };
 
 /// The formula.
@@ -50,6 +51,8 @@ pub(super) type Own = Cvt<RubberBelt>;
 pub(super) struct RubberBelt;
 
 impl Belt for RubberBelt {
+    const INPUT_NAMES: &'static [&'static str] = Inputs::<usize>::NAMES;
+
     #[inline(always)]
     fn drive<R: Real>(inputs: &[R; INPUTS]) -> Drive<R> {
         let i = Inputs::read(inputs);

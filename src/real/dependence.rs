@@ -28,6 +28,17 @@ impl Dependence {
         Self { inputs: 1 << input, range: Some((least, largest)) }
     }
 
+    /// A value that depends on `inputs` (a bit set) and lies in `[least, largest]`.
+    pub fn within(inputs: u64, least: f64, largest: f64) -> Self {
+        Self { inputs, range: Some((least, largest)) }
+    }
+
+    /// The same value, its dependence forgotten.
+    #[must_use]
+    pub fn without_inputs(self) -> Self {
+        Self { inputs: 0, ..self }
+    }
+
     fn known(self) -> Option<f64> {
         self.range.filter(|(low, high)| low == high && self.inputs == 0).map(|(low, _)| low)
     }

@@ -1,12 +1,12 @@
 //! `f64`, the reference, and `f32`, the shader's twin.
 //!
-//! Transcendental functions come from the pure-Rust `libm`, never from the system, so that f64 gives the same bits on every
-//! machine. `min` and `max` are written as comparisons because that is what one vector instruction does.
+//! Transcendental functions of f64 come from the pure-Rust `libm`, never from the system, so that f64 gives the same bits on
+//! every machine; those of f32 are the shaders' own. `min` and `max` are written as comparisons because that is what one vector instruction does.
 
-use super::{Real, bracketed_newton};
+use super::{Real, bracketed_newton, functions};
 
 macro_rules! float {
-    ($float:ident, $exp_m1:ident, $ln_1p:ident, $sin:ident, $cos:ident, $asin:ident) => {
+    ($float:ident, $exp_m1:path, $ln_1p:path, $sin:path, $cos:path, $asin:path) => {
         impl Real for $float {
             #[inline(always)]
             #[allow(clippy::cast_possible_truncation, reason = "f32 is the shader's twin: rounding is its meaning")]
@@ -31,23 +31,23 @@ macro_rules! float {
             }
             #[inline]
             fn exp_m1(self) -> Self {
-                libm::$exp_m1(self)
+                $exp_m1(self)
             }
             #[inline]
             fn ln_1p(self) -> Self {
-                libm::$ln_1p(self)
+                $ln_1p(self)
             }
             #[inline]
             fn sin(self) -> Self {
-                libm::$sin(self)
+                $sin(self)
             }
             #[inline]
             fn cos(self) -> Self {
-                libm::$cos(self)
+                $cos(self)
             }
             #[inline]
             fn asin(self) -> Self {
-                libm::$asin(self)
+                $asin(self)
             }
             #[inline(always)]
             fn select(margin: Self, at_least_zero: Self, below_zero: Self) -> Self {
@@ -67,5 +67,5 @@ macro_rules! float {
     };
 }
 
-float!(f64, expm1, log1p, sin, cos, asin);
-float!(f32, expm1f, log1pf, sinf, cosf, asinf);
+float!(f64, libm::expm1, libm::log1p, libm::sin, libm::cos, libm::asin);
+float!(f32, functions::exp_m1, functions::ln_1p, functions::sine, functions::cosine, functions::arc_sine);

@@ -7,12 +7,13 @@
 
 mod dependence;
 mod float;
+pub mod functions;
 mod lanes;
 mod running_error;
 
 pub use dependence::Dependence;
 pub use lanes::{LANES, Lanes};
-pub use running_error::RunningError;
+pub use running_error::{FUNCTION_ULP, RunningError};
 
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};

@@ -58,6 +58,15 @@ impl Histogram {
         }
     }
 
+    /// Adds counts made elsewhere: below, every bin, above.
+    pub fn add(&mut self, counts: &[u32]) {
+        let (below, rest) = counts.split_first().expect("there is a count below");
+        let (above, bins) = rest.split_last().expect("there is a count above");
+        self.below += u64::from(*below);
+        self.above += u64::from(*above);
+        self.counts.iter_mut().zip(bins).for_each(|(count, &bin)| *count += u64::from(bin));
+    }
+
     /// Takes in the counts of other designs.
     pub fn merge(&mut self, other: &Self) {
         self.counts.iter_mut().zip(&other.counts).for_each(|(count, other)| *count += other);

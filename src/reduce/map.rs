@@ -83,6 +83,19 @@ impl Map {
         self.designs = Some(designs);
     }
 
+    /// Adds feasible designs per cell that were counted elsewhere.
+    pub fn add(&mut self, counts: &[u32]) {
+        for (at, &count) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
+            // In a map of shares every key is 0, and which design has it is not asked.
+            self.take(at as u64, Cell { feasible: u64::from(count), key: 0.0, index: u64::MAX });
+        }
+    }
+
+    /// The best key of every cell, infinite where there is none: less is better.
+    pub fn keys(&self) -> Vec<f64> {
+        (0..self.width * self.height).map(|at| self.cell(at).map_or(f64::INFINITY, |cell| cell.key)).collect()
+    }
+
     fn take(&mut self, at: u64, cell: Cell) {
         match &mut self.cells {
             Cells::All(cells) => cells[at as usize].take(cell),

@@ -64,6 +64,11 @@ impl Reduction {
         }
     }
 
+    /// The range of every histogram.
+    pub fn histogram_ranges(&self) -> Vec<(f64, f64)> {
+        self.histograms.iter().map(|(_, histogram)| (histogram.from, histogram.to)).collect()
+    }
+
     /// Reducers that have seen nothing.
     pub fn start(&self) -> Reducers {
         self.start_after(Points::default())
@@ -94,6 +99,32 @@ impl Reduction {
         }
         for ((column, _), map) in self.maps.iter().zip(&mut reducers.maps) {
             map.absorb(block, *column);
+        }
+    }
+
+    /// Takes in a block of designs that were counted elsewhere: for the front, the extremes, the top list and the maps' best only.
+    pub fn absorb_counted(&self, reducers: &mut Reducers, block: &Block<'_>) {
+        reducers.front.absorb(block, &self.objectives);
+        reducers.extremes.absorb(block, &self.objectives);
+        if let (Some((column, _)), Some(top)) = (&self.top, &mut reducers.top) {
+            top.absorb(block, *column);
+        }
+        for ((column, _), map) in self.maps.iter().zip(&mut reducers.maps) {
+            if column.is_some() {
+                map.absorb(block, *column);
+            }
+        }
+    }
+
+    /// Adds counts that were made elsewhere: feasible designs, per histogram below, bins and above, per map of shares its cells.
+    pub fn add_counts(&self, reducers: &mut Reducers, feasible: u64, histograms: &[Vec<u32>], shares: &[Vec<u32>]) {
+        reducers.feasible += feasible;
+        for (histogram, counts) in reducers.histograms.iter_mut().zip(histograms) {
+            histogram.add(counts);
+        }
+        let of_shares = self.maps.iter().zip(&mut reducers.maps).filter(|((column, _), _)| column.is_none());
+        for ((_, map), counts) in of_shares.zip(shares) {
+            map.add(counts);
         }
     }
 

@@ -41,6 +41,12 @@ impl Top {
         }
     }
 
+    /// Key (less is better) and index of the worst of the best K, once there are K.
+    pub fn worst(&mut self) -> Option<(f64, u64)> {
+        self.shrink();
+        (self.best.len() == self.count).then(|| self.best[self.count - 1])
+    }
+
     fn push(&mut self, key: f64, index: u64) {
         self.best.push((key, index));
         if self.best.len() >= 2 * self.count {
@@ -50,6 +56,8 @@ impl Top {
 
     fn shrink(&mut self) {
         self.best.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        // The same design may come twice, when a comparison merges what it has merged before.
+        self.best.dedup_by_key(|(_, index)| *index);
         self.best.truncate(self.count);
         if self.best.len() == self.count {
             self.worst_kept = self.best[self.count - 1].0;

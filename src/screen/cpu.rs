@@ -115,6 +115,20 @@ impl<'p> CpuEngine<'p> {
         }
     }
 
+    /// Judges single designs, given by their sorted positions, and hands each block with a feasible design to `absorb`.
+    pub fn screen_some(&mut self, positions: &[u64], mut absorb: impl FnMut(&Block<'_>)) {
+        let width = self.plan.fast.count();
+        for row in positions.chunk_by(|a, b| a / width == b / width) {
+            self.enter_row(row[0] / width);
+            if self.row_feasible {
+                for block in row.chunks(BLOCK) {
+                    let fast = FastBlock::new(self.plan, block.iter().map(|position| position % width));
+                    self.screen_block(&fast, &mut absorb);
+                }
+            }
+        }
+    }
+
     fn screen_row(&mut self, fast: Range<u64>, absorb: &mut impl FnMut(&Block<'_>)) {
         let tables = self.tables;
         let mut first = fast.start;

@@ -4,6 +4,7 @@
 
 mod columns;
 mod cpu;
+pub mod gpu;
 mod tally;
 
 pub(crate) use columns::ends;

@@ -4,6 +4,8 @@
 mod bad_studies;
 /// The binary: exit codes, messages, files, interrupted runs.
 mod command_line;
+/// Screening on a graphics device.
+mod gpu;
 /// Identities of the V-belt variator, and the tables of its paper.
 mod identities;
 /// The models over every number type: f32 with bounds, intervals, dependence, columns.

@@ -75,3 +75,18 @@ fn every_model_and_what_it_leaves_out_is_named() {
         assert!(readme.contains(&words(model.limits)), "{}: {}", model.name, model.limits);
     }
 }
+
+/// First word and the words before the numbers of every line of a table.
+fn names_of(table: &str) -> Vec<&str> {
+    let rows = table.lines().filter(|line| line.starts_with("  ") && line.contains("e-"));
+    rows.map(|line| line.trim().split("  ").next().unwrap_or_default()).collect()
+}
+
+#[test]
+fn the_accuracy_table_has_the_outputs_that_verify_prints() {
+    let shown = block("$ beltspace verify metal-cvt --samples 1000000");
+    let (printed, error) = run(&["verify", "metal-cvt", "--samples", "20000"]);
+    assert!(printed.contains("the promise was kept everywhere"), "{printed}{error}");
+    assert_eq!(names_of(&shown), names_of(&printed));
+    assert!(names_of(&shown).len() > 30 && shown.contains("the promise was kept everywhere"));
+}

@@ -29,13 +29,16 @@
 //! - The paper's "safety factor 2" is `sigma_y = 2 sigma_t`; with `sigma_b = sigma_t` at the optimum thickness the combined
 //!   stress is exactly `sigma_y`.
 
-use super::formula::{CONDITIONS, Formula, INPUTS, OUTPUTS, PREPARED, bits, record};
+use super::formula::{CONDITIONS, Fields, Formula, INPUTS, OUTPUTS, PREPARED, bits, record};
 use crate::real::Real;
 use std::f64::consts::PI;
 
 mod table;
 
 pub(super) use table::{CONDITION_TABLE, OUTPUT_TABLE, groove_angle, ratio, torque, traction};
+
+/// The twin in WGSL of what both belts share.
+pub(super) const SHADER: &str = include_str!("../../../shaders/models/cvt.wgsl");
 
 /// The number that stands for traction "limit": the belt is squeezed just enough not to slip.
 pub const LIMIT: f64 = -1.0;
@@ -199,6 +202,8 @@ fn conditions<R: Real>(prepared: &Prepared<R>, belt: &Drive<R>) -> [R; CONDITION
 
 /// A belt: where its inputs stand in the common formula.
 pub(super) trait Belt {
+    /// Names of its inputs.
+    const INPUT_NAMES: &'static [&'static str];
     /// The drive that these inputs describe.
     fn drive<R: Real>(inputs: &[R; INPUTS]) -> Drive<R>;
 }
@@ -207,6 +212,8 @@ pub(super) trait Belt {
 pub(super) struct Cvt<B>(pub B);
 
 impl<B: Belt> Formula for Cvt<B> {
+    const FIELDS: Fields = Fields { inputs: B::INPUT_NAMES, prepared: Prepared::<usize>::NAMES, outputs: Result::<usize>::NAMES };
+
     fn prepare<R: Real>(inputs: &[R; INPUTS]) -> [R; PREPARED] {
         prepare(&B::drive(inputs)).to_array(R::constant(0.0))
     }

@@ -137,12 +137,16 @@ pub(in crate::models) const OUTPUT_TABLE: &[Output] = &[
     Output::new("driven_radius_mm", "r_driven", MILLIMETRE, Lower, "open belt", "Pitch radius of the driven pulley."),
     Output::new("driver_wrap_deg", "theta_driver", DEGREE, Lower, "open belt", "Wrap angle on the driver pulley."),
     Output::new("driven_wrap_deg", "theta_driven", DEGREE, Lower, "open belt", "Wrap angle on the driven pulley."),
-    Output::new("effective_friction", "mu_e", NONE, Lower, "mu/sin(a/2)", "Friction of the wedge against sliding along the belt."),
+    Output::new("effective_friction", "mu_e", NONE, Lower, "mu/sin(a/2)", "Friction of the wedge against sliding along the belt.")
+        .promising(2.0),
     Output::new("traction_limit", "lambda_max", NONE, Lower, "(12), (13)", "Traction at which the belt slips on the driven pulley."),
     Output::new("driver_traction_limit", "", NONE, Lower, "(12), (13)", "Traction at which the belt would slip on the driver pulley."),
-    Output::new("slip_margin", "", NONE, Lower, "1 - lambda/lambda_max", "Distance to gross slip, relative; 0 at the limit."),
-    Output::new("active_arc_deg", "theta_a", DEGREE, Higher, "(12)", "Part of the driven wrap over which the belt force changes."),
-    Output::new("driver_axial_coefficient", "S~_driver", NONE, Higher, "(4), (15)", "Axial force of the driver per sum of belt forces."),
+    Output::new("slip_margin", "", NONE, Lower, "1 - lambda/lambda_max", "Distance to gross slip, relative; 0 at the limit.")
+        .promising(2.0),
+    Output::new("active_arc_deg", "theta_a", DEGREE, Higher, "(12)", "Part of the driven wrap over which the belt force changes.")
+        .promising(4.5),
+    Output::new("driver_axial_coefficient", "S~_driver", NONE, Higher, "(4), (15)", "Axial force of the driver per sum of belt forces.")
+        .promising(2.0),
     Output::new(
         "driven_axial_coefficient",
         "S~_driven",
@@ -150,17 +154,18 @@ pub(in crate::models) const OUTPUT_TABLE: &[Output] = &[
         Higher,
         "(5), (16)",
         "Axial force of the driven pulley per sum of belt forces.",
-    ),
+    )
+    .promising(2.0),
     Output::new("belt_force_N", "P", NEWTON, Higher, "(3), (14)", "Force that the belt transmits, F1 - F2."),
     Output::new("tight_force_N", "F1", NEWTON, Higher, "P(1+lambda)/(2 lambda)", "Belt force on the tight side."),
-    Output::new("slack_force_N", "F2", NEWTON, Lower, "P(1-lambda)/(2 lambda)", "Belt force on the slack side."),
+    Output::new("slack_force_N", "F2", NEWTON, Lower, "P(1-lambda)/(2 lambda)", "Belt force on the slack side.").promising(4.5),
     Output::new("driver_axial_force_N", "S_driver", NEWTON, Higher, "(1), (6)", "Axial force that the driver needs."),
     Output::new("driven_axial_force_N", "S_driven", NEWTON, Higher, "(2), (11)", "Axial force that the driven pulley needs."),
     Output::new("axial_force_N", "S", NEWTON, Higher, "larger of S_driver, S_driven", "The larger of the two axial forces."),
     Output::new("tensile_stress_MPa", "sigma_t", MEGAPASCAL, Higher, "(17), (22)", "Tensile stress of the tight side."),
     Output::new("bending_stress_MPa", "sigma_b", MEGAPASCAL, Higher, "(18)", "Bending stress on the smaller pulley."),
     Output::new("max_stress_MPa", "sigma_max", MEGAPASCAL, Higher, "sigma_t + sigma_b", "Largest stress in the belt."),
-    Output::new("stress_margin", "", NONE, Lower, "1 - sigma_max/sigma_y", "Distance to the strength, relative."),
+    Output::new("stress_margin", "", NONE, Lower, "1 - sigma_max/sigma_y", "Distance to the strength, relative.").promising(2.0),
     Output::new(
         "optimum_thickness_mm",
         "h*",
@@ -200,7 +205,8 @@ pub(in crate::models) const OUTPUT_TABLE: &[Output] = &[
         Lower,
         "(28)",
         "The metal belt's constant as printed: overstated wherever the entry compression is negative.",
-    ),
+    )
+    .promising(2.0),
     Output::new(
         "entry_compression",
         "P1/P2",

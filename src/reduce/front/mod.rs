@@ -122,6 +122,20 @@ impl Front {
         self.waiting.push(key.iter().copied(), index);
     }
 
+    /// Is a design whose coordinates are at least these surely beaten by a point so far?
+    pub fn beats(&self, lower: &[f64]) -> bool {
+        let dimensions = self.rules.len();
+        match &self.filter {
+            Filter::Nothing => false,
+            Filter::Best(best) => *best < lower[0],
+            Filter::Table(_) => {
+                let beyond = self.points.not_beyond(lower[0], dimensions);
+                beyond > 0 && beats(self.points.key(beyond - 1, dimensions), u64::MAX, lower, 0)
+            }
+            Filter::Killers { all, .. } => all.beater(lower, 0).is_some(),
+        }
+    }
+
     /// Takes in points of another front.
     pub fn merge(&mut self, other: Points) {
         self.waiting.keys.extend(other.keys);

@@ -7,7 +7,7 @@ use beltspace::merge::{check_set, merge};
 use beltspace::plan::Plan;
 use beltspace::reduce::{Reduction, State};
 use beltspace::screen::{CpuEngine, Tables, Tally};
-use beltspace::sweep::{Control, Options, sweep};
+use beltspace::sweep::{Control, Options, sweep, sweep_on_device};
 use beltspace::tiles::{Ranges, Shard};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -37,6 +37,16 @@ impl<'p> Pipeline<'p> {
     pub fn whole(&self, options: &Options) -> State {
         let control = Control::default();
         sweep(self.plan, &self.tables, &self.reduction, options, None, &control).expect("the sweep ends").state
+    }
+
+    /// One run on the device of the tests; its state and files.
+    pub fn on_device(&self, folder: &Path) -> (State, Files) {
+        let device = crate::gpu::device();
+        let (options, control) = (Options { threads: 2, ..Options::default() }, Control::default());
+        let swept = sweep_on_device(self.plan, &self.tables, &self.reduction, &options, None, &control, device);
+        let state = swept.unwrap_or_else(|error| panic!("{error}")).0.state;
+        let files = self.write(state.clone(), 1, folder);
+        (state, files)
     }
 
     /// Several shards, each with a checkpoint, some of them resumed from a part of their own, merged in a random order.
@@ -90,6 +100,7 @@ impl<'p> Pipeline<'p> {
             time: Duration::from_millis(1),
             origin: "a test".to_owned(),
             certified: outcome.front.len() + outcome.top.len(),
+            device: None,
         };
         outcome.write(folder, self.text, &record).expect("a result can be written");
         files(folder)

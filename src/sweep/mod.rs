@@ -1,8 +1,14 @@
 //! The sweep: ranges of designs handed to threads, their results merged and kept.
 //!
-//! A thread takes a chunk of positions, screens it with reducers of its own (which may drop what the front known so far beats)
+//! On the processor a thread takes a chunk of positions, screens it with reducers of its own (which may drop what the front known so far beats)
 //! and hands the result over as a whole. What is merged is therefore always complete for the ranges that the checkpoint names,
-//! and the result does not depend on how the work was cut.
+//! and the result does not depend on how the work was cut. On a graphics device see [`sweep_on_device`].
+
+mod gpu;
+mod recheck;
+
+pub use gpu::{DeviceRecord, OnDevice, recheck_on_device, sweep_on_device};
+pub use recheck::{LEAST_DESIGNS, Recheck};
 
 use crate::checkpoint::{Checkpoint, Progress};
 use crate::error::{Error, Result};
@@ -81,6 +87,59 @@ struct Work<'a> {
     merging: Duration,
 }
 
+impl<'a> Work<'a> {
+    fn new(
+        progress: Progress,
+        whole: std::ops::Range<u64>,
+        reduction: &Reduction,
+        checkpoint: Option<&'a mut Checkpoint>,
+        control: &Control,
+    ) -> Self {
+        let Progress { done, state } = progress;
+        control.done.store(done.count(), Ordering::Relaxed);
+        let mut reducers = reduction.restore(state);
+        let known = Arc::new(reducers.front.points().clone());
+        let start = Instant::now();
+        Self {
+            todo: done.missing_from(whole),
+            done,
+            reducers,
+            known,
+            checkpoint,
+            failure: None,
+            start,
+            rate: None,
+            saved: start,
+            saving: Duration::ZERO,
+            merging: Duration::ZERO,
+        }
+    }
+
+    /// Counts a range, all of whose designs have been taken in, as done; keeps the checkpoint from time to time.
+    fn finish(&mut self, plan: &Plan, range: std::ops::Range<u64>) -> Result<()> {
+        self.done.add(range);
+        // The front may shrink again while better designs arrive; well beyond the budget it would only fill the memory.
+        if self.reducers.front.len() as u64 > plan.study.report.front_budget.saturating_mul(4) {
+            return Err(over_budget(plan));
+        }
+        if self.checkpoint.is_some() && self.saved.elapsed() >= LEAST_CHUNK.max(5 * self.saving) {
+            let start = Instant::now();
+            let state = self.reducers.state();
+            self.save(&state)?;
+            self.saving = start.elapsed();
+            self.saved = Instant::now();
+        }
+        Ok(())
+    }
+
+    fn save(&mut self, state: &State) -> Result<()> {
+        match &mut self.checkpoint {
+            Some(checkpoint) => checkpoint.save(&self.done, state),
+            None => Ok(()),
+        }
+    }
+}
+
 /// Sweeps a plan. With a checkpoint, starts from what it holds and keeps it up to date.
 ///
 /// # Errors
@@ -95,29 +154,15 @@ pub fn sweep(
 ) -> Result<Swept> {
     let start = Instant::now();
     let whole = options.shard.range(plan.designs());
-    let Progress { done, state } = match checkpoint.as_deref_mut() {
+    let progress = match checkpoint.as_deref_mut() {
         Some(checkpoint) => checkpoint.take_progress(),
         None => None,
-    }
-    .unwrap_or_else(|| Progress { done: Ranges::default(), state: head_start(plan, tables, reduction) });
-    let todo = done.missing_from(whole);
-    let designs = todo.count();
-    control.done.store(done.count(), Ordering::Relaxed);
-    let mut reducers = reduction.restore(state);
-    let known = Arc::new(reducers.front.points().clone());
-    let work = Mutex::new(Work {
-        todo,
-        done,
-        reducers,
-        known,
-        checkpoint,
-        failure: None,
-        start,
-        rate: None,
-        saved: start,
-        saving: Duration::ZERO,
-        merging: Duration::ZERO,
-    });
+    };
+    let fresh = || head_start(reduction, &mut look_around(plan, tables, reduction, &whole));
+    let progress = progress.unwrap_or_else(|| Progress { done: Ranges::default(), state: fresh() });
+    let work = Work::new(progress, whole, reduction, checkpoint, control);
+    let designs = work.todo.count();
+    let work = Mutex::new(work);
     std::thread::scope(|scope| {
         for _ in 0..options.threads.max(1) {
             scope.spawn(|| run_thread(plan, tables, reduction, options, &work, control));
@@ -132,25 +177,29 @@ pub fn sweep(
     if finished {
         check_budget(plan, &state)?;
     }
-    if let Some(checkpoint) = work.checkpoint {
-        checkpoint.save(&work.done, &state)?;
-    }
+    work.save(&state)?;
     if !finished {
         return Err(Error::Stopped { checkpoint: String::new(), resume: String::new() });
     }
     Ok(Swept { state, designs, time: start.elapsed() })
 }
 
-/// The front of a few designs from all over the study, so that the first chunks have something to compare with.
+/// What remains of a few designs from all over a range, so that the first chunks have something to compare with.
 ///
-/// They are designs like any other, judged in f64: the sweep will meet them again and finds them there already.
-fn head_start(plan: &Plan, tables: &Tables, reduction: &Reduction) -> State {
+/// They are designs like any other, judged in f64: the sweep will meet them again and finds those of the front there already.
+fn look_around(plan: &Plan, tables: &Tables, reduction: &Reduction, whole: &std::ops::Range<u64>) -> Reducers {
     let mut seen = reduction.start();
     let mut engine = CpuEngine::new(plan, tables);
-    for step in 0..(plan.designs() / HEAD_START_SHARE / BLOCK as u64).min(HEAD_START) {
-        let first = plan.spread(step);
-        engine.screen(first..plan.designs().min(first + BLOCK as u64), |block| reduction.absorb(&mut seen, block));
+    let designs = whole.end - whole.start;
+    for step in 0..(designs / HEAD_START_SHARE / BLOCK as u64).min(HEAD_START) {
+        let first = whole.start + ((u128::from(plan.spread(step)) * u128::from(designs)) / u128::from(plan.designs())) as u64;
+        engine.screen(first..whole.end.min(first + BLOCK as u64), |block| reduction.absorb(&mut seen, block));
     }
+    seen
+}
+
+/// The state of a sweep that has counted nothing, but knows the front of what was seen.
+fn head_start(reduction: &Reduction, seen: &mut Reducers) -> State {
     let mut state = reduction.start().state();
     state.front = seen.front.points().clone();
     state
@@ -224,25 +273,11 @@ fn hand_over(
     let fresh = reducers.into_fresh();
     let news = !fresh.front.is_empty();
     work.reducers.merge(fresh);
-    work.done.add(finished);
     if news {
         work.known = Arc::new(work.reducers.front.points().clone());
     }
     work.merging = merging.elapsed();
-    // The front may shrink again while better designs arrive; well beyond the budget it would only fill the memory.
-    if work.reducers.front.len() as u64 > plan.study.report.front_budget.saturating_mul(4) {
-        work.failure = Some(over_budget(plan));
-        return;
-    }
-    if work.checkpoint.is_some() && work.saved.elapsed() >= LEAST_CHUNK.max(5 * work.saving) {
-        let start = Instant::now();
-        let state = work.reducers.state();
-        let done = work.done.clone();
-        let saved = work.checkpoint.as_mut().map_or(Ok(()), |checkpoint| checkpoint.save(&done, &state));
-        if let Err(failure) = saved {
-            work.failure = Some(failure);
-        }
-        work.saving = start.elapsed();
-        work.saved = Instant::now();
+    if let Err(failure) = work.finish(plan, finished) {
+        work.failure = Some(failure);
     }
 }

@@ -1,0 +1,35 @@
+// Three-valued decisions: what a number with a promised error lets one conclude. The twin of src/decision.rs.
+//
+// The answers are ordered so that "both must hold" is `min`: a sure no wins over an unsure, an unsure over a yes.
+
+const NO: u32 = 0u;
+const UNSURE: u32 = 1u;
+const YES: u32 = 2u;
+
+// `promise` is in units of the running bound; see `promise` in src/models.
+fn promised(number: Real, promise: f32) -> Real {
+    return Real(number.value, number.bound * promise);
+}
+
+fn is_known(number: Real) -> bool {
+    return is_finite(abs(number.value) + number.bound);
+}
+
+fn at_least_zero(margin: Real) -> u32 {
+    let answer = select(select(UNSURE, NO, margin.value < -margin.bound), YES, margin.value >= margin.bound);
+    return select(UNSURE, answer, is_known(margin));
+}
+
+fn above_zero(margin: Real) -> u32 {
+    let answer = select(select(UNSURE, NO, margin.value <= -margin.bound), YES, margin.value > margin.bound);
+    return select(UNSURE, answer, is_known(margin));
+}
+
+// The ends of where a number may lie, a little farther out for their own rounding; an exact number is both its ends.
+fn lower(number: Real) -> f32 {
+    return select(number.value - number.bound - abs(number.value) * ROUNDING, number.value, number.bound == 0.0);
+}
+
+fn upper(number: Real) -> f32 {
+    return select(number.value + number.bound + abs(number.value) * ROUNDING, number.value, number.bound == 0.0);
+}

@@ -1,0 +1,142 @@
+// A number and a bound on its distance from exact arithmetic: the shader's twin of `RunningError` in src/real.
+//
+// The bound grows by what WGSL permits, not by what one GPU does: sums and products rounded once (contraction rounds less),
+// division 2.5 ULP, square root 4.5 ULP, results below the least normal number flushed to zero. It is carried in f32 too: what
+// rounds in the bound itself is covered by the thousandth that every unit and every promise is raised by.
+
+struct Real {
+    value: f32,
+    bound: f32,
+}
+
+// Half an ULP, and a thousandth for the rounding of the bound.
+const ROUNDING: f32 = 5.9665e-8;
+const DIVISION: f32 = 5.0 * ROUNDING;
+const SQUARE_ROOT: f32 = 9.0 * ROUNDING;
+// Own functions: within FUNCTION_ULP of src/real/running_error.rs.
+const FUNCTION: f32 = 8.0 * ROUNDING;
+const FLUSH: f32 = 1.1754944e-38;
+const PI: f32 = 3.14159265;
+
+fn constant(value: f32) -> Real {
+    return Real(value, 0.0);
+}
+
+// A constant that f32 does not hold exactly.
+fn near(value: f32) -> Real {
+    return Real(value, abs(value) * ROUNDING);
+}
+
+fn rounded(value: f32, inherited: f32, relative: f32) -> Real {
+    return Real(value, inherited + (abs(value) * relative + FLUSH));
+}
+
+fn add(a: Real, b: Real) -> Real {
+    return rounded(a.value + b.value, a.bound + b.bound, ROUNDING);
+}
+
+fn sub(a: Real, b: Real) -> Real {
+    return rounded(a.value - b.value, a.bound + b.bound, ROUNDING);
+}
+
+fn mul(a: Real, b: Real) -> Real {
+    return rounded(a.value * b.value, abs(a.value) * b.bound + (abs(b.value) + b.bound) * a.bound, ROUNDING);
+}
+
+fn square(a: Real) -> Real {
+    return mul(a, a);
+}
+
+fn div(a: Real, b: Real) -> Real {
+    let quotient = a.value / b.value;
+    let divisor = abs(b.value) - b.bound;
+    let inherited = (a.bound + abs(quotient) * b.bound) / divisor;
+    // Division by what may be zero has no bound.
+    return rounded(quotient, select(infinity(), inherited, divisor > 0.0), DIVISION);
+}
+
+fn neg(a: Real) -> Real {
+    return Real(-a.value, a.bound);
+}
+
+// Products with powers of two are exact.
+fn twice(a: Real) -> Real {
+    return Real(2.0 * a.value, 2.0 * a.bound);
+}
+
+fn half(a: Real) -> Real {
+    return Real(0.5 * a.value, 0.5 * a.bound);
+}
+
+fn abs_(a: Real) -> Real {
+    return Real(abs(a.value), a.bound);
+}
+
+// The one of two numbers that is the smaller or larger, with its own bound if it surely is: a clamp that surely holds is exact.
+// Where it is not sure the sum of the bounds serves as their maximum would, and a bound that is no number stays one.
+fn chosen(second: bool, a: Real, b: Real) -> Real {
+    let both = a.bound + b.bound;
+    let own = select(a.bound, b.bound, second);
+    return Real(select(a.value, b.value, second), select(both, own, abs(a.value - b.value) > both));
+}
+
+fn min_(a: Real, b: Real) -> Real {
+    return chosen(b.value < a.value, a, b);
+}
+
+fn max_(a: Real, b: Real) -> Real {
+    return chosen(b.value > a.value, a, b);
+}
+
+// `at_least_zero` where `margin >= 0`, else `below_zero`; where that is not sure the bound covers both.
+fn select_(margin: Real, at_least_zero: Real, below_zero: Real) -> Real {
+    let positive = margin.value >= 0.0;
+    let value = select(below_zero.value, at_least_zero.value, positive);
+    let own = select(below_zero.bound, at_least_zero.bound, positive);
+    let other = select(at_least_zero.bound, below_zero.bound, positive);
+    let sure = margin.bound == 0.0 || abs(margin.value) > margin.bound;
+    return Real(value, select(own + abs(at_least_zero.value - below_zero.value) + other, own, sure));
+}
+
+// |sqrt(a) - sqrt(x)| <= |a - x| / sqrt(x), and never more than sqrt(|a - x|).
+fn sqrt_(a: Real) -> Real {
+    let root = sqrt(max(a.value, 0.0));
+    let steep = select(a.bound / root, infinity(), root == 0.0);
+    return rounded(root, min(sqrt(a.bound), steep), SQUARE_ROOT);
+}
+
+fn exp_m1_(a: Real) -> Real {
+    let value = exp_m1(a.value);
+    // exp(x + d) - exp(x) <= exp(x) d (1 + d) for d up to 1.
+    let inherited = (abs(value) + 1.0) * a.bound * (1.0 + a.bound);
+    return rounded(value, select(infinity(), inherited, a.bound < 1.0), FUNCTION);
+}
+
+fn ln_1p_(a: Real) -> Real {
+    let divisor = 1.0 + a.value - a.bound - ROUNDING * abs(1.0 + a.value);
+    return rounded(ln_1p(a.value), select(infinity(), a.bound / divisor, divisor > 0.0), FUNCTION);
+}
+
+fn sin_(a: Real) -> Real {
+    return rounded(sine(a.value), a.bound, FUNCTION);
+}
+
+fn cos_(a: Real) -> Real {
+    return rounded(cosine(a.value), a.bound, FUNCTION);
+}
+
+// The slope is taken at the end of the argument's range that lies nearer to one; there it is never steeper than a root.
+fn asin_(a: Real) -> Real {
+    let end = abs(a.value) + a.bound;
+    let steep = a.bound / sqrt((1.0 - end) * (1.0 + end));
+    let inherited = min(select(infinity(), steep, end < 1.0), 1.5708 * sqrt(a.bound));
+    return rounded(arc_sine(a.value), inherited, FUNCTION);
+}
+
+// The root of an increasing function that f32 steps ended at, from the value and slope there: the exact function is within
+// `value.bound` of the f32 one. The slope varies little over a few ULP, for which a factor 2 is ample.
+fn root(at: f32, value: Real, slope: Real) -> Real {
+    let least_slope = 0.5 * (abs(slope.value) - slope.bound);
+    let inherited = (abs(value.value) + value.bound) / least_slope;
+    return rounded(at, select(infinity(), inherited, least_slope > 0.0), ROUNDING);
+}

@@ -1,0 +1,60 @@
+// Is this driver to be trusted? Each entry point exercises one thing that has gone wrong on some driver without an error.
+
+struct Test {
+    count: u32,
+    loops: u32,
+}
+
+@group(0) @binding(0) var<uniform> test: Test;
+// Pairs of arguments.
+@group(0) @binding(1) var<storage, read> given: array<vec2<f32>>;
+@group(0) @binding(2) var<storage, read_write> found: array<f32>;
+@group(0) @binding(3) var<storage, read_write> counts: array<atomic<u32>>;
+
+const RESULTS: u32 = 10u;
+
+// Sum, difference, product, quotient, root, then the own functions.
+@compute @workgroup_size(64)
+fn arithmetic(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= test.count {
+        return;
+    }
+    let a = given[id.x].x;
+    let b = given[id.x].y;
+    let at = id.x * RESULTS;
+    found[at] = a + b;
+    found[at + 1u] = a - b;
+    found[at + 2u] = a * b;
+    found[at + 3u] = a / b;
+    found[at + 4u] = sqrt(abs(a));
+    found[at + 5u] = exp_m1(a);
+    found[at + 6u] = ln_1p(abs(a));
+    found[at + 7u] = sine(a);
+    found[at + 8u] = cosine(a);
+    found[at + 9u] = arc_sine(a / (1.0 + abs(a)));
+}
+
+// Some drivers end an invocation after 65 535 turns of its loops, without a word.
+@compute @workgroup_size(1)
+fn loops() {
+    var turns = 0u;
+    var x = test.count;
+    for (var i = 0u; i < test.loops; i++) {
+        x = x * 1664525u + 1013904223u;
+        turns += 1u + (x & 0u);
+    }
+    atomicStore(&counts[0], turns);
+}
+
+// Every invocation appends itself: each number must be there once.
+@compute @workgroup_size(64)
+fn append(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= test.count {
+        return;
+    }
+    let at = atomicAdd(&counts[0], 1u);
+    if at < test.count {
+        atomicAdd(&counts[1u + id.x], 1u);
+        found[at] = f32(id.x);
+    }
+}

@@ -1,0 +1,152 @@
+// Second stage: every lane of every row over all scenarios. What is surely feasible is counted; what is unsure, and what may be
+// part of an answer, is appended for f64.
+//
+// An invocation takes LANES_EACH lanes of one row, in blocks. It first judges the whole block, GROUP lanes at a time so that what
+// they share is loaded and computed once, and keeps one bit a lane. Then it looks closer at the few lanes whose bit is set: a
+// branch or a look-up per lane would cost more than judging those again, which is what it does unless they were kept.
+
+// Surely feasible designs: neighbours in the row are known to be equal to them in every objective that only the row decides, so
+// they prune where no bound could. One per invocation, or every lane where judged lanes are kept anyway; infinite where none is.
+var<workgroup> champions: array<Champion, CHAMPIONS>;
+
+// Is a neighbour surely better, or surely as good in all and better in one?
+fn beaten_in_the_row(keys: Keys, local: vec3<u32>) -> bool {
+    for (var chunk = 0u; chunk < GROUP_CHUNKS; chunk++) {
+        for (var i = 0u; i < CHAMPIONS_EACH; i++) {
+            if beats_in_the_row(champions[champion_at(local.x, chunk, i)], keys) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+fn champion_at(row: u32, chunk: u32, i: u32) -> u32 {
+    return ((chunk * CHAMPIONS_EACH + i) * GROUP_ROWS + row) % CHAMPIONS;
+}
+
+// Which of the answers a surely feasible design may be part of.
+fn closer_look(lane: Lane, horizon: Horizon, index: vec2<u32>, local: vec3<u32>) -> u32 {
+    var why = 0u;
+    if OBJECTIVES > 0u {
+        let keys = keys_of(lane);
+        var beaten = beaten_by_killers(keys, horizon) || beaten_by_table(keys);
+        if USES_CHAMPIONS && !beaten {
+            beaten = beaten_in_the_row(keys, local);
+        }
+        why |= select(MAY_BE_FRONT, 0u, beaten);
+        why |= select(0u, MAY_BE_END, may_be_extreme(lane, horizon) && !is_known_extreme(lane, horizon, index));
+    }
+    why |= select(0u, MAY_BE_END, may_be_top(lane, horizon) && !is_known_top(lane, horizon, index));
+    return why;
+}
+
+// What the first look keeps of a block: a bit per lane that is surely feasible, and per lane that needs a closer look.
+struct Seen {
+    sure: u32,
+    flagged: u32,
+}
+
+// The first look at lane number `i` of a block.
+fn look_at(judged: Lane, horizon: Horizon, i: u32, count: u32, seen: ptr<function, Seen>, champion: ptr<function, Champion>) {
+    let mark = select(0u, 1u << i, i < count);
+    let is_sure = judged.verdict == YES;
+    (*seen).sure |= select(0u, mark, is_sure);
+    let look = judged.verdict == UNSURE || (is_sure && (LOOK_AT_ALL || may_matter(judged, horizon)));
+    (*seen).flagged |= select(0u, mark, look);
+    if USES_CHAMPIONS && !KEEPS && is_sure && i < count {
+        let other = champion_of(keys_of(judged));
+        if is_worse_champion(*champion, other) {
+            *champion = other;
+        }
+    }
+}
+
+fn append(row: u32, lane: u32, why: u32, judged: Lane) {
+    let at = atomicAdd(&counts[APPENDED], 1u);
+    if at < tile.capacity {
+        let word = at * SURVIVOR_WORDS;
+        survivors[word] = row;
+        survivors[word + 1u] = lane | (why << 24u);
+        write_keys(word + 2u, judged);
+        write_map_keys(word + 2u + OBJECTIVES, judged);
+    }
+}
+
+@compute @workgroup_size(GROUP_ROWS, GROUP_CHUNKS)
+fn sweep(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
+    let row = group.x * GROUP_ROWS + local.x;
+    let chunk = group.y * GROUP_CHUNKS + local.y;
+    let at = min(row, tile.rows - 1u);
+    let state = load_row(at);
+    let held = hold_prepared(at);
+    let horizon = horizon();
+    let first = tile.first_lane + chunk * LANES_EACH;
+    let open = row < tile.rows && state.verdict != NO;
+    let last = select(first, min(first + LANES_EACH, tile.last_lane), open);
+    var sure_count = 0u;
+    var unsure_count = 0u;
+    for (var block = 0u; block < BLOCKS; block++) {
+        let start = first + block * BLOCK;
+        let end = min(start + BLOCK, last);
+        var seen = Seen(0u, 0u);
+        var champion = no_champion();
+        var kept: array<Lane, KEPT>;
+        for (var i = 0u; i < BLOCK; i += GROUP) {
+            if start + i >= end {
+                break;
+            }
+            let group = judge_group(at, state, held, start + i);
+            look_at_group(group, horizon, i, end - start, &seen, &champion, &kept);
+        }
+        if USES_CHAMPIONS {
+            for (var i = 0u; i < CHAMPIONS_EACH; i++) {
+                if KEEPS {
+                    champion = no_champion();
+                    if ((seen.sure >> i) & 1u) == 1u {
+                        champion = champion_of(keys_of(kept[i % KEPT]));
+                    }
+                }
+                champions[champion_at(local.x, local.y, i)] = champion;
+            }
+            workgroupBarrier();
+        }
+        sure_count += countOneBits(seen.sure);
+        var flagged = seen.flagged;
+        while flagged != 0u {
+            let i = firstTrailingBit(flagged);
+            flagged &= flagged - 1u;
+            let lane = start + i;
+            let place = digits_of_lane(lane);
+            var judged: Lane;
+            if KEEPS {
+                judged = kept[i % KEPT];
+            } else {
+                judged = judge(at, state, held, place);
+            }
+            var why = IS_UNSURE;
+            if judged.verdict == YES {
+                if enters_histograms(judged) {
+                    why = closer_look(judged, horizon, wide_add(state.index, index_of_lane(place)), local);
+                    why |= enter_maps(judged, state, place);
+                } else {
+                    // Its bin is not sure: f64 counts the whole design.
+                    sure_count -= 1u;
+                }
+            }
+            unsure_count += why & IS_UNSURE;
+            if why != 0u {
+                append(at, lane, why, judged);
+            }
+        }
+        if USES_CHAMPIONS {
+            workgroupBarrier();
+        }
+    }
+    if sure_count > 0u {
+        atomicAdd(&counts[SURE], sure_count);
+    }
+    if unsure_count > 0u {
+        atomicAdd(&counts[UNDECIDED], unsure_count);
+    }
+}

@@ -1,0 +1,71 @@
+//! `beltspace adapters`: the GPUs of this machine, and whether their drivers can be trusted.
+
+use crate::terminal::{self, Grid, bold, grouped};
+use beltspace::error::Result;
+use beltspace::gpu::{self, Adapter, self_test};
+use serde_json::{Value, json};
+
+pub fn run(json: bool) -> Result<()> {
+    let adapters = gpu::adapters();
+    if json {
+        return terminal::print(&format!("{:#}\n", adapters.iter().map(describe).collect::<Value>()));
+    }
+    if adapters.is_empty() {
+        return terminal::print(
+            "no GPU driver was found: every command works on the processor\n\
+             In software, for trying things out: the Debian package mesa-vulkan-drivers (lavapipe).\n",
+        );
+    }
+    let pages: Vec<_> = adapters.iter().map(page).collect();
+    terminal::print(&pages.join("\n"))
+}
+
+/// The self-test's report, or why there is none.
+fn tested(adapter: &Adapter) -> std::result::Result<self_test::Report, String> {
+    adapter.open().and_then(|device| self_test::run(&device)).map_err(|error| error.to_string())
+}
+
+fn describe(adapter: &Adapter) -> Value {
+    let limits: serde_json::Map<_, _> = adapter.limits().into_iter().map(|(name, value)| (name.replace(' ', "_"), value.into())).collect();
+    let (self_test, trusted) = match tested(adapter) {
+        Ok(report) => (report.to_json(), report.problems().is_empty()),
+        Err(problem) => (json!({ "problems": [problem] }), false),
+    };
+    json!({
+        "name": adapter.name, "kind": adapter.kind.name(), "driver": adapter.driver, "backend": adapter.backend,
+        "limits": limits, "self_test": self_test, "trusted": trusted,
+    })
+}
+
+fn page(adapter: &Adapter) -> String {
+    let mut facts = Grid::default();
+    let mut fact = |what: &str, value: String| facts.row([what.to_owned(), value]);
+    fact("kind", adapter.kind.name().to_owned());
+    fact("driver", format!("{}, {}", adapter.backend, adapter.driver));
+    let megabytes = |bytes: u64| format!("{} MB", grouped(bytes >> 20));
+    for (name, value) in adapter.limits() {
+        fact(name, if value >= 1 << 20 { megabytes(value) } else { grouped(value) });
+    }
+    match tested(adapter) {
+        Err(problem) => fact("self-test", format!("failed: {problem}")),
+        Ok(report) => {
+            let problems = report.problems();
+            fact(
+                "self-test",
+                if problems.is_empty() {
+                    "passed: the driver can be trusted".to_owned()
+                } else {
+                    format!("failed: {}", problems.join("; "))
+                },
+            );
+            let turns = grouped(report.loop_turns.into());
+            let limited = if report.limited_loops() { ", without a word: kernels are kept shorter" } else { "" };
+            fact("  loops", if report.limited_loops() { format!("end after {turns} turns{limited}") } else { "no limit seen".to_owned() });
+            fact("  lost appends", report.lost_appends.to_string());
+            for measure in &report.measures {
+                fact(&format!("  {}", measure.name), format!("{:.2} ULP off at most, allowed are {:.1}", measure.ulp, measure.allowed));
+            }
+        }
+    }
+    format!("{}\n{}", bold(&adapter.name), facts.indented(2))
+}

@@ -1,0 +1,87 @@
+//! The choice of what judges the designs.
+
+use crate::cli::Engine;
+use crate::terminal;
+use beltspace::error::{Error, Result};
+use beltspace::gpu::{self, Adapter, self_test};
+use beltspace::models::Model;
+use beltspace::plan::Plan;
+use beltspace::screen::gpu::{Wrong, supports};
+use beltspace::sweep::OnDevice;
+
+/// Evaluations below which starting a device costs more than it saves.
+const WORTH_A_DEVICE: f64 = 2e8;
+
+/// A device that has passed its self-test.
+pub struct Trusted {
+    pub adapter: Adapter,
+    pub report: self_test::Report,
+    pub on: OnDevice,
+}
+
+/// The device to sweep a study on; `None` for the processor.
+pub fn choose(plan: &Plan, engine: Engine, adapter: Option<&str>, wrong: Wrong) -> Result<Option<Trusted>> {
+    if engine != Engine::Gpu && !wrong.perturb.is_empty() {
+        return Err(Error::Request("--perturb makes a GPU's kernel wrong on purpose: it needs --engine gpu".to_owned()));
+    }
+    match engine {
+        Engine::Cpu if adapter.is_some() => Err(Error::Request("--adapter names a GPU, but --engine cpu was asked for".to_owned())),
+        Engine::Cpu => Ok(None),
+        Engine::Auto if adapter.is_none() => Ok(automatic(plan, wrong)),
+        Engine::Gpu | Engine::Auto => serving(plan, trusted(adapter, wrong)?).map(Some),
+    }
+}
+
+/// A hardware adapter for a study that is large enough; whatever is wrong with it is a remark.
+#[allow(clippy::cast_precision_loss, reason = "an estimate")]
+fn automatic(plan: &Plan, wrong: Wrong) -> Option<Trusted> {
+    if (plan.designs() as f64) * (plan.scenarios() as f64) < WORTH_A_DEVICE {
+        return None;
+    }
+    let adapter = gpu::adapters().into_iter().find(Adapter::is_hardware)?;
+    match test(adapter, wrong).and_then(|device| serving(plan, device)) {
+        Ok(trusted) => Some(trusted),
+        Err(error) => {
+            terminal::remark("warning", &format!("{error}; the processor judges the designs"));
+            None
+        }
+    }
+}
+
+/// A device, if it can serve the study.
+fn serving(plan: &Plan, device: Trusted) -> Result<Trusted> {
+    supports(plan, device.on.limited_loops)?;
+    Ok(device)
+}
+
+/// The adapter of that name, or the best, if its driver can be trusted.
+pub fn trusted(adapter: Option<&str>, wrong: Wrong) -> Result<Trusted> {
+    test(gpu::choose(adapter)?, wrong)
+}
+
+fn test(adapter: Adapter, wrong: Wrong) -> Result<Trusted> {
+    let device = adapter.open()?;
+    let report = self_test::run(&device)?;
+    let problems = report.problems();
+    if !problems.is_empty() {
+        return Err(Error::Gpu {
+            device: adapter.name.clone(),
+            problem: format!("its driver failed the self-test ({}); use --engine cpu", problems.join("; ")),
+        });
+    }
+    let on = OnDevice { device, limited_loops: report.limited_loops(), wrong };
+    Ok(Trusted { adapter, report, on })
+}
+
+/// Reads `OUTPUT=PART` of `--perturb`.
+pub fn perturbations(model: &Model, words: &[String]) -> Result<Vec<(usize, f64)>> {
+    let one = |word: &String| {
+        let parts = word.split_once('=').and_then(|(name, part)| Some((name.trim(), part.trim().parse::<f64>().ok()?)));
+        let (name, part) = parts
+            .filter(|(_, part)| part.is_finite())
+            .ok_or_else(|| Error::Request(format!("--perturb \"{word}\": write OUTPUT=PART, such as torque_capacity_Nm=2e-5")))?;
+        let output = model.output(name).ok_or_else(|| Error::Request(format!("--perturb: {} has no output \"{name}\"", model.name)))?;
+        Ok((output, part))
+    };
+    words.iter().map(one).collect()
+}

@@ -1,0 +1,111 @@
+//! `beltspace verify`: the GPU against f64, on the machine at hand.
+
+use super::{engine, find_model, read_study, threads};
+use crate::cli;
+use crate::terminal::{self, Grid, bold, grouped};
+use beltspace::error::{Error, Result};
+use beltspace::gpu::PointKernel;
+use beltspace::models::Model;
+use beltspace::plan::Plan;
+use beltspace::reduce::Reduction;
+use beltspace::screen::gpu::Wrong;
+use beltspace::screen::{Tables, Tally};
+use beltspace::study::Constraint;
+use beltspace::sweep::{Recheck, recheck_on_device};
+use beltspace::verify::{Points, Report, Statistics, compare, points_of_model, points_of_study};
+use serde_json::{Value, json};
+use std::path::Path;
+
+pub fn run(request: &cli::Verify) -> Result<()> {
+    let path = Path::new(&request.target);
+    let samples = usize::try_from(request.samples).map_err(|_| Error::Request("--samples: too many for this machine".to_owned()))?;
+    if beltspace::models::find(&request.target).is_none() && (path.extension().is_some_and(|it| it == "toml") || path.exists()) {
+        let (study, _) = read_study(path)?;
+        let plan = Plan::new(study);
+        let model = plan.study.model;
+        let device = open(request, model)?;
+        let points = points_of_study(&plan, samples, request.seed);
+        let report = of_points(&device, model, &plan.study.constraints, &points)?;
+        let tables = Tables::new(&plan);
+        let ranges = Tally::new(&plan, &tables, threads(None)).histogram_ranges(&plan);
+        let reduction = Reduction::new(&plan, &ranges);
+        // A kernel that breaks its promise point by point need not be swept to be refused.
+        let swept = match report.require() {
+            Ok(()) => Some(recheck_on_device(&plan, &tables, &reduction, threads(None), &device.on)?),
+            Err(_) => None,
+        };
+        return print(request, &plan.study.title, &device, &report, swept.as_ref());
+    }
+    let model = find_model(&request.target)?;
+    let device = open(request, model)?;
+    let report = of_points(&device, model, &[], &points_of_model(model, samples, request.seed))?;
+    print(request, model.name, &device, &report, None)
+}
+
+fn open(request: &cli::Verify, model: &Model) -> Result<engine::Trusted> {
+    let wrong = Wrong { perturb: engine::perturbations(model, &request.perturb)?, ..Wrong::default() };
+    engine::trusted(request.adapter.as_deref(), wrong)
+}
+
+fn of_points(device: &engine::Trusted, model: &'static Model, constraints: &[Constraint], points: &Points) -> Result<Report> {
+    let kernel = PointKernel::new(&device.on.device, model, &device.on.wrong.perturb)?;
+    compare(&kernel, model, constraints, points)
+}
+
+fn print(request: &cli::Verify, what: &str, device: &engine::Trusted, report: &Report, swept: Option<&Recheck>) -> Result<()> {
+    let text = if request.json { format!("{:#}\n", describe(device, report, swept)) } else { page(what, device, report, swept) };
+    terminal::print(&text)?;
+    report.require()
+}
+
+fn page(what: &str, device: &engine::Trusted, report: &Report, swept: Option<&Recheck>) -> String {
+    let mut grid = Grid::default();
+    grid.row(["", "values", "error median", "largest", "promise median", "99 %", "used"].map(bold));
+    let row = |it: &Statistics| {
+        let small = |value: f64| format!("{value:.1e}");
+        let used =
+            format!("{:.1} %{}", 100.0 * it.used, if it.broken > 0 { format!("  broken {} times", it.broken) } else { String::new() });
+        let numbers = [it.median_error, it.largest_error, it.median_promise, it.usual_promise].map(small);
+        [it.name.clone(), grouped(it.values - it.unbounded)].into_iter().chain(numbers).chain([used])
+    };
+    for it in &report.outputs {
+        grid.row(row(it));
+    }
+    for it in &report.conditions {
+        grid.row(row(&Statistics { name: format!("status: {}", it.name), ..it.clone() }));
+    }
+    let mut facts = Grid::default();
+    let mut fact = |what: &str, value: String| facts.row([bold(what), value]);
+    fact("adapter", device.adapter.in_words());
+    fact("points", grouped(report.points));
+    fact("unsure", format!("{}, for f64 to decide", grouped(report.unsure)));
+    fact("flips", format!("{} sure decisions were wrong", grouped(report.flips)));
+    if let Some(swept) = swept {
+        fact("tiles", format!("{} designs swept and judged again in f64: values, counts and survivors agree", grouped(swept.designs)));
+    }
+    let kept = if report.require().is_ok() { "the promise was kept everywhere" } else { "the promise was broken" };
+    format!(
+        "{}: the GPU against f64; errors and promises relative to the value\n\n{}\n{}\n{}\n",
+        bold(what),
+        grid.indented(2),
+        facts.indented(0),
+        bold(kept)
+    )
+}
+
+fn describe(device: &engine::Trusted, report: &Report, swept: Option<&Recheck>) -> Value {
+    let statistics = |it: &Statistics| {
+        json!({
+            "name": it.name, "values": it.values, "unbounded": it.unbounded, "broken": it.broken, "example": it.example,
+            "median_error": it.median_error, "largest_error": it.largest_error,
+            "median_promise": it.median_promise, "promise_of_99_percent": it.usual_promise, "share_of_promise": it.used,
+        })
+    };
+    json!({
+        "adapter": device.adapter.name, "driver": device.adapter.driver, "self_test": device.report.to_json(),
+        "points": report.points, "unsure": report.unsure, "flips": report.flips, "kept": report.require().is_ok(),
+        "outputs": report.outputs.iter().map(statistics).collect::<Vec<_>>(),
+        "conditions": report.conditions.iter().map(statistics).collect::<Vec<_>>(),
+        "tiles": swept.map(Recheck::to_json),
+    })
+}

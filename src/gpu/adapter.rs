@@ -1,0 +1,128 @@
+//! The adapters of this machine, and the choice of one.
+
+use super::Device;
+use crate::error::{Error, Result};
+
+/// What an adapter is, best first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// A graphics card with memory of its own.
+    Discrete,
+    /// A graphics processor that shares the memory of the machine.
+    Integrated,
+    /// A graphics processor of a virtual machine.
+    Virtual,
+    /// Of an unknown kind.
+    Other,
+    /// A program that does a graphics processor's work on the processor, such as lavapipe.
+    Software,
+}
+
+impl Kind {
+    /// In a word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Discrete => "discrete GPU",
+            Self::Integrated => "integrated GPU",
+            Self::Virtual => "virtual GPU",
+            Self::Other => "other",
+            Self::Software => "software",
+        }
+    }
+}
+
+/// An adapter: a device of this machine as one of its drivers offers it.
+#[derive(Clone, Debug)]
+pub struct Adapter {
+    pub(super) adapter: wgpu::Adapter,
+    /// Its name, such as `llvmpipe (LLVM 15.0.6, 256 bits)`.
+    pub name: String,
+    /// What it is.
+    pub kind: Kind,
+    /// Its driver and the driver's version.
+    pub driver: String,
+    /// The interface it is reached by: `Vulkan`, `Metal`, `Dx12`.
+    pub backend: String,
+}
+
+impl Adapter {
+    fn new(adapter: wgpu::Adapter) -> Self {
+        let info = adapter.get_info();
+        let kind = match info.device_type {
+            wgpu::DeviceType::DiscreteGpu => Kind::Discrete,
+            wgpu::DeviceType::IntegratedGpu => Kind::Integrated,
+            wgpu::DeviceType::VirtualGpu => Kind::Virtual,
+            wgpu::DeviceType::Other => Kind::Other,
+            wgpu::DeviceType::Cpu => Kind::Software,
+        };
+        let driver = format!("{} {}", info.driver, info.driver_info).trim().to_owned();
+        Self { name: info.name, kind, driver, backend: format!("{:?}", info.backend), adapter }
+    }
+
+    /// Does the kind of hardware promise more than the processor itself?
+    pub fn is_hardware(&self) -> bool {
+        matches!(self.kind, Kind::Discrete | Kind::Integrated | Kind::Virtual)
+    }
+
+    /// The limits that matter here, by name.
+    pub fn limits(&self) -> [(&'static str, u64); 5] {
+        let limits = self.adapter.limits();
+        [
+            ("storage binding", limits.max_storage_buffer_binding_size),
+            ("buffer", limits.max_buffer_size),
+            ("uniform binding", limits.max_uniform_buffer_binding_size),
+            ("invocations per workgroup", u64::from(limits.max_compute_invocations_per_workgroup)),
+            ("workgroup memory", u64::from(limits.max_compute_workgroup_storage_size)),
+        ]
+    }
+
+    /// In one line.
+    pub fn in_words(&self) -> String {
+        format!("{} ({}, {}, {})", self.name, self.kind.name(), self.backend, self.driver)
+    }
+
+    /// Opens it.
+    ///
+    /// # Errors
+    /// [`Error::Gpu`] if the driver refuses, or offers less than the kernels need.
+    pub fn open(&self) -> Result<Device> {
+        Device::open(self)
+    }
+}
+
+/// All adapters that can compute, best kind first; of one kind in the drivers' order. Empty without a driver.
+pub fn adapters() -> Vec<Adapter> {
+    // Some platforms have no interface that is compiled in; making an instance there would panic.
+    if wgpu::Instance::enabled_backend_features().is_empty() {
+        return Vec::new();
+    }
+    let mut wanted = wgpu::InstanceDescriptor::new_without_display_handle();
+    wanted.flags = wgpu::InstanceFlags::empty();
+    let instance = wgpu::Instance::new(wanted);
+    let found = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
+    let computes = |adapter: &wgpu::Adapter| adapter.get_downlevel_capabilities().flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS);
+    let mut adapters: Vec<_> = found.into_iter().filter(computes).map(Adapter::new).collect();
+    adapters.sort_by_key(|adapter| adapter.kind);
+    adapters
+}
+
+/// The best adapter, or the best of those whose name contains `name`, whatever the case of the letters.
+///
+/// # Errors
+/// [`Error::Request`] that lists what there is.
+pub fn choose(name: Option<&str>) -> Result<Adapter> {
+    let adapters = adapters();
+    if adapters.is_empty() {
+        return Err(Error::Request(
+            "no GPU driver was found; install one (in software: the Debian package mesa-vulkan-drivers), or use --engine cpu".to_owned(),
+        ));
+    }
+    let wanted = name.unwrap_or_default().to_lowercase();
+    match adapters.iter().find(|adapter| adapter.name.to_lowercase().contains(&wanted)) {
+        Some(adapter) => Ok(adapter.clone()),
+        None => {
+            let names: Vec<_> = adapters.iter().map(|adapter| format!("\"{}\"", adapter.name)).collect();
+            Err(Error::Request(format!("no adapter's name contains \"{}\"; there is: {}", name.unwrap_or_default(), names.join(", "))))
+        }
+    }
+}

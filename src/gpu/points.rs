@@ -1,0 +1,107 @@
+//! A model evaluated point by point on a device: every output and condition margin with its bound.
+
+use super::source::COMMON;
+use super::{Device, Program, model_prelude, model_source};
+use crate::error::Result;
+use crate::models::{CONDITIONS, INPUTS, Model, OUTPUTS};
+use crate::real::RunningError;
+use std::fmt::Write;
+
+/// Points per dispatch.
+const BATCH: usize = 1 << 16;
+
+/// A model's formula on a device, for points one by one.
+#[derive(Debug)]
+pub struct PointKernel {
+    model: &'static Model,
+    device: Device,
+    program: Program,
+}
+
+/// What a device finds for one point, in SI units.
+pub type Found = ([RunningError; OUTPUTS], [RunningError; CONDITIONS]);
+
+impl PointKernel {
+    /// The kernel's text. `perturb`: outputs that are to come out wrong by this part of their value, for testing.
+    pub fn source(model: &Model, perturb: &[(usize, f64)]) -> String {
+        let fields = model.kernel.fields();
+        let mut text = model_prelude(model);
+        let (inputs, outputs) = (fields.inputs.len(), model.outputs.len());
+        let mut line = |it: std::fmt::Arguments<'_>| writeln!(text, "{it}").expect("a text takes everything");
+        line(format_args!("const INPUTS: u32 = {inputs}u;\nconst OUTPUTS: u32 = {outputs}u;\n"));
+        line(format_args!("fn read_inputs(at: u32) -> Inputs {{\n    var inputs: Inputs;"));
+        for (number, field) in fields.inputs.iter().enumerate() {
+            line(format_args!("    inputs.{field} = given[at + {number}u];"));
+        }
+        line(format_args!("    return inputs;\n}}\n"));
+        line(format_args!("fn write_outputs(at: u32, out: Outputs) {{"));
+        for (number, field) in fields.outputs.iter().take(outputs).enumerate() {
+            let factor = perturb.iter().filter(|(output, _)| *output == number).fold(1.0, |factor, (_, part)| factor * (1.0 + part));
+            line(format_args!("    found[at + {number}u] = Real(out.{field}.value * {factor:?}, out.{field}.bound);"));
+        }
+        line(format_args!("}}\n"));
+        [COMMON, &text, &model_source(model), include_str!("../../shaders/evaluate.wgsl")].join("\n")
+    }
+
+    /// Compiles the kernel of a model.
+    ///
+    /// # Errors
+    /// [`Error::Gpu`](crate::error::Error::Gpu).
+    pub fn new(device: &Device, model: &'static Model, perturb: &[(usize, f64)]) -> Result<Self> {
+        Self::from_source(device, model, &Self::source(model, perturb))
+    }
+
+    /// Compiles a kernel of this text, such as one with a mistake that a test must notice.
+    ///
+    /// # Errors
+    /// [`Error::Gpu`](crate::error::Error::Gpu).
+    pub fn from_source(device: &Device, model: &'static Model, source: &str) -> Result<Self> {
+        let program = Program::new(device, source, &["evaluate"])?;
+        Ok(Self { model, device: device.clone(), program })
+    }
+
+    /// Evaluates points given in SI units.
+    ///
+    /// # Errors
+    /// [`Error::Gpu`](crate::error::Error::Gpu).
+    pub fn evaluate(&self, points: &[[f64; INPUTS]]) -> Result<Vec<Found>> {
+        let mut found = Vec::with_capacity(points.len());
+        for batch in points.chunks(BATCH) {
+            found.extend(self.batch(batch)?);
+        }
+        Ok(found)
+    }
+
+    fn batch(&self, points: &[[f64; INPUTS]]) -> Result<Vec<Found>> {
+        let (inputs, outputs) = (self.model.inputs.len(), self.model.outputs.len());
+        let given: Vec<[f32; 2]> = points.iter().flat_map(|point| point[..inputs].iter().map(|&value| pair(value))).collect();
+        let width = outputs + CONDITIONS;
+        let device = &self.device;
+        let results = device.buffer("found", (points.len() * width * 8) as u64, wgpu::BufferUsages::STORAGE);
+        let given = device.storage("given", &given);
+        let header = device.uniform("points", &[points.len() as u32, 0, 0, 0]);
+        let bound = self.program.bind(&[("points", &header), ("given", &given), ("found", &results)]);
+        let groups = (points.len() as u32).div_ceil(64);
+        device.submit(|encoder| self.program.dispatch(encoder, "evaluate", &bound, [groups, 1]));
+        let values: Vec<[f32; 2]> = device.fetch(&results, points.len() * width)?;
+        let number = |[value, bound]: [f32; 2]| RunningError { value, bound: f64::from(bound) };
+        Ok(values
+            .chunks(width)
+            .map(|row| {
+                let none = RunningError { value: 0.0, bound: 0.0 };
+                let (mut out, mut margins) = ([none; OUTPUTS], [none; CONDITIONS]);
+                out.iter_mut().zip(&row[..outputs]).for_each(|(to, from)| *to = number(*from));
+                margins.iter_mut().zip(&row[outputs..]).for_each(|(to, from)| *to = number(*from));
+                (out, margins)
+            })
+            .collect())
+    }
+}
+
+/// An input as a device receives it: its f32 value, and how far that is from the f64 one.
+#[allow(clippy::cast_possible_truncation, reason = "rounding to f32 is the point; the bound is rounded up")]
+pub fn pair(value: f64) -> [f32; 2] {
+    let near = value as f32;
+    let away = (value - f64::from(near)).abs();
+    [near, if away == 0.0 { 0.0 } else { (away as f32).next_up() }]
+}

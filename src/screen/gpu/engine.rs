@@ -1,0 +1,452 @@
+//! The device's side of a sweep: buffers, tiles in flight, and what comes back.
+
+use super::kernel::{self, Coordinate, ENTRIES, check_words, coordinates, survivor_words, text};
+use super::known::{self, Answers, Known};
+use super::layout::{Layout, Level, MOST_GROUPS, push_level, used_outputs};
+use crate::error::Result;
+use crate::gpu::{Buffer, Device, Program, Wait};
+use crate::plan::Plan;
+use crate::real::RunningError;
+use crate::study::{Best, Quantity};
+use bytemuck::{Pod, Zeroable};
+use std::mem::offset_of;
+use std::ops::Range;
+
+/// Most bytes of the table that passes between the stages.
+const PREPARED_BYTES: u64 = 64 << 20;
+/// Survivors that come back with the counts; more take a second trip.
+const FIRST_TRIP: u64 = 1 << 14;
+/// Room for survivors of a tile.
+const CAPACITY: u64 = 1 << 20;
+/// Most designs of a tile: counts and places are 32-bit numbers.
+const MOST_DESIGNS: u64 = 1 << 31;
+/// Counts before the histograms.
+const HEAD: usize = 3;
+
+/// The uniform `Tile` of the kernel.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct Tile {
+    rows: u32,
+    first_lane: u32,
+    last_lane: u32,
+    capacity: u32,
+    index: [u32; 2],
+    window: u32,
+    unused: u32,
+    digits: [u32; 48],
+}
+
+impl Tile {
+    /// Its members as the kernel must have them.
+    const MEMBERS: [(&'static str, usize); 8] = [
+        ("rows", offset_of!(Tile, rows)),
+        ("first_lane", offset_of!(Tile, first_lane)),
+        ("last_lane", offset_of!(Tile, last_lane)),
+        ("capacity", offset_of!(Tile, capacity)),
+        ("index", offset_of!(Tile, index)),
+        ("window", offset_of!(Tile, window)),
+        ("unused", offset_of!(Tile, unused)),
+        ("digits", offset_of!(Tile, digits)),
+    ];
+}
+
+/// A design that the device cannot decide alone.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Survivor {
+    /// Its position in the sweep's order.
+    pub position: u64,
+    /// Not counted by the device: f64 decides whether it is feasible.
+    pub unsure: bool,
+    /// May it be part of the top list, or an extreme?
+    pub end: bool,
+    /// A lower bound of each coordinate of the front, as the device has it, if it may be on the front.
+    pub front: Option<[f32; 6]>,
+    /// A lower and an upper bound of the key in each map of values, if it may be the best of a cell.
+    pub maps: Option<Vec<[f32; 2]>>,
+}
+
+/// What a device counted in a tile.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TileCounts {
+    /// Surely feasible designs.
+    pub sure: u64,
+    /// Designs that f64 must decide.
+    pub unsure: u64,
+    /// Per histogram: below, bins, above.
+    pub histograms: Vec<Vec<u32>>,
+    /// Per map of shares: feasible designs per cell.
+    pub shares: Vec<Vec<u32>>,
+}
+
+/// A tile that the device is working on.
+#[derive(Debug)]
+pub struct InFlight {
+    /// Its positions.
+    pub range: Range<u64>,
+    rows: Range<u64>,
+    slot: usize,
+    wait: Wait,
+}
+
+/// One design as the device judged it, for comparison with f64.
+#[derive(Clone, Debug)]
+pub struct Checked {
+    /// 0 no, 1 unsure, 2 yes.
+    pub verdict: u32,
+    /// Worst value and promised error of each tracked quantity, outputs in SI.
+    pub worst: Vec<RunningError>,
+    /// Value and promised error of each used output in one scenario, in SI.
+    pub asked: Vec<RunningError>,
+    /// That scenario: slow, fast.
+    pub scenario: (u64, u64),
+}
+
+/// Buffers of a tile; there are two, so that one is read while the other is worked on.
+#[derive(Debug)]
+struct Slot {
+    tile: Buffer,
+    known: Buffer,
+    beaters: Buffer,
+    counts: Buffer,
+    survivors: Buffer,
+    landing: Buffer,
+    bound: wgpu::BindGroup,
+}
+
+/// Judges tiles of a study on a device.
+#[derive(Debug)]
+pub struct GpuEngine<'p> {
+    plan: &'p Plan,
+    layout: Layout,
+    coordinates: Vec<Coordinate>,
+    device: Device,
+    program: Program,
+    levels: Buffer,
+    zeros: Buffer,
+    cells: Buffer,
+    slots: Vec<Slot>,
+    next: usize,
+    /// Levels of the outermost slow dimension that the device has.
+    window: Range<u64>,
+    window_room: u64,
+    count_words: u64,
+    words: usize,
+    most_rows: u64,
+}
+
+/// What makes an engine another one than the study asks for; for testing.
+#[derive(Clone, Debug, Default)]
+pub struct Wrong {
+    /// Outputs that come out wrong by this part of their value.
+    pub perturb: Vec<(usize, f64)>,
+    /// Pieces of the kernel's text to be replaced.
+    pub replace: Vec<(String, String)>,
+    /// Another text for the whole kernel.
+    pub text: Option<String>,
+    /// Room for survivors, if not the usual.
+    pub capacity: Option<u64>,
+}
+
+impl<'p> GpuEngine<'p> {
+    /// An engine for a plan. `ranges`: of the study's histograms. `limited_loops`: does the driver end long loops?
+    ///
+    /// # Errors
+    /// [`Error::Request`](crate::error::Error::Request) if the study cannot be screened on a device,
+    /// [`Error::Gpu`](crate::error::Error::Gpu) if the device fails.
+    pub fn new(plan: &'p Plan, ranges: &[(f64, f64)], device: &Device, limited_loops: bool, wrong: &Wrong) -> Result<Self> {
+        let layout = Layout::new(plan, limited_loops)?;
+        let mut source = wrong.text.clone().unwrap_or_else(|| kernel_text(plan, &layout, ranges, &wrong.perturb));
+        for (piece, other) in &wrong.replace {
+            assert!(source.contains(piece), "the kernel has no {piece}");
+            source = source.replace(piece, other);
+        }
+        let program = Program::new(device, &source, ENTRIES)?;
+        program.require_structure("Tile", size_of::<Tile>(), &Tile::MEMBERS)?;
+        program.require_structure("Known", size_of::<Known>(), &Known::MEMBERS)?;
+        let coordinates = coordinates(plan, &layout);
+        let storage = wgpu::BufferUsages::STORAGE;
+        let binding = device.limits.max_storage_buffer_binding_size.min(device.limits.max_buffer_size);
+
+        // The window holds the levels of the outermost dimension that a tile's rows can touch.
+        let inner: u64 = layout.slow.iter().skip(1).map(|it| it.count).product();
+        let row_words = 3 + plan.study.report.maps.len() as u64 + 2 * (plan.tracked.len() + layout.row_inputs.len()) as u64;
+        let row_bytes = layout.prepared_bytes().max(4 * row_words);
+        let most_rows = (PREPARED_BYTES.min(binding) / row_bytes).clamp(1, 1 << 21).min(plan.slow.count());
+        let outermost = layout.slow.first().map_or(1, |it| it.count);
+        let window_room = (most_rows / inner.max(1) + 2).min(outermost);
+        let columns = layout.slow.first().map_or(1, |it| it.inputs.len()) as u64;
+        let levels = device.buffer("levels", (layout.levels.len() as u64 + window_room * columns) * 16, storage);
+        device.write(&levels, 0, &layout.levels);
+
+        let shares = plan.study.report.maps.iter().filter(|it| it.value == Best::Share);
+        let cells_of = |spec: &crate::study::MapSpec| plan.study.design[spec.x].count() * plan.study.design[spec.y].count();
+        let bins: usize = plan.study.report.histograms.iter().map(|it| it.bins + 2).sum();
+        let count_words = (HEAD + bins) as u64 + shares.map(cells_of).sum::<u64>();
+        let value_cells: u64 = plan.study.report.maps.iter().filter(|it| it.value != Best::Share).map(cells_of).sum();
+        if count_words.max(value_cells) * 4 > binding {
+            return Err(device.error("the maps of this study are larger than a buffer of this device; use --engine cpu"));
+        }
+        let words = survivor_words(plan).max(check_words(plan));
+        let capacity = wrong.capacity.unwrap_or(CAPACITY).min(binding / (4 * words as u64));
+
+        let steady: &[Level] = if layout.steady.is_empty() { &[[0.0; 4]] } else { &layout.steady };
+        let steady = if layout.steady_is_uniform() { device.uniform("steady", steady) } else { device.storage("steady", steady) };
+        let prepared = device.buffer("prepared", most_rows * layout.prepared_bytes(), storage);
+        let rows = device.buffer("rows", most_rows * row_words * 4, storage);
+        let cells = device.buffer("cells", value_cells * 4, storage);
+        let zeros = device.storage("zeros", &vec![0u32; count_words as usize]);
+        let list = known::known(plan, &coordinates, |_| false, &Answers::default()).1.len() as u64;
+        let slots = (0..2).map(|_| {
+            let tile = device.buffer("tile", size_of::<Tile>() as u64, wgpu::BufferUsages::UNIFORM);
+            let known = device.buffer("known", size_of::<Known>() as u64, wgpu::BufferUsages::UNIFORM);
+            let beaters = device.buffer("beaters", list * 4, storage);
+            let counts = device.buffer("counts", count_words * 4, storage);
+            let survivors = device.buffer("survivors", capacity * words as u64 * 4, storage);
+            let landing = device.landing("landing", count_words * 4 + FIRST_TRIP.min(capacity) * survivor_words(plan) as u64 * 4);
+            let bound = program.bind(&[
+                ("tile", &tile),
+                ("known", &known),
+                ("steady", &steady),
+                ("levels", &levels),
+                ("prepared_table", &prepared),
+                ("row_table", &rows),
+                ("counts", &counts),
+                ("survivors", &survivors),
+                ("beaters", &beaters),
+                ("cells", &cells),
+            ]);
+            Slot { tile, known, beaters, counts, survivors, landing, bound }
+        });
+        let slots = slots.collect();
+        device.check()?;
+        Ok(Self {
+            plan,
+            layout,
+            coordinates,
+            device: device.clone(),
+            program,
+            levels,
+            zeros,
+            cells,
+            slots,
+            next: 0,
+            window: 0..0,
+            window_room,
+            count_words,
+            words,
+            most_rows,
+        })
+    }
+
+    /// The longest tile that starts at `range.start`, lies within `range` and has about `designs` designs.
+    pub fn tile(&self, range: &Range<u64>, designs: u64) -> Range<u64> {
+        let width = self.plan.fast.count();
+        let cut = self.layout.cut;
+        let wanted = designs.clamp(1, MOST_DESIGNS).min(range.end - range.start);
+        let inside = range.start % width;
+        if inside != 0 || wanted < width {
+            // Part of one row.
+            let most = (width - inside).min(MOST_GROUPS * cut.lanes_each * cut.group_chunks);
+            return range.start..range.start + wanted.min(most);
+        }
+        let rows = (wanted / width).min(self.most_rows).min(MOST_GROUPS * cut.group_rows);
+        range.start..range.start + rows * width
+    }
+
+    /// Tells the device the best keys of the maps' cells.
+    pub fn tell_cells(&mut self, answers: &Answers) {
+        self.device.write(&self.cells, 0, &known::cells(self.plan, answers));
+    }
+
+    /// Starts a tile, as [`GpuEngine::tile`] cuts them. There may be two at a time.
+    pub fn start(&mut self, range: Range<u64>, answers: &Answers) -> InFlight {
+        let slot = self.next;
+        self.next = (self.next + 1) % self.slots.len();
+        let exact = |quantity| matches!(quantity, Quantity::Input(input) if kernel::is_exact(self.plan, &self.layout, input));
+        let (known, beaters) = known::known(self.plan, &self.coordinates, exact, answers);
+        self.device.write(&self.slots[slot].known, 0, &[known]);
+        self.device.write(&self.slots[slot].beaters, 0, &beaters);
+        let (rows, groups) = self.place(slot, &range);
+        let it = &self.slots[slot];
+        let counts = self.count_words * 4;
+        let trip = it.landing.size() - counts.next_multiple_of(4);
+        let trip = trip.min(it.survivors.size()) / 4 * 4;
+        let wait = self.device.submit(|encoder| {
+            encoder.copy_buffer_to_buffer(&self.zeros, 0, &it.counts, 0, counts);
+            self.first_stage(encoder, it, &rows);
+            self.program.dispatch(encoder, "sweep", &it.bound, groups);
+            encoder.copy_buffer_to_buffer(&it.counts, 0, &it.landing, 0, counts);
+            encoder.copy_buffer_to_buffer(&it.survivors, 0, &it.landing, counts, trip);
+        });
+        InFlight { range, rows, slot, wait }
+    }
+
+    fn first_stage(&self, encoder: &mut wgpu::CommandEncoder, slot: &Slot, rows: &Range<u64>) {
+        let groups = ((rows.end - rows.start) as u32).div_ceil(64);
+        self.program.dispatch(encoder, "prepare_rows", &slot.bound, [groups, self.layout.slow_scenarios.count as u32]);
+        self.program.dispatch(encoder, "judge_rows", &slot.bound, [groups, 1]);
+    }
+
+    /// Writes a slot's tile; returns its rows and the workgroups of its second stage.
+    fn place(&mut self, slot: usize, range: &Range<u64>) -> (Range<u64>, [u32; 2]) {
+        let width = self.plan.fast.count();
+        let rows = range.start / width..range.end.div_ceil(width);
+        let lanes = range.start % width..if rows.end - rows.start == 1 { (range.end - 1) % width + 1 } else { width };
+        let digits = self.plan.slow.digits(rows.start);
+        let mut tile = Tile::zeroed();
+        tile.rows = (rows.end - rows.start) as u32;
+        (tile.first_lane, tile.last_lane) = (lanes.start as u32, lanes.end as u32);
+        tile.capacity = (self.slots[slot].survivors.size() / (4 * survivor_words(self.plan) as u64)) as u32;
+        if let Some(&outermost) = digits.first() {
+            let last = self.plan.slow.digits(rows.end - 1)[0];
+            self.move_window(outermost, last);
+            for (to, &digit) in tile.digits.iter_mut().zip(&digits) {
+                *to = digit as u32;
+            }
+            tile.digits[0] = (outermost - self.window.start) as u32;
+            let index = self.window.start.wrapping_mul(self.layout.slow[0].stride);
+            tile.index = [index as u32, (index >> 32) as u32];
+            tile.window = self.window.start as u32;
+        }
+        self.device.write(&self.slots[slot].tile, 0, &[tile]);
+        let groups = self.layout.cut.groups(rows.end - rows.start, lanes.end - lanes.start);
+        (rows, groups)
+    }
+
+    /// Makes the levels `first..=last` of the outermost slow dimension part of the window.
+    fn move_window(&mut self, first: u64, last: u64) {
+        if self.window.contains(&first) && self.window.contains(&last) {
+            return;
+        }
+        let dimensions: Vec<_> = self.plan.slow.dimensions().collect();
+        let dimension = dimensions[0].0;
+        self.window = first..(first + self.window_room).min(dimension.count());
+        let mut entries = Vec::new();
+        self.window.clone().for_each(|level| push_level(self.plan, dimension, level, &mut entries));
+        self.device.write(&self.levels, self.layout.levels.len() as u64 * 16, &entries);
+    }
+
+    /// Waits for a tile. `None` if it had more survivors than there is room for: it must be repeated in parts.
+    ///
+    /// # Errors
+    /// [`Error::Gpu`](crate::error::Error::Gpu).
+    pub fn finish(&self, tile: &InFlight) -> Result<Option<(TileCounts, Vec<Survivor>)>> {
+        let slot = &self.slots[tile.slot];
+        let words = survivor_words(self.plan);
+        let landed: Vec<u32> = self.device.read(&slot.landing, (slot.landing.size() / 4) as usize, &tile.wait)?;
+        let (counts, first_trip) = landed.split_at(self.count_words as usize);
+        let appended = counts[2] as usize;
+        if appended as u64 > slot.survivors.size() / (4 * words as u64) {
+            return Ok(None);
+        }
+        let second_trip: Vec<u32>;
+        let survivors = if appended * words <= first_trip.len() {
+            &first_trip[..appended * words]
+        } else {
+            second_trip = self.device.fetch(&slot.survivors, appended * words)?;
+            &second_trip[..]
+        };
+        let mut rest = &counts[HEAD..];
+        let mut take = |count: usize| {
+            let (taken, left) = rest.split_at(count);
+            rest = left;
+            taken.to_vec()
+        };
+        let report = &self.plan.study.report;
+        let histograms = report.histograms.iter().map(|it| take(it.bins + 2)).collect();
+        let cells =
+            |spec: &crate::study::MapSpec| (self.plan.study.design[spec.x].count() * self.plan.study.design[spec.y].count()) as usize;
+        let shares = report.maps.iter().filter(|it| it.value == Best::Share).map(|it| take(cells(it))).collect();
+        let counts = TileCounts { sure: counts[0].into(), unsure: counts[1].into(), histograms, shares };
+        let mut survivors: Vec<Survivor> = survivors.chunks(words).map(|record| self.survivor(tile, record)).collect();
+        survivors.sort_unstable_by_key(|it| it.position);
+        Ok(Some((counts, survivors)))
+    }
+
+    fn survivor(&self, tile: &InFlight, record: &[u32]) -> Survivor {
+        let (lane, why) = (u64::from(record[1] & 0x00ff_ffff), record[1] >> 24);
+        let objectives = self.plan.study.objectives.len();
+        let front = (why & 2 != 0).then(|| {
+            let mut keys = [0.0; 6];
+            keys.iter_mut().zip(&record[2..2 + objectives]).for_each(|(key, &bits)| *key = f32::from_bits(bits));
+            keys
+        });
+        let maps =
+            (why & 8 != 0).then(|| record[2 + objectives..].chunks(2).map(|it| [f32::from_bits(it[0]), f32::from_bits(it[1])]).collect());
+        let position = (tile.rows.start + u64::from(record[0])) * self.plan.fast.count() + lane;
+        Survivor { position, unsure: why & 1 != 0, end: why & 4 != 0, front, maps }
+    }
+
+    /// Everything that the device says of the designs of a tile, in order.
+    ///
+    /// # Errors
+    /// [`Error::Gpu`](crate::error::Error::Gpu).
+    pub fn check(&mut self, range: &Range<u64>) -> Result<Vec<Checked>> {
+        let mut records = Vec::new();
+        let mut rest = range.clone();
+        let room = self.slots[0].survivors.size() / (4 * self.words as u64);
+        while !rest.is_empty() {
+            let part = self.tile(&rest, room.min(65_535 * 64));
+            let (rows, _) = self.place(0, &part);
+            let slot = &self.slots[0];
+            let designs = part.end - part.start;
+            let wait = self.device.submit(|encoder| {
+                self.first_stage(encoder, slot, &rows);
+                let lanes = designs / (rows.end - rows.start);
+                let groups = (rows.end - rows.start) * lanes.div_ceil(self.layout.cut.group);
+                self.program.dispatch(encoder, "check", &slot.bound, [groups.div_ceil(64) as u32, 1]);
+            });
+            self.device.wait(&wait)?;
+            let words = check_words(self.plan);
+            let values: Vec<u32> = self.device.fetch(&slot.survivors, designs as usize * words)?;
+            records.extend(values.chunks(words).enumerate().map(|(at, record)| self.checked(&part, at as u64, record)));
+            rest.start = part.end;
+        }
+        Ok(records)
+    }
+
+    fn checked(&self, part: &Range<u64>, at: u64, record: &[u32]) -> Checked {
+        let width = self.plan.fast.count();
+        let first_row = part.start / width;
+        let position = part.start + at;
+        let (row, lane) = ((position / width - first_row) as u32, (position % width) as u32);
+        let (slow, fast) = (self.layout.slow_scenarios.count as u32, self.layout.fast_scenarios.count as u32);
+        let scenario = row.wrapping_mul(7919).wrapping_add(lane.wrapping_mul(104_729)) % slow.wrapping_mul(fast);
+        let number = |pair: &[u32]| RunningError { value: f32::from_bits(pair[0]), bound: f64::from(f32::from_bits(pair[1])) };
+        let mut numbers = record[1..].chunks(2).map(number);
+        let worst = numbers.by_ref().take(self.plan.tracked.len()).collect();
+        Checked { verdict: record[0], worst, asked: numbers.collect(), scenario: (u64::from(scenario / fast), u64::from(scenario % fast)) }
+    }
+
+    /// The used outputs, in the order of [`Checked::asked`].
+    pub fn used_outputs(&self) -> Vec<usize> {
+        let used = used_outputs(self.plan);
+        (0..self.plan.study.model.outputs.len()).filter(|output| used >> output & 1 == 1).collect()
+    }
+
+    /// The device.
+    pub fn device(&self) -> &Device {
+        &self.device
+    }
+}
+
+/// Can a study be screened on a device?
+///
+/// # Errors
+/// [`Error::Request`](crate::error::Error::Request) that says why not.
+pub fn supports(plan: &Plan, limited_loops: bool) -> Result<()> {
+    Layout::new(plan, limited_loops).map(|_| ())
+}
+
+/// The kernel that a study is screened with, as it would be on a driver that ends long loops.
+///
+/// # Errors
+/// [`Error::Request`](crate::error::Error::Request) if the study cannot be screened on a device.
+pub fn kernel_of(plan: &Plan, ranges: &[(f64, f64)], perturb: &[(usize, f64)]) -> Result<String> {
+    Ok(kernel_text(plan, &Layout::new(plan, true)?, ranges, perturb))
+}
+
+fn kernel_text(plan: &Plan, layout: &Layout, ranges: &[(f64, f64)], perturb: &[(usize, f64)]) -> String {
+    kernel::histogram_constants(plan, ranges) + &text(plan, layout, perturb)
+}

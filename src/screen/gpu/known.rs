@@ -1,0 +1,255 @@
+//! What the device is told of the answers so far, so that it can leave out what cannot be part of them.
+
+use super::kernel::{Coordinate, bins, round_up, threshold, uses_table};
+use super::layout::{KILLERS, LIST, on_device, sign};
+use crate::plan::Plan;
+use crate::study::{Goal, Quantity};
+use bytemuck::{Pod, Zeroable};
+use std::mem::offset_of;
+
+/// The uniform `Known` of the kernel.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub struct Known {
+    killers: [[f32; 8]; KILLERS],
+    top: [f32; 4],
+    top_index: [u32; 4],
+    extremes: [[f32; 4]; 6],
+    extreme_indices: [[u32; 4]; 6],
+    table: [f32; 4],
+}
+
+impl Known {
+    /// Its members as the kernel must have them.
+    pub(super) const MEMBERS: [(&'static str, usize); 6] = [
+        ("killers", offset_of!(Known, killers)),
+        ("top", offset_of!(Known, top)),
+        ("top_index", offset_of!(Known, top_index)),
+        ("extremes", offset_of!(Known, extremes)),
+        ("extreme_indices", offset_of!(Known, extreme_indices)),
+        ("table", offset_of!(Known, table)),
+    ];
+}
+
+/// What is known of the answers, in f64, as the reducers have it.
+#[derive(Clone, Debug, Default)]
+pub struct Answers {
+    /// Keys of certified points of the front, point after point; less is better.
+    pub front: Vec<f64>,
+    /// Key and index of the worst of the best K, once there are K.
+    pub top: Option<(f64, u64)>,
+    /// Per objective: least and largest value with their indices.
+    pub extremes: Vec<[Option<(f64, u64)>; 2]>,
+    /// Per map of values, per cell: the best key.
+    pub cells: Vec<Vec<f64>>,
+}
+
+impl Answers {
+    /// Takes over what `other` knows better; the fronts stay apart.
+    pub fn tighten(&mut self, other: &Self) {
+        let better = |a: (f64, u64), b: (f64, u64)| a.0 < b.0 || (a.0 == b.0 && a.1 < b.1);
+        if let Some(top) = other.top
+            && self.top.is_none_or(|own| better(top, own))
+        {
+            self.top = Some(top);
+        }
+        for (own, other) in self.extremes.iter_mut().zip(&other.extremes) {
+            for (side, (own, other)) in [1.0, -1.0].into_iter().zip(own.iter_mut().zip(other)) {
+                let key = |(value, index): (f64, u64)| (side * value, index);
+                if let Some(other) = other
+                    && own.is_none_or(|own| better(key(*other), key(own)))
+                {
+                    *own = Some(*other);
+                }
+            }
+        }
+        for (own, other) in self.cells.iter_mut().flatten().zip(other.cells.iter().flatten()) {
+            *own = own.min(*other);
+        }
+    }
+}
+
+fn halves(index: u64) -> [u32; 2] {
+    [index as u32, (index >> 32) as u32]
+}
+
+/// An f32 that reads back as `value`?
+#[allow(clippy::cast_possible_truncation, reason = "the question is what rounding loses")]
+fn is_held(value: f64) -> bool {
+    f64::from(value as f32) == value
+}
+
+/// One side's threshold: the value as the device has it, rounded away from the better side, whether it is exact, and the index.
+#[allow(clippy::cast_possible_truncation, reason = "rounding to f32 is the point")]
+fn end(plan: &Plan, exact: bool, quantity: Quantity, held: Option<(f64, u64)>, towards: f64) -> (f32, f32, [u32; 2]) {
+    match held {
+        None => (f32::INFINITY * towards as f32, 0.0, [0; 2]),
+        Some((value, index)) if exact => (value as f32, 1.0, halves(index)),
+        Some((value, index)) => {
+            let on_device = on_device(plan, quantity, value);
+            // The unit's conversion rounds in f64; zero stays zero.
+            let widened = on_device * towards + on_device.abs() * 1e-15;
+            let known = f32::from(is_held(on_device) && value == 0.0);
+            (round_up(widened) * towards as f32, known, halves(index))
+        }
+    }
+}
+
+/// The uniform and the list or table that stand for the answers so far.
+pub fn known(plan: &Plan, coordinates: &[Coordinate], is_exact: impl Fn(Quantity) -> bool, answers: &Answers) -> (Known, Vec<f32>) {
+    let objectives = &plan.study.objectives;
+    let dimensions = objectives.len();
+    let mut known = Known::zeroed();
+    known.killers = [[f32::INFINITY; 8]; KILLERS];
+    // Sorted by the first coordinate, as the front is: the kernel relies on it where there are two.
+    let points: Vec<Vec<f32>> = answers
+        .front
+        .chunks(dimensions.max(1))
+        .map(|key| {
+            key.iter().zip(objectives).zip(coordinates).map(|((&key, it), &coordinate)| threshold(plan, it, coordinate, key)).collect()
+        })
+        .collect();
+    for (killer, point) in known.killers.iter_mut().zip(chosen(&points, KILLERS)) {
+        killer[..dimensions].copy_from_slice(point);
+    }
+    known.top = [f32::INFINITY, 0.0, 0.0, 0.0];
+    if let (Some(top), Some((key, index))) = (plan.study.report.top, answers.top) {
+        let side = sign(top.goal);
+        let (value, exact, index) = end(plan, is_exact(top.by), top.by, Some((side * key, index)), side);
+        // As a key: less is better whatever the goal.
+        known.top = [value * side as f32, exact, 0.0, 0.0];
+        known.top_index[..2].copy_from_slice(&index);
+    }
+    for ((extreme, indices), (objective, held)) in
+        known.extremes.iter_mut().zip(&mut known.extreme_indices).zip(objectives.iter().zip(&answers.extremes))
+    {
+        let exact = is_exact(objective.quantity);
+        let (least, least_exact, least_index) = end(plan, exact, objective.quantity, held[0], 1.0);
+        let (largest, largest_exact, largest_index) = end(plan, exact, objective.quantity, held[1], -1.0);
+        *extreme = [least, largest, least_exact, largest_exact];
+        *indices = [least_index[0], least_index[1], largest_index[0], largest_index[1]];
+    }
+    let beaters = if uses_table(coordinates) {
+        let (table, beaters) = table(&points, bins(coordinates) as usize, dimensions);
+        known.table = table;
+        beaters
+    } else {
+        let mut list = vec![f32::INFINITY; LIST * dimensions.max(1)];
+        for (to, point) in list.chunks_mut(dimensions.max(1)).zip(chosen(&points, LIST)) {
+            to.copy_from_slice(point);
+        }
+        list
+    };
+    (known, beaters)
+}
+
+/// Points spread over the front: for each coordinate in turn those at even ranks of it, so that none lies far from one of them.
+fn chosen(points: &[Vec<f32>], count: usize) -> Vec<&[f32]> {
+    let dimensions = points.first().map_or(0, Vec::len);
+    if points.len() <= count {
+        return points.iter().map(Vec::as_slice).collect();
+    }
+    // On a curve one coordinate says where a point is; on a surface every coordinate gets its share.
+    let ranked = if dimensions == 2 { 1 } else { dimensions };
+    let mut chosen: Vec<&[f32]> = Vec::with_capacity(count);
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    for dimension in 0..ranked {
+        order.sort_by(|&a, &b| points[a][dimension].total_cmp(&points[b][dimension]));
+        let share = count / ranked + usize::from(dimension < count % ranked);
+        for place in 0..share {
+            chosen.push(&points[order[(2 * place + 1) * points.len() / (2 * share)]]);
+        }
+    }
+    chosen
+}
+
+/// The table: per bin (or pair of bins) the least last coordinate of the points that are certainly better in the others. A point
+/// counts from two bins above its own, so that no rounding of the bins' places on either side matters.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, reason = "bins are few")]
+fn table(points: &[Vec<f32>], bins: usize, dimensions: usize) -> ([f32; 4], Vec<f32>) {
+    let binned = dimensions - 1;
+    let size = bins.pow(binned as u32);
+    let mut cells = vec![f32::INFINITY; size];
+    let mut place = [0.0; 4];
+    for dimension in 0..binned {
+        let values = || points.iter().map(|point| point[dimension]);
+        let (low, high) = (values().fold(f32::INFINITY, f32::min), values().fold(f32::NEG_INFINITY, f32::max));
+        let scale = if high > low { (bins - 3) as f32 / (high - low) } else { 0.0 };
+        place[2 * dimension] = if low.is_finite() { low } else { 0.0 };
+        place[2 * dimension + 1] = if scale.is_finite() { scale } else { 0.0 };
+    }
+    let bin = |point: &[f32], dimension: usize| {
+        let place = (point[dimension] - place[2 * dimension]) * place[2 * dimension + 1];
+        place.clamp(0.0, (bins - 1) as f32) as usize + 2
+    };
+    for point in points {
+        let at: Vec<usize> = (0..binned).map(|dimension| bin(point, dimension)).collect();
+        if at.iter().all(|&bin| bin < bins) {
+            let cell = at.iter().fold(0, |cell, bin| cell * bins + bin);
+            cells[cell] = cells[cell].min(point[dimensions - 1]);
+        }
+    }
+    // The least of all cells at or below in every coordinate.
+    for dimension in 0..binned {
+        let stride = bins.pow((binned - 1 - dimension) as u32);
+        for cell in 0..size {
+            if !(cell / stride).is_multiple_of(bins) {
+                cells[cell] = cells[cell].min(cells[cell - stride]);
+            }
+        }
+    }
+    (place, cells)
+}
+
+/// The best keys of the cells of all maps of values, as ordered numbers.
+pub fn cells(plan: &Plan, answers: &Answers) -> Vec<u32> {
+    let maps = plan.study.report.maps.iter().filter_map(|spec| match spec.value {
+        crate::study::Best::Value(quantity, goal) => Some((quantity, goal)),
+        crate::study::Best::Share => None,
+    });
+    let keys = maps.zip(&answers.cells).flat_map(|((quantity, goal), cells)| {
+        let side = if goal == Goal::Min { 1.0 } else { -1.0 };
+        cells.iter().map(move |&key| ordered(round_up(side * on_device(plan, quantity, side * key)).next_up()))
+    });
+    keys.collect()
+}
+
+/// The bits of an f32 as a number of the same order, as in the kernel.
+fn ordered(value: f32) -> u32 {
+    let bits = value.to_bits();
+    if bits >> 31 == 1 { !bits } else { bits | 0x8000_0000 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_order_of_bits_is_the_order_of_numbers() {
+        let values = [f32::NEG_INFINITY, -2.0, -1e-30, 0.0, 1e-30, 1.0, f32::INFINITY];
+        assert!(values.windows(2).all(|pair| ordered(pair[0]) < ordered(pair[1])));
+    }
+
+    #[test]
+    fn the_table_never_beats_a_point_of_the_front_and_beats_most_of_what_lies_behind() {
+        for dimensions in [2, 3] {
+            let mix = |i: u64| crate::sample::mix(i) as f32 / u64::MAX as f32;
+            let all: Vec<Vec<f32>> = (0..3000u64).map(|i| (0..dimensions).map(|d| mix(8 * i + d) - 0.5).collect()).collect();
+            let beats = |a: &[f32], b: &[f32]| a.iter().zip(b).all(|(a, b)| a < b);
+            let front: Vec<Vec<f32>> = all.iter().filter(|b| !all.iter().any(|a| beats(a, b))).cloned().collect();
+            let bins = BINS_FOR_TEST[dimensions as usize - 2];
+            let (place, cells) = table(&front, bins, dimensions as usize);
+            let beaten = |point: &[f32]| {
+                let bin = |d: usize| ((point[d] - place[2 * d]) * place[2 * d + 1]).clamp(0.0, (bins - 1) as f32) as usize;
+                let cell = (0..dimensions as usize - 1).fold(0, |cell, d| cell * bins + bin(d));
+                cells[cell] < point[dimensions as usize - 1]
+            };
+            assert!(!front.iter().any(|point| beaten(point)), "{dimensions}");
+            assert!(all.iter().filter(|point| beaten(point)).all(|point| front.iter().any(|it| beats(it, point))));
+            let behind = all.len() - front.len();
+            assert!(all.iter().filter(|point| beaten(point)).count() * 10 > behind * 8, "{dimensions}: too few are beaten");
+        }
+    }
+
+    const BINS_FOR_TEST: [usize; 2] = [16_384, 256];
+}

@@ -1,0 +1,401 @@
+//! How a study lies on the device: which values pass between the stages, where the levels of every axis stand, how the work is
+//! cut into invocations.
+
+use crate::error::{Error, Result};
+use crate::models::{INPUTS, Worse, input_to_si};
+use crate::plan::{Plan, Source, dependences};
+use crate::space::{Dimension, Product};
+use crate::study::{Axis, Goal, Levels, Quantity};
+
+/// Most loop turns of one invocation: some drivers end it after 65 535 without a word.
+pub const MOST_TURNS: u64 = 55_000;
+/// Most workgroups of a dispatch along either side.
+pub const MOST_GROUPS: u64 = 65_535;
+/// Lanes of a block: their answers are the bits of one word.
+const BLOCK: u64 = 32;
+/// Lanes of one invocation where a design takes a single evaluation: what a row needs is then loaded rarely.
+const MANY_LANES: u64 = 256;
+/// Lanes that are judged together: where scenarios are many, what a row gives them is dear to load; where there is one, registers are.
+const GROUP: [u64; 2] = [4, 2];
+/// Evaluations of a small study.
+const SMALL: u64 = 20_000_000;
+/// Most levels of one dimension that are kept on the device at a time.
+pub const WINDOW: u64 = 1 << 20;
+/// Points in the list that the closer look compares with, where no table serves.
+pub const LIST: usize = 64;
+/// Bins of the look-up table along its one or two coordinates.
+pub const BINS: [u64; 2] = [16_384, 256];
+/// Most killers that every design is compared with.
+pub const KILLERS: usize = 8;
+/// Entries of a uniform buffer that every device has.
+const UNIFORM_ENTRIES: usize = 4096;
+
+/// A device's entry of one level of one input: value and bound in SI, value in its unit, 1 if constraints on inputs allow it.
+pub type Level = [f32; 4];
+
+/// A slow dimension: its levels stand in the table of levels, those of the outermost one as a window of them.
+#[derive(Clone, Debug)]
+pub struct SlowDimension {
+    /// Inputs that it sets.
+    pub inputs: Vec<usize>,
+    /// Number of levels.
+    pub count: u64,
+    /// Distance of neighbours in the study's design index.
+    pub stride: u64,
+    /// First entry in the table of levels.
+    pub offset: u32,
+}
+
+/// How the values of a fast dimension are found from the position along it.
+#[derive(Clone, Debug)]
+pub enum Values {
+    /// In the steady table, from this entry on, an entry per input and level.
+    Table(u32),
+    /// `from + position * step` in SI, within `bound`.
+    Linear {
+        /// First value.
+        from: f32,
+        /// Distance.
+        step: f32,
+        /// Largest distance from the f64 values.
+        bound: f32,
+    },
+}
+
+/// A fast dimension.
+#[derive(Clone, Debug)]
+pub struct FastDimension {
+    /// Inputs that it sets.
+    pub inputs: Vec<usize>,
+    /// Number of levels.
+    pub count: u64,
+    /// Distance of neighbours among the lanes.
+    pub lane_stride: u64,
+    /// Distance of neighbours in the study's design index.
+    pub stride: u64,
+    /// Its values.
+    pub values: Values,
+}
+
+/// Scenario inputs of one kind: an entry per input and scenario in the steady table.
+#[derive(Clone, Debug)]
+pub struct ScenarioTable {
+    /// Inputs that they set.
+    pub inputs: Vec<usize>,
+    /// Number of scenarios.
+    pub count: u64,
+    /// First entry.
+    pub offset: u32,
+}
+
+/// How work is cut.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cut {
+    /// Lanes of one invocation.
+    pub lanes_each: u64,
+    /// Lanes of a block of it.
+    pub block: u64,
+    /// Lanes that are judged together, sharing what the row gives them.
+    pub group: u64,
+    /// Are judged lanes kept for the closer look? Judging again is cheaper where there is but one scenario.
+    pub keeps: bool,
+    /// Rows of a workgroup.
+    pub group_rows: u64,
+    /// Invocations of a workgroup that share a row.
+    pub group_chunks: u64,
+}
+
+/// A study as a device sees it.
+#[derive(Clone, Debug)]
+pub struct Layout {
+    /// Values that pass from the first stage to the second, by number.
+    pub prepared: Vec<usize>,
+    /// Slow dimensions, outermost first.
+    pub slow: Vec<SlowDimension>,
+    /// Fast dimensions, outermost first.
+    pub fast: Vec<FastDimension>,
+    /// Inputs of a row that the second stage reads.
+    pub row_inputs: Vec<usize>,
+    /// Scenarios that the first stage reads.
+    pub slow_scenarios: ScenarioTable,
+    /// The others.
+    pub fast_scenarios: ScenarioTable,
+    /// Entries that never change.
+    pub steady: Vec<Level>,
+    /// Entries of the levels of all slow dimensions but the outermost, whose window follows them.
+    pub levels: Vec<Level>,
+    /// Can any design satisfy the constraints on inputs that are no design axes?
+    pub possible: bool,
+    /// Inputs whose values, rounded to f32, still differ wherever they differ in f64: as objectives they compare exactly.
+    pub exact: u64,
+    /// Inputs that f32 holds exactly.
+    pub represented: u64,
+    /// The cut.
+    pub cut: Cut,
+}
+
+impl Layout {
+    /// Lays out a study.
+    ///
+    /// # Errors
+    /// [`Error::Request`] if it cannot be screened on a device, and why.
+    pub fn new(plan: &Plan, limited_loops: bool) -> Result<Self> {
+        let refuse = |why: String| Error::Request(format!("this study cannot be screened on a GPU: {why}; use --engine cpu"));
+        let model = plan.study.model;
+        let scenarios = [&plan.slow_scenarios, &plan.fast_scenarios].map(Product::count);
+        let turns = scenarios[0].saturating_mul(scenarios[1] + 1);
+        if turns > MOST_TURNS && (limited_loops || turns > u64::from(u32::MAX) / 4) {
+            return Err(refuse(format!(
+                "{turns} loop turns over its scenarios are more than the {MOST_TURNS} that this driver can be trusted with"
+            )));
+        }
+        if scenarios[0] > MOST_GROUPS {
+            return Err(refuse(format!("{} slow scenarios are more than {MOST_GROUPS}", scenarios[0])));
+        }
+        if plan.fast.count() >= 1 << 24 {
+            return Err(refuse(format!("a row of {} designs is too long", plan.fast.count())));
+        }
+        let used = used_outputs(plan);
+        let reads = model.kernel.reads(&dependences(&plan.study, &plan.space), used);
+        let fields = model.kernel.fields();
+        let set = |inputs: u64, input: usize| inputs >> input & 1 == 1;
+
+        let mut steady = Vec::new();
+        let slow_scenarios = scenario_table(plan, &plan.slow_scenarios, &mut steady);
+        let fast_scenarios = scenario_table(plan, &plan.fast_scenarios, &mut steady);
+        let mut exact = 0;
+        let mut represented = 0;
+        for product in [&plan.slow, &plan.fast] {
+            for (dimension, _) in product.dimensions() {
+                for (column, &input) in dimension.inputs().iter().enumerate() {
+                    let (holds, differs) = in_f32(dimension, column);
+                    represented |= u64::from(holds) << input;
+                    exact |= u64::from(differs) << input;
+                }
+            }
+        }
+        let asked = asked_inputs(plan);
+        let mut fast = Vec::new();
+        let mut lane_stride = plan.fast.count();
+        for (dimension, stride) in plan.fast.dimensions() {
+            lane_stride /= dimension.count();
+            let inputs = dimension.inputs().to_vec();
+            let linear = (inputs.len() == 1 && !set(asked, inputs[0])).then(|| linear(plan, dimension, inputs[0])).flatten();
+            let values = linear.unwrap_or_else(|| {
+                let offset = steady.len() as u32;
+                (0..dimension.count()).for_each(|level| push_level(plan, dimension, level, &mut steady));
+                Values::Table(offset)
+            });
+            fast.push(FastDimension { inputs, count: dimension.count(), lane_stride, stride, values });
+        }
+
+        let mut levels = Vec::new();
+        let mut slow = Vec::new();
+        let last = plan.slow.dimensions().len();
+        for (number, (dimension, stride)) in plan.slow.dimensions().enumerate() {
+            let count = dimension.count();
+            if number > 0 && levels.len() as u64 + count * dimension.inputs().len() as u64 > WINDOW {
+                let names: Vec<_> = dimension.inputs().iter().map(|&input| model.inputs[input].name).collect();
+                return Err(refuse(format!("the axis {} has {count} values and is not the first one", names.join(" + "))));
+            }
+            let offset = if number == 0 { u32::MAX } else { levels.len() as u32 };
+            if number > 0 {
+                (0..count).for_each(|level| push_level(plan, dimension, level, &mut levels));
+            }
+            slow.push(SlowDimension { inputs: dimension.inputs().to_vec(), count, stride, offset });
+        }
+        debug_assert_eq!(slow.len(), last);
+        if let Some(outermost) = slow.first_mut() {
+            outermost.offset = levels.len() as u32;
+        }
+        let slow_inputs = plan.slow.inputs();
+        Ok(Self {
+            prepared: (0..fields.prepared.len()).filter(|&field| set(reads.prepared, field)).collect(),
+            row_inputs: (0..model.inputs.len()).filter(|&input| set(reads.inputs & slow_inputs, input)).collect(),
+            slow,
+            fast,
+            slow_scenarios,
+            fast_scenarios,
+            steady,
+            levels,
+            possible: is_possible(plan),
+            exact,
+            represented,
+            cut: Cut::new(plan),
+        })
+    }
+
+    /// Do the steady entries fit a uniform buffer? A storage buffer serves too, at twice the price of a load.
+    pub fn steady_is_uniform(&self) -> bool {
+        self.steady.len() <= UNIFORM_ENTRIES
+    }
+
+    /// Bytes that the values passed between the stages take per row.
+    pub fn prepared_bytes(&self) -> u64 {
+        self.prepared.len().max(1) as u64 * self.slow_scenarios.count * 8
+    }
+}
+
+impl Cut {
+    fn new(plan: &Plan) -> Self {
+        let turns = plan.slow_scenarios.count() * (plan.fast_scenarios.count() + 1) + 1;
+        let lanes = plan.fast.count();
+        let keeps = plan.scenarios() > 1;
+        // The driver's compiler takes longer over a group than a small study takes altogether.
+        let small = plan.designs().saturating_mul(plan.scenarios()) < SMALL;
+        let group = if small { 1 } else { GROUP[usize::from(!keeps)].min(lanes) };
+        // Turns of one lane in the closer look: a list, its neighbours, and its scenarios again where it was not kept.
+        let closer = LIST as u64 + 40 + if keeps { 0 } else { turns };
+        let most = (MOST_TURNS / (turns.div_ceil(group) + closer)).max(1);
+        let wanted = (MANY_LANES / plan.scenarios()).clamp(group.min(most), most);
+        // Chunks of equal size, so that the last one is not nearly empty.
+        let chunks = lanes.div_ceil(wanted.min(lanes).max(1));
+        let lanes_each = lanes.div_ceil(chunks).next_multiple_of(group);
+        let chunks = lanes.div_ceil(lanes_each);
+        let rows = plan.slow.count().min(8).next_power_of_two();
+        let group_chunks = chunks.next_power_of_two().min(if champions(plan) { 256 / rows } else { 64 / rows });
+        let group_rows = (64 / group_chunks).max(rows);
+        let block = if keeps { group } else { lanes_each.min(BLOCK / group * group) };
+        Self { lanes_each, block, group, keeps, group_rows, group_chunks }
+    }
+
+    /// Workgroups over so many rows and lanes.
+    pub fn groups(self, rows: u64, lanes: u64) -> [u32; 2] {
+        [rows.div_ceil(self.group_rows), lanes.div_ceil(self.lanes_each * self.group_chunks)].map(|groups| groups as u32)
+    }
+}
+
+/// Do neighbours in a row share an objective that only the row decides, while another one differs?
+pub fn champions(plan: &Plan) -> bool {
+    let sources: Vec<Source> = plan.objectives.iter().map(|&position| plan.tracked[position].1).collect();
+    plan.fast.count() > 1 && sources.iter().any(|it| it.is_row()) && sources.iter().any(|it| !it.is_row())
+}
+
+/// Outputs that the study asks for, as a bit set.
+pub fn used_outputs(plan: &Plan) -> u64 {
+    plan.lane_outputs.iter().fold(plan.row_outputs, |set, output| set | 1 << output)
+}
+
+/// Inputs that are tracked or constrained themselves, as a bit set.
+fn asked_inputs(plan: &Plan) -> u64 {
+    let asked = plan.tracked.iter().map(|(it, _)| it.quantity).chain(plan.study.constraints.iter().map(|it| it.quantity));
+    asked.fold(0, |set, quantity| match quantity {
+        Quantity::Input(input) => set | 1 << input,
+        Quantity::Output(_) => set,
+    })
+}
+
+/// An f64 as an f32 and a bound on the difference.
+#[allow(clippy::cast_possible_truncation, reason = "rounding to f32 is the point; the bound is rounded up")]
+pub fn pair(value: f64) -> (f32, f32) {
+    let near = value as f32;
+    let away = (value - f64::from(near)).abs();
+    (near, if away == 0.0 { 0.0 } else { (away as f32).next_up() })
+}
+
+/// The entry of one input's value.
+#[allow(clippy::cast_possible_truncation, reason = "rounding to f32 is the point")]
+fn level(plan: &Plan, input: usize, value: f64) -> Level {
+    let (si, bound) = pair(input_to_si(&plan.study.model.inputs[input], value));
+    let allowed = constraints_on(plan, input).all(|constraint| constraint.holds(value));
+    [si, bound, value as f32, if allowed { 1.0 } else { 0.0 }]
+}
+
+/// Appends the entries of one level of a dimension, an entry per input.
+pub fn push_level(plan: &Plan, dimension: &Dimension, at: u64, entries: &mut Vec<Level>) {
+    for (column, &input) in dimension.inputs().iter().enumerate() {
+        entries.push(level(plan, input, dimension.value(column, at)));
+    }
+}
+
+fn constraints_on(plan: &Plan, input: usize) -> impl Iterator<Item = &crate::study::Constraint> {
+    plan.study.constraints.iter().filter(move |it| it.quantity == Quantity::Input(input))
+}
+
+fn scenario_table(plan: &Plan, product: &Product, steady: &mut Vec<Level>) -> ScenarioTable {
+    let offset = steady.len() as u32;
+    let set = product.inputs();
+    let inputs: Vec<usize> = (0..INPUTS).filter(|input| set >> input & 1 == 1).collect();
+    let mut values = plan.study.fixed.clone();
+    for scenario in 0..product.count() {
+        product.set(scenario, &mut values);
+        steady.extend(inputs.iter().map(|&input| level(plan, input, values[input])));
+    }
+    ScenarioTable { inputs, count: product.count(), offset }
+}
+
+/// Does f32 hold all levels of an input exactly, and do they differ in f32 wherever they differ in f64?
+#[allow(clippy::cast_possible_truncation, reason = "rounding to f32 is the question")]
+fn in_f32(dimension: &Dimension, column: usize) -> (bool, bool) {
+    if matches!(dimension, Dimension::Sampled(_)) || dimension.count() > WINDOW {
+        return (false, false);
+    }
+    let mut values: Vec<f64> = (0..dimension.count()).map(|level| dimension.value(column, level)).collect();
+    let holds = values.iter().all(|&value| f64::from(value as f32) == value);
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    (holds, values.windows(2).all(|pair| (pair[0] as f32) < pair[1] as f32))
+}
+
+/// The linear rule of a fast axis, with the largest error that its evaluation in f32 can have, whether it is contracted or not.
+#[allow(clippy::cast_possible_truncation, clippy::cast_precision_loss, reason = "the rounding is measured")]
+fn linear(plan: &Plan, dimension: &Dimension, input: usize) -> Option<Values> {
+    let Dimension::Axis(Axis::Single { levels, .. }) = dimension else { return None };
+    if !matches!(levels, Levels::Even { log: false, .. } | Levels::Step { log: false, .. }) || levels.count() > WINDOW {
+        return None;
+    }
+    let table = &plan.study.model.inputs[input];
+    let si = |level: u64| input_to_si(table, levels.value(level));
+    let from = si(0) as f32;
+    let step = if levels.count() > 1 { ((si(levels.count() - 1) - si(0)) / (levels.count() - 1) as f64) as f32 } else { 0.0 };
+    let error = |level: u64| {
+        let position = level as f32;
+        let apart = f64::from(from + position * step);
+        let fused = f64::from(position.mul_add(step, from));
+        (apart - si(level)).abs().max((fused - si(level)).abs())
+    };
+    let bound = (0..levels.count()).map(error).fold(0.0, f64::max);
+    let bound = if bound == 0.0 { 0.0 } else { (bound as f32).next_up() };
+    Some(Values::Linear { from, step, bound })
+}
+
+/// Constraints on fixed inputs and on scenario inputs hold for every design or for none.
+fn is_possible(plan: &Plan) -> bool {
+    let design = plan.space.designs.inputs();
+    let holds = |input: usize, value: f64| constraints_on(plan, input).all(|constraint| constraint.holds(value));
+    let scenario = plan.space.scenarios.dimensions().all(|(dimension, _)| {
+        dimension
+            .inputs()
+            .iter()
+            .enumerate()
+            .all(|(column, &input)| (0..dimension.count()).all(|at| holds(input, dimension.value(column, at))))
+    });
+    let scenario_inputs = plan.space.scenarios.inputs();
+    let fixed = (0..plan.study.model.inputs.len())
+        .filter(|input| (design | scenario_inputs) >> input & 1 == 0)
+        .all(|input| holds(input, plan.study.fixed[input]));
+    scenario && fixed
+}
+
+/// The worst value over the scenarios of an input that is no design axis.
+pub fn scenario_worst(plan: &Plan, input: usize, worse: Worse) -> f64 {
+    let ends = plan.space.scenarios.dimensions().find_map(|(dimension, _)| {
+        let column = dimension.inputs().iter().position(|&it| it == input)?;
+        Some(dimension.ends(column))
+    });
+    let (low, high) = ends.unwrap_or((plan.study.fixed[input], plan.study.fixed[input]));
+    if worse == Worse::Higher { high } else { low }
+}
+
+/// A quantity's value as the device has it: outputs in SI, inputs in their unit.
+pub fn on_device(plan: &Plan, quantity: Quantity, value: f64) -> f64 {
+    match quantity {
+        Quantity::Output(output) => plan.study.model.outputs[output].unit.to_si(value),
+        Quantity::Input(_) => value,
+    }
+}
+
+/// +1 where less is better.
+pub fn sign(goal: Goal) -> f64 {
+    if goal == Goal::Min { 1.0 } else { -1.0 }
+}

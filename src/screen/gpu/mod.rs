@@ -1,0 +1,13 @@
+//! Screening on a graphics processor, in f32 with bounds.
+//!
+//! The device judges every design over all scenarios with three-valued decisions, counts what is surely feasible and hands back
+//! the few designs that are unsure or may be part of an answer: those go to f64. Nothing that it computes is reported.
+
+mod engine;
+mod kernel;
+mod known;
+mod layout;
+
+pub use engine::{Checked, GpuEngine, InFlight, Survivor, TileCounts, Wrong, kernel_of, supports};
+pub(crate) use kernel::value_maps;
+pub use known::Answers;

@@ -1,0 +1,394 @@
+//! The sweep on a device: tiles judged there, survivors in f64 here, one host thread that keeps the answers.
+
+use super::recheck::{Recheck, Recheckable};
+use super::{Control, Options, Swept, Work, head_start, look_around};
+use crate::checkpoint::{Checkpoint, Progress};
+use crate::error::{Error, Result};
+use crate::gpu::Device;
+use crate::plan::Plan;
+use crate::reduce::{Reducers, Reduction, State};
+use crate::screen::gpu::{Answers, GpuEngine, InFlight, Survivor, TileCounts, Wrong, value_maps};
+use crate::screen::{CpuEngine, Tables};
+use crate::study::{MapSpec, Quantity};
+use crate::tiles::Ranges;
+use std::collections::{HashMap, VecDeque};
+use std::ops::Range;
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+/// Designs of the first tile: until the front is known almost everything survives.
+const FIRST_TILE: u64 = 80_000;
+/// How long a tile should take.
+const TILE_TIME: Duration = Duration::from_millis(60);
+/// Evaluations of survivors above which they are shared among threads.
+const SHARED: u64 = 1 << 18;
+
+/// A device that a study is to be swept on.
+#[derive(Clone, Debug)]
+pub struct OnDevice {
+    /// The device, which has passed its self-test.
+    pub device: Device,
+    /// Does its driver end long loops?
+    pub limited_loops: bool,
+    /// What is to be wrong with the kernel; for testing.
+    pub wrong: Wrong,
+}
+
+impl DeviceRecord {
+    /// As it stands in `run.json`.
+    pub fn to_json(&self) -> serde_json::Value {
+        serde_json::json!({
+            "designs": self.designs, "unsure_designs": self.unsure, "survivors": self.survivors,
+            "survivors_evaluated_in_f64": self.evaluated, "tiles": self.tiles, "repeated_tiles": self.repeated,
+            "compared_with_f64": self.recheck.to_json(),
+        })
+    }
+}
+
+/// What a device did in a sweep.
+#[derive(Clone, Debug, Default)]
+pub struct DeviceRecord {
+    /// Designs that it judged.
+    pub designs: u64,
+    /// Of these, designs that were unsure, and that f64 decided.
+    pub unsure: u64,
+    /// Designs that came back for f64, the unsure ones among them.
+    pub survivors: u64,
+    /// Of these, designs that f64 had to evaluate.
+    pub evaluated: u64,
+    /// Tiles.
+    pub tiles: u64,
+    /// Tiles that had to be repeated in parts because too many designs survived.
+    pub repeated: u64,
+    /// The comparison with f64 of whole tiles.
+    pub recheck: Recheck,
+}
+
+/// Sweeps a plan on a device. With a checkpoint, starts from what it holds, on whatever engine that was made.
+///
+/// # Errors
+/// As [`sweep`](super::sweep); [`Error::Gpu`] if the device fails, the checkpoint then holding what was done before;
+/// [`Error::Promise`] if f64 disagrees with what the device promises; [`Error::Request`] if it cannot serve the study.
+pub fn sweep_on_device(
+    plan: &Plan,
+    tables: &Tables,
+    reduction: &Reduction,
+    options: &Options,
+    mut checkpoint: Option<&mut Checkpoint>,
+    control: &Control,
+    on: &OnDevice,
+) -> Result<(Swept, DeviceRecord)> {
+    let start = Instant::now();
+    let mut engine = GpuEngine::new(plan, &reduction.histogram_ranges(), &on.device, on.limited_loops, &on.wrong)?;
+    let whole = options.shard.range(plan.designs());
+    let progress = match checkpoint.as_deref_mut() {
+        Some(checkpoint) => checkpoint.take_progress(),
+        None => None,
+    };
+    let mut seen = look_around(plan, tables, reduction, &whole);
+    let progress = progress.unwrap_or_else(|| Progress { done: Ranges::default(), state: head_start(reduction, &mut seen) });
+    let mut work = Work::new(progress, whole.clone(), reduction, checkpoint, control);
+    let designs = work.todo.count();
+    let mut run = Run {
+        plan,
+        reduction,
+        engine: &mut engine,
+        host: CpuEngine::new(plan, tables),
+        tables,
+        threads: options.threads.max(1),
+        hints: answers(plan, &mut seen),
+        record: DeviceRecord::default(),
+    };
+    // Should the device turn out not to keep its promise, nothing that it counted may be kept.
+    let before = (work.done.clone(), work.reducers.state());
+    let outcome = run.whole_run(&mut work, &whole, control);
+    let record = std::mem::take(&mut run.record);
+    let state = match &outcome {
+        Err(Error::Promise(_)) => {
+            work.done = before.0;
+            before.1
+        }
+        // Whatever else happened, what is complete is kept.
+        _ => work.reducers.state(),
+    };
+    work.save(&state)?;
+    let rechecked = outcome?;
+    if control.stop.load(Ordering::Relaxed) && work.todo.count() > 0 {
+        return Err(Error::Stopped { checkpoint: String::new(), resume: String::new() });
+    }
+    super::check_budget(plan, &state)?;
+    let record = DeviceRecord { recheck: rechecked.into_report(), ..record };
+    Ok((Swept { state, designs, time: start.elapsed() }, record))
+}
+
+/// Judges tiles of a study on a device and again in f64, without sweeping it.
+///
+/// # Errors
+/// As [`sweep_on_device`].
+pub fn recheck_on_device(plan: &Plan, tables: &Tables, reduction: &Reduction, threads: usize, on: &OnDevice) -> Result<Recheck> {
+    let mut engine = GpuEngine::new(plan, &reduction.histogram_ranges(), &on.device, on.limited_loops, &on.wrong)?;
+    let whole = 0..plan.designs();
+    let answers = answers(plan, &mut look_around(plan, tables, reduction, &whole));
+    engine.tell_cells(&answers);
+    Recheckable::new(plan, tables, reduction, &mut engine, &answers, &whole, threads).map(Recheckable::into_report)
+}
+
+struct Run<'a, 'p> {
+    plan: &'p Plan,
+    reduction: &'a Reduction,
+    engine: &'a mut GpuEngine<'p>,
+    host: CpuEngine<'p>,
+    tables: &'p Tables,
+    threads: usize,
+    /// What a look around the range has found: not counted yet, but certain.
+    hints: Answers,
+    record: DeviceRecord,
+}
+
+impl Run<'_, '_> {
+    /// Compares whole tiles with f64, judges all that is to do, and looks for what the tiles hold that got lost.
+    fn whole_run(&mut self, work: &mut Work<'_>, whole: &Range<u64>, control: &Control) -> Result<Recheckable> {
+        let mut rechecked = self.recheck(&mut work.reducers, whole)?;
+        self.run(work, control)?;
+        if work.todo.count() == 0 {
+            rechecked.require_in(self.plan, self.reduction, &work.reducers.state())?;
+        }
+        Ok(rechecked)
+    }
+
+    /// Judges all that is to do, two tiles in flight.
+    fn run(&mut self, work: &mut Work<'_>, control: &Control) -> Result<()> {
+        let mut flying: VecDeque<(InFlight, Instant)> = VecDeque::new();
+        let mut answers = self.answers(&mut work.reducers);
+        self.engine.tell_cells(&answers);
+        let mut size = FIRST_TILE;
+        // Lowered where a tile had too many survivors.
+        let mut most = u64::MAX;
+        let mut host_time = Duration::ZERO;
+        loop {
+            while flying.len() < 2 && !control.stop.load(Ordering::Relaxed) {
+                let Some(first) = work.todo.first() else { break };
+                let tile = self.engine.tile(&first, size);
+                work.todo.take(tile.end - tile.start);
+                flying.push_back((self.engine.start(tile, &answers), Instant::now()));
+            }
+            let Some((tile, begun)) = flying.pop_front() else { return Ok(()) };
+            let finished = self.engine.finish(&tile);
+            let device_time = begun.elapsed() / (1 + flying.len() as u32);
+            let range = tile.range.clone();
+            let found = match finished {
+                Ok(found) => found,
+                Err(error) => {
+                    work.todo.add(range);
+                    flying.into_iter().for_each(|(tile, _)| work.todo.add(tile.range));
+                    return Err(error);
+                }
+            };
+            let designs = range.end - range.start;
+            let Some((counts, survivors)) = found else {
+                if designs == 1 {
+                    return Err(self.engine.device().error("one design has more survivors than there is room for"));
+                }
+                self.record.repeated += 1;
+                most = (designs / 2).max(1);
+                size = size.min(most);
+                work.todo.add(range);
+                continue;
+            };
+            let host = Instant::now();
+            self.take_in(work, &counts, &survivors)?;
+            self.record.tiles += 1;
+            self.record.designs += designs;
+            control.done.fetch_add(designs, Ordering::Relaxed);
+            work.finish(self.plan, range)?;
+            answers = self.answers(&mut work.reducers);
+            host_time = host.elapsed().max(host_time / 2);
+            let wanted = TILE_TIME.max(2 * host_time).as_secs_f64();
+            let fitting = designs as f64 * wanted / device_time.as_secs_f64().max(1e-4);
+            size = (fitting as u64).clamp(size / 4, size.saturating_mul(4)).clamp(1024.min(most), most);
+        }
+    }
+
+    /// Adds what the device counted, and decides in f64 what it could not.
+    fn take_in(&mut self, work: &mut Work<'_>, counts: &TileCounts, survivors: &[Survivor]) -> Result<()> {
+        let TileCounts { sure, unsure, histograms, shares } = counts;
+        self.reduction.add_counts(&mut work.reducers, *sure, histograms, shares);
+        self.record.unsure += unsure;
+        self.record.survivors += survivors.len() as u64;
+        // The front has grown since the tile was started, and the tile has met the best of its cells: most of what survived is
+        // behind them by now.
+        let plan = self.plan;
+        let front = &work.reducers.front;
+        let on_front = |it: &Survivor| it.front.is_some_and(|keys| !front.beats(&lower_keys(plan, &keys)));
+        let cells = Cells::new(plan, survivors);
+        let matters = |it: &&Survivor| !it.unsure && (it.end || on_front(it) || cells.may_be_best(plan, it));
+        let sure: Vec<u64> = survivors.iter().filter(matters).map(|it| it.position).collect();
+        let unsure: Vec<u64> = survivors.iter().filter(|it| it.unsure).map(|it| it.position).collect();
+        self.record.evaluated += (sure.len() + unsure.len()) as u64;
+        let feasible = self.evaluate(&mut work.reducers, &sure, true);
+        if feasible != sure.len() as u64 {
+            return Err(self.name_the_infeasible(&sure));
+        }
+        self.evaluate(&mut work.reducers, &unsure, false);
+        Ok(())
+    }
+
+    /// Evaluates designs in f64 and takes in the feasible ones, `counted` or not; returns how many these are.
+    fn evaluate(&mut self, reducers: &mut Reducers, positions: &[u64], counted: bool) -> u64 {
+        let (plan, reduction, tables) = (self.plan, self.reduction, self.tables);
+        let evaluations = (positions.len() as u64).saturating_mul(plan.scenarios());
+        let absorb = |reducers: &mut Reducers, block: &crate::screen::Block<'_>| {
+            if counted { reduction.absorb_counted(reducers, block) } else { reduction.absorb(reducers, block) }
+        };
+        let mut feasible = 0;
+        if evaluations < SHARED || self.threads == 1 {
+            self.host.screen_some(positions, |block| {
+                feasible += block.feasible_count;
+                absorb(reducers, block);
+            });
+            return feasible;
+        }
+        let known = reducers.front.points().clone();
+        let share = positions.len().div_ceil(self.threads);
+        let parts: Vec<(State, u64)> = std::thread::scope(|scope| {
+            let parts: Vec<_> = positions
+                .chunks(share)
+                .map(|part| {
+                    let known = known.clone();
+                    scope.spawn(move || {
+                        let (mut own, mut feasible) = (reduction.start_after(known), 0);
+                        CpuEngine::new(plan, tables).screen_some(part, |block| {
+                            feasible += block.feasible_count;
+                            absorb(&mut own, block);
+                        });
+                        (own.into_fresh(), feasible)
+                    })
+                })
+                .collect();
+            parts.into_iter().map(|part| part.join().expect("the f64 engine does not panic")).collect()
+        });
+        for (state, found) in parts {
+            reducers.merge(state);
+            feasible += found;
+        }
+        feasible
+    }
+
+    /// The error for designs that the device called surely feasible though f64 does not.
+    fn name_the_infeasible(&mut self, positions: &[u64]) -> Error {
+        let host = &mut self.host;
+        let infeasible = |position: &&u64| {
+            let mut feasible = 0;
+            host.screen_some(&[**position], |block| feasible += block.feasible_count);
+            feasible == 0
+        };
+        let design = positions.iter().find(infeasible).map_or(0, |&position| self.plan.design_at(position));
+        Error::Promise(format!("design {design}: the GPU is sure that it is feasible, f64 is sure that it is not"))
+    }
+
+    /// The answers so far, or the hints where they say more.
+    fn answers(&self, reducers: &mut Reducers) -> Answers {
+        let mut answers = answers(self.plan, reducers);
+        answers.tighten(&self.hints);
+        answers
+    }
+
+    /// Compares whole tiles with f64, design by design.
+    fn recheck(&mut self, reducers: &mut Reducers, whole: &Range<u64>) -> Result<Recheckable> {
+        let answers = self.answers(reducers);
+        self.engine.tell_cells(&answers);
+        Recheckable::new(self.plan, self.tables, self.reduction, self.engine, &answers, whole, self.threads)
+    }
+}
+
+/// The answers so far as the device is told of them.
+pub(super) fn answers(plan: &Plan, reducers: &mut Reducers) -> Answers {
+    let extremes = &reducers.extremes;
+    let ends = extremes.least.iter().zip(&extremes.largest);
+    let end = |it: &Option<crate::reduce::Extreme>| it.map(|it| (it.value, it.index));
+    let extremes = ends.map(|(least, largest)| [end(least), end(largest)]).collect();
+    let of_values = plan.study.report.maps.iter().zip(&reducers.maps).filter(|(spec, _)| spec.value != crate::study::Best::Share);
+    Answers {
+        extremes,
+        cells: of_values.map(|(_, map)| map.keys()).collect(),
+        top: reducers.top.as_mut().and_then(crate::reduce::Top::worst),
+        front: reducers.front.points().keys.clone(),
+    }
+}
+
+/// A survivor's lower bounds as f64 keys of the front.
+fn lower_keys(plan: &Plan, keys: &[f32; 6]) -> Vec<f64> {
+    let key = |(objective, &lower): (&crate::study::Objective, &f32)| {
+        let Quantity::Output(output) = objective.quantity else {
+            // The device has inputs as f32 rounds them.
+            return f64::from(lower) - f64::from(lower).abs() * 6e-8;
+        };
+        if objective.resolution.is_some() {
+            return f64::from(lower);
+        }
+        let unit = plan.study.model.outputs[output].unit;
+        let value = unit.from_si(f64::from(lower));
+        // The conversion rounds in f64.
+        value - value.abs() * 1e-14
+    };
+    plan.study.objectives.iter().zip(keys).map(key).collect()
+}
+
+/// Who may be the best of a map's cell, among the survivors of a tile.
+#[derive(Default)]
+struct Cells {
+    /// Per map and cell: the least upper bound of the key.
+    best: HashMap<(usize, u64), f32>,
+    /// Per map: the lowest index of designs that agree on every axis that the shown value depends on. The others tie and lose.
+    first: HashMap<(usize, u64), u64>,
+}
+
+impl Cells {
+    fn new(plan: &Plan, survivors: &[Survivor]) -> Self {
+        let mut cells = Self::default();
+        for survivor in survivors.iter().filter(|it| !it.unsure) {
+            let design = plan.design_at(survivor.position);
+            for (number, keys) in survivor.maps.iter().flatten().enumerate() {
+                let (spec, at) = spec_of(plan, number);
+                let best = cells.best.entry((number, cell_of(plan, spec, design))).or_insert(f32::INFINITY);
+                *best = best.min(keys[1]);
+                let first = cells.first.entry((number, known_equal(plan, spec, at, design))).or_insert(u64::MAX);
+                *first = design.min(*first);
+            }
+        }
+        cells
+    }
+
+    fn may_be_best(&self, plan: &Plan, survivor: &Survivor) -> bool {
+        let design = plan.design_at(survivor.position);
+        survivor.maps.iter().flatten().enumerate().any(|(number, keys)| {
+            let (spec, at) = spec_of(plan, number);
+            keys[0] <= self.best[&(number, cell_of(plan, spec, design))]
+                && self.first[&(number, known_equal(plan, spec, at, design))] == design
+        })
+    }
+}
+
+/// The index that a design shares with those that agree with it on the axes of a map and on all that the shown value depends on.
+fn known_equal(plan: &Plan, spec: &MapSpec, tracked: usize, design: u64) -> u64 {
+    let depends = match plan.tracked[tracked].0.quantity {
+        Quantity::Input(input) => 1 << input,
+        Quantity::Output(output) => plan.reach.outputs[output],
+    };
+    let dimensions = plan.space.designs.dimensions().enumerate();
+    let matters =
+        |number: usize, inputs: &[usize]| number == spec.x || number == spec.y || inputs.iter().any(|&input| depends >> input & 1 == 1);
+    let mattering = dimensions.filter(|(number, (dimension, _))| matters(*number, dimension.inputs()));
+    mattering.map(|(number, (_, stride))| plan.space.designs.digit(number, design) * stride).sum()
+}
+
+/// A map of values, and the position of what it shows among the tracked quantities.
+fn spec_of(plan: &Plan, number: usize) -> (&MapSpec, usize) {
+    let (spec, at, _) = value_maps(plan).nth(number).expect("a survivor has keys for the maps there are");
+    (spec, at)
+}
+
+fn cell_of(plan: &Plan, spec: &MapSpec, design: u64) -> u64 {
+    let designs = &plan.space.designs;
+    designs.digit(spec.y, design) * plan.study.design[spec.x].count() + designs.digit(spec.x, design)
+}

@@ -1,0 +1,339 @@
+//! Whole tiles of a device's sweep, judged again in f64: values against the promise, counts, and that no survivor is missing.
+
+use crate::error::{Error, Result};
+use crate::models::{judge, to_si};
+use crate::plan::Plan;
+use crate::real::RunningError;
+use crate::reduce::{Reduction, State};
+use crate::sample::mix;
+use crate::screen::gpu::{Answers, Checked, GpuEngine};
+use crate::screen::{CpuEngine, Tables};
+use crate::study::Quantity;
+use serde_json::{Value, json};
+use std::ops::Range;
+
+/// Designs that every run compares, or all if there are fewer.
+pub const LEAST_DESIGNS: u64 = 100_000;
+/// Tiles that these are in.
+const TILES: u64 = 8;
+
+/// What the comparison of whole tiles found.
+#[derive(Clone, Debug, Default)]
+pub struct Recheck {
+    /// Designs compared.
+    pub designs: u64,
+    /// Of these, unsure ones.
+    pub unsure: u64,
+    /// Per quantity: name, values compared, largest share of the promise that was used.
+    pub used: Vec<(String, u64, f64)>,
+}
+
+impl Recheck {
+    /// As it stands in `run.json`.
+    pub fn to_json(&self) -> Value {
+        let used = self.used.iter().map(|(name, values, used)| (name.clone(), json!({ "values": values, "share_of_promise": used })));
+        json!({ "designs": self.designs, "unsure": self.unsure, "error": used.collect::<serde_json::Map<_, _>>() })
+    }
+
+    /// Counts a value; `Err` if it breaks the promise.
+    fn compare(&mut self, slot: usize, name: &str, found: RunningError, exact: f64) -> std::result::Result<(), (f64, f64)> {
+        if self.used.len() <= slot {
+            self.used.resize(slot + 1, (String::new(), 0, 0.0));
+        }
+        let entry = &mut self.used[slot];
+        if entry.0.is_empty() {
+            name.clone_into(&mut entry.0);
+        }
+        if !found.bound.is_finite() {
+            return Ok(());
+        }
+        entry.1 += 1;
+        // f64 rounds too, though nine orders of magnitude less.
+        let error = (f64::from(found.value) - exact).abs() - 1e-13 * exact.abs();
+        if error.is_nan() || error > found.bound {
+            return Err((f64::from(found.value), found.bound));
+        }
+        if found.bound > 0.0 {
+            entry.2 = entry.2.max(error / found.bound);
+        }
+        Ok(())
+    }
+
+    fn add(&mut self, other: Self) {
+        self.designs += other.designs;
+        self.unsure += other.unsure;
+        for (slot, (name, values, used)) in other.used.into_iter().enumerate() {
+            if self.used.len() <= slot {
+                self.used.push((name, values, used));
+            } else {
+                let entry = &mut self.used[slot];
+                *entry = (std::mem::take(&mut entry.0), entry.1 + values, entry.2.max(used));
+            }
+        }
+    }
+}
+
+/// The compared tiles, with what f64 keeps of them: none of it may be missing in the end.
+#[derive(Debug)]
+pub struct Recheckable {
+    report: Recheck,
+    states: Vec<State>,
+}
+
+/// Tiles spread over a range: all of it if it is small.
+fn tiles(plan: &Plan, whole: &Range<u64>) -> Vec<Range<u64>> {
+    let designs = whole.end - whole.start;
+    if designs <= LEAST_DESIGNS {
+        return if designs == 0 { Vec::new() } else { vec![whole.clone()] };
+    }
+    let size = LEAST_DESIGNS.div_ceil(TILES);
+    let stratum = designs / TILES;
+    // Another run of another study looks elsewhere; the same study is compared at the same places.
+    let seed = plan.study.hash().bytes().fold(0, |seed, byte| mix(seed ^ u64::from(byte)));
+    (0..TILES)
+        .map(|number| {
+            let first = whole.start + number * stratum;
+            let room = stratum.saturating_sub(size).max(1);
+            let start = first + mix(seed ^ number) % room;
+            start..(start + size).min(whole.end)
+        })
+        .collect()
+}
+
+impl Recheckable {
+    /// Compares tiles of a range.
+    ///
+    /// # Errors
+    /// [`Error::Promise`] that names output, design, both values and the promise, or the count that differs.
+    pub fn new(
+        plan: &Plan,
+        tables: &Tables,
+        reduction: &Reduction,
+        engine: &mut GpuEngine<'_>,
+        answers: &Answers,
+        whole: &Range<u64>,
+        threads: usize,
+    ) -> Result<Self> {
+        let mut found = Self { report: Recheck::default(), states: Vec::new() };
+        for range in tiles(plan, whole) {
+            let checked = engine.check(&range)?;
+            let used = engine.used_outputs();
+            let share = checked.len().div_ceil(threads.max(1)).max(1);
+            let parts: Vec<Result<(Recheck, State)>> = std::thread::scope(|scope| {
+                let parts: Vec<_> = checked
+                    .chunks(share)
+                    .enumerate()
+                    .map(|(number, part)| {
+                        let start = range.start + (number * share) as u64;
+                        let used = &used;
+                        scope.spawn(move || compare(plan, tables, reduction, used, start, part))
+                    })
+                    .collect();
+                parts.into_iter().map(|part| part.join().expect("the f64 engine does not panic")).collect()
+            });
+            let mut state = reduction.start();
+            for part in parts {
+                let (report, part) = part?;
+                found.report.add(report);
+                state.merge(part);
+            }
+            let state = state.state();
+            require_counts(plan, engine, answers, &range, &state, tables, reduction)?;
+            found.states.push(state);
+        }
+        Ok(found)
+    }
+
+    /// Nothing that f64 keeps of the compared tiles may be missing in the end.
+    ///
+    /// # Errors
+    /// [`Error::Promise`] that names a design that is.
+    pub fn require_in(&mut self, plan: &Plan, reduction: &Reduction, end: &State) -> Result<()> {
+        for state in std::mem::take(&mut self.states) {
+            let mut both = reduction.restore(end.clone());
+            both.merge(State { feasible: 0, ..state });
+            let both = both.state();
+            let lost = |what: &str, index: u64| {
+                Err(Error::Promise(format!("design {index} belongs to the {what}, but the GPU did not hand it over")))
+            };
+            if let Some(&index) = both.front.indices.iter().find(|&index| !end.front.indices.contains(index)) {
+                return lost("front", index);
+            }
+            let best = |state: &State| state.top.as_ref().map(crate::reduce::Top::indices).unwrap_or_default();
+            if let Some((_, &index)) = best(end).iter().zip(&best(&both)).find(|(a, b)| a != b) {
+                return lost("top list", index);
+            }
+            let ends = |state: &State| -> Vec<_> { state.extremes.least.iter().chain(&state.extremes.largest).copied().collect() };
+            if let Some((_, Some(extreme))) = ends(end).iter().zip(ends(&both)).find(|(a, b)| *a != b) {
+                return lost("extremes", extreme.index);
+            }
+            let maps = plan.study.report.maps.iter().zip(both.maps.iter().zip(&end.maps));
+            for (_, (both, end)) in maps.filter(|(spec, _)| spec.value != crate::study::Best::Share) {
+                let (width, height) = both.size();
+                let best = |map: &crate::reduce::Map, at| map.cell(at).map(|cell| (map.value(cell).to_bits(), cell.index));
+                if let Some(at) = (0..width * height).find(|&at| best(both, at) != best(end, at)) {
+                    return lost("map", best(both, at).map_or(0, |(_, index)| index));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The report alone.
+    pub fn into_report(self) -> Recheck {
+        self.report
+    }
+}
+
+/// Compares designs in a row, from position `start` on.
+fn compare(
+    plan: &Plan,
+    tables: &Tables,
+    reduction: &Reduction,
+    used: &[usize],
+    start: u64,
+    checked: &[Checked],
+) -> Result<(Recheck, State)> {
+    let mut report = Recheck { designs: checked.len() as u64, ..Recheck::default() };
+    let mut reducers = reduction.start();
+    let mut broken = None;
+    let model = plan.study.model;
+    // What f64 says of every design: feasible or not, and the worst values of the feasible ones.
+    let mut engine = CpuEngine::new(plan, tables);
+    let mut feasible = vec![false; checked.len()];
+    engine.screen(start..start + checked.len() as u64, |block| {
+        reduction.absorb(&mut reducers, block);
+        for lane in block.feasible() {
+            let at = (plan.position_of(block.index(lane)) - start) as usize;
+            feasible[at] = true;
+            if checked[at].verdict != 2 {
+                continue;
+            }
+            for (slot, ((tracked, _), values)) in plan.tracked.iter().zip(block.values).enumerate() {
+                let exact = device_value(plan, tracked.quantity, values[lane]);
+                let name = tracked.quantity.name(model);
+                if let Err(found) = report.compare(slot, name, checked[at].worst[slot], exact) {
+                    broken.get_or_insert_with(|| broken_promise(plan, tracked.quantity, block.index(lane), found, exact, "at its worst"));
+                }
+            }
+        }
+    });
+    if let Some(broken) = broken {
+        return Err(broken);
+    }
+    for (at, (checked, &feasible)) in checked.iter().zip(&feasible).enumerate() {
+        report.unsure += u64::from(checked.verdict == 1);
+        let design = plan.design_at(start + at as u64);
+        let scenario = plan.slow_scenarios.source_index(checked.scenario.0) + plan.fast_scenarios.source_index(checked.scenario.1);
+        let inputs = plan.space.inputs(design, scenario);
+        let si = to_si(model, &inputs);
+        let prepared = model.kernel.prepare(&si);
+        let (_, present) = judge(model, &model.kernel.conditions(&prepared, &si));
+        let mut outputs = [0.0; crate::models::OUTPUTS];
+        model.kernel.finish(&prepared, &si, used.iter().fold(0, |set, output| set | 1 << output), &mut outputs);
+        for (number, &output) in used.iter().enumerate() {
+            if checked.asked.is_empty() || present >> output & 1 == 0 || !outputs[output].is_finite() {
+                continue;
+            }
+            let slot = plan.tracked.len() + number;
+            let name = format!("{} in one scenario", model.outputs[output].name);
+            if let Err(found) = report.compare(slot, &name, checked.asked[number], outputs[output]) {
+                return Err(broken_promise(
+                    plan,
+                    Quantity::Output(output),
+                    design,
+                    found,
+                    outputs[output],
+                    &format!("in scenario {scenario}"),
+                ));
+            }
+        }
+        if (checked.verdict == 2) != feasible && checked.verdict != 1 {
+            let (gpu, f64s) = if feasible { ("infeasible", "feasible") } else { ("feasible", "infeasible") };
+            return Err(Error::Promise(format!("design {design}: the GPU is sure that it is {gpu}, f64 finds it {f64s}")));
+        }
+    }
+    Ok((report, reducers.state()))
+}
+
+/// A quantity's f64 value as the device has it: outputs in SI, inputs in their unit.
+fn device_value(plan: &Plan, quantity: Quantity, value: f64) -> f64 {
+    match quantity {
+        Quantity::Output(output) => plan.study.model.outputs[output].unit.to_si(value),
+        Quantity::Input(_) => value,
+    }
+}
+
+/// The error for a value that is farther from f64 than promised.
+fn broken_promise(plan: &Plan, quantity: Quantity, design: u64, (found, bound): (f64, f64), exact: f64, place: &str) -> Error {
+    let in_unit = |value: f64| match quantity {
+        Quantity::Output(output) => plan.study.model.outputs[output].unit.from_si(value),
+        Quantity::Input(_) => value,
+    };
+    let (found, exact, bound) = (in_unit(found), in_unit(exact), in_unit(bound));
+    Error::Promise(format!(
+        "{} of design {design} {place}: the GPU gives {found}, f64 gives {exact}; they differ by {:.3e}, promised were at most {bound:.3e}",
+        quantity.name(plan.study.model),
+        (found - exact).abs(),
+    ))
+}
+
+/// The sweep of a tile must count what f64 counts in it.
+fn require_counts(
+    plan: &Plan,
+    engine: &mut GpuEngine<'_>,
+    answers: &Answers,
+    range: &Range<u64>,
+    state: &State,
+    tables: &Tables,
+    reduction: &Reduction,
+) -> Result<()> {
+    let mut reducers = reduction.start();
+    let mut host = CpuEngine::new(plan, tables);
+    let mut rest = vec![range.clone()];
+    while let Some(next) = rest.pop() {
+        let tile = engine.tile(&next, next.end - next.start);
+        if tile.end < next.end {
+            rest.push(tile.end..next.end);
+        }
+        let flying = engine.start(tile.clone(), answers);
+        let Some((counts, survivors)) = engine.finish(&flying)? else {
+            let middle = tile.start + (tile.end - tile.start).div_ceil(2);
+            rest.extend([tile.start..middle, middle..tile.end]);
+            continue;
+        };
+        reduction.add_counts(&mut reducers, counts.sure, &counts.histograms, &counts.shares);
+        let unsure: Vec<u64> = survivors.iter().filter(|it| it.unsure).map(|it| it.position).collect();
+        if unsure.len() as u64 != counts.unsure {
+            return Err(Error::Promise(format!("the GPU counted {} unsure designs and handed over {}", counts.unsure, unsure.len())));
+        }
+        host.screen_some(&unsure, |block| reduction.absorb(&mut reducers, block));
+    }
+    let found = reducers.state();
+    let differ = |what: &str, gpu: u64, f64s: u64| {
+        Err(Error::Promise(format!(
+            "of designs {} to {} in the sweep's order the GPU counts {gpu} {what}, f64 counts {f64s}",
+            range.start,
+            range.end - 1
+        )))
+    };
+    if found.feasible != state.feasible {
+        return differ("feasible designs", found.feasible, state.feasible);
+    }
+    for (gpu, f64s) in found.histograms.iter().zip(&state.histograms) {
+        if gpu != f64s {
+            let wrong = gpu.counts.iter().zip(&f64s.counts).find(|(a, b)| a != b);
+            let (&gpu, &f64s) = wrong.unwrap_or((&gpu.below, &f64s.below));
+            return differ("designs in a bin", gpu, f64s);
+        }
+    }
+    for (spec, (gpu, f64s)) in plan.study.report.maps.iter().zip(found.maps.iter().zip(&state.maps)) {
+        let (width, height) = gpu.size();
+        let count = |map: &crate::reduce::Map, at| map.cell(at).map_or(0, |cell| cell.feasible);
+        let wrong = (0..width * height).find(|&at| count(gpu, at) != count(f64s, at));
+        if let (crate::study::Best::Share, Some(at)) = (spec.value, wrong) {
+            return differ("feasible designs in a map's cell", count(gpu, at), count(f64s, at));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,62 @@
+//! The promised errors: kept with a factor of four to spare, small enough to be of use, and their checkers not blind.
+
+use super::{device, shipped};
+use crate::physics::{Region, draw};
+use crate::random::Random;
+use beltspace::gpu::PointKernel;
+use beltspace::models::{MODELS, Model};
+use beltspace::plan::Plan;
+use beltspace::study::Study;
+use beltspace::verify::{Report, compare, points_of_model, points_of_study};
+
+/// What an error may take of its promise: a quarter.
+const SPARE: f64 = 0.25;
+
+fn kernel(model: &'static Model) -> PointKernel {
+    PointKernel::new(&device().device, model, &[]).expect("the kernel compiles")
+}
+
+fn assert_kept(report: &Report, what: &str) {
+    assert_eq!((report.flips, &report.flip), (0, &None), "{what}");
+    let each = || report.outputs.iter().chain(&report.conditions);
+    let broken: Vec<_> = each().filter_map(|it| it.example.clone()).collect();
+    assert_eq!(broken, Vec::<String>::new(), "{what}");
+    let close: Vec<_> = each().filter(|it| it.used > SPARE).map(|it| format!("{} takes {:.3}", it.name, it.used)).collect();
+    assert_eq!(close, Vec::<String>::new(), "{what}: more than a quarter of the promise");
+}
+
+#[test]
+fn every_output_of_every_model_keeps_its_promise_four_times_over() {
+    for &model in MODELS {
+        let kernel = kernel(model);
+        let report = compare(&kernel, model, &[], &points_of_model(model, 150_000, 1)).expect("the device works");
+        assert_kept(&report, model.name);
+        for it in &report.outputs {
+            assert!(it.values > 10_000, "{}: only {} values of {}", model.name, it.values, it.name);
+            // A quarter of the points lie on a boundary, where some things become infinite.
+            assert!(it.unbounded * 20 < it.values, "{}: {} of {} have no bound", model.name, it.unbounded, it.name);
+            assert!(it.median_promise < 1e-4, "{}: {} is promised to {:e} only", model.name, it.name, it.median_promise);
+        }
+        assert!(report.unsure * 10 < report.points, "{}: {} unsure of {}", model.name, report.unsure, report.points);
+        assert!(report.unsure > 100, "{}: points on both sides of a boundary are unsure", model.name);
+        // Far beyond the usual ranges bounds may be wide, but never wrong.
+        for region in [Region::Wide, Region::Edges] {
+            let random = &mut Random::new(21);
+            let points: Vec<_> = (0..20_000).map(|_| draw(model, region, random)).collect();
+            let report = compare(&kernel, model, &[], &points.into()).expect("the device works");
+            assert_kept(&report, &format!("{} {region:?}", model.name));
+        }
+    }
+}
+
+#[test]
+fn the_shipped_studies_are_decided_as_in_f64_on_both_sides_of_their_constraints() {
+    for path in shipped() {
+        let (study, _) = Study::read(&path).expect("the study is right");
+        let plan = Plan::new(study);
+        let kernel = kernel(plan.study.model);
+        let report = compare(&kernel, plan.study.model, &plan.study.constraints, &points_of_study(&plan, 40_000, 2)).expect("it works");
+        assert_kept(&report, &path.display().to_string());
+        assert!(report.unsure > 0 && report.unsure * 4 < report.points, "{}: {} unsure", path.display(), report.unsure);
+    }
+}

@@ -1,0 +1,108 @@
+//! Every checker is shown a wrong answer and must object.
+
+use super::{Prepared, SMALL, device, larger, wrong};
+use beltspace::error::Error;
+use beltspace::gpu::PointKernel;
+use beltspace::models::{MODELS, Model, find};
+use beltspace::screen::gpu::Wrong;
+use beltspace::sweep::OnDevice;
+use beltspace::verify::{Report, compare, points_of_model};
+
+/// A comparison with a kernel that has another piece of text in place of one of its own.
+fn compared(model: &'static Model, piece: &str, other: &str) -> Report {
+    let source = PointKernel::source(model, &[]);
+    assert!(source.contains(piece), "the kernel of {} has no {piece}", model.name);
+    let kernel = PointKernel::from_source(&device().device, model, &source.replace(piece, other)).expect("it compiles all the same");
+    compare(&kernel, model, &[], &points_of_model(model, 20_000, 3)).expect("the device works")
+}
+
+fn assert_objects(report: &Report, what: &str) {
+    let error = report.require().expect_err(what);
+    assert!(matches!(&error, Error::Promise(_)), "{what}: {error}");
+}
+
+#[test]
+fn a_wrong_constant_in_a_shader_is_noticed() {
+    let metal = find("metal-cvt").expect("it is a model");
+    let pulley = find("pulley-load").expect("it is a model");
+    for (model, piece, other) in [
+        (metal, "const PI: f32 = 3.14159265;", "const PI: f32 = 3.14165;"),
+        (metal, "let width = mul(belt.sections, belt.width);", "let width = mul(belt.sections, mul(belt.width, constant(1.0001)));"),
+        (metal, "0.166666672 + r * (0.0416666679", "0.166666672 + r * (0.0426666679"),
+        (pulley, "twice(mul(slack_pressing, tight_pressing))", "mul(slack_pressing, tight_pressing)"),
+        (pulley, "x - n * 1.5703125", "x - n * 1.5704125"),
+    ] {
+        assert_objects(&compared(model, piece, other), other);
+    }
+}
+
+#[test]
+fn a_shrunken_error_bound_is_noticed() {
+    for &model in MODELS {
+        let report = compared(model, "inherited + (abs(value) * relative + FLUSH)", "0.02 * (inherited + abs(value) * relative)");
+        assert_objects(&report, model.name);
+        let broken = report.outputs.iter().filter(|it| it.broken > 0).count();
+        assert!(2 * broken > report.outputs.len(), "{}: only {broken} outputs object", model.name);
+    }
+}
+
+#[test]
+fn every_output_that_is_perturbed_is_named() {
+    for &model in MODELS {
+        let points = points_of_model(model, 4000, 4);
+        let clean = compare(&PointKernel::new(&device().device, model, &[]).expect("it compiles"), model, &[], &points).expect("it works");
+        // All at once: each must be noticed by itself.
+        let perturb: Vec<_> = clean.outputs.iter().enumerate().map(|(output, it)| (output, 4.0 * it.median_promise)).collect();
+        let kernel = PointKernel::new(&device().device, model, &perturb).expect("it compiles");
+        let report = compare(&kernel, model, &[], &points).expect("it works");
+        for it in &report.outputs {
+            let example = it.example.as_deref().unwrap_or_else(|| panic!("{}: {} was not noticed", model.name, it.name));
+            assert!(example.starts_with(&it.name) && example.contains("the GPU gives") && example.contains("promised"), "{example}");
+        }
+    }
+}
+
+/// The sweep of the first small study with a wrong kernel, which must fail.
+fn refused(piece: &str, other: &str) -> String {
+    let on = wrong(Wrong { replace: vec![(piece.to_owned(), other.to_owned())], ..Wrong::default() });
+    message(&on, other)
+}
+
+fn message(on: &OnDevice, what: &str) -> String {
+    match Prepared::parse(&larger()).on(on) {
+        Err(Error::Promise(message)) => message,
+        Err(other) => panic!("{what}: {other}"),
+        Ok(_) => panic!("{what}: nobody objects"),
+    }
+}
+
+#[test]
+fn a_sweep_objects_to_dropped_candidates_wrong_counts_and_wrong_bounds() {
+    // Survivors that are not handed over: unsure ones change a count, others are missed in the end.
+    let dropped = refused("            if why != 0u {", "            if why != 0u && (why & IS_UNSURE) == 0u && lane % 3u != 1u {");
+    assert!(dropped.contains("unsure designs and handed over"), "{dropped}");
+    let lost = refused("            if why != 0u {", "            if why != 0u && (why == IS_UNSURE || lane % 9u != 4u) {");
+    assert!(lost.contains("belongs to the"), "{lost}");
+    let count = refused("sure_count += countOneBits(seen.sure);", "sure_count += countOneBits(seen.sure & 0xfffffffeu);");
+    assert!(count.contains("counts") && count.contains("feasible designs, f64 counts"), "{count}");
+    let bins = refused("let middle = (number.value - low.value) * per_unit;", "let middle = (number.value - low.value) * per_unit + 0.01;");
+    assert!(bins.contains("designs in a bin") || bins.contains("feasible"), "{bins}");
+    let sure = refused(
+        "fn promised(number: Real, promise: f32) -> Real {",
+        "fn promised(number: Real, promise: f32) -> Real {\n    if promise > 0.0 { return Real(number.value, number.bound * 1e-4); }",
+    );
+    assert!(sure.contains("promised were at most") || sure.contains("the GPU is sure"), "{sure}");
+    let front = refused("    return beaten;", "    return true;");
+    assert!(front.contains("belongs to the front"), "{front}");
+}
+
+#[test]
+fn a_perturbed_output_stops_the_sweep_by_name() {
+    let study = Prepared::parse(SMALL[0]);
+    for name in ["axial_force_N", "stress_margin", "slip_margin"] {
+        let output = study.plan.study.model.output(name).expect("it is an output");
+        let on = wrong(Wrong { perturb: vec![(output, 3e-4)], ..Wrong::default() });
+        let message = message(&on, name);
+        assert!(message.starts_with(&format!("{name} of design ")) && message.contains("promised were at most"), "{message}");
+    }
+}

@@ -1,0 +1,203 @@
+//! The device against the processor: the same answers, however a sweep is cut, interrupted or handed over.
+
+use super::{Prepared, SMALL, assert_same, device, larger, open, shipped, wrong};
+use beltspace::checkpoint::Checkpoint;
+use beltspace::error::Error;
+use beltspace::screen::gpu::{Wrong, supports};
+use beltspace::study::Study;
+use beltspace::sweep::{Control, Options, sweep, sweep_on_device};
+use beltspace::tiles::Shard;
+use std::sync::atomic::Ordering;
+use std::time::Duration;
+
+#[test]
+fn small_studies_of_every_model_give_the_same_answers() {
+    for text in SMALL {
+        let study = Prepared::parse(text);
+        let (state, record) = study.on(device()).expect("the device works");
+        assert_same(&state, &study.on_processor(), study.plan.study.model.name);
+        assert_eq!(record.designs, study.plan.designs());
+        assert_eq!(record.recheck.designs, study.plan.designs().min(100_000));
+        assert!(record.unsure * 100 < record.designs, "{record:?}");
+    }
+}
+
+#[test]
+fn shipped_studies_give_the_same_answers_and_few_designs_are_unsure() {
+    for path in shipped() {
+        let study = Prepared::new(Study::read(&path).expect("the study is right").0);
+        let (state, record) = study.on(device()).expect("the device works");
+        assert_same(&state, &study.on_processor(), &path.display().to_string());
+        assert_eq!(record.designs, study.plan.designs());
+        assert!(record.unsure * 100 < record.designs, "{}: {record:?}", path.display());
+        assert!(record.recheck.designs >= 100_000.min(study.plan.designs()), "{record:?}");
+    }
+}
+
+#[test]
+fn a_tile_with_too_many_survivors_is_repeated_in_parts() {
+    let study = Prepared::parse(SMALL[0]);
+    let on = wrong(Wrong { capacity: Some(600), ..Wrong::default() });
+    let (state, record) = study.on(&on).expect("the device works");
+    assert!(record.repeated > 0, "{record:?}");
+    assert_same(&state, &study.on_processor(), "in parts");
+}
+
+#[test]
+fn a_long_axis_is_seen_through_a_window_and_maps_find_their_cells() {
+    // The outermost axis has more levels than the device is told of at a time; rows of several tiles share windows.
+    let text = r#"model = "metal-cvt"
+[design]
+groove_angle_deg = { from = 18, to = 30, count = 60001 }
+traction = [0.3, 0.4, 0.5]
+band_count = { from = 6, to = 8 }
+[constraints]
+stress_margin = { min = -0.5 }
+[objectives]
+axial_force_N = "min"
+stress_margin = "max"
+[report]
+maps = [{ x = "traction", y = "groove_angle_deg", value = "axial_force_N" }]
+"#;
+    let study = Prepared::parse(text);
+    let (state, _) = study.on(device()).expect("the device works");
+    assert_same(&state, &study.on_processor(), "a long axis");
+}
+
+#[test]
+fn plateaus_and_inert_axes_are_no_trouble() {
+    // Capacity 0 over much of the space, a slip margin of exactly 0 everywhere, and an axis that changes nothing.
+    let text = r#"model = "rubber-cvt"
+[design]
+torque_Nm = { from = 1, to = 50, count = 40 }
+belt_thickness_mm = { from = 5, to = 40, count = 60 }
+groove_angle_deg = [26, 30, 34]
+[fixed]
+traction = "limit"
+[objectives]
+torque_capacity_Nm = "max"
+slip_margin = "max"
+[report]
+top = { by = "slip_margin", count = 5 }
+histograms = [{ of = "torque_capacity_Nm", from = 0, to = 100, bins = 10 }]
+"#;
+    let study = Prepared::parse(text);
+    let (state, record) = study.on(device()).expect("the device works");
+    assert_same(&state, &study.on_processor(), "plateaus");
+    assert_eq!(record.unsure, 0, "a plateau is a sure answer: {record:?}");
+}
+
+#[test]
+fn shards_and_halves_go_together_whatever_ran_them() {
+    let study = Prepared::parse(SMALL[0]);
+    let whole = study.on_processor();
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    let text = SMALL[0];
+    let mut shards = Vec::new();
+    for number in 1..=3 {
+        let shard = Shard { number, of: 3 };
+        let options = Options { shard, threads: 1, ..Options::default() };
+        let path = folder.path().join(number.to_string());
+        let mut checkpoint = Checkpoint::create(&path, &study.plan.study, text, shard, study.plan.designs()).expect("a folder can be made");
+        let control = Control::default();
+        let Prepared { plan, tables, reduction } = &study;
+        if number == 2 {
+            sweep(plan, tables, reduction, &options, Some(&mut checkpoint), &control).expect("the sweep ends");
+        } else {
+            sweep_on_device(plan, tables, reduction, &options, Some(&mut checkpoint), &control, device()).expect("the sweep ends");
+        }
+        drop(checkpoint);
+        shards.push((path.clone(), Checkpoint::open(&path).expect("it was kept")));
+    }
+    let merged = beltspace::merge::merge(&study.plan, &study.reduction, shards).expect("the shards are complete");
+    assert_same(&merged, &whole, "shards of both engines");
+}
+
+/// Runs until `end` has been called after the first tiles; gives back the error.
+fn interrupted(text: &str, study: &Prepared, folder: &std::path::Path, end: impl Fn(&Control, &beltspace::gpu::Device) + Sync) -> Error {
+    let on = open();
+    let control = Control::default();
+    let mut checkpoint =
+        Checkpoint::create(folder, &study.plan.study, text, Shard::WHOLE, study.plan.designs()).expect("a folder can be made");
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            while control.done.load(Ordering::Relaxed) == 0 {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            end(&control, &on.device);
+        });
+        let options = Options { threads: 1, ..Options::default() };
+        let swept = sweep_on_device(&study.plan, &study.tables, &study.reduction, &options, Some(&mut checkpoint), &control, &on);
+        swept.map(|_| ()).expect_err("it was interrupted")
+    })
+}
+
+#[test]
+fn a_lost_device_leaves_a_checkpoint_from_which_either_engine_goes_on() {
+    let text = larger();
+    let study = Prepared::parse(&text);
+    let whole = study.on_processor();
+    for on_device in [false, true] {
+        let folder = tempfile::tempdir().expect("a folder can be made");
+        let error = interrupted(&text, &study, folder.path(), |_, device| device.lose());
+        assert!(matches!(&error, Error::Gpu { problem, .. } if problem.contains("lost")), "{error}");
+        let mut checkpoint = Checkpoint::open(folder.path()).expect("it was kept");
+        assert!(checkpoint.has_progress(), "what was done before the loss is kept");
+        let (control, options) = (Control::default(), Options::default());
+        let Prepared { plan, tables, reduction } = &study;
+        let state = if on_device {
+            let swept = sweep_on_device(plan, tables, reduction, &options, Some(&mut checkpoint), &control, device());
+            swept.expect("another device goes on").0.state
+        } else {
+            sweep(plan, tables, reduction, &options, Some(&mut checkpoint), &control).expect("the processor goes on").state
+        };
+        assert_same(&state, &whole, "resumed after a loss");
+    }
+}
+
+#[test]
+fn a_stopped_run_goes_on_on_the_processor() {
+    let text = larger();
+    let study = Prepared::parse(&text);
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    let error = interrupted(&text, &study, folder.path(), |control, _| control.stop.store(true, Ordering::Relaxed));
+    assert!(matches!(error, Error::Stopped { .. }), "{error}");
+    let mut checkpoint = Checkpoint::open(folder.path()).expect("it was kept");
+    let swept = sweep(&study.plan, &study.tables, &study.reduction, &Options::default(), Some(&mut checkpoint), &Control::default());
+    assert_same(&swept.expect("the sweep ends").state, &study.on_processor(), "stopped and resumed");
+}
+
+#[test]
+fn a_broken_promise_keeps_nothing_that_the_device_counted() {
+    let text = larger();
+    let study = Prepared::parse(&text);
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    let mut checkpoint =
+        Checkpoint::create(folder.path(), &study.plan.study, &text, Shard::WHOLE, study.plan.designs()).expect("a folder can be made");
+    // Wrong in a way that shows only in the end.
+    let lost = Wrong { replace: vec![("    return beaten;".to_owned(), "    return true;".to_owned())], ..Wrong::default() };
+    let (options, control) = (Options::default(), Control::default());
+    let Prepared { plan, tables, reduction } = &study;
+    let swept = sweep_on_device(plan, tables, reduction, &options, Some(&mut checkpoint), &control, &wrong(lost));
+    let error = swept.map(|_| ()).expect_err("the front lacks designs");
+    assert!(matches!(error, Error::Promise(_)), "{error}");
+    drop(checkpoint);
+    let mut checkpoint = Checkpoint::open(folder.path()).expect("the folder is there");
+    assert!(!checkpoint.has_progress(), "what was counted is not kept");
+    let swept = sweep(plan, tables, reduction, &options, Some(&mut checkpoint), &control);
+    assert_same(&swept.expect("the sweep ends").state, &study.on_processor(), "after a broken promise");
+}
+
+#[test]
+fn a_study_that_no_device_serves_is_refused_with_the_reason() {
+    let text = |scenarios: u64| {
+        format!(
+            "model = \"metal-cvt\"\n[design]\nband_count = {{ from = 6, to = 14 }}\n[operation]\nratio = {{ from = 0.5, to = 2, count = {scenarios} }}\n\
+             [objectives]\nstress_margin = \"max\"\n"
+        )
+    };
+    assert!(supports(&Prepared::parse(&text(1000)).plan, true).is_ok());
+    let refused = supports(&Prepared::parse(&text(30_000)).plan, true).expect_err("the loops are too long").to_string();
+    assert!(refused.contains("60000 loop turns") && refused.contains("--engine cpu"), "{refused}");
+    assert!(supports(&Prepared::parse(&text(30_000)).plan, false).is_ok(), "another driver can");
+}
