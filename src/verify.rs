@@ -5,7 +5,7 @@
 use crate::decision::Decision;
 use crate::error::{Error, Result};
 use crate::gpu::PointKernel;
-use crate::models::{CONDITION_PROMISE, INPUTS, Input, Model, OUTPUTS, evaluate, holds, judge, to_si};
+use crate::models::{CONDITION_PROMISE, Condition, INPUTS, Input, Model, OUTPUTS, evaluate, holds, judge, to_si};
 use crate::plan::Plan;
 use crate::real::RunningError;
 use crate::sample::mix;
@@ -231,7 +231,7 @@ pub fn compare(kernel: &PointKernel, model: &Model, constraints: &[Constraint], 
             let promised = RunningError { value: margins[number].value, bound: margins[number].bound * CONDITION_PROMISE };
             conditions[number]
                 .take(promised, exact_margins[number], on_boundary, |found| (found.0, exact_margins[number], found.1, point()));
-            if !condition.quiet {
+            if !condition.quiet || takes_away(model, condition, constraints) {
                 sure = sure.and(holds(model, number, f64::from(promised.value), promised.bound));
             }
         }
@@ -257,6 +257,12 @@ pub fn compare(kernel: &PointKernel, model: &Model, constraints: &[Constraint], 
     report.outputs = outputs.into_iter().map(Collector::statistics).collect();
     report.conditions = conditions.into_iter().map(Collector::statistics).collect();
     Ok(report)
+}
+
+/// Does a condition that fails take away an output that is constrained?
+fn takes_away(model: &Model, condition: &Condition, constraints: &[Constraint]) -> bool {
+    let constrained = |name: &&str| constraints.iter().any(|it| model.output(name).map(Quantity::Output) == Some(it.quantity));
+    condition.invalidates.iter().any(constrained)
 }
 
 /// A point in words: all inputs by name.

@@ -124,13 +124,15 @@ fn sweep(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) 
             } else {
                 judged = judge(at, state, held, place);
             }
+            // What the first look counted decides which list a design is in: judged again it may round otherwise.
+            let counted = ((seen.sure >> i) & 1u) == 1u;
             var why = IS_UNSURE;
-            if judged.verdict == YES {
-                if enters_histograms(judged) {
+            if counted {
+                if judged.verdict == YES && enters_histograms(judged) {
                     why = closer_look(judged, horizon, wide_add(state.index, index_of_lane(place)), local);
                     why |= enter_maps(judged, state, place);
                 } else {
-                    // Its bin is not sure: f64 counts the whole design.
+                    // Not sure any more, or its bin is not: f64 counts the whole design.
                     sure_count -= 1u;
                 }
             }

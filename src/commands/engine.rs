@@ -6,7 +6,7 @@ use beltspace::error::{Error, Result};
 use beltspace::gpu::{self, Adapter, self_test};
 use beltspace::models::Model;
 use beltspace::plan::Plan;
-use beltspace::screen::gpu::{Wrong, supports};
+use beltspace::screen::gpu::{GpuEngine, Wrong, supports};
 use beltspace::sweep::OnDevice;
 
 /// Evaluations below which starting a device costs more than it saves.
@@ -52,6 +52,12 @@ fn automatic(plan: &Plan, wrong: Wrong) -> Option<Trusted> {
 fn serving(plan: &Plan, device: Trusted) -> Result<Trusted> {
     supports(plan, device.on.limited_loops)?;
     Ok(device)
+}
+
+/// Makes the study's kernel and buffers on a device, as the sweep will: what a driver refuses shows here.
+pub fn try_out(plan: &Plan, device: &Trusted) -> Result<()> {
+    let ranges = vec![(0.0, 1.0); plan.study.report.histograms.len()];
+    GpuEngine::new(plan, &ranges, &device.on.device, device.on.limited_loops, &device.on.wrong).map(|_| ())
 }
 
 /// The adapter of that name, or the best, if its driver can be trusted.

@@ -33,7 +33,13 @@ pub fn run(request: &cli::Sweep) -> Result<()> {
     if let Some(file) = &request.emit_shader {
         return emit_shader(&plan, &wrong, threads(request.threads), file);
     }
-    let device = engine::choose(&plan, request.engine, request.adapter.as_deref(), wrong)?;
+    let mut device = engine::choose(&plan, request.engine, request.adapter.as_deref(), wrong)?;
+    if let (cli::Engine::Auto, Some(chosen)) = (request.engine, &device)
+        && let Err(error) = engine::try_out(&plan, chosen)
+    {
+        terminal::remark("warning", &format!("{error}; the processor judges the designs"));
+        device = None;
+    }
     let control = Arc::new(Control::default());
     stop_on_ctrl_c(&control)?;
     let mut checkpoint = open_checkpoint(&out, &plan, &text, shard, request)?;

@@ -161,7 +161,8 @@ impl Run<'_, '_> {
         let mut flying: VecDeque<(InFlight, Instant)> = VecDeque::new();
         let mut answers = self.answers(&mut work.reducers);
         self.engine.tell_cells(&answers);
-        let mut size = FIRST_TILE;
+        let mut size = FIRST_TILE.min(self.engine.at_once());
+        let least = 1024.min(size);
         // Lowered where a tile had too many survivors.
         let mut most = u64::MAX;
         let mut host_time = Duration::ZERO;
@@ -205,7 +206,7 @@ impl Run<'_, '_> {
             host_time = host.elapsed().max(host_time / 2);
             let wanted = TILE_TIME.max(2 * host_time).as_secs_f64();
             let fitting = designs as f64 * wanted / device_time.as_secs_f64().max(1e-4);
-            size = (fitting as u64).clamp(size / 4, size.saturating_mul(4)).clamp(1024.min(most), most);
+            size = (fitting as u64).clamp(size / 4, size.saturating_mul(4)).clamp(least.min(most), most);
         }
     }
 

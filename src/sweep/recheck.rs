@@ -10,6 +10,7 @@ use crate::screen::gpu::{Answers, Checked, GpuEngine};
 use crate::screen::{CpuEngine, Tables};
 use crate::study::Quantity;
 use serde_json::{Value, json};
+use std::collections::HashSet;
 use std::ops::Range;
 
 /// Designs that every run compares, or all if there are fewer.
@@ -149,31 +150,32 @@ impl Recheckable {
     /// # Errors
     /// [`Error::Promise`] that names a design that is.
     pub fn require_in(&mut self, plan: &Plan, reduction: &Reduction, end: &State) -> Result<()> {
+        let mut both = reduction.restore(end.clone());
         for state in std::mem::take(&mut self.states) {
-            let mut both = reduction.restore(end.clone());
             both.merge(State { feasible: 0, ..state });
-            let both = both.state();
-            let lost = |what: &str, index: u64| {
-                Err(Error::Promise(format!("design {index} belongs to the {what}, but the GPU did not hand it over")))
-            };
-            if let Some(&index) = both.front.indices.iter().find(|&index| !end.front.indices.contains(index)) {
-                return lost("front", index);
-            }
-            let best = |state: &State| state.top.as_ref().map(crate::reduce::Top::indices).unwrap_or_default();
-            if let Some((_, &index)) = best(end).iter().zip(&best(&both)).find(|(a, b)| a != b) {
-                return lost("top list", index);
-            }
-            let ends = |state: &State| -> Vec<_> { state.extremes.least.iter().chain(&state.extremes.largest).copied().collect() };
-            if let Some((_, Some(extreme))) = ends(end).iter().zip(ends(&both)).find(|(a, b)| *a != b) {
-                return lost("extremes", extreme.index);
-            }
-            let maps = plan.study.report.maps.iter().zip(both.maps.iter().zip(&end.maps));
-            for (_, (both, end)) in maps.filter(|(spec, _)| spec.value != crate::study::Best::Share) {
-                let (width, height) = both.size();
-                let best = |map: &crate::reduce::Map, at| map.cell(at).map(|cell| (map.value(cell).to_bits(), cell.index));
-                if let Some(at) = (0..width * height).find(|&at| best(both, at) != best(end, at)) {
-                    return lost("map", best(both, at).map_or(0, |(_, index)| index));
-                }
+        }
+        let both = both.state();
+        let lost =
+            |what: &str, index: u64| Err(Error::Promise(format!("design {index} belongs to the {what}, but the GPU did not hand it over")));
+        let held: HashSet<u64> = end.front.indices.iter().copied().collect();
+        if let Some(&index) = both.front.indices.iter().find(|index| !held.contains(index)) {
+            return lost("front", index);
+        }
+        let best = |state: &State| state.top.as_ref().map(crate::reduce::Top::indices).unwrap_or_default();
+        let have = best(end);
+        if let Some((_, index)) = best(&both).into_iter().enumerate().find(|(place, index)| have.get(*place) != Some(index)) {
+            return lost("top list", index);
+        }
+        let ends = |state: &State| -> Vec<_> { state.extremes.least.iter().chain(&state.extremes.largest).copied().collect() };
+        if let Some((_, Some(extreme))) = ends(end).iter().zip(ends(&both)).find(|(a, b)| *a != b) {
+            return lost("extremes", extreme.index);
+        }
+        let maps = plan.study.report.maps.iter().zip(both.maps.iter().zip(&end.maps));
+        for (_, (both, end)) in maps.filter(|(spec, _)| spec.value != crate::study::Best::Share) {
+            let (width, height) = both.size();
+            let best = |map: &crate::reduce::Map, at| map.cell(at).map(|cell| (map.value(cell).to_bits(), cell.index));
+            if let Some(at) = (0..width * height).find(|&at| best(both, at) != best(end, at)) {
+                return lost("map", best(both, at).map_or(0, |(_, index)| index));
             }
         }
         Ok(())
@@ -292,7 +294,7 @@ fn require_counts(
     let mut host = CpuEngine::new(plan, tables);
     let mut rest = vec![range.clone()];
     while let Some(next) = rest.pop() {
-        let tile = engine.tile(&next, next.end - next.start);
+        let tile = engine.tile(&next, (next.end - next.start).min(engine.at_once()));
         if tile.end < next.end {
             rest.push(tile.end..next.end);
         }

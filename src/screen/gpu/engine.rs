@@ -20,6 +20,8 @@ const FIRST_TRIP: u64 = 1 << 14;
 const CAPACITY: u64 = 1 << 20;
 /// Most designs of a tile: counts and places are 32-bit numbers.
 const MOST_DESIGNS: u64 = 1 << 31;
+/// Evaluations of a first dispatch.
+const FIRST_EVALUATIONS: u64 = 1 << 26;
 /// Counts before the histograms.
 const HEAD: usize = 3;
 
@@ -172,10 +174,12 @@ impl<'p> GpuEngine<'p> {
         let inner: u64 = layout.slow.iter().skip(1).map(|it| it.count).product();
         let row_words = 3 + plan.study.report.maps.len() as u64 + 2 * (plan.tracked.len() + layout.row_inputs.len()) as u64;
         let row_bytes = layout.prepared_bytes().max(4 * row_words);
-        let most_rows = (PREPARED_BYTES.min(binding) / row_bytes).clamp(1, 1 << 21).min(plan.slow.count());
         let outermost = layout.slow.first().map_or(1, |it| it.count);
-        let window_room = (most_rows / inner.max(1) + 2).min(outermost);
         let columns = layout.slow.first().map_or(1, |it| it.inputs.len()) as u64;
+        let level_rows = (PREPARED_BYTES.min(binding) / 16).saturating_sub(layout.levels.len() as u64) / columns;
+        let most_rows = (PREPARED_BYTES.min(binding) / row_bytes).min(level_rows.saturating_sub(2).max(1).saturating_mul(inner));
+        let most_rows = most_rows.clamp(1, 1 << 21).min(plan.slow.count());
+        let window_room = (most_rows / inner.max(1) + 2).min(outermost);
         let levels = device.buffer("levels", (layout.levels.len() as u64 + window_room * columns) * 16, storage);
         device.write(&levels, 0, &layout.levels);
 
@@ -239,16 +243,20 @@ impl<'p> GpuEngine<'p> {
         })
     }
 
+    /// Designs of a first dispatch, of whose speed nothing is known yet: it must not look hung.
+    pub fn at_once(&self) -> u64 {
+        (FIRST_EVALUATIONS / self.plan.scenarios()).max(1)
+    }
+
     /// The longest tile that starts at `range.start`, lies within `range` and has about `designs` designs.
     pub fn tile(&self, range: &Range<u64>, designs: u64) -> Range<u64> {
         let width = self.plan.fast.count();
         let cut = self.layout.cut;
         let wanted = designs.clamp(1, MOST_DESIGNS).min(range.end - range.start);
         let inside = range.start % width;
-        if inside != 0 || wanted < width {
+        if inside != 0 || wanted < width || width > cut.widest() {
             // Part of one row.
-            let most = (width - inside).min(MOST_GROUPS * cut.lanes_each * cut.group_chunks);
-            return range.start..range.start + wanted.min(most);
+            return range.start..range.start + wanted.min(width - inside).min(cut.widest());
         }
         let rows = (wanted / width).min(self.most_rows).min(MOST_GROUPS * cut.group_rows);
         range.start..range.start + rows * width
@@ -387,7 +395,7 @@ impl<'p> GpuEngine<'p> {
         let mut rest = range.clone();
         let room = self.slots[0].survivors.size() / (4 * self.words as u64);
         while !rest.is_empty() {
-            let part = self.tile(&rest, room.min(65_535 * 64));
+            let part = self.tile(&rest, room.min(MOST_GROUPS * 64).min(self.at_once()));
             let (rows, _) = self.place(0, &part);
             let slot = &self.slots[0];
             let designs = part.end - part.start;

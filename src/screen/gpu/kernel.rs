@@ -309,8 +309,8 @@ impl Prelude<'_> {
 
     /// What a row adds to the number of a map's cell.
     fn cell_of_row(&self, map: usize) -> String {
-        let terms = self.map_terms(map).into_iter().filter_map(|(stride, factor)| {
-            let number = self.layout.slow.iter().position(|it| it.stride == stride)?;
+        let terms = self.map_terms(map).into_iter().filter_map(|(stride, count, factor)| {
+            let number = self.layout.slow.iter().position(|it| (it.stride, it.count) == (stride, count))?;
             // The outermost digit counts from the window's first level.
             let base = if number == 0 { " + tile.window" } else { "" };
             Some(format!("(digits[{number}]{base}) * {factor}u"))
@@ -319,12 +319,14 @@ impl Prelude<'_> {
         if terms.is_empty() { "0u".to_owned() } else { terms.join(" + ") }
     }
 
-    /// Stride of each axis of a map in the design index, and what a step along it adds to the cell's number.
-    fn map_terms(&self, map: usize) -> [(u64, u64); 2] {
+    /// Of each axis of a map: its stride in the design index and its length, which together tell it from the others (an axis of one
+    /// value has the stride of its neighbour), and what a step along it adds to the cell's number.
+    fn map_terms(&self, map: usize) -> [(u64, u64, u64); 2] {
         let study = &self.plan.study;
         let spec = &study.report.maps[map];
         let stride = |axis: usize| study.design[axis + 1..].iter().map(crate::study::Axis::count).product::<u64>();
-        [(stride(spec.x), 1), (stride(spec.y), study.design[spec.x].count())]
+        let [x, y] = [spec.x, spec.y].map(|axis| (stride(axis), study.design[axis].count()));
+        [(x.0, x.1, 1), (y.0, y.1, x.1)]
     }
 
     /// The value of a row's tracked quantity before any scenario.
@@ -788,8 +790,8 @@ impl Prelude<'_> {
         let mut cell_offset = 0;
         let mut value = 0;
         for (number, spec) in report.maps.iter().enumerate() {
-            let terms = self.map_terms(number).into_iter().filter_map(|(stride, factor)| {
-                let fast = self.layout.fast.iter().position(|it| it.stride == stride)?;
+            let terms = self.map_terms(number).into_iter().filter_map(|(stride, count, factor)| {
+                let fast = self.layout.fast.iter().position(|it| (it.stride, it.count) == (stride, count))?;
                 Some(format!(" + digits.d{fast} * {factor}u"))
             });
             lines.push(format!("let cell{number} = state.cell{number}{};", terms.collect::<String>()));

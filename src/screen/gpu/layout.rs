@@ -189,6 +189,9 @@ impl Layout {
             fast.push(FastDimension { inputs, count: dimension.count(), lane_stride, stride, values });
         }
 
+        if steady.len() as u64 > WINDOW {
+            return Err(refuse(format!("its rows of {} designs and its scenarios have {} values", plan.fast.count(), steady.len())));
+        }
         let mut levels = Vec::new();
         let mut slow = Vec::new();
         let last = plan.slow.dimensions().len();
@@ -254,9 +257,19 @@ impl Cut {
         let chunks = lanes.div_ceil(lanes_each);
         let rows = plan.slow.count().min(8).next_power_of_two();
         let group_chunks = chunks.next_power_of_two().min(if champions(plan) { 256 / rows } else { 64 / rows });
+        // Champions stand in the workgroup's memory, of which every device has 16 KiB.
+        let each = 4 * plan.objectives.len() as u64 * if keeps { group } else { 1 };
+        let fits = (16_384 / (each * rows).max(1)).max(1);
+        let group_chunks =
+            if champions(plan) { group_chunks.min(fits.next_power_of_two() >> u64::from(!fits.is_power_of_two())) } else { group_chunks };
         let group_rows = (64 / group_chunks).max(rows);
         let block = if keeps { group } else { lanes_each.min(BLOCK / group * group) };
         Self { lanes_each, block, group, keeps, group_rows, group_chunks }
+    }
+
+    /// Most lanes of a row that one dispatch can take.
+    pub fn widest(self) -> u64 {
+        MOST_GROUPS * self.lanes_each * self.group_chunks
     }
 
     /// Workgroups over so many rows and lanes.

@@ -65,6 +65,35 @@ maps = [{ x = "traction", y = "groove_angle_deg", value = "axial_force_N" }]
 }
 
 #[test]
+fn a_map_over_an_axis_of_one_value_finds_its_cells() {
+    let text = r#"model = "metal-cvt"
+[design]
+groove_angle_deg = { from = 18, to = 30, count = 5 }
+strength_MPa = [800]
+band_thickness_mm = { from = 0.1, to = 0.3, count = 30 }
+band_count = [10]
+[constraints]
+stress_margin = { min = 0 }
+[objectives]
+axial_force_N = "min"
+[report]
+maps = [
+    { x = "strength_MPa", y = "band_thickness_mm", value = "axial_force_N" },
+    { x = "band_count", y = "groove_angle_deg", best = "share" },
+    { x = "groove_angle_deg", y = "strength_MPa", value = "stress_margin", best = "max" },
+]
+"#;
+    let study = Prepared::parse(text);
+    let (state, _) = study.on(device()).expect("the device works");
+    assert_same(&state, &study.on_processor(), "maps over one value");
+    assert_eq!(
+        state.maps[1].cell(0).map(|cell| cell.feasible),
+        study.on_processor().maps[1].cell(0).map(|cell| cell.feasible),
+        "feasible designs of a cell"
+    );
+}
+
+#[test]
 fn plateaus_and_inert_axes_are_no_trouble() {
     // Capacity 0 over much of the space, a slip margin of exactly 0 everywhere, and an axis that changes nothing.
     let text = r#"model = "rubber-cvt"
