@@ -4,7 +4,7 @@ use super::source::COMMON;
 use super::{Device, Program, model_prelude, model_source};
 use crate::error::Result;
 use crate::models::{CONDITIONS, INPUTS, Model, OUTPUTS};
-use crate::real::RunningError;
+use crate::real::{RunningError, nearest_f32};
 use std::fmt::Write;
 
 /// Points per dispatch.
@@ -74,7 +74,7 @@ impl PointKernel {
 
     fn batch(&self, points: &[[f64; INPUTS]]) -> Result<Vec<Found>> {
         let (inputs, outputs) = (self.model.inputs.len(), self.model.outputs.len());
-        let given: Vec<[f32; 2]> = points.iter().flat_map(|point| point[..inputs].iter().map(|&value| pair(value))).collect();
+        let given: Vec<[f32; 2]> = points.iter().flat_map(|point| point[..inputs].iter().map(|&value| nearest_f32(value).into())).collect();
         let width = outputs + CONDITIONS;
         let device = &self.device;
         let results = device.buffer("found", (points.len() * width * 8) as u64, wgpu::BufferUsages::STORAGE);
@@ -96,12 +96,4 @@ impl PointKernel {
             })
             .collect())
     }
-}
-
-/// An input as a device receives it: its f32 value, and how far that is from the f64 one.
-#[allow(clippy::cast_possible_truncation, reason = "rounding to f32 is the point; the bound is rounded up")]
-pub fn pair(value: f64) -> [f32; 2] {
-    let near = value as f32;
-    let away = (value - f64::from(near)).abs();
-    [near, if away == 0.0 { 0.0 } else { (away as f32).next_up() }]
 }

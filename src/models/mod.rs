@@ -1,7 +1,8 @@
 //! The models: what each needs, gives and means, in one place per model.
 //!
 //! A model is a table of inputs, outputs and conditions, and a formula in two stages over [`Real`](crate::real::Real).
-//! Adding one is one file here, one line in [`MODELS`] and one golden case; every generic test loops over the list.
+//! Its twin in WGSL stands in `shaders/models/`, with the same two stages and names. Adding a model is one file here, one there,
+//! one line in [`MODELS`] and one golden case; every generic test loops over the list.
 
 mod cvt;
 mod description;

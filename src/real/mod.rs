@@ -13,7 +13,7 @@ mod running_error;
 
 pub use dependence::Dependence;
 pub use lanes::{LANES, Lanes};
-pub use running_error::{FUNCTION_ULP, RunningError};
+pub use running_error::{FUNCTION_ULP, RunningError, nearest_f32};
 
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};

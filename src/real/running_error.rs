@@ -29,6 +29,14 @@ pub struct RunningError {
     pub bound: f64,
 }
 
+/// An f64 as a device receives it: the nearest f32, and a bound on the distance, 0 where there is none.
+#[allow(clippy::cast_possible_truncation, reason = "rounding to f32 is the point; the bound is rounded up")]
+pub fn nearest_f32(value: f64) -> (f32, f32) {
+    let near = value as f32;
+    let away = (value - f64::from(near)).abs();
+    (near, if away == 0.0 { 0.0 } else { (away as f32).next_up() })
+}
+
 #[allow(clippy::cast_possible_truncation, reason = "rounding to f32 is what is being measured")]
 fn round(value: f64) -> f32 {
     value as f32

@@ -6,7 +6,7 @@ use crate::plan::Plan;
 use crate::real::RunningError;
 use crate::reduce::{Reduction, State};
 use crate::sample::mix;
-use crate::screen::gpu::{Answers, Checked, GpuEngine};
+use crate::screen::gpu::{Answers, Checked, GpuEngine, on_device};
 use crate::screen::{CpuEngine, Tables};
 use crate::study::Quantity;
 use serde_json::{Value, json};
@@ -212,7 +212,7 @@ fn compare(
                 continue;
             }
             for (slot, ((tracked, _), values)) in plan.tracked.iter().zip(block.values).enumerate() {
-                let exact = device_value(plan, tracked.quantity, values[lane]);
+                let exact = on_device(plan, tracked.quantity, values[lane]);
                 let name = tracked.quantity.name(model);
                 if let Err(found) = report.compare(slot, name, checked[at].worst[slot], exact) {
                     broken.get_or_insert_with(|| broken_promise(plan, tracked.quantity, block.index(lane), found, exact, "at its worst"));
@@ -256,14 +256,6 @@ fn compare(
         }
     }
     Ok((report, reducers.state()))
-}
-
-/// A quantity's f64 value as the device has it: outputs in SI, inputs in their unit.
-fn device_value(plan: &Plan, quantity: Quantity, value: f64) -> f64 {
-    match quantity {
-        Quantity::Output(output) => plan.study.model.outputs[output].unit.to_si(value),
-        Quantity::Input(_) => value,
-    }
 }
 
 /// The error for a value that is farther from f64 than promised.

@@ -3,10 +3,11 @@
 //! Fixed inputs are constants, the axes are known, and only what the study asks for is read or written, so that the compiler
 //! drops the rest of the model.
 
-use super::layout::{BINS, KILLERS, LIST, Layout, Values, champions, on_device, pair, scenario_worst, sign, used_outputs};
+use super::layout::{BINS, KILLERS, LIST, Layout, Values, champions, on_device, scenario_worst, sign, used_outputs};
 use crate::gpu::{model_prelude, model_source, source};
 use crate::models::{CONDITION_PROMISE, Worse};
 use crate::plan::{Plan, Source};
+use crate::real::nearest_f32;
 use crate::study::{Best, Constraint, Goal, MapSpec, Objective, Quantity};
 use std::fmt::Write;
 
@@ -81,7 +82,7 @@ fn literal(value: f32) -> String {
 
 /// A number with what f32 loses of it.
 fn real(value: f64) -> String {
-    let (value, bound) = pair(value);
+    let (value, bound) = nearest_f32(value);
     format!("Real({}, {})", literal(value), literal(bound))
 }
 
@@ -839,7 +840,7 @@ fn keep(plan: &Plan, constraint: &Constraint) -> Vec<String> {
     let mut lines = vec!["var answer = YES;".to_owned()];
     for (bound, towards) in [(constraint.low, 1.0), (constraint.high, -1.0)] {
         let Some((bound, strict)) = bound else { continue };
-        let (value, lost) = pair(on_device(plan, constraint.quantity, bound));
+        let (value, lost) = nearest_f32(on_device(plan, constraint.quantity, bound));
         // The unit is converted in f64, which rounds too; zero stays zero.
         let lost = if value == 0.0 { lost } else { lost + value.abs() * 1e-12 };
         let question = if strict { "above_zero" } else { "at_least_zero" };

@@ -4,6 +4,7 @@
 use crate::error::{Error, Result};
 use crate::models::{INPUTS, Worse, input_to_si};
 use crate::plan::{Plan, Source, dependences};
+use crate::real::nearest_f32;
 use crate::space::{Dimension, Product};
 use crate::study::{Axis, Goal, Levels, Quantity};
 
@@ -298,18 +299,10 @@ fn asked_inputs(plan: &Plan) -> u64 {
     })
 }
 
-/// An f64 as an f32 and a bound on the difference.
-#[allow(clippy::cast_possible_truncation, reason = "rounding to f32 is the point; the bound is rounded up")]
-pub fn pair(value: f64) -> (f32, f32) {
-    let near = value as f32;
-    let away = (value - f64::from(near)).abs();
-    (near, if away == 0.0 { 0.0 } else { (away as f32).next_up() })
-}
-
 /// The entry of one input's value.
 #[allow(clippy::cast_possible_truncation, reason = "rounding to f32 is the point")]
 fn level(plan: &Plan, input: usize, value: f64) -> Level {
-    let (si, bound) = pair(input_to_si(&plan.study.model.inputs[input], value));
+    let (si, bound) = nearest_f32(input_to_si(&plan.study.model.inputs[input], value));
     let allowed = constraints_on(plan, input).all(|constraint| constraint.holds(value));
     [si, bound, value as f32, if allowed { 1.0 } else { 0.0 }]
 }

@@ -11,3 +11,4 @@ mod layout;
 pub use engine::{Checked, GpuEngine, InFlight, Survivor, TileCounts, Wrong, kernel_of, supports};
 pub(crate) use kernel::value_maps;
 pub use known::Answers;
+pub(crate) use layout::on_device;
