@@ -31,6 +31,19 @@ pub fn summary(outcome: &Outcome<'_>, record: &RunRecord, out: &Path) -> String 
         },
     );
     fact("feasible", format!("{} ({} %)", grouped(feasible), short((share * 100.0).round() / 100.0)));
+    if let Some(device) = &record.device {
+        let count = |name: &str| grouped(device[name].as_u64().unwrap_or(0));
+        let compared = grouped(device["compared_with_f64"]["designs"].as_u64().unwrap_or(0));
+        let name = device["adapter"].as_str().unwrap_or_default();
+        fact(
+            "GPU",
+            format!(
+                "{name}: {} designs left to f64, {} of them undecided; {compared} compared with f64",
+                count("survivors"),
+                count("unsure_designs")
+            ),
+        );
+    }
     if !study.objectives.is_empty() {
         fact("front", format!("{} designs, each certified in f64 over every scenario", grouped(outcome.front.len() as u64)));
     }

@@ -51,8 +51,9 @@ fn a_sweep_on_a_device_writes_the_same_files_and_says_what_the_device_did() {
     let folder = folder();
     let name = super::adapters().last().expect("there is an adapter").name.clone();
     let part = name.split_whitespace().next().expect("it has a name").to_uppercase();
-    let (code, _, error) = ask(folder.path(), &format!("sweep small.toml --out gpu --engine gpu --adapter {part}"));
+    let (code, page, error) = ask(folder.path(), &format!("sweep small.toml --out gpu --engine gpu --adapter {part}"));
     assert_eq!(code, Some(0), "{error}");
+    assert!(page.contains(&name) && page.contains("designs left to f64"), "{page}");
     assert_eq!(ask(folder.path(), "sweep small.toml --out cpu --engine cpu").0, Some(0));
     let names = |out: &str| {
         let mut names: Vec<_> =
