@@ -1,0 +1,160 @@
+//! The prelude's part on judging: conditions, constraints and worst values, of rows, single lanes and groups of lanes.
+
+use super::*;
+
+impl Prelude<'_> {
+    /// Conditions, constraints and worst values in one scenario, of rows and of lanes.
+    pub(super) fn judging(&mut self, perturb: &[(usize, f64)]) {
+        let plan = self.plan;
+        let mut wrong = vec!["var out = finish(prepared, inputs);".to_owned()];
+        for &(output, part) in perturb {
+            let field = self.output(output);
+            wrong.push(format!("out.{field}.value *= {};", literal((1.0 + part) as f32)));
+        }
+        wrong.push("return out;".to_owned());
+        self.function("finish_perturbed(prepared: Prepared, inputs: Inputs) -> Outputs", &wrong);
+        for (number, constraint) in plan.study.constraints.iter().enumerate() {
+            if matches!(constraint.quantity, Quantity::Output(_)) {
+                let lines = keep(plan, constraint);
+                self.function(&format!("keeps_{number}(number: Real) -> u32"), &lines);
+            }
+        }
+        for (name, state, conditions, row) in
+            [("judge_row", "RowState", &plan.row_conditions, true), ("judge_lane", "Lane", &plan.lane_conditions, false)]
+        {
+            let mut lines = vec![
+                "let out = finish_perturbed(prepared, inputs);".to_owned(),
+                "let margins = conditions(prepared, inputs);".to_owned(),
+                "var verdict = (*state).verdict;".to_owned(),
+            ];
+            for &number in conditions {
+                let question = if plan.study.model.conditions[number].strict { "above_zero" } else { "at_least_zero" };
+                let promise = literal(CONDITION_PROMISE as f32);
+                lines.push(format!("verdict = min(verdict, {question}(promised(margins[{number}], {promise})));"));
+            }
+            for (number, (constraint, source)) in plan.study.constraints.iter().zip(&plan.constraints).enumerate() {
+                if let Quantity::Output(output) = constraint.quantity
+                    && source.is_row() == row
+                {
+                    lines.push(format!("verdict = min(verdict, keeps_{number}({}));", self.promised(output)));
+                }
+            }
+            for (at, (tracked, source)) in plan.tracked.iter().enumerate() {
+                if let Quantity::Output(output) = tracked.quantity
+                    && source.is_row() == row
+                {
+                    let fold = if tracked.worse == Worse::Higher { "max" } else { "min" };
+                    lines.push(format!("let v{at} = {};", self.promised(output)));
+                    lines.push(format!("verdict = min(verdict, select(UNSURE, YES, is_known(v{at})));"));
+                    lines.push(format!(
+                        "(*state).t{at} = Real({fold}((*state).t{at}.value, v{at}.value), max((*state).t{at}.bound, v{at}.bound));"
+                    ));
+                }
+            }
+            lines.push("(*state).verdict = verdict;".to_owned());
+            self.function(&format!("{name}(prepared: Prepared, inputs: Inputs, state: ptr<function, {state}>)"), &lines);
+        }
+        self.judging_of_groups();
+    }
+
+    /// A lane alone, and GROUP neighbouring lanes together, over all scenarios.
+    pub(super) fn judging_of_groups(&mut self) {
+        let group = self.layout.cut.group;
+        let all: Vec<u64> = (0..group).collect();
+        put!(self, "struct Group {{");
+        all.iter().for_each(|it| put!(self, "    l{it}: Lane,"));
+        put!(self, "}}\n");
+        for (head, members, result) in [
+            ("judge(row: u32, state: RowState, held: Prepared, digits: Digits) -> Lane", &all[..1], "return l0;".to_owned()),
+            (
+                "judge_group(row: u32, state: RowState, held: Prepared, first: u32) -> Group",
+                &all[..],
+                format!("return Group({});", all.iter().map(|it| format!("l{it}")).collect::<Vec<_>>().join(", ")),
+            ),
+        ] {
+            let mut lines = vec!["var inputs = fixed_inputs();".to_owned(), "set_row_inputs(&inputs, state);".to_owned()];
+            if head.contains("first") {
+                // Beyond the last lane the members repeat earlier ones; nobody looks at them.
+                lines.insert(0, "var digits = digits_of_lane(first);".to_owned());
+            }
+            for it in members {
+                lines.push(format!("let d{it} = digits;"));
+                lines.push(format!("var l{it} = start_lane(state, d{it});"));
+                if members.len() > 1 {
+                    lines.push("advance(&digits);".to_owned());
+                }
+            }
+            lines.extend(self.scenario_loops(members));
+            lines.push(result);
+            self.function(head, &lines);
+        }
+        let look = all.iter().map(|it| format!("look_at(group.l{it}, horizon, i + {it}u, count, seen, champion);"));
+        let keep = all.iter().map(|it| format!("(*kept)[i + {it}u] = group.l{it};"));
+        let lines: Vec<_> = if self.layout.cut.keeps { look.chain(keep).collect() } else { look.collect() };
+        self.function(
+            "look_at_group(group: Group, horizon: Horizon, i: u32, count: u32, seen: ptr<function, Seen>, champion: ptr<function, Champion>, kept: ptr<function, array<Lane, KEPT>>)",
+            &lines,
+        );
+        let check = all.iter().map(|it| format!("check_lane(group.l{it}, row, state, first + {it}u, lanes);"));
+        self.function("check_group(group: Group, row: u32, state: RowState, first: u32, lanes: u32)", &check.collect::<Vec<_>>());
+    }
+
+    pub(super) fn scenario_loops(&self, members: &[u64]) -> Vec<String> {
+        let (plan, layout) = (self.plan, self.layout);
+        if plan.lane_outputs.is_empty() && plan.lane_conditions.is_empty() {
+            return Vec::new();
+        }
+        let once = |name: &str, index: &str| format!("set_{name}_scenario(&inputs, {index});");
+        let each = members.iter().flat_map(|it| [format!("set_lane(&inputs, d{it});"), format!("judge_lane(prepared, inputs, &l{it});")]);
+        let mut inner: Vec<String> = Vec::new();
+        if layout.fast_scenarios.count == 1 {
+            inner.push(once("fast", "0u"));
+            inner.extend(each);
+        } else {
+            inner.push("for (var t = 0u; t < FAST_SCENARIOS; t++) {".to_owned());
+            inner.push(format!("    {}", once("fast", "t")));
+            inner.extend(each.map(|line| format!("    {line}")));
+            inner.push("}".to_owned());
+        }
+        if layout.slow_scenarios.count == 1 {
+            let mut lines = vec!["let prepared = held;".to_owned(), once("slow", "0u")];
+            lines.extend(inner);
+            return lines;
+        }
+        let verdicts = members.iter().map(|it| format!("l{it}.verdict"));
+        let best = verdicts.reduce(|a, b| format!("max({a}, {b})")).expect("a group has a member");
+        let mut lines = vec![
+            "for (var q = 0u; q < SLOW_SCENARIOS; q++) {".to_owned(),
+            "    let prepared = load_prepared(q, row);".to_owned(),
+            format!("    {}", once("slow", "q")),
+        ];
+        lines.extend(inner.into_iter().map(|line| format!("    {line}")));
+        lines.push(format!("    if {best} == NO {{ break; }}"));
+        lines.push("}".to_owned());
+        lines
+    }
+
+    pub(super) fn promised(&self, output: usize) -> String {
+        let promise = self.plan.study.model.outputs[output].promise;
+        format!("promised(out.{}, {})", self.output(output), literal(promise as f32))
+    }
+}
+
+/// Does a value keep to a constraint? The bound is in SI, with what f32 loses of it.
+fn keep(plan: &Plan, constraint: &Constraint) -> Vec<String> {
+    let mut lines = vec!["var answer = YES;".to_owned()];
+    for (bound, towards) in [(constraint.low, 1.0), (constraint.high, -1.0)] {
+        let Some((bound, strict)) = bound else { continue };
+        let (value, lost) = nearest_f32(on_device(plan, constraint.quantity, bound));
+        // The unit is converted in f64, which rounds too; zero stays zero.
+        let lost = if value == 0.0 { lost } else { lost + value.abs() * 1e-12 };
+        let question = if strict { "above_zero" } else { "at_least_zero" };
+        let difference =
+            if towards > 0.0 { format!("number.value - {}", literal(value)) } else { format!("{} - number.value", literal(value)) };
+        lines.push(format!("{{ let margin = {difference};"));
+        lines
+            .push(format!("answer = min(answer, {question}(Real(margin, number.bound + {} + abs(margin) * ROUNDING))); }}", literal(lost)));
+    }
+    lines.push("return answer;".to_owned());
+    lines
+}

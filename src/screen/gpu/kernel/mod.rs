@@ -1,0 +1,227 @@
+//! The kernel of a study: the shared texts, the model's text, the sweep's entry points, and a prelude that knows the study.
+//!
+//! Fixed inputs are constants, the axes are known, and only what the study asks for is read or written, so that the compiler
+//! drops the rest of the model.
+
+/// Appends a line to the prelude.
+macro_rules! put {
+    ($self:ident, $($format:tt)*) => {
+        writeln!($self.text, $($format)*).expect("a text takes everything")
+    };
+}
+
+mod front;
+mod judging;
+mod lanes;
+mod report;
+mod rows;
+
+use super::layout::{BINS, KILLERS, LIST, Layout, Values, champions, on_device, scenario_worst, sign, used_outputs};
+use crate::gpu::{model_prelude, model_source, source};
+use crate::models::{CONDITION_PROMISE, Worse};
+use crate::plan::{Plan, Source};
+use crate::real::nearest_f32;
+use crate::study::{Best, Constraint, Goal, MapSpec, Objective, Quantity};
+use std::fmt::Write;
+
+/// Entry points of the kernel.
+pub const ENTRIES: &[&str] = &["prepare_rows", "judge_rows", "sweep", "check"];
+
+/// How a design is compared by an objective on the device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coordinate {
+    /// An output with its bound.
+    Plain,
+    /// Steps of the resolution.
+    Stepped,
+    /// An input whose values f32 tells apart.
+    Exact,
+}
+
+/// Does f32 tell an input's values apart, so that they compare as in f64?
+pub fn is_exact(plan: &Plan, layout: &Layout, input: usize) -> bool {
+    layout.exact >> input & 1 == 1 || plan.space.designs.inputs() >> input & 1 == 0
+}
+
+/// The kind of each objective's coordinate.
+pub fn coordinates(plan: &Plan, layout: &Layout) -> Vec<Coordinate> {
+    let kind = |objective: &Objective| match objective.quantity {
+        _ if objective.resolution.is_some() => Coordinate::Stepped,
+        Quantity::Input(input) if is_exact(plan, layout, input) => Coordinate::Exact,
+        _ => Coordinate::Plain,
+    };
+    plan.study.objectives.iter().map(kind).collect()
+}
+
+/// Does the look-up table serve: two or three coordinates, none of steps, of which many designs share one?
+pub fn uses_table(coordinates: &[Coordinate]) -> bool {
+    matches!(coordinates.len(), 2 | 3) && !coordinates.contains(&Coordinate::Stepped)
+}
+
+/// Bins along each coordinate of the table.
+pub fn bins(coordinates: &[Coordinate]) -> u64 {
+    BINS[usize::from(coordinates.len() == 3)]
+}
+
+/// The words of a survivor: row, lane with the reason, a lower key per objective, a lower and an upper key per map of values.
+pub fn survivor_words(plan: &Plan) -> usize {
+    2 + plan.study.objectives.len() + 2 * value_maps(plan).count()
+}
+
+/// The maps that show a value, with the position of what they show among the tracked quantities.
+pub fn value_maps(plan: &Plan) -> impl Iterator<Item = (&MapSpec, usize, Goal)> {
+    plan.study.report.maps.iter().filter_map(|spec| {
+        let Best::Value(quantity, goal) = spec.value else { return None };
+        let at = plan.tracked.iter().position(|(it, _)| it.quantity == quantity && it.worse == goal.worse());
+        Some((spec, at.expect("what a map shows is tracked"), goal))
+    })
+}
+
+/// The words of a check record: verdict, then value and bound per tracked quantity, then per used output.
+pub fn check_words(plan: &Plan) -> usize {
+    1 + 2 * plan.tracked.len() + 2 * used_outputs(plan).count_ones() as usize
+}
+
+/// A number of the kernel's text that reads back as the same f32.
+fn literal(value: f32) -> String {
+    if value.is_finite() {
+        format!("f32({value:?})")
+    } else if value > 0.0 {
+        "infinity()".to_owned()
+    } else {
+        "(-infinity())".to_owned()
+    }
+}
+
+/// A number with what f32 loses of it.
+fn real(value: f64) -> String {
+    let (value, bound) = nearest_f32(value);
+    format!("Real({}, {})", literal(value), literal(bound))
+}
+
+/// The text of the kernel. `perturb`: outputs that are to come out wrong by this part of their value, for testing.
+pub fn text(plan: &Plan, layout: &Layout, perturb: &[(usize, f64)]) -> String {
+    let model = plan.study.model;
+    let mut prelude = Prelude { plan, layout, text: String::new(), coordinates: coordinates(plan, layout) };
+    prelude.constants();
+    prelude.inputs();
+    prelude.rows();
+    prelude.passing();
+    prelude.lanes();
+    prelude.judging(perturb);
+    prelude.front();
+    prelude.others();
+    prelude.report();
+    [
+        source::COMMON,
+        include_str!("../../../../shaders/common/wide.wgsl"),
+        &model_prelude(model),
+        &model_source(model),
+        include_str!("../../../../shaders/sweep/tile.wgsl"),
+        &prelude.text,
+        include_str!("../../../../shaders/sweep/prepare.wgsl"),
+        include_str!("../../../../shaders/sweep/sweep.wgsl"),
+        include_str!("../../../../shaders/sweep/check.wgsl"),
+    ]
+    .join("\n")
+}
+
+struct Prelude<'a> {
+    plan: &'a Plan,
+    layout: &'a Layout,
+    text: String,
+    coordinates: Vec<Coordinate>,
+}
+
+impl Prelude<'_> {
+    fn input(&self, input: usize) -> &'static str {
+        self.plan.study.model.kernel.fields().inputs[input]
+    }
+
+    fn output(&self, output: usize) -> &'static str {
+        self.plan.study.model.kernel.fields().outputs[output]
+    }
+
+    /// A function of these lines.
+    fn function(&mut self, head: &str, lines: &[String]) {
+        put!(self, "fn {head} {{");
+        for line in lines {
+            put!(self, "    {line}");
+        }
+        put!(self, "}}\n");
+    }
+
+    fn constants(&mut self) {
+        let (plan, layout) = (self.plan, self.layout);
+        let cut = layout.cut;
+        let share_or_value = !plan.study.report.maps.is_empty();
+        let all = share_or_value || !plan.study.report.histograms.is_empty();
+        let uses_champions = champions(plan);
+        let each = if cut.keeps { cut.block } else { 1 };
+        let shared = if uses_champions { cut.group_rows * cut.group_chunks * each } else { 1 };
+        for (name, value) in [
+            ("SLOW_SCENARIOS", layout.slow_scenarios.count),
+            ("FAST_SCENARIOS", layout.fast_scenarios.count),
+            ("OBJECTIVES", plan.study.objectives.len() as u64),
+            ("LANES_EACH", cut.lanes_each),
+            ("BLOCK", cut.block),
+            ("BLOCKS", cut.lanes_each.div_ceil(cut.block)),
+            ("GROUP", cut.group),
+            ("KEPT", if cut.keeps { cut.block } else { 1 }),
+            ("GROUP_ROWS", cut.group_rows),
+            ("GROUP_CHUNKS", cut.group_chunks),
+            ("CHAMPIONS", shared),
+            ("CHAMPIONS_EACH", each),
+            ("SURVIVOR_WORDS", survivor_words(plan) as u64),
+            ("CHECK_WORDS", check_words(plan) as u64),
+            ("WORST_WORDS", 2 * plan.tracked.len() as u64),
+        ] {
+            put!(self, "const {name}: u32 = {value}u;");
+        }
+        put!(self, "const KEEPS: bool = {};", cut.keeps);
+        put!(self, "const USES_CHAMPIONS: bool = {uses_champions};");
+        put!(self, "const LOOK_AT_ALL: bool = {all};\n");
+        let space = if layout.steady_is_uniform() { "uniform" } else { "storage, read" };
+        put!(self, "// Levels that never change: scenarios, then fast design axes.");
+        put!(self, "@group(0) @binding(2) var<{space}> steady: array<vec4<f32>, {}>;\n", layout.steady.len().max(1));
+    }
+}
+
+/// The value that every other one is worse than; its bound is the least.
+fn least_bad(worse: Worse) -> String {
+    if worse == Worse::Higher { "Real(-infinity(), 0.0)".to_owned() } else { "Real(infinity(), 0.0)".to_owned() }
+}
+
+/// Constants of the histograms, whose ranges are known only when the study has been sampled.
+pub fn histogram_constants(plan: &Plan, ranges: &[(f64, f64)]) -> String {
+    let mut text = String::new();
+    for (number, (spec, &(from, to))) in plan.study.report.histograms.iter().zip(ranges).enumerate() {
+        let [from, to] = [from, to].map(|end| on_device(plan, spec.of, end));
+        let per_unit = (spec.bins as f64 / (to - from)) as f32;
+        writeln!(text, "const HISTOGRAM_{number}: Real = {};\nconst PER_UNIT_{number}: f32 = {};", real(from), literal(per_unit))
+            .expect("a text takes everything");
+    }
+    text
+}
+
+/// What an objective's f64 key becomes on the device: the least f32 that a design's lower end must reach to be certainly no better
+/// (for a coordinate with bounds: certainly worse).
+pub fn threshold(plan: &Plan, objective: &Objective, coordinate: Coordinate, key: f64) -> f32 {
+    match coordinate {
+        // Steps are whole numbers.
+        Coordinate::Stepped => round_up(key),
+        // The very rounding that the levels had.
+        Coordinate::Exact => key as f32,
+        Coordinate::Plain => {
+            let value = sign(objective.goal) * on_device(plan, objective.quantity, sign(objective.goal) * key);
+            round_up(value).next_up()
+        }
+    }
+}
+
+/// The least f32 that is not less.
+#[allow(clippy::cast_possible_truncation, reason = "rounded up where it was rounded down")]
+pub fn round_up(value: f64) -> f32 {
+    let near = value as f32;
+    if f64::from(near) < value { near.next_up() } else { near }
+}

@@ -1,0 +1,179 @@
+//! The prelude's part on rows: their inputs, what passes between the stages, what all lanes of a row share.
+
+use super::*;
+
+impl Prelude<'_> {
+    /// Fixed inputs and scenarios.
+    pub(super) fn inputs(&mut self) {
+        let plan = self.plan;
+        let model = plan.study.model;
+        // Inputs that a stage does not depend on still decide selections: every one has a value of its own axis.
+        let first = crate::models::to_si(model, &plan.space.inputs(0, 0));
+        let mut lines = vec!["var inputs: Inputs;".to_owned()];
+        for (input, &value) in first.iter().enumerate().take(model.inputs.len()) {
+            lines.push(format!("inputs.{} = {};", self.input(input), real(value)));
+        }
+        lines.push("return inputs;".to_owned());
+        self.function("fixed_inputs() -> Inputs", &lines);
+        for (name, table) in [("slow", &self.layout.slow_scenarios), ("fast", &self.layout.fast_scenarios)] {
+            let columns = table.inputs.len();
+            let set = |(column, &input): (usize, &usize)| {
+                let entry = format!("steady[{}u + scenario * {columns}u]", table.offset as usize + column);
+                format!("(*inputs).{} = Real({entry}.x, {entry}.y);", self.input(input))
+            };
+            let lines: Vec<_> = table.inputs.iter().enumerate().map(set).collect();
+            self.function(&format!("set_{name}_scenario(inputs: ptr<function, Inputs>, scenario: u32)"), &lines);
+        }
+    }
+
+    /// From a row's number to its place, inputs and index.
+    pub(super) fn rows(&mut self) {
+        let slow = &self.layout.slow;
+        put!(self, "const DIMENSIONS: u32 = {}u;\n", slow.len().max(1));
+        let mut lines = vec!["var digits: array<u32, DIMENSIONS>;".to_owned(), "var rest = row;".to_owned()];
+        for (number, dimension) in slow.iter().enumerate().rev() {
+            let sum = format!("tile.digits[{}][{}] + rest", number / 4, number % 4);
+            if number == 0 {
+                lines.push(format!("digits[0] = {sum};"));
+            } else {
+                lines.push(format!("digits[{number}] = ({sum}) % {}u;", dimension.count));
+                lines.push(format!("rest = ({sum}) / {}u;", dimension.count));
+            }
+        }
+        lines.push("return digits;".to_owned());
+        self.function("digits_of_row(row: u32) -> array<u32, DIMENSIONS>", &lines);
+
+        let entry = |number: usize, column: usize| {
+            let dimension = &slow[number];
+            format!("levels[{}u + digits[{number}] * {}u]", dimension.offset as usize + column, dimension.inputs.len())
+        };
+        let mut lines = Vec::new();
+        let mut allowed = vec!["var allowed = 1.0;".to_owned()];
+        let mut index = vec!["var index = tile.index;".to_owned()];
+        for (number, dimension) in slow.iter().enumerate() {
+            for (column, &input) in dimension.inputs.iter().enumerate() {
+                let entry = entry(number, column);
+                lines.push(format!("(*inputs).{} = Real({entry}.x, {entry}.y);", self.input(input)));
+                allowed.push(format!("allowed = min(allowed, {entry}.w);"));
+            }
+            let stride = dimension.stride;
+            index.push(format!(
+                "index = wide_add(index, wide_mul(digits[{number}], vec2<u32>({}u, {}u)));",
+                stride & 0xffff_ffff,
+                stride >> 32
+            ));
+        }
+        allowed.push("return allowed == 1.0;".to_owned());
+        index.push("return index;".to_owned());
+        self.function("set_row(inputs: ptr<function, Inputs>, digits: array<u32, DIMENSIONS>)", &lines);
+        self.function("is_allowed(digits: array<u32, DIMENSIONS>) -> bool", &allowed);
+        self.function("index_of_row(digits: array<u32, DIMENSIONS>) -> vec2<u32>", &index);
+    }
+
+    /// Values of the first stage, and what all lanes of a row share.
+    pub(super) fn passing(&mut self) {
+        let (plan, layout) = (self.plan, self.layout);
+        let fields = plan.study.model.kernel.fields().prepared;
+        let width = layout.prepared.len();
+        let at = |number: usize| format!("prepared_table[(q * {width}u + {number}u) * tile.rows + row]");
+        let passed = layout.prepared.iter().enumerate();
+        let store: Vec<_> = passed.clone().map(|(number, &field)| format!("{} = prepared.{};", at(number), fields[field])).collect();
+        self.function("store_prepared(q: u32, row: u32, prepared: Prepared)", &store);
+        let mut load = vec!["var prepared: Prepared;".to_owned()];
+        load.extend(passed.map(|(number, &field)| format!("prepared.{} = {};", fields[field], at(number))));
+        load.push("return prepared;".to_owned());
+        self.function("load_prepared(q: u32, row: u32) -> Prepared", &load);
+        let hold = if layout.slow_scenarios.count == 1 { "return load_prepared(0u, row);" } else { "var none: Prepared; return none;" };
+        self.function("hold_prepared(row: u32) -> Prepared", &[hold.to_owned()]);
+
+        // Verdict, index, cell of each map, tracked values, inputs.
+        let tracked: Vec<usize> = (0..plan.tracked.len()).filter(|&at| plan.tracked[at].1.is_row()).collect();
+        let maps = plan.study.report.maps.len();
+        put!(self, "struct RowState {{\n    verdict: u32,\n    index: vec2<u32>,");
+        (0..maps).for_each(|map| put!(self, "    cell{map}: u32,"));
+        tracked.iter().for_each(|at| put!(self, "    t{at}: Real,"));
+        layout.row_inputs.iter().for_each(|&input| put!(self, "    {}: Real,", self.input(input)));
+        put!(self, "}}\n");
+        let mut words = vec!["verdict".to_owned(), "index.x".to_owned(), "index.y".to_owned()];
+        words.extend((0..maps).map(|map| format!("cell{map}")));
+        let whole = words.len();
+        words.extend(tracked.iter().flat_map(|at| [format!("t{at}.value"), format!("t{at}.bound")]));
+        words.extend(layout.row_inputs.iter().flat_map(|&it| ["value", "bound"].map(|part| format!("{}.{part}", self.input(it)))));
+        put!(self, "const ROW_WORDS: u32 = {}u;\n", words.len());
+        let at = |word: usize| format!("row_table[{word}u * tile.rows + row]");
+        let store = words.iter().enumerate().map(|(word, it)| {
+            format!("{} = {};", at(word), if word < whole { format!("state.{it}") } else { format!("bitcast<u32>(state.{it})") })
+        });
+        self.function("store_row(row: u32, state: RowState)", &store.collect::<Vec<_>>());
+        let mut load = vec!["var state: RowState;".to_owned()];
+        load.extend(
+            words
+                .iter()
+                .enumerate()
+                .map(|(word, it)| format!("state.{it} = {};", if word < whole { at(word) } else { format!("bitcast<f32>({})", at(word)) })),
+        );
+        load.push("return state;".to_owned());
+        self.function("load_row(row: u32) -> RowState", &load);
+        let set: Vec<_> = layout.row_inputs.iter().map(|&input| format!("(*inputs).{0} = state.{0};", self.input(input))).collect();
+        self.function("set_row_inputs(inputs: ptr<function, Inputs>, state: RowState)", &set);
+
+        let mut start = vec!["var state: RowState;".to_owned()];
+        let possible = if layout.possible { "is_allowed(digits)" } else { "false" };
+        start.push(format!("state.verdict = select(NO, YES, {possible});"));
+        start.push("state.index = index_of_row(digits);".to_owned());
+        for map in 0..maps {
+            start.push(format!("state.cell{map} = {};", self.cell_of_row(map)));
+        }
+        for &at in &tracked {
+            start.push(format!("state.t{at} = {};", self.row_start(at)));
+        }
+        start.extend(layout.row_inputs.iter().map(|&input| format!("state.{0} = inputs.{0};", self.input(input))));
+        start.push("return state;".to_owned());
+        self.function("start_row(digits: array<u32, DIMENSIONS>, inputs: Inputs) -> RowState", &start);
+    }
+
+    /// What a row adds to the number of a map's cell.
+    pub(super) fn cell_of_row(&self, map: usize) -> String {
+        let terms = self.map_terms(map).into_iter().filter_map(|(stride, count, factor)| {
+            let number = self.layout.slow.iter().position(|it| (it.stride, it.count) == (stride, count))?;
+            // The outermost digit counts from the window's first level.
+            let base = if number == 0 { " + tile.window" } else { "" };
+            Some(format!("(digits[{number}]{base}) * {factor}u"))
+        });
+        let terms: Vec<_> = terms.collect();
+        if terms.is_empty() { "0u".to_owned() } else { terms.join(" + ") }
+    }
+
+    /// Of each axis of a map: its stride in the design index and its length, which together tell it from the others (an axis of one
+    /// value has the stride of its neighbour), and what a step along it adds to the cell's number.
+    pub(super) fn map_terms(&self, map: usize) -> [(u64, u64, u64); 2] {
+        let study = &self.plan.study;
+        let spec = &study.report.maps[map];
+        let stride = |axis: usize| study.design[axis + 1..].iter().map(crate::study::Axis::count).product::<u64>();
+        let [x, y] = [spec.x, spec.y].map(|axis| (stride(axis), study.design[axis].count()));
+        [(x.0, x.1, 1), (y.0, y.1, x.1)]
+    }
+
+    /// The value of a row's tracked quantity before any scenario.
+    pub(super) fn row_start(&self, at: usize) -> String {
+        let (tracked, source) = self.plan.tracked[at];
+        match source {
+            Source::RowInput(input) => {
+                let slow = self.layout.slow.iter().enumerate().find_map(|(number, dimension)| {
+                    let column = dimension.inputs.iter().position(|&it| it == input)?;
+                    Some(format!("levels[{}u + digits[{number}] * {}u].z", dimension.offset as usize + column, dimension.inputs.len()))
+                });
+                match slow {
+                    Some(entry) => self.own_value(input, &entry),
+                    None => real(scenario_worst(self.plan, input, tracked.worse)),
+                }
+            }
+            _ => least_bad(tracked.worse),
+        }
+    }
+
+    /// An input's value in its unit, with the bound of its rounding.
+    pub(super) fn own_value(&self, input: usize, entry: &str) -> String {
+        if self.layout.represented >> input & 1 == 1 { format!("constant({entry})") } else { format!("near({entry})") }
+    }
+}
