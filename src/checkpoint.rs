@@ -12,11 +12,15 @@ use serde_json::Value;
 use std::fs::{self, File};
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// Version of the checkpoint's layout; another one is refused.
 const VERSION: u32 = 1;
 const MANIFEST: &str = "manifest.json";
 const LOCK: &str = "lock";
+/// How often, and after which pauses, a lock is tried again before the folder counts as in use.
+const LOCK_ATTEMPTS: u32 = 20;
+const LOCK_PAUSE: Duration = Duration::from_millis(10);
 
 /// What was finished before.
 #[derive(Debug)]
@@ -231,7 +235,15 @@ impl Checkpoint {
 fn lock(folder: &Path) -> Result<File> {
     let path = folder.join(LOCK);
     let file = File::create(&path).map_err(Error::io(&path))?;
-    match file.try_lock() {
+    // A program that this process is just starting shares its files, and so a lock that was let go, until it runs.
+    let mut attempts = 0..LOCK_ATTEMPTS;
+    let locked = loop {
+        match file.try_lock() {
+            Err(fs::TryLockError::WouldBlock) if attempts.next().is_some() => std::thread::sleep(LOCK_PAUSE),
+            locked => break locked,
+        }
+    };
+    match locked {
         Ok(()) => Ok(file),
         Err(fs::TryLockError::WouldBlock) => Err(Error::Checkpoint {
             path: folder.to_owned(),

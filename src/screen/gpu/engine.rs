@@ -146,6 +146,8 @@ pub struct Wrong {
     pub replace: Vec<(String, String)>,
     /// Another text for the whole kernel.
     pub text: Option<String>,
+    /// Judge lanes in groups also where the study is small.
+    pub grouped: bool,
     /// Room for survivors, if not the usual.
     pub capacity: Option<u64>,
 }
@@ -157,7 +159,7 @@ impl<'p> GpuEngine<'p> {
     /// [`Error::Request`](crate::error::Error::Request) if the study cannot be screened on a device,
     /// [`Error::Gpu`](crate::error::Error::Gpu) if the device fails.
     pub fn new(plan: &'p Plan, ranges: &[(f64, f64)], device: &Device, limited_loops: bool, wrong: &Wrong) -> Result<Self> {
-        let layout = Layout::new(plan, limited_loops)?;
+        let layout = Layout::new(plan, limited_loops, wrong.grouped)?;
         let mut source = wrong.text.clone().unwrap_or_else(|| kernel_text(plan, &layout, ranges, &wrong.perturb));
         for (piece, other) in &wrong.replace {
             assert!(source.contains(piece), "the kernel has no {piece}");
@@ -444,7 +446,7 @@ impl<'p> GpuEngine<'p> {
 /// # Errors
 /// [`Error::Request`](crate::error::Error::Request) that says why not.
 pub fn supports(plan: &Plan, limited_loops: bool) -> Result<()> {
-    Layout::new(plan, limited_loops).map(|_| ())
+    Layout::new(plan, limited_loops, false).map(|_| ())
 }
 
 /// The kernel that a study is screened with, as it would be on a driver that ends long loops.
@@ -452,7 +454,7 @@ pub fn supports(plan: &Plan, limited_loops: bool) -> Result<()> {
 /// # Errors
 /// [`Error::Request`](crate::error::Error::Request) if the study cannot be screened on a device.
 pub fn kernel_of(plan: &Plan, ranges: &[(f64, f64)], perturb: &[(usize, f64)]) -> Result<String> {
-    Ok(kernel_text(plan, &Layout::new(plan, true)?, ranges, perturb))
+    Ok(kernel_text(plan, &Layout::new(plan, true, false)?, ranges, perturb))
 }
 
 fn kernel_text(plan: &Plan, layout: &Layout, ranges: &[(f64, f64)], perturb: &[(usize, f64)]) -> String {

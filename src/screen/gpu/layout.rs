@@ -136,11 +136,11 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// Lays out a study.
+    /// Lays out a study. `grouped`: lanes are judged in groups even where the study is small.
     ///
     /// # Errors
     /// [`Error::Request`] if it cannot be screened on a device, and why.
-    pub fn new(plan: &Plan, limited_loops: bool) -> Result<Self> {
+    pub fn new(plan: &Plan, limited_loops: bool, grouped: bool) -> Result<Self> {
         let refuse = |why: String| Error::Request(format!("this study cannot be screened on a GPU: {why}; use --engine cpu"));
         let model = plan.study.model;
         let scenarios = [&plan.slow_scenarios, &plan.fast_scenarios].map(Product::count);
@@ -195,7 +195,6 @@ impl Layout {
         }
         let mut levels = Vec::new();
         let mut slow = Vec::new();
-        let last = plan.slow.dimensions().len();
         for (number, (dimension, stride)) in plan.slow.dimensions().enumerate() {
             let count = dimension.count();
             if number > 0 && levels.len() as u64 + count * dimension.inputs().len() as u64 > WINDOW {
@@ -208,7 +207,6 @@ impl Layout {
             }
             slow.push(SlowDimension { inputs: dimension.inputs().to_vec(), count, stride, offset });
         }
-        debug_assert_eq!(slow.len(), last);
         if let Some(outermost) = slow.first_mut() {
             outermost.offset = levels.len() as u32;
         }
@@ -225,7 +223,7 @@ impl Layout {
             possible: is_possible(plan),
             exact,
             represented,
-            cut: Cut::new(plan),
+            cut: Cut::new(plan, grouped),
         })
     }
 
@@ -241,12 +239,12 @@ impl Layout {
 }
 
 impl Cut {
-    fn new(plan: &Plan) -> Self {
+    fn new(plan: &Plan, grouped: bool) -> Self {
         let turns = plan.slow_scenarios.count() * (plan.fast_scenarios.count() + 1) + 1;
         let lanes = plan.fast.count();
         let keeps = plan.scenarios() > 1;
         // The driver's compiler takes longer over a group than a small study takes altogether.
-        let small = plan.designs().saturating_mul(plan.scenarios()) < SMALL;
+        let small = !grouped && plan.designs().saturating_mul(plan.scenarios()) < SMALL;
         let group = if small { 1 } else { GROUP[usize::from(!keeps)].min(lanes) };
         // Turns of one lane in the closer look: a list, its neighbours, and its scenarios again where it was not kept.
         let closer = LIST as u64 + 40 + if keeps { 0 } else { turns };

@@ -32,7 +32,7 @@ fn open() -> OnDevice {
 }
 
 /// The device, with something wrong about the kernel.
-fn wrong(wrong: Wrong) -> OnDevice {
+pub fn wrong(wrong: Wrong) -> OnDevice {
     OnDevice { wrong, ..device().clone() }
 }
 

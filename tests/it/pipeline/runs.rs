@@ -6,6 +6,7 @@ use beltspace::export::{Outcome, RunRecord};
 use beltspace::merge::{check_set, merge};
 use beltspace::plan::Plan;
 use beltspace::reduce::{Reduction, State};
+use beltspace::screen::gpu::Wrong;
 use beltspace::screen::{CpuEngine, Tables, Tally};
 use beltspace::sweep::{Control, Options, sweep, sweep_on_device};
 use beltspace::tiles::{Ranges, Shard};
@@ -39,9 +40,9 @@ impl<'p> Pipeline<'p> {
         sweep(self.plan, &self.tables, &self.reduction, options, None, &control).expect("the sweep ends").state
     }
 
-    /// One run on the device of the tests; its state and files.
-    pub fn on_device(&self, folder: &Path) -> (State, Files) {
-        let device = crate::gpu::device();
+    /// One run on the device of the tests, lanes judged one by one or in groups; its state and files.
+    pub fn on_device(&self, grouped: bool, folder: &Path) -> (State, Files) {
+        let device = &crate::gpu::wrong(Wrong { grouped, ..Wrong::default() });
         let (options, control) = (Options { threads: 2, ..Options::default() }, Control::default());
         let swept = sweep_on_device(self.plan, &self.tables, &self.reduction, &options, None, &control, device);
         let state = swept.unwrap_or_else(|error| panic!("{error}")).0.state;
