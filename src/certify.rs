@@ -4,7 +4,7 @@
 //! design that it finds infeasible, or whose objectives differ from what the sweep saw, stops the program.
 
 use crate::error::{Error, Result};
-use crate::models::{OUTPUTS, Prepared, Status, Worse, judge, to_si};
+use crate::models::{OUTPUTS, Status, Worse, judge, to_si};
 use crate::plan::{Plan, worst_end};
 use crate::reduce::{KeyRule, Points};
 use crate::study::{Constraint, Quantity, Study};
@@ -176,7 +176,7 @@ struct Reference<'p> {
     columns: &'p [Column],
     wanted: u64,
     row: Option<u64>,
-    prepared: Vec<Prepared>,
+    prepared: Vec<Vec<f64>>,
 }
 
 impl<'p> Reference<'p> {
@@ -208,7 +208,9 @@ impl<'p> Reference<'p> {
                 plan.fast_scenarios.set(t, &mut inputs);
                 let si = to_si(model, &inputs);
                 if self.prepared.len() as u64 == q {
-                    self.prepared.push(model.kernel.prepare(&si));
+                    let mut prepared = vec![0.0; model.kernel.fields().prepared_len()];
+                    model.kernel.prepare(&si, self.wanted, &mut prepared);
+                    self.prepared.push(prepared);
                 }
                 let prepared = &self.prepared[q as usize];
                 let mut outputs = [0.0; OUTPUTS];

@@ -19,6 +19,9 @@ pub enum Dimension {
     Speed,
     LinearDensity,
     ForcePerLength,
+    Area,
+    Mass,
+    Compliance,
 }
 
 impl Dimension {
@@ -36,6 +39,9 @@ impl Dimension {
             Self::Speed => "a speed",
             Self::LinearDensity => "a mass per length",
             Self::ForcePerLength => "a force per length",
+            Self::Area => "an area",
+            Self::Mass => "a mass",
+            Self::Compliance => "a deflection per force",
         }
     }
 }
@@ -167,6 +173,22 @@ units! {
     NEWTON_PER_MILLIMETRE = "N/mm", ForcePerLength, 1000.0, 1.0;
     /// Newton per metre.
     NEWTON_PER_METRE = "N/m", ForcePerLength, 1.0, 1.0;
+    /// Square millimetre.
+    SQUARE_MILLIMETRE = "mm2" | "mm²", Area, 1.0, 1e6;
+    /// Square inch.
+    SQUARE_INCH = "in2" | "in²", Area, INCH * INCH, 1.0;
+    /// Gram.
+    GRAM = "g", Mass, 1.0, 1000.0;
+    /// Kilogram.
+    KILOGRAM = "kg", Mass, 1.0, 1.0;
+    /// Ounce (mass).
+    OUNCE = "oz", Mass, 0.453_592_37, 16.0;
+    /// Micrometre per newton.
+    MICROMETRE_PER_NEWTON = "um/N" | "µm/N", Compliance, 1.0, 1e6;
+    /// Millimetre per kilogram-force.
+    MILLIMETRE_PER_KILOGRAM_FORCE = "mm/kgf", Compliance, 1.0, 9806.65;
+    /// Metre per newton.
+    METRE_PER_NEWTON = "m/N", Compliance, 1.0, 1.0;
     /// Pound-force per inch.
     POUND_PER_INCH = "lbf/in", ForcePerLength, POUND_FORCE, INCH;
 }

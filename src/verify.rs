@@ -113,6 +113,9 @@ impl Random {
 
 /// A value of an input's usual range: an end of it, the default, or anything between, evenly or in the logarithm.
 fn usual(input: &Input, random: &mut Random) -> f64 {
+    if input.processor_only {
+        return input.default;
+    }
     let (low, high) = input.usual;
     if let Some((_, word)) = input.word
         && random.next().is_multiple_of(6)
@@ -211,7 +214,7 @@ pub fn compare(kernel: &PointKernel, model: &Model, constraints: &[Constraint], 
     let mut conditions: Vec<Collector> = model.conditions.iter().map(|it| Collector::new(it.reason)).collect();
     let mut report = Report { points: points.len() as u64, ..Report::default() };
     for (((inputs, &on_boundary), si), (values, margins)) in points.inputs.iter().zip(&points.on_boundary).zip(&si).zip(&found) {
-        let prepared = model.kernel.prepare(si);
+        let prepared = model.kernel.prepared(si);
         let exact_margins = model.kernel.conditions(&prepared, si);
         let mut exact = [0.0; OUTPUTS];
         model.kernel.finish(&prepared, si, u64::MAX, &mut exact);

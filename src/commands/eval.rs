@@ -86,6 +86,8 @@ fn parse_assignment(model: &Model, assignment: &str) -> std::result::Result<(usi
 /// Prints one design in one scenario.
 fn print_one(model: &Model, inputs: &[f64], of_study: Option<(u64, u64)>, request: &cli::Eval) -> Result<()> {
     let evaluation = evaluate(model, inputs);
+    let spelled_out = model.spelled_out(inputs);
+    let inputs = &spelled_out;
     for input in
         model.inputs.iter().zip(inputs).filter(|(it, value)| it.word_for(**value).is_none() && !(it.usual.0..=it.usual.1).contains(*value))
     {
@@ -94,6 +96,9 @@ fn print_one(model: &Model, inputs: &[f64], of_study: Option<(u64, u64)>, reques
             "note",
             &format!("{} = {value} lies outside {} to {}, which the source covers", input.name, input.usual.0, input.usual.1),
         );
+    }
+    if let Some(notes) = model.notes.filter(|_| evaluation.status == Status::Ok) {
+        notes(inputs, &evaluation).iter().for_each(|note| terminal::remark("note", note));
     }
     along_the_belt(model, inputs, &evaluation, request)?;
     let reason = evaluation.status.reason(model);
@@ -156,17 +161,24 @@ fn along_the_belt(model: &Model, inputs: &[f64], evaluation: &Evaluation, reques
     let Profile { columns, rows } = profile(inputs);
     let column = |at: usize| rows.iter().map(|row| row[at]).collect::<Vec<_>>();
     if let Some(path) = &request.profile {
-        let columns = columns.iter().enumerate().map(|(at, (name, unit))| TableColumn {
-            unit: unit.symbol.to_owned(),
-            ..TableColumn::new(name, "profile", "", Data::Number(column(at).into_iter().map(Some).collect()))
+        let columns = columns.iter().enumerate().map(|(at, it)| TableColumn {
+            unit: it.unit.symbol.to_owned(),
+            ..TableColumn::new(it.name, "profile", "", Data::Number(column(at).into_iter().map(Some).collect()))
         });
         replace(path, &csv_text(&Table { columns: columns.collect() }))?;
     }
     if let Some(path) = &request.plot {
-        let quantity = |at: usize| Quantity::new(columns[at].0, columns[at].1.symbol);
-        let panel = |at: usize| (quantity(at), vec![Series { label: String::new(), x: column(0), y: column(at) }]);
-        let panels: Vec<_> = (1..columns.len()).map(panel).collect();
-        replace(path, pictures::curves(model.summary, &quantity(0), &panels).as_bytes())?;
+        let mut panels: Vec<(Quantity, Vec<Series>)> = Vec::new();
+        for (at, it) in columns.iter().enumerate().skip(1) {
+            let Some(drawn) = it.drawn else { continue };
+            let series = Series { label: it.label.to_owned(), x: column(0), y: column(at) };
+            match panels.iter_mut().find(|(quantity, _)| quantity.name == drawn) {
+                Some((_, beside)) => beside.push(series),
+                None => panels.push((Quantity::new(drawn, it.unit.symbol), vec![series])),
+            }
+        }
+        let position = Quantity::new(columns[0].name, columns[0].unit.symbol);
+        replace(path, pictures::curves(model.summary, &position, &panels).as_bytes())?;
     }
     Ok(())
 }

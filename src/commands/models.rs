@@ -36,7 +36,11 @@ fn page(model: &Model) -> String {
     inputs.row(["input", "default", "usual", "valid"].map(bold));
     for input in model.inputs {
         let (low, high) = input.usual;
-        let default = input.word_for(input.default).map_or_else(|| input.default.to_string(), str::to_owned);
+        let word = input.word_for(input.default);
+        let default = match word.zip(input.follows.and_then(|other| model.input(other))) {
+            Some((word, other)) => format!("{} ({word})", model.inputs[other].default),
+            None => word.map_or_else(|| input.default.to_string(), str::to_owned),
+        };
         inputs.row([input.name.to_owned(), default, format!("{low} to {high}"), valid(input)]);
     }
     let inputs = described(&inputs, model.inputs.iter().map(|input| format!("{} [{}]", input.doc, input.source)));
@@ -91,12 +95,13 @@ fn describe(model: &Model) -> Value {
             "includes_high": range.includes_high,
         })
     };
-    let inputs = model.inputs.iter().map(|input| {
+    let defaults = model.spelled_out(&model.defaults());
+    let inputs = model.inputs.iter().enumerate().map(|(at, input)| {
         json!({
             "name": input.name, "symbol": input.symbol, "unit": input.unit.symbol,
-            "default": beltspace::study::value_of(model, model.input(input.name).unwrap_or(0), input.default),
+            "default": beltspace::study::value_of(model, at, defaults[at]),
             "valid": range(&input.valid), "usual": [number(input.usual.0), number(input.usual.1)], "integer": input.integer,
-            "word": input.word.map(|(word, _)| word), "doc": input.doc, "source": input.source,
+            "word": input.word.map(|(word, _)| word), "follows": input.follows, "doc": input.doc, "source": input.source,
         })
     });
     let outputs = model.outputs.iter().map(|output| {

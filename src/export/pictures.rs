@@ -29,7 +29,7 @@ pub fn front(outcome: &Outcome<'_>) -> String {
 
 /// A histogram.
 pub fn histogram(study: &Study, spec: &HistogramSpec, histogram: &Histogram) -> String {
-    let Histogram { from, to, counts, below, above } = histogram;
+    let Histogram { from, to, counts, below, above, .. } = histogram;
     pictures::histogram(&study.title, &quantity(study, spec.of), *from, *to, counts, *below, *above)
 }
 

@@ -1,7 +1,7 @@
 //! A model evaluated point by point on a device: every output and condition margin with its bound.
 
 use super::source::COMMON;
-use super::{Device, Program, model_prelude, model_source};
+use super::{Device, Program, model_prelude, model_source, table_readers};
 use crate::error::Result;
 use crate::models::{CONDITIONS, INPUTS, Model, OUTPUTS};
 use crate::real::{RunningError, nearest_f32};
@@ -25,7 +25,9 @@ impl PointKernel {
     /// The kernel's text. `perturb`: outputs that are to come out wrong by this part of their value, for testing.
     pub fn source(model: &Model, perturb: &[(usize, f64)]) -> String {
         let fields = model.kernel.fields();
-        let mut text = model_prelude(model);
+        let all: Vec<usize> = (0..model.conditions.len()).collect();
+        let mut text = model_prelude(model, u64::MAX, &all);
+        text.push_str(&table_readers(model, |_, table| format!("made_{table}[at]")));
         let (inputs, outputs) = (fields.inputs.len(), model.outputs.len());
         let mut line = |it: std::fmt::Arguments<'_>| writeln!(text, "{it}").expect("a text takes everything");
         line(format_args!("const INPUTS: u32 = {inputs}u;\nconst OUTPUTS: u32 = {outputs}u;\n"));

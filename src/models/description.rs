@@ -1,5 +1,6 @@
 //! What a model says of itself: the table behind `beltspace models`, the study file, the result columns and the docs.
 
+use super::evaluation::Evaluation;
 use super::formula::Kernel;
 use crate::units::Unit;
 
@@ -69,6 +70,10 @@ pub struct Input {
     pub integer: bool,
     /// A word that stands for a value (`"limit"`), and the number that encodes it.
     pub word: Option<(&'static str, f64)>,
+    /// The input whose value the word stands for, if it is that simple: single designs show that value instead of the word.
+    pub follows: Option<&'static str>,
+    /// Does the twin know the default only? Then a study that sets it otherwise is for the processor.
+    pub processor_only: bool,
     /// What it is, in a sentence.
     pub doc: &'static str,
     /// Where the default and the usual range come from.
@@ -86,7 +91,20 @@ impl Input {
         doc: &'static str,
         source: &'static str,
     ) -> Self {
-        Self { name, symbol, unit, default, valid: Range::POSITIVE, usual, integer: false, word: None, doc, source }
+        Self {
+            name,
+            symbol,
+            unit,
+            default,
+            valid: Range::POSITIVE,
+            usual,
+            integer: false,
+            word: None,
+            follows: None,
+            processor_only: false,
+            doc,
+            source,
+        }
     }
 
     /// The value as a person writes it, if it is the input's word.
@@ -158,11 +176,41 @@ pub struct Condition {
     pub doc: &'static str,
 }
 
+/// A column of a [`Profile`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProfileColumn {
+    /// Name in the table, with its unit.
+    pub name: &'static str,
+    /// Unit of the values.
+    pub unit: Unit,
+    /// The quantity that it is drawn as, together with others of the same; `None` if it is not drawn.
+    pub drawn: Option<&'static str>,
+    /// What tells it from those others; empty for one alone.
+    pub label: &'static str,
+}
+
+impl ProfileColumn {
+    /// A column that is drawn for itself.
+    pub const fn new(name: &'static str, unit: Unit) -> Self {
+        Self { name, unit, drawn: Some(name), label: "" }
+    }
+
+    /// The same column, drawn as `quantity` beside others of that name.
+    pub const fn drawn(self, quantity: &'static str, label: &'static str) -> Self {
+        Self { drawn: Some(quantity), label, ..self }
+    }
+
+    /// The same column, in the table only.
+    pub const fn hidden(self) -> Self {
+        Self { drawn: None, ..self }
+    }
+}
+
 /// Values along a belt: one column against which the others are read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
-    /// Column names with their units, the first being the position.
-    pub columns: Vec<(&'static str, Unit)>,
+    /// The columns, the first being the position.
+    pub columns: Vec<ProfileColumn>,
     /// One row per position, values in the columns' units.
     pub rows: Vec<Vec<f64>>,
 }
@@ -191,6 +239,8 @@ pub struct Model {
     pub kernel: &'static dyn Kernel,
     /// The formula in WGSL: the texts that make it up, what is shared first.
     pub shader: &'static [&'static str],
+    /// What a person should know of one evaluation besides its numbers, for inputs in their units.
+    pub notes: Option<fn(&[f64], &Evaluation) -> Vec<String>>,
     /// Values along the belt for inputs in their units, where the model has such.
     pub profile: Option<fn(&[f64]) -> Profile>,
 }
@@ -209,6 +259,15 @@ impl Model {
     /// The defaults of all inputs, in their units.
     pub fn defaults(&self) -> Vec<f64> {
         self.inputs.iter().map(|input| input.default).collect()
+    }
+
+    /// The same inputs with a value in place of every word that stands for another input's.
+    pub fn spelled_out(&self, inputs: &[f64]) -> Vec<f64> {
+        let value = |(input, &value): (&Input, &f64)| match input.follows.filter(|_| input.word_for(value).is_some()) {
+            Some(other) => inputs[self.input(other).expect("an input follows one of its model")],
+            None => value,
+        };
+        self.inputs.iter().zip(inputs).map(value).collect()
     }
 }
 

@@ -74,7 +74,7 @@ pub(crate) fn judge(model: &Model, margins: &[f64; CONDITIONS]) -> (Status, u64)
 /// The values are not checked against the inputs' ranges: what has no meaning shows as a status.
 pub fn evaluate(model: &Model, inputs: &[f64]) -> Evaluation {
     let si = to_si(model, inputs);
-    let prepared = model.kernel.prepare(&si);
+    let prepared = model.kernel.prepared(&si);
     let mut outputs = [0.0; OUTPUTS];
     model.kernel.finish(&prepared, &si, u64::MAX, &mut outputs);
     let (status, present) = judge(model, &model.kernel.conditions(&prepared, &si));

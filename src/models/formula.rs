@@ -5,8 +5,6 @@ use crate::real::{Dependence, LANES, Lanes, Real, RunningError};
 
 /// Most inputs that a model may have.
 pub const INPUTS: usize = 48;
-/// Most values that the first stage may hand to the second.
-pub const PREPARED: usize = 24;
 /// Most outputs that a model may have.
 pub const OUTPUTS: usize = 32;
 /// Most conditions that a model may have.
@@ -15,16 +13,17 @@ pub const CONDITIONS: usize = 8;
 /// A model's formula in two stages, over any [`Real`]. All values are in SI units.
 ///
 /// `prepare` holds what is dear (geometry, transcendental functions, solves) and should read as few inputs as the physics
-/// allows: a sweep runs it once for every combination of the inputs that it reads. `finish` is the inner loop.
+/// allows: a sweep runs it once for every combination of the inputs that it reads. `finish` is the inner loop. What passes
+/// between them is [`Fields::prepared_len`] numbers.
 pub trait Formula {
     /// Names of what the formula reads and writes, for its twin in WGSL.
     const FIELDS: Fields;
-    /// First stage: what depends on the slow inputs only.
-    fn prepare<R: Real>(inputs: &[R; INPUTS]) -> [R; PREPARED];
-    /// Signed margins of the model's conditions, in the order of its table.
-    fn conditions<R: Real>(prepared: &[R; PREPARED], inputs: &[R; INPUTS]) -> [R; CONDITIONS];
+    /// First stage: what depends on the slow inputs only, as far as the outputs in `wanted` need it.
+    fn prepare<R: Real>(inputs: &[R; INPUTS], wanted: u64, prepared: &mut [R]);
+    /// Signed margins of the model's conditions, in the order of its table; those whose bit is not set in `wanted` may be left out.
+    fn conditions<R: Real>(prepared: &[R::Shared], inputs: &[R; INPUTS], wanted: u64) -> [R; CONDITIONS];
     /// Second stage: writes the outputs whose bit is set in `wanted` (and may write others).
-    fn finish<R: Real>(prepared: &[R; PREPARED], inputs: &[R; INPUTS], wanted: u64, outputs: &mut [R; OUTPUTS]);
+    fn finish<R: Real>(prepared: &[R::Shared], inputs: &[R; INPUTS], wanted: u64, outputs: &mut [R; OUTPUTS]);
 }
 
 /// The names of a formula's values, in the order of its arrays.
@@ -32,10 +31,30 @@ pub trait Formula {
 pub struct Fields {
     /// Of the inputs.
     pub inputs: &'static [&'static str],
-    /// Of what the first stage passes on.
+    /// Of the single numbers that the first stage passes on.
     pub prepared: &'static [&'static str],
+    /// Of the tables that it passes on after them, with their lengths.
+    pub tables: &'static [(&'static str, usize)],
+    /// Most loop turns that the twin's second stage and conditions take together, for drivers that end long loops.
+    pub turns: u64,
     /// Of the outputs; there may be more than the model lists.
     pub outputs: &'static [&'static str],
+}
+
+impl Fields {
+    /// How many numbers the first stage passes on.
+    pub fn prepared_len(&self) -> usize {
+        self.tables.iter().fold(self.prepared.len(), |sum, (_, length)| sum + length)
+    }
+
+    /// Of each field that the first stage passes on, tables after single numbers: where it starts and how long it is.
+    pub fn places(&self) -> impl Iterator<Item = (usize, usize)> {
+        let lengths = self.prepared.iter().map(|_| 1).chain(self.tables.iter().map(|(_, length)| *length));
+        lengths.scan(0, |next, length| {
+            *next += length;
+            Some((*next - length, length))
+        })
+    }
 }
 
 /// The set of outputs with these numbers.
@@ -62,7 +81,7 @@ pub struct Reach {
 /// What a formula's second stage and conditions read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reads {
-    /// Values that the first stage passes on: bit `i` for value number `i`.
+    /// Fields that the first stage passes on: bit `i` for number `i` of [`Fields::places`].
     pub prepared: u64,
     /// Inputs: bit `i` for input number `i`.
     pub inputs: u64,
@@ -97,19 +116,25 @@ impl Default for Scratch {
 pub trait Kernel: Sync {
     /// The names of the formula's values.
     fn fields(&self) -> Fields;
-    /// First stage in f64.
-    fn prepare(&self, inputs: &[f64; INPUTS]) -> [f64; PREPARED];
-    /// Margins of the conditions in f64.
-    fn conditions(&self, prepared: &[f64; PREPARED], inputs: &[f64; INPUTS]) -> [f64; CONDITIONS];
+    /// First stage in f64, as far as the outputs in `wanted` need it; `prepared` has [`Fields::prepared_len`] places.
+    fn prepare(&self, inputs: &[f64; INPUTS], wanted: u64, prepared: &mut [f64]);
+    /// Margins of all conditions in f64.
+    fn conditions(&self, prepared: &[f64], inputs: &[f64; INPUTS]) -> [f64; CONDITIONS];
     /// Second stage in f64.
-    fn finish(&self, prepared: &[f64; PREPARED], inputs: &[f64; INPUTS], wanted: u64, outputs: &mut [f64; OUTPUTS]);
+    fn finish(&self, prepared: &[f64], inputs: &[f64; INPUTS], wanted: u64, outputs: &mut [f64; OUTPUTS]);
+    /// First stage in f64 with all that it can pass on.
+    fn prepared(&self, inputs: &[f64; INPUTS]) -> Vec<f64> {
+        let mut prepared = vec![0.0; self.fields().prepared_len()];
+        self.prepare(inputs, u64::MAX, &mut prepared);
+        prepared
+    }
     /// Second stage for many designs at once: same bits as [`Kernel::finish`].
     ///
     /// `results` has one column per asked output (in the output's unit), then one per asked condition (the margin).
     fn finish_columns(
         &self,
         model: &Model,
-        prepared: &[f64; PREPARED],
+        prepared: &[f64],
         inputs: &[f64; INPUTS],
         columns: &Columns<'_>,
         scratch: &mut Scratch,
@@ -126,11 +151,12 @@ pub trait Kernel: Sync {
 }
 
 /// Both stages with every output, over any number type.
-pub fn run<F: Formula, R: Real>(inputs: &[R; INPUTS]) -> ([R; OUTPUTS], [R; CONDITIONS]) {
-    let prepared = F::prepare(inputs);
+pub fn run<F: Formula, R: Real<Shared = R>>(inputs: &[R; INPUTS]) -> ([R; OUTPUTS], [R; CONDITIONS]) {
+    let mut prepared = vec![R::constant(0.0); F::FIELDS.prepared_len()];
+    F::prepare(inputs, u64::MAX, &mut prepared);
     let mut outputs = [R::constant(0.0); OUTPUTS];
     F::finish(&prepared, inputs, u64::MAX, &mut outputs);
-    (outputs, F::conditions(&prepared, inputs))
+    (outputs, F::conditions(&prepared, inputs, u64::MAX))
 }
 
 impl<F: Formula + Sync> Kernel for F {
@@ -138,22 +164,22 @@ impl<F: Formula + Sync> Kernel for F {
         F::FIELDS
     }
 
-    fn prepare(&self, inputs: &[f64; INPUTS]) -> [f64; PREPARED] {
-        F::prepare(inputs)
+    fn prepare(&self, inputs: &[f64; INPUTS], wanted: u64, prepared: &mut [f64]) {
+        F::prepare(inputs, wanted, prepared);
     }
 
-    fn conditions(&self, prepared: &[f64; PREPARED], inputs: &[f64; INPUTS]) -> [f64; CONDITIONS] {
-        F::conditions(prepared, inputs)
+    fn conditions(&self, prepared: &[f64], inputs: &[f64; INPUTS]) -> [f64; CONDITIONS] {
+        F::conditions(prepared, inputs, u64::MAX)
     }
 
-    fn finish(&self, prepared: &[f64; PREPARED], inputs: &[f64; INPUTS], wanted: u64, outputs: &mut [f64; OUTPUTS]) {
+    fn finish(&self, prepared: &[f64], inputs: &[f64; INPUTS], wanted: u64, outputs: &mut [f64; OUTPUTS]) {
         F::finish(prepared, inputs, wanted, outputs);
     }
 
     fn finish_columns(
         &self,
         model: &Model,
-        prepared: &[f64; PREPARED],
+        prepared: &[f64],
         inputs: &[f64; INPUTS],
         columns: &Columns<'_>,
         scratch: &mut Scratch,
@@ -173,21 +199,25 @@ impl<F: Formula + Sync> Kernel for F {
 
     fn reach(&self, inputs: &[Dependence; INPUTS]) -> Reach {
         let (outputs, conditions) = run::<F, Dependence>(inputs);
-        let prepared = F::prepare(inputs).iter().fold(0, |set, value| set | value.inputs);
+        let mut prepared = vec![Dependence::fixed(0.0); F::FIELDS.prepared_len()];
+        F::prepare(inputs, u64::MAX, &mut prepared);
+        let prepared = prepared.iter().fold(0, |set, value| set | value.inputs);
         Reach { prepared, outputs: outputs.map(|value| value.inputs), conditions: conditions.map(|value| value.inputs) }
     }
 
     fn reads(&self, inputs: &[Dependence; INPUTS], wanted: u64) -> Reads {
-        let union = |prepared: &[Dependence; PREPARED], inputs: &[Dependence; INPUTS]| {
+        let union = |prepared: &[Dependence], inputs: &[Dependence; INPUTS]| {
             let mut outputs = [Dependence::fixed(0.0); OUTPUTS];
             F::finish(prepared, inputs, wanted, &mut outputs);
             let asked = outputs.iter().enumerate().filter(|(output, _)| wanted >> output & 1 == 1).map(|(_, value)| value.inputs);
-            asked.chain(F::conditions(prepared, inputs).iter().map(|margin| margin.inputs)).fold(0, |all, set| all | set)
+            asked.chain(F::conditions(prepared, inputs, u64::MAX).iter().map(|margin| margin.inputs)).fold(0, |all, set| all | set)
         };
-        // Once with a bit for each value passed on and none for the inputs, once the other way round.
-        let passed: [Dependence; PREPARED] = std::array::from_fn(|field| Dependence::varied(field, f64::NEG_INFINITY, f64::INFINITY));
+        // Once with a bit for each field passed on and none for the inputs, once the other way round.
+        let fields = F::FIELDS.places().enumerate();
+        let field = |(field, (_, length))| std::iter::repeat_n(Dependence::varied(field, f64::NEG_INFINITY, f64::INFINITY), length);
+        let passed: Vec<_> = fields.flat_map(field).collect();
         let silent = inputs.map(Dependence::without_inputs);
-        let unknown = [Dependence::within(0, f64::NEG_INFINITY, f64::INFINITY); PREPARED];
+        let unknown = vec![Dependence::within(0, f64::NEG_INFINITY, f64::INFINITY); passed.len()];
         Reads { prepared: union(&passed, &silent), inputs: union(&unknown, inputs) }
     }
 
@@ -205,22 +235,22 @@ impl<F: Formula + Sync> Kernel for F {
 /// Only `+ - * / min max` and selections are vectorised, which round alike on every instruction set, and nothing contracts a
 /// product and a sum, so the choice never changes a bit.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-fn finish_columns<F: Formula>(prepared: &[f64; PREPARED], columns: &Columns<'_>, scratch: &mut Scratch, results: &mut [Vec<f64>]) {
-    let prepared = prepared.map(Lanes::splat);
+fn finish_columns<F: Formula>(prepared: &[f64], columns: &Columns<'_>, scratch: &mut Scratch, results: &mut [Vec<f64>]) {
     let Scratch { inputs, outputs } = scratch;
     let wanted = bits(columns.outputs);
+    let asked = bits(columns.conditions);
     for first in (0..columns.count).step_by(LANES) {
         for (input, column) in columns.varying {
             inputs[*input].0.copy_from_slice(&column[first..first + LANES]);
         }
         if wanted != 0 {
-            F::finish(&prepared, inputs, wanted, outputs);
+            F::finish(prepared, inputs, wanted, outputs);
             for (&output, result) in columns.outputs.iter().zip(&mut *results) {
                 result[first..first + LANES].copy_from_slice(&outputs[output].0);
             }
         }
         if !columns.conditions.is_empty() {
-            let margins = F::conditions(&prepared, inputs);
+            let margins = F::conditions(prepared, inputs, asked);
             for (&condition, result) in columns.conditions.iter().zip(&mut results[columns.outputs.len()..]) {
                 result[first..first + LANES].copy_from_slice(&margins[condition].0);
             }
@@ -258,10 +288,19 @@ macro_rules! record {
             }
 
             #[inline(always)]
-            pub fn to_array<const N: usize>(self, padding: T) -> [T; N] {
-                let mut values = [padding; N];
+            pub fn write(self, values: &mut [T]) {
+                let values = &mut values[..$name::<usize>::NAMES.len()];
                 $(values[$name::<usize>::NUMBER.$field] = self.$field;)*
-                values
+            }
+        }
+
+        #[allow(dead_code, reason = "inputs and outputs are not passed between the stages")]
+        impl<R: crate::real::Real> $name<R> {
+            /// Reads what the first stage passed on.
+            #[inline(always)]
+            pub fn shared(values: &[R::Shared]) -> Self {
+                let values = &values[..$name::<usize>::NAMES.len()];
+                Self { $($field: R::shared(values[$name::<usize>::NUMBER.$field])),* }
             }
         }
     };

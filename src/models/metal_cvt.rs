@@ -55,6 +55,7 @@ pub const MODEL: Model = Model {
     starter: include_str!("../../studies/metal-cvt.toml"),
     kernel: &Cvt(MetalBelt),
     profile: None,
+    notes: None,
     shader: &[SHADER, include_str!("../../shaders/models/metal-cvt.wgsl")],
 };
 

@@ -11,16 +11,14 @@ mod formula;
 mod metal_cvt;
 mod pulley_load;
 mod rubber_cvt;
+mod timing_belt;
 
 pub(crate) use crate::real::LANES;
 pub use cvt::{optimum_thickness, printed_torque_coefficient, torque_coefficient, traction_limit, wedge_factor};
-pub use description::{CONDITION_PROMISE, Condition, Input, Model, Output, Profile, Range, Worse};
+pub use description::{CONDITION_PROMISE, Condition, Input, Model, Output, Profile, ProfileColumn, Range, Worse};
 pub use evaluation::{Evaluation, Status, evaluate, evaluate_decided};
 pub(crate) use evaluation::{holds, input_to_si, judge, to_si};
-pub use formula::{CONDITIONS, Columns, Fields, Formula, INPUTS, Kernel, OUTPUTS, PREPARED, Reach, Reads, Scratch};
-
-/// What `prepare` hands to `finish`.
-pub type Prepared = [f64; PREPARED];
+pub use formula::{CONDITIONS, Columns, Fields, Formula, INPUTS, Kernel, OUTPUTS, Reach, Reads, Scratch, run};
 
 /// Something to do with a model's formula over a number type of one's own, which the table of functions in [`Model::kernel`]
 /// cannot offer.
@@ -46,7 +44,7 @@ macro_rules! models {
         }
     };
 }
-models![rubber_cvt, metal_cvt, pulley_load];
+models![rubber_cvt, metal_cvt, timing_belt, pulley_load];
 
 /// The model of that name.
 pub fn find(name: &str) -> Option<&'static Model> {

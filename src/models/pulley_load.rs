@@ -17,8 +17,8 @@
 //! - The second friction component acts along the flank, inwards and towards the groove's mid-plane: the loads balance
 //!   exactly only then (the paper's "radial" taken literally is 0.67 % off in its example).
 
-use super::description::{Condition, Input, Model, Output, Profile, Range, Worse};
-use super::formula::{CONDITIONS, Fields, Formula, INPUTS, OUTPUTS, PREPARED, bits, record};
+use super::description::{Condition, Input, Model, Output, Profile, ProfileColumn, Range, Worse};
+use super::formula::{CONDITIONS, Fields, Formula, INPUTS, OUTPUTS, bits, record};
 use crate::real::Real;
 use crate::units::{
     self, DEGREE, KILOGRAM_PER_METRE, KILOWATT, METRE_PER_SECOND, MILLIMETRE, NEWTON, NEWTON_METRE, NEWTON_PER_MILLIMETRE, NONE,
@@ -201,6 +201,7 @@ pub const MODEL: Model = Model {
     starter: include_str!("../../studies/pulley-load.toml"),
     kernel: &PulleyLoad,
     profile: Some(profile),
+    notes: None,
     shader: &[include_str!("../../shaders/models/pulley-load.wgsl")],
 };
 
@@ -210,9 +211,15 @@ pub(super) type Own = PulleyLoad;
 pub(super) struct PulleyLoad;
 
 impl Formula for PulleyLoad {
-    const FIELDS: Fields = Fields { inputs: Inputs::<usize>::NAMES, prepared: Prepared::<usize>::NAMES, outputs: Result::<usize>::NAMES };
+    const FIELDS: Fields = Fields {
+        inputs: Inputs::<usize>::NAMES,
+        prepared: Prepared::<usize>::NAMES,
+        tables: &[],
+        turns: 0,
+        outputs: Result::<usize>::NAMES,
+    };
 
-    fn prepare<R: Real>(inputs: &[R; INPUTS]) -> [R; PREPARED] {
+    fn prepare<R: Real>(inputs: &[R; INPUTS], _wanted: u64, prepared: &mut [R]) {
         let [one, two] = [1.0, 2.0].map(R::constant);
         let i = Inputs::read(inputs);
         let belt_speed = i.mean_radius * i.speed;
@@ -245,12 +252,12 @@ impl Formula for PulleyLoad {
             lift_margin: slack_pressing,
             balance_margin,
         }
-        .to_array(R::constant(0.0))
+        .write(prepared);
     }
 
     #[inline(always)]
-    fn conditions<R: Real>(prepared: &[R; PREPARED], _inputs: &[R; INPUTS]) -> [R; CONDITIONS] {
-        let p = Prepared::read(prepared);
+    fn conditions<R: Real>(prepared: &[R::Shared], _inputs: &[R; INPUTS], _wanted: u64) -> [R; CONDITIONS] {
+        let p = Prepared::<R>::shared(prepared);
         let mut margins = [R::constant(1.0); CONDITIONS];
         margins[0] = p.lift_margin;
         margins[1] = p.balance_margin;
@@ -258,8 +265,8 @@ impl Formula for PulleyLoad {
     }
 
     #[inline(always)]
-    fn finish<R: Real>(prepared: &[R; PREPARED], inputs: &[R; INPUTS], wanted: u64, out: &mut [R; OUTPUTS]) {
-        let p = Prepared::read(prepared);
+    fn finish<R: Real>(prepared: &[R::Shared], inputs: &[R; INPUTS], wanted: u64, out: &mut [R; OUTPUTS]) {
+        let p = Prepared::<R>::shared(prepared);
         let i = Inputs::read(inputs);
         const MARGIN: u64 = bits(&[OUT.friction_margin]);
         const FLANK: u64 = bits(&[OUT.slack_end_flank_force, OUT.tight_end_flank_force]);
@@ -292,7 +299,7 @@ fn profile(inputs: &[f64]) -> Profile {
         *si = input.unit.to_si(value);
     }
     let i = Inputs::read(&si);
-    let p = Prepared::read(&PulleyLoad::prepare(&si));
+    let p = Prepared::<f64>::shared(&MODEL.kernel.prepared(&si));
     let steps = inputs[Inputs::NUMBER.wrap_angle].ceil();
     let count = steps as u32;
     let rows = (0..=count).map(|step| {
@@ -308,10 +315,10 @@ fn profile(inputs: &[f64]) -> Profile {
     });
     Profile {
         columns: vec![
-            ("wrap_position_deg", DEGREE),
-            ("tension_N", NEWTON),
-            ("line_force_N_per_mm", NEWTON_PER_MILLIMETRE),
-            ("flank_force_N_per_mm", NEWTON_PER_MILLIMETRE),
+            ProfileColumn::new("wrap_position_deg", DEGREE),
+            ProfileColumn::new("tension_N", NEWTON),
+            ProfileColumn::new("line_force_N_per_mm", NEWTON_PER_MILLIMETRE),
+            ProfileColumn::new("flank_force_N_per_mm", NEWTON_PER_MILLIMETRE),
         ],
         rows: rows.collect(),
     }

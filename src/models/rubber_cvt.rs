@@ -42,6 +42,7 @@ pub const MODEL: Model = Model {
     starter: include_str!("../../studies/rubber-cvt.toml"),
     kernel: &Cvt(RubberBelt),
     profile: None,
+    notes: None,
     shader: &[SHADER, include_str!("../../shaders/models/rubber-cvt.wgsl")],
 };
 

@@ -76,6 +76,19 @@ impl Neg for Dependence {
 }
 
 impl Real for Dependence {
+    type Shared = Self;
+    fn shared(value: Self) -> Self {
+        value
+    }
+    fn plus_whole(self, other: Self) -> Self {
+        self + other
+    }
+    fn turns(self, most: usize) -> usize {
+        self.range.map_or(most, |(_, high)| high.turns(most))
+    }
+    fn is_zero(self) -> bool {
+        self.known() == Some(0.0)
+    }
     fn constant(value: f64) -> Self {
         Self::fixed(value)
     }

@@ -8,6 +8,24 @@ use super::{Real, bracketed_newton, functions};
 macro_rules! float {
     ($float:ident, $exp_m1:path, $ln_1p:path, $sin:path, $cos:path, $asin:path) => {
         impl Real for $float {
+            type Shared = Self;
+            #[inline(always)]
+            fn shared(value: Self) -> Self {
+                value
+            }
+            #[inline(always)]
+            fn plus_whole(self, other: Self) -> Self {
+                self + other
+            }
+            #[inline(always)]
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number, and the cast saturates")]
+            fn turns(self, most: usize) -> usize {
+                ((self + 0.5) as usize).min(most)
+            }
+            #[inline(always)]
+            fn is_zero(self) -> bool {
+                self == 0.0
+            }
             #[inline(always)]
             #[allow(clippy::cast_possible_truncation, reason = "f32 is the shader's twin: rounding is its meaning")]
             fn constant(value: f64) -> Self {

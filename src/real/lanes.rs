@@ -65,6 +65,33 @@ impl Neg for Lanes {
 }
 
 impl Real for Lanes {
+    /// A broadcast costs no more than a load, so eight copies of it need not be kept.
+    type Shared = f64;
+    #[inline(always)]
+    fn shared(value: f64) -> Self {
+        Self::splat(value)
+    }
+    #[inline(always)]
+    fn plus_whole(self, other: Self) -> Self {
+        self + other
+    }
+    #[inline(always)]
+    fn turns(self, most: usize) -> usize {
+        let mut turns = 0;
+        for lane in self.0 {
+            turns = turns.max(lane.turns(most));
+        }
+        turns
+    }
+    #[inline(always)]
+    fn is_zero(self) -> bool {
+        // Both zeros have no bit but the sign.
+        let mut bits = 0;
+        for lane in 0..LANES {
+            bits |= self.0[lane].to_bits() << 1;
+        }
+        bits == 0
+    }
     #[inline(always)]
     fn constant(value: f64) -> Self {
         Self::splat(value)

@@ -25,6 +25,10 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 pub trait Real:
     Copy + Debug + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
+    /// What a first stage hands to the second: the number itself, or one number that all lanes share.
+    type Shared: Copy;
+    /// Reads what the first stage passed on.
+    fn shared(value: Self::Shared) -> Self;
     /// A number that depends on no input.
     fn constant(value: f64) -> Self;
     /// Square root of a number that is not negative.
@@ -47,6 +51,14 @@ pub trait Real:
     fn asin(self) -> Self;
     /// `at_least_zero` where `margin >= 0`, else `below_zero`. Both are evaluated: neither may be a NaN that leaks.
     fn select(margin: Self, at_least_zero: Self, below_zero: Self) -> Self;
+    /// The sum of two whole numbers that are small enough for every instance to hold exactly.
+    fn plus_whole(self, other: Self) -> Self;
+    /// A whole number as the turns of a loop: the largest value that it may have, at most `most`. Turns beyond the value itself must
+    /// change nothing.
+    fn turns(self, most: usize) -> usize;
+    /// Is it surely zero, in every lane? What has settled may end a loop, and a switch that is off may save what hangs on it; that the
+    /// answer may also be no must change nothing but the time.
+    fn is_zero(self) -> bool;
     /// The root of an increasing function, between the ends of `bracket`, found from `start`.
     ///
     /// `function` returns value and slope. If there is no root in the bracket the result is some number inside it: the

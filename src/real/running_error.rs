@@ -108,6 +108,19 @@ impl Neg for RunningError {
 }
 
 impl Real for RunningError {
+    type Shared = Self;
+    fn shared(value: Self) -> Self {
+        value
+    }
+    fn plus_whole(self, other: Self) -> Self {
+        Self { value: self.value + other.value, bound: self.bound + other.bound }
+    }
+    fn turns(self, most: usize) -> usize {
+        (f64::from(self.value) + self.bound).turns(most)
+    }
+    fn is_zero(self) -> bool {
+        self.value == 0.0 && self.bound == 0.0
+    }
     fn constant(value: f64) -> Self {
         Self::input(value)
     }

@@ -4,7 +4,7 @@ use crate::screen::Block;
 use serde::{Deserialize, Serialize};
 
 /// Counts per bin. Bin `i` of `n` holds `edge(i) <= value < edge(i + 1)`; the last one also its upper edge.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Histogram {
     /// Lower edge of the first bin.
     pub from: f64,
@@ -16,12 +16,22 @@ pub struct Histogram {
     pub below: u64,
     /// Designs above the last bin.
     pub above: u64,
+    /// Every [`Histogram::edge`], once it is needed often.
+    #[serde(skip)]
+    edges: Vec<f64>,
+}
+
+impl PartialEq for Histogram {
+    fn eq(&self, other: &Self) -> bool {
+        let ends = |it: &Self| (it.from, it.to, it.below, it.above);
+        ends(self) == ends(other) && self.counts == other.counts
+    }
 }
 
 impl Histogram {
     /// Empty bins over a range that is not empty.
     pub fn new((from, to): (f64, f64), bins: usize) -> Self {
-        Self { from, to, counts: vec![0; bins], below: 0, above: 0 }
+        Self { from, to, counts: vec![0; bins], below: 0, above: 0, edges: Vec::new() }
     }
 
     /// Lower edge of a bin, or the upper edge of the last.
@@ -52,9 +62,23 @@ impl Histogram {
     }
 
     /// Takes in a block.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, reason = "the edges decide")]
     pub fn absorb(&mut self, block: &Block<'_>, column: usize) {
-        for lane in block.feasible() {
-            self.count(block.values[column][lane]);
+        let bins = self.counts.len();
+        if self.edges.is_empty() {
+            self.edges = (0..=bins).map(|bin| self.edge(bin)).collect();
+        }
+        let (from, per_unit) = (self.from, bins as f64 / (self.to - self.from));
+        for (&alive, &value) in block.alive.iter().zip(&block.values[column]) {
+            if alive == 0 {
+                continue;
+            }
+            let guess = (((value - from) * per_unit) as usize).min(bins - 1);
+            if value >= self.edges[guess] && value < self.edges[guess + 1] {
+                self.counts[guess] += 1;
+            } else {
+                self.count(value);
+            }
         }
     }
 

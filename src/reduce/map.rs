@@ -6,6 +6,7 @@ use crate::space::Product;
 use crate::study::{Best, Goal, MapSpec};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
 
 /// Cells above which only those that were met are kept while a chunk is swept.
 const DENSE: u64 = 1 << 16;
@@ -26,7 +27,24 @@ const EMPTY: Cell = Cell { feasible: 0, key: f64::INFINITY, index: u64::MAX };
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Cells {
     All(Vec<Cell>),
-    Met(HashMap<u64, Cell>),
+    Met(HashMap<u64, Cell, BuildHasherDefault<CellHasher>>),
+}
+
+/// Spreads the numbers of cells: nobody chooses them to collide, and the standard hash costs more than all else that a cell takes.
+#[derive(Clone, Default)]
+struct CellHasher(u64);
+
+impl Hasher for CellHasher {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+    fn write(&mut self, _bytes: &[u8]) {
+        unreachable!("cells are numbers")
+    }
+    fn write_u64(&mut self, number: u64) {
+        // The golden section, and the high bits, which it mixes best, brought to where the table looks.
+        self.0 = number.wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(32);
+    }
 }
 
 /// The cells of a map, row-major in y, then x.
@@ -66,7 +84,8 @@ impl Map {
             Best::Value(_, goal) => goal,
             Best::Share => Goal::Min,
         };
-        let cells = if width * height <= DENSE { Cells::All(vec![EMPTY; (width * height) as usize]) } else { Cells::Met(HashMap::new()) };
+        let cells =
+            if width * height <= DENSE { Cells::All(vec![EMPTY; (width * height) as usize]) } else { Cells::Met(HashMap::default()) };
         Self { goal, width, height, x: spec.x, y: spec.y, designs: Some(plan.space.designs.clone()), cells }
     }
 

@@ -6,7 +6,7 @@
 use super::Block;
 use super::columns::{self, any, keep_finite, keep_margin, keep_within, lower, raise};
 use crate::decision::Decision;
-use crate::models::{self, CONDITIONS, Columns, INPUTS, LANES, OUTPUTS, Prepared, Scratch, Worse};
+use crate::models::{self, CONDITIONS, Columns, INPUTS, LANES, OUTPUTS, Scratch, Worse};
 use crate::plan::{FAST_DESIGNS, Plan, Source};
 use crate::space::Product;
 use std::ops::Range;
@@ -67,7 +67,13 @@ pub struct CpuEngine<'p> {
     pub(super) row: Option<u64>,
     row_feasible: bool,
     row_worst: Vec<f64>,
-    prepared: Vec<Prepared>,
+    /// One stretch of [`CpuEngine::width`] numbers per slow scenario that is kept, and a last one for those that are not.
+    prepared: Vec<f64>,
+    /// How many are kept and hold for the current row.
+    kept: u64,
+    width: usize,
+    /// Outputs that the study asks for.
+    wanted: u64,
     /// Kernel results: lane outputs, then lane condition margins.
     pub(super) results: Vec<Vec<f64>>,
     /// The block being judged: which designs are still in, and the worst values so far.
@@ -82,6 +88,9 @@ impl<'p> CpuEngine<'p> {
     pub fn new(plan: &'p Plan, tables: &'p Tables) -> Self {
         let columns = plan.lane_outputs.len() + plan.lane_conditions.len();
         let first = plan.space.inputs(0, 0);
+        let width = plan.study.model.kernel.fields().prepared_len();
+        let slow = plan.slow_scenarios.count();
+        let kept = if slow <= TABLE { slow as usize } else { 0 };
         Self {
             plan,
             tables,
@@ -91,7 +100,10 @@ impl<'p> CpuEngine<'p> {
             row: None,
             row_feasible: false,
             row_worst: vec![0.0; plan.tracked.len()],
-            prepared: Vec::new(),
+            prepared: vec![0.0; width * (kept + 1)],
+            kept: 0,
+            width,
+            wanted: plan.lane_outputs.iter().fold(plan.row_outputs, |set, output| set | 1 << output),
             results: vec![vec![0.0; BLOCK]; columns],
             alive: Vec::new(),
             values: vec![vec![0.0; BLOCK]; plan.tracked.len()],
@@ -155,22 +167,17 @@ impl<'p> CpuEngine<'p> {
         if self.row == Some(row) {
             return;
         }
-        self.row = Some(row);
         self.set_row(row);
+        self.row = Some(row);
         self.row_feasible = true;
         for (worst, (tracked, _)) in self.row_worst.iter_mut().zip(&self.plan.tracked) {
             *worst = least_bad(tracked.worse);
         }
-        self.prepared.clear();
-        let slow = self.plan.slow_scenarios.count();
-        for q in 0..slow {
+        for q in 0..self.plan.slow_scenarios.count() {
             let prepared = self.prepare(q);
-            if slow <= TABLE {
-                self.prepared.push(prepared);
-            }
             for t in 0..self.plan.fast_scenarios.count() {
                 self.set_fast_scenario(t);
-                if !self.judge_row_scenario(&prepared) {
+                if !self.judge_row_scenario(prepared.clone()) {
                     self.row_feasible = false;
                     return;
                 }
@@ -181,14 +188,20 @@ impl<'p> CpuEngine<'p> {
     pub(super) fn set_row(&mut self, row: u64) {
         // What a part of the formula does not depend on may still decide a selection the same way for every value of its axis:
         // every input must have one of its own values, not the default.
+        let before = self.own.clone();
         self.own.copy_from_slice(&self.first);
         self.plan.slow.set(row, &mut self.own);
         self.si = crate::models::to_si(self.plan.study.model, &self.own);
         self.row_index = self.plan.slow.source_index(row);
+        // The outer of the axes that the first stage does not read is walked with the slow ones: rows along it share what is prepared.
+        let read = self.plan.reach.prepared & self.plan.slow.inputs();
+        if self.row.is_none() || (0..self.own.len()).any(|input| read >> input & 1 == 1 && self.own[input] != before[input]) {
+            self.kept = 0;
+        }
     }
 
     /// Conditions, constraints and worst values of a row in the current scenario; false if the whole row is out.
-    fn judge_row_scenario(&mut self, prepared: &Prepared) -> bool {
+    fn judge_row_scenario(&mut self, prepared: Range<usize>) -> bool {
         let plan = self.plan;
         let (margins, outputs) = self.row_values(prepared);
         if !plan.row_conditions.iter().all(|&number| holds(plan, number, margins[number])) {
@@ -215,8 +228,9 @@ impl<'p> CpuEngine<'p> {
     }
 
     /// Condition margins and row outputs (SI) in the current scenario.
-    pub(super) fn row_values(&self, prepared: &Prepared) -> ([f64; CONDITIONS], [f64; OUTPUTS]) {
+    pub(super) fn row_values(&self, prepared: Range<usize>) -> ([f64; CONDITIONS], [f64; OUTPUTS]) {
         let kernel = self.plan.study.model.kernel;
+        let prepared = &self.prepared[prepared];
         let mut outputs = [0.0; OUTPUTS];
         if self.plan.row_outputs != 0 {
             kernel.finish(prepared, &self.si, self.plan.row_outputs, &mut outputs);
@@ -245,10 +259,10 @@ impl<'p> CpuEngine<'p> {
         }
         if !self.results.is_empty() {
             for q in 0..plan.slow_scenarios.count() {
-                let prepared = self.prepared_for(q);
+                let prepared = self.prepare(q);
                 for t in 0..plan.fast_scenarios.count() {
                     self.set_fast_scenario(t);
-                    self.evaluate(&prepared, fast);
+                    self.evaluate(prepared.clone(), fast);
                     self.judge_block_scenario(q == 0 && t == 0);
                 }
                 if !any(&self.alive) {
@@ -264,8 +278,9 @@ impl<'p> CpuEngine<'p> {
     }
 
     /// Runs the inner loop: lane outputs and lane condition margins of a block in the current scenario.
-    pub(super) fn evaluate(&mut self, prepared: &Prepared, fast: &FastBlock) {
+    pub(super) fn evaluate(&mut self, prepared: Range<usize>, fast: &FastBlock) {
         let plan = self.plan;
+        let prepared = &self.prepared[prepared];
         let columns = Columns { count: fast.count, varying: &fast.si, outputs: &plan.lane_outputs, conditions: &plan.lane_conditions };
         plan.study.model.kernel.finish_columns(plan.study.model, prepared, &self.si, &columns, &mut self.scratch, &mut self.results);
     }
@@ -305,20 +320,27 @@ impl<'p> CpuEngine<'p> {
         }
     }
 
-    /// What `prepare` made of slow scenario `q`, whose inputs become the current ones.
-    pub(super) fn prepared_for(&mut self, q: u64) -> Prepared {
-        match usize::try_from(q).ok().and_then(|q| self.prepared.get(q)).copied() {
-            Some(prepared) => {
-                self.set_slow_scenario(q);
-                prepared
-            }
-            None => self.prepare(q),
+    /// Where the row's prepared numbers of slow scenario `q` stand; its inputs become the current ones. A row asks for its
+    /// scenarios in order, so that what is kept is always the first ones.
+    fn prepare(&mut self, q: u64) -> Range<usize> {
+        self.set_slow_scenario(q);
+        let room = (self.prepared.len() / self.width.max(1)) as u64 - 1;
+        let at = q.min(room) as usize * self.width;
+        let place = at..at + self.width;
+        if q >= self.kept || q >= room {
+            self.plan.study.model.kernel.prepare(&self.si, self.wanted, &mut self.prepared[place.clone()]);
+            self.kept = self.kept.max((q + 1).min(room));
         }
+        place
     }
 
-    pub(super) fn prepare(&mut self, q: u64) -> Prepared {
+    /// The same for a row whose scenarios are asked for in no order; nothing is kept of it.
+    pub(super) fn prepare_alone(&mut self, q: u64) -> Range<usize> {
+        self.kept = 0;
         self.set_slow_scenario(q);
-        self.plan.study.model.kernel.prepare(&self.si)
+        let place = self.prepared.len() - self.width..self.prepared.len();
+        self.plan.study.model.kernel.prepare(&self.si, self.wanted, &mut self.prepared[place.clone()]);
+        place
     }
 
     fn set_slow_scenario(&mut self, q: u64) {

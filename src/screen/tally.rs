@@ -139,13 +139,13 @@ impl<'p> Counter<'p> {
         let mut failures = vec![0u64; designs.len()];
         self.engine.set_row(row);
         for q in 0..plan.slow_scenarios.count() {
-            let prepared = self.engine.prepare(q);
+            let prepared = self.engine.prepare_alone(q);
             for t in 0..plan.fast_scenarios.count() {
                 self.engine.set_fast_scenario(t);
-                let (margins, outputs) = self.engine.row_values(&prepared);
+                let (margins, outputs) = self.engine.row_values(prepared.clone());
                 let failed = plan.row_conditions.iter().filter(|&&number| !holds(plan, number, margins[number]));
                 let row_failures = failed.fold(0u64, |set, &number| set | 1 << number);
-                self.engine.evaluate(&prepared, &fast);
+                self.engine.evaluate(prepared.clone(), &fast);
                 for (lane, failures) in failures.iter_mut().enumerate() {
                     let lane_margins = plan.lane_conditions.iter().zip(&self.engine.results[plan.lane_outputs.len()..]);
                     let failed = lane_margins.filter(|&(&number, margins)| !holds(plan, number, margins[lane]));

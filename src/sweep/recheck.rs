@@ -229,7 +229,7 @@ fn compare(
         let scenario = plan.slow_scenarios.source_index(checked.scenario.0) + plan.fast_scenarios.source_index(checked.scenario.1);
         let inputs = plan.space.inputs(design, scenario);
         let si = to_si(model, &inputs);
-        let prepared = model.kernel.prepare(&si);
+        let prepared = model.kernel.prepared(&si);
         let (_, present) = judge(model, &model.kernel.conditions(&prepared, &si));
         let mut outputs = [0.0; crate::models::OUTPUTS];
         model.kernel.finish(&prepared, &si, used.iter().fold(0, |set, output| set | 1 << output), &mut outputs);

@@ -22,3 +22,5 @@ mod random;
 mod readme;
 /// Independent second implementations of the models, and printed golden values.
 mod second;
+/// The timing belt: figures, closed forms, similarity.
+mod timing_mesh;

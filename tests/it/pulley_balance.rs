@@ -161,7 +161,7 @@ fn tension_and_loads_grow_along_the_wrap_as_the_profile_says() {
     let profile_of = model.profile.expect("the model has a profile");
     for pulley in pulleys(4).take(200) {
         let profile = profile_of(&pulley.inputs);
-        let column = |name: &str| profile.columns.iter().position(|(it, _)| *it == name).expect("it is a column");
+        let column = |name: &str| profile.columns.iter().position(|it| it.name == name).expect("it is a column");
         let (first, last) = (&profile.rows[0], &profile.rows[profile.rows.len() - 1]);
         let ends = [
             (first, "tension_N", pulley.get("slack_tension_N")),

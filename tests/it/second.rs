@@ -1,7 +1,9 @@
-//! A second implementation of `rubber-cvt`, `metal-cvt` and `pulley-load`, written from the
+//! A second implementation of the models (`timing-belt` in a file of its own), written from the
 //! specification alone, in N, mm, MPa and not by the methods that it suggests: bisection instead of
 //! Newton, quadrature of the belt-element balance instead of closed forms. Both agreeing to 1e-9
 //! therefore says something about the equations, not only about rounding.
+
+pub mod timing_belt;
 
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, PI};

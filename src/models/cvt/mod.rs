@@ -29,7 +29,7 @@
 //! - The paper's "safety factor 2" is `sigma_y = 2 sigma_t`; with `sigma_b = sigma_t` at the optimum thickness the combined
 //!   stress is exactly `sigma_y`.
 
-use super::formula::{CONDITIONS, Fields, Formula, INPUTS, OUTPUTS, PREPARED, bits, record};
+use super::formula::{CONDITIONS, Fields, Formula, INPUTS, OUTPUTS, bits, record};
 use crate::real::Real;
 use std::f64::consts::PI;
 
@@ -212,18 +212,19 @@ pub(super) trait Belt {
 pub(super) struct Cvt<B>(pub B);
 
 impl<B: Belt> Formula for Cvt<B> {
-    const FIELDS: Fields = Fields { inputs: B::INPUT_NAMES, prepared: Prepared::<usize>::NAMES, outputs: Result::<usize>::NAMES };
+    const FIELDS: Fields =
+        Fields { inputs: B::INPUT_NAMES, prepared: Prepared::<usize>::NAMES, tables: &[], turns: 0, outputs: Result::<usize>::NAMES };
 
-    fn prepare<R: Real>(inputs: &[R; INPUTS]) -> [R; PREPARED] {
-        prepare(&B::drive(inputs)).to_array(R::constant(0.0))
+    fn prepare<R: Real>(inputs: &[R; INPUTS], _wanted: u64, prepared: &mut [R]) {
+        prepare(&B::drive(inputs)).write(prepared);
     }
     #[inline(always)]
-    fn conditions<R: Real>(prepared: &[R; PREPARED], inputs: &[R; INPUTS]) -> [R; CONDITIONS] {
-        conditions(&Prepared::read(prepared), &B::drive(inputs))
+    fn conditions<R: Real>(prepared: &[R::Shared], inputs: &[R; INPUTS], _wanted: u64) -> [R; CONDITIONS] {
+        conditions(&Prepared::shared(prepared), &B::drive(inputs))
     }
     #[inline(always)]
-    fn finish<R: Real>(prepared: &[R; PREPARED], inputs: &[R; INPUTS], wanted: u64, outputs: &mut [R; OUTPUTS]) {
-        finish(&Prepared::read(prepared), &B::drive(inputs), wanted, outputs);
+    fn finish<R: Real>(prepared: &[R::Shared], inputs: &[R; INPUTS], wanted: u64, outputs: &mut [R; OUTPUTS]) {
+        finish(&Prepared::shared(prepared), &B::drive(inputs), wanted, outputs);
     }
 }
 

@@ -159,9 +159,10 @@ pub(in crate::models) const OUTPUT_TABLE: &[Output] = &[
     Output::new("belt_force_N", "P", NEWTON, Higher, "(3), (14)", "Force that the belt transmits, F1 - F2."),
     Output::new("tight_force_N", "F1", NEWTON, Higher, "P(1+lambda)/(2 lambda)", "Belt force on the tight side."),
     Output::new("slack_force_N", "F2", NEWTON, Lower, "P(1-lambda)/(2 lambda)", "Belt force on the slack side.").promising(4.5),
-    Output::new("driver_axial_force_N", "S_driver", NEWTON, Higher, "(1), (6)", "Axial force that the driver needs."),
-    Output::new("driven_axial_force_N", "S_driven", NEWTON, Higher, "(2), (11)", "Axial force that the driven pulley needs."),
-    Output::new("axial_force_N", "S", NEWTON, Higher, "larger of S_driver, S_driven", "The larger of the two axial forces."),
+    Output::new("driver_axial_force_N", "S_driver", NEWTON, Higher, "(1), (6)", "Axial force that the driver needs.").promising(2.0),
+    Output::new("driven_axial_force_N", "S_driven", NEWTON, Higher, "(2), (11)", "Axial force that the driven pulley needs.")
+        .promising(2.0),
+    Output::new("axial_force_N", "S", NEWTON, Higher, "larger of S_driver, S_driven", "The larger of the two axial forces.").promising(2.0),
     Output::new("tensile_stress_MPa", "sigma_t", MEGAPASCAL, Higher, "(17), (22)", "Tensile stress of the tight side."),
     Output::new("bending_stress_MPa", "sigma_b", MEGAPASCAL, Higher, "(18)", "Bending stress on the smaller pulley."),
     Output::new("max_stress_MPa", "sigma_max", MEGAPASCAL, Higher, "sigma_t + sigma_b", "Largest stress in the belt."),

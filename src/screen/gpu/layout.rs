@@ -2,7 +2,7 @@
 //! cut into invocations.
 
 use crate::error::{Error, Result};
-use crate::models::{INPUTS, Worse, input_to_si};
+use crate::models::{Fields, INPUTS, Worse, input_to_si};
 use crate::plan::{Plan, Source, dependences};
 use crate::real::nearest_f32;
 use crate::space::{Dimension, Product};
@@ -106,11 +106,34 @@ pub struct Cut {
     pub group_chunks: u64,
 }
 
+/// A field that passes from the first stage to the second, and where it stands among those that do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Passed {
+    /// Number of the field: tables count on after the single numbers.
+    pub field: usize,
+    /// Its first number.
+    pub offset: usize,
+    /// Its numbers.
+    pub length: usize,
+}
+
+/// The fields of a bit set, one after the other.
+fn passed(fields: &Fields, read: u64) -> Vec<Passed> {
+    let mut next = 0;
+    let fields = fields.places().enumerate().filter(|(field, _)| read >> field & 1 == 1);
+    fields
+        .map(|(field, (_, length))| {
+            next += length;
+            Passed { field, offset: next - length, length }
+        })
+        .collect()
+}
+
 /// A study as a device sees it.
 #[derive(Clone, Debug)]
 pub struct Layout {
-    /// Values that pass from the first stage to the second, by number.
-    pub prepared: Vec<usize>,
+    /// What passes from the first stage to the second.
+    pub prepared: Vec<Passed>,
     /// Slow dimensions, outermost first.
     pub slow: Vec<SlowDimension>,
     /// Fast dimensions, outermost first.
@@ -144,11 +167,20 @@ impl Layout {
         let refuse = |why: String| Error::Request(format!("this study cannot be screened on a GPU: {why}; use --engine cpu"));
         let model = plan.study.model;
         let scenarios = [&plan.slow_scenarios, &plan.fast_scenarios].map(Product::count);
-        let turns = scenarios[0].saturating_mul(scenarios[1] + 1);
+        let turns = scenarios[0].saturating_mul(scenarios[1] + 1).saturating_mul(1 + model.kernel.fields().turns);
         if turns > MOST_TURNS && (limited_loops || turns > u64::from(u32::MAX) / 4) {
             return Err(refuse(format!(
                 "{turns} loop turns over its scenarios are more than the {MOST_TURNS} that this driver can be trusted with"
             )));
+        }
+        let set_by_axes = plan.space.designs.inputs() | plan.space.scenarios.inputs();
+        let processor_only = model
+            .inputs
+            .iter()
+            .enumerate()
+            .find(|(input, it)| it.processor_only && (set_by_axes >> input & 1 == 1 || plan.study.fixed[*input] != it.default));
+        if let Some((_, input)) = processor_only {
+            return Err(refuse(format!("the shader knows {} = {} only", input.name, input.default)));
         }
         if scenarios[0] > MOST_GROUPS {
             return Err(refuse(format!("{} slow scenarios are more than {MOST_GROUPS}", scenarios[0])));
@@ -212,7 +244,7 @@ impl Layout {
         }
         let slow_inputs = plan.slow.inputs();
         Ok(Self {
-            prepared: (0..fields.prepared.len()).filter(|&field| set(reads.prepared, field)).collect(),
+            prepared: passed(&fields, reads.prepared),
             row_inputs: (0..model.inputs.len()).filter(|&input| set(reads.inputs & slow_inputs, input)).collect(),
             slow,
             fast,
@@ -234,21 +266,28 @@ impl Layout {
 
     /// Bytes that the values passed between the stages take per row.
     pub fn prepared_bytes(&self) -> u64 {
-        self.prepared.len().max(1) as u64 * self.slow_scenarios.count * 8
+        self.prepared_width().max(1) as u64 * self.slow_scenarios.count * 8
+    }
+
+    /// Numbers that pass between the stages, per row and slow scenario.
+    pub fn prepared_width(&self) -> usize {
+        self.prepared.last().map_or(0, |last| last.offset + last.length)
     }
 }
 
 impl Cut {
     fn new(plan: &Plan, grouped: bool) -> Self {
         let turns = plan.slow_scenarios.count() * (plan.fast_scenarios.count() + 1) + 1;
+        // Those inside the formula, which the lanes of a group do not share.
+        let own = plan.scenarios() * plan.study.model.kernel.fields().turns;
         let lanes = plan.fast.count();
         let keeps = plan.scenarios() > 1;
         // The driver's compiler takes longer over a group than a small study takes altogether.
         let small = !grouped && plan.designs().saturating_mul(plan.scenarios()) < SMALL;
         let group = if small { 1 } else { GROUP[usize::from(!keeps)].min(lanes) };
         // Turns of one lane in the closer look: a list, its neighbours, and its scenarios again where it was not kept.
-        let closer = LIST as u64 + 40 + if keeps { 0 } else { turns };
-        let most = (MOST_TURNS / (turns.div_ceil(group) + closer)).max(1);
+        let closer = LIST as u64 + 40 + if keeps { 0 } else { turns + own };
+        let most = (MOST_TURNS / (turns.div_ceil(group) + own + closer)).max(1);
         let wanted = (MANY_LANES / plan.scenarios()).clamp(group.min(most), most);
         // Chunks of equal size, so that the last one is not nearly empty.
         let chunks = lanes.div_ceil(wanted.min(lanes).max(1));

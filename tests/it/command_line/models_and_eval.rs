@@ -7,7 +7,7 @@ use std::path::Path;
 use tempfile::tempdir;
 
 /// Name, inputs with their defaults, outputs: what the interface promises.
-const MODELS: [(&str, &str, &str); 3] = [
+const MODELS: [(&str, &str, &str); 4] = [
     (
         "rubber-cvt",
         r#"{"friction":0.4,"groove_angle_deg":30,"ratio":1,"belt_length_mm":1066,"centre_distance_mm":260,"belt_width_mm":50,
@@ -19,6 +19,16 @@ const MODELS: [(&str, &str, &str); 3] = [
         r#"{"friction":0.08,"groove_angle_deg":22,"ratio":1,"belt_length_mm":613,"centre_distance_mm":156,"band_width_mm":9,
             "band_thickness_mm":0.2,"band_count":10,"elastic_modulus_MPa":210000,"strength_MPa":500,"traction":"limit","torque_Nm":100}"#,
         METAL_OUTPUTS,
+    ),
+    (
+        "timing-belt",
+        r#"{"pulley_speed_rpm":5000,"tight_tension_N":196,"slack_tension_N":0,"teeth_in_mesh":23,"friction":0.45,
+            "tooth_compliance_um_per_N":2.55,"cord_modulus_GPa":78.4,"cord_area_mm2":21.5,"tip_radius_mm":66.32,
+            "land_half_angle_deg":1.473,"space_half_angle_deg":2.618,"tooth_length_mm":6.10,"pressure_angle_deg":20,
+            "tight_span_angle_deg":6,"slack_span_angle_deg":6,"pitch_mass_g":0.411,"lift_angle_deg":2.618,"pitch_mm":9.525,
+            "centrifugal_land_friction":0}"#,
+        "centrifugal_force_N boundary_tooth boundary_position incomplete_teeth lift_speed_rpm boundary_tension_N peak_tooth_load_N \
+         peak_tooth_load_complete_N least_tooth_load_N",
     ),
     (
         "pulley-load",
@@ -221,7 +231,7 @@ fn values_along_the_belt_rise_from_slack_to_tight() {
     assert!(nests(&svg) && svg.contains("tension"), "{}", &svg[..svg.len().min(400)]);
     for model in ["metal-cvt", "rubber-cvt"] {
         let err = ask(folder.path(), &format!("eval {model} --profile none.csv")).refusal(2);
-        assert!(err.contains("models that have: pulley-load"), "{err}");
+        assert!(err.contains("models that have: timing-belt, pulley-load"), "{err}");
     }
     let err = ask(folder.path(), "eval pulley-load --set slack_tension_N=20 --plot none.svg").refusal(2);
     assert!(err.contains("belt lifts") && !folder.path().join("none.svg").exists(), "{err}");

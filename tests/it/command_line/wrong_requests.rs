@@ -10,7 +10,7 @@ const WRONG: &[(&str, &str)] = &[
     ("swep small.toml", "unrecognized subcommand 'swep'"),
     ("help", "unrecognized subcommand 'help'"),
     ("--colour", "unexpected argument '--colour'"),
-    ("models rubber", "unknown model \"rubber\"; models are: rubber-cvt, metal-cvt, pulley-load"),
+    ("models rubber", "unknown model \"rubber\"; models are: rubber-cvt, metal-cvt, timing-belt, pulley-load"),
     ("models --study", "required arguments were not provided"),
     ("models metal-cvt --json --study", "cannot be used with"),
     ("models metal-cvt rubber-cvt", "unexpected argument 'rubber-cvt'"),

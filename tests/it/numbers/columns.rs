@@ -38,7 +38,7 @@ fn differing(model: &Model, count: usize, scratch: &mut Scratch, random: &mut Ra
     random.shuffle(&mut outputs);
     outputs.truncate(random.below(outputs.len() + 1));
     let conditions: Vec<usize> = (0..model.conditions.len()).filter(|_| random.chance(0.5)).collect();
-    let prepared = model.kernel.prepare(&shared);
+    let prepared = model.kernel.prepared(&shared);
     let mut results = vec![vec![f64::NAN; padded]; outputs.len() + conditions.len()];
     let columns = Columns { count, varying: &varying, outputs: &outputs, conditions: &conditions };
     model.kernel.finish_columns(model, &prepared, &shared, &columns, scratch, &mut results);

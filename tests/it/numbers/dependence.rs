@@ -3,24 +3,24 @@
 use super::{outputs_si, si};
 use crate::physics::{Region, draw};
 use crate::random::Random;
-use beltspace::models::{CONDITIONS, INPUTS, MODELS, Model, OUTPUTS, PREPARED, Reach, find};
+use beltspace::models::{CONDITIONS, INPUTS, MODELS, Model, OUTPUTS, Reach, find};
 use beltspace::real::Dependence;
 use std::collections::BTreeSet;
 
 /// Everything that a formula computes of a design, by its bits.
 struct Parts {
-    prepared: [u64; PREPARED],
+    prepared: Vec<u64>,
     outputs: [u64; OUTPUTS],
     conditions: [u64; CONDITIONS],
 }
 
 impl Parts {
     fn new(model: &Model, si: &[f64; INPUTS]) -> Self {
-        let prepared = model.kernel.prepare(si);
+        let prepared = model.kernel.prepared(si);
         Self {
             outputs: outputs_si(model, si).map(f64::to_bits),
             conditions: model.kernel.conditions(&prepared, si).map(f64::to_bits),
-            prepared: prepared.map(f64::to_bits),
+            prepared: prepared.into_iter().map(f64::to_bits).collect(),
         }
     }
 }

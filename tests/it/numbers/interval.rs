@@ -95,6 +95,19 @@ impl Neg for Interval {
 }
 
 impl Real for Interval {
+    type Shared = Self;
+    fn shared(value: Self) -> Self {
+        value
+    }
+    fn plus_whole(self, other: Self) -> Self {
+        Self { low: self.low + other.low, high: self.high + other.high }
+    }
+    fn turns(self, most: usize) -> usize {
+        self.high.turns(most)
+    }
+    fn is_zero(self) -> bool {
+        self.low == 0.0 && self.high == 0.0
+    }
     fn constant(value: f64) -> Self {
         Self { low: value, high: value }
     }

@@ -4,7 +4,7 @@ use super::interval::Interval;
 use super::{meaningful_si, si};
 use crate::physics::{Region, draw};
 use crate::random::Random;
-use beltspace::models::{CONDITIONS, Formula, INPUTS, MODELS, Model, OUTPUTS, Visitor, find, visit};
+use beltspace::models::{CONDITIONS, Formula, INPUTS, MODELS, Model, OUTPUTS, Visitor, find, run, visit};
 use beltspace::real::Real;
 
 /// Both stages over a box.
@@ -13,10 +13,7 @@ struct OverBox([Interval; INPUTS]);
 impl Visitor for OverBox {
     type Output = ([Interval; OUTPUTS], [Interval; CONDITIONS]);
     fn visit<F: Formula>(self) -> Self::Output {
-        let prepared = F::prepare(&self.0);
-        let mut outputs = [Interval::constant(0.0); OUTPUTS];
-        F::finish(&prepared, &self.0, u64::MAX, &mut outputs);
-        (outputs, F::conditions(&prepared, &self.0))
+        run::<F, Interval>(&self.0)
     }
 }
 
@@ -124,9 +121,7 @@ fn a_visitor_reaches_every_model_and_no_other_name() {
         fn visit<F: Formula>(self) -> Self::Output {
             let model = find("rubber-cvt").expect("it is a model");
             let inputs = si(model, &model.defaults());
-            let mut outputs = [0.0; OUTPUTS];
-            F::finish(&F::prepare(&inputs), &inputs, u64::MAX, &mut outputs);
-            outputs
+            run::<F, f64>(&inputs).0
         }
     }
     let all: Vec<_> = MODELS.iter().map(|model| visit(model.name, Name).expect("it is a model").map(f64::to_bits)).collect();

@@ -20,7 +20,7 @@ fn si(model: &Model, inputs: &[f64]) -> [f64; INPUTS] {
 /// All outputs in SI units, those without a meaning included.
 fn outputs_si(model: &Model, si: &[f64; INPUTS]) -> [f64; OUTPUTS] {
     let mut outputs = [0.0; OUTPUTS];
-    model.kernel.finish(&model.kernel.prepare(si), si, u64::MAX, &mut outputs);
+    model.kernel.finish(&model.kernel.prepared(si), si, u64::MAX, &mut outputs);
     outputs
 }
 

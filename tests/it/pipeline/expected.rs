@@ -77,7 +77,7 @@ fn designs_table(study: &Study, evaluated: &Evaluated, designs: &[u64]) -> Table
                 }
             }
             row.push(worst.map_or(Cell::Absent, |(_, value, _)| Cell::number(value)));
-            row.push(whole(worst.map_or(0, |(_, _, scenario)| scenario as u64)));
+            row.push(worst.map_or(Cell::Absent, |(_, _, scenario)| whole(scenario as u64)));
         }
         row
     };

@@ -21,6 +21,12 @@ fn range(model: &Model, number: usize) -> (f64, f64) {
     match (model.name, input.name) {
         (_, "belt_length_mm") => (0.85 * input.default, 1.15 * input.default),
         (_, "centre_distance_mm") => (0.9 * input.default, 1.25 * input.default),
+        ("timing-belt", "slack_tension_N") => (0.0, 150.0),
+        ("timing-belt", "tight_tension_N") => (100.0, 1500.0),
+        ("timing-belt", "pulley_speed_rpm") => (500.0, 8000.0),
+        ("timing-belt", "lift_angle_deg") => (0.0, 2.4),
+        ("timing-belt", "space_half_angle_deg") => (2.2, 4.0),
+        ("timing-belt", "teeth_in_mesh") => (4.0, 30.0),
         ("rubber-cvt", "elastic_modulus_MPa") => (100.0, 2500.0),
         ("rubber-cvt", "strength_MPa") => (5.0, 60.0),
         ("metal-cvt", "traction") => (0.1, 0.6),

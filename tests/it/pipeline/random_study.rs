@@ -43,7 +43,8 @@ impl Draft {
         let large = turn % 20 == 7;
         let designs = if large { generator.random.between(33e3, 50e3) } else { generator.random.log_between(50.0, 3000.0) };
         let scenarios = generator.random.log_between(1.0, 40.0).min(MOST_EVALUATIONS as f64 / designs).max(1.0);
-        let mut free: Vec<usize> = (0..model.inputs.len()).collect();
+        // What a shader does not know would keep the study from the device.
+        let mut free: Vec<usize> = (0..model.inputs.len()).filter(|&input| !model.inputs[input].processor_only).collect();
         generator.random.shuffle(&mut free);
         let design = generator.axes(0, &mut free, 4, designs, sampled);
         let operation = generator.axes(1, &mut free, 2, scenarios.sqrt(), false);
@@ -90,8 +91,17 @@ impl Draft {
 
     /// Draws a quantity: mostly an output, else mostly an input that is chosen.
     fn draw(&self, random: &mut Random, quantities: &[Quantity]) -> Quantity {
-        let favourites =
-            ["torque_capacity_Nm", "capacity_axial_force_N", "stress_margin", "slip_margin", "axial_force_N", "friction_margin"];
+        let favourites = [
+            "torque_capacity_Nm",
+            "capacity_axial_force_N",
+            "stress_margin",
+            "slip_margin",
+            "axial_force_N",
+            "friction_margin",
+            "boundary_tooth",
+            "lift_speed_rpm",
+            "peak_tooth_load_N",
+        ];
         let chosen = |it: &&Quantity| matches!(it, Quantity::Input(input) if self.axes[0].iter().any(|axis| axis.inputs.contains(input)));
         let favourite = |it: &&Quantity| favourites.contains(&it.name(self.model));
         let output = |it: &&Quantity| matches!(it, Quantity::Output(_));

@@ -17,7 +17,7 @@ mod report;
 mod rows;
 
 use super::layout::{BINS, KILLERS, LIST, Layout, Values, champions, on_device, scenario_worst, sign, used_outputs};
-use crate::gpu::{model_prelude, model_source, source};
+use crate::gpu::{model_prelude, model_source, source, table_readers};
 use crate::models::{CONDITION_PROMISE, Worse};
 use crate::plan::{Plan, Source};
 use crate::real::nearest_f32;
@@ -112,10 +112,12 @@ pub fn text(plan: &Plan, layout: &Layout, perturb: &[(usize, f64)]) -> String {
     prelude.front();
     prelude.others();
     prelude.report();
+    let asked: Vec<usize> = plan.row_conditions.iter().chain(&plan.lane_conditions).copied().collect();
     [
         source::COMMON,
         include_str!("../../../../shaders/common/wide.wgsl"),
-        &model_prelude(model),
+        &model_prelude(model, used_outputs(plan), &asked),
+        &readers(plan, layout),
         &model_source(model),
         include_str!("../../../../shaders/sweep/tile.wgsl"),
         &prelude.text,
@@ -124,6 +126,15 @@ pub fn text(plan: &Plan, layout: &Layout, perturb: &[(usize, f64)]) -> String {
         include_str!("../../../../shaders/sweep/check.wgsl"),
     ]
     .join("\n")
+}
+
+/// How the second stage reads the tables of the first.
+fn readers(plan: &Plan, layout: &Layout) -> String {
+    table_readers(plan.study.model, |field, _| match layout.prepared.iter().find(|it| it.field == field) {
+        Some(passed) => format!("prepared_table[p.place + ({}u + at) * tile.rows]", passed.offset),
+        // Nothing that the study asks for reads it.
+        None => "constant(0.0)".to_owned(),
+    })
 }
 
 struct Prelude<'a> {

@@ -73,15 +73,32 @@ impl Prelude<'_> {
     /// Values of the first stage, and what all lanes of a row share.
     pub(super) fn passing(&mut self) {
         let (plan, layout) = (self.plan, self.layout);
-        let fields = plan.study.model.kernel.fields().prepared;
-        let width = layout.prepared.len();
-        let at = |number: usize| format!("prepared_table[(q * {width}u + {number}u) * tile.rows + row]");
-        let passed = layout.prepared.iter().enumerate();
-        let store: Vec<_> = passed.clone().map(|(number, &field)| format!("{} = prepared.{};", at(number), fields[field])).collect();
-        self.function("store_prepared(q: u32, row: u32, prepared: Prepared)", &store);
+        let fields = plan.study.model.kernel.fields();
+        let width = layout.prepared_width();
+        let place = format!("q * {width}u * tile.rows + row");
+        let at = |offset: usize| format!("prepared_table[{place} + {offset}u * tile.rows]");
+        let mut store = Vec::new();
         let mut load = vec!["var prepared: Prepared;".to_owned()];
-        load.extend(passed.map(|(number, &field)| format!("prepared.{} = {};", fields[field], at(number))));
+        for passed in &layout.prepared {
+            let offset = passed.offset;
+            match fields.prepared.get(passed.field) {
+                Some(name) => {
+                    store.push(format!("{} = prepared.{name};", at(offset)));
+                    load.push(format!("prepared.{name} = {};", at(offset)));
+                }
+                None => {
+                    let (table, length) = fields.tables[passed.field - fields.prepared.len()];
+                    store.push(format!("for (var at = 0u; at < {length}u; at++) {{"));
+                    store.push(format!("    prepared_table[{place} + ({offset}u + at) * tile.rows] = made_{table}[at];"));
+                    store.push("}".to_owned());
+                }
+            }
+        }
+        if !fields.tables.is_empty() {
+            load.push(format!("prepared.place = {place};"));
+        }
         load.push("return prepared;".to_owned());
+        self.function("store_prepared(q: u32, row: u32, prepared: Prepared)", &store);
         self.function("load_prepared(q: u32, row: u32) -> Prepared", &load);
         let hold = if layout.slow_scenarios.count == 1 { "return load_prepared(0u, row);" } else { "var none: Prepared; return none;" };
         self.function("hold_prepared(row: u32) -> Prepared", &[hold.to_owned()]);
