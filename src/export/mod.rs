@@ -15,6 +15,7 @@ pub use table::{Data, Table, TableColumn};
 
 use crate::certify::{self, Column, Row};
 use crate::checkpoint::replace;
+use crate::contours::contours;
 use crate::error::{Error, Result};
 use crate::models::MODELS;
 use crate::plan::Plan;
@@ -59,11 +60,12 @@ impl<'p> Outcome<'p> {
         Ok(Self { plan, state, tally, columns, front, top })
     }
 
-    /// The files of the result, by name, in the order in which they are written; [`MARK`] last.
+    /// The files of the result, by name, in the order in which they are written; [`MARK`] last. The lines over maps are found here,
+    /// on several threads: they depend on the plan alone, so no checkpoint need keep them.
     ///
     /// # Errors
     /// [`Error::Io`] from the table writers.
-    fn files(&self, text: &str) -> Result<Vec<(String, Vec<u8>)>> {
+    fn files(&self, text: &str, threads: usize) -> Result<Vec<(String, Vec<u8>)>> {
         let study = &self.plan.study;
         let json = |value: &serde_json::Value| (format!("{value:#}") + "\n").into_bytes();
         let mut files = vec![
@@ -99,7 +101,12 @@ impl<'p> Outcome<'p> {
             } else {
                 files.push((format!("{name}.csv"), csv::write(&table)));
             }
-            files.push((format!("{name}.svg"), pictures::map(study, spec, map, &table).into_bytes()));
+            let contours = contours(self.plan, spec, threads);
+            if !spec.contours.is_empty() {
+                let name = name.replacen("map-", "contours-", 1);
+                files.push((format!("{name}.csv"), csv::write(&tables::contours(study, spec, &contours))));
+            }
+            files.push((format!("{name}.svg"), pictures::map(study, spec, map, &table, &contours).into_bytes()));
         }
         files.push((MARK.to_owned(), json(&Summary::new(self).to_json())));
         Ok(files)
@@ -111,7 +118,7 @@ impl<'p> Outcome<'p> {
     /// [`Error::Io`].
     pub fn write(&self, folder: &Path, text: &str, run: &RunRecord) -> Result<()> {
         fs::create_dir_all(folder).map_err(Error::io(folder))?;
-        let files = self.files(text)?;
+        let files = self.files(text, run.threads)?;
         // An older result stops being one before its files are replaced, and none of its files outlives it.
         let keep: BTreeSet<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
         remove_if_there(&folder.join(MARK))?;
@@ -136,8 +143,10 @@ fn is_ours(name: &str) -> bool {
     let name = name.strip_suffix(".writing").unwrap_or(name);
     let fixed = ["front.csv", "front.parquet", "front.svg", "top.csv", "scenarios.csv", "study.toml", "study.json", "run.json", MARK];
     let (stem, extension) = name.rsplit_once('.').unwrap_or((name, ""));
-    let drawn = stem.strip_prefix("histogram-").or_else(|| stem.strip_prefix("map-"));
-    fixed.contains(&name) || (["csv", "parquet", "svg"].contains(&extension) && drawn.is_some_and(is_quantity))
+    let prefixes = [("histogram-", &["csv", "parquet", "svg"][..]), ("map-", &["csv", "parquet", "svg"]), ("contours-", &["csv"])];
+    let of_quantity =
+        |(prefix, extensions): &(&str, &[&str])| extensions.contains(&extension) && stem.strip_prefix(prefix).is_some_and(is_quantity);
+    fixed.contains(&name) || prefixes.iter().any(of_quantity)
 }
 
 /// Is this the name of a quantity of some model, or of a feasible share, perhaps numbered?

@@ -3,9 +3,10 @@
 use super::table::{Data, Table};
 use super::tables::map_value;
 use super::{Outcome, Summary};
-use crate::pictures::{self, Quantity};
+use crate::contours::{Contour, Vertex};
+use crate::pictures::{self, Contours, Curve, MapDetails, Quantity};
 use crate::reduce::{Histogram, Map};
-use crate::study::{Goal, HistogramSpec, MapSpec, Study};
+use crate::study::{Best, ContourSpec, Goal, HistogramSpec, MapSpec, Study, Thresholds};
 
 fn quantity(study: &Study, of: crate::study::Quantity) -> Quantity {
     Quantity::new(of.name(study.model), of.unit(study.model))
@@ -33,8 +34,8 @@ pub fn histogram(study: &Study, spec: &HistogramSpec, histogram: &Histogram) -> 
     pictures::histogram(&study.title, &quantity(study, spec.of), *from, *to, counts, *below, *above)
 }
 
-/// A map, from its table.
-pub fn map(study: &Study, spec: &MapSpec, map: &Map, table: &Table) -> String {
+/// A map, from its table, with the lines that it asks for.
+pub fn map(study: &Study, spec: &MapSpec, map: &Map, table: &Table, contours: &[Contour]) -> String {
     let axis = |axis: usize| {
         let axis = &study.design[axis];
         let input = &study.model.inputs[axis.inputs()[0]];
@@ -44,5 +45,21 @@ pub fn map(study: &Study, spec: &MapSpec, map: &Map, table: &Table) -> String {
     let (name, unit) = map_value(study, spec);
     let Data::Number(cells) = &table.columns[2].data else { unreachable!("the third column of a map is its value") };
     debug_assert_eq!(cells.len() as u64, map.size().0 * map.size().1);
-    pictures::heatmap(&study.title, (&x.0, &x.1), (&y.0, &y.1), &Quantity::new(name, unit), cells)
+    let details = MapDetails {
+        whole: matches!(spec.value, Best::Value(quantity, _) if quantity.is_whole(study.model)),
+        contours: (!spec.contours.is_empty()).then(|| spec.contours.iter().map(|it| lines(study, it, contours)).collect()),
+    };
+    pictures::heatmap(&study.title, (&x.0, &x.1), (&y.0, &y.1), &Quantity::new(name, unit), cells, &details)
+}
+
+/// The lines of one of the quantities.
+fn lines(study: &Study, spec: &ContourSpec, contours: &[Contour]) -> Contours {
+    let point = |vertex: &Vertex| (vertex.x, vertex.y);
+    let lines = |contour: &Contour| contour.lines.iter().map(|line| line.iter().map(point).collect()).collect();
+    let curve = |contour: &Contour| Curve { at: contour.at, lines: lines(contour) };
+    Contours {
+        quantity: quantity(study, spec.of),
+        every_change: spec.at == Thresholds::Changes,
+        curves: contours.iter().filter(|contour| contour.of == spec.of).map(curve).collect(),
+    }
 }

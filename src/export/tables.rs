@@ -3,6 +3,7 @@
 use super::Outcome;
 use super::table::{Data, Table, TableColumn};
 use crate::certify::{Role, Row};
+use crate::contours::{Along, Contour};
 use crate::plan::Plan;
 use crate::reduce::{Histogram, Map};
 use crate::study::{Axis, Best, Goal, MapSpec, Study};
@@ -103,4 +104,42 @@ pub fn map(plan: &Plan, spec: &MapSpec, map: &Map) -> Table {
         ));
     }
     Table { columns }
+}
+
+/// The lines over a map, vertex by vertex: what of, where, and between which ends each was found.
+pub fn contours(study: &Study, spec: &MapSpec, contours: &[Contour]) -> Table {
+    let model = study.model;
+    let [x, y] = [spec.x, spec.y].map(|axis| &model.inputs[study.design[axis].inputs()[0]]);
+    let mut of = Vec::new();
+    let mut line = Vec::new();
+    let mut along = Vec::new();
+    let [mut at, mut across, mut up, mut bracket] = [const { Vec::new() }; 4];
+    let lines = contours.iter().flat_map(|contour| contour.lines.iter().map(move |line| (contour, line)));
+    for (number, (contour, vertices)) in (0..).zip(lines) {
+        for vertex in vertices {
+            of.push(contour.of.name(model).to_owned());
+            at.push(Some(contour.at));
+            line.push(Some(number));
+            across.push(Some(vertex.x));
+            up.push(Some(vertex.y));
+            bracket.push(Some(vertex.bracket));
+            along.push(if vertex.along == Along::X { x.name } else { y.name }.to_owned());
+        }
+    }
+    Table {
+        columns: vec![
+            TableColumn::new("of", "contour", "The quantity.", Data::Text(of)),
+            TableColumn::new(
+                "at",
+                "contour",
+                "Its worst value over all scenarios is at least this on the left of the line.",
+                Data::Number(at),
+            ),
+            TableColumn::index("line", "Number of the polyline.", line),
+            TableColumn { unit: x.unit.symbol.to_owned(), ..TableColumn::new(x.name, "design", x.doc, Data::Number(across)) },
+            TableColumn { unit: y.unit.symbol.to_owned(), ..TableColumn::new(y.name, "design", y.doc, Data::Number(up)) },
+            TableColumn::new("bracket", "contour", "Width of the bracket around the vertex that was bisected.", Data::Number(bracket)),
+            TableColumn::new("along", "contour", "The axis that the bracket lies on, in its unit.", Data::Text(along)),
+        ],
+    }
 }

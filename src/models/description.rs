@@ -144,17 +144,24 @@ pub struct Output {
     pub source: &'static str,
     /// How far f32 may be from f64, in units of its running error bound: at least four times the worst that was seen.
     pub promise: f64,
+    /// Are all its values whole numbers?
+    pub integer: bool,
 }
 
 impl Output {
     /// An output that is promised to its running error bound; a larger promise is set with [`Output::promising`].
     pub const fn new(name: &'static str, symbol: &'static str, unit: Unit, worse: Worse, source: &'static str, doc: &'static str) -> Self {
-        Self { name, symbol, unit, worse, doc, source, promise: 1.0 }
+        Self { name, symbol, unit, worse, doc, source, promise: 1.0, integer: false }
     }
 
     /// The same output with another promise: where few roundings add up, some value comes close to the bound itself.
     pub const fn promising(self, promise: f64) -> Self {
         Self { promise, ..self }
+    }
+
+    /// The same output, whose values are whole numbers: a map of it has lines where it changes.
+    pub const fn whole(self) -> Self {
+        Self { integer: true, ..self }
     }
 }
 

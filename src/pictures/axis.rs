@@ -85,6 +85,13 @@ impl Axis {
         Self::numeric(0.0, high, most, Numbers::Long.exponent(high))
     }
 
+    /// Vertical axis of whole numbers.
+    pub(super) fn whole((low, high): (f64, f64), room: i32) -> Self {
+        let most = (room / (28 * UNIT)).clamp(2, 11);
+        let exponent = Numbers::Long.exponent(low.abs().max(high.abs()));
+        Self::stepped(low, high, ((high - low) / f64::from(most)).max(1.0), exponent)
+    }
+
     /// Axis over `low` to `high` with ticks chosen elsewhere: their places and texts.
     pub(super) fn with_ticks((low, high): (f64, f64), ticks: impl Iterator<Item = (f64, String)>) -> Self {
         let ticks = ticks.map(|(at, label)| Tick { at, label }).collect();
@@ -111,7 +118,12 @@ impl Axis {
     /// Ticks at multiples of 1, 2 or 5 times a power of ten, with at most `most` steps between
     /// them; their labels in units of ten to the `exponent`.
     fn numeric(low: f64, high: f64, most: i32, exponent: i32) -> Self {
-        let (mantissa, power) = number::scientific((high - low) / f64::from(most));
+        Self::stepped(low, high, (high - low) / f64::from(most), exponent)
+    }
+
+    /// The same with steps of at least a given width.
+    fn stepped(low: f64, high: f64, least: f64, exponent: i32) -> Self {
+        let (mantissa, power) = number::scientific(least);
         let (mantissa, power) = match mantissa {
             m if m <= 1.0 => (1, power),
             m if m <= 2.0 => (2, power),

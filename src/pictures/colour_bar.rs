@@ -27,9 +27,9 @@ pub(super) struct Bar {
 }
 
 impl Bar {
-    /// Scale from the lowest to the highest value, to stand `height` units of paper tall.
-    pub fn new((low, high): (f64, f64), value: &Quantity, height: i32) -> Self {
-        let axis = Axis::vertical((low, high), height, Numbers::Long);
+    /// Scale from the lowest to the highest value, to stand `height` units of paper tall; with whole numbers only.
+    pub fn new((low, high): (f64, f64), value: &Quantity, height: i32, whole: bool) -> Self {
+        let axis = if whole { Axis::whole((low, high), height) } else { Axis::vertical((low, high), height, Numbers::Long) };
         let label = axis_label(value, &axis, height);
         Self { low, high, axis, label }
     }

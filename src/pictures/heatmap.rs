@@ -8,7 +8,7 @@ use super::panel::{PanelPlan, axis_label, x_labels_height, y_labels_width};
 use super::range::bounds;
 use super::raster::image;
 use super::sheet::{Area, Dash, Drawn, Frame, Sheet, UNIT, WIDTH, stroked};
-use super::{Quantity, levels, number};
+use super::{MapDetails, Quantity, levels, number, overlay};
 use plotters::prelude::*;
 use std::fmt::Write;
 
@@ -18,9 +18,17 @@ const HEIGHT: i32 = 520 * UNIT;
 ///
 /// `x` and `y` are the axes with their level values, which may be irregular: an axis counts levels
 /// and its ticks show their values. `cells` are the values, `[y][x]`, `None` where there is no
-/// feasible design, shown hatched. Maps that are fine and smooth enough carry contour lines at the
-/// ticks of the colour bar. No cells at all: the picture says that no design is feasible.
-pub fn heatmap(title: &str, x: (&Quantity, &[f64]), y: (&Quantity, &[f64]), value: &Quantity, cells: &[Option<f64>]) -> String {
+/// feasible design, shown hatched. Over them stand the lines of `details`; without any, maps that are
+/// fine and smooth enough carry contour lines at the ticks of the colour bar. No cells at all: the
+/// picture says that no design is feasible.
+pub fn heatmap(
+    title: &str,
+    x: (&Quantity, &[f64]),
+    y: (&Quantity, &[f64]),
+    value: &Quantity,
+    cells: &[Option<f64>],
+    details: &MapDetails,
+) -> String {
     let (columns, rows) = (x.1.len(), y.1.len());
     if columns == 0 || rows == 0 {
         return sentence(title, "no feasible design");
@@ -28,9 +36,13 @@ pub fn heatmap(title: &str, x: (&Quantity, &[f64]), y: (&Quantity, &[f64]), valu
     // Cells that are missing or not finite are absent like the others.
     let cell = |i: usize| cells.get(i).copied().flatten().filter(|v| v.is_finite());
     let cells: Vec<Option<f64>> = (0..columns * rows).map(cell).collect();
-    let bar = bounds(cells.iter().flatten().copied(), 0.0).map(|range| Bar::new(range, value, HEIGHT));
-    let lines = bar.as_ref().and_then(|bar| bar.lines(&cells, columns, rows));
-    let header = Header::new(title, legend(&cells, value, lines.is_some()));
+    let bar = bounds(cells.iter().flatten().copied(), 0.0).map(|range| Bar::new(range, value, HEIGHT, details.whole));
+    let automatic = bar.as_ref().filter(|_| details.contours.is_none());
+    let lines = automatic.and_then(|bar| bar.lines(&cells, columns, rows));
+    let given = details.contours.as_deref().unwrap_or_default();
+    let mut entries = legend(&cells, value, lines.is_some());
+    entries.extend(overlay::legend(given));
+    let header = Header::new(title, entries);
     let layout = Layout::new(x, y, bar.as_ref(), header.height());
     let frame = layout.frame;
 
@@ -49,6 +61,7 @@ pub fn heatmap(title: &str, x: (&Quantity, &[f64]), y: (&Quantity, &[f64]), valu
     for line in lines.unwrap_or_default() {
         sheet.insert(&line.path(frame, columns, rows));
     }
+    overlay::draw(&mut sheet, given, (x.1, y.1), frame);
     sheet.draw(|area| {
         layout.draw_axes(area)?;
         bar.iter().try_for_each(|bar| bar.draw_ticks(area, frame))
@@ -145,13 +158,14 @@ mod tests {
     use super::super::colours::{STEPS, step_colour};
     use super::super::raster::tests::decoded;
     use super::super::sheet::tests::assert_svg;
+    use super::super::{Contours, Curve};
     use super::*;
 
     fn draw(x: &[f64], y: &[f64], cells: &[Option<f64>]) -> String {
         let [across, up] = ["ratio", "band_thickness_mm"];
         let [across, up] = [Quantity::new(across, ""), Quantity::new(up, "mm")];
         let value = Quantity::new("axial_force_N", "N");
-        let picture = || heatmap("\"map\" <1>", (&across, x), (&up, y), &value, cells);
+        let picture = || heatmap("\"map\" <1>", (&across, x), (&up, y), &value, cells, &MapDetails::default());
         let svg = picture();
         assert_eq!(svg, picture());
         svg
@@ -211,7 +225,7 @@ mod tests {
     #[test]
     fn endless_names_give_a_picture() {
         let long = Quantity::new("word_".repeat(200), "x".repeat(200));
-        let map = heatmap("", (&long, &[1.0]), (&long, &[2.0]), &long, &[Some(1e-9)]);
+        let map = heatmap("", (&long, &[1.0]), (&long, &[2.0]), &long, &[Some(1e-9)], &MapDetails::default());
         assert_svg(&map);
     }
 
@@ -232,6 +246,43 @@ mod tests {
     }
 
     #[test]
+    fn given_lines_replace_the_automatic_ones() {
+        let levels: Vec<f64> = (0..20).map(f64::from).collect();
+        let cells: Vec<_> = (0..400).map(|i| Some(f64::from(i % 20))).collect();
+        let line = |at: f64| Curve { at, lines: vec![vec![(at, 0.0), (at, 19.0)]] };
+        let drawn = |quantity: &str, every_change: bool, curves: Vec<Curve>| {
+            let contours = vec![Contours { quantity: Quantity::new(quantity, "N"), every_change, curves }];
+            let [x, y, value] = ["ratio", "torque", "tooth"].map(|name| Quantity::new(name, ""));
+            let details = MapDetails { whole: true, contours: Some(contours) };
+            let svg = heatmap("", (&x, &levels), (&y, &levels), &value, &cells, &details);
+            assert_svg(&svg);
+            assert!(!svg.contains("ticks of the colour bar"));
+            svg
+        };
+        let one = drawn("axial_force_N", false, vec![line(7.0)]);
+        assert!(one.contains("axial force = 7 N") && one.matches("<rect").count() == drawn("", false, Vec::new()).matches("<rect").count());
+        let several = drawn("tooth_number", true, (5..15).map(|at| line(f64::from(at))).collect());
+        assert!(several.contains("tooth number rises to the number on the line"));
+        assert_eq!(several.matches("rx=\"30\"").count(), 10, "each line has its number");
+        assert!(drawn("a", false, vec![Curve { at: 3.0, lines: Vec::new() }]).contains("a = 3 N (nowhere here)"));
+        assert!(drawn("a", true, Vec::new()).contains("a changes nowhere here"));
+    }
+
+    #[test]
+    fn the_colour_bar_of_whole_numbers_has_whole_ticks() {
+        let ticks = |cells: &[Option<f64>], whole: bool| {
+            let [x, y] = ["ratio", "torque"].map(|name| Quantity::new(name, ""));
+            let levels: Vec<f64> = (0..cells.len()).map(|i| i as f64).collect();
+            let details = MapDetails { whole, contours: None };
+            heatmap("", (&x, &levels), (&y, &[1.0]), &Quantity::new("tooth", ""), cells, &details)
+        };
+        let cells = [Some(3.0), Some(4.0), Some(5.0)];
+        assert!(ticks(&cells, false).contains("\n3.4\n") && !ticks(&cells, true).contains("\n3.4\n"));
+        assert!(ticks(&cells, true).contains("\n4\n"));
+        assert!(!ticks(&[Some(1.0)], true).contains("\n1.0\n"), "also where all values are the same");
+    }
+
+    #[test]
     fn four_million_cells_of_noise_stay_below_five_megabytes() {
         let levels: Vec<f64> = (0..2000).map(f64::from).collect();
         let mut state = 88_172_645_463_325_252_u64;
@@ -243,7 +294,7 @@ mod tests {
         };
         let cells: Vec<_> = std::iter::repeat_with(noise).take(4_000_000).collect();
         let [x, y, value] = ["ratio", "torque", "force"].map(|name| Quantity::new(name, ""));
-        let svg = heatmap("", (&x, &levels), (&y, &levels), &value, &cells);
+        let svg = heatmap("", (&x, &levels), (&y, &levels), &value, &cells, &MapDetails::default());
         assert!(svg.len() < 5_000_000, "{} bytes", svg.len());
     }
 }

@@ -20,6 +20,7 @@ mod heatmap;
 mod histogram;
 mod levels;
 mod number;
+mod overlay;
 mod panel;
 mod range;
 mod raster;
@@ -71,6 +72,35 @@ pub struct Series {
     pub x: Vec<f64>,
     /// Ordinates, in the unit of the panel's quantity; as many as `x`.
     pub y: Vec<f64>,
+}
+
+/// What is drawn of a map besides its cells.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct MapDetails {
+    /// Are all values whole numbers? Then those of the colour bar are too.
+    pub whole: bool,
+    /// Lines over the map, in place of those that [`heatmap()`] would draw by itself.
+    pub contours: Option<Vec<Contours>>,
+}
+
+/// Lines of one quantity over a map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Contours {
+    /// The quantity, which need not be the map's.
+    pub quantity: Quantity,
+    /// Are these all the whole numbers that it rises to?
+    pub every_change: bool,
+    /// One entry per value.
+    pub curves: Vec<Curve>,
+}
+
+/// The lines at one value of a quantity.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curve {
+    /// The value, in the quantity's unit.
+    pub at: f64,
+    /// Polylines of at least one point, in the units of the map's axes.
+    pub lines: Vec<Vec<(f64, f64)>>,
 }
 
 impl Quantity {

@@ -1,6 +1,6 @@
 //! The resolved study in words and names: `study.json`, the study's hash, and what changed between two studies.
 
-use super::{Axis, Best, Constraint, Goal, Levels, Quantity, Study};
+use super::{Axis, Best, Constraint, ContourSpec, Goal, Levels, Quantity, Study, Thresholds};
 use crate::models::Model;
 use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
@@ -41,7 +41,12 @@ impl Study {
                     Best::Value(quantity, Goal::Max) => (Some(quantity.name(model)), "max"),
                     Best::Share => (None, "share"),
                 };
-                json!({ "x": axis_name(map.x), "y": axis_name(map.y), "value": value, "best": best })
+                let mut described = json!({ "x": axis_name(map.x), "y": axis_name(map.y), "value": value, "best": best });
+                // A map without lines reads as it did before there were any, and so its study keeps its hash.
+                if !map.contours.is_empty() {
+                    described["contours"] = map.contours.iter().map(|it| contours_of(model, it)).collect();
+                }
+                described
             }).collect::<Vec<_>>(),
             "front_budget": report.front_budget,
         })
@@ -123,6 +128,14 @@ fn constraint_of(model: &Model, constraint: &Constraint) -> Value {
         }
     }
     value
+}
+
+fn contours_of(model: &Model, contours: &ContourSpec) -> Value {
+    let at = match &contours.at {
+        Thresholds::At(values) => values.iter().map(|&value| number(value)).collect(),
+        Thresholds::Changes => Value::from("every change"),
+    };
+    json!({ "of": contours.of.name(model), "at": at })
 }
 
 impl Constraint {

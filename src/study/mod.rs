@@ -12,4 +12,4 @@ mod resolved;
 pub use axis::{Axis, Levels, Method, Sample};
 pub use describe::{differences, number, value_of};
 pub use read::{Problem, StudyErrors};
-pub use resolved::{Best, Constraint, Goal, HistogramSpec, MapSpec, Objective, Quantity, Report, Study, TopSpec};
+pub use resolved::{Best, Constraint, ContourSpec, Goal, HistogramSpec, MapSpec, Objective, Quantity, Report, Study, Thresholds, TopSpec};

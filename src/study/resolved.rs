@@ -30,6 +30,14 @@ impl Quantity {
             Self::Output(output) => model.outputs[output].worse,
         }
     }
+
+    /// Are all its values whole numbers?
+    pub fn is_whole(self, model: &Model) -> bool {
+        match self {
+            Self::Input(input) => model.inputs[input].integer,
+            Self::Output(output) => model.outputs[output].integer,
+        }
+    }
 }
 
 /// Direction of an objective.
@@ -123,8 +131,27 @@ pub enum Best {
     Share,
 }
 
+/// The values of a quantity whose lines a map shows.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Thresholds {
+    /// These values, in the quantity's unit.
+    At(Vec<f64>),
+    /// Every whole number that the quantity rises to somewhere on the map.
+    Changes,
+}
+
+/// Lines over a map: where the worst value of a quantity over all scenarios begins to be at least a threshold.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ContourSpec {
+    /// Of which quantity.
+    pub of: Quantity,
+    /// At which values.
+    pub at: Thresholds,
+}
+
 /// A map over two design axes.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MapSpec {
     /// Position of the horizontal axis in `Study::design`.
     pub x: usize,
@@ -132,6 +159,9 @@ pub struct MapSpec {
     pub y: usize,
     /// What is shown.
     pub value: Best,
+    /// Lines over it, each quantity once, in file order. Only where `x` and `y` alone have more than one level.
+    #[serde(default)]
+    pub contours: Vec<ContourSpec>,
 }
 
 /// What else to report.

@@ -429,7 +429,7 @@ fn the_example_means_what_it_says() {
             columns: vec![output("max_stress_MPa")],
             top: Some(TopSpec { by: force, goal: Goal::Min, count: 20 }),
             histograms: vec![HistogramSpec { of: force, range: Some((0.0, 60_000.0)), bins: 60 }],
-            maps: vec![MapSpec { x: 1, y: 0, value: Best::Value(force, Goal::Min) }],
+            maps: vec![MapSpec { x: 1, y: 0, value: Best::Value(force, Goal::Min), contours: Vec::new() }],
             front_budget: 1_000_000,
         }
     );
@@ -537,7 +537,7 @@ fn constraints_objectives_and_reports_are_understood() {
     assert_eq!(study.objectives, [Objective { quantity: output("max_stress_MPa"), goal: Goal::Min, resolution: Some(0.1) }]);
     // The goal follows from what is worse: a margin is best when large.
     assert_eq!(study.report.top, Some(TopSpec { by: output("slip_margin"), goal: Goal::Max, count: 3 }));
-    let map = |x, y, value| MapSpec { x, y, value };
+    let map = |x, y, value| MapSpec { x, y, value, contours: Vec::new() };
     let maps = [
         map(2, 0, Best::Value(output("max_stress_MPa"), Goal::Min)),
         map(0, 1, Best::Share),

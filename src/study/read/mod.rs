@@ -10,9 +10,11 @@
 //! | `cases.rs`      | joint axes, from rows or a CSV file                |
 //! | `quantities.rs` | `[constraints]`, `[objectives]`                    |
 //! | `report.rs`     | `[report]`                                         |
+//! | `contours.rs`   | the lines over its maps                            |
 
 mod axes;
 mod cases;
+mod contours;
 mod quantities;
 mod range;
 mod report;

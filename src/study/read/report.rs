@@ -3,6 +3,7 @@
 use super::super::axis::Axis;
 use super::super::resolved::{Best, Goal, HistogramSpec, MapSpec, Objective, Quantity, Report, TopSpec};
 use super::axes::Role;
+use super::contours::Plane;
 use super::quantities::GOALS;
 use super::table::{Entry, Node, Table};
 use super::value::{shown_in, whole};
@@ -181,7 +182,7 @@ impl Reader<'_> {
     fn map(&self, table: &Table<'_>, known: &Known<'_>) -> Option<MapSpec> {
         let label = "maps";
         let problems = self.problems;
-        let good = table.check_keys(problems, label, &["x", "y", "value", "best"]);
+        let good = table.check_keys(problems, label, &["x", "y", "value", "best", "contours"]);
         if self.sampled {
             problems.add(table.at, format!("{label}: sampled designs lie on no grid, so there is no map; drop it or [sample]"));
             return None;
@@ -205,7 +206,9 @@ impl Reader<'_> {
             );
             return None;
         }
-        good.then_some(MapSpec { x, y, value: value? })
+        let plane = Plane { design: known.design, x, y, value, fixed: known.fixed };
+        let contours = table.get("contours").map_or_else(Vec::new, |entry| self.contours(entry, &plane));
+        good.then_some(MapSpec { x, y, value: value?, contours })
     }
 
     /// Position of the design axis that a text names; inside `None` if that axis has a problem of its own.

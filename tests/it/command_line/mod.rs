@@ -2,6 +2,8 @@
 
 /// Checkpoints and shards that must not be used.
 mod checkpoints;
+/// Lines over maps, held against the models.
+mod contours;
 /// `models` and `eval`.
 mod models_and_eval;
 /// Interrupted, divided and resumed runs.

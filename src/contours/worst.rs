@@ -1,0 +1,64 @@
+//! The worst value over all scenarios at any place of the plane, in f64.
+
+use crate::models::{OUTPUTS, Worse, judge, to_si};
+use crate::plan::Plan;
+use crate::study::Quantity;
+
+/// The plane of two inputs; everything else is as the study has it.
+pub struct Worst<'p> {
+    plan: &'p Plan,
+    axes: [usize; 2],
+    inputs: Vec<f64>,
+}
+
+impl<'p> Worst<'p> {
+    /// The plane of these two inputs, the only ones in which designs differ.
+    pub fn new(plan: &'p Plan, axes: [usize; 2]) -> Self {
+        Self { plan, axes, inputs: plan.space.inputs(0, 0) }
+    }
+
+    /// The worst values at a place, by the ends named; `None` where a quantity has no value in some scenario.
+    pub fn at(&self, x: f64, y: f64, wanted: &[(Quantity, Worse)]) -> Vec<Option<f64>> {
+        let plan = self.plan;
+        let model = plan.study.model;
+        let outputs_wanted = wanted.iter().fold(0, |set, (quantity, _)| match quantity {
+            Quantity::Output(output) => set | 1 << output,
+            Quantity::Input(_) => set,
+        });
+        let mut inputs = self.inputs.clone();
+        (inputs[self.axes[0]], inputs[self.axes[1]]) = (x, y);
+        let mut worst: Vec<Option<f64>> = Vec::new();
+        for slow in 0..plan.slow_scenarios.count() {
+            plan.slow_scenarios.set(slow, &mut inputs);
+            let mut prepared = None;
+            for fast in 0..plan.fast_scenarios.count() {
+                plan.fast_scenarios.set(fast, &mut inputs);
+                let si = to_si(model, &inputs);
+                // What the slow scenario inputs prepare serves all fast ones.
+                let prepared = prepared.get_or_insert_with(|| model.kernel.prepare(&si));
+                let mut outputs = [0.0; OUTPUTS];
+                model.kernel.finish(prepared, &si, outputs_wanted, &mut outputs);
+                let (_, present) = judge(model, &model.kernel.conditions(prepared, &si));
+                let value = |quantity| match quantity {
+                    Quantity::Input(input) => Some(inputs[input]),
+                    Quantity::Output(output) => {
+                        let value = model.outputs[output].unit.from_si(outputs[output]);
+                        (present >> output & 1 == 1 && value.is_finite()).then_some(value)
+                    }
+                };
+                let values = wanted.iter().map(|(quantity, _)| value(*quantity));
+                if worst.is_empty() {
+                    worst = values.collect();
+                } else {
+                    for ((worst, value), (_, end)) in worst.iter_mut().zip(values).zip(wanted) {
+                        *worst = worst.zip(value).map(|(worst, value)| match end {
+                            Worse::Higher => worst.max(value),
+                            Worse::Lower => worst.min(value),
+                        });
+                    }
+                }
+            }
+        }
+        worst
+    }
+}
