@@ -17,7 +17,7 @@ fn evaluate(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let inputs = read_inputs(point * INPUTS);
-    let prepared = prepare(inputs);
+    let prepared = prepare_point(point, inputs);
     let margins = conditions(prepared, inputs);
     write_outputs(point * (OUTPUTS + CONDITIONS), finish(prepared, inputs));
     for (var number = 0u; number < CONDITIONS; number++) {

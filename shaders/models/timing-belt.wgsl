@@ -1,7 +1,7 @@
 // Timing belt on one pulley: the twin of src/models/timing_belt. Equation numbers are the paper's.
 //
-// The number of teeth is whole and exact, so loops end at it and nothing has to be masked. Tables that `prepare` makes are in the
-// private arrays `made_...`; the second stage reads them through functions of their names.
+// The number of teeth is whole and exact, so loops end at it and nothing has to be masked. The tables go where they belong number by
+// number, through functions `set_...`, and few are kept on the way: long private arrays are slow, to run and to compile.
 
 // Most teeth, and one more for the places before the first and after the last.
 const PLACES: u32 = 61u;
@@ -36,15 +36,19 @@ struct Rows {
 var<private> after: array<Real, PLACES>;
 var<private> tight: array<Real, PLACES>;
 var<private> short: array<Real, PLACES>;
-// Tensions of the complete mesh, T_t at 0.
-var<private> tension: array<Linear, PLACES>;
-// Elimination from the slack side, of T(i-1) and of T_s, at i - 1: T(i) = rho T(i-1) + sigma T_s with slack_short = 1 - rho; the last
-// gap's tension; the sum of the tensions from T(i) on.
-var<private> rho: array<Real, PLACES>;
-var<private> sigma: array<Real, PLACES>;
-var<private> slack_short: array<Real, PLACES>;
-var<private> last_tension: array<Linear, PLACES>;
-var<private> sum_behind: array<Linear, PLACES>;
+// T(1) + .. + T(i-1) = meshed_own[i] T(i) + meshed_tight[i] T_t.
+var<private> meshed_own: array<Real, PLACES>;
+var<private> meshed_tight: array<Real, PLACES>;
+
+// Elimination from the slack side, of T(i-1) and of T_s: T(i) = rho T(i-1) + sigma T_s with short = 1 - rho; the last gap's tension;
+// the sum of the tensions from T(i) on.
+struct Behind {
+    rho: Real,
+    sigma: Real,
+    short: Real,
+    last: Linear,
+    sum: Linear,
+}
 
 fn scaled(a: Linear, by: Real) -> Linear {
     return Linear(mul(a.tight, by), mul(a.slack, by));
@@ -106,64 +110,92 @@ fn eliminate(rows: Rows) {
     after[0] = constant(0.0);
     tight[0] = constant(1.0);
     short[0] = constant(1.0);
+    var own = constant(0.0);
+    var of_tight = constant(0.0);
     for (var gap = 1u; gap < rows.teeth; gap++) {
+        if gap > 1u {
+            let with_last = add(own, constant(1.0));
+            of_tight = add(mul(with_last, tight[gap - 1u]), of_tight);
+            own = mul(with_last, after[gap - 1u]);
+        }
+        meshed_own[gap] = own;
+        meshed_tight[gap] = of_tight;
         let beyond = add(rows.stretch, mul(rows.land_ratio, short[gap - 1u]));
         let pivot = add(constant(1.0), beyond);
-        after[gap] = div(constant(1.0), pivot);
+        let ratio = div(constant(1.0), pivot);
+        after[gap] = ratio;
         short[gap] = div(beyond, pivot);
-        tight[gap] = mul(mul(taken_in(rows, gap), tight[gap - 1u]), after[gap]);
-        if gap == rows.teeth - 1u {
-            // The last tooth of the complete mesh leaves into the slack span.
-            tension[gap] = Linear(tight[gap], mul(rows.slack, after[gap]));
-        }
-    }
-    tension[0] = tight_itself();
-    tension[rows.teeth] = slack_itself();
-    for (var gap = rows.teeth - 2u; gap > 0u; gap--) {
-        let behind = tension[gap + 1u];
-        tension[gap] = Linear(add(mul(after[gap], behind.tight), tight[gap]), mul(after[gap], behind.slack));
+        tight[gap] = mul(mul(taken_in(rows, gap), tight[gap - 1u]), ratio);
     }
 }
 
-// Load of a tooth of the complete mesh, (8), from what the tight side makes of H.
-fn complete_load(rows: Rows, tooth: u32, by_tight: Real) -> Linear {
-    var by_slack = tension[tooth].slack;
-    if tooth == rows.teeth {
-        by_slack = mul(rows.slack, by_slack);
-    }
-    if tooth > 1u {
-        by_slack = mul(by_slack, add(mul(rows.lost, after[tooth - 1u]), short[tooth - 1u]));
-    }
-    return over(Linear(by_tight, neg(by_slack)), rows.flank);
-}
-
+// From the tight to the slack side everything is eliminated; this walks back, tooth by tooth.
 fn prepare(i: Inputs) -> Prepared {
     let rows = rows_of(i);
     eliminate(rows);
+    // In units of what a lifted tooth takes in; what it gives is hardly more.
+    let free_stretch = div(rows.free_stretch, rows.lifted_in);
+    let lifted_out = add(constant(1.0), div(rows.lifted_apart, rows.lifted_in));
+    let nothing = Linear(constant(0.0), constant(0.0));
+    var behind = Behind(constant(0.0), constant(1.0), constant(1.0), tight_itself(), nothing);
+    // Of the complete mesh: the tension that leaves a tooth, what the tight side makes of H, loads of this and of the last tooth.
+    var leaving = slack_itself();
+    var force: Real;
     var load: Linear;
     var last: Linear;
-    var behind: Real;
     for (var tooth = rows.teeth; tooth > 0u; tooth--) {
-        if tooth == rows.teeth {
-            behind = mul(rows.land_ratio, tension[tooth - 1u].tight);
-        } else {
-            behind = add(behind, mul(rows.stretch, tension[tooth].tight));
+        let gap = tooth - 1u;
+        let after_gap = after[gap];
+        let short_gap = short[gap];
+        let tight_gap = tight[gap];
+        let is_last = tooth == rows.teeth;
+        var before = tight_itself();
+        var entering = before;
+        // Of the slack tension: H(i) = -T(i) (1 - e lambda(i-1)).
+        var by_slack = leaving.slack;
+        if tooth > 1u {
+            before = Linear(add(mul(after_gap, leaving.tight), tight_gap), mul(after_gap, leaving.slack));
+            if is_last {
+                before = Linear(tight_gap, mul(rows.slack, after_gap));
+            }
+            entering = scaled(before, rows.land_ratio);
+            by_slack = mul(by_slack, add(mul(rows.lost, after_gap), short_gap));
         }
-        load = complete_load(rows, tooth, behind);
-        if tooth == rows.teeth {
+        if is_last {
+            by_slack = mul(by_slack, rows.slack);
+            force = mul(rows.land_ratio, before.tight);
+        } else {
+            force = add(force, mul(rows.stretch, leaving.tight));
+        }
+        load = over(Linear(force, neg(by_slack)), rows.flank);
+        if is_last {
             last = load;
         }
-        var entering = tension[tooth - 1u];
-        if tooth > 1u {
-            entering = scaled(entering, rows.land_ratio);
+        let inward = plus(scaled(plus(entering, leaving), rows.inwards), scaled(load, rows.load_inwards));
+        set_inward_tight(gap, inward.tight);
+        set_inward_slack(gap, inward.slack);
+        leaving = before;
+
+        if WANTS_boundary_tension || WANTS_peak_tooth_load || WANTS_least_tooth_load {
+            if !is_last {
+                let short_of = add(free_stretch, mul(lifted_out, behind.short));
+                let pivot = add(constant(1.0), short_of);
+                var takes = constant(1.0);
+                if tooth == 1u {
+                    takes = div(rows.tight, rows.lifted_in);
+                }
+                behind.rho = div(takes, pivot);
+                behind.short = div(short_of, pivot);
+                behind.sigma = div(mul(lifted_out, behind.sigma), pivot);
+                behind.last = chained(behind.last, behind);
+                behind.sum = chained(Linear(add(constant(1.0), behind.sum.tight), behind.sum.slack), behind);
+            }
+            make_boundary(rows, tooth, behind, lifted_out);
         }
-        let pressed = scaled(plus(entering, tension[tooth]), rows.inwards);
-        let inward = plus(pressed, scaled(load, rows.load_inwards));
-        made_inward_tight[tooth - 1u] = inward.tight;
-        made_inward_slack[tooth - 1u] = inward.slack;
     }
     if WANTS_boundary_tension || WANTS_peak_tooth_load || WANTS_least_tooth_load {
-        make_boundaries(rows, load, last);
+        // Without a boundary: the complete mesh; T* has no meaning there.
+        set_boundary(rows.teeth, nothing, load, load, last, last);
     }
     var p: Prepared;
     p.teeth = i.teeth_in_mesh;
@@ -174,86 +206,50 @@ fn prepare(i: Inputs) -> Prepared {
     return p;
 }
 
-// T* and the loads beside every boundary; the last entries are those of the complete mesh.
-fn make_boundaries(rows: Rows, first_complete: Linear, last_complete: Linear) {
-    let gaps = rows.teeth - 1u;
-    let nothing = Linear(constant(0.0), constant(0.0));
-    rho[gaps] = constant(0.0);
-    sigma[gaps] = constant(1.0);
-    slack_short[gaps] = constant(1.0);
-    last_tension[gaps] = tight_itself();
-    sum_behind[gaps] = nothing;
-    // In units of what a lifted tooth takes in; what it gives is hardly more.
-    let free_stretch = div(rows.free_stretch, rows.lifted_in);
-    let lifted_out = add(constant(1.0), div(rows.lifted_apart, rows.lifted_in));
-    for (var gap = gaps; gap > 0u; gap--) {
-        let short_of = add(free_stretch, mul(lifted_out, slack_short[gap]));
-        let pivot = add(constant(1.0), short_of);
-        var entering = constant(1.0);
-        if gap == 1u {
-            entering = div(rows.tight, rows.lifted_in);
-        }
-        let at = gap - 1u;
-        rho[at] = div(entering, pivot);
-        slack_short[at] = div(short_of, pivot);
-        sigma[at] = div(mul(lifted_out, sigma[gap]), pivot);
-        last_tension[at] = chained(last_tension[gap], at);
-        sum_behind[at] = chained(Linear(add(constant(1.0), sum_behind[gap].tight), sum_behind[gap].slack), at);
-    }
-    var meshed_own = constant(0.0);
-    var meshed_tight = constant(0.0);
-    for (var j = 1u; j <= rows.teeth; j++) {
-        let at = j - 1u;
-        var star = tight_itself();
-        if j > 1u {
-            let meshed = add(rows.lost, mul(rows.land_ratio, short[j - 2u]));
-            let sum = add(add(rows.free_stretch, meshed), mul(rows.lifted_out, slack_short[at]));
-            let pivot = sub(sum, rows.lifted_apart);
-            star = over(Linear(mul(taken_in(rows, j - 1u), tight[j - 2u]), mul(rows.lifted_out, sigma[at])), pivot);
-        }
-        let last_in = mul(rows.lifted_in, last_tension[at].tight);
-        let force_last = of_star(star, last_in, mul(rows.lifted_in, sub(last_tension[at].slack, lifted_out)));
-        let force_own =
-            of_star(star, add(last_in, mul(rows.free_stretch, sum_behind[at].tight)), neg(mul(rows.lifted_out, sigma[at])));
-        let own = over(force_own, rows.lifted_flank);
-        var first = own;
-        var before = own;
-        if j > 1u {
-            if j > 2u {
-                let with_last = add(meshed_own, constant(1.0));
-                meshed_tight = add(mul(with_last, tight[j - 2u]), meshed_tight);
-                meshed_own = mul(with_last, after[j - 2u]);
-            }
-            let force_before = plus(force_own, scaled(star, rows.free_stretch));
-            let meshed = plus(scaled(star, meshed_own), Linear(meshed_tight, constant(0.0)));
-            before = over(force_before, rows.flank);
-            first = over(plus(force_before, scaled(meshed, rows.stretch)), rows.flank);
-        }
-        make_boundary(at, star, first, own, before, over(force_last, rows.lifted_flank));
-    }
-    make_boundary(rows.teeth, nothing, first_complete, first_complete, last_complete, last_complete);
-}
-
 // What the next gap's T(i) = rho T(i-1) + sigma T_s makes of a number that is linear in T(i) and T_s.
-fn chained(number: Linear, at: u32) -> Linear {
-    return Linear(mul(number.tight, rho[at]), add(number.slack, mul(number.tight, sigma[at])));
+fn chained(number: Linear, behind: Behind) -> Linear {
+    return Linear(mul(number.tight, behind.rho), add(number.slack, mul(number.tight, behind.sigma)));
 }
 
 fn of_star(star: Linear, own: Real, slack: Real) -> Linear {
     return Linear(mul(star.tight, own), add(mul(star.slack, own), slack));
 }
 
-fn make_boundary(at: u32, star: Linear, first: Linear, own: Linear, before: Linear, last: Linear) {
-    made_star_tight[at] = star.tight;
-    made_star_slack[at] = star.slack;
-    made_first_tight[at] = first.tight;
-    made_first_slack[at] = first.slack;
-    made_own_tight[at] = own.tight;
-    made_own_slack[at] = own.slack;
-    made_before_tight[at] = before.tight;
-    made_before_slack[at] = before.slack;
-    made_last_tight[at] = last.tight;
-    made_last_slack[at] = last.slack;
+// T* and the loads beside boundary `j`.
+fn make_boundary(rows: Rows, j: u32, behind: Behind, lifted_out: Real) {
+    var star = tight_itself();
+    if j > 1u {
+        let meshed = add(rows.lost, mul(rows.land_ratio, short[j - 2u]));
+        let pivot = sub(add(add(rows.free_stretch, meshed), mul(rows.lifted_out, behind.short)), rows.lifted_apart);
+        star = over(Linear(mul(taken_in(rows, j - 1u), tight[j - 2u]), mul(rows.lifted_out, behind.sigma)), pivot);
+    }
+    let last_in = mul(rows.lifted_in, behind.last.tight);
+    let force_last = of_star(star, last_in, mul(rows.lifted_in, sub(behind.last.slack, lifted_out)));
+    let own_in = add(last_in, mul(rows.free_stretch, behind.sum.tight));
+    let force_own = of_star(star, own_in, neg(mul(rows.lifted_out, behind.sigma)));
+    let own = over(force_own, rows.lifted_flank);
+    var first = own;
+    var before = own;
+    if j > 1u {
+        let force_before = plus(force_own, scaled(star, rows.free_stretch));
+        let meshed = plus(scaled(star, meshed_own[j - 1u]), Linear(meshed_tight[j - 1u], constant(0.0)));
+        before = over(force_before, rows.flank);
+        first = over(plus(force_before, scaled(meshed, rows.stretch)), rows.flank);
+    }
+    set_boundary(j - 1u, star, first, own, before, over(force_last, rows.lifted_flank));
+}
+
+fn set_boundary(at: u32, star: Linear, first: Linear, own: Linear, before: Linear, last: Linear) {
+    set_star_tight(at, star.tight);
+    set_star_slack(at, star.slack);
+    set_first_tight(at, first.tight);
+    set_first_slack(at, first.slack);
+    set_own_tight(at, own.tight);
+    set_own_slack(at, own.slack);
+    set_before_tight(at, before.tight);
+    set_before_slack(at, before.slack);
+    set_last_tight(at, last.tight);
+    set_last_slack(at, last.slack);
 }
 
 // What presses a tooth (from 0) inwards with the complete mesh.
@@ -286,6 +282,7 @@ fn finish(p: Prepared, i: Inputs) -> Outputs {
     let force = mul(p.mass_radius, square(i.pulley_speed)); // m r omega^2
     var out: Outputs;
     out.centrifugal_force = force;
+    out.effective_tension = sub(i.tight_tension, i.slack_tension);
     out.peak_tooth_load_complete = add(mul(i.tight_tension, p.peak_complete_tight), mul(i.slack_tension, p.peak_complete_slack));
     if WANTS_lift_speed {
         out.lift_speed = sqrt_(div(max_(least_inward(p, i), constant(0.0)), p.mass_radius));

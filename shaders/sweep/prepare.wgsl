@@ -10,6 +10,7 @@ fn prepare_rows(@builtin(global_invocation_id) id: vec3<u32>) {
     var inputs = fixed_inputs();
     set_row(&inputs, digits_of_row(row));
     set_slow_scenario(&inputs, q);
+    begin_prepared(q, row);
     store_prepared(q, row, prepare(inputs));
 }
 

@@ -28,17 +28,19 @@ impl<'p> Worst<'p> {
         let mut inputs = self.inputs.clone();
         (inputs[self.axes[0]], inputs[self.axes[1]]) = (x, y);
         let mut worst: Vec<Option<f64>> = Vec::new();
+        let mut prepared = vec![0.0; model.kernel.fields().prepared_len()];
         for slow in 0..plan.slow_scenarios.count() {
             plan.slow_scenarios.set(slow, &mut inputs);
-            let mut prepared = None;
             for fast in 0..plan.fast_scenarios.count() {
                 plan.fast_scenarios.set(fast, &mut inputs);
                 let si = to_si(model, &inputs);
                 // What the slow scenario inputs prepare serves all fast ones.
-                let prepared = prepared.get_or_insert_with(|| model.kernel.prepare(&si));
+                if fast == 0 {
+                    model.kernel.prepare(&si, outputs_wanted, &mut prepared);
+                }
                 let mut outputs = [0.0; OUTPUTS];
-                model.kernel.finish(prepared, &si, outputs_wanted, &mut outputs);
-                let (_, present) = judge(model, &model.kernel.conditions(prepared, &si));
+                model.kernel.finish(&prepared, &si, outputs_wanted, &mut outputs);
+                let (_, present) = judge(model, &model.kernel.conditions(&prepared, &si));
                 let value = |quantity| match quantity {
                     Quantity::Input(input) => Some(inputs[input]),
                     Quantity::Output(output) => {

@@ -16,4 +16,4 @@ pub use adapter::{Adapter, Kind, adapters, choose};
 pub use device::{Buffer, Device, Wait};
 pub use points::PointKernel;
 pub use program::{Binding, Program};
-pub use source::{model_prelude, model_source, table_readers};
+pub use source::{model_prelude, model_source, tables};

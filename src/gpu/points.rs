@@ -1,7 +1,7 @@
 //! A model evaluated point by point on a device: every output and condition margin with its bound.
 
 use super::source::COMMON;
-use super::{Device, Program, model_prelude, model_source, table_readers};
+use super::{Device, Program, model_prelude, model_source, tables};
 use crate::error::Result;
 use crate::models::{CONDITIONS, INPUTS, Model, OUTPUTS};
 use crate::real::{RunningError, nearest_f32};
@@ -9,6 +9,14 @@ use std::fmt::Write;
 
 /// Points per dispatch.
 const BATCH: usize = 1 << 16;
+/// Numbers in the tables of a dispatch.
+const BATCH_TABLES: usize = 1 << 22;
+
+/// Numbers in a model's tables.
+fn table_numbers(model: &Model) -> usize {
+    let fields = model.kernel.fields();
+    fields.prepared_len() - fields.prepared.len()
+}
 
 /// A model's formula on a device, for points one by one.
 #[derive(Debug)]
@@ -27,10 +35,17 @@ impl PointKernel {
         let fields = model.kernel.fields();
         let all: Vec<usize> = (0..model.conditions.len()).collect();
         let mut text = model_prelude(model, u64::MAX, &all);
-        text.push_str(&table_readers(model, |_, table| format!("made_{table}[at]")));
+        let places: Vec<usize> = fields.places().map(|(first, _)| first).collect();
+        text.push_str(&tables(model, |field, place| Some(format!("scratch[{place} + {}u + at]", places[field] - fields.prepared.len()))));
+        let begin = if fields.tables.is_empty() { "" } else { "table_place = point * TABLE_NUMBERS;" };
+        let hold = if fields.tables.is_empty() { "" } else { "held.place = point * TABLE_NUMBERS;" };
         let (inputs, outputs) = (fields.inputs.len(), model.outputs.len());
         let mut line = |it: std::fmt::Arguments<'_>| writeln!(text, "{it}").expect("a text takes everything");
-        line(format_args!("const INPUTS: u32 = {inputs}u;\nconst OUTPUTS: u32 = {outputs}u;\n"));
+        line(format_args!("const INPUTS: u32 = {inputs}u;\nconst OUTPUTS: u32 = {outputs}u;"));
+        line(format_args!("const TABLE_NUMBERS: u32 = {}u;\n", table_numbers(model)));
+        line(format_args!("@group(0) @binding(3) var<storage, read_write> scratch: array<Real>;\n"));
+        line(format_args!("fn prepare_point(point: u32, inputs: Inputs) -> Prepared {{\n    {begin}"));
+        line(format_args!("    var held = prepare(inputs);\n    {hold}\n    return held;\n}}\n"));
         line(format_args!("fn read_inputs(at: u32) -> Inputs {{\n    var inputs: Inputs;"));
         for (number, field) in fields.inputs.iter().enumerate() {
             line(format_args!("    inputs.{field} = given[at + {number}u];"));
@@ -68,7 +83,9 @@ impl PointKernel {
     /// [`Error::Gpu`](crate::error::Error::Gpu).
     pub fn evaluate(&self, points: &[[f64; INPUTS]]) -> Result<Vec<Found>> {
         let mut found = Vec::with_capacity(points.len());
-        for batch in points.chunks(BATCH) {
+        // Tables of many points at once would fill a device.
+        let batch = (BATCH_TABLES / table_numbers(self.model).max(1)).clamp(1, BATCH);
+        for batch in points.chunks(batch) {
             found.extend(self.batch(batch)?);
         }
         Ok(found)
@@ -82,7 +99,8 @@ impl PointKernel {
         let results = device.buffer("found", (points.len() * width * 8) as u64, wgpu::BufferUsages::STORAGE);
         let given = device.storage("given", &given);
         let header = device.uniform("points", &[points.len() as u32, 0, 0, 0]);
-        let bound = self.program.bind(&[("points", &header), ("given", &given), ("found", &results)]);
+        let scratch = device.buffer("scratch", (points.len() * table_numbers(self.model) * 8).max(8) as u64, wgpu::BufferUsages::STORAGE);
+        let bound = self.program.bind(&[("points", &header), ("given", &given), ("found", &results), ("scratch", &scratch)]);
         let groups = (points.len() as u32).div_ceil(64);
         device.submit(|encoder| self.program.dispatch(encoder, "evaluate", &bound, [groups, 1]));
         let values: Vec<[f32; 2]> = device.fetch(&results, points.len() * width)?;

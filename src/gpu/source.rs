@@ -25,8 +25,7 @@ fn structure(text: &mut String, name: &str, fields: &[&str]) {
 }
 
 /// The declarations that a model's text relies on: its records as the Rust code has them, and which of its outputs (a bit set) and
-/// conditions are asked for. Tables of the first stage are private arrays `made_...`; how the second stage reads them,
-/// [`table_readers`] or a kernel's own functions say.
+/// conditions are asked for. What the first stage does with its tables, and how the second reads them, [`tables`] says.
 pub fn model_prelude(model: &Model, wanted: u64, conditions: &[usize]) -> String {
     let Fields { inputs, prepared, tables, outputs, .. } = model.kernel.fields();
     let mut text = format!("const CONDITIONS: u32 = {CONDITIONS}u;\n");
@@ -43,17 +42,25 @@ pub fn model_prelude(model: &Model, wanted: u64, conditions: &[usize]) -> String
     let place = if tables.is_empty() { "" } else { "    place: u32,\n" };
     write!(text, "struct Prepared {{\n{members}{place}}}\n\n").expect("a text takes everything");
     structure(&mut text, "Outputs", outputs);
-    for (table, length) in tables {
-        writeln!(text, "var<private> made_{table}: array<Real, {length}>;").expect("a text takes everything");
-    }
     text
 }
 
-/// Functions that read every table of a model from where `entry` says its numbers stand, given its name.
-pub fn table_readers(model: &Model, entry: impl Fn(usize, &str) -> String) -> String {
+/// Functions that set and read every table of a model, where a kernel has them: `entry` says where number `at` of a table stands,
+/// given the number of its field and the place where the tables of this row start; `None` for a table that nobody reads.
+pub fn tables(model: &Model, entry: impl Fn(usize, &str) -> Option<String>) -> String {
     let fields = model.kernel.fields();
-    let reader = |(number, (table, _)): (usize, &(&str, usize))| {
-        format!("fn {table}(p: Prepared, at: u32) -> Real {{\n    return {};\n}}\n\n", entry(fields.prepared.len() + number, table))
-    };
-    fields.tables.iter().enumerate().map(reader).collect()
+    if fields.tables.is_empty() {
+        return String::new();
+    }
+    let mut text = "// Where the tables of the row that is being prepared start.\nvar<private> table_place: u32;\n\n".to_owned();
+    for (number, (table, _)) in fields.tables.iter().enumerate() {
+        let field = fields.prepared.len() + number;
+        let (set, get) = match (entry(field, "table_place"), entry(field, "p.place")) {
+            (Some(set), Some(get)) => (format!("{set} = number;"), get),
+            _ => (String::new(), "constant(0.0)".to_owned()),
+        };
+        let set = format!("fn set_{table}(at: u32, number: Real) {{\n    {set}\n}}\n");
+        write!(text, "{set}\nfn {table}(p: Prepared, at: u32) -> Real {{\n    return {get};\n}}\n\n").expect("a text takes everything");
+    }
+    text
 }

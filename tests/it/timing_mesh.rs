@@ -213,3 +213,23 @@ fn the_profile_says_what_the_outputs_say() {
     }
     assert!(lifted > 200, "{lifted}");
 }
+
+#[test]
+fn the_outermost_contour_of_the_map_is_the_lift_speed() {
+    let text =
+        std::fs::read_to_string(std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("studies/timing-map.toml")).expect("it is shipped");
+    let study = beltspace::study::Study::parse(&text, "timing-map.toml", std::path::Path::new(".")).expect("it is right");
+    let plan = beltspace::plan::Plan::new(study);
+    let contours = beltspace::contours::contours(&plan, &plan.study.report.maps[0], 2);
+    let outermost = contours.last().expect("the map asks for contours");
+    assert_eq!(outermost.at, 24.0, "beyond it no tooth of 23 lifts");
+    let vertices: Vec<_> = outermost.lines.iter().flatten().collect();
+    assert!(vertices.len() > 100, "{}", vertices.len());
+    for vertex in vertices {
+        let lift_speed = output(&inputs(&[("tight_tension_N", vertex.y)]), "lift_speed_rpm");
+        // A tension that is off by half a bracket moves the speed by half as much, relatively.
+        let bracket = vertex.bracket * if vertex.along == beltspace::contours::Along::X { 1.0 } else { vertex.x / vertex.y };
+        assert!((vertex.x - lift_speed).abs() <= bracket, "{vertex:?}: lifts at {lift_speed}");
+        assert!(bracket < 1e-4, "{vertex:?}");
+    }
+}

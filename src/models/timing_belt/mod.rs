@@ -59,7 +59,7 @@ record! {
     /// Outputs in the order of the table.
     Result {
         centrifugal_force, boundary_tooth, boundary_position, incomplete_teeth, lift_speed, boundary_tension, peak_tooth_load,
-        peak_tooth_load_complete, least_tooth_load,
+        peak_tooth_load_complete, least_tooth_load, effective_tension,
     }
 }
 
@@ -172,6 +172,7 @@ impl Formula for TimingBelt {
         let i = Inputs::read(inputs);
         let force = p.mass_radius * i.pulley_speed.squared(); // m r omega^2
         out[OUT.centrifugal_force] = force;
+        out[OUT.effective_tension] = i.tight_tension - i.slack_tension;
         if wanted & bits(&[OUT.peak_tooth_load_complete]) != 0 {
             out[OUT.peak_tooth_load_complete] = i.tight_tension * p.peak_complete_tight + i.slack_tension * p.peak_complete_slack;
         }

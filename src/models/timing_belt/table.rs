@@ -143,7 +143,8 @@ pub const MODEL: Model = Model {
             Lower,
             "steps (3), (4)",
             "First tooth from the tight side that lifts; teeth_in_mesh + 1 if none does.",
-        ),
+        )
+        .whole(),
         output(
             "boundary_position",
             "",
@@ -152,7 +153,7 @@ pub const MODEL: Model = Model {
             "steps (3), (4), interpolated",
             "Where between two teeth the radial balance changes sign; 1 if the first tooth lifts.",
         ),
-        output("incomplete_teeth", "", NONE, Higher, "N + 2 - j", "Teeth from the first lifted one to the slack side."),
+        output("incomplete_teeth", "", NONE, Higher, "N + 2 - j", "Teeth from the first lifted one to the slack side.").whole(),
         output("lift_speed_rpm", "", RPM, Lower, "inward force = m r omega^2", "Speed at which the first tooth of all lifts; 0: at rest."),
         output("boundary_tension_N", "T*", NEWTON, Higher, "(19)", "Tension between the last meshing and the first lifted tooth.")
             .promising(2.0),
@@ -166,6 +167,7 @@ pub const MODEL: Model = Model {
             "(8), (14)",
             "Least tooth load of the mesh as it is; where negative, a tooth is held by its other flank, which the model does not cover.",
         ),
+        output("effective_tension_N", "P", NEWTON, Lower, "T_t - T_s", "Tension that the pulley transmits.").promising(SIMPLE),
     ],
     conditions: &[
         Condition {

@@ -28,7 +28,7 @@ const MODELS: [(&str, &str, &str); 4] = [
             "tight_span_angle_deg":6,"slack_span_angle_deg":6,"pitch_mass_g":0.411,"lift_angle_deg":2.618,"pitch_mm":9.525,
             "centrifugal_land_friction":0}"#,
         "centrifugal_force_N boundary_tooth boundary_position incomplete_teeth lift_speed_rpm boundary_tension_N peak_tooth_load_N \
-         peak_tooth_load_complete_N least_tooth_load_N",
+         peak_tooth_load_complete_N least_tooth_load_N effective_tension_N",
     ),
     (
         "pulley-load",

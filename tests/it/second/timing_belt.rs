@@ -97,7 +97,7 @@ pub struct Tooth {
 /// Status, and outputs by name. Without `lift_angle_deg` the teeth lift by all of the tooth space.
 pub fn timing_belt(inputs: &BTreeMap<String, f64>) -> (&'static str, Values) {
     let belt = Belt::new(inputs);
-    let mut out = Values::from([("centrifugal_force_N", belt.centrifugal_force())]);
+    let mut out = Values::from([("centrifugal_force_N", belt.centrifugal_force()), ("effective_tension_N", belt.tight - belt.slack)]);
     let status = belt.status();
     if status == "no effective tension" {
         return (status, out);

@@ -146,8 +146,9 @@ fn keep(plan: &Plan, constraint: &Constraint) -> Vec<String> {
     for (bound, towards) in [(constraint.low, 1.0), (constraint.high, -1.0)] {
         let Some((bound, strict)) = bound else { continue };
         let (value, lost) = nearest_f32(on_device(plan, constraint.quantity, bound));
-        // The unit is converted in f64, which rounds too; zero stays zero.
-        let lost = if value == 0.0 { lost } else { lost + value.abs() * 1e-12 };
+        // The unit is converted in f64, which rounds too; zero stays zero, and what has no unit stays as it is.
+        let plain = matches!(constraint.quantity, Quantity::Output(output) if plan.study.model.outputs[output].unit.is_si());
+        let lost = if value == 0.0 || plain { lost } else { lost + value.abs() * 1e-12 };
         let question = if strict { "above_zero" } else { "at_least_zero" };
         let difference =
             if towards > 0.0 { format!("number.value - {}", literal(value)) } else { format!("{} - number.value", literal(value)) };

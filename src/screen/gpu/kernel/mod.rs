@@ -17,7 +17,7 @@ mod report;
 mod rows;
 
 use super::layout::{BINS, KILLERS, LIST, Layout, Values, champions, on_device, scenario_worst, sign, used_outputs};
-use crate::gpu::{model_prelude, model_source, source, table_readers};
+use crate::gpu::{model_prelude, model_source, source, tables};
 use crate::models::{CONDITION_PROMISE, Worse};
 use crate::plan::{Plan, Source};
 use crate::real::nearest_f32;
@@ -34,7 +34,7 @@ pub enum Coordinate {
     Plain,
     /// Steps of the resolution.
     Stepped,
-    /// An input whose values f32 tells apart.
+    /// An input whose values f32 tells apart, or a whole-number output.
     Exact,
 }
 
@@ -48,6 +48,7 @@ pub fn coordinates(plan: &Plan, layout: &Layout) -> Vec<Coordinate> {
     let kind = |objective: &Objective| match objective.quantity {
         _ if objective.resolution.is_some() => Coordinate::Stepped,
         Quantity::Input(input) if is_exact(plan, layout, input) => Coordinate::Exact,
+        Quantity::Output(output) if plan.study.model.outputs[output].integer => Coordinate::Exact,
         _ => Coordinate::Plain,
     };
     plan.study.objectives.iter().map(kind).collect()
@@ -117,7 +118,7 @@ pub fn text(plan: &Plan, layout: &Layout, perturb: &[(usize, f64)]) -> String {
         source::COMMON,
         include_str!("../../../../shaders/common/wide.wgsl"),
         &model_prelude(model, used_outputs(plan), &asked),
-        &readers(plan, layout),
+        &passed_tables(plan, layout),
         &model_source(model),
         include_str!("../../../../shaders/sweep/tile.wgsl"),
         &prelude.text,
@@ -128,12 +129,11 @@ pub fn text(plan: &Plan, layout: &Layout, perturb: &[(usize, f64)]) -> String {
     .join("\n")
 }
 
-/// How the second stage reads the tables of the first.
-fn readers(plan: &Plan, layout: &Layout) -> String {
-    table_readers(plan.study.model, |field, _| match layout.prepared.iter().find(|it| it.field == field) {
-        Some(passed) => format!("prepared_table[p.place + ({}u + at) * tile.rows]", passed.offset),
-        // Nothing that the study asks for reads it.
-        None => "constant(0.0)".to_owned(),
+/// The tables that pass between the stages.
+fn passed_tables(plan: &Plan, layout: &Layout) -> String {
+    tables(plan.study.model, |field, place| {
+        let passed = layout.prepared.iter().find(|it| it.field == field)?;
+        Some(format!("prepared_table[{place} + ({}u + at) * tile.rows]", passed.offset))
     })
 }
 

@@ -81,22 +81,18 @@ impl Prelude<'_> {
         let mut load = vec!["var prepared: Prepared;".to_owned()];
         for passed in &layout.prepared {
             let offset = passed.offset;
-            match fields.prepared.get(passed.field) {
-                Some(name) => {
-                    store.push(format!("{} = prepared.{name};", at(offset)));
-                    load.push(format!("prepared.{name} = {};", at(offset)));
-                }
-                None => {
-                    let (table, length) = fields.tables[passed.field - fields.prepared.len()];
-                    store.push(format!("for (var at = 0u; at < {length}u; at++) {{"));
-                    store.push(format!("    prepared_table[{place} + ({offset}u + at) * tile.rows] = made_{table}[at];"));
-                    store.push("}".to_owned());
-                }
+            // Tables were stored number by number while they were made.
+            if let Some(name) = fields.prepared.get(passed.field) {
+                store.push(format!("{} = prepared.{name};", at(offset)));
+                load.push(format!("prepared.{name} = {};", at(offset)));
             }
         }
+        let mut begin = Vec::new();
         if !fields.tables.is_empty() {
             load.push(format!("prepared.place = {place};"));
+            begin.push(format!("table_place = {place};"));
         }
+        self.function("begin_prepared(q: u32, row: u32)", &begin);
         load.push("return prepared;".to_owned());
         self.function("store_prepared(q: u32, row: u32, prepared: Prepared)", &store);
         self.function("load_prepared(q: u32, row: u32) -> Prepared", &load);
