@@ -33,6 +33,8 @@ pulley_speed_rpm          = { from = 1000, to = 6000, count = 10 }
 tight_tension_N           = { from = 100, to = 1000, count = 10 }
 [constraints]
 incomplete_teeth = { max = 0 }
+[report]
+histograms = [{ of = "boundary_tooth", from = 0.5, to = 24.5, bins = 24 }]
 """
 # Seconds that a belt takes on one core if nothing but its arithmetic counted, at 3 GHz. The loads: 100 of them, 23 teeth at most, 6
 # operations on f64 each (two products, a sum, a difference, a choice, a count), eight to a cycle in two vector units. The belt: 22

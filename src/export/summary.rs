@@ -85,7 +85,7 @@ impl<'a> Summary<'a> {
         let constraints = study.constraints.iter().zip(tally.constraints.iter().zip(&tally.only)).map(|(constraint, (violated, only))| {
             json!({ "of": constraint.quantity.name(model), "bounds": constraint.in_words(), "violated": violated, "only": only })
         });
-        json!({
+        let mut summary = json!({
             "version": env!("CARGO_PKG_VERSION"),
             "model": model.name,
             "title": study.title,
@@ -104,7 +104,12 @@ impl<'a> Summary<'a> {
                 "status": conditions.map(|(condition, &count)| (condition.reason.to_owned(), count.into())).collect::<Map<_, Value>>(),
                 "constraints": constraints.collect::<Vec<_>>(),
             },
-        })
+        });
+        let remarks = study.remarks();
+        if !remarks.is_empty() {
+            summary["notes"] = remarks.into();
+        }
+        summary
     }
 }
 

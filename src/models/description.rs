@@ -222,6 +222,11 @@ pub struct Profile {
     pub rows: Vec<Vec<f64>>,
 }
 
+/// Sentences on a study, from the values of the inputs that no axis sets.
+pub type Remarks = fn(&[Option<f64>]) -> Vec<String>;
+/// Sentences on one evaluation, from its inputs in their units.
+pub type Notes = fn(&[f64], &Evaluation) -> Vec<String>;
+
 /// A model: everything that the rest of the program knows about it.
 pub struct Model {
     /// Name in study files and on the command line.
@@ -246,8 +251,10 @@ pub struct Model {
     pub kernel: &'static dyn Kernel,
     /// The formula in WGSL: the texts that make it up, what is shared first.
     pub shader: &'static [&'static str],
+    /// What a person should know of a whole study's answer, given the values of the inputs that no axis sets.
+    pub remarks: Option<Remarks>,
     /// What a person should know of one evaluation besides its numbers, for inputs in their units.
-    pub notes: Option<fn(&[f64], &Evaluation) -> Vec<String>>,
+    pub notes: Option<Notes>,
     /// Values along the belt for inputs in their units, where the model has such.
     pub profile: Option<fn(&[f64]) -> Profile>,
 }

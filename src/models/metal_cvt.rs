@@ -56,6 +56,7 @@ pub const MODEL: Model = Model {
     kernel: &Cvt(MetalBelt),
     profile: None,
     notes: None,
+    remarks: None,
     shader: &[SHADER, include_str!("../../shaders/models/metal-cvt.wgsl")],
 };
 

@@ -15,7 +15,7 @@ mod timing_belt;
 
 pub(crate) use crate::real::LANES;
 pub use cvt::{optimum_thickness, printed_torque_coefficient, torque_coefficient, traction_limit, wedge_factor};
-pub use description::{CONDITION_PROMISE, Condition, Input, Model, Output, Profile, ProfileColumn, Range, Worse};
+pub use description::{CONDITION_PROMISE, Condition, Input, Model, Notes, Output, Profile, ProfileColumn, Range, Remarks, Worse};
 pub use evaluation::{Evaluation, Status, evaluate, evaluate_decided};
 pub(crate) use evaluation::{holds, input_to_si, judge, to_si};
 pub use formula::{CONDITIONS, Columns, Fields, Formula, INPUTS, Kernel, OUTPUTS, Reach, Reads, Scratch, run};

@@ -202,6 +202,7 @@ pub const MODEL: Model = Model {
     kernel: &PulleyLoad,
     profile: Some(profile),
     notes: None,
+    remarks: None,
     shader: &[include_str!("../../shaders/models/pulley-load.wgsl")],
 };
 

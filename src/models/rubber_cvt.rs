@@ -43,6 +43,7 @@ pub const MODEL: Model = Model {
     kernel: &Cvt(RubberBelt),
     profile: None,
     notes: None,
+    remarks: None,
     shader: &[SHADER, include_str!("../../shaders/models/rubber-cvt.wgsl")],
 };
 

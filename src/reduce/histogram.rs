@@ -69,17 +69,25 @@ impl Histogram {
             self.edges = (0..=bins).map(|bin| self.edge(bin)).collect();
         }
         let (from, per_unit) = (self.from, bins as f64 / (self.to - self.from));
+        // Neighbours often have one value, above all where values are whole numbers: those are counted by runs.
+        let (mut last, mut run, mut place) = (f64::NAN, 0, 0);
         for (&alive, &value) in block.alive.iter().zip(&block.values[column]) {
             if alive == 0 {
                 continue;
             }
+            if value == last {
+                run += 1;
+                continue;
+            }
             let guess = (((value - from) * per_unit) as usize).min(bins - 1);
             if value >= self.edges[guess] && value < self.edges[guess + 1] {
-                self.counts[guess] += 1;
+                self.counts[place] += run;
+                (last, run, place) = (value, 1, guess);
             } else {
                 self.count(value);
             }
         }
+        self.counts[place] += run;
     }
 
     /// Adds counts made elsewhere: below, every bin, above.

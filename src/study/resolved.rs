@@ -205,6 +205,16 @@ pub struct Study {
     pub report: Report,
 }
 
+impl Study {
+    /// What the model has to say of this study as a whole.
+    pub fn remarks(&self) -> Vec<String> {
+        let set_by_axes =
+            |input: &usize| self.design.iter().chain(&self.operation).chain(&self.uncertainty).any(|axis| axis.inputs().contains(input));
+        let fixed: Vec<_> = (0..self.fixed.len()).map(|input| (!set_by_axes(&input)).then_some(self.fixed[input])).collect();
+        self.model.remarks.map_or(Vec::new(), |remarks| remarks(&fixed))
+    }
+}
+
 /// A model is stored by its name.
 mod model_by_name {
     use crate::models::{Model, find};

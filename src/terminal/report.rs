@@ -53,6 +53,9 @@ pub fn summary(outcome: &Outcome<'_>, record: &RunRecord, out: &Path) -> String 
         text.push_str(&front(outcome));
         text.push_str(&plot(outcome));
     }
+    for remark in study.remarks() {
+        text.push_str(&format!("\n{} {remark}\n", bold("note")));
+    }
     text + &format!("\n{} {}\n", bold("result"), out.display())
 }
 

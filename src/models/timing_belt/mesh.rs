@@ -340,11 +340,10 @@ pub fn solve<R: Real>(rows: &Rows<R>, tight: R, slack: R, j: R, option: R, centr
             solved.star = R::select(is_lifted(tooth), solved.star, solved.tension[tooth - 1]);
         }
         let mut changed = zero;
-        for land in 1..teeth {
-            let stays = R::select(solved.tension[land - 1] - centrifugal, rubs[land], zero);
-            let stays = R::select(-option, rubs[land], stays);
-            changed = changed + rubs[land] - stays;
-            rubs[land] = stays;
+        for (rubs, &tension) in rubs[1..teeth].iter_mut().zip(&solved.tension) {
+            let stays = R::select(-option, *rubs, R::select(tension - centrifugal, *rubs, zero));
+            changed = changed + *rubs - stays;
+            *rubs = stays;
         }
         if changed.is_zero() {
             break;

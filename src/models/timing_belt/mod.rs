@@ -24,9 +24,10 @@
 //! - (20): specific weight is used as density; omega is printed in rpm; "f = 2.55 m/N" is micrometres per newton.
 //! - Step (4) calls j the boundary, Fig. 9 tooth 15 = j - 1.
 
-use super::formula::{CONDITIONS, Fields, Formula, INPUTS, OUTPUTS, bits, record};
-use crate::real::Real;
+use super::formula::{CONDITIONS, Columns, Fields, Formula, INPUTS, OUTPUTS, bits, record};
+use crate::real::{Lanes, Real};
 
+mod block;
 mod mesh;
 mod profile;
 mod table;
@@ -163,6 +164,11 @@ impl Formula for TimingBelt {
             margins[LIFTS] = p.mass_radius * i.pulley_speed.squared() - least_inward(&p, &i, prepared);
         }
         margins
+    }
+
+    #[inline(always)]
+    fn finish_block(prepared: &[f64], inputs: &[Lanes; INPUTS], columns: &Columns<'_>, results: &mut [Vec<f64>]) -> bool {
+        block::teeth_at_one_load(prepared, inputs, columns, results)
     }
 
     #[inline(always)]

@@ -209,8 +209,16 @@ pub const MODEL: Model = Model {
     kernel: &TimingBelt,
     profile: Some(profile::profile),
     notes: Some(notes),
+    remarks: Some(remarks),
     shader: &[include_str!("../../../shaders/models/timing-belt.wgsl")],
 };
+
+/// The similarity law, where it holds.
+fn remarks(fixed: &[Option<f64>]) -> Vec<String> {
+    let law = "without slack tension the boundary tooth depends on pitch_mass * tip_radius * speed^2 / tight_tension alone, for one belt on \
+               one pulley";
+    if fixed[Inputs::NUMBER.slack_tension] == Some(0.0) { vec![law.to_owned()] } else { Vec::new() }
+}
 
 /// What a person should know of one evaluation besides its numbers.
 fn notes(inputs: &[f64], evaluation: &Evaluation) -> Vec<String> {

@@ -1,7 +1,7 @@
 //! The tables of the formula against its own direct solve.
 
 use super::*;
-use crate::models::to_si;
+use crate::models::{Columns, to_si};
 
 /// Inputs in SI units: the default belt with these changes.
 fn belt(changes: &[(usize, f64)]) -> [f64; INPUTS] {
@@ -79,4 +79,44 @@ fn with_the_option_off_the_direct_solve_needs_no_second_round() {
     let (on, off) = (outputs(1.0), outputs(0.0));
     assert_eq!(on[OUT.boundary_tension].to_bits(), solve(1.0).star.to_bits());
     assert_eq!(on[OUT.boundary_tooth], off[OUT.boundary_tooth], "the boundary is that of the plain complete mesh");
+}
+
+#[test]
+fn a_block_at_one_pair_of_tensions_has_the_bits_of_its_designs() {
+    let number = Inputs::NUMBER;
+    let outputs = [OUT.incomplete_teeth, OUT.boundary_tooth];
+    let shorter = |varying: &[(usize, Vec<f64>)], count: usize, prepared: &[f64], si: &[f64; INPUTS]| {
+        let columns = Columns { count, varying, outputs: &outputs, conditions: &[0] };
+        let mut results = vec![vec![f64::NAN; count.next_multiple_of(8)]; 3];
+        let lanes = si.map(Lanes::splat);
+        (block::teeth_at_one_load(prepared, &lanes, &columns, &mut results), results)
+    };
+    for (teeth, slack, count) in [(23.0, 0.0, 100), (60.0, 40.0, 33), (4.0, 100.0, 8)] {
+        let si = belt(&[(number.teeth_in_mesh, teeth), (number.slack_tension, slack), (number.friction, 0.3)]);
+        let prepared = MODEL.kernel.prepared(&si);
+        let padded = usize::next_multiple_of(count, 8);
+        let speeds: Vec<f64> = (0..padded).map(|lane| 1500.0 / count as f64 * lane.min(count - 1) as f64).collect();
+        let varying = [(number.pulley_speed, speeds.clone()), (number.tight_tension, vec![250.0; padded])];
+        let (taken, results) = shorter(&varying, count, &prepared, &si);
+        assert!(taken);
+        let mut seen = std::collections::BTreeSet::new();
+        for lane in 0..count {
+            let mut design = si;
+            (design[number.pulley_speed], design[number.tight_tension]) = (speeds[lane], 250.0);
+            let mut out = [0.0; OUTPUTS];
+            TimingBelt::finish::<f64>(&prepared, &design, u64::MAX, &mut out);
+            let expected = [out[OUT.incomplete_teeth], out[OUT.boundary_tooth], TimingBelt::conditions::<f64>(&prepared, &design, 1)[0]];
+            let found: Vec<_> = results.iter().map(|column| column[lane].to_bits()).collect();
+            assert_eq!(found, expected.map(f64::to_bits), "{teeth} teeth, lane {lane}");
+            seen.insert(expected[1].to_bits());
+        }
+        assert!(seen.len() >= 3, "{teeth} teeth: {seen:?}");
+        // Tensions that differ are for the walk.
+        let mut other = varying.clone();
+        other[1].1[padded - 1] = 251.0;
+        assert!(!shorter(&other, count, &prepared, &si).0);
+        // So is anything else that is asked for.
+        let columns = Columns { count, varying: &varying, outputs: &[OUT.boundary_position], conditions: &[] };
+        assert!(!block::teeth_at_one_load(&prepared, &si.map(Lanes::splat), &columns, &mut [vec![0.0; padded]]));
+    }
 }

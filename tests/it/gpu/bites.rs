@@ -25,11 +25,20 @@ fn assert_objects(report: &Report, what: &str) {
 fn a_wrong_constant_in_a_shader_is_noticed() {
     let metal = find("metal-cvt").expect("it is a model");
     let pulley = find("pulley-load").expect("it is a model");
+    let timing = find("timing-belt").expect("it is a model");
     for (model, piece, other) in [
         (metal, "const PI: f32 = 3.14159265;", "const PI: f32 = 3.14165;"),
         (metal, "let width = mul(belt.sections, belt.width);", "let width = mul(belt.sections, mul(belt.width, constant(1.0001)));"),
         (metal, "0.166666672 + r * (0.0416666679", "0.166666672 + r * (0.0426666679"),
         (pulley, "twice(mul(slack_pressing, tight_pressing))", "mul(slack_pressing, tight_pressing)"),
+        (timing, "sub(mul(i.friction, cosine), sine)", "sub(mul(i.friction, cosine), mul(sine, constant(1.0001)))"),
+        (timing, "before = Linear(tight_gap, mul(rows.slack, after_gap));", "before = Linear(tight_gap, after_gap);"),
+        (
+            timing,
+            "set_boundary(rows.teeth, nothing, load, load, last, last);",
+            "set_boundary(rows.teeth, nothing, load, load, load, load);",
+        ),
+        (timing, "if margin.value < 0.0 {", "if margin.value < 1e-2 {"),
         (pulley, "x - n * 1.5703125", "x - n * 1.5704125"),
     ] {
         assert_objects(&compared(model, piece, other), other);

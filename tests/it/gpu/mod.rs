@@ -100,7 +100,7 @@ fn larger() -> String {
 }
 
 /// One study per model with all that a report may have, small enough to be swept in a moment.
-const SMALL: [&str; 3] = [
+const SMALL: [&str; 4] = [
     r#"model = "metal-cvt"
 [design]
 groove_angle_deg = { from = 18, to = 30, count = 13 }
@@ -146,6 +146,27 @@ capacity_axial_force_N = "min"
 [report]
 top = { by = "stress_margin", count = 7 }
 histograms = [{ of = "torque_capacity_Nm", bins = 30 }]
+"#,
+    r#"model = "timing-belt"
+[design]
+friction = { from = 0.3, to = 0.55, count = 3 }
+teeth_in_mesh = { from = 18, to = 24 }
+tight_tension_N = { from = 100, to = 600, count = 26 }
+slack_tension_N = { from = 0, to = 60, count = 4 }
+[operation]
+pulley_speed_rpm = [2000, 4000]
+[uncertainty]
+pitch_mass_g = [0.38, 0.42]
+[constraints]
+boundary_tooth = { min = 16 }
+[objectives]
+tight_tension_N = "min"
+boundary_tooth = "max"
+peak_tooth_load_N = "min"
+[report]
+top = { by = "lift_speed_rpm", count = 9 }
+histograms = [{ of = "boundary_tooth", from = 0.5, to = 25.5, bins = 25 }]
+maps = [{ x = "tight_tension_N", y = "teeth_in_mesh", value = "boundary_position", best = "max" }]
 "#,
     r#"model = "pulley-load"
 [sample]
