@@ -259,10 +259,13 @@ fn inward_force(p: Prepared, i: Inputs, tooth: u32) -> Real {
 
 fn least_inward(p: Prepared, i: Inputs) -> Real {
     var least = inward_force(p, i, 0u);
-    for (var tooth = 1u; tooth < u32(p.teeth.value); tooth++) {
+    let teeth = u32(p.teeth.value);
+    var tooth = 1u;
+    for (; tooth < teeth; tooth++) {
         least = min_(least, inward_force(p, i, tooth));
     }
-    return least;
+    // A driver that ends long loops must not make a part of the teeth look like all of them.
+    return if_known(tooth >= teeth, least);
 }
 
 fn conditions(p: Prepared, i: Inputs) -> array<Real, CONDITIONS> {
@@ -307,6 +310,8 @@ fn finish(p: Prepared, i: Inputs) -> Outputs {
         }
         meshing += 1u;
     }
+    // A driver that ends long loops must not make a part of the walk look like all of it.
+    sure = sure && (meshing == teeth || at.value < 0.0);
     // Where the walk may have ended elsewhere, tooth and position may be any; loads are left to f64.
     let loose = select(f32(teeth + 1u), 0.0, sure);
     out.boundary_tooth = Real(f32(meshing + 1u), loose);

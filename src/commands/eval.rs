@@ -73,14 +73,14 @@ fn parse_assignment(model: &Model, assignment: &str) -> std::result::Result<(usi
     if let Some((_, value)) = input.word.filter(|(word, _)| *word == text) {
         return Ok((number, value));
     }
-    let value = parse_value(text, input.unit).map_err(|error| format!("{name}: {error}"))?;
+    let or_word = input.word.map_or(String::new(), |(word, _)| format!(", or \"{word}\""));
+    let value = parse_value(text, input.unit).map_err(|error| format!("{name}: {error}{or_word}"))?;
     // The number that encodes the word is no value of its own.
     if input.accepts(value) && input.word_for(value).is_none() {
         return Ok((number, value));
     }
     let whole = if input.integer && value.fract() != 0.0 { "must be a whole number" } else { "is out of range" };
-    let word = input.word.map_or(String::new(), |(word, _)| format!(", or \"{word}\""));
-    Err(format!("{name} = {text} {whole}; it is {}{word}", input.valid.in_words()))
+    Err(format!("{name} = {text} {whole}; it is {}{or_word}", input.valid.in_words()))
 }
 
 /// Prints one design in one scenario.

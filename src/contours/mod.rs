@@ -46,7 +46,8 @@ pub struct Contour {
     pub of: Quantity,
     /// The threshold, in its unit.
     pub at: f64,
-    /// Polylines, with "at least the threshold" on their left where y points up. A closed one ends with its first vertex.
+    /// Polylines, with "at least the threshold" on their left where the levels of x go right and those of y up. A closed one ends with
+    /// its first vertex.
     pub lines: Vec<Vec<Vertex>>,
 }
 

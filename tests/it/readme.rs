@@ -40,6 +40,14 @@ fn the_session_is_what_the_program_prints() {
 }
 
 #[test]
+fn the_evaluation_is_what_the_program_prints() {
+    let (printed, note) = run(&["eval", "timing-belt"]);
+    let shown = block("$ beltspace eval timing-belt --profile teeth.csv --plot teeth.svg");
+    assert_eq!(without_times(&shown), without_times(&printed));
+    assert!(note.contains("tight_tension alone"), "{note}");
+}
+
+#[test]
 fn the_study_is_the_shipped_one() {
     let study = std::fs::read_to_string(root().join("studies/metal-cvt.toml")).expect("the study is shipped");
     assert!(readme().contains(study.trim_end()), "the README shows another studies/metal-cvt.toml");

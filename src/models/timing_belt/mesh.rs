@@ -297,7 +297,7 @@ pub struct Solved<R> {
 }
 
 /// The direct solve for one pair of tensions. With the option, lands where the centrifugal force outweighs the tension lose their
-/// friction, until nothing changes.
+/// friction, all of them at once and for good, until nothing changes.
 #[inline(never)]
 pub fn solve<R: Real>(rows: &Rows<R>, tight: R, slack: R, j: R, option: R, centrifugal: R) -> Solved<R> {
     let [zero, one] = [0.0, 1.0].map(R::constant);

@@ -230,6 +230,10 @@ fn notes(inputs: &[f64], evaluation: &Evaluation) -> Vec<String> {
     }
     let si: [f64; INPUTS] = super::super::to_si(&MODEL, inputs);
     let i = Inputs::read(&si);
+    let wrap = i.teeth_in_mesh * (2.0 * (i.land_half_angle + i.space_half_angle)).to_degrees();
+    if wrap > 360.0 {
+        notes.push(format!("{} teeth in mesh wrap {wrap:.0} degrees of a pulley with this land and space", i.teeth_in_mesh));
+    }
     if i.slack_tension == 0.0 {
         let ratio = i.pitch_mass * i.tip_radius * i.pulley_speed * i.pulley_speed / i.tight_tension;
         notes.push(format!(

@@ -284,11 +284,15 @@ impl Cut {
         let keeps = plan.scenarios() > 1;
         // The driver's compiler takes longer over a group than a small study takes altogether.
         let small = !grouped && plan.designs().saturating_mul(plan.scenarios()) < SMALL;
-        let group = if small { 1 } else { GROUP[usize::from(!keeps)].min(lanes) };
-        // Turns of one lane in the closer look: a list, its neighbours, and its scenarios again where it was not kept.
-        let closer = LIST as u64 + 40 + if keeps { 0 } else { turns + own };
-        let most = (MOST_TURNS / (turns.div_ceil(group) + own + closer)).max(1);
-        let wanted = (MANY_LANES / plan.scenarios()).clamp(group.min(most), most);
+        // Turns of one lane by itself: inside the formula, which the lanes of a group do not share, and in the closer look: a list, its
+        // neighbours, and its scenarios again where it was not kept.
+        let alone = own + LIST as u64 + 40 + if keeps { 0 } else { turns + own };
+        let mut group = if small { 1 } else { GROUP[usize::from(!keeps)].min(lanes) };
+        while group > 1 && turns + group * alone > MOST_TURNS {
+            group /= 2;
+        }
+        let most = (MOST_TURNS / (turns + group * alone)).max(1) * group;
+        let wanted = (MANY_LANES / plan.scenarios()).clamp(group, most);
         // Chunks of equal size, so that the last one is not nearly empty.
         let chunks = lanes.div_ceil(wanted.min(lanes).max(1));
         let lanes_each = lanes.div_ceil(chunks).next_multiple_of(group);

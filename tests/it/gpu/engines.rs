@@ -35,6 +35,31 @@ fn shipped_studies_give_the_same_answers_and_few_designs_are_unsure() {
 }
 
 #[test]
+fn walks_over_teeth_in_many_scenarios_stay_within_the_turns_of_a_driver() {
+    // 60 teeth, 160 scenarios: four lanes at once would take more turns than a driver that ends long loops allows.
+    let text = r#"model = "timing-belt"
+[design]
+tight_tension_N = { from = 400, to = 500, count = 40 }
+pulley_speed_rpm = { from = 300, to = 320, count = 2 }
+[operation]
+slack_tension_N = { from = 0, to = 100, count = 160 }
+[fixed]
+teeth_in_mesh = 60
+[constraints]
+incomplete_teeth = { max = 0 }
+[objectives]
+boundary_tooth = "max"
+lift_speed_rpm = "max"
+tight_tension_N = "min"
+"#;
+    let study = Prepared::parse(text);
+    let on = wrong(Wrong { grouped: true, ..Wrong::default() });
+    let (state, record) = study.on(&on).expect("the device works");
+    assert_same(&state, &study.on_processor(), "many turns");
+    assert!(record.unsure * 20 < record.designs, "{record:?}");
+}
+
+#[test]
 fn a_tile_with_too_many_survivors_is_repeated_in_parts() {
     let study = Prepared::parse(SMALL[0]);
     let on = wrong(Wrong { capacity: Some(600), ..Wrong::default() });
