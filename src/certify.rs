@@ -4,7 +4,7 @@
 //! design that it finds infeasible, or whose objectives differ from what the sweep saw, stops the program.
 
 use crate::error::{Error, Result};
-use crate::models::{OUTPUTS, Status, Worse, judge, to_si};
+use crate::models::{OUTPUTS, Status, Worse, judge, shown, to_si};
 use crate::plan::{Plan, worst_end};
 use crate::reduce::{KeyRule, Points};
 use crate::study::{Constraint, Quantity, Study};
@@ -218,10 +218,7 @@ impl<'p> Reference<'p> {
                 let (status, present) = judge(model, &model.kernel.conditions(prepared, &si));
                 let value = |quantity| match quantity {
                     Quantity::Input(input) => Some(inputs[input]),
-                    Quantity::Output(output) => {
-                        let value = model.outputs[output].unit.from_si(outputs[output]);
-                        (present >> output & 1 == 1 && value.is_finite()).then_some(value)
-                    }
+                    Quantity::Output(output) => shown(model, &outputs, present, output),
                 };
                 feasible &= status == Status::Ok;
                 feasible &= plan.study.constraints.iter().all(|it| value(it.quantity).is_some_and(|value| it.holds(value)));

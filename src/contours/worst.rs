@@ -1,6 +1,6 @@
 //! The worst value over all scenarios at any place of the plane, in f64.
 
-use crate::models::{OUTPUTS, Worse, judge, to_si};
+use crate::models::{OUTPUTS, Worse, judge, shown, to_si};
 use crate::plan::Plan;
 use crate::study::Quantity;
 
@@ -43,10 +43,7 @@ impl<'p> Worst<'p> {
                 let (_, present) = judge(model, &model.kernel.conditions(&prepared, &si));
                 let value = |quantity| match quantity {
                     Quantity::Input(input) => Some(inputs[input]),
-                    Quantity::Output(output) => {
-                        let value = model.outputs[output].unit.from_si(outputs[output]);
-                        (present >> output & 1 == 1 && value.is_finite()).then_some(value)
-                    }
+                    Quantity::Output(output) => shown(model, &outputs, present, output),
                 };
                 let values = wanted.iter().map(|(quantity, _)| value(*quantity));
                 if worst.is_empty() {

@@ -69,6 +69,12 @@ pub(crate) fn judge(model: &Model, margins: &[f64; CONDITIONS]) -> (Status, u64)
     (status, present)
 }
 
+/// An output in its unit, if it has a meaning. A number that overflowed is as absent as one without: never a NaN or infinity in a file.
+pub(crate) fn shown(model: &Model, outputs: &[f64; OUTPUTS], present: u64, output: usize) -> Option<f64> {
+    let value = model.outputs[output].unit.from_si(outputs[output]);
+    (present >> output & 1 == 1 && value.is_finite()).then_some(value)
+}
+
 /// Evaluates a model in f64. `inputs`: one value per input of the model, in its unit.
 ///
 /// The values are not checked against the inputs' ranges: what has no meaning shows as a status.
@@ -78,12 +84,7 @@ pub fn evaluate(model: &Model, inputs: &[f64]) -> Evaluation {
     let mut outputs = [0.0; OUTPUTS];
     model.kernel.finish(&prepared, &si, u64::MAX, &mut outputs);
     let (status, present) = judge(model, &model.kernel.conditions(&prepared, &si));
-    let value = |(number, output): (usize, &super::Output)| {
-        let value = output.unit.from_si(outputs[number]);
-        // A number that overflowed is as absent as one without meaning: never a NaN or infinity in a file.
-        (present >> number & 1 == 1 && value.is_finite()).then_some(value)
-    };
-    Evaluation { status, outputs: model.outputs.iter().enumerate().map(value).collect() }
+    Evaluation { status, outputs: (0..model.outputs.len()).map(|output| shown(model, &outputs, present, output)).collect() }
 }
 
 /// What f32 arithmetic can say of the same design: is its status ok, and each output with its error bound in SI units.

@@ -17,7 +17,7 @@ pub(crate) use crate::real::LANES;
 pub use cvt::{optimum_thickness, printed_torque_coefficient, torque_coefficient, traction_limit, wedge_factor};
 pub use description::{CONDITION_PROMISE, Condition, Input, Model, Notes, Output, Profile, ProfileColumn, Range, Remarks, Worse};
 pub use evaluation::{Evaluation, Status, evaluate, evaluate_decided};
-pub(crate) use evaluation::{holds, input_to_si, judge, to_si};
+pub(crate) use evaluation::{holds, input_to_si, judge, shown, to_si};
 pub use formula::{CONDITIONS, Columns, Fields, Formula, INPUTS, Kernel, OUTPUTS, Reach, Reads, Scratch, run};
 
 /// Something to do with a model's formula over a number type of one's own, which the table of functions in [`Model::kernel`]

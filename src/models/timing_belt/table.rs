@@ -42,7 +42,7 @@ const OF_THE_MESH: &[&str] = &[
 pub const MODEL: Model = Model {
     name: "timing-belt",
     summary: "Timing belt: tooth loads, and teeth that the centrifugal force lifts out of mesh",
-    source: "paper on load distribution and incomplete meshing of timing belts at high speed, eqs (1)-(21)",
+    source: "H. S. Kim, C. K. Yeo, I. H. Lee: force distribution of incomplete meshing teeth in timing belt drive, eqs (1)-(21)",
     limits: "The boundary tooth is calibrated by the pitch mass, not predicted: the paper does not print the radial balance that it uses. \
              One pulley at constant speed; shock, the belt's bending moment, tooth jumping and span vibration are not covered.",
     inputs: &[

@@ -276,17 +276,20 @@ impl Layout {
 }
 
 impl Cut {
-    fn new(plan: &Plan, grouped: bool) -> Self {
-        let turns = plan.slow_scenarios.count() * (plan.fast_scenarios.count() + 1) + 1;
-        // Those inside the formula, which the lanes of a group do not share.
+    /// Loop turns of an invocation: those that a group of lanes shares, and those of one lane by itself: inside the formula, and in the
+    /// closer look, where it meets a list, its neighbours, and its scenarios again unless it was kept.
+    fn turns(plan: &Plan, keeps: bool) -> (u64, u64) {
+        let shared = plan.slow_scenarios.count() * (plan.fast_scenarios.count() + 1) + 1;
         let own = plan.scenarios() * plan.study.model.kernel.fields().turns;
+        (shared, own + LIST as u64 + 40 + if keeps { 0 } else { shared + own })
+    }
+
+    fn new(plan: &Plan, grouped: bool) -> Self {
         let lanes = plan.fast.count();
         let keeps = plan.scenarios() > 1;
+        let (turns, alone) = Self::turns(plan, keeps);
         // The driver's compiler takes longer over a group than a small study takes altogether.
         let small = !grouped && plan.designs().saturating_mul(plan.scenarios()) < SMALL;
-        // Turns of one lane by itself: inside the formula, which the lanes of a group do not share, and in the closer look: a list, its
-        // neighbours, and its scenarios again where it was not kept.
-        let alone = own + LIST as u64 + 40 + if keeps { 0 } else { turns + own };
         let mut group = if small { 1 } else { GROUP[usize::from(!keeps)].min(lanes) };
         while group > 1 && turns + group * alone > MOST_TURNS {
             group /= 2;
@@ -445,4 +448,45 @@ pub fn on_device(plan: &Plan, quantity: Quantity, value: f64) -> f64 {
 /// +1 where less is better.
 pub fn sign(goal: Goal) -> f64 {
     if goal == Goal::Min { 1.0 } else { -1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::Study;
+
+    #[test]
+    fn an_invocation_never_takes_more_turns_than_a_driver_allows() {
+        let study = |model: &str, axis: &str, scenarios: u64| {
+            let text = format!(
+                "model = \"{model}\"\n[design]\n{axis}\n[operation]\ncases = [{}]\n[objectives]\n{axis_name} = \"min\"\n",
+                (0..scenarios)
+                    .map(|it| format!("{{ {} = {} }}", if model == "timing-belt" { "slack_tension_N" } else { "torque_Nm" }, it + 1))
+                    .collect::<Vec<_>>()
+                    .join(", "),
+                axis_name = axis.split(' ').next().unwrap_or_default(),
+            );
+            Plan::new(Study::parse(&text, "test.toml", std::path::Path::new(".")).unwrap_or_else(|errors| panic!("{errors}")))
+        };
+        let mut accepted = 0;
+        for scenarios in [1, 2, 7, 40, 91, 130, 160, 302, 400, 5000] {
+            for (model, axis) in [
+                ("timing-belt", "tight_tension_N = { from = 6000, to = 9000, count = 3000 }"),
+                ("timing-belt", "tight_tension_N = [6000, 7000, 8000]"),
+                ("rubber-cvt", "belt_thickness_mm = { from = 1, to = 9, count = 3000 }"),
+            ] {
+                let plan = study(model, axis, scenarios);
+                for grouped in [false, true] {
+                    let Ok(layout) = Layout::new(&plan, true, grouped) else { continue };
+                    let cut = layout.cut;
+                    let (shared, alone) = Cut::turns(&plan, cut.keeps);
+                    let turns = cut.lanes_each.div_ceil(cut.group) * shared + cut.lanes_each * alone;
+                    // What one lane takes may pass the target by its closer look.
+                    assert!(turns <= MOST_TURNS + 200, "{model}, {scenarios} scenarios: {cut:?} takes {turns} turns");
+                    accepted += 1;
+                }
+            }
+        }
+        assert!(accepted > 40, "{accepted}");
+    }
 }
