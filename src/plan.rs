@@ -171,6 +171,11 @@ impl Plan {
         }
     }
 
+    /// Outputs that the study asks for, as a bit set.
+    pub fn used_outputs(&self) -> u64 {
+        self.lane_outputs.iter().fold(self.row_outputs, |set, output| set | 1 << output)
+    }
+
     /// Number of designs.
     pub fn designs(&self) -> u64 {
         self.space.designs.count()

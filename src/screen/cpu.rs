@@ -103,7 +103,7 @@ impl<'p> CpuEngine<'p> {
             prepared: vec![0.0; width * (kept + 1)],
             kept: 0,
             width,
-            wanted: plan.lane_outputs.iter().fold(plan.row_outputs, |set, output| set | 1 << output),
+            wanted: plan.used_outputs(),
             results: vec![vec![0.0; BLOCK]; columns],
             alive: Vec::new(),
             values: vec![vec![0.0; BLOCK]; plan.tracked.len()],

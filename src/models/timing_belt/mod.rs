@@ -1,8 +1,8 @@
 //! Timing belt on one pulley: complete meshing, and incomplete meshing where the centrifugal force lifts teeth out.
 //!
 //! Source: H. S. Kim, C. K. Yeo, I. H. Lee, on the force distribution of incomplete meshing teeth in timing belt drives; equation
-//! numbers below are that paper's. Symbols: teeth 1 (tight side) .. N + 1 (slack side); T(i) tension leaving tooth i, Q(i) load of tooth i; 2 beta angle
-//! of a tip land, 2 phi of a tooth space; `e = exp(-2 mu beta)`; S = 2 beta r length of a land, l of the belt's tooth part; f tooth
+//! numbers below are that paper's. Symbols: teeth 1 (tight side) .. N + 1 (slack side); T(i) tension leaving tooth i, Q(i) load of
+//! tooth i; 2 beta angle of a tip land, 2 phi of a tooth space; `e = exp(-2 mu beta)`; S = 2 beta r length of a land, l of the belt's tooth part; f tooth
 //! compliance; alpha flank pressure angle; Omega and psi inclination of the tight and slack span; m mass of a pitch; r tip radius;
 //! j first lifted tooth, N + 2 if none lifts; theta angle that lifted teeth are rotated by.
 //!

@@ -2,7 +2,7 @@
 
 use super::kernel::{self, Coordinate, ENTRIES, check_words, coordinates, survivor_words, text};
 use super::known::{self, Answers, Known};
-use super::layout::{Layout, Level, MOST_GROUPS, push_level, used_outputs};
+use super::layout::{Layout, Level, MOST_GROUPS, push_level};
 use crate::error::Result;
 use crate::gpu::{Buffer, Device, Program, Wait};
 use crate::plan::Plan;
@@ -431,7 +431,7 @@ impl<'p> GpuEngine<'p> {
 
     /// The used outputs, in the order of [`Checked::asked`].
     pub fn used_outputs(&self) -> Vec<usize> {
-        let used = used_outputs(self.plan);
+        let used = self.plan.used_outputs();
         (0..self.plan.study.model.outputs.len()).filter(|output| used >> output & 1 == 1).collect()
     }
 

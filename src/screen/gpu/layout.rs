@@ -188,7 +188,7 @@ impl Layout {
         if plan.fast.count() >= 1 << 24 {
             return Err(refuse(format!("a row of {} designs is too long", plan.fast.count())));
         }
-        let used = used_outputs(plan);
+        let used = plan.used_outputs();
         let reads = model.kernel.reads(&dependences(&plan.study, &plan.space), used);
         let fields = model.kernel.fields();
         let set = |inputs: u64, input: usize| inputs >> input & 1 == 1;
@@ -327,11 +327,6 @@ impl Cut {
 pub fn champions(plan: &Plan) -> bool {
     let sources: Vec<Source> = plan.objectives.iter().map(|&position| plan.tracked[position].1).collect();
     plan.fast.count() > 1 && sources.iter().any(|it| it.is_row()) && sources.iter().any(|it| !it.is_row())
-}
-
-/// Outputs that the study asks for, as a bit set.
-pub fn used_outputs(plan: &Plan) -> u64 {
-    plan.lane_outputs.iter().fold(plan.row_outputs, |set, output| set | 1 << output)
 }
 
 /// Inputs that are tracked or constrained themselves, as a bit set.

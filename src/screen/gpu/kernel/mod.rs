@@ -16,7 +16,7 @@ mod lanes;
 mod report;
 mod rows;
 
-use super::layout::{BINS, KILLERS, LIST, Layout, Values, champions, on_device, scenario_worst, sign, used_outputs};
+use super::layout::{BINS, KILLERS, LIST, Layout, Values, champions, on_device, scenario_worst, sign};
 use crate::gpu::{model_prelude, model_source, source, tables};
 use crate::models::{CONDITION_PROMISE, Worse};
 use crate::plan::{Plan, Source};
@@ -80,7 +80,7 @@ pub fn value_maps(plan: &Plan) -> impl Iterator<Item = (&MapSpec, usize, Goal)> 
 
 /// The words of a check record: verdict, then value and bound per tracked quantity, then per used output.
 pub fn check_words(plan: &Plan) -> usize {
-    1 + 2 * plan.tracked.len() + 2 * used_outputs(plan).count_ones() as usize
+    1 + 2 * plan.tracked.len() + 2 * plan.used_outputs().count_ones() as usize
 }
 
 /// A number of the kernel's text that reads back as the same f32.
@@ -117,7 +117,7 @@ pub fn text(plan: &Plan, layout: &Layout, perturb: &[(usize, f64)]) -> String {
     [
         source::COMMON,
         include_str!("../../../../shaders/common/wide.wgsl"),
-        &model_prelude(model, used_outputs(plan), &asked),
+        &model_prelude(model, plan.used_outputs(), &asked),
         &passed_tables(plan, layout),
         &model_source(model),
         include_str!("../../../../shaders/sweep/tile.wgsl"),
