@@ -53,6 +53,7 @@ pub mod merge;
 pub mod models;
 pub mod pictures;
 pub mod plan;
+pub mod pulley;
 pub mod real;
 pub mod reduce;
 mod sample;

@@ -1,0 +1,160 @@
+//! Shape functions and stiffness of one element under displacements that vary as a harmonic around the axis.
+//!
+//! Of harmonic k, `u_r = a cos k theta`, `u_z = b cos k theta`, `u_theta = c sin k theta`; with the shape function N of a node the
+//! strains are
+//!
+//! ```text
+//! e_rr | dN/dr   0      0             cos
+//! e_zz | 0       dN/dz  0             cos
+//! e_tt | N/r     0      k N/r         cos
+//! g_rz | dN/dz   dN/dr  0             cos
+//! g_rt | -k N/r  0      dN/dr - N/r   sin
+//! g_zt | 0       -k N/r dN/dz         sin
+//! ```
+//!
+//! so that the stiffness is `K0 + k K1 + k^2 K2`. The factor pi (2 pi at k = 0) that the integral around the axis gives stands on
+//! both sides of the equations and is left out.
+
+use super::mesh::{Element, Mesh};
+use glam::DVec2;
+
+/// A node's shape function at a point: its value and its derivatives by z and by r.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Shape {
+    /// N.
+    pub value: f64,
+    /// (dN/dz, dN/dr), per mm.
+    pub slope: DVec2,
+}
+
+/// A point of integration: where in the element, and its weight there.
+type Gauss = (DVec2, f64);
+
+const THIRD: f64 = 0.577_350_269_189_625_8; // 1/sqrt(3)
+
+/// Two by two points on the square: with more of them thin elements in bending are too stiff.
+const SQUARE: [Gauss; 4] = [
+    (DVec2::new(-THIRD, -THIRD), 1.0),
+    (DVec2::new(THIRD, -THIRD), 1.0),
+    (DVec2::new(THIRD, THIRD), 1.0),
+    (DVec2::new(-THIRD, THIRD), 1.0),
+];
+
+/// Three points in the triangle.
+const TRIANGLE: [Gauss; 3] = [
+    (DVec2::new(1.0 / 6.0, 1.0 / 6.0), 1.0 / 6.0),
+    (DVec2::new(2.0 / 3.0, 1.0 / 6.0), 1.0 / 6.0),
+    (DVec2::new(1.0 / 6.0, 2.0 / 3.0), 1.0 / 6.0),
+];
+
+/// Values and slopes, in the element's own coordinates, of its shape functions.
+fn local_shapes(corners: usize, at: DVec2) -> [Shape; 8] {
+    let mut shapes = [Shape::default(); 8];
+    if corners == 4 {
+        const CORNERS: [(f64, f64); 4] = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let (x, y) = (at.x, at.y);
+        for (shape, (cx, cy)) in shapes.iter_mut().zip(CORNERS) {
+            let (a, b) = (1.0 + x * cx, 1.0 + y * cy);
+            shape.value = 0.25 * a * b * (x * cx + y * cy - 1.0);
+            shape.slope = 0.25 * DVec2::new(cx * b * (2.0 * x * cx + y * cy), cy * a * (2.0 * y * cy + x * cx));
+        }
+        for (shape, side) in shapes[4..].iter_mut().zip([-1.0, 1.0, 1.0, -1.0].into_iter().enumerate()) {
+            *shape = match side {
+                (0 | 2, c) => {
+                    let (a, b) = (1.0 - x * x, 1.0 + y * c);
+                    Shape { value: 0.5 * a * b, slope: DVec2::new(-x * b, 0.5 * a * c) }
+                }
+                (_, c) => {
+                    let (a, b) = (1.0 + x * c, 1.0 - y * y);
+                    Shape { value: 0.5 * a * b, slope: DVec2::new(0.5 * c * b, -y * a) }
+                }
+            };
+        }
+    } else {
+        let area = [1.0 - at.x - at.y, at.x, at.y];
+        let slopes = [DVec2::new(-1.0, -1.0), DVec2::X, DVec2::Y];
+        for i in 0..3 {
+            shapes[i] = Shape { value: area[i] * (2.0 * area[i] - 1.0), slope: slopes[i] * (4.0 * area[i] - 1.0) };
+            let j = (i + 1) % 3;
+            shapes[3 + i] = Shape { value: 4.0 * area[i] * area[j], slope: 4.0 * (slopes[i] * area[j] + slopes[j] * area[i]) };
+        }
+    }
+    shapes
+}
+
+/// A point of integration in the section.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample {
+    /// Shape functions there, one per node of the element.
+    pub shapes: [Shape; 8],
+    /// Distance from the axis, mm.
+    pub radius: f64,
+    /// Area that the point stands for, mm^2.
+    pub area: f64,
+}
+
+/// The points of integration of an element; an area that is not positive means a mesh that folds over.
+pub fn samples<'m>(mesh: &'m Mesh, element: &'m Element) -> impl Iterator<Item = Sample> + 'm {
+    let points: &[Gauss] = if element.corners() == 4 { &SQUARE } else { &TRIANGLE };
+    points.iter().map(|&(at, weight)| {
+        let mut shapes = local_shapes(element.corners(), at);
+        let (mut dz, mut dr) = (DVec2::ZERO, DVec2::ZERO);
+        let mut radius = 0.0;
+        for (shape, &node) in shapes.iter().zip(element.nodes()) {
+            let place = mesh.nodes[node as usize];
+            dz += shape.slope * place.x;
+            dr += shape.slope * place.y;
+            radius += shape.value * place.y;
+        }
+        let jacobian = dz.x * dr.y - dz.y * dr.x;
+        for shape in &mut shapes {
+            let own = shape.slope;
+            shape.slope = DVec2::new(own.x * dr.y - own.y * dr.x, own.y * dz.x - own.x * dz.y) / jacobian;
+        }
+        Sample { shapes, radius, area: jacobian * weight }
+    })
+}
+
+/// Elastic constants of an isotropic material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lame {
+    /// Lame's first parameter.
+    pub lambda: f64,
+    /// Shear modulus.
+    pub mu: f64,
+}
+
+impl Lame {
+    /// From Young's modulus and Poisson's ratio.
+    pub fn new(modulus: f64, poisson: f64) -> Self {
+        Self { lambda: modulus * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), mu: modulus / (2.0 * (1.0 + poisson)) }
+    }
+}
+
+/// How two nodes of an element resist each other: rows of the first node's displacements (r, z, theta), columns of the second's, for
+/// the three powers of the harmonic.
+pub type Coupling = [[[f64; 3]; 3]; 3];
+
+/// Adds what one point of integration contributes to the coupling of two of its nodes.
+#[inline(always)]
+pub fn couple(coupling: &mut Coupling, Lame { lambda, mu }: Lame, i: &Shape, j: &Shape, radius: f64, weight: f64) {
+    let stiff = lambda + 2.0 * mu;
+    let (iz, ir, jz, jr) = (i.slope.x, i.slope.y, j.slope.x, j.slope.y);
+    let (ni, nj) = (i.value / radius, j.value / radius);
+    // Shear in the (r, theta) plane of a displacement around the axis.
+    let (qi, qj) = (ir - ni, jr - nj);
+    let [k0, k1, k2] = coupling;
+    k0[0][0] += weight * (stiff * (ir * jr + ni * nj) + lambda * (ir * nj + ni * jr) + mu * iz * jz);
+    k0[0][1] += weight * (lambda * (ir + ni) * jz + mu * iz * jr);
+    k0[1][0] += weight * (lambda * iz * (jr + nj) + mu * ir * jz);
+    k0[1][1] += weight * (stiff * iz * jz + mu * ir * jr);
+    k0[2][2] += weight * mu * (qi * qj + iz * jz);
+    k1[0][2] += weight * ((lambda * ir + stiff * ni) * nj - mu * ni * qj);
+    k1[1][2] += weight * (lambda * iz * nj - mu * ni * jz);
+    k1[2][0] += weight * ((lambda * jr + stiff * nj) * ni - mu * nj * qi);
+    k1[2][1] += weight * (lambda * jz * ni - mu * nj * iz);
+    let product = weight * ni * nj;
+    k2[0][0] += mu * product;
+    k2[1][1] += mu * product;
+    k2[2][2] += stiff * product;
+}

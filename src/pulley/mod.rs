@@ -1,0 +1,17 @@
+//! V-belt pulleys: sections, finite elements in harmonics around the axis, stresses over the turn.
+//!
+//! A pulley's geometry is axisymmetric and its loads are not: they are expanded in harmonics around the axis, each of which is one
+//! linear problem on the (r, z) section. Inside this module lengths are in mm, forces in N, stresses in MPa and angles in rad.
+//!
+//! The flow: [`section`] makes a [`mesh`] from dimensions, [`response`] solves it for unit loads ([`element`], [`band`], [`loads`]),
+//! and [`turn`] puts a load case together.
+
+pub mod band;
+pub mod element;
+pub mod loads;
+pub mod mesh;
+mod numbering;
+pub mod response;
+pub mod section;
+mod spline;
+pub mod turn;

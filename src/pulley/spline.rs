@@ -1,0 +1,101 @@
+//! Cubic splines over the harmonics: what is smooth in k need not be solved for every k.
+
+/// Fills the rows of `table` (one block of numbers per harmonic `0..orders`) that were not solved by a not-a-knot cubic spline through
+/// those that were. `solved` is ascending, starts with 0 and ends with `orders - 1`.
+pub fn fill_between(solved: &[usize], orders: usize, block: usize, table: &mut [f64]) {
+    let weights = weights(solved, orders);
+    for order in (0..orders).filter(|order| !solved.contains(order)) {
+        let (before, rest) = table.split_at_mut(order * block);
+        let (own, after) = rest.split_at_mut(block);
+        for (&knot, &weight) in solved.iter().zip(&weights[order]).filter(|(_, weight)| **weight != 0.0) {
+            let from = if knot < order { &before[knot * block..][..block] } else { &after[(knot - order - 1) * block..][..block] };
+            for (own, from) in own.iter_mut().zip(from) {
+                *own += weight * from;
+            }
+        }
+    }
+}
+
+/// `weights(..)[order][knot]`: share of the value at a knot in the spline's value at an order.
+fn weights(knots: &[usize], orders: usize) -> Vec<Vec<f64>> {
+    let count = knots.len();
+    if count < 4 {
+        return (0..orders).map(|order| knots.iter().map(|&knot| if knot == order { 1.0 } else { 0.0 }).collect()).collect();
+    }
+    let x: Vec<f64> = knots.iter().map(|&knot| knot as f64).collect();
+    let step = |i: usize| x[i + 1] - x[i];
+    // Second derivatives m at the knots: A m = B y.
+    let mut a = vec![vec![0.0; count]; count];
+    let mut b = vec![vec![0.0; count]; count];
+    for i in 1..count - 1 {
+        let (left, right) = (step(i - 1), step(i));
+        (a[i][i - 1], a[i][i], a[i][i + 1]) = (left, 2.0 * (left + right), right);
+        (b[i][i - 1], b[i][i], b[i][i + 1]) = (6.0 / left, -6.0 / left - 6.0 / right, 6.0 / right);
+    }
+    // Not a knot: the third derivative does not jump at the second knot and the last but one.
+    for (row, i) in [(0, 1), (count - 1, count - 2)] {
+        (a[row][i - 1], a[row][i], a[row][i + 1]) = (step(i), -(step(i - 1) + step(i)), step(i - 1));
+    }
+    solve(&mut a, &mut b);
+    let weight = |order: usize| {
+        let mut weights = vec![0.0; count];
+        let at = order as f64;
+        let i = x.iter().rposition(|&knot| knot <= at).unwrap_or(0).min(count - 2);
+        let h = step(i);
+        let (low, high) = ((x[i + 1] - at) / h, (at - x[i]) / h);
+        weights[i] += low;
+        weights[i + 1] += high;
+        for (weight, (m0, m1)) in weights.iter_mut().zip(b[i].iter().zip(&b[i + 1])) {
+            *weight += h * h / 6.0 * ((low * low * low - low) * m0 + (high * high * high - high) * m1);
+        }
+        weights
+    };
+    (0..orders).map(weight).collect()
+}
+
+/// Gauss with partial pivoting; `b` becomes the solutions.
+fn solve(a: &mut [Vec<f64>], b: &mut [Vec<f64>]) {
+    let count = a.len();
+    for column in 0..count {
+        let pivot = (column..count).max_by(|&i, &j| a[i][column].abs().total_cmp(&a[j][column].abs())).unwrap_or(column);
+        a.swap(column, pivot);
+        b.swap(column, pivot);
+        for row in (0..count).filter(|&row| row != column) {
+            let factor = a[row][column] / a[column][column];
+            if factor != 0.0 {
+                for place in 0..count {
+                    a[row][place] -= factor * a[column][place];
+                    b[row][place] -= factor * b[column][place];
+                }
+            }
+        }
+    }
+    for row in 0..count {
+        let pivot = a[row][row];
+        b[row].iter_mut().for_each(|value| *value /= pivot);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cubic_is_interpolated_exactly() {
+        let knots = [0, 1, 2, 4, 7, 12];
+        let cubic = |k: usize| {
+            let k = k as f64;
+            [1.0 - k + 0.5 * k * k - 0.03 * k * k * k, k]
+        };
+        let mut table = vec![0.0; 13 * 2];
+        for knot in knots {
+            table[2 * knot..2 * knot + 2].copy_from_slice(&cubic(knot));
+        }
+        fill_between(&knots, 13, 2, &mut table);
+        for order in 0..13 {
+            for (found, exact) in table[2 * order..2 * order + 2].iter().zip(cubic(order)) {
+                assert!((found - exact).abs() < 1e-11, "order {order}: {found} {exact}");
+            }
+        }
+    }
+}
