@@ -52,4 +52,4 @@ pub fn find(name: &str) -> Option<&'static Model> {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -98,7 +98,7 @@ pub const MODEL: Model = Model {
             "calibrated: first lifted tooth 16 in Fig. 9",
         ),
         Input {
-            word: Some(("space", SPACE)),
+            words: &[("space", SPACE)],
             follows: Some("space_half_angle_deg"),
             ..angle(
                 "lift_angle_deg",
