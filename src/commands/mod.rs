@@ -64,6 +64,11 @@ mod unlike {
     const SECTIONS: &[(&str, f64)] = &[("machined", 1.0), ("welded-discs", 2.0), ("pressed-cup", 4.0)];
     const PRESETS: &[(&str, &[(&str, f64)])] = &[("welded", &[("section", 2.0)])];
 
+    /// Computed on the processor only.
+    pub fn on_the_processor_only() -> &'static Model {
+        Box::leak(Box::new(Model { name: "no-twin", device: None, ..*find("pulley-load").expect("it is a model") }))
+    }
+
     /// With an input whose every value is a word, and one that is read for one of them only.
     pub fn with_a_section() -> &'static Model {
         let model = find("pulley-load").expect("it is a model");

@@ -58,8 +58,9 @@ fn page(model: &Model) -> String {
     }
     let presets: Vec<_> = model.presets.iter().map(|(name, _)| *name).collect();
     let presets = if presets.is_empty() { String::new() } else { format!("presets: {}\n\n", presets.join(", ")) };
+    let where_run = if model.device.is_none() { "\nComputed in f64 on the processor only." } else { "" };
     format!(
-        "{}  {}\n\n{}\n\n{}\n{}\n{}\n{presets}{} {}\n",
+        "{}  {}\n\n{}{where_run}\n\n{}\n{}\n{}\n{presets}{} {}\n",
         bold(model.name),
         model.summary,
         model.source,
@@ -143,6 +144,7 @@ fn describe(model: &Model) -> Value {
         .collect();
     json!({
         "name": model.name, "summary": model.summary, "source": model.source, "limits": model.limits,
+        "gpu": model.device.is_some(),
         "inputs": inputs.collect::<Vec<_>>(), "outputs": outputs.collect::<Vec<_>>(),
         "statuses": conditions.collect::<Vec<_>>(), "presets": presets,
     })
@@ -150,7 +152,7 @@ fn describe(model: &Model) -> Value {
 
 #[cfg(test)]
 mod tests {
-    use super::super::unlike::with_a_section;
+    use super::super::unlike::{on_the_processor_only, with_a_section};
     use super::*;
 
     #[test]
@@ -162,6 +164,13 @@ mod tests {
             r#"section pressed-cup any "machined", "welded-discs" or "pressed-cup""#
         );
         assert!(page.contains("Mass of a disc. [chosen] Read for section = \"machined\" or \"welded-discs\" only."), "{page}");
+    }
+
+    #[test]
+    fn a_model_of_the_processor_alone_says_so() {
+        let says = |model: &Model| page(model).contains("Computed in f64 on the processor only.");
+        assert!(says(on_the_processor_only()) && !says(with_a_section()));
+        assert_eq!((&describe(on_the_processor_only())["gpu"], &describe(with_a_section())["gpu"]), (&json!(false), &json!(true)));
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! What a model says of itself: the table behind `beltspace models`, the study file, the result columns and the docs.
 
 use super::evaluation::Evaluation;
-use super::formula::Kernel;
+use super::formula::{Kernel, Twin};
+use crate::error::{Error, Result};
 use crate::units::Unit;
 
 /// Numbers that an input may take.
@@ -282,6 +283,21 @@ pub type Remarks = fn(&[Option<f64>]) -> Vec<String>;
 /// Sentences on one evaluation, from its inputs in their units.
 pub type Notes = fn(&[f64], &Evaluation) -> Vec<String>;
 
+/// A model's formula on a device, with what is known of its errors.
+#[derive(Clone, Copy)]
+pub struct Device {
+    /// The formula in WGSL: the texts that make it up, what is shared first.
+    pub shader: &'static [&'static str],
+    /// The formula in f32 with error bounds.
+    pub twin: &'static dyn Twin,
+}
+
+impl std::fmt::Debug for Device {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_tuple("Device").field(&self.twin.fields().prepared).finish()
+    }
+}
+
 /// A model: everything that the rest of the program knows about it.
 pub struct Model {
     /// Name in study files and on the command line.
@@ -302,10 +318,10 @@ pub struct Model {
     pub presets: &'static [(&'static str, &'static [(&'static str, f64)])],
     /// A study to start from, in the study file's language.
     pub starter: &'static str,
-    /// The formula, instantiated for every number type.
+    /// The formula in f64.
     pub kernel: &'static dyn Kernel,
-    /// The formula in WGSL: the texts that make it up, what is shared first.
-    pub shader: &'static [&'static str],
+    /// The formula on a device; `None`: it is computed in f64 on the processor only.
+    pub device: Option<Device>,
     /// What a person should know of a whole study's answer, given the values of the inputs that no axis sets.
     pub remarks: Option<Remarks>,
     /// What a person should know of one evaluation besides its numbers, for inputs in their units.
@@ -325,6 +341,14 @@ impl Model {
         self.outputs.iter().position(|output| output.name == name)
     }
 
+    /// Its formula on a device.
+    ///
+    /// # Errors
+    /// [`Error::Request`] if the model is computed on the processor only.
+    pub fn on_device(&self) -> Result<&Device> {
+        self.device.as_ref().ok_or_else(|| Error::Request(format!("{} is computed in f64 on the processor only", self.name)))
+    }
+
     /// The defaults of all inputs, in their units.
     pub fn defaults(&self) -> Vec<f64> {
         self.inputs.iter().map(|input| input.default).collect()
@@ -334,7 +358,7 @@ impl Model {
     ///
     /// # Errors
     /// A sentence that lists the presets, if there is none of that name.
-    pub fn preset(&self, name: &str) -> Result<Vec<f64>, String> {
+    pub fn preset(&self, name: &str) -> std::result::Result<Vec<f64>, String> {
         let Some((_, changes)) = self.presets.iter().find(|(it, _)| *it == name) else {
             let names: Vec<_> = self.presets.iter().map(|(name, _)| *name).collect();
             let known = if names.is_empty() { "it has none".to_owned() } else { format!("presets are: {}", names.join(", ")) };
