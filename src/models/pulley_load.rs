@@ -17,7 +17,7 @@
 //! - The second friction component acts along the flank, inwards and towards the groove's mid-plane: the loads balance
 //!   exactly only then (the paper's "radial" taken literally is 0.67 % off in its example).
 
-use super::description::{Condition, Input, Model, Output, Profile, ProfileColumn, Range, Worse};
+use super::description::{Condition, Device, Input, Model, Output, Profile, ProfileColumn, Range, Worse};
 use super::formula::{CONDITIONS, Fields, Formula, INPUTS, OUTPUTS, bits, record};
 use crate::real::Real;
 use crate::units::{
@@ -203,7 +203,7 @@ pub const MODEL: Model = Model {
     profile: Some(profile),
     notes: None,
     remarks: None,
-    shader: &[include_str!("../../shaders/models/pulley-load.wgsl")],
+    device: Some(Device { shader: &[include_str!("../../shaders/models/pulley-load.wgsl")], twin: &PulleyLoad }),
 };
 
 /// The formula.
