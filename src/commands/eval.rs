@@ -95,7 +95,7 @@ fn print_one(model: &Model, inputs: &[f64], of_study: Option<(u64, u64)>, reques
             &format!("{} = {value} lies outside {} to {}, which the source covers", input.name, input.usual.0, input.usual.1),
         );
     }
-    if let Some(notes) = model.notes.filter(|_| evaluation.status == Status::Ok) {
+    if let Some(notes) = model.notes {
         notes(inputs, &evaluation).iter().for_each(|note| terminal::remark("note", note));
     }
     along_the_belt(model, inputs, &evaluation, request)?;

@@ -8,7 +8,7 @@ pub const INPUTS: usize = 64;
 /// Most outputs that a model may have.
 pub const OUTPUTS: usize = 48;
 /// Most conditions that a model may have.
-pub const CONDITIONS: usize = 8;
+pub const CONDITIONS: usize = 12;
 
 /// A model's formula in two stages, over any [`Real`]. All values are in SI units.
 ///

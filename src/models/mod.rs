@@ -10,6 +10,7 @@ mod description;
 mod evaluation;
 mod formula;
 mod metal_cvt;
+mod pulley;
 mod pulley_load;
 mod rubber_cvt;
 mod timing_belt;
@@ -47,7 +48,7 @@ macro_rules! models {
         }
     };
 }
-models![rubber_cvt, metal_cvt, timing_belt, pulley_load; processor: ];
+models![rubber_cvt, metal_cvt, timing_belt, pulley_load; processor: pulley];
 
 /// The model of that name.
 pub fn find(name: &str) -> Option<&'static Model> {

@@ -283,10 +283,10 @@ impl<'t> Turn<'t> {
         terms
     }
 
-    /// Von Mises stress of a point over the turn at all angles, with the first bolt at `phase`, MPa.
-    pub fn around(&self, point: usize, phase: f64) -> Vec<f64> {
+    /// Von Mises stress of a point at every degree of the turn, both ends included, with the first bolt at `phase`, MPa.
+    pub fn by_degree(&self, point: usize, phase: f64) -> Vec<f64> {
         let terms = self.terms_of(point, phase);
-        (0..ANGLES).map(|step| at(&terms, angle(step))).collect()
+        (0..=360).map(|degree| at(&terms, PI * f64::from(degree) / 180.0)).collect()
     }
 
     /// Von Mises stress of a point at an angle, with the first bolt at `phase`, MPa.
