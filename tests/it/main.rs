@@ -4,6 +4,8 @@
 mod bad_studies;
 /// The binary: exit codes, messages, files, interrupted runs.
 mod command_line;
+/// How much of a test a model can afford.
+mod effort;
 /// Screening on a graphics device.
 mod gpu;
 /// Identities of the V-belt variator, and the tables of its paper.

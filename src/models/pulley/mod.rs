@@ -199,6 +199,8 @@ impl Pulley {
         outputs: &mut [f64; OUTPUTS],
         last: &mut Option<(Case, Asked, Summary)>,
     ) {
+        // What this design does not have must not be left from the one before.
+        outputs.fill(0.0);
         pulley_load::finish_all(inputs, outputs);
         let load = pulley_load::wrap_load(inputs);
         if load.margins.iter().any(|margin| *margin <= 0.0) || prepared[0] != 0.0 {
