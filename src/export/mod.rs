@@ -47,6 +47,8 @@ pub struct Outcome<'p> {
     pub front: Vec<Row>,
     /// The best designs by one quantity, best first.
     pub top: Vec<Row>,
+    /// Every design, feasible or not, if the study asks for it.
+    pub variants: Vec<Row>,
 }
 
 impl<'p> Outcome<'p> {
@@ -59,7 +61,14 @@ impl<'p> Outcome<'p> {
         let front = certify::front(plan, &columns, &state.front, threads)?;
         let top = state.top.as_ref().map_or(Vec::new(), |top| certify::rows(plan, &columns, &top.indices(), threads));
         top.iter().try_for_each(certify::check_feasible)?;
-        Ok(Self { plan, state, tally, columns, front, top })
+        let all: Vec<u64> = if plan.study.report.variants { (0..plan.designs()).collect() } else { Vec::new() };
+        let variants = certify::rows(plan, &columns, &all, threads);
+        let feasible = variants.iter().filter(|row| row.feasible).count() as u64;
+        if plan.study.report.variants && feasible != state.feasible {
+            let seen = state.feasible;
+            return Err(Error::Certificate(format!("the sweep counted {seen} feasible designs, the f64 reference finds {feasible}")));
+        }
+        Ok(Self { plan, state, tally, columns, front, top, variants })
     }
 
     /// The files of the result, by name, in the order in which they are written; [`MARK`] last. The lines over maps are found here,
@@ -83,6 +92,9 @@ impl<'p> Outcome<'p> {
         }
         if study.report.top.is_some() {
             files.push(("top.csv".to_owned(), csv::write(&tables::designs(self, &self.top))));
+        }
+        if study.report.variants {
+            files.push(("variants.csv".to_owned(), csv::write(&tables::variants(self, &self.variants))));
         }
         let mut names = BTreeSet::new();
         let mut unique = |name: String| {
@@ -143,7 +155,18 @@ impl<'p> Outcome<'p> {
 /// Is this a name that a result directory may have, so that an older result's file may go?
 fn is_ours(name: &str) -> bool {
     let name = name.strip_suffix(".writing").unwrap_or(name);
-    let fixed = ["front.csv", "front.parquet", "front.svg", "top.csv", "scenarios.csv", "study.toml", "study.json", "run.json", MARK];
+    let fixed = [
+        "front.csv",
+        "front.parquet",
+        "front.svg",
+        "top.csv",
+        "variants.csv",
+        "scenarios.csv",
+        "study.toml",
+        "study.json",
+        "run.json",
+        MARK,
+    ];
     let (stem, extension) = name.rsplit_once('.').unwrap_or((name, ""));
     let prefixes = [("histogram-", &["csv", "parquet", "svg"][..]), ("map-", &["csv", "parquet", "svg"]), ("contours-", &["csv"])];
     let of_quantity =

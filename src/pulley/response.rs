@@ -98,6 +98,11 @@ impl<'t> View<'t> {
         Self { table, sizes: Sizes { padded, orders, clamps: (orders - 1) / bolts + 1 } }
     }
 
+    /// Numbers in the table.
+    pub fn length(&self) -> usize {
+        self.sizes.length()
+    }
+
     /// Surface points.
     pub fn points(&self) -> usize {
         self.table[Head::Points as usize] as usize
