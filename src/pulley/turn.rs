@@ -113,6 +113,22 @@ impl<'t> Turn<'t> {
         Self { shares: shares.collect(), quarter: quarter.collect(), view, case }
     }
 
+    /// The section's answers.
+    pub fn view(&self) -> View<'t> {
+        self.view
+    }
+
+    /// The loads.
+    pub fn case(&self) -> &Case {
+        &self.case
+    }
+
+    /// Amplitudes of the belt's unit loads in a harmonic: a displacement is `Re(X exp(i k theta))` of its unit answers, around the
+    /// axis `Im(X exp(i k theta))`.
+    pub fn amplitudes(&self, order: usize) -> [Complex; BELT] {
+        self.shares[order].shear.map(|[imaginary, real]| (real, imaginary))
+    }
+
     /// Terms of the belt's stress on a chunk of points: per harmonic the cosine and the sine term of each stress.
     fn belt_terms(&self, chunk: usize, terms: &mut Vec<[[[f64; CHUNK]; 2]; STRESSES]>) {
         terms.clear();
