@@ -28,7 +28,7 @@ pub fn deformed(title: &str, mesh: &Mesh, turn: &Turn<'_>, field: &Field) -> Str
     let factor = magnification(mesh, field);
     let places: Vec<DVec2> = mesh.nodes.iter().zip(&field.displacement).map(|(at, u)| *at + factor * DVec2::new(u[1], u[0])).collect();
     let largest = Largest::new(mesh, turn, field);
-    let header = Header::new(title, legend(factor, field, turn.view().excluded_radius()));
+    let header = Header::new(title, legend(factor, field, turn.view().excluded_radius(), mesh));
     let value = Quantity::new("von Mises stress", "MPa");
     let range = (0.0, if largest.stress > 0.0 { largest.stress } else { 1.0 });
     let bar = Bar::new(range, &value, HEIGHT, false);
@@ -45,6 +45,12 @@ pub fn deformed(title: &str, mesh: &Mesh, turn: &Turn<'_>, field: &Field) -> Str
     drawing.solid(dense(sides.iter().map(|nodes| nodes.map(|node| scale.exact(places[node as usize])))));
     drawing.solid(dense(sides.iter().map(|nodes| nodes.map(|node| scale.exact(mesh.nodes[node as usize])))));
     exclude(&mut drawing, frame, scale, turn.view().excluded_radius());
+    for &(place, distance) in &mesh.singular {
+        let ((x, y), radius) = (scale.place(place), (scale.per_mm * distance).round());
+        drawing.insert(&format!(
+            "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" fill=\"#FFFFFF\" fill-opacity=\"0.35\" stroke=\"#6E6E6E\" stroke-width=\"8\" stroke-dasharray=\"70 40\"/>\n"
+        ));
+    }
     if let Some(node) = largest.node {
         let at = scale.exact(places[node as usize]);
         let words = format!("{} MPa{}", significant(largest.stress, 4), largest.near(mesh));
@@ -60,15 +66,16 @@ pub fn deformed(title: &str, mesh: &Mesh, turn: &Turn<'_>, field: &Field) -> Str
     sheet.finish()
 }
 
-fn legend(factor: f64, field: &Field, excluded: f64) -> Vec<(Mark, String)> {
+fn legend(factor: f64, field: &Field, excluded: f64, mesh: &Mesh) -> Vec<(Mark, String)> {
     let angle = |angle: f64| significant((degrees(angle) * 10.0).round() / 10.0, 5);
+    let crack = if mesh.singular.is_empty() { "" } else { " and in the circle" };
     vec![
         (Mark::None, format!("θ = {}° from the slack end", angle(field.theta))),
         (Mark::None, format!("first bolt at {}°", angle(field.phase))),
         (Mark::None, format!("displacements × {}", significant(factor, 3))),
         (Mark::Line(HATCH, Dash::Solid), "at rest".to_owned()),
         (Mark::Dot(VERMILION), "largest stress".to_owned()),
-        (Mark::Hatched, format!("clamped zone, r < {} mm, left out of the largest stress", significant(excluded, 4))),
+        (Mark::Hatched, format!("left out of the largest stress: r < {} mm{crack}", significant(excluded, 4))),
     ]
 }
 

@@ -88,7 +88,7 @@ fn legend(largest: &Peak, wrap_deg: f64) -> Vec<(Mark, String)> {
         (Mark::Plus(VERMILION), format!("largest stress {} MPa at {at}°", significant(largest.stress, 4))),
         (Mark::Line(INK, Dash::Solid), format!("touched by the belt, wrap {}°", significant(wrap_deg, 4))),
         (Mark::Line(GREY, Dash::Centre), "bolts".to_owned()),
-        (Mark::Hatched, "clamped zone, left out of the largest stress".to_owned()),
+        (Mark::Hatched, "left out of the largest stress".to_owned()),
     ]
 }
 
@@ -182,10 +182,29 @@ impl Map<'_> {
 
     /// Tints what does not count for the largest stress.
     fn exclude(&self, sheet: &mut Sheet) {
+        for (low, high) in self.excluded() {
+            self.tint(sheet, low, high);
+        }
+    }
+
+    /// Ranges of arc length whose points do not count.
+    fn excluded(&self) -> Vec<(f64, f64)> {
         let counted = self.turn.view().counted();
-        let excluded: Vec<f64> =
-            self.stretch.points.iter().zip(&self.stretch.arc).filter(|(point, _)| counted[**point] == 0.0).map(|(_, arc)| *arc).collect();
-        let (Some(&low), Some(&high)) = (excluded.first(), excluded.last()) else { return };
+        let mut ranges: Vec<(f64, f64)> = Vec::new();
+        let mut open = false;
+        for (&point, &arc) in self.stretch.points.iter().zip(&self.stretch.arc) {
+            let excluded = counted[point] == 0.0;
+            match ranges.last_mut() {
+                Some(range) if open && excluded => range.1 = arc,
+                _ if excluded => ranges.push((arc, arc)),
+                _ => {}
+            }
+            open = excluded;
+        }
+        ranges
+    }
+
+    fn tint(&self, sheet: &mut Sheet, low: f64, high: f64) {
         let (frame, top, bottom) = (self.frame, self.up(high), self.up(low));
         sheet.insert(&filled(&format!("M{} {top}H{}V{bottom}H{0}Z", frame.left, frame.right()), WHITE, "0.55"));
         let height = bottom - top;
@@ -195,7 +214,11 @@ impl Map<'_> {
             lines += &format!("M{} {}l{2} -{2}", frame.left + start + from, bottom - from, to - from);
         }
         sheet.insert(&stroked(&lines, HATCH, 5, Dash::Solid));
-        sheet.insert(&stroked(&format!("M{} {top}H{}", frame.left, frame.right()), GREY, 8, Dash::Dashed));
+        for (end, y) in [(low, bottom), (high, top)] {
+            if end > 0.0 && end < self.stretch.length() {
+                sheet.insert(&stroked(&format!("M{} {y}H{}", frame.left, frame.right()), GREY, 8, Dash::Dashed));
+            }
+        }
     }
 }
 
