@@ -198,6 +198,7 @@ pub fn degrees(angle: f64) -> f64 {
 mod tests {
     use super::super::fixtures;
     use super::super::response::View;
+    use super::super::turn::{ANGLES, angle};
     use super::*;
 
     #[test]
@@ -209,11 +210,11 @@ mod tests {
             let reported = turn.summary(None, [None; 2]).rim_displacement;
             let answers = Answers::new(&mesh, &dimensions, 0.29, &fineness);
             let phase = turn.case().phase.unwrap();
-            let rim = |step: i32| {
-                let motion = answers.motion(&turn, 2.0 * PI * f64::from(step) / 768.0, phase);
+            let rim = |step: usize| {
+                let motion = answers.motion(&turn, angle(step), phase);
                 motion.value[mesh.rim as usize].iter().map(|it| it * it).sum::<f64>().sqrt() / turn.case().modulus
             };
-            let largest = (0..768).map(rim).fold(0.0, f64::max);
+            let largest = (0..ANGLES).map(rim).fold(0.0, f64::max);
             assert!((largest - reported).abs() < 1e-9 * reported, "{kind:?}: {largest} {reported}");
         }
     }

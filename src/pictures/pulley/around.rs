@@ -20,13 +20,16 @@ const HEIGHT: i32 = 440 * UNIT;
 const WRAP: RGBColor = RGBColor(238, 242, 247);
 
 /// Draws the stress of every check point around the circumference, left sides of the sheet as lines, right sides dashed, with the
-/// wrap, the bolts and, if given, the yield strength (MPa).
+/// wrap, the bolts and, if given, the yield strength (MPa), as a line unless it is far above.
 pub fn around(title: &str, around: &Around, yield_strength: Option<f64>) -> String {
     let values = around.curves.iter().flat_map(|curve| curve.von_mises.iter().copied());
-    let Some((_, most)) = bounds(values.chain(yield_strength), 0.0) else {
+    let Some((_, most)) = bounds(values, 0.0) else {
         return sentence(title, "no check points");
     };
-    let header = Header::new(title, legend(around, yield_strength));
+    // Far above all curves the line would only press them flat.
+    let drawn = yield_strength.filter(|strength| *strength < 2.0 * most);
+    let header = Header::new(title, legend(around, yield_strength, drawn.is_some()));
+    let most = drawn.map_or(most, |strength| strength.max(most));
     let y = Axis::vertical((0.0, 1.06 * most), HEIGHT, Numbers::Long);
     let y_label = axis_label(&Quantity::new("von_Mises_stress_MPa", "MPa"), &y, HEIGHT);
     let left = 12 * UNIT + y_labels_width(y.label_width(), &y_label);
@@ -49,7 +52,7 @@ pub fn around(title: &str, around: &Around, yield_strength: Option<f64>) -> Stri
     for &bolt in &around.bolts_deg {
         sheet.insert(&stroked(&format!("M{0} {1}V{2}", across(bolt), frame.top, frame.bottom()), GREY, 8, Dash::Centre));
     }
-    if let Some(strength) = yield_strength {
+    if let Some(strength) = drawn {
         sheet.insert(&stroked(&format!("M{} {}H{}", frame.left, up(strength), frame.right()), INK, 12, Dash::Dotted));
     }
     for curve in &around.curves {
@@ -91,7 +94,7 @@ pub(super) fn turn_label(axis: &Axis, room: i32) -> Vec<String> {
     axis_label(&Quantity::new("θ from the slack end", "°"), axis, room)
 }
 
-fn legend(around: &Around, yield_strength: Option<f64>) -> Vec<(Mark, String)> {
+fn legend(around: &Around, yield_strength: Option<f64>, drawn: bool) -> Vec<(Mark, String)> {
     let entry = |curve: &Curve| {
         let (colour, dash) = look(curve);
         let most = curve.von_mises.iter().copied().fold(0.0, f64::max);
@@ -99,7 +102,8 @@ fn legend(around: &Around, yield_strength: Option<f64>) -> Vec<(Mark, String)> {
     };
     let mut legend: Vec<_> = around.curves.iter().map(entry).collect();
     if let Some(strength) = yield_strength {
-        legend.push((Mark::Line(INK, Dash::Dotted), format!("yield strength {} MPa", significant(strength, 4))));
+        let words = format!("yield strength {} MPa", significant(strength, 4));
+        legend.push(if drawn { (Mark::Line(INK, Dash::Dotted), words) } else { (Mark::None, format!("{words}, far above")) });
     }
     legend.push((Mark::Box(WRAP), format!("wrap {}°", significant(around.wrap_deg, 4))));
     legend

@@ -11,6 +11,8 @@ use std::fmt::Write;
 /// Height of the words in a drawing, in pixels.
 pub(super) const TEXT: i32 = 12;
 const ARROW: f64 = 90.0;
+/// Radius around a labelled place that its line leaves free for a mark.
+const MARK: f64 = 50.0;
 
 pub(super) type Point = (i32, i32);
 
@@ -224,7 +226,8 @@ impl Drawing {
         // The line ends at the box's edge.
         let way = middle - at;
         let share = (0.5 * f64::from(width) / way.x.abs().max(1.0)).min(0.5 * f64::from(height) / way.y.abs().max(1.0));
-        let (from, to) = (rounded(at), rounded(middle - way * share.min(1.0)));
+        let from = at + way.normalize_or_zero() * MARK;
+        let (from, to) = (rounded(from), rounded(middle - way * share.min(1.0)));
         self.line(from, to, colour, Dash::Solid);
         self.word(words, colour, rounded(middle), false);
     }

@@ -22,8 +22,8 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 use std::f64::consts::PI;
 
-/// Angles of a map.
-const COLUMNS: usize = 240;
+/// Cells around the circumference, a degree each.
+const COLUMNS: usize = 360;
 /// Rows of all maps together, shared out by their length.
 const ROWS: f64 = 560.0;
 /// Height of all maps together.
@@ -99,6 +99,11 @@ fn label(stretch: &Stretch, axis: &Axis, room: i32) -> Vec<String> {
     lines
 }
 
+/// Stress of a point in the middle of every cell of a row, MPa.
+fn by_cell(turn: &Turn<'_>, point: usize, phase: f64) -> Vec<f64> {
+    turn.by_degree(point, phase).windows(2).map(|ends| 0.5 * (ends[0] + ends[1])).collect()
+}
+
 /// The map of one stretch.
 struct Map<'a> {
     turn: &'a Turn<'a>,
@@ -110,10 +115,7 @@ struct Map<'a> {
 impl Map<'_> {
     /// Palette indices of the cells, the top row first.
     fn indices(&self, rows: usize, (low, high): (f64, f64)) -> Vec<u8> {
-        let theta = |column: usize| 2.0 * PI * (column as f64 + 0.5) / COLUMNS as f64;
-        let stress = |point: &usize| -> Vec<f64> {
-            (0..COLUMNS).map(|column| self.turn.von_mises(*point, theta(column), self.largest.phase)).collect()
-        };
+        let stress = |point: &usize| by_cell(self.turn, *point, self.largest.phase);
         let stresses: Vec<Vec<f64>> = self.stretch.points.iter().map(stress).collect();
         let arc = &self.stretch.arc;
         let mut indices = Vec::with_capacity(rows * COLUMNS);
@@ -182,7 +184,8 @@ impl Map<'_> {
 
     /// Tints what does not count for the largest stress.
     fn exclude(&self, sheet: &mut Sheet) {
-        for (low, high) in self.excluded() {
+        // A single point has no width to tint.
+        for (low, high) in self.excluded().into_iter().filter(|(low, high)| low < high) {
             self.tint(sheet, low, high);
         }
     }
@@ -246,14 +249,13 @@ mod tests {
             assert!(svg.contains(&format!("largest stress {} MPa", significant(largest.stress, 4))));
             let maps = if kind == Kind::WeldedDiscs { 3 } else { 2 };
             assert_eq!(svg.matches("<image").count(), maps + 1);
-            // Somewhere on the maps is the last colour but few, and the colour of a cell is that of its stress.
+            // The colour of a cell is that of its stress.
             let stretch = &stretches(&mesh)[0];
             let (width, height, pixels) = decoded(&svg, 0);
             let (row, column) = (height as usize / 2, width as usize / 8);
             let at = stretch.length() * ((height as usize - 1 - row) as f64 + 0.5) / f64::from(height);
             let after = stretch.arc.iter().position(|it| *it >= at).unwrap();
-            let theta = 2.0 * PI * (column as f64 + 0.5) / f64::from(width);
-            let [before, after] = [after - 1, after].map(|it| turn.von_mises(stretch.points[it], theta, largest.phase));
+            let [before, after] = [after - 1, after].map(|it| by_cell(&turn, stretch.points[it], largest.phase)[column]);
             let steps = [before.min(after), before.max(after)].map(|stress| step_of(stress, 0.0, largest.stress));
             let pixel = pixels[row * width as usize + column];
             let found = (steps[0]..=steps[1]).any(|step| {
