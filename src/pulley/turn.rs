@@ -125,6 +125,22 @@ impl<'t> Turn<'t> {
         Self { shares: shares.collect(), quarter: quarter.collect(), view, case }
     }
 
+    /// The section's answers.
+    pub fn view(&self) -> View<'t> {
+        self.view
+    }
+
+    /// The loads.
+    pub fn case(&self) -> &Case {
+        &self.case
+    }
+
+    /// Amplitudes of the belt's unit loads in a harmonic: a displacement is `Re(X exp(i k theta))` of its unit answers, around the
+    /// axis `Im(X exp(i k theta))`.
+    pub fn amplitudes(&self, order: usize) -> [Complex; BELT] {
+        self.shares[order].shear.map(|[imaginary, real]| (real, imaginary))
+    }
+
     /// Stresses of a chunk of points at all angles: from the belt, and from clamp and spin with the first bolt at the case's phase
     /// (at 0 if it is open).
     fn fill(&self, chunk: usize, room: &mut Room) {
