@@ -208,7 +208,7 @@ impl<'p> Reference<'p> {
                 plan.fast_scenarios.set(t, &mut inputs);
                 let si = to_si(model, &inputs);
                 if self.prepared.len() as u64 == q {
-                    let mut prepared = vec![0.0; model.kernel.fields().prepared_len()];
+                    let mut prepared = vec![0.0; model.kernel.prepared_len()];
                     model.kernel.prepare(&si, self.wanted, &mut prepared);
                     self.prepared.push(prepared);
                 }

@@ -22,6 +22,8 @@ pub enum Dimension {
     Area,
     Mass,
     Compliance,
+    Density,
+    Volume,
 }
 
 impl Dimension {
@@ -42,6 +44,8 @@ impl Dimension {
             Self::Area => "an area",
             Self::Mass => "a mass",
             Self::Compliance => "a deflection per force",
+            Self::Density => "a density",
+            Self::Volume => "a volume",
         }
     }
 }
@@ -189,6 +193,16 @@ units! {
     MILLIMETRE_PER_KILOGRAM_FORCE = "mm/kgf", Compliance, 1.0, 9806.65;
     /// Metre per newton.
     METRE_PER_NEWTON = "m/N", Compliance, 1.0, 1.0;
+    /// Kilogram per cubic metre.
+    KILOGRAM_PER_CUBIC_METRE = "kg/m3" | "kg/m³", Density, 1.0, 1.0;
+    /// Gram per cubic centimetre.
+    GRAM_PER_CUBIC_CENTIMETRE = "g/cm3" | "g/cm³", Density, 1000.0, 1.0;
+    /// Cubic millimetre.
+    CUBIC_MILLIMETRE = "mm3" | "mm³", Volume, 1.0, 1e9;
+    /// Cubic centimetre.
+    CUBIC_CENTIMETRE = "cm3" | "cm³", Volume, 1.0, 1e6;
+    /// Cubic metre.
+    CUBIC_METRE = "m3" | "m³", Volume, 1.0, 1.0;
     /// Pound-force per inch.
     POUND_PER_INCH = "lbf/in", ForcePerLength, POUND_FORCE, INCH;
 }
@@ -281,6 +295,10 @@ mod tests {
         assert!((parse_value("100ksi", MEGAPASCAL).unwrap() - 689.475_729_316_836).abs() < 1e-9);
         assert!((parse_value("1 hp", KILOWATT).unwrap() - 0.745_699_871_582_270).abs() < 1e-12);
         assert_eq!(parse_value("8 %", NONE), Ok(0.08));
+        assert_eq!(parse_value("7.85 g/cm³", KILOGRAM_PER_CUBIC_METRE), Ok(7850.0));
+        assert_eq!(parse_value("12.5 cm3", CUBIC_MILLIMETRE), Ok(12_500.0));
+        assert_eq!(parse_value("2e-6 m³", CUBIC_CENTIMETRE), Ok(2.0));
+        assert_eq!((KILOGRAM_PER_CUBIC_METRE.suffix().as_str(), CUBIC_MILLIMETRE.suffix().as_str()), ("kg_per_m3", "mm3"));
     }
 
     #[test]

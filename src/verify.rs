@@ -117,10 +117,10 @@ fn usual(input: &Input, random: &mut Random) -> f64 {
         return input.default;
     }
     let (low, high) = input.usual;
-    if let Some((_, word)) = input.word
-        && random.next().is_multiple_of(6)
-    {
-        return word;
+    if !input.words.is_empty() && (input.is_enumeration() || random.next().is_multiple_of(6)) {
+        // The only word needs no number drawn for it.
+        let which = if input.words.len() > 1 { random.next() % input.words.len() as u64 } else { 0 };
+        return input.words[which as usize].1;
     }
     let value = match random.next() % 8 {
         0 => low,

@@ -55,6 +55,15 @@ pub fn run(path: &Path) -> Result<()> {
 fn ends(plan: &Plan, axis: &Axis, column: usize, input: usize) -> String {
     let table = &plan.study.model.inputs[input];
     let text = |value: f64| table.word_for(value).map_or_else(|| terminal::short(value), str::to_owned);
+    if table.is_enumeration() {
+        let mut words: Vec<String> = Vec::new();
+        for word in (0..axis.count()).map(|level| text(axis.value(column, level))) {
+            if !words.contains(&word) {
+                words.push(word);
+            }
+        }
+        return words.join(" or ");
+    }
     let (low, high) = axis.ends(column);
     if low == high { text(low) } else { format!("{} to {}", text(low), text(high)) }
 }

@@ -24,6 +24,10 @@ pub fn choose(plan: &Plan, engine: Engine, adapter: Option<&str>, wrong: Wrong) 
     if engine != Engine::Gpu && !wrong.perturb.is_empty() {
         return Err(Error::Request("--perturb makes a GPU's kernel wrong on purpose: it needs --engine gpu".to_owned()));
     }
+    let insists = engine == Engine::Gpu || (engine == Engine::Auto && adapter.is_some());
+    if insists {
+        needs_a_twin(plan.study.model, "use --engine cpu, or leave --engine and --adapter out")?;
+    }
     match engine {
         Engine::Cpu if adapter.is_some() => Err(Error::Request("--adapter names a GPU, but --engine cpu was asked for".to_owned())),
         Engine::Cpu => Ok(None),
@@ -32,10 +36,15 @@ pub fn choose(plan: &Plan, engine: Engine, adapter: Option<&str>, wrong: Wrong) 
     }
 }
 
+/// A wrong request of a model that is computed on the processor only, and what to do about it.
+pub fn needs_a_twin(model: &Model, remedy: &str) -> Result<()> {
+    model.on_device().map(drop).map_err(|error| Error::Request(format!("{error}; {remedy}")))
+}
+
 /// A hardware adapter for a study that is large enough; whatever is wrong with it is a remark.
 #[allow(clippy::cast_precision_loss, reason = "an estimate")]
 fn automatic(plan: &Plan, wrong: Wrong) -> Option<Trusted> {
-    if (plan.designs() as f64) * (plan.scenarios() as f64) < WORTH_A_DEVICE {
+    if plan.study.model.device.is_none() || (plan.designs() as f64) * (plan.scenarios() as f64) < WORTH_A_DEVICE {
         return None;
     }
     let adapter = gpu::adapters().into_iter().find(Adapter::is_hardware)?;
@@ -90,4 +99,33 @@ pub fn perturbations(model: &Model, words: &[String]) -> Result<Vec<(usize, f64)
         Ok((output, part))
     };
     words.iter().map(one).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::unlike::on_the_processor_only;
+    use super::*;
+    use beltspace::study::Study;
+
+    #[test]
+    fn a_model_without_a_twin_is_refused_a_gpu_and_left_to_the_processor_otherwise() {
+        let model = on_the_processor_only();
+        let text = beltspace::models::find("pulley-load").expect("it is a model").starter;
+        let mut study = Study::parse(text, "study.toml", ".".as_ref()).expect("the starter is right");
+        study.model = model;
+        let plan = Plan::new(study);
+        for (engine, adapter) in [(Engine::Gpu, None), (Engine::Gpu, Some("any")), (Engine::Auto, Some("any"))] {
+            let refused = choose(&plan, engine, adapter, Wrong::default()).map(drop).expect_err("it has no twin");
+            assert!(matches!(refused, Error::Request(_)));
+            assert_eq!(
+                refused.to_string(),
+                "no-twin is computed in f64 on the processor only; use --engine cpu, or leave --engine and --adapter out"
+            );
+        }
+        for engine in [Engine::Auto, Engine::Cpu] {
+            assert!(choose(&plan, engine, None, Wrong::default()).expect("that is what the processor is for").is_none());
+        }
+        let refused = supports(&plan, true).expect_err("it has no twin").to_string();
+        assert_eq!(refused, "no-twin is computed in f64 on the processor only");
+    }
 }

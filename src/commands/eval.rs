@@ -30,16 +30,10 @@ pub fn run(request: &cli::Eval) -> Result<()> {
 
 /// Defaults, then the preset, then every `--set`.
 fn inputs_of(model: &Model, request: &cli::Eval) -> Result<Vec<f64>> {
-    let mut inputs = model.defaults();
-    if let Some(name) = &request.preset {
-        let names: Vec<_> = model.presets.iter().map(|(name, _)| *name).collect();
-        let known = if names.is_empty() { "it has none".to_owned() } else { format!("presets are: {}", names.join(", ")) };
-        let preset = model.presets.iter().find(|(it, _)| it == name);
-        let (_, values) = preset.ok_or_else(|| Error::Request(format!("{} has no preset \"{name}\"; {known}", model.name)))?;
-        for (input, value) in *values {
-            inputs[model.input(input).expect("a preset names inputs of its model")] = *value;
-        }
-    }
+    let mut inputs = match &request.preset {
+        Some(name) => model.preset(name).map_err(Error::Request)?,
+        None => model.defaults(),
+    };
     let mut problems = Vec::new();
     for assignment in &request.set {
         match parse_assignment(model, assignment) {
@@ -70,12 +64,16 @@ fn parse_assignment(model: &Model, assignment: &str) -> std::result::Result<(usi
         return Err(format!("{name} is no input of {}; {remedy}", model.name));
     };
     let input = &model.inputs[number];
-    if let Some((_, value)) = input.word.filter(|(word, _)| *word == text) {
+    if let Some(value) = input.value_of(text) {
         return Ok((number, value));
     }
-    let or_word = input.word.map_or(String::new(), |(word, _)| format!(", or \"{word}\""));
+    let words = input.words_listed().unwrap_or_default();
+    if input.is_enumeration() {
+        return Err(format!("{name} = {text}: {name} takes words only; it is {words}"));
+    }
+    let or_word = if words.is_empty() { words } else { format!(", or {words}") };
     let value = parse_value(text, input.unit).map_err(|error| format!("{name}: {error}{or_word}"))?;
-    // The number that encodes the word is no value of its own.
+    // The number that encodes a word is no value of its own.
     if input.accepts(value) && input.word_for(value).is_none() {
         return Ok((number, value));
     }
@@ -97,7 +95,7 @@ fn print_one(model: &Model, inputs: &[f64], of_study: Option<(u64, u64)>, reques
             &format!("{} = {value} lies outside {} to {}, which the source covers", input.name, input.usual.0, input.usual.1),
         );
     }
-    if let Some(notes) = model.notes.filter(|_| evaluation.status == Status::Ok) {
+    if let Some(notes) = model.notes {
         notes(inputs, &evaluation).iter().for_each(|note| terminal::remark("note", note));
     }
     along_the_belt(model, inputs, &evaluation, request)?;
@@ -292,4 +290,21 @@ fn print_worst(plan: &Plan, design: u64, as_json: bool) -> Result<()> {
         bold("feasible"),
         if row.feasible { "yes" } else { "no" },
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::unlike::with_a_section;
+    use super::*;
+
+    #[test]
+    fn an_enumeration_is_set_by_its_words_only() {
+        let model = with_a_section();
+        let section = model.enumeration().expect("it has one");
+        assert_eq!(parse_assignment(model, "section = welded-discs"), Ok((section, 2.0)));
+        for wrong in ["2", "cast", ""] {
+            let expected = format!("section = {wrong}: section takes words only; it is \"machined\", \"welded-discs\" or \"pressed-cup\"");
+            assert_eq!(parse_assignment(model, &format!("section={wrong}")), Err(expected));
+        }
+    }
 }

@@ -55,3 +55,27 @@ fn read_study(path: &Path) -> Result<(Study, String)> {
 fn threads(asked: Option<u16>) -> usize {
     asked.map_or_else(|| std::thread::available_parallelism().map_or(1, std::num::NonZero::get), usize::from)
 }
+
+/// Models that no shipped one is like.
+#[cfg(test)]
+mod unlike {
+    use beltspace::models::{Input, Model, find};
+
+    const SECTIONS: &[(&str, f64)] = &[("machined", 1.0), ("welded-discs", 2.0), ("pressed-cup", 4.0)];
+    const PRESETS: &[(&str, &[(&str, f64)])] = &[("welded", &[("section", 2.0)])];
+
+    /// Computed on the processor only.
+    pub fn on_the_processor_only() -> &'static Model {
+        Box::leak(Box::new(Model { name: "no-twin", device: None, ..*find("pulley-load").expect("it is a model") }))
+    }
+
+    /// With an input whose every value is a word, and one that is read for one of them only.
+    pub fn with_a_section() -> &'static Model {
+        let model = find("pulley-load").expect("it is a model");
+        let section = Input::enumeration("section", "", SECTIONS, 4.0, "How the pulley is made.", "chosen");
+        let mass = Input::new("disc_mass_g", "", beltspace::units::GRAM, 10.0, (1.0, 100.0), "Mass of a disc.", "chosen");
+        let mass = Input { only_for: &["machined", "welded-discs"], ..mass };
+        let inputs: Vec<Input> = model.inputs.iter().copied().chain([section, mass]).collect();
+        Box::leak(Box::new(Model { name: "sections", inputs: Vec::leak(inputs), presets: PRESETS, ..*model }))
+    }
+}

@@ -5,7 +5,7 @@ use crate::cli;
 use crate::terminal::{self, Grid, bold, dim};
 use beltspace::error::Result;
 use beltspace::models::{Input, MODELS, Model, Range, Worse};
-use beltspace::study::number;
+use beltspace::study::{number, value_of};
 use serde_json::{Map, Value, json};
 
 pub fn run(request: &cli::Models) -> Result<()> {
@@ -41,9 +41,10 @@ fn page(model: &Model) -> String {
             Some((word, other)) => format!("{} ({word})", model.inputs[other].default),
             None => word.map_or_else(|| input.default.to_string(), str::to_owned),
         };
-        inputs.row([input.name.to_owned(), default, format!("{low} to {high}"), valid(input)]);
+        let usual = if input.is_enumeration() { "any".to_owned() } else { format!("{low} to {high}") };
+        inputs.row([input.name.to_owned(), default, usual, input.valid_in_words()]);
     }
-    let inputs = described(&inputs, model.inputs.iter().map(|input| format!("{} [{}]", input.doc, input.source)));
+    let inputs = described(&inputs, model.inputs.iter().map(|input| format!("{} [{}]{}", input.doc, input.source, only_for(model, input))));
     let mut outputs = Grid::default();
     outputs.row(["output", "symbol", "equation"].map(bold));
     for output in model.outputs {
@@ -57,8 +58,9 @@ fn page(model: &Model) -> String {
     }
     let presets: Vec<_> = model.presets.iter().map(|(name, _)| *name).collect();
     let presets = if presets.is_empty() { String::new() } else { format!("presets: {}\n\n", presets.join(", ")) };
+    let where_run = if model.device.is_none() { "\nComputed in f64 on the processor only." } else { "" };
     format!(
-        "{}  {}\n\n{}\n\n{}\n{}\n{}\n{presets}{} {}\n",
+        "{}  {}\n\n{}{where_run}\n\n{}\n{}\n{}\n{presets}{} {}\n",
         bold(model.name),
         model.summary,
         model.source,
@@ -79,10 +81,11 @@ fn described(table: &Grid, sentences: impl Iterator<Item = String>) -> String {
     format!("{head}\n{}", rows.collect::<String>())
 }
 
-fn valid(input: &Input) -> String {
-    let whole = if input.integer { "whole, " } else { "" };
-    let word = input.word.map_or(String::new(), |(word, _)| format!(", or \"{word}\""));
-    format!("{whole}{}{word}", input.valid.in_words())
+/// For which words of the model's enumeration an input is read, if not always.
+fn only_for(model: &Model, input: &Input) -> String {
+    let Some(of) = model.enumeration().filter(|_| !input.only_for.is_empty()) else { return String::new() };
+    let words: Vec<_> = input.only_for.iter().map(|word| format!("\"{word}\"")).collect();
+    format!(" Read for {} = {} only.", model.inputs[of].name, words.join(" or "))
 }
 
 /// A model as JSON: everything of the table.
@@ -97,12 +100,24 @@ fn describe(model: &Model) -> Value {
     };
     let defaults = model.spelled_out(&model.defaults());
     let inputs = model.inputs.iter().enumerate().map(|(at, input)| {
-        json!({
+        // A single word beside a range of numbers has a key of its own; of several, all are listed.
+        let word = if let [(word, _)] = input.words { Some(*word) } else { None };
+        let mut described = json!({
             "name": input.name, "symbol": input.symbol, "unit": input.unit.symbol,
-            "default": beltspace::study::value_of(model, at, defaults[at]),
+            "default": value_of(model, at, defaults[at]),
             "valid": range(&input.valid), "usual": [number(input.usual.0), number(input.usual.1)], "integer": input.integer,
-            "word": input.word.map(|(word, _)| word), "follows": input.follows, "doc": input.doc, "source": input.source,
-        })
+            "word": word, "follows": input.follows, "doc": input.doc, "source": input.source,
+        });
+        if input.is_enumeration() {
+            (described["valid"], described["usual"]) = (Value::Null, Value::Null);
+        }
+        if input.words.len() > 1 {
+            described["words"] = input.words.iter().map(|(word, _)| *word).collect();
+        }
+        if !input.only_for.is_empty() {
+            described["only_for"] = input.only_for.into();
+        }
+        described
     });
     let outputs = model.outputs.iter().map(|output| {
         json!({
@@ -119,13 +134,54 @@ fn describe(model: &Model) -> Value {
         .presets
         .iter()
         .map(|(name, values)| {
-            let values: Map<_, _> = values.iter().map(|(input, value)| ((*input).to_owned(), number(*value))).collect();
+            let value = |(input, value): &(&str, f64)| {
+                let at = model.input(input).expect("a preset names inputs of its model");
+                ((*input).to_owned(), value_of(model, at, *value))
+            };
+            let values: Map<_, _> = values.iter().map(value).collect();
             ((*name).to_owned(), Value::from(values))
         })
         .collect();
     json!({
         "name": model.name, "summary": model.summary, "source": model.source, "limits": model.limits,
+        "gpu": model.device.is_some(),
         "inputs": inputs.collect::<Vec<_>>(), "outputs": outputs.collect::<Vec<_>>(),
         "statuses": conditions.collect::<Vec<_>>(), "presets": presets,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::unlike::{on_the_processor_only, with_a_section};
+    use super::*;
+
+    #[test]
+    fn an_enumeration_is_listed_with_its_words_and_what_it_decides() {
+        let page = page(with_a_section());
+        let line = |start: &str| page.lines().find(|line| line.trim_start().starts_with(start)).expect("it is listed").to_owned();
+        assert_eq!(
+            line("section ").split_whitespace().collect::<Vec<_>>().join(" "),
+            r#"section pressed-cup any "machined", "welded-discs" or "pressed-cup""#
+        );
+        assert!(page.contains("Mass of a disc. [chosen] Read for section = \"machined\" or \"welded-discs\" only."), "{page}");
+    }
+
+    #[test]
+    fn a_model_of_the_processor_alone_says_so() {
+        let says = |model: &Model| page(model).contains("Computed in f64 on the processor only.");
+        assert!(says(on_the_processor_only()) && !says(with_a_section()));
+        assert_eq!((&describe(on_the_processor_only())["gpu"], &describe(with_a_section())["gpu"]), (&json!(false), &json!(true)));
+    }
+
+    #[test]
+    fn json_has_the_words_of_an_enumeration_and_what_it_decides() {
+        let described = describe(with_a_section());
+        let inputs = described["inputs"].as_array().expect("a list");
+        let [section, mass] = [&inputs[inputs.len() - 2], &inputs[inputs.len() - 1]];
+        assert_eq!(section["words"], json!(["machined", "welded-discs", "pressed-cup"]));
+        assert_eq!((&section["default"], &section["valid"], &section["word"]), (&json!("pressed-cup"), &Value::Null, &Value::Null));
+        assert_eq!(mass["only_for"], json!(["machined", "welded-discs"]));
+        assert!(inputs[0].get("only_for").is_none() && inputs[0].get("words").is_none());
+        assert_eq!(described["presets"]["welded"], json!({ "section": "welded-discs" }));
+    }
 }

@@ -105,6 +105,7 @@ fn describe_device(device: &engine::Trusted, did: &DeviceRecord) -> Value {
 
 /// Writes the kernel of a study.
 fn emit_shader(plan: &Plan, wrong: &Wrong, threads: usize, file: &Path) -> Result<()> {
+    engine::needs_a_twin(plan.study.model, "it has no shader to write; leave --emit-shader out")?;
     let ranges = Tally::new(plan, &Tables::new(plan), threads).histogram_ranges(plan);
     replace(file, kernel_of(plan, &ranges, &wrong.perturb)?.as_bytes())
 }
@@ -197,4 +198,21 @@ fn finish_shard(plan: &Plan, out: &Path, checkpoint: &Checkpoint, quiet: bool) -
         terminal::grouped(range.end - range.start),
         out.display(),
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::unlike::on_the_processor_only;
+    use super::*;
+
+    #[test]
+    fn a_model_without_a_twin_has_no_shader_to_write() {
+        let text = beltspace::models::find("pulley-load").expect("it is a model").starter;
+        let mut study = beltspace::study::Study::parse(text, "study.toml", ".".as_ref()).expect("the starter is right");
+        study.model = on_the_processor_only();
+        let refused = emit_shader(&Plan::new(study), &Wrong::default(), 1, Path::new("unwritten.wgsl")).expect_err("it has no twin");
+        assert!(matches!(refused, Error::Request(_)));
+        let expected = "no-twin is computed in f64 on the processor only; it has no shader to write; leave --emit-shader out";
+        assert_eq!((refused.to_string().as_str(), Path::new("unwritten.wgsl").exists()), (expected, false));
+    }
 }

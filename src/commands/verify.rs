@@ -43,6 +43,7 @@ pub fn run(request: &cli::Verify) -> Result<()> {
 }
 
 fn open(request: &cli::Verify, model: &Model) -> Result<engine::Trusted> {
+    engine::needs_a_twin(model, "there is nothing on a GPU to compare with it")?;
     let wrong = Wrong { perturb: engine::perturbations(model, &request.perturb)?, ..Wrong::default() };
     engine::trusted(request.adapter.as_deref(), wrong)
 }
@@ -108,4 +109,18 @@ fn describe(device: &engine::Trusted, report: &Report, swept: Option<&Recheck>) 
         "conditions": report.conditions.iter().map(statistics).collect::<Vec<_>>(),
         "tiles": swept.map(Recheck::to_json),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::unlike::on_the_processor_only;
+    use super::*;
+
+    #[test]
+    fn a_model_without_a_twin_cannot_be_verified() {
+        let request = cli::Verify { target: "no-twin".to_owned(), samples: 1, seed: 1, adapter: None, perturb: Vec::new(), json: false };
+        let refused = open(&request, on_the_processor_only()).map(drop).expect_err("it has no twin");
+        assert!(matches!(refused, Error::Request(_)));
+        assert_eq!(refused.to_string(), "no-twin is computed in f64 on the processor only; there is nothing on a GPU to compare with it");
+    }
 }

@@ -28,7 +28,7 @@ impl<'p> Worst<'p> {
         let mut inputs = self.inputs.clone();
         (inputs[self.axes[0]], inputs[self.axes[1]]) = (x, y);
         let mut worst: Vec<Option<f64>> = Vec::new();
-        let mut prepared = vec![0.0; model.kernel.fields().prepared_len()];
+        let mut prepared = vec![0.0; model.kernel.prepared_len()];
         for slow in 0..plan.slow_scenarios.count() {
             plan.slow_scenarios.set(slow, &mut inputs);
             for fast in 0..plan.fast_scenarios.count() {

@@ -7,6 +7,8 @@ mod pictures;
 mod summary;
 mod table;
 mod tables;
+#[cfg(test)]
+mod tests;
 
 pub use csv::write as csv_text;
 pub use number::plain;

@@ -1,7 +1,7 @@
 //! The pictures of a result.
 
 use super::table::{Data, Table};
-use super::tables::map_value;
+use super::tables::{has_words, map_value, written};
 use super::{Outcome, Summary};
 use crate::contours::{Contour, Vertex};
 use crate::pictures::{self, Contours, Curve, MapDetails, Quantity};
@@ -42,11 +42,16 @@ pub fn map(study: &Study, spec: &MapSpec, map: &Map, table: &Table, contours: &[
         (Quantity::new(input.name, input.unit.symbol), (0..axis.count()).map(|level| axis.value(0, level)).collect::<Vec<_>>())
     };
     let (x, y) = (axis(spec.x), axis(spec.y));
+    let words = |axis: usize, values: &[f64]| {
+        let input = &study.model.inputs[study.design[axis].inputs()[0]];
+        has_words(study, &study.design[axis]).then(|| values.iter().map(|&value| written(input, value)).collect())
+    };
     let (name, unit) = map_value(study, spec);
     let Data::Number(cells) = &table.columns[2].data else { unreachable!("the third column of a map is its value") };
     debug_assert_eq!(cells.len() as u64, map.size().0 * map.size().1);
     let details = MapDetails {
         whole: matches!(spec.value, Best::Value(quantity, _) if quantity.is_whole(study.model)),
+        words: [words(spec.x, &x.1), words(spec.y, &y.1)],
         contours: (!spec.contours.is_empty()).then(|| spec.contours.iter().map(|it| lines(study, it, contours)).collect()),
     };
     pictures::heatmap(&study.title, (&x.0, &x.1), (&y.0, &y.1), &Quantity::new(name, unit), cells, &details)

@@ -4,9 +4,10 @@ use super::Outcome;
 use super::table::{Data, Table, TableColumn};
 use crate::certify::{Role, Row};
 use crate::contours::{Along, Contour};
+use crate::models::Input;
 use crate::plan::Plan;
 use crate::reduce::{Histogram, Map};
-use crate::study::{Axis, Best, Goal, MapSpec, Study};
+use crate::study::{Axis, Best, Goal, Levels, MapSpec, Study};
 
 /// Designs: index, design inputs, then every column's worst value and its scenario.
 pub fn designs(outcome: &Outcome<'_>, rows: &[Row]) -> Table {
@@ -16,12 +17,9 @@ pub fn designs(outcome: &Outcome<'_>, rows: &[Row]) -> Table {
     for &input in study.design.iter().flat_map(Axis::inputs) {
         let table = &model.inputs[input];
         let values = rows.iter().map(|row| row.inputs[input]);
-        let words = values.clone().any(|value| table.word_for(value).is_some());
-        let data = if words {
-            Data::Text(values.map(|value| table.word_for(value).map_or_else(|| super::plain(value), str::to_owned)).collect())
-        } else {
-            Data::Number(values.map(Some).collect())
-        };
+        let words = table.is_enumeration() || values.clone().any(|value| table.word_for(value).is_some());
+        let data =
+            if words { Data::Text(values.map(|value| written(table, value)).collect()) } else { Data::Number(values.map(Some).collect()) };
         let column = TableColumn::new(table.name, "design", table.doc, data);
         columns.push(TableColumn { unit: table.unit.symbol.to_owned(), ..column });
     }
@@ -47,6 +45,19 @@ pub fn designs(outcome: &Outcome<'_>, rows: &[Row]) -> Table {
         columns.push(TableColumn::index(&format!("{}_scenario", column.name), "The scenario in which it is the worst.", scenarios));
     }
     Table { columns }
+}
+
+/// A value of an input as a person writes it.
+pub fn written(input: &Input, value: f64) -> String {
+    input.word_for(value).map_or_else(|| super::plain(value), str::to_owned)
+}
+
+/// Is a level of this axis of one input a word?
+pub fn has_words(study: &Study, axis: &Axis) -> bool {
+    let input = &study.model.inputs[axis.inputs()[0]];
+    // Levels given by a rule are numbers.
+    let listed = !matches!(axis, Axis::Single { levels: Levels::Even { .. } | Levels::Step { .. } | Levels::Continuous { .. }, .. });
+    listed && (0..axis.count()).any(|level| input.word_for(axis.value(0, level)).is_some())
 }
 
 /// Bins of a histogram; the first row counts what lies below, the last what lies above.
@@ -82,8 +93,13 @@ pub fn map(plan: &Plan, spec: &MapSpec, map: &Map) -> Table {
     let cells = 0..width * height;
     let axis = |axis: usize, digit: &dyn Fn(u64) -> u64| {
         let table = &study.model.inputs[study.design[axis].inputs()[0]];
-        let values = cells.clone().map(|cell| Some(study.design[axis].value(0, digit(cell)))).collect();
-        TableColumn { unit: table.unit.symbol.to_owned(), ..TableColumn::new(table.name, "design", table.doc, Data::Number(values)) }
+        let values = cells.clone().map(|cell| study.design[axis].value(0, digit(cell)));
+        let data = if has_words(study, &study.design[axis]) {
+            Data::Text(values.map(|value| written(table, value)).collect())
+        } else {
+            Data::Number(values.map(Some).collect())
+        };
+        TableColumn { unit: table.unit.symbol.to_owned(), ..TableColumn::new(table.name, "design", table.doc, data) }
     };
     let (name, unit) = map_value(study, spec);
     let value = |cell| match spec.value {

@@ -3,7 +3,7 @@
 use super::source::COMMON;
 use super::{Device, Program, model_prelude, model_source, tables};
 use crate::error::Result;
-use crate::models::{CONDITIONS, INPUTS, Model, OUTPUTS};
+use crate::models::{self, CONDITIONS, INPUTS, Model, OUTPUTS};
 use crate::real::{RunningError, nearest_f32};
 use std::fmt::Write;
 
@@ -13,8 +13,8 @@ const BATCH: usize = 1 << 16;
 const BATCH_TABLES: usize = 1 << 22;
 
 /// Numbers in a model's tables.
-fn table_numbers(model: &Model) -> usize {
-    let fields = model.kernel.fields();
+fn table_numbers(formula: &models::Device) -> usize {
+    let fields = formula.twin.fields();
     fields.prepared_len() - fields.prepared.len()
 }
 
@@ -22,6 +22,8 @@ fn table_numbers(model: &Model) -> usize {
 #[derive(Debug)]
 pub struct PointKernel {
     model: &'static Model,
+    /// Numbers in the tables of one point.
+    table_numbers: usize,
     device: Device,
     program: Program,
 }
@@ -31,18 +33,22 @@ pub type Found = ([RunningError; OUTPUTS], [RunningError; CONDITIONS]);
 
 impl PointKernel {
     /// The kernel's text. `perturb`: outputs that are to come out wrong by this part of their value, for testing.
-    pub fn source(model: &Model, perturb: &[(usize, f64)]) -> String {
-        let fields = model.kernel.fields();
+    ///
+    /// # Errors
+    /// [`Error::Request`](crate::error::Error::Request) if the model is computed on the processor only.
+    pub fn source(model: &Model, perturb: &[(usize, f64)]) -> Result<String> {
+        let formula = model.on_device()?;
+        let fields = formula.twin.fields();
         let all: Vec<usize> = (0..model.conditions.len()).collect();
-        let mut text = model_prelude(model, u64::MAX, &all);
+        let mut text = model_prelude(formula, all.len(), u64::MAX, &all);
         let places: Vec<usize> = fields.places().map(|(first, _)| first).collect();
-        text.push_str(&tables(model, |field, place| Some(format!("scratch[{place} + {}u + at]", places[field] - fields.prepared.len()))));
+        text.push_str(&tables(formula, |field, place| Some(format!("scratch[{place} + {}u + at]", places[field] - fields.prepared.len()))));
         let begin = if fields.tables.is_empty() { "" } else { "table_place = point * TABLE_NUMBERS;" };
         let hold = if fields.tables.is_empty() { "" } else { "held.place = point * TABLE_NUMBERS;" };
         let (inputs, outputs) = (fields.inputs.len(), model.outputs.len());
         let mut line = |it: std::fmt::Arguments<'_>| writeln!(text, "{it}").expect("a text takes everything");
         line(format_args!("const INPUTS: u32 = {inputs}u;\nconst OUTPUTS: u32 = {outputs}u;"));
-        line(format_args!("const TABLE_NUMBERS: u32 = {}u;\n", table_numbers(model)));
+        line(format_args!("const TABLE_NUMBERS: u32 = {}u;\n", table_numbers(formula)));
         line(format_args!("@group(0) @binding(3) var<storage, read_write> scratch: array<Real>;\n"));
         line(format_args!("fn prepare_point(point: u32, inputs: Inputs) -> Prepared {{\n    {begin}"));
         line(format_args!("    var held = prepare(inputs);\n    {hold}\n    return held;\n}}\n"));
@@ -57,24 +63,26 @@ impl PointKernel {
             line(format_args!("    found[at + {number}u] = Real(out.{field}.value * {factor:?}, out.{field}.bound);"));
         }
         line(format_args!("}}\n"));
-        [COMMON, &text, &model_source(model), include_str!("../../shaders/evaluate.wgsl")].join("\n")
+        Ok([COMMON, &text, &model_source(formula), include_str!("../../shaders/evaluate.wgsl")].join("\n"))
     }
 
     /// Compiles the kernel of a model.
     ///
     /// # Errors
-    /// [`Error::Gpu`](crate::error::Error::Gpu).
+    /// [`Error::Gpu`](crate::error::Error::Gpu); [`Error::Request`](crate::error::Error::Request) if the model is computed on the
+    /// processor only.
     pub fn new(device: &Device, model: &'static Model, perturb: &[(usize, f64)]) -> Result<Self> {
-        Self::from_source(device, model, &Self::source(model, perturb))
+        Self::from_source(device, model, &Self::source(model, perturb)?)
     }
 
     /// Compiles a kernel of this text, such as one with a mistake that a test must notice.
     ///
     /// # Errors
-    /// [`Error::Gpu`](crate::error::Error::Gpu).
+    /// As [`PointKernel::new`].
     pub fn from_source(device: &Device, model: &'static Model, source: &str) -> Result<Self> {
+        let table_numbers = table_numbers(model.on_device()?);
         let program = Program::new(device, source, &["evaluate"])?;
-        Ok(Self { model, device: device.clone(), program })
+        Ok(Self { model, table_numbers, device: device.clone(), program })
     }
 
     /// Evaluates points given in SI units.
@@ -84,7 +92,7 @@ impl PointKernel {
     pub fn evaluate(&self, points: &[[f64; INPUTS]]) -> Result<Vec<Found>> {
         let mut found = Vec::with_capacity(points.len());
         // Tables of many points at once would fill a device.
-        let batch = (BATCH_TABLES / table_numbers(self.model).max(1)).clamp(1, BATCH);
+        let batch = (BATCH_TABLES / self.table_numbers.max(1)).clamp(1, BATCH);
         for batch in points.chunks(batch) {
             found.extend(self.batch(batch)?);
         }
@@ -99,7 +107,7 @@ impl PointKernel {
         let results = device.buffer("found", (points.len() * width * 8) as u64, wgpu::BufferUsages::STORAGE);
         let given = device.storage("given", &given);
         let header = device.uniform("points", &[points.len() as u32, 0, 0, 0]);
-        let scratch = device.buffer("scratch", (points.len() * table_numbers(self.model) * 8).max(8) as u64, wgpu::BufferUsages::STORAGE);
+        let scratch = device.buffer("scratch", (points.len() * self.table_numbers * 8).max(8) as u64, wgpu::BufferUsages::STORAGE);
         let bound = self.program.bind(&[("points", &header), ("given", &given), ("found", &results), ("scratch", &scratch)]);
         let groups = (points.len() as u32).div_ceil(64);
         device.submit(|encoder| self.program.dispatch(encoder, "evaluate", &bound, [groups, 1]));

@@ -1,6 +1,6 @@
 //! The texts of the shaders, and the declarations that follow from a model's Rust records.
 
-use crate::models::{CONDITIONS, Fields, Model};
+use crate::models::{self, CONDITIONS, Fields};
 use std::fmt::Write;
 
 /// Numbers, own functions and decisions, for every kernel.
@@ -14,8 +14,8 @@ pub const COMMON: &str = concat!(
 );
 
 /// The text of a model: its own file, after what it shares with others.
-pub fn model_source(model: &Model) -> String {
-    model.shader.join("\n")
+pub fn model_source(formula: &models::Device) -> String {
+    formula.shader.join("\n")
 }
 
 /// A structure of `Real`s.
@@ -25,14 +25,14 @@ fn structure(text: &mut String, name: &str, fields: &[&str]) {
 }
 
 /// The declarations that a model's text relies on: its records as the Rust code has them, and which of its outputs (a bit set) and
-/// conditions are asked for. What the first stage does with its tables, and how the second reads them, [`tables`] says.
-pub fn model_prelude(model: &Model, wanted: u64, conditions: &[usize]) -> String {
-    let Fields { inputs, prepared, tables, outputs, .. } = model.kernel.fields();
+/// its `count` conditions are asked for. What the first stage does with its tables, and how the second reads them, [`tables`] says.
+pub fn model_prelude(formula: &models::Device, count: usize, wanted: u64, conditions: &[usize]) -> String {
+    let Fields { inputs, prepared, tables, outputs, .. } = formula.twin.fields();
     let mut text = format!("const CONDITIONS: u32 = {CONDITIONS}u;\n");
     for (number, field) in outputs.iter().enumerate() {
         writeln!(text, "const WANTS_{field}: bool = {};", wanted >> number & 1 == 1).expect("a text takes everything");
     }
-    for number in 0..model.conditions.len() {
+    for number in 0..count {
         writeln!(text, "const ASKS_CONDITION_{number}: bool = {};", conditions.contains(&number)).expect("a text takes everything");
     }
     text.push('\n');
@@ -47,8 +47,8 @@ pub fn model_prelude(model: &Model, wanted: u64, conditions: &[usize]) -> String
 
 /// Functions that set and read every table of a model, where a kernel has them: `entry` says where number `at` of a table stands,
 /// given the number of its field and the place where the tables of this row start; `None` for a table that nobody reads.
-pub fn tables(model: &Model, entry: impl Fn(usize, &str) -> Option<String>) -> String {
-    let fields = model.kernel.fields();
+pub fn tables(formula: &models::Device, entry: impl Fn(usize, &str) -> Option<String>) -> String {
+    let fields = formula.twin.fields();
     if fields.tables.is_empty() {
         return String::new();
     }

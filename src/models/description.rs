@@ -1,7 +1,8 @@
 //! What a model says of itself: the table behind `beltspace models`, the study file, the result columns and the docs.
 
 use super::evaluation::Evaluation;
-use super::formula::Kernel;
+use super::formula::{Kernel, Twin};
+use crate::error::{Error, Result};
 use crate::units::Unit;
 
 /// Numbers that an input may take.
@@ -20,6 +21,8 @@ pub struct Range {
 impl Range {
     /// All numbers greater than zero.
     pub const POSITIVE: Self = Self { low: 0.0, high: f64::INFINITY, includes_low: false, includes_high: false };
+    /// No number at all: what an input has whose every value is a word.
+    pub const NONE: Self = Self::between(0.0, 0.0);
     /// Zero and all greater numbers.
     pub const NOT_NEGATIVE: Self = Self { low: 0.0, high: f64::INFINITY, includes_low: true, includes_high: false };
 
@@ -31,6 +34,11 @@ impl Range {
     /// Numbers from `low` inclusive to `high` exclusive.
     pub const fn from_until(low: f64, high: f64) -> Self {
         Self { low, high, includes_low: true, includes_high: false }
+    }
+
+    /// Does no number lie in the range?
+    pub fn is_empty(&self) -> bool {
+        self.low > self.high || (self.low == self.high && !(self.includes_low && self.includes_high))
     }
 
     /// Does `value` lie in the range? NaN and infinity never do.
@@ -62,15 +70,17 @@ pub struct Input {
     pub unit: Unit,
     /// Value where none is given.
     pub default: f64,
-    /// What the formula accepts.
+    /// The numbers that the formula accepts; [`Range::NONE`] where every value is one of [`Input::words`].
     pub valid: Range,
     /// What the source covers: outside, `check` warns and the sweep goes on.
     pub usual: (f64, f64),
     /// Only whole numbers make sense.
     pub integer: bool,
-    /// A word that stands for a value (`"limit"`), and the number that encodes it.
-    pub word: Option<(&'static str, f64)>,
-    /// The input whose value the word stands for, if it is that simple: single designs show that value instead of the word.
+    /// Words that stand for values (`"limit"`), each with the number that encodes it.
+    pub words: &'static [(&'static str, f64)],
+    /// The words of the model's first [enumeration](Input::is_enumeration) for which this input is read at all; empty: always.
+    pub only_for: &'static [&'static str],
+    /// The input whose value its words stand for, if it is that simple: single designs show that value instead of the word.
     pub follows: Option<&'static str>,
     /// Does the twin know the default only? Then a study that sets it otherwise is for the processor.
     pub processor_only: bool,
@@ -99,7 +109,8 @@ impl Input {
             valid: Range::POSITIVE,
             usual,
             integer: false,
-            word: None,
+            words: &[],
+            only_for: &[],
             follows: None,
             processor_only: false,
             doc,
@@ -107,15 +118,60 @@ impl Input {
         }
     }
 
-    /// The value as a person writes it, if it is the input's word.
-    pub fn word_for(&self, value: f64) -> Option<&'static str> {
-        self.word.filter(|(_, encoded)| *encoded == value).map(|(word, _)| word)
+    /// An input whose every value is one of these words; `default` is the number that encodes one of them.
+    pub const fn enumeration(
+        name: &'static str,
+        symbol: &'static str,
+        words: &'static [(&'static str, f64)],
+        default: f64,
+        doc: &'static str,
+        source: &'static str,
+    ) -> Self {
+        let input = Self::new(name, symbol, crate::units::NONE, default, (default, default), doc, source);
+        Self { valid: Range::NONE, words, ..input }
     }
 
-    /// May the input take this value (its word included)?
+    /// Is every value of the input a word?
+    pub fn is_enumeration(&self) -> bool {
+        self.valid.is_empty()
+    }
+
+    /// The value as a person writes it, if it is one of the input's words.
+    pub fn word_for(&self, value: f64) -> Option<&'static str> {
+        self.words.iter().find(|(_, encoded)| *encoded == value).map(|&(word, _)| word)
+    }
+
+    /// The number that a word stands for.
+    pub fn value_of(&self, word: &str) -> Option<f64> {
+        self.words.iter().find(|(it, _)| *it == word).map(|&(_, encoded)| encoded)
+    }
+
+    /// Its words as a person lists them, `"a", "b" or "c"`; `None` if it has none.
+    pub fn words_listed(&self) -> Option<String> {
+        (!self.words.is_empty()).then(|| either(self.words.iter().map(|(word, _)| *word)))
+    }
+
+    /// What it may be: `whole, at least 0`, `greater than 0, or "limit"`, or its words alone.
+    pub fn valid_in_words(&self) -> String {
+        let numbers = format!("{}{}", if self.integer { "whole, " } else { "" }, self.valid.in_words());
+        match self.words_listed() {
+            Some(words) if self.is_enumeration() => words,
+            Some(words) => format!("{numbers}, or {words}"),
+            None => numbers,
+        }
+    }
+
+    /// May the input take this value (its words included)?
     pub fn accepts(&self, value: f64) -> bool {
         self.word_for(value).is_some() || (self.valid.contains(value) && (!self.integer || value.fract() == 0.0))
     }
+}
+
+/// Words in quotes, the last two joined by "or".
+pub(crate) fn either<'a>(words: impl Iterator<Item = &'a str>) -> String {
+    let mut quoted: Vec<_> = words.map(|word| format!("\"{word}\"")).collect();
+    let last = quoted.pop().unwrap_or_default();
+    if quoted.is_empty() { last } else { format!("{} or {last}", quoted.join(", ")) }
 }
 
 /// Which end of a value's scatter over the scenarios is the worst, where no objective or constraint says so.
@@ -227,6 +283,21 @@ pub type Remarks = fn(&[Option<f64>]) -> Vec<String>;
 /// Sentences on one evaluation, from its inputs in their units.
 pub type Notes = fn(&[f64], &Evaluation) -> Vec<String>;
 
+/// A model's formula on a device, with what is known of its errors.
+#[derive(Clone, Copy)]
+pub struct Device {
+    /// The formula in WGSL: the texts that make it up, what is shared first.
+    pub shader: &'static [&'static str],
+    /// The formula in f32 with error bounds.
+    pub twin: &'static dyn Twin,
+}
+
+impl std::fmt::Debug for Device {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_tuple("Device").field(&self.twin.fields().prepared).finish()
+    }
+}
+
 /// A model: everything that the rest of the program knows about it.
 pub struct Model {
     /// Name in study files and on the command line.
@@ -247,10 +318,10 @@ pub struct Model {
     pub presets: &'static [(&'static str, &'static [(&'static str, f64)])],
     /// A study to start from, in the study file's language.
     pub starter: &'static str,
-    /// The formula, instantiated for every number type.
+    /// The formula in f64.
     pub kernel: &'static dyn Kernel,
-    /// The formula in WGSL: the texts that make it up, what is shared first.
-    pub shader: &'static [&'static str],
+    /// The formula on a device; `None`: it is computed in f64 on the processor only.
+    pub device: Option<Device>,
     /// What a person should know of a whole study's answer, given the values of the inputs that no axis sets.
     pub remarks: Option<Remarks>,
     /// What a person should know of one evaluation besides its numbers, for inputs in their units.
@@ -270,9 +341,39 @@ impl Model {
         self.outputs.iter().position(|output| output.name == name)
     }
 
+    /// Its formula on a device.
+    ///
+    /// # Errors
+    /// [`Error::Request`] if the model is computed on the processor only.
+    pub fn on_device(&self) -> Result<&Device> {
+        self.device.as_ref().ok_or_else(|| Error::Request(format!("{} is computed in f64 on the processor only", self.name)))
+    }
+
     /// The defaults of all inputs, in their units.
     pub fn defaults(&self) -> Vec<f64> {
         self.inputs.iter().map(|input| input.default).collect()
+    }
+
+    /// The defaults with what a preset changes.
+    ///
+    /// # Errors
+    /// A sentence that lists the presets, if there is none of that name.
+    pub fn preset(&self, name: &str) -> std::result::Result<Vec<f64>, String> {
+        let Some((_, changes)) = self.presets.iter().find(|(it, _)| *it == name) else {
+            let names: Vec<_> = self.presets.iter().map(|(name, _)| *name).collect();
+            let known = if names.is_empty() { "it has none".to_owned() } else { format!("presets are: {}", names.join(", ")) };
+            return Err(format!("{} has no preset \"{name}\"; {known}", self.name));
+        };
+        let mut inputs = self.defaults();
+        for (input, value) in *changes {
+            inputs[self.input(input).expect("a preset names inputs of its model")] = *value;
+        }
+        Ok(inputs)
+    }
+
+    /// The first input whose every value is a word; [`Input::only_for`] names its words.
+    pub fn enumeration(&self) -> Option<usize> {
+        self.inputs.iter().position(Input::is_enumeration)
     }
 
     /// The same inputs with a value in place of every word that stands for another input's.

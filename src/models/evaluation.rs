@@ -87,11 +87,12 @@ pub fn evaluate(model: &Model, inputs: &[f64]) -> Evaluation {
     Evaluation { status, outputs: (0..model.outputs.len()).map(|output| shown(model, &outputs, present, output)).collect() }
 }
 
-/// What f32 arithmetic can say of the same design: is its status ok, and each output with its error bound in SI units.
-pub fn evaluate_decided(model: &Model, inputs: &[f64]) -> (Decision, [RunningError; OUTPUTS]) {
-    let (outputs, margins) = model.kernel.bounded(&to_si(model, inputs).map(RunningError::input));
+/// What f32 arithmetic can say of the same design: is its status ok, and each output with its error bound in SI units. `None`: the
+/// model is computed in f64 only.
+pub fn evaluate_decided(model: &Model, inputs: &[f64]) -> Option<(Decision, [RunningError; OUTPUTS])> {
+    let (outputs, margins) = model.device?.twin.bounded(&to_si(model, inputs).map(RunningError::input));
     let ok = (0..model.conditions.len())
         .filter(|&number| !model.conditions[number].quiet)
         .fold(Decision::Yes, |all, number| all.and(holds(model, number, f64::from(margins[number].value), margins[number].bound)));
-    (ok, outputs)
+    Some((ok, outputs))
 }

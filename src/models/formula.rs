@@ -4,11 +4,11 @@ use super::description::Model;
 use crate::real::{Dependence, LANES, Lanes, Real, RunningError};
 
 /// Most inputs that a model may have.
-pub const INPUTS: usize = 48;
+pub const INPUTS: usize = 64;
 /// Most outputs that a model may have.
-pub const OUTPUTS: usize = 32;
+pub const OUTPUTS: usize = 48;
 /// Most conditions that a model may have.
-pub const CONDITIONS: usize = 8;
+pub const CONDITIONS: usize = 12;
 
 /// A model's formula in two stages, over any [`Real`]. All values are in SI units.
 ///
@@ -118,11 +118,12 @@ impl Default for Scratch {
     }
 }
 
-/// A formula instantiated for every number type, behind one table of functions.
+/// A formula as a sweep in f64 needs it, behind one table of functions. Every [`Formula`] is one; a model that is no formula over
+/// any number type, such as a solver of its own, implements it directly and has no [`Twin`].
 pub trait Kernel: Sync {
-    /// The names of the formula's values.
-    fn fields(&self) -> Fields;
-    /// First stage in f64, as far as the outputs in `wanted` need it; `prepared` has [`Fields::prepared_len`] places.
+    /// How many numbers the first stage passes on.
+    fn prepared_len(&self) -> usize;
+    /// First stage in f64, as far as the outputs in `wanted` need it; `prepared` has [`Kernel::prepared_len`] places.
     fn prepare(&self, inputs: &[f64; INPUTS], wanted: u64, prepared: &mut [f64]);
     /// Margins of all conditions in f64.
     fn conditions(&self, prepared: &[f64], inputs: &[f64; INPUTS]) -> [f64; CONDITIONS];
@@ -130,7 +131,7 @@ pub trait Kernel: Sync {
     fn finish(&self, prepared: &[f64], inputs: &[f64; INPUTS], wanted: u64, outputs: &mut [f64; OUTPUTS]);
     /// First stage in f64 with all that it can pass on.
     fn prepared(&self, inputs: &[f64; INPUTS]) -> Vec<f64> {
-        let mut prepared = vec![0.0; self.fields().prepared_len()];
+        let mut prepared = vec![0.0; self.prepared_len()];
         self.prepare(inputs, u64::MAX, &mut prepared);
         prepared
     }
@@ -148,6 +149,12 @@ pub trait Kernel: Sync {
     );
     /// What depends on what.
     fn reach(&self, inputs: &[Dependence; INPUTS]) -> Reach;
+}
+
+/// The same formula as a device has it: in f32, with bounds on its errors. Every [`Formula`] is one.
+pub trait Twin: Sync {
+    /// The names of the formula's values.
+    fn fields(&self) -> Fields;
     /// What the second stage and the conditions read, to give the outputs in `wanted`.
     fn reads(&self, inputs: &[Dependence; INPUTS], wanted: u64) -> Reads;
     /// Outputs and condition margins in f32 with bounds on their errors.
@@ -166,8 +173,8 @@ pub fn run<F: Formula, R: Real<Shared = R>>(inputs: &[R; INPUTS]) -> ([R; OUTPUT
 }
 
 impl<F: Formula + Sync> Kernel for F {
-    fn fields(&self) -> Fields {
-        F::FIELDS
+    fn prepared_len(&self) -> usize {
+        F::FIELDS.prepared_len()
     }
 
     fn prepare(&self, inputs: &[f64; INPUTS], wanted: u64, prepared: &mut [f64]) {
@@ -209,6 +216,12 @@ impl<F: Formula + Sync> Kernel for F {
         F::prepare(inputs, u64::MAX, &mut prepared);
         let prepared = prepared.iter().fold(0, |set, value| set | value.inputs);
         Reach { prepared, outputs: outputs.map(|value| value.inputs), conditions: conditions.map(|value| value.inputs) }
+    }
+}
+
+impl<F: Formula + Sync> Twin for F {
+    fn fields(&self) -> Fields {
+        F::FIELDS
     }
 
     fn reads(&self, inputs: &[Dependence; INPUTS], wanted: u64) -> Reads {

@@ -17,7 +17,7 @@
 //! - The second friction component acts along the flank, inwards and towards the groove's mid-plane: the loads balance
 //!   exactly only then (the paper's "radial" taken literally is 0.67 % off in its example).
 
-use super::description::{Condition, Input, Model, Output, Profile, ProfileColumn, Range, Worse};
+use super::description::{Condition, Device, Input, Model, Output, Profile, ProfileColumn, Range, Worse};
 use super::formula::{CONDITIONS, Fields, Formula, INPUTS, OUTPUTS, bits, record};
 use crate::real::Real;
 use crate::units::{
@@ -203,7 +203,7 @@ pub const MODEL: Model = Model {
     profile: Some(profile),
     notes: None,
     remarks: None,
-    shader: &[include_str!("../../shaders/models/pulley-load.wgsl")],
+    device: Some(Device { shader: &[include_str!("../../shaders/models/pulley-load.wgsl")], twin: &PulleyLoad }),
 };
 
 /// The formula.
@@ -290,6 +290,39 @@ impl Formula for PulleyLoad {
         out[OUT.slack_end_line_force] = p.slack_end_line_force;
         out[OUT.tight_end_line_force] = p.tight_end_line_force;
     }
+}
+
+/// What a pulley's finite elements need of the belt's load, in SI units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct WrapLoad {
+    /// Margins of the two conditions.
+    pub margins: [f64; 2],
+    /// mu' of (13).
+    pub effective_friction: f64,
+    /// Total coefficient of friction that the load needs.
+    pub friction_used: f64,
+    /// R(0) of (10): normal force per flank and length at the slack end.
+    pub flank_force: f64,
+}
+
+/// The belt's load, for inputs that begin with those of this model.
+pub(super) fn wrap_load(si: &[f64; INPUTS]) -> WrapLoad {
+    let mut prepared = [0.0; Prepared::<usize>::NAMES.len()];
+    PulleyLoad::prepare(si, u64::MAX, &mut prepared);
+    let p = Prepared::<f64>::shared(&prepared);
+    WrapLoad {
+        margins: [p.lift_margin, p.balance_margin],
+        effective_friction: p.effective_friction,
+        friction_used: p.friction_used,
+        flank_force: p.slack_end_line_force * p.flank_per_line / Inputs::read(si).groove_count,
+    }
+}
+
+/// All outputs of this model, for inputs and outputs that begin with its own.
+pub(super) fn finish_all(si: &[f64; INPUTS], outputs: &mut [f64; OUTPUTS]) {
+    let mut prepared = [0.0; Prepared::<usize>::NAMES.len()];
+    PulleyLoad::prepare(si, u64::MAX, &mut prepared);
+    PulleyLoad::finish(&prepared, si, u64::MAX, outputs);
 }
 
 /// Tension, line force and flank force over the wrap, (14), (9), (10): from the slack end (0) to the tight end, a row a degree

@@ -3,6 +3,67 @@
 use super::*;
 use std::collections::HashSet;
 
+/// Words of an enumeration, for tests where no model needs them.
+const SECTIONS: &[(&str, f64)] = &[("machined", 1.0), ("welded-discs", 2.0), ("double-groove", 3.0), ("pressed-cup", 4.0)];
+
+const PRESETS: &[(&str, &[(&str, f64)])] = &[("welded", &[("section", 2.0), ("power_kW", 5.0)])];
+
+/// A model with an enumeration and an input that is read for one of its words only; its formula reads neither.
+pub(crate) fn with_a_section() -> &'static Model {
+    let model = find("pulley-load").expect("it is a model");
+    let doc = "How the pulley is made.";
+    let section = Input::enumeration("section", "", SECTIONS, 4.0, doc, "chosen");
+    let mass = Input::new("disc_mass_g", "", crate::units::GRAM, 10.0, (1.0, 100.0), "Mass of a disc.", "chosen");
+    let mass = Input { only_for: &["welded-discs"], ..mass };
+    let inputs: Vec<Input> = model.inputs.iter().copied().chain([section, mass]).collect();
+    Box::leak(Box::new(Model { name: "sections", inputs: Vec::leak(inputs), presets: PRESETS, ..*model }))
+}
+
+#[test]
+fn an_enumeration_takes_its_words_and_nothing_else() {
+    let model = with_a_section();
+    let section = &model.inputs[model.enumeration().expect("it has one")];
+    assert!(section.is_enumeration() && section.accepts(3.0) && !section.accepts(5.0) && !section.accepts(2.5));
+    assert_eq!((section.word_for(2.0), section.value_of("machined"), section.value_of("2")), (Some("welded-discs"), Some(1.0), None));
+    assert_eq!(section.valid_in_words(), r#""machined", "welded-discs", "double-groove" or "pressed-cup""#);
+    let traction = find("metal-cvt").and_then(|model| model.inputs.iter().find(|it| it.name == "traction")).expect("it is an input");
+    assert!(!traction.is_enumeration() && traction.accepts(0.5) && traction.accepts(-1.0) && !traction.accepts(-2.0));
+    assert_eq!(traction.valid_in_words(), r#"at least 0 and less than 1, or "limit""#);
+    assert_eq!(evaluate(model, &model.defaults()).status, Status::Ok);
+}
+
+#[test]
+fn a_preset_changes_the_defaults_and_an_unknown_one_lists_what_there_is() {
+    let model = with_a_section();
+    let inputs = model.preset("welded").expect("it is a preset");
+    let changed: Vec<_> = (0..inputs.len()).filter(|&input| inputs[input] != model.inputs[input].default).collect();
+    assert_eq!(changed, [0, model.enumeration().expect("it has one")]);
+    assert_eq!(model.preset("cast").unwrap_err(), "sections has no preset \"cast\"; presets are: welded");
+    let none = find("metal-cvt").expect("it is a model").preset("x").unwrap_err();
+    assert_eq!(none, "metal-cvt has no preset \"x\"; it has none");
+}
+
+#[test]
+fn words_are_unique_and_presets_and_conditions_of_inputs_name_what_exists() {
+    for model in MODELS.iter().copied().chain([with_a_section()]) {
+        for input in model.inputs {
+            let words: HashSet<_> = input.words.iter().map(|(word, _)| word).collect();
+            let numbers: HashSet<_> = input.words.iter().map(|(_, number)| number.to_bits()).collect();
+            assert!(words.len() == input.words.len() && numbers.len() == words.len(), "{}: {}", model.name, input.name);
+            assert!(input.words.iter().all(|(_, number)| !input.valid.contains(*number)), "{}: {}", model.name, input.name);
+            let enumeration = model.enumeration().map(|of| &model.inputs[of]);
+            let known = |word: &&str| enumeration.is_some_and(|of| of.value_of(word).is_some());
+            assert!(input.only_for.iter().all(known), "{}: {}", model.name, input.name);
+        }
+        for (name, changes) in model.presets {
+            for (input, value) in *changes {
+                let input = &model.inputs[model.input(input).unwrap_or_else(|| panic!("{}: {name} sets {input}", model.name))];
+                assert!(input.accepts(*value), "{}: {name} sets {} to {value}", model.name, input.name);
+            }
+        }
+    }
+}
+
 #[test]
 fn names_are_unique_and_carry_their_unit() {
     for model in MODELS {

@@ -43,7 +43,7 @@ pub fn heatmap(
     let mut entries = legend(&cells, value, lines.is_some());
     entries.extend(overlay::legend(given));
     let header = Header::new(title, entries);
-    let layout = Layout::new(x, y, bar.as_ref(), header.height());
+    let layout = Layout::new(x, y, &details.words, bar.as_ref(), header.height());
     let frame = layout.frame;
 
     let mut sheet = Sheet::new(layout.bottom());
@@ -110,13 +110,19 @@ struct Layout {
 }
 
 impl Layout {
-    fn new(x: (&Quantity, &[f64]), y: (&Quantity, &[f64]), bar: Option<&Bar>, top: i32) -> Self {
-        let y_axis = levels::upwards(y.1, HEIGHT);
+    fn new(
+        x: (&Quantity, &[f64]),
+        y: (&Quantity, &[f64]),
+        [x_words, y_words]: &[Option<Vec<String>>; 2],
+        bar: Option<&Bar>,
+        top: i32,
+    ) -> Self {
+        let y_axis = y_words.as_ref().map_or_else(|| levels::upwards(y.1, HEIGHT), |words| levels::words_upwards(words, HEIGHT));
         let y_label = axis_label(y.0, &y_axis, HEIGHT);
         let left = 12 * UNIT + y_labels_width(y_axis.label_width(), &y_label);
         let right = 20 * UNIT + bar.map_or(0, Bar::room);
         let width = WIDTH - left - right;
-        let x_axis = levels::across(x.1, width);
+        let x_axis = x_words.as_ref().map_or_else(|| levels::across(x.1, width), |words| levels::words_across(words, width));
         let x_label = axis_label(x.0, &x_axis, width);
         let frame = Frame { left, top, width, height: HEIGHT };
         Self { frame, x: x_axis, y: y_axis, x_label, y_label }
@@ -246,6 +252,19 @@ mod tests {
     }
 
     #[test]
+    fn levels_that_are_words_stand_at_the_axes_as_such() {
+        let [x, y, value] = ["section", "ratio", "force"].map(|name| Quantity::new(name, ""));
+        let words = |words: &[&str]| Some(words.iter().map(|word| (*word).to_owned()).collect());
+        let details = MapDetails { words: [words(&["machined", "pressed-cup"]), words(&["limit", "0.5"])], ..MapDetails::default() };
+        let svg = heatmap("", (&x, &[1.0, 4.0]), (&y, &[-1.0, 0.5]), &value, &[Some(1.0); 4], &details);
+        assert_svg(&svg);
+        for text in ["machined", "pressed-cup", "limit", "0.5"] {
+            assert!(svg.contains(&format!("\n{text}\n")), "{text} is missing");
+        }
+        assert!(!svg.contains("−1"), "the number that stands for a word means nothing outside");
+    }
+
+    #[test]
     fn given_lines_replace_the_automatic_ones() {
         let levels: Vec<f64> = (0..20).map(f64::from).collect();
         let cells: Vec<_> = (0..400).map(|i| Some(f64::from(i % 20))).collect();
@@ -253,7 +272,7 @@ mod tests {
         let drawn = |quantity: &str, every_change: bool, curves: Vec<Curve>| {
             let contours = vec![Contours { quantity: Quantity::new(quantity, "N"), every_change, curves }];
             let [x, y, value] = ["ratio", "torque", "tooth"].map(|name| Quantity::new(name, ""));
-            let details = MapDetails { whole: true, contours: Some(contours) };
+            let details = MapDetails { whole: true, contours: Some(contours), ..MapDetails::default() };
             let svg = heatmap("", (&x, &levels), (&y, &levels), &value, &cells, &details);
             assert_svg(&svg);
             assert!(!svg.contains("ticks of the colour bar"));
@@ -273,7 +292,7 @@ mod tests {
         let ticks = |cells: &[Option<f64>], whole: bool| {
             let [x, y] = ["ratio", "torque"].map(|name| Quantity::new(name, ""));
             let levels: Vec<f64> = (0..cells.len()).map(|i| i as f64).collect();
-            let details = MapDetails { whole, contours: None };
+            let details = MapDetails { whole, ..MapDetails::default() };
             heatmap("", (&x, &levels), (&y, &[1.0]), &Quantity::new("tooth", ""), cells, &details)
         };
         let cells = [Some(3.0), Some(4.0), Some(5.0)];

@@ -23,6 +23,23 @@ pub(super) fn upwards(levels: &[f64], room: i32) -> Axis {
     every(levels, nicest_stride(levels, least))
 }
 
+/// Horizontal axis over cells whose levels have these texts.
+pub(super) fn words_across(words: &[String], room: i32) -> Axis {
+    let clear = (1..=words.len()).map(|stride| every_word(words, stride)).find(|axis| axis.is_clear(room));
+    clear.unwrap_or_else(|| every_word(words, words.len()))
+}
+
+/// Vertical axis over cells whose levels have these texts.
+pub(super) fn words_upwards(words: &[String], room: i32) -> Axis {
+    every_word(words, (words.len() * (26 * UNIT) as usize).div_ceil(room.max(1) as usize))
+}
+
+/// The axis with a text in the middle of every `stride`-th cell.
+fn every_word(words: &[String], stride: usize) -> Axis {
+    let ticks = words.iter().enumerate().step_by(stride.max(1)).map(|(i, word)| (i as f64 + 0.5, word.clone()));
+    Axis::with_ticks((0.0, words.len() as f64), ticks)
+}
+
 /// Least number of cells from one label to the next if labels need `spacing`.
 fn fitting_stride(levels: &[f64], room: i32, spacing: i32) -> usize {
     (levels.len() * spacing as usize).div_ceil(room.max(1) as usize)
@@ -69,6 +86,15 @@ mod tests {
         assert_eq!(axis.ticks().nth(1).expect("a second tick").0, 5.5);
         let decades: Vec<f64> = (0..22).map(|i| 10f64.powf(f64::from(i) / 7.0)).collect();
         assert_eq!(labels(&upwards(&decades, 150 * UNIT)), ["1", "10", "100", "1 000"]);
+    }
+
+    #[test]
+    fn words_have_room_too() {
+        let words: Vec<String> = (0..40).map(|i| format!("a-rather-long-word-{i}")).collect();
+        let axis = words_across(&words, 600 * UNIT);
+        assert!(axis.is_clear(600 * UNIT) && labels(&axis).len() > 1, "{:?}", labels(&axis));
+        assert_eq!(labels(&words_upwards(&words[..4], 520 * UNIT)).len(), 4);
+        assert!(labels(&words_upwards(&words, 520 * UNIT)).len() <= 20);
     }
 
     #[test]

@@ -79,6 +79,8 @@ pub struct Series {
 pub struct MapDetails {
     /// Are all values whole numbers? Then those of the colour bar are too.
     pub whole: bool,
+    /// The texts of the levels of the two axes, where some are no numbers.
+    pub words: [Option<Vec<String>>; 2],
     /// Lines over the map, in place of those that [`heatmap()`] would draw by itself.
     pub contours: Option<Vec<Contours>>,
 }

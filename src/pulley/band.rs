@@ -12,137 +12,187 @@ pub type Wide = [f64; WIDTH];
 /// Columns that are eliminated together: what they do to the rest is done in one pass.
 const PANEL: usize = 4;
 
-/// A symmetric positive definite matrix per harmonic, of which the band on and below the diagonal is kept, column by column.
+/// Symmetric banded matrices `K0 + k K1 + k^2 K2`, of which the diagonal and the band below it are kept, column by column.
 #[derive(Clone, Debug)]
-pub struct Band {
+pub struct Matrices {
     size: usize,
     half: usize,
-    entries: Vec<Wide>,
+    /// Per column, `half + 1` triples (K0, K1, K2).
+    entries: Vec<[f64; 3]>,
 }
 
-impl Band {
-    /// A zero matrix of `size` rows (rounded up to whole panels; the rows added are those of the identity) and `half` diagonals
-    /// below the main one.
+impl Matrices {
+    /// Zero matrices of `size` rows and `half` diagonals below the main one.
     pub fn new(size: usize, half: usize) -> Self {
-        let mut band = Self { size: size.next_multiple_of(PANEL), half, entries: Vec::new() };
-        band.entries.resize(band.size * band.stride(), [0.0; WIDTH]);
-        for row in size..band.size {
-            *band.entry(row, row) = [1.0; WIDTH];
-        }
-        band
-    }
-
-    /// Rows, those of the identity included.
-    pub fn size(&self) -> usize {
-        self.size
-    }
-
-    /// Columns have room for as many zeros below the band as a panel is wide, which its elimination may read.
-    fn stride(&self) -> usize {
-        self.half + PANEL
+        Self { size, half, entries: vec![[0.0; 3]; size * (half + 1)] }
     }
 
     /// The place of an entry on or below the diagonal.
     #[inline(always)]
-    pub fn entry(&mut self, row: usize, column: usize) -> &mut Wide {
-        let stride = self.stride();
-        &mut self.entries[column * stride + (row - column)]
+    pub fn entry(&mut self, row: usize, column: usize) -> &mut [f64; 3] {
+        &mut self.entries[column * (self.half + 1) + (row - column)]
     }
 
-    /// All entries, a column of `half + 1` numbers (and the zeros after it) at a time, with the number of the column.
-    pub fn columns_mut(&mut self) -> impl Iterator<Item = (usize, &mut [Wide])> {
-        let (stride, used) = (self.stride(), self.half + 1);
-        self.entries.chunks_exact_mut(stride).map(move |column| &mut column[..used]).enumerate()
+    /// Rows, rounded up to whole panels: right sides have as many.
+    pub fn rows(&self) -> usize {
+        self.size.next_multiple_of(PANEL)
     }
+}
 
-    /// Replaces the matrix by its Cholesky factor, with the inverse of the diagonal on the diagonal.
-    pub fn factor(&mut self) {
-        let stride = self.stride();
-        factor(&mut self.entries, self.size, stride);
-    }
+/// Room for the factors of four harmonics, kept from one solution to the next.
+#[derive(Clone, Debug, Default)]
+pub struct Factors {
+    entries: Vec<Wide>,
+}
 
-    /// Replaces right sides by solutions: `sides[row * count + side]`.
-    pub fn solve(&self, sides: &mut [Wide], count: usize) {
-        assert_eq!(sides.len(), self.size * count, "one number per row and right side");
+impl Factors {
+    /// Replaces right sides, `sides[row * count + side]`, by the solutions in four harmonics.
+    ///
+    /// The matrices must be positive definite; others give numbers that are not finite.
+    pub fn solve(&mut self, matrices: &Matrices, orders: [usize; WIDTH], sides: &mut [Wide], count: usize) {
+        assert_eq!(sides.len(), matrices.rows() * count, "one number per row and right side");
+        let stride = matrices.half + PANEL;
+        self.entries.resize(matrices.rows() * stride, [0.0; WIDTH]);
+        let order = orders.map(|order| order as f64);
+        let (size, half) = (matrices.size, matrices.half);
+        let entries = &mut self.entries[..matrices.rows() * stride];
         match count {
-            4 => solve::<4>(&self.entries, self.stride(), self.half, sides),
-            5 => solve::<5>(&self.entries, self.stride(), self.half, sides),
-            _ => unreachable!("a section has four or five right sides"),
+            3 => solve::<3>(&matrices.entries, entries, (size, half), order, sides.as_chunks_mut().0),
+            4 => solve::<4>(&matrices.entries, entries, (size, half), order, sides.as_chunks_mut().0),
+            5 => solve::<5>(&matrices.entries, entries, (size, half), order, sides.as_chunks_mut().0),
+            _ => unreachable!("a section has three to five right sides"),
         }
     }
 }
 
+/// Writes a column of the matrix of four harmonics. Below the band it has room for as many zeros as a panel is wide, which the
+/// elimination of a panel may read.
 #[inline(always)]
-fn each(mut function: impl FnMut(usize) -> f64) -> Wide {
-    let mut wide = [0.0; WIDTH];
-    for (lane, value) in wide.iter_mut().enumerate() {
-        *value = function(lane);
+fn build(matrices: &[[f64; 3]], (size, half): (usize, usize), order: Wide, number: usize, column: &mut [Wide]) {
+    column[half + 1..].fill([0.0; WIDTH]);
+    if number >= size {
+        column[..=half].fill([0.0; WIDTH]);
+        column[0] = [1.0; WIDTH];
+        return;
     }
-    wide
+    let parts = &matrices[number * (half + 1)..][..=half];
+    let column = &mut column[..=half];
+    for i in 0..parts.len() {
+        let [a, b, c] = parts[i];
+        for lane in 0..WIDTH {
+            column[i][lane] = a + order[lane] * (b + order[lane] * c);
+        }
+    }
 }
 
+/// Factors and solves in one pass down and one up: a column is made just before the elimination reaches it and used for the right
+/// sides while it is at hand, so that only the factors go to memory and back.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-fn factor(entries: &mut [Wide], size: usize, stride: usize) {
-    let half = stride - PANEL;
-    for first in (0..size).step_by(PANEL) {
+fn solve<const COUNT: usize>(matrices: &[[f64; 3]], entries: &mut [Wide], shape: (usize, usize), order: Wide, sides: &mut [[Wide; COUNT]]) {
+    let half = shape.1;
+    let stride = half + PANEL;
+    let rows = sides.len();
+    let mut built = 0;
+    // Nothing happens to right sides that are zero so far.
+    let mut loaded = [false; COUNT];
+    for first in (0..rows).step_by(PANEL) {
+        while built < rows.min(first + PANEL + half) {
+            build(matrices, shape, order, built, &mut entries[built * stride..][..stride]);
+            built += 1;
+        }
         let (panel, rest) = entries[first * stride..].split_at_mut(PANEL * stride);
         for column in 0..PANEL {
             let (before, own) = panel.split_at_mut(column * stride);
             let own = &mut own[..=half];
-            for (earlier, factors) in before.chunks_exact(stride).enumerate() {
-                let below = &factors[column - earlier..];
+            for earlier in 0..column {
+                let below = &before[earlier * stride + (column - earlier)..][..=half];
                 let factor = below[0];
-                for (value, other) in own.iter_mut().zip(below) {
-                    *value = each(|lane| value[lane] - other[lane] * factor[lane]);
+                for i in 0..own.len() {
+                    for lane in 0..WIDTH {
+                        own[i][lane] -= below[i][lane] * factor[lane];
+                    }
                 }
             }
-            let inverse = each(|lane| 1.0 / own[0][lane].sqrt());
+            let mut inverse = own[0];
+            for lane in 0..WIDTH {
+                inverse[lane] = 1.0 / inverse[lane].sqrt();
+            }
             own[0] = inverse;
-            for value in &mut own[1..] {
-                *value = each(|lane| value[lane] * inverse[lane]);
+            for i in 1..own.len() {
+                for lane in 0..WIDTH {
+                    own[i][lane] *= inverse[lane];
+                }
+            }
+            // The right sides of this row are complete but for the panel's own columns.
+            for side in 0..COUNT {
+                let mut value = sides[first + column][side];
+                for earlier in 0..column {
+                    let factor = before[earlier * stride + (column - earlier)];
+                    let known = sides[first + earlier][side];
+                    for lane in 0..WIDTH {
+                        value[lane] -= factor[lane] * known[lane];
+                    }
+                }
+                for lane in 0..WIDTH {
+                    value[lane] *= inverse[lane];
+                }
+                sides[first + column][side] = value;
+                loaded[side] |= value != [0.0; WIDTH];
             }
         }
-        // The rest of the matrix that the panel reaches: rows and columns up to `half` after its last column.
-        let reached = half.min(size - first - PANEL);
-        for (next, column) in rest.chunks_exact_mut(stride).take(reached).enumerate() {
+        // What the panel reaches: rows and columns up to `half` after its last column.
+        let reached = half.min(rows - first - PANEL);
+        for next in 0..reached {
             let length = half - next;
-            let place = |number: usize| &panel[number * stride + PANEL + next - number..][..length];
-            let [a, b, c, d] = [place(0), place(1), place(2), place(3)];
-            let [fa, fb, fc, fd] = [a[0], b[0], c[0], d[0]];
-            for ((((value, a), b), c), d) in column[..length].iter_mut().zip(a).zip(b).zip(c).zip(d) {
-                *value = each(|w| value[w] - ((a[w] * fa[w] + b[w] * fb[w]) + (c[w] * fc[w] + d[w] * fd[w])));
+            let column = &mut rest[next * stride..][..length];
+            let a = &panel[PANEL + next..][..length];
+            let b = &panel[stride + PANEL + next - 1..][..length];
+            let c = &panel[2 * stride + PANEL + next - 2..][..length];
+            let d = &panel[3 * stride + PANEL + next - 3..][..length];
+            let (fa, fb, fc, fd) = (a[0], b[0], c[0], d[0]);
+            for i in 0..length {
+                for lane in 0..WIDTH {
+                    column[i][lane] -= (a[i][lane] * fa[lane] + b[i][lane] * fb[lane]) + (c[i][lane] * fc[lane] + d[i][lane] * fd[lane]);
+                }
+            }
+        }
+        let (above, below) = sides.split_at_mut(first + PANEL);
+        let known = &above[first..];
+        for side in (0..COUNT).filter(|&side| loaded[side]) {
+            let (xa, xb, xc, xd) = (known[0][side], known[1][side], known[2][side], known[3][side]);
+            let a = &panel[PANEL..][..reached];
+            let b = &panel[stride + PANEL - 1..][..reached];
+            let c = &panel[2 * stride + PANEL - 2..][..reached];
+            let d = &panel[3 * stride + PANEL - 3..][..reached];
+            let below = &mut below[..reached];
+            for i in 0..reached {
+                for lane in 0..WIDTH {
+                    below[i][side][lane] -=
+                        (a[i][lane] * xa[lane] + b[i][lane] * xb[lane]) + (c[i][lane] * xc[lane] + d[i][lane] * xd[lane]);
+                }
             }
         }
     }
-}
-
-#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-fn solve<const COUNT: usize>(entries: &[Wide], stride: usize, half: usize, sides: &mut [Wide]) {
-    let (sides, _) = sides.as_chunks_mut::<COUNT>();
-    let size = sides.len();
-    for (row, column) in entries.chunks_exact(stride).enumerate() {
-        let (own, below) = sides[row..].split_first_mut().expect("a row per column");
-        let inverse = column[0];
-        for value in own.iter_mut() {
-            *value = each(|lane| value[lane] * inverse[lane]);
-        }
-        for (factor, below) in column[1..=half].iter().zip(below) {
-            for (value, own) in below.iter_mut().zip(&*own) {
-                *value = each(|lane| value[lane] - factor[lane] * own[lane]);
+    for row in (0..rows).rev() {
+        let reached = half.min(rows - row - 1);
+        let column = &entries[row * stride..][..=reached];
+        let (above, below) = sides.split_at_mut(row + 1);
+        let below = &below[..reached];
+        let mut own = above[row];
+        for i in 0..reached {
+            let factor = column[i + 1];
+            for side in 0..COUNT {
+                for lane in 0..WIDTH {
+                    own[side][lane] -= factor[lane] * below[i][side][lane];
+                }
             }
         }
-    }
-    for row in (0..size).rev() {
-        let column = &entries[row * stride..][..=half];
-        let (own, below) = sides[row..].split_first_mut().expect("a row per column");
-        for (factor, below) in column[1..].iter().zip(&*below) {
-            for (value, below) in own.iter_mut().zip(below) {
-                *value = each(|lane| value[lane] - factor[lane] * below[lane]);
+        for side in 0..COUNT {
+            for lane in 0..WIDTH {
+                own[side][lane] *= column[0][lane];
             }
         }
-        for value in own.iter_mut() {
-            *value = each(|lane| value[lane] * column[0][lane]);
-        }
+        above[row] = own;
     }
 }
 
@@ -151,36 +201,45 @@ mod tests {
     use super::*;
 
     #[test]
-    fn solutions_satisfy_the_equations_in_every_lane() {
+    fn solutions_satisfy_the_equations_of_every_harmonic() {
         let (size, half) = (23, 7);
-        let matrix = |row: usize, column: usize, lane: usize| {
+        let orders = [0, 1, 3, 8];
+        let part = |row: usize, column: usize, part: usize| {
             let far = row.abs_diff(column);
-            match far {
-                0 => 10.0 + (lane + row % 3) as f64,
-                _ if far <= half => 1.0 / (far + lane + 1) as f64 - if (row + column) % 2 == 0 { 0.3 } else { 0.0 },
+            match (far, part) {
+                (0, 0) => 10.0 + (row % 3) as f64,
+                (0, 2) => 1.0,
+                _ if far <= half => 0.3 / (far + part + 1) as f64 - if (row + column) % 2 == 0 { 0.1 } else { 0.0 },
                 _ => 0.0,
             }
         };
-        let mut band = Band::new(size, half);
+        let mut matrices = Matrices::new(size, half);
         for column in 0..size {
             for row in column..size.min(column + half + 1) {
-                *band.entry(row, column) = std::array::from_fn(|lane| matrix(row, column, lane));
+                *matrices.entry(row, column) = std::array::from_fn(|it| part(row, column, it));
             }
         }
+        let matrix = |row: usize, column: usize, lane: usize| {
+            let k = orders[lane] as f64;
+            part(row, column, 0) + k * (part(row, column, 1) + k * part(row, column, 2))
+        };
         let wanted = |row: usize, side: usize, lane: usize| (row as f64 - 3.0 * side as f64) * (1.0 + lane as f64);
-        let mut sides = vec![[0.0; WIDTH]; band.size() * 4];
-        for row in 0..size {
-            for side in 0..4 {
-                sides[row * 4 + side] =
-                    std::array::from_fn(|lane| (0..size).map(|column| matrix(row, column, lane) * wanted(column, side, lane)).sum());
+        let mut factors = Factors::default();
+        for count in 3..=5 {
+            let mut sides = vec![[0.0; WIDTH]; matrices.rows() * count];
+            for row in 0..size {
+                for side in 0..count {
+                    sides[row * count + side] =
+                        std::array::from_fn(|lane| (0..size).map(|column| matrix(row, column, lane) * wanted(column, side, lane)).sum());
+                }
             }
-        }
-        band.factor();
-        band.solve(&mut sides, 4);
-        for row in 0..size {
-            for side in 0..4 {
-                for lane in 0..WIDTH {
-                    assert!((sides[row * 4 + side][lane] - wanted(row, side, lane)).abs() < 1e-11, "row {row} side {side} lane {lane}");
+            factors.solve(&matrices, orders, &mut sides, count);
+            for row in 0..size {
+                for side in 0..count {
+                    for lane in 0..WIDTH {
+                        let error = (sides[row * count + side][lane] - wanted(row, side, lane)).abs();
+                        assert!(error < 1e-10, "row {row} side {side} lane {lane}: {error}");
+                    }
                 }
             }
         }

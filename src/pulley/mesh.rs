@@ -78,6 +78,9 @@ pub struct Mesh {
     pub points: Vec<CheckPoint>,
     /// The node whose displacement is the rim's.
     pub rim: u32,
+    /// Places beside which stress grows without limit as the mesh gets finer, other than the hub's edges: (z, r) and the distance
+    /// within which it does not count as the largest, mm.
+    pub singular: Vec<(DVec2, f64)>,
 }
 
 impl Mesh {

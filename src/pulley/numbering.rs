@@ -16,7 +16,6 @@ pub fn renumbered(mesh: Mesh) -> Mesh {
         list.sort_unstable();
         list.dedup();
     }
-    // Twice: the last node reached from anywhere is a good end to start from.
     let start = (0..count as u32)
         .filter(|&node| !neighbours[node as usize].is_empty())
         .min_by(|&a, &b| mesh.nodes[a as usize].y.total_cmp(&mesh.nodes[b as usize].y).then(a.cmp(&b)));
@@ -42,6 +41,7 @@ pub fn renumbered(mesh: Mesh) -> Mesh {
         surface: mesh.surface.iter().map(|edge| Edge { nodes: edge.nodes.map(of), ..*edge }).collect(),
         points: mesh.points.iter().map(|point| super::mesh::CheckPoint { node: of(point.node), ..*point }).collect(),
         rim: of(mesh.rim),
+        singular: mesh.singular.clone(),
     }
 }
 

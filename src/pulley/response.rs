@@ -3,10 +3,10 @@
 //! The answers to the belt's normal load, its two frictions, the bolt heads and the spin are independent of tension, power, wrap,
 //! friction and phase, so one factored section serves any number of load cases. What is kept are the stresses on the surface,
 //! recovered from the displacements there (stresses extrapolated from inside are a third too low in tight bends), and the rim's
-//! displacement. They are laid out in one flat table, [`View`], for an elastic modulus of 1 MPa: stresses do not depend on it, and
+//! displacement, which is kept like the stresses of one more point. They are laid out in one flat table, [`View`], for an elastic modulus of 1 MPa: stresses do not depend on it, and
 //! displacements are divided by it.
 
-use super::band::{Band, WIDTH, Wide};
+use super::band::{Factors, Matrices, WIDTH, Wide};
 use super::element::{Coupling, Lame, couple, samples};
 use super::loads::{EdgePoint, Seat, belt_patterns};
 use super::mesh::{Edge, Face, Mesh};
@@ -20,6 +20,10 @@ pub const BELT: usize = 3;
 pub const STRESSES: usize = 3;
 /// Numbers that points are padded to a multiple of.
 pub const CHUNK: usize = 8;
+/// Points kept once more after the others, so that they stand together: the check points and the rim.
+pub const NAMED: usize = 2 * CHUNK;
+/// The rim among the named points: its displacements along r, z and the circumference stand in place of stresses.
+pub const RIM: usize = CHECK_POINTS.len();
 /// Names of the check points, in the order of the outputs.
 pub const CHECK_POINTS: [&str; 10] = ["Bl", "Br", "Cl", "Cr", "Dl", "Dr", "El", "Er", "Fl", "Fr"];
 
@@ -34,6 +38,11 @@ enum Head {
     Excluded,
     Check,
     End = Head::Check as usize + CHECK_POINTS.len(),
+}
+
+/// Places of so many surface points, the named ones included.
+fn padded(points: usize) -> usize {
+    points.next_multiple_of(CHUNK) + NAMED
 }
 
 /// Sizes of a flat table.
@@ -62,18 +71,15 @@ impl Sizes {
     fn spin(&self) -> usize {
         self.clamp() + self.clamps * STRESSES * self.padded
     }
-    fn rim(&self) -> usize {
-        self.spin() + STRESSES * self.padded
-    }
     fn length(&self) -> usize {
-        self.rim() + (self.orders * BELT + self.clamps + 1) * 3
+        self.spin() + STRESSES * self.padded
     }
 }
 
 /// Longest flat table.
 pub const LONGEST: usize = {
-    let (padded, orders) = (super::section::SURFACE_POINTS + CHUNK, Fineness::FINE.harmonics + 1);
-    Head::End as usize + padded * (Sizes::PLACES + STRESSES * (BELT * orders + orders + 1)) + 3 * (orders * BELT + orders + 1)
+    let (padded, orders) = (super::section::SURFACE_POINTS + NAMED + CHUNK, Fineness::FINE.harmonics + 1);
+    Head::End as usize + padded * (Sizes::PLACES + STRESSES * (BELT * orders + orders + 1))
 };
 
 /// A section's answers in a flat table.
@@ -88,7 +94,7 @@ impl<'t> View<'t> {
     pub fn new(table: &'t [f64]) -> Self {
         let orders = table[Head::Orders as usize] as usize;
         let bolts = table[Head::Bolts as usize] as usize;
-        let padded = (table[Head::Points as usize] as usize).next_multiple_of(CHUNK);
+        let padded = padded(table[Head::Points as usize] as usize);
         Self { table, sizes: Sizes { padded, orders, clamps: (orders - 1) / bolts + 1 } }
     }
 
@@ -96,9 +102,9 @@ impl<'t> View<'t> {
     pub fn points(&self) -> usize {
         self.table[Head::Points as usize] as usize
     }
-    /// Surface points and the padding, whose stresses are zero.
+    /// Surface points and the padding, whose stresses are zero; the named points come after it.
     pub fn padded(&self) -> usize {
-        self.sizes.padded
+        self.sizes.padded - NAMED
     }
     /// Harmonics, the zeroth included.
     pub fn orders(&self) -> usize {
@@ -156,21 +162,6 @@ impl<'t> View<'t> {
     /// Stress of all points under a density times square of the speed of 1.
     pub fn spin(&self, stress: usize) -> &'t [f64] {
         &self.table[self.sizes.spin() + stress * self.sizes.padded..][..self.sizes.padded]
-    }
-    fn rim(&self, row: usize) -> [f64; 3] {
-        std::array::from_fn(|axis| self.table[self.sizes.rim() + 3 * row + axis])
-    }
-    /// Displacement (r, z, theta) of the rim, times the modulus, under a unit load of the belt.
-    pub fn rim_belt(&self, order: usize, load: usize) -> [f64; 3] {
-        self.rim(order * BELT + load)
-    }
-    /// The same under unit pressure of the bolt heads.
-    pub fn rim_clamp(&self, clamp: usize) -> [f64; 3] {
-        self.rim(self.sizes.orders * BELT + clamp)
-    }
-    /// The same under a unit of spin.
-    pub fn rim_spin(&self) -> [f64; 3] {
-        self.rim(self.sizes.orders * BELT + self.sizes.clamps)
     }
 }
 
@@ -260,70 +251,48 @@ fn add_stencils(stencils: &mut Vec<Stencil>, mesh: &Mesh, edge: &Edge, local: f6
     }
 }
 
-/// The three matrices of a section's stiffness `K0 + k K1 + k^2 K2`, banded like [`Band`].
-struct Stiffness {
-    parts: [Vec<f64>; 3],
-    half: usize,
-    size: usize,
-}
-
-impl Stiffness {
-    fn new(mesh: &Mesh, poisson: f64, fixed: &[bool]) -> Self {
-        let half = 3 * mesh.reach() + 2;
-        let size = 3 * mesh.nodes.len();
-        let mut parts = [(); 3].map(|()| vec![0.0; size * (half + 1)]);
-        let lame = Lame::new(1.0, poisson);
-        for element in &mesh.elements {
-            let nodes = element.nodes();
-            let mut couplings = [[Coupling::default(); 8]; 8];
-            for sample in samples(mesh, element) {
-                let weight = sample.area * sample.radius;
-                for i in 0..nodes.len() {
-                    for j in 0..nodes.len() {
-                        if nodes[i] >= nodes[j] {
-                            couple(&mut couplings[i][j], lame, &sample.shapes[i], &sample.shapes[j], sample.radius, weight);
-                        }
+/// The matrices of a section's stiffness, for a modulus of 1 MPa; what is fixed has the identity's rows.
+fn stiffness(mesh: &Mesh, poisson: f64, fixed: &[bool]) -> Matrices {
+    let mut matrices = Matrices::new(3 * mesh.nodes.len(), 3 * mesh.reach() + 2);
+    let lame = Lame::new(1.0, poisson);
+    for element in &mesh.elements {
+        let nodes = element.nodes();
+        let mut couplings = [[Coupling::default(); 8]; 8];
+        for sample in samples(mesh, element) {
+            let weight = sample.area * sample.radius;
+            for i in 0..nodes.len() {
+                for j in 0..nodes.len() {
+                    if nodes[i] >= nodes[j] {
+                        couple(&mut couplings[i][j], lame, &sample.shapes[i], &sample.shapes[j], sample.radius, weight);
                     }
                 }
             }
-            for (i, &row_node) in nodes.iter().enumerate() {
-                for (j, &column_node) in nodes.iter().enumerate() {
-                    if row_node < column_node || fixed[row_node as usize] || fixed[column_node as usize] {
-                        continue;
-                    }
-                    for (part, coupling) in parts.iter_mut().zip(&couplings[i][j]) {
-                        for a in 0..3 {
-                            for b in 0..3 {
-                                let (row, column) = (3 * row_node as usize + a, 3 * column_node as usize + b);
-                                if row >= column {
-                                    part[column * (half + 1) + row - column] += coupling[a][b];
-                                }
+        }
+        for (i, &row_node) in nodes.iter().enumerate() {
+            for (j, &column_node) in nodes.iter().enumerate() {
+                if row_node < column_node || fixed[row_node as usize] || fixed[column_node as usize] {
+                    continue;
+                }
+                for a in 0..3 {
+                    for b in 0..3 {
+                        let (row, column) = (3 * row_node as usize + a, 3 * column_node as usize + b);
+                        if row >= column {
+                            let entry = matrices.entry(row, column);
+                            for (power, entry) in entry.iter_mut().enumerate() {
+                                *entry += couplings[i][j][power][a][b];
                             }
                         }
                     }
                 }
             }
         }
-        for (node, _) in fixed.iter().enumerate().filter(|(_, fixed)| **fixed) {
-            for axis in 0..3 {
-                parts[0][(3 * node + axis) * (half + 1)] = 1.0;
-            }
-        }
-        Self { parts, half, size }
     }
-
-    /// The factored stiffness of four harmonics, written over `band`.
-    fn factored(&self, orders: [usize; WIDTH], band: &mut Band) {
-        let order = orders.map(|it| it as f64);
-        for (number, column) in band.columns_mut().take_while(|(number, _)| *number < self.size) {
-            let range = number * (self.half + 1)..(number + 1) * (self.half + 1);
-            let [p0, p1, p2] = [0, 1, 2].map(|part| &self.parts[part][range.clone()]);
-            for (((entry, a), b), c) in column.iter_mut().zip(p0).zip(p1).zip(p2) {
-                *entry = order.map(|k| a + k * (b + k * c));
-            }
+    for (node, _) in fixed.iter().enumerate().filter(|(_, fixed)| **fixed) {
+        for axis in 0..3 {
+            matrices.entry(3 * node + axis, 3 * node + axis)[0] = 1.0;
         }
-        band.factor();
     }
+    matrices
 }
 
 /// Displacements of all nodes under unit loads in four harmonics: `values[(3 * node + axis) * sides + side]`, times the modulus.
@@ -346,32 +315,35 @@ pub const SPIN_SIDE: usize = BELT + 1;
 /// Harmonics that are solved, for the given fineness and number of bolts; those between are interpolated.
 pub fn solved_orders(fineness: &Fineness, bolts: usize) -> Vec<usize> {
     const SOLVED: [usize; 14] = [0, 1, 2, 3, 4, 5, 6, 8, 10, 12, 14, 16, 20, 24];
-    // The clamp's harmonics are those of its own number: its load differs between them, so they are never interpolated.
+    // The clamp's load jumps from harmonic to harmonic: its own are never interpolated.
     let wanted = |order: &usize| fineness.every || order.is_multiple_of(bolts) || SOLVED.contains(order) || *order == fineness.harmonics;
     (0..=fineness.harmonics).filter(wanted).collect()
 }
 
 /// Solves a section for unit loads in the given harmonics, four at a time.
 pub fn solve(mesh: &Mesh, dimensions: &Dimensions, poisson: f64, orders: &[usize], mut take: impl FnMut(&Displacements<'_>)) {
+    let bolts = dimensions.bolt_count as usize;
     let fixed = mesh.fixed();
-    let stiffness = Stiffness::new(mesh, poisson, &fixed);
+    let matrices = stiffness(mesh, poisson, &fixed);
     let patterns = belt_patterns(mesh);
     let seat = Seat::new(mesh, dimensions);
-    let mut band = Band::new(stiffness.size, stiffness.half);
+    let mut factors = Factors::default();
     let mut values: Vec<Wide> = Vec::new();
+    // Harmonics of the clamp together: the others have a right side less.
+    let mut orders = orders.to_vec();
+    orders.sort_by_key(|order| (!order.is_multiple_of(bolts), *order));
     for batch in orders.chunks(WIDTH) {
         let lanes: [usize; WIDTH] = std::array::from_fn(|lane| batch[lane.min(batch.len() - 1)]);
-        let spins = lanes.contains(&0);
-        let sides = if spins { SPIN_SIDE + 1 } else { CLAMP_SIDE + 1 };
-        stiffness.factored(lanes, &mut band);
+        let (spins, clamps) = (lanes[0] == 0, lanes[0].is_multiple_of(bolts));
+        let sides = BELT + usize::from(clamps) + usize::from(spins);
         values.clear();
-        values.resize(band.size() * sides, [0.0; WIDTH]);
+        values.resize(matrices.rows() * sides, [0.0; WIDTH]);
         for (side, pattern) in patterns.iter().enumerate() {
             for (place, &load) in pattern.iter().enumerate().filter(|(_, load)| **load != 0.0) {
                 values[place * sides + side] = [load; WIDTH];
             }
         }
-        for (lane, &order) in lanes.iter().enumerate() {
+        for (lane, &order) in lanes.iter().enumerate().filter(|(_, order)| clamps && order.is_multiple_of(bolts)) {
             seat.load(dimensions, order, |place, load| values[place * sides + CLAMP_SIDE][lane] += load);
         }
         if spins {
@@ -386,7 +358,7 @@ pub fn solve(mesh: &Mesh, dimensions: &Dimensions, poisson: f64, orders: &[usize
         for (node, _) in fixed.iter().enumerate().filter(|(_, fixed)| **fixed) {
             values[3 * node * sides..3 * (node + 1) * sides].fill([0.0; WIDTH]);
         }
-        band.solve(&mut values, sides);
+        factors.solve(&matrices, lanes, &mut values, sides);
         take(&Displacements { orders: lanes, count: batch.len(), sides, values: &values });
     }
 }
@@ -408,7 +380,8 @@ pub fn respond(mesh: &Mesh, kind: Kind, dimensions: &Dimensions, poisson: f64, f
     let points = surface_points(mesh);
     let bolts = dimensions.bolt_count as usize;
     let orders = fineness.harmonics + 1;
-    let sizes = Sizes { padded: points.len().next_multiple_of(CHUNK), orders, clamps: (orders - 1) / bolts + 1 };
+    let sizes = Sizes { padded: padded(points.len()), orders, clamps: (orders - 1) / bolts + 1 };
+    let named = sizes.padded - NAMED;
     let table = &mut table[..sizes.length()];
     table.fill(0.0);
     let excluded = dimensions.excluded_radius(kind);
@@ -422,9 +395,14 @@ pub fn respond(mesh: &Mesh, kind: Kind, dimensions: &Dimensions, poisson: f64, f
         let point = node.and_then(|node| points.iter().position(|point| point.node == node));
         table[Head::Check as usize + number] = point.map_or(-1.0, |point| point as f64);
     }
+    let copies: Vec<(usize, usize)> = (0..CHECK_POINTS.len())
+        .filter(|number| table[Head::Check as usize + number] >= 0.0)
+        .map(|number| (table[Head::Check as usize + number] as usize, named + number))
+        .collect();
     for (number, point) in points.iter().enumerate() {
         let at = mesh.nodes[point.node as usize];
-        let values = [at.x, at.y, point.pressed / at.y, if at.y < excluded { 0.0 } else { 1.0 }];
+        let singular = at.y < excluded || mesh.singular.iter().any(|(place, distance)| at.distance(*place) <= distance * (1.0 + 1e-9));
+        let values = [at.x, at.y, point.pressed / at.y, if singular { 0.0 } else { 1.0 }];
         for (place, value) in values.into_iter().enumerate() {
             table[sizes.places() + place * sizes.padded + number] = value;
         }
@@ -444,17 +422,18 @@ pub fn respond(mesh: &Mesh, kind: Kind, dimensions: &Dimensions, poisson: f64, f
                 }
             }
             for lane in 0..answer.count {
-                if let Some(row) = rim_row_of(&sizes, answer.orders[lane], side, bolts) {
+                if let Some(row) = row_of(&sizes, answer.orders[lane], side, bolts) {
                     for axis in 0..3 {
-                        table[row + axis] = answer.values[(rim + axis) * answer.sides + side][lane];
+                        for &(point, copy) in &copies {
+                            table[row + axis * sizes.padded + copy] = table[row + axis * sizes.padded + point];
+                        }
+                        table[row + axis * sizes.padded + named + RIM] = answer.values[(rim + axis) * answer.sides + side][lane];
                     }
                 }
             }
         }
     });
-    let block = BELT * STRESSES * sizes.padded;
-    spline::fill_between(&solved, sizes.orders, block, &mut table[sizes.belt()..sizes.clamp()]);
-    spline::fill_between(&solved, sizes.orders, 3 * BELT, &mut table[sizes.rim()..sizes.rim() + sizes.orders * 3 * BELT]);
+    spline::fill_between(&solved, sizes.orders, BELT * STRESSES * sizes.padded, &mut table[sizes.belt()..sizes.clamp()]);
     sizes.length()
 }
 
@@ -465,15 +444,6 @@ fn row_of(sizes: &Sizes, order: usize, side: usize, bolts: usize) -> Option<usiz
         SPIN_SIDE => (order == 0).then(|| sizes.spin()),
         load => Some(sizes.belt() + (order * BELT + load) * STRESSES * sizes.padded),
     }
-}
-
-fn rim_row_of(sizes: &Sizes, order: usize, side: usize, bolts: usize) -> Option<usize> {
-    let row = match side {
-        CLAMP_SIDE => order.is_multiple_of(bolts).then(|| sizes.orders * BELT + order / bolts),
-        SPIN_SIDE => (order == 0).then_some(sizes.orders * BELT + sizes.clamps),
-        load => Some(order * BELT + load),
-    };
-    row.map(|row| sizes.rim() + 3 * row)
 }
 
 /// Stresses at a surface point, recovered from the displacements of the surface and its normal load.

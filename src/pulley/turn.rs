@@ -6,7 +6,7 @@
 //! turn gives the other three), and near the largest value anew at finer angles.
 
 use super::loads::{Complex, belt_harmonic};
-use super::response::{BELT, CHECK_POINTS, CHUNK, STRESSES, View};
+use super::response::{BELT, CHECK_POINTS, CHUNK, NAMED, RIM, STRESSES, View};
 use std::f64::consts::PI;
 
 /// Angles at which all points are evaluated, 3.75 degrees apart.
@@ -82,8 +82,20 @@ impl Waves {
     }
 }
 
+/// Cosine and sine term of eight points.
+type Term = [[f64; CHUNK]; 2];
+/// Terms of the harmonics of a chunk of points, a list per stress; harmonics follow each other in even or odd multiples of the same.
+type Terms = [Vec<Term>; STRESSES];
 /// Stresses of eight points at all angles.
 type Field = Vec<[[f64; CHUNK]; STRESSES]>;
+
+/// Room for a chunk of points.
+#[derive(Clone, Debug, Default)]
+struct Room {
+    terms: Terms,
+    belt: Field,
+    held: Field,
+}
 
 /// A load case on a section.
 #[derive(Clone, Debug)]
@@ -113,14 +125,15 @@ impl<'t> Turn<'t> {
         Self { shares: shares.collect(), quarter: quarter.collect(), view, case }
     }
 
-    /// Terms of the belt's stress on a chunk of points: per harmonic the cosine and the sine term of each stress.
-    fn belt_terms(&self, chunk: usize, terms: &mut Vec<[[[f64; CHUNK]; 2]; STRESSES]>) {
-        terms.clear();
+    /// Stresses of a chunk of points at all angles: from the belt, and from clamp and spin with the first bolt at the case's phase
+    /// (at 0 if it is open).
+    fn fill(&self, chunk: usize, room: &mut Room) {
         let places = chunk * CHUNK..(chunk + 1) * CHUNK;
+        room.terms.iter_mut().for_each(Vec::clear);
         for (order, shares) in self.shares.iter().enumerate() {
-            let mut term = [[[0.0; CHUNK]; 2]; STRESSES];
-            for (stress, term) in term.iter_mut().enumerate() {
+            for (stress, terms) in room.terms.iter_mut().enumerate() {
                 let shares = if stress == STRESSES - 1 { &shares.shear } else { &shares.normal };
+                let mut term: Term = [[0.0; CHUNK]; 2];
                 for (load, share) in shares.iter().enumerate() {
                     let unit = &self.view.belt(order, load, stress)[places.clone()];
                     for lane in 0..CHUNK {
@@ -128,22 +141,19 @@ impl<'t> Turn<'t> {
                         term[1][lane] += share[1] * unit[lane];
                     }
                 }
+                terms.push(term);
             }
-            terms.push(term);
         }
-    }
-
-    /// Terms of the clamp's and the spin's stress with the first bolt at an angle; harmonics are multiples of the number of bolts.
-    fn held_terms(&self, chunk: usize, phase: f64, terms: &mut Vec<[[[f64; CHUNK]; 2]; STRESSES]>) {
-        terms.clear();
-        let places = chunk * CHUNK..(chunk + 1) * CHUNK;
+        synthesise(&room.terms, 1, &self.quarter, &mut room.belt);
+        room.terms.iter_mut().for_each(Vec::clear);
+        let phase = self.case.phase.unwrap_or(0.0);
         for clamp in 0..self.view.clamps() {
             let angle = phase * (clamp * self.view.bolts()) as f64;
             let (sine, cosine) = (self.case.pressure * libm::sin(angle), self.case.pressure * libm::cos(angle));
-            let mut term = [[[0.0; CHUNK]; 2]; STRESSES];
-            for (stress, term) in term.iter_mut().enumerate() {
+            for (stress, terms) in room.terms.iter_mut().enumerate() {
                 let unit = &self.view.clamp(clamp, stress)[places.clone()];
                 let share = if stress == STRESSES - 1 { [-sine, cosine] } else { [cosine, sine] };
+                let mut term: Term = [[0.0; CHUNK]; 2];
                 for lane in 0..CHUNK {
                     term[0][lane] = share[0] * unit[lane];
                     term[1][lane] = share[1] * unit[lane];
@@ -154,66 +164,81 @@ impl<'t> Turn<'t> {
                         term[0][lane] += self.case.spin * spin[lane];
                     }
                 }
+                terms.push(term);
             }
-            terms.push(term);
         }
+        synthesise(&room.terms, self.view.bolts(), &self.quarter, &mut room.held);
     }
 
-    fn fields(&self, terms: &[[[[f64; CHUNK]; 2]; STRESSES]], step: usize, field: &mut Field) {
-        field.resize(ANGLES, [[0.0; CHUNK]; STRESSES]);
-        synthesise(terms, step, &self.quarter, field);
-    }
-
-    /// Everything that a load case tells of the section.
+    /// Everything that a load case tells of the section. `own` are surface points that the engineer asks for.
     pub fn summary(&self, fatigue: Option<Strength>, own: [Option<usize>; 2]) -> Summary {
         let view = &self.view;
-        let chunks = view.padded() / CHUNK;
-        let (mut terms, mut belt, mut held) = (Vec::new(), Field::new(), Field::new());
+        let mut room = Room::default();
+        let phases = self.phases();
         let mut largest = Peak::default();
         let mut tired: Vec<(f64, usize)> = Vec::new();
-        let phases = self.phases();
-        let mut known = 0.0;
-        for chunk in 0..chunks {
+        for chunk in 0..view.padded() / CHUNK {
             let counted = &view.counted()[chunk * CHUNK..(chunk + 1) * CHUNK];
             if counted.iter().all(|it| *it == 0.0) {
                 continue;
             }
-            self.belt_terms(chunk, &mut terms);
-            self.fields(&terms, 1, &mut belt);
-            self.held_terms(chunk, self.case.phase.unwrap_or(0.0), &mut terms);
-            self.fields(&terms, view.bolts(), &mut held);
-            let limits = limits(&belt, &held);
-            let worth = |lane: usize| counted[lane] != 0.0 && chunk * CHUNK + lane < view.points();
+            self.fill(chunk, &mut room);
+            let limits = limits(&room.belt, &room.held);
             // Von Mises stress is a norm: belt and hold together are no larger than their sum.
-            let possible = (0..CHUNK).filter(|&lane| worth(lane)).any(|lane| limits.belt[lane] + limits.held[lane] >= known);
-            if possible {
+            let most = |lane: usize| limits.belt[lane] + limits.held[lane];
+            if (0..CHUNK).any(|lane| counted[lane] != 0.0 && most(lane) >= largest.stress) {
                 for &shift in &phases {
-                    let (squares, angles) = largest_of(&belt, &held, shift);
-                    for lane in (0..CHUNK).filter(|&lane| worth(lane)) {
+                    let (squares, angles) = largest_of(&room.belt, &room.held, shift, von_mises_squared);
+                    for lane in (0..CHUNK).filter(|&lane| counted[lane] != 0.0) {
                         let stress = squares[lane].sqrt();
                         if stress > largest.stress {
-                            let phase = self.phase(shift);
-                            largest = Peak { point: chunk * CHUNK + lane, stress, theta: angle(angles[lane]), phase };
-                            known = stress;
+                            largest = Peak { point: chunk * CHUNK + lane, stress, theta: angle(angles[lane]), phase: self.phase(shift) };
                         }
                     }
                 }
             }
             if let Some(strength) = fatigue {
-                for lane in (0..CHUNK).filter(|&lane| worth(lane)) {
-                    tired.push((strength.used(limits.swing[lane], limits.belt[lane] + limits.held[lane]), chunk * CHUNK + lane));
+                let each = (0..CHUNK).filter(|&lane| counted[lane] != 0.0);
+                tired.extend(each.map(|lane| (strength.used(limits.swing[lane], most(lane)), chunk * CHUNK + lane)));
+            }
+        }
+        let largest = if largest.stress > 0.0 { self.refined(largest) } else { largest };
+        let named = self.named(&phases, &mut room);
+        let check_points =
+            std::array::from_fn(|number| view.check_point(number).map(|point| Peak { point, ..self.refined(named.0[number]) }));
+        Summary {
+            largest,
+            check_points,
+            own_points: own.map(|point| point.map(|point| self.peak(point, &phases, &mut room))),
+            rim_displacement: named.1 / self.case.modulus,
+            fatigue: fatigue.map(|strength| self.fatigue(strength, tired, &mut room)),
+        }
+    }
+
+    /// Peaks of the check points at the angles that all points are evaluated at, and the largest displacement of the rim times the
+    /// modulus.
+    fn named(&self, phases: &[usize], room: &mut Room) -> ([Peak; CHECK_POINTS.len()], f64) {
+        let first = self.view.padded();
+        let mut peaks: [Peak; CHECK_POINTS.len()] = std::array::from_fn(|number| Peak { point: first + number, ..Peak::default() });
+        let mut rim: f64 = 0.0;
+        for chunk in 0..NAMED / CHUNK {
+            self.fill(first / CHUNK + chunk, room);
+            for &shift in phases {
+                let (squares, angles) = largest_of(&room.belt, &room.held, shift, von_mises_squared);
+                for lane in 0..CHUNK {
+                    if let Some(peak) = peaks.get_mut(chunk * CHUNK + lane)
+                        && squares[lane].sqrt() > peak.stress
+                    {
+                        *peak = Peak { stress: squares[lane].sqrt(), theta: angle(angles[lane]), phase: self.phase(shift), ..*peak };
+                    }
+                }
+                if chunk == RIM / CHUNK {
+                    let (squares, _) = largest_of(&room.belt, &room.held, shift, length_squared);
+                    rim = rim.max(squares[RIM % CHUNK].sqrt());
                 }
             }
         }
-        let fatigue = fatigue.map(|strength| self.fatigue(strength, tired));
-        let refined = |point: usize| self.peak(point, &phases);
-        Summary {
-            largest: if largest.stress > 0.0 { self.refined(largest) } else { largest },
-            check_points: std::array::from_fn(|number| view.check_point(number).map(refined)),
-            own_points: own.map(|point| point.map(refined)),
-            rim_displacement: self.rim_displacement(&phases),
-            fatigue,
-        }
+        (peaks, rim)
     }
 
     /// Shifts of the held field, in angles, that are tried: one if the phase is given, else all that differ.
@@ -229,81 +254,74 @@ impl<'t> Turn<'t> {
         self.case.phase.unwrap_or_else(|| angle(shift))
     }
 
-    /// Stress of a point at any angle, from the belt alone or with what holds the pulley and its spin.
-    fn stress_at(&self, point: usize, waves: &Waves, held: Option<&Waves>) -> Stress {
-        let mut stress = [0.0; STRESSES];
-        for (order, (shares, &(cosine, sine))) in self.shares.iter().zip(&waves.0).enumerate() {
-            for (number, stress) in stress.iter_mut().enumerate() {
-                let shares = if number == STRESSES - 1 { &shares.shear } else { &shares.normal };
+    /// Cosine and sine terms of one point's stresses, from the belt and, with the first bolt at `phase`, from what holds the pulley.
+    fn terms_of(&self, point: usize, phase: f64) -> Vec<[[f64; 2]; STRESSES]> {
+        let mut terms = vec![[[0.0; 2]; STRESSES]; self.shares.len()];
+        for (order, (shares, term)) in self.shares.iter().zip(&mut terms).enumerate() {
+            for (stress, term) in term.iter_mut().enumerate() {
+                let shares = if stress == STRESSES - 1 { &shares.shear } else { &shares.normal };
                 for (load, share) in shares.iter().enumerate() {
-                    *stress += (share[0] * cosine + share[1] * sine) * self.view.belt(order, load, number)[point];
+                    let unit = self.view.belt(order, load, stress)[point];
+                    term[0] += share[0] * unit;
+                    term[1] += share[1] * unit;
                 }
             }
         }
-        if let Some(waves) = held {
-            self.add_held(point, waves, &mut stress);
-        }
-        stress
-    }
-
-    /// Adds the clamp, seen at an angle from the first bolt, and the spin.
-    fn add_held(&self, point: usize, waves: &Waves, stress: &mut Stress) {
         for clamp in 0..self.view.clamps() {
-            let (cosine, sine) = waves.0[clamp * self.view.bolts()];
-            for (number, stress) in stress.iter_mut().enumerate() {
-                let wave = if number == STRESSES - 1 { sine } else { cosine };
-                *stress += self.case.pressure * wave * self.view.clamp(clamp, number)[point];
+            let order = clamp * self.view.bolts();
+            let (sine, cosine) = (libm::sin(phase * order as f64), libm::cos(phase * order as f64));
+            for (stress, term) in terms[order].iter_mut().enumerate() {
+                let unit = self.case.pressure * self.view.clamp(clamp, stress)[point];
+                let share = if stress == STRESSES - 1 { [-sine, cosine] } else { [cosine, sine] };
+                term[0] += share[0] * unit;
+                term[1] += share[1] * unit;
             }
         }
-        for (number, stress) in stress.iter_mut().enumerate() {
-            *stress += self.case.spin * self.view.spin(number)[point];
+        for (stress, term) in terms[0].iter_mut().enumerate() {
+            term[0] += self.case.spin * self.view.spin(stress)[point];
         }
+        terms
+    }
+
+    /// Von Mises stress of a point at every degree of the turn, both ends included, with the first bolt at `phase`, MPa.
+    pub fn by_degree(&self, point: usize, phase: f64) -> Vec<f64> {
+        let terms = self.terms_of(point, phase);
+        (0..=360).map(|degree| at(&terms, PI * f64::from(degree) / 180.0)).collect()
     }
 
     /// Von Mises stress of a point at an angle, with the first bolt at `phase`, MPa.
     pub fn von_mises(&self, point: usize, theta: f64, phase: f64) -> f64 {
-        let orders = self.view.orders();
-        let stress = self.stress_at(point, &Waves::new(theta, orders), Some(&Waves::new(theta - phase, orders)));
-        von_mises_squared(stress).sqrt()
-    }
-
-    /// Von Mises stress of a point over the turn at all angles, with the first bolt at `phase`, MPa.
-    pub fn around(&self, point: usize, phase: f64) -> Vec<f64> {
-        (0..ANGLES).map(|step| self.von_mises(point, angle(step), phase)).collect()
+        at(&self.terms_of(point, phase), theta)
     }
 
     /// The largest stress of one point over the turn and the phases.
-    fn peak(&self, point: usize, phases: &[usize]) -> Peak {
-        let belt: Vec<Stress> = self.history(point);
-        let held: Vec<Stress> = self.held_history(point);
+    fn peak(&self, point: usize, phases: &[usize], room: &mut Room) -> Peak {
+        self.fill(point / CHUNK, room);
         let mut best = Peak { point, ..Peak::default() };
         for &shift in phases {
-            for (step, belt) in belt.iter().enumerate() {
-                let held = &held[(step + ANGLES - shift) % ANGLES];
-                let stress = von_mises_squared(std::array::from_fn(|it| belt[it] + held[it])).sqrt();
-                if stress > best.stress {
-                    best = Peak { point, stress, theta: angle(step), phase: self.phase(shift) };
-                }
+            let (squares, angles) = largest_of(&room.belt, &room.held, shift, von_mises_squared);
+            let (stress, step) = (squares[point % CHUNK].sqrt(), angles[point % CHUNK]);
+            if stress > best.stress {
+                best = Peak { point, stress, theta: angle(step), phase: self.phase(shift) };
             }
         }
         self.refined(best)
     }
 
-    /// A peak between the angles: twice a row of finer ones around the best.
+    /// A peak between the angles at which all points are evaluated: the vertex of a parabola, twice.
     fn refined(&self, peak: Peak) -> Peak {
-        const STEPS: i32 = 8;
-        let mut best = peak;
-        let mut width = angle(1);
-        for _ in 0..2 {
-            let centre = best.theta;
-            for step in -STEPS..=STEPS {
-                let theta = centre + width * f64::from(step) / f64::from(STEPS);
-                let stress = self.von_mises(peak.point, theta, peak.phase);
+        let terms = self.terms_of(peak.point, peak.phase);
+        let mut best = Peak { stress: at(&terms, peak.theta), ..peak };
+        for width in [angle(1), angle(1) / 16.0] {
+            let [before, after] = [-width, width].map(|step| at(&terms, best.theta + step));
+            let curvature = before + after - 2.0 * best.stress;
+            if curvature < 0.0 {
+                let theta = best.theta + (0.5 * width * (before - after) / curvature).clamp(-width, width);
+                let stress = at(&terms, theta);
                 if stress > best.stress {
                     best = Peak { stress, theta, ..best };
                 }
             }
-            width /= f64::from(STEPS);
         }
         let turn = 2.0 * PI;
         Peak {
@@ -317,82 +335,18 @@ impl<'t> Turn<'t> {
             ..best
         }
     }
+}
 
-    /// One point's stresses from the belt alone at all angles.
-    fn history(&self, point: usize) -> Vec<Stress> {
-        let (chunk, lane) = (point / CHUNK, point % CHUNK);
-        let (mut terms, mut field) = (Vec::new(), Field::new());
-        self.belt_terms(chunk, &mut terms);
-        self.fields(&terms, 1, &mut field);
-        field.iter().map(|stress| stress.map(|lanes| lanes[lane])).collect()
-    }
-
-    /// One point's stresses from clamp and spin at all angles, with the first bolt at the case's phase (at 0 if it is open).
-    fn held_history(&self, point: usize) -> Vec<Stress> {
-        let (chunk, lane) = (point / CHUNK, point % CHUNK);
-        let (mut terms, mut field) = (Vec::new(), Field::new());
-        self.held_terms(chunk, self.case.phase.unwrap_or(0.0), &mut terms);
-        self.fields(&terms, self.view.bolts(), &mut field);
-        field.iter().map(|stress| stress.map(|lanes| lanes[lane])).collect()
-    }
-
-    /// Largest displacement of the rim over the turn, mm.
-    fn rim_displacement(&self, phases: &[usize]) -> f64 {
-        let view = &self.view;
-        // Per harmonic and axis: cosine and sine term. u_theta is a sine where the others are cosines.
-        let terms: Vec<[[f64; 2]; 3]> = self
-            .shares
-            .iter()
-            .enumerate()
-            .map(|(order, shares)| {
-                let mut terms = [[0.0; 2]; 3];
-                for load in 0..BELT {
-                    let unit = view.rim_belt(order, load);
-                    for axis in 0..3 {
-                        let share = if axis == 2 { shares.shear[load] } else { shares.normal[load] };
-                        terms[axis][0] += share[0] * unit[axis];
-                        terms[axis][1] += share[1] * unit[axis];
-                    }
-                }
-                terms
-            })
-            .collect();
-        let belt = |waves: &Waves| -> [f64; 3] {
-            std::array::from_fn(|axis| {
-                terms.iter().zip(&waves.0).map(|(terms, (cosine, sine))| terms[axis][0] * cosine + terms[axis][1] * sine).sum()
-            })
-        };
-        let held = |waves: &Waves| -> [f64; 3] {
-            std::array::from_fn(|axis| {
-                let clamp = |clamp: usize| {
-                    let (cosine, sine) = waves.0[clamp * view.bolts()];
-                    self.case.pressure * view.rim_clamp(clamp)[axis] * if axis == 2 { sine } else { cosine }
-                };
-                (0..view.clamps()).map(clamp).sum::<f64>() + self.case.spin * view.rim_spin()[axis]
-            })
-        };
-        let wave = |theta: f64| Waves::new(theta, view.orders());
-        let steps: Vec<Waves> = (0..ANGLES).map(|step| wave(angle(step))).collect();
-        let pulled: Vec<[f64; 3]> = steps.iter().map(belt).collect();
-        let offset = self.case.phase.unwrap_or(0.0);
-        let pushed: Vec<[f64; 3]> = (0..ANGLES).map(|step| held(&wave(angle(step) - offset))).collect();
-        let length = |a: &[f64; 3], b: &[f64; 3]| (0..3).map(|axis| (a[axis] + b[axis]) * (a[axis] + b[axis])).sum::<f64>();
-        let mut best = (0.0, 0, 0);
-        for &shift in phases {
-            for (step, belt) in pulled.iter().enumerate() {
-                let square = length(belt, &pushed[(step + ANGLES - shift) % ANGLES]);
-                if square > best.0 {
-                    best = (square, step, shift);
-                }
-            }
+/// Von Mises stress at an angle of a point with these terms.
+fn at(terms: &[[[f64; 2]; STRESSES]], theta: f64) -> f64 {
+    let waves = Waves::new(theta, terms.len());
+    let mut stress = [0.0; STRESSES];
+    for (term, (cosine, sine)) in terms.iter().zip(&waves.0) {
+        for (stress, term) in stress.iter_mut().zip(term) {
+            *stress += term[0] * cosine + term[1] * sine;
         }
-        let phase = self.phase(best.2);
-        let finer = (-8..=8).map(|part| {
-            let theta = angle(best.1) + angle(1) * f64::from(part) / 8.0;
-            length(&belt(&wave(theta)), &held(&wave(theta - phase)))
-        });
-        finer.fold(best.0, f64::max).sqrt() / self.case.modulus
     }
+    von_mises_squared(stress).sqrt()
 }
 
 /// An angle by its number, rad.
@@ -446,24 +400,23 @@ pub struct Summary {
 
 impl Turn<'_> {
     /// The point that tires first. `tired` are points with no less than what they can use of their strength.
-    fn fatigue(&self, strength: Strength, mut tired: Vec<(f64, usize)>) -> Fatigue {
+    fn fatigue(&self, strength: Strength, mut tired: Vec<(f64, usize)>, room: &mut Room) -> Fatigue {
         tired.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         let mut worst = Fatigue::default();
         for (possible, point) in tired {
             if possible <= worst.used {
                 break;
             }
-            let history = self.history(point);
-            let held = self.held_history(point);
-            let (amplitude, a, b) = widest(&history);
-            let middle: Stress = std::array::from_fn(|it| 0.5 * (history[a][it] + history[b][it]));
+            self.fill(point / CHUNK, room);
+            let lane = point % CHUNK;
+            let (amplitude, a, b) = widest(&room.belt, lane);
             // The point may stand anywhere between the bolts.
             let apart = ANGLES / if ANGLES.is_multiple_of(self.view.bolts()) { self.view.bolts() } else { 1 };
-            let (from_a, from_b) = (self.pressure_at(point, angle(a)), self.pressure_at(point, angle(b)));
-            for held in &held[..apart] {
-                let stress: Stress = std::array::from_fn(|it| middle[it] + held[it]);
+            let pressed = self.pressure_at(point, angle(a)) + self.pressure_at(point, angle(b));
+            for held in &room.held[..apart] {
+                let stress = [0, 1, 2].map(|it| 0.5 * (room.belt[a][it][lane] + room.belt[b][it][lane]) + held[it][lane]);
                 // The kept stresses are less the normal stress, which counts in all three directions for the sign.
-                let trace = stress[0] + stress[1] - 1.5 * (from_a + from_b);
+                let trace = stress[0] + stress[1] - 1.5 * pressed;
                 let mean = von_mises_squared(stress).sqrt() * if trace < 0.0 { -1.0 } else { 1.0 };
                 let used = strength.used(amplitude, mean);
                 if used > worst.used {
@@ -480,18 +433,39 @@ impl Turn<'_> {
     }
 }
 
-/// The two angles whose stresses differ most: half the von Mises stress of the difference, and their numbers.
-fn widest(history: &[Stress]) -> (f64, usize, usize) {
+/// The two angles at which the stresses of one point differ most: half the von Mises stress of the difference, and their numbers.
+fn widest(field: &Field, lane: usize) -> (f64, usize, usize) {
+    let history: [[f64; ANGLES]; STRESSES] = [0, 1, 2].map(|stress| std::array::from_fn(|step| field[step][stress][lane]));
+    let (square, a, b) = farthest(&history);
+    (0.5 * square.sqrt(), a, b)
+}
+
+/// The largest square of the von Mises stress of a difference between two of the angles, and which.
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+fn farthest(history: &[[f64; ANGLES]; STRESSES]) -> (f64, usize, usize) {
     let mut best = (0.0, 0, 0);
-    for (a, first) in history.iter().enumerate() {
-        for (b, second) in history.iter().enumerate().skip(a + 1) {
-            let square = von_mises_squared(std::array::from_fn(|it| first[it] - second[it]));
-            if square > best.0 {
-                best = (square, a, b);
+    for a in 0..ANGLES {
+        let own = [history[0][a], history[1][a], history[2][a]];
+        let mut squares = [0.0; ANGLES];
+        for b in 0..ANGLES {
+            let (along, around, shear) = (history[0][b] - own[0], history[1][b] - own[1], history[2][b] - own[2]);
+            squares[b] = along * along - along * around + around * around + 3.0 * (shear * shear);
+        }
+        let mut most = [0.0; CHUNK];
+        for squares in squares.as_chunks::<CHUNK>().0 {
+            for lane in 0..CHUNK {
+                most[lane] = if squares[lane] > most[lane] { squares[lane] } else { most[lane] };
+            }
+        }
+        if most.iter().any(|square| *square > best.0) {
+            for (b, &square) in squares.iter().enumerate() {
+                if square > best.0 {
+                    best = (square, a.min(b), a.max(b));
+                }
             }
         }
     }
-    (0.5 * best.0.sqrt(), best.1, best.2)
+    best
 }
 
 /// Bounds on the stresses of eight points over the turn, MPa.
@@ -504,23 +478,32 @@ struct Limits {
     swing: [f64; CHUNK],
 }
 
+/// Adds up the harmonics `step` times 0, 1, 2, ... at the angles of a quarter turn, and the others by symmetry.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-fn synthesise(terms: &[[[[f64; CHUNK]; 2]; STRESSES]], step: usize, quarter: &[Waves], field: &mut Field) {
-    for (place, waves) in quarter.iter().enumerate() {
+fn synthesise(terms: &Terms, step: usize, quarter: &[Waves], field: &mut Field) {
+    field.resize(ANGLES, [[0.0; CHUNK]; STRESSES]);
+    for place in 0..=QUARTER {
+        let waves = &quarter[place].0;
         for stress in 0..STRESSES {
-            // Cosine and sine terms, of even and of odd harmonics.
-            let mut sums = [[0.0; CHUNK]; 4];
-            for (number, term) in terms.iter().enumerate() {
-                let order = number * step;
-                let (cosine, sine) = waves.0[order];
-                let odd = order % 2;
-                let [cosines, sines] = &term[stress];
-                for lane in 0..CHUNK {
-                    sums[odd][lane] += cosine * cosines[lane];
-                    sums[2 + odd][lane] += sine * sines[lane];
+            let terms = &terms[stress];
+            // Cosine and sine sums of the even and the odd harmonics.
+            let mut sums = [[[0.0; CHUNK]; 2]; 2];
+            for odd in 0..2 {
+                let (mut cosines, mut sines) = ([0.0; CHUNK], [0.0; CHUNK]);
+                let mut number = if step % 2 == 1 { odd } else { odd * terms.len() };
+                let stride = if step % 2 == 1 { 2 } else { 1 };
+                while number < terms.len() {
+                    let (cosine, sine) = waves[number * step];
+                    let term = &terms[number];
+                    for lane in 0..CHUNK {
+                        cosines[lane] += cosine * term[0][lane];
+                        sines[lane] += sine * term[1][lane];
+                    }
+                    number += stride;
                 }
+                sums[odd] = [cosines, sines];
             }
-            let [ce, co, se, so] = sums;
+            let [[ce, se], [co, so]] = sums;
             for lane in 0..CHUNK {
                 let (even, odd) = (ce[lane] + so[lane], co[lane] + se[lane]);
                 let (even_back, odd_back) = (ce[lane] - so[lane], co[lane] - se[lane]);
@@ -533,30 +516,46 @@ fn synthesise(terms: &[[[[f64; CHUNK]; 2]; STRESSES]], step: usize, quarter: &[W
     }
 }
 
+/// Squares of the von Mises stresses of eight points.
+#[inline(always)]
+fn squares(stress: &[[f64; CHUNK]; STRESSES]) -> [f64; CHUNK] {
+    let mut squares = [0.0; CHUNK];
+    for lane in 0..CHUNK {
+        squares[lane] = von_mises_squared([stress[0][lane], stress[1][lane], stress[2][lane]]);
+    }
+    squares
+}
+
+#[inline(always)]
+fn raise(to: &mut [f64; CHUNK], values: [f64; CHUNK]) {
+    for lane in 0..CHUNK {
+        to[lane] = if values[lane] > to[lane] { values[lane] } else { to[lane] };
+    }
+}
+
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
 fn limits(belt: &Field, held: &Field) -> Limits {
-    let square = |stress: &[[f64; CHUNK]; STRESSES], lane: usize| von_mises_squared([stress[0][lane], stress[1][lane], stress[2][lane]]);
     let mut limits = Limits { belt: [0.0; CHUNK], held: [0.0; CHUNK], swing: [0.0; CHUNK] };
-    let mut low = belt[0];
-    let mut high = belt[0];
-    for (belt, held) in belt.iter().zip(held) {
-        for lane in 0..CHUNK {
-            limits.belt[lane] = if square(belt, lane) > limits.belt[lane] { square(belt, lane) } else { limits.belt[lane] };
-            limits.held[lane] = if square(held, lane) > limits.held[lane] { square(held, lane) } else { limits.held[lane] };
-        }
+    let (mut low, mut high) = (belt[0], belt[0]);
+    for step in 0..belt.len() {
+        raise(&mut limits.belt, squares(&belt[step]));
+        raise(&mut limits.held, squares(&held[step]));
         for stress in 0..STRESSES {
             for lane in 0..CHUNK {
-                let value = belt[stress][lane];
+                let value = belt[step][stress][lane];
                 low[stress][lane] = if value < low[stress][lane] { value } else { low[stress][lane] };
                 high[stress][lane] = if value > high[stress][lane] { value } else { high[stress][lane] };
             }
         }
     }
-    for belt in belt {
-        for lane in 0..CHUNK {
-            let distance = von_mises_squared(std::array::from_fn(|it| belt[it][lane] - 0.5 * (low[it][lane] + high[it][lane])));
-            limits.swing[lane] = if distance > limits.swing[lane] { distance } else { limits.swing[lane] };
+    for step in 0..belt.len() {
+        let mut away = belt[step];
+        for stress in 0..STRESSES {
+            for lane in 0..CHUNK {
+                away[stress][lane] -= 0.5 * (low[stress][lane] + high[stress][lane]);
+            }
         }
+        raise(&mut limits.swing, squares(&away));
     }
     for lane in 0..CHUNK {
         limits.belt[lane] = limits.belt[lane].sqrt();
@@ -566,19 +565,24 @@ fn limits(belt: &Field, held: &Field) -> Limits {
     limits
 }
 
-/// Largest squares of von Mises stress over the turn, and where, with the held field shifted by some angles.
+/// Square of the length of a displacement.
+#[inline(always)]
+fn length_squared([r, z, theta]: Stress) -> f64 {
+    r * r + z * z + theta * theta
+}
+
+/// The largest measures over the turn of what eight points have together, and where, with the held field shifted by some angles.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-fn largest_of(belt: &Field, held: &Field, shift: usize) -> ([f64; CHUNK], [usize; CHUNK]) {
-    let mut squares = [0.0; CHUNK];
-    let mut angles = [0.0; CHUNK];
-    for (step, belt) in belt.iter().enumerate() {
-        let held = &held[(step + ANGLES - shift) % ANGLES];
+fn largest_of(belt: &Field, held: &Field, shift: usize, measure: impl Fn(Stress) -> f64) -> ([f64; CHUNK], [usize; CHUNK]) {
+    let (mut most, mut angles) = ([0.0; CHUNK], [0.0; CHUNK]);
+    for step in 0..ANGLES {
+        let (belt, held) = (&belt[step], &held[(step + ANGLES - shift) % ANGLES]);
         for lane in 0..CHUNK {
-            let square = von_mises_squared(std::array::from_fn(|it| belt[it][lane] + held[it][lane]));
-            let larger = square > squares[lane];
-            squares[lane] = if larger { square } else { squares[lane] };
+            let value = measure([belt[0][lane] + held[0][lane], belt[1][lane] + held[1][lane], belt[2][lane] + held[2][lane]]);
+            let larger = value > most[lane];
+            most[lane] = if larger { value } else { most[lane] };
             angles[lane] = if larger { step as f64 } else { angles[lane] };
         }
     }
-    (squares, angles.map(|step| step as usize))
+    (most, angles.map(|step| step as usize))
 }

@@ -39,7 +39,8 @@ impl Dependence {
         Self { inputs: 0, ..self }
     }
 
-    fn known(self) -> Option<f64> {
+    /// The value, if it is the same for every design.
+    pub fn known(self) -> Option<f64> {
         self.range.filter(|(low, high)| low == high && self.inputs == 0).map(|(low, _)| low)
     }
 

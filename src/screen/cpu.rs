@@ -88,7 +88,7 @@ impl<'p> CpuEngine<'p> {
     pub fn new(plan: &'p Plan, tables: &'p Tables) -> Self {
         let columns = plan.lane_outputs.len() + plan.lane_conditions.len();
         let first = plan.space.inputs(0, 0);
-        let width = plan.study.model.kernel.fields().prepared_len();
+        let width = plan.study.model.kernel.prepared_len();
         let slow = plan.slow_scenarios.count();
         let kept = if slow <= TABLE { slow as usize } else { 0 };
         Self {

@@ -4,6 +4,7 @@
 //! its own, in f64 and to the end: 65 536 stratified design indices (all designs if fewer), the same whatever ran the sweep.
 
 use super::cpu::{BLOCK, CpuEngine, FastBlock, Tables, holds, row_value};
+use crate::models::{CONDITIONS, INPUTS, OUTPUTS};
 use crate::plan::{Plan, Source, Tracked, worst_end};
 use crate::sample::mix;
 use serde::{Deserialize, Serialize};
@@ -28,8 +29,14 @@ pub struct Tally {
     pub ranges: Vec<Option<(f64, f64)>>,
 }
 
-/// Bit of the first constraint in a lane's set of failures; below are the conditions.
-const FIRST_CONSTRAINT: usize = crate::models::CONDITIONS;
+/// What a design fails at: a bit for each condition of the model, then one for each constraint, of which there is at most one for
+/// every input and output.
+type Failures = u128;
+
+/// Bit of the first constraint.
+const FIRST_CONSTRAINT: usize = CONDITIONS;
+
+const _: () = assert!(CONDITIONS + INPUTS + OUTPUTS <= Failures::BITS as usize);
 
 impl Tally {
     /// Counts the sample of a plan.
@@ -87,14 +94,14 @@ impl Tally {
         self
     }
 
-    fn count_design(&mut self, failures: u64) {
+    fn count_design(&mut self, failures: Failures) {
         self.sampled += 1;
         self.feasible += u64::from(failures == 0);
         for (number, count) in self.conditions.iter_mut().enumerate() {
-            *count += failures >> number & 1;
+            *count += u64::from(failures >> number & 1 == 1);
         }
         for (number, (count, only)) in self.constraints.iter_mut().zip(&mut self.only).enumerate() {
-            *count += failures >> (FIRST_CONSTRAINT + number) & 1;
+            *count += u64::from(failures >> (FIRST_CONSTRAINT + number) & 1 == 1);
             *only += u64::from(failures == 1 << (FIRST_CONSTRAINT + number));
         }
     }
@@ -136,7 +143,7 @@ impl<'p> Counter<'p> {
     fn count_block(&mut self, row: u64, designs: &[u64]) {
         let plan = self.plan;
         let fast = FastBlock::new(plan, designs.iter().copied());
-        let mut failures = vec![0u64; designs.len()];
+        let mut failures: Vec<Failures> = vec![0; designs.len()];
         self.engine.set_row(row);
         for q in 0..plan.slow_scenarios.count() {
             let prepared = self.engine.prepare_alone(q);
@@ -144,7 +151,7 @@ impl<'p> Counter<'p> {
                 self.engine.set_fast_scenario(t);
                 let (margins, outputs) = self.engine.row_values(prepared.clone());
                 let failed = plan.row_conditions.iter().filter(|&&number| !holds(plan, number, margins[number]));
-                let row_failures = failed.fold(0u64, |set, &number| set | 1 << number);
+                let row_failures = failed.fold(0, |set: Failures, &number| set | 1 << number);
                 self.engine.evaluate(prepared.clone(), &fast);
                 for (lane, failures) in failures.iter_mut().enumerate() {
                     let lane_margins = plan.lane_conditions.iter().zip(&self.engine.results[plan.lane_outputs.len()..]);
@@ -167,7 +174,7 @@ impl<'p> Counter<'p> {
     }
 
     /// Constraints that a design violates in the current scenario.
-    fn violated(&self, lane: usize, fast: &FastBlock, outputs: &[f64; crate::models::OUTPUTS]) -> u64 {
+    fn violated(&self, lane: usize, fast: &FastBlock, outputs: &[f64; OUTPUTS]) -> Failures {
         let sources = self.plan.study.constraints.iter().zip(&self.plan.constraints).enumerate();
         sources.fold(0, |set, (number, (constraint, &source))| {
             let value = match source {
@@ -176,12 +183,12 @@ impl<'p> Counter<'p> {
                 Source::RowInput(_) | Source::RowOutput(_) => row_value(self.plan, source, &self.engine.own, outputs),
             };
             let satisfied = value.is_finite() && constraint.holds(value);
-            set | u64::from(!satisfied) << (FIRST_CONSTRAINT + number)
+            set | Failures::from(!satisfied) << (FIRST_CONSTRAINT + number)
         })
     }
 
     /// Takes the worst values of the block's feasible designs into account.
-    fn stretch_ranges(&mut self, row: u64, fast: &FastBlock, failures: &[u64]) {
+    fn stretch_ranges(&mut self, row: u64, fast: &FastBlock, failures: &[Failures]) {
         let ranges = &mut self.tally.ranges;
         self.engine.row = None;
         self.engine.enter_row(row);

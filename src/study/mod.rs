@@ -11,5 +11,7 @@ mod resolved;
 
 pub use axis::{Axis, Levels, Method, Sample};
 pub use describe::{differences, number, value_of};
+#[cfg(test)]
+pub(crate) use read::tests::study_of;
 pub use read::{Problem, StudyErrors};
 pub use resolved::{Best, Constraint, ContourSpec, Goal, HistogramSpec, MapSpec, Objective, Quantity, Report, Study, Thresholds, TopSpec};

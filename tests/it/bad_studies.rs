@@ -96,6 +96,23 @@ fn every_broken_study_is_refused_at_its_place_with_a_remedy() {
 }
 
 #[test]
+fn a_preset_is_the_base_and_what_is_fixed_goes_before_it() {
+    let study = |head: &str, fixed: &str| {
+        let text = format!("model = \"timing-belt\"\n{head}\n[design]\ntight_tension_N = [100, 200]\n[fixed]\n{fixed}\n");
+        parse(&(text + "[objectives]\ntight_tension_N = \"min\"\n")).expect("it is right")
+    };
+    let model = beltspace::models::find("timing-belt").expect("it is a model");
+    let preset = model.preset("ohc-driver").expect("it is a preset");
+    assert_eq!(study("preset = \"ohc-driver\"", "").fixed, preset);
+    let teeth = model.input("teeth_in_mesh").expect("it is an input");
+    let fixed = study("preset = \"ohc-driver\"", "teeth_in_mesh = 9").fixed;
+    assert_eq!((fixed[teeth], fixed[0]), (9.0, 10_000.0));
+    assert_eq!(study("", "").fixed, model.defaults());
+    let described = study("preset = \"ohc-driver\"", "").describe();
+    assert_eq!((&described["fixed"]["teeth_in_mesh"], described.get("preset")), (&11.into(), None), "as it resolves");
+}
+
+#[test]
 fn all_problems_of_a_file_are_reported_in_file_order() {
     let text = edited(&[
         (2, "titel = \"x\""),

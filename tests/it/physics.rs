@@ -97,9 +97,8 @@ pub fn draw(model: &Model, region: Region, random: &mut Random) -> Vec<f64> {
         if input.integer {
             value = value.round();
         }
-        match input.word {
-            Some((_, encoded)) if random.chance(0.3) => value = encoded,
-            _ => {}
+        if !input.words.is_empty() && (input.is_enumeration() || random.chance(0.3)) {
+            value = random.word(input.words);
         }
         inputs.push(value);
     }

@@ -51,6 +51,11 @@ impl Random {
         things[self.below(things.len())]
     }
 
+    /// The number that encodes one of an input's words; the only one needs no number drawn for it.
+    pub fn word(&mut self, words: &[(&str, f64)]) -> f64 {
+        words[if words.len() == 1 { 0 } else { self.below(words.len()) }].1
+    }
+
     /// Puts things into a random order.
     pub fn shuffle<T>(&mut self, things: &mut [T]) {
         for last in (1..things.len()).rev() {

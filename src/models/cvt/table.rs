@@ -50,7 +50,7 @@ pub(in crate::models) const fn traction(default: f64, source: &'static str) -> I
     let doc = "Belt force difference over sum, (F1 - F2)/(F1 + F2), that the axial force is set for; \"limit\": the traction limit of the design.";
     Input {
         valid: Range::from_until(0.0, 1.0),
-        word: Some(("limit", LIMIT)),
+        words: &[("limit", LIMIT)],
         ..Input::new("traction", "lambda", NONE, default, (0.05, 0.95), doc, source)
     }
 }

@@ -1,7 +1,7 @@
 //! The tables of the timing belt: inputs, outputs, conditions, presets.
 
-use super::super::description::{Condition, Input, Model, Output, Range, Worse};
-use super::super::evaluation::Evaluation;
+use super::super::description::{Condition, Device, Input, Model, Output, Range, Worse};
+use super::super::evaluation::{Evaluation, Status};
 use super::{INPUTS, Inputs, OUT, SPACE, TimingBelt, profile};
 use crate::units::{DEGREE, GIGAPASCAL, GRAM, MICROMETRE_PER_NEWTON, MILLIMETRE, NEWTON, NONE, RPM, SQUARE_MILLIMETRE, Unit};
 use Worse::{Higher, Lower};
@@ -98,7 +98,7 @@ pub const MODEL: Model = Model {
             "calibrated: first lifted tooth 16 in Fig. 9",
         ),
         Input {
-            word: Some(("space", SPACE)),
+            words: &[("space", SPACE)],
             follows: Some("space_half_angle_deg"),
             ..angle(
                 "lift_angle_deg",
@@ -210,7 +210,7 @@ pub const MODEL: Model = Model {
     profile: Some(profile::profile),
     notes: Some(notes),
     remarks: Some(remarks),
-    shader: &[include_str!("../../../shaders/models/timing-belt.wgsl")],
+    device: Some(Device { shader: &[include_str!("../../../shaders/models/timing-belt.wgsl")], twin: &TimingBelt }),
 };
 
 /// The similarity law, where it holds.
@@ -223,6 +223,9 @@ fn remarks(fixed: &[Option<f64>]) -> Vec<String> {
 /// What a person should know of one evaluation besides its numbers.
 fn notes(inputs: &[f64], evaluation: &Evaluation) -> Vec<String> {
     let mut notes = Vec::new();
+    if evaluation.status != Status::Ok {
+        return notes;
+    }
     if let Some(least) = evaluation.outputs[OUT.least_tooth_load].filter(|load| *load < 0.0) {
         notes.push(format!(
             "a tooth load is negative ({least:.3} N): that tooth is held by its other flank, which the model does not cover"

@@ -190,5 +190,5 @@ pub(super) fn mesh(d: &Dimensions, fineness: &Fineness) -> Result<Mesh, Flaw> {
     // The rim's outer edge on the side away from the bracket.
     let tip = chords.iter().rposition(|chord| (chord.start.y - d.rim_radius()).abs() < 1e-9).ok_or(FAILED)?;
     let rim = corners[tip].index() as u32;
-    Ok(numbering::renumbered(Mesh { nodes, elements, surface, points, rim }))
+    Ok(numbering::renumbered(Mesh { nodes, elements, surface, points, rim, singular: Vec::new() }))
 }

@@ -102,6 +102,7 @@ impl Line {
             surface: left.into_iter().chain(right).collect(),
             points: points.collect(),
             rim: node(count - 1, through),
+            singular: Vec::new(),
         })
     }
 }

@@ -102,7 +102,9 @@ pub(super) fn mesh(d: &Dimensions, fineness: &Fineness) -> Result<Mesh, Flaw> {
         point("El", twin(at_mean, across(at_mean) - 1)),
         point("Er", twin(at_mean, 0)),
     ];
-    Ok(Mesh { nodes, elements, surface, points, rim: node(count - 1, through) })
+    // The gap between the discs ends at the weld like a crack.
+    let singular = vec![(DVec2::new(d.thickness, d.weld_radius), d.thickness)];
+    Ok(Mesh { nodes, elements, surface, points, rim: node(count - 1, through), singular })
 }
 
 /// The same element with its nodes the other way round: a mirror image runs clockwise.

@@ -2,7 +2,7 @@
 //! cut into invocations.
 
 use crate::error::{Error, Result};
-use crate::models::{Fields, INPUTS, Worse, input_to_si};
+use crate::models::{Device, Fields, INPUTS, Worse, input_to_si};
 use crate::plan::{Plan, Source, dependences};
 use crate::real::nearest_f32;
 use crate::space::{Dimension, Product};
@@ -132,6 +132,8 @@ fn passed(fields: &Fields, read: u64) -> Vec<Passed> {
 /// A study as a device sees it.
 #[derive(Clone, Debug)]
 pub struct Layout {
+    /// The model's formula on a device.
+    pub formula: &'static Device,
     /// What passes from the first stage to the second.
     pub prepared: Vec<Passed>,
     /// Slow dimensions, outermost first.
@@ -166,8 +168,10 @@ impl Layout {
     pub fn new(plan: &Plan, limited_loops: bool, grouped: bool) -> Result<Self> {
         let refuse = |why: String| Error::Request(format!("this study cannot be screened on a GPU: {why}; use --engine cpu"));
         let model = plan.study.model;
+        let formula = model.on_device()?;
+        let fields = formula.twin.fields();
         let scenarios = [&plan.slow_scenarios, &plan.fast_scenarios].map(Product::count);
-        let turns = scenarios[0].saturating_mul(scenarios[1] + 1).saturating_mul(1 + model.kernel.fields().turns);
+        let turns = scenarios[0].saturating_mul(scenarios[1] + 1).saturating_mul(1 + fields.turns);
         if turns > MOST_TURNS && (limited_loops || turns > u64::from(u32::MAX) / 4) {
             return Err(refuse(format!(
                 "{turns} loop turns over its scenarios are more than the {MOST_TURNS} that this driver can be trusted with"
@@ -189,8 +193,7 @@ impl Layout {
             return Err(refuse(format!("a row of {} designs is too long", plan.fast.count())));
         }
         let used = plan.used_outputs();
-        let reads = model.kernel.reads(&dependences(&plan.study, &plan.space), used);
-        let fields = model.kernel.fields();
+        let reads = formula.twin.reads(&dependences(&plan.study, &plan.space), used);
         let set = |inputs: u64, input: usize| inputs >> input & 1 == 1;
 
         let mut steady = Vec::new();
@@ -244,6 +247,7 @@ impl Layout {
         }
         let slow_inputs = plan.slow.inputs();
         Ok(Self {
+            formula,
             prepared: passed(&fields, reads.prepared),
             row_inputs: (0..model.inputs.len()).filter(|&input| set(reads.inputs & slow_inputs, input)).collect(),
             slow,
@@ -255,7 +259,7 @@ impl Layout {
             possible: is_possible(plan),
             exact,
             represented,
-            cut: Cut::new(plan, grouped),
+            cut: Cut::new(plan, fields.turns, grouped),
         })
     }
 
@@ -277,17 +281,17 @@ impl Layout {
 
 impl Cut {
     /// Loop turns of an invocation: those that a group of lanes shares, and those of one lane by itself: inside the formula, and in the
-    /// closer look, where it meets a list, its neighbours, and its scenarios again unless it was kept.
-    fn turns(plan: &Plan, keeps: bool) -> (u64, u64) {
+    /// closer look, where it meets a list, its neighbours, and its scenarios again unless it was kept. `own`: of the formula.
+    fn turns(plan: &Plan, own: u64, keeps: bool) -> (u64, u64) {
         let shared = plan.slow_scenarios.count() * (plan.fast_scenarios.count() + 1) + 1;
-        let own = plan.scenarios() * plan.study.model.kernel.fields().turns;
+        let own = plan.scenarios() * own;
         (shared, own + LIST as u64 + 40 + if keeps { 0 } else { shared + own })
     }
 
-    fn new(plan: &Plan, grouped: bool) -> Self {
+    fn new(plan: &Plan, own: u64, grouped: bool) -> Self {
         let lanes = plan.fast.count();
         let keeps = plan.scenarios() > 1;
-        let (turns, alone) = Self::turns(plan, keeps);
+        let (turns, alone) = Self::turns(plan, own, keeps);
         // The driver's compiler takes longer over a group than a small study takes altogether.
         let small = !grouped && plan.designs().saturating_mul(plan.scenarios()) < SMALL;
         let mut group = if small { 1 } else { GROUP[usize::from(!keeps)].min(lanes) };
@@ -474,7 +478,7 @@ mod tests {
                 for grouped in [false, true] {
                     let Ok(layout) = Layout::new(&plan, true, grouped) else { continue };
                     let cut = layout.cut;
-                    let (shared, alone) = Cut::turns(&plan, cut.keeps);
+                    let (shared, alone) = Cut::turns(&plan, layout.formula.twin.fields().turns, cut.keeps);
                     let turns = cut.lanes_each.div_ceil(cut.group) * shared + cut.lanes_each * alone;
                     // What one lane takes may pass the target by its closer look.
                     assert!(turns <= MOST_TURNS + 200, "{model}, {scenarios} scenarios: {cut:?} takes {turns} turns");

@@ -42,8 +42,8 @@ pub(super) struct Claim {
     pub(super) at: usize,
     /// Is it an axis of this input alone?
     pub(super) single: bool,
-    /// Is one of the values a word?
-    pub(super) word: bool,
+    /// A word that is among the values.
+    pub(super) word: Option<&'static str>,
 }
 
 impl Reader<'_> {
@@ -56,9 +56,9 @@ impl Reader<'_> {
         table.entries.iter().filter_map(axis).collect()
     }
 
-    /// The value of every input: fixed or default.
+    /// The value of every input: fixed, of the preset, or default.
     pub(super) fn fixed(&self, table: Option<&Table<'_>>) -> Vec<f64> {
-        let mut values = self.model.defaults();
+        let mut values = self.base.clone();
         for entry in table.iter().flat_map(|table| &table.entries) {
             let label = format!("fixed input \"{}\"", shortened(entry.key));
             let Some(number) = self.input(entry.key, entry.key_at, &label) else { continue };
@@ -71,7 +71,7 @@ impl Reader<'_> {
                 _ => input_value(entry.node, input),
             };
             let value = value.map_err(|error| self.problems.add(entry.node.at, format!("{label}: {error}"))).ok();
-            let word = value.is_some_and(|value| input.word_for(value).is_some());
+            let word = value.and_then(|value| input.word_for(value));
             self.claims.borrow_mut().push(Claim { input: number, role: Role::Fixed, at: entry.key_at, single: false, word });
             values[number] = value.unwrap_or(values[number]);
         }
@@ -111,8 +111,14 @@ impl Reader<'_> {
         let input = &self.model.inputs[number];
         let levels = match entry.node.value {
             DeValue::Array(_) => self.list(entry.node, number, &label),
+            DeValue::Table(_) if input.is_enumeration() => {
+                let words: Vec<_> = input.words.iter().map(|(word, _)| format!("\"{word}\"")).collect();
+                let message = format!("{label}: found a range, but {} takes words only; list them: [{}]", input.name, words.join(", "));
+                self.problems.add(entry.node.at, message);
+                None
+            }
             DeValue::Table(_) => entry.node.table().and_then(|table| self.range(&table, input, &label, role)),
-            DeValue::Boolean(_) | DeValue::Datetime(_) => {
+            DeValue::Boolean(_) | DeValue::Datetime(_) if !input.is_enumeration() => {
                 let found = entry.node.found();
                 let message = format!(
                     "{label}: found {found}, wanted a value, a list of values, or a range such as {{ from = 1, to = 2, count = 11 }}"
@@ -122,7 +128,10 @@ impl Reader<'_> {
             }
             _ => self.input_value(entry.node, number, &label).map(|value| Levels::List(vec![value])),
         };
-        let word = matches!(&levels, Some(Levels::List(values)) if values.iter().any(|&value| input.word_for(value).is_some()));
+        let word = match &levels {
+            Some(Levels::List(values)) => values.iter().find_map(|&value| input.word_for(value)),
+            _ => None,
+        };
         self.claims.borrow_mut().push(Claim { input: number, role, at: entry.key_at, single: true, word });
         Some(Axis::Single { input: number, levels: levels? })
     }

@@ -92,18 +92,18 @@ impl Reader<'_> {
         let mut inputs = Vec::new();
         for entry in &table.entries {
             if let Some(input) = self.input(entry.key, entry.key_at, label) {
-                self.claims.borrow_mut().push(Claim { input, role, at: entry.key_at, single: false, word: false });
+                self.claims.borrow_mut().push(Claim { input, role, at: entry.key_at, single: false, word: None });
                 inputs.push(input);
             }
         }
         inputs
     }
 
-    /// Remembers which inputs take their word in this row.
+    /// Remembers which inputs take a word in this row.
     fn mark_words(&self, inputs: &[usize], row: &[f64]) {
         for (&number, &value) in inputs.iter().zip(row) {
-            if self.model.inputs[number].word_for(value).is_some() {
-                self.claims.borrow_mut().iter_mut().filter(|claim| claim.input == number).for_each(|claim| claim.word = true);
+            if let Some(word) = self.model.inputs[number].word_for(value) {
+                self.claims.borrow_mut().iter_mut().filter(|claim| claim.input == number).for_each(|claim| claim.word = Some(word));
             }
         }
     }
@@ -212,7 +212,7 @@ impl Reader<'_> {
                 None if name.is_empty() => problem(index + 1, "the column has no name; name the input whose values it holds".to_owned()),
                 None => problem(index + 1, self.no_input(name)),
                 Some(_) if inputs.contains(&input) => problem(index + 1, format!("\"{name}\" has two columns; drop one")),
-                Some(input) => self.claims.borrow_mut().push(Claim { input, role, at, single: false, word: false }),
+                Some(input) => self.claims.borrow_mut().push(Claim { input, role, at, single: false, word: None }),
             }
             inputs.push(input);
         }

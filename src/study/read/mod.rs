@@ -20,6 +20,8 @@ mod range;
 mod report;
 mod syntax;
 mod table;
+#[cfg(test)]
+pub(crate) mod tests;
 mod value;
 
 use super::axis::{Axis, Method, Sample};
@@ -38,7 +40,7 @@ const MOST_LEVELS: u64 = 1 << 53;
 const MOST_SCENARIOS: u64 = 1 << 32;
 /// What a study file may hold.
 const TOP_LEVEL: &[&str] =
-    &["model", "title", "design", "operation", "uncertainty", "fixed", "constraints", "objectives", "report", "sample"];
+    &["model", "preset", "title", "design", "operation", "uncertainty", "fixed", "constraints", "objectives", "report", "sample"];
 
 /// One thing wrong with a study.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -128,6 +130,8 @@ struct Reader<'a> {
     model: &'static Model,
     problems: &'a Problems<'a>,
     folder: &'a Path,
+    /// The value of every input where the study gives none: the default, or what the preset says.
+    base: Vec<f64>,
     /// Are the designs sampled?
     sampled: bool,
     /// Every place that gives an input values.
@@ -138,15 +142,26 @@ struct Reader<'a> {
 
 /// Walks the whole file. `None` if a problem was reported that leaves no study.
 fn read_study(top: &Table<'_>, problems: &Problems<'_>, folder: &Path) -> Option<Study> {
-    let model = read_model(top, problems);
+    read_study_of(read_model(top, problems), top, problems, folder)
+}
+
+/// The same for a model that has been found; `None` if that has a problem of its own.
+fn read_study_of(model: Option<&'static Model>, top: &Table<'_>, problems: &Problems<'_>, folder: &Path) -> Option<Study> {
     check_top_level(top, model, problems);
     let title = top.get("title").and_then(|entry| text(entry.node, problems, "title"));
     let sample_table = section(top, "sample", problems);
     let sample = sample_table.as_ref().and_then(|table| read_sample(table, problems));
     let model = model?;
 
-    let reader =
-        Reader { model, problems, folder, sampled: top.get("sample").is_some(), claims: RefCell::default(), misnamed: Cell::default() };
+    let reader = Reader {
+        model,
+        problems,
+        folder,
+        base: read_preset(top, model, problems),
+        sampled: top.get("sample").is_some(),
+        claims: RefCell::default(),
+        misnamed: Cell::default(),
+    };
     let axes = |role: Role| section(top, role.name(), problems).map_or_else(Vec::new, |table| reader.axes(role, &table));
     let (design, operation, uncertainty) = (axes(Role::Design), axes(Role::Operation), axes(Role::Uncertainty));
     let fixed = reader.fixed(section(top, "fixed", problems).as_ref());
@@ -176,6 +191,13 @@ fn read_model(top: &Table<'_>, problems: &Problems<'_>) -> Option<&'static Model
         problems.add(entry.node.at, format!("unknown model \"{}\"; models are: {}", shortened(&name), names()));
     }
     model
+}
+
+/// The inputs of the model's preset that the file names, else the defaults.
+fn read_preset(top: &Table<'_>, model: &Model, problems: &Problems<'_>) -> Vec<f64> {
+    let named = top.get("preset").and_then(|entry| Some((entry.node.at, text(entry.node, problems, "preset")?)));
+    let found = named.map(|(at, name)| model.preset(&shortened(&name)).map_err(|error| problems.add(at, format!("preset: {error}"))));
+    found.and_then(std::result::Result::ok).unwrap_or_else(|| model.defaults())
 }
 
 /// Reports keys at the top level that mean nothing.

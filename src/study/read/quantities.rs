@@ -42,17 +42,22 @@ impl Reader<'_> {
         let claims = self.claims.borrow();
         let mut claimed = claims.iter().filter(|claim| claim.input == number).peekable();
         let default = claimed.peek().is_none();
-        let Some(word) = input.word.map(|(word, _)| word) else { return Some(quantity) };
-        if default && input.word_for(fixed[number]).is_some() {
+        if input.is_enumeration() {
+            let message = format!("{label}: the values of \"{name}\" are words, which have no order; name an input or output of numbers");
+            self.problems.add(at, message);
+            return None;
+        }
+        if let Some(word) = input.word_for(fixed[number]).filter(|_| default) {
             if self.misnamed.get() {
                 return None;
             }
+            let whose = if fixed[number] == input.default { "its default" } else { "the preset's" };
             let message =
-                format!("{label}: \"{name}\" has its default \"{word}\", which is no number; give it numbers as an axis or in [fixed]");
+                format!("{label}: \"{name}\" has {whose} \"{word}\", which is no number; give it numbers as an axis or in [fixed]");
             self.problems.add_if_complete(at, message);
             return None;
         }
-        if let Some(claim) = claimed.find(|claim| claim.word) {
+        if let Some((claim, word)) = claimed.find_map(|claim| Some((claim, claim.word?))) {
             let place = format!("[{}], line {}", claim.role.name(), self.problems.line_number(claim.at));
             self.problems.add(at, format!("{label}: \"{name}\" takes \"{word}\" in {place}, which is no number; give it numbers only"));
             return None;

@@ -56,36 +56,43 @@ fn text_measured(text: &str, unit: Unit) -> Result<f64, String> {
     if value.is_finite() { Ok(value + 0.0) } else { Err(format!("\"{}\" is too large; give a finite number", shortened(text))) }
 }
 
-/// A value that an input can take, its word included.
+/// A value that an input can take, its words included.
 pub(super) fn input_value(node: Node<'_>, input: &Input) -> Result<f64, String> {
     match node.value {
         DeValue::String(text) => input_text(text, input),
+        _ if input.is_enumeration() => Err(no_word(&node.found(), input)),
         _ => measured(node, input.unit).map_err(|error| or_word(error, input)).and_then(|value| checked(value, input)),
     }
 }
 
-/// A value that an input can take, given as text: a number, a number with a unit, or the input's word.
+/// A value that an input can take, given as text: a number, a number with a unit, or one of the input's words.
 pub(super) fn input_text(text: &str, input: &Input) -> Result<f64, String> {
-    match input.word {
-        Some((word, encoded)) if word == text.trim() => Ok(encoded),
-        _ => text_measured(text, input.unit).map_err(|error| or_word(error, input)).and_then(|value| checked(value, input)),
+    match input.value_of(text.trim()) {
+        Some(encoded) => Ok(encoded),
+        None if input.is_enumeration() => Err(no_word(&format!("\"{}\"", shortened(text)), input)),
+        None => text_measured(text, input.unit).map_err(|error| or_word(error, input)).and_then(|value| checked(value, input)),
     }
 }
 
-/// A value that an input can take, its word not included.
+/// A value that an input can take, its words not included.
 pub(super) fn input_number(node: Node<'_>, input: &Input) -> Result<f64, String> {
-    if let (DeValue::String(text), Some((word, _))) = (node.value, input.word)
-        && text.trim() == word
-    {
-        return Err(format!("\"{word}\" is a word and no end of a range; use numbers, or list it: [\"{word}\", ...]"));
+    let DeValue::String(text) = node.value else { return measured(node, input.unit).and_then(|value| checked(value, input)) };
+    let word = text.trim();
+    match input.value_of(word) {
+        Some(_) => Err(format!("\"{word}\" is a word and no end of a range; use numbers, or list it: [\"{word}\", ...]")),
+        None => text_measured(text, input.unit).and_then(|value| checked(value, input)),
     }
-    measured(node, input.unit).and_then(|value| checked(value, input))
 }
 
-/// The complaint with the word that would also be right.
+/// What was found instead of one of the words of an input that takes nothing else.
+fn no_word(found: &str, input: &Input) -> String {
+    format!("found {found}, but {} takes words only; write {}", input.name, input.words_listed().unwrap_or_default())
+}
+
+/// The complaint with the words that would also be right.
 fn or_word(error: String, input: &Input) -> String {
-    match input.word {
-        Some((word, _)) => format!("{error}; or write \"{word}\""),
+    match input.words_listed() {
+        Some(words) => format!("{error}; or write {words}"),
         None => error,
     }
 }
@@ -97,8 +104,8 @@ fn checked(value: f64, input: &Input) -> Result<f64, String> {
         if !input.unit.symbol.is_empty() {
             unit = format!(" ({})", input.unit.symbol);
         }
-        let word = input.word.map_or(String::new(), |(word, _)| format!(", or \"{word}\""));
-        return Err(format!("{} is out of range; it must be {}{unit}{word}", shown(value), input.valid.in_words()));
+        let words = input.words_listed().map_or(String::new(), |words| format!(", or {words}"));
+        return Err(format!("{} is out of range; it must be {}{unit}{words}", shown(value), input.valid.in_words()));
     }
     if input.integer && value.fract() != 0.0 {
         let near: Vec<_> = [value.floor(), value.ceil()].into_iter().filter(|&near| input.valid.contains(near)).map(shown).collect();

@@ -27,7 +27,7 @@ fn assert_kept(report: &Report, what: &str) {
 
 #[test]
 fn every_output_of_every_model_keeps_its_promise_four_times_over() {
-    for &model in MODELS {
+    for &model in MODELS.iter().filter(|model| model.device.is_some()) {
         let kernel = kernel(model);
         let report = compare(&kernel, model, &[], &points_of_model(model, 150_000, 1)).expect("the device works");
         assert_kept(&report, model.name);

@@ -4,10 +4,19 @@ use super::{meaningful_si, si};
 use crate::physics::{Region, draw};
 use crate::random::Random;
 use beltspace::decision::Decision;
-use beltspace::models::{MODELS, Model, Status, evaluate, evaluate_decided, find};
+use beltspace::models::{MODELS, Model, OUTPUTS, Status, evaluate, evaluate_decided, find};
 use beltspace::real::RunningError;
 
 const DESIGNS: usize = 20_000;
+
+/// The models that are computed on a device too.
+fn with_a_twin() -> impl Iterator<Item = &'static Model> {
+    MODELS.iter().copied().filter(|model| model.device.is_some())
+}
+
+fn decided(model: &Model, inputs: &[f64]) -> (Decision, [RunningError; OUTPUTS]) {
+    evaluate_decided(model, inputs).expect("it has a twin")
+}
 
 fn bits(value: f32) -> u32 {
     if value.is_nan() { f32::NAN.to_bits() } else { value.to_bits() }
@@ -15,13 +24,14 @@ fn bits(value: f32) -> u32 {
 
 #[test]
 fn the_bounded_value_is_the_twin_bit_by_bit() {
-    for model in MODELS {
+    for model in with_a_twin() {
+        let device = model.on_device().expect("it has a twin");
         let random = &mut Random::new(11);
         for region in [Region::Usual, Region::Wide, Region::Edges] {
             for _ in 0..2000 {
                 let si = si(model, &draw(model, region, random));
-                let (twins, twin_margins) = model.kernel.twin(&si.map(|value| value as f32));
-                let (outputs, margins) = model.kernel.bounded(&si.map(RunningError::input));
+                let (twins, twin_margins) = device.twin.twin(&si.map(|value| value as f32));
+                let (outputs, margins) = device.twin.bounded(&si.map(RunningError::input));
                 for (number, (twin, bounded)) in twins.iter().zip(outputs).enumerate() {
                     assert_eq!(bits(*twin), bits(bounded.value), "{}: output {number} of {si:?}", model.name);
                 }
@@ -53,7 +63,7 @@ fn compare(model: &Model, region: Region, shrink: f64) -> Bounds {
     let mut found = Bounds { relative: vec![Vec::new(); model.outputs.len()], ..Bounds::default() };
     for _ in 0..DESIGNS {
         let inputs = draw(model, region, random);
-        let outputs = evaluate_decided(model, &inputs).1;
+        let outputs = decided(model, &inputs).1;
         for (number, exact) in meaningful_si(model, &inputs).into_iter().enumerate() {
             let Some(exact) = exact else { continue };
             let RunningError { value, bound } = outputs[number];
@@ -81,7 +91,7 @@ fn compare(model: &Model, region: Region, shrink: f64) -> Bounds {
 
 #[test]
 fn an_f32_value_lies_within_its_bound_of_the_f64_value_and_the_bound_is_useful() {
-    for model in MODELS {
+    for model in with_a_twin() {
         for region in [Region::Usual, Region::Wide, Region::Edges] {
             let mut found = compare(model, region, 1.0);
             eprintln!(
@@ -107,7 +117,7 @@ fn an_f32_value_lies_within_its_bound_of_the_f64_value_and_the_bound_is_useful()
 
 #[test]
 fn a_bound_ten_thousand_times_too_small_is_noticed() {
-    for model in MODELS {
+    for model in with_a_twin() {
         let found = compare(model, Region::Usual, 1e4);
         assert!(found.broken > found.checked / 100, "{}: {} of {}", model.name, found.broken, found.checked);
     }
@@ -126,7 +136,7 @@ fn decide(model: &Model, designs: impl Iterator<Item = Vec<f64>>) -> Decisions {
     let mut found = Decisions::default();
     for inputs in designs {
         let ok = evaluate(model, &inputs).status == Status::Ok;
-        let decision = evaluate_decided(model, &inputs).0;
+        let decision = decided(model, &inputs).0;
         match decision {
             Decision::Yes => found.yes += 1,
             Decision::No => found.no += 1,
@@ -141,7 +151,7 @@ fn decide(model: &Model, designs: impl Iterator<Item = Vec<f64>>) -> Decisions {
 
 #[test]
 fn a_sure_decision_is_the_f64_one_and_most_decisions_are_sure() {
-    for model in MODELS {
+    for model in with_a_twin() {
         for region in [Region::Usual, Region::Wide, Region::Edges] {
             let random = &mut Random::new(13);
             let found = decide(model, (0..DESIGNS).map(|_| draw(model, region, random)));
@@ -179,7 +189,7 @@ fn onto_a_boundary(model: &Model, random: &mut Random) -> Option<Vec<f64>> {
 
 #[test]
 fn on_a_boundary_the_decision_is_unsure() {
-    for model in MODELS {
+    for model in with_a_twin() {
         let random = &mut Random::new(14);
         let designs: Vec<_> = std::iter::repeat_with(|| onto_a_boundary(model, random)).flatten().take(500).collect();
         let found = decide(model, designs.into_iter());
@@ -197,7 +207,7 @@ fn a_traction_at_its_limit_surely_does_not_slip_and_has_no_margin() {
         for _ in 0..1000 {
             let mut inputs = draw(model, Region::Usual, random);
             inputs[model.input("traction").expect("it is an input")] = -1.0;
-            let (decision, outputs) = evaluate_decided(model, &inputs);
+            let (decision, outputs) = decided(model, &inputs);
             sure += usize::from(decision != Decision::Unsure);
             if decision == Decision::Yes {
                 assert_eq!((outputs[margin].value, outputs[margin].bound), (0.0, 0.0), "{}: {inputs:?}", model.name);
@@ -214,7 +224,7 @@ fn a_traction_or_torque_of_exactly_zero_is_no_borderline_case() {
             let mut inputs = model.defaults();
             inputs[model.input("traction").expect("it is an input")] = traction;
             inputs[model.input("torque_Nm").expect("it is an input")] = torque;
-            evaluate_decided(model, &inputs).0
+            decided(model, &inputs).0
         };
         assert_eq!(decision(0.0, 0.0), Decision::Yes, "{}", model.name);
         assert_eq!(decision(0.0, 50.0), Decision::No, "{}", model.name);
@@ -227,7 +237,7 @@ fn a_capacity_of_zero_is_known_to_be_zero() {
     let model = find("rubber-cvt").expect("it is a model");
     let mut inputs = model.defaults();
     inputs[model.input("belt_thickness_mm").expect("it is an input")] = 40.0;
-    let outputs = evaluate_decided(model, &inputs).1;
+    let outputs = decided(model, &inputs).1;
     for name in ["torque_capacity_Nm", "capacity_axial_force_N"] {
         let capacity = outputs[model.output(name).expect("it is an output")];
         // Nothing but what may be flushed to zero.

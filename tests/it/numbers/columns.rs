@@ -10,7 +10,7 @@ use beltspace::real::{Dependence, LANES};
 fn fast_inputs(model: &Model) -> Vec<usize> {
     let mut inputs = [Dependence::fixed(0.0); INPUTS];
     for (input, table) in model.inputs.iter().enumerate() {
-        inputs[input] = Dependence::varied(input, table.word.map_or(0.0, |(_, word)| word), 1e9);
+        inputs[input] = Dependence::varied(input, table.words.iter().fold(0.0, |least, (_, word)| word.min(least)), 1e9);
     }
     let slow = model.kernel.reach(&inputs).prepared;
     (0..model.inputs.len()).filter(|input| slow >> input & 1 == 0).collect()

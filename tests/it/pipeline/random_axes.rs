@@ -61,9 +61,8 @@ impl Generator<'_> {
     pub fn value(&mut self, input: usize) -> f64 {
         let table = &self.model.inputs[input];
         let (low, high) = range(self.model, input);
-        match table.word {
-            Some((_, encoded)) if self.random.chance(0.25) => return encoded,
-            _ => {}
+        if !table.words.is_empty() && (table.is_enumeration() || self.random.chance(0.25)) {
+            return self.random.word(table.words);
         }
         if table.valid.includes_low && self.random.chance(0.08) {
             return table.valid.low;
@@ -95,7 +94,7 @@ impl Generator<'_> {
         if table.integer {
             return self.integer(input, count, axis);
         }
-        let listed = table.word.is_some() && self.random.chance(0.4);
+        let listed = table.is_enumeration() || (!table.words.is_empty() && self.random.chance(0.4));
         let kind = if listed { 0 } else { self.random.below(if continuous { 7 } else { 5 }) };
         let (mut from, mut to) = (self.random.between(low, 0.6 * low + 0.4 * high), self.random.between(0.4 * low + 0.6 * high, high));
         (from, to) = if self.random.chance(0.7) { (three_digits(from), three_digits(to)) } else { (from, to) };
@@ -103,7 +102,8 @@ impl Generator<'_> {
         match kind {
             0 => {
                 let mut values: Vec<f64> = Vec::new();
-                while (values.len() as u64) < count.min(8) {
+                let most = if table.is_enumeration() { table.words.len() } else { 8 };
+                while (values.len() as u64) < count.min(most as u64) {
                     let value = self.value(input);
                     if values.iter().all(|other| other.to_bits() != value.to_bits()) {
                         values.push(value);

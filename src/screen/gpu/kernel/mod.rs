@@ -102,7 +102,6 @@ fn real(value: f64) -> String {
 
 /// The text of the kernel. `perturb`: outputs that are to come out wrong by this part of their value, for testing.
 pub fn text(plan: &Plan, layout: &Layout, perturb: &[(usize, f64)]) -> String {
-    let model = plan.study.model;
     let mut prelude = Prelude { plan, layout, text: String::new(), coordinates: coordinates(plan, layout) };
     prelude.constants();
     prelude.inputs();
@@ -117,9 +116,9 @@ pub fn text(plan: &Plan, layout: &Layout, perturb: &[(usize, f64)]) -> String {
     [
         source::COMMON,
         include_str!("../../../../shaders/common/wide.wgsl"),
-        &model_prelude(model, plan.used_outputs(), &asked),
-        &passed_tables(plan, layout),
-        &model_source(model),
+        &model_prelude(layout.formula, plan.study.model.conditions.len(), plan.used_outputs(), &asked),
+        &passed_tables(layout),
+        &model_source(layout.formula),
         include_str!("../../../../shaders/sweep/tile.wgsl"),
         &prelude.text,
         include_str!("../../../../shaders/sweep/prepare.wgsl"),
@@ -130,8 +129,8 @@ pub fn text(plan: &Plan, layout: &Layout, perturb: &[(usize, f64)]) -> String {
 }
 
 /// The tables that pass between the stages.
-fn passed_tables(plan: &Plan, layout: &Layout) -> String {
-    tables(plan.study.model, |field, place| {
+fn passed_tables(layout: &Layout) -> String {
+    tables(layout.formula, |field, place| {
         let passed = layout.prepared.iter().find(|it| it.field == field)?;
         Some(format!("prepared_table[{place} + ({}u + at) * tile.rows]", passed.offset))
     })
@@ -146,11 +145,11 @@ struct Prelude<'a> {
 
 impl Prelude<'_> {
     fn input(&self, input: usize) -> &'static str {
-        self.plan.study.model.kernel.fields().inputs[input]
+        self.layout.formula.twin.fields().inputs[input]
     }
 
     fn output(&self, output: usize) -> &'static str {
-        self.plan.study.model.kernel.fields().outputs[output]
+        self.layout.formula.twin.fields().outputs[output]
     }
 
     /// A function of these lines.

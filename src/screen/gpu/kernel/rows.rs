@@ -73,7 +73,7 @@ impl Prelude<'_> {
     /// Values of the first stage, and what all lanes of a row share.
     pub(super) fn passing(&mut self) {
         let (plan, layout) = (self.plan, self.layout);
-        let fields = plan.study.model.kernel.fields();
+        let fields = layout.formula.twin.fields();
         let width = layout.prepared_width();
         let place = format!("q * {width}u * tile.rows + row");
         let at = |offset: usize| format!("prepared_table[{place} + {offset}u * tile.rows]");

@@ -1,0 +1,81 @@
+//! What a person should know of a pulley besides its numbers.
+
+use super::super::description::Model;
+use super::super::evaluation::{Evaluation, Status, to_si};
+use super::table::OUT;
+use super::{Design, MODEL, design};
+use crate::pulley::section::{self, Dimensions, Kind};
+
+/// Sentences on one evaluation, for inputs in their units.
+pub(super) fn notes(inputs: &[f64], evaluation: &Evaluation) -> Vec<String> {
+    let si = to_si(&MODEL, inputs);
+    let (kind, dimensions) = (design::kind(&si), design::dimensions(&si));
+    if let Err(flaw) = section::checked_outline(kind, &dimensions) {
+        return vec![flaw.to_string()];
+    }
+    if evaluation.status != Status::Ok {
+        return Vec::new();
+    }
+    let mut notes = Vec::new();
+    notes.extend(place(&MODEL, &Design::new(&si), evaluation));
+    notes.extend(tight_bends(kind, &dimensions));
+    let overhang = dimensions.bolt_circle_radius + dimensions.bolt_head_radius - dimensions.bracket_radius;
+    if overhang > 0.0 {
+        notes.push(format!("the bolt heads overhang the bracket by {} mm: the hub bends there", rounded(overhang)));
+    }
+    let gamma = si[super::table::Inputs::NUMBER.friction_direction].to_degrees();
+    if gamma > 0.0 {
+        notes.push(format!(
+            "friction at {} degrees from the circumference: at 0, which is customary for V-belts, the stress is higher",
+            rounded(gamma)
+        ));
+    }
+    notes
+}
+
+fn rounded(value: f64) -> f64 {
+    (value * 1000.0).round() / 1000.0
+}
+
+/// Where the largest stress stands.
+fn place(model: &Model, design: &Design, evaluation: &Evaluation) -> Option<String> {
+    let value = |output: usize| evaluation.outputs[output];
+    let (stress, theta) = (value(OUT.max_stress)?, value(OUT.max_stress_theta)?);
+    let points = OUT.bl..=OUT.fr;
+    let near = points.filter_map(|output| Some((output, value(output)?))).max_by(|a, b| a.1.total_cmp(&b.1));
+    let beside = match near {
+        // A check point within a tenth is the same place for a reader.
+        Some((output, at)) if at > 0.9 * stress => {
+            let name = model.outputs[output].name;
+            format!("near check point {}", name.trim_start_matches("stress_").trim_end_matches("_MPa"))
+        }
+        _ => "away from the check points".to_owned(),
+    };
+    let wrap = design.case.wrap.to_degrees();
+    let seen = if theta <= wrap {
+        format!("under the belt, {} degrees before its tight end", rounded((wrap - theta).round()))
+    } else {
+        format!("outside the wrap, {} degrees after the belt's tight end", rounded((theta - wrap).round()))
+    };
+    Some(format!("the largest stress stands {beside}, {seen}"))
+}
+
+/// Bends that are tighter than the sheet is thick: pressing thins and hardens them, which the model does not know.
+fn tight_bends(kind: Kind, d: &Dimensions) -> Option<String> {
+    let outer = |radius: f64| radius - d.thickness;
+    let bends: &[(&str, f64)] = match kind {
+        Kind::Machined => &[],
+        Kind::WeldedDiscs => &[("B", d.hub_bend_radius)],
+        Kind::DoubleGroove | Kind::PressedCup => {
+            &[("B", outer(d.hub_bend_radius)), ("C", d.web_bend_radius), ("D", outer(d.fold_radius)), ("E and F", d.floor_bend_radius)]
+        }
+    };
+    let tight: Vec<_> = bends.iter().filter(|(_, inside)| *inside < d.thickness).map(|(name, _)| *name).collect();
+    (!tight.is_empty()).then(|| {
+        format!(
+            "the inside radius of bend {} is below the sheet's thickness of {} mm: forming thins such bends",
+            tight.join(", "),
+            rounded(d.thickness)
+        )
+    })
+}

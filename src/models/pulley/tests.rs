@@ -1,0 +1,80 @@
+//! Checks of the pulley model against the reference table and against hand calculations.
+
+use super::super::evaluation::{Status, evaluate};
+use super::*;
+
+fn with(changes: &[(&str, f64)]) -> Vec<f64> {
+    let mut inputs = MODEL.defaults();
+    for (name, value) in changes {
+        inputs[MODEL.input(name).unwrap_or_else(|| panic!("{name}"))] = *value;
+    }
+    inputs
+}
+
+fn output(inputs: &[f64], name: &str) -> Option<f64> {
+    evaluate(&MODEL, inputs).outputs[MODEL.output(name).unwrap()]
+}
+
+#[test]
+fn a_tightening_torque_gives_the_clamp_force() {
+    let inputs = with(&[("clamp_force_N", table::TORQUE)]);
+    let si = super::super::evaluation::to_si(&MODEL, &inputs);
+    // Physics, 3.1: M6, 10 N m, friction 0.15, washer 12/6.6.
+    let force = design::clamp_force(&Inputs::read(&si));
+    assert!((force - 7470.0).abs() < 5.0, "{force}");
+}
+
+#[test]
+fn impossible_sections_and_loads_have_a_status_and_never_a_number() {
+    let cases: [(&[(&str, f64)], usize); 9] = [
+        (&[("slack_tension_N", 39.0)], 0),
+        (&[("hub_bend_radius_mm", 1.7)], NO_SECTION),
+        (&[("fold_radius_mm", 1.8)], NO_SECTION),
+        (&[("web_bend_radius_mm", 20.0)], NO_SECTION),
+        (&[("groove_count", 2.0)], NO_SECTION),
+        (&[("contact_height_mm", 10.5)], BAND),
+        (&[("bolt_circle_mm", 52.0)], SEAT),
+        (&[("bracket_diameter_mm", 62.0)], SEAT),
+        (&[("bore_diameter_mm", 36.0)], SEAT),
+    ];
+    for (changes, condition) in cases {
+        let evaluation = evaluate(&MODEL, &with(changes));
+        assert_eq!(evaluation.status, Status::Failed(condition), "{changes:?}");
+        for name in ["max_stress_MPa", "stress_Fl_MPa", "mass_g", "yield_safety"] {
+            assert_eq!(evaluation.outputs[MODEL.output(name).unwrap()], None, "{changes:?}: {name}");
+        }
+        if condition > 1 {
+            let said = notes::notes(&with(changes), &evaluation);
+            assert_eq!(said.len(), 1, "{changes:?}: one sentence says what is wrong");
+        }
+    }
+}
+
+#[test]
+fn a_load_case_on_a_solved_section_is_the_same_as_one_of_its_own() {
+    let si = |changes: &[(&str, f64)]| super::super::evaluation::to_si(&MODEL, &with(changes));
+    let prepared = MODEL.kernel.prepared(&si(&[]));
+    let mut shared = [0.0; OUTPUTS];
+    let changes: &[(&str, f64)] =
+        &[("power_kW", 2.0), ("wrap_angle_deg", 150.0), ("friction_direction_deg", 0.0), ("clamp_force_N", 5000.0)];
+    MODEL.kernel.finish(&prepared, &si(changes), u64::MAX, &mut shared);
+    let mut own = [0.0; OUTPUTS];
+    MODEL.kernel.finish(&MODEL.kernel.prepared(&si(changes)), &si(changes), u64::MAX, &mut own);
+    assert_eq!(shared, own);
+}
+
+#[test]
+fn the_worst_angle_of_the_bolts_is_no_better_than_any() {
+    let worst = output(&with(&[("bolt_angle_deg", table::ANGLE_WORST)]), "stress_Br_MPa").unwrap();
+    let any = |angle: f64| output(&with(&[("bolt_angle_deg", angle)]), "stress_Br_MPa").unwrap();
+    let largest = (0..12).map(|it| any(7.5 * f64::from(it))).fold(0.0, f64::max);
+    assert!(worst >= largest - 1e-3 * largest && worst <= 1.01 * largest, "{worst} {largest}");
+}
+
+#[test]
+fn a_point_of_ones_own_reads_the_stress_of_the_surface_there() {
+    let inputs = with(&[("point_1_r_mm", 53.07), ("point_1_z_mm", 25.1)]);
+    let (own, largest) = (output(&inputs, "stress_P1_MPa").unwrap(), output(&inputs, "max_stress_MPa").unwrap());
+    assert!((own - largest).abs() < 1e-9 * largest, "the largest stress of the example stands there: {own} {largest}");
+    assert_eq!(output(&inputs, "stress_P2_MPa"), None);
+}
