@@ -6,7 +6,7 @@ use super::results::Results;
 use super::sweep::Sweep;
 use super::{Error, Job, NAME};
 use crate::pulley::mesh::Mesh;
-use crate::pulley::response::{CHECK_POINTS, CHUNK, LONGEST, View, respond};
+use crate::pulley::response::{CHECK_POINTS, CHUNK, LONGEST, NAMED, View, respond};
 use crate::pulley::section::{self, Fineness};
 use crate::pulley::turn::{Case, Turn};
 use std::fs;
@@ -95,8 +95,8 @@ pub fn compare(directory: &Path) -> Result<Vec<Comparison>, Error> {
 fn harmonics(job: &Job, fineness: &Fineness) -> Result<Answers, Error> {
     let mesh = section::mesh(job.kind, &job.dimensions, fineness).map_err(Error::Flaw)?;
     let case = Case { phase: Some(job.case.phase.unwrap_or(0.0)), ..job.case };
-    // No more than three points per edge, and per point four numbers and eleven or fewer stresses in each harmonic.
-    let room = (3 * mesh.surface.len() + CHUNK) * (4 + 12 * (fineness.harmonics + 2)) + 100 * (fineness.harmonics + 2);
+    // No more than three points per edge and twelve stresses per harmonic.
+    let room = (3 * mesh.surface.len() + CHUNK + NAMED) * 12 * (fineness.harmonics + 3);
     let mut table = vec![0.0; room.max(LONGEST)];
     let length = respond(&mesh, job.kind, &job.dimensions, job.poisson, fineness, &mut table);
     let view = View::new(&table[..length]);
@@ -115,7 +115,12 @@ fn calculix(mesh: &Mesh, job: &Job, sweep: &Sweep, results: &Results) -> Result<
     let surface = Surface::new(mesh, job, sweep, results)?;
     let peaks = surface.peaks();
     let excluded = job.dimensions.excluded_radius(job.kind);
-    let counted = peaks.iter().filter(|peak| mesh.nodes[peak.node as usize].y >= excluded);
+    // As for the harmonics: not beside bracket and bolt heads, nor beside other places where stress is singular.
+    let counts = |node: u32| {
+        let at = mesh.nodes[node as usize];
+        at.y >= excluded && !mesh.singular.iter().any(|(place, distance)| at.distance(*place) <= distance * (1.0 + 1e-9))
+    };
+    let counted = peaks.iter().filter(|peak| counts(peak.node));
     let none = || Error::Unreadable { what: "no surface outside the bracket".to_owned() };
     let largest = counted.max_by(|a, b| a.stress.total_cmp(&b.stress)).ok_or_else(none)?;
     let at = mesh.nodes[largest.node as usize];
