@@ -176,7 +176,10 @@ struct Reference<'p> {
     columns: &'p [Column],
     wanted: u64,
     row: Option<u64>,
+    /// Of the first slow scenarios, as many as there is room for.
     prepared: Vec<Vec<f64>>,
+    /// Of another one.
+    beyond: Vec<f64>,
 }
 
 impl<'p> Reference<'p> {
@@ -186,7 +189,7 @@ impl<'p> Reference<'p> {
             Quantity::Output(output) => set | 1 << output,
             Quantity::Input(_) => set,
         });
-        Self { plan, columns, wanted, row: None, prepared: Vec::new() }
+        Self { plan, columns, wanted, row: None, prepared: Vec::new(), beyond: Vec::new() }
     }
 
     fn row(&mut self, position: u64) -> Row {
@@ -207,12 +210,14 @@ impl<'p> Reference<'p> {
             for t in 0..plan.fast_scenarios.count() {
                 plan.fast_scenarios.set(t, &mut inputs);
                 let si = to_si(model, &inputs);
-                if self.prepared.len() as u64 == q {
-                    let mut prepared = vec![0.0; model.kernel.prepared_len()];
+                let kept = q < plan.kept_scenarios();
+                if t == 0 && (!kept || self.prepared.len() as u64 == q) {
+                    let mut prepared = std::mem::take(&mut self.beyond);
+                    prepared.resize(model.kernel.prepared_len(), 0.0);
                     model.kernel.prepare(&si, self.wanted, &mut prepared);
-                    self.prepared.push(prepared);
+                    if kept { self.prepared.push(prepared) } else { self.beyond = prepared }
                 }
-                let prepared = &self.prepared[q as usize];
+                let prepared = if kept { &self.prepared[q as usize] } else { &self.beyond };
                 let mut outputs = [0.0; OUTPUTS];
                 model.kernel.finish(prepared, &si, self.wanted, &mut outputs);
                 let (status, present) = judge(model, &model.kernel.conditions(prepared, &si));

@@ -4,13 +4,18 @@
 //! fast; a *row* is one combination of the slow axes with all combinations of the fast ones. An output that no fast design axis
 //! touches is one number for the whole row, so it is evaluated once per row and scenario and never in the inner loop.
 
-use crate::models::{INPUTS, Reach, Worse, input_to_si};
+use crate::models::{Effort, INPUTS, Reach, Worse, input_to_si};
 use crate::real::Dependence;
 use crate::space::{Product, Space};
 use crate::study::{Best, Goal, Quantity, Study};
 
 /// Most combinations of the fast design axes that one row has, so that their values can be kept in a table.
 pub const FAST_DESIGNS: u64 = 1 << 15;
+
+/// Most bytes of prepared numbers that one thread keeps of a row.
+const KEPT_BYTES: u64 = 256 << 20;
+/// Most slow scenarios of which it keeps them.
+const KEPT_SCENARIOS: u64 = 1 << 15;
 
 /// A quantity whose worst scenario is followed, with the end that is worst.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -184,6 +189,26 @@ impl Plan {
     /// Number of scenarios.
     pub fn scenarios(&self) -> u64 {
         self.space.scenarios.count()
+    }
+
+    /// How long a thread takes, by what the model says, over all scenarios: for the first stage of a row, and for the second of a design.
+    #[allow(clippy::cast_precision_loss, reason = "an estimate")]
+    pub fn effort(&self) -> Effort {
+        let Effort { prepare, finish } = self.study.model.effort;
+        Effort { prepare: prepare * self.slow_scenarios.count() as f64, finish: finish * self.scenarios() as f64 }
+    }
+
+    /// How long a thread takes for a design, by what the model says, where whole rows are judged.
+    #[allow(clippy::cast_precision_loss, reason = "an estimate")]
+    pub fn seconds_per_design(&self) -> f64 {
+        let Effort { prepare, finish } = self.effort();
+        prepare / self.fast.count() as f64 + finish
+    }
+
+    /// Slow scenarios, the first ones, whose prepared numbers a thread keeps for all designs of a row.
+    pub fn kept_scenarios(&self) -> u64 {
+        let bytes = 8 * self.study.model.kernel.prepared_len().max(1) as u64;
+        self.slow_scenarios.count().min(KEPT_SCENARIOS).min(KEPT_BYTES / bytes)
     }
 
     /// The design index at a position of the sweep: rows of the slow axes outside, the fast axes inside.

@@ -3,6 +3,7 @@
 use super::{read_study, threads};
 use crate::terminal::{self, Grid, bold, grouped, scaled, span};
 use beltspace::error::Result;
+use beltspace::models::Effort;
 use beltspace::plan::Plan;
 use beltspace::reduce::Reduction;
 use beltspace::screen::{BLOCK, CpuEngine, Tables};
@@ -12,6 +13,8 @@ use std::time::{Duration, Instant};
 
 /// How long the speed is measured.
 const TRIAL: Duration = Duration::from_millis(300);
+/// Seconds above which a single design is not tried.
+const LONGEST: f64 = 1.0;
 
 pub fn run(path: &Path) -> Result<()> {
     let (study, _) = read_study(path)?;
@@ -30,7 +33,10 @@ pub fn run(path: &Path) -> Result<()> {
             axes.row([role.to_owned(), name(axis), levels, ends.join(", ")]);
         }
     }
-    let rate = trial(&plan, &tables);
+    let (rate, how) = match trial(&plan, &tables) {
+        Some(rate) => (rate, "measured over a moment"),
+        None => (plan.seconds_per_design().recip(), "by what the model usually takes"),
+    };
     let cores = threads(None);
     #[allow(clippy::cast_precision_loss, reason = "an estimate for people")]
     let (evaluations, seconds) = (designs as f64 * scenarios as f64, designs as f64 / rate / cores as f64);
@@ -40,10 +46,7 @@ pub fn run(path: &Path) -> Result<()> {
     fact("designs", grouped(designs));
     fact("scenarios", grouped(scenarios));
     fact("evaluations", format!("{evaluations:.3e}"));
-    fact(
-        "expected time",
-        format!("about {} on {cores} threads, {}designs/s (measured over a moment)", span(seconds), scaled(rate * cores as f64)),
-    );
+    fact("expected time", format!("about {} on {cores} threads, {}designs/s ({how})", span(seconds), scaled(rate * cores as f64)));
     fact("memory", format!("about {} MB and what the front takes", memory(&plan, cores)));
     let mut text = format!("{}\n\n{}\n{}", bold(&study.title), axes.indented(2), facts.indented(0));
     for warning in warnings(&plan, &name) {
@@ -68,25 +71,37 @@ fn ends(plan: &Plan, axis: &Axis, column: usize, input: usize) -> String {
     if low == high { text(low) } else { format!("{} to {}", text(low), text(high)) }
 }
 
-/// Designs per second of one thread, over rows spread over the study.
-fn trial(plan: &Plan, tables: &Tables) -> f64 {
+/// Designs per second of one thread, over rows spread over the study; `None` if a single design takes too long to try.
+#[allow(clippy::cast_precision_loss, reason = "an estimate for people")]
+fn trial(plan: &Plan, tables: &Tables) -> Option<f64> {
+    let Effort { prepare, finish } = plan.effort();
+    if prepare + finish > LONGEST {
+        return None;
+    }
     let reduction = Reduction::new(plan, &vec![(0.0, 1.0); plan.study.report.histograms.len()]);
     let mut reducers = reduction.start();
     let mut engine = CpuEngine::new(plan, tables);
     let start = Instant::now();
     let (mut judged, mut step) = (0u64, 0u64);
-    let piece = plan.fast.count().clamp(1, 16 * BLOCK as u64);
+    // Of a slow model only the beginnings of rows are tried.
+    let row = plan.fast.count();
+    let affordable = ((TRIAL.as_secs_f64() - prepare) / finish) as u64;
+    let piece = row.clamp(1, 16 * BLOCK as u64).min(affordable.max(1));
+    let grid = if piece == affordable.max(1) { row } else { piece };
     while start.elapsed() < TRIAL && (step < 4 || judged < plan.designs()) {
-        let first = plan.spread(step);
-        let first = first / piece * piece;
+        let first = plan.spread(step) / grid * grid;
         let last = plan.designs().min(first + piece);
         engine.screen(first..last, |block| reduction.absorb(&mut reducers, block));
         judged += last - first;
         step += 1;
     }
-    #[allow(clippy::cast_precision_loss, reason = "an estimate for people")]
-    let rate = judged as f64 / start.elapsed().as_secs_f64();
-    rate
+    let seconds = start.elapsed().as_secs_f64();
+    if grid == piece {
+        return Some(judged as f64 / seconds);
+    }
+    // How much longer than the model says it took, and what that means for whole rows.
+    let expected = step as f64 * prepare + judged as f64 * finish;
+    Some((plan.seconds_per_design() * seconds / expected).recip())
 }
 
 /// Megabytes that tables, bins, map cells and blocks take.
@@ -95,7 +110,7 @@ fn memory(plan: &Plan, threads: usize) -> u64 {
     let cells: u64 = report.maps.iter().map(|map| plan.study.design[map.x].count() * plan.study.design[map.y].count()).sum();
     let bins: u64 = report.histograms.iter().map(|it| it.bins as u64).sum();
     let kept = plan.fast.count().min(1 << 15) * 8 * 2 * plan.study.model.inputs.len() as u64;
-    let prepared = plan.slow_scenarios.count().min(1 << 15) * 192 * threads as u64;
+    let prepared = CpuEngine::prepared_bytes(plan) * threads as u64;
     (cells * 32 + bins * 8 * (threads as u64 + 1) + kept + prepared) / 1_000_000 + 10
 }
 
@@ -134,5 +149,28 @@ fn unusual(plan: &Plan, input: usize, (low, high): (f64, f64), warnings: &mut Ve
         let value = if low == high { terminal::short(low) } else { format!("{} to {}", terminal::short(low), terminal::short(high)) };
         warnings
             .push(format!("{} = {value} lies outside {} to {}, which the model's source covers", table.name, table.usual.0, table.usual.1));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use beltspace::models::{Model, find};
+    use beltspace::study::Study;
+
+    #[test]
+    fn a_design_that_takes_seconds_is_not_tried_and_a_slow_row_only_begun() {
+        let model = find("pulley-load").expect("it is a model");
+        let trial_of = |effort: Effort| {
+            let mut study = Study::parse(model.starter, "study.toml", ".".as_ref()).expect("the starter is right");
+            study.model = Box::leak(Box::new(Model { effort, ..*model }));
+            let plan = Plan::new(study);
+            (trial(&plan, &Tables::new(&plan)), plan.seconds_per_design().recip())
+        };
+        let (rate, expected) = trial_of(Effort { prepare: 60.0, finish: 0.0 });
+        assert!(rate.is_none() && expected > 0.0);
+        // It says that it is slow and is not: that is noticed.
+        let (rate, expected) = trial_of(Effort { prepare: 1e-5, finish: 1e-5 });
+        assert!(rate.is_some_and(|rate| rate > 3.0 * expected), "{rate:?} {expected}");
     }
 }

@@ -79,7 +79,7 @@ fn judge<'p>(
     on: Option<&OnDevice>,
 ) -> Result<(Duration, u64, Option<Outcome<'p>>, Option<DeviceRecord>)> {
     let tables = Tables::new(plan);
-    let tally = Tally::new(plan, &tables, options.threads);
+    let tally = Tally::watched(plan, &tables, options.threads, control)?;
     let reduction = Reduction::new(plan, &tally.histogram_ranges(plan));
     let (Swept { state, designs, time }, did) = match on {
         None => (sweep(plan, &tables, &reduction, options, Some(checkpoint), control)?, None),

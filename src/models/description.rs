@@ -221,6 +221,19 @@ impl Output {
     }
 }
 
+/// How long a thread takes for one design in one scenario, roughly. It decides how work is cut and what `check` expects of a study
+/// that is too slow to be tried, never a result.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Effort {
+    /// Seconds of the first stage.
+    pub prepare: f64,
+    /// Seconds of the second stage, with the conditions.
+    pub finish: f64,
+}
+
+/// Most designs of which it is counted why they are not feasible, where a model has no reason for fewer.
+pub const SAMPLE: u64 = 65_536;
+
 /// What the margin of a condition is promised to, in units of its running error bound; some are single differences of inputs.
 pub const CONDITION_PROMISE: f64 = 4.5;
 
@@ -320,6 +333,10 @@ pub struct Model {
     pub starter: &'static str,
     /// The formula in f64.
     pub kernel: &'static dyn Kernel,
+    /// How long it takes.
+    pub effort: Effort,
+    /// Most designs of which it is counted why they are not feasible: [`SAMPLE`], or fewer of a slow model. Part of every result.
+    pub sample: u64,
     /// The formula on a device; `None`: it is computed in f64 on the processor only.
     pub device: Option<Device>,
     /// What a person should know of a whole study's answer, given the values of the inputs that no axis sets.

@@ -17,7 +17,9 @@ mod timing_belt;
 
 pub(crate) use crate::real::LANES;
 pub use cvt::{optimum_thickness, printed_torque_coefficient, torque_coefficient, traction_limit, wedge_factor};
-pub use description::{CONDITION_PROMISE, Condition, Device, Input, Model, Notes, Output, Profile, ProfileColumn, Range, Remarks, Worse};
+pub use description::{
+    CONDITION_PROMISE, Condition, Device, Effort, Input, Model, Notes, Output, Profile, ProfileColumn, Range, Remarks, SAMPLE, Worse,
+};
 pub use evaluation::{Evaluation, Status, evaluate, evaluate_decided};
 pub(crate) use evaluation::{holds, input_to_si, judge, shown, to_si};
 pub use formula::{CONDITIONS, Columns, Fields, Formula, INPUTS, Kernel, OUTPUTS, Reach, Reads, Scratch, Twin, run};

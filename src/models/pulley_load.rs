@@ -17,7 +17,7 @@
 //! - The second friction component acts along the flank, inwards and towards the groove's mid-plane: the loads balance
 //!   exactly only then (the paper's "radial" taken literally is 0.67 % off in its example).
 
-use super::description::{Condition, Device, Input, Model, Output, Profile, ProfileColumn, Range, Worse};
+use super::description::{Condition, Device, Effort, Input, Model, Output, Profile, ProfileColumn, Range, SAMPLE, Worse};
 use super::formula::{CONDITIONS, Fields, Formula, INPUTS, OUTPUTS, bits, record};
 use crate::real::Real;
 use crate::units::{
@@ -203,6 +203,8 @@ pub const MODEL: Model = Model {
     profile: Some(profile),
     notes: None,
     remarks: None,
+    effort: Effort { prepare: 2e-7, finish: 2e-9 },
+    sample: SAMPLE,
     device: Some(Device { shader: &[include_str!("../../shaders/models/pulley-load.wgsl")], twin: &PulleyLoad }),
 };
 

@@ -1,7 +1,7 @@
 //! Rubber V-belt variator. The formula is [`super::cvt`]'s, with one belt section of width b and thickness h.
 
 use super::cvt::{Belt, CONDITION_TABLE, Cvt, Drive, OUTPUT_TABLE, SHADER, groove_angle, ratio, torque, traction};
-use super::description::{Device, Input, Model};
+use super::description::{Device, Effort, Input, Model, SAMPLE};
 use super::formula::{INPUTS, record};
 use crate::real::Real;
 use crate::units::{MEGAPASCAL, MILLIMETRE, NONE};
@@ -44,6 +44,8 @@ pub const MODEL: Model = Model {
     profile: None,
     notes: None,
     remarks: None,
+    effort: Effort { prepare: 5e-7, finish: 3e-9 },
+    sample: SAMPLE,
     device: Some(Device { shader: &[SHADER, include_str!("../../shaders/models/rubber-cvt.wgsl")], twin: &Cvt(RubberBelt) }),
 };
 

@@ -1,7 +1,88 @@
 //! Tests that loop over every model.
 
 use super::*;
+use crate::real::Dependence;
+use crate::screen::Control;
 use std::collections::HashSet;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, OnceLock};
+use std::thread::ThreadId;
+use std::time::Duration;
+
+/// The formula of `pulley-load` as a slow model without a twin would compute it, watched.
+pub(crate) struct Watched {
+    inner: &'static dyn Kernel,
+    /// How long the first stage sleeps.
+    pause: Duration,
+    /// Numbers that it passes on and nobody reads.
+    idle: usize,
+    /// First stages, and blocks of the second, so far.
+    pub prepared: AtomicU64,
+    pub blocks: AtomicU64,
+    /// Threads that were here.
+    pub threads: Mutex<HashSet<ThreadId>>,
+    /// Stops the work when so many stages have been computed.
+    pub stop: OnceLock<(u64, &'static Control)>,
+}
+
+impl Watched {
+    fn count(&self, counter: &AtomicU64) {
+        counter.fetch_add(1, Ordering::Relaxed);
+        self.threads.lock().expect("nobody panics with it").insert(std::thread::current().id());
+        if let Some((after, control)) = self.stop.get()
+            && self.prepared.load(Ordering::Relaxed) + self.blocks.load(Ordering::Relaxed) >= *after
+        {
+            control.stop.store(true, Ordering::Relaxed);
+        }
+    }
+}
+
+impl Kernel for Watched {
+    fn prepared_len(&self) -> usize {
+        self.inner.prepared_len() + self.idle
+    }
+
+    fn prepare(&self, inputs: &[f64; INPUTS], wanted: u64, prepared: &mut [f64]) {
+        std::thread::sleep(self.pause);
+        self.inner.prepare(inputs, wanted, prepared);
+        self.count(&self.prepared);
+    }
+
+    fn conditions(&self, prepared: &[f64], inputs: &[f64; INPUTS]) -> [f64; CONDITIONS] {
+        self.inner.conditions(prepared, inputs)
+    }
+
+    fn finish(&self, prepared: &[f64], inputs: &[f64; INPUTS], wanted: u64, outputs: &mut [f64; OUTPUTS]) {
+        self.inner.finish(prepared, inputs, wanted, outputs);
+    }
+
+    fn finish_columns(
+        &self,
+        model: &Model,
+        prepared: &[f64],
+        inputs: &[f64; INPUTS],
+        columns: &Columns<'_>,
+        scratch: &mut Scratch,
+        results: &mut [Vec<f64>],
+    ) {
+        self.inner.finish_columns(model, prepared, inputs, columns, scratch, results);
+        self.count(&self.blocks);
+    }
+
+    fn reach(&self, inputs: &[Dependence; INPUTS]) -> Reach {
+        self.inner.reach(inputs)
+    }
+}
+
+/// A model that is watched: it goes by the name of the one that it computes like.
+pub(crate) fn watched(pause: Duration, idle: usize) -> (&'static Model, &'static Watched) {
+    let model = find("pulley-load").expect("it is a model");
+    let [prepared, blocks] = [const { AtomicU64::new(0) }; 2];
+    let kernel = Watched { inner: model.kernel, pause, idle, prepared, blocks, threads: Mutex::default(), stop: OnceLock::new() };
+    let kernel: &Watched = Box::leak(Box::new(kernel));
+    let effort = Effort { prepare: pause.as_secs_f64(), finish: 1e-8 };
+    (Box::leak(Box::new(Model { kernel, effort, sample: 50, device: None, ..*model })), kernel)
+}
 
 /// Words of an enumeration, for tests where no model needs them.
 const SECTIONS: &[(&str, f64)] = &[("machined", 1.0), ("welded-discs", 2.0), ("double-groove", 3.0), ("pressed-cup", 4.0)];

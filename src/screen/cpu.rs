@@ -10,6 +10,7 @@ use crate::models::{self, CONDITIONS, Columns, INPUTS, LANES, OUTPUTS, Scratch, 
 use crate::plan::{FAST_DESIGNS, Plan, Source};
 use crate::space::Product;
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Most designs in a block: its columns stay in the first-level cache.
 pub const BLOCK: usize = 512;
@@ -67,9 +68,10 @@ pub struct CpuEngine<'p> {
     pub(super) row: Option<u64>,
     row_feasible: bool,
     row_worst: Vec<f64>,
-    /// One stretch of [`CpuEngine::width`] numbers per slow scenario that is kept, and a last one for those that are not.
+    /// One stretch of [`CpuEngine::width`] numbers per slow scenario that there is room for, and a last one for the others.
     prepared: Vec<f64>,
-    /// How many are kept and hold for the current row.
+    room: u64,
+    /// How many of them hold for the current row.
     kept: u64,
     width: usize,
     /// Outputs that the study asks for.
@@ -81,16 +83,32 @@ pub struct CpuEngine<'p> {
     values: Vec<Vec<f64>>,
     row_index: u64,
     scratch: Scratch,
+    /// Set to end the work as soon as may be.
+    stop: Option<&'p AtomicBool>,
 }
 
 impl<'p> CpuEngine<'p> {
     /// An engine for a plan and its tables.
     pub fn new(plan: &'p Plan, tables: &'p Tables) -> Self {
+        Self::with_room(plan, tables, plan.kept_scenarios())
+    }
+
+    /// The same engine, which gives up what it is at when `stop` is set.
+    #[must_use]
+    pub fn stopping_on(self, stop: &'p AtomicBool) -> Self {
+        Self { stop: Some(stop), ..self }
+    }
+
+    /// Bytes of prepared numbers that an engine for this plan keeps.
+    pub fn prepared_bytes(plan: &Plan) -> u64 {
+        8 * plan.study.model.kernel.prepared_len() as u64 * (plan.kept_scenarios() + 1)
+    }
+
+    /// An engine that keeps the prepared numbers of so many slow scenarios.
+    fn with_room(plan: &'p Plan, tables: &'p Tables, room: u64) -> Self {
         let columns = plan.lane_outputs.len() + plan.lane_conditions.len();
         let first = plan.space.inputs(0, 0);
         let width = plan.study.model.kernel.prepared_len();
-        let slow = plan.slow_scenarios.count();
-        let kept = if slow <= TABLE { slow as usize } else { 0 };
         Self {
             plan,
             tables,
@@ -100,7 +118,8 @@ impl<'p> CpuEngine<'p> {
             row: None,
             row_feasible: false,
             row_worst: vec![0.0; plan.tracked.len()],
-            prepared: vec![0.0; width * (kept + 1)],
+            prepared: vec![0.0; width * (room as usize + 1)],
+            room,
             kept: 0,
             width,
             wanted: plan.used_outputs(),
@@ -109,30 +128,39 @@ impl<'p> CpuEngine<'p> {
             values: vec![vec![0.0; BLOCK]; plan.tracked.len()],
             row_index: 0,
             scratch: Scratch::default(),
+            stop: None,
         }
     }
 
-    /// Judges the designs at `positions` and hands each block with a feasible design to `absorb`.
-    pub fn screen(&mut self, positions: Range<u64>, mut absorb: impl FnMut(&Block<'_>)) {
+    pub(super) fn stopped(&self) -> bool {
+        self.stop.is_some_and(|stop| stop.load(Ordering::Relaxed))
+    }
+
+    /// Judges the designs at `positions` and hands each block with a feasible design to `absorb`. Returns the position before which
+    /// all are judged: the end, unless the engine was stopped.
+    pub fn screen(&mut self, positions: Range<u64>, mut absorb: impl FnMut(&Block<'_>)) -> u64 {
         let width = self.plan.fast.count();
         let mut position = positions.start;
         while position < positions.end {
             let (row, first) = (position / width, position % width);
             let end = width.min(first + (positions.end - position));
-            self.enter_row(row);
-            if self.row_feasible {
-                self.screen_row(first..end, &mut absorb);
+            if !self.enter_row(row) {
+                return position;
             }
-            position += end - first;
+            let judged = if self.row_feasible { self.screen_row(first..end, &mut absorb) } else { end };
+            position += judged - first;
+            if judged < end {
+                return position;
+            }
         }
+        position
     }
 
     /// Judges single designs, given by their sorted positions, and hands each block with a feasible design to `absorb`.
     pub fn screen_some(&mut self, positions: &[u64], mut absorb: impl FnMut(&Block<'_>)) {
         let width = self.plan.fast.count();
         for row in positions.chunk_by(|a, b| a / width == b / width) {
-            self.enter_row(row[0] / width);
-            if self.row_feasible {
+            if self.enter_row(row[0] / width) && self.row_feasible {
                 for block in row.chunks(BLOCK) {
                     let fast = FastBlock::new(self.plan, block.iter().map(|position| position % width));
                     self.screen_block(&fast, &mut absorb);
@@ -141,31 +169,35 @@ impl<'p> CpuEngine<'p> {
         }
     }
 
-    fn screen_row(&mut self, fast: Range<u64>, absorb: &mut impl FnMut(&Block<'_>)) {
+    /// Judges a part of the current row; returns where it stopped, the end if nobody told it to.
+    fn screen_row(&mut self, fast: Range<u64>, absorb: &mut impl FnMut(&Block<'_>)) -> u64 {
         let tables = self.tables;
         let mut first = fast.start;
         while first < fast.end {
             // A kept block is used whole; the ragged ends of a range and blocks that are not kept are made as they come.
             let whole = tables.blocks.get(usize::try_from(first / BLOCK as u64).unwrap_or(usize::MAX));
-            match whole {
+            let (last, done) = match whole {
                 Some(block) if first.is_multiple_of(BLOCK as u64) && first + block.count as u64 <= fast.end => {
-                    self.screen_block(block, absorb);
-                    first += block.count as u64;
+                    (first + block.count as u64, self.screen_block(block, absorb))
                 }
                 _ => {
                     let to_grid = BLOCK as u64 - first % BLOCK as u64;
                     let last = fast.end.min(first + to_grid);
-                    self.screen_block(&FastBlock::new(self.plan, first..last), absorb);
-                    first = last;
+                    (last, self.screen_block(&FastBlock::new(self.plan, first..last), absorb))
                 }
+            };
+            if !done {
+                return first;
             }
+            first = last;
         }
+        first
     }
 
-    /// Sets the inputs of a row, prepares its scenarios and judges what is the same for all its designs.
-    pub(super) fn enter_row(&mut self, row: u64) {
+    /// Sets the inputs of a row, prepares its scenarios and judges what is the same for all its designs; false if it was stopped.
+    pub(super) fn enter_row(&mut self, row: u64) -> bool {
         if self.row == Some(row) {
-            return;
+            return true;
         }
         self.set_row(row);
         self.row = Some(row);
@@ -176,13 +208,18 @@ impl<'p> CpuEngine<'p> {
         for q in 0..self.plan.slow_scenarios.count() {
             let prepared = self.prepare(q);
             for t in 0..self.plan.fast_scenarios.count() {
+                if self.stopped() {
+                    self.row = None;
+                    return false;
+                }
                 self.set_fast_scenario(t);
                 if !self.judge_row_scenario(prepared.clone()) {
                     self.row_feasible = false;
-                    return;
+                    return true;
                 }
             }
         }
+        true
     }
 
     pub(super) fn set_row(&mut self, row: u64) {
@@ -195,7 +232,7 @@ impl<'p> CpuEngine<'p> {
         self.row_index = self.plan.slow.source_index(row);
         // The outer of the axes that the first stage does not read is walked with the slow ones: rows along it share what is prepared.
         let read = self.plan.reach.prepared & self.plan.slow.inputs();
-        if self.row.is_none() || (0..self.own.len()).any(|input| read >> input & 1 == 1 && self.own[input] != before[input]) {
+        if (0..self.own.len()).any(|input| read >> input & 1 == 1 && self.own[input] != before[input]) {
             self.kept = 0;
         }
     }
@@ -238,8 +275,8 @@ impl<'p> CpuEngine<'p> {
         (kernel.conditions(prepared, &self.si), outputs)
     }
 
-    /// Judges one block of the current row over all scenarios.
-    pub(super) fn screen_block(&mut self, fast: &FastBlock, absorb: &mut impl FnMut(&Block<'_>)) {
+    /// Judges one block of the current row over all scenarios; false if it was stopped before it had.
+    pub(super) fn screen_block(&mut self, fast: &FastBlock, absorb: &mut impl FnMut(&Block<'_>)) -> bool {
         let plan = self.plan;
         let count = fast.count;
         self.alive.clear();
@@ -261,12 +298,15 @@ impl<'p> CpuEngine<'p> {
             for q in 0..plan.slow_scenarios.count() {
                 let prepared = self.prepare(q);
                 for t in 0..plan.fast_scenarios.count() {
+                    if self.stopped() {
+                        return false;
+                    }
                     self.set_fast_scenario(t);
                     self.evaluate(prepared.clone(), fast);
                     self.judge_block_scenario(q == 0 && t == 0);
                 }
                 if !any(&self.alive) {
-                    return;
+                    return true;
                 }
             }
         }
@@ -275,6 +315,7 @@ impl<'p> CpuEngine<'p> {
             let (row_index, offsets) = (self.row_index, &fast.offsets);
             absorb(&Block { row_index, offsets, feasible_count: feasible, alive: &self.alive, values: &self.values });
         }
+        true
     }
 
     /// Runs the inner loop: lane outputs and lane condition margins of a block in the current scenario.
@@ -322,24 +363,14 @@ impl<'p> CpuEngine<'p> {
 
     /// Where the row's prepared numbers of slow scenario `q` stand; its inputs become the current ones. A row asks for its
     /// scenarios in order, so that what is kept is always the first ones.
-    fn prepare(&mut self, q: u64) -> Range<usize> {
+    pub(super) fn prepare(&mut self, q: u64) -> Range<usize> {
         self.set_slow_scenario(q);
-        let room = (self.prepared.len() / self.width.max(1)) as u64 - 1;
-        let at = q.min(room) as usize * self.width;
+        let at = q.min(self.room) as usize * self.width;
         let place = at..at + self.width;
-        if q >= self.kept || q >= room {
+        if q >= self.kept {
             self.plan.study.model.kernel.prepare(&self.si, self.wanted, &mut self.prepared[place.clone()]);
-            self.kept = self.kept.max((q + 1).min(room));
+            self.kept = self.kept.max((q + 1).min(self.room));
         }
-        place
-    }
-
-    /// The same for a row whose scenarios are asked for in no order; nothing is kept of it.
-    pub(super) fn prepare_alone(&mut self, q: u64) -> Range<usize> {
-        self.kept = 0;
-        self.set_slow_scenario(q);
-        let place = self.prepared.len() - self.width..self.prepared.len();
-        self.plan.study.model.kernel.prepare(&self.si, self.wanted, &mut self.prepared[place.clone()]);
         place
     }
 
@@ -438,5 +469,92 @@ fn worse_of(worse: Worse, a: f64, b: f64) -> f64 {
     match worse {
         Worse::Higher => a.max(b),
         Worse::Lower => a.min(b),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Control;
+    use super::*;
+    use crate::models::Model;
+    use crate::models::tests::watched;
+    use crate::study::study_of;
+    use std::time::Duration;
+
+    /// Three rows of four blocks, in three slow and two fast scenarios.
+    const STUDY: &str = r#"
+        [design]
+        power_kW = [2, 3, 4]
+        friction_limit = { from = 0.25, to = 0.5, count = 2000 }
+        [operation]
+        slack_tension_N = [500, 600, 700]
+        belt_mass_kg_per_m = [0.1, 0.2]
+        [constraints]
+        friction_margin = { min = 0.65 }
+        [objectives]
+        friction_margin = "max"
+    "#;
+
+    fn plan_of(model: &'static Model) -> Plan {
+        let plan = Plan::new(study_of(model, STUDY).expect("the study is right"));
+        assert_eq!((plan.slow.count(), plan.fast.count()), (3, 2000));
+        plan
+    }
+
+    /// Feasible designs with their worst values, and where the engine stopped.
+    fn judged(engine: &mut CpuEngine<'_>, positions: Range<u64>) -> (Vec<(u64, u64)>, u64) {
+        let mut found = Vec::new();
+        let end = engine.screen(positions, |block| {
+            found.extend(block.feasible().map(|lane| (block.index(lane), block.column(0)[lane].to_bits())));
+        });
+        (found, end)
+    }
+
+    #[test]
+    fn what_there_is_no_room_for_is_prepared_again_to_the_same_answer() {
+        let (model, kernel) = watched(Duration::ZERO, 0);
+        let plan = plan_of(model);
+        let tables = Tables::new(&plan);
+        let slow = plan.slow_scenarios.count();
+        let (all, end) = judged(&mut CpuEngine::new(&plan, &tables), 0..plan.designs());
+        assert!(end == plan.designs() && all.len() > 1000 && (all.len() as u64) < plan.designs());
+        assert_eq!(kernel.prepared.load(Ordering::Relaxed), 3 * slow, "once for each row and slow scenario");
+        for room in 0..slow {
+            let before = kernel.prepared.load(Ordering::Relaxed);
+            let mut engine = CpuEngine::with_room(&plan, &tables, room);
+            assert_eq!(judged(&mut engine, 0..plan.designs()), (all.clone(), end), "room for {room}");
+            assert!(kernel.prepared.load(Ordering::Relaxed) - before > 3 * slow);
+        }
+    }
+
+    #[test]
+    fn room_is_limited_by_memory() {
+        let kept = |idle| plan_of(watched(Duration::ZERO, idle).0).kept_scenarios();
+        // Of three megabytes each six scenarios fit; of a hundred and more, two; of half a gigabyte, none.
+        assert_eq!([400_000, 16_000_000, 64_000_000].map(kept), [6, 2, 0]);
+    }
+
+    #[test]
+    fn a_stopped_engine_says_how_far_it_came() {
+        let (reference, _) = watched(Duration::ZERO, 0);
+        let plan = plan_of(reference);
+        let (all, _) = judged(&mut CpuEngine::new(&plan, &Tables::new(&plan)), 0..plan.designs());
+        let mut ends = std::collections::BTreeSet::new();
+        for after in (0..90).step_by(7) {
+            let control: &Control = Box::leak(Box::default());
+            let (model, kernel) = watched(Duration::ZERO, 0);
+            assert!(kernel.stop.set((after, control)).is_ok());
+            let plan = plan_of(model);
+            let tables = Tables::new(&plan);
+            let mut engine = CpuEngine::new(&plan, &tables).stopping_on(&control.stop);
+            let (mut found, end) = judged(&mut engine, 0..plan.designs());
+            ends.insert(end);
+            // The same engine goes on when it may, and nothing is missing or twice.
+            control.stop.store(false, Ordering::Relaxed);
+            let mut engine = CpuEngine { stop: None, ..engine };
+            found.extend(judged(&mut engine, end..plan.designs()).0);
+            assert!(found == all, "stopped after {after} stages at {end}");
+        }
+        assert!(ends.len() > 4 && ends.contains(&0), "{ends:?}");
     }
 }

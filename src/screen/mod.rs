@@ -9,7 +9,22 @@ mod tally;
 
 pub(crate) use columns::ends;
 pub use cpu::{BLOCK, CpuEngine, Tables};
-pub use tally::{SAMPLE, Tally};
+pub use tally::Tally;
+
+use std::sync::atomic::{AtomicBool, AtomicU64};
+
+/// What others may see and do while designs are judged.
+#[derive(Debug, Default)]
+pub struct Control {
+    /// Designs of the sample, once it is known how many they are.
+    pub sample: AtomicU64,
+    /// Of these, designs looked at so far.
+    pub sampled: AtomicU64,
+    /// Designs judged so far, those of a resumed checkpoint included.
+    pub done: AtomicU64,
+    /// Set to end the work as soon as may be, keeping the checkpoint.
+    pub stop: AtomicBool,
+}
 
 /// Judged designs of one row: who is feasible, and the worst values of what the plan tracks.
 #[derive(Clone, Copy, Debug)]

@@ -1,16 +1,17 @@
 //! Why designs are not feasible: a count per status and constraint over a fixed sample of the designs.
 //!
 //! A sweep gives up on a design at the first thing that is wrong with it, so what limits feasibility is counted on a sample of
-//! its own, in f64 and to the end: 65 536 stratified design indices (all designs if fewer), the same whatever ran the sweep.
+//! its own, in f64 and to the end: stratified design indices, as many as the model says (all designs if fewer), the same whatever ran
+//! the sweep.
 
+use super::Control;
 use super::cpu::{BLOCK, CpuEngine, FastBlock, Tables, holds, row_value};
+use crate::error::{Error, Result};
 use crate::models::{CONDITIONS, INPUTS, OUTPUTS};
 use crate::plan::{Plan, Source, Tracked, worst_end};
 use crate::sample::mix;
 use serde::{Deserialize, Serialize};
-
-/// Most designs in the sample.
-pub const SAMPLE: u64 = 65_536;
+use std::sync::atomic::Ordering;
 
 /// Counts over the sample. A design may fail in several ways and counts in each.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -41,11 +42,31 @@ const _: () = assert!(CONDITIONS + INPUTS + OUTPUTS <= Failures::BITS as usize);
 impl Tally {
     /// Counts the sample of a plan.
     pub fn new(plan: &Plan, tables: &Tables, threads: usize) -> Self {
-        let mut positions: Vec<u64> = sample(plan.designs()).map(|design| plan.position_of(design)).collect();
+        Self::count(plan, tables, threads, &Control::default())
+    }
+
+    /// The same, seen and stopped by others.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] after `control.stop`.
+    pub fn watched(plan: &Plan, tables: &Tables, threads: usize, control: &Control) -> Result<Self> {
+        let tally = Self::count(plan, tables, threads, control);
+        if control.stop.load(Ordering::Relaxed) {
+            return Err(Error::Stopped { checkpoint: String::new(), resume: String::new() });
+        }
+        Ok(tally)
+    }
+
+    fn count(plan: &Plan, tables: &Tables, threads: usize, control: &Control) -> Self {
+        let indices = sample(plan.designs(), plan.study.model.sample);
+        let mut positions: Vec<u64> = indices.map(|design| plan.position_of(design)).collect();
+        // In the order of the sweep neighbours share what is prepared.
         positions.sort_unstable();
+        control.sample.store(positions.len() as u64, Ordering::Relaxed);
         let share = positions.len().div_ceil(threads.max(1)).max(1);
         let parts: Vec<Self> = std::thread::scope(|scope| {
-            let parts: Vec<_> = positions.chunks(share).map(|part| scope.spawn(move || Counter::new(plan, tables).count(part))).collect();
+            let count = |part| scope.spawn(move || Counter::new(plan, tables, control).count(part));
+            let parts: Vec<_> = positions.chunks(share).map(count).collect();
             parts.into_iter().map(|part| part.join().expect("counting does not panic")).collect()
         });
         parts.into_iter().fold(Self::empty(plan), Self::merge)
@@ -107,9 +128,9 @@ impl Tally {
     }
 }
 
-/// The design indices of the sample: one in each of [`SAMPLE`] equal strata.
-pub(crate) fn sample(designs: u64) -> impl Iterator<Item = u64> {
-    let strata = designs.min(SAMPLE);
+/// The design indices of the sample: one in each of `most` equal strata.
+fn sample(designs: u64, most: u64) -> impl Iterator<Item = u64> {
+    let strata = designs.min(most);
     let edge = move |stratum: u64| (u128::from(designs) * u128::from(stratum) / u128::from(strata)) as u64;
     (0..strata).map(move |stratum| {
         let (first, next) = (edge(stratum), edge(stratum + 1));
@@ -121,12 +142,13 @@ pub(crate) fn sample(designs: u64) -> impl Iterator<Item = u64> {
 struct Counter<'p> {
     plan: &'p Plan,
     engine: CpuEngine<'p>,
+    control: &'p Control,
     tally: Tally,
 }
 
 impl<'p> Counter<'p> {
-    fn new(plan: &'p Plan, tables: &'p Tables) -> Self {
-        Self { plan, engine: CpuEngine::new(plan, tables), tally: Tally::empty(plan) }
+    fn new(plan: &'p Plan, tables: &'p Tables, control: &'p Control) -> Self {
+        Self { plan, engine: CpuEngine::new(plan, tables).stopping_on(&control.stop), control, tally: Tally::empty(plan) }
     }
 
     fn count(mut self, positions: &[u64]) -> Tally {
@@ -134,20 +156,27 @@ impl<'p> Counter<'p> {
         for row in positions.chunk_by(|a, b| a / width == b / width) {
             for block in row.chunks(BLOCK) {
                 let fast: Vec<u64> = block.iter().map(|position| position % width).collect();
-                self.count_block(block[0] / width, &fast);
+                if !self.count_block(block[0] / width, &fast) {
+                    return self.tally;
+                }
+                self.control.sampled.fetch_add(block.len() as u64, Ordering::Relaxed);
             }
         }
         self.tally
     }
 
-    fn count_block(&mut self, row: u64, designs: &[u64]) {
+    /// Counts designs of one row, at most [`BLOCK`]; false if it was stopped.
+    fn count_block(&mut self, row: u64, designs: &[u64]) -> bool {
         let plan = self.plan;
         let fast = FastBlock::new(plan, designs.iter().copied());
         let mut failures: Vec<Failures> = vec![0; designs.len()];
         self.engine.set_row(row);
         for q in 0..plan.slow_scenarios.count() {
-            let prepared = self.engine.prepare_alone(q);
+            let prepared = self.engine.prepare(q);
             for t in 0..plan.fast_scenarios.count() {
+                if self.engine.stopped() {
+                    return false;
+                }
                 self.engine.set_fast_scenario(t);
                 let (margins, outputs) = self.engine.row_values(prepared.clone());
                 let failed = plan.row_conditions.iter().filter(|&&number| !holds(plan, number, margins[number]));
@@ -169,8 +198,9 @@ impl<'p> Counter<'p> {
             self.tally.count_design(failures);
         }
         if failures.contains(&0) {
-            self.stretch_ranges(row, &fast, &failures);
+            return self.stretch_ranges(row, &fast, &failures);
         }
+        true
     }
 
     /// Constraints that a design violates in the current scenario.
@@ -187,19 +217,63 @@ impl<'p> Counter<'p> {
         })
     }
 
-    /// Takes the worst values of the block's feasible designs into account.
-    fn stretch_ranges(&mut self, row: u64, fast: &FastBlock, failures: &[Failures]) {
+    /// Takes the worst values of the block's feasible designs into account; false if it was stopped.
+    fn stretch_ranges(&mut self, row: u64, fast: &FastBlock, failures: &[Failures]) -> bool {
         let ranges = &mut self.tally.ranges;
+        // What has just been prepared of the row is still there.
         self.engine.row = None;
-        self.engine.enter_row(row);
-        self.engine.screen_block(fast, &mut |block| {
-            for lane in (0..block.count()).filter(|&lane| failures[lane] == 0) {
-                for (range, values) in ranges.iter_mut().zip(block.values) {
-                    let value = values[lane];
-                    let (low, high) = range.unwrap_or((value, value));
-                    *range = Some((low.min(value), high.max(value)));
+        let entered = self.engine.enter_row(row);
+        entered
+            && self.engine.screen_block(fast, &mut |block| {
+                for lane in (0..block.count()).filter(|&lane| failures[lane] == 0) {
+                    for (range, values) in ranges.iter_mut().zip(block.values) {
+                        let value = values[lane];
+                        let (low, high) = range.unwrap_or((value, value));
+                        *range = Some((low.min(value), high.max(value)));
+                    }
                 }
-            }
-        });
+            })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::models::tests::watched;
+    use crate::study::study_of;
+    use std::time::Duration;
+
+    const STUDY: &str = r#"
+        [design]
+        power_kW = { from = 1, to = 4, count = 300 }
+        [operation]
+        slack_tension_N = [500, 700]
+        [constraints]
+        friction_margin = { min = 0.7 }
+        [objectives]
+        torque_Nm = "max"
+    "#;
+
+    #[test]
+    fn a_slow_model_is_sampled_less_and_prepares_each_design_of_the_sample_once() {
+        let (model, kernel) = watched(Duration::ZERO, 0);
+        let plan = Plan::new(study_of(model, STUDY).expect("the study is right"));
+        let control = Control::default();
+        let tally = Tally::watched(&plan, &Tables::new(&plan), 2, &control).expect("nobody stops it");
+        assert_eq!((tally.sampled, kernel.prepared.load(Ordering::Relaxed)), (50, 100));
+        assert!(tally.feasible > 0 && tally.constraints[0] > 0, "{tally:?}");
+        assert_eq!([&control.sample, &control.sampled].map(|it| it.load(Ordering::Relaxed)), [50, 50]);
+        assert_eq!(tally, Tally::new(&plan, &Tables::new(&plan), 1), "whatever the threads");
+    }
+
+    #[test]
+    fn counting_can_be_stopped() {
+        let (model, kernel) = watched(Duration::from_millis(1), 0);
+        let control: &Control = Box::leak(Box::default());
+        assert!(kernel.stop.set((20, control)).is_ok());
+        let plan = Plan::new(study_of(model, STUDY).expect("the study is right"));
+        let stopped = Tally::watched(&plan, &Tables::new(&plan), 2, control);
+        assert!(matches!(stopped, Err(Error::Stopped { .. })), "{stopped:?}");
+        assert!(kernel.prepared.load(Ordering::Relaxed) < 24 && control.sampled.load(Ordering::Relaxed) < 24);
     }
 }

@@ -85,7 +85,7 @@ pub fn sweep_on_device(
         Some(checkpoint) => checkpoint.take_progress(),
         None => None,
     };
-    let mut seen = look_around(plan, tables, reduction, &whole);
+    let mut seen = look_around(plan, tables, reduction, &whole, control);
     let progress = progress.unwrap_or_else(|| Progress { done: Ranges::default(), state: head_start(reduction, &mut seen) });
     let mut work = Work::new(progress, whole.clone(), reduction, checkpoint, control);
     let designs = work.todo.count();
@@ -128,7 +128,7 @@ pub fn sweep_on_device(
 pub fn recheck_on_device(plan: &Plan, tables: &Tables, reduction: &Reduction, threads: usize, on: &OnDevice) -> Result<Recheck> {
     let mut engine = GpuEngine::new(plan, &reduction.histogram_ranges(), &on.device, on.limited_loops, &on.wrong)?;
     let whole = 0..plan.designs();
-    let answers = answers(plan, &mut look_around(plan, tables, reduction, &whole));
+    let answers = answers(plan, &mut look_around(plan, tables, reduction, &whole, &Control::default()));
     engine.tell_cells(&answers);
     Recheckable::new(plan, tables, reduction, &mut engine, &answers, &whole, threads).map(Recheckable::into_report)
 }

@@ -6,7 +6,10 @@
 
 mod gpu;
 mod recheck;
+#[cfg(test)]
+mod tests;
 
+pub use crate::screen::Control;
 pub use gpu::{DeviceRecord, OnDevice, recheck_on_device, sweep_on_device};
 pub use recheck::{LEAST_DESIGNS, Recheck};
 
@@ -16,7 +19,7 @@ use crate::plan::Plan;
 use crate::reduce::{Points, Reducers, Reduction, State};
 use crate::screen::{BLOCK, CpuEngine, Tables};
 use crate::tiles::{Ranges, Shard};
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -25,7 +28,7 @@ use std::time::{Duration, Instant};
 pub struct Options {
     /// Worker threads, at least 1.
     pub threads: usize,
-    /// Designs that a thread works on between looks at the clock.
+    /// Most designs that a thread works on between looks at the clock.
     pub tile: u64,
     /// How long a chunk should take: what a killed run loses per thread.
     pub chunk: Duration,
@@ -38,15 +41,6 @@ impl Default for Options {
         let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
         Self { threads, tile: 1 << 16, chunk: Duration::from_millis(500), shard: Shard::WHOLE }
     }
-}
-
-/// What others may see and do while a sweep runs.
-#[derive(Debug, Default)]
-pub struct Control {
-    /// Designs judged so far, those of a resumed checkpoint included.
-    pub done: AtomicU64,
-    /// Set to end the sweep after the tiles in work, keeping the checkpoint.
-    pub stop: AtomicBool,
 }
 
 /// What a finished sweep knows.
@@ -63,12 +57,20 @@ pub struct Swept {
 /// A first chunk this small calibrates the speed and gives the front something to compare with.
 const FIRST_CHUNK: u64 = 4096;
 
+/// How long a tile should take: how often a slow study shows that it moves.
+const TILE_TIME: Duration = Duration::from_millis(100);
+
+/// A chunk that takes so many times as long as was planned for is handed over as far as it is.
+const PATIENCE: f64 = 2.0;
+
 /// Least time of a chunk and between two saves.
 const LEAST_CHUNK: Duration = Duration::from_millis(50);
 
 /// Most blocks of the head start, and the share of all designs that it may not exceed.
 const HEAD_START: u64 = 256;
 const HEAD_START_SHARE: u64 = 64;
+/// Seconds that it may take, by what the model says.
+const HEAD_START_TIME: f64 = 0.3;
 
 /// What the threads share.
 struct Work<'a> {
@@ -158,7 +160,7 @@ pub fn sweep(
         Some(checkpoint) => checkpoint.take_progress(),
         None => None,
     };
-    let fresh = || head_start(reduction, &mut look_around(plan, tables, reduction, &whole));
+    let fresh = || head_start(reduction, &mut look_around(plan, tables, reduction, &whole, control));
     let progress = progress.unwrap_or_else(|| Progress { done: Ranges::default(), state: fresh() });
     let work = Work::new(progress, whole, reduction, checkpoint, control);
     let designs = work.todo.count();
@@ -187,11 +189,12 @@ pub fn sweep(
 /// What remains of a few designs from all over a range, so that the first chunks have something to compare with.
 ///
 /// They are designs like any other, judged in f64: the sweep will meet them again and finds those of the front there already.
-fn look_around(plan: &Plan, tables: &Tables, reduction: &Reduction, whole: &std::ops::Range<u64>) -> Reducers {
+fn look_around(plan: &Plan, tables: &Tables, reduction: &Reduction, whole: &std::ops::Range<u64>, control: &Control) -> Reducers {
     let mut seen = reduction.start();
-    let mut engine = CpuEngine::new(plan, tables);
+    let mut engine = CpuEngine::new(plan, tables).stopping_on(&control.stop);
     let designs = whole.end - whole.start;
-    for step in 0..(designs / HEAD_START_SHARE / BLOCK as u64).min(HEAD_START) {
+    let affordable = (HEAD_START_TIME / (plan.seconds_per_design() * BLOCK as f64)) as u64;
+    for step in 0..(designs / HEAD_START_SHARE / BLOCK as u64).min(HEAD_START).min(affordable) {
         let first = whole.start + ((u128::from(plan.spread(step)) * u128::from(designs)) / u128::from(plan.designs())) as u64;
         engine.screen(first..whole.end.min(first + BLOCK as u64), |block| reduction.absorb(&mut seen, block));
     }
@@ -221,24 +224,30 @@ fn over_budget(plan: &Plan) -> Error {
 }
 
 fn run_thread(plan: &Plan, tables: &Tables, reduction: &Reduction, options: &Options, work: &Mutex<Work<'_>>, control: &Control) {
-    let mut engine = CpuEngine::new(plan, tables);
+    let mut engine = CpuEngine::new(plan, tables).stopping_on(&control.stop);
+    // Work is cut by time: a tile of a slow model may be a single design.
+    let tile_at = |rate: f64| ((rate * TILE_TIME.as_secs_f64()) as u64).clamp(1, options.tile);
     let lock = || work.lock().unwrap_or_else(PoisonError::into_inner);
     loop {
-        let (chunk, known) = {
+        let (chunk, known, planned, mut tile) = {
             let mut work = lock();
             // Short chunks first, so that little is lost early too; a large front is dear to merge and to keep: longer ones then.
             let young = (work.start.elapsed() / 2).max(LEAST_CHUNK).min(options.chunk);
             let seconds = young.max(10 * (work.saving + work.merging)).as_secs_f64();
-            let size = work.rate.map_or(FIRST_CHUNK as f64, |rate| rate * seconds);
+            // Until the speed is known, it is what the model says.
+            let tile = tile_at(work.rate.unwrap_or_else(|| plan.seconds_per_design().recip()));
             // Towards the end chunks shrink, so that the threads finish together.
             let fair = work.todo.count() / (2 * options.threads as u64).max(1);
-            let size = (size as u64).min(fair).max(options.tile);
+            let size = match work.rate {
+                Some(rate) => ((rate * seconds) as u64).min(fair).max(tile),
+                None if tile < FIRST_CHUNK => tile.min(fair.max(1)),
+                None => FIRST_CHUNK,
+            };
             if control.stop.load(Ordering::Relaxed) || work.failure.is_some() {
                 return;
             }
-            let size = if work.rate.is_none() { FIRST_CHUNK.min(options.tile) } else { size };
             match work.todo.take(size) {
-                Some(chunk) => (chunk, Arc::clone(&work.known)),
+                Some(chunk) => (chunk, Arc::clone(&work.known), seconds, tile),
                 None => return,
             }
         };
@@ -247,16 +256,21 @@ fn run_thread(plan: &Plan, tables: &Tables, reduction: &Reduction, options: &Opt
         drop(known);
         let mut position = chunk.start;
         while position < chunk.end && !control.stop.load(Ordering::Relaxed) {
-            let end = chunk.end.min(position.saturating_add(options.tile));
-            engine.screen(position..end, |block| reduction.absorb(&mut reducers, block));
-            control.done.fetch_add(end - position, Ordering::Relaxed);
-            position = end;
+            let end = chunk.end.min(position.saturating_add(tile));
+            let judged = engine.screen(position..end, |block| reduction.absorb(&mut reducers, block));
+            control.done.fetch_add(judged - position, Ordering::Relaxed);
+            position = judged;
+            let seconds = start.elapsed().as_secs_f64();
+            if seconds > PATIENCE * planned {
+                break;
+            }
+            tile = tile_at((position - chunk.start) as f64 / seconds.max(1e-9));
         }
         hand_over(plan, chunk.start..position, chunk.end, reducers, start.elapsed(), lock());
     }
 }
 
-/// Merges a finished chunk (or the part of it that was finished when the run was stopped) and keeps the checkpoint.
+/// Merges a finished chunk (or the part of it that was finished when the run was stopped, or patience was lost with it) and keeps the checkpoint.
 fn hand_over(
     plan: &Plan,
     finished: std::ops::Range<u64>,

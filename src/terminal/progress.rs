@@ -62,7 +62,8 @@ fn follow(control: &Control, total: u64, finished: &AtomicBool) {
         } else if rate > 0.0 {
             format!("{}designs/s, {} left", scaled(rate), span((total - done) as f64 / rate))
         } else {
-            "looking at a sample ...".to_owned()
+            let [sampled, sample] = [&control.sampled, &control.sample].map(|it| it.load(Ordering::Relaxed));
+            format!("looking at a sample, {} % ...", 100 * sampled / sample.max(1))
         });
         std::thread::sleep(Duration::from_millis(50));
     }

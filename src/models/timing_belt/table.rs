@@ -1,6 +1,6 @@
 //! The tables of the timing belt: inputs, outputs, conditions, presets.
 
-use super::super::description::{Condition, Device, Input, Model, Output, Range, Worse};
+use super::super::description::{Condition, Device, Effort, Input, Model, Output, Range, SAMPLE, Worse};
 use super::super::evaluation::{Evaluation, Status};
 use super::{INPUTS, Inputs, OUT, SPACE, TimingBelt, profile};
 use crate::units::{DEGREE, GIGAPASCAL, GRAM, MICROMETRE_PER_NEWTON, MILLIMETRE, NEWTON, NONE, RPM, SQUARE_MILLIMETRE, Unit};
@@ -210,6 +210,8 @@ pub const MODEL: Model = Model {
     profile: Some(profile::profile),
     notes: Some(notes),
     remarks: Some(remarks),
+    effort: Effort { prepare: 1e-6, finish: 1e-8 },
+    sample: SAMPLE,
     device: Some(Device { shader: &[include_str!("../../../shaders/models/timing-belt.wgsl")], twin: &TimingBelt }),
 };
 

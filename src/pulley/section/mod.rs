@@ -163,7 +163,17 @@ impl Dimensions {
 
     /// Outermost edge of what holds the hub: of the bracket or of the bolt heads, mm from the axis.
     pub fn held_radius(&self) -> f64 {
-        self.bracket_radius.max(self.bolt_circle_radius + self.bolt_head_radius)
+        self.bracket_radius.max(self.head_edge())
+    }
+
+    /// Outer edge of the bolt heads, mm from the axis.
+    pub fn head_edge(&self) -> f64 {
+        self.bolt_circle_radius + self.bolt_head_radius
+    }
+
+    /// Radius from which elements of the hub are short, mm.
+    fn beside_bracket(&self) -> f64 {
+        self.bracket_radius - self.thickness
     }
 
     /// Radius inside which stress is not reported as the largest: the edges of bracket and bolt heads are singular, and the values
@@ -373,6 +383,8 @@ pub struct Fineness {
     pub straight: f64,
     /// Length of elements on the outside of bends, mm.
     pub bend: f64,
+    /// Length of elements beside the bracket's edge, mm.
+    pub held: f64,
     /// Length of elements of solid sections, mm.
     pub solid: f64,
     /// Highest harmonic.
@@ -383,9 +395,9 @@ pub struct Fineness {
 
 impl Fineness {
     /// Two per cent at the check points C to G and of the largest stress.
-    pub const USUAL: Self = Self { through: 2, straight: 2.0, bend: 0.6, solid: 1.6, harmonics: 24, every: false };
+    pub const USUAL: Self = Self { through: 2, straight: 2.0, bend: 0.6, held: 0.7, solid: 1.6, harmonics: 24, every: false };
     /// Half a per cent.
-    pub const FINE: Self = Self { through: 3, straight: 1.0, bend: 0.4, solid: 0.8, harmonics: 32, every: true };
+    pub const FINE: Self = Self { through: 3, straight: 1.0, bend: 0.4, held: 0.35, solid: 0.8, harmonics: 32, every: true };
 }
 
 /// The mesh of a section, or why there is none.

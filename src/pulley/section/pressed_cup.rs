@@ -64,11 +64,13 @@ impl Line {
 
     pub fn mesh(&self, dimensions: &Dimensions, fineness: &Fineness) -> Result<Mesh, Flaw> {
         let band = dimensions.band();
-        let mut cuts = vec![(self.hub, sheet::share_at(&self.pieces[self.hub], dimensions.bracket_radius))];
+        let beside = dimensions.beside_bracket();
+        let on_hub = |radius| (self.hub, sheet::share_at(&self.pieces[self.hub], radius));
+        let mut cuts = vec![on_hub(beside), on_hub(dimensions.bracket_radius), on_hub(dimensions.head_edge())];
         for &flank in &self.flanks {
             cuts.extend([band.0, band.1].map(|radius| (flank, sheet::share_at(&self.pieces[flank], radius))));
         }
-        let stations = Stations::new(&self.pieces, dimensions.thickness, &cuts, fineness);
+        let stations = Stations::new(&self.pieces, dimensions.thickness, &cuts, beside, fineness);
         let through = fineness.through;
         let count = stations.places.len();
         sheet::bounded(count - 1)?;

@@ -27,8 +27,9 @@ pub struct Stations {
 }
 
 impl Stations {
-    /// Divides the pieces of a line; `cuts` are places (piece, share of its length) where an element must end.
-    pub fn new(pieces: &[Piece], thickness: f64, cuts: &[(usize, f64)], fineness: &Fineness) -> Self {
+    /// Divides the pieces of a line; `cuts` are places (piece, share of its length) where an element must end. On the hub, the first
+    /// piece, elements are short from `beside` outwards (mm from the axis): the bracket's edge disturbs the bend beside it.
+    pub fn new(pieces: &[Piece], thickness: f64, cuts: &[(usize, f64)], beside: f64, fineness: &Fineness) -> Self {
         let whole: f64 = pieces.iter().map(Piece::length).sum();
         // Large pulleys have longer elements in the same number.
         let straight = fineness.straight * (whole / 140.0).max(1.0);
@@ -38,7 +39,7 @@ impl Stations {
             ends.extend(cuts.iter().filter(|(it, share)| *it == number && *share > 0.0 && *share < 1.0).map(|(_, share)| share));
             ends.sort_by(f64::total_cmp);
             ends.dedup();
-            let size = match piece {
+            let usual = match piece {
                 Piece::Straight(..) => straight,
                 Piece::Bend { arm, turn, .. } => {
                     // The outside of the bend is the longer side; its elements span no more than a twelfth of the turn each.
@@ -49,6 +50,8 @@ impl Stations {
             };
             let first = stations.places.len().saturating_sub(1);
             for range in ends.windows(2) {
+                let held = number == 0 && piece.station(range[0]).left.y >= beside - 1e-9;
+                let size = if held { fineness.held.min(usual) } else { usual };
                 let count = (piece.length() * (range[1] - range[0]) / size).ceil().max(1.0) as usize;
                 for half in 0..=2 * count {
                     // The station where pieces or cuts meet is there already.

@@ -50,8 +50,9 @@ pub(super) fn mesh(d: &Dimensions, fineness: &Fineness) -> Result<Mesh, Flaw> {
     // Radii of the groove's side, as the line's left side sees them.
     let lift = d.thickness * libm::sin(d.half_angle);
     let flank_cuts = [band.0, d.mean_radius, band.1].map(|radius| (flank, sheet::share_at(&pieces[flank], radius - lift)));
-    let hub_cuts = [d.bracket_radius, d.weld_radius].map(|radius| (hub, sheet::share_at(&pieces[hub], radius)));
-    let stations = Stations::new(&pieces, d.thickness, &[&hub_cuts[..], &flank_cuts[..]].concat(), fineness);
+    let beside = d.beside_bracket();
+    let hub_cuts = [beside, d.bracket_radius, d.head_edge(), d.weld_radius].map(|radius| (hub, sheet::share_at(&pieces[hub], radius)));
+    let stations = Stations::new(&pieces, d.thickness, &[&hub_cuts[..], &flank_cuts[..]].concat(), beside, fineness);
     let through = fineness.through;
     let count = stations.places.len();
     sheet::bounded(2 * count)?;
