@@ -395,9 +395,9 @@ pub struct Fineness {
 
 impl Fineness {
     /// Two per cent at the check points C to G and of the largest stress.
-    pub const USUAL: Self = Self { through: 2, straight: 2.0, bend: 0.6, held: 0.7, solid: 1.6, harmonics: 24, every: false };
+    pub const USUAL: Self = Self { through: 2, straight: 2.0, bend: 0.6, held: 0.7, solid: 2.4, harmonics: 24, every: false };
     /// Half a per cent.
-    pub const FINE: Self = Self { through: 3, straight: 1.0, bend: 0.4, held: 0.35, solid: 0.8, harmonics: 32, every: true };
+    pub const FINE: Self = Self { through: 3, straight: 1.0, bend: 0.4, held: 0.35, solid: 1.2, harmonics: 32, every: true };
 }
 
 /// The mesh of a section, or why there is none.
