@@ -9,6 +9,7 @@ use crate::pulley::mesh::Mesh;
 use crate::pulley::response::{CHECK_POINTS, CHUNK, LONGEST, NAMED, View, respond};
 use crate::pulley::section::{self, Fineness};
 use crate::pulley::turn::{Case, Turn};
+use glam::DVec3;
 use std::fs;
 use std::path::Path;
 
@@ -58,10 +59,17 @@ pub fn compare(directory: &Path) -> Result<Vec<Comparison>, Error> {
         let path = directory.join(NAME).with_extension(extension);
         fs::read_to_string(&path).map_err(|source| Error::File { path, source })
     };
-    let job = Job::from_deck(&read("inp")?)?;
+    let deck = read("inp")?;
+    let job = Job::from_deck(&deck)?;
     let results = Results::new(&read("dat")?)?;
     let mesh = section::mesh(job.kind, &job.dimensions, &job.fineness).map_err(Error::Flaw)?;
     let sweep = Sweep::new(&mesh, job.sectors);
+    let positions = sweep.positions(&mesh);
+    if !has_nodes(&deck, &positions) {
+        let what =
+            "the deck has other nodes than its first lines give: it was changed, or another version of beltspace wrote it".to_owned();
+        return Err(Error::Unreadable { what });
+    }
     let usual = harmonics(&job, &Fineness::USUAL)?;
     let same = harmonics(&job, &Fineness { harmonics: 60, every: true, ..job.fineness })?;
     let solid = calculix(&mesh, &job, &sweep, &results)?;
@@ -81,7 +89,6 @@ pub fn compare(directory: &Path) -> Result<Vec<Comparison>, Error> {
             row(format!("stress at {name}"), "MPa", usual, same, solid);
         }
     }
-    let positions = sweep.positions(&mesh);
     let reaction = Wrench::of(results.reactions.iter().map(|(&node, &force)| (positions[node], force)));
     let load = closed_form(&job.dimensions, &job.case);
     for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
@@ -90,6 +97,17 @@ pub fn compare(directory: &Path) -> Result<Vec<Comparison>, Error> {
     }
     row("reaction torque".to_owned(), "N mm", -load.moment.z, -load.moment.z, reaction.moment.z);
     Ok(rows)
+}
+
+/// Does the deck have these nodes, in this order?
+fn has_nodes(deck: &str, positions: &[DVec3]) -> bool {
+    let block = deck.lines().skip_while(|line| !line.starts_with("*NODE,")).skip(1).take_while(|line| !line.starts_with('*'));
+    let mut expected = positions.iter();
+    let same = |line: &str, at: &DVec3| {
+        let numbers = line.split(',').skip(1).map(str::parse::<f64>);
+        numbers.zip(at.to_array()).all(|(number, value)| number.is_ok_and(|number| (number - value).abs() < 1e-6))
+    };
+    block.into_iter().all(|line| expected.next().is_some_and(|at| same(line, at))) && expected.next().is_none()
 }
 
 fn harmonics(job: &Job, fineness: &Fineness) -> Result<Answers, Error> {

@@ -46,7 +46,7 @@ impl Job {
             ("phase", case.phase.unwrap_or(0.0)),
             ("spin", case.spin),
         ];
-        let lengths = [("straight", mesh.straight), ("bend", mesh.bend), ("solid", mesh.solid)];
+        let lengths = [("straight", mesh.straight), ("bend", mesh.bend), ("held", mesh.held), ("solid", mesh.solid)];
         let counts = [("through", mesh.through), ("harmonics", mesh.harmonics), ("every", mesh.every.into()), ("sectors", self.sectors)];
         let material = [("modulus", case.modulus), ("poisson", self.poisson), ("density", self.density)];
         let group = |group: &'static str| move |(name, value): (&'static str, f64)| (format!("{group}.{name}"), value);
@@ -81,6 +81,7 @@ impl Job {
                 through: get("mesh.through")? as usize,
                 straight: get("mesh.straight")?,
                 bend: get("mesh.bend")?,
+                held: get("mesh.held")?,
                 solid: get("mesh.solid")?,
                 harmonics: get("mesh.harmonics")? as usize,
                 every: get("mesh.every")? != 0.0,
