@@ -4,10 +4,12 @@
 //! linear problem on the (r, z) section. Inside this module lengths are in mm, forces in N, stresses in MPa and angles in rad.
 //!
 //! The flow: [`section`] makes a [`mesh`] from dimensions, [`response`] solves it for unit loads ([`element`], [`band`], [`loads`]),
-//! and [`turn`] puts a load case together. [`field`] is the whole section at one angle, for pictures.
+//! and [`turn`] puts a load case together. [`field`] is the whole section at one angle, for pictures; [`calculix`] writes the same
+//! pulley as a three-dimensional model and compares.
 
 pub mod around;
 pub mod band;
+pub mod calculix;
 pub mod comparison;
 pub mod element;
 pub mod field;

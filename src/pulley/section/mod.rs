@@ -51,6 +51,21 @@ macro_rules! dimensions {
         pub struct Dimensions {
             $($(#[$doc])* pub $field: f64),*
         }
+
+        impl Dimensions {
+            /// All dimensions by name, mm and rad.
+            pub fn entries(&self) -> Vec<(&'static str, f64)> {
+                vec![$((stringify!($field), self.$field)),*]
+            }
+
+            /// Dimensions from what `value` says of each name.
+            ///
+            /// # Errors
+            /// The first that `value` returns.
+            pub fn from_entries<E>(mut value: impl FnMut(&'static str) -> Result<f64, E>) -> Result<Self, E> {
+                Ok(Self { $($field: value(stringify!($field))?),* })
+            }
+        }
     };
 }
 
