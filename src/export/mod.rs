@@ -4,6 +4,7 @@ mod csv;
 mod number;
 mod parquet;
 mod pictures;
+pub mod pulley;
 mod summary;
 mod table;
 mod tables;
@@ -96,6 +97,9 @@ impl<'p> Outcome<'p> {
         if study.report.variants {
             files.push(("variants.csv".to_owned(), csv::write(&tables::variants(self, &self.variants))));
         }
+        for (name, text) in self.knee_pictures() {
+            files.push((format!("knee-{name}.svg"), text.into_bytes()));
+        }
         let mut names = BTreeSet::new();
         let mut unique = |name: String| {
             let candidates = std::iter::once(name.clone()).chain((2..).map(|n| format!("{name}-{n}")));
@@ -124,6 +128,19 @@ impl<'p> Outcome<'p> {
         }
         files.push((MARK.to_owned(), json(&Summary::new(self).to_json())));
         Ok(files)
+    }
+
+    /// Pictures of the knee, in its most stressed scenario, for models that have such.
+    fn knee_pictures(&self) -> Vec<(&'static str, String)> {
+        let plan = self.plan;
+        let summary = Summary::new(self);
+        let Some(row) = summary.knee.as_ref().map(|knee| &self.front[knee.row]) else { return Vec::new() };
+        // The largest stress is where the least margin against yield is, whichever of them the study reports.
+        let stress = ["max_stress_MPa", "yield_safety", "fatigue_safety"];
+        let worst = stress.iter().find_map(|name| self.columns.iter().position(|column| column.name == *name));
+        let scenario = worst.map_or(0, |column| row.columns[column].scenario);
+        let title = format!("{}: knee, design {}, scenario {scenario}", plan.study.title, row.index);
+        pulley::pictures(plan.study.model, &title, &plan.space.inputs(row.index, scenario))
     }
 
     /// Writes the result directory. Each file is either whole or not there, and [`MARK`] comes last.
@@ -171,7 +188,8 @@ fn is_ours(name: &str) -> bool {
     let prefixes = [("histogram-", &["csv", "parquet", "svg"][..]), ("map-", &["csv", "parquet", "svg"]), ("contours-", &["csv"])];
     let of_quantity =
         |(prefix, extensions): &(&str, &[&str])| extensions.contains(&extension) && stem.strip_prefix(prefix).is_some_and(is_quantity);
-    fixed.contains(&name) || prefixes.iter().any(of_quantity)
+    let knee = extension == "svg" && stem.strip_prefix("knee-").is_some_and(|it| pulley::PICTURES.contains(&it));
+    knee || fixed.contains(&name) || prefixes.iter().any(of_quantity)
 }
 
 /// Is this the name of a quantity of some model, or of a feasible share, perhaps numbered?

@@ -14,7 +14,7 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use design::Design;
+pub use design::Design;
 pub use table::MODEL;
 
 use super::description::Model;
