@@ -3,6 +3,8 @@
 //! Every lane does the same operations in the same order on every machine (no contraction, no reordering), so a solution has the
 //! same bits whatever instructions the processor has.
 
+#![allow(clippy::needless_range_loop, reason = "loops over lanes, of constant length, are what the compiler makes vectors of")]
+
 /// Harmonics that are solved together.
 pub const WIDTH: usize = 4;
 

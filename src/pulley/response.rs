@@ -287,14 +287,13 @@ fn stiffness(mesh: &Mesh, poisson: f64, fixed: &[bool]) -> Matrices {
                 if row_node < column_node || fixed[row_node as usize] || fixed[column_node as usize] {
                     continue;
                 }
-                for a in 0..3 {
-                    for b in 0..3 {
-                        let (row, column) = (3 * row_node as usize + a, 3 * column_node as usize + b);
-                        if row >= column {
-                            let entry = matrices.entry(row, column);
-                            for (power, entry) in entry.iter_mut().enumerate() {
-                                *entry += couplings[i][j][power][a][b];
-                            }
+                let axes = (0..9).map(|it| (it / 3, it % 3));
+                for (a, b) in axes {
+                    let (row, column) = (3 * row_node as usize + a, 3 * column_node as usize + b);
+                    if row >= column {
+                        let entry = matrices.entry(row, column);
+                        for (power, entry) in entry.iter_mut().enumerate() {
+                            *entry += couplings[i][j][power][a][b];
                         }
                     }
                 }

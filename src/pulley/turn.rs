@@ -5,6 +5,8 @@
 //! circumference. Stresses are sums of harmonics; at 96 angles they are added up with the symmetries of cosine and sine (a quarter
 //! turn gives the other three), and near the largest value anew at finer angles.
 
+#![allow(clippy::needless_range_loop, reason = "loops over lanes, of constant length, are what the compiler makes vectors of")]
+
 use super::loads::{Complex, belt_harmonic};
 use super::response::{BELT, CHECK_POINTS, CHUNK, NAMED, RIM, STRESSES, View};
 use std::f64::consts::PI;
