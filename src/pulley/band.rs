@@ -3,6 +3,8 @@
 //! Every lane does the same operations in the same order on every machine (no contraction, no reordering), so a solution has the
 //! same bits whatever instructions the processor has.
 
+#![allow(clippy::needless_range_loop, reason = "loops over lanes, of constant length, are what the compiler makes vectors of")]
+
 /// Harmonics that are solved together.
 pub const WIDTH: usize = 4;
 
@@ -19,23 +21,37 @@ pub struct Matrices {
     half: usize,
     /// Per column, `half + 1` triples (K0, K1, K2).
     entries: Vec<[f64; 3]>,
+    /// Per column, one more than the last row with an entry.
+    reach: Vec<usize>,
 }
 
 impl Matrices {
     /// Zero matrices of `size` rows and `half` diagonals below the main one.
     pub fn new(size: usize, half: usize) -> Self {
-        Self { size, half, entries: vec![[0.0; 3]; size * (half + 1)] }
+        Self { size, half, entries: vec![[0.0; 3]; size * (half + 1)], reach: (1..=size).collect() }
     }
 
     /// The place of an entry on or below the diagonal.
     #[inline(always)]
     pub fn entry(&mut self, row: usize, column: usize) -> &mut [f64; 3] {
+        self.reach[column] = self.reach[column].max(row + 1);
         &mut self.entries[column * (self.half + 1) + (row - column)]
     }
 
     /// Rows, rounded up to whole panels: right sides have as many.
     pub fn rows(&self) -> usize {
         self.size.next_multiple_of(PANEL)
+    }
+
+    /// Of each panel, how many rows after it its elimination reaches: what a column reaches, those after it may fill.
+    fn reached(&self) -> Vec<usize> {
+        let mut last = 0;
+        let panel = |first: usize| {
+            let own = self.reach[first..self.size.min(first + PANEL)].iter().max().copied().unwrap_or(0);
+            last = own.max(last).max(first + PANEL);
+            last - first - PANEL
+        };
+        (0..self.rows()).step_by(PANEL).map(panel).collect()
     }
 }
 
@@ -54,12 +70,12 @@ impl Factors {
         let stride = matrices.half + PANEL;
         self.entries.resize(matrices.rows() * stride, [0.0; WIDTH]);
         let order = orders.map(|order| order as f64);
-        let (size, half) = (matrices.size, matrices.half);
+        let (shape, reached) = ((matrices.size, matrices.half), matrices.reached());
         let entries = &mut self.entries[..matrices.rows() * stride];
         match count {
-            3 => solve::<3>(&matrices.entries, entries, (size, half), order, sides.as_chunks_mut().0),
-            4 => solve::<4>(&matrices.entries, entries, (size, half), order, sides.as_chunks_mut().0),
-            5 => solve::<5>(&matrices.entries, entries, (size, half), order, sides.as_chunks_mut().0),
+            3 => solve::<3>(&matrices.entries, entries, shape, &reached, order, sides.as_chunks_mut().0),
+            4 => solve::<4>(&matrices.entries, entries, shape, &reached, order, sides.as_chunks_mut().0),
+            5 => solve::<5>(&matrices.entries, entries, shape, &reached, order, sides.as_chunks_mut().0),
             _ => unreachable!("a section has three to five right sides"),
         }
     }
@@ -88,7 +104,14 @@ fn build(matrices: &[[f64; 3]], (size, half): (usize, usize), order: Wide, numbe
 /// Factors and solves in one pass down and one up: a column is made just before the elimination reaches it and used for the right
 /// sides while it is at hand, so that only the factors go to memory and back.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-fn solve<const COUNT: usize>(matrices: &[[f64; 3]], entries: &mut [Wide], shape: (usize, usize), order: Wide, sides: &mut [[Wide; COUNT]]) {
+fn solve<const COUNT: usize>(
+    matrices: &[[f64; 3]],
+    entries: &mut [Wide],
+    shape: (usize, usize),
+    reached: &[usize],
+    order: Wide,
+    sides: &mut [[Wide; COUNT]],
+) {
     let half = shape.1;
     let stride = half + PANEL;
     let rows = sides.len();
@@ -96,16 +119,18 @@ fn solve<const COUNT: usize>(matrices: &[[f64; 3]], entries: &mut [Wide], shape:
     // Nothing happens to right sides that are zero so far.
     let mut loaded = [false; COUNT];
     for first in (0..rows).step_by(PANEL) {
-        while built < rows.min(first + PANEL + half) {
+        let reach = reached[first / PANEL];
+        while built < first + PANEL + reach {
             build(matrices, shape, order, built, &mut entries[built * stride..][..stride]);
             built += 1;
         }
         let (panel, rest) = entries[first * stride..].split_at_mut(PANEL * stride);
         for column in 0..PANEL {
             let (before, own) = panel.split_at_mut(column * stride);
-            let own = &mut own[..=half];
+            let length = PANEL - column + reach;
+            let own = &mut own[..length];
             for earlier in 0..column {
-                let below = &before[earlier * stride + (column - earlier)..][..=half];
+                let below = &before[earlier * stride + (column - earlier)..][..length];
                 let factor = below[0];
                 for i in 0..own.len() {
                     for lane in 0..WIDTH {
@@ -140,10 +165,32 @@ fn solve<const COUNT: usize>(matrices: &[[f64; 3]], entries: &mut [Wide], shape:
                 loaded[side] |= value != [0.0; WIDTH];
             }
         }
-        // What the panel reaches: rows and columns up to `half` after its last column.
-        let reached = half.min(rows - first - PANEL);
-        for next in 0..reached {
-            let length = half - next;
+        // Two columns in one pass: what is loaded of the panel serves both.
+        for next in (0..reach - reach % 2).step_by(2) {
+            let length = reach - next;
+            let (column, after) = rest[next * stride..].split_at_mut(stride);
+            let (column, after) = (&mut column[..length], &mut after[..length - 1]);
+            let a = &panel[PANEL + next..][..length];
+            let b = &panel[stride + PANEL + next - 1..][..length];
+            let c = &panel[2 * stride + PANEL + next - 2..][..length];
+            let d = &panel[3 * stride + PANEL + next - 3..][..length];
+            let (fa, fb, fc, fd) = (a[0], b[0], c[0], d[0]);
+            for lane in 0..WIDTH {
+                column[0][lane] -= (a[0][lane] * fa[lane] + b[0][lane] * fb[lane]) + (c[0][lane] * fc[lane] + d[0][lane] * fd[lane]);
+            }
+            let (a, b, c, d) = (&a[1..], &b[1..], &c[1..], &d[1..]);
+            let (ga, gb, gc, gd) = (a[0], b[0], c[0], d[0]);
+            let column = &mut column[1..];
+            for i in 0..after.len() {
+                for lane in 0..WIDTH {
+                    column[i][lane] -= (a[i][lane] * fa[lane] + b[i][lane] * fb[lane]) + (c[i][lane] * fc[lane] + d[i][lane] * fd[lane]);
+                    after[i][lane] -= (a[i][lane] * ga[lane] + b[i][lane] * gb[lane]) + (c[i][lane] * gc[lane] + d[i][lane] * gd[lane]);
+                }
+            }
+        }
+        if reach % 2 == 1 {
+            let next = reach - 1;
+            let length = reach - next;
             let column = &mut rest[next * stride..][..length];
             let a = &panel[PANEL + next..][..length];
             let b = &panel[stride + PANEL + next - 1..][..length];
@@ -160,12 +207,12 @@ fn solve<const COUNT: usize>(matrices: &[[f64; 3]], entries: &mut [Wide], shape:
         let known = &above[first..];
         for side in (0..COUNT).filter(|&side| loaded[side]) {
             let (xa, xb, xc, xd) = (known[0][side], known[1][side], known[2][side], known[3][side]);
-            let a = &panel[PANEL..][..reached];
-            let b = &panel[stride + PANEL - 1..][..reached];
-            let c = &panel[2 * stride + PANEL - 2..][..reached];
-            let d = &panel[3 * stride + PANEL - 3..][..reached];
-            let below = &mut below[..reached];
-            for i in 0..reached {
+            let a = &panel[PANEL..][..reach];
+            let b = &panel[stride + PANEL - 1..][..reach];
+            let c = &panel[2 * stride + PANEL - 2..][..reach];
+            let d = &panel[3 * stride + PANEL - 3..][..reach];
+            let below = &mut below[..reach];
+            for i in 0..reach {
                 for lane in 0..WIDTH {
                     below[i][side][lane] -=
                         (a[i][lane] * xa[lane] + b[i][lane] * xb[lane]) + (c[i][lane] * xc[lane] + d[i][lane] * xd[lane]);
@@ -173,26 +220,33 @@ fn solve<const COUNT: usize>(matrices: &[[f64; 3]], entries: &mut [Wide], shape:
             }
         }
     }
-    for row in (0..rows).rev() {
-        let reached = half.min(rows - row - 1);
-        let column = &entries[row * stride..][..=reached];
-        let (above, below) = sides.split_at_mut(row + 1);
-        let below = &below[..reached];
-        let mut own = above[row];
-        for i in 0..reached {
-            let factor = column[i + 1];
+    // Two rows in one pass: the sums of one alone would wait for each other. Rows come in whole panels, an even number.
+    for row in (0..rows).step_by(2).rev() {
+        let panel = row - row % PANEL;
+        let last = panel + PANEL + reached[panel / PANEL];
+        let upper = &entries[row * stride..][..stride];
+        let lower = &entries[(row + 1) * stride..][..stride];
+        let (above, below) = sides.split_at_mut(row + 2);
+        let (mut own, mut next) = (above[row], above[row + 1]);
+        let count = last - row - 2;
+        let (from_upper, from_lower, below) = (&upper[2..][..count], &lower[1..][..count], &below[..count]);
+        for i in 0..count {
             for side in 0..COUNT {
                 for lane in 0..WIDTH {
-                    own[side][lane] -= factor[lane] * below[i][side][lane];
+                    own[side][lane] -= from_upper[i][lane] * below[i][side][lane];
+                    next[side][lane] -= from_lower[i][lane] * below[i][side][lane];
                 }
             }
         }
         for side in 0..COUNT {
             for lane in 0..WIDTH {
-                own[side][lane] *= column[0][lane];
+                next[side][lane] *= lower[0][lane];
+                own[side][lane] -= upper[1][lane] * next[side][lane];
+                own[side][lane] *= upper[0][lane];
             }
         }
         above[row] = own;
+        above[row + 1] = next;
     }
 }
 
@@ -209,7 +263,7 @@ mod tests {
             match (far, part) {
                 (0, 0) => 10.0 + (row % 3) as f64,
                 (0, 2) => 1.0,
-                _ if far <= half => 0.3 / (far + part + 1) as f64 - if (row + column) % 2 == 0 { 0.1 } else { 0.0 },
+                _ if far <= half => 0.3 / (far + part + 1) as f64 - if (row + column).is_multiple_of(2) { 0.1 } else { 0.0 },
                 _ => 0.0,
             }
         };

@@ -71,11 +71,12 @@ impl EdgePoint {
     }
 }
 
-const GAUSS_3: [(f64, f64); 3] = [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
+/// Points of Gauss and their weights.
+pub(super) const GAUSS_3: [(f64, f64); 3] = [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
 
 /// Half of the twelve points of Gauss, enough for the edges of the annuli, which end inside an element: the others are their mirror
 /// images.
-const GAUSS_12: [(f64, f64); 6] = [
+pub(super) const GAUSS_12: [(f64, f64); 6] = [
     (0.125_233_408_511_468_9, 0.249_147_045_813_402_8),
     (0.367_831_498_998_180_2, 0.233_492_536_538_354_8),
     (0.587_317_954_286_617_4, 0.203_167_426_723_065_9),

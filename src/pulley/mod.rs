@@ -4,14 +4,22 @@
 //! linear problem on the (r, z) section. Inside this module lengths are in mm, forces in N, stresses in MPa and angles in rad.
 //!
 //! The flow: [`section`] makes a [`mesh`] from dimensions, [`response`] solves it for unit loads ([`element`], [`band`], [`loads`]),
-//! and [`turn`] puts a load case together.
+//! and [`turn`] puts a load case together. [`field`] is the whole section at one angle, for pictures; [`calculix`] writes the same
+//! pulley as a three-dimensional model and compares.
 
+pub mod around;
 pub mod band;
+pub mod calculix;
+pub mod comparison;
 pub mod element;
+pub mod field;
+#[cfg(test)]
+pub(crate) mod fixtures;
 pub mod loads;
 pub mod mesh;
 mod numbering;
 pub mod response;
 pub mod section;
 mod spline;
+pub mod surface;
 pub mod turn;

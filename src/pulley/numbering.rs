@@ -1,6 +1,7 @@
 //! Numbers the nodes of a mesh so that the equations have a narrow band: reverse Cuthill-McKee.
 
 use super::mesh::{Edge, Element, Mesh};
+use glam::DVec2;
 use std::collections::VecDeque;
 
 /// The same mesh with its nodes in another order; nodes that no element has are left out.
@@ -16,13 +17,12 @@ pub fn renumbered(mesh: Mesh) -> Mesh {
         list.sort_unstable();
         list.dedup();
     }
-    let start = (0..count as u32)
-        .filter(|&node| !neighbours[node as usize].is_empty())
-        .min_by(|&a, &b| mesh.nodes[a as usize].y.total_cmp(&mesh.nodes[b as usize].y).then(a.cmp(&b)));
-    let order = match start {
-        Some(start) => walk(&neighbours, start),
-        None => Vec::new(),
-    };
+    // Ends of the section are good places to start from; which is best depends on its branches.
+    let ends: [fn(DVec2) -> f64; 4] = [|at| at.y, |at| -at.y, |at| at.x - 2.0 * at.y, |at| -at.x - 2.0 * at.y];
+    let used = || (0..count as u32).filter(|&node| !neighbours[node as usize].is_empty());
+    let start = |far: fn(DVec2) -> f64| used().min_by(|&a, &b| far(mesh.nodes[a as usize]).total_cmp(&far(mesh.nodes[b as usize])));
+    let walks = ends.into_iter().filter_map(start).map(|start| walk(&neighbours, start));
+    let order = walks.min_by_key(|order| effort(&neighbours, order)).unwrap_or_default();
     let mut new = vec![u32::MAX; count];
     for (number, &node) in order.iter().rev().enumerate() {
         new[node as usize] = number as u32;
@@ -43,6 +43,21 @@ pub fn renumbered(mesh: Mesh) -> Mesh {
         rim: of(mesh.rim),
         singular: mesh.singular.clone(),
     }
+}
+
+/// What elimination costs in this order, reversed: the sum of squares of how many nodes each row reaches.
+fn effort(neighbours: &[Vec<u32>], order: &[u32]) -> u64 {
+    let mut place = vec![0; neighbours.len()];
+    for (number, &node) in order.iter().rev().enumerate() {
+        place[node as usize] = number as u64;
+    }
+    let mut last = 0;
+    let mut reach = |node: u32| {
+        let own = neighbours[node as usize].iter().map(|&it| place[it as usize]).max().unwrap_or(0);
+        last = own.max(last);
+        (last - place[node as usize].min(last)).pow(2)
+    };
+    order.iter().rev().map(|&node| reach(node)).sum()
 }
 
 /// Nodes in the order of their distance from the first, those with few neighbours first among equals.

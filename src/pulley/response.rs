@@ -98,6 +98,11 @@ impl<'t> View<'t> {
         Self { table, sizes: Sizes { padded, orders, clamps: (orders - 1) / bolts + 1 } }
     }
 
+    /// Numbers in the table.
+    pub fn length(&self) -> usize {
+        self.sizes.length()
+    }
+
     /// Surface points.
     pub fn points(&self) -> usize {
         self.table[Head::Points as usize] as usize
@@ -192,9 +197,10 @@ struct SurfacePoint {
 const SMOOTH: f64 = 0.8;
 
 /// The points of the surface: each node of each smooth stretch. What strains are at the two Gauss points of an edge is extended
-/// linearly to its nodes and averaged between the edges that meet.
-fn surface_points(mesh: &Mesh) -> Vec<SurfacePoint> {
+/// linearly to its nodes and averaged between the edges that meet. Second, the points of every edge.
+fn surface_points(mesh: &Mesh) -> (Vec<SurfacePoint>, Vec<[usize; 3]>) {
     let mut points: Vec<SurfacePoint> = Vec::new();
+    let mut of_edges = vec![[0; 3]; mesh.surface.len()];
     let mut open: Vec<(u32, usize, glam::DVec2)> = Vec::new();
     let mut edges_of: Vec<Vec<(usize, f64)>> = Vec::new();
     for (number, edge) in mesh.surface.iter().enumerate() {
@@ -202,10 +208,12 @@ fn surface_points(mesh: &Mesh) -> Vec<SurfacePoint> {
             let node = edge.nodes[place];
             let along = EdgePoint::new(mesh.edge(edge), local).along;
             let met = (place != 1).then(|| open.iter().position(|(other, _, way)| *other == node && way.dot(along) > SMOOTH)).flatten();
+            of_edges[number][place] = points.len();
             match met {
                 Some(position) => {
                     let (_, point, _) = open.swap_remove(position);
                     edges_of[point].push((number, local));
+                    of_edges[number][place] = point;
                 }
                 None => {
                     if place != 1 {
@@ -225,7 +233,13 @@ fn surface_points(mesh: &Mesh) -> Vec<SurfacePoint> {
             add_stencils(&mut point.stencils, mesh, edge, local, share);
         }
     }
-    points
+    (points, of_edges)
+}
+
+/// Numbers of the surface points at start, middle and end of every edge of the surface. Where the surface has a corner, the edges
+/// that meet there have a point each.
+pub fn points_of_edges(mesh: &Mesh) -> Vec<[usize; 3]> {
+    surface_points(mesh).1
 }
 
 fn add_stencils(stencils: &mut Vec<Stencil>, mesh: &Mesh, edge: &Edge, local: f64, share: f64) {
@@ -273,14 +287,13 @@ fn stiffness(mesh: &Mesh, poisson: f64, fixed: &[bool]) -> Matrices {
                 if row_node < column_node || fixed[row_node as usize] || fixed[column_node as usize] {
                     continue;
                 }
-                for a in 0..3 {
-                    for b in 0..3 {
-                        let (row, column) = (3 * row_node as usize + a, 3 * column_node as usize + b);
-                        if row >= column {
-                            let entry = matrices.entry(row, column);
-                            for (power, entry) in entry.iter_mut().enumerate() {
-                                *entry += couplings[i][j][power][a][b];
-                            }
+                let axes = (0..9).map(|it| (it / 3, it % 3));
+                for (a, b) in axes {
+                    let (row, column) = (3 * row_node as usize + a, 3 * column_node as usize + b);
+                    if row >= column {
+                        let entry = matrices.entry(row, column);
+                        for (power, entry) in entry.iter_mut().enumerate() {
+                            *entry += couplings[i][j][power][a][b];
                         }
                     }
                 }
@@ -377,7 +390,7 @@ pub fn folds_over(mesh: &Mesh) -> bool {
 /// Solves a section for unit loads and writes what load cases need into `table`, which has room for [`LONGEST`] numbers.
 /// Returns how many were written.
 pub fn respond(mesh: &Mesh, kind: Kind, dimensions: &Dimensions, poisson: f64, fineness: &Fineness, table: &mut [f64]) -> usize {
-    let points = surface_points(mesh);
+    let (points, _) = surface_points(mesh);
     let bolts = dimensions.bolt_count as usize;
     let orders = fineness.harmonics + 1;
     let sizes = Sizes { padded: padded(points.len()), orders, clamps: (orders - 1) / bolts + 1 };

@@ -5,6 +5,8 @@
 //! circumference. Stresses are sums of harmonics; at 96 angles they are added up with the symmetries of cosine and sine (a quarter
 //! turn gives the other three), and near the largest value anew at finer angles.
 
+#![allow(clippy::needless_range_loop, reason = "loops over lanes, of constant length, are what the compiler makes vectors of")]
+
 use super::loads::{Complex, belt_harmonic};
 use super::response::{BELT, CHECK_POINTS, CHUNK, NAMED, RIM, STRESSES, View};
 use std::f64::consts::PI;
@@ -123,6 +125,22 @@ impl<'t> Turn<'t> {
         });
         let quarter = (0..=QUARTER).map(|step| Waves::new(2.0 * PI * step as f64 / ANGLES as f64, view.orders()));
         Self { shares: shares.collect(), quarter: quarter.collect(), view, case }
+    }
+
+    /// The section's answers.
+    pub fn view(&self) -> View<'t> {
+        self.view
+    }
+
+    /// The loads.
+    pub fn case(&self) -> &Case {
+        &self.case
+    }
+
+    /// Amplitudes of the belt's unit loads in a harmonic: a displacement is `Re(X exp(i k theta))` of its unit answers, around the
+    /// axis `Im(X exp(i k theta))`.
+    pub fn amplitudes(&self, order: usize) -> [Complex; BELT] {
+        self.shares[order].shear.map(|[imaginary, real]| (real, imaginary))
     }
 
     /// Stresses of a chunk of points at all angles: from the belt, and from clamp and spin with the first bolt at the case's phase

@@ -2,6 +2,8 @@
 
 /// Broken study files: each with the message it must give.
 mod bad_studies;
+/// The pulley as a model for CalculiX, and its solution against the harmonics.
+mod calculix;
 /// The binary: exit codes, messages, files, interrupted runs.
 mod command_line;
 /// How much of a test a model can afford.
@@ -18,6 +20,8 @@ mod physics;
 mod pipeline;
 /// The loads on a V-belt pulley as vectors.
 mod pulley_balance;
+/// Example pulleys.
+mod pulleys;
 /// A random number generator for seeded tests.
 mod random;
 /// The README, held against what the program says.

@@ -51,6 +51,21 @@ macro_rules! dimensions {
         pub struct Dimensions {
             $($(#[$doc])* pub $field: f64),*
         }
+
+        impl Dimensions {
+            /// All dimensions by name, mm and rad.
+            pub fn entries(&self) -> Vec<(&'static str, f64)> {
+                vec![$((stringify!($field), self.$field)),*]
+            }
+
+            /// Dimensions from what `value` says of each name.
+            ///
+            /// # Errors
+            /// The first that `value` returns.
+            pub fn from_entries<E>(mut value: impl FnMut(&'static str) -> Result<f64, E>) -> Result<Self, E> {
+                Ok(Self { $($field: value(stringify!($field))?),* })
+            }
+        }
     };
 }
 
@@ -380,9 +395,9 @@ pub struct Fineness {
 
 impl Fineness {
     /// Two per cent at the check points C to G and of the largest stress.
-    pub const USUAL: Self = Self { through: 2, straight: 2.0, bend: 0.6, held: 0.7, solid: 1.6, harmonics: 24, every: false };
+    pub const USUAL: Self = Self { through: 2, straight: 2.0, bend: 0.6, held: 0.7, solid: 2.4, harmonics: 24, every: false };
     /// Half a per cent.
-    pub const FINE: Self = Self { through: 3, straight: 1.0, bend: 0.4, held: 0.35, solid: 0.8, harmonics: 32, every: true };
+    pub const FINE: Self = Self { through: 3, straight: 1.0, bend: 0.4, held: 0.35, solid: 1.2, harmonics: 32, every: true };
 }
 
 /// The mesh of a section, or why there is none.

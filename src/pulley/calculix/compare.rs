@@ -1,0 +1,156 @@
+//! Results of CalculiX beside those of the harmonics.
+
+use super::forces::{Wrench, closed_form};
+use super::recovery::Surface;
+use super::results::Results;
+use super::sweep::Sweep;
+use super::{Error, Job, NAME};
+use crate::pulley::mesh::Mesh;
+use crate::pulley::response::{CHECK_POINTS, CHUNK, LONGEST, NAMED, View, respond};
+use crate::pulley::section::{self, Fineness};
+use crate::pulley::turn::{Case, Turn};
+use glam::DVec3;
+use std::fs;
+use std::path::Path;
+
+/// A quantity by both ways.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    /// What it is.
+    pub quantity: String,
+    /// Its unit.
+    pub unit: &'static str,
+    /// By harmonics, on the section mesh that studies use. Of a reaction: what the loads add up to in closed form, reversed.
+    pub harmonic: f64,
+    /// By harmonics up to the 60th, on the section mesh that was swept.
+    pub same_section: f64,
+    /// By CalculiX.
+    pub calculix: f64,
+}
+
+impl Comparison {
+    /// The harmonics less CalculiX, in per cent of CalculiX.
+    pub fn difference(&self) -> f64 {
+        100.0 * (self.harmonic / self.calculix - 1.0)
+    }
+
+    /// The same on the section mesh that was swept.
+    pub fn difference_on_same_section(&self) -> f64 {
+        100.0 * (self.same_section / self.calculix - 1.0)
+    }
+}
+
+/// What both ways tell of a pulley.
+struct Answers {
+    rim_displacement: f64,
+    volume: f64,
+    largest: f64,
+    /// z and r, mm, and angle, deg, of the largest stress.
+    place: [f64; 3],
+    check_points: [Option<f64>; CHECK_POINTS.len()],
+}
+
+/// Reads `pulley.inp` and `pulley.dat` in a directory and compares.
+///
+/// # Errors
+/// A file that cannot be read or is not finished.
+pub fn compare(directory: &Path) -> Result<Vec<Comparison>, Error> {
+    let read = |extension: &str| {
+        let path = directory.join(NAME).with_extension(extension);
+        fs::read_to_string(&path).map_err(|source| Error::File { path, source })
+    };
+    let deck = read("inp")?;
+    let job = Job::from_deck(&deck)?;
+    let results = Results::new(&read("dat")?)?;
+    let mesh = section::mesh(job.kind, &job.dimensions, &job.fineness).map_err(Error::Flaw)?;
+    let sweep = Sweep::new(&mesh, job.sectors);
+    let positions = sweep.positions(&mesh);
+    if !has_nodes(&deck, &positions) {
+        let what =
+            "the deck has other nodes than its first lines give: it was changed, or another version of beltspace wrote it".to_owned();
+        return Err(Error::Unreadable { what });
+    }
+    let usual = harmonics(&job, &Fineness::USUAL)?;
+    let same = harmonics(&job, &Fineness { harmonics: 60, every: true, ..job.fineness })?;
+    let solid = calculix(&mesh, &job, &sweep, &results)?;
+    let mut rows = Vec::new();
+    let mut row = |quantity: String, unit: &'static str, harmonic: f64, same_section: f64, calculix: f64| {
+        rows.push(Comparison { quantity, unit, harmonic, same_section, calculix });
+    };
+    row("rim displacement".to_owned(), "mm", usual.rim_displacement, same.rim_displacement, solid.rim_displacement);
+    row("volume".to_owned(), "mm^3", usual.volume, same.volume, solid.volume);
+    row("largest stress".to_owned(), "MPa", usual.largest, same.largest, solid.largest);
+    for (number, (name, unit)) in [("z", "mm"), ("r", "mm"), ("angle", "deg")].into_iter().enumerate() {
+        row(format!("largest stress: {name}"), unit, usual.place[number], same.place[number], solid.place[number]);
+    }
+    for (number, name) in CHECK_POINTS.iter().enumerate() {
+        if let (Some(usual), Some(same), Some(solid)) = (usual.check_points[number], same.check_points[number], solid.check_points[number])
+        {
+            row(format!("stress at {name}"), "MPa", usual, same, solid);
+        }
+    }
+    let reaction = Wrench::of(results.reactions.iter().map(|(&node, &force)| (positions[node], force)));
+    let load = closed_form(&job.dimensions, &job.case);
+    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+        let expected = -load.force[axis];
+        row(format!("reaction {name}"), "N", expected, expected, reaction.force[axis]);
+    }
+    row("reaction torque".to_owned(), "N mm", -load.moment.z, -load.moment.z, reaction.moment.z);
+    Ok(rows)
+}
+
+/// Does the deck have these nodes, in this order?
+fn has_nodes(deck: &str, positions: &[DVec3]) -> bool {
+    let block = deck.lines().skip_while(|line| !line.starts_with("*NODE,")).skip(1).take_while(|line| !line.starts_with('*'));
+    let mut expected = positions.iter();
+    let same = |line: &str, at: &DVec3| {
+        let numbers = line.split(',').skip(1).map(str::parse::<f64>);
+        numbers.zip(at.to_array()).all(|(number, value)| number.is_ok_and(|number| (number - value).abs() < 1e-6))
+    };
+    block.into_iter().all(|line| expected.next().is_some_and(|at| same(line, at))) && expected.next().is_none()
+}
+
+fn harmonics(job: &Job, fineness: &Fineness) -> Result<Answers, Error> {
+    let mesh = section::mesh(job.kind, &job.dimensions, fineness).map_err(Error::Flaw)?;
+    let case = Case { phase: Some(job.case.phase.unwrap_or(0.0)), ..job.case };
+    // No more than three points per edge and twelve stresses per harmonic.
+    let room = (3 * mesh.surface.len() + CHUNK + NAMED) * 12 * (fineness.harmonics + 3);
+    let mut table = vec![0.0; room.max(LONGEST)];
+    let length = respond(&mesh, job.kind, &job.dimensions, job.poisson, fineness, &mut table);
+    let view = View::new(&table[..length]);
+    let summary = Turn::new(view, case).summary(None, [None; 2]);
+    let largest = summary.largest;
+    Ok(Answers {
+        rim_displacement: summary.rim_displacement,
+        volume: view.volume(),
+        largest: largest.stress,
+        place: [view.z()[largest.point], view.r()[largest.point], largest.theta.to_degrees()],
+        check_points: summary.check_points.map(|peak| peak.map(|peak| peak.stress)),
+    })
+}
+
+fn calculix(mesh: &Mesh, job: &Job, sweep: &Sweep, results: &Results) -> Result<Answers, Error> {
+    let surface = Surface::new(mesh, job, sweep, results)?;
+    let peaks = surface.peaks();
+    let excluded = job.dimensions.excluded_radius(job.kind);
+    // As for the harmonics: not beside bracket and bolt heads, nor beside other places where stress is singular.
+    let counts = |node: u32| {
+        let at = mesh.nodes[node as usize];
+        at.y >= excluded && !mesh.singular.iter().any(|(place, distance)| at.distance(*place) <= distance * (1.0 + 1e-9))
+    };
+    let counted = peaks.iter().filter(|peak| counts(peak.node));
+    let none = || Error::Unreadable { what: "no surface outside the bracket".to_owned() };
+    let largest = counted.max_by(|a, b| a.stress.total_cmp(&b.stress)).ok_or_else(none)?;
+    let at = mesh.nodes[largest.node as usize];
+    let check_point = |name: &str| {
+        let node = mesh.points.iter().find(|point| point.name == name)?.node;
+        peaks.iter().find(|peak| peak.node == node).map(|peak| peak.stress)
+    };
+    Ok(Answers {
+        rim_displacement: surface.rim_displacement(),
+        volume: results.volume.unwrap_or(f64::NAN),
+        largest: largest.stress,
+        place: [at.x, at.y, largest.theta.to_degrees()],
+        check_points: CHECK_POINTS.map(check_point),
+    })
+}

@@ -1,0 +1,105 @@
+//! What a deck was made from, which its first lines say.
+
+use super::Error;
+use crate::pulley::section::{Dimensions, Fineness, Kind};
+use crate::pulley::turn::Case;
+use std::collections::HashMap;
+
+/// A pulley and its loads, to be solved as a three-dimensional model. N, mm, MPa, s, t and rad.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Job {
+    /// Type of section.
+    pub kind: Kind,
+    /// Its dimensions.
+    pub dimensions: Dimensions,
+    /// How finely the section is meshed.
+    pub fineness: Fineness,
+    /// Loads. An open phase is taken as 0: the model has its bolts at one place.
+    pub case: Case,
+    /// Poisson's ratio.
+    pub poisson: f64,
+    /// Density, t/mm^3.
+    pub density: f64,
+    /// Sectors around the axis: quadratic elements of one sector each.
+    pub sectors: usize,
+}
+
+impl Job {
+    /// Sectors that resolve the belt's load to about 0.1 %.
+    pub const USUAL_SECTORS: usize = 68;
+
+    /// Square of the angular speed, 1/s^2.
+    pub fn speed_squared(&self) -> f64 {
+        if self.density > 0.0 { self.case.spin / self.density } else { 0.0 }
+    }
+
+    /// Everything by name, as the deck's first lines list it.
+    pub fn entries(&self) -> Vec<(String, f64)> {
+        let (case, mesh) = (&self.case, &self.fineness);
+        let loads = [
+            ("normal", case.normal),
+            ("along", case.along),
+            ("around", case.around),
+            ("growth", case.growth),
+            ("wrap", case.wrap),
+            ("pressure", case.pressure),
+            ("phase", case.phase.unwrap_or(0.0)),
+            ("spin", case.spin),
+        ];
+        let lengths = [("straight", mesh.straight), ("bend", mesh.bend), ("held", mesh.held), ("solid", mesh.solid)];
+        let counts = [("through", mesh.through), ("harmonics", mesh.harmonics), ("every", mesh.every.into()), ("sectors", self.sectors)];
+        let material = [("modulus", case.modulus), ("poisson", self.poisson), ("density", self.density)];
+        let group = |group: &'static str| move |(name, value): (&'static str, f64)| (format!("{group}.{name}"), value);
+        let mut entries = Vec::new();
+        entries.push(("section.type".to_owned(), (self.kind as usize + 1) as f64));
+        entries.extend(self.dimensions.entries().into_iter().map(group("section")));
+        entries.extend(loads.map(group("load")));
+        entries.extend(material.map(group("material")));
+        entries.extend(lengths.map(group("mesh")));
+        entries.extend(counts.map(|(name, count)| (format!("mesh.{name}"), count as f64)));
+        entries
+    }
+
+    /// Reads the first lines of a deck.
+    ///
+    /// # Errors
+    /// An input that is missing or is no number.
+    pub fn from_deck(deck: &str) -> Result<Self, Error> {
+        let lines = deck.lines().take_while(|line| line.starts_with("**"));
+        let pairs = lines.filter_map(|line| line.trim_start_matches('*').split_once('='));
+        let values: HashMap<&str, &str> = pairs.map(|(name, value)| (name.trim(), value.trim())).collect();
+        let get = |name: &str| -> Result<f64, Error> {
+            let missing = || Error::Unreadable { what: format!("the deck's first lines do not say {name}") };
+            values.get(name).and_then(|value| value.parse().ok()).ok_or_else(missing)
+        };
+        let kind = get("section.type")? as usize;
+        let unknown = || Error::Unreadable { what: format!("there is no type {kind} of section") };
+        Ok(Self {
+            kind: *kind.checked_sub(1).and_then(|number| Kind::ALL.get(number)).ok_or_else(unknown)?,
+            dimensions: Dimensions::from_entries(|name| get(&format!("section.{name}")))?,
+            fineness: Fineness {
+                through: get("mesh.through")? as usize,
+                straight: get("mesh.straight")?,
+                bend: get("mesh.bend")?,
+                held: get("mesh.held")?,
+                solid: get("mesh.solid")?,
+                harmonics: get("mesh.harmonics")? as usize,
+                every: get("mesh.every")? != 0.0,
+            },
+            case: Case {
+                normal: get("load.normal")?,
+                along: get("load.along")?,
+                around: get("load.around")?,
+                growth: get("load.growth")?,
+                wrap: get("load.wrap")?,
+                pressure: get("load.pressure")?,
+                phase: Some(get("load.phase")?),
+                spin: get("load.spin")?,
+                modulus: get("material.modulus")?,
+            },
+            poisson: get("material.poisson")?,
+            density: get("material.density")?,
+            sectors: get("mesh.sectors")? as usize,
+        })
+    }
+}

@@ -1,0 +1,89 @@
+//! The pulley as a three-dimensional model for CalculiX, and its results held against the harmonics.
+//!
+//! [`export`] writes the deck of a [`Job`]: the same section, swept around the axis, under the same loads. After `ccx` has solved it,
+//! [`compare`] reads the displacements and sets stresses, rim displacement, volume and reactions beside those of the harmonics.
+
+mod compare;
+mod deck;
+mod forces;
+mod job;
+mod recovery;
+mod results;
+mod sweep;
+
+pub use compare::{Comparison, compare};
+pub use deck::write_deck;
+pub use forces::{Forces, Wrench, closed_form};
+pub use job::Job;
+pub use recovery::{Place, Surface};
+pub use results::Results;
+pub use sweep::Sweep;
+
+use super::section::{self, Flaw};
+use std::fs;
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+
+/// Name of the deck, without `.inp`, and of the files that CalculiX writes.
+pub const NAME: &str = "pulley";
+
+/// Why there is no deck or no comparison.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The section is impossible.
+    #[error("{0}")]
+    Flaw(Flaw),
+    /// A file cannot be read or written.
+    #[error("{}: {source}", path.display())]
+    File {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// A file that does not hold what it should.
+    #[error("{what}")]
+    Unreadable {
+        /// What is wrong.
+        what: String,
+    },
+}
+
+/// Writes `pulley.inp` and a `README.txt` into a directory, which is made if it does not exist.
+///
+/// # Errors
+/// An impossible section, or a file that cannot be written.
+pub fn export(job: &Job, directory: &Path) -> Result<(), Error> {
+    let mesh = section::mesh(job.kind, &job.dimensions, &job.fineness).map_err(Error::Flaw)?;
+    let failed = |path: &Path| {
+        let path = path.to_owned();
+        move |source| Error::File { path, source }
+    };
+    fs::create_dir_all(directory).map_err(failed(directory))?;
+    let deck = directory.join(format!("{NAME}.inp"));
+    let write = || -> io::Result<()> {
+        let mut out = io::BufWriter::new(fs::File::create(&deck)?);
+        write_deck(&mut out, &mesh, job)?;
+        out.flush()
+    };
+    write().map_err(failed(&deck))?;
+    let readme = directory.join("README.txt");
+    fs::write(&readme, HOW_TO).map_err(failed(&readme))
+}
+
+const HOW_TO: &str = "\
+pulley.inp is a static analysis of a V-belt pulley for CalculiX (https://www.calculix.de), made by beltspace. Its first lines list
+every input and what the forces add up to. Units: N, mm, MPa, s, t.
+
+Run it here, on two processors:
+
+    OMP_NUM_THREADS=2 ccx -i pulley
+
+This writes
+    pulley.dat   displacements of the surface (planes between the sectors), reactions of the bracket face, volume
+    pulley.frd   displacements of all nodes, for cgx or another viewer
+
+The axis is z, the bracket face lies in z = 0 and is fixed, the belt's slack end lies on the x axis and its tight end at the wrap angle.
+Stress is not printed: what CalculiX extrapolates to the nodes is up to a third too low in tight bends. beltspace recovers it from the
+displacements of the surface.
+";
