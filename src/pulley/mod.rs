@@ -10,7 +10,6 @@
 pub mod around;
 pub mod band;
 pub mod calculix;
-pub mod comparison;
 pub mod element;
 pub mod field;
 #[cfg(test)]
