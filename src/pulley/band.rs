@@ -263,7 +263,7 @@ mod tests {
             match (far, part) {
                 (0, 0) => 10.0 + (row % 3) as f64,
                 (0, 2) => 1.0,
-                _ if far <= half => 0.3 / (far + part + 1) as f64 - if (row + column) % 2 == 0 { 0.1 } else { 0.0 },
+                _ if far <= half => 0.3 / (far + part + 1) as f64 - if (row + column).is_multiple_of(2) { 0.1 } else { 0.0 },
                 _ => 0.0,
             }
         };
