@@ -24,4 +24,6 @@ pub mod response;
 pub mod section;
 mod spline;
 pub mod surface;
+#[cfg(test)]
+mod tests;
 pub mod turn;
