@@ -251,6 +251,26 @@ fn solve<const COUNT: usize>(
 }
 
 #[cfg(test)]
+impl Matrices {
+    /// Product with a vector in one harmonic.
+    pub fn times(&self, order: usize, vector: &[f64]) -> Vec<f64> {
+        let k = order as f64;
+        let mut product = vec![0.0; self.size];
+        for column in 0..self.size {
+            for row in column..self.size.min(column + self.half + 1) {
+                let [a, b, c] = self.entries[column * (self.half + 1) + (row - column)];
+                let entry = a + k * (b + k * c);
+                product[row] += entry * vector[column];
+                if row != column {
+                    product[column] += entry * vector[row];
+                }
+            }
+        }
+        product
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
 

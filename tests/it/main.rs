@@ -20,6 +20,8 @@ mod physics;
 mod pipeline;
 /// The loads on a V-belt pulley as vectors.
 mod pulley_balance;
+/// The stresses of a V-belt pulley against a converged reference.
+mod pulley_fe;
 /// Example pulleys.
 mod pulleys;
 /// A random number generator for seeded tests.
