@@ -10,6 +10,7 @@
 pub mod around;
 pub mod band;
 pub mod calculix;
+mod chunk;
 pub mod element;
 pub mod equations;
 pub mod field;

@@ -449,7 +449,6 @@ fn the_example_means_what_it_says() {
             histograms: vec![HistogramSpec { of: force, range: Some((0.0, 60_000.0)), bins: 60 }],
             maps: vec![MapSpec { x: 1, y: 0, value: Best::Value(force, Goal::Min), contours: Vec::new() }],
             front_budget: 1_000_000,
-            variants: false,
         }
     );
 }
