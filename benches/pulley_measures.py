@@ -1,13 +1,18 @@
 """The pulley's measures: sections a second, load cases on a solved section, and one section beside CalculiX.
 
-Stresses are compared, not only times: a disagreement beyond 3 % ends the run with exit code 1.
+Stresses are compared, not only times: a disagreement beyond 3 % ends the run with exit code 1. benches/measures calls this; alone it
+is `python3 benches/pulley_measures.py target/release/beltspace [FILE.json]`.
 """
 import json
 import os
+import platform
 import shutil
 import subprocess
 import sys
+import tempfile
 import time
+from datetime import date
+from pathlib import Path
 
 SECTIONS = """model = "pulley"
 preset = "{preset}"
@@ -101,3 +106,21 @@ def show(record):
         print(f"pulley in CalculiX: {row['calculix_seconds']:.1f} s; this program's command {row['command_seconds']:.3f} s, ratio "
               f"{row['ratio_of_commands']:.0f}; a section of a sweep, ratio {row['ratio_in_a_sweep']:.0f}; stresses at C to F within "
               f"{row['largest_difference_percent']:.2f} %")
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        record = {"date": date.today().isoformat(), "cores": os.cpu_count(), "machine": processor(),
+                  "command": "python3 benches/pulley_measures.py target/release/beltspace", **measure(sys.argv[1], Path(folder))}
+    show(record)
+    if len(sys.argv) > 2:
+        Path(sys.argv[2]).write_text(json.dumps(record, indent=2) + "\n")
+
+
+def processor():
+    names = [line.split(":", 1)[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")] if os.path.exists("/proc/cpuinfo") else []
+    return names[0] if names else platform.processor()
+
+
+if __name__ == "__main__":
+    main()
