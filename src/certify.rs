@@ -7,7 +7,9 @@ use crate::error::{Error, Result};
 use crate::models::{OUTPUTS, Status, Worse, judge, shown, to_si};
 use crate::plan::{Plan, worst_end};
 use crate::reduce::{KeyRule, Points};
+use crate::screen::Control;
 use crate::study::{Constraint, Quantity, Study};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Why a column is in the tables.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,31 +107,42 @@ pub struct Row {
     pub columns: Vec<AtWorst>,
 }
 
-/// Computes the rows of designs, in the order given, on several threads.
-pub fn rows(plan: &Plan, columns: &[Column], designs: &[u64], threads: usize) -> Vec<Row> {
+/// Computes the rows of designs, in the order given, on several threads; seen and stopped by others.
+///
+/// # Errors
+/// [`Error::Stopped`] after `control.stop`.
+pub fn rows(plan: &Plan, columns: &[Column], designs: &[u64], threads: usize, control: &Control) -> Result<Vec<Row>> {
     let mut order: Vec<(u64, usize)> = designs.iter().enumerate().map(|(at, &design)| (plan.position_of(design), at)).collect();
     order.sort_unstable();
     let share = order.len().div_ceil(threads.max(1)).max(1);
     let mut rows: Vec<(usize, Row)> = std::thread::scope(|scope| {
         let parts = order.chunks(share).map(|part| {
             scope.spawn(move || {
-                let mut reference = Reference::new(plan, columns);
-                part.iter().map(|&(position, at)| (at, reference.row(position))).collect::<Vec<_>>()
+                let mut reference = Reference::new(plan, columns, &control.stop);
+                let certified = |&(position, at): &(u64, usize)| {
+                    let row = reference.row(position)?;
+                    control.certified.fetch_add(1, Ordering::Relaxed);
+                    Some((at, row))
+                };
+                part.iter().map_while(certified).collect::<Vec<_>>()
             })
         });
         let parts: Vec<_> = parts.collect();
         parts.into_iter().flat_map(|part| part.join().expect("the reference does not panic")).collect()
     });
+    if rows.len() < designs.len() {
+        return Err(Error::Stopped { checkpoint: String::new(), resume: String::new() });
+    }
     rows.sort_unstable_by_key(|(at, _)| *at);
-    rows.into_iter().map(|(_, row)| row).collect()
+    Ok(rows.into_iter().map(|(_, row)| row).collect())
 }
 
 /// Computes the rows of the front and checks each against what the sweep saw; sorted by the objectives, best first, then index.
 ///
 /// # Errors
-/// [`Error::Certificate`] if the reference disagrees.
-pub fn front(plan: &Plan, columns: &[Column], points: &Points, threads: usize) -> Result<Vec<Row>> {
-    let mut rows = rows(plan, columns, &points.indices, threads);
+/// [`Error::Certificate`] if the reference disagrees; [`Error::Stopped`] after `control.stop`.
+pub fn front(plan: &Plan, columns: &[Column], points: &Points, threads: usize, control: &Control) -> Result<Vec<Row>> {
+    let mut rows = rows(plan, columns, &points.indices, threads, control)?;
     let objectives = &plan.study.objectives;
     // Objectives are the first columns, unless two objectives share a quantity.
     let column_of: Vec<usize> = objectives
@@ -180,19 +193,21 @@ struct Reference<'p> {
     prepared: Vec<Vec<f64>>,
     /// Of another one.
     beyond: Vec<f64>,
+    stop: &'p AtomicBool,
 }
 
 impl<'p> Reference<'p> {
-    fn new(plan: &'p Plan, columns: &'p [Column]) -> Self {
+    fn new(plan: &'p Plan, columns: &'p [Column], stop: &'p AtomicBool) -> Self {
         let asked = columns.iter().map(|it| it.quantity).chain(plan.study.constraints.iter().map(|it| it.quantity));
         let wanted = asked.fold(0, |set, quantity| match quantity {
             Quantity::Output(output) => set | 1 << output,
             Quantity::Input(_) => set,
         });
-        Self { plan, columns, wanted, row: None, prepared: Vec::new(), beyond: Vec::new() }
+        Self { plan, columns, wanted, row: None, prepared: Vec::new(), beyond: Vec::new(), stop }
     }
 
-    fn row(&mut self, position: u64) -> Row {
+    /// The row of a design; `None` if it was stopped.
+    fn row(&mut self, position: u64) -> Option<Row> {
         let plan = self.plan;
         let model = plan.study.model;
         let index = plan.design_at(position);
@@ -208,6 +223,9 @@ impl<'p> Reference<'p> {
         for q in 0..plan.slow_scenarios.count() {
             plan.slow_scenarios.set(q, &mut inputs);
             for t in 0..plan.fast_scenarios.count() {
+                if self.stop.load(Ordering::Relaxed) {
+                    return None;
+                }
                 plan.fast_scenarios.set(t, &mut inputs);
                 let si = to_si(model, &inputs);
                 let kept = q < plan.kept_scenarios();
@@ -239,6 +257,7 @@ impl<'p> Reference<'p> {
         }
         // An objective or tracked quantity without a meaning makes a design infeasible, as in the sweep.
         let complete = self.columns.iter().zip(&worst).all(|(column, (_, at))| column.role == Role::Report || at.value.is_some());
-        Row { index, feasible: feasible && complete, inputs: first, columns: worst.into_iter().map(|(_, at)| at).collect() }
+        let columns = worst.into_iter().map(|(_, at)| at).collect();
+        Some(Row { index, feasible: feasible && complete, inputs: first, columns })
     }
 }

@@ -39,14 +39,21 @@ pub fn run(path: &Path) -> Result<()> {
     };
     let cores = threads(None);
     #[allow(clippy::cast_precision_loss, reason = "an estimate for people")]
-    let (evaluations, seconds) = (designs as f64 * scenarios as f64, designs as f64 / rate / cores as f64);
+    let evaluations = designs as f64 * scenarios as f64;
+    // The sample behind what limits feasibility and a list of all designs are judged once more.
+    let listed = if study.report.variants { designs } else { 0 };
+    let judged = designs as f64 + designs.min(model.sample) as f64 + listed as f64;
+    let seconds = judged / rate / cores as f64;
     let mut facts = Grid::default();
     let mut fact = |what: &str, value: String| facts.row([bold(what), value]);
     fact("model", format!("{}: {}", model.name, model.summary));
     fact("designs", grouped(designs));
     fact("scenarios", grouped(scenarios));
     fact("evaluations", format!("{evaluations:.3e}"));
-    fact("expected time", format!("about {} on {cores} threads, {}designs/s ({how})", span(seconds), scaled(rate * cores as f64)));
+    fact(
+        "expected time",
+        format!("about {} and what the front takes, on {cores} threads, {}designs/s ({how})", span(seconds), scaled(rate * cores as f64)),
+    );
     fact("memory", format!("about {} MB and what the front takes", memory(&plan, cores)));
     let mut text = format!("{}\n\n{}\n{}", bold(&study.title), axes.indented(2), facts.indented(0));
     for warning in warnings(&plan, &name) {

@@ -10,6 +10,7 @@ use beltspace::export::{Data, Table, TableColumn, csv_text, pulley};
 use beltspace::models::{Evaluation, Model, Profile, Status, evaluate};
 use beltspace::pictures::{self, Quantity, Series};
 use beltspace::plan::Plan;
+use beltspace::screen::Control;
 use beltspace::study::{Quantity as Which, Study, number, value_of};
 use beltspace::units::parse_value;
 use serde_json::{Map, Value, json};
@@ -231,7 +232,7 @@ fn print_worst(plan: &Plan, design: u64, as_json: bool) -> Result<()> {
     let mut everything = Study::clone(study);
     everything.report.columns = (0..model.outputs.len()).map(Which::Output).collect();
     let columns = certify::columns(&everything);
-    let row = certify::rows(plan, &columns, &[design], 1).remove(0);
+    let row = certify::rows(plan, &columns, &[design], 1, &Control::default())?.remove(0);
     let statuses = (0..plan.scenarios()).map(|scenario| (scenario, evaluate(model, &plan.space.inputs(design, scenario)).status));
     let failed = statuses.filter(|(_, status)| *status != Status::Ok).collect::<Vec<_>>();
     let status = failed.first().map_or(Status::Ok, |(_, status)| *status).reason(model);

@@ -10,7 +10,7 @@ use beltspace::export::{Outcome, RunRecord};
 use beltspace::merge::{check_set, merge};
 use beltspace::plan::Plan;
 use beltspace::reduce::Reduction;
-use beltspace::screen::{Tables, Tally};
+use beltspace::screen::{Control, Tables, Tally};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -33,7 +33,7 @@ pub fn run(request: &cli::Merge) -> Result<()> {
     let reduction = Reduction::new(&plan, &tally.histogram_ranges(&plan));
     let count = shards.len();
     let state = merge(&plan, &reduction, shards)?;
-    let outcome = Outcome::certify(&plan, state, tally, threads)?;
+    let outcome = Outcome::certify(&plan, state, tally, threads, &Control::default())?;
     let record = RunRecord {
         engine: "cpu",
         threads,

@@ -88,7 +88,7 @@ fn judge<'p>(
             (swept, Some(did))
         }
     };
-    let outcome = whole.then(|| Outcome::certify(plan, state, tally, options.threads)).transpose()?;
+    let outcome = whole.then(|| Outcome::certify(plan, state, tally, options.threads, control)).transpose()?;
     Ok((time, designs, outcome, did))
 }
 

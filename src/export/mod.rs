@@ -22,11 +22,12 @@ use crate::contours::contours;
 use crate::error::{Error, Result};
 use crate::models::MODELS;
 use crate::plan::Plan;
-use crate::reduce::State;
-use crate::screen::Tally;
+use crate::reduce::{State, Top};
+use crate::screen::{Control, Tally};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
+use std::sync::atomic::Ordering;
 
 /// Maps of more cells are written as Parquet rather than CSV.
 const CSV_CELLS: u64 = 100_000;
@@ -53,17 +54,20 @@ pub struct Outcome<'p> {
 }
 
 impl<'p> Outcome<'p> {
-    /// Certifies what a sweep kept.
+    /// Certifies what a sweep kept; seen and stopped by others.
     ///
     /// # Errors
-    /// [`Error::Certificate`] if the f64 reference disagrees with the sweep.
-    pub fn certify(plan: &'p Plan, state: State, tally: Tally, threads: usize) -> Result<Self> {
+    /// [`Error::Certificate`] if the f64 reference disagrees with the sweep; [`Error::Stopped`] after `control.stop`.
+    pub fn certify(plan: &'p Plan, state: State, tally: Tally, threads: usize, control: &Control) -> Result<Self> {
         let columns = certify::columns(&plan.study);
-        let front = certify::front(plan, &columns, &state.front, threads)?;
-        let top = state.top.as_ref().map_or(Vec::new(), |top| certify::rows(plan, &columns, &top.indices(), threads));
-        top.iter().try_for_each(certify::check_feasible)?;
+        let best = state.top.as_ref().map_or(Vec::new(), Top::indices);
         let all: Vec<u64> = if plan.study.report.variants { (0..plan.designs()).collect() } else { Vec::new() };
-        let variants = certify::rows(plan, &columns, &all, threads);
+        let reported = state.front.indices.len() + best.len() + all.len();
+        control.reported.store(reported as u64, Ordering::Relaxed);
+        let front = certify::front(plan, &columns, &state.front, threads, control)?;
+        let top = certify::rows(plan, &columns, &best, threads, control)?;
+        top.iter().try_for_each(certify::check_feasible)?;
+        let variants = certify::rows(plan, &columns, &all, threads, control)?;
         let feasible = variants.iter().filter(|row| row.feasible).count() as u64;
         if plan.study.report.variants && feasible != state.feasible {
             let seen = state.feasible;

@@ -29,7 +29,10 @@ fn files(text: &str) -> Vec<(String, String)> {
     let tally = Tally::new(&plan, &tables, 1);
     let reduction = Reduction::new(&plan, &tally.histogram_ranges(&plan));
     let swept = sweep(&plan, &tables, &reduction, &Options::default(), None, &Control::default()).expect("the sweep ends");
-    let files = Outcome::certify(&plan, swept.state, tally, 1).expect("it is certified").files(text, 1).expect("the tables are written");
+    let files = Outcome::certify(&plan, swept.state, tally, 1, &Control::default())
+        .expect("it is certified")
+        .files(text, 1)
+        .expect("the tables are written");
     files.into_iter().map(|(name, bytes)| (name, String::from_utf8_lossy(&bytes).into_owned())).collect()
 }
 

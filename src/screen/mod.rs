@@ -22,6 +22,10 @@ pub struct Control {
     pub sampled: AtomicU64,
     /// Designs judged so far, those of a resumed checkpoint included.
     pub done: AtomicU64,
+    /// Designs that are reported, once it is known how many they are; one that stands in two lists counts twice.
+    pub reported: AtomicU64,
+    /// Of these, designs certified so far.
+    pub certified: AtomicU64,
     /// Set to end the work as soon as may be, keeping the checkpoint.
     pub stop: AtomicBool,
 }

@@ -1,6 +1,7 @@
 //! Sweeps of a model that takes its time.
 
 use super::*;
+use crate::certify;
 use crate::checkpoint::Checkpoint;
 use crate::models::Model;
 use crate::models::tests::watched;
@@ -80,4 +81,23 @@ fn what_takes_much_longer_than_the_model_says_is_kept_in_parts() {
         control.stop.store(true, Ordering::Relaxed);
         assert!(matches!(run.join().expect("it does not panic"), Err(Error::Stopped { .. })));
     });
+}
+
+#[test]
+fn certifying_can_be_watched_and_stopped() {
+    let (model, _) = watched(Duration::ZERO, 0);
+    let plan = plan_of(model, 400);
+    let points = swept(&plan, &Options::default(), None, &Control::default()).expect("nobody stops it").state.front;
+    let columns = certify::columns(&plan.study);
+    let control = Control::default();
+    let rows = certify::front(&plan, &columns, &points, 2, &control).expect("nobody stops it");
+    assert!(rows.len() > 40 && rows.len() == points.indices.len());
+    assert_eq!(control.certified.load(Ordering::Relaxed), rows.len() as u64);
+
+    let (model, kernel) = watched(Duration::from_millis(1), 0);
+    let control: &Control = Box::leak(Box::default());
+    assert!(kernel.stop.set((20, control)).is_ok());
+    let stopped = certify::front(&plan_of(model, 400), &columns, &points, 2, control);
+    assert!(matches!(stopped, Err(Error::Stopped { .. })), "{stopped:?}");
+    assert!(kernel.prepared.load(Ordering::Relaxed) < 24 && control.certified.load(Ordering::Relaxed) < 24);
 }

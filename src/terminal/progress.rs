@@ -58,7 +58,8 @@ fn follow(control: &Control, total: u64, finished: &AtomicBool) {
         bar.set_message(if control.stop.load(Ordering::Relaxed) {
             "stopping, keeping what is done ...".to_owned()
         } else if done == total {
-            "certifying the front ...".to_owned()
+            let [certified, reported] = [&control.certified, &control.reported].map(|it| it.load(Ordering::Relaxed));
+            format!("certifying what is reported, {} % ...", 100 * certified / reported.max(1))
         } else if rate > 0.0 {
             format!("{}designs/s, {} left", scaled(rate), span((total - done) as f64 / rate))
         } else {

@@ -23,6 +23,8 @@ pub fn summary(outcome: &Outcome<'_>, record: &RunRecord, out: &Path) -> String 
     fact(
         "designs",
         match plan.scenarios() {
+            1 if record.designs == 0 => format!("{designs}, all judged before this run"),
+            scenarios if record.designs == 0 => format!("{designs} x {} scenarios, all judged before this run", grouped(scenarios)),
             1 => format!("{designs} in {time}, {}designs/s", scaled(rate)),
             scenarios => {
                 let judged = scaled(rate * scenarios as f64);

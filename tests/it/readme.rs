@@ -48,6 +48,15 @@ fn the_evaluation_is_what_the_program_prints() {
 }
 
 #[test]
+fn the_pulley_is_what_the_program_prints() {
+    let (printed, note) = run(&["eval", "pulley"]);
+    let shown = block("$ beltspace eval pulley | sed -n '/^outputs/,$p'");
+    let outputs = printed.lines().skip_while(|line| *line != "outputs").collect::<Vec<_>>().join("\n");
+    assert_eq!(without_times(&shown), without_times(&outputs));
+    assert!(note.contains("the largest stress stands near check point Fl"), "{note}");
+}
+
+#[test]
 fn the_study_is_the_shipped_one() {
     let study = std::fs::read_to_string(root().join("studies/metal-cvt.toml")).expect("the study is shipped");
     assert!(readme().contains(study.trim_end()), "the README shows another studies/metal-cvt.toml");

@@ -141,6 +141,15 @@ impl Expected {
             best.truncate(top.count);
             tables.insert("top.csv".to_owned(), designs_table(study, evaluated, &best));
         }
+        if study.report.variants {
+            let all: Vec<u64> = (0..evaluated.designs).collect();
+            let mut table = designs_table(study, evaluated, &all);
+            table.header.push("feasible".to_owned());
+            for (row, failures) in table.rows.iter_mut().zip(&self.failures) {
+                row.push(Cell::Text(if failures.none() { "yes" } else { "no" }.to_owned()));
+            }
+            tables.insert("variants.csv".to_owned(), table);
+        }
         let unique = |tables: &BTreeMap<String, Table>, stem: String| {
             let mut name = format!("{stem}.csv");
             let mut number = 1;

@@ -97,7 +97,7 @@ fn check_all_ways(seed: u64, text: &str, study: Study, evaluated: &Evaluated) ->
         panic!("seed {seed}: {difference}");
     }
     assert_eq!(reference["study.toml"], text.as_bytes(), "seed {seed}");
-    for name in expected.answer.tables.keys().filter(|name| !["scenarios.csv", "top.csv"].contains(&name.as_str())) {
+    for name in expected.answer.tables.keys().filter(|name| !["scenarios.csv", "top.csv", "variants.csv"].contains(&name.as_str())) {
         assert!(reference.contains_key(&name.replace(".csv", ".svg")), "seed {seed}: there is no picture of {name}");
     }
 
@@ -175,6 +175,7 @@ const EVERY_FEATURE: &[&str] = &[
     "map of a value",
     "map of a share",
     "report columns",
+    "list of all designs",
     "several scenarios",
     "worst scenario is not the first",
     "front of at least 2 points",
@@ -233,6 +234,7 @@ fn cover(draft: &Draft, plan: &Plan, evaluated: &Evaluated, expected: &Expected,
     note("histogram, range automatic", study.report.histograms.iter().any(|it| it.range.is_none()));
     note("map of a value", study.report.maps.iter().any(|it| matches!(it.value, Best::Value(..))));
     note("map of a share", study.report.maps.iter().any(|it| it.value == Best::Share));
+    note("list of all designs", study.report.variants);
     note("report columns", !study.report.columns.is_empty());
     note("several scenarios", evaluated.scenarios > 1);
     let front = expected.answer.tables.get("front.csv");
@@ -289,6 +291,7 @@ mass_g = "min"
 yield_safety = "max"
 slack_tension_N = "max"
 [report]
+variants = true
 columns = ["max_stress_theta_deg", "stress_Fl_MPa", "stress_P1_MPa", "fatigue_safety"]
 top = { by = "rim_displacement_mm", count = 3 }
 histograms = [{ of = "max_stress_MPa", bins = 5 }]

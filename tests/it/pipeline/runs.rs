@@ -92,7 +92,7 @@ impl<'p> Pipeline<'p> {
 
     /// Certifies and writes a result; returns its files.
     pub fn write(&self, state: State, threads: usize, folder: &Path) -> Files {
-        let outcome = Outcome::certify(self.plan, state, self.tally.clone(), threads).expect("the reference agrees");
+        let outcome = Outcome::certify(self.plan, state, self.tally.clone(), threads, &Control::default()).expect("the reference agrees");
         let record = RunRecord {
             engine: "cpu",
             threads,
