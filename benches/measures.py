@@ -19,6 +19,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent))
 import metal_grid  # noqa: E402
+import pulley_measures  # noqa: E402
 import timing_measures  # noqa: E402
 
 STUDY = Path("studies/metal-grid.toml").read_text()
@@ -137,6 +138,7 @@ def main():
             record["large"] = large(arguments.program, folder)
         record["answers_ms"] = answers(arguments.program)
         record["timing_belt"] = timing_measures.measure(arguments.program, folder)
+        record["pulley"] = pulley_measures.measure(arguments.program, folder, arguments.short)
         sweep(arguments.program, 10, folder)  # the program's pages are read before the clock counts
         record["beside_numpy"] = [beside_numpy(arguments.program, levels, folder) for levels in ((37, 56) if arguments.short else (37, 56, 100))]
     print(f"{record['machine']}, {record['cores']} cores, {record['date']}")
@@ -150,6 +152,7 @@ def main():
         print(f"metal-grid {row['designs']:>12} designs  feasible {row['feasible']}  front {row['front']}  {row['seconds']:.1f} s  "
               f"{row['designs_per_second']:.3g} designs/s  peak memory {row['peak_MB']:.0f} MB")
     timing_measures.show(record["timing_belt"])
+    pulley_measures.show(record["pulley"])
     print("answers: " + ", ".join(f"{command} {ms:.1f} ms" for command, ms in record["answers_ms"].items()))
     write(arguments.out, record)
 

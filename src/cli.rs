@@ -21,6 +21,8 @@ pub enum Command {
     Models(Models),
     /// Evaluate one design: every input, output and margin
     Eval(Eval),
+    /// Write one design for another program: a pulley as a model for CalculiX
+    Export(Export),
     /// Look at a study without running it: size, inert axes, memory, expected time
     Check {
         /// Study file
@@ -56,6 +58,35 @@ pub struct Models {
     /// Print a study to start from
     #[arg(long, requires = "name")]
     pub study: bool,
+}
+
+/// Options of `export`.
+#[derive(Debug, Args)]
+pub struct Export {
+    /// The model pulley, or a study of it
+    #[arg(value_name = "MODEL|STUDY", required_unless_present = "compare")]
+    pub target: Option<String>,
+    /// Directory of the model for CalculiX (pulley.inp, and README.txt on how to run it)
+    #[arg(long, value_name = "DIR")]
+    pub calculix: PathBuf,
+    /// Set an input; a unit may follow the number. May be repeated
+    #[arg(long, value_name = "NAME=VALUE", conflicts_with = "design")]
+    pub set: Vec<String>,
+    /// Start from a named set of inputs instead of the defaults
+    #[arg(long, conflicts_with = "design")]
+    pub preset: Option<String>,
+    /// Design of a study, by its index
+    #[arg(long, value_name = "N")]
+    pub design: Option<u64>,
+    /// Scenario of a study, by its index
+    #[arg(long, value_name = "K", requires = "design")]
+    pub scenario: Option<u64>,
+    /// Elements around the axis
+    #[arg(long, value_name = "N", default_value_t = 68, value_parser = clap::value_parser!(u16).range(8..=720))]
+    pub sectors: u16,
+    /// After CalculiX has run in the directory: set its results beside the program's own
+    #[arg(long, conflicts_with_all = ["target", "set", "preset", "design", "scenario"])]
+    pub compare: bool,
 }
 
 /// Options of `eval`.

@@ -6,14 +6,14 @@ use crate::terminal::{self, Grid, bold, dim, short};
 use beltspace::certify;
 use beltspace::checkpoint::replace;
 use beltspace::error::{Error, Result};
-use beltspace::export::{Data, Table, TableColumn, csv_text};
+use beltspace::export::{Data, Table, TableColumn, csv_text, pulley};
 use beltspace::models::{Evaluation, Model, Profile, Status, evaluate};
 use beltspace::pictures::{self, Quantity, Series};
 use beltspace::plan::Plan;
 use beltspace::study::{Quantity as Which, Study, number, value_of};
 use beltspace::units::parse_value;
 use serde_json::{Map, Value, json};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 pub fn run(request: &cli::Eval) -> Result<()> {
     let path = Path::new(&request.target);
@@ -24,18 +24,18 @@ pub fn run(request: &cli::Eval) -> Result<()> {
     if request.design.is_some() {
         return Err(Error::Request(format!("--design numbers the designs of a study, and {} is a model; use --set", model.name)));
     }
-    let inputs = inputs_of(model, request)?;
+    let inputs = inputs_of(model, request.preset.as_deref(), &request.set)?;
     print_one(model, &inputs, None, request)
 }
 
 /// Defaults, then the preset, then every `--set`.
-fn inputs_of(model: &Model, request: &cli::Eval) -> Result<Vec<f64>> {
-    let mut inputs = match &request.preset {
+pub(super) fn inputs_of(model: &Model, preset: Option<&str>, set: &[String]) -> Result<Vec<f64>> {
+    let mut inputs = match preset {
         Some(name) => model.preset(name).map_err(Error::Request)?,
         None => model.defaults(),
     };
     let mut problems = Vec::new();
-    for assignment in &request.set {
+    for assignment in set {
         match parse_assignment(model, assignment) {
             Ok((input, value)) => inputs[input] = value,
             Err(problem) => problems.push(problem),
@@ -177,22 +177,40 @@ fn along_the_belt(model: &Model, inputs: &[f64], evaluation: &Evaluation, reques
         }
         let position = Quantity::new(columns[0].name, columns[0].unit.symbol);
         replace(path, pictures::curves(model.summary, &position, &panels).as_bytes())?;
+        // A pulley is more than curves: the others stand beside the file, named after it.
+        for (name, text) in pulley::pictures(model, model.summary, inputs) {
+            replace(&beside(path, name), text.as_bytes())?;
+        }
     }
     Ok(())
 }
 
-fn of_study(request: &cli::Eval, path: &Path) -> Result<()> {
+/// `plot.svg` and `section` make `plot-section.svg`.
+fn beside(path: &Path, name: &str) -> PathBuf {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let extension = path.extension().map_or_else(String::new, |it| format!(".{}", it.to_string_lossy()));
+    path.with_file_name(format!("{stem}-{name}{extension}"))
+}
+
+/// A study and the design of it that is asked for.
+pub(super) fn studied(path: &Path, design: Option<u64>) -> Result<(Plan, u64)> {
     let (study, _) = read_study(path)?;
-    if !request.set.is_empty() || request.preset.is_some() {
-        return Err(Error::Request("--set and --preset are for models; a study's designs are numbered: use --design N".to_owned()));
-    }
     let plan = Plan::new(study);
-    let model = plan.study.model;
-    let (designs, scenarios) = (plan.designs(), plan.scenarios());
-    let design = request.design.ok_or_else(|| Error::Request(format!("which design? use --design N, from 0 to {}", designs - 1)))?;
+    let designs = plan.designs();
+    let design = design.ok_or_else(|| Error::Request(format!("which design? use --design N, from 0 to {}", designs - 1)))?;
     if design >= designs {
         return Err(Error::Request(format!("there is no design {design}; the study's designs are 0 to {}", designs - 1)));
     }
+    Ok((plan, design))
+}
+
+fn of_study(request: &cli::Eval, path: &Path) -> Result<()> {
+    if !request.set.is_empty() || request.preset.is_some() {
+        return Err(Error::Request("--set and --preset are for models; a study's designs are numbered: use --design N".to_owned()));
+    }
+    let (plan, design) = studied(path, request.design)?;
+    let model = plan.study.model;
+    let scenarios = plan.scenarios();
     if let Some(scenario) = request.scenario.or((scenarios == 1).then_some(0)) {
         if scenario >= scenarios {
             return Err(Error::Request(format!("there is no scenario {scenario}; the study's scenarios are 0 to {}", scenarios - 1)));

@@ -4,6 +4,7 @@ mod adapters;
 mod check;
 mod engine;
 mod eval;
+mod export;
 mod merge;
 mod models;
 mod sweep;
@@ -22,6 +23,7 @@ pub fn run(command: Command) -> Result<()> {
     match command {
         Command::Models(request) => models::run(&request),
         Command::Eval(request) => eval::run(&request),
+        Command::Export(request) => export::run(&request),
         Command::Check { study } => check::run(&study),
         Command::Sweep(request) => sweep::run(&request),
         Command::Merge(request) => merge::run(&request),

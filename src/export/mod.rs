@@ -4,6 +4,7 @@ mod csv;
 mod number;
 mod parquet;
 mod pictures;
+pub mod pulley;
 mod summary;
 mod table;
 mod tables;
@@ -47,6 +48,8 @@ pub struct Outcome<'p> {
     pub front: Vec<Row>,
     /// The best designs by one quantity, best first.
     pub top: Vec<Row>,
+    /// Every design, feasible or not, if the study asks for it.
+    pub variants: Vec<Row>,
 }
 
 impl<'p> Outcome<'p> {
@@ -59,7 +62,14 @@ impl<'p> Outcome<'p> {
         let front = certify::front(plan, &columns, &state.front, threads)?;
         let top = state.top.as_ref().map_or(Vec::new(), |top| certify::rows(plan, &columns, &top.indices(), threads));
         top.iter().try_for_each(certify::check_feasible)?;
-        Ok(Self { plan, state, tally, columns, front, top })
+        let all: Vec<u64> = if plan.study.report.variants { (0..plan.designs()).collect() } else { Vec::new() };
+        let variants = certify::rows(plan, &columns, &all, threads);
+        let feasible = variants.iter().filter(|row| row.feasible).count() as u64;
+        if plan.study.report.variants && feasible != state.feasible {
+            let seen = state.feasible;
+            return Err(Error::Certificate(format!("the sweep counted {seen} feasible designs, the f64 reference finds {feasible}")));
+        }
+        Ok(Self { plan, state, tally, columns, front, top, variants })
     }
 
     /// The files of the result, by name, in the order in which they are written; [`MARK`] last. The lines over maps are found here,
@@ -83,6 +93,12 @@ impl<'p> Outcome<'p> {
         }
         if study.report.top.is_some() {
             files.push(("top.csv".to_owned(), csv::write(&tables::designs(self, &self.top))));
+        }
+        if study.report.variants {
+            files.push(("variants.csv".to_owned(), csv::write(&tables::variants(self, &self.variants))));
+        }
+        for (name, text) in self.knee_pictures() {
+            files.push((format!("knee-{name}.svg"), text.into_bytes()));
         }
         let mut names = BTreeSet::new();
         let mut unique = |name: String| {
@@ -114,6 +130,19 @@ impl<'p> Outcome<'p> {
         Ok(files)
     }
 
+    /// Pictures of the knee, in its most stressed scenario, for models that have such.
+    fn knee_pictures(&self) -> Vec<(&'static str, String)> {
+        let plan = self.plan;
+        let summary = Summary::new(self);
+        let Some(row) = summary.knee.as_ref().map(|knee| &self.front[knee.row]) else { return Vec::new() };
+        // The largest stress is where the least margin against yield is, whichever of them the study reports.
+        let stress = ["max_stress_MPa", "yield_safety", "fatigue_safety"];
+        let worst = stress.iter().find_map(|name| self.columns.iter().position(|column| column.name == *name));
+        let scenario = worst.map_or(0, |column| row.columns[column].scenario);
+        let title = format!("{}: knee, design {}, scenario {scenario}", plan.study.title, row.index);
+        pulley::pictures(plan.study.model, &title, &plan.space.inputs(row.index, scenario))
+    }
+
     /// Writes the result directory. Each file is either whole or not there, and [`MARK`] comes last.
     ///
     /// # Errors
@@ -143,12 +172,24 @@ impl<'p> Outcome<'p> {
 /// Is this a name that a result directory may have, so that an older result's file may go?
 fn is_ours(name: &str) -> bool {
     let name = name.strip_suffix(".writing").unwrap_or(name);
-    let fixed = ["front.csv", "front.parquet", "front.svg", "top.csv", "scenarios.csv", "study.toml", "study.json", "run.json", MARK];
+    let fixed = [
+        "front.csv",
+        "front.parquet",
+        "front.svg",
+        "top.csv",
+        "variants.csv",
+        "scenarios.csv",
+        "study.toml",
+        "study.json",
+        "run.json",
+        MARK,
+    ];
     let (stem, extension) = name.rsplit_once('.').unwrap_or((name, ""));
     let prefixes = [("histogram-", &["csv", "parquet", "svg"][..]), ("map-", &["csv", "parquet", "svg"]), ("contours-", &["csv"])];
     let of_quantity =
         |(prefix, extensions): &(&str, &[&str])| extensions.contains(&extension) && stem.strip_prefix(prefix).is_some_and(is_quantity);
-    fixed.contains(&name) || prefixes.iter().any(of_quantity)
+    let knee = extension == "svg" && stem.strip_prefix("knee-").is_some_and(|it| pulley::PICTURES.contains(&it));
+    knee || fixed.contains(&name) || prefixes.iter().any(of_quantity)
 }
 
 /// Is this the name of a quantity of some model, or of a feasible share, perhaps numbered?

@@ -47,6 +47,14 @@ pub fn designs(outcome: &Outcome<'_>, rows: &[Row]) -> Table {
     Table { columns }
 }
 
+/// Every design, feasible or not.
+pub fn variants(outcome: &Outcome<'_>, rows: &[Row]) -> Table {
+    let mut table = designs(outcome, rows);
+    let words = rows.iter().map(|row| if row.feasible { "yes" } else { "no" }.to_owned()).collect();
+    table.columns.push(TableColumn::new("feasible", "feasible", "Does it satisfy everything in every scenario?", Data::Text(words)));
+    table
+}
+
 /// A value of an input as a person writes it.
 pub fn written(input: &Input, value: f64) -> String {
     input.word_for(value).map_or_else(|| super::plain(value), str::to_owned)

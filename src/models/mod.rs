@@ -23,6 +23,7 @@ pub use description::{
 pub use evaluation::{Evaluation, Status, evaluate, evaluate_decided};
 pub(crate) use evaluation::{holds, input_to_si, judge, shown, to_si};
 pub use formula::{CONDITIONS, Columns, Fields, Formula, INPUTS, Kernel, OUTPUTS, Reach, Reads, Scratch, Twin, run};
+pub use pulley::Design;
 
 /// Something to do with a model's formula over a number type of one's own, which the table of functions in [`Model::kernel`]
 /// cannot offer.
@@ -51,6 +52,11 @@ macro_rules! models {
     };
 }
 models![rubber_cvt, metal_cvt, timing_belt, pulley_load; processor: pulley];
+
+/// Section, loads and strength behind inputs of the model `pulley`, in their units; `None` for any other model.
+pub fn pulley_design(model: &Model, inputs: &[f64]) -> Option<Design> {
+    (*model == pulley::MODEL).then(|| Design::new(&to_si(model, inputs)))
+}
 
 /// The model of that name.
 pub fn find(name: &str) -> Option<&'static Model> {

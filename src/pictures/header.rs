@@ -107,6 +107,7 @@ impl Mark {
                     Dash::Solid => &[(-110, 110)],
                     Dash::Dashed => &[(-110, -40), (0, 70)],
                     Dash::Dotted => &[(-110, -90), (-60, -40), (-10, 10), (40, 60), (90, 110)],
+                    Dash::Centre => &[(-110, -40), (-10, 10), (40, 110)],
                 };
                 for (from, to) in strokes {
                     area.draw(&PathElement::new([(x + from, y), (x + to, y)], stroke))?;

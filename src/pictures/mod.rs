@@ -1,7 +1,7 @@
 //! Pictures: plain data in, the text of one self-contained SVG file out.
 //!
 //! [`front`] draws a Pareto front, [`histogram()`] a histogram, [`heatmap()`] a map over two axes and
-//! [`curves()`] profiles over a common abscissa. None of them reads or writes a file, and the same
+//! [`curves()`] profiles over a common abscissa; [`pulley`] has those of pulleys. None of them reads or writes a file, and the same
 //! input always gives the same bytes: no clock, no random names, no hash-map order, and no
 //! transcendental function from the system in a position or a tick.
 //!
@@ -22,6 +22,7 @@ mod levels;
 mod number;
 mod overlay;
 mod panel;
+pub mod pulley;
 mod range;
 mod raster;
 mod scatter;

@@ -95,6 +95,8 @@ pub(super) enum Dash {
     Solid,
     Dashed,
     Dotted,
+    /// Long and short strokes, as of axes and middle lines.
+    Centre,
 }
 
 impl Dash {
@@ -105,6 +107,7 @@ impl Dash {
             Dash::Solid => "stroke-linecap=\"round\"",
             Dash::Dashed => "stroke-dasharray=\"70 40\"",
             Dash::Dotted => "stroke-dasharray=\"20 30\"",
+            Dash::Centre => "stroke-dasharray=\"160 40 20 40\"",
         }
     }
 }

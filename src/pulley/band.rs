@@ -3,6 +3,8 @@
 //! Every lane does the same operations in the same order on every machine (no contraction, no reordering), so a solution has the
 //! same bits whatever instructions the processor has.
 
+#![allow(clippy::needless_range_loop, reason = "loops over lanes, of constant length, are what the compiler makes vectors of")]
+
 /// Harmonics that are solved together.
 pub const WIDTH: usize = 4;
 
@@ -249,6 +251,26 @@ fn solve<const COUNT: usize>(
 }
 
 #[cfg(test)]
+impl Matrices {
+    /// Product with a vector in one harmonic.
+    pub fn times(&self, order: usize, vector: &[f64]) -> Vec<f64> {
+        let k = order as f64;
+        let mut product = vec![0.0; self.size];
+        for column in 0..self.size {
+            for row in column..self.size.min(column + self.half + 1) {
+                let [a, b, c] = self.entries[column * (self.half + 1) + (row - column)];
+                let entry = a + k * (b + k * c);
+                product[row] += entry * vector[column];
+                if row != column {
+                    product[column] += entry * vector[row];
+                }
+            }
+        }
+        product
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
 
@@ -261,7 +283,7 @@ mod tests {
             match (far, part) {
                 (0, 0) => 10.0 + (row % 3) as f64,
                 (0, 2) => 1.0,
-                _ if far <= half => 0.3 / (far + part + 1) as f64 - if (row + column) % 2 == 0 { 0.1 } else { 0.0 },
+                _ if far <= half => 0.3 / (far + part + 1) as f64 - if (row + column).is_multiple_of(2) { 0.1 } else { 0.0 },
                 _ => 0.0,
             }
         };

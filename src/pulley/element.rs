@@ -115,6 +115,36 @@ pub fn samples<'m>(mesh: &'m Mesh, element: &'m Element) -> impl Iterator<Item =
     })
 }
 
+/// A value inside an element at its own coordinates: from -1 to 1 each in a quadrilateral, of the corners (0, 0), (1, 0) and (0, 1)
+/// in a triangle.
+pub fn value_at(element: &Element, at: DVec2, value: impl Fn(usize) -> f64) -> f64 {
+    let shapes = local_shapes(element.corners(), at);
+    shapes.iter().zip(element.nodes()).map(|(shape, &node)| shape.value * value(node as usize)).sum()
+}
+
+/// Shares of the values at the points of integration in the value at each node: what is bilinear (linear in a triangle) extends to
+/// the nodes.
+pub fn shares_at_nodes(corners: usize) -> [[f64; 4]; 8] {
+    let mut shares = [[0.0; 4]; 8];
+    let ends = |node: usize| if node < corners { (node, node) } else { (node - corners, (node - corners + 1) % corners) };
+    for (node, shares) in shares.iter_mut().enumerate().take(2 * corners) {
+        let (a, b) = ends(node);
+        if corners == 4 {
+            let place = 0.5 * (SQUARE[a].0 + SQUARE[b].0) / (THIRD * THIRD);
+            for (share, (point, _)) in shares.iter_mut().zip(SQUARE) {
+                let corner = point / THIRD;
+                *share = 0.25 * (1.0 + place.x * corner.x) * (1.0 + place.y * corner.y);
+            }
+        } else {
+            for (point, share) in shares.iter_mut().enumerate().take(3) {
+                let area = 0.5 * (f64::from(u8::from(point == a)) + f64::from(u8::from(point == b)));
+                *share = 2.0 * area - 1.0 / 3.0;
+            }
+        }
+    }
+    shares
+}
+
 /// Elastic constants of an isotropic material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lame {

@@ -2,6 +2,7 @@
 //!
 //! The belt presses over the wrap, from its slack end at theta = 0, with `exp(mu' theta)`; bolt heads press on annuli of their own.
 
+use super::element::samples;
 use super::mesh::{Edge, Face, Mesh};
 use super::section::Dimensions;
 use glam::DVec2;
@@ -69,6 +70,19 @@ impl EdgePoint {
         let length = tangent.length();
         Self { value, slope: slope.map(|it| it / length), length, at: sum(value), along: tangent / length }
     }
+
+    /// Three points that integrate over an edge; their lengths add up to the edge's.
+    pub fn three(points: [DVec2; 3]) -> [Self; 3] {
+        GAUSS_3.map(|(local, weight)| {
+            let point = Self::new(points, local);
+            Self { length: point.length * weight, ..point }
+        })
+    }
+
+    /// Unit vector out of the material.
+    pub fn out(&self) -> DVec2 {
+        DVec2::new(-self.along.y, self.along.x)
+    }
 }
 
 /// Points of Gauss and their weights.
@@ -90,12 +104,11 @@ pub(super) const GAUSS_12: [(f64, f64); 6] = [
 pub fn belt_patterns(mesh: &Mesh) -> [Vec<f64>; 3] {
     let mut patterns = [(); 3].map(|()| vec![0.0; 3 * mesh.nodes.len()]);
     for edge in mesh.surface.iter().filter(|edge| edge.face == Face::Band) {
-        for (local, weight) in GAUSS_3 {
-            let point = EdgePoint::new(mesh.edge(edge), local);
-            let out = DVec2::new(-point.along.y, point.along.x);
+        for point in EdgePoint::three(mesh.edge(edge)) {
+            let out = point.out();
             let inwards = if point.along.y < 0.0 { point.along } else { -point.along };
             for (&node, value) in edge.nodes.iter().zip(point.value) {
-                let share = value * point.length * weight;
+                let share = value * point.length;
                 let place = 3 * node as usize;
                 patterns[0][place] -= out.y * share;
                 patterns[0][place + 1] -= out.x * share;
@@ -139,6 +152,17 @@ impl Seat {
             let pressure = clamp_harmonic(d, *radius, k);
             for (&node, share) in nodes.iter().zip(shares) {
                 add(3 * node as usize + 1, -pressure * share);
+            }
+        }
+    }
+}
+
+/// Adds the load of a density times square of the speed of 1 to the degrees of freedom, through `add(degree of freedom, load)`.
+pub fn spin(mesh: &Mesh, mut add: impl FnMut(usize, f64)) {
+    for element in &mesh.elements {
+        for sample in samples(mesh, element) {
+            for (shape, &node) in sample.shapes.iter().zip(element.nodes()) {
+                add(3 * node as usize, shape.value * sample.radius * sample.radius * sample.area);
             }
         }
     }

@@ -1,23 +1,23 @@
 //! A section's answer to unit loads, harmonic by harmonic: what a load case needs and nothing that depends on it.
 //!
 //! The answers to the belt's normal load, its two frictions, the bolt heads and the spin are independent of tension, power, wrap,
-//! friction and phase, so one factored section serves any number of load cases. What is kept are the stresses on the surface,
-//! recovered from the displacements there (stresses extrapolated from inside are a third too low in tight bends), and the rim's
-//! displacement, which is kept like the stresses of one more point. They are laid out in one flat table, [`View`], for an elastic modulus of 1 MPa: stresses do not depend on it, and
-//! displacements are divided by it.
+//! friction and phase, so one factored section serves any number of load cases. What is kept are the [recovered](super::recovery) stresses
+//! on the surface, and the rim's displacement, which is kept like the stresses of one more point. They are laid out in one flat table, [`View`], for an
+//! elastic modulus of 1 MPa: stresses do not depend on it, and displacements are divided by it.
 
-use super::band::{Factors, Matrices, WIDTH, Wide};
-use super::element::{Coupling, Lame, couple, samples};
-use super::loads::{EdgePoint, Seat, belt_patterns};
-use super::mesh::{Edge, Face, Mesh};
+use super::band::WIDTH;
+use super::element::samples;
+use super::equations::{Displacements, Equations};
+use super::loads::{Seat, belt_patterns, spin};
+use super::mesh::Mesh;
+pub use super::recovery::{STRESSES, points_of_edges};
+use super::recovery::{SurfacePoint, surface_points};
 use super::section::{Dimensions, Fineness, Kind};
 use super::spline;
 use std::f64::consts::PI;
 
 /// Unit loads of the belt: normal to the flanks, along them, around the circumference.
 pub const BELT: usize = 3;
-/// Stresses kept of a surface point: along the section and around, both less the normal stress, and the shear between them.
-pub const STRESSES: usize = 3;
 /// Numbers that points are padded to a multiple of.
 pub const CHUNK: usize = 8;
 /// Points kept once more after the others, so that they stand together: the check points and the rim.
@@ -98,6 +98,11 @@ impl<'t> View<'t> {
         Self { table, sizes: Sizes { padded, orders, clamps: (orders - 1) / bolts + 1 } }
     }
 
+    /// Numbers in the table.
+    pub fn length(&self) -> usize {
+        self.sizes.length()
+    }
+
     /// Surface points.
     pub fn points(&self) -> usize {
         self.table[Head::Points as usize] as usize
@@ -165,148 +170,6 @@ impl<'t> View<'t> {
     }
 }
 
-/// How strains at a surface point follow from the displacements of a node.
-#[derive(Clone, Copy, Debug, Default)]
-struct Stencil {
-    node: u32,
-    /// Of e_ss, by u_r and u_z.
-    along: [f64; 2],
-    /// N/r: of e_tt by u_r, and by k u_theta.
-    around: f64,
-    /// Of the shear, by u_theta.
-    shear: f64,
-    /// Of the shear, by -k u_r and -k u_z.
-    lean: [f64; 2],
-}
-
-/// A point of the surface at which stress is recovered.
-#[derive(Clone, Debug)]
-struct SurfacePoint {
-    node: u32,
-    /// Share of its edges that the belt presses.
-    pressed: f64,
-    stencils: Vec<Stencil>,
-}
-
-/// Cosine of the turn between two edges up to which the surface counts as smooth at their node.
-const SMOOTH: f64 = 0.8;
-
-/// The points of the surface: each node of each smooth stretch. What strains are at the two Gauss points of an edge is extended
-/// linearly to its nodes and averaged between the edges that meet.
-fn surface_points(mesh: &Mesh) -> Vec<SurfacePoint> {
-    let mut points: Vec<SurfacePoint> = Vec::new();
-    let mut open: Vec<(u32, usize, glam::DVec2)> = Vec::new();
-    let mut edges_of: Vec<Vec<(usize, f64)>> = Vec::new();
-    for (number, edge) in mesh.surface.iter().enumerate() {
-        for (place, local) in [(0, -1.0), (1, 0.0), (2, 1.0)] {
-            let node = edge.nodes[place];
-            let along = EdgePoint::new(mesh.edge(edge), local).along;
-            let met = (place != 1).then(|| open.iter().position(|(other, _, way)| *other == node && way.dot(along) > SMOOTH)).flatten();
-            match met {
-                Some(position) => {
-                    let (_, point, _) = open.swap_remove(position);
-                    edges_of[point].push((number, local));
-                }
-                None => {
-                    if place != 1 {
-                        open.push((node, points.len(), along));
-                    }
-                    points.push(SurfacePoint { node, pressed: 0.0, stencils: Vec::new() });
-                    edges_of.push(vec![(number, local)]);
-                }
-            }
-        }
-    }
-    for (point, edges) in points.iter_mut().zip(&edges_of) {
-        let share = 1.0 / edges.len() as f64;
-        for &(number, local) in edges {
-            let edge = &mesh.surface[number];
-            point.pressed += if edge.face == Face::Band { share } else { 0.0 };
-            add_stencils(&mut point.stencils, mesh, edge, local, share);
-        }
-    }
-    points
-}
-
-fn add_stencils(stencils: &mut Vec<Stencil>, mesh: &Mesh, edge: &Edge, local: f64, share: f64) {
-    const GAUSS: f64 = 0.577_350_269_189_625_8;
-    for side in [-1.0, 1.0] {
-        let weight = share * 0.5 * (1.0 + side * local / GAUSS);
-        let at = EdgePoint::new(mesh.edge(edge), side * GAUSS);
-        for place in 0..3 {
-            let node = edge.nodes[place];
-            let position = stencils.iter().position(|it| it.node == node).unwrap_or_else(|| {
-                stencils.push(Stencil { node, ..Stencil::default() });
-                stencils.len() - 1
-            });
-            let stencil = &mut stencils[position];
-            let (value, slope, r) = (weight * at.value[place], weight * at.slope[place], at.at.y);
-            stencil.along[0] += slope * at.along.y;
-            stencil.along[1] += slope * at.along.x;
-            stencil.around += value / r;
-            stencil.shear += slope - value * at.along.y / r;
-            stencil.lean[0] += value / r * at.along.y;
-            stencil.lean[1] += value / r * at.along.x;
-        }
-    }
-}
-
-/// The matrices of a section's stiffness, for a modulus of 1 MPa; what is fixed has the identity's rows.
-fn stiffness(mesh: &Mesh, poisson: f64, fixed: &[bool]) -> Matrices {
-    let mut matrices = Matrices::new(3 * mesh.nodes.len(), 3 * mesh.reach() + 2);
-    let lame = Lame::new(1.0, poisson);
-    for element in &mesh.elements {
-        let nodes = element.nodes();
-        let mut couplings = [[Coupling::default(); 8]; 8];
-        for sample in samples(mesh, element) {
-            let weight = sample.area * sample.radius;
-            for i in 0..nodes.len() {
-                for j in 0..nodes.len() {
-                    if nodes[i] >= nodes[j] {
-                        couple(&mut couplings[i][j], lame, &sample.shapes[i], &sample.shapes[j], sample.radius, weight);
-                    }
-                }
-            }
-        }
-        for (i, &row_node) in nodes.iter().enumerate() {
-            for (j, &column_node) in nodes.iter().enumerate() {
-                if row_node < column_node || fixed[row_node as usize] || fixed[column_node as usize] {
-                    continue;
-                }
-                for a in 0..3 {
-                    for b in 0..3 {
-                        let (row, column) = (3 * row_node as usize + a, 3 * column_node as usize + b);
-                        if row >= column {
-                            let entry = matrices.entry(row, column);
-                            for (power, entry) in entry.iter_mut().enumerate() {
-                                *entry += couplings[i][j][power][a][b];
-                            }
-                        }
-                    }
-                }
-            }
-        }
-    }
-    for (node, _) in fixed.iter().enumerate().filter(|(_, fixed)| **fixed) {
-        for axis in 0..3 {
-            matrices.entry(3 * node + axis, 3 * node + axis)[0] = 1.0;
-        }
-    }
-    matrices
-}
-
-/// Displacements of all nodes under unit loads in four harmonics: `values[(3 * node + axis) * sides + side]`, times the modulus.
-pub struct Displacements<'s> {
-    /// The harmonics.
-    pub orders: [usize; WIDTH],
-    /// How many of them count: the last may be repeated to fill the lanes.
-    pub count: usize,
-    /// Unit loads: the belt's three, the clamp's and, with the zeroth harmonic, the spin's.
-    pub sides: usize,
-    /// The displacements.
-    pub values: &'s [Wide],
-}
-
 /// The right side of the clamp, after the belt's.
 pub const CLAMP_SIDE: usize = BELT;
 /// The right side of the spin, which only the zeroth harmonic has.
@@ -323,12 +186,9 @@ pub fn solved_orders(fineness: &Fineness, bolts: usize) -> Vec<usize> {
 /// Solves a section for unit loads in the given harmonics, four at a time.
 pub fn solve(mesh: &Mesh, dimensions: &Dimensions, poisson: f64, orders: &[usize], mut take: impl FnMut(&Displacements<'_>)) {
     let bolts = dimensions.bolt_count as usize;
-    let fixed = mesh.fixed();
-    let matrices = stiffness(mesh, poisson, &fixed);
+    let mut equations = Equations::new(mesh, poisson, mesh.fixed().into_iter().map(|fixed| [fixed; 3]).collect());
     let patterns = belt_patterns(mesh);
     let seat = Seat::new(mesh, dimensions);
-    let mut factors = Factors::default();
-    let mut values: Vec<Wide> = Vec::new();
     // Harmonics of the clamp together: the others have a right side less.
     let mut orders = orders.to_vec();
     orders.sort_by_key(|order| (!order.is_multiple_of(bolts), *order));
@@ -336,8 +196,7 @@ pub fn solve(mesh: &Mesh, dimensions: &Dimensions, poisson: f64, orders: &[usize
         let lanes: [usize; WIDTH] = std::array::from_fn(|lane| batch[lane.min(batch.len() - 1)]);
         let (spins, clamps) = (lanes[0] == 0, lanes[0].is_multiple_of(bolts));
         let sides = BELT + usize::from(clamps) + usize::from(spins);
-        values.clear();
-        values.resize(matrices.rows() * sides, [0.0; WIDTH]);
+        let values = equations.loads(sides);
         for (side, pattern) in patterns.iter().enumerate() {
             for (place, &load) in pattern.iter().enumerate().filter(|(_, load)| **load != 0.0) {
                 values[place * sides + side] = [load; WIDTH];
@@ -347,19 +206,9 @@ pub fn solve(mesh: &Mesh, dimensions: &Dimensions, poisson: f64, orders: &[usize
             seat.load(dimensions, order, |place, load| values[place * sides + CLAMP_SIDE][lane] += load);
         }
         if spins {
-            for element in &mesh.elements {
-                for sample in samples(mesh, element) {
-                    for (shape, &node) in sample.shapes.iter().zip(element.nodes()) {
-                        values[3 * node as usize * sides + SPIN_SIDE][0] += shape.value * sample.radius * sample.radius * sample.area;
-                    }
-                }
-            }
+            spin(mesh, |place, load| values[place * sides + SPIN_SIDE][0] += load);
         }
-        for (node, _) in fixed.iter().enumerate().filter(|(_, fixed)| **fixed) {
-            values[3 * node * sides..3 * (node + 1) * sides].fill([0.0; WIDTH]);
-        }
-        factors.solve(&matrices, lanes, &mut values, sides);
-        take(&Displacements { orders: lanes, count: batch.len(), sides, values: &values });
+        take(&equations.solve(lanes, batch.len()));
     }
 }
 
@@ -377,7 +226,7 @@ pub fn folds_over(mesh: &Mesh) -> bool {
 /// Solves a section for unit loads and writes what load cases need into `table`, which has room for [`LONGEST`] numbers.
 /// Returns how many were written.
 pub fn respond(mesh: &Mesh, kind: Kind, dimensions: &Dimensions, poisson: f64, fineness: &Fineness, table: &mut [f64]) -> usize {
-    let points = surface_points(mesh);
+    let (points, _) = surface_points(mesh);
     let bolts = dimensions.bolt_count as usize;
     let orders = fineness.harmonics + 1;
     let sizes = Sizes { padded: padded(points.len()), orders, clamps: (orders - 1) / bolts + 1 };
@@ -408,11 +257,10 @@ pub fn respond(mesh: &Mesh, kind: Kind, dimensions: &Dimensions, poisson: f64, f
         }
     }
     let solved = solved_orders(fineness, bolts);
-    let rim = 3 * mesh.rim as usize;
     solve(mesh, dimensions, poisson, &solved, |answer| {
         for side in 0..answer.sides {
             for (number, point) in points.iter().enumerate() {
-                let stresses = stresses(point, answer, side, poisson, mesh);
+                let stresses = point.stresses(answer, side, poisson, normal_stress(point, side, mesh));
                 for lane in 0..answer.count {
                     if let Some(row) = row_of(&sizes, answer.orders[lane], side, bolts) {
                         for (stress, values) in stresses.iter().enumerate() {
@@ -427,7 +275,7 @@ pub fn respond(mesh: &Mesh, kind: Kind, dimensions: &Dimensions, poisson: f64, f
                         for &(point, copy) in &copies {
                             table[row + axis * sizes.padded + copy] = table[row + axis * sizes.padded + point];
                         }
-                        table[row + axis * sizes.padded + named + RIM] = answer.values[(rim + axis) * answer.sides + side][lane];
+                        table[row + axis * sizes.padded + named + RIM] = answer.of(mesh.rim, side)[axis][lane];
                     }
                 }
             }
@@ -446,29 +294,7 @@ fn row_of(sizes: &Sizes, order: usize, side: usize, bolts: usize) -> Option<usiz
     }
 }
 
-/// Stresses at a surface point, recovered from the displacements of the surface and its normal load.
-fn stresses(point: &SurfacePoint, answer: &Displacements<'_>, side: usize, poisson: f64, mesh: &Mesh) -> [Wide; STRESSES] {
-    let (mut along, mut around, mut shear) = ([0.0; WIDTH], [0.0; WIDTH], [0.0; WIDTH]);
-    let order = answer.orders.map(|it| it as f64);
-    for stencil in &point.stencils {
-        let place = 3 * stencil.node as usize * answer.sides + side;
-        let [ur, uz, ut] = [0, 1, 2].map(|axis| &answer.values[place + axis * answer.sides]);
-        for lane in 0..WIDTH {
-            along[lane] += stencil.along[0] * ur[lane] + stencil.along[1] * uz[lane];
-            around[lane] += stencil.around * (ur[lane] + order[lane] * ut[lane]);
-            shear[lane] += stencil.shear * ut[lane] - order[lane] * (stencil.lean[0] * ur[lane] + stencil.lean[1] * uz[lane]);
-        }
-    }
-    // Plane stress on a free surface; where the belt presses, the normal stress adds its share to both.
-    let normal = if side == 0 { -point.pressed / mesh.nodes[point.node as usize].y } else { 0.0 };
-    let share = (poisson / (1.0 - poisson) - 1.0) * normal;
-    let plane = 1.0 / (1.0 - poisson * poisson);
-    let twist = 0.5 / (1.0 + poisson);
-    let mut stresses = [[0.0; WIDTH]; STRESSES];
-    for lane in 0..WIDTH {
-        stresses[0][lane] = plane * (along[lane] + poisson * around[lane]) + share;
-        stresses[1][lane] = plane * (around[lane] + poisson * along[lane]) + share;
-        stresses[2][lane] = twist * shear[lane];
-    }
-    stresses
+/// Stress normal to the surface at a point under a unit load: the belt's own presses with 1/r, as it acts per ds dtheta.
+fn normal_stress(point: &SurfacePoint, side: usize, mesh: &Mesh) -> f64 {
+    if side == 0 { -point.pressed / mesh.nodes[point.node as usize].y } else { 0.0 }
 }

@@ -18,7 +18,7 @@ impl Study {
         let axes = |axes: &[Axis]| Value::from(axes.iter().map(|axis| axis_of(model, axis)).collect::<Vec<_>>());
         let axis_name = |axis: usize| model.inputs[self.design[axis].inputs()[0]].name;
         let report = &self.report;
-        json!({
+        let mut described = json!({
             "model": model.name,
             "title": self.title,
             "design": axes(&self.design),
@@ -49,7 +49,12 @@ impl Study {
                 described
             }).collect::<Vec<_>>(),
             "front_budget": report.front_budget,
-        })
+        });
+        // As with lines: what is not asked for leaves the hash alone.
+        if report.variants {
+            described["variants"] = true.into();
+        }
+        described
     }
 
     /// A hash of what the study asks for: the same for two files that differ in comments and layout only.

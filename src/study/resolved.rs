@@ -177,6 +177,9 @@ pub struct Report {
     pub maps: Vec<MapSpec>,
     /// Most points that a front may have.
     pub front_budget: u64,
+    /// Is every design to be listed, feasible or not?
+    #[serde(default)]
+    pub variants: bool,
 }
 
 /// A request: which designs to judge, over which scenarios, by what.

@@ -6,6 +6,8 @@ mod bad_studies;
 mod calculix;
 /// The binary: exit codes, messages, files, interrupted runs.
 mod command_line;
+/// How much of a test a model can afford.
+mod effort;
 /// Screening on a graphics device.
 mod gpu;
 /// Identities of the V-belt variator, and the tables of its paper.
@@ -18,6 +20,8 @@ mod physics;
 mod pipeline;
 /// The loads on a V-belt pulley as vectors.
 mod pulley_balance;
+/// The stresses of a V-belt pulley against a converged reference.
+mod pulley_fe;
 /// Example pulleys.
 mod pulleys;
 /// A random number generator for seeded tests.

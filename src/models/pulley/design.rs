@@ -8,9 +8,9 @@ use crate::pulley::section::{Dimensions, Fineness, Kind};
 use crate::pulley::turn::{Case, Strength};
 use crate::units::{MEGAPASCAL, MILLIMETRE, NEWTON_PER_MILLIMETRE};
 
-/// The worst of both: what the belt asks for and the engineer's choice of dimensions, in mm, N, MPa and rad.
+/// A pulley: its section and how it is loaded and how strong it is, in mm, N, MPa and rad.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Design {
+pub struct Design {
     /// Type of the section.
     pub kind: Kind,
     /// Its dimensions.
@@ -33,7 +33,7 @@ pub(crate) struct Design {
 
 impl Design {
     /// Reads inputs in SI units.
-    pub fn new(si: &[f64; INPUTS]) -> Self {
+    pub(crate) fn new(si: &[f64; INPUTS]) -> Self {
         let (dimensions, load) = (dimensions(si), pulley_load::wrap_load(si));
         Self::under(si, dimensions, &load)
     }

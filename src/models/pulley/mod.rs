@@ -14,17 +14,18 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use design::Design;
+pub use design::Design;
 pub use table::MODEL;
 
 use super::description::Model;
 use super::formula::{CONDITIONS, Columns, INPUTS, Kernel, OUTPUTS, Reach, Scratch, run};
 use super::pulley_load::{self, PulleyLoad};
 use crate::pulley::response::{self, LONGEST, View};
-use crate::pulley::section::{self, Flaw, Kind};
+use crate::pulley::section::{self, Dimensions, Fineness, Flaw, Kind};
 use crate::pulley::turn::{Case, Summary, Turn};
 use crate::real::Dependence;
 use crate::units::{CUBIC_MILLIMETRE, MEGAPASCAL, MILLIMETRE};
+use std::cell::RefCell;
 use table::{FINITE_ELEMENTS, Inputs, LOAD_OUTPUTS, OUT, Result, SECTION};
 
 pub(super) struct Pulley;
@@ -55,6 +56,74 @@ fn answers(prepared: &[f64]) -> Option<View<'_>> {
     (prepared[2] != 0.0).then(|| View::new(&prepared[HEAD..]))
 }
 
+/// What decides a section's answers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Key {
+    kind: Kind,
+    dimensions: Dimensions,
+    poisson: f64,
+    fineness: Fineness,
+    wanted: u64,
+}
+
+/// The last section that a thread has solved: axes that its type does not read leave it the same.
+#[derive(Default)]
+struct Last {
+    key: Option<Key>,
+    answers: Vec<f64>,
+}
+
+impl Last {
+    fn recall(&self, key: &Key, prepared: &mut [f64]) -> bool {
+        let known = self.key.as_ref() == Some(key);
+        if known {
+            prepared[..self.answers.len()].copy_from_slice(&self.answers);
+        }
+        known
+    }
+
+    fn keep(&mut self, key: Key, prepared: &[f64]) {
+        self.key = Some(key);
+        self.answers.clear();
+        self.answers.extend(&prepared[..HEAD + View::new(&prepared[HEAD..]).length()]);
+    }
+}
+
+thread_local! {
+    static LAST: RefCell<Last> = RefCell::default();
+}
+
+/// The dimensions that a type reads; the others are zero.
+fn of_kind(kind: Kind, dimensions: &Dimensions) -> Dimensions {
+    let d = *dimensions;
+    let sheet = Dimensions { wall_thickness: 0.0, rim_thickness: 0.0, lip_thickness: 0.0, fillet_radius: 0.0, groove_offset: 0.0, ..d };
+    match kind {
+        Kind::Machined => Dimensions {
+            hub_bend_radius: 0.0,
+            web_bend_radius: 0.0,
+            fold_radius: 0.0,
+            wall_radius: 0.0,
+            wall_offset: 0.0,
+            ridge_width: 0.0,
+            weld_radius: 0.0,
+            ..d
+        },
+        Kind::WeldedDiscs => Dimensions {
+            cup_radius: 0.0,
+            wall_radius: 0.0,
+            wall_offset: 0.0,
+            web_bend_radius: 0.0,
+            fold_radius: 0.0,
+            ridge_width: 0.0,
+            floor_bend_radius: 0.0,
+            floor_depth: 0.0,
+            ..sheet
+        },
+        Kind::DoubleGroove => Dimensions { weld_radius: 0.0, ..sheet },
+        Kind::PressedCup => Dimensions { ridge_width: 0.0, weld_radius: 0.0, ..sheet },
+    }
+}
+
 impl Kernel for Pulley {
     fn prepared_len(&self) -> usize {
         HEAD + LONGEST
@@ -75,6 +144,10 @@ impl Kernel for Pulley {
         if wanted & (FINITE_ELEMENTS | 1 << OUT.volume | 1 << OUT.mass) == 0 {
             return;
         }
+        let key = Key { kind, dimensions: of_kind(kind, &dimensions), poisson: design.poisson, fineness: design.fineness, wanted };
+        if LAST.with_borrow(|last| last.recall(&key, prepared)) {
+            return;
+        }
         match section::mesh(kind, &dimensions, &design.fineness) {
             Err(flaw) => refused(flaw, prepared),
             Ok(mesh) if response::folds_over(&mesh) => refused(Flaw::Mesh { reason: "its elements fold over" }, prepared),
@@ -83,6 +156,7 @@ impl Kernel for Pulley {
                 if wanted & FINITE_ELEMENTS != 0 {
                     response::respond(&mesh, kind, &dimensions, design.poisson, &design.fineness, &mut prepared[HEAD..]);
                     prepared[2] = 1.0;
+                    LAST.with_borrow_mut(|last| last.keep(key, prepared));
                 }
             }
         }
@@ -199,6 +273,8 @@ impl Pulley {
         outputs: &mut [f64; OUTPUTS],
         last: &mut Option<(Case, Asked, Summary)>,
     ) {
+        // What this design does not have must not be left from the one before.
+        outputs.fill(0.0);
         pulley_load::finish_all(inputs, outputs);
         let load = pulley_load::wrap_load(inputs);
         if load.margins.iter().any(|margin| *margin <= 0.0) || prepared[0] != 0.0 {

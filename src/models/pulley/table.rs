@@ -261,13 +261,9 @@ const INPUTS: &[Input] = &[
     only(length("groove_offset_mm", "", 16.0, (5.0, 60.0), "Of the groove's mid-plane from the bracket face.", TYPE_1), &[MACHINED]),
     length("groove_width_mm", "", 13.0, (8.0, 32.0), "Width of the groove at its top.", TYPE_4),
     length("groove_height_mm", "", 5.0, (2.0, 12.0), "From the mean radius out to the groove's top.", TYPE_4),
-    length(
-        "floor_depth_mm",
-        "",
-        7.0,
-        (3.0, 20.0),
-        "From the mean radius in to the groove's floor (not read by welded discs, whose flanks meet).",
-        TYPE_4,
+    only(
+        length("floor_depth_mm", "", 7.0, (3.0, 20.0), "From the mean radius in to the groove's floor.", TYPE_4),
+        &[MACHINED, DOUBLE, CUP],
     ),
     only(
         length(

@@ -309,13 +309,13 @@ impl Reader<'_> {
         let asks = |key: &&str| report.is_some_and(|table| table.get(key).is_some());
         let broken = top.get("objectives").is_some() && objectives.is_none() || top.get("report").is_some() && report.is_none();
         let empty = objectives.is_none_or(|table| table.entries.is_empty());
-        if empty && !broken && !["top", "histograms", "maps"].iter().any(asks) {
+        if empty && !broken && !["top", "histograms", "maps", "variants"].iter().any(asks) {
             let example = self.some_output();
             self.problems.add_if_complete(
                 objectives.map_or(0, |table| table.at),
                 format!(
                     "the study asks for nothing; name an objective in [objectives], such as {example} = \"min\", \
-                     or top, histograms or maps in [report]"
+                     or top, histograms, maps or variants in [report]"
                 ),
             );
         }

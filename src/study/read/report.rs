@@ -9,6 +9,7 @@ use super::table::{Entry, Node, Table};
 use super::value::{shown_in, whole};
 use super::{Reader, choice, text};
 use crate::models::Worse;
+use toml::de::DeValue;
 
 /// Points that a front may have unless the study says otherwise, and at most.
 const FRONT_BUDGET: (u64, u64) = (1_000_000, 1_000_000_000);
@@ -16,6 +17,8 @@ const FRONT_BUDGET: (u64, u64) = (1_000_000, 1_000_000_000);
 const BINS: (usize, u64) = (50, 100_000);
 /// Most designs of the top list.
 const MOST_TOP: u64 = 1_000_000;
+/// Most designs of a list of all.
+const MOST_VARIANTS: u64 = 10_000;
 /// Most cells of a map.
 const MOST_CELLS: u64 = 1 << 26;
 
@@ -48,7 +51,7 @@ impl Reader<'_> {
         let mut report = Report { front_budget: FRONT_BUDGET.0, ..Report::default() };
         let Some(table) = table else { return report };
         let known = Known { named, objectives, design, fixed };
-        table.check_keys(self.problems, "[report]", &["columns", "top", "histograms", "maps", "front_budget"]);
+        table.check_keys(self.problems, "[report]", &["columns", "top", "histograms", "maps", "front_budget", "variants"]);
         if let Some(entry) = table.get("columns") {
             report.columns = self.columns_of_report(entry, &known);
         }
@@ -63,7 +66,25 @@ impl Reader<'_> {
         if let Some(budget) = table.get("front_budget").and_then(|entry| whole(entry, self.problems, "[report]", 1, FRONT_BUDGET.1)) {
             report.front_budget = budget;
         }
+        report.variants = table.get("variants").is_some_and(|entry| self.variants(entry, design));
         report
+    }
+
+    /// Is every design to be listed?
+    fn variants(&self, entry: &Entry<'_>, design: &[Axis]) -> bool {
+        let DeValue::Boolean(wanted) = entry.node.value else {
+            self.problems.add(entry.node.at, format!("variants: found {}, wanted true or false", entry.node.found()));
+            return false;
+        };
+        let designs = design.iter().fold(1u64, |product, axis| product.saturating_mul(axis.count()));
+        if *wanted && (self.sampled || designs > MOST_VARIANTS) {
+            let found =
+                if self.sampled { "this study samples its designs".to_owned() } else { format!("this study has {designs} designs") };
+            let message = format!("variants: {found}; a list of all is for grids of at most {MOST_VARIANTS}: use top or the front");
+            self.problems.add(entry.node.at, message);
+            return false;
+        }
+        *wanted
     }
 
     /// A node that must be a table.

@@ -10,7 +10,7 @@ const WRONG: &[(&str, &str)] = &[
     ("swep small.toml", "unrecognized subcommand 'swep'"),
     ("help", "unrecognized subcommand 'help'"),
     ("--colour", "unexpected argument '--colour'"),
-    ("models rubber", "unknown model \"rubber\"; models are: rubber-cvt, metal-cvt, timing-belt, pulley-load"),
+    ("models rubber", "unknown model \"rubber\"; models are: rubber-cvt, metal-cvt, timing-belt, pulley-load, pulley"),
     ("models --study", "required arguments were not provided"),
     ("models metal-cvt --json --study", "cannot be used with"),
     ("models metal-cvt rubber-cvt", "unexpected argument 'rubber-cvt'"),
@@ -38,6 +38,10 @@ const WRONG: &[(&str, &str)] = &[
     ("eval metal-cvt --set ratio=limit", "ratio: \"limit\" is not a number"),
     ("eval metal-cvt --preset sport", "metal-cvt has no preset \"sport\"; it has none"),
     ("eval metal-cvt --plot belt.svg", "metal-cvt has no values along the belt"),
+    ("eval pulley --preset sport", "presets are: machined, welded-discs, double-groove, pressed-cup"),
+    ("eval pulley --set section=4", "section takes words only"),
+    ("eval pulley --set section=cup", "it is \"machined\", \"welded-discs\", \"double-groove\" or \"pressed-cup\""),
+    ("eval pulley --set fold_radius_mm=1.8 --plot none.svg", "the inside radius of bend D would be 0 mm"),
     ("eval small.toml", "which design? use --design N, from 0 to 12284"),
     ("eval small.toml --set friction=0.1", "--set and --preset are for models"),
     ("eval small.toml --design 12285", "there is no design 12285; the study's designs are 0 to 12284"),
@@ -78,6 +82,11 @@ const WRONG: &[(&str, &str)] = &[
     ("merge begun --out whole", "shard 2/2 is missing"),
     ("merge nowhere --out whole", "nowhere: there is no checkpoint here"),
     ("merge done --out whole", "done: there is no checkpoint here"),
+    ("sweep pulley.toml --engine gpu", "pulley is computed in f64 on the processor only; use --engine cpu"),
+    ("sweep pulley.toml --adapter llvmpipe", "pulley is computed in f64 on the processor only; use --engine cpu"),
+    ("sweep pulley.toml --emit-shader pulley.wgsl", "it has no shader to write; leave --emit-shader out"),
+    ("verify pulley", "pulley is computed in f64 on the processor only; there is nothing on a GPU to compare with it"),
+    ("verify pulley.toml", "there is nothing on a GPU to compare with it"),
     ("completions", "<SHELL>"),
     ("completions cmd", "invalid value 'cmd' for '<SHELL>'"),
 ];
@@ -94,6 +103,7 @@ fn every_wrong_request_exits_2_and_says_what_is_wrong() {
     let broken = "model = \"metal-cvt\"\n[design]\ngroove_angel_deg = [18, 20]\n[objectives]\naxial_farce_N = \"min\"\n";
     write(folder.path(), "broken.toml", broken);
     write(folder.path(), "empty.toml", "");
+    write(folder.path(), "pulley.toml", &ask(folder.path(), "models pulley --study").text());
     std::fs::write(folder.path().join("binary.toml"), [0xff, 0xfe, 0x00]).expect("files can be written");
     ask(folder.path(), "sweep small.toml --out done").text();
     ask(folder.path(), "sweep small.toml --out begun --shard 1/2").text();

@@ -1,0 +1,107 @@
+//! The equations of a section: its stiffness in every harmonic, what is fixed, and displacements under loads.
+
+use super::band::{Factors, Matrices, WIDTH, Wide};
+use super::element::{Coupling, Lame, couple, samples};
+use super::mesh::Mesh;
+
+/// The equations of a section, for an elastic modulus of 1 MPa. Harmonics without enough fixed to stop rigid motions have no solution.
+#[derive(Clone, Debug)]
+pub struct Equations {
+    matrices: Matrices,
+    fixed: Vec<[bool; 3]>,
+    factors: Factors,
+    values: Vec<Wide>,
+    sides: usize,
+}
+
+impl Equations {
+    /// Of a mesh; `fixed` tells of every node which of its displacements along r, z and the circumference are zero in all harmonics.
+    pub fn new(mesh: &Mesh, poisson: f64, fixed: Vec<[bool; 3]>) -> Self {
+        Self { matrices: stiffness(mesh, poisson, &fixed), fixed, factors: Factors::default(), values: Vec::new(), sides: 0 }
+    }
+
+    /// Zero loads in so many right sides (three to five), to be filled: `loads[(3 * node + axis) * sides + side]`, N per rad; those of
+    /// a density over the section include the factor r. Axes are r, z and the circumference.
+    pub fn loads(&mut self, sides: usize) -> &mut [Wide] {
+        self.sides = sides;
+        self.values.clear();
+        self.values.resize(self.matrices.rows() * sides, [0.0; WIDTH]);
+        &mut self.values
+    }
+
+    /// Displacements under the loads that were filled in, in four harmonics of which the first `count` are wanted. Loads on what is
+    /// fixed have no effect.
+    pub fn solve(&mut self, orders: [usize; WIDTH], count: usize) -> Displacements<'_> {
+        let sides = self.sides;
+        for place in places(&self.fixed) {
+            self.values[place * sides..(place + 1) * sides].fill([0.0; WIDTH]);
+        }
+        self.factors.solve(&self.matrices, orders, &mut self.values, sides);
+        Displacements { orders, count, sides, values: &self.values }
+    }
+}
+
+/// Displacements of all nodes under unit loads in four harmonics: `values[(3 * node + axis) * sides + side]`, times the modulus.
+#[derive(Clone, Copy, Debug)]
+pub struct Displacements<'s> {
+    /// The harmonics.
+    pub orders: [usize; WIDTH],
+    /// How many of them count: the last may be repeated to fill the lanes.
+    pub count: usize,
+    /// How many loads there are.
+    pub sides: usize,
+    /// The displacements.
+    pub values: &'s [Wide],
+}
+
+impl<'s> Displacements<'s> {
+    /// Displacement of a node along r, z and the circumference, times the modulus.
+    pub fn of(&self, node: u32, side: usize) -> [&'s Wide; 3] {
+        let place = 3 * node as usize * self.sides + side;
+        [0, 1, 2].map(|axis| &self.values[place + axis * self.sides])
+    }
+}
+
+/// Numbers of the degrees of freedom that are fixed.
+fn places(fixed: &[[bool; 3]]) -> impl Iterator<Item = usize> + '_ {
+    fixed.as_flattened().iter().enumerate().filter(|(_, fixed)| **fixed).map(|(place, _)| place)
+}
+
+/// The matrices of a section's stiffness, for a modulus of 1 MPa; what is fixed has the identity's rows.
+pub fn stiffness(mesh: &Mesh, poisson: f64, fixed: &[[bool; 3]]) -> Matrices {
+    let held = fixed.as_flattened();
+    let mut matrices = Matrices::new(3 * mesh.nodes.len(), 3 * mesh.reach() + 2);
+    let lame = Lame::new(1.0, poisson);
+    for element in &mesh.elements {
+        let nodes = element.nodes();
+        let mut couplings = [[Coupling::default(); 8]; 8];
+        for sample in samples(mesh, element) {
+            let weight = sample.area * sample.radius;
+            for i in 0..nodes.len() {
+                for j in 0..nodes.len() {
+                    if nodes[i] >= nodes[j] {
+                        couple(&mut couplings[i][j], lame, &sample.shapes[i], &sample.shapes[j], sample.radius, weight);
+                    }
+                }
+            }
+        }
+        for (i, &row_node) in nodes.iter().enumerate() {
+            for (j, &column_node) in nodes.iter().enumerate().filter(|(_, column_node)| row_node >= **column_node) {
+                for place in 0..9 {
+                    let (a, b) = (place / 3, place % 3);
+                    let (row, column) = (3 * row_node as usize + a, 3 * column_node as usize + b);
+                    if row >= column && !held[row] && !held[column] {
+                        let entry = matrices.entry(row, column);
+                        for (entry, coupling) in entry.iter_mut().zip(&couplings[i][j]) {
+                            *entry += coupling[a][b];
+                        }
+                    }
+                }
+            }
+        }
+    }
+    for place in places(fixed) {
+        matrices.entry(place, place)[0] = 1.0;
+    }
+    matrices
+}
