@@ -1,7 +1,7 @@
 //! A V-belt pulley: its loads, its stresses by finite elements, its safety.
 //!
 //! Source: K.-S. Lee et al., design and analysis system for V-belt pulleys. The belt's loads are those of
-//! [`pulley_load`](super::pulley_load); the section, the finite elements and the stresses over the turn are in
+//! [`pulley_load`]; the section, the finite elements and the stresses over the turn are in
 //! [`pulley`](crate::pulley). What depends on the section alone is prepared once and serves any number of loads.
 //!
 //! Goodman's `fatigue_safety` takes the belt's stresses over one turn as the history of each point, with the clamp and the spin as

@@ -1,5 +1,5 @@
-//! Pictures of a V-belt pulley: [`section`] with its dimensions, [`deformed`] with its stresses, the stresses of the check points
-//! [`around`] the circumference, and the [`unrolled`] surface.
+//! Pictures of a V-belt pulley: [`section()`] with its dimensions, [`deformed()`] with its stresses, the stresses of the check points
+//! [`around()`] the circumference, and the [`unrolled()`] surface.
 
 mod around;
 mod deformed;
