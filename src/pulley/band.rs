@@ -68,7 +68,8 @@ impl Factors {
     pub fn solve(&mut self, matrices: &Matrices, orders: [usize; WIDTH], sides: &mut [Wide], count: usize) {
         assert_eq!(sides.len(), matrices.rows() * count, "one number per row and right side");
         let stride = matrices.half + PANEL;
-        self.entries.resize(matrices.rows() * stride, [0.0; WIDTH]);
+        // What a larger matrix has left is written over.
+        self.entries.resize(self.entries.len().max(matrices.rows() * stride), [0.0; WIDTH]);
         let order = orders.map(|order| order as f64);
         let (shape, reached) = ((matrices.size, matrices.half), matrices.reached());
         let entries = &mut self.entries[..matrices.rows() * stride];
@@ -162,7 +163,7 @@ fn solve<const COUNT: usize>(
                     value[lane] *= inverse[lane];
                 }
                 sides[first + column][side] = value;
-                loaded[side] |= value != [0.0; WIDTH];
+                loaded[side] |= value[0] != 0.0 || value[1] != 0.0 || value[2] != 0.0 || value[3] != 0.0;
             }
         }
         // Two columns in one pass: what is loaded of the panel serves both.

@@ -3,13 +3,18 @@
 use super::band::{Factors, Matrices, WIDTH, Wide};
 use super::element::{Coupling, Lame, couple, samples};
 use super::mesh::Mesh;
+use std::cell::RefCell;
+
+thread_local! {
+    /// Megabytes that a thread fills anew for every section.
+    static FACTORS: RefCell<Factors> = RefCell::default();
+}
 
 /// The equations of a section, for an elastic modulus of 1 MPa. Harmonics without enough fixed to stop rigid motions have no solution.
 #[derive(Clone, Debug)]
 pub struct Equations {
     matrices: Matrices,
     fixed: Vec<[bool; 3]>,
-    factors: Factors,
     values: Vec<Wide>,
     sides: usize,
 }
@@ -17,7 +22,7 @@ pub struct Equations {
 impl Equations {
     /// Of a mesh; `fixed` tells of every node which of its displacements along r, z and the circumference are zero in all harmonics.
     pub fn new(mesh: &Mesh, poisson: f64, fixed: Vec<[bool; 3]>) -> Self {
-        Self { matrices: stiffness(mesh, poisson, &fixed), fixed, factors: Factors::default(), values: Vec::new(), sides: 0 }
+        Self { matrices: stiffness(mesh, poisson, &fixed), fixed, values: Vec::new(), sides: 0 }
     }
 
     /// Zero loads in so many right sides (three to five), to be filled: `loads[(3 * node + axis) * sides + side]`, N per rad; those of
@@ -36,7 +41,7 @@ impl Equations {
         for place in places(&self.fixed) {
             self.values[place * sides..(place + 1) * sides].fill([0.0; WIDTH]);
         }
-        self.factors.solve(&self.matrices, orders, &mut self.values, sides);
+        FACTORS.with_borrow_mut(|factors| factors.solve(&self.matrices, orders, &mut self.values, sides));
         Displacements { orders, count, sides, values: &self.values }
     }
 }
@@ -58,7 +63,8 @@ impl<'s> Displacements<'s> {
     /// Displacement of a node along r, z and the circumference, times the modulus.
     pub fn of(&self, node: u32, side: usize) -> [&'s Wide; 3] {
         let place = 3 * node as usize * self.sides + side;
-        [0, 1, 2].map(|axis| &self.values[place + axis * self.sides])
+        let [r, z, theta] = [place, place + self.sides, place + 2 * self.sides];
+        [&self.values[r], &self.values[z], &self.values[theta]]
     }
 }
 
@@ -87,14 +93,14 @@ pub fn stiffness(mesh: &Mesh, poisson: f64, fixed: &[[bool; 3]]) -> Matrices {
         }
         for (i, &row_node) in nodes.iter().enumerate() {
             for (j, &column_node) in nodes.iter().enumerate().filter(|(_, column_node)| row_node >= **column_node) {
-                for place in 0..9 {
-                    let (a, b) = (place / 3, place % 3);
-                    let (row, column) = (3 * row_node as usize + a, 3 * column_node as usize + b);
-                    if row >= column && !held[row] && !held[column] {
+                let [k0, k1, k2] = &couplings[i][j];
+                let (first_row, first_column) = (3 * row_node as usize, 3 * column_node as usize);
+                for (b, column) in (first_column..first_column + 3).enumerate().filter(|(_, column)| !held[*column]) {
+                    for (a, row) in (first_row..first_row + 3).enumerate().filter(|(_, row)| *row >= column && !held[*row]) {
                         let entry = matrices.entry(row, column);
-                        for (entry, coupling) in entry.iter_mut().zip(&couplings[i][j]) {
-                            *entry += coupling[a][b];
-                        }
+                        entry[0] += k0[a][b];
+                        entry[1] += k1[a][b];
+                        entry[2] += k2[a][b];
                     }
                 }
             }

@@ -88,9 +88,8 @@ impl EdgePoint {
 /// Points of Gauss and their weights.
 pub(super) const GAUSS_3: [(f64, f64); 3] = [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
 
-/// Half of the twelve points of Gauss, enough for the edges of the annuli, which end inside an element: the others are their mirror
-/// images.
-pub(super) const GAUSS_12: [(f64, f64); 6] = [
+/// Half of the twelve points of Gauss and their weights: the others are their mirror images.
+const GAUSS_12: [(f64, f64); 6] = [
     (0.125_233_408_511_468_9, 0.249_147_045_813_402_8),
     (0.367_831_498_998_180_2, 0.233_492_536_538_354_8),
     (0.587_317_954_286_617_4, 0.203_167_426_723_065_9),
@@ -121,6 +120,30 @@ pub fn belt_patterns(mesh: &Mesh) -> [Vec<f64>; 3] {
     patterns
 }
 
+/// The points of Gauss on an interval, with their weights.
+pub(super) fn gauss(from: f64, to: f64) -> impl Iterator<Item = (f64, f64)> {
+    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+    GAUSS_12.into_iter().flat_map(move |(local, weight)| [(middle - half * local, half * weight), (middle + half * local, half * weight)])
+}
+
+/// Points for integrals of the bolt heads' pressure along an edge of the seat: local coordinates and weights.
+///
+/// Where heads and holes begin and end, the share of the circumference that they take rises like a square root: the edge is cut
+/// there, and a cosine draws the points together at the cuts.
+pub(super) fn seat_points([start, _, end]: [DVec2; 3], d: &Dimensions) -> Vec<(f64, f64)> {
+    let offsets = [-d.bolt_head_radius, -d.bolt_hole_radius, d.bolt_hole_radius, d.bolt_head_radius];
+    let cuts = offsets.map(|offset| 2.0 * (d.bolt_circle_radius + offset - start.y) / (end.y - start.y) - 1.0);
+    let mut ends = vec![-1.0, 1.0];
+    ends.extend(cuts.into_iter().filter(|cut| cut.abs() < 1.0));
+    ends.sort_by(f64::total_cmp);
+    let mut points = Vec::new();
+    for range in ends.windows(2) {
+        let (middle, half) = (0.5 * (range[0] + range[1]), 0.5 * (range[1] - range[0]));
+        points.extend(gauss(0.0, PI).map(|(part, weight)| (middle - half * libm::cos(part), half * libm::sin(part) * weight)));
+    }
+    points
+}
+
 /// Points at which the pressure of the bolt heads is integrated.
 #[derive(Clone, Debug)]
 pub struct Seat {
@@ -138,7 +161,7 @@ impl Seat {
         };
         let mut points = Vec::new();
         for edge in mesh.surface.iter().filter(near) {
-            for (local, weight) in GAUSS_12.into_iter().flat_map(|(local, weight)| [(-local, weight), (local, weight)]) {
+            for (local, weight) in seat_points(mesh.edge(edge), d) {
                 let point = EdgePoint::new(mesh.edge(edge), local);
                 points.push((edge.nodes, point.value.map(|value| value * point.length * weight * point.at.y), point.at.y));
             }

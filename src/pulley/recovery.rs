@@ -118,7 +118,8 @@ impl SurfacePoint {
     /// load makes there, MPa; a pressure is negative.
     pub fn stresses(&self, answer: &Displacements<'_>, side: usize, poisson: f64, normal: f64) -> [Wide; STRESSES] {
         let (mut along, mut around, mut shear) = ([0.0; WIDTH], [0.0; WIDTH], [0.0; WIDTH]);
-        let order = answer.orders.map(|it| it as f64);
+        let [a, b, c, d] = answer.orders;
+        let order = [a as f64, b as f64, c as f64, d as f64];
         for stencil in &self.stencils {
             let [ur, uz, ut] = answer.of(stencil.node, side);
             for lane in 0..WIDTH {

@@ -1,98 +1,64 @@
-//! Example pulleys of the four section types, as jobs for CalculiX.
+//! Pulleys of the four section types as jobs for CalculiX, and how it is run.
 
-use beltspace::pulley::calculix::Job;
-use beltspace::pulley::loads::clamp_pressure;
-use beltspace::pulley::section::{Dimensions, Fineness, Kind};
-use beltspace::pulley::turn::Case;
-use std::f64::consts::PI;
+use beltspace::models::{find, pulley_design};
+use beltspace::pulley::calculix::{Comparison, Job, compare, export};
+use beltspace::pulley::section::{Fineness, Kind};
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Instant;
 
-/// The example of the source: a cup of 1.8 mm.
-pub fn cup() -> Dimensions {
-    Dimensions {
-        thickness: 1.8,
-        bore_radius: 10.0,
-        mean_radius: 60.0,
-        half_angle: 18f64.to_radians(),
-        groove_count: 1.0,
-        groove_width: 13.0,
-        groove_height: 5.0,
-        floor_depth: 7.0,
-        rim_height: 1.5,
-        contact_height: 9.0,
-        floor_bend_radius: 1.5,
-        hub_bend_radius: 5.0,
-        web_bend_radius: 3.0,
-        fold_radius: 3.4,
-        cup_radius: 33.0,
-        wall_radius: 39.0,
-        wall_offset: 10.0,
-        bracket_radius: 27.5,
-        bolt_count: 4.0,
-        bolt_circle_radius: 22.5,
-        bolt_head_radius: 6.0,
-        bolt_hole_radius: 3.3,
-        ..Default::default()
+/// One element through the sheet, as in the smallest of the reference models.
+pub const COARSE: Fineness = Fineness { through: 1, straight: 2.0, bend: 1.2, held: 2.0, solid: 2.5, harmonics: 24, every: false };
+
+/// The preset of a type under the model's default loads.
+pub fn job(kind: Kind, fineness: Fineness, sectors: usize) -> Job {
+    let model = find("pulley").expect("there is such a model");
+    let inputs = model.preset(kind.name()).expect("every type has a preset");
+    let design = pulley_design(model, &inputs).expect("it is a pulley");
+    // The deck's density is in t/mm^3.
+    let density = design.density * 1e-12;
+    Job { kind, dimensions: design.dimensions, fineness, case: design.case, poisson: design.poisson, density, sectors }
+}
+
+/// Where CalculiX is, if it is installed; if it has to be and is not, that is a failure.
+pub fn calculix() -> Option<PathBuf> {
+    let found = std::env::var_os("PATH")
+        .and_then(|path| std::env::split_paths(&path).map(|directory| directory.join("ccx")).find(|program| program.is_file()));
+    if found.is_none() {
+        assert!(std::env::var_os("BELTSPACE_CALCULIX").is_none_or(|it| it != "1"), "BELTSPACE_CALCULIX=1, but ccx is not on PATH");
+        // Past the capture of a passing test's output.
+        let _ = writeln!(std::io::stderr(), "calculix: SKIPPED, ccx is not installed");
     }
+    found
 }
 
-/// What types 1 to 3 share.
-fn wide() -> Dimensions {
-    Dimensions { mean_radius: 55.5, groove_width: 12.7, groove_height: 4.5, rim_height: 1.0, ..cup() }
+/// Exports, solves and compares; also the seconds that CalculiX took, and those of its processors.
+pub fn solved(program: &Path, job: &Job, directory: &Path) -> (Vec<Comparison>, [f64; 2]) {
+    export(job, directory).expect("the deck is written");
+    let start = Instant::now();
+    // The shell says what its children used of the processors, last.
+    let mut run = Command::new("sh");
+    run.args(["-c", "\"$0\" -i pulley || exit 1; times"]).arg(program).current_dir(directory).env("OMP_NUM_THREADS", "2");
+    let run = run.output().expect("the shell runs");
+    let seconds = start.elapsed().as_secs_f64();
+    let text = String::from_utf8_lossy(&run.stdout);
+    assert!(run.status.success(), "{text}");
+    let part = |word: &str| -> Option<f64> {
+        let (minutes, seconds) = word.trim_end_matches('s').split_once('m')?;
+        Some(60.0 * minutes.parse::<f64>().ok()? + seconds.parse::<f64>().ok()?)
+    };
+    let used = text.lines().last().unwrap_or_default().split_whitespace().filter_map(part).sum();
+    (compare(directory).expect("the results are complete"), [seconds, used])
 }
 
-pub fn machined() -> Dimensions {
-    Dimensions {
-        thickness: 8.0,
-        bore_radius: 12.5,
-        floor_depth: 9.5,
-        cup_radius: 37.0,
-        wall_thickness: 6.0,
-        rim_thickness: 5.0,
-        lip_thickness: 4.0,
-        fillet_radius: 1.5,
-        groove_offset: 16.0,
-        ..wide()
+pub fn shown(rows: &[Comparison]) -> String {
+    let mut text =
+        "quantity,unit,harmonics,harmonics_same_section,calculix,difference_percent,difference_same_section_percent\n".to_owned();
+    for row in rows {
+        let numbers = [row.harmonic, row.same_section, row.calculix].map(|it| format!("{it:.6}"));
+        let differences = [row.difference(), row.difference_on_same_section()].map(|it| format!("{it:.3}"));
+        text += &format!("{},{},{},{}\n", row.quantity, row.unit, numbers.join(","), differences.join(","));
     }
-}
-
-pub fn discs() -> Dimensions {
-    Dimensions { thickness: 1.6, bore_radius: 15.0, weld_radius: 33.0, ..wide() }
-}
-
-pub fn double() -> Dimensions {
-    Dimensions {
-        thickness: 2.3,
-        bore_radius: 15.0,
-        groove_count: 2.0,
-        floor_depth: 8.5,
-        rim_height: 2.5,
-        cup_radius: 31.7,
-        wall_radius: 35.7,
-        wall_offset: 8.0,
-        hub_bend_radius: 4.5,
-        ridge_width: 6.0,
-        ..wide()
-    }
-}
-
-/// Of steel, t/mm^3.
-const DENSITY: f64 = 7.85e-9;
-
-/// 3 kW at 3000 rpm, 700 N of slack tension, 88 degrees of wrap, friction at 45 degrees, a belt of 0.11 kg/m, 8333 N on each bolt.
-pub fn job(kind: Kind, dimensions: Dimensions, fineness: Fineness, sectors: usize) -> Job {
-    let d = &dimensions;
-    let omega = 3000.0 * PI / 30.0;
-    let speed = d.mean_radius / 1000.0 * omega;
-    let (slack, own, pull) = (700.0, 0.11 * speed * speed, 3000.0 / speed);
-    let wrap = 88f64.to_radians();
-    let growth = ((slack - own + pull) / (slack - own)).ln() / wrap;
-    let (sine, cosine) = d.half_angle.sin_cos();
-    let direction = 45f64.to_radians();
-    let friction = growth * sine / (direction.cos() - growth * direction.sin() * cosine);
-    let (along, around) = (friction * direction.sin(), friction * direction.cos());
-    let normal = (slack - own) / (2.0 * d.groove_count * (sine + along * cosine)) / d.band_length();
-    let pressure = clamp_pressure(d, 100_000.0 / 12.0);
-    let phase = Some(44f64.to_radians());
-    let case = Case { normal, along, around, growth, wrap, pressure, phase, spin: DENSITY * omega * omega, modulus: 206_000.0 };
-    Job { kind, dimensions, fineness, case, poisson: 0.29, density: DENSITY, sectors }
+    text
 }

@@ -3,7 +3,7 @@
 //! Belt and bolt heads press on parts of the faces, with jumps at their ends: the integrals are split there.
 
 use super::sweep::{Sweep, face, turned};
-use crate::pulley::loads::{EdgePoint, GAUSS_3, GAUSS_12};
+use crate::pulley::loads::{EdgePoint, GAUSS_3, gauss, seat_points};
 use crate::pulley::mesh::{Edge, Face, Mesh};
 use crate::pulley::section::Dimensions;
 use crate::pulley::turn::Case;
@@ -31,12 +31,6 @@ impl Wrench {
     pub fn of(pairs: impl Iterator<Item = (DVec3, DVec3)>) -> Self {
         pairs.fold(Self::default(), |sum, (position, force)| Self { force: sum.force + force, moment: sum.moment + position.cross(force) })
     }
-}
-
-/// The points of Gauss on an interval, with their weights.
-fn gauss(from: f64, to: f64) -> impl Iterator<Item = (f64, f64)> {
-    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-    GAUSS_12.into_iter().flat_map(move |(local, weight)| [(middle - half * local, half * weight), (middle + half * local, half * weight)])
 }
 
 impl Forces {
@@ -88,35 +82,24 @@ impl Forces {
 
     /// Pressure of the bolt heads, between hole and head.
     fn heads(&mut self, mesh: &Mesh, sweep: &Sweep, edge: &Edge, d: &Dimensions, case: &Case) {
-        let [start, _, end] = mesh.edge(edge);
         let circle = d.bolt_circle_radius;
-        // Where heads and holes begin and end along the edge: their angular width has a vertical tangent there.
-        let radii = [-d.bolt_head_radius, -d.bolt_hole_radius, d.bolt_hole_radius, d.bolt_head_radius].map(|it| circle + it);
-        let mut ends = vec![-1.0, 1.0];
-        ends.extend(radii.map(|radius| 2.0 * (radius - start.y) / (end.y - start.y) - 1.0).into_iter().filter(|it| it.abs() < 1.0));
-        ends.sort_by(f64::total_cmp);
-        for range in ends.windows(2) {
-            for (part, weight) in gauss(0.0, PI) {
-                // A cosine of the parameter draws the points together at the ends, where the width rises like a square root.
-                let local = 0.5 * (range[0] + range[1]) - 0.5 * (range[1] - range[0]) * libm::cos(part);
-                let weight = 0.5 * (range[1] - range[0]) * libm::sin(part) * weight;
-                let point = EdgePoint::new(mesh.edge(edge), local);
-                let r = point.at.y;
-                let reach = |radius: f64| libm::acos(((r * r + circle * circle - radius * radius) / (2.0 * r * circle)).clamp(-1.0, 1.0));
-                let (head, hole) = (reach(d.bolt_head_radius), reach(d.bolt_hole_radius));
-                let force = DVec3::new(0.0, 0.0, -case.pressure * r * point.length * weight);
-                for bolt in 0..d.bolt_count as usize {
-                    let middle = case.phase.unwrap_or(0.0) + 2.0 * PI * bolt as f64 / d.bolt_count;
-                    for (from, to) in [(middle - head, middle - hole), (middle + hole, middle + head)] {
-                        // The part of the turn that holds it may be one before or after.
-                        for turn in [-2.0 * PI, 0.0, 2.0 * PI] {
-                            let first = ((from + turn) / sweep.angle(1, 0.0)).floor().max(0.0) as usize;
-                            for sector in first..sweep.sectors() {
-                                if sweep.angle(sector, 0.0) >= to + turn {
-                                    break;
-                                }
-                                self.add(sweep, sector, edge, local, (from + turn, to + turn), |_| force);
+        for (local, weight) in seat_points(mesh.edge(edge), d) {
+            let point = EdgePoint::new(mesh.edge(edge), local);
+            let r = point.at.y;
+            let reach = |radius: f64| libm::acos(((r * r + circle * circle - radius * radius) / (2.0 * r * circle)).clamp(-1.0, 1.0));
+            let (head, hole) = (reach(d.bolt_head_radius), reach(d.bolt_hole_radius));
+            let force = DVec3::new(0.0, 0.0, -case.pressure * r * point.length * weight);
+            for bolt in 0..d.bolt_count as usize {
+                let middle = case.phase.unwrap_or(0.0) + 2.0 * PI * bolt as f64 / d.bolt_count;
+                for (from, to) in [(middle - head, middle - hole), (middle + hole, middle + head)] {
+                    // The part of the turn that holds it may be one before or after.
+                    for turn in [-2.0 * PI, 0.0, 2.0 * PI] {
+                        let first = ((from + turn) / sweep.angle(1, 0.0)).floor().max(0.0) as usize;
+                        for sector in first..sweep.sectors() {
+                            if sweep.angle(sector, 0.0) >= to + turn {
+                                break;
                             }
+                            self.add(sweep, sector, edge, local, (from + turn, to + turn), |_| force);
                         }
                     }
                 }
