@@ -198,7 +198,8 @@ struct Reference<'p> {
 
 impl<'p> Reference<'p> {
     fn new(plan: &'p Plan, columns: &'p [Column], stop: &'p AtomicBool) -> Self {
-        let asked = columns.iter().map(|it| it.quantity).chain(plan.study.constraints.iter().map(|it| it.quantity));
+        let tracked = plan.tracked.iter().map(|(it, _)| it.quantity);
+        let asked = columns.iter().map(|it| it.quantity).chain(plan.study.constraints.iter().map(|it| it.quantity)).chain(tracked);
         let wanted = asked.fold(0, |set, quantity| match quantity {
             Quantity::Output(output) => set | 1 << output,
             Quantity::Input(_) => set,
@@ -245,6 +246,8 @@ impl<'p> Reference<'p> {
                 };
                 feasible &= status == Status::Ok;
                 feasible &= plan.study.constraints.iter().all(|it| value(it.quantity).is_some_and(|value| it.holds(value)));
+                // A tracked quantity without a meaning in some scenario makes a design infeasible, as in the sweep.
+                feasible &= plan.tracked.iter().all(|(it, _)| value(it.quantity).is_some());
                 let scenario = plan.slow_scenarios.source_index(q) + plan.fast_scenarios.source_index(t);
                 for (column, (badness, at)) in self.columns.iter().zip(&mut worst) {
                     let Some(value) = value(column.quantity) else { continue };
@@ -255,9 +258,7 @@ impl<'p> Reference<'p> {
                 }
             }
         }
-        // An objective or tracked quantity without a meaning makes a design infeasible, as in the sweep.
-        let complete = self.columns.iter().zip(&worst).all(|(column, (_, at))| column.role == Role::Report || at.value.is_some());
         let columns = worst.into_iter().map(|(_, at)| at).collect();
-        Some(Row { index, feasible: feasible && complete, inputs: first, columns })
+        Some(Row { index, feasible, inputs: first, columns })
     }
 }

@@ -184,7 +184,7 @@ impl Expected {
             for (v, u) in (0..y.count()).flat_map(|v| (0..x.count()).map(move |u| (v, u))) {
                 let (x_value, y_value) = (x.value(0, u), y.value(0, v));
                 let place = (x_value.to_bits(), y_value.to_bits());
-                let mut row = vec![Cell::number(x_value), Cell::number(y_value)];
+                let mut row = vec![input_cell(study, x.inputs()[0], x_value), input_cell(study, y.inputs()[0], y_value)];
                 let feasible = met.get(&place).map_or(&[][..], Vec::as_slice);
                 match spec.value {
                     Best::Share => row.push(Cell::number(feasible.len() as f64 / all[&place] as f64)),

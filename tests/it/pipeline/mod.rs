@@ -338,6 +338,22 @@ fn an_axis_whose_values_all_choose_the_same_branch_is_not_swept_with_the_default
     }
 }
 
+/// A histogram of a quantity that some designs lack in some scenario makes those infeasible, in the list of all designs too. (Found
+/// by seed 178.) A map over an axis that takes a word shows the word. (Found by seed 101.)
+#[test]
+fn what_a_histogram_lacks_and_what_a_map_names() {
+    let text = "model = \"timing-belt\"\n[design]\ntight_tension_N = { from = 100, to = 500, count = 9 }\n\
+                lift_angle_deg = [1, \"space\", 2]\n[operation]\npulley_speed_rpm = [2000, 5000]\n[objectives]\n\
+                effective_tension_N = \"max\"\n[report]\nvariants = true\n\
+                histograms = [{ of = \"boundary_tension_N\", bins = 3 }]\n\
+                maps = [{ x = \"lift_angle_deg\", y = \"tight_tension_N\", best = \"share\" }]\n";
+    let study = parse(text);
+    let evaluated = Evaluated::new(&study);
+    let (plan, expected) = check_all_ways(1, text, study, &evaluated);
+    let feasible = expected.feasible.len() as u64;
+    assert!(feasible > 0 && feasible < plan.designs(), "{feasible} of {}", plan.designs());
+}
+
 #[test]
 fn the_comparison_objects_to_a_lost_point_a_wrong_count_and_a_wrong_last_bit() {
     let (expected, found) = answered_study(5);
