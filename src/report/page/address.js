@@ -1,0 +1,101 @@
+// The state as the part of the address after "#": what is on the page can be kept as a bookmark or sent along.
+//   c=columns of the matrix   pc=axes in order   inv=axes turned over   col=colour column
+//   b=axis:low..high,...      r=x*y:low..high*low..high,...             d=open design   t=light|dark
+{
+  const encode = (name) => encodeURIComponent(name).replace(/\*/g, "%2A");
+  const range = ([low, high]) => `${low}..${high}`;
+  let defaults = { matrix: "", parallel: "", colour: null };
+  let written = null;
+
+  page.writeAddress = () => {
+    const { state } = page;
+    const parts = [];
+    const add = (key, text) => text && parts.push(`${key}=${text}`);
+    if (page.front) {
+      const list = (names) => names.map(encode).join(",");
+      if (list(state.matrix) !== defaults.matrix) parts.push(`c=${list(state.matrix)}`);
+      add("b", [...state.axes].map(([name, ends]) => `${encode(name)}:${range(ends)}`).join(","));
+      add("r", [...state.cells.values()].map((cell) => `${encode(cell.x)}*${encode(cell.y)}:${range(cell.xRange)}*${range(cell.yRange)}`).join(","));
+      if (list(state.parallel) !== defaults.parallel) parts.push(`pc=${list(state.parallel)}`);
+      add("inv", list([...state.inverted]));
+      if (state.colour !== defaults.colour) add("col", encode(state.colour ?? ""));
+      if (state.card !== null) add("d", String(page.designOf(state.card)));
+    }
+    add("t", state.theme);
+    const hash = parts.length ? `#${parts.join("&")}` : "";
+    if (hash === location.hash || hash === written) return;
+    written = hash;
+    // Some browsers refuse to change the address of a local file: then the state is just not kept.
+    try {
+      history.replaceState(null, "", hash || location.pathname + location.search);
+    } catch {
+      return;
+    }
+  };
+
+  const parseRange = (text) => {
+    const ends = (text || "").split("..").map(Number);
+    const good = ends.length === 2 && ends.every(Number.isFinite) && text.length > 3;
+    return good ? ends.sort((a, b) => a - b) : null;
+  };
+
+  const decode = (text) => {
+    try {
+      return decodeURIComponent(text);
+    } catch {
+      return "";
+    }
+  };
+
+  // Whatever the page does not know, such as a column of another study, is left out.
+  page.readAddress = () => {
+    const { state, front } = page;
+    const given = new Map(location.hash.slice(1).split("&").map((part) => [part.slice(0, part.indexOf("=")), part.slice(part.indexOf("=") + 1)]));
+    const theme = given.get("t");
+    state.theme = theme === "light" || theme === "dark" ? theme : null;
+    if (!front) return null;
+    const known = (name) => front.byName.has(name) && front.byName.get(name) !== front.index;
+    const list = (key) => (given.has(key) ? [...new Set(given.get(key).split(",").map(decode).filter(known))] : null);
+    page.startState();
+    defaults = { matrix: state.matrix.map(encode).join(","), parallel: state.parallel.map(encode).join(","), colour: state.colour };
+    const matrix = list("c");
+    if (matrix && matrix.length) state.matrix = matrix.slice(0, 8);
+    const parallel = list("pc");
+    if (parallel && parallel.length) state.parallel = parallel;
+    state.inverted = new Set(list("inv") || []);
+    const colour = decode(given.get("col") || "");
+    if (known(colour)) state.colour = colour;
+    for (const part of (given.get("b") || "").split(",")) {
+      const [name, ends] = part.split(":");
+      const range = parseRange(ends);
+      const shown = known(decode(name)) && (state.parallel.includes(decode(name)) || state.matrix.includes(decode(name)));
+      if (range && shown) state.axes.set(decode(name), range);
+    }
+    for (const part of (given.get("r") || "").split(",")) {
+      const [names, ends] = part.split(":");
+      const [x, y] = names.split("*").map(decode);
+      const [xRange, yRange] = (ends || "").split("*").map(parseRange);
+      const places = [state.matrix.indexOf(x), state.matrix.indexOf(y)];
+      if (xRange && yRange && places[0] >= 0 && places[0] < places[1]) state.cells.set(`${x}*${y}`, { x, y, xRange, yRange });
+    }
+    const row = given.has("d") ? page.rowOf(Number(given.get("d"))) : -1;
+    return row >= 0 ? row : null;
+  };
+
+  page.startAddress = () => {
+    const write = () => page.schedule("address", page.writeAddress);
+    for (const event of ["selection", "columns", "colour", "card", "theme"]) page.events.on(`${event}.address`, write);
+    window.addEventListener("hashchange", () => {
+      if (location.hash === written) return;
+      written = location.hash;
+      const row = page.readAddress();
+      page.applyTheme();
+      if (!page.front) return;
+      page.events.call("columns");
+      page.events.call("colour");
+      page.applySelection();
+      if (row === null) page.closeCard();
+      else page.openCard(row);
+    });
+  };
+}

@@ -1,0 +1,54 @@
+// The bar that stays in sight: how many designs are selected, by which ranges, and what colours the points.
+{
+  const chip = (text, remove) =>
+    page.element("span", { class: "chip" }, text, page.element("button", { type: "button", class: "no-print", "aria-label": `Remove the selection ${text}`, title: "Remove", click: remove }, "×"));
+
+  const rangeText = (name, [low, high]) => {
+    const column = page.front.byName.get(name);
+    if (column.words) {
+      const words = column.words.filter((_, i) => i >= low && i <= high);
+      return `${name} ${words.length ? words.join(", ") : "none"}`;
+    }
+    return `${name} ${page.short(low)} to ${page.short(high)}${column.unit ? ` ${column.unit}` : ""}`;
+  };
+
+  const update = () => {
+    const { state, front } = page;
+    page.byId("selected-count").textContent = page.count(page.selectedCount);
+    page.byId("selected-share").textContent = ` of ${page.count(front.rows)} designs on the front selected`;
+    page.byId("clear").disabled = !page.brushed();
+    const chips = [];
+    for (const [name, range] of state.axes) chips.push(chip(rangeText(name, range), () => page.brushAxis(name, null)));
+    for (const { x, y, xRange, yRange } of state.cells.values()) chips.push(chip(`${rangeText(x, xRange)} and ${rangeText(y, yRange)}`, () => page.brushCell(x, y, null)));
+    page.byId("chips").replaceChildren(...chips);
+  };
+
+  const groups = { design: "Design inputs", objective: "Objectives", constraint: "Constraints", report: "Report columns", output: "Other outputs" };
+
+  // Options of all columns, grouped by what they are.
+  page.columnOptions = (select, chosen) => {
+    for (const [role, label] of Object.entries(groups)) {
+      const columns = page.front.shown.filter((column) => column.role === role);
+      if (!columns.length) continue;
+      const option = (column) => page.element("option", { value: column.name, selected: column.name === chosen }, page.withUnit(column.name, column.unit));
+      select.append(page.element("optgroup", { label }, columns.map(option)));
+    }
+  };
+  page.columnGroups = groups;
+
+  page.startBar = () => {
+    const bar = page.byId("bar");
+    bar.hidden = false;
+    const colour = page.element("select", { id: "colour", "data-testid": "colour", change: () => page.setColour(colour.value) });
+    page.columnOptions(colour, page.state.colour);
+    const columns = page.element("button", { type: "button", id: "columns", "data-testid": "columns", "aria-expanded": "false", "aria-controls": "chooser", click: () => page.toggleChooser() }, "Columns and ranges");
+    bar.append(
+      page.element("div", { class: "counts", role: "status" }, page.element("strong", { id: "selected-count", "data-testid": "selected-count" }), page.element("span", { id: "selected-share" })),
+      page.element("div", { id: "chips" }),
+      page.element("div", { class: "controls no-print" }, page.element("label", {}, "Colour ", colour), columns, page.element("button", { type: "button", id: "clear", "data-testid": "clear", click: page.clearBrushes }, "Clear")),
+    );
+    update();
+    page.events.on("selection.bar", () => page.schedule("bar", update));
+    page.events.on("colour.bar", () => (colour.value = page.state.colour));
+  };
+}

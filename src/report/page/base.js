@@ -1,0 +1,108 @@
+"use strict";
+// The namespace that all scripts of the page share, and what each of them needs: events, numbers as text, elements.
+
+const page = {
+  data: null, // the parsed JSON
+  front: null, // decoded columns, see decode.js
+  timings: {}, // ms from the start of navigation
+  // selection: brushes changed; columns: axes chosen, moved or turned over; current: the point under the pointer
+  events: d3.dispatch("selection", "columns", "colour", "current", "card", "theme", "layout"),
+};
+
+// Numbers are shown to six significant digits, as the program prints them.
+page.short = (value) => {
+  if (typeof value === "string") return value;
+  if (value === null || value === undefined || Number.isNaN(value)) return "–";
+  if (!Number.isFinite(value)) return value > 0 ? "∞" : "−∞";
+  return String(Number(value.toPrecision(6))).replace(/^-/, "−");
+};
+
+// The shortest text that reads back as the same number, in f32 for columns that are stored so.
+page.full = (value, type) => {
+  if (typeof value === "string") return value;
+  if (value === null || value === undefined || Number.isNaN(value)) return "";
+  if (type === "f32") {
+    for (let digits = 1; digits < 9; digits++) {
+      const text = value.toPrecision(digits);
+      if (Math.fround(Number(text)) === value) return String(Number(text));
+    }
+    return String(Number(value.toPrecision(9)));
+  }
+  return String(value);
+};
+
+page.count = (n) => String(n).replace(/\B(?=(\d{3})+$)/g, "\u202f");
+
+page.percent = (part, of) => {
+  if (!of) return "–";
+  const share = (100 * part) / of;
+  if (part > 0 && share < 0.01) return "< 0.01 %";
+  return `${share.toFixed(share >= 10 || share === 0 ? 1 : 2)} %`;
+};
+
+page.seconds = (s) => {
+  if (s < 1) return `${Number((s * 1000).toPrecision(3))} ms`;
+  if (s < 120) return `${Number(s.toPrecision(3))} s`;
+  return s < 7200 ? `${Number((s / 60).toPrecision(3))} min` : `${Number((s / 3600).toPrecision(3))} h`;
+};
+
+page.withUnit = (name, unit) => (unit ? `${name} [${unit}]` : name);
+
+// Attributes with null are left out; functions become listeners; strings become text, never markup.
+page.element = (tag, attributes, ...children) => {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes || {})) {
+    if (value === null || value === undefined || value === false) continue;
+    if (typeof value === "function") element.addEventListener(name, value);
+    else element.setAttribute(name, value === true ? "" : value);
+  }
+  element.append(...children.flat(Infinity).filter((child) => child !== null && child !== undefined));
+  return element;
+};
+
+page.byId = (id) => document.getElementById(id);
+
+// Long names may break after an underscore.
+page.breakable = (name) => name.split(/(?<=_)/).flatMap((part) => [part, document.createElement("wbr")]).slice(0, -1);
+
+// Work that many events ask for is done once, before the next frame.
+{
+  const waiting = new Map();
+  page.schedule = (name, work) => {
+    if (waiting.has(name)) return;
+    waiting.set(
+      name,
+      requestAnimationFrame(() => {
+        waiting.delete(name);
+        work();
+      }),
+    );
+  };
+}
+
+page.tip = (event, text) => {
+  const tip = page.byId("tip");
+  tip.hidden = !text;
+  if (!text) return;
+  tip.textContent = text;
+  const room = document.documentElement.clientWidth - tip.offsetWidth - 8;
+  tip.style.left = `${Math.max(4, Math.min(event.clientX + 14, room))}px`;
+  tip.style.top = `${Math.max(4, Math.min(event.clientY + 16, window.innerHeight - tip.offsetHeight - 8))}px`;
+};
+
+page.download = (name, type, text) => {
+  const address = URL.createObjectURL(new Blob([text], { type }));
+  const link = page.element("a", { href: address, download: name });
+  document.body.append(link);
+  link.click();
+  link.remove();
+  setTimeout(() => URL.revokeObjectURL(address), 10000);
+};
+
+page.variable = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+// A colour as the 32-bit number of one pixel of an ImageData (little-endian: alpha first).
+page.pixel = (colour) => {
+  const { r, g, b } = d3.rgb(colour);
+  return (0xff000000 | (Math.round(b) << 16) | (Math.round(g) << 8) | Math.round(r)) >>> 0;
+};

@@ -1,0 +1,200 @@
+// The card of one design: what it is, what it does in its worst case, how far it is from its limits and from the best.
+{
+  let opener = null; // where the focus goes back to
+
+  // Rows that the arrow keys walk: those selected, or the whole front.
+  const step = (by) => {
+    const { card } = page.state;
+    const rows = page.mask.length;
+    for (let row = card + by; row >= 0 && row < rows; row += by) if (page.mask[row]) return page.openCard(row);
+    return null;
+  };
+
+  const valueCell = (name, full, text, unit) =>
+    page.element("td", { class: "number" }, page.element("span", { "data-name": name, "data-value": full, title: full }, text), unit ? page.element("span", { class: "unit" }, ` ${unit}`) : null);
+
+  const columnCell = (column, row) => valueCell(column.name, page.valueText(column, row, page.full), page.valueText(column, row), column.words ? "" : column.unit);
+
+  const scenarioText = (number) => {
+    const { scenarios } = page.data;
+    const values = scenarios && scenarios.rows ? scenarios.rows[String(number)] : null;
+    if (!values) return "";
+    return scenarios.columns.map(({ name, unit }, i) => `${name} ${page.short(values[i])}${unit && typeof values[i] === "number" ? ` ${unit}` : ""}`).join(", ");
+  };
+
+  const scenarioCell = (column, row) => {
+    const number = column.scenarios ? column.scenarios[row] : page.noScenario;
+    if (number === page.noScenario) return page.element("td", {});
+    return page.element("td", { class: "scenario", title: scenarioText(number) }, page.element("span", { "data-scenario": String(number) }, `#${number}`));
+  };
+
+  const section = (title, ...children) => page.element("section", {}, page.element("h3", {}, title), children);
+  const table = (kind, lines) => page.element("table", { class: kind }, page.element("tbody", {}, lines));
+  const heading = (column) => page.element("th", { scope: "row", title: column.doc }, page.breakable(column.name));
+
+  const inputs = (row) => {
+    const { front, data } = page;
+    const line = (name, cell, doc) => page.element("tr", {}, page.element("th", { scope: "row", title: doc }, page.breakable(name)), cell);
+    const chosen = front.shown.filter((column) => column.roles.has("design")).map((column) => line(column.name, columnCell(column, row), column.doc));
+    const fixed = (data.inputs || []).filter((input) => input.role === "fixed").map((input) => line(input.name, valueCell(input.name, page.full(input.value), page.short(input.value), typeof input.value === "number" ? input.unit : ""), input.doc));
+    const ranged = (data.inputs || []).filter((input) => input.role === "operation" || input.role === "uncertainty").map((input) => line(input.name, page.element("td", { class: "number" }, input.over || rangeInScenarios(input.name), input.unit ? page.element("span", { class: "unit" }, ` ${input.unit}`) : null), input.doc));
+    const group = (title, lines) => (lines.length ? [page.element("h4", {}, title), table("values", lines)] : []);
+    return section("Inputs", group("chosen", chosen), group("what it must survive, in every scenario", ranged), group("fixed", fixed));
+  };
+
+  const rangeInScenarios = (name) => {
+    const { scenarios } = page.data;
+    const at = scenarios ? scenarios.columns.findIndex((column) => column.name === name) : -1;
+    if (at < 0) return "";
+    const values = [...new Set(Object.values(scenarios.rows).map((row) => row[at]))];
+    if (values.some((value) => typeof value === "string")) return values.join(", ");
+    const [low, high] = d3.extent(values);
+    return low === high ? page.short(low) : `${page.short(low)} to ${page.short(high)}`;
+  };
+
+  // A share of 0 to 1 as a bar; the length says it, the text beside it too.
+  const bar = (share, kind, text) => {
+    const fill = page.element("span", { class: `fill ${kind}` });
+    fill.style.width = `${(100 * Math.max(0, Math.min(1, share))).toFixed(1)}%`;
+    return page.element("span", { class: "meter", role: "img", "aria-label": text, title: text }, fill);
+  };
+
+  const objectives = (row) => {
+    const { front } = page;
+    const line = ({ column, goal }) => {
+      const span = column.high - column.low;
+      const value = column.values[row];
+      const share = span > 0 ? (goal === "max" ? (value - column.low) / span : (column.high - value) / span) : 1;
+      const text = span > 0 ? `${(100 * share).toFixed(0)} % of the way from the worst to the best on the front` : "the same for every design on the front";
+      return page.element("tr", {}, page.element("th", { scope: "row", title: column.doc }, page.breakable(column.name), page.element("span", { class: "unit" }, ` ${goal}`)), columnCell(column, row), page.element("td", { class: "bar-cell" }, bar(share, "place", text), page.element("span", { class: "bar-text" }, `${(100 * share).toFixed(0)} %`)));
+    };
+    return front.objectives.length ? section("Objectives, from worst to best on the front", table("bars", front.objectives.map(line))) : null;
+  };
+
+  // Each bound of a constraint, and how far the worst case stays from it.
+  const marginsOf = ({ column, min, max, above, below }) => {
+    const given = (value) => value !== null && value !== undefined;
+    const bounds = [];
+    for (const [value, text] of [[min, "at least"], [above, "above"]]) if (given(value)) bounds.push({ text: `${text} ${page.short(value)}`, margin: (row) => column.values[row] - value });
+    for (const [value, text] of [[max, "at most"], [below, "below"]]) if (given(value)) bounds.push({ text: `${text} ${page.short(value)}`, margin: (row) => value - column.values[row] });
+    return bounds;
+  };
+
+  const margins = (row) => {
+    const { front } = page;
+    const lines = front.constraints.flatMap((constraint) =>
+      marginsOf(constraint).map(({ text, margin }) => {
+        const { column } = constraint;
+        const largest = Math.max(margin(rowOfExtreme(column, "low")), margin(rowOfExtreme(column, "high")));
+        const share = largest > 0 ? margin(row) / largest : 0;
+        const said = `margin ${page.short(margin(row))}, the largest on the front is ${page.short(largest)}`;
+        return page.element(
+          "tr",
+          {},
+          page.element("th", { scope: "row", title: column.doc }, page.breakable(column.name), page.element("span", { class: "unit" }, ` ${text}`)),
+          columnCell(column, row),
+          page.element("td", { class: "bar-cell" }, bar(share, "margin", said), page.element("span", { class: "bar-text", "data-margin": String(margin(row)), title: said }, page.short(margin(row)))),
+        );
+      }),
+    );
+    return lines.length ? section("Margins, of the largest on the front", table("bars", lines)) : null;
+  };
+
+  const rowOfExtreme = (column, end) => column.values.indexOf(column[end]);
+
+  const outputs = (row) => {
+    const { front } = page;
+    const columns = front.shown.filter((column) => !(column.roles.size === 1 && column.roles.has("design")));
+    const line = (column) => page.element("tr", {}, heading(column), columnCell(column, row), scenarioCell(column, row));
+    const lines = columns.map(line);
+    const numbers = [...new Set(columns.filter((column) => column.scenarios).map((column) => column.scenarios[row]))].filter((number) => number !== page.noScenario).sort((a, b) => a - b);
+    const described = numbers.filter((number) => scenarioText(number)).map((number) => page.element("tr", {}, page.element("th", { scope: "row" }, `#${number}`), page.element("td", {}, scenarioText(number))));
+    const note = front.complete === false ? page.element("p", { class: "notice" }, "The further outputs were not computed for this many designs; the command below gives them.") : null;
+    return section("Outputs at their worst scenario", table("values", lines), note, described.length ? [page.element("h4", {}, "the scenarios named"), table("scenarios", described)] : null);
+  };
+
+  const command = (label, text, id) => {
+    const said = page.element("span", { class: "copied", role: "status" });
+    const copy = async () => {
+      said.textContent = (await copyText(text)) ? "copied" : "select the text to copy it";
+    };
+    return page.element("div", { class: "command" }, page.element("div", { class: "muted" }, label), page.element("code", { id, "data-testid": id, tabindex: 0 }, text), page.element("button", { type: "button", class: "no-print", "aria-label": `Copy: ${label}`, click: copy }, "Copy"), said);
+  };
+
+  // Local files may lack the clipboard; the old way still works in a click.
+  const copyText = async (text) => {
+    try {
+      await navigator.clipboard.writeText(text);
+      return true;
+    } catch {
+      const area = page.element("textarea", { class: "offscreen" });
+      area.value = text;
+      document.body.append(area);
+      area.select();
+      const done = document.execCommand("copy");
+      area.remove();
+      return done;
+    }
+  };
+
+  const commands = (row) => {
+    const { data, front } = page;
+    if (!data.evaluate) return null;
+    const whole = data.evaluate.replaceAll("{design}", page.full(page.designOf(row)));
+    const column = front.objectives.map((objective) => objective.column).find((one) => one.scenarios && one.scenarios[row] !== page.noScenario);
+    const parts = [command("every output of this design, in f64", whole, "evaluate")];
+    if (column) parts.push(command(`in the worst scenario of ${column.name}`, `${whole} --scenario ${column.scenarios[row]}`, "evaluate-scenario"));
+    return section("Evaluate again", parts);
+  };
+
+  const build = (row) => {
+    const { front } = page;
+    const button = (id, label, text, click, disabled) => page.element("button", { type: "button", id, "aria-label": label, title: label, click, disabled }, text);
+    const any = (by) => {
+      for (let i = row + by; i >= 0 && i < front.rows; i += by) if (page.mask[i]) return true;
+      return false;
+    };
+    const title = page.element("h2", { id: "card-title" }, `Design ${page.full(page.designOf(row))}`, row === front.knee ? page.element("span", { class: "mark" }, " knee") : null);
+    const place = page.element("p", { class: "muted" }, `row ${page.count(row + 1)} of ${page.count(front.rows)} of the front`, page.mask[row] ? "" : ", not selected");
+    const buttons = page.element("div", { class: "card-buttons no-print" }, button("card-previous", "Previous design (left arrow)", "‹", () => step(-1), !any(-1)), button("card-next", "Next design (right arrow)", "›", () => step(1), !any(1)), button("card-close", "Close (Esc)", "×", page.closeCard));
+    return [page.element("div", { class: "card-head" }, page.element("div", {}, title, place), buttons), objectives(row), margins(row), inputs(row), outputs(row), commands(row)].filter(Boolean);
+  };
+
+  page.openCard = (row) => {
+    if (!page.front || !(row >= 0 && row < page.front.rows)) return;
+    const card = page.byId("card");
+    const fresh = card.hidden;
+    const within = card.contains(document.activeElement) ? document.activeElement.id : "";
+    if (fresh) opener = document.activeElement;
+    page.state.card = row;
+    card.replaceChildren(...build(row));
+    card.hidden = false;
+    document.body.classList.add("with-card");
+    const again = within && page.byId(within);
+    if (again && !again.disabled) again.focus();
+    else card.focus({ preventScroll: true });
+    if (fresh) card.scrollTop = 0;
+    page.events.call("card");
+  };
+
+  page.closeCard = () => {
+    const card = page.byId("card");
+    if (card.hidden) return;
+    card.hidden = true;
+    document.body.classList.remove("with-card");
+    page.state.card = null;
+    page.events.call("card");
+    if (opener && opener.isConnected) opener.focus({ preventScroll: true });
+  };
+
+  page.startCard = () => {
+    document.addEventListener("keydown", (event) => {
+      if (page.state.card === null || event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
+      if (event.key === "Escape") page.closeCard();
+      else if (!page.byId("card").contains(event.target)) return;
+      else if (event.target.tagName !== "CODE" && (event.key === "ArrowRight" || event.key === "ArrowLeft")) step(event.key === "ArrowRight" ? 1 : -1);
+      else return;
+      event.preventDefault();
+    });
+  };
+}

@@ -1,0 +1,85 @@
+// The colour of every point, by the chosen column, and its colour bar.
+{
+  const STEPS = 256;
+  // Viridis without the end that vanishes on the background.
+  const rampOf = () => (page.dark() ? (t) => d3.interpolateViridis(0.22 + 0.78 * t) : (t) => d3.interpolateViridis(0.9 * t));
+
+  page.ramp = rampOf;
+  page.rampPixels = (ramp) => Uint32Array.from({ length: STEPS }, (_, i) => page.pixel(ramp(i / (STEPS - 1))));
+
+  const placeOf = (column) => {
+    const count = column.words ? column.words.length - 1 : 0;
+    if (column.words) return (value) => (count > 0 ? value / count : 0.5);
+    const span = column.high - column.low;
+    return (value) => (span > 0 ? (value - column.low) / span : 0.5);
+  };
+
+  // Pixels of all rows, made anew when the column or the theme changes.
+  let cache = { key: null, pixels: null };
+  page.colours = () => {
+    const { front, state } = page;
+    const key = `${state.colour} ${page.dark()}`;
+    if (cache.key === key) return cache.pixels;
+    const none = page.pixel(page.variable("--muted"));
+    const pixels = new Uint32Array(front.rows);
+    const column = front.byName.get(state.colour);
+    if (!column) pixels.fill(none);
+    else {
+      const table = page.rampPixels(rampOf());
+      const place = placeOf(column);
+      for (let i = 0; i < pixels.length; i++) {
+        const t = place(column.values[i]);
+        pixels[i] = t >= 0 ? table[Math.min(STEPS - 1, Math.round(t * (STEPS - 1)))] : none;
+      }
+    }
+    cache = { key, pixels };
+    return pixels;
+  };
+
+  page.gradient = (ramp) => {
+    const stops = d3.range(0, 1.0001, 0.1).map((t) => ramp(t));
+    return `linear-gradient(to right, ${stops.join(",")})`;
+  };
+
+  // A horizontal bar with its ticks: an SVG axis below a strip of CSS gradient.
+  page.colourBar = (title, low, high, ramp, width = 240) => {
+    const bar = page.element("div", { class: "colour-bar", role: "img", "aria-label": `Colour: ${title}` });
+    const strip = page.element("div", { class: "strip" });
+    strip.style.background = page.gradient(ramp);
+    strip.style.width = `${width}px`;
+    bar.append(page.element("div", { class: "bar-title" }, title), strip);
+    if (Number.isFinite(low) && high > low) {
+      const scale = d3.scaleLinear([low, high], [0, width]);
+      const svg = d3.create("svg").attr("width", width + 48).attr("height", 20).attr("aria-hidden", "true");
+      svg.append("g").attr("class", "tick-axis").attr("transform", "translate(24,0)");
+      svg.select("g").call(d3.axisBottom(scale).ticks(4).tickSizeOuter(0).tickSize(4).tickFormat(page.tick(scale, 4)));
+      svg.node().style.marginLeft = "-24px";
+      bar.append(svg.node());
+    } else bar.append(page.element("div", { class: "bar-title" }, Number.isFinite(low) ? `always ${page.short(low)}` : "no values"));
+    return bar;
+  };
+
+  // Ticks of large numbers as 20 k would hide digits; d3's own format with a plain space for thousands.
+  page.tick = (scale, count) => {
+    const format = scale.tickFormat(count);
+    const [a, b] = scale.domain();
+    const size = Math.max(Math.abs(a), Math.abs(b));
+    if (size >= 1e7 || (size < 1e-3 && size > 0)) return d3.format("~e");
+    return (value) => format(value).replace(/,/g, size >= 1e4 ? "\u202f" : "");
+  };
+
+  page.legend = () => {
+    const column = page.front.byName.get(page.state.colour);
+    if (!column) return page.element("div", {});
+    const title = page.withUnit(column.name, column.unit);
+    const ramp = rampOf();
+    if (!column.words) return page.colourBar(title, column.low, column.high, ramp);
+    const place = placeOf(column);
+    const swatch = (word, i) => {
+      const square = page.element("span", { class: "swatch" });
+      square.style.background = ramp(place(i));
+      return page.element("span", { class: "word" }, square, word);
+    };
+    return page.element("div", { class: "colour-bar" }, page.element("div", { class: "bar-title" }, title), page.element("div", { class: "words" }, column.words.map(swatch)));
+  };
+}

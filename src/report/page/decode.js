@@ -1,0 +1,115 @@
+// Unpacks the data: base64, zlib, then columns of numbers one after the other.
+{
+  const bytesOf = (text) => {
+    if (Uint8Array.fromBase64) return Uint8Array.fromBase64(text);
+    const raw = atob(text);
+    const bytes = new Uint8Array(raw.length);
+    for (let i = 0; i < raw.length; i++) bytes[i] = raw.charCodeAt(i);
+    return bytes;
+  };
+
+  page.inflate = (text) => {
+    const stream = new Blob([bytesOf(text)]).stream().pipeThrough(new DecompressionStream("deflate"));
+    return new Response(stream).arrayBuffer();
+  };
+
+  const ABSENT = 0xffffffff;
+  page.noScenario = ABSENT;
+
+  // Whole-number columns become f64 too, so that an absent value is NaN everywhere.
+  const readValues = (buffer, offset, rows, type) => {
+    const width = type === "f64" ? 8 : 4;
+    const part = buffer.slice(offset, offset + rows * width); // a copy: columns need not be aligned
+    if (type === "f64") return new Float64Array(part);
+    if (type === "f32") return new Float32Array(part);
+    return Float64Array.from(new Uint32Array(part), (value) => (value === ABSENT ? NaN : value));
+  };
+
+  const sameValues = (a, b) => {
+    for (let i = 0; i < a.length; i++) if (a[i] !== b[i] && !(Number.isNaN(a[i]) && Number.isNaN(b[i]))) return false;
+    return true;
+  };
+
+  const addRange = (column) => {
+    let low = Infinity;
+    let high = -Infinity;
+    let finite = 0;
+    for (const value of column.values) {
+      if (!Number.isFinite(value)) continue;
+      finite++;
+      if (value < low) low = value;
+      if (value > high) high = value;
+    }
+    column.low = finite ? low : NaN;
+    column.high = finite ? high : NaN;
+    column.absent = column.values.length - finite;
+  };
+
+  // What an axis spans: a little more than the values; a constant column gets a range around it.
+  page.domain = (column) => {
+    if (column.words) return [-0.5, column.words.length - 0.5];
+    if (Number.isNaN(column.low)) return [0, 1];
+    const span = column.high - column.low;
+    if (!(span > Math.abs(column.high) * 1e-12)) {
+      const around = Math.abs(column.low) * 0.05 || 1;
+      return [column.low - around, column.low + around];
+    }
+    return [column.low - span * 0.04, column.high + span * 0.04];
+  };
+
+  // A column as the text of one value: a word or a number.
+  page.valueText = (column, row, text = page.short) => {
+    const value = column.values[row];
+    if (column.words) return column.words[value] ?? text(NaN);
+    return text(value, column.type);
+  };
+
+  const decodeFront = async (front) => {
+    const buffer = front.rows ? await page.inflate(front.packed) : new ArrayBuffer(0);
+    const columns = [];
+    const byName = new Map();
+    const at = []; // where each stored column went, for the indices of objectives and constraints
+    let offset = 0;
+    for (const stored of front.columns) {
+      const column = { ...stored, roles: new Set([stored.role]), scenarios: null };
+      column.values = readValues(buffer, offset, front.rows, stored.type);
+      offset += front.rows * (stored.type === "f64" ? 8 : 4);
+      if (stored.scenario) {
+        column.scenarios = new Uint32Array(buffer.slice(offset, offset + front.rows * 4));
+        offset += front.rows * 4;
+      }
+      addRange(column);
+      // An objective may be an input: front.csv has it twice, the page shows it once with both roles.
+      const twin = byName.get(column.name);
+      if (twin && sameValues(twin.values, column.values)) {
+        twin.roles.add(column.role);
+        twin.direction = twin.direction || column.direction;
+        twin.scenarios = twin.scenarios || column.scenarios;
+        at.push(twin);
+        continue;
+      }
+      if (twin) column.name = `${column.name} (${column.role})`;
+      byName.set(column.name, column);
+      columns.push(column);
+      at.push(column);
+    }
+    return { ...front, columns, byName, at };
+  };
+
+  page.decode = async () => {
+    const data = JSON.parse(page.byId("data").textContent);
+    page.data = data;
+    if (!data.front) return;
+    const front = await decodeFront(data.front);
+    front.objectives = (data.objectives || []).map((objective) => ({ ...objective, column: front.at[objective.column] }));
+    front.constraints = (data.constraints || []).map((bound) => ({ ...bound, column: front.at[bound.column] }));
+    for (const { column, goal } of front.objectives) column.goal = goal;
+    front.index = front.columns.find((column) => column.role === "index");
+    front.shown = front.columns.filter((column) => column !== front.index);
+    page.front = front;
+    page.timings.decoded = performance.now();
+  };
+
+  page.designOf = (row) => (page.front.index ? page.front.index.values[row] : row);
+  page.rowOf = (design) => (page.front.index ? page.front.index.values.indexOf(design) : -1);
+}

@@ -1,0 +1,166 @@
+// Maps: the best feasible value over two inputs, cell by cell on a canvas, with contours drawn over it.
+{
+  const WIDTH = 640;
+  const HEIGHT = 420;
+  const MARGIN = { left: 74, right: 16, top: 10, bottom: 50 };
+
+  // Cells meet half-way between their values, on a log axis half-way of the logs; words are one step apart.
+  const edgesOf = (values, log) => {
+    if (typeof values[0] === "string") return d3.range(values.length + 1).map((i) => i - 0.5);
+    const f = log ? Math.log : (v) => v;
+    const g = log ? Math.exp : (v) => v;
+    if (values.length === 1) return [g(f(values[0]) - 0.5), g(f(values[0]) + 0.5)];
+    const inner = d3.range(1, values.length).map((i) => g((f(values[i - 1]) + f(values[i])) / 2));
+    const last = values.length - 1;
+    const before = g(f(values[0]) - (f(values[1]) - f(values[0])) / 2);
+    const after = g(f(values[last]) + (f(values[last]) - f(values[last - 1])) / 2);
+    return [before, ...inner, after];
+  };
+
+  const scaleFor = (axis, log, range) => {
+    const words = typeof axis.values[0] === "string";
+    const edges = edgesOf(axis.values, log && !words);
+    const scale = (log && !words ? d3.scaleLog : d3.scaleLinear)([edges[0], edges[edges.length - 1]], range);
+    return { scale, edges, words };
+  };
+
+  const ticksFor = (orient, axis, { scale, words }, count) => {
+    const ticks = orient(scale).tickSizeOuter(0).tickSize(4);
+    if (words) return ticks.tickValues(d3.range(axis.values.length)).tickFormat((i) => axis.values[i]);
+    return ticks.ticks(count).tickFormat(scale.base ? scale.tickFormat(count, "~g") : page.tick(scale, count));
+  };
+
+  // Which cell each pixel shows, once per row and column of pixels.
+  const cellsOf = ({ scale, edges }, pixels, from) =>
+    Int32Array.from({ length: pixels }, (_, i) => Math.max(0, Math.min(edges.length - 2, d3.bisectRight(edges, scale.invert(from + i + 0.5)) - 1)));
+
+  const fill = (canvas, values, columns, xCells, yCells, low, high) => {
+    const context = canvas.getContext("2d");
+    const image = context.createImageData(canvas.width, canvas.height);
+    const pixels = new Uint32Array(image.data.buffer);
+    const table = page.rampPixels(page.ramp());
+    const none = page.pixel(page.variable("--absent"));
+    const span = high - low;
+    for (let y = 0; y < canvas.height; y++)
+      for (let x = 0; x < canvas.width; x++) {
+        const value = values[yCells[y] * columns + xCells[x]];
+        const t = span > 0 ? (value - low) / span : 0.5;
+        pixels[y * canvas.width + x] = Number.isNaN(value) ? none : table[Math.round(255 * Math.max(0, Math.min(1, t)))];
+      }
+    context.putImageData(image, 0, 0);
+  };
+
+  const contourColours = ["#d55e00", "#000000", "#cc79a7", "#0072b2"];
+
+  const drawContours = (svg, map, x, y) => {
+    const kinds = [...new Set(map.contours.map((contour) => contour.of))];
+    for (const contour of map.contours) {
+      const group = svg.append("g").attr("class", "contour").attr("stroke", contourColours[kinds.indexOf(contour.of) % contourColours.length]);
+      let longest = null;
+      for (const line of contour.lines) {
+        const points = d3.range(0, line.length - 1, 2).map((i) => [x.scale(line[i]), y.scale(line[i + 1])]);
+        group.append("path").attr("d", d3.line()(points));
+        if (!longest || points.length > longest.length) longest = points;
+      }
+      if (longest && longest.length > 3 && map.contours.length <= 30) {
+        const [tx, ty] = longest[Math.floor(longest.length / 2)];
+        svg.append("text").attr("class", "contour-label").attr("x", tx).attr("y", ty + 3).attr("text-anchor", "middle").text(page.short(contour.at));
+      }
+    }
+    return kinds.map((kind, i) => {
+      const stroke = page.element("span", { class: "stroke" });
+      stroke.style.background = contourColours[i % contourColours.length];
+      const at = map.contours.filter((contour) => contour.of === kind).map((contour) => page.short(contour.at));
+      return page.element("span", { class: "word" }, stroke, `${kind} at ${at.length > 8 ? `${at.slice(0, 3).join(", ")} … ${at[at.length - 1]}` : at.join(", ")}`);
+    });
+  };
+
+  const drawCells = (figure, map, values, indices) => {
+    const inner = { width: WIDTH - MARGIN.left - MARGIN.right, height: HEIGHT - MARGIN.top - MARGIN.bottom };
+    const [logX, logY] = map.log || [false, false];
+    const x = scaleFor(map.x, logX, [MARGIN.left, WIDTH - MARGIN.right]);
+    const y = scaleFor(map.y, logY, [HEIGHT - MARGIN.bottom, MARGIN.top]);
+    const xCells = cellsOf(x, inner.width, MARGIN.left);
+    const yCells = cellsOf(y, inner.height, MARGIN.top);
+    const columns = map.x.values.length;
+    let [low, high] = d3.extent(values);
+    if (map.best === "share") [low, high] = [0, Math.max(high ?? 0, 0)];
+    const canvas = page.element("canvas", { width: inner.width, height: inner.height, role: "img", "aria-label": `Map of ${map.value.name} over ${map.x.name} and ${map.y.name}` });
+    canvas.style.left = `${(100 * MARGIN.left) / WIDTH}%`;
+    canvas.style.top = `${(100 * MARGIN.top) / HEIGHT}%`;
+    canvas.style.width = `${(100 * inner.width) / WIDTH}%`;
+    canvas.style.height = `${(100 * inner.height) / HEIGHT}%`;
+    const svg = d3.create("svg").attr("viewBox", `0 0 ${WIDTH} ${HEIGHT}`);
+    const readout = page.element("p", { class: "map-readout" }, "\u00a0");
+    const legend = page.element("div", { class: "map-legend" });
+    const paint = () => {
+      fill(canvas, values, columns, xCells, yCells, low, high);
+      legend.replaceChildren(page.colourBar(page.withUnit(map.value.name, map.value.unit), low, high, page.ramp(), 260), ...lines);
+    };
+    svg.append("rect").attr("class", "frame").attr("x", MARGIN.left).attr("y", MARGIN.top).attr("width", inner.width).attr("height", inner.height);
+    svg.append("g").attr("class", "tick-axis").attr("transform", `translate(0,${HEIGHT - MARGIN.bottom})`).call(ticksFor(d3.axisBottom, map.x, x, 7));
+    const left = svg.append("g").attr("class", "tick-axis").attr("transform", `translate(${MARGIN.left},0)`).call(ticksFor(d3.axisLeft, map.y, y, 6));
+    if (y.words) page.shortenWords(left, 9);
+    svg.append("text").attr("class", "axis-title").attr("x", MARGIN.left + inner.width / 2).attr("y", HEIGHT - 10).attr("text-anchor", "middle").text(page.withUnit(map.x.name, map.x.unit));
+    svg.append("text").attr("class", "axis-title").attr("transform", `translate(14,${MARGIN.top + inner.height / 2})rotate(-90)`).attr("text-anchor", "middle").text(page.withUnit(map.y.name, map.y.unit));
+    const lines = map.contours && map.contours.length ? drawContours(svg, map, x, y) : [];
+    const marker = svg.append("rect").attr("class", "map-cell").attr("display", "none");
+    const show = (column, row) => {
+      const at = row * columns + column;
+      const part = (name, value, unit) => `${name} ${page.short(value)}${unit ? ` ${unit}` : ""}`;
+      const value = Number.isNaN(values[at]) ? "no feasible design" : part(map.value.name, values[at], map.value.unit);
+      const design = indices && !Number.isNaN(indices[at]) ? `, best design ${page.full(indices[at])}` : "";
+      readout.textContent = `${part(map.x.name, map.x.values[column], map.x.unit)}, ${part(map.y.name, map.y.values[row], map.y.unit)}: ${value}${design}`;
+      const [x0, x1] = [x.scale(x.edges[column]), x.scale(x.edges[column + 1])];
+      const [y0, y1] = [y.scale(y.edges[row + 1]), y.scale(y.edges[row])];
+      marker.attr("display", null).attr("x", x0).attr("y", y0).attr("width", x1 - x0).attr("height", y1 - y0);
+    };
+    let place = [0, 0];
+    const stage = page.element("div", { class: "map-stage", tabindex: 0, role: "application", "aria-label": `Map of ${map.value.name}: arrow keys go from cell to cell` }, canvas, svg.node());
+    svg.on("pointermove", (event) => {
+      const [px, py] = d3.pointer(event, svg.node());
+      const [i, j] = [Math.floor(px - MARGIN.left), Math.floor(py - MARGIN.top)];
+      if (i < 0 || j < 0 || i >= inner.width || j >= inner.height) return hide();
+      place = [xCells[i], yCells[j]];
+      show(...place);
+    });
+    const hide = () => {
+      marker.attr("display", "none");
+      readout.textContent = "\u00a0";
+    };
+    svg.on("pointerleave", hide);
+    stage.addEventListener("keydown", (event) => {
+      const move = { ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+      if (!move) return;
+      event.preventDefault();
+      place = [Math.max(0, Math.min(columns - 1, place[0] + move[0])), Math.max(0, Math.min(map.y.values.length - 1, place[1] + move[1]))];
+      show(...place);
+    });
+    readout.setAttribute("aria-live", "polite");
+    figure.append(legend, stage, readout);
+    paint();
+    page.events.on(`theme.map${figure.dataset.map}`, paint);
+  };
+
+  const figureOf = (map, number) => {
+    const best = { min: "the least of the feasible designs", max: "the largest of the feasible designs", share: "the share of designs that are feasible" }[map.best] || "";
+    const caption = page.element("figcaption", {}, page.element("strong", {}, map.title || `${map.value.name} over ${map.x.name} and ${map.y.name}`), map.value.doc ? ` ${map.value.doc}` : "", page.element("div", { class: "muted" }, `In each cell ${best} over all other inputs.`));
+    return page.element("figure", { class: "figure map", "data-map": number, "data-testid": `map-${map.value.name}` }, caption);
+  };
+
+  page.startMaps = async () => {
+    const { maps } = page.data;
+    if (!maps || !maps.length) return;
+    const section = page.byId("maps");
+    section.hidden = false;
+    const figures = maps.map(figureOf);
+    section.append(page.element("h2", { id: "maps-title" }, maps.length > 1 ? "Maps" : "Map"), page.element("div", { class: "figures" }, figures));
+    for (const [i, map] of maps.entries()) {
+      if (map.cells) {
+        const numbers = new Float64Array(await page.inflate(map.cells.packed));
+        const count = map.x.values.length * map.y.values.length;
+        drawCells(figures[i], map, numbers.subarray(0, count), map.cells.indices === false ? null : numbers.subarray(count, 2 * count));
+      } else if (map.picture) figures[i].append(page.picture(map.picture));
+    }
+  };
+}

@@ -1,0 +1,248 @@
+// The scatter matrix: one canvas for the points of all cells, one SVG over it for axes, brushes and marks.
+{
+  const GAP = 14;
+  const LEFT = 74;
+  const BOTTOM = 50;
+  const TOP = 8;
+  let cells = []; // { x, y, left, top, xs, ys, image, base, brush, group }
+  let canvas, svg, size, ratio, disc;
+
+  const sizeFor = (width, count) => {
+    const across = count - 1;
+    const room = (width - LEFT - GAP * across) / across;
+    if (across === 1) return Math.max(220, Math.min(460, width - LEFT - 330));
+    return Math.max(96, Math.min(across === 2 ? 330 : 264, room));
+  };
+
+  // Values to whole device pixels of a cell; -1 for an absent value.
+  const pixelsOf = (column, flip) => {
+    const [low, high] = page.domain(column);
+    const extent = Math.round(size * ratio);
+    const pixels = new Int16Array(column.values.length);
+    for (let i = 0; i < pixels.length; i++) {
+      const t = (column.values[i] - low) / (high - low);
+      pixels[i] = t >= 0 && t <= 1 ? Math.round((flip ? 1 - t : t) * (extent - 1)) : -1;
+    }
+    return pixels;
+  };
+
+  const layout = () => {
+    const { state, front } = page;
+    const box = page.byId("splom");
+    const names = state.matrix;
+    const hint = page.byId("matrix-hint");
+    page.byId("matrix-section").hidden = false;
+    cells = [];
+    box.replaceChildren();
+    if (names.length < 2) {
+      hint.textContent = names.length ? "Drag to select a range of values. Click the nearest design to open its card." : "";
+      return page.drawStrip(box, front.byName.get(names[0]));
+    }
+    hint.textContent = "Drag in a cell to select; several selections combine. Click a point to open its card. With the keyboard: arrows go from point to point, Enter opens.";
+    const width = page.layoutWidth(box);
+    const across = names.length - 1;
+    size = Math.floor(sizeFor(width, names.length));
+    ratio = Math.min(2, window.devicePixelRatio || 1);
+    const total = { width: LEFT + across * (size + GAP), height: TOP + across * (size + GAP) - GAP + BOTTOM };
+    const extent = Math.round(size * ratio);
+    canvas = page.element("canvas", { width: Math.ceil(total.width * ratio), height: Math.ceil(total.height * ratio), "aria-hidden": "true" });
+    canvas.style.width = `${canvas.width / ratio}px`;
+    canvas.style.height = `${canvas.height / ratio}px`;
+    svg = d3.create("svg").attr("width", total.width).attr("height", total.height);
+    const columns = names.map((name) => front.byName.get(name));
+    const xs = columns.map((column) => pixelsOf(column, false));
+    const ys = columns.map((column) => pixelsOf(column, true));
+    const context = canvas.getContext("2d");
+    for (let row = 1; row < names.length; row++)
+      for (let at = 0; at < row; at++) {
+        const cell = { x: columns[at], y: columns[row], xs: xs[at], ys: ys[row], left: LEFT + at * (size + GAP), top: TOP + (row - 1) * (size + GAP) };
+        cell.image = context.createImageData(extent, extent);
+        cell.pixels = new Uint32Array(cell.image.data.buffer);
+        cell.base = new Uint32Array(extent * extent);
+        cell.xScale = d3.scaleLinear(page.domain(cell.x), [0, size]);
+        cell.yScale = d3.scaleLinear(page.domain(cell.y), [size, 0]);
+        addCell(cell, at === 0, row === names.length - 1);
+        cells.push(cell);
+      }
+    disc = page.disc((front.rows > 20000 ? 0.7 : front.rows > 4000 ? 1.6 : 2.4) * ratio);
+    const readout = page.element("div", { id: "readout", "data-testid": "readout" });
+    const stage = page.element("div", { class: "stage" }, canvas, svg.node());
+    stage.style.width = `${total.width}px`;
+    stage.style.height = `${total.height}px`;
+    box.append(stage, readout);
+    // The upper right of the triangle is free: the colour bar and the values of the current point go there.
+    const free = across === 1 ? 300 : Math.min(420, width - LEFT - size - GAP - 16);
+    readout.style.width = `${free}px`;
+    if (across > 1) readout.style.maxHeight = `${size + (across > 2 ? 0 : -4)}px`;
+    draw(true);
+    syncBrushes();
+    showCurrent();
+    page.showReadout();
+  };
+
+  const label = (column) => page.withUnit(column.name, column.unit) + (column.goal ? ` (${column.goal})` : "");
+
+  // Ticks of words are their names, as many as there are.
+  page.axisOf = (orient, column, scale, count) => {
+    const axis = orient(scale).tickSizeOuter(0).tickSize(4).tickPadding(4);
+    if (column.words) return axis.tickValues(d3.range(column.words.length)).tickFormat((i) => column.words[i]);
+    if (column.low === column.high) return axis.tickValues([column.low]).tickFormat(page.short);
+    return axis.ticks(count).tickFormat(page.tick(scale, count));
+  };
+
+  const fit = (text, room) => {
+    if (text.node().getComputedTextLength && text.text().length * 6.4 > room) text.attr("textLength", room).attr("lengthAdjust", "spacingAndGlyphs");
+  };
+
+  const addCell = (cell, first, last) => {
+    const group = svg.append("g").attr("class", "cell").attr("transform", `translate(${cell.left},${cell.top})`);
+    group.attr("data-x", cell.x.name).attr("data-y", cell.y.name).attr("tabindex", 0).attr("role", "application");
+    group.attr("aria-label", `${label(cell.y)} over ${label(cell.x)}: arrow keys go from design to design, Enter opens the card`);
+    group.append("rect").attr("class", "frame").attr("width", size).attr("height", size);
+    const ticks = Math.max(2, Math.floor(size / 62));
+    if (last) {
+      const axis = group.append("g").attr("class", "tick-axis").attr("transform", `translate(0,${size})`).call(page.axisOf(d3.axisBottom, cell.x, cell.xScale, ticks));
+      if (cell.x.words) page.tiltWords(axis, size / cell.x.words.length);
+      const title = group.append("text").attr("class", "axis-title").attr("x", size / 2).attr("y", size + 37).attr("text-anchor", "middle").text(label(cell.x));
+      fit(title, size + GAP - 4);
+    }
+    if (first) {
+      const axis = group.append("g").attr("class", "tick-axis").call(page.axisOf(d3.axisLeft, cell.y, cell.yScale, ticks));
+      if (cell.y.words) page.shortenWords(axis, 9);
+      const title = group.append("text").attr("class", "axis-title").attr("transform", `translate(-60,${size / 2})rotate(-90)`).attr("text-anchor", "middle").text(label(cell.y));
+      fit(title, size + GAP - 4);
+    }
+    cell.marks = group.append("g").attr("class", "marks");
+    cell.brush = d3.brush().extent([[0, 0], [size, size]]).handleSize(7);
+    cell.group = group.append("g").attr("class", "brush").call(cell.brush);
+    cell.group.select(".overlay").attr("data-testid", `cell ${cell.x.name} ${cell.y.name}`);
+    addMarks(cell);
+    listen(cell, group);
+  };
+
+  // The ideal point (best of each objective, reached by no one design) and the knee.
+  const addMarks = (cell) => {
+    const { front } = page;
+    const ideal = front.ideal || {};
+    const clip = (scale, value) => Number.isFinite(value) ? scale(value) : NaN;
+    const [ix, iy] = [clip(cell.xScale, ideal[cell.x.name]), clip(cell.yScale, ideal[cell.y.name])];
+    if (Number.isFinite(ix) && Number.isFinite(iy)) {
+      const mark = cell.marks.append("path").attr("class", "ideal").attr("d", `M${ix - 6},${iy}h12M${ix},${iy - 6}v12`);
+      mark.append("title").text("ideal: the best of both, reached by no one design");
+    }
+    if (front.knee !== null && front.knee !== undefined) {
+      const [x, y] = [clip(cell.xScale, cell.x.values[front.knee]), clip(cell.yScale, cell.y.values[front.knee])];
+      if (Number.isFinite(x) && Number.isFinite(y)) cell.marks.append("path").attr("class", "knee").attr("d", `M${x},${y - 6}l6,6l-6,6l-6,-6z`);
+    }
+    cell.current = cell.marks.append("circle").attr("class", "current").attr("r", 6).attr("display", "none");
+  };
+
+  const rangeOf = (cell, [[x0, y0], [x1, y1]]) => [
+    page.roundRange(cell.xScale.invert(x0), cell.xScale.invert(x1), size, cell.xScale.domain()),
+    page.roundRange(cell.yScale.invert(y0), cell.yScale.invert(y1), size, cell.yScale.domain()),
+  ];
+
+  const listen = (cell, group) => {
+    let from = null;
+    const at = (event) => {
+      const touch = event.changedTouches ? event.changedTouches[0] : event;
+      return d3.pointer(touch, group.node());
+    };
+    const near = ([x, y], reach) => page.nearest(cell.xs, cell.ys, page.mask, x * ratio, y * ratio, reach * ratio);
+    cell.brush.on("start", (event) => {
+      if (event.sourceEvent) from = at(event.sourceEvent);
+    });
+    cell.brush.on("brush end", (event) => {
+      if (!event.sourceEvent) return;
+      const moved = Math.hypot(at(event.sourceEvent)[0] - from[0], at(event.sourceEvent)[1] - from[1]);
+      if (event.type === "end" && moved < 3) {
+        // A click: the card of the point there, or, on empty ground, the brush goes.
+        const row = near(from, 9);
+        if (row < 0 && !event.selection) return page.brushCell(cell.x.name, cell.y.name, null);
+        syncBrushes();
+        if (row >= 0) page.openCard(row);
+        return;
+      }
+      if (event.selection) page.brushCell(cell.x.name, cell.y.name, ...rangeOf(cell, event.selection));
+      else page.brushCell(cell.x.name, cell.y.name, null);
+    });
+    group.on("pointermove", (event) => {
+      const row = event.buttons ? -1 : near(d3.pointer(event, group.node()), 14);
+      page.setCurrent(row < 0 ? null : row);
+    });
+    group.on("pointerleave", () => page.setCurrent(null));
+    group.on("keydown", (event) => {
+      const steps = { ArrowRight: [cell.x, 1], ArrowLeft: [cell.x, -1], ArrowUp: [cell.y, 1], ArrowDown: [cell.y, -1] };
+      const { current } = page.state;
+      if (steps[event.key]) page.setCurrent(page.nextInOrder(steps[event.key][0].name, current, steps[event.key][1]));
+      else if (event.key === "Enter" && current !== null) page.openCard(current);
+      else return;
+      event.preventDefault();
+      event.stopPropagation();
+    });
+  };
+
+  // Brushes follow the state where it was changed elsewhere: address, clear button, ranges typed in.
+  const syncBrushes = () => {
+    for (const cell of cells) {
+      const wanted = page.state.cells.get(`${cell.x.name}*${cell.y.name}`);
+      const shown = d3.brushSelection(cell.group.node());
+      if (!wanted) {
+        if (shown) cell.group.call(cell.brush.move, null);
+        continue;
+      }
+      if (shown && String(rangeOf(cell, shown)) === String([wanted.xRange, wanted.yRange])) continue;
+      const pair = (scale, range) => range.map((value) => Math.max(0, Math.min(size, scale(value)))).sort((a, b) => a - b);
+      const [x0, x1] = pair(cell.xScale, wanted.xRange);
+      const [y0, y1] = pair(cell.yScale, wanted.yRange);
+      cell.group.call(cell.brush.move, [[x0, y0], [x1, y1]]);
+    }
+  };
+
+  // The unselected points of all rows are drawn once a layout; a brush then only adds the selected ones.
+  const draw = (all) => {
+    if (!cells.length) return;
+    const start = performance.now();
+    const context = canvas.getContext("2d");
+    const ground = page.pixel(page.variable("--plot"));
+    const faint = page.pixel(page.variable("--faint"));
+    const extent = Math.round(size * ratio);
+    const colours = page.colours();
+    const everything = page.selectedCount === page.front.rows;
+    for (const cell of cells) {
+      if (all) {
+        cell.base.fill(ground);
+        page.drawPoints(cell.base, extent, extent, cell.xs, cell.ys, page.mask, null, faint, disc);
+      }
+      if (everything) cell.pixels.fill(ground);
+      else cell.pixels.set(cell.base);
+      page.drawPoints(cell.pixels, extent, extent, cell.xs, cell.ys, page.mask, everything ? null : 1, colours, disc);
+      context.putImageData(cell.image, Math.round(cell.left * ratio), Math.round(cell.top * ratio));
+    }
+    page.timings.matrixDraw = performance.now() - start;
+  };
+
+  const showCurrent = () => {
+    const row = page.state.current ?? page.state.card;
+    for (const cell of cells) {
+      const [x, y] = row === null ? [NaN, NaN] : [cell.xScale(cell.x.values[row]), cell.yScale(cell.y.values[row])];
+      const shown = Number.isFinite(x) && Number.isFinite(y);
+      cell.current.attr("display", shown ? null : "none");
+      if (shown) cell.current.attr("cx", x).attr("cy", y);
+    }
+  };
+
+  page.startMatrix = () => {
+    layout();
+    page.events.on("columns.matrix", (what) => what === "order" || layout());
+    page.events.on("layout.matrix", layout);
+    page.events.on("theme.matrix", () => draw(true));
+    page.events.on("colour.matrix", () => page.schedule("matrix", () => draw(false)));
+    page.events.on("selection.matrix", () => {
+      syncBrushes();
+      page.schedule("matrix", () => draw(false));
+    });
+    page.events.on("current.matrix", showCurrent);
+    page.events.on("card.matrix", showCurrent);
+  };
+}

@@ -1,0 +1,80 @@
+// The head of the page: what was asked, what came out, how long it took; and the study itself at its end.
+{
+  const fact = (label, value, testid, title) =>
+    value === null || value === undefined || value === "" ? null : page.element("div", { class: "fact", "data-testid": testid, title }, page.element("dt", {}, label), page.element("dd", {}, value));
+
+  const runText = (run) => {
+    const parts = [page.seconds(run.seconds), run.engine === "cpu" ? `CPU, ${run.threads} threads` : [run.engine, run.device].filter(Boolean).join(": ")];
+    return parts.join(", ");
+  };
+
+  // The ideal and the knee beside each other, one line for each objective.
+  const objectives = () => {
+    const { front } = page;
+    const ideal = front.ideal || {};
+    const line = ({ column, goal, of }) => {
+      const knee = front.knee === null ? null : column.values[front.knee];
+      const value = (number, text) => page.element("td", { class: "number", title: page.full(number) }, text);
+      return page.element(
+        "tr",
+        {},
+        page.element("th", { scope: "row", title: column.doc }, of),
+        page.element("td", {}, column.unit || ""),
+        page.element("td", {}, goal),
+        value(ideal[of], page.short(ideal[of])),
+        front.knee === null ? null : value(knee, page.valueText(column, front.knee)),
+      );
+    };
+    const head = ["objective", "unit", "goal", "ideal", front.knee === null ? null : "knee"].filter(Boolean);
+    const title = { ideal: "the best value of each objective, reached by no one design", knee: "the design nearest to the ideal, by the share of each objective's range" };
+    return page.element(
+      "table",
+      { class: "objectives", "data-testid": "objectives" },
+      page.element("thead", {}, page.element("tr", {}, head.map((name) => page.element("th", { scope: "col", class: title[name] ? "number" : "", title: title[name] }, name)))),
+      page.element("tbody", {}, front.objectives.map(line)),
+    );
+  };
+
+  page.startOverview = () => {
+    const { data, front } = page;
+    const { study, model, run } = data;
+    const theme = page.element("button", { type: "button", id: "theme", "data-testid": "theme", "aria-label": "Light or dark page", click: page.toggleTheme }, page.dark() ? "Light" : "Dark");
+    const facts = [];
+    if (study) {
+      facts.push(fact("designs", page.count(study.designs), "designs"));
+      facts.push(fact("scenarios each", page.count(study.scenarios), "scenarios"));
+      facts.push(fact("feasible in all", `${page.count(study.feasible)} (${page.percent(study.feasible, study.designs)})`, "feasible"));
+    }
+    if (front) facts.push(fact("on the Pareto front", page.count(front.rows), "front-size"));
+    if (run) facts.push(fact("computed in", runText(run), "run", `${run.platform || ""} ${run.origin || ""}`.trim()));
+    facts.push(fact("program", data.program, "program"));
+    const knee = front && front.rows && front.knee !== null && front.knee !== undefined;
+    const openKnee = knee ? page.element("button", { type: "button", id: "open-knee", "data-testid": "open-knee", class: "primary", click: () => page.openCard(front.knee) }, `Open the knee: design ${page.full(page.designOf(front.knee))}`) : null;
+    page.byId("overview").append(
+      page.element("div", { class: "title-line" }, page.element("h1", {}, data.title), theme),
+      model ? page.element("p", { class: "model" }, page.element("strong", {}, model.name), `: ${model.summary}.`) : null,
+      model && model.limits ? page.element("details", { class: "limits" }, page.element("summary", {}, "Limits of the model"), page.element("p", {}, model.limits), model.source ? page.element("p", { class: "source" }, `Source: ${model.source}.`) : null) : "",
+      page.element("dl", { class: "facts" }, facts.filter(Boolean)),
+      front && front.rows && front.objectives.length ? page.element("div", { class: "goals" }, objectives(), openKnee) : "",
+    );
+    page.byId("overview").querySelectorAll("p:empty").forEach((p) => p.remove());
+  };
+
+  page.startStudy = () => {
+    const { study, inputs } = page.data;
+    if (!study || !study.text) return;
+    const section = page.byId("study");
+    section.hidden = false;
+    section.append(
+      page.element("h2", { id: "study-title" }, "Study"),
+      page.element("details", {}, page.element("summary", {}, `${study.file || "study.toml"}`, study.hash ? page.element("span", { class: "muted" }, ` hash ${study.hash.slice(0, 16)}…`) : ""), page.element("pre", { tabindex: 0 }, study.text)),
+      inputs && inputs.length ? page.element("details", {}, page.element("summary", {}, "Inputs of the model"), inputTable(inputs)) : "",
+    );
+  };
+
+  const inputTable = (inputs) => {
+    const line = (input) => page.element("tr", {}, [input.name, input.symbol || "", input.role, input.role === "fixed" ? page.short(input.value) : input.over || "", input.unit || "", input.doc || ""].map((text, i) => page.element("td", { class: i === 3 ? "number" : "" }, text)));
+    const head = ["input", "symbol", "role", "value", "unit", "meaning"].map((name) => page.element("th", { scope: "col" }, name));
+    return page.element("div", { class: "scroll" }, page.element("table", { class: "inputs" }, page.element("thead", {}, page.element("tr", {}, head)), page.element("tbody", {}, inputs.map(line))));
+  };
+}

@@ -1,0 +1,171 @@
+// Parallel coordinates: the axes, their brushes and titles. The lines are drawn in lines.js.
+{
+  const HEIGHT = 300;
+  const PAD = 10;
+  const HEAD = 74; // room for titles and buttons
+  let axes = []; // { column, x, scale, group, brush }
+  let stage, svg, width;
+
+  const scaleOf = (column) => {
+    const range = page.state.inverted.has(column.name) ? [PAD, HEIGHT - PAD] : [HEIGHT - PAD, PAD];
+    return d3.scaleLinear(page.domain(column), range);
+  };
+
+  const layout = () => {
+    const { state, front } = page;
+    const box = page.byId("parallel");
+    const focused = document.activeElement?.closest?.(".axis-head button")?.dataset.focus;
+    axes = [];
+    page.byId("parallel-section").hidden = false;
+    if (!state.parallel.length) {
+      box.replaceChildren(page.element("p", { class: "notice" }, "No axis is chosen."));
+      page.layoutLines(null);
+      return;
+    }
+    width = Math.floor(Math.max(page.layoutWidth(box), page.printing ? 0 : state.parallel.length * 78));
+    const xs = d3.scalePoint(state.parallel, [0, width]).padding(0.5);
+    const canvas = page.element("canvas", { "aria-hidden": "true" });
+    svg = d3.create("svg").attr("width", width).attr("height", HEIGHT + 4);
+    stage = page.element("div", { class: "stage" }, canvas, svg.node());
+    stage.style.width = `${width}px`;
+    stage.style.height = `${HEAD + HEIGHT + 4}px`;
+    canvas.style.top = svg.node().style.top = `${HEAD}px`;
+    for (const name of state.parallel) {
+      const column = front.byName.get(name);
+      const axis = { column, x: xs(name), scale: scaleOf(column) };
+      addAxis(axis);
+      stage.append(headOf(axis, xs.step()));
+      axes.push(axis);
+    }
+    box.replaceChildren(stage);
+    page.layoutLines({ canvas, width, height: HEIGHT, axes });
+    syncBrushes();
+    showCurrent();
+    if (focused) box.querySelector(`[data-focus="${CSS.escape(focused)}"]`)?.focus();
+  };
+
+  const addAxis = (axis) => {
+    const { column, scale } = axis;
+    const group = svg.append("g").attr("class", "axis").attr("data-name", column.name).attr("transform", `translate(${axis.x},0)`);
+    const ticks = group.append("g").attr("class", "tick-axis halo").call(page.axisOf(d3.axisLeft, column, scale, 6));
+    if (column.words) page.shortenWords(ticks, 11);
+    axis.dot = group.append("circle").attr("class", "current").attr("r", 4).attr("display", "none");
+    axis.brush = d3.brushY().extent([[-9, 0], [9, HEIGHT]]).handleSize(8);
+    axis.group = group.append("g").attr("class", "brush").call(axis.brush);
+    axis.brush.on("brush end", (event) => {
+      if (!event.sourceEvent) return;
+      const range = event.selection ? page.roundRange(...event.selection.map(scale.invert), HEIGHT, scale.domain()) : null;
+      page.brushAxis(column.name, range);
+    });
+    group.on("pointermove", (event) => {
+      if (event.buttons) return;
+      const y = d3.pointer(event, group.node())[1];
+      page.setCurrent(nearestOn(axis, y));
+    });
+    group.on("pointerleave", () => page.setCurrent(null));
+  };
+
+  const nearestOn = ({ column, scale }, y) => {
+    let best = null;
+    let least = 8;
+    for (let i = 0; i < column.values.length; i++) {
+      const d = page.mask[i] ? Math.abs(scale(column.values[i]) - y) : Infinity;
+      if (d < least) [best, least] = [i, d];
+    }
+    return best;
+  };
+
+  const headOf = (axis, step) => {
+    const { column } = axis;
+    const { state } = page;
+    const place = state.parallel.indexOf(column.name);
+    const inverted = state.inverted.has(column.name);
+    const button = (what, label, text, disabled, click, pressed = null) =>
+      page.element("button", { type: "button", "aria-label": `${label} ${column.name}`, title: label, disabled, click, "aria-pressed": pressed, "data-focus": `${what} ${column.name}` }, text);
+    const role = column.goal ? column.goal : column.roles.has("design") ? "input" : "";
+    const title = page.element("div", { class: "axis-name", title: `${column.doc || column.name}${column.unit ? ` [${column.unit}]` : ""}` }, page.breakable(column.name));
+    const sub = page.element("div", { class: "axis-unit" }, [column.unit ? `[${column.unit}]` : "", role].filter(Boolean).join(" "));
+    const buttons = page.element(
+      "div",
+      { class: "axis-buttons no-print" },
+      button("left", "Move to the left:", "‹", place === 0, () => page.moveAxis(column.name, place - 1)),
+      button("invert", "Turn over:", "⇅", false, () => page.invertAxis(column.name), String(inverted)),
+      button("right", "Move to the right:", "›", place === state.parallel.length - 1, () => page.moveAxis(column.name, place + 1)),
+    );
+    const head = page.element("div", { class: "axis-head", "data-axis": column.name }, title, sub, buttons);
+    head.style.left = `${axis.x - step / 2}px`;
+    head.style.width = `${step}px`;
+    dragBy(title, head, axis, step);
+    return head;
+  };
+
+  // A title pulled sideways takes its axis along; it comes to rest where it was let go.
+  const dragBy = (title, head, axis, step) => {
+    title.addEventListener("pointerdown", (down) => {
+      if (down.button) return;
+      down.preventDefault();
+      title.setPointerCapture(down.pointerId);
+      const place = page.state.parallel.indexOf(axis.column.name);
+      const group = svg.selectAll(".axis").filter(function () {
+        return this.dataset.name === axis.column.name;
+      });
+      let moved = 0;
+      const move = (event) => {
+        moved = event.clientX - down.clientX;
+        head.style.transform = `translateX(${moved}px)`;
+        head.classList.add("dragged");
+        group.attr("transform", `translate(${axis.x + moved},0)`);
+      };
+      const drop = () => {
+        title.removeEventListener("pointermove", move);
+        const to = Math.round(place + moved / step);
+        page.moveAxis(axis.column.name, to);
+      };
+      title.addEventListener("pointermove", move);
+      title.addEventListener("pointerup", drop, { once: true });
+      title.addEventListener("pointercancel", drop, { once: true });
+    });
+  };
+
+  const syncBrushes = () => {
+    for (const { column, scale, brush, group } of axes) {
+      const wanted = page.state.axes.get(column.name);
+      const shown = d3.brushSelection(group.node());
+      if (!wanted) {
+        if (shown) group.call(brush.move, null);
+        continue;
+      }
+      if (shown && String(page.roundRange(...shown.map(scale.invert), HEIGHT, scale.domain())) === String(wanted)) continue;
+      const clip = (value) => Math.max(0, Math.min(HEIGHT, scale(value)));
+      group.call(brush.move, wanted.map(clip).sort((a, b) => a - b));
+    }
+  };
+
+  const showCurrent = () => {
+    const row = page.state.current ?? page.state.card;
+    if (!svg) return;
+    svg.selectAll(".current-line").remove();
+    for (const { column, scale, dot } of axes) {
+      const y = row === null ? NaN : scale(column.values[row]);
+      dot.attr("display", Number.isFinite(y) ? null : "none");
+      if (Number.isFinite(y)) dot.attr("cy", y);
+    }
+    if (row === null) return;
+    const line = d3.line((axis) => axis.x, (axis) => axis.scale(axis.column.values[row])).defined((axis) => Number.isFinite(axis.column.values[row]));
+    svg.insert("path", ".axis").attr("class", "current-line").attr("d", line(axes));
+  };
+
+  page.startParallel = () => {
+    layout();
+    page.events.on("columns.parallel", layout);
+    page.events.on("layout.parallel", layout);
+    page.events.on("selection.parallel", () => {
+      syncBrushes();
+      page.redrawLines("brush");
+    });
+    page.events.on("colour.parallel", () => page.redrawLines("brush"));
+    page.events.on("theme.parallel", () => page.redrawLines("all"));
+    page.events.on("current.parallel", showCurrent);
+    page.events.on("card.parallel", showCurrent);
+  };
+}

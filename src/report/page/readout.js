@@ -1,0 +1,46 @@
+// Beside the matrix: the colour bar and the values of the point under the pointer; and small help for axes of words.
+{
+  // Words that are too long for their share of the axis are tilted.
+  page.tiltWords = (axis, room) => {
+    const longest = Math.max(...axis.selectAll("text").nodes().map((node) => node.textContent.length));
+    if (longest * 6 < room) return;
+    axis.selectAll("text").attr("transform", "rotate(-16)").attr("text-anchor", "end").attr("dx", "0.2em").attr("dy", "0.5em");
+    page.shortenWords(axis, 13);
+  };
+
+  page.shortenWords = (axis, letters) => {
+    axis.selectAll("text").each(function () {
+      const word = this.textContent;
+      if (word.length <= letters) return;
+      this.textContent = `${word.slice(0, letters - 1)}…`;
+      d3.select(this).append("title").text(word);
+    });
+  };
+
+  page.showReadout = () => {
+    const readout = page.byId("readout");
+    if (!readout) return;
+    const { state, front } = page;
+    const row = state.current ?? state.card ?? front.knee;
+    const children = [page.legend()];
+    if (row !== null && row !== undefined) {
+      const what = state.current !== null ? "pointed at" : state.card !== null ? "card" : "knee";
+      const mark = row === front.knee && what !== "knee" ? `${what}, knee` : what;
+      const names = [...new Set([...state.matrix, ...state.parallel])].slice(0, 18);
+      const entry = (name) => {
+        const column = front.byName.get(name);
+        const value = page.element("dd", {}, page.valueText(column, row), column.words || !column.unit ? "" : ` ${column.unit}`);
+        return page.element("div", {}, page.element("dt", { title: column.doc }, name), value);
+      };
+      children.push(page.element("div", { class: "readout-title" }, page.element("strong", {}, `design ${page.full(page.designOf(row))}`), ` (${mark})`));
+      children.push(page.element("dl", {}, names.map(entry)));
+    }
+    readout.replaceChildren(...children);
+  };
+
+  page.startReadout = () => {
+    page.showReadout();
+    for (const event of ["current", "card", "colour", "theme"]) page.events.on(`${event}.readout`, () => page.schedule("readout", page.showReadout));
+    page.events.on("columns.readout", () => page.schedule("readout", page.showReadout));
+  };
+}

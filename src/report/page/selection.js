@@ -1,0 +1,143 @@
+// The one state of the page: which columns are shown, what is brushed, the colour column, the current point.
+// Every view changes it through these functions and draws what it says.
+{
+  const state = {
+    matrix: [], // names of the scatter matrix' columns
+    parallel: [], // names of the axes, in order
+    inverted: new Set(),
+    colour: null,
+    axes: new Map(), // name -> [low, high]
+    cells: new Map(), // "x*y" -> { x, y, xRange, yRange }
+    current: null, // row under the pointer or reached by the arrow keys
+    card: null, // row of the open card
+    theme: null, // "light", "dark" or null: as the system says
+  };
+  page.state = state;
+  page.mask = new Uint8Array(0);
+  page.selectedCount = 0;
+
+  page.startState = () => {
+    const { front } = page;
+    const names = (columns) => columns.map((column) => column.name);
+    const objectives = [...new Set(front.objectives.map((objective) => objective.column.name))];
+    state.matrix = objectives.slice(0, 6);
+    const inputs = front.shown.filter((column) => column.roles.has("design"));
+    // Inputs that never change on the front say nothing as an axis; they stay in the chooser.
+    const varied = inputs.filter((column) => !(column.low === column.high) || front.rows < 2);
+    const judged = front.shown.filter((column) => ["objective", "constraint", "report"].some((role) => column.roles.has(role)));
+    state.parallel = [...new Set([...names(varied), ...names(judged)])].slice(0, 14);
+    state.inverted = new Set();
+    state.colour = objectives[0] ?? state.parallel[0] ?? null;
+    state.axes = new Map();
+    state.cells = new Map();
+    page.mask = new Uint8Array(front.rows).fill(1);
+    page.selectedCount = front.rows;
+  };
+
+  const keep = (values, [low, high]) => {
+    const { mask } = page;
+    for (let i = 0; i < mask.length; i++) if (!(values[i] >= low && values[i] <= high)) mask[i] = 0;
+  };
+
+  const apply = () => {
+    const { mask, front } = page;
+    mask.fill(1);
+    for (const [name, range] of state.axes) keep(front.byName.get(name).values, range);
+    for (const { x, y, xRange, yRange } of state.cells.values()) {
+      keep(front.byName.get(x).values, xRange);
+      keep(front.byName.get(y).values, yRange);
+    }
+    let count = 0;
+    for (let i = 0; i < mask.length; i++) count += mask[i];
+    page.selectedCount = count;
+    page.events.call("selection");
+  };
+  page.applySelection = apply;
+
+  page.brushed = () => state.axes.size + state.cells.size > 0;
+
+  page.brushAxis = (name, range) => {
+    if (range) state.axes.set(name, range);
+    else if (!state.axes.delete(name)) return;
+    apply();
+  };
+
+  page.brushCell = (x, y, xRange, yRange) => {
+    if (xRange) state.cells.set(`${x}*${y}`, { x, y, xRange, yRange });
+    else if (!state.cells.delete(`${x}*${y}`)) return;
+    apply();
+  };
+
+  page.clearBrushes = () => {
+    state.axes.clear();
+    state.cells.clear();
+    apply();
+  };
+
+  page.selected = () => {
+    const rows = [];
+    for (let i = 0; i < page.mask.length; i++) if (page.mask[i]) rows.push(i);
+    return rows;
+  };
+
+  // A brush that is not shown any more would select unseen: it goes with its axis or cell.
+  page.chooseColumns = (which, names) => {
+    state[which] = names;
+    const gone = (name) => !state.parallel.includes(name);
+    let changed = false;
+    for (const name of state.axes.keys()) if (gone(name)) changed = state.axes.delete(name) || changed;
+    for (const [key, { x, y }] of state.cells) {
+      const shown = state.matrix.includes(x) && state.matrix.indexOf(x) < state.matrix.indexOf(y);
+      if (!shown) changed = state.cells.delete(key) || changed;
+    }
+    page.events.call("columns");
+    if (changed) apply();
+  };
+
+  page.moveAxis = (name, to) => {
+    const order = state.parallel.filter((other) => other !== name);
+    order.splice(Math.max(0, Math.min(to, order.length)), 0, name);
+    state.parallel = order;
+    page.events.call("columns", null, "order");
+  };
+
+  page.invertAxis = (name) => {
+    if (!state.inverted.delete(name)) state.inverted.add(name);
+    page.events.call("columns", null, "order");
+  };
+
+  page.setColour = (name) => {
+    state.colour = name;
+    page.events.call("colour");
+  };
+
+  page.setCurrent = (row) => {
+    if (row === state.current) return;
+    state.current = row;
+    page.events.call("current");
+  };
+
+  // The next selected row in the order of a column, for the arrow keys.
+  const orders = new Map();
+  page.nextInOrder = (name, row, step) => {
+    if (!orders.has(name)) {
+      const { values } = page.front.byName.get(name);
+      const order = Uint32Array.from(values.keys()).filter((i) => !Number.isNaN(values[i]));
+      order.sort((a, b) => values[a] - values[b] || a - b);
+      const place = new Int32Array(values.length).fill(-1);
+      order.forEach((i, at) => (place[i] = at));
+      orders.set(name, { order, place });
+    }
+    const { order, place } = orders.get(name);
+    let at = row === null ? (step > 0 ? -1 : order.length) : place[row];
+    for (at += step; at >= 0 && at < order.length; at += step) if (page.mask[order[at]]) return order[at];
+    return row;
+  };
+
+  // Ends of a brush are rounded to a tenth of a pixel, so that the address holds short numbers and selects the same.
+  page.roundRange = (a, b, pixels, domain) => {
+    const step = 10 ** Math.floor(Math.log10(Math.abs(domain[1] - domain[0]) / pixels / 2));
+    const round = (value) => Number((Math.round(value / step) * step).toPrecision(12));
+    return [round(Math.min(a, b)), round(Math.max(a, b))];
+  };
+}

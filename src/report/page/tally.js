@@ -1,0 +1,61 @@
+// What limits feasibility, and where nothing is feasible, that first.
+{
+  // Every reason a design of the sample failed: a state of the model or a constraint, the most frequent first.
+  const reasons = (tally) => {
+    const states = Object.entries(tally.status || {}).map(([reason, failed]) => ({ text: reason, failed, only: 0, constraint: false }));
+    const bounds = (tally.constraints || []).map(({ of, bounds, violated, only }) => ({ text: `${of} ${bounds}`, of, bounds, failed: violated, only, constraint: true }));
+    return [...states, ...bounds].sort((a, b) => b.failed - a.failed);
+  };
+
+  const drawTally = (tally) => {
+    const section = page.byId("tally");
+    section.hidden = false;
+    const { sampled } = tally;
+    const all = reasons(tally);
+    const shown = all.filter((reason) => reason.failed > 0);
+    const never = all.filter((reason) => reason.failed === 0).map((reason) => reason.text);
+    const line = ({ text, failed, only, constraint }) => {
+      const meter = page.element("span", { class: "meter wide", role: "img", "aria-label": `${page.percent(failed, sampled)} fail${constraint ? `, ${page.percent(only, sampled)} only this` : ""}` });
+      for (const [part, kind] of [[only, "alone"], [failed - only, "shared"]]) {
+        const fill = page.element("span", { class: `fill ${kind}` });
+        fill.style.width = `${(100 * part) / sampled}%`;
+        meter.append(fill);
+      }
+      const kind = constraint ? "constraint" : "no result";
+      return page.element("tr", { "data-reason": text }, page.element("th", { scope: "row" }, text), page.element("td", { class: "muted" }, kind), page.element("td", { class: "bar-cell" }, meter), page.element("td", { class: "number" }, page.percent(failed, sampled)), page.element("td", { class: "number" }, constraint ? page.percent(only, sampled) : "–"));
+    };
+    const head = [["reason", ""], ["kind", ""], ["", ""], ["fails", "number"], ["alone", "number"]].map(([name, kind]) => page.element("th", { scope: "col", class: kind }, name));
+    const table = page.element("table", { class: "tally" }, page.element("thead", {}, page.element("tr", {}, head)), page.element("tbody", {}, shown.map(line)));
+    section.append(
+      page.element("h2", { id: "tally-title" }, "What limits feasibility"),
+      page.element("p", { class: "hint" }, `Of a fixed sample of ${page.count(sampled)} designs, ${page.count(tally.feasible)} (${page.percent(tally.feasible, sampled)}) are feasible. One design may fail for several reasons; “alone” counts those that fail this constraint and nothing else.`),
+      shown.length ? table : page.element("p", {}, "No design of the sample fails."),
+      never.length ? page.element("p", { class: "hint" }, `Never: ${never.join(", ")}.`) : "",
+    );
+  };
+
+  const sentences = (tally) => {
+    const all = reasons(tally).filter((reason) => reason.failed > 0);
+    const [first] = all;
+    if (!first) return ["No design of the sample fails by itself: the study asks for combinations that no design holds in all scenarios."];
+    const count = `${page.count(first.failed)} of ${page.count(tally.sampled)} sampled designs (${page.percent(first.failed, tally.sampled)})`;
+    const said = [first.constraint ? `The most frequent reason: ${count} break the constraint “${first.text}”.` : `The most frequent reason: for ${count} the model says “${first.text}”.`];
+    const alone = all.filter((reason) => reason.only > 0).sort((a, b) => b.only - a.only);
+    if (alone.length) said.push(`What to relax: ${alone.map((reason) => `“${reason.text}”, which alone holds back ${page.count(reason.only)} (${page.percent(reason.only, tally.sampled)})`).join("; ")}. Those designs keep everything else.`);
+    else if (first.constraint) said.push("No constraint alone holds a design back: relaxing one is not enough. Relax several, widen the ranges of the design inputs, or ask for fewer operating points.");
+    if (!first.constraint) said.push("That is no constraint to relax: widen or move the ranges of the design inputs, or ask for less in [operation] and [uncertainty].");
+    return said;
+  };
+
+  page.startTally = () => {
+    const { data, front } = page;
+    const { tally, study } = data;
+    if (tally) drawTally(tally);
+    const none = study && (study.feasible === 0 || (front && front.rows === 0 && front.objectives.length));
+    if (!none) return;
+    const lead = page.byId("lead");
+    lead.hidden = false;
+    lead.append(page.element("h2", {}, "No design is feasible: what limits it"), (tally ? sentences(tally) : ["The result has no tally of the reasons."]).map((text) => page.element("p", {}, text)));
+    if (tally) lead.after(page.byId("tally"));
+  };
+}
