@@ -51,7 +51,7 @@ def sweep(program, levels, folder, engine="cpu"):
     study.write_text(STUDY.replace("count = 37", f"count = {levels}"))
     out = folder / f"result-{levels}-{engine}"
     start = time.perf_counter()
-    peak = peak_of(subprocess.Popen([program, "sweep", study, "--engine", engine, "--out", out, "--quiet", "--force"]))
+    peak = peak_of(subprocess.Popen([program, "sweep", study, "--engine", engine, "--out", out, "--quiet", "--force", "--no-report"]))
     return out, time.perf_counter() - start, peak
 
 

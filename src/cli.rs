@@ -32,6 +32,8 @@ pub enum Command {
     Sweep(Sweep),
     /// Put the shards of a study together: the same result as one run
     Merge(Merge),
+    /// Make the page that shows a result: one HTML file, opened by double click
+    Report(Report),
     /// Compare a GPU with f64: errors per output, wrong decisions, promise kept or not
     Verify(Verify),
     /// List the GPUs of this machine, their limits, and whether their drivers can be trusted
@@ -152,6 +154,9 @@ pub struct Sweep {
     /// Run only part K of N; `merge` puts the parts together
     #[arg(long, value_name = "K/N")]
     pub shard: Option<Shard>,
+    /// Do not write report.html, the page that shows the result
+    #[arg(long)]
+    pub no_report: bool,
     /// Print nothing but errors
     #[arg(long)]
     pub quiet: bool,
@@ -167,6 +172,25 @@ pub struct Sweep {
     /// For testing: make the GPU's value of an output wrong by this part of it; the sweep must fail
     #[arg(long, value_name = "OUTPUT=PART")]
     pub perturb: Vec<String>,
+}
+
+/// Options of `report`.
+#[derive(Debug, Args)]
+pub struct Report {
+    /// Result directory
+    pub dir: PathBuf,
+    /// The page [default: report.html in the directory]
+    #[arg(long, value_name = "FILE.html")]
+    pub out: Option<PathBuf>,
+    /// Worker threads [default: one per core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub threads: Option<u16>,
+    /// Seconds that computing what the result's tables do not say may take
+    #[arg(long, value_name = "SECONDS", default_value_t = 60, value_parser = clap::value_parser!(u32).range(0..=86_400))]
+    pub patience: u32,
+    /// Print nothing but errors
+    #[arg(long)]
+    pub quiet: bool,
 }
 
 /// Options of `verify`.
@@ -204,6 +228,9 @@ pub struct Merge {
     /// Worker threads [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
     pub threads: Option<u16>,
+    /// Do not write report.html, the page that shows the result
+    #[arg(long)]
+    pub no_report: bool,
     /// Print nothing but errors
     #[arg(long)]
     pub quiet: bool,

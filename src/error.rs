@@ -43,6 +43,9 @@ pub enum Error {
     /// What a device computed is farther from f64 than promised: nothing that it says can be used.
     #[error("{0}")]
     Promise(String),
+    /// A result is complete, but the page that shows it could not be made.
+    #[error("{0}")]
+    Page(String),
     /// What was computed twice does not agree: the program is wrong and says so rather than report it.
     #[error("{0}; this is a fault of the program, please report it with the study")]
     Certificate(String),
@@ -79,6 +82,7 @@ impl Error {
             | Self::FrontBudget { .. }
             | Self::Gpu { .. }
             | Self::Promise(_)
+            | Self::Page(_)
             | Self::Certificate(_)
             | Self::Checkpoint { .. } => 1,
         }

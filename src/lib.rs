@@ -2,14 +2,14 @@
 //! drive must survive, down to the exact Pareto front.
 //!
 //! ```text
-//! study.toml -> study -> space, plan -> tiles -> screen -> reduce -> certify -> export
+//! study.toml -> study -> space, plan -> tiles -> screen -> reduce -> certify -> export -> report
 //! ```
 //!
 //! A [`study`] names a [model](models), which of its inputs the engineer chooses (the design), which the drive must survive (the
 //! operation) and which nobody knows exactly (the uncertainty). The [`plan`] splits the [`space`] into what is slow and what is
 //! fast, [`screen`] judges it, eight designs at a time in f64 or on a graphics device ([`gpu`]) in f32 with error bounds,
 //! [`reduce`] keeps what matters of it, [`sweep`] runs that with a [`checkpoint`], [`certify`] computes what is reported once more
-//! with the scalar f64 reference, [`contours`] finds the lines over maps, and [`export`] writes it.
+//! with the scalar f64 reference, [`contours`] finds the lines over maps, [`export`] writes it, and [`report`] makes a page of it.
 //! A module imports only what stands to its left, and `models`, `real`, `units` and `error`.
 //!
 //! ```
@@ -56,6 +56,7 @@ pub mod plan;
 pub mod pulley;
 pub mod real;
 pub mod reduce;
+pub mod report;
 mod sample;
 pub mod screen;
 pub mod space;

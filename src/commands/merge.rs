@@ -1,7 +1,7 @@
 //! `beltspace merge`: shards into one result.
 
 use super::sweep::{CHECKPOINT, refuse_to_overwrite};
-use super::threads;
+use super::{report as page, threads};
 use crate::cli;
 use crate::terminal::{self, report};
 use beltspace::checkpoint::Checkpoint;
@@ -45,7 +45,13 @@ pub fn run(request: &cli::Merge) -> Result<()> {
         device: None,
     };
     outcome.write(&request.out, &text, &record)?;
-    if request.quiet { Ok(()) } else { terminal::print(&report::summary(&outcome, &record, &request.out)) }
+    let page = if request.no_report {
+        None
+    } else {
+        let study = request.out.join("study.toml");
+        Some(page::beside(&plan, &request.out, &study, record.time, threads, &Control::default())?)
+    };
+    if request.quiet { Ok(()) } else { terminal::print(&report::summary(&outcome, &record, &request.out, page.as_ref())) }
 }
 
 /// The checkpoint of a result directory, or the directory itself if it is one.

@@ -7,6 +7,7 @@ mod eval;
 mod export;
 mod merge;
 mod models;
+mod report;
 mod sweep;
 mod verify;
 
@@ -27,6 +28,7 @@ pub fn run(command: Command) -> Result<()> {
         Command::Check { study } => check::run(&study),
         Command::Sweep(request) => sweep::run(&request),
         Command::Merge(request) => merge::run(&request),
+        Command::Report(request) => report::run(&request),
         Command::Verify(request) => verify::run(&request),
         Command::Adapters { json } => adapters::run(json),
         Command::Completions { shell } => {

@@ -1,6 +1,6 @@
 //! `beltspace sweep`: the main job.
 
-use super::{engine, read_study, threads};
+use super::{engine, read_study, report as page, threads};
 use crate::cli;
 use crate::terminal::{self, progress::Bar, report};
 use beltspace::checkpoint::{Checkpoint, replace};
@@ -66,7 +66,9 @@ pub fn run(request: &cli::Sweep) -> Result<()> {
     };
     outcome.write(&out, &text, &record)?;
     checkpoint.remove()?;
-    if request.quiet { Ok(()) } else { terminal::print(&report::summary(&outcome, &record, &out)) }
+    let page =
+        if request.no_report { None } else { Some(page::beside(&plan, &out, &request.study, record.time, options.threads, &control)?) };
+    if request.quiet { Ok(()) } else { terminal::print(&report::summary(&outcome, &record, &out, page.as_ref())) }
 }
 
 /// Sweeps the study and, if it is `whole`, certifies what is to be reported; of a shard, the checkpoint is the result.

@@ -15,6 +15,7 @@ pub use csv::write as csv_text;
 pub use number::plain;
 pub use summary::{Knee, RunRecord, Summary};
 pub use table::{Data, Table, TableColumn};
+pub use tables::{map_value, written};
 
 use crate::certify::{self, Column, Row};
 use crate::checkpoint::replace;
@@ -24,15 +25,18 @@ use crate::models::MODELS;
 use crate::plan::Plan;
 use crate::reduce::{State, Top};
 use crate::screen::{Control, Tally};
+use crate::study::Study;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 use std::sync::atomic::Ordering;
 
 /// Maps of more cells are written as Parquet rather than CSV.
-const CSV_CELLS: u64 = 100_000;
+pub const CSV_CELLS: u64 = 100_000;
 /// The file whose presence makes a directory a result.
 pub const MARK: &str = "summary.json";
+/// The page that shows a result; like `run.json` it may differ from run to run.
+pub const PAGE: &str = "report.html";
 
 /// A finished, certified sweep: everything that the result directory says.
 #[derive(Debug)]
@@ -104,18 +108,12 @@ impl<'p> Outcome<'p> {
         for (name, text) in self.knee_pictures() {
             files.push((format!("knee-{name}.svg"), text.into_bytes()));
         }
-        let mut names = BTreeSet::new();
-        let mut unique = |name: String| {
-            let candidates = std::iter::once(name.clone()).chain((2..).map(|n| format!("{name}-{n}")));
-            candidates.into_iter().find(|name| names.insert(name.clone())).expect("numbers do not run out")
-        };
-        for (spec, histogram) in study.report.histograms.iter().zip(&self.state.histograms) {
-            let name = unique(format!("histogram-{}", spec.of.name(study.model)));
+        let (histograms, maps) = table_names(study);
+        for ((spec, histogram), name) in study.report.histograms.iter().zip(&self.state.histograms).zip(histograms) {
             files.push((format!("{name}.csv"), csv::write(&tables::histogram(histogram))));
             files.push((format!("{name}.svg"), pictures::histogram(study, spec, histogram).into_bytes()));
         }
-        for (spec, map) in study.report.maps.iter().zip(&self.state.maps) {
-            let name = unique(format!("map-{}", tables::map_value(study, spec).0));
+        for ((spec, map), name) in study.report.maps.iter().zip(&self.state.maps).zip(maps) {
             let (width, height) = map.size();
             let table = tables::map(self.plan, spec, map);
             if width * height > CSV_CELLS {
@@ -125,8 +123,7 @@ impl<'p> Outcome<'p> {
             }
             let contours = contours(self.plan, spec, threads);
             if !spec.contours.is_empty() {
-                let name = name.replacen("map-", "contours-", 1);
-                files.push((format!("{name}.csv"), csv::write(&tables::contours(study, spec, &contours))));
+                files.push((contours_name(&name), csv::write(&tables::contours(study, spec, &contours))));
             }
             files.push((format!("{name}.svg"), pictures::map(study, spec, map, &table, &contours).into_bytes()));
         }
@@ -173,6 +170,23 @@ impl<'p> Outcome<'p> {
     }
 }
 
+/// Names of the tables of a study's histograms and of its maps, without their extension.
+pub fn table_names(study: &Study) -> (Vec<String>, Vec<String>) {
+    let mut names = BTreeSet::new();
+    let mut unique = |name: String| {
+        let candidates = std::iter::once(name.clone()).chain((2..).map(|n| format!("{name}-{n}")));
+        candidates.into_iter().find(|name| names.insert(name.clone())).expect("numbers do not run out")
+    };
+    let histograms = study.report.histograms.iter().map(|spec| unique(format!("histogram-{}", spec.of.name(study.model)))).collect();
+    let maps = study.report.maps.iter().map(|spec| unique(format!("map-{}", tables::map_value(study, spec).0))).collect();
+    (histograms, maps)
+}
+
+/// File of the lines over the map of that name.
+pub fn contours_name(map: &str) -> String {
+    format!("{}.csv", map.replacen("map-", "contours-", 1))
+}
+
 /// Is this a name that a result directory may have, so that an older result's file may go?
 fn is_ours(name: &str) -> bool {
     let name = name.strip_suffix(".writing").unwrap_or(name);
@@ -186,6 +200,7 @@ fn is_ours(name: &str) -> bool {
         "study.toml",
         "study.json",
         "run.json",
+        PAGE,
         MARK,
     ];
     let (stem, extension) = name.rsplit_once('.').unwrap_or((name, ""));

@@ -11,6 +11,16 @@ use crate::pulley::turn::Turn;
 /// Names of the pictures of a pulley, without `.svg`.
 pub const PICTURES: [&str; 4] = ["section", "deformed", "around", "surface"];
 
+/// What such a picture shows, in a few words.
+pub fn caption(name: &str) -> &'static str {
+    match name {
+        "section" => "Section with its dimensions",
+        "deformed" => "Von Mises stress on the deformed section, where it is largest",
+        "around" => "Stresses at the check points around the turn",
+        _ => "Von Mises stress over the unrolled surface",
+    }
+}
+
 /// The pictures of a pulley, as SVG texts, in the order of [`PICTURES`]; none if the model is another one or the status is not ok.
 /// `inputs` are in their units.
 pub fn pictures(model: &Model, title: &str, inputs: &[f64]) -> Vec<(&'static str, String)> {

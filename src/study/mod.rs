@@ -6,6 +6,7 @@
 
 mod axis;
 mod describe;
+mod described;
 mod read;
 mod resolved;
 

@@ -4,7 +4,7 @@ use super::{Grid, bold, dim, grouped, scaled, short, span, width};
 use beltspace::certify::Row;
 use beltspace::export::{Outcome, RunRecord, Summary};
 use beltspace::study::{Axis, Goal};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use textplots::{Chart, Plot, Shape};
 
 /// Designs of the front that are shown.
@@ -12,7 +12,7 @@ const SHOWN: usize = 8;
 
 /// The summary as text.
 #[allow(clippy::cast_precision_loss, reason = "shares for people")]
-pub fn summary(outcome: &Outcome<'_>, record: &RunRecord, out: &Path) -> String {
+pub fn summary(outcome: &Outcome<'_>, record: &RunRecord, out: &Path, page: Option<&PathBuf>) -> String {
     let plan = outcome.plan;
     let study = &plan.study;
     let feasible = outcome.state.feasible;
@@ -58,7 +58,11 @@ pub fn summary(outcome: &Outcome<'_>, record: &RunRecord, out: &Path) -> String 
     for remark in study.remarks() {
         text.push_str(&format!("\n{} {remark}\n", bold("note")));
     }
-    text + &format!("\n{} {}\n", bold("result"), out.display())
+    text.push_str(&format!("\n{} {}\n", bold("result"), out.display()));
+    if let Some(page) = page {
+        text.push_str(&format!("{}   {}\n", bold("page"), page.display()));
+    }
+    text
 }
 
 /// What limits feasibility, worst first.

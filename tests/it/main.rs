@@ -2,6 +2,8 @@
 
 /// Broken study files: each with the message it must give.
 mod bad_studies;
+/// A browser to look at pages with.
+mod browser;
 /// The pulley as a model for CalculiX, and its solution against the harmonics.
 mod calculix;
 /// The binary: exit codes, messages, files, interrupted runs.
@@ -28,6 +30,8 @@ mod pulleys;
 mod random;
 /// The README, held against what the program says.
 mod readme;
+/// The page of a result, in a browser.
+mod report_page;
 /// Independent second implementations of the models, and printed golden values.
 mod second;
 /// The timing belt: figures, closed forms, similarity.

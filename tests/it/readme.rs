@@ -17,9 +17,12 @@ fn run(arguments: &[&str]) -> (String, String) {
     (String::from_utf8(output.stdout).expect("text"), String::from_utf8(output.stderr).expect("text"))
 }
 
-/// Lines without those that tell a time.
+/// Lines without those that tell a time or a place.
 fn without_times(text: &str) -> Vec<&str> {
-    text.lines().filter(|line| !line.starts_with("designs ") && !line.starts_with("result ")).map(str::trim_end).collect()
+    text.lines()
+        .filter(|line| !line.starts_with("designs ") && !line.starts_with("result ") && !line.starts_with("page "))
+        .map(str::trim_end)
+        .collect()
 }
 
 /// The fenced block of the README that starts with this line.

@@ -8,6 +8,8 @@ mod contours;
 mod models_and_eval;
 /// Interrupted, divided and resumed runs.
 mod recovery;
+/// The page of a result.
+mod report;
 /// `check`, `sweep` and the result directory.
 mod sweep;
 /// Requests that cannot be met.
@@ -163,12 +165,12 @@ fn files(folder: &Path) -> Files {
     entries.map(read).collect()
 }
 
-/// Are these the same result? `run.json` says how it came about and may differ, but must be there.
+/// Are these the same result? `run.json` says how it came about and the page shows that; they may differ, but must be there.
 fn same_result(a: &Files, b: &Files) -> Result<(), String> {
     let mut problems = Vec::new();
     for name in a.keys().chain(b.keys().filter(|name| !a.contains_key(*name))) {
         match (a.get(name), b.get(name)) {
-            (Some(Some(_)), Some(Some(_))) if name == "run.json" => {}
+            (Some(Some(_)), Some(Some(_))) if name == "run.json" || name == "report.html" => {}
             (Some(Some(a)), Some(Some(b))) if a == b => {}
             (Some(Some(a)), Some(Some(b))) => {
                 let at = a.iter().zip(b).position(|(a, b)| a != b).unwrap_or(a.len().min(b.len()));

@@ -48,7 +48,7 @@ fn a_result_has_all_its_files_and_columns() {
     let out = folder.path().join("results/small");
     assert!(text.contains("Small") && text.contains("what limits feasibility") && text.contains("knee"), "{text}");
     let names = "front.csv front.parquet front.svg histogram-axial_force_N.csv histogram-axial_force_N.svg map-axial_force_N.csv \
-                 map-axial_force_N.svg map-feasible_share.csv map-feasible_share.svg run.json scenarios.csv study.json study.toml \
+                 map-axial_force_N.svg map-feasible_share.csv map-feasible_share.svg report.html run.json scenarios.csv study.json study.toml \
                  summary.json top.csv";
     assert_eq!(files(&out).keys().map(String::as_str).collect::<Vec<_>>(), names.split_whitespace().collect::<Vec<_>>());
     assert_eq!(read(&out.join("study.toml")), SMALL);

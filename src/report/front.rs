@@ -1,0 +1,299 @@
+//! The designs that a page shows: the result's front table as it was written, completed with every other output of the model.
+
+use super::packed::{Packed, packed};
+use crate::certify::{self, Column, Role, Row};
+use crate::error::{Error, Result};
+use crate::export::written;
+use crate::plan::Plan;
+use crate::screen::Control;
+use crate::study::{Axis, Goal, Quantity, Study};
+use serde_json::{Value, json};
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::sync::atomic::Ordering;
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::{Duration, Instant};
+
+/// Most designs on a page; of a larger front so many are taken, evenly along the table.
+pub const MOST_ROWS: usize = 200_000;
+/// Most scenarios whose inputs a page tells.
+const MOST_SCENARIOS: usize = 20_000;
+/// Stands for a scenario where the value is absent.
+const NOWHERE: u32 = u32::MAX;
+
+/// What is shown of the front.
+pub struct Front {
+    /// Their indices.
+    pub designs: Vec<u64>,
+    /// Position in `json["columns"]` of what each of the study's objectives and constraints is about.
+    pub objectives: Vec<usize>,
+    pub constraints: Vec<usize>,
+    /// Every scenario that is somewhere the worst, as far as a page tells them.
+    pub scenarios: BTreeSet<u64>,
+    /// For the page.
+    pub json: Value,
+}
+
+/// Values at their worst scenarios, design by design.
+struct Shown {
+    name: String,
+    unit: &'static str,
+    doc: &'static str,
+    role: &'static str,
+    direction: String,
+    words: Option<Vec<String>>,
+    values: Packed,
+    scenarios: Option<Vec<u32>>,
+}
+
+/// Reads the front table of a result and completes it, as long as `patience` lasts.
+///
+/// # Errors
+/// [`Error::Io`] and [`Error::Request`] where the table is missing or says other than the study.
+pub fn read(file: &Path, plan: &Plan, threads: usize, patience: Duration, control: &Control) -> Result<Front> {
+    let study = &plan.study;
+    let columns = certify::columns(study);
+    let table = Table::read(file, study, &columns)?;
+    let all = table.rows.len();
+    let taken = all.min(MOST_ROWS);
+    let rows: Vec<&csv::StringRecord> = (0..taken).map(|at| &table.rows[at * all / taken]).collect();
+    let index = |row: &csv::StringRecord| row[0].parse::<u64>().ok().filter(|&it| it < plan.designs());
+    let designs: Option<Vec<u64>> = rows.iter().map(|row| index(row)).collect();
+    let designs = designs.ok_or_else(|| unlike(file, "a design_index is not one of the study"))?;
+
+    let mut shown = vec![Shown {
+        name: "design_index".to_owned(),
+        unit: "",
+        doc: "Index of the design in the study.",
+        role: "index",
+        direction: String::new(),
+        words: None,
+        #[allow(clippy::cast_precision_loss, reason = "indices are far below 2^53")]
+        values: Packed::F64(designs.iter().map(|&it| it as f64).collect()),
+        scenarios: None,
+    }];
+    for (axis, column, input) in inputs(study) {
+        let at = shown.len();
+        shown.push(input_column(study, axis, column, input, rows.iter().map(|row| &row[at])));
+    }
+    let design_inputs = shown.len();
+    // A column about a design input repeats it: the input's own column stands for both.
+    let mut place = Vec::new();
+    for (at, column) in columns.iter().enumerate() {
+        if let Some(own) = own_column(study, column.quantity) {
+            place.push(own);
+            if shown[own].direction.is_empty() {
+                shown[own].direction = direction(study, column);
+            }
+            continue;
+        }
+        place.push(shown.len());
+        let cell = design_inputs + 2 * at;
+        let number = |text: &str| if text.is_empty() { Some(f64::NAN) } else { text.parse().ok() };
+        let values: Option<Vec<f64>> = rows.iter().map(|row| number(&row[cell])).collect();
+        let scenarios = rows.iter().map(|row| row[cell + 1].parse().unwrap_or(NOWHERE)).collect();
+        let values = values.ok_or_else(|| unlike(file, &format!("{} has something that is no number", column.name)))?;
+        shown.push(Shown::of(study, column, Packed::F64(values), scenarios));
+    }
+    let complete = complete(plan, &columns, &designs, threads, patience, control);
+    if let Some((further, certified)) = &complete {
+        check(file, &shown, &place, certified, columns.len())?;
+        for (at, column) in further.iter().enumerate() {
+            let value = |row: &Row| row.columns[columns.len() + at];
+            #[allow(clippy::cast_possible_truncation, reason = "shown to six digits")]
+            let values = certified.iter().map(|row| value(row).value.map_or(f32::NAN, |it| it as f32)).collect();
+            let scenarios = certified.iter().map(|row| value(row).value.map_or(NOWHERE, |_| scenario_number(value(row).scenario)));
+            shown.push(Shown { role: "output", ..Shown::of(study, column, Packed::F32(values), scenarios.collect()) });
+        }
+    }
+    let position = |quantity| columns.iter().position(|it| it.quantity == quantity).map(|at| place[at]);
+    let of_constraint = |number: usize| {
+        // The column of the constraint's own worst scenario, where the objective has another.
+        let own = columns.iter().position(|it| it.role == Role::Constraint(number)).map(|at| place[at]);
+        own.or_else(|| position(study.constraints[number].quantity))
+    };
+    let scenarios = shown.iter().filter_map(|it| it.scenarios.as_ref()).flatten().filter(|&&it| it != NOWHERE);
+    Ok(Front {
+        designs,
+        objectives: study.objectives.iter().filter_map(|it| position(it.quantity)).collect(),
+        constraints: (0..study.constraints.len()).filter_map(of_constraint).collect(),
+        scenarios: scenarios.map(|&it| u64::from(it)).collect::<BTreeSet<_>>().into_iter().take(MOST_SCENARIOS).collect(),
+        json: json!({
+            "rows": taken,
+            "of": all,
+            "columns": shown.iter().map(Shown::describe).collect::<Vec<_>>(),
+            "packed": packed(shown.iter().flat_map(|it| std::iter::once(it.values.bytes()).chain(it.scenarios.as_deref().map(bytes_of)))),
+            "complete": complete.is_some(),
+        }),
+    })
+}
+
+fn bytes_of(numbers: &[u32]) -> Vec<u8> {
+    numbers.iter().flat_map(|it| it.to_le_bytes()).collect()
+}
+
+fn scenario_number(scenario: u64) -> u32 {
+    u32::try_from(scenario).unwrap_or(NOWHERE)
+}
+
+fn unlike(file: &Path, problem: &str) -> Error {
+    Error::Request(format!(
+        "{}: {problem}; the file was changed or comes from another version of the program: sweep the study again",
+        file.display()
+    ))
+}
+
+/// The front table as text.
+struct Table {
+    rows: Vec<csv::StringRecord>,
+}
+
+impl Table {
+    fn read(file: &Path, study: &Study, columns: &[Column]) -> Result<Self> {
+        let problem = |error: csv::Error| match error.into_kind() {
+            csv::ErrorKind::Io(source) => Error::io(file)(source),
+            other => unlike(file, &format!("it is no table ({other:?})")),
+        };
+        let mut reader = csv::Reader::from_path(file).map_err(problem)?;
+        let inputs = inputs(study).map(|(_, _, input)| study.model.inputs[input].name.to_owned());
+        let columns = columns.iter().flat_map(|it| [it.name.clone(), format!("{}_scenario", it.name)]);
+        let expected: Vec<String> = std::iter::once("design_index".to_owned()).chain(inputs).chain(columns).collect();
+        let header = reader.headers().map_err(problem)?;
+        if *header != expected {
+            let differs = expected.iter().zip(header.iter()).find(|(expected, found)| expected.as_str() != *found);
+            let differs = differs.map_or("their number".to_owned(), |(expected, found)| format!("\"{found}\" in place of \"{expected}\""));
+            return Err(unlike(file, &format!("its columns are not those of the study: {differs}")));
+        }
+        Ok(Self { rows: reader.into_records().collect::<std::result::Result<_, _>>().map_err(problem)? })
+    }
+}
+
+/// The inputs that design axes set: axis, column of the axis, input.
+fn inputs(study: &Study) -> impl Iterator<Item = (&Axis, usize, usize)> {
+    study.design.iter().flat_map(|axis| axis.inputs().iter().enumerate().map(move |(column, &input)| (axis, column, input)))
+}
+
+/// Position of the design input that a quantity is.
+fn own_column(study: &Study, quantity: Quantity) -> Option<usize> {
+    inputs(study).position(|(_, _, input)| quantity == Quantity::Input(input)).map(|at| at + 1)
+}
+
+/// A design input; where one of its values is a word, all are taken by name.
+fn input_column<'r>(study: &Study, axis: &Axis, column: usize, input: usize, cells: impl Iterator<Item = &'r str> + Clone) -> Shown {
+    let table = &study.model.inputs[input];
+    let numbers: Option<Vec<f64>> = cells.clone().map(|cell| cell.parse().ok()).collect();
+    let (words, values) = match numbers {
+        Some(numbers) => (None, Packed::F64(numbers)),
+        None => {
+            let mut words: Vec<String> = Vec::new();
+            for level in 0..axis.count() {
+                let word = written(table, axis.value(column, level));
+                if !words.contains(&word) {
+                    words.push(word);
+                }
+            }
+            let place = |cell: &str| words.iter().position(|word| word == cell).map_or(NOWHERE, |at| scenario_number(at as u64));
+            let places = cells.map(place).collect();
+            (Some(words), Packed::U32(places))
+        }
+    };
+    Shown {
+        name: table.name.to_owned(),
+        unit: table.unit.symbol,
+        doc: table.doc,
+        role: "design",
+        direction: String::new(),
+        words,
+        values,
+        scenarios: None,
+    }
+}
+
+fn direction(study: &Study, column: &Column) -> String {
+    match column.role {
+        Role::Objective(objective) => if study.objectives[objective].goal == Goal::Min { "min" } else { "max" }.to_owned(),
+        Role::Constraint(constraint) => study.constraints[constraint].in_words(),
+        Role::Report => String::new(),
+    }
+}
+
+impl Shown {
+    fn of(study: &Study, column: &Column, values: Packed, scenarios: Vec<u32>) -> Self {
+        Self {
+            name: column.name.clone(),
+            unit: column.quantity.unit(study.model),
+            doc: column.quantity.doc(study.model),
+            role: match column.role {
+                Role::Objective(_) => "objective",
+                Role::Constraint(_) => "constraint",
+                Role::Report => "report",
+            },
+            direction: direction(study, column),
+            words: None,
+            values,
+            scenarios: Some(scenarios),
+        }
+    }
+
+    fn describe(&self) -> Value {
+        json!({
+            "name": self.name, "unit": self.unit, "doc": self.doc, "role": self.role, "direction": self.direction,
+            "type": self.values.kind(), "words": self.words, "scenario": self.scenarios.is_some(),
+        })
+    }
+}
+
+/// All other outputs of the designs, each at its worst scenario: their columns, and rows in which they come after `columns`. `None`
+/// if that would take longer than `patience`, or was stopped.
+fn complete(
+    plan: &Plan,
+    columns: &[Column],
+    designs: &[u64],
+    threads: usize,
+    patience: Duration,
+    control: &Control,
+) -> Option<(Vec<Column>, Vec<Row>)> {
+    let mut everything = plan.study.clone();
+    everything.report.columns.extend((0..everything.model.outputs.len()).map(Quantity::Output));
+    let all = certify::columns(&everything);
+    // What the model takes on the slow side; hopeless work is not even begun.
+    #[allow(clippy::cast_precision_loss, reason = "an estimate")]
+    let expected = plan.seconds_per_design() * designs.len() as f64 / threads.max(1) as f64;
+    if expected > 10.0 * patience.as_secs_f64() {
+        return None;
+    }
+    let own = Control::default();
+    let (finished, waiting) = channel::<()>();
+    let rows = std::thread::scope(|scope| {
+        let own = &own;
+        scope.spawn(move || {
+            let start = Instant::now();
+            // Ends with the work, when the patience does, or when everything is to stop.
+            while waiting.recv_timeout(Duration::from_millis(20)) == Err(RecvTimeoutError::Timeout) {
+                if start.elapsed() > patience || control.stop.load(Ordering::Relaxed) {
+                    own.stop.store(true, Ordering::Relaxed);
+                    return;
+                }
+            }
+        });
+        let rows = certify::rows(plan, &all, designs, threads, own);
+        drop(finished);
+        rows
+    });
+    Some((all[columns.len()..].to_vec(), rows.ok()?))
+}
+
+/// What the table says and what the study gives must be the same numbers.
+fn check(file: &Path, shown: &[Shown], place: &[usize], certified: &[Row], columns: usize) -> Result<()> {
+    for (at, row) in certified.iter().enumerate() {
+        for (column, &place) in row.columns[..columns].iter().zip(place) {
+            let Packed::F64(values) = &shown[place].values else { continue };
+            let (value, seen) = (column.value.unwrap_or(f64::NAN), values[at]);
+            if value.to_bits() != seen.to_bits() && !(value.is_nan() && seen.is_nan()) {
+                let name = &shown[place].name;
+                return Err(unlike(file, &format!("{name} of design {} is {seen}, and the study gives {value}", row.index)));
+            }
+        }
+    }
+    Ok(())
+}

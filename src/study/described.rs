@@ -1,0 +1,227 @@
+//! A study back from what [`Study::describe`] says of it: a result directory is enough, wherever its study file and tables lie.
+
+use super::{
+    Axis, Best, Constraint, ContourSpec, Goal, HistogramSpec, Levels, MapSpec, Objective, Quantity, Report, Study, Thresholds, TopSpec,
+};
+use crate::models::{Model, find};
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+
+type Found<T> = Result<T, String>;
+
+impl Study {
+    /// The study that a description, such as a result's `study.json`, is of: its own description is the same again.
+    ///
+    /// # Errors
+    /// The first thing that is missing, or is not what a description has there.
+    pub fn from_description(described: &Value) -> Result<Self, String> {
+        let name = text(described, "model")?;
+        let model = find(name).ok_or_else(|| format!("there is no model \"{name}\""))?;
+        let axes = |role: &str| list(described, role)?.iter().map(|axis| axis_of(model, axis)).collect::<Found<Vec<_>>>();
+        let mut fixed = model.defaults();
+        for (name, value) in described["fixed"].as_object().ok_or("\"fixed\" is missing")? {
+            let input = input_of(model, name)?;
+            fixed[input] = value_of(model, input, value)?;
+        }
+        let study = Self {
+            model,
+            title: text(described, "title")?.to_owned(),
+            design: axes("design")?,
+            sample: plain(&described["sample"], "sample")?,
+            operation: axes("operation")?,
+            uncertainty: axes("uncertainty")?,
+            fixed,
+            constraints: each(described, "constraints", |it| constraint_of(model, it))?,
+            objectives: each(described, "objectives", |it| {
+                Ok(Objective {
+                    quantity: quantity_of(model, &it["of"])?,
+                    goal: plain(&it["goal"], "goal")?,
+                    resolution: plain(&it["resolution"], "resolution")?,
+                })
+            })?,
+            report: Report::default(),
+        };
+        let report = report_of(&study, described)?;
+        let study = Self { report, ..study };
+        // What this version would describe otherwise was not written by it.
+        match super::differences(described, &study.describe()).first() {
+            None => Ok(study),
+            Some(difference) => Err(difference.clone()),
+        }
+    }
+}
+
+fn report_of(study: &Study, described: &Value) -> Found<Report> {
+    let model = study.model;
+    let top = match &described["top"] {
+        Value::Null => None,
+        top => {
+            Some(TopSpec { by: quantity_of(model, &top["by"])?, goal: plain(&top["goal"], "goal")?, count: plain(&top["count"], "count")? })
+        }
+    };
+    let histogram = |it: &Value| {
+        let [from, to]: [Option<f64>; 2] = [plain(&it["from"], "from")?, plain(&it["to"], "to")?];
+        Ok(HistogramSpec { of: quantity_of(model, &it["of"])?, range: from.zip(to), bins: plain(&it["bins"], "bins")? })
+    };
+    Ok(Report {
+        columns: each(described, "columns", |it| quantity_of(model, it))?,
+        top,
+        histograms: each(described, "histograms", histogram)?,
+        maps: each(described, "maps", |it| map_of(study, it))?,
+        front_budget: plain(&described["front_budget"], "front_budget")?,
+        variants: described["variants"] == true,
+    })
+}
+
+fn map_of(study: &Study, map: &Value) -> Found<MapSpec> {
+    let model = study.model;
+    let axis = |key: &str| {
+        let input = input_of(model, text(map, key)?)?;
+        let position = study.design.iter().position(|axis| axis.inputs()[0] == input);
+        position.ok_or_else(|| format!("a map's {key} is no design axis"))
+    };
+    let value = match text(map, "best")? {
+        "share" => Best::Share,
+        "min" => Best::Value(quantity_of(model, &map["value"])?, Goal::Min),
+        "max" => Best::Value(quantity_of(model, &map["value"])?, Goal::Max),
+        other => return Err(format!("a map cannot show the best by \"{other}\"")),
+    };
+    let contours = map["contours"].as_array().map_or(&[][..], Vec::as_slice).iter().map(|it| {
+        let at = match &it["at"] {
+            Value::Array(values) => Thresholds::At(values.iter().map(number_of).collect::<Found<_>>()?),
+            _ => Thresholds::Changes,
+        };
+        Ok(ContourSpec { of: quantity_of(model, &it["of"])?, at })
+    });
+    Ok(MapSpec { x: axis("x")?, y: axis("y")?, value, contours: contours.collect::<Found<_>>()? })
+}
+
+fn axis_of(model: &Model, axis: &Value) -> Found<Axis> {
+    if let Some(names) = axis["inputs"].as_array() {
+        let inputs = names.iter().map(|name| input_of(model, name.as_str().unwrap_or_default())).collect::<Found<Vec<_>>>()?;
+        let row = |row: &Value| -> Found<Vec<f64>> {
+            let values = row.as_array().filter(|values| values.len() == inputs.len()).ok_or("a row has another length than its inputs")?;
+            inputs.iter().zip(values).map(|(&input, value)| value_of(model, input, value)).collect()
+        };
+        return Ok(Axis::Joint { rows: list(axis, "rows")?.iter().map(row).collect::<Found<_>>()?, inputs });
+    }
+    let input = input_of(model, text(axis, "input")?)?;
+    let log = axis["spacing"] == "log";
+    let number = |key: &str| number_of(&axis[key]);
+    let has = |key: &str| !axis[key].is_null();
+    let levels = match axis["values"].as_array() {
+        Some(values) => Levels::List(values.iter().map(|value| value_of(model, input, value)).collect::<Found<_>>()?),
+        None if has("step") => Levels::Step { from: number("from")?, step: number("step")?, count: plain(&axis["count"], "count")?, log },
+        None if has("count") => Levels::Even { from: number("from")?, to: number("to")?, count: plain(&axis["count"], "count")?, log },
+        None => Levels::Continuous { from: number("from")?, to: number("to")?, log },
+    };
+    Ok(Axis::Single { input, levels })
+}
+
+fn constraint_of(model: &Model, constraint: &Value) -> Found<Constraint> {
+    let bound = |inclusive: &str, exclusive: &str| match (&constraint[inclusive], &constraint[exclusive]) {
+        (Value::Null, Value::Null) => Ok(None),
+        (Value::Null, excluded) => number_of(excluded).map(|bound| Some((bound, true))),
+        (included, _) => number_of(included).map(|bound| Some((bound, false))),
+    };
+    Ok(Constraint { quantity: quantity_of(model, &constraint["of"])?, low: bound("min", "above")?, high: bound("max", "below")? })
+}
+
+fn quantity_of(model: &Model, name: &Value) -> Found<Quantity> {
+    let name = name.as_str().ok_or("a quantity has no name")?;
+    let input = model.input(name).map(Quantity::Input);
+    input.or_else(|| model.output(name).map(Quantity::Output)).ok_or_else(|| format!("{} has no \"{name}\"", model.name))
+}
+
+fn input_of(model: &Model, name: &str) -> Found<usize> {
+    model.input(name).ok_or_else(|| format!("{} has no input \"{name}\"", model.name))
+}
+
+/// A number, or the word of an input.
+fn value_of(model: &Model, input: usize, value: &Value) -> Found<f64> {
+    let table = &model.inputs[input];
+    match value.as_str() {
+        None => number_of(value),
+        Some(word) => table.value_of(word).ok_or_else(|| format!("{} is never \"{word}\"", table.name)),
+    }
+}
+
+fn number_of(value: &Value) -> Found<f64> {
+    value.as_f64().ok_or_else(|| format!("{value} is no number"))
+}
+
+fn text<'v>(object: &'v Value, key: &str) -> Found<&'v str> {
+    object[key].as_str().ok_or_else(|| format!("\"{key}\" is missing"))
+}
+
+fn list<'v>(object: &'v Value, key: &str) -> Found<&'v [Value]> {
+    object[key].as_array().map(Vec::as_slice).ok_or_else(|| format!("\"{key}\" is missing"))
+}
+
+fn each<T>(object: &Value, key: &str, read: impl Fn(&Value) -> Found<T>) -> Found<Vec<T>> {
+    list(object, key)?.iter().map(read).collect()
+}
+
+/// What serde reads as it stands.
+fn plain<T: DeserializeOwned>(value: &Value, key: &str) -> Found<T> {
+    T::deserialize(value).map_err(|error| format!("{key}: {error}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    #[test]
+    fn every_shipped_study_comes_back_from_its_description() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("studies");
+        let mut seen = 0;
+        for entry in std::fs::read_dir(folder).expect("studies are shipped") {
+            let path = entry.expect("it can be listed").path();
+            let (study, _) = Study::read(&path).expect("it is right");
+            let back = Study::from_description(&study.describe()).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+            assert_eq!(back.hash(), study.hash(), "{}", path.display());
+            // Values of inputs that axes set are never read.
+            assert_eq!(Study { fixed: study.fixed.clone(), ..back }, study, "{}", path.display());
+            seen += 1;
+        }
+        assert!(seen >= 8);
+    }
+
+    #[test]
+    fn words_joint_rows_samples_and_bounds_come_back_and_a_changed_description_does_not() {
+        let text = r#"
+            model = "metal-cvt"
+            title = "Everything"
+            [design]
+            traction = ["limit", 0.4]
+            cases = [{ band_count = 8, band_width_mm = 9 }, { band_count = 10, band_width_mm = 12 }]
+            band_thickness_mm = { from = 0.1, to = 0.4, step = 0.1, spacing = "log" }
+            [operation]
+            ratio = { from = 0.5, to = 2, count = 3, spacing = "log" }
+            [constraints]
+            slip_margin = { above = 0, max = 0.9 }
+            stress_margin = { min = 0, below = 2 }
+            [objectives]
+            axial_force_N = { goal = "min", resolution = 10 }
+            [report]
+            columns = ["max_stress_MPa"]
+            maps = [{ x = "traction", y = "band_thickness_mm", best = "share" }]
+            histograms = [{ of = "axial_force_N", bins = 4 }]
+        "#;
+        let sampled = "model = \"metal-cvt\"\n[design]\nband_thickness_mm = { from = 0.1, to = 0.4 }\n[sample]\nmethod = \"sobol\"\n\
+                       count = 16\nseed = 3\n[objectives]\naxial_force_N = \"min\"\n";
+        for text in [text, sampled] {
+            let study = Study::parse(text, "study.toml", Path::new(".")).unwrap_or_else(|errors| panic!("{errors}"));
+            let described = study.describe();
+            let back = Study::from_description(&described).expect("it comes back");
+            assert_eq!(Study { fixed: study.fixed.clone(), ..back }, study);
+            let mut changed = described.clone();
+            changed["further"] = 1.into();
+            assert!(Study::from_description(&changed).is_err(), "a later version's description is not understood");
+            let mut changed = described;
+            changed["objectives"][0]["of"] = "axial_farce_N".into();
+            assert_eq!(Study::from_description(&changed).unwrap_err(), "metal-cvt has no \"axial_farce_N\"");
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! `report.html`: written by `sweep` and `merge`, made again by `report`, and true to the result's files.
+
+use super::{SMALL, ask, changed, folder_with, read, write};
+use base64::Engine;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::io::Read;
+use std::path::Path;
+
+/// The data of a page.
+fn data_of(page: &Path) -> Value {
+    let html = read(page);
+    let start = html.find("id=\"data\">").expect("the page has data") + "id=\"data\">".len();
+    let end = start + html[start..].find("</script>").expect("the data ends");
+    serde_json::from_str(&html[start..end]).expect("it is JSON")
+}
+
+/// Columns of the front by name, as numbers; and the scenarios of those that have some.
+fn columns_of(data: &Value) -> BTreeMap<String, (Vec<f64>, Vec<u32>)> {
+    let front = &data["front"];
+    let packed = base64::engine::general_purpose::STANDARD.decode(front["packed"].as_str().expect("it is text")).expect("it is base64");
+    let mut bytes = Vec::new();
+    flate2::read::ZlibDecoder::new(&packed[..]).read_to_end(&mut bytes).expect("it is compressed");
+    let rows = front["rows"].as_u64().expect("a front has rows") as usize;
+    let mut rest = &bytes[..];
+    let mut take = |width: usize| {
+        let (taken, after) = rest.split_at(width * rows);
+        rest = after;
+        taken.chunks(width)
+    };
+    let mut columns = BTreeMap::new();
+    for column in front["columns"].as_array().expect("a front has columns") {
+        let values = match column["type"].as_str().expect("a column has a type") {
+            "f64" => take(8).map(|it| f64::from_le_bytes(it.try_into().expect("eight"))).collect(),
+            "f32" => take(4).map(|it| f64::from(f32::from_le_bytes(it.try_into().expect("four")))).collect(),
+            _ => take(4).map(|it| f64::from(u32::from_le_bytes(it.try_into().expect("four")))).collect(),
+        };
+        let scenarios = if column["scenario"] == true {
+            take(4).map(|it| u32::from_le_bytes(it.try_into().expect("four"))).collect()
+        } else {
+            Vec::new()
+        };
+        let name = column["name"].as_str().expect("a column has a name").to_owned();
+        assert!(columns.insert(name, (values, scenarios)).is_none(), "a name stands twice");
+    }
+    assert!(rest.is_empty(), "{} bytes are left over", rest.len());
+    columns
+}
+
+#[test]
+fn a_sweep_writes_a_page_that_says_what_the_tables_say() {
+    let study = changed(SMALL, &[("[objectives]", "friction = { min = 0.06 }\n[objectives]")]);
+    let folder = folder_with("small.toml", &study);
+    let printed = ask(folder.path(), "sweep small.toml --out r").text();
+    assert!(printed.ends_with("result r\npage   r/report.html\n"), "{printed}");
+    let result = folder.path().join("r");
+    let data = data_of(&result.join("report.html"));
+    let columns = columns_of(&data);
+    let table = read(&result.join("front.csv"));
+    let mut table = csv::Reader::from_reader(table.as_bytes());
+    let header = table.headers().expect("it has a header").clone();
+    let rows: Vec<_> = table.records().map(|row| row.expect("rows are complete")).collect();
+    assert!(rows.len() > 20 && data["front"]["rows"] == rows.len() && data["front"]["complete"] == true);
+    for (at, name) in header.iter().enumerate() {
+        let (of, scenario) = name.strip_suffix("_scenario").map_or((name, false), |name| (name, true));
+        let (values, scenarios) = &columns[of];
+        // An objective that is a design input is shown as that input.
+        if scenario && scenarios.is_empty() {
+            assert!(["band_count"].contains(&of), "{of}");
+            continue;
+        }
+        for (row, shown) in rows.iter().enumerate() {
+            let written: f64 = shown[at].parse().expect("it is a number");
+            let value = if scenario { f64::from(scenarios[row]) } else { values[row] };
+            assert_eq!(value.to_bits(), written.to_bits(), "{name} of row {row}");
+        }
+    }
+    // Every other output is what `eval` finds to be its worst.
+    let at = rows.len() / 2;
+    let single = ask(folder.path(), &format!("eval small.toml --design {} --json", &rows[at][0])).json();
+    let mut further = 0;
+    for (name, worst) in single["outputs"].as_object().expect("outputs have names") {
+        let Some((values, scenarios)) = columns.get(name).filter(|(_, scenarios)| !scenarios.is_empty()) else { continue };
+        let value = worst["value"].as_f64().expect("it is a number");
+        assert!((values[at] - value).abs() <= 6e-8 * value.abs(), "{name}: {} is not {value}", values[at]);
+        assert_eq!(worst["scenario"], scenarios[at], "{name}");
+        further += 1;
+    }
+    assert!(further > 20, "{further}");
+    let command = data["evaluate"].as_str().expect("there is a command");
+    assert_eq!(command, "beltspace eval r/study.toml --design {design}");
+    for (place, constraint) in data["constraints"].as_array().expect("a list").iter().enumerate() {
+        let column = &data["front"]["columns"][constraint["column"].as_u64().map_or(usize::MAX, |it| it as usize)];
+        let expected = ["slip_margin", "stress_margin_constrained", "friction"][place];
+        assert_eq!(column["name"], expected);
+    }
+    assert_eq!(data["maps"].as_array().map(Vec::len), Some(2));
+    assert_eq!(data["front"]["knee"].as_u64().map(|row| rows[row as usize][0].to_owned()), {
+        Some(data_of_summary(&result)["knee"]["design_index"].to_string())
+    });
+
+    // The page made again from the files alone, elsewhere, is the same page.
+    let page = std::fs::read(result.join("report.html")).expect("it is there");
+    std::fs::remove_file(result.join("report.html")).expect("it can go");
+    ask(folder.path(), "report r").text();
+    assert!(std::fs::read(result.join("report.html")).expect("it is there") == page);
+}
+
+fn data_of_summary(result: &Path) -> Value {
+    super::json_of(&result.join("summary.json"))
+}
+
+#[test]
+fn a_page_can_be_left_out_and_put_elsewhere() {
+    let folder = folder_with("small.toml", SMALL);
+    let printed = ask(folder.path(), "sweep small.toml --out r --no-report").text();
+    assert!(printed.ends_with("result r\n"), "{printed}");
+    assert!(!folder.path().join("r/report.html").exists());
+    assert!(ask(folder.path(), "report r --out elsewhere.html").text().starts_with("elsewhere.html ("));
+    assert!(!folder.path().join("r/report.html").exists() && folder.path().join("elsewhere.html").exists());
+    let impatient = ask(folder.path(), "report r --patience 0");
+    assert!(impatient.err.contains("raise --patience"), "{}", impatient.err);
+    let data = data_of(&folder.path().join("r/report.html"));
+    assert_eq!(data["front"]["complete"], false);
+    assert!(columns_of(&data).keys().all(|name| name != "belt_force_N"));
+    // The next sweep replaces the page with the rest.
+    ask(folder.path(), "sweep small.toml --out r --force --no-report").text();
+    assert!(!folder.path().join("r/report.html").exists(), "a page of an older result stays");
+}
+
+#[test]
+fn merged_shards_have_a_page_and_tables_beside_the_study_are_not_needed() {
+    let text = changed(SMALL, &[("friction  = [0.065, 0.095]", "cases = { csv = \"frictions.csv\" }")]);
+    let folder = folder_with("small.toml", &text);
+    write(folder.path(), "frictions.csv", "friction\n0.065\n0.095\n");
+    for shard in ["1/2", "2/2"] {
+        ask(folder.path(), &format!("sweep small.toml --shard {shard} --out s{}", &shard[..1])).text();
+    }
+    let printed = ask(folder.path(), "merge s1 s2 --out whole").text();
+    assert!(printed.ends_with("page   whole/report.html\n"), "{printed}");
+    std::fs::remove_file(folder.path().join("frictions.csv")).expect("it can go");
+    ask(folder.path(), "report whole").text();
+    let data = data_of(&folder.path().join("whole/report.html"));
+    assert_eq!(data["scenarios"]["columns"][2]["name"], "friction");
+}
+
+#[test]
+fn a_study_without_a_feasible_design_has_a_page_that_tells_what_limits_it() {
+    let folder = folder_with("small.toml", &changed(SMALL, &[("strength_MPa = 800", "strength_MPa = 80")]));
+    ask(folder.path(), "sweep small.toml --out r").text();
+    let data = data_of(&folder.path().join("r/report.html"));
+    assert_eq!((&data["front"]["rows"], &data["study"]["feasible"]), (&Value::from(0), &Value::from(0)));
+    assert_eq!(data["tally"]["constraints"][1]["of"], "stress_margin");
+    assert!(data["tally"]["constraints"][1]["violated"].as_u64() > Some(0));
+}
+
+#[test]
+fn what_is_no_result_or_was_changed_is_refused_by_name() {
+    let folder = folder_with("small.toml", SMALL);
+    std::fs::create_dir(folder.path().join("empty")).expect("a folder can be made");
+    let said = ask(folder.path(), "report empty").refusal(2);
+    assert!(said.contains("empty is no finished result; name the directory that `beltspace sweep` wrote"), "{said}");
+    let said = ask(folder.path(), "report nowhere").refusal(2);
+    assert!(said.contains("nowhere is no directory"), "{said}");
+
+    ask(folder.path(), "sweep small.toml --out r --no-report").text();
+    let front = folder.path().join("r/front.csv");
+    let table = read(&front);
+    let row = table.lines().nth(3).expect("the front has designs").to_owned();
+    let cell = row.split(',').nth(5).expect("a row has objectives").to_owned();
+    let mut digits = cell.clone();
+    let last = digits.pop().expect("a number has digits");
+    digits.push(if last == '7' { '8' } else { '7' });
+    write(folder.path(), "r/front.csv", &table.replacen(&format!(",{cell},"), &format!(",{digits},"), 1));
+    let said = ask(folder.path(), "report r").refusal(2);
+    assert!(
+        said.contains("r/front.csv: axial_force_N of design") && said.contains(&digits) && said.contains("sweep the study again"),
+        "{said}"
+    );
+    write(folder.path(), "r/front.csv", &table.replacen("axial_force_N", "axial_farce_N", 1));
+    let said = ask(folder.path(), "report r").refusal(2);
+    assert!(said.contains("\"axial_farce_N\" in place of \"axial_force_N\""), "{said}");
+    write(folder.path(), "r/front.csv", &table);
+    let study = read(&folder.path().join("r/study.json"));
+    write(folder.path(), "r/study.json", &study.replace("\"count\": 13", "\"count\": 14"));
+    let said = ask(folder.path(), "report r").refusal(2);
+    assert!(said.contains("summary.json: it is the summary of another study"), "{said}");
+    assert!(!folder.path().join("r/report.html").exists(), "nothing half-written");
+}

@@ -1,0 +1,279 @@
+//! The page of a result in Chromium, used with mouse and keys. Where BELTSPACE_CHROMIUM is not set the tests say that they are
+//! skipped; the full stage of the checks sets it, and then a missing browser is a failure.
+
+use crate::browser::Browser;
+use crate::random::Random;
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use tempfile::TempDir;
+
+fn asked_for() -> bool {
+    let asked = std::env::var_os("BELTSPACE_CHROMIUM").is_some();
+    if !asked {
+        eprintln!("SKIPPED: set BELTSPACE_CHROMIUM=1 to drive the page in Chromium");
+    }
+    asked
+}
+
+fn beltspace(words: &[&str]) -> String {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let output = Command::new(env!("CARGO_BIN_EXE_beltspace")).args(words).current_dir(root).output().expect("the program starts");
+    assert!(output.status.success(), "{words:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).expect("text")
+}
+
+/// The page of a study of its own.
+struct Swept {
+    folder: TempDir,
+}
+
+impl Swept {
+    fn shipped(name: &str) -> Self {
+        Self::of(&format!("studies/{name}.toml"))
+    }
+
+    fn text(study: &str) -> Self {
+        let folder = tempfile::tempdir().expect("there is room");
+        let file = folder.path().join("study.toml");
+        std::fs::write(&file, study).expect("it can be written");
+        Self::of(file.to_str().expect("a path of characters"))
+    }
+
+    fn of(study: &str) -> Self {
+        let folder = tempfile::tempdir().expect("there is room");
+        beltspace(&["sweep", study, "--out", folder.path().join("r").to_str().expect("a path of characters"), "--quiet"]);
+        Self { folder }
+    }
+
+    fn page(&self) -> PathBuf {
+        self.folder.path().join("r/report.html")
+    }
+
+    fn front(&self) -> Vec<BTreeMap<String, String>> {
+        let mut reader = csv::Reader::from_path(self.folder.path().join("r/front.csv")).expect("there is a front");
+        reader.deserialize().map(|row| row.expect("rows are complete")).collect()
+    }
+}
+
+fn number(text: &str) -> f64 {
+    text.parse().expect("it is a number")
+}
+
+/// Drags over a part of a cell of the matrix; parts of its width and height.
+fn brush(browser: &mut Browser, x: &str, y: &str, from: [f64; 2], to: [f64; 2]) {
+    let [left, top, width, height] = browser.rectangle(&format!(".cell[data-x={x:?}][data-y={y:?}] .overlay"));
+    let place = |part: [f64; 2]| [left + part[0] * width, top + part[1] * height];
+    browser.drag(place(from), place(to));
+    browser.evaluate("new Promise((done) => requestAnimationFrame(() => setTimeout(done, 200)))");
+}
+
+#[test]
+fn a_front_is_brushed_and_a_card_says_what_the_table_says() {
+    if !asked_for() {
+        return;
+    }
+    let swept = Swept::shipped("metal-cvt");
+    let size = std::fs::metadata(swept.page()).expect("there is a page").len();
+    assert!(size < 8_000_000, "{size} bytes");
+    let mut browser = Browser::open(&swept.page(), "");
+    let front = swept.front();
+    assert_eq!(browser.number("beltspace.data.front.rows"), front.len() as f64);
+    let brushable = browser.number("beltspace.timings.firstPaint");
+    eprintln!("{} designs, {size} bytes, brushable {brushable:.0} ms after navigation began", front.len());
+    assert_eq!(browser.text("document.querySelector('#selected-count').textContent").replace('\u{202f}', ""), front.len().to_string());
+    browser.picture("metal-cvt");
+
+    // A brush in a cell, then another one in a second cell: both hold.
+    brush(&mut browser, "axial_force_N", "stress_margin", [0.0, 0.0], [0.6, 0.6]);
+    let state = "[...beltspace.state.cells.values()].map((c) => [c.x, c.y, ...c.xRange, ...c.yRange])";
+    let ranges = browser.evaluate(state);
+    assert_eq!(ranges.as_array().map(Vec::len), Some(1), "{ranges}");
+    brush(&mut browser, "stress_margin", "slip_margin", [0.2, 0.1], [1.0, 0.9]);
+    browser.picture("metal-cvt-brushed");
+    let ranges = browser.evaluate(state);
+    let ranges: Vec<(String, String, [f64; 4])> = serde_json::from_value::<Vec<(String, String, f64, f64, f64, f64)>>(ranges)
+        .expect("two brushes")
+        .into_iter()
+        .map(|(x, y, a, b, c, d)| (x, y, [a, b, c, d]))
+        .collect();
+    assert_eq!(ranges.len(), 2);
+    let inside = |row: &BTreeMap<String, String>| {
+        ranges.iter().all(|(x, y, [a, b, c, d])| (*a..=*b).contains(&number(&row[x])) && (*c..=*d).contains(&number(&row[y])))
+    };
+    let expected: Vec<u64> = (0..).zip(&front).filter(|(_, row)| inside(row)).map(|(at, _)| at).collect();
+    let selected: Vec<u64> = serde_json::from_value(browser.evaluate("[...beltspace.selected()]")).expect("rows");
+    assert!(expected.len() > 20 && expected.len() < front.len() - 20, "{} of {}", expected.len(), front.len());
+    assert_eq!(selected, expected, "what is selected is what lies in both brushes");
+    assert_eq!(browser.text("document.querySelector('#selected-count').textContent").replace('\u{202f}', ""), expected.len().to_string());
+
+    // The card of a point that is clicked says what front.csv says of it, to the last digit.
+    browser.click_on("#designs tbody tr:nth-child(3)");
+    browser.wait("!document.querySelector('#card').hidden");
+    let row = browser.number("beltspace.state.card") as usize;
+    assert!(expected.contains(&(row as u64)));
+    let table = &front[row];
+    let mut compared = 0;
+    for (name, value) in table.iter().filter(|(name, _)| !name.ends_with("_scenario") && *name != "design_index") {
+        let shown = browser.text(&format!("document.querySelector('#card [data-name=\"{name}\"]').dataset.value"));
+        assert_eq!(number(&shown).to_bits(), number(value).to_bits(), "{name}: the card says {shown}, the table {value}");
+        compared += 1;
+    }
+    assert!(compared >= 8, "{compared}");
+    let card = browser.text("document.querySelector('#card').innerText");
+    assert!(card.contains(&format!("--design {}", table["design_index"])), "{card}");
+    browser.picture("metal-cvt-card");
+    // The command on the card, run as it stands, gives the same number.
+    let command =
+        browser.text("[...document.querySelectorAll('#card code')].map((it) => it.textContent).find((it) => it.includes('--design'))");
+    let words: Vec<&str> = command.split_whitespace().skip(1).chain(["--json"]).filter(|word| *word != "--scenario").collect();
+    let again: serde_json::Value = serde_json::from_str(&beltspace(&words)).expect("--json prints JSON");
+    let value = again["outputs"]["axial_force_N"]["value"].as_f64();
+    assert_eq!(value, Some(number(&table["axial_force_N"])), "{command}");
+
+    // Esc closes; the address holds the state, and brings it back.
+    browser.key("Escape", 27);
+    browser.wait("document.querySelector('#card').hidden");
+    browser.wait("location.hash.includes('r=')");
+    let hash = browser.text("location.hash");
+    browser.go_to(&swept.page(), &hash);
+    let again: Vec<u64> = serde_json::from_value(browser.evaluate("[...beltspace.selected()]")).expect("rows");
+    assert_eq!(again, expected, "{hash}");
+    browser.click_on("#clear");
+    browser.wait(&format!("beltspace.selected().length === {}", front.len()));
+    assert!(browser.complaints.is_empty(), "{:#?}", browser.complaints);
+}
+
+#[test]
+fn axes_are_brushed_turned_and_moved_and_a_point_is_reached_with_the_keyboard() {
+    if !asked_for() {
+        return;
+    }
+    let swept = Swept::shipped("rubber-cvt");
+    let mut browser = Browser::open(&swept.page(), "");
+    let front = swept.front();
+    // The lower half of the first axis.
+    let name = browser.text("beltspace.state.parallel[0]");
+    let [left, top, width, height] = browser.rectangle(&format!("#parallel .axis[data-name={name:?}] .overlay"));
+    browser.drag([left + width / 2.0, top + 0.5 * height], [left + width / 2.0, top + 0.98 * height]);
+    browser.wait("beltspace.state.axes.size === 1");
+    let range: [f64; 2] = serde_json::from_value(browser.evaluate(&format!("beltspace.state.axes.get({name:?})"))).expect("two ends");
+    let expected = front.iter().filter(|row| (range[0]..=range[1]).contains(&number(&row[&name]))).count();
+    assert!(expected > 0 && expected < front.len(), "{expected} of {}", front.len());
+    assert_eq!(browser.number("beltspace.selected().length"), expected as f64);
+    browser.picture("rubber-cvt-parallel");
+    // Turned over and moved with its buttons.
+    let before = browser.text("beltspace.state.parallel.join()");
+    browser.evaluate(&format!("beltspace.moveAxis({name:?}, 2)"));
+    assert_ne!(browser.text("beltspace.state.parallel.join()"), before);
+    browser.evaluate(&format!("beltspace.invertAxis({name:?})"));
+    assert_eq!(browser.number("beltspace.selected().length"), expected as f64, "how an axis stands selects nothing");
+    browser.click_on("#clear");
+    // Keys only: into a cell of the matrix, to a point, its card, the next card, and out.
+    browser.evaluate("document.querySelector('#splom .cell').focus()");
+    browser.key("ArrowRight", 39);
+    browser.wait("beltspace.state.current !== null");
+    browser.key("Enter", 13);
+    browser.wait("!document.querySelector('#card').hidden");
+    let first = browser.number("beltspace.state.card");
+    browser.key("ArrowRight", 39);
+    browser.wait(&format!("beltspace.state.card !== {first}"));
+    browser.key("Escape", 27);
+    browser.wait("document.querySelector('#card').hidden");
+    assert!(browser.complaints.is_empty(), "{:#?}", browser.complaints);
+}
+
+#[test]
+fn dark_and_light_maps_and_pictures_of_a_pulley() {
+    if !asked_for() {
+        return;
+    }
+    for name in ["pulley-thickness", "timing-map", "pulley-load"] {
+        let swept = Swept::shipped(name);
+        let mut browser = Browser::open(&swept.page(), "#t=dark");
+        assert_eq!(browser.text("document.documentElement.dataset.theme"), "dark");
+        let dark = browser.text("getComputedStyle(document.body).backgroundColor");
+        browser.picture(&format!("{name}-dark"));
+        browser.click_on("#theme");
+        browser.wait(&format!("getComputedStyle(document.body).backgroundColor !== {dark:?}"));
+        let pictures = browser.number("document.querySelectorAll('#figures svg, #figures img, #maps svg, #maps img, #maps canvas').length");
+        assert!(pictures >= 1.0, "{name} shows {pictures} pictures");
+        assert!(browser.complaints.is_empty(), "{name}: {:#?}", browser.complaints);
+    }
+}
+
+const POINT: &str = r#"
+model = "metal-cvt"
+title = "One design is the best of all"
+[design]
+band_count = [8, 10]
+[operation]
+torque_Nm = [50, 100]
+[constraints]
+slip_margin = { min = 0 }
+[objectives]
+max_stress_MPa = "min"
+axial_force_N = "min"
+"#;
+
+#[test]
+fn a_page_with_one_point_and_one_with_none() {
+    if !asked_for() {
+        return;
+    }
+    let swept = Swept::text(POINT);
+    assert_eq!(swept.front().len(), 1);
+    let mut browser = Browser::open(&swept.page(), "");
+    browser.picture("one-point");
+    assert_eq!(browser.number("beltspace.selected().length"), 1.0);
+    browser.evaluate("beltspace.openCard(0)");
+    browser.wait("!document.querySelector('#card').hidden");
+    assert!(browser.complaints.is_empty(), "{:#?}", browser.complaints);
+
+    let swept = Swept::text(&POINT.replace("slip_margin = { min = 0 }", "slip_margin = { min = 0 }\nmax_stress_MPa = { max = 20 }"));
+    assert!(swept.front().is_empty());
+    let mut browser = Browser::open(&swept.page(), "");
+    browser.picture("none-feasible");
+    let said = browser.text("document.querySelector('#lead').innerText");
+    assert!(said.contains("No design is feasible") && said.contains("max_stress_MPa at most 20"), "{said}");
+    assert!(browser.complaints.is_empty(), "{:#?}", browser.complaints);
+}
+
+#[test]
+fn a_hundred_thousand_points_are_brushed() {
+    if !asked_for() {
+        return;
+    }
+    // Points of a sphere dominate each other nowhere: every row of a catalogue is on the front.
+    let folder = tempfile::tempdir().expect("there is room");
+    let random = &mut Random::new(1);
+    let mut rows = String::from("power_kW,slack_tension_N\n");
+    let points = 100_000;
+    for at in 0..points {
+        // More power and less slack tension: each row gives up some of one for the other.
+        let part = (f64::from(at) + random.unit()) / f64::from(points);
+        writeln!(rows, "{},{}", 1.0 + 4.0 * part, 400.0 + 300.0 * part).expect("text grows");
+    }
+    std::fs::write(folder.path().join("rows.csv"), rows).expect("it can be written");
+    let text = "model = \"pulley-load\"\ntitle = \"A catalogue of 100 000 drives\"\n[design]\ncases = { csv = \"rows.csv\" }\n\
+                [objectives]\npower_kW = \"max\"\nslack_tension_N = \"min\"\n[report]\n\
+                columns = [\"torque_Nm\", \"resultant_force_N\", \"friction_used\", \"tight_tension_N\"]\n";
+    std::fs::write(folder.path().join("catalogue.toml"), text).expect("it can be written");
+    let swept = Swept::of(folder.path().join("catalogue.toml").to_str().expect("a path of characters"));
+    assert_eq!(swept.front().len(), points as usize);
+    let mut browser = Browser::open(&swept.page(), "");
+    let loaded = browser.number("beltspace.timings.firstPaint");
+    brush(&mut browser, "power_kW", "slack_tension_N", [0.1, 0.1], [0.5, 0.95]);
+    let selected = browser.number("beltspace.selected().length");
+    assert!(selected > 1000.0 && selected < 99_000.0, "{selected}");
+    let update = browser.number(
+        "(() => { const start = performance.now(); beltspace.brushAxis('power_kW', [2, 3]); return performance.now() - start; })()",
+    );
+    let draw = browser.number("beltspace.timings.matrixDraw");
+    eprintln!(
+        "100 000 designs: brushable {loaded:.0} ms after navigation began; a brush takes {update:.0} ms, the matrix {draw:.0} ms to draw"
+    );
+    browser.picture("hundred-thousand");
+    assert!(browser.complaints.is_empty(), "{:#?}", browser.complaints);
+}
