@@ -40,6 +40,8 @@ pub enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// Compute the papers' tables and figures again, and say what agrees, what does not and why
+    Reproduce(Reproduce),
     /// Print a completion script for a shell
     Completions {
         /// Shell
@@ -210,4 +212,18 @@ pub struct Merge {
     /// Replace an existing result
     #[arg(long)]
     pub force: bool,
+}
+
+/// Options of `reproduce`.
+#[derive(Debug, Args)]
+pub struct Reproduce {
+    /// Directory of figures, tables and comparison
+    #[arg(long, value_name = "DIR", default_value = "results/papers")]
+    pub out: PathBuf,
+    /// Replace files that are there
+    #[arg(long)]
+    pub force: bool,
+    /// Print nothing but errors
+    #[arg(long)]
+    pub quiet: bool,
 }

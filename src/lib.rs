@@ -9,7 +9,8 @@
 //! operation) and which nobody knows exactly (the uncertainty). The [`plan`] splits the [`space`] into what is slow and what is
 //! fast, [`screen`] judges it, eight designs at a time in f64 or on a graphics device ([`gpu`]) in f32 with error bounds,
 //! [`reduce`] keeps what matters of it, [`sweep`] runs that with a [`checkpoint`], [`certify`] computes what is reported once more
-//! with the scalar f64 reference, [`contours`] finds the lines over maps, and [`export`] writes it.
+//! with the scalar f64 reference, [`contours`] finds the lines over maps, and [`export`] writes it. [`papers`] computes the papers behind the models
+//! again.
 //! A module imports only what stands to its left, and `models`, `real`, `units` and `error`.
 //!
 //! ```
@@ -51,6 +52,7 @@ pub mod export;
 pub mod gpu;
 pub mod merge;
 pub mod models;
+pub mod papers;
 pub mod pictures;
 pub mod plan;
 pub mod pulley;

@@ -7,6 +7,7 @@ mod eval;
 mod export;
 mod merge;
 mod models;
+mod reproduce;
 mod sweep;
 mod verify;
 
@@ -28,6 +29,7 @@ pub fn run(command: Command) -> Result<()> {
         Command::Sweep(request) => sweep::run(&request),
         Command::Merge(request) => merge::run(&request),
         Command::Verify(request) => verify::run(&request),
+        Command::Reproduce(request) => reproduce::run(&request),
         Command::Adapters { json } => adapters::run(json),
         Command::Completions { shell } => {
             let mut script = Vec::new();
