@@ -42,6 +42,8 @@ pub enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// Compute the papers' tables and figures again, and say what agrees, what does not and why
+    Reproduce(Reproduce),
     /// Print a completion script for a shell
     Completions {
         /// Shell
@@ -237,4 +239,21 @@ pub struct Merge {
     /// Replace an existing result
     #[arg(long)]
     pub force: bool,
+}
+
+/// Options of `reproduce`.
+#[derive(Debug, Args)]
+pub struct Reproduce {
+    /// Directory of figures, tables and comparison
+    #[arg(long, value_name = "DIR", default_value = "results/papers")]
+    pub out: PathBuf,
+    /// Do not write report.html, the page with all of it
+    #[arg(long)]
+    pub no_report: bool,
+    /// Replace files that are there
+    #[arg(long)]
+    pub force: bool,
+    /// Print nothing but errors
+    #[arg(long)]
+    pub quiet: bool,
 }

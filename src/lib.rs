@@ -10,6 +10,7 @@
 //! fast, [`screen`] judges it, eight designs at a time in f64 or on a graphics device ([`gpu`]) in f32 with error bounds,
 //! [`reduce`] keeps what matters of it, [`sweep`] runs that with a [`checkpoint`], [`certify`] computes what is reported once more
 //! with the scalar f64 reference, [`contours`] finds the lines over maps, [`export`] writes it, and [`report`] makes a page of it.
+//! [`papers`] computes the papers behind the models again.
 //! A module imports only what stands to its left, and `models`, `real`, `units` and `error`.
 //!
 //! ```
@@ -51,6 +52,7 @@ pub mod export;
 pub mod gpu;
 pub mod merge;
 pub mod models;
+pub mod papers;
 pub mod pictures;
 pub mod plan;
 pub mod pulley;

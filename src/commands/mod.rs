@@ -8,6 +8,7 @@ mod export;
 mod merge;
 mod models;
 mod report;
+mod reproduce;
 mod sweep;
 mod verify;
 
@@ -30,6 +31,7 @@ pub fn run(command: Command) -> Result<()> {
         Command::Merge(request) => merge::run(&request),
         Command::Report(request) => report::run(&request),
         Command::Verify(request) => verify::run(&request),
+        Command::Reproduce(request) => reproduce::run(&request),
         Command::Adapters { json } => adapters::run(json),
         Command::Completions { shell } => {
             let mut script = Vec::new();

@@ -1,6 +1,7 @@
 //! The head of a picture: its title and, below, a legend that can cover no data.
 
 use super::colours::{ABSENT, GREY, HATCH, INK};
+use super::lines::Marker;
 use super::sheet::{Area, Dash, Drawn, Sheet, UNIT, WIDTH};
 use super::words::{clean, line_height, shortened, text, text_width, wrap};
 use plotters::prelude::*;
@@ -17,6 +18,10 @@ const MARK_WIDTH: i32 = 30 * UNIT;
 pub(super) enum Mark {
     Dot(RGBColor),
     Line(RGBColor, Dash),
+    /// A line with a mark on it.
+    Styled(RGBColor, Option<Dash>, Marker),
+    /// A dot, filled or not, that stands out from a line of its colour.
+    Ring(RGBColor, bool),
     Diamond(RGBColor),
     Plus(RGBColor),
     Box(RGBColor),
@@ -111,6 +116,20 @@ impl Mark {
                 };
                 for (from, to) in strokes {
                     area.draw(&PathElement::new([(x + from, y), (x + to, y)], stroke))?;
+                }
+            }
+            Mark::Styled(colour, dash, marker) => {
+                if let Some(dash) = dash {
+                    Mark::Line(colour, dash).draw(area, (x, y))?;
+                }
+                if marker != Marker::None {
+                    Mark::Ring(colour, marker == Marker::Filled).draw(area, (x, y))?;
+                }
+            }
+            Mark::Ring(colour, filled) => {
+                let inner = if filled { colour } else { WHITE };
+                for (radius, colour) in [(45, colour), (28, inner)] {
+                    area.draw(&Circle::new((x, y), radius, colour.filled()))?;
                 }
             }
             Mark::Diamond(colour) => {

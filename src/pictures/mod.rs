@@ -1,7 +1,7 @@
 //! Pictures: plain data in, the text of one self-contained SVG file out.
 //!
-//! [`front`] draws a Pareto front, [`histogram()`] a histogram, [`heatmap()`] a map over two axes and
-//! [`curves()`] profiles over a common abscissa; [`pulley`] has those of pulleys. None of them reads or writes a file, and the same
+//! [`front`] draws a Pareto front, [`histogram()`] a histogram, [`heatmap()`] a map over two axes,
+//! [`curves()`] profiles over a common abscissa and [`lines()`] a figure as papers print it; [`pulley`] has those of pulleys. None of them reads or writes a file, and the same
 //! input always gives the same bytes: no clock, no random names, no hash-map order, and no
 //! transcendental function from the system in a position or a tick.
 //!
@@ -19,7 +19,8 @@ mod header;
 mod heatmap;
 mod histogram;
 mod levels;
-mod number;
+mod lines;
+pub(crate) mod number;
 mod overlay;
 mod panel;
 pub mod pulley;
@@ -35,6 +36,7 @@ mod words;
 pub use curves::curves;
 pub use heatmap::heatmap;
 pub use histogram::histogram;
+pub use lines::{Guide, Line, Marker, Scale, Stroke, lines};
 pub use scatter::front;
 
 /// One quantity on an axis.

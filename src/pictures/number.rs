@@ -38,7 +38,7 @@ pub(super) fn count(value: u64) -> String {
 
 /// A value to so many significant digits, trailing zeros dropped; very large and very small ones
 /// in powers of ten (`1.2×10⁻¹²`).
-pub(super) fn significant(value: f64, digits: usize) -> String {
+pub(crate) fn significant(value: f64, digits: usize) -> String {
     let rounded = format!("{value:.*e}", digits.saturating_sub(1));
     let (mantissa, exponent) = rounded.split_once('e').unwrap_or((&rounded, "0"));
     let exponent: i32 = exponent.parse().unwrap_or(0);

@@ -7,8 +7,10 @@ mod front;
 mod maps;
 mod packed;
 mod page;
+mod papers;
 
 pub use front::MOST_ROWS;
+pub use papers::of_papers;
 
 use crate::error::{Error, Result};
 use crate::export::{MARK, pulley, table_names, written};

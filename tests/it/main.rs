@@ -16,6 +16,8 @@ mod gpu;
 mod identities;
 /// The models over every number type: f32 with bounds, intervals, dependence, columns.
 mod numbers;
+/// The papers' figures and tables, computed again.
+mod papers;
 /// The models against their second implementation.
 mod physics;
 /// Random small studies, by brute force and by the pipeline.

@@ -1,0 +1,61 @@
+//! `beltspace reproduce`: the papers' tables and figures.
+
+use crate::cli;
+use crate::terminal::{self, Grid, bold, dim};
+use beltspace::checkpoint::replace;
+use beltspace::error::{Error, Result};
+use beltspace::export::PAGE as HTML;
+use beltspace::papers::{PAGE, Paper, Reproduction, reproduce};
+use beltspace::report::of_papers;
+use std::path::Path;
+
+pub fn run(request: &cli::Reproduce) -> Result<()> {
+    let out = &request.out;
+    if out.is_file() {
+        return Err(Error::Request(format!("{} is a file; name a directory with --out", out.display())));
+    }
+    let all = reproduce()?;
+    if !request.force {
+        refuse_to_overwrite(&all, out)?;
+    }
+    all.write(out)?;
+    let page = out.join(HTML);
+    if !request.no_report {
+        replace(&page, of_papers(&all).as_bytes())?;
+    }
+    if request.quiet {
+        return Ok(());
+    }
+    let page = if request.no_report { String::new() } else { format!("page: {}\n", page.display()) };
+    terminal::print(&(shown(&all, out) + &page))
+}
+
+/// Files that are there stay unless `--force` says otherwise.
+fn refuse_to_overwrite(all: &Reproduction, out: &Path) -> Result<()> {
+    let files = all.in_the_way(out);
+    let Some(first) = files.first() else { return Ok(()) };
+    let more = if files.len() > 1 { format!(" and {} more", files.len() - 1) } else { String::new() };
+    Err(Error::Request(format!(
+        "{} has files that would be replaced ({first}{more}); replace them with --force, or write to another --out",
+        out.display()
+    )))
+}
+
+/// The comparisons, paper by paper.
+fn shown(all: &Reproduction, out: &Path) -> String {
+    let mut text = String::new();
+    for paper in Paper::ALL {
+        let mut grid = Grid::default();
+        for row in all.comparisons.iter().filter(|row| row.group == paper) {
+            let with_unit = |number: &str| if row.unit.is_empty() { number.to_owned() } else { format!("{number} {}", row.unit) };
+            grid.row([
+                row.verdict.word().to_owned(),
+                row.what.clone(),
+                format!("{} -> {}", row.printed, with_unit(&row.computed)),
+                dim(&row.difference),
+            ]);
+        }
+        text += &format!("{}\n{}\n", bold(paper.name()), grid.indented(2));
+    }
+    text + &format!("{}\nreasons, figures and tables: {}\n", all.summary(), out.join(PAGE).display())
+}

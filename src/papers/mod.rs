@@ -1,0 +1,228 @@
+//! The three papers that the models come from, computed again: every table and every figure that can be, and number by number
+//! what agrees, what does not, and why.
+//!
+//! [`reproduce()`] evaluates the [`models`](crate::models) with the papers' data; nothing is fitted to agree, and what had to be chosen
+//! or calibrated because a paper does not print it is said to be. Where a model has no answer, because the printed numbers lie beyond
+//! what it allows, the printed equation itself is evaluated. A [`Comparison`] without a reason is refused.
+
+mod comparison;
+mod cvt;
+mod evaluated;
+mod pulley;
+mod readme;
+mod timing;
+
+pub use comparison::{Comparison, Printed, Verdict, check};
+
+use evaluated::Inputs;
+
+use crate::checkpoint::replace;
+use crate::error::{Error, Result};
+use crate::export::{Data, Table, TableColumn, csv_text};
+use std::fs;
+use std::path::Path;
+
+/// Name of the page that a reproduction is read from.
+pub const PAGE: &str = "README.md";
+/// Name of the table of all comparisons, whose presence makes a folder a reproduction.
+pub const MARK: &str = "comparison.csv";
+
+/// One of the papers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Paper {
+    /// Rubber and metal V-belt variators.
+    Cvt,
+    /// Incomplete meshing of a timing belt.
+    TimingBelt,
+    /// Design and analysis of V-belt pulleys.
+    Pulley,
+}
+
+impl Paper {
+    /// All of them, in the order in which they are shown.
+    pub const ALL: [Self; 3] = [Self::Cvt, Self::TimingBelt, Self::Pulley];
+
+    /// A short heading.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Cvt => "V-belt variator",
+            Self::TimingBelt => "Timing belt",
+            Self::Pulley => "V-belt pulley",
+        }
+    }
+
+    /// Word for tables and file names.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Cvt => "cvt",
+            Self::TimingBelt => "timing",
+            Self::Pulley => "pulley",
+        }
+    }
+
+    /// Authors and title.
+    pub fn citation(self) -> &'static str {
+        match self {
+            Self::Cvt => {
+                "H. S. Kim, K. W. Kim: Comparison of Speed Ratio-Torque Load-Axial Force Characteristics and Their Performance for \
+                 Automotive Rubber and Metal V-Belt CVT"
+            }
+            Self::TimingBelt => {
+                "H. S. Kim, C. K. Yeo, I. H. Lee: Force Distribution of Incomplete Meshing Teeth in Timing Belt Drive - on the OHC Drive \
+                 Timing Belt System"
+            }
+            Self::Pulley => "K.-S. Lee, J. H. Hong, J. H. Son, S. H. Lee: Development of V Belt Pulley Design/Analysis System",
+        }
+    }
+}
+
+/// A figure, drawn again from the models.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure {
+    /// Name of its files, without `.svg` and `.csv`.
+    pub id: &'static str,
+    /// What it shows.
+    pub title: String,
+    /// What to see in it, and what is not the paper's.
+    pub caption: String,
+    /// The paper.
+    pub group: Paper,
+    /// The picture, one self-contained SVG text in the paper's axes.
+    pub svg: String,
+    /// What is drawn, as numbers.
+    pub table: Table,
+}
+
+impl Figure {
+    /// Name of the picture's file.
+    pub fn svg_name(&self) -> String {
+        format!("{}.svg", self.id)
+    }
+
+    /// Name of the file of its numbers.
+    pub fn csv_name(&self) -> String {
+        format!("{}.csv", self.id)
+    }
+}
+
+/// A table, computed again.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PaperTable {
+    /// Name of its file, without `.csv`.
+    pub id: &'static str,
+    /// What it holds.
+    pub title: String,
+    /// What to see in it, and what is not the paper's.
+    pub caption: String,
+    /// The paper.
+    pub group: Paper,
+    /// Its cells.
+    pub table: Table,
+}
+
+impl PaperTable {
+    /// Name of its file.
+    pub fn csv_name(&self) -> String {
+        format!("{}.csv", self.id)
+    }
+}
+
+/// Something in a paper that cannot be computed again.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Lost {
+    /// The paper.
+    pub group: Paper,
+    /// What it is.
+    pub what: &'static str,
+    /// Why not.
+    pub why: &'static str,
+}
+
+/// Everything that is computed again of the three papers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reproduction {
+    /// The figures, paper by paper.
+    pub figures: Vec<Figure>,
+    /// The tables, paper by paper.
+    pub tables: Vec<PaperTable>,
+    /// Every number and statement that can be compared, paper by paper.
+    pub comparisons: Vec<Comparison>,
+    /// What cannot.
+    pub lost: Vec<Lost>,
+}
+
+/// Computes the figures, tables and comparisons of all papers: a few seconds, most of them for the pulleys' finite elements.
+///
+/// # Errors
+/// [`Error::Certificate`] if a comparison gives no reason.
+pub fn reproduce() -> Result<Reproduction> {
+    let mut all = Reproduction { figures: Vec::new(), tables: Vec::new(), comparisons: Vec::new(), lost: Vec::new() };
+    for of_one in [cvt::reproduce(), timing::reproduce(), pulley::reproduce()] {
+        all.figures.extend(of_one.figures);
+        all.tables.extend(of_one.tables);
+        all.comparisons.extend(of_one.comparisons);
+        all.lost.extend(of_one.lost);
+    }
+    check(&all.comparisons).map_err(Error::Certificate)?;
+    Ok(all)
+}
+
+impl Reproduction {
+    /// Number of comparisons that came out so.
+    pub fn count(&self, verdict: Verdict) -> usize {
+        self.comparisons.iter().filter(|row| row.verdict == verdict).count()
+    }
+
+    /// How many comparisons there are of each kind, in a sentence.
+    pub fn summary(&self) -> String {
+        let [agree, fitted, differ, unprinted] = [Verdict::Agrees, Verdict::Fitted, Verdict::Differs, Verdict::NotPrinted];
+        format!(
+            "{} comparisons: {} agree, {} agree because a value was fitted to them, {} differ, {} have no printed counterpart",
+            self.comparisons.len(),
+            self.count(agree),
+            self.count(fitted),
+            self.count(differ),
+            self.count(unprinted),
+        )
+    }
+
+    /// The files of the reproduction by name, in the order in which they are written; [`MARK`] last.
+    pub fn files(&self) -> Vec<(String, Vec<u8>)> {
+        let mut files = Vec::new();
+        for figure in &self.figures {
+            files.push((figure.svg_name(), figure.svg.clone().into_bytes()));
+            files.push((figure.csv_name(), csv_text(&figure.table)));
+        }
+        for table in &self.tables {
+            files.push((table.csv_name(), csv_text(&table.table)));
+        }
+        files.push((PAGE.to_owned(), readme::page(self).into_bytes()));
+        files.push((MARK.to_owned(), csv_text(&comparison::table(&self.comparisons))));
+        files
+    }
+
+    /// Files of a folder that writing there would replace, in the order of their writing.
+    pub fn in_the_way(&self, folder: &Path) -> Vec<String> {
+        let names = self.files().into_iter().map(|(name, _)| name);
+        names.filter(|name| folder.join(name).exists()).collect()
+    }
+
+    /// Writes all files. Each is either whole or not there, and [`MARK`] comes last.
+    ///
+    /// # Errors
+    /// [`Error::Io`].
+    pub fn write(&self, folder: &Path) -> Result<()> {
+        fs::create_dir_all(folder).map_err(Error::io(folder))?;
+        self.files().iter().try_for_each(|(name, bytes)| replace(&folder.join(name), bytes))
+    }
+}
+
+/// A column of numbers.
+fn numbers(name: &str, unit: &str, description: &str, values: impl IntoIterator<Item = Option<f64>>) -> TableColumn {
+    TableColumn { unit: unit.to_owned(), ..TableColumn::new(name, "paper", description, Data::Number(values.into_iter().collect())) }
+}
+
+/// A column of words.
+fn words<'a>(name: &str, description: &str, values: impl IntoIterator<Item = &'a str>) -> TableColumn {
+    TableColumn::new(name, "paper", description, Data::Text(values.into_iter().map(str::to_owned).collect()))
+}

@@ -1,0 +1,57 @@
+//! The page that a reproduction is read from.
+
+use super::{Comparison, Lost, Paper, Reproduction};
+
+const INTRODUCTION: &str = "\
+Written by `beltspace reproduce`; a test writes it again and compares every byte. All numbers come from the models, evaluated with the
+papers' data. Where a model has no answer because the printed numbers lie beyond what it allows, the printed equation itself is
+evaluated, and the reason says so. *agrees* means within half a unit of the last printed digit, inside the printed range, or as the
+statement says; *fitted* agrees because an input that the paper does not print was chosen so; *not printed* has nothing to compare
+with. Nothing is adjusted to agree without being named. All numbers in full are in [comparison.csv](comparison.csv).
+";
+
+/// The page as Markdown.
+pub(super) fn page(all: &Reproduction) -> String {
+    let mut text = format!("# The papers, computed again\n\n{INTRODUCTION}\n{}.\n", all.summary());
+    for paper in Paper::ALL {
+        text += &format!("\n## {}\n\n{}.\n", paper.name(), paper.citation());
+        text += "\n| where | what | printed | computed | difference | | reason |\n|---|---|---|---|---|---|---|\n";
+        for row in all.comparisons.iter().filter(|row| row.group == paper) {
+            text += &line(row);
+        }
+        for table in all.tables.iter().filter(|table| table.group == paper) {
+            text += &format!("\n### {}\n\n{} Values: [{2}]({2}).\n", table.title, table.caption, table.csv_name());
+        }
+        for figure in all.figures.iter().filter(|figure| figure.group == paper) {
+            let (svg, csv) = (figure.svg_name(), figure.csv_name());
+            text += &format!("\n### {0}\n\n![{0}]({svg})\n\n{1} Values: [{csv}]({csv}).\n", figure.title, figure.caption);
+        }
+        let lost: Vec<&Lost> = all.lost.iter().filter(|lost| lost.group == paper).collect();
+        if !lost.is_empty() {
+            text += "\n### What cannot be computed again\n\n";
+            for Lost { what, why, .. } in lost {
+                text += &format!("- {}: {why}\n", capitalised(what));
+            }
+        }
+    }
+    text
+}
+
+fn line(row: &Comparison) -> String {
+    let with_unit = |number: &str| {
+        let bare = row.unit.is_empty() || number == "-";
+        cell(&if bare { number.to_owned() } else { format!("{number} {}", row.unit) })
+    };
+    let cells = [cell(row.at), cell(&row.what), with_unit(&row.printed), with_unit(&row.computed), cell(&row.difference)];
+    format!("| {} | {} | {} |\n", cells.join(" | "), row.verdict.word(), cell(&row.reason))
+}
+
+/// Text that cannot end its cell.
+fn cell(text: &str) -> String {
+    text.replace('|', "\\|")
+}
+
+fn capitalised(text: &str) -> String {
+    let mut characters = text.chars();
+    characters.next().map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + characters.as_str())
+}

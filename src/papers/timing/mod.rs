@@ -1,0 +1,69 @@
+//! The paper on incomplete meshing of a timing belt.
+
+mod figures;
+mod printed;
+mod rows;
+
+use super::{Inputs, Lost, Paper, Reproduction};
+
+/// Everything of this paper.
+pub(super) fn reproduce() -> Reproduction {
+    Reproduction { figures: figures::all(), tables: Vec::new(), comparisons: rows::all(), lost: LOST.to_vec() }
+}
+
+const LOST: &[Lost] = &[
+    Lost {
+        group: Paper::TimingBelt,
+        what: "the values of the loads in Figs 8 to 11",
+        why: "The scan has no pictures, and the text prints no load: boundaries and directions of change are all that can be compared.",
+    },
+    Lost {
+        group: Paper::TimingBelt,
+        what: "Figs 1 to 7",
+        why: "Sketches of the drive, the mesh and belt elements: there is nothing to compute in them.",
+    },
+];
+
+/// Tooth loads of a pulley.
+struct Mesh {
+    speed: f64,
+    tension: f64,
+    tooth: Vec<f64>,
+    /// Loads of the mesh as it is, N.
+    load: Vec<f64>,
+    /// Loads if every tooth meshed, N.
+    complete: Vec<f64>,
+    /// Tensions of the mesh as it is, N.
+    tensions: Vec<f64>,
+    /// First lifted tooth.
+    first_lifted: usize,
+}
+
+impl Mesh {
+    fn of(pulley: &Inputs) -> Self {
+        Self {
+            speed: pulley.input("pulley_speed_rpm"),
+            tension: pulley.input("tight_tension_N"),
+            tooth: pulley.column("tooth"),
+            load: pulley.column("tooth_load_N"),
+            complete: pulley.column("tooth_load_complete_N"),
+            tensions: pulley.column("tension_N"),
+            first_lifted: pulley.output("boundary_tooth") as usize,
+        }
+    }
+
+    /// What the boundary does to the load of each tooth, as a share of the complete mesh's.
+    fn changes(&self) -> Vec<f64> {
+        self.load.iter().zip(&self.complete).map(|(load, complete)| load / complete - 1.0).collect()
+    }
+}
+
+/// The driven pulley at a speed, rpm, and a tight tension, N.
+fn driven(speed: f64, tension: f64) -> Inputs {
+    Inputs::preset("timing-belt", "ohc-driven").with(&[("pulley_speed_rpm", speed), ("tight_tension_N", tension)])
+}
+
+/// The driver at a tight tension, at rest.
+fn driver_at_rest(tension: f64) -> Inputs {
+    Inputs::preset("timing-belt", "ohc-driver").with(&[("pulley_speed_rpm", 0.0), ("tight_tension_N", tension)])
+}
