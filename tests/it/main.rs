@@ -38,3 +38,5 @@ mod report_page;
 mod second;
 /// The timing belt: figures, closed forms, similarity.
 mod timing_mesh;
+/// The tutorials of `docs/`, run and held against what the program says.
+mod tutorial;
