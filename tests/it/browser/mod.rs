@@ -20,12 +20,15 @@ pub struct Browser {
     next: u64,
     /// Errors and warnings of the page, and everything that it asked a network for.
     pub complaints: Vec<String>,
+    /// From starting the program to a page that can be used, of the first page.
+    pub opened: Duration,
     _profile: TempDir,
 }
 
 impl Browser {
     /// Starts `chromium` and opens a file by its `file://` address, `after` being put behind it, such as `#d=5`.
     pub fn open(file: &Path, after: &str) -> Self {
+        let start = Instant::now();
         let profile = tempfile::tempdir().expect("there is room for a profile");
         let process = Command::new("chromium")
             .args(["--headless=new", "--no-sandbox", "--disable-gpu", "--no-first-run", "--hide-scrollbars", "--remote-debugging-port=0"])
@@ -46,7 +49,8 @@ impl Browser {
         if let MaybeTlsStream::Plain(stream) = socket.get_ref() {
             stream.set_read_timeout(Some(PATIENCE)).expect("a socket takes a limit");
         }
-        let mut browser = Self { process, socket, session: String::new(), next: 0, complaints: Vec::new(), _profile: profile };
+        let mut browser =
+            Self { process, socket, session: String::new(), next: 0, complaints: Vec::new(), opened: Duration::ZERO, _profile: profile };
         let target = browser.call("Target.createTarget", &json!({ "url": "about:blank" }))["targetId"].clone();
         let attached = browser.call("Target.attachToTarget", &json!({ "targetId": target, "flatten": true }));
         browser.session = attached["sessionId"].as_str().expect("a session has a name").to_owned();
@@ -56,6 +60,7 @@ impl Browser {
         let size = json!({ "width": 1400, "height": 1000, "deviceScaleFactor": 1, "mobile": false });
         browser.call("Emulation.setDeviceMetricsOverride", &size);
         browser.go_to(file, after);
+        browser.opened = start.elapsed();
         browser
     }
 
