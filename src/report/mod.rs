@@ -121,6 +121,7 @@ pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
         "maps": maps.collect::<Result<Vec<_>>>()?,
         "figures": figures(folder),
         "top": top(folder, study)?,
+        "variants": variants(folder, study)?,
     });
     let rows = |key: &str| data["front"][key].as_u64().map_or(0, |it| usize::try_from(it).unwrap_or(usize::MAX));
     Ok(Page { html: page::page(&study.title, &data), designs: rows("rows"), of: rows("of"), complete: data["front"]["complete"] != false })
@@ -205,9 +206,20 @@ fn figures(folder: &Path) -> Vec<Value> {
 /// The list of the best designs, as it was written.
 fn top(folder: &Path, study: &Study) -> Result<Option<Value>> {
     let Some(top) = study.report.top else { return Ok(None) };
-    let file = folder.join("top.csv");
-    let mut reader = csv::Reader::from_path(&file).map_err(|error| unreadable(&file, &error))?;
-    let columns: Vec<String> = reader.headers().map_err(|error| unreadable(&file, &error))?.iter().map(str::to_owned).collect();
+    let mut table = table(&folder.join("top.csv"), study)?;
+    (table["by"], table["goal"]) = (top.by.name(study.model).into(), json!(top.goal));
+    Ok(Some(table))
+}
+
+/// Every design, feasible or not, if the study lists them.
+fn variants(folder: &Path, study: &Study) -> Result<Option<Value>> {
+    study.report.variants.then(|| table(&folder.join("variants.csv"), study)).transpose()
+}
+
+/// A table of designs as text, with the units of its columns.
+fn table(file: &Path, study: &Study) -> Result<Value> {
+    let mut reader = csv::Reader::from_path(file).map_err(|error| unreadable(file, &error))?;
+    let columns: Vec<String> = reader.headers().map_err(|error| unreadable(file, &error))?.iter().map(str::to_owned).collect();
     let model = study.model;
     let unit = |name: &String| {
         let name = name.strip_suffix("_constrained").unwrap_or(name);
@@ -217,8 +229,8 @@ fn top(folder: &Path, study: &Study) -> Result<Option<Value>> {
     let units: Vec<_> = columns.iter().map(unit).collect();
     let rows: std::result::Result<Vec<Vec<String>>, _> =
         reader.records().map(|row| row.map(|row| row.iter().map(str::to_owned).collect())).collect();
-    let rows = rows.map_err(|error| unreadable(&file, &error))?;
-    Ok(Some(json!({ "by": top.by.name(model), "goal": top.goal, "columns": columns, "units": units, "rows": rows })))
+    let rows = rows.map_err(|error| unreadable(file, &error))?;
+    Ok(json!({ "columns": columns, "units": units, "rows": rows }))
 }
 
 fn unreadable(file: &Path, error: &csv::Error) -> Error {
