@@ -348,6 +348,11 @@ fn a_page_that_is_not_true_is_rejected() {
         let outcome = check(&TRUE.replacen(from, to, 1), &docs());
         assert!(outcome.as_ref().is_err_and(|why| why.contains(message)), "{what}: {outcome:?}");
     }
+    let (_, tutorial) = pages().into_iter().find(|(name, _)| name == "tutorial-timing-belt.md").expect("a tutorial");
+    for (from, to) in [("1683.29", "1683.28"), (" 5 teeth still lift", " 6666 teeth still lift"), ("0.328 N", "0.329 N")] {
+        assert!(tutorial.contains(from), "{from}");
+        assert!(check(&tutorial.replacen(from, to, 1), &docs()).is_err(), "{from}");
+    }
 }
 
 #[test]
