@@ -1,6 +1,6 @@
 //! The page that a reproduction is read from.
 
-use super::{Comparison, Lost, Paper, Reproduction};
+use super::{Comparison, Lost, Paper, Repair, Reproduction};
 
 const INTRODUCTION: &str = "\
 Written by `beltspace reproduce`; a test writes it again and compares every byte. All numbers come from the models, evaluated with the
@@ -25,6 +25,10 @@ pub(super) fn page(all: &Reproduction) -> String {
         for figure in all.figures.iter().filter(|figure| figure.group == paper) {
             let (svg, csv) = (figure.svg_name(), figure.csv_name());
             text += &format!("\n### {0}\n\n![{0}]({svg})\n\n{1} Values: [{csv}]({csv}).\n", figure.title, figure.caption);
+        }
+        text += "\n### What is read otherwise than printed\n\n";
+        for Repair { at, words, .. } in all.repairs.iter().filter(|repair| repair.group == paper) {
+            text += &format!("- {}: {words}\n", capitalised(at));
         }
         let lost: Vec<&Lost> = all.lost.iter().filter(|lost| lost.group == paper).collect();
         if !lost.is_empty() {

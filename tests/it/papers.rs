@@ -58,7 +58,11 @@ fn every_figure_and_table_is_there() {
     let page = String::from_utf8(page).expect("text");
     for figure in &ALL.figures {
         assert!(!figure.caption.is_empty() && figure.table.rows() > 10, "{}", figure.id);
-        assert!(page.contains(&format!("]({})", figure.svg_name())) && page.contains(&format!("]({})", figure.csv_name())), "{}", figure.id);
+        assert!(
+            page.contains(&format!("]({})", figure.svg_name())) && page.contains(&format!("]({})", figure.csv_name())),
+            "{}",
+            figure.id
+        );
     }
     for table in &ALL.tables {
         assert!(!table.caption.is_empty() && page.contains(&format!("]({})", table.csv_name())), "{}", table.id);

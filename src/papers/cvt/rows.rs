@@ -10,9 +10,13 @@ use super::tables::{
 use super::{Curve, driver_force, free_radius, metal, rubber};
 use std::f64::consts::PI;
 
+/// What is still "nearly constant", as a share.
+const NEARLY: f64 = 0.1;
+
 /// All rows of the paper, in its order.
 pub(super) fn all() -> Vec<Comparison> {
     let mut rows = Rows::of(Paper::Cvt);
+    self_locking(&mut rows);
     rubber_figures(&mut rows);
     metal_figures(&mut rows);
     table_1(&mut rows);
@@ -48,9 +52,9 @@ fn rubber_figures(rows: &mut Rows) {
         "Fig. 2",
         "largest traction in theory, R = 1, mu 0.4",
         "",
-        &Printed::digits("1"),
+        &Printed::rounded("1", 0.01),
         rubber().output("traction_limit"),
-        "The last digit hides it: by (12) the active arc fills the driven wrap at tanh(mu' theta/2), just below 1; 1 itself would need an \
+        "The text rounds up: by (12) the active arc fills the driven wrap at tanh(mu' theta/2), a little below 1, which itself would need an \
          endless wrap.",
     );
     rows.number(
@@ -68,10 +72,31 @@ fn rubber_figures(rows: &mut Rows) {
         "driven force, mu 0.4: traction 0 to 0.2, then to 0.8",
         "falls, then nearly constant (measured)",
         format!("{} then {}", percent(falls), percent(then)),
-        falls < 0.0 && then.abs() < falls.abs(),
-        "The text compares measured points, which are lost in the scan; of theory and points it says that they agree above 0.2 only. (5) \
-         goes on falling beyond 0.2.",
+        falls < 0.0 && then.abs() < NEARLY,
+        "\"Nearly constant\" is taken as within 10 %. The text speaks of the measured points, which are lost in the scan, and says that they follow \
+         the theory above 0.2 only: (5) falls less below 0.2, is least at 0.36 and rises from there.",
     );
+}
+
+/// The paper assumes that the belt is self-locked on the driver: radial friction only.
+fn self_locking(rows: &mut Rows) {
+    for (what, at, belt) in [
+        ("self-locking on the driver, rubber", "Section 2", rubber()),
+        ("self-locking on the driver, metal", "Section 3, assumption (3)", metal()),
+    ] {
+        let friction = belt.input("friction");
+        let half = belt.input("groove_angle_deg").to_radians() / 2.0;
+        let tangent = libm::sin(half) / libm::cos(half);
+        rows.statement(
+            at,
+            what,
+            "assumed",
+            format!("mu {} {} tan(alpha/2) {}", digits(friction), if friction > tangent { "above" } else { "below" }, digits(tangent)),
+            friction > tangent,
+            "A belt locks itself in its groove if mu exceeds tan(alpha/2). Where it does not, the driver's force of (1) and (6) rests on an \
+             assumption that the data do not bear out.",
+        );
+    }
 }
 
 fn metal_figures(rows: &mut Rows) {
@@ -98,8 +123,8 @@ fn metal_figures(rows: &mut Rows) {
         "driven force, R = 1: traction 0 to 0.3, then to the end",
         "nearly constant, then rises",
         format!("{} then {}", percent(before), percent(beyond)),
-        before.abs() < 0.1 && beyond > before.abs(),
-        "(16) with mu 0.1: the active arc's share outweighs the inactive one's.",
+        before.abs() < NEARLY && beyond > NEARLY,
+        "(16) with mu 0.1: the active arc's share outweighs the inactive one's. \"Nearly constant\" is taken as within 10 %.",
     );
     for (what, ratio) in [("end of the curve R = 1", 1.0), ("end of the curve R = 2", 2.0), ("end of the curve R = 1/2", 0.5)] {
         let end = belt.with(&[("ratio", ratio)]).output("traction_limit");
@@ -256,11 +281,11 @@ fn table_1(rows: &mut Rows) {
     rows.number("4.2, conclusion (2)", "capacity, metal over rubber, printed radii", "", &Printed::between(6.0, 7.0), ratio, three);
     rows.number(
         at,
-        "capacity, metal over rubber, printed radii",
+        "capacity, metal over rubber, quotient of the constants",
         "",
         &Printed::digits("5.5"),
         ratio,
-        "112.9/20.5 = 5.5 as printed; with (21) and (28) evaluated at the printed radii both constants are lower, the rubber belt's more.",
+        "The printed constants' quotient is 112.9/20.5 = 5.5; with (21) and (28) evaluated at the printed radii both constants are lower, the rubber belt's more.",
     );
 }
 

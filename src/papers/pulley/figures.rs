@@ -1,7 +1,7 @@
 //! The belt's load over the wrap, and Fig. 13: stresses of the four types.
 
 use super::super::{Figure, Inputs, Paper, numbers};
-use super::{Type, place_of_largest};
+use super::{Place, Type};
 use crate::export::Table;
 use crate::export::pulley::deformed;
 use crate::pictures::{Quantity, Series, curves};
@@ -52,7 +52,7 @@ pub(super) fn stresses(of: &Type) -> Figure {
         caption: format!(
             "The section at the angle of its largest stress, which stands {}. Dimensions are chosen, the paper's are lost; loads and bolts are \
              those of Table 1.",
-            place_of_largest(&pulley)
+            Place::of(&pulley).words
         ),
         title,
         group: Paper::Pulley,

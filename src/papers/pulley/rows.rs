@@ -4,7 +4,7 @@ use super::super::comparison::{Rows, digits, percent};
 use super::super::{Comparison, Inputs, Paper, Printed};
 use super::tables::{bolt_force, friction_each_way};
 use super::thickness::{DIRECTIONS, Sheet, choice};
-use super::{TYPES, example, place_of_largest};
+use super::{Place, TYPES, example};
 
 /// All rows of the paper, in its order.
 pub(super) fn all(studied: &[Sheet]) -> Vec<Comparison> {
@@ -56,7 +56,7 @@ fn loads(rows: &mut Rows) {
         "centrifugal tension w v^2",
         "N",
         get("centrifugal_tension_N"),
-        format!("{follows} The paper divides w by g, which is right only if w is a weight; read as a mass it is not divided."),
+        format!("{follows} With w in kgf/m, w v^2/g would be in kgf beside tensions in N; read as kg/m, w v^2 is in N."),
     );
     rows.unprinted("(13)", "effective friction mu'", "", get("effective_friction"), follows);
     rows.unprinted("(12)", "friction mu, along the flank and around alike", "", friction_each_way(&belt), follows);
@@ -78,7 +78,7 @@ fn loads(rows: &mut Rows) {
         "2.3, (16)",
         "radial force of the flanks if friction is radial, as the text says",
         "equal to Q of (10)",
-        format!("{} of Q", percent(literal / along_flank - 1.0)),
+        format!("{} more than Q", percent(literal / along_flank - 1.0).trim_start_matches('+')),
         false,
         "(10) balances Q only if that friction acts along the flank, inwards and towards the groove's middle; taken as radial the loads miss \
          the tensions' resultant. The model lets it act along the flank.",
@@ -151,20 +151,21 @@ fn stresses(rows: &mut Rows) {
     let at = "5, Fig. 13";
     for of in &TYPES {
         let pulley = of.pulley();
-        let place = place_of_largest(&pulley);
-        let outputs = pulley.outputs();
-        let bend = place.starts_with("near check point");
+        let Place { words, shape_changes } = Place::of(&pulley);
+        let (stress, limit) = (pulley.output("max_stress_MPa"), pulley.input("yield_strength_MPa"));
+        let yields = if stress > limit {
+            " It exceeds the yield strength: with our dimensions this section would not do for the data of Table 1, so the paper's must be stiffer."
+        } else {
+            ""
+        };
+        let why = if shape_changes { "A change of shape, the second of the paper's places." } else { "None of the paper's places." };
         rows.statement(
             at,
             &format!("largest stress, {}", of.words),
-            "bolt seats, shape changes, last contact with the belt",
-            format!("{} MPa, {place}", digits(outputs.get("max_stress_MPa"))),
-            bend,
-            if bend {
-                "A check point is a change of shape, which agrees with the paper's second place. Which type has which place is lost with the figure."
-            } else {
-                "Away from every bend and fillet that has a check point. Which type has which place is lost with the figure."
-            },
+            "bolt seats, shape changes, last contact",
+            format!("{} MPa {words}", digits(stress)),
+            shape_changes,
+            format!("{why} Which type has which place is lost with the figure.{yields}"),
         );
     }
     let example = example();
