@@ -13,6 +13,8 @@ pub enum Verdict {
     Fitted,
     /// Does not agree.
     Differs,
+    /// A printed input, used as printed: nothing was computed.
+    Input,
     /// The paper prints nothing to compare with.
     NotPrinted,
 }
@@ -24,6 +26,7 @@ impl Verdict {
             Self::Agrees => "agrees",
             Self::Fitted => "fitted",
             Self::Differs => "differs",
+            Self::Input => "input",
             Self::NotPrinted => "not printed",
         }
     }
@@ -135,9 +138,19 @@ impl Rows {
     /// The same, where an input was chosen to make it so.
     pub fn fitted(&mut self, at: &'static str, what: &str, unit: &'static str, printed: &Printed, value: f64, reason: impl Into<String>) {
         self.number(at, what, unit, printed, value, reason);
-        let row = self.rows.last_mut().expect("it was pushed above");
-        if row.verdict == Verdict::Agrees {
-            row.verdict = Verdict::Fitted;
+        self.soften(Verdict::Fitted);
+    }
+
+    /// A printed input beside the input that was used.
+    pub fn input(&mut self, at: &'static str, what: &str, unit: &'static str, printed: &Printed, value: f64, reason: impl Into<String>) {
+        self.number(at, what, unit, printed, value, reason);
+        self.soften(Verdict::Input);
+    }
+
+    /// Another word for agreement in the last row.
+    fn soften(&mut self, verdict: Verdict) {
+        if let Some(row) = self.rows.last_mut().filter(|row| row.verdict == Verdict::Agrees) {
+            row.verdict = verdict;
         }
     }
 

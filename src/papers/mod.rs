@@ -189,14 +189,15 @@ impl Reproduction {
 
     /// How many comparisons there are of each kind, in a sentence.
     pub fn summary(&self) -> String {
-        let [agree, fitted, differ, unprinted] = [Verdict::Agrees, Verdict::Fitted, Verdict::Differs, Verdict::NotPrinted];
         format!(
-            "{} comparisons: {} agree, {} agree because a value was fitted to them, {} differ, {} have no printed counterpart",
+            "{} comparisons: {} agree, {} agree because a value was fitted to them, {} differ, {} are inputs used as printed, {} have no \
+             printed counterpart",
             self.comparisons.len(),
-            self.count(agree),
-            self.count(fitted),
-            self.count(differ),
-            self.count(unprinted),
+            self.count(Verdict::Agrees),
+            self.count(Verdict::Fitted),
+            self.count(Verdict::Differs),
+            self.count(Verdict::Input),
+            self.count(Verdict::NotPrinted),
         )
     }
 

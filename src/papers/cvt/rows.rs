@@ -93,8 +93,12 @@ fn self_locking(rows: &mut Rows) {
             "assumed",
             format!("mu {} {} tan(alpha/2) {}", digits(friction), if friction > tangent { "above" } else { "below" }, digits(tangent)),
             friction > tangent,
-            "A belt locks itself in its groove if mu exceeds tan(alpha/2). Where it does not, the driver's force of (1) and (6) rests on an \
-             assumption that the data do not bear out.",
+            if friction > tangent {
+                "A belt locks itself in its groove if mu exceeds tan(alpha/2)."
+            } else {
+                "A belt locks itself in its groove if mu exceeds tan(alpha/2): with the printed data the metal belt does not, so the radial friction \
+                 on the driver behind (6) is an assumption that they do not bear out."
+            },
         );
     }
 }
@@ -219,7 +223,7 @@ fn table_1(rows: &mut Rows) {
         metal_constant(r0, r1),
         "(28) with x 1.36 and the printed r0 163 and r1 45 mm, which are not this belt's.",
     );
-    rows.number(
+    rows.fitted(
         at,
         "C_M with the belt's own r0 and r1 30.58 mm",
         "N/mm",

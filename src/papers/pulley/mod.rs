@@ -6,15 +6,19 @@ mod tables;
 mod thickness;
 
 use super::comparison::digits;
+use super::evaluated::Outputs;
 use super::{Inputs, Lost, Paper, Repair, Reproduction};
+
+use crate::export::pulley::{NodeStress, deformed};
 
 /// Everything of this paper.
 pub(super) fn reproduce() -> Reproduction {
     let studied = thickness::study();
+    let stressed = TYPES.map(Stressed::new);
     let mut figures = vec![figures::loads(), thickness::figure(&studied)];
-    figures.extend(TYPES.iter().map(figures::stresses));
+    figures.extend(stressed.iter().map(figures::stresses));
     let tables = vec![tables::data(), thickness::table(&studied)];
-    Reproduction { figures, tables, comparisons: rows::all(&studied), repairs: REPAIRS.to_vec(), lost: LOST.to_vec() }
+    Reproduction { figures, tables, comparisons: rows::all(&studied, &stressed), repairs: REPAIRS.to_vec(), lost: LOST.to_vec() }
 }
 
 const REPAIRS: &[Repair] = &[
@@ -90,9 +94,33 @@ const TYPES: [Type; 4] = [
     Type { id: "pulley-fig-13-pressed-cup", preset: "pressed-cup", words: "type 4, pressed cup" },
 ];
 
-impl Type {
-    fn pulley(&self) -> Inputs {
-        Inputs::preset("pulley", self.preset)
+/// A type with its stresses under the data of Table 1.
+struct Stressed {
+    of: Type,
+    title: String,
+    svg: String,
+    nodes: Vec<NodeStress>,
+    /// The largest stress outside the zone that is left out, MPa, and the radius of that zone, mm.
+    largest: f64,
+    excluded: f64,
+    yield_strength: f64,
+    place: Place,
+}
+
+impl Stressed {
+    fn new(of: Type) -> Self {
+        let pulley = Inputs::preset("pulley", of.preset);
+        let title = format!("Fig. 13, {}: von Mises stress in the deformed section", of.words);
+        let (svg, nodes) = deformed(pulley.model, &title, &pulley.values).expect("the example has a solution");
+        let outputs = pulley.outputs();
+        let [largest, excluded] = ["max_stress_MPa", "excluded_radius_mm"].map(|name| outputs.get(name));
+        let yield_strength = pulley.input("yield_strength_MPa");
+        Self { of, title, svg, nodes, largest, excluded, yield_strength, place: Place::of(&pulley, &outputs) }
+    }
+
+    /// The largest stress inside the zone that is left out, MPa: at the bolt seats and the bracket's edge.
+    fn seats(&self) -> f64 {
+        self.nodes.iter().filter(|node| node.place[1] < self.excluded).map(|node| node.von_mises).fold(0.0, f64::max)
     }
 }
 
@@ -109,8 +137,7 @@ struct Place {
 }
 
 impl Place {
-    fn of(pulley: &Inputs) -> Self {
-        let outputs = pulley.outputs();
+    fn of(pulley: &Inputs, outputs: &Outputs) -> Self {
         let [r, z, theta] = ["max_stress_r_mm", "max_stress_z_mm", "max_stress_theta_deg"].map(|name| outputs.get(name));
         let section = pulley.model.input("section").expect("a pulley has a section");
         let discs = pulley.model.inputs[section].word_for(pulley.values[section]) == Some("welded-discs");

@@ -22,7 +22,7 @@ fn data(rows: &mut Rows) {
     let at = "Section 3";
     rows.number(
         at,
-        "tooth compliance f",
+        "tooth compliance f of 0.025 mm/kgf, unit printed as m/N",
         "um/N",
         &Printed::digits("2.55"),
         1000.0 * 0.025 / KILOGRAM_FORCE,
