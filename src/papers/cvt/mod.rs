@@ -2,6 +2,7 @@
 
 mod figures;
 mod rows;
+mod table_rows;
 mod tables;
 
 use super::{Inputs, Lost, Paper, Repair, Reproduction};

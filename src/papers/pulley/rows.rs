@@ -165,11 +165,11 @@ fn stresses(rows: &mut Rows, stressed: &[Stressed]) {
             format!("{why} Which type has which place is lost with the figure.{yields}"),
         );
     }
-    let seats = stressed.iter().map(|one| format!("{} of {}", digits(one.seats().round()), digits(one.largest.round())));
+    let seats = stressed.iter().map(|one| format!("{} against {}", digits(one.seats().round()), digits(one.largest.round())));
     let seats: Vec<String> = seats.collect();
     rows.statement(
         at,
-        "stress at bolt seats and bracket edge, MPa, of the largest elsewhere, types 1 to 4",
+        "stress at bolt seats and bracket edge against the largest elsewhere, MPa, types 1 to 4",
         "among the high ones",
         seats.join(", "),
         stressed.iter().any(|one| one.seats() > one.largest),
