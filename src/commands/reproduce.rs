@@ -50,9 +50,10 @@ fn shown(all: &Reproduction, out: &Path) -> String {
             let with_unit = |number: &str| if row.unit.is_empty() { number.to_owned() } else { format!("{number} {}", row.unit) };
             grid.row([
                 row.verdict.word().to_owned(),
+                dim(row.at),
                 row.what.clone(),
+                row.difference.clone(),
                 format!("{} -> {}", row.printed, with_unit(&row.computed)),
-                dim(&row.difference),
             ]);
         }
         text += &format!("{}\n{}\n", bold(paper.name()), grid.indented(2));

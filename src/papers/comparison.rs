@@ -13,6 +13,8 @@ pub enum Verdict {
     Fitted,
     /// Does not agree.
     Differs,
+    /// A printed input, used as printed: nothing was computed.
+    Input,
     /// The paper prints nothing to compare with.
     NotPrinted,
 }
@@ -24,6 +26,7 @@ impl Verdict {
             Self::Agrees => "agrees",
             Self::Fitted => "fitted",
             Self::Differs => "differs",
+            Self::Input => "input",
             Self::NotPrinted => "not printed",
         }
     }
@@ -122,11 +125,10 @@ impl Rows {
         let (low, high) = printed.range;
         let inside = low <= value && value <= high;
         let difference = match printed.value {
-            Some(0.0) => "-".to_owned(),
             Some(expected) => percent(value / expected - 1.0),
             None if inside => "inside".to_owned(),
-            None if value < low => format!("{} below", digits(low - value)),
-            None => format!("{} above", digits(value - high)),
+            None if value < low => format!("{} below", significant(low - value, 2)),
+            None => format!("{} above", significant(value - high, 2)),
         };
         let verdict = if inside { Verdict::Agrees } else { Verdict::Differs };
         let computed = digits(value);
@@ -136,9 +138,19 @@ impl Rows {
     /// The same, where an input was chosen to make it so.
     pub fn fitted(&mut self, at: &'static str, what: &str, unit: &'static str, printed: &Printed, value: f64, reason: impl Into<String>) {
         self.number(at, what, unit, printed, value, reason);
-        let row = self.rows.last_mut().expect("it was pushed above");
-        if row.verdict == Verdict::Agrees {
-            row.verdict = Verdict::Fitted;
+        self.soften(Verdict::Fitted);
+    }
+
+    /// A printed input beside the input that was used.
+    pub fn input(&mut self, at: &'static str, what: &str, unit: &'static str, printed: &Printed, value: f64, reason: impl Into<String>) {
+        self.number(at, what, unit, printed, value, reason);
+        self.soften(Verdict::Input);
+    }
+
+    /// Another word for agreement in the last row.
+    fn soften(&mut self, verdict: Verdict) {
+        if let Some(row) = self.rows.last_mut().filter(|row| row.verdict == Verdict::Agrees) {
+            row.verdict = verdict;
         }
     }
 
@@ -180,16 +192,25 @@ struct Row<'a> {
     verdict: Verdict,
 }
 
-/// A number for people: up to five digits.
+/// A number for people: up to five digits, grouped from 10 000 on, as the papers print them.
 pub(super) fn digits(value: f64) -> String {
-    significant(value, 5)
+    let text = significant(value, 5);
+    if value.abs() < 10_000.0 { text.replace(|c: char| c.is_whitespace(), "") } else { text }
 }
 
 /// A share in per cent, with its sign.
 pub(super) fn percent(share: f64) -> String {
-    let text = significant(100.0 * share, 2);
-    let sign = if share > 0.0 && text != "0" { "+" } else { "" };
-    format!("{sign}{text} %")
+    percent_to(share, 2)
+}
+
+/// The same with so many significant digits.
+pub(super) fn percent_to(share: f64, count: usize) -> String {
+    // What rounding leaves is no difference.
+    if share.abs() < 1e-10 {
+        return "0 %".to_owned();
+    }
+    let sign = if share > 0.0 { "+" } else { "" };
+    format!("{sign}{} %", significant(100.0 * share, count))
 }
 
 /// All rows as a table, with numbers in full.

@@ -138,6 +138,17 @@ pub struct Lost {
     pub why: &'static str,
 }
 
+/// An equation or number that is read otherwise than printed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Repair {
+    /// The paper.
+    pub group: Paper,
+    /// Where it stands.
+    pub at: &'static str,
+    /// What is printed, what it is read as, and why.
+    pub words: &'static str,
+}
+
 /// Everything that is computed again of the three papers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reproduction {
@@ -147,7 +158,9 @@ pub struct Reproduction {
     pub tables: Vec<PaperTable>,
     /// Every number and statement that can be compared, paper by paper.
     pub comparisons: Vec<Comparison>,
-    /// What cannot.
+    /// What is read otherwise than printed.
+    pub repairs: Vec<Repair>,
+    /// What cannot be computed again.
     pub lost: Vec<Lost>,
 }
 
@@ -156,11 +169,12 @@ pub struct Reproduction {
 /// # Errors
 /// [`Error::Certificate`] if a comparison gives no reason.
 pub fn reproduce() -> Result<Reproduction> {
-    let mut all = Reproduction { figures: Vec::new(), tables: Vec::new(), comparisons: Vec::new(), lost: Vec::new() };
+    let mut all = Reproduction { figures: Vec::new(), tables: Vec::new(), comparisons: Vec::new(), repairs: Vec::new(), lost: Vec::new() };
     for of_one in [cvt::reproduce(), timing::reproduce(), pulley::reproduce()] {
         all.figures.extend(of_one.figures);
         all.tables.extend(of_one.tables);
         all.comparisons.extend(of_one.comparisons);
+        all.repairs.extend(of_one.repairs);
         all.lost.extend(of_one.lost);
     }
     check(&all.comparisons).map_err(Error::Certificate)?;
@@ -175,14 +189,15 @@ impl Reproduction {
 
     /// How many comparisons there are of each kind, in a sentence.
     pub fn summary(&self) -> String {
-        let [agree, fitted, differ, unprinted] = [Verdict::Agrees, Verdict::Fitted, Verdict::Differs, Verdict::NotPrinted];
         format!(
-            "{} comparisons: {} agree, {} agree because a value was fitted to them, {} differ, {} have no printed counterpart",
+            "{} comparisons: {} agree, {} agree because a value was fitted to them, {} differ, {} are inputs used as printed, {} have no \
+             printed counterpart",
             self.comparisons.len(),
-            self.count(agree),
-            self.count(fitted),
-            self.count(differ),
-            self.count(unprinted),
+            self.count(Verdict::Agrees),
+            self.count(Verdict::Fitted),
+            self.count(Verdict::Differs),
+            self.count(Verdict::Input),
+            self.count(Verdict::NotPrinted),
         )
     }
 

@@ -1,13 +1,15 @@
 //! The page that a reproduction is read from.
 
-use super::{Comparison, Lost, Paper, Reproduction};
+use super::comparison::digits;
+use super::{Comparison, Lost, Paper, Repair, Reproduction};
+use crate::export::{Data, Table};
 
 const INTRODUCTION: &str = "\
 Written by `beltspace reproduce`; a test writes it again and compares every byte. All numbers come from the models, evaluated with the
 papers' data. Where a model has no answer because the printed numbers lie beyond what it allows, the printed equation itself is
 evaluated, and the reason says so. *agrees* means within half a unit of the last printed digit, inside the printed range, or as the
-statement says; *fitted* agrees because an input that the paper does not print was chosen so; *not printed* has nothing to compare
-with. Nothing is adjusted to agree without being named. All numbers in full are in [comparison.csv](comparison.csv).
+statement says; *fitted* agrees because an input that the paper does not print was chosen so; *input* is used as printed; *not printed*
+has nothing to compare with. Nothing is adjusted to agree without being named. All numbers in full are in [comparison.csv](comparison.csv).
 ";
 
 /// The page as Markdown.
@@ -20,11 +22,16 @@ pub(super) fn page(all: &Reproduction) -> String {
             text += &line(row);
         }
         for table in all.tables.iter().filter(|table| table.group == paper) {
-            text += &format!("\n### {}\n\n{} Values: [{2}]({2}).\n", table.title, table.caption, table.csv_name());
+            text += &format!("\n### {}\n\n{} Values in full: [{2}]({2}).\n", table.title, table.caption, table.csv_name());
+            text += &cells(&table.table);
         }
         for figure in all.figures.iter().filter(|figure| figure.group == paper) {
             let (svg, csv) = (figure.svg_name(), figure.csv_name());
             text += &format!("\n### {0}\n\n![{0}]({svg})\n\n{1} Values: [{csv}]({csv}).\n", figure.title, figure.caption);
+        }
+        text += "\n### What is read otherwise than printed\n\n";
+        for Repair { at, words, .. } in all.repairs.iter().filter(|repair| repair.group == paper) {
+            text += &format!("- {}: {words}\n", capitalised(at));
         }
         let lost: Vec<&Lost> = all.lost.iter().filter(|lost| lost.group == paper).collect();
         if !lost.is_empty() {
@@ -44,6 +51,21 @@ fn line(row: &Comparison) -> String {
     };
     let cells = [cell(row.at), cell(&row.what), with_unit(&row.printed), with_unit(&row.computed), cell(&row.difference)];
     format!("| {} | {} | {} |\n", cells.join(" | "), row.verdict.word(), cell(&row.reason))
+}
+
+/// A table with numbers for people.
+fn cells(table: &Table) -> String {
+    let header: Vec<_> = table.columns.iter().map(|column| cell(&column.name.replace('_', " "))).collect();
+    let mut text = format!("\n| {} |\n|{}\n", header.join(" | "), "---|".repeat(header.len()));
+    for row in 0..table.rows() {
+        let shown = table.columns.iter().map(|column| match &column.data {
+            Data::Whole(values) => values[row].map_or(String::new(), |value| value.to_string()),
+            Data::Number(values) => values[row].map_or(String::new(), digits),
+            Data::Text(values) => cell(&values[row]),
+        });
+        text += &format!("| {} |\n", shown.collect::<Vec<_>>().join(" | "));
+    }
+    text
 }
 
 /// Text that cannot end its cell.

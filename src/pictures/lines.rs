@@ -8,7 +8,7 @@ use super::panel::{PanelPlan, axis_label, x_labels_height, y_labels_width};
 use super::range::bounds;
 use super::sheet::{Area, Dash, Drawn, Frame, Sheet, UNIT, WIDTH, stroked};
 use super::words::{clean, text, text_width};
-use plotters::style::RGBColor;
+use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 use std::fmt::Write;
 
@@ -177,6 +177,10 @@ fn words(area: &Area<'_>, frame: Frame, guides: &[Guide], across: impl Fn(&Guide
             let beside = at + 6 * UNIT + width <= frame.right();
             let (side, x) = if beside { (HPos::Left, at + 6 * UNIT) } else { (HPos::Right, at - 6 * UNIT) };
             let y = frame.top + 8 * UNIT + row * GUIDE_ROW;
+            // A ground of their own, where they lie over other guides.
+            let left = if beside { x } else { x - width };
+            let ground = [(left - 3 * UNIT, y - UNIT), (left + width + 3 * UNIT, y + GUIDE_TEXT * UNIT + 3 * UNIT)];
+            area.draw(&Rectangle::new(ground, WHITE.filled()))?;
             area.draw_text(&words, &text(GUIDE_TEXT, guide_colour(guide), side, VPos::Top), (x, y))?;
             row += 1;
         } else {

@@ -2,16 +2,48 @@
 
 mod figures;
 mod rows;
+mod table_rows;
 mod tables;
 
-use super::{Inputs, Lost, Paper, Reproduction};
+use super::{Inputs, Lost, Paper, Repair, Reproduction};
 use crate::models::wedge_factor;
 use std::f64::consts::PI;
 
 /// Everything of this paper.
 pub(super) fn reproduce() -> Reproduction {
-    Reproduction { figures: figures::all(), tables: tables::all(), comparisons: rows::all(), lost: LOST.to_vec() }
+    Reproduction {
+        figures: figures::all(),
+        tables: tables::all(),
+        comparisons: rows::all(),
+        repairs: REPAIRS.to_vec(),
+        lost: LOST.to_vec(),
+    }
 }
+
+const REPAIRS: &[Repair] = &[
+    Repair {
+        group: Paper::Cvt,
+        at: "(8), (11)",
+        words: "The denominator is printed mu - tan(alpha/2). Read as mu + tan(alpha/2), as in (6), (15), (16); only so Table 2 comes out.",
+    },
+    Repair {
+        group: Paper::Cvt,
+        at: "(13)",
+        words: "The exponent is printed mu theta_a. Read with mu/sin(alpha/2) in place of mu, consistent with (12).",
+    },
+    Repair {
+        group: Paper::Cvt,
+        at: "(16)",
+        words: "The middle line has a factor 2 too many in its last denominator; the last line is right.",
+    },
+    Repair { group: Paper::Cvt, at: "after (4)", words: "The second symbol is F_N; both are printed F_R." },
+    Repair { group: Paper::Cvt, at: "4.1.2", words: "The text's (2) for the coefficient x means (24)." },
+    Repair {
+        group: Paper::Cvt,
+        at: "speed ratio",
+        words: "R is not defined. Read as driven over driver radius: above 1 the driver runs on its small radius.",
+    },
+];
 
 const LOST: &[Lost] = &[
     Lost {

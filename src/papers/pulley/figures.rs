@@ -1,9 +1,9 @@
 //! The belt's load over the wrap, and Fig. 13: stresses of the four types.
 
 use super::super::{Figure, Inputs, Paper, numbers};
-use super::{Type, place_of_largest};
+use super::Stressed;
 use crate::export::Table;
-use crate::export::pulley::deformed;
+use crate::export::pulley::NodeStress;
 use crate::pictures::{Quantity, Series, curves};
 
 /// Tension, line force and flank force over the wrap.
@@ -40,23 +40,20 @@ pub(super) fn loads() -> Figure {
 }
 
 /// The stressed, deformed section of one type.
-pub(super) fn stresses(of: &Type) -> Figure {
-    let pulley = of.pulley();
-    let title = format!("Fig. 13, {}: von Mises stress in the deformed section", of.words);
-    let (svg, nodes) = deformed(pulley.model, &title, &pulley.values).expect("the example has a solution");
-    let column = |name: &str, unit: &str, words: &str, of: fn(&crate::export::pulley::NodeStress) -> f64| {
-        numbers(name, unit, words, nodes.iter().map(|node| Some(of(node))))
+pub(super) fn stresses(stressed: &Stressed) -> Figure {
+    let column = |name: &str, unit: &str, words: &str, of: fn(&NodeStress) -> f64| {
+        numbers(name, unit, words, stressed.nodes.iter().map(|node| Some(of(node))))
     };
     Figure {
-        id: of.id,
+        id: stressed.of.id,
+        title: stressed.title.clone(),
         caption: format!(
             "The section at the angle of its largest stress, which stands {}. Dimensions are chosen, the paper's are lost; loads and bolts are \
              those of Table 1.",
-            place_of_largest(&pulley)
+            stressed.place.words
         ),
-        title,
         group: Paper::Pulley,
-        svg,
+        svg: stressed.svg.clone(),
         table: Table {
             columns: vec![
                 column("z_mm", "mm", "Distance from the bracket face.", |node| node.place[0]),

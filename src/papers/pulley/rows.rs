@@ -4,16 +4,16 @@ use super::super::comparison::{Rows, digits, percent};
 use super::super::{Comparison, Inputs, Paper, Printed};
 use super::tables::{bolt_force, friction_each_way};
 use super::thickness::{DIRECTIONS, Sheet, choice};
-use super::{TYPES, example, place_of_largest};
+use super::{Stressed, example};
 
 /// All rows of the paper, in its order.
-pub(super) fn all(studied: &[Sheet]) -> Vec<Comparison> {
+pub(super) fn all(studied: &[Sheet], stressed: &[Stressed]) -> Vec<Comparison> {
     let mut rows = Rows::of(Paper::Pulley);
     data(&mut rows);
     loads(&mut rows);
     bolts(&mut rows);
     thickness(&mut rows, studied);
-    stresses(&mut rows);
+    stresses(&mut rows, stressed);
     rows.done()
 }
 
@@ -33,7 +33,7 @@ const DATA: [(&str, &str, &str, &str); 9] = [
 fn data(rows: &mut Rows) {
     let example = example();
     for (what, unit, name, printed) in DATA {
-        rows.number("Table 1", what, unit, &Printed::digits(printed), example.input(name), "Used as printed: the example's input.");
+        rows.input("Table 1", what, unit, &Printed::digits(printed), example.input(name), "Used as printed: the example's input.");
     }
 }
 
@@ -56,7 +56,7 @@ fn loads(rows: &mut Rows) {
         "centrifugal tension w v^2",
         "N",
         get("centrifugal_tension_N"),
-        format!("{follows} The paper divides w by g, which is right only if w is a weight; read as a mass it is not divided."),
+        format!("{follows} With w in kgf/m, w v^2/g would be in kgf beside tensions in N; read as kg/m, w v^2 is in N."),
     );
     rows.unprinted("(13)", "effective friction mu'", "", get("effective_friction"), follows);
     rows.unprinted("(12)", "friction mu, along the flank and around alike", "", friction_each_way(&belt), follows);
@@ -78,7 +78,7 @@ fn loads(rows: &mut Rows) {
         "2.3, (16)",
         "radial force of the flanks if friction is radial, as the text says",
         "equal to Q of (10)",
-        format!("{} of Q", percent(literal / along_flank - 1.0)),
+        format!("{} more than Q", percent(literal / along_flank - 1.0).trim_start_matches('+')),
         false,
         "(10) balances Q only if that friction acts along the flank, inwards and towards the groove's middle; taken as radial the loads miss \
          the tensions' resultant. The model lets it act along the flank.",
@@ -147,29 +147,37 @@ fn thickness(rows: &mut Rows, studied: &[Sheet]) {
     rows.unprinted(at, "volume at 1.8 mm", "mm3", example.get("volume_mm3"), not_printed);
 }
 
-fn stresses(rows: &mut Rows) {
+fn stresses(rows: &mut Rows, stressed: &[Stressed]) {
     let at = "5, Fig. 13";
-    for of in &TYPES {
-        let pulley = of.pulley();
-        let place = place_of_largest(&pulley);
-        let outputs = pulley.outputs();
-        let bend = place.starts_with("near check point");
+    for Stressed { of, largest, yield_strength, place, .. } in stressed {
+        let why = if place.shape_changes { "A change of shape, the second of the paper's places." } else { "None of the paper's places." };
+        let yields = if largest > yield_strength {
+            " It exceeds the yield strength: with our dimensions this section would not do for the data of Table 1, so the paper's must be stiffer."
+        } else {
+            ""
+        };
         rows.statement(
             at,
             &format!("largest stress, {}", of.words),
-            "bolt seats, shape changes, last contact with the belt",
-            format!("{} MPa, {place}", digits(outputs.get("max_stress_MPa"))),
-            bend,
-            if bend {
-                "A check point is a change of shape, which agrees with the paper's second place. Which type has which place is lost with the figure."
-            } else {
-                "Away from every bend and fillet that has a check point. Which type has which place is lost with the figure."
-            },
+            "bolt seats, shape changes, last contact",
+            format!("{} MPa {}", digits(*largest), place.words),
+            place.shape_changes,
+            format!("{why} Which type has which place is lost with the figure.{yields}"),
         );
     }
+    let seats = stressed.iter().map(|one| format!("{} against {}", digits(one.seats().round()), digits(one.largest.round())));
+    let seats: Vec<String> = seats.collect();
+    rows.statement(
+        at,
+        "stress at bolt seats and bracket edge against the largest elsewhere, MPa, types 1 to 4",
+        "among the high ones",
+        seats.join(", "),
+        stressed.iter().any(|one| one.seats() > one.largest),
+        "So for the stiff type 1 alone. Beside the edges of bracket and bolt heads an elastic stress grows with every refinement of the mesh: \
+         that zone is left out of the largest stress, and these values say as much of the mesh as of the pulley.",
+    );
     let example = example();
-    let outputs = example.outputs();
-    let (wrap, theta) = (example.input("wrap_angle_deg"), outputs.get("max_stress_theta_deg"));
+    let (wrap, theta) = (example.input("wrap_angle_deg"), example.output("max_stress_theta_deg"));
     rows.statement(
         at,
         "angle of the largest stress, type 4, from the slack end",
@@ -178,13 +186,5 @@ fn stresses(rows: &mut Rows) {
         (wrap - theta).abs() < 5.0,
         "If last contact means the tight end of the wrap: the belt presses hardest there, but the groove bends most where the belt presses on both \
          sides of a place, so ours stands before the end.",
-    );
-    let (radius, seat) = (outputs.get("excluded_radius_mm"), outputs.get("stress_Br_MPa"));
-    rows.remark(
-        at,
-        "stress at the bolt seats, type 4",
-        format!("left out within r = {} mm; {} MPa at the bend beside them", digits(radius), digits(seat)),
-        "Beside the edges of bracket and bolt heads an elastic stress grows with every refinement of the mesh, so a largest value there says \
-         more of the mesh than of the pulley. The paper's elements of 3 mm show some high value.",
     );
 }

@@ -28,9 +28,10 @@ fn figure_9() -> Figure {
     let mesh = Mesh::of(&driven(5000.0, 196.0));
     let mut drawn = vec![reference("complete meshing, at rest", &mesh, 4)];
     drawn.extend(lifted("5000 rpm", &mesh, 0));
+    drawn.push(open_marks());
     figure(
         "timing-fig-9",
-        "Fig. 9: tooth loads in complete and incomplete meshing, driven pulley, 5000 rpm, tight tension 196 N",
+        "Fig. 9: tooth loads at 5000 rpm and at rest, driven pulley, tight tension 196 N",
         "Before the boundary the loads are a little above those of complete meshing, behind it below. That tooth 16 is the first to lift is \
          no prediction: the paper does not print the belt's mass nor the radial balance that it uses, and the mass is set so that its tooth 16 \
          comes out.",
@@ -47,6 +48,7 @@ fn figure_10() -> Figure {
         drawn.push(reference(&format!("{label}, complete meshing"), mesh, colour));
         drawn.extend(lifted(label, mesh, colour));
     }
+    drawn.push(open_marks());
     let guides: Vec<Guide> = meshes.iter().enumerate().map(|(colour, (_, mesh))| boundary(mesh, colour)).collect();
     figure(
         "timing-fig-10",
@@ -64,6 +66,7 @@ fn figure_11() -> Figure {
     for (colour, (label, mesh)) in meshes.iter().enumerate() {
         drawn.extend(lifted(label, mesh, colour));
     }
+    drawn.push(open_marks());
     let guides: Vec<Guide> = meshes.iter().enumerate().map(|(colour, (_, mesh))| boundary(mesh, colour)).collect();
     figure(
         "timing-fig-11",
@@ -100,15 +103,21 @@ fn lifted(label: &str, mesh: &Mesh, colour: usize) -> [Line; 2] {
     };
     let count = mesh.tooth.len();
     [
-        part(format!("{label}, lifted teeth"), meshing.saturating_sub(1)..count, Stroke::Dashed, Marker::Open),
-        part(format!("{label}, meshing teeth"), 0..meshing, Stroke::Solid, Marker::Filled),
+        part(String::new(), meshing.saturating_sub(1)..count, Stroke::Dashed, Marker::Open),
+        part(label.to_owned(), 0..meshing, Stroke::Solid, Marker::Filled),
     ]
+}
+
+/// What open marks mean, for the legend.
+fn open_marks() -> Line {
+    let label = "open marks: lifted teeth".to_owned();
+    Line { label, x: Vec::new(), y: Vec::new(), colour: 4, stroke: Stroke::Dashed, marker: Marker::Open }
 }
 
 /// Between the last tooth that meshes and the first that is lifted.
 fn boundary(mesh: &Mesh, colour: usize) -> Guide {
     let first = mesh.first_lifted;
-    Guide { at: first as f64 - 0.5, upright: true, words: format!("boundary: tooth {first} is the first lifted"), colour: Some(colour) }
+    Guide { at: first as f64 - 0.5, upright: true, words: format!("tooth {first} is the first lifted"), colour: Some(colour) }
 }
 
 fn figure(id: &'static str, title: &str, caption: &str, drawn: &[Line], guides: &[Guide], meshes: &[(&'static str, &Mesh)]) -> Figure {

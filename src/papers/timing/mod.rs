@@ -4,12 +4,44 @@ mod figures;
 mod printed;
 mod rows;
 
-use super::{Inputs, Lost, Paper, Reproduction};
+use super::{Inputs, Lost, Paper, Repair, Reproduction};
 
 /// Everything of this paper.
 pub(super) fn reproduce() -> Reproduction {
-    Reproduction { figures: figures::all(), tables: Vec::new(), comparisons: rows::all(), lost: LOST.to_vec() }
+    Reproduction { figures: figures::all(), tables: Vec::new(), comparisons: rows::all(), repairs: REPAIRS.to_vec(), lost: LOST.to_vec() }
 }
+
+const REPAIRS: &[Repair] = &[
+    Repair { group: Paper::TimingBelt, at: "(5), (7), (13)", words: "Printed 1/AE is l/AE, with the length of the tooth part." },
+    Repair { group: Paper::TimingBelt, at: "(8)", words: "Line i has T(N-1)' where T(i-1)' is meant." },
+    Repair { group: Paper::TimingBelt, at: "(14)", words: "Line M has T(M) on both sides; the right one is T(M-1)." },
+    Repair {
+        group: Paper::TimingBelt,
+        at: "(15)",
+        words: "The printed v is w, and v = f cos(phi - theta) is missing. Y1 is printed with C6 and C7 where C5 and C6 are meant.",
+    },
+    Repair {
+        group: Paper::TimingBelt,
+        at: "(17)-(19)",
+        words: "Tooth j - 1 meshes: its belt leaves at phi, not phi - theta, and nu inside has cos phi. In (18) f is missing before two cosines; (19) has it.",
+    },
+    Repair {
+        group: Paper::TimingBelt,
+        at: "(20)",
+        words: "Specific weight is used as density. Section 2.3 names two volumes V2; the first is V1.",
+    },
+    Repair { group: Paper::TimingBelt, at: "step (4), Fig. 9", words: "Step (4) calls j the boundary; Fig. 9 calls j - 1 = 15 so." },
+    Repair {
+        group: Paper::TimingBelt,
+        at: "section 3",
+        words: "f = 2.55 m/N has lost its prefix and is read as micrometres; omega is printed in rpm where (21) needs rad/s.",
+    },
+    Repair {
+        group: Paper::TimingBelt,
+        at: "section 2.3",
+        words: "The sum of the radial inward forces is not printed. Taken as (T_in + T) sin(phi + beta) + Q (mu cos alpha - sin alpha) of a whole pitch whose land carries nothing.",
+    },
+];
 
 const LOST: &[Lost] = &[
     Lost {

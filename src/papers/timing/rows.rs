@@ -1,6 +1,6 @@
 //! What the paper says in numbers and words beside what comes out.
 
-use super::super::comparison::{Rows, digits, percent};
+use super::super::comparison::{Rows, digits, percent, percent_to};
 use super::super::{Comparison, Paper, Printed};
 use super::printed::boundary_tension;
 use super::{Mesh, driven, driver_at_rest};
@@ -22,7 +22,7 @@ fn data(rows: &mut Rows) {
     let at = "Section 3";
     rows.number(
         at,
-        "tooth compliance f",
+        "tooth compliance f of 0.025 mm/kgf, unit printed as m/N",
         "um/N",
         &Printed::digits("2.55"),
         1000.0 * 0.025 / KILOGRAM_FORCE,
@@ -66,7 +66,7 @@ fn loads(rows: &mut Rows) {
     let (before, behind) = changes.split_at(mesh.first_lifted - 1);
     let range = |part: &[f64]| {
         let (low, high) = part.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), it| (low.min(*it), high.max(*it)));
-        (low, high, format!("{} to {}", percent(low), percent(high)))
+        (low, high, format!("{} to {}", percent_to(low, 3), percent_to(high, 3)))
     };
     let (low, _, words) = range(before);
     rows.statement(
@@ -140,7 +140,7 @@ fn equations(rows: &mut Rows) {
         "(17)-(19)",
         "boundary tension T*, 5000 rpm, 196 N: as printed, and by the system (7), (13)",
         &format!("{} N", digits(literal)),
-        format!("{} N; the printed equation is {} off", digits(own), percent(literal / own - 1.0)),
+        format!("{} N; the printed equation is off by {}", digits(own), percent(literal / own - 1.0)),
         false,
         "The printed (17) lets tooth j - 1 leave at phi - theta although it still meshes, and (19) keeps cos psi inside. With cos phi in both \
          places (19) is the solution of the system to rounding; that is what the model computes.",
