@@ -47,7 +47,11 @@ pub fn summary(outcome: &Outcome<'_>, record: &RunRecord, out: &Path, page: Opti
         );
     }
     if !study.objectives.is_empty() {
-        fact("front", format!("{} designs, each certified in f64 over every scenario", grouped(outcome.front.len() as u64)));
+        let designs = match outcome.front.len() {
+            1 => "1 design".to_owned(),
+            count => format!("{} designs, each", grouped(count as u64)),
+        };
+        fact("front", format!("{designs} certified in f64 over every scenario"));
     }
     let mut text = format!("{}\n\n{}", bold(&study.title), facts.indented(0));
     text.push_str(&limits(outcome));
