@@ -34,6 +34,7 @@
       };
       children.push(page.element("div", { class: "readout-title" }, page.element("strong", {}, `design ${page.full(page.designOf(row))}`), ` (${mark})`));
       children.push(page.element("dl", {}, names.map(entry)));
+      if (front.knee !== null) children.push(page.element("p", { class: "muted key" }, "◇ knee, + ideal"));
     }
     readout.replaceChildren(...children);
   };
