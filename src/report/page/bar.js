@@ -15,7 +15,7 @@
   const update = () => {
     const { state, front } = page;
     page.byId("selected-count").textContent = page.count(page.selectedCount);
-    page.byId("selected-share").textContent = ` of ${page.count(front.rows)} designs on the front selected`;
+    page.byId("selected-share").textContent = ` of ${page.count(front.rows)} design${front.rows === 1 ? "" : "s"} on the front selected`;
     page.byId("clear").disabled = !page.brushed();
     const chips = [];
     for (const [name, range] of state.axes) chips.push(chip(rangeText(name, range), () => page.brushAxis(name, null)));

@@ -13,7 +13,7 @@
   const valueCell = (name, full, text, unit) =>
     page.element("td", { class: "number" }, page.element("span", { "data-name": name, "data-value": full, title: full }, text), unit ? page.element("span", { class: "unit" }, ` ${unit}`) : null);
 
-  const columnCell = (column, row) => valueCell(column.name, page.valueText(column, row, page.full), page.valueText(column, row), column.words ? "" : column.unit);
+  const columnCell = (column, row) => valueCell(column.name, page.valueText(column, row, page.full), page.valueText(column, row), column.words || Number.isNaN(column.values[row]) ? "" : column.unit);
 
   const scenarioText = (number) => {
     const { scenarios } = page.data;
@@ -160,12 +160,26 @@
     return [page.element("div", { class: "card-head" }, page.element("div", {}, title, place), buttons), objectives(row), margins(row), inputs(row), outputs(row), commands(row)].filter(Boolean);
   };
 
+  // The card takes room from the plots where the window is wide.
+  const layoutIfNarrower = (width) => {
+    if (page.byId("main").clientWidth !== width) page.events.call("layout");
+  };
+
+  // A cell of the matrix may have been drawn anew in the meantime; its successor is meant.
+  const returnFocus = () => {
+    if (!opener) return;
+    const { x, y } = opener.dataset;
+    const again = x && !opener.isConnected ? document.querySelector(`.cell[data-x="${CSS.escape(x)}"]${y ? `[data-y="${CSS.escape(y)}"]` : ""}`) : opener;
+    if (again && again.isConnected) again.focus({ preventScroll: true });
+  };
+
   page.openCard = (row) => {
     if (!page.front || !(row >= 0 && row < page.front.rows)) return;
     const card = page.byId("card");
     const fresh = card.hidden;
     const within = card.contains(document.activeElement) ? document.activeElement.id : "";
     if (fresh) opener = document.activeElement;
+    const width = page.byId("main").clientWidth;
     page.state.card = row;
     card.replaceChildren(...build(row));
     card.hidden = false;
@@ -175,16 +189,19 @@
     else card.focus({ preventScroll: true });
     if (fresh) card.scrollTop = 0;
     page.events.call("card");
+    if (fresh) layoutIfNarrower(width);
   };
 
   page.closeCard = () => {
     const card = page.byId("card");
     if (card.hidden) return;
+    const width = page.byId("main").clientWidth;
     card.hidden = true;
     document.body.classList.remove("with-card");
     page.state.card = null;
     page.events.call("card");
-    if (opener && opener.isConnected) opener.focus({ preventScroll: true });
+    layoutIfNarrower(width);
+    returnFocus();
   };
 
   page.startCard = () => {

@@ -20,7 +20,7 @@
     const { top } = page.data;
     if (!top || !top.rows.length) return;
     const section = page.byId("tally");
-    const head = top.columns.map((name, i) => page.element("th", { scope: "col", class: "number" }, page.breakable(name), top.units && top.units[i] ? page.element("span", { class: "unit" }, top.units[i]) : null));
+    const head = top.columns.map((name, i) => page.element("th", { scope: "col", class: "number" }, name, top.units && top.units[i] ? page.element("span", { class: "unit" }, top.units[i]) : null));
     const shorten = (text) => (text !== "" && Number.isFinite(Number(text)) ? page.short(Number(text)) : text);
     const line = (row) => page.element("tr", {}, row.map((text) => page.element("td", { class: "number", title: text }, shorten(text))));
     const table = page.element("table", {}, page.element("thead", {}, page.element("tr", {}, head)), page.element("tbody", {}, top.rows.map(line)));

@@ -1,8 +1,8 @@
 // Histograms of all feasible designs, as bars with their counts outside the range.
 {
-  const WIDTH = 520;
-  const HEIGHT = 220;
-  const MARGIN = { left: 62, right: 14, top: 10, bottom: 46 };
+  const WIDTH = 640;
+  const HEIGHT = 240;
+  const MARGIN = { left: 82, right: 32, top: 10, bottom: 46 };
 
   const draw = (histogram) => {
     const { of, unit, from, to, designs } = histogram;

@@ -67,28 +67,32 @@
       else plot.pixels.set(plot.base);
       done = 0;
     };
+    // All lines lie, faint, under a selection. They are drawn once a layout; until they are complete the selected ones
+    // are drawn over them anew in each slice, a sample of them at first.
+    const drawUnder = (over) => {
+      while (plot.baseDone < order.length && !over()) {
+        const to = Math.min(order.length, plot.baseDone + CHUNK);
+        page.drawLines(plot.base, width, height, order, plot.baseDone, to, xs, ys, faint, faintCover);
+        plot.baseDone = to;
+      }
+      restart();
+    };
     const slice = () => {
       if (mine !== run || !plot) return;
       const start = performance.now();
       const over = () => !page.printing && performance.now() - start > SLICE;
-      // Under a selection lie all lines; they are completed first, once a layout.
-      const under = !everything && plot.baseDone < order.length;
-      if (under && (done || what !== "brush" || plot.baseDone > 0)) {
-        while (plot.baseDone < order.length && !over()) {
-          const to = Math.min(order.length, plot.baseDone + CHUNK);
-          page.drawLines(plot.base, width, height, order, plot.baseDone, to, xs, ys, faint, faintCover);
-          plot.baseDone = to;
-        }
-        restart();
-      } else if (!done) restart();
+      const under = () => !everything && plot.baseDone < order.length;
+      if (under()) drawUnder(over);
+      else if (!done) restart();
       while (done < rows.length && (!over() || done === 0)) {
         const to = Math.min(rows.length, done + CHUNK);
         page.drawLines(plot.pixels, width, height, rows, done, to, xs, ys, colours, cover);
         done = to;
       }
+      if (under()) done = 0;
       plot.context.putImageData(plot.image, 0, 0);
       page.timings.linesSlice = performance.now() - start;
-      if (done < rows.length || (!everything && plot.baseDone < order.length)) again();
+      if (done < rows.length || under()) again();
       else page.timings.linesDone = performance.now();
     };
     const again = () => (page.printing ? slice() : requestAnimationFrame(slice));

@@ -1,8 +1,8 @@
 // Maps: the best feasible value over two inputs, cell by cell on a canvas, with contours drawn over it.
 {
-  const WIDTH = 640;
-  const HEIGHT = 420;
-  const MARGIN = { left: 74, right: 16, top: 10, bottom: 50 };
+  const WIDTH = 680;
+  const HEIGHT = 440;
+  const MARGIN = { left: 74, right: 30, top: 10, bottom: 50 };
 
   // Cells meet half-way between their values, on a log axis half-way of the logs; words are one step apart.
   const edgesOf = (values, log) => {
@@ -53,6 +53,8 @@
   const contourColours = ["#d55e00", "#000000", "#cc79a7", "#0072b2"];
 
   const drawContours = (svg, map, x, y) => {
+    const labels = []; // where the labels are, so that none covers another
+    const free = ([x, y]) => labels.every(([a, b]) => Math.hypot(a - x, b - y) > 24);
     const kinds = [...new Set(map.contours.map((contour) => contour.of))];
     for (const contour of map.contours) {
       const group = svg.append("g").attr("class", "contour").attr("stroke", contourColours[kinds.indexOf(contour.of) % contourColours.length]);
@@ -62,8 +64,10 @@
         group.append("path").attr("d", d3.line()(points));
         if (!longest || points.length > longest.length) longest = points;
       }
-      if (longest && longest.length > 3 && map.contours.length <= 30) {
-        const [tx, ty] = longest[Math.floor(longest.length / 2)];
+      const place = longest && [0.5, 0.35, 0.65, 0.2, 0.8].map((part) => longest[Math.floor(longest.length * part)]).find(free);
+      if (place && longest.length > 3) {
+        labels.push(place);
+        const [tx, ty] = place;
         svg.append("text").attr("class", "contour-label").attr("x", tx).attr("y", ty + 3).attr("text-anchor", "middle").text(page.short(contour.at));
       }
     }
@@ -144,7 +148,8 @@
 
   const figureOf = (map, number) => {
     const best = { min: "the least of the feasible designs", max: "the largest of the feasible designs", share: "the share of designs that are feasible" }[map.best] || "";
-    const caption = page.element("figcaption", {}, page.element("strong", {}, map.title || `${map.value.name} over ${map.x.name} and ${map.y.name}`), map.value.doc ? ` ${map.value.doc}` : "", page.element("div", { class: "muted" }, `In each cell ${best} over all other inputs.`));
+    const others = (page.data.inputs || []).some(({ name, role }) => role === "design" && name !== map.x.name && name !== map.y.name);
+    const caption = page.element("figcaption", {}, page.element("strong", {}, map.title || `${map.value.name} over ${map.x.name} and ${map.y.name}`), map.value.doc ? ` ${map.value.doc}` : "", page.element("div", { class: "muted" }, `In each cell ${best}${others ? " over all other inputs" : ""}.`));
     return page.element("figure", { class: "figure map", "data-map": number, "data-testid": `map-${map.value.name}` }, caption);
   };
 

@@ -64,7 +64,7 @@
         addCell(cell, at === 0, row === names.length - 1);
         cells.push(cell);
       }
-    disc = page.disc((front.rows > 20000 ? 0.7 : front.rows > 4000 ? 1.6 : 2.4) * ratio);
+    disc = page.disc((front.rows > 20000 ? 0.7 / ratio : front.rows > 4000 ? 1.6 : front.rows > 300 ? 2.4 : 3.4) * ratio);
     const readout = page.element("div", { id: "readout", "data-testid": "readout" });
     const stage = page.element("div", { class: "stage" }, canvas, svg.node());
     stage.style.width = `${total.width}px`;
@@ -86,7 +86,8 @@
   page.axisOf = (orient, column, scale, count) => {
     const axis = orient(scale).tickSizeOuter(0).tickSize(4).tickPadding(4);
     if (column.words) return axis.tickValues(d3.range(column.words.length)).tickFormat((i) => column.words[i]);
-    if (column.low === column.high) return axis.tickValues([column.low]).tickFormat(page.short);
+    if (Number.isNaN(column.low)) return axis.tickValues([]);
+    if (column.low === column.high) return axis.tickValues([column.low]).tickFormat((value) => page.short(Number(value.toPrecision(4))));
     return axis.ticks(count).tickFormat(page.tick(scale, count));
   };
 
@@ -124,7 +125,7 @@
   const addMarks = (cell) => {
     const { front } = page;
     const ideal = front.ideal || {};
-    const clip = (scale, value) => Number.isFinite(value) ? scale(value) : NaN;
+    const clip = (scale, value) => (scale(value) >= 0 && scale(value) <= size ? scale(value) : NaN);
     const [ix, iy] = [clip(cell.xScale, ideal[cell.x.name]), clip(cell.yScale, ideal[cell.y.name])];
     if (Number.isFinite(ix) && Number.isFinite(iy)) {
       const mark = cell.marks.append("path").attr("class", "ideal").attr("d", `M${ix - 6},${iy}h12M${ix},${iy - 6}v12`);
@@ -148,7 +149,13 @@
       const touch = event.changedTouches ? event.changedTouches[0] : event;
       return d3.pointer(touch, group.node());
     };
-    const near = ([x, y], reach) => page.nearest(cell.xs, cell.ys, page.mask, x * ratio, y * ratio, reach * ratio);
+    // Of points that lie on one another the knee is meant, where it is among them.
+    const near = ([x, y], reach) => {
+      const row = page.nearest(cell.xs, cell.ys, page.mask, x * ratio, y * ratio, reach * ratio);
+      const { knee } = page.front;
+      const onKnee = row >= 0 && page.mask[knee] && cell.xs[row] === cell.xs[knee] && cell.ys[row] === cell.ys[knee];
+      return onKnee ? knee : row;
+    };
     cell.brush.on("start", (event) => {
       if (event.sourceEvent) from = at(event.sourceEvent);
     });

@@ -52,12 +52,11 @@
     const openKnee = knee ? page.element("button", { type: "button", id: "open-knee", "data-testid": "open-knee", class: "primary", click: () => page.openCard(front.knee) }, `Open the knee: design ${page.full(page.designOf(front.knee))}`) : null;
     page.byId("overview").append(
       page.element("div", { class: "title-line" }, page.element("h1", {}, data.title), theme),
-      model ? page.element("p", { class: "model" }, page.element("strong", {}, model.name), `: ${model.summary}.`) : null,
+      model ? page.element("p", { class: "model" }, page.element("strong", {}, model.name), `: ${model.summary}.`) : "",
       model && model.limits ? page.element("details", { class: "limits" }, page.element("summary", {}, "Limits of the model"), page.element("p", {}, model.limits), model.source ? page.element("p", { class: "source" }, `Source: ${model.source}.`) : null) : "",
       page.element("dl", { class: "facts" }, facts.filter(Boolean)),
       front && front.rows && front.objectives.length ? page.element("div", { class: "goals" }, objectives(), openKnee) : "",
     );
-    page.byId("overview").querySelectorAll("p:empty").forEach((p) => p.remove());
   };
 
   page.startStudy = () => {

@@ -2,7 +2,7 @@
 {
   const HEIGHT = 300;
   const PAD = 10;
-  const HEAD = 74; // room for titles and buttons
+  const HEAD = 92; // room for titles and buttons
   let axes = []; // { column, x, scale, group, brush }
   let stage, svg, width;
 
@@ -47,7 +47,9 @@
   const addAxis = (axis) => {
     const { column, scale } = axis;
     const group = svg.append("g").attr("class", "axis").attr("data-name", column.name).attr("transform", `translate(${axis.x},0)`);
-    const ticks = group.append("g").attr("class", "tick-axis halo").call(page.axisOf(d3.axisLeft, column, scale, 6));
+    // The words of the first axis stand to its right: there is no room before it.
+    const side = column.words && page.state.parallel[0] === column.name ? d3.axisRight : d3.axisLeft;
+    const ticks = group.append("g").attr("class", "tick-axis halo").call(page.axisOf(side, column, scale, 6));
     if (column.words) page.shortenWords(ticks, 11);
     axis.dot = group.append("circle").attr("class", "current").attr("r", 4).attr("display", "none");
     axis.brush = d3.brushY().extent([[-9, 0], [9, HEIGHT]]).handleSize(8);

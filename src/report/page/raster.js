@@ -3,6 +3,8 @@
 {
   // A disc as offsets with their cover of 0 to 256, the fully covered ones first.
   page.disc = (radius) => {
+    // Many points: two by two pixels, without mixing.
+    if (radius < 1) return [[0, 0], [1, 0], [0, 1], [1, 1]].map(([dx, dy]) => ({ dx, dy, cover: 256 }));
     const reach = Math.ceil(radius);
     const spots = [];
     for (let dy = -reach; dy <= reach; dy++)

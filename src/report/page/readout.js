@@ -29,11 +29,12 @@
       const names = [...new Set([...state.matrix, ...state.parallel])].slice(0, 18);
       const entry = (name) => {
         const column = front.byName.get(name);
-        const value = page.element("dd", {}, page.valueText(column, row), column.words || !column.unit ? "" : ` ${column.unit}`);
+        const value = page.element("dd", {}, page.valueText(column, row), column.words || !column.unit || Number.isNaN(column.values[row]) ? "" : ` ${column.unit}`);
         return page.element("div", {}, page.element("dt", { title: column.doc }, name), value);
       };
       children.push(page.element("div", { class: "readout-title" }, page.element("strong", {}, `design ${page.full(page.designOf(row))}`), ` (${mark})`));
       children.push(page.element("dl", {}, names.map(entry)));
+      if (front.knee !== null) children.push(page.element("p", { class: "muted key" }, "◇ knee, + ideal"));
     }
     readout.replaceChildren(...children);
   };

@@ -47,7 +47,7 @@
     const head = (column) => {
       const direction = sort.name !== column.name ? "none" : sort.down ? "descending" : "ascending";
       const arrow = { none: "", ascending: " ↑", descending: " ↓" }[direction];
-      const button = page.element("button", { type: "button", click: () => sortBy(column.name), title: column.doc }, page.breakable(column === page.front.index ? "design" : column.name), arrow);
+      const button = page.element("button", { type: "button", click: () => sortBy(column.name), title: column.doc }, column === page.front.index ? "design" : column.name, arrow);
       return page.element("th", { scope: "col", "aria-sort": direction, "data-column": column.name, class: column.words ? "" : "number" }, button, column.unit ? page.element("span", { class: "unit" }, column.unit) : null);
     };
     heads.replaceChildren(...columns.map(head));

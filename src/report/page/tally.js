@@ -55,7 +55,7 @@
     if (!none) return;
     const lead = page.byId("lead");
     lead.hidden = false;
-    lead.append(page.element("h2", {}, "No design is feasible: what limits it"), (tally ? sentences(tally) : ["The result has no tally of the reasons."]).map((text) => page.element("p", {}, text)));
+    lead.append(page.element("h2", {}, "No design is feasible: what limits it"), ...(tally ? sentences(tally) : ["The result has no tally of the reasons."]).map((text) => page.element("p", {}, text)));
     if (tally) lead.after(page.byId("tally"));
   };
 }
