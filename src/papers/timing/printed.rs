@@ -51,7 +51,8 @@ impl Powers {
 
     /// X and Y at `at`, of rows `from` to `to`: what a unit in the first and in the last row makes there.
     fn pair(&self, from: i32, to: i32, at: i32) -> (f64, f64) {
-        let power = |root: f64, exponent: i32| root.powi(exponent);
+        // The standard library's power may round otherwise on another machine.
+        let power = |root: f64, exponent: i32| (0..exponent).fold(1.0, |product, _| product * root);
         let start = self.roots.map(|root| self.middle * power(root, from) - self.last * power(root, from + 1));
         let end = self.roots.map(|root| self.first * power(root, to - 1) - self.middle * power(root, to));
         let [one, two] = self.roots.map(|root| power(root, at));
