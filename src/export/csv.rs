@@ -1,7 +1,7 @@
 //! CSV files: header with units, dot decimals, shortest numbers, empty for absent.
 
 use super::number::plain;
-use super::table::{Data, Table};
+use super::table::Table;
 use crate::plan::Plan;
 use csv::Writer;
 
@@ -12,12 +12,7 @@ pub fn write(table: &Table) -> Vec<u8> {
     let mut writer = Writer::from_writer(Vec::new());
     writer.write_record(table.columns.iter().map(|column| column.name.as_str())).expect(IN_MEMORY);
     for row in 0..table.rows() {
-        let cells = table.columns.iter().map(|column| match &column.data {
-            Data::Whole(values) => values[row].map_or(String::new(), |value| value.to_string()),
-            Data::Number(values) => values[row].map_or(String::new(), plain),
-            Data::Text(values) => values[row].clone(),
-        });
-        writer.write_record(cells).expect(IN_MEMORY);
+        writer.write_record(table.columns.iter().map(|column| column.data.text(row))).expect(IN_MEMORY);
     }
     writer.into_inner().expect(IN_MEMORY)
 }

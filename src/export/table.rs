@@ -1,5 +1,7 @@
 //! A table of results, before it becomes CSV or Parquet.
 
+use super::number::plain;
+
 /// Values of one column.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Data {
@@ -9,6 +11,17 @@ pub enum Data {
     Number(Vec<Option<f64>>),
     /// Words.
     Text(Vec<String>),
+}
+
+impl Data {
+    /// A cell as it is written: shortest numbers, nothing for what is absent.
+    pub fn text(&self, row: usize) -> String {
+        match self {
+            Self::Whole(values) => values[row].map_or(String::new(), |value| value.to_string()),
+            Self::Number(values) => values[row].map_or(String::new(), plain),
+            Self::Text(values) => values[row].clone(),
+        }
+    }
 }
 
 /// A column with what a reader of the file wants to know about it.

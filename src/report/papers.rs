@@ -1,7 +1,7 @@
 //! The page of the papers computed again: figures and comparisons in place of a front.
 
 use super::page::page;
-use crate::papers::Reproduction;
+use crate::papers::{Paper, PaperTable, Reproduction};
 use serde_json::{Value, json};
 
 /// What the page is called.
@@ -21,6 +21,7 @@ pub fn of_papers(reproduction: &Reproduction) -> String {
             "reason": it.reason,
         })
     });
+    let item = |group: Paper, at: &str, text: &str| json!({ "group": group.name(), "at": at, "text": text });
     let data = json!({
         "program": concat!("beltspace ", env!("CARGO_PKG_VERSION")),
         "kind": "papers",
@@ -30,6 +31,29 @@ pub fn of_papers(reproduction: &Reproduction) -> String {
         "inputs": [], "objectives": [], "constraints": [], "histograms": [], "maps": [], "evaluate": "",
         "figures": figures.collect::<Vec<Value>>(),
         "comparison": comparison.collect::<Vec<Value>>(),
+        "tables": reproduction.tables.iter().map(table).collect::<Vec<_>>(),
+        "lists": [
+            {
+                "title": "Read otherwise than printed",
+                "items": reproduction.repairs.iter().map(|it| item(it.group, it.at, it.words)).collect::<Vec<_>>(),
+            },
+            {
+                "title": "What cannot be computed again",
+                "items": reproduction.lost.iter().map(|it| item(it.group, it.what, it.why)).collect::<Vec<_>>(),
+            },
+        ],
     });
     page(TITLE, &data)
+}
+
+/// A table as text, with the units of its columns.
+fn table(table: &PaperTable) -> Value {
+    let columns = &table.table.columns;
+    let rows = (0..table.table.rows()).map(|row| columns.iter().map(|column| column.data.text(row)).collect::<Vec<_>>());
+    json!({
+        "id": table.id, "title": table.title, "caption": table.caption, "group": table.group.name(), "csv": table.csv_name(),
+        "columns": columns.iter().map(|column| &column.name).collect::<Vec<_>>(),
+        "units": columns.iter().map(|column| &column.unit).collect::<Vec<_>>(),
+        "rows": rows.collect::<Vec<_>>(),
+    })
 }
