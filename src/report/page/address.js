@@ -83,7 +83,12 @@
   };
 
   page.startAddress = () => {
-    const write = () => page.schedule("address", page.writeAddress);
+    // Once things rest: browsers allow only so many changes of the address in a while.
+    let waiting = 0;
+    const write = () => {
+      clearTimeout(waiting);
+      waiting = setTimeout(page.writeAddress, 150);
+    };
     for (const event of ["selection", "columns", "colour", "card", "theme"]) page.events.on(`${event}.address`, write);
     window.addEventListener("hashchange", () => {
       if (location.hash === written) return;

@@ -91,7 +91,7 @@
         return page.element(
           "tr",
           {},
-          page.element("th", { scope: "row", title: column.doc }, page.breakable(column.name), page.element("span", { class: "unit" }, ` ${text}`)),
+          page.element("th", { scope: "row", title: column.doc }, page.breakable(column.name), page.element("div", { class: "unit" }, text)),
           columnCell(column, row),
           page.element("td", { class: "bar-cell" }, bar(share, "margin", said), page.element("span", { class: "bar-text", "data-margin": String(margin(row)), title: said }, page.short(margin(row)))),
         );

@@ -23,9 +23,26 @@
     return (0xff000000 | rb | g) >>> 0;
   };
 
+  // The same for discs of whole pixels only: each point is looked at once, which counts from ten thousand points on.
+  const drawSolid = (target, width, height, xs, ys, mask, wanted, colourOf, disc) => {
+    const single = typeof colourOf === "number";
+    const offsets = disc.map(({ dx, dy }) => dy * width + dx);
+    const reach = Math.max(...disc.flatMap(({ dx, dy }) => [Math.abs(dx), Math.abs(dy)]));
+    for (let i = 0; i < xs.length; i++) {
+      if (wanted !== null && mask[i] !== wanted) continue;
+      const x = xs[i];
+      const y = ys[i];
+      if (x < reach || y < reach || x >= width - reach || y >= height - reach) continue;
+      const at = y * width + x;
+      const colour = single ? colourOf : colourOf[i];
+      for (let k = 0; k < offsets.length; k++) target[at + offsets[k]] = colour;
+    }
+  };
+
   // Points with mask[row] === wanted (all for wanted null); xs and ys hold pixels, negative for an absent value.
   page.drawPoints = (target, width, height, xs, ys, mask, wanted, colourOf, disc) => {
     const single = typeof colourOf === "number";
+    if (disc.every(({ cover }) => cover >= 256)) return drawSolid(target, width, height, xs, ys, mask, wanted, colourOf, disc);
     for (const { dx, dy, cover } of disc) {
       const offset = dy * width + dx;
       for (let i = 0; i < xs.length; i++) {

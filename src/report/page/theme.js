@@ -1,6 +1,6 @@
 // Light and dark, the width to lay out for, and printing: always light, at the width of a sheet.
 {
-  const SHEET = 700; // px of a printed line on A4 and letter paper
+  const SHEET = 680; // px of a printed line on A4 and letter paper
   const system = window.matchMedia("(prefers-color-scheme: dark)");
   page.printing = false;
 
