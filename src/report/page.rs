@@ -30,6 +30,7 @@ const SCRIPTS: &[&str] = &[
     include_str!("page/maps.js"),
     include_str!("page/figures.js"),
     include_str!("page/comparison.js"),
+    include_str!("page/lists.js"),
     include_str!("page/start.js"),
 ];
 

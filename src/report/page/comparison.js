@@ -1,30 +1,28 @@
-// Printed against computed numbers, grouped, with the reason where they differ.
+// Printed against computed numbers, paper by paper, each with its reason; what was read otherwise, and what is lost.
 {
-  page.startComparison = () => {
-    const { comparison } = page.data;
-    if (!comparison || !comparison.length) return;
+  const comparison = (rows) => {
     const section = page.byId("comparison");
     section.hidden = false;
-    const head = [["quantity", ""], ["unit", ""], ["printed", "number"], ["computed", "number"], ["difference", "number"], ["reason", ""]];
+    const head = [["where", ""], ["what", ""], ["printed", ""], ["computed", ""], ["difference", "number"], ["", ""], ["reason", "reason"]];
+    const withUnit = (text, unit) => (unit && /\d/.test(text) && !text.includes(unit) ? `${text} ${unit}` : text);
     const line = (row) => {
       const cell = (text, kind) => page.element("td", { class: kind }, text ?? "");
-      return page.element("tr", {}, page.element("th", { scope: "row" }, row.what), cell(row.unit), cell(row.printed, "number"), cell(row.computed, "number"), cell(row.difference, "number"), cell(row.reason, "reason"));
+      return page.element("tr", { class: `verdict-${(row.verdict || "").replace(/ /g, "-")}` }, cell(row.at, "muted"), page.element("th", { scope: "row" }, row.what), cell(withUnit(row.printed, row.unit), "printed"), cell(withUnit(row.computed, row.unit), "printed"), cell(row.difference, "number"), cell(row.verdict, "verdict"), cell(row.reason, "reason"));
     };
-    const bodies = [...d3.group(comparison, (row) => row.group || "")].map(([group, rows]) => page.element("tbody", {}, group ? page.element("tr", { class: "group" }, page.element("th", { colspan: 6, scope: "rowgroup" }, group)) : null, rows.map(line)));
-    const table = page.element("table", { class: "comparison" }, page.element("thead", {}, page.element("tr", {}, head.map(([name, kind]) => page.element("th", { scope: "col", class: kind }, name)))), bodies);
+    const group = ([name, rows]) => page.element("tbody", {}, page.element("tr", { class: "group" }, page.element("th", { colspan: head.length, scope: "rowgroup" }, name)), rows.map(line));
+    const heads = head.map(([name, kind]) => page.element("th", { scope: "col", class: kind }, name));
+    const table = page.element("table", { class: "comparison" }, page.element("thead", {}, page.element("tr", {}, heads)), [...d3.group(rows, (row) => row.group)].map(group));
     section.append(page.element("h2", { id: "comparison-title" }, "Printed and computed"), page.element("div", { class: "scroll" }, table));
   };
 
-  // top.csv, already text.
-  page.startTop = () => {
-    const { top } = page.data;
-    if (!top || !top.rows.length) return;
-    const section = page.byId("tally");
-    const head = top.columns.map((name, i) => page.element("th", { scope: "col", class: "number" }, name, top.units && top.units[i] ? page.element("span", { class: "unit" }, top.units[i]) : null));
-    const shorten = (text) => (text !== "" && Number.isFinite(Number(text)) ? page.short(Number(text)) : text);
-    const line = (row) => page.element("tr", {}, row.map((text) => page.element("td", { class: "number", title: text }, shorten(text))));
-    const table = page.element("table", {}, page.element("thead", {}, page.element("tr", {}, head)), page.element("tbody", {}, top.rows.map(line)));
-    const block = page.element("section", { id: "top", "data-testid": "top", "aria-labelledby": "top-title" }, page.element("h2", { id: "top-title" }, "Best single designs"), page.element("p", { class: "hint" }, "The first of all feasible designs in one quantity, on the front or not: top.csv."), page.element("div", { class: "scroll tall" }, table));
-    section.after(block);
+  const list = ({ title, items }) => {
+    const line = ({ group, at, text }) => page.element("tr", {}, page.element("td", { class: "muted" }, group), page.element("th", { scope: "row" }, at), page.element("td", { class: "reason" }, text));
+    return page.element("section", { "aria-label": title }, page.element("h2", {}, title), page.element("div", { class: "scroll" }, page.element("table", { class: "comparison" }, page.element("tbody", {}, items.map(line)))));
+  };
+
+  page.startComparison = () => {
+    const { comparison: rows, lists } = page.data;
+    if (rows && rows.length) comparison(rows);
+    page.byId("study").before(...(lists || []).filter(({ items }) => items.length).map(list));
   };
 }

@@ -4,7 +4,7 @@
     value === null || value === undefined || value === "" ? null : page.element("div", { class: "fact", "data-testid": testid, title }, page.element("dt", {}, label), page.element("dd", {}, value));
 
   const runText = (run) => {
-    const parts = [page.seconds(run.seconds), run.engine === "cpu" ? `CPU, ${run.threads} threads` : [run.engine, run.device].filter(Boolean).join(": ")];
+    const parts = [page.seconds(run.seconds), run.engine === "cpu" ? `CPU, ${run.threads} threads` : run.device && run.device.adapter ? `${run.engine}: ${run.device.adapter}` : run.engine];
     return parts.join(", ");
   };
 
@@ -45,18 +45,20 @@
       facts.push(fact("scenarios each", page.count(study.scenarios), "scenarios"));
       facts.push(fact("feasible in all", `${page.count(study.feasible)} (${page.percent(study.feasible, study.designs)})`, "feasible"));
     }
-    if (front) facts.push(fact("on the Pareto front", page.count(front.rows), "front-size"));
+    if (front) facts.push(fact(front.of > front.rows ? `of ${page.count(front.of)} on the Pareto front, evenly taken` : "on the Pareto front", page.count(front.rows), "front-size"));
     if (run) facts.push(fact("computed in", runText(run), "run", `${run.platform || ""} ${run.origin || ""}`.trim()));
     facts.push(fact("program", data.program, "program"));
     const knee = front && front.rows && front.knee !== null && front.knee !== undefined;
     const openKnee = knee ? page.element("button", { type: "button", id: "open-knee", "data-testid": "open-knee", class: "primary", click: () => page.openCard(front.knee) }, `Open the knee: design ${page.full(page.designOf(front.knee))}`) : null;
-    page.byId("overview").append(
+    const parts = [
       page.element("div", { class: "title-line" }, page.element("h1", {}, data.title), theme),
       model ? page.element("p", { class: "model" }, page.element("strong", {}, model.name), `: ${model.summary}.`) : "",
       model && model.limits ? page.element("details", { class: "limits" }, page.element("summary", {}, "Limits of the model"), page.element("p", {}, model.limits), model.source ? page.element("p", { class: "source" }, `Source: ${model.source}.`) : null) : "",
       page.element("dl", { class: "facts" }, facts.filter(Boolean)),
+      (data.notes || []).map((note) => page.element("p", { class: "notice" }, note)),
       front && front.rows && front.objectives.length ? page.element("div", { class: "goals" }, objectives(), openKnee) : "",
-    );
+    ];
+    page.byId("overview").append(...parts.flat());
   };
 
   page.startStudy = () => {

@@ -26,7 +26,7 @@
       page.startCard();
     }
     page.startAddress();
-    page.startTop();
+    page.startLists();
     page.startHistograms();
     page.startComparison();
     page.startFigures();

@@ -28,7 +28,7 @@
     const table = page.element("table", { class: "tally" }, page.element("thead", {}, page.element("tr", {}, head)), page.element("tbody", {}, shown.map(line)));
     section.append(
       page.element("h2", { id: "tally-title" }, "What limits feasibility"),
-      page.element("p", { class: "hint" }, `Of a fixed sample of ${page.count(sampled)} designs, ${page.count(tally.feasible)} (${page.percent(tally.feasible, sampled)}) are feasible. One design may fail for several reasons; “alone” counts those that fail this constraint and nothing else.`),
+      page.element("p", { class: "hint" }, `Of ${page.data.study && page.data.study.designs === sampled ? "all" : "a fixed sample of"} ${page.count(sampled)} designs, ${page.count(tally.feasible)} (${page.percent(tally.feasible, sampled)}) are feasible. One design may fail for several reasons; “alone” counts those that fail this constraint and nothing else.`),
       shown.length ? table : page.element("p", {}, "No design of the sample fails."),
       never.length ? page.element("p", { class: "hint" }, `Never: ${never.join(", ")}.`) : "",
     );

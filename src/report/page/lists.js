@@ -1,0 +1,26 @@
+// Tables that the result has as files, as they are written there: the best designs, all designs, the papers' tables.
+{
+  // More rows than a reader scrolls through are left to the file.
+  const MOST = 1000;
+
+  const shorten = (text) => (text !== "" && Number.isFinite(Number(text)) ? page.short(Number(text)) : text);
+
+  const block = (id, title, hint, { columns, units, rows }) => {
+    const words = columns.map((_, at) => rows.some((row) => row[at] !== "" && !Number.isFinite(Number(row[at]))));
+    const kind = (at) => (words[at] ? "" : "number");
+    const head = columns.map((name, at) => page.element("th", { scope: "col", class: kind(at) }, page.breakable(name), units && units[at] ? page.element("span", { class: "unit" }, units[at]) : null));
+    const line = (row) => page.element("tr", { class: row[columns.indexOf("feasible")] === "no" ? "infeasible" : null }, row.map((text, at) => page.element("td", { class: kind(at), title: text }, shorten(text))));
+    const table = page.element("table", {}, page.element("thead", {}, page.element("tr", {}, head)), page.element("tbody", {}, rows.slice(0, MOST).map(line)));
+    const rest = rows.length > MOST ? ` The first ${MOST} of ${page.count(rows.length)} rows are shown.` : "";
+    return page.element("section", { id, "data-testid": id, "aria-labelledby": `${id}-title` }, page.element("h2", { id: `${id}-title` }, title), page.element("p", { class: "hint" }, hint + rest), page.element("div", { class: "scroll tall", tabindex: 0, role: "region", "aria-label": title }, table));
+  };
+
+  page.startLists = () => {
+    const { top, variants, tables } = page.data;
+    const found = [];
+    if (top && top.rows.length) found.push(block("top", "Best single designs", `The first of all feasible designs in ${top.by || "one quantity"}, on the front or not: top.csv.`, top));
+    if (variants && variants.rows.length) found.push(block("variants", "Every design", "Feasible or not, each value at its worst scenario: variants.csv.", variants));
+    page.byId("tally").after(...found);
+    page.byId("study").before(...(tables || []).map((table) => block(`table-${table.id}`, `${table.group}: ${table.title}`, `${table.caption} (${table.csv})`, table)));
+  };
+}
