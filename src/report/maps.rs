@@ -32,11 +32,12 @@ pub fn histogram(folder: &Path, study: &Study, spec: &HistogramSpec, name: &str)
 /// A map: its cells, or its picture where they are too many for a page, and the lines over it.
 pub fn map(folder: &Path, study: &Study, spec: &MapSpec, name: &str) -> Result<Value> {
     let model = study.model;
+    let shown = study.design[spec.x].count() * study.design[spec.y].count() <= CSV_CELLS;
     let axis = |position: usize| {
         let axis = &study.design[position];
         let input = axis.inputs()[0];
         let table = &model.inputs[input];
-        let levels = if spec.x == position || axis.count() <= CSV_CELLS { axis.count() } else { 0 };
+        let levels = if shown { axis.count() } else { 0 };
         let values: Vec<Value> = (0..levels).map(|level| value_of(model, input, axis.value(0, level))).collect();
         json!({ "name": table.name, "unit": table.unit.symbol, "doc": table.doc, "values": values })
     };
@@ -46,7 +47,6 @@ pub fn map(folder: &Path, study: &Study, spec: &MapSpec, name: &str) -> Result<V
         Best::Value(quantity, goal) => (if goal == Goal::Min { "min" } else { "max" }, quantity.doc(model)),
         Best::Share => ("share", "Share of the cell's designs that are feasible."),
     };
-    let shown = study.design[spec.x].count() * study.design[spec.y].count() <= CSV_CELLS;
     let (cells, picture) = if shown {
         let file = folder.join(format!("{name}.csv"));
         let rows = numbers(&file)?;
@@ -60,9 +60,10 @@ pub fn map(folder: &Path, study: &Study, spec: &MapSpec, name: &str) -> Result<V
         (None, Some(text_of(folder, &format!("{name}.svg"))?))
     };
     let contours = if spec.contours.is_empty() || !shown { Vec::new() } else { contours(&folder.join(contours_name(name)))? };
+    let [x, y] = [axis(spec.x), axis(spec.y)];
+    let name = |axis: &Value| axis["name"].as_str().unwrap_or_default().to_owned();
     Ok(json!({
-        "title": format!("{value} over {} and {}", axis(spec.x)["name"].as_str().unwrap_or_default(), axis(spec.y)["name"].as_str().unwrap_or_default()),
-        "x": if shown { axis(spec.x) } else { Value::Null }, "y": if shown { axis(spec.y) } else { Value::Null },
+        "title": format!("{value} over {} and {}", name(&x), name(&y)), "x": x, "y": y,
         "value": { "name": value, "unit": unit, "doc": doc }, "best": best, "log": [is_log(spec.x), is_log(spec.y)],
         "cells": cells, "picture": picture, "contours": contours,
     }))

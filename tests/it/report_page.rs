@@ -131,7 +131,7 @@ fn a_front_is_brushed_and_a_card_says_what_the_table_says() {
     assert_eq!(card_differs(&mut browser, table), None);
     let mut wrong = table.clone();
     let last = wrong["slip_margin"].clone();
-    wrong.insert("slip_margin".to_owned(), last + "1");
+    wrong.insert("slip_margin".to_owned(), format!("1{last}"));
     assert!(card_differs(&mut browser, &wrong).is_some_and(|it| it.starts_with("slip_margin")), "a wrong digit would go unseen");
     let card = browser.text("document.querySelector('#card').innerText");
     assert!(card.contains(&format!("--design {}", table["design_index"])), "{card}");
