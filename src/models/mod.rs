@@ -23,7 +23,7 @@ pub use description::{
 pub use evaluation::{Evaluation, Status, evaluate, evaluate_decided};
 pub(crate) use evaluation::{holds, input_to_si, judge, shown, to_si};
 pub use formula::{CONDITIONS, Columns, Fields, Formula, INPUTS, Kernel, OUTPUTS, Reach, Reads, Scratch, Twin, run};
-pub use pulley::Design;
+pub use pulley::{CHECK_POINT_STRESSES, Design};
 
 /// Something to do with a model's formula over a number type of one's own, which the table of functions in [`Model::kernel`]
 /// cannot offer.

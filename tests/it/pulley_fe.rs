@@ -1,7 +1,7 @@
 //! The pulley model against converged finite elements: harmonic ones, which agree within 0.1 % with swept three-dimensional ones of
 //! another program, for the pressed cup under the loads of the paper's Table 1.
 
-use beltspace::models::{Model, Status, evaluate, find};
+use beltspace::models::{CHECK_POINT_STRESSES, Model, Status, evaluate, find};
 
 fn model() -> &'static Model {
     find("pulley").expect("it is a model")
@@ -37,19 +37,6 @@ fn word(input: &str, word: &str) -> f64 {
     let input = &model().inputs[model().input(input).expect("it is an input")];
     input.words.iter().find(|(name, _)| *name == word).expect("it is a word of the input").1
 }
-
-const POINTS: [&str; 10] = [
-    "stress_Bl_MPa",
-    "stress_Br_MPa",
-    "stress_Cl_MPa",
-    "stress_Cr_MPa",
-    "stress_Dl_MPa",
-    "stress_Dr_MPa",
-    "stress_El_MPa",
-    "stress_Er_MPa",
-    "stress_Fl_MPa",
-    "stress_Fr_MPa",
-];
 
 /// A sheet of the reference: 6 elements through it, harmonics to 48.
 struct Reference {
@@ -97,7 +84,7 @@ fn compare(accuracy: &str, largest: f64, hub: f64, points: f64) {
         assert!((theta - reference.theta).abs() < 3.0, "{}: {theta}", what("its angle"));
         let place = (answers.get("max_stress_z_mm") - 25.11).hypot(answers.get("max_stress_r_mm") - 53.07);
         assert!(place < 0.6, "{}: {place} mm off", what("its place"));
-        for (number, (name, expected)) in POINTS.iter().zip(reference.points).enumerate() {
+        for (number, (name, expected)) in CHECK_POINT_STRESSES.iter().zip(reference.points).enumerate() {
             // Bend B is near the bracket's edge: the reference itself has 1.5 % there.
             close(answers.get(name), expected, if number < 2 { hub } else { points }, &what(name));
         }
@@ -181,13 +168,13 @@ fn pulley_stresses_grow_with_the_load_and_need_no_modulus() {
     let belt = [NO_CLAMP, NO_SPIN, ("belt_mass_kg_per_m", 1e-15)];
     let of = |scale: f64| Answers::of(&[&belt[..], &[("slack_tension_N", 700.0 * scale), ("power_kW", 3.0 * scale)]].concat());
     let (one, three) = (of(1.0), of(3.0));
-    for name in POINTS.into_iter().chain(["max_stress_MPa", "rim_displacement_mm", "fatigue_amplitude_MPa"]) {
+    for name in CHECK_POINT_STRESSES.into_iter().chain(["max_stress_MPa", "rim_displacement_mm", "fatigue_amplitude_MPa"]) {
         close(three.get(name), 3.0 * one.get(name), 1e-7, name);
     }
     close(3.0 * three.get("yield_safety"), one.get("yield_safety"), 1e-7, "safety");
     close(three.get("max_stress_theta_deg"), one.get("max_stress_theta_deg"), 1e-7, "angle");
     let (steel, soft) = (Answers::of(&[]), Answers::of(&[("elastic_modulus_MPa", 68_666.666_666_666_67)]));
-    for name in POINTS.into_iter().chain(["max_stress_MPa", "yield_safety", "fatigue_safety"]) {
+    for name in CHECK_POINT_STRESSES.into_iter().chain(["max_stress_MPa", "yield_safety", "fatigue_safety"]) {
         assert_eq!(steel.get(name), soft.get(name), "{name}");
     }
     close(soft.get("rim_displacement_mm"), 3.0 * steel.get("rim_displacement_mm"), 1e-9, "rim");

@@ -15,6 +15,7 @@ mod table;
 mod tests;
 
 pub use design::Design;
+pub use profile::CHECK_POINT_STRESSES;
 pub use table::MODEL;
 
 use super::description::Model;

@@ -7,8 +7,8 @@ use crate::pulley::response::CHECK_POINTS;
 use crate::pulley::turn::Turn;
 use crate::units::{DEGREE, MEGAPASCAL};
 
-/// Names of the columns: as the outputs.
-const COLUMNS: [&str; CHECK_POINTS.len()] = [
+/// Outputs with the largest stress of each check point over the turn, in MPa; columns of the profile are named so too.
+pub const CHECK_POINT_STRESSES: [&str; CHECK_POINTS.len()] = [
     "stress_Bl_MPa",
     "stress_Br_MPa",
     "stress_Cl_MPa",
@@ -34,7 +34,7 @@ pub(super) fn profile(inputs: &[f64]) -> Profile {
     let phase = design.case.phase.unwrap_or_else(|| turn.summary(None, [None; 2]).largest.phase);
     let mut columns = vec![ProfileColumn::new("theta_deg", DEGREE)];
     let mut rows: Vec<Vec<f64>> = (0..=360).map(|degree| vec![f64::from(degree)]).collect();
-    for (number, name) in COLUMNS.into_iter().enumerate() {
+    for (number, name) in CHECK_POINT_STRESSES.into_iter().enumerate() {
         if let Some(point) = view.check_point(number) {
             columns.push(ProfileColumn::new(name, MEGAPASCAL).drawn("von Mises stress", CHECK_POINTS[number]));
             for (row, stress) in rows.iter_mut().zip(turn.by_degree(point, phase)) {

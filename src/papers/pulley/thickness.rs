@@ -3,21 +3,9 @@
 use super::super::{Figure, Inputs, Paper, PaperTable, numbers, words};
 use super::example;
 use crate::export::{Data, Table, TableColumn};
+use crate::models::CHECK_POINT_STRESSES;
 use crate::pictures::{Guide, Line, Marker, Quantity, Scale, Stroke, lines};
 
-/// Check points whose stresses the table shows.
-const POINTS: [&str; 10] = [
-    "stress_Bl_MPa",
-    "stress_Br_MPa",
-    "stress_Cl_MPa",
-    "stress_Cr_MPa",
-    "stress_Dl_MPa",
-    "stress_Dr_MPa",
-    "stress_El_MPa",
-    "stress_Er_MPa",
-    "stress_Fl_MPa",
-    "stress_Fr_MPa",
-];
 /// The paper's direction of friction, deg from the circumference, and the customary one.
 pub(super) const DIRECTIONS: [f64; 2] = [45.0, 0.0];
 /// What the table shows, mm: three around the printed choice, as the paper's three were, and their neighbours.
@@ -29,7 +17,7 @@ pub(super) struct Sheet {
     pub thickness: f64,
     pub stress: f64,
     pub volume: f64,
-    points: [f64; POINTS.len()],
+    points: [f64; CHECK_POINT_STRESSES.len()],
     /// Is it the thinnest of the table whose stress stays below the yield strength?
     pub chosen: bool,
 }
@@ -47,7 +35,7 @@ pub(super) fn study() -> Vec<Sheet> {
                 thickness,
                 stress: outputs.get("max_stress_MPa"),
                 volume: outputs.get("volume_mm3"),
-                points: POINTS.map(|name| outputs.get(name)),
+                points: CHECK_POINT_STRESSES.map(|name| outputs.get(name)),
                 chosen: false,
             }
         };
@@ -73,7 +61,7 @@ pub(super) fn table(studied: &[Sheet]) -> PaperTable {
         numbers("friction_direction_deg", "deg", "Direction of friction from the circumference.", each(|sheet| sheet.direction)),
         numbers("thickness_mm", "mm", "Thickness of the sheet.", each(|sheet| sheet.thickness)),
     ];
-    for (at, name) in POINTS.into_iter().enumerate() {
+    for (at, name) in CHECK_POINT_STRESSES.into_iter().enumerate() {
         columns.push(numbers(
             name,
             "MPa",
