@@ -282,6 +282,10 @@ pub fn replace(path: &Path, bytes: &[u8]) -> Result<()> {
     let mut temporary = path.as_os_str().to_owned();
     temporary.push(".writing");
     let temporary = PathBuf::from(temporary);
-    write_through(&temporary, bytes)?;
-    fs::rename(&temporary, path).map_err(Error::io(path))
+    let done = write_through(&temporary, bytes).and_then(|()| fs::rename(&temporary, path).map_err(Error::io(path)));
+    if done.is_err() {
+        // On a full disk it holds the last room; that it is gone matters less than why.
+        let _ = fs::remove_file(&temporary);
+    }
+    done
 }

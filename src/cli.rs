@@ -184,10 +184,13 @@ pub struct Report {
     /// The page [default: report.html in the directory]
     #[arg(long, value_name = "FILE.html")]
     pub out: Option<PathBuf>,
+    /// Replace a file that is no page of this program
+    #[arg(long)]
+    pub force: bool,
     /// Worker threads [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
     pub threads: Option<u16>,
-    /// Seconds that computing what the result's tables do not say may take
+    /// Whole seconds that computing what the result's tables do not say may take
     #[arg(long, value_name = "SECONDS", default_value_t = 60, value_parser = clap::value_parser!(u32).range(0..=86_400))]
     pub patience: u32,
     /// Print nothing but errors

@@ -1,12 +1,12 @@
 //! `beltspace merge`: shards into one result.
 
-use super::sweep::{CHECKPOINT, refuse_to_overwrite};
+use super::sweep::refuse_to_overwrite;
 use super::{report as page, threads};
 use crate::cli;
 use crate::terminal::{self, report};
 use beltspace::checkpoint::Checkpoint;
 use beltspace::error::{Error, Result};
-use beltspace::export::{Outcome, RunRecord};
+use beltspace::export::{CHECKPOINT, Outcome, RunRecord};
 use beltspace::merge::{check_set, merge};
 use beltspace::plan::Plan;
 use beltspace::reduce::Reduction;

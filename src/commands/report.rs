@@ -7,9 +7,11 @@ use beltspace::checkpoint::replace;
 use beltspace::error::{Error, Result};
 use beltspace::export::PAGE;
 use beltspace::plan::Plan;
-use beltspace::report::{Page, Request, of_result, study_of};
+use beltspace::report::{GENERATOR, Page, Request, of_result, study_of};
 use beltspace::screen::Control;
 use beltspace::study::Study;
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -20,6 +22,7 @@ pub fn run(request: &cli::Report) -> Result<()> {
     let folder = &request.dir;
     let plan = Plan::new(study_of(folder)?);
     let file = request.out.clone().unwrap_or_else(|| folder.join(PAGE));
+    refuse_to_replace(&file, request.force)?;
     let patience = Duration::from_secs(request.patience.into());
     let page = make(&plan, folder, &folder.join("study.toml"), threads(request.threads), patience, &Control::default())?;
     replace(&file, page.html.as_bytes())?;
@@ -40,6 +43,32 @@ pub fn run(request: &cli::Report) -> Result<()> {
     terminal::print(&format!("{} ({size:.1} MB)\n", file.display()))
 }
 
+/// A page goes into an HTML file, and replaces nothing but a page.
+fn refuse_to_replace(file: &Path, force: bool) -> Result<()> {
+    let refuse = |problem: &str| Err(Error::Request(format!("{}: {problem}", file.display())));
+    let folder = file.parent().filter(|it| !it.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if file.is_dir() {
+        return refuse("it is a directory; name a file, such as report.html in it");
+    }
+    if !file.extension().is_some_and(|it| it.eq_ignore_ascii_case("html") || it.eq_ignore_ascii_case("htm")) {
+        return refuse("a page is an HTML file; give it a name that ends in .html");
+    }
+    if !folder.is_dir() {
+        return refuse(&format!("there is no directory {}; make it, or name another file", folder.display()));
+    }
+    if !file.exists() || force {
+        return Ok(());
+    }
+    // Of a page the first few hundred bytes say what made it.
+    let mut head = Vec::new();
+    let read = File::open(file).and_then(|it| it.take(2048).read_to_end(&mut head));
+    read.map_err(Error::io(file))?;
+    if String::from_utf8_lossy(&head).contains(GENERATOR) {
+        return Ok(());
+    }
+    refuse("a file is there that this program did not write; replace it with --force, or name another")
+}
+
 /// Writes the page of a result that has just been written, and says where. `study` is the file that the user named.
 pub fn beside(plan: &Plan, out: &Path, study: &Path, took: Duration, threads: usize, control: &Control) -> Result<PathBuf> {
     let file = out.join(PAGE);
@@ -49,7 +78,7 @@ pub fn beside(plan: &Plan, out: &Path, study: &Path, took: Duration, threads: us
         let again = format!("beltspace report {}", quoted(out));
         Error::Page(format!("the result in {} is complete, but its page could not be made ({error}); try: {again}", out.display()))
     };
-    replace(&file, page.map_err(lost)?.html.as_bytes())?;
+    page.and_then(|page| replace(&file, page.html.as_bytes())).map_err(lost)?;
     Ok(file)
 }
 

@@ -5,7 +5,7 @@ use crate::cli;
 use crate::terminal::{self, progress::Bar, report};
 use beltspace::checkpoint::{Checkpoint, replace};
 use beltspace::error::{Error, Result};
-use beltspace::export::{MARK, Outcome, RunRecord, in_the_way};
+use beltspace::export::{CHECKPOINT, MARK, Outcome, RunRecord, in_the_way};
 use beltspace::plan::Plan;
 use beltspace::reduce::Reduction;
 use beltspace::screen::gpu::{Wrong, kernel_of};
@@ -17,9 +17,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
-
-/// Folder of the checkpoint within a result directory.
-pub const CHECKPOINT: &str = "checkpoint";
 
 pub fn run(request: &cli::Sweep) -> Result<()> {
     let (study, text) = read_study(&request.study)?;

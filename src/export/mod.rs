@@ -35,6 +35,8 @@ use std::sync::atomic::Ordering;
 pub const CSV_CELLS: u64 = 100_000;
 /// The file whose presence makes a directory a result.
 pub const MARK: &str = "summary.json";
+/// Folder of the checkpoint within a result directory.
+pub const CHECKPOINT: &str = "checkpoint";
 /// The page that shows a result; like `run.json` it may differ from run to run.
 pub const PAGE: &str = "report.html";
 

@@ -1,8 +1,9 @@
 //! The designs that a page shows: the result's front table as it was written, completed with every other output of the model.
 
 use super::packed::{Packed, packed};
+use super::{changed, unreadable};
 use crate::certify::{self, Column, Role, Row};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::export::written;
 use crate::plan::Plan;
 use crate::screen::Control;
@@ -46,21 +47,30 @@ struct Shown {
     scenarios: Option<Vec<u32>>,
 }
 
-/// Reads the front table of a result and completes it, as long as `patience` lasts.
+/// Reads the front table of a result, which has `all` designs, and completes it, as long as `patience` lasts.
 ///
 /// # Errors
-/// [`Error::Io`] and [`Error::Request`] where the table is missing or says other than the study.
-pub fn read(file: &Path, plan: &Plan, threads: usize, patience: Duration, control: &Control) -> Result<Front> {
+/// As [`super::of_result`], where the table is missing or says other than the study.
+pub fn read(file: &Path, all: usize, plan: &Plan, threads: usize, patience: Duration, control: &Control) -> Result<Front> {
     let study = &plan.study;
     let columns = certify::columns(study);
-    let table = Table::read(file, study, &columns)?;
-    let all = table.rows.len();
     let taken = all.min(MOST_ROWS);
-    let rows: Vec<&csv::StringRecord> = (0..taken).map(|at| &table.rows[at * all / taken]).collect();
+    let rows = rows_of(file, study, &columns, all, taken)?;
     let index = |row: &csv::StringRecord| row[0].parse::<u64>().ok().filter(|&it| it < plan.designs());
-    let designs: Option<Vec<u64>> = rows.iter().map(|row| index(row)).collect();
-    let designs = designs.ok_or_else(|| unlike(file, "a design_index is not one of the study"))?;
+    let designs: Option<Vec<u64>> = rows.iter().map(index).collect();
+    let designs = designs.ok_or_else(|| changed(file, "a design_index is not one of the study"))?;
 
+    for (row, &design) in rows.iter().zip(&designs) {
+        let own = plan.space.inputs(design, 0);
+        let differs =
+            inputs(study).enumerate().find(|(at, (_, _, input))| row[at + 1] != *written(&study.model.inputs[*input], own[*input]));
+        if let Some((at, (_, _, input))) = differs {
+            let table = &study.model.inputs[input];
+            let found =
+                format!("{} of design {design} is {}, and the study gives {}", table.name, &row[at + 1], written(table, own[input]));
+            return Err(changed(file, &found));
+        }
+    }
     let mut shown = vec![Shown {
         name: "design_index".to_owned(),
         unit: "",
@@ -91,8 +101,11 @@ pub fn read(file: &Path, plan: &Plan, threads: usize, patience: Duration, contro
         let cell = design_inputs + 2 * at;
         let number = |text: &str| if text.is_empty() { Some(f64::NAN) } else { text.parse().ok() };
         let values: Option<Vec<f64>> = rows.iter().map(|row| number(&row[cell])).collect();
-        let scenarios = rows.iter().map(|row| row[cell + 1].parse().unwrap_or(NOWHERE)).collect();
-        let values = values.ok_or_else(|| unlike(file, &format!("{} has something that is no number", column.name)))?;
+        let scenarios: Vec<u32> = rows.iter().map(|row| row[cell + 1].parse().unwrap_or(NOWHERE)).collect();
+        if scenarios.iter().any(|&it| it != NOWHERE && u64::from(it) >= plan.scenarios()) {
+            return Err(changed(file, &format!("{}_scenario is not one of the study's {} scenarios", column.name, plan.scenarios())));
+        }
+        let values = values.ok_or_else(|| changed(file, &format!("{} has something that is no number", column.name)))?;
         shown.push(Shown::of(study, column, Packed::F64(values), scenarios));
     }
     let complete = complete(plan, &columns, &designs, threads, patience, control);
@@ -136,36 +149,27 @@ fn scenario_number(scenario: u64) -> u32 {
     u32::try_from(scenario).unwrap_or(NOWHERE)
 }
 
-fn unlike(file: &Path, problem: &str) -> Error {
-    Error::Request(format!(
-        "{}: {problem}; the file was changed or comes from another version of the program: sweep the study again",
-        file.display()
-    ))
-}
-
-/// The front table as text.
-struct Table {
-    rows: Vec<csv::StringRecord>,
-}
-
-impl Table {
-    fn read(file: &Path, study: &Study, columns: &[Column]) -> Result<Self> {
-        let problem = |error: csv::Error| match error.into_kind() {
-            csv::ErrorKind::Io(source) => Error::io(file)(source),
-            other => unlike(file, &format!("it is no table ({other:?})")),
-        };
-        let mut reader = csv::Reader::from_path(file).map_err(problem)?;
-        let inputs = inputs(study).map(|(_, _, input)| study.model.inputs[input].name.to_owned());
-        let columns = columns.iter().flat_map(|it| [it.name.clone(), format!("{}_scenario", it.name)]);
-        let expected: Vec<String> = std::iter::once("design_index".to_owned()).chain(inputs).chain(columns).collect();
-        let header = reader.headers().map_err(problem)?;
-        if *header != expected {
-            let differs = expected.iter().zip(header.iter()).find(|(expected, found)| expected.as_str() != *found);
-            let differs = differs.map_or("their number".to_owned(), |(expected, found)| format!("\"{found}\" in place of \"{expected}\""));
-            return Err(unlike(file, &format!("its columns are not those of the study: {differs}")));
-        }
-        Ok(Self { rows: reader.into_records().collect::<std::result::Result<_, _>>().map_err(problem)? })
+/// The rows of the front table that a page takes, as text: `taken` of `all`, evenly.
+fn rows_of(file: &Path, study: &Study, columns: &[Column], all: usize, taken: usize) -> Result<Vec<csv::StringRecord>> {
+    let mut reader = csv::Reader::from_path(file).map_err(|error| unreadable(file, error))?;
+    let inputs = inputs(study).map(|(_, _, input)| study.model.inputs[input].name.to_owned());
+    let columns = columns.iter().flat_map(|it| [it.name.clone(), format!("{}_scenario", it.name)]);
+    let expected: Vec<String> = std::iter::once("design_index".to_owned()).chain(inputs).chain(columns).collect();
+    let header = reader.headers().map_err(|error| unreadable(file, error))?;
+    if *header != expected {
+        let differs = expected.iter().zip(header.iter()).find(|(expected, found)| expected.as_str() != *found);
+        let differs = differs.map_or("their number".to_owned(), |(expected, found)| format!("\"{found}\" in place of \"{expected}\""));
+        return Err(changed(file, &format!("its columns are not those of the study: {differs}")));
     }
+    let (mut rows, mut seen) = (Vec::with_capacity(taken), 0);
+    for row in reader.into_records() {
+        let row = row.map_err(|error| unreadable(file, error))?;
+        if rows.len() < taken && seen == rows.len() * all / taken {
+            rows.push(row);
+        }
+        seen += 1;
+    }
+    if seen == all { Ok(rows) } else { Err(changed(file, &format!("it has {seen} designs, and summary.json says {all}"))) }
 }
 
 /// The inputs that design axes set: axis, column of the axis, input.
@@ -288,10 +292,15 @@ fn check(file: &Path, shown: &[Shown], place: &[usize], certified: &[Row], colum
     for (at, row) in certified.iter().enumerate() {
         for (column, &place) in row.columns[..columns].iter().zip(place) {
             let Packed::F64(values) = &shown[place].values else { continue };
+            let scenario = shown[place].scenarios.as_ref().map_or(NOWHERE, |it| it[at]);
+            if scenario != NOWHERE && u64::from(scenario) != column.scenario {
+                let (name, worst) = (&shown[place].name, column.scenario);
+                return Err(changed(file, &format!("{name} of design {} has scenario {scenario}, and the study gives {worst}", row.index)));
+            }
             let (value, seen) = (column.value.unwrap_or(f64::NAN), values[at]);
             if value.to_bits() != seen.to_bits() && !(value.is_nan() && seen.is_nan()) {
                 let name = &shown[place].name;
-                return Err(unlike(file, &format!("{name} of design {} is {seen}, and the study gives {value}", row.index)));
+                return Err(changed(file, &format!("{name} of design {} is {seen}, and the study gives {value}", row.index)));
             }
         }
     }

@@ -4,24 +4,28 @@ use super::packed::{Packed, packed};
 use super::{changed, text_of, unreadable};
 use crate::error::Result;
 use crate::export::{CSV_CELLS, contours_name, map_value};
-use crate::study::{Axis, Best, Goal, HistogramSpec, Levels, MapSpec, Study, value_of};
+use crate::study::{Axis, Best, Goal, HistogramSpec, Levels, MapSpec, Study, Thresholds, value_of};
 use serde_json::{Value, json};
 use std::path::Path;
 
 /// A table of numbers; absent ones are NaN.
 fn numbers(file: &Path) -> Result<Vec<Vec<f64>>> {
-    let mut reader = csv::Reader::from_path(file).map_err(|error| unreadable(file, &error))?;
+    let mut reader = csv::Reader::from_path(file).map_err(|error| unreadable(file, error))?;
     let number = |cell: &str| cell.parse().unwrap_or(f64::NAN);
-    reader.records().map(|row| Ok(row.map_err(|error| unreadable(file, &error))?.iter().map(number).collect())).collect()
+    reader.records().map(|row| Ok(row.map_err(|error| unreadable(file, error))?.iter().map(number).collect())).collect()
 }
 
-/// A histogram.
-pub fn histogram(folder: &Path, study: &Study, spec: &HistogramSpec, name: &str) -> Result<Value> {
+/// A histogram of all feasible designs.
+pub fn histogram(folder: &Path, study: &Study, spec: &HistogramSpec, name: &str, feasible: u64) -> Result<Value> {
     let file = folder.join(format!("{name}.csv"));
     let rows = numbers(&file)?;
     let ([below, bins @ .., above], true) = (&rows[..], rows.iter().all(|row| row.len() == 3)) else {
         return Err(changed(&file, "it is no histogram"));
     };
+    #[allow(clippy::cast_precision_loss, reason = "designs are far fewer than 2^53")]
+    if bins.len() != spec.bins || rows.iter().map(|row| row[2]).sum::<f64>() != feasible as f64 {
+        return Err(changed(&file, "its bins or their designs are not those of the study"));
+    }
     let column = |at: usize| bins.iter().map(|row| row[at]).collect::<Vec<_>>();
     Ok(json!({
         "of": spec.of.name(study.model), "unit": spec.of.unit(study.model), "doc": spec.of.doc(study.model),
@@ -54,12 +58,26 @@ pub fn map(folder: &Path, study: &Study, spec: &MapSpec, name: &str) -> Result<V
         if rows.len() as u64 != study.design[spec.x].count() * study.design[spec.y].count() || rows.iter().any(|row| row.len() != width) {
             return Err(changed(&file, "it is no map of this study"));
         }
+        // Words are not numbers: such an axis is not compared.
+        let places = (0..study.design[spec.y].count()).flat_map(|y| (0..study.design[spec.x].count()).map(move |x| (x, y)));
+        let elsewhere = |read: f64, axis: usize, level: u64| read != study.design[axis].value(0, level) && !read.is_nan();
+        if places.zip(&rows).any(|((x, y), row)| elsewhere(row[0], spec.x, x) || elsewhere(row[1], spec.y, y)) {
+            return Err(changed(&file, "its cells are not where the study's axes are"));
+        }
         let column = |at: usize| Packed::F64(rows.iter().map(|row| row[at]).collect()).bytes();
         (Some(json!({ "indices": width == 4, "packed": packed((2..width).map(column)) })), None)
     } else {
         (None, Some(text_of(folder, &format!("{name}.svg"))?))
     };
-    let contours = if spec.contours.is_empty() || !shown { Vec::new() } else { contours(&folder.join(contours_name(name)))? };
+    let mut contours = if spec.contours.is_empty() || !shown { Vec::new() } else { contours(&folder.join(contours_name(name)))? };
+    // What was asked for and is nowhere on the map is said, too.
+    for asked in &spec.contours {
+        let Thresholds::At(values) = &asked.at else { continue };
+        let of = asked.of.name(model);
+        let missing = values.iter().filter(|value| contours.iter().all(|it| it["of"] != of || it["at"] != **value));
+        let missing: Vec<Value> = missing.map(|value| json!({ "of": of, "at": value, "lines": [] })).collect();
+        contours.extend(if shown { missing } else { Vec::new() });
+    }
     let [x, y] = [axis(spec.x), axis(spec.y)];
     let name = |axis: &Value| axis["name"].as_str().unwrap_or_default().to_owned();
     Ok(json!({
@@ -71,11 +89,11 @@ pub fn map(folder: &Path, study: &Study, spec: &MapSpec, name: &str) -> Result<V
 
 /// The lines over a map, those of one quantity and threshold together.
 fn contours(file: &Path) -> Result<Vec<Value>> {
-    let mut reader = csv::Reader::from_path(file).map_err(|error| unreadable(file, &error))?;
+    let mut reader = csv::Reader::from_path(file).map_err(|error| unreadable(file, error))?;
     let mut found: Vec<(String, f64, Vec<Vec<f64>>)> = Vec::new();
     let mut line = String::new();
     for row in reader.records() {
-        let row = row.map_err(|error| unreadable(file, &error))?;
+        let row = row.map_err(|error| unreadable(file, error))?;
         let number = |at: usize| row.get(at).and_then(|it| it.parse::<f64>().ok()).ok_or_else(|| changed(file, "a vertex is no number"));
         let (of, at) = (&row[0], number(1)?);
         if found.last().is_none_or(|it| it.0 != of || it.1.to_bits() != at.to_bits()) {

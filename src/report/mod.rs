@@ -10,10 +10,12 @@ mod page;
 mod papers;
 
 pub use front::MOST_ROWS;
+pub use page::GENERATOR;
 pub use papers::of_papers;
 
+use crate::checkpoint::Checkpoint;
 use crate::error::{Error, Result};
-use crate::export::{MARK, pulley, table_names, written};
+use crate::export::{CHECKPOINT, MARK, pulley, table_names, written};
 use crate::plan::Plan;
 use crate::screen::Control;
 use crate::study::{Axis, Study, number, value_of};
@@ -56,14 +58,29 @@ pub struct Page {
 /// [`Error::Request`] if this is no result, or one that this version of the program does not understand.
 pub fn study_of(folder: &Path) -> Result<Study> {
     if !folder.join(MARK).exists() {
-        let hint = if folder.is_dir() { "is no finished result" } else { "is no directory" };
-        return Err(Error::Request(format!("{} {hint}; name the directory that `beltspace sweep` wrote", folder.display())));
+        let hint = match () {
+            () if !folder.is_dir() => "is no directory; name the one that `beltspace sweep` wrote".to_owned(),
+            () if Checkpoint::exists(&folder.join(CHECKPOINT)) || Checkpoint::exists(folder) => {
+                "holds an unfinished sweep or a shard; go on with `beltspace sweep --resume`, or put the shards together with \
+                 `beltspace merge`"
+                    .to_owned()
+            }
+            () => format!("is no finished result: it has no {MARK}; name the directory that `beltspace sweep` wrote"),
+        };
+        return Err(Error::Request(format!("{} {hint}", folder.display())));
     }
     let (described, summary) = (json_of(folder, "study.json")?, json_of(folder, MARK)?);
     let study = Study::from_description(&described)
         .map_err(|problem| changed(&folder.join("study.json"), &format!("not a study that this version describes: {problem}")))?;
     if summary["study_hash"] != study.hash().as_str() {
         return Err(changed(&folder.join(MARK), "it is the summary of another study than study.json"));
+    }
+    // The text may name tables that are elsewhere; then it cannot be read from here.
+    let (file, text) = (folder.join("study.toml"), text_of(folder, "study.toml")?);
+    match Study::parse(&text, "study.toml", folder) {
+        Ok(written) if written.hash() == study.hash() => {}
+        Err(_) if text.contains("csv") => {}
+        _ => return Err(changed(&file, "it is not the study that study.json describes")),
     }
     Ok(study)
 }
@@ -77,8 +94,15 @@ pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
     let study = &plan.study;
     let model = study.model;
     let summary = json_of(folder, MARK)?;
-    let front =
-        if study.objectives.is_empty() { None } else { Some(front::read(&folder.join("front.csv"), plan, threads, patience, control)?) };
+    let feasible = summary["feasible"].as_u64().filter(|&it| it <= plan.designs() && summary["designs"] == plan.designs());
+    let feasible = feasible.ok_or_else(|| changed(&folder.join(MARK), "its numbers of designs are not those of the study"))?;
+    let front = if study.objectives.is_empty() {
+        None
+    } else {
+        let all = summary["front"].as_u64().and_then(|it| usize::try_from(it).ok());
+        let all = all.ok_or_else(|| changed(&folder.join(MARK), "it does not say how many designs the front has"))?;
+        Some(front::read(&folder.join("front.csv"), all, plan, threads, patience, control)?)
+    };
     let (objectives, constraints, scenarios) =
         front.as_ref().map_or((&[][..], &[][..], None), |it| (&it.objectives[..], &it.constraints[..], Some(&it.scenarios)));
     let objectives = study
@@ -96,7 +120,8 @@ pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
         constraint
     });
     let (histograms, maps) = table_names(study);
-    let histograms = study.report.histograms.iter().zip(histograms).map(|(spec, name)| maps::histogram(folder, study, spec, &name));
+    let histograms =
+        study.report.histograms.iter().zip(histograms).map(|(spec, name)| maps::histogram(folder, study, spec, &name, feasible));
     let maps = study.report.maps.iter().zip(maps).map(|(spec, name)| maps::map(folder, study, spec, &name));
     let data = json!({
         "program": concat!("beltspace ", env!("CARGO_PKG_VERSION")),
@@ -105,7 +130,7 @@ pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
         "model": { "name": model.name, "summary": model.summary, "source": model.source, "limits": model.limits },
         "study": {
             "file": "study.toml", "text": text_of(folder, "study.toml")?, "hash": summary["study_hash"],
-            "designs": plan.designs(), "scenarios": plan.scenarios(), "feasible": summary["feasible"],
+            "designs": plan.designs(), "scenarios": plan.scenarios(), "feasible": feasible,
         },
         "run": json_of(folder, "run.json").ok(),
         "inputs": inputs(study),
@@ -218,28 +243,47 @@ fn variants(folder: &Path, study: &Study) -> Result<Option<Value>> {
 
 /// A table of designs as text, with the units of its columns.
 fn table(file: &Path, study: &Study) -> Result<Value> {
-    let mut reader = csv::Reader::from_path(file).map_err(|error| unreadable(file, &error))?;
-    let columns: Vec<String> = reader.headers().map_err(|error| unreadable(file, &error))?.iter().map(str::to_owned).collect();
+    let mut reader = csv::Reader::from_path(file).map_err(|error| unreadable(file, error))?;
+    let columns: Vec<String> = reader.headers().map_err(|error| unreadable(file, error))?.iter().map(str::to_owned).collect();
     let model = study.model;
     let unit = |name: &String| {
         let name = name.strip_suffix("_constrained").unwrap_or(name);
         let input = model.input(name).map(|it| model.inputs[it].unit.symbol);
         input.or_else(|| model.output(name).map(|it| model.outputs[it].unit.symbol)).unwrap_or_default()
     };
+    if columns.first().is_none_or(|it| it != "design_index") {
+        return Err(changed(file, "it is no table of designs"));
+    }
     let units: Vec<_> = columns.iter().map(unit).collect();
     let rows: std::result::Result<Vec<Vec<String>>, _> =
         reader.records().map(|row| row.map(|row| row.iter().map(str::to_owned).collect())).collect();
-    let rows = rows.map_err(|error| unreadable(file, &error))?;
+    let rows = rows.map_err(|error| unreadable(file, error))?;
     Ok(json!({ "columns": columns, "units": units, "rows": rows }))
 }
 
-fn unreadable(file: &Path, error: &csv::Error) -> Error {
-    changed(file, &format!("it cannot be read as a table: {error}"))
+fn unreadable(file: &Path, error: csv::Error) -> Error {
+    match error.into_kind() {
+        csv::ErrorKind::Io(source) => unreadable_file(file, source),
+        csv::ErrorKind::UnequalLengths { pos, expected_len, len } => {
+            let line = pos.map_or(String::new(), |pos| format!("line {}: ", pos.line()));
+            changed(file, &format!("{line}{len} cells where there should be {expected_len}"))
+        }
+        csv::ErrorKind::Utf8 { .. } => changed(file, "it is no text"),
+        _ => changed(file, "it cannot be read as a table"),
+    }
 }
 
 fn text_of(folder: &Path, name: &str) -> Result<String> {
     let path = folder.join(name);
-    fs::read_to_string(&path).map_err(Error::io(&path))
+    fs::read_to_string(&path).map_err(|source| unreadable_file(&path, source))
+}
+
+/// A file that is not there is as good as one that was changed.
+fn unreadable_file(file: &Path, source: std::io::Error) -> Error {
+    if source.kind() == std::io::ErrorKind::NotFound {
+        return Error::Request(format!("{} is missing from the result: sweep the study again", file.display()));
+    }
+    Error::io(file)(source)
 }
 
 fn json_of(folder: &Path, name: &str) -> Result<Value> {

@@ -2,6 +2,9 @@
 
 use serde_json::Value;
 
+/// Stands near the start of every page: what made it.
+pub const GENERATOR: &str = "name=\"generator\" content=\"beltspace\"";
+
 const TEMPLATE: &str = include_str!("page/page.html");
 const STYLE: &str = include_str!("page/style.css");
 /// D3 (<https://d3js.org>, licence in `page/vendor`): scales, axes, brushes and colours.
@@ -70,6 +73,7 @@ mod tests {
             assert!(!script.contains("</script") && !script.contains("<!--"));
         }
         let data = serde_json::json!({ "title": "</script><script>alert(1)</script>" });
+        assert!(TEMPLATE[..1000].contains(GENERATOR));
         let page = page("a < b & \"c\"", &data);
         assert!(page.contains("<title>a &lt; b &amp; &quot;c&quot;"), "{}", &page[..500]);
         assert_eq!(page.matches("</script>").count(), TEMPLATE.matches("</script>").count());

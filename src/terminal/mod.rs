@@ -92,7 +92,11 @@ pub fn short(value: f64) -> String {
 
 /// A path as a shell reads it back as one word.
 pub fn quoted(path: &Path) -> String {
-    let text = path.display().to_string();
+    let mut text = path.display().to_string();
+    // What begins with a dash would be read as an option.
+    if text.starts_with('-') {
+        text.insert_str(0, "./");
+    }
     let plain = |c: char| c.is_alphanumeric() || "/.-_:+=,@%".contains(c) || (cfg!(windows) && c == '\\');
     if !text.is_empty() && text.chars().all(plain) {
         text

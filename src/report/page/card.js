@@ -140,11 +140,13 @@
   const commands = (row) => {
     const { data, front } = page;
     if (!data.evaluate) return null;
-    const whole = data.evaluate.replaceAll("{design}", page.full(page.designOf(row)));
+    // The last one: a folder may be called so.
+    const at = data.evaluate.lastIndexOf("{design}");
+    const whole = data.evaluate.slice(0, at) + page.full(page.designOf(row)) + data.evaluate.slice(at + "{design}".length);
     const column = front.objectives.map((objective) => objective.column).find((one) => one.scenarios && one.scenarios[row] !== page.noScenario);
     const parts = [command("every output of this design, in f64", whole, "evaluate")];
     if (column) parts.push(command(`in the worst scenario of ${column.name}`, `${whole} --scenario ${column.scenarios[row]}`, "evaluate-scenario"));
-    return section("Evaluate again", parts);
+    return section("Evaluate again", page.element("p", { class: "hint" }, "From the folder in which this page was made."), parts);
   };
 
   const build = (row) => {

@@ -50,10 +50,11 @@
     bar.append(page.element("div", { class: "bar-title" }, title), strip);
     if (Number.isFinite(low) && high > low) {
       const scale = d3.scaleLinear([low, high], [0, width]);
-      const svg = d3.create("svg").attr("width", width + 48).attr("height", 20).attr("aria-hidden", "true");
-      svg.append("g").attr("class", "tick-axis").attr("transform", "translate(24,0)");
-      svg.select("g").call(d3.axisBottom(scale).ticks(4).tickSizeOuter(0).tickSize(4).tickFormat(page.tick(scale, 4)));
-      svg.node().style.marginLeft = "-24px";
+      const svg = d3.create("svg").attr("width", width).attr("height", 20).attr("aria-hidden", "true");
+      svg.append("g").attr("class", "tick-axis").call(d3.axisBottom(scale).ticks(4).tickSizeOuter(0).tickSize(4).tickFormat(page.tick(scale, 4)));
+      // Numbers at the ends stay within the bar: cut, they would read as others.
+      const anchor = (value) => (scale(value) < 26 ? "start" : scale(value) > width - 26 ? "end" : "middle");
+      svg.selectAll(".tick text").attr("text-anchor", anchor);
       bar.append(svg.node());
     } else bar.append(page.element("div", { class: "bar-title" }, Number.isFinite(low) ? `always ${page.short(low)}` : "no values"));
     return bar;

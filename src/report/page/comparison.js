@@ -3,7 +3,7 @@
   const comparison = (rows) => {
     const section = page.byId("comparison");
     section.hidden = false;
-    const head = [["where", ""], ["what", ""], ["printed", ""], ["computed", ""], ["difference", "number"], ["", ""], ["reason", "reason"]];
+    const head = [["where", ""], ["what", ""], ["printed", ""], ["computed", ""], ["difference", "number"], ["verdict", ""], ["reason", "reason"]];
     const withUnit = (text, unit) => (unit && /\d/.test(text) && !text.includes(unit) ? `${text} ${unit}` : text);
     const line = (row) => {
       const cell = (text, kind) => page.element("td", { class: kind }, text ?? "");

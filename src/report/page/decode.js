@@ -31,6 +31,7 @@
   };
 
   const addRange = (column) => {
+    column.whole = column.values.every((value) => !Number.isFinite(value) || Number.isInteger(value));
     let low = Infinity;
     let high = -Infinity;
     let finite = 0;

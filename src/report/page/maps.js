@@ -75,7 +75,9 @@
       const stroke = page.element("span", { class: "stroke" });
       stroke.style.background = contourColours[i % contourColours.length];
       const at = map.contours.filter((contour) => contour.of === kind).map((contour) => page.short(contour.at));
-      return page.element("span", { class: "word" }, stroke, `${kind} at ${at.length > 8 ? `${at.slice(0, 3).join(", ")} … ${at[at.length - 1]}` : at.join(", ")}`);
+      const nowhere = map.contours.filter((contour) => contour.of === kind && !contour.lines.length).map((contour) => page.short(contour.at));
+      const lost = nowhere.length ? ` (nowhere: ${nowhere.join(", ")})` : "";
+      return page.element("span", { class: "word" }, stroke, `${kind} at ${at.length > 8 ? `${at.slice(0, 3).join(", ")} … ${at[at.length - 1]}` : at.join(", ")}${lost}`);
     });
   };
 

@@ -88,7 +88,8 @@
     if (column.words) return axis.tickValues(d3.range(column.words.length)).tickFormat((i) => column.words[i]);
     if (Number.isNaN(column.low)) return axis.tickValues([]);
     if (column.low === column.high) return axis.tickValues([column.low]).tickFormat((value) => page.short(Number(value.toPrecision(4))));
-    return axis.ticks(count).tickFormat(page.tick(scale, count));
+    const ticks = scale.ticks(count);
+    return axis.tickValues(column.whole ? ticks.filter(Number.isInteger) : ticks).tickFormat(page.tick(scale, count));
   };
 
   const fit = (text, room) => {

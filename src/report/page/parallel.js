@@ -11,6 +11,14 @@
     return d3.scaleLinear(page.domain(column), range);
   };
 
+  // What is the same for every design on the front is no axis, and is said instead.
+  const showConstant = () => {
+    const { front } = page;
+    const same = front.shown.filter((column) => column.roles.has("design") && column.low === column.high && !page.state.parallel.includes(column.name));
+    const texts = same.map((column) => `${column.name} ${page.valueText(column, 0)}${column.unit && !column.words ? ` ${column.unit}` : ""}`);
+    page.byId("constant").textContent = texts.length ? `The same for every design of the front: ${texts.join(", ")}.` : "";
+  };
+
   const layout = () => {
     const { state, front } = page;
     const box = page.byId("parallel");
@@ -22,6 +30,7 @@
       page.layoutLines(null);
       return;
     }
+    showConstant();
     width = Math.floor(Math.max(page.layoutWidth(box), page.printing ? 0 : state.parallel.length * 78));
     const xs = d3.scalePoint(state.parallel, [0, width]).padding(0.5);
     const canvas = page.element("canvas", { "aria-hidden": "true" });

@@ -29,7 +29,7 @@
     section.append(
       page.element("h2", { id: "tally-title" }, "What limits feasibility"),
       page.element("p", { class: "hint" }, `Of ${page.data.study && page.data.study.designs === sampled ? "all" : "a fixed sample of"} ${page.count(sampled)} designs, ${page.count(tally.feasible)} (${page.percent(tally.feasible, sampled)}) are feasible. One design may fail for several reasons; “alone” counts those that fail this constraint and nothing else.`),
-      shown.length ? table : page.element("p", {}, "No design of the sample fails."),
+      shown.length ? table : page.element("p", {}, "None fails."),
       never.length ? page.element("p", { class: "hint" }, `Never: ${never.join(", ")}.`) : "",
     );
   };

@@ -159,7 +159,10 @@ fn what_is_no_result_or_was_changed_is_refused_by_name() {
     let folder = folder_with("small.toml", SMALL);
     std::fs::create_dir(folder.path().join("empty")).expect("a folder can be made");
     let said = ask(folder.path(), "report empty").refusal(2);
-    assert!(said.contains("empty is no finished result; name the directory that `beltspace sweep` wrote"), "{said}");
+    assert!(
+        said.contains("empty is no finished result: it has no summary.json; name the directory that `beltspace sweep` wrote"),
+        "{said}"
+    );
     let said = ask(folder.path(), "report nowhere").refusal(2);
     assert!(said.contains("nowhere is no directory"), "{said}");
 
@@ -186,4 +189,86 @@ fn what_is_no_result_or_was_changed_is_refused_by_name() {
     let said = ask(folder.path(), "report r").refusal(2);
     assert!(said.contains("summary.json: it is the summary of another study"), "{said}");
     assert!(!folder.path().join("r/report.html").exists(), "nothing half-written");
+}
+
+#[test]
+fn every_file_that_says_other_than_the_study_is_refused() {
+    let folder = folder_with("small.toml", SMALL);
+    ask(folder.path(), "sweep small.toml --out r --no-report").text();
+    let text = |name: &str| read(&folder.path().join("r").join(name));
+    let second = |table: &str| table.lines().nth(1).expect("a table has rows").to_owned();
+    let front = text("front.csv");
+    let row = second(&front);
+    let cells: Vec<&str> = row.split(',').collect();
+    let with = |at: usize, value: &str| {
+        let mut cells = cells.clone();
+        cells[at] = value;
+        front.replacen(&row, &cells.join(","), 1)
+    };
+    let header: Vec<&str> = front.lines().next().expect("a table has a header").split(',').collect();
+    let scenario = header.iter().position(|it| *it == "axial_force_N_scenario").expect("it is a column");
+    let other = if cells[scenario] == "3" { "4" } else { "3" };
+    let histogram = text("histogram-axial_force_N.csv");
+    let last = histogram.lines().last().expect("it has bins").to_owned();
+    let map = text("map-axial_force_N.csv");
+    let summary = text("summary.json");
+    let cases = [
+        ("front.csv", with(1, "18.25"), "groove_angle_deg of design".to_owned()),
+        ("front.csv", with(scenario, "99"), "axial_force_N_scenario is not one of the study's 12 scenarios".to_owned()),
+        ("front.csv", with(scenario, other), format!("has scenario {other}, and the study gives {}", cells[scenario])),
+        ("front.csv", front.replacen(&format!("{row}\n"), "", 1), "designs, and summary.json says".to_owned()),
+        ("front.csv", front.replacen(&row, cells[0], 1), "line 2: 1 cells where there should be".to_owned()),
+        ("histogram-axial_force_N.csv", histogram.replace(&last, ",,7"), "its bins or their designs".to_owned()),
+        ("map-axial_force_N.csv", map.replacen("\n0.1,", "\n0.2,", 1), "its cells are not where".to_owned()),
+        ("top.csv", String::new(), "it is no table of designs".to_owned()),
+        ("study.toml", String::new(), "it is not the study that study.json describes".to_owned()),
+        ("study.toml", text("study.toml").replace("\"max\"", "\"min\""), "it is not the study".to_owned()),
+        ("summary.json", summary.replace("\"feasible\": ", "\"feasible\": 9"), "its numbers of designs".to_owned()),
+        ("summary.json", summary.replace("\"designs\": ", "\"designs\": 9"), "its numbers of designs".to_owned()),
+    ];
+    for (name, wrong, expected) in &cases {
+        let right = text(name);
+        assert_ne!(right, *wrong, "{name} was not changed");
+        write(folder.path(), &format!("r/{name}"), wrong);
+        let said = ask(folder.path(), "report r").refusal(2);
+        assert!(said.contains(&format!("r/{name}: ")) && said.contains(expected), "{name}: {said} lacks {expected}");
+        write(folder.path(), &format!("r/{name}"), &right);
+    }
+    for name in ["front.csv", "study.json", "study.toml", "top.csv", "map-axial_force_N.csv", "histogram-axial_force_N.csv"] {
+        let right = text(name);
+        std::fs::remove_file(folder.path().join("r").join(name)).expect("it can go");
+        let said = ask(folder.path(), "report r").refusal(2);
+        assert!(said.contains(&format!("{name} is missing from the result: sweep the study again")), "{said}");
+        write(folder.path(), &format!("r/{name}"), &right);
+    }
+    ask(folder.path(), "report r").text();
+}
+
+#[test]
+fn a_page_replaces_nothing_but_a_page_and_leaves_nothing_behind() {
+    let folder = folder_with("small.toml", SMALL);
+    ask(folder.path(), "sweep small.toml --out r --no-report").text();
+    write(folder.path(), "mine.html", "<p>mine</p>");
+    std::fs::create_dir(folder.path().join("folder.html")).expect("a folder can be made");
+    for (out, expected) in [
+        ("small.toml", "small.toml: a page is an HTML file; give it a name that ends in .html"),
+        ("r/front.csv", "a page is an HTML file"),
+        ("mine.html", "mine.html: a file is there that this program did not write; replace it with --force"),
+        ("folder.html", "folder.html: it is a directory; name a file"),
+        ("nowhere/x.html", "nowhere/x.html: there is no directory nowhere; make it, or name another file"),
+    ] {
+        let said = ask(folder.path(), &format!("report r --out {out}")).refusal(2);
+        assert!(said.contains(expected), "{said}");
+    }
+    assert_eq!(read(&folder.path().join("mine.html")), "<p>mine</p>");
+    ask(folder.path(), "report r --out mine.html --force").text();
+    ask(folder.path(), "report r --out mine.html").text();
+    // A write that fails takes what it had begun along.
+    std::fs::create_dir(folder.path().join("late.html.writing")).expect("a folder can be made");
+    ask(folder.path(), "report r --out late.html").refusal(1);
+    assert!(!folder.path().join("late.html").exists());
+    // What is not finished says what to do.
+    ask(folder.path(), "sweep small.toml --shard 1/2 --out shard").text();
+    let said = ask(folder.path(), "report shard").refusal(2);
+    assert!(said.contains("put the shards together with `beltspace merge`"), "{said}");
 }
