@@ -16,7 +16,7 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
 /// Most designs on a page; of a larger front so many are taken, evenly along the table.
-pub const MOST_ROWS: usize = 200_000;
+const MOST_ROWS: usize = 200_000;
 /// Most scenarios whose inputs a page tells.
 const MOST_SCENARIOS: usize = 20_000;
 /// Stands for a scenario where the value is absent.

@@ -9,7 +9,6 @@ mod packed;
 mod page;
 mod papers;
 
-pub use front::MOST_ROWS;
 pub use page::GENERATOR;
 pub use papers::of_papers;
 
@@ -88,7 +87,7 @@ pub fn study_of(folder: &Path) -> Result<Study> {
 /// The page of a result.
 ///
 /// # Errors
-/// [`Error::Io`] where a file is missing; [`Error::Request`] where one says other than the study.
+/// [`Error::Request`] where a file is missing or says other than the study; [`Error::Io`] where one cannot be read.
 pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
     let Request { folder, plan, evaluate, threads, patience } = *request;
     let study = &plan.study;

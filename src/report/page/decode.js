@@ -25,11 +25,6 @@
     return Float64Array.from(new Uint32Array(part), (value) => (value === ABSENT ? NaN : value));
   };
 
-  const sameValues = (a, b) => {
-    for (let i = 0; i < a.length; i++) if (a[i] !== b[i] && !(Number.isNaN(a[i]) && Number.isNaN(b[i]))) return false;
-    return true;
-  };
-
   const addRange = (column) => {
     column.whole = column.values.every((value) => !Number.isFinite(value) || Number.isInteger(value));
     let low = Infinity;
@@ -69,10 +64,9 @@
     const buffer = front.rows ? await page.inflate(front.packed) : new ArrayBuffer(0);
     const columns = [];
     const byName = new Map();
-    const at = []; // where each stored column went, for the indices of objectives and constraints
     let offset = 0;
     for (const stored of front.columns) {
-      const column = { ...stored, roles: new Set([stored.role]), scenarios: null };
+      const column = { ...stored, scenarios: null };
       column.values = readValues(buffer, offset, front.rows, stored.type);
       offset += front.rows * (stored.type === "f64" ? 8 : 4);
       if (stored.scenario) {
@@ -80,21 +74,10 @@
         offset += front.rows * 4;
       }
       addRange(column);
-      // An objective may be an input: front.csv has it twice, the page shows it once with both roles.
-      const twin = byName.get(column.name);
-      if (twin && sameValues(twin.values, column.values)) {
-        twin.roles.add(column.role);
-        twin.direction = twin.direction || column.direction;
-        twin.scenarios = twin.scenarios || column.scenarios;
-        at.push(twin);
-        continue;
-      }
-      if (twin) column.name = `${column.name} (${column.role})`;
       byName.set(column.name, column);
       columns.push(column);
-      at.push(column);
     }
-    return { ...front, columns, byName, at };
+    return { ...front, columns, byName };
   };
 
   page.decode = async () => {
@@ -102,8 +85,8 @@
     page.data = data;
     if (!data.front) return;
     const front = await decodeFront(data.front);
-    front.objectives = (data.objectives || []).map((objective) => ({ ...objective, column: front.at[objective.column] }));
-    front.constraints = (data.constraints || []).map((bound) => ({ ...bound, column: front.at[bound.column] }));
+    front.objectives = (data.objectives || []).map((objective) => ({ ...objective, column: front.columns[objective.column] }));
+    front.constraints = (data.constraints || []).map((bound) => ({ ...bound, column: front.columns[bound.column] }));
     for (const { column, goal } of front.objectives) column.goal = goal;
     front.index = front.columns.find((column) => column.role === "index");
     front.shown = front.columns.filter((column) => column !== front.index);

@@ -14,7 +14,7 @@
   // What is the same for every design on the front is no axis, and is said instead.
   const showConstant = () => {
     const { front } = page;
-    const same = front.shown.filter((column) => column.roles.has("design") && column.low === column.high && !page.state.parallel.includes(column.name));
+    const same = front.shown.filter((column) => column.role === "design" && column.low === column.high && !page.state.parallel.includes(column.name));
     const texts = same.map((column) => `${column.name} ${page.valueText(column, 0)}${column.unit && !column.words ? ` ${column.unit}` : ""}`);
     page.byId("constant").textContent = texts.length ? `The same for every design of the front: ${texts.join(", ")}.` : "";
   };
@@ -93,7 +93,7 @@
     const inverted = state.inverted.has(column.name);
     const button = (what, label, text, disabled, click, pressed = null) =>
       page.element("button", { type: "button", "aria-label": `${label} ${column.name}`, title: label, disabled, click, "aria-pressed": pressed, "data-focus": `${what} ${column.name}` }, text);
-    const role = column.goal ? column.goal : column.roles.has("design") ? "input" : "";
+    const role = column.goal ? column.goal : column.role === "design" ? "input" : "";
     const title = page.element("div", { class: "axis-name", title: `${column.doc || column.name}${column.unit ? ` [${column.unit}]` : ""}` }, page.breakable(column.name));
     const sub = page.element("div", { class: "axis-unit" }, [column.unit ? `[${column.unit}]` : "", role].filter(Boolean).join(" "));
     const buttons = page.element(

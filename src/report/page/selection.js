@@ -21,10 +21,10 @@
     const names = (columns) => columns.map((column) => column.name);
     const objectives = [...new Set(front.objectives.map((objective) => objective.column.name))];
     state.matrix = objectives.slice(0, 6);
-    const inputs = front.shown.filter((column) => column.roles.has("design"));
+    const inputs = front.shown.filter((column) => column.role === "design");
     // Inputs that never change on the front say nothing as an axis; they stay in the chooser.
     const varied = inputs.filter((column) => !(column.low === column.high) || front.rows < 2);
-    const judged = front.shown.filter((column) => ["objective", "constraint", "report"].some((role) => column.roles.has(role)));
+    const judged = front.shown.filter((column) => ["objective", "constraint", "report"].includes(column.role));
     state.parallel = [...new Set([...names(varied), ...names(judged)])].slice(0, 14);
     state.inverted = new Set();
     state.colour = objectives[0] ?? state.parallel[0] ?? null;
