@@ -133,6 +133,17 @@ pub enum Engine {
     Cpu,
 }
 
+/// How designs are judged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Method {
+    /// Bounds where they can serve the study and judging every design would take long, else every design
+    Auto,
+    /// Every design, one by one
+    Exhaustive,
+    /// Boxes of designs by bounds of the formula: the same result, with a certificate of what settled each design
+    Bounds,
+}
+
 /// Options of `sweep`.
 #[derive(Debug, Args)]
 pub struct Sweep {
@@ -144,6 +155,9 @@ pub struct Sweep {
     /// What judges the designs
     #[arg(long, value_enum, default_value = "auto")]
     pub engine: Engine,
+    /// How designs are judged; the result is the same
+    #[arg(long, value_enum, default_value = "auto")]
+    pub method: Method,
     /// GPU to use: a part of its name [default: the best, see `adapters`]
     #[arg(long, value_name = "NAME")]
     pub adapter: Option<String>,

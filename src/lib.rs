@@ -43,6 +43,7 @@
 //! # Ok::<(), beltspace::error::Error>(())
 //! ```
 
+pub mod bounds;
 pub mod certify;
 pub mod checkpoint;
 pub mod contours;

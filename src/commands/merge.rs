@@ -6,7 +6,7 @@ use crate::cli;
 use crate::terminal::{self, report};
 use beltspace::checkpoint::Checkpoint;
 use beltspace::error::{Error, Result};
-use beltspace::export::{CHECKPOINT, Outcome, RunRecord};
+use beltspace::export::{CHECKPOINT, MethodRecord, Outcome, RunRecord};
 use beltspace::merge::{check_set, merge};
 use beltspace::plan::Plan;
 use beltspace::reduce::Reduction;
@@ -43,6 +43,7 @@ pub fn run(request: &cli::Merge) -> Result<()> {
         origin: format!("merged from {count} shards; the time is that of merging"),
         certified: outcome.front.len() + outcome.top.len(),
         device: None,
+        method: MethodRecord { certificate: None, why: "the shards were judged before".to_owned() },
     };
     outcome.write(&request.out, &text, &record)?;
     let page = if request.no_report {

@@ -6,6 +6,7 @@ mod engine;
 mod eval;
 mod export;
 mod merge;
+mod method;
 mod models;
 mod report;
 mod reproduce;

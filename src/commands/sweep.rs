@@ -1,16 +1,17 @@
 //! `beltspace sweep`: the main job.
 
-use super::{engine, read_study, report as page, threads};
+use super::{engine, method, read_study, report as page, threads};
 use crate::cli;
 use crate::terminal::{self, progress::Bar, report};
 use beltspace::checkpoint::{Checkpoint, replace};
 use beltspace::error::{Error, Result};
-use beltspace::export::{CHECKPOINT, MARK, Outcome, RunRecord, in_the_way};
+use beltspace::bounds::Certificate;
+use beltspace::export::{CHECKPOINT, MARK, MethodRecord, Outcome, RunRecord, in_the_way};
 use beltspace::plan::Plan;
 use beltspace::reduce::Reduction;
 use beltspace::screen::gpu::{Wrong, kernel_of};
 use beltspace::screen::{Tables, Tally};
-use beltspace::sweep::{Control, DeviceRecord, OnDevice, Options, Swept, sweep, sweep_on_device};
+use beltspace::sweep::{Control, DeviceRecord, OnDevice, Options, Swept, sweep, sweep_by_bounds, sweep_on_device};
 use beltspace::tiles::Shard;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -30,7 +31,10 @@ pub fn run(request: &cli::Sweep) -> Result<()> {
     if let Some(file) = &request.emit_shader {
         return emit_shader(&plan, &wrong, threads(request.threads), file);
     }
-    let mut device = engine::choose(&plan, request.engine, request.adapter.as_deref(), wrong)?;
+    let threads = threads(request.threads);
+    let method = method::choose(&plan, request.method, request.engine, request.adapter.as_deref(), threads)?;
+    let on_a_device = if method.bounds { cli::Engine::Cpu } else { request.engine };
+    let mut device = engine::choose(&plan, on_a_device, request.adapter.as_deref(), wrong)?;
     if let (cli::Engine::Auto, Some(chosen)) = (request.engine, &device)
         && let Err(error) = engine::try_out(&plan, chosen)
     {
@@ -41,12 +45,16 @@ pub fn run(request: &cli::Sweep) -> Result<()> {
     stop_on_ctrl_c(&control)?;
     let mut checkpoint = open_checkpoint(&out, &plan, &text, shard, request)?;
     let resumed = checkpoint.has_progress();
-    let options = Options { threads: threads(request.threads), tile: request.tile, shard, ..Options::default() };
+    let options = Options { threads, tile: request.tile, shard, ..Options::default() };
     let bar = Bar::start(&control, shard.range(plan.designs()), request.quiet);
-    let on = device.as_ref().map(|it| &it.on);
-    let done = judge(&plan, &options, &mut checkpoint, &control, request.shard.is_none(), on);
+    let how = match &device {
+        _ if method.bounds => How::Bounds,
+        Some(device) => How::Device(&device.on),
+        None => How::Processor,
+    };
+    let done = judge(&plan, &options, &mut checkpoint, &control, request.shard.is_none(), how);
     bar.finish();
-    let (time, designs, outcome, did) = done.map_err(|error| name_the_way_back(error, &out, request))?;
+    let Judged { time, designs, outcome, did, certificate } = done.map_err(|error| name_the_way_back(error, &out, request))?;
     let Some(outcome) = outcome else {
         return finish_shard(&plan, &out, &checkpoint, request.quiet);
     };
@@ -60,12 +68,29 @@ pub fn run(request: &cli::Sweep) -> Result<()> {
         origin,
         certified: outcome.front.len() + outcome.top.len(),
         device: device.zip(did).map(|(device, did)| describe_device(&device, &did)),
+        method: MethodRecord { certificate, why: method.why },
     };
     outcome.write(&out, &text, &record)?;
     checkpoint.remove()?;
     let page =
         if request.no_report { None } else { Some(page::beside(&plan, &out, &request.study, record.time, options.threads, &control)?) };
     if request.quiet { Ok(()) } else { terminal::print(&report::summary(&outcome, &record, &out, page.as_ref())) }
+}
+
+/// What judges the designs.
+enum How<'a> {
+    Processor,
+    Device(&'a OnDevice),
+    Bounds,
+}
+
+/// What came of it.
+struct Judged<'p> {
+    time: Duration,
+    designs: u64,
+    outcome: Option<Outcome<'p>>,
+    did: Option<DeviceRecord>,
+    certificate: Option<Certificate>,
 }
 
 /// Sweeps the study and, if it is `whole`, certifies what is to be reported; of a shard, the checkpoint is the result.
@@ -75,20 +100,27 @@ fn judge<'p>(
     checkpoint: &mut Checkpoint,
     control: &Control,
     whole: bool,
-    on: Option<&OnDevice>,
-) -> Result<(Duration, u64, Option<Outcome<'p>>, Option<DeviceRecord>)> {
+    how: How<'_>,
+) -> Result<Judged<'p>> {
     let tables = Tables::new(plan);
     let tally = Tally::watched(plan, &tables, options.threads, control)?;
     let reduction = Reduction::new(plan, &tally.histogram_ranges(plan));
-    let (Swept { state, designs, time }, did) = match on {
-        None => (sweep(plan, &tables, &reduction, options, Some(checkpoint), control)?, None),
-        Some(on) => {
-            let (swept, did) = sweep_on_device(plan, &tables, &reduction, options, Some(checkpoint), control, on)?;
-            (swept, Some(did))
+    let (mut did, mut certificate) = (None, None);
+    let Swept { state, designs, time } = match how {
+        How::Processor => sweep(plan, &tables, &reduction, options, Some(checkpoint), control)?,
+        How::Device(on) => {
+            let (swept, record) = sweep_on_device(plan, &tables, &reduction, options, Some(checkpoint), control, on)?;
+            did = Some(record);
+            swept
+        }
+        How::Bounds => {
+            let (swept, found) = sweep_by_bounds(plan, &tables, &reduction, options, Some(checkpoint), control)?;
+            certificate = Some(found);
+            swept
         }
     };
     let outcome = whole.then(|| Outcome::certify(plan, state, tally, options.threads, control)).transpose()?;
-    Ok((time, designs, outcome, did))
+    Ok(Judged { time, designs, outcome, did, certificate })
 }
 
 /// The device, its driver and what it did, for `run.json`.

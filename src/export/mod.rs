@@ -13,7 +13,7 @@ mod tests;
 
 pub use csv::write as csv_text;
 pub use number::plain;
-pub use summary::{Knee, RunRecord, Summary};
+pub use summary::{Knee, MethodRecord, RunRecord, Summary};
 pub use table::{Data, Table, TableColumn};
 pub use tables::{map_value, written};
 

@@ -1,6 +1,7 @@
 //! What a study found, in one page: `summary.json`, and `run.json` on how it was found.
 
 use super::Outcome;
+use crate::bounds::Certificate;
 use crate::study::{Goal, Objective, number, value_of};
 use serde_json::{Map, Value, json};
 use std::time::Duration;
@@ -140,6 +141,24 @@ pub struct RunRecord {
     pub certified: usize,
     /// What a device did in it, if there was one.
     pub device: Option<Value>,
+    /// How designs were judged.
+    pub method: MethodRecord,
+}
+
+/// How designs were judged, and why so.
+#[derive(Clone, Debug)]
+pub struct MethodRecord {
+    /// By bounds? Then, what settled the designs.
+    pub certificate: Option<Certificate>,
+    /// Why.
+    pub why: String,
+}
+
+impl MethodRecord {
+    /// Its name on the command line.
+    pub fn name(&self) -> &'static str {
+        if self.certificate.is_some() { "bounds" } else { "exhaustive" }
+    }
 }
 
 impl RunRecord {
@@ -154,6 +173,8 @@ impl RunRecord {
         json!({
             "program": concat!("beltspace ", env!("CARGO_PKG_VERSION")),
             "engine": self.engine,
+            "method": self.method.name(),
+            "method_chosen": self.method.why,
             "origin": self.origin,
             "threads": self.threads,
             "designs": self.designs,
@@ -162,6 +183,7 @@ impl RunRecord {
             "designs_per_second": self.rate(),
             "certified_designs": self.certified,
             "device": self.device,
+            "certificate": self.method.certificate.as_ref().map(Certificate::to_json),
             "platform": format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
         })
     }

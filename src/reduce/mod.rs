@@ -13,7 +13,7 @@ mod top;
 
 pub use dominance::{Dominance, beats};
 pub use extremes::{Extreme, Extremes};
-pub use front::{Front, KeyRule, Points};
+pub use front::{Front, KeyRule, MOST_OBJECTIVES, Points};
 pub use histogram::Histogram;
 pub use map::{Cell, Map};
 pub use top::Top;

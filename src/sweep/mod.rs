@@ -4,12 +4,14 @@
 //! and hands the result over as a whole. What is merged is therefore always complete for the ranges that the checkpoint names,
 //! and the result does not depend on how the work was cut. On a graphics device see [`sweep_on_device`].
 
+mod bounds;
 mod gpu;
 mod recheck;
 #[cfg(test)]
 mod tests;
 
 pub use crate::screen::Control;
+pub use bounds::sweep_by_bounds;
 pub use gpu::{DeviceRecord, OnDevice, recheck_on_device, sweep_on_device};
 pub use recheck::{LEAST_DESIGNS, Recheck};
 

@@ -28,6 +28,11 @@ impl KeyRule {
         (if self.goal == Goal::Min { step } else { -step }) + 0.0
     }
 
+    /// Do values that differ count as one?
+    pub fn has_steps(&self) -> bool {
+        self.resolution.is_some()
+    }
+
     /// The keys of a column of values, but for the sign of zero: the values themselves where they serve, else in `scratch`.
     pub(super) fn keys<'a>(self, values: &'a [f64], scratch: &'a mut Vec<f64>) -> &'a [f64] {
         if self.resolution.is_none() && self.goal == Goal::Min {

@@ -15,7 +15,7 @@ use crate::screen::Block;
 use filter::{Filter, Table};
 
 /// Most objectives that a study may have.
-const MOST_OBJECTIVES: usize = 6;
+pub const MOST_OBJECTIVES: usize = 6;
 /// Recent killers that are remembered.
 const KILLERS: usize = 8;
 /// Least number of waiting designs before they are merged.
@@ -133,6 +133,20 @@ impl Front {
                 beyond > 0 && beats(self.points.key(beyond - 1, dimensions), u64::MAX, lower, 0)
             }
             Filter::Killers { all, .. } => all.beater(lower, 0).is_some(),
+        }
+    }
+
+    /// Is every design whose coordinates are at least these, and whose index is at least this, surely superfluous beside a point so far?
+    /// Points that wait are not asked.
+    pub fn beats_from(&self, lower: &[f64], least_index: u64) -> bool {
+        let dimensions = self.rules.len();
+        match &self.filter {
+            Filter::Nothing => false,
+            Filter::Best(_) | Filter::Table(_) => {
+                let beyond = self.points.not_beyond(lower[0], dimensions);
+                beyond > 0 && beats(self.points.key(beyond - 1, dimensions), self.points.indices[beyond - 1], lower, least_index)
+            }
+            Filter::Killers { all, .. } => all.beater(lower, least_index).is_some(),
         }
     }
 

@@ -1,0 +1,260 @@
+//! The axes of a study as the search sees them: design axes in the order of the sweep, then scenario axes, each with all its values;
+//! boxes of designs as spans of their indices.
+
+use crate::models::input_to_si;
+use crate::plan::Plan;
+use crate::space::Dimension;
+use std::ops::Range;
+
+/// Most axes of designs and scenarios together.
+pub const AXES: usize = 16;
+/// Most levels of an axis: all of them are kept.
+pub const LEVELS: u64 = 1 << 20;
+
+/// One axis.
+#[derive(Debug)]
+pub struct Axis {
+    /// The inputs that it sets.
+    pub inputs: Vec<usize>,
+    /// Their values by level, in their units; one column per input.
+    pub own: Vec<Vec<f64>>,
+    /// The same in SI.
+    pub si: Vec<Vec<f64>>,
+    /// Do the values of every column rise or fall all along, so that a span's ends have its extremes?
+    pub ordered: bool,
+    /// Least distance of two neighbouring values of the first column, in SI.
+    pub least_step: f64,
+    /// Distance of two neighbours in the study's index.
+    pub stride: u64,
+}
+
+/// All axes of a study.
+#[derive(Debug)]
+pub struct Axes {
+    /// Design axes, outermost of the sweep first, then scenario axes.
+    pub all: Vec<Axis>,
+    /// Number of design axes.
+    pub designs: usize,
+    /// Distance of two neighbours in the position of the sweep, of each design axis.
+    pub steps: Vec<u64>,
+}
+
+/// Levels `low..=high` of an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Span {
+    /// First level.
+    pub low: u32,
+    /// Last level.
+    pub high: u32,
+}
+
+impl Span {
+    /// One level.
+    pub fn at(level: u32) -> Self {
+        Self { low: level, high: level }
+    }
+
+    /// Number of levels.
+    pub fn count(self) -> u64 {
+        u64::from(self.high - self.low) + 1
+    }
+
+    /// Is it one level?
+    pub fn is_single(self) -> bool {
+        self.low == self.high
+    }
+
+    /// Both halves of more than one level.
+    pub fn halves(self) -> [Self; 2] {
+        let middle = self.low + (self.high - self.low) / 2;
+        [Self { low: self.low, high: middle }, Self { low: middle + 1, high: self.high }]
+    }
+}
+
+/// A box: a span of every axis, in the order of [`Axes`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Spans(pub [Span; AXES]);
+
+impl std::ops::Index<usize> for Spans {
+    type Output = Span;
+    fn index(&self, axis: usize) -> &Span {
+        &self.0[axis]
+    }
+}
+
+impl std::ops::IndexMut<usize> for Spans {
+    fn index_mut(&mut self, axis: usize) -> &mut Span {
+        &mut self.0[axis]
+    }
+}
+
+impl Axis {
+    /// Least and largest of a column over a span.
+    pub fn ends(values: &[f64], ordered: bool, span: Span) -> (f64, f64) {
+        let (first, last) = (values[span.low as usize], values[span.high as usize]);
+        if ordered || span.is_single() {
+            return (first.min(last), first.max(last));
+        }
+        let inside = &values[span.low as usize..=span.high as usize];
+        inside.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| (low.min(value), high.max(value)))
+    }
+
+    /// Number of levels.
+    pub fn count(&self) -> u64 {
+        self.si.first().map_or(1, |column| column.len() as u64)
+    }
+
+    /// Does it walk several inputs together?
+    pub fn is_joint(&self) -> bool {
+        self.inputs.len() > 1
+    }
+}
+
+impl Axes {
+    /// The axes of a plan; `None` if there are too many, or one has too many levels.
+    pub fn new(plan: &Plan) -> Option<Self> {
+        let designs: Vec<_> = plan.slow.dimensions().chain(plan.fast.dimensions()).collect();
+        let scenarios: Vec<_> = plan.space.scenarios.dimensions().collect();
+        if designs.len() + scenarios.len() > AXES || designs.iter().chain(&scenarios).any(|(it, _)| it.count() > LEVELS) {
+            return None;
+        }
+        let count = designs.len();
+        let mut steps = vec![1; count];
+        for axis in (1..count).rev() {
+            steps[axis - 1] = steps[axis] * designs[axis].0.count();
+        }
+        Some(Self { all: designs.into_iter().chain(scenarios).map(|(dimension, stride)| axis(plan, dimension, stride)).collect(), designs: count, steps })
+    }
+}
+
+impl Axes {
+    /// Every design and scenario.
+    pub fn whole(&self) -> Spans {
+        let mut spans = Spans([Span::at(0); AXES]);
+        for (span, axis) in spans.0.iter_mut().zip(&self.all) {
+            span.high = (axis.count() - 1) as u32;
+        }
+        spans
+    }
+
+    /// Number of designs of a box.
+    pub fn count(&self, spans: &Spans) -> u64 {
+        spans.0[..self.designs].iter().map(|span| span.count()).product()
+    }
+
+    /// The lowest design index of a box.
+    pub fn least_index(&self, spans: &Spans) -> u64 {
+        self.all[..self.designs].iter().zip(&spans.0).map(|(axis, span)| u64::from(span.low) * axis.stride).sum()
+    }
+
+    /// The position at which the sweep meets the first design of a box.
+    pub fn first_position(&self, spans: &Spans) -> u64 {
+        self.steps.iter().zip(&spans.0).map(|(step, span)| u64::from(span.low) * step).sum()
+    }
+
+    /// The boxes that a range of positions consists of, in order; all scenarios.
+    pub fn boxes(&self, range: &Range<u64>) -> Vec<Spans> {
+        let mut boxes = Vec::new();
+        if !range.is_empty() {
+            self.cut(self.whole(), 0, range.start, range.end - 1, &mut boxes);
+        }
+        boxes
+    }
+
+    /// Positions `first..=last` of the designs that the axes from `axis` on span.
+    fn cut(&self, spans: Spans, axis: usize, first: u64, last: u64, boxes: &mut Vec<Spans>) {
+        if axis == self.designs {
+            boxes.push(spans);
+            return;
+        }
+        let step = self.steps[axis];
+        let (mut low, mut high) = ((first / step) as u32, (last / step) as u32);
+        let (head, tail) = (first % step, last % step);
+        let with = |low, high| {
+            let mut spans = spans;
+            spans[axis] = Span { low, high };
+            spans
+        };
+        if low == high && (head, tail) != (0, step - 1) {
+            return self.cut(with(low, low), axis + 1, head, tail, boxes);
+        }
+        if head != 0 {
+            self.cut(with(low, low), axis + 1, head, step - 1, boxes);
+            low += 1;
+        }
+        let has_tail = tail != step - 1;
+        high -= u32::from(has_tail);
+        if low <= high {
+            boxes.push(with(low, high));
+        }
+        if has_tail {
+            self.cut(with(high + 1, high + 1), axis + 1, 0, tail, boxes);
+        }
+    }
+
+    /// Calls `each` with the position of every design of a box, ascending.
+    pub fn positions(&self, spans: &Spans, mut each: impl FnMut(u64)) {
+        let mut levels = [0u32; AXES];
+        let designs = self.designs;
+        levels[..designs].iter_mut().zip(&spans.0).for_each(|(level, span)| *level = span.low);
+        let mut position = self.first_position(spans);
+        loop {
+            each(position);
+            // Like a mileage counter: the last axis first.
+            let mut axis = designs;
+            loop {
+                if axis == 0 {
+                    return;
+                }
+                axis -= 1;
+                if levels[axis] < spans[axis].high {
+                    levels[axis] += 1;
+                    position += self.steps[axis];
+                    break;
+                }
+                position -= u64::from(levels[axis] - spans[axis].low) * self.steps[axis];
+                levels[axis] = spans[axis].low;
+            }
+        }
+    }
+}
+
+fn axis(plan: &Plan, dimension: &Dimension, stride: u64) -> Axis {
+    let inputs = dimension.inputs().to_vec();
+    let own: Vec<Vec<f64>> = (0..inputs.len()).map(|column| (0..dimension.count()).map(|level| dimension.value(column, level)).collect()).collect();
+    let table = plan.study.model.inputs;
+    let si: Vec<Vec<f64>> = inputs.iter().zip(&own).map(|(&input, own)| own.iter().map(|&value| input_to_si(&table[input], value)).collect()).collect();
+    let ordered = own.iter().chain(&si).all(|values| values.is_sorted() || values.iter().rev().is_sorted());
+    let least_step = si[0].windows(2).map(|it| (it[1] - it[0]).abs()).fold(f64::INFINITY, f64::min);
+    Axis { inputs, own, si, ordered, least_step, stride }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::study_of;
+
+    #[test]
+    fn the_boxes_of_a_range_are_its_positions_in_order() {
+        let text = "[design]\npower_kW = [1, 2, 3]\nspeed_rpm = { from = 1000, to = 4000, count = 4 }\n\
+                    friction_limit = { from = 0.2, to = 0.5, count = 5 }\n[objectives]\nfriction_margin = \"max\"\n";
+        let plan = Plan::new(study_of(crate::models::find("pulley-load").expect("it is a model"), text).expect("the study is right"));
+        let axes = Axes::new(&plan).expect("there are few");
+        for first in 0..60 {
+            for end in first..=60 {
+                let mut positions = Vec::new();
+                let boxes = axes.boxes(&(first..end));
+                for spans in &boxes {
+                    let before = positions.len() as u64;
+                    axes.positions(spans, |position| positions.push(position));
+                    assert_eq!(positions.len() as u64 - before, axes.count(spans));
+                }
+                assert_eq!(positions, (first..end).collect::<Vec<_>>());
+                assert!(boxes.len() <= 5, "{first}..{end}: {boxes:?}");
+                for spans in &boxes {
+                    assert_eq!(plan.design_at(axes.first_position(spans)), axes.least_index(spans));
+                }
+            }
+        }
+    }
+}

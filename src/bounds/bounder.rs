@@ -1,0 +1,295 @@
+//! Bounds of a number over a box of designs and a box of scenarios.
+//!
+//! The recorded formula runs over intervals, and over intervals with derivatives. Where a derivative has one sign all over the box, the
+//! number is largest at one end of that axis and least at the other, and the bounds of the corner are as good as a single design's.
+//! The corner bounds the exact value; what f64 may differ from it by is added.
+
+use super::axes::{AXES, Axes, Axis, Span, Spans};
+use super::requirement::Source;
+use super::tape::Tape;
+use crate::real::trace::{Node, Operation};
+use crate::real::{Dual, Interval, Real};
+use std::collections::HashMap;
+
+/// Most directions that derivatives are followed in: the first axes of a study.
+pub const DIRECTIONS: usize = 8;
+type Slopes = Dual<Interval, DIRECTIONS>;
+
+/// Most spans of one axis whose numbers are kept.
+const KEPT: usize = 1 << 14;
+
+/// A number type that a box can be evaluated with.
+trait Boxed: Real<Shared = Self> {
+    /// An input that covers an interval, changed along an axis.
+    fn input(values: Interval, direction: Option<usize>) -> Self;
+}
+
+impl Boxed for Interval {
+    fn input(values: Interval, _direction: Option<usize>) -> Self {
+        values
+    }
+}
+
+impl Boxed for Slopes {
+    fn input(values: Interval, direction: Option<usize>) -> Self {
+        match direction {
+            Some(direction) if direction < DIRECTIONS => Self::variable(values, direction),
+            _ => Self::fixed(values),
+        }
+    }
+}
+
+/// Runs the tape over boxes with one number type. What depends on one axis alone is kept by span.
+#[derive(Debug)]
+struct Runner<'t, R> {
+    tape: &'t Tape,
+    axes: &'t Axes,
+    alone: Vec<Vec<Node>>,
+    kept: Vec<HashMap<Span, Box<[R]>>>,
+    now: [Option<Span>; AXES],
+    slots: Vec<R>,
+}
+
+impl<'t, R: Boxed> Runner<'t, R> {
+    fn new(tape: &'t Tape, axes: &'t Axes) -> Self {
+        let mut alone = vec![Vec::new(); axes.all.len()];
+        let mut slots = vec![R::constant(0.0); tape.operations.len()];
+        for node in (0..tape.operations.len()).filter(|&node| !tape.inner[node]) {
+            match tape.axes[node] {
+                0 => tape.compute(node as Node, &mut slots),
+                set if set.is_power_of_two() => alone[set.trailing_zeros() as usize].push(node as Node),
+                _ => {}
+            }
+        }
+        Self { tape, axes, alone, kept: (0..axes.all.len()).map(|_| HashMap::new()).collect(), now: [None; AXES], slots }
+    }
+
+    /// Computes what `asked` needs over a box.
+    fn run(&mut self, asked: &Asked, spans: &Spans) {
+        for &axis in &asked.axes {
+            self.turn(axis, spans[axis]);
+        }
+        for &node in &asked.several {
+            self.tape.compute(node, &mut self.slots);
+        }
+    }
+
+    fn turn(&mut self, axis: usize, span: Span) {
+        if self.now[axis] == Some(span) {
+            return;
+        }
+        self.now[axis] = Some(span);
+        if let Some(values) = self.kept[axis].get(&span) {
+            for (&node, &value) in self.alone[axis].iter().zip(values) {
+                self.slots[node as usize] = value;
+            }
+            return;
+        }
+        let table: &Axis = &self.axes.all[axis];
+        for &node in &self.alone[axis] {
+            if let Operation::Input(input) = self.tape.operations[node as usize] {
+                let column = self.tape.input_axes[input as usize].map_or(0, |(_, column)| column as usize);
+                let (low, high) = Axis::ends(&table.si[column], table.ordered, span);
+                let direction = (!table.is_joint() && low < high).then_some(axis);
+                self.slots[node as usize] = R::input(Interval::new(low, high), direction);
+            } else {
+                self.tape.compute(node, &mut self.slots);
+            }
+        }
+        if self.kept[axis].len() >= KEPT {
+            self.kept[axis].clear();
+        }
+        let values = self.alone[axis].iter().map(|&node| self.slots[node as usize]).collect();
+        self.kept[axis].insert(span, values);
+    }
+}
+
+/// A number that bounds are asked of.
+#[derive(Clone, Debug)]
+pub struct Asked {
+    /// Where it comes from.
+    pub source: Source,
+    /// Is a larger value worse?
+    pub higher_is_worse: bool,
+    /// Axes that it depends on.
+    axes: Vec<usize>,
+    axis_set: u64,
+    /// Operations that depend on several axes, in their order.
+    several: Vec<Node>,
+}
+
+impl Asked {
+    /// A number of a tape.
+    pub fn new(tape: &Tape, source: Source, higher_is_worse: bool) -> Self {
+        let needed = if let Source::Node(node, _) = source { tape.needed_by(&[node]) } else { Vec::new() };
+        // What is needed may depend on an axis that the result does not: a selection with equal branches.
+        let axis_set = needed.iter().fold(source.axes(tape), |set, &node| set | tape.axes[node as usize]);
+        Self {
+            source,
+            higher_is_worse,
+            axes: (0..AXES).filter(|axis| axis_set >> axis & 1 == 1).collect(),
+            axis_set,
+            several: needed.into_iter().filter(|&node| tape.axes[node as usize].count_ones() > 1).collect(),
+        }
+    }
+
+    /// The axes that it depends on, as a bit set.
+    pub fn axis_set(&self) -> u64 {
+        self.axis_set
+    }
+
+    /// How bad a value is: the larger the worse.
+    #[inline(always)]
+    fn badness(&self, (low, high): (f64, f64)) -> (f64, f64) {
+        if self.higher_is_worse { (low, high) } else { (-high, -low) }
+    }
+}
+
+/// What is known of a number over a box of designs and one of scenarios, as badness in its unit: the larger the worse.
+#[derive(Clone, Copy, Debug)]
+pub struct Bounds {
+    /// No design of the box is worse in any of the scenarios.
+    pub most: f64,
+    /// Every design of the box is at least as bad as this in one of the scenarios.
+    pub least: f64,
+    /// Is every value surely a finite number?
+    pub finite: bool,
+    /// How much each axis moves the number over the box, as far as it does so in both directions or which is not known; in SI units.
+    pub spread: [f64; AXES],
+    /// Axes along which the number surely rises or falls all over the box, as a bit set.
+    pub monotone: u64,
+    /// Of these: the axes whose last level is the better end.
+    pub better_at_last: u64,
+    /// Of these: the axes along which every level is better than the one before it (or after it) in f64 too, rounding and unit included.
+    pub strict: u64,
+}
+
+impl Bounds {
+    /// Is the last level of an axis the better end of the box? `None` if that is not sure, or the axis moves nothing.
+    pub fn better_up(&self, axis: usize) -> Option<bool> {
+        (self.monotone >> axis & 1 == 1 && self.spread[axis] > 0.0).then(|| self.better_at_last >> axis & 1 == 1)
+    }
+}
+
+/// Bounds numbers over boxes; one per thread.
+#[derive(Debug)]
+pub struct Bounder<'t> {
+    axes: &'t Axes,
+    values: Runner<'t, Interval>,
+    slopes: Runner<'t, Slopes>,
+}
+
+impl<'t> Bounder<'t> {
+    /// A bounder for a tape.
+    pub fn new(tape: &'t Tape, axes: &'t Axes) -> Self {
+        Self { axes, values: Runner::new(tape, axes), slopes: Runner::new(tape, axes) }
+    }
+
+    /// The number without derivatives: least and largest value in its unit, and whether all are finite.
+    pub fn range(&mut self, asked: &Asked, spans: &Spans) -> (f64, f64) {
+        match asked.source {
+            Source::Known(value) => (value, value),
+            Source::Axis(axis, column) => {
+                let axis_table = &self.axes.all[axis];
+                Axis::ends(&axis_table.own[column], axis_table.ordered, spans[axis])
+            }
+            Source::Node(node, _) => {
+                self.values.run(asked, spans);
+                let it = self.values.slots[node as usize];
+                shown(asked.source, it.low, it.high)
+            }
+        }
+    }
+
+    /// Bounds of the worst over the scenarios that the box spans.
+    pub fn bounds(&mut self, asked: &Asked, spans: &Spans) -> Bounds {
+        let Source::Node(node, _) = asked.source else {
+            let whole = self.range(asked, spans);
+            let (mut least, most) = asked.badness(whole);
+            if let Source::Axis(axis, _) = asked.source
+                && axis >= self.axes.designs
+            {
+                least = most;
+            }
+            let mut bounds = Bounds { most, least, finite: true, spread: [0.0; AXES], monotone: 0, better_at_last: 0, strict: 0 };
+            if let Source::Axis(axis, column) = asked.source {
+                let (table, span) = (&self.axes.all[axis], spans[axis]);
+                bounds.spread[axis] = whole.1 - whole.0;
+                if table.ordered {
+                    let values = &table.own[column];
+                    let rises = values[span.low as usize] <= values[span.high as usize];
+                    bounds.monotone = 1 << axis;
+                    bounds.better_at_last = u64::from(rises != asked.higher_is_worse) << axis;
+                    bounds.strict = u64::from(values.windows(2).all(|it| it[0] != it[1])) << axis;
+                }
+            }
+            return bounds;
+        };
+        self.slopes.run(asked, spans);
+        let whole = self.slopes.slots[node as usize];
+        let mut spread = [0.0; AXES];
+        let (mut monotone, mut better_at_last, mut strict) = (0u64, 0u64, 0u64);
+        let value = whole.value;
+        // What rounding and the conversion to a unit may hide.
+        let hidden = 4.0 * value.error + 8.0 * f64::EPSILON * value.low.abs().max(value.high.abs());
+        // The corners where the number is worst, and where it is best in the scenario that is worst there.
+        let (mut worst, mut best) = (*spans, *spans);
+        for &axis in &asked.axes {
+            if spans[axis].is_single() {
+                continue;
+            }
+            let is_scenario = axis >= self.axes.designs;
+            let table = &self.axes.all[axis];
+            let known = axis < DIRECTIONS && !table.is_joint();
+            let slope = if known { whole.slopes[axis] } else { crate::real::EVERYTHING };
+            let (low, high) = Axis::ends(&table.si[0], table.ordered, spans[axis]);
+            let middle = spans[axis].low + (spans[axis].high - spans[axis].low) / 2;
+            spread[axis] = slope.low.abs().max(slope.high.abs()) * (high - low);
+            if spread[axis].is_nan() {
+                spread[axis] = f64::INFINITY;
+            }
+            if table.ordered && (slope.low >= 0.0 || slope.high <= 0.0) {
+                monotone |= 1 << axis;
+                let rises = (slope.low >= 0.0) == (table.si[0][spans[axis].low as usize] <= table.si[0][spans[axis].high as usize]);
+                let (up, down) = if rises == asked.higher_is_worse { (spans[axis].high, spans[axis].low) } else { (spans[axis].low, spans[axis].high) };
+                better_at_last |= u64::from(down == spans[axis].high) << axis;
+                strict |= u64::from(slope.low.abs().min(slope.high.abs()) * table.least_step > hidden) << axis;
+                worst[axis] = Span::at(up);
+                best[axis] = Span::at(if is_scenario { up } else { down });
+            } else if is_scenario {
+                best[axis] = Span::at(middle);
+            }
+        }
+        let own = asked.badness(shown(asked.source, whole.value.low, whole.value.high));
+        let (mut least, mut most) = own;
+        let error = whole.value.error;
+        if error.is_finite() {
+            if worst != *spans {
+                most = most.min(self.corner(asked, node, &worst, error).1);
+            }
+            if best != *spans {
+                least = least.max(self.corner(asked, node, &best, error).0);
+            }
+        } else if best != *spans {
+            // A single scenario bounds what the worst is at least, derivatives or not.
+            let mut only = *spans;
+            only.0[self.axes.designs..].copy_from_slice(&best.0[self.axes.designs..]);
+            let range = self.range(asked, &only);
+            least = least.max(asked.badness(range).0);
+        }
+        Bounds { most, least, finite: whole.value.is_finite(), spread, monotone, better_at_last, strict }
+    }
+
+    /// Badness over a part of the box, for designs of the whole box that are no better or worse but for rounding.
+    fn corner(&mut self, asked: &Asked, node: Node, spans: &Spans, error: f64) -> (f64, f64) {
+        self.values.run(asked, spans);
+        let it = self.values.slots[node as usize];
+        asked.badness(shown(asked.source, (it.low - error).next_down(), (it.high + error).next_up()))
+    }
+}
+
+/// Ends in the unit that the number is shown in: the conversion never swaps the order of two numbers, and what f64 computes is converted
+/// from a number between the ends.
+fn shown(source: Source, low: f64, high: f64) -> (f64, f64) {
+    (source.shown(low), source.shown(high))
+}

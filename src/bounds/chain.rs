@@ -1,0 +1,143 @@
+//! A number that reaches an output along one chain of operations, each of which rounds correctly and so keeps the order of numbers.
+//!
+//! If half of a box's axes act on an output through one such number v alone, and the others only on what v is combined with on its
+//! way, then for fixed others the output in f64 rises or falls with v, rounding and all: sums, differences, products, quotients, roots,
+//! minima and maxima that IEEE 754 rounds never swap the order of two numbers. No derivative and no margin for errors is needed.
+
+use super::columns::Columns;
+use super::requirement::Source;
+use super::tape::Tape;
+use crate::real::trace::{Binary, Node, Operation, Unary};
+
+/// One operation on the way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Step {
+    /// An operation on the number alone: a change of sign or a square root.
+    Alone(Unary),
+    /// The number, then the other.
+    First(Binary, usize),
+    /// The other, then the number.
+    Second(Binary, usize),
+}
+
+/// A chain from a number to an output.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chain {
+    /// The number that it starts from.
+    pub channel: Node,
+    /// The operations, in order.
+    pub steps: Vec<Step>,
+    /// What the number is combined with.
+    pub others: Vec<Node>,
+    /// Axes that the others depend on, as a bit set.
+    pub other_axes: u64,
+    /// The output.
+    pub source: Source,
+}
+
+/// Longest chain that is followed, and most ways that are looked at.
+const LONGEST: usize = 24;
+const MOST: usize = 4096;
+
+impl Chain {
+    /// All chains to an output whose start and others both depend on some of the `varying` axes.
+    pub fn all(tape: &Tape, source: Source, varying: u64) -> Vec<Self> {
+        let mut found = Vec::new();
+        let mut looked = 0;
+        if let Source::Node(node, _) = source {
+            follow(tape, node, varying, &mut Vec::new(), &mut looked, &mut |channel, path| {
+                let mut chain = Self { channel, steps: Vec::new(), others: Vec::new(), other_axes: 0, source };
+                for (step, other) in path.iter().rev() {
+                    let step = match *step {
+                        Step::Alone(unary) => Step::Alone(unary),
+                        Step::First(binary, _) => Step::First(binary, chain.others.len()),
+                        Step::Second(binary, _) => Step::Second(binary, chain.others.len()),
+                    };
+                    chain.steps.push(step);
+                    if let Some(other) = *other {
+                        chain.others.push(other);
+                        chain.other_axes |= tape.axes[other as usize];
+                    }
+                }
+                found.push(chain);
+            });
+        }
+        found
+    }
+
+    /// The output, in its unit, for a number at the start; `others` in the order of [`Chain::others`].
+    #[inline(always)]
+    pub fn value(&self, start: f64, others: &[f64]) -> f64 {
+        let last = self.steps.iter().fold(start, |value, step| apply(*step, value, others));
+        self.source.shown(last)
+    }
+
+    /// The output at two starts, between which it rises or falls all the way; `None` where that is not sure: something on the way is not
+    /// finite, or a divisor changes its sign.
+    #[inline]
+    pub fn ends(&self, low: f64, high: f64, others: &[f64]) -> Option<(f64, f64)> {
+        let (mut a, mut b) = (low, high);
+        for step in &self.steps {
+            if let Step::Second(Binary::Div, _) = step
+                && !(a > 0.0 && b > 0.0 || a < 0.0 && b < 0.0)
+            {
+                return None;
+            }
+            (a, b) = (apply(*step, a, others), apply(*step, b, others));
+            if !a.is_finite() || !b.is_finite() {
+                return None;
+            }
+        }
+        Some((self.source.shown(a), self.source.shown(b)))
+    }
+
+    /// The others of one design of the box that columns were computed for.
+    pub fn others_at<'a>(&'a self, columns: &'a Columns<'_>, lane: usize) -> impl Iterator<Item = f64> + 'a {
+        self.others.iter().map(move |&other| columns.value(other).at(lane))
+    }
+}
+
+#[inline(always)]
+fn apply(step: Step, value: f64, others: &[f64]) -> f64 {
+    match step {
+        Step::Alone(unary) => unary.of(value),
+        Step::First(binary, other) => binary.of(value, others[other]),
+        Step::Second(binary, other) => binary.of(others[other], value),
+    }
+}
+
+/// Walks from an output to what it is made of. Whatever is on the way is a start; the path holds the steps from the output down.
+fn follow(
+    tape: &Tape,
+    node: Node,
+    varying: u64,
+    path: &mut Vec<(Step, Option<Node>)>,
+    looked: &mut usize,
+    found: &mut impl FnMut(Node, &[(Step, Option<Node>)]),
+) {
+    let depends = |node: Node| tape.axes[node as usize] & varying;
+    if path.iter().any(|(_, other)| other.is_some_and(|other| depends(other) != 0)) {
+        found(node, path);
+    }
+    *looked += 1;
+    if path.len() == LONGEST || *looked > MOST {
+        return;
+    }
+    match tape.operations[node as usize] {
+        Operation::Unary(unary @ (Unary::Neg | Unary::Sqrt), a) if depends(a) != 0 => {
+            path.push((Step::Alone(unary), None));
+            follow(tape, a, varying, path, looked, found);
+            path.pop();
+        }
+        Operation::Binary(binary, a, b) if a != b => {
+            for (next, other, step) in [(a, b, Step::First(binary, 0)), (b, a, Step::Second(binary, 0))] {
+                if depends(next) != 0 {
+                    path.push((step, Some(other)));
+                    follow(tape, next, varying, path, looked, found);
+                    path.pop();
+                }
+            }
+        }
+        _ => {}
+    }
+}

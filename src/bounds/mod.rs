@@ -1,0 +1,315 @@
+//! Exact answers without looking at every design: boxes of designs are bounded, and settled whole where their bounds decide.
+//!
+//! The formula of a study is recorded as a [`tape`] and run over intervals and derivatives ([`bounder`]). What limits feasibility is
+//! [counted](count) by boxes, what a result names is [searched for](search) by branch and bound; both end in f64, with the bits of the
+//! ordinary engines, so a result does not show how it was found. Which rule settled how many designs is the [`Certificate`].
+
+mod axes;
+mod bounder;
+mod chain;
+mod columns;
+mod count;
+mod open;
+mod pairs;
+mod requirement;
+mod search;
+mod sorted;
+mod tape;
+#[cfg(test)]
+mod tests;
+
+pub use count::{Counter, Settled};
+pub use search::{Searched, Sought, Worker};
+
+use crate::models::{Formula, Visitor, visit};
+use crate::plan::Plan;
+use crate::reduce::{KeyRule, Reducers, Reduction};
+use crate::screen::{CpuEngine, Tables};
+use crate::study::{Axis, Goal, Objective, TopSpec};
+use axes::{Axes, Spans};
+use bounder::{Asked, Bounder};
+use open::{Bounded, all_open};
+use pairs::{Best, Pairing, Pairs};
+use requirement::{Source, Test, requirements};
+use search::{Search, Target};
+use serde_json::{Value, json};
+use std::ops::Range;
+use std::sync::atomic::AtomicBool;
+use tape::Tape;
+
+/// Why bounds cannot serve a study: something that asks about every design; `None` if they can.
+pub fn refusal(plan: &Plan) -> Option<String> {
+    struct Any;
+    impl Visitor for Any {
+        type Output = ();
+        fn visit<F: Formula>(self) {}
+    }
+    let study = &plan.study;
+    if visit(study.model.name, Any).is_none() {
+        return Some(format!("{} is no formula that could be bounded", study.model.name));
+    }
+    if study.sample.is_some() {
+        return Some("[sample] draws single designs, and bounds need a grid".to_owned());
+    }
+    if study.design.iter().any(|axis| matches!(axis, Axis::Joint { .. })) {
+        return Some("cases in [design] are single designs, and bounds need a grid".to_owned());
+    }
+    if !study.report.histograms.is_empty() {
+        return Some("histograms in [report] ask for every feasible design".to_owned());
+    }
+    if !study.report.maps.is_empty() {
+        return Some("maps in [report] ask for the best of every cell".to_owned());
+    }
+    if study.report.variants {
+        return Some("variants in [report] lists every design".to_owned());
+    }
+    if Axes::new(plan).is_none() {
+        return Some(format!("it has more than {} axes, or an axis of more than {} levels", axes::AXES, axes::LEVELS));
+    }
+    None
+}
+
+/// A study laid out for bounds.
+#[derive(Debug)]
+pub struct Layout {
+    axes: Axes,
+    tape: Tape,
+    requirements: Vec<Bounded>,
+}
+
+impl Layout {
+    /// Lays out a plan; `None` if bounds cannot serve it, see [`refusal`].
+    pub fn new(plan: &Plan) -> Option<Self> {
+        if refusal(plan).is_some() {
+            return None;
+        }
+        let axes = Axes::new(plan)?;
+        let tape = Tape::new(plan, &axes)?;
+        let bounded = |requirement: requirement::Requirement| {
+            let asked = Asked::new(&tape, requirement.source, matches!(requirement.test, Test::High(..)));
+            Bounded { requirement, asked }
+        };
+        let requirements = requirements(plan, &tape, &axes).into_iter().map(bounded).collect();
+        Some(Self { axes, tape, requirements })
+    }
+
+    /// A counter for one thread.
+    pub fn counter<'a>(&'a self, stop: &'a AtomicBool) -> Counter<'a> {
+        Counter::new(&self.tape, &self.axes, &self.requirements, stop)
+    }
+
+    /// What a thread searches with.
+    pub fn worker<'a>(&'a self, plan: &'a Plan, tables: &'a Tables, stop: &'a AtomicBool) -> Worker<'a> {
+        Worker { bounder: Bounder::new(&self.tape, &self.axes), engine: CpuEngine::new(plan, tables).stopping_on(stop) }
+    }
+
+    /// Feasible designs at a range of positions; `None` if it was stopped.
+    pub fn count(&self, counter: &mut Counter<'_>, range: &Range<u64>) -> Option<u64> {
+        let open = all_open(&self.requirements, &self.axes);
+        let mut total = 0;
+        for spans in self.axes.boxes(range) {
+            total += counter.count(&spans, &open)?;
+        }
+        Some(total)
+    }
+
+    /// Where a range that starts at a position and has about so many designs should end, so that it consists of few boxes.
+    pub fn round(&self, range: &Range<u64>, about: u64) -> u64 {
+        let step = self.axes.steps.iter().copied().filter(|&step| step <= about.max(1)).max().unwrap_or(1);
+        let end = range.start.saturating_add(about.max(1)) / step * step;
+        if end > range.start { end.min(range.end) } else { range.end.min(range.start.saturating_add(step)) }
+    }
+
+    /// All that a result of this plan names and a search can find.
+    pub fn sought(plan: &Plan) -> Vec<Sought> {
+        let objectives = plan.study.objectives.len();
+        let front = (objectives > 0).then_some(Sought::Front);
+        let top = plan.study.report.top.map(|_| Sought::Top);
+        let extremes = (0..objectives).flat_map(|objective| [false, true].map(|largest| Sought::Extreme { objective, largest }));
+        front.into_iter().chain(top).chain(extremes).collect()
+    }
+
+    /// Searches a range of positions and takes what it finds into `found`; `None` if it was stopped.
+    #[allow(clippy::too_many_arguments, reason = "what a search needs")]
+    pub fn search(
+        &self,
+        plan: &Plan,
+        reduction: &Reduction,
+        sought: Sought,
+        range: &Range<u64>,
+        workers: &mut [Worker<'_>],
+        found: &mut Reducers,
+        stop: &AtomicBool,
+        progress: &(dyn Fn(u64) + Sync),
+    ) -> Option<Searched> {
+        let roots = self.axes.boxes(range);
+        let targets = self.targets(plan, sought);
+        if let Sought::Extreme { objective, largest } = sought
+            && let Some(searched) = self.extreme_of_pairs(reduction, objective, largest, &targets[0], &roots, workers, found)
+        {
+            progress(range.end - range.start);
+            return Some(searched);
+        }
+        let scenarios = plan.scenarios();
+        let search = Search { axes: &self.axes, requirements: &self.requirements, reduction, scenarios, stop, progress, sought, targets };
+        search.run(&roots, workers, found)
+    }
+
+    fn targets(&self, plan: &Plan, sought: Sought) -> Vec<Target> {
+        let target = |objective: &Objective, at_the_bad_end: bool| {
+            let source = Source::of(objective.quantity, plan, &self.tape);
+            let asked = Asked::new(&self.tape, source, objective.goal == Goal::Min);
+            Target { asked, rule: KeyRule::from(objective), at_the_bad_end }
+        };
+        match sought {
+            Sought::Front => plan.study.objectives.iter().map(|objective| target(objective, false)).collect(),
+            Sought::Top => {
+                let as_objective = |top: &TopSpec| Objective { quantity: top.by, goal: top.goal, resolution: None };
+                plan.study.report.top.iter().map(|top| target(&as_objective(top), false)).collect()
+            }
+            Sought::Extreme { objective, largest } => {
+                let objective = &plan.study.objectives[objective];
+                vec![target(objective, (objective.goal == Goal::Min) == largest)]
+            }
+        }
+    }
+
+    /// The extreme of a number that a requirement cuts off at that very end: almost every box on the cut might hold it, so bounds alone
+    /// would not get far. Pairs find it while they count; `None` if the study is not made of pairs.
+    #[allow(clippy::too_many_arguments, reason = "what a search needs")]
+    fn extreme_of_pairs(
+        &self,
+        reduction: &Reduction,
+        objective: usize,
+        largest: bool,
+        target: &Target,
+        roots: &[Spans],
+        workers: &mut [Worker<'_>],
+        found: &mut Reducers,
+    ) -> Option<Searched> {
+        let Source::Node(node, _) = target.asked.source else { return None };
+        let cuts = |it: &&Bounded| it.requirement.source == target.asked.source && matches!(it.requirement.test, Test::High(..)) == largest;
+        self.requirements.iter().filter(|it| it.requirement.test != Test::Finite).find(cuts)?;
+        let scenario_axes = (self.axes.designs..self.axes.all.len()).filter(|&axis| self.axes.all[axis].count() > 1);
+        if scenario_axes.clone().any(|axis| self.tape.axes[node as usize] >> axis & 1 == 1) {
+            return None;
+        }
+        let mut searched = Searched::default();
+        let held = if largest { found.extremes.largest[objective] } else { found.extremes.least[objective] };
+        let beyond = if largest { f64::NEG_INFINITY } else { f64::INFINITY };
+        let mut best = held.map_or(Best { largest, value: beyond, index: u64::MAX }, |it| Best { largest, value: it.value, index: it.index });
+        let mut planned = Vec::new();
+        for spans in roots {
+            searched.boxes += 1;
+            let open = all_open(&self.requirements, &self.axes);
+            let open = match open::decide(&self.requirements, &mut workers[0].bounder, &self.axes, spans, &open) {
+                open::Outcome::Infeasible => {
+                    searched.infeasible += self.axes.count(spans);
+                    continue;
+                }
+                open::Outcome::Open(open, ..) => open,
+            };
+            let sources: Vec<Source> = open.iter().map(|it| self.requirements[it.requirement].requirement.source).collect();
+            let sources: Vec<Source> = sources.into_iter().chain([target.asked.source]).collect();
+            let pairing = Pairing::find(&self.tape, &self.axes, spans, &sources)?;
+            if !pairing.is_through_both(open.len()) || pairing.cost > 0.05 * self.axes.count(spans) as f64 || pairing.cost > PAIRED_EXTREME {
+                return None;
+            }
+            planned.push((*spans, open, pairing));
+        }
+        for (spans, open, pairing) in planned {
+            let instances = count::instances(&self.requirements, &open, &self.axes);
+            let parts = pairing.parts(&spans, workers.len());
+            let count = |part: &Spans| {
+                let mut own = best;
+                let mut pairs = Pairs::new(&self.tape, &self.axes);
+                pairs.count(&pairing, part, &instances, Some((open.len(), &mut own)));
+                (own, pairs.evaluated)
+            };
+            let counted: Vec<_> = std::thread::scope(|scope| {
+                let started: Vec<_> = parts.iter().map(|part| scope.spawn(|| count(part))).collect();
+                started.into_iter().map(|it| it.join().expect("counting does not panic")).collect()
+            });
+            for (own, evaluations) in counted {
+                searched.evaluations += evaluations;
+                if best.beats(own.value, own.index) {
+                    best = own;
+                }
+            }
+            searched.pairs += self.axes.count(&spans);
+        }
+        if best.index < u64::MAX && held.is_none_or(|held| held.index != best.index) {
+            let mut reducers = reduction.start();
+            let position = [self.position_of(best.index)];
+            workers[0].engine.screen_some(&position, |block| reduction.absorb_counted(&mut reducers, block));
+            found.merge(reducers.into_fresh());
+        }
+        Some(searched)
+    }
+
+    /// The position of a design index.
+    fn position_of(&self, index: u64) -> u64 {
+        let each = self.axes.all[..self.axes.designs].iter().zip(&self.axes.steps);
+        each.map(|(axis, step)| index / axis.stride % axis.count() * step).sum()
+    }
+}
+
+/// Most operations of a search by pairs: some hours of one thread.
+const PAIRED_EXTREME: f64 = 1e14;
+
+/// What settled every design: once for the count, and once for each thing that was searched for.
+#[derive(Clone, Debug, Default)]
+pub struct Certificate {
+    /// For the count of feasible designs.
+    pub count: Settled,
+    /// For each search: what for, and how.
+    pub searches: Vec<(String, Searched)>,
+    /// Designs of random ranges that were judged one by one besides, and compared.
+    pub compared: u64,
+}
+
+impl Certificate {
+    /// Boxes that were looked at in all.
+    pub fn boxes(&self) -> u64 {
+        self.count.boxes + self.searches.iter().map(|(_, it)| it.boxes).sum::<u64>()
+    }
+
+    /// Evaluations in f64 in all.
+    pub fn evaluations(&self) -> u64 {
+        self.count.evaluations + self.searches.iter().map(|(_, it)| it.evaluations).sum::<u64>()
+    }
+
+    /// As it stands in `run.json`.
+    pub fn to_json(&self) -> Value {
+        let count = &self.count;
+        let searches = self.searches.iter().map(|(name, it)| {
+            json!({
+                "for": name, "designs": it.designs(), "in_infeasible_boxes": it.infeasible, "in_beaten_boxes": it.beaten,
+                "in_pairs_of_lists": it.pairs, "judged_in_f64": it.evaluated, "boxes": it.boxes, "evaluations": it.evaluations,
+            })
+        });
+        json!({
+            "count": {
+                "designs": count.designs(), "in_infeasible_boxes": count.infeasible, "in_feasible_boxes": count.feasible,
+                "in_products": count.products, "in_pairs_of_lists": count.pairs, "judged_in_f64": count.evaluated,
+                "boxes": count.boxes, "evaluations": count.evaluations,
+            },
+            "searches": searches.collect::<Vec<_>>(),
+            "boxes": self.boxes(),
+            "evaluations": self.evaluations(),
+            "compared_one_by_one": self.compared,
+        })
+    }
+}
+
+/// What a search is for, in words.
+pub fn in_words(plan: &Plan, sought: Sought) -> String {
+    match sought {
+        Sought::Front => "front".to_owned(),
+        Sought::Top => "top".to_owned(),
+        Sought::Extreme { objective, largest } => {
+            let name = plan.study.objectives[objective].quantity.name(plan.study.model);
+            format!("{} {name}", if largest { "largest" } else { "least" })
+        }
+    }
+}

@@ -1,0 +1,202 @@
+//! Requirements that are not decided yet over a box of designs, each with the scenarios that still matter.
+
+use super::axes::{Axes, Span, Spans};
+use super::bounder::{Asked, Bounder, Bounds};
+use super::requirement::{Requirement, Test};
+
+/// Most boxes of scenarios that a number is followed over.
+const COVER: usize = 64;
+
+/// A requirement, ready to be bounded.
+#[derive(Debug)]
+pub struct Bounded {
+    /// What is required.
+    pub requirement: Requirement,
+    /// Its number, worse in the direction of the bound.
+    pub asked: Asked,
+}
+
+/// A requirement that some design of a box may violate in some of these scenarios.
+#[derive(Clone, Debug)]
+pub struct Open {
+    /// Its place among all requirements.
+    pub requirement: usize,
+    /// Boxes of scenarios; their spans of design axes mean nothing.
+    pub cover: Vec<Spans>,
+}
+
+/// What became of the requirements over a box.
+pub enum Outcome {
+    /// Every design of the box violates one of them in some scenario.
+    Infeasible,
+    /// These are open; how much every axis moves them is summed up, relative to what is left to decide; and where they hold better.
+    Open(Vec<Open>, [f64; super::axes::AXES], Ends),
+}
+
+/// Ends of axes that are better in every respect.
+#[derive(Clone, Copy, Debug)]
+pub struct Ends {
+    /// Axes whose first level is no worse than any other, as a bit set.
+    pub first: u64,
+    /// Axes whose last level is.
+    pub last: u64,
+    /// Of either: axes of which the better end is better than every other level, whatever the design's index.
+    pub strict: u64,
+}
+
+impl Ends {
+    /// Before anything was asked for.
+    pub const ANY: Self = Self { first: u64::MAX, last: u64::MAX, strict: 0 };
+
+    /// Narrows them down by one more number. `strictly`: does being better in it make up for a higher index?
+    pub fn narrow(&mut self, asked: &Asked, bounds: &Bounds, worse_is_sought: bool, strictly: bool) {
+        // What has no part in a number leaves it as it is, bit by bit; elsewhere f64 must not swap two levels.
+        let untouched = !asked.axis_set();
+        let last = bounds.strict & if worse_is_sought { !bounds.better_at_last } else { bounds.better_at_last };
+        let first = bounds.strict & if worse_is_sought { bounds.better_at_last } else { !bounds.better_at_last };
+        self.first &= untouched | first;
+        self.last &= untouched | last;
+        if strictly {
+            self.strict |= bounds.strict & asked.axis_set();
+        }
+    }
+
+    /// A box without the designs that one of its ends makes superfluous.
+    pub fn collapse(&self, spans: &Spans, axes: &Axes) -> Spans {
+        let mut left = *spans;
+        for axis in (0..axes.designs).filter(|&axis| !spans[axis].is_single()) {
+            // Of equals the lowest index counts, and that is at the first level.
+            if self.first >> axis & 1 == 1 {
+                left[axis] = Span::at(spans[axis].low);
+            } else if self.last >> axis & self.strict >> axis & 1 == 1 {
+                left[axis] = Span::at(spans[axis].high);
+            }
+        }
+        left
+    }
+}
+
+/// Spans of designs with those of a scenario box.
+pub fn over(designs: &Spans, scenarios: &Spans, axes: &Axes) -> Spans {
+    super::pairs::with_scenario(designs, scenarios, axes)
+}
+
+/// All requirements over all scenarios.
+pub fn all_open(requirements: &[Bounded], axes: &Axes) -> Vec<Open> {
+    (0..requirements.len()).map(|requirement| Open { requirement, cover: vec![axes.whole()] }).collect()
+}
+
+/// Bounds the open requirements over a box.
+pub fn decide(requirements: &[Bounded], bounder: &mut Bounder<'_>, axes: &Axes, designs: &Spans, open: &[Open]) -> Outcome {
+    let mut left = Vec::new();
+    let mut pull = [0.0; super::axes::AXES];
+    let mut ends = Ends::ANY;
+    for item in open {
+        let it = &requirements[item.requirement];
+        let mut cover = Vec::new();
+        for part in &item.cover {
+            let spans = over(designs, part, axes);
+            // Without derivatives it is cheaper, and often enough.
+            let (low, high) = bounder.range(&it.asked, &spans);
+            let finite = !it.requirement.finite || low > f64::NEG_INFINITY && high < f64::INFINITY;
+            if finite && it.requirement.test.holds(low) && it.requirement.test.holds(high) {
+                continue;
+            }
+            if !matches!(it.requirement.test, Test::Finite) && violated(it.requirement.test, low, high) {
+                return Outcome::Infeasible;
+            }
+            let bounds = bounder.bounds(&it.asked, &spans);
+            let (worst, best) = if it.asked.higher_is_worse { (bounds.most, bounds.least) } else { (-bounds.most, -bounds.least) };
+            if (bounds.finite || !it.requirement.finite) && it.requirement.test.holds(worst) {
+                continue;
+            }
+            if !matches!(it.requirement.test, Test::Finite) && !it.requirement.test.holds(best) && !best.is_nan() {
+                return Outcome::Infeasible;
+            }
+            add_pull(&mut pull, &bounds, &spans, axes);
+            if matches!(it.requirement.test, Test::Finite) {
+                // Which designs have a number is not told by its bounds.
+                ends.first &= !it.asked.axis_set();
+                ends.last &= !it.asked.axis_set();
+            } else {
+                ends.narrow(&it.asked, &bounds, false, false);
+            }
+            let room = item.cover.len() < COVER;
+            match scenario_to_split(&it.asked, &bounds, &spans, axes).filter(|_| room) {
+                Some(axis) => cover.extend(spans[axis].halves().map(|half| {
+                    let mut part = *part;
+                    part[axis] = half;
+                    part
+                })),
+                None => cover.push(*part),
+            }
+        }
+        if !cover.is_empty() {
+            left.push(Open { requirement: item.requirement, cover });
+        }
+    }
+    Outcome::Open(left, pull, ends)
+}
+
+/// Does every number between two ends violate the test?
+fn violated(test: Test, low: f64, high: f64) -> bool {
+    match test {
+        Test::Low(..) => !test.holds(high),
+        Test::High(..) => !test.holds(low),
+        Test::Finite => false,
+    }
+}
+
+/// Adds how much each axis of designs moves a number, relative to the sum over all axes.
+pub fn add_pull(pull: &mut [f64; super::axes::AXES], bounds: &Bounds, spans: &Spans, axes: &Axes) {
+    let moves = |axis: usize| if spans[axis].is_single() { 0.0 } else { bounds.spread[axis] };
+    let all: f64 = (0..axes.designs).map(moves).sum();
+    for axis in 0..axes.designs {
+        let own = moves(axis);
+        if own > 0.0 {
+            // Where a derivative is unbounded, the axes that may be to blame share it.
+            pull[axis] += if all.is_finite() { own / all } else { f64::from(u8::from(own.is_infinite())) };
+        }
+    }
+}
+
+/// The scenario axis that a box of scenarios should be cut along, if the scenarios leave more open than the designs do.
+pub fn scenario_to_split(asked: &Asked, bounds: &Bounds, spans: &Spans, axes: &Axes) -> Option<usize> {
+    let all = axes.all.len();
+    let undecided = |axis: &usize| asked.axis_set() >> axis & 1 == 1 && !spans[*axis].is_single() && bounds.monotone >> axis & 1 == 0;
+    let widest = (axes.designs..all).filter(undecided).max_by(|a, b| bounds.spread[*a].total_cmp(&bounds.spread[*b]))?;
+    let of_designs = (0..axes.designs).filter(|&axis| asked.axis_set() >> axis & 1 == 1 && !spans[axis].is_single());
+    let designs: f64 = of_designs.map(|axis| bounds.spread[axis]).sum();
+    let is_single = (0..axes.designs).all(|axis| spans[axis].is_single() || asked.axis_set() >> axis & 1 == 0);
+    (is_single || bounds.spread[widest] >= designs || bounds.spread[widest].is_infinite()).then_some(widest)
+}
+
+/// The scenarios of all boxes of a cover, one by one.
+pub fn each_scenario(cover: &[Spans], asked: &Asked, axes: &Axes, mut each: impl FnMut(Spans)) {
+    for part in cover {
+        let mut at = *part;
+        let moving: Vec<usize> = (axes.designs..axes.all.len()).filter(|&axis| asked.axis_set() >> axis & 1 == 1).collect();
+        for axis in axes.designs..axes.all.len() {
+            at[axis] = Span::at(part[axis].low);
+        }
+        'scenarios: loop {
+            each(at);
+            for &axis in moving.iter().rev() {
+                if at[axis].low < part[axis].high {
+                    at[axis] = Span::at(at[axis].low + 1);
+                    continue 'scenarios;
+                }
+                at[axis] = Span::at(part[axis].low);
+            }
+            break;
+        }
+    }
+}
+
+/// How many scenarios a cover has, of those that make a difference to the number.
+pub fn scenarios(cover: &[Spans], asked: &Asked, axes: &Axes) -> u64 {
+    let differing = |part: &Spans| -> u64 {
+        (axes.designs..axes.all.len()).filter(|&axis| asked.axis_set() >> axis & 1 == 1).map(|axis| part[axis].count()).product()
+    };
+    cover.iter().map(differing).sum()
+}

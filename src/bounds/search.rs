@@ -1,0 +1,370 @@
+//! The designs that a result names, found without looking at all: the front, the best by one quantity, the extremes.
+//!
+//! Boxes wait in batches. Of each the best that it might hold is bounded: if no design of it can be on the front any more (or among the
+//! best, or an extreme), it is settled; a small one is judged by the ordinary engine; the others are cut in two, and one promising
+//! design of each is judged at once, so that the next batch meets better rivals.
+
+use super::axes::{AXES, Axes, Span, Spans};
+use super::bounder::{Asked, Bounder, Bounds};
+use super::open::{Bounded, Ends, Open, Outcome, add_pull, all_open, decide, over, scenario_to_split};
+use crate::reduce::{Extreme, Front, KeyRule, MOST_OBJECTIVES, Reducers, Reduction};
+use crate::screen::CpuEngine;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Most boxes that are looked at before their designs are judged.
+const BATCH: usize = 1 << 14;
+/// A box is judged by the engine where that takes about as long as a few more bounds: evaluations of a design in a scenario.
+const LEAF: u64 = 2048;
+/// Most designs of such a box.
+const LEAF_DESIGNS: u64 = 512;
+/// Most boxes of scenarios that a number is followed over.
+const COVER: usize = 32;
+
+/// What is searched for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sought {
+    /// The Pareto front.
+    Front,
+    /// The best by one quantity.
+    Top,
+    /// The least (or largest) worst value of an objective.
+    Extreme {
+        /// Number of the objective.
+        objective: usize,
+        /// The largest?
+        largest: bool,
+    },
+}
+
+/// A number whose worst value is bounded, and how.
+#[derive(Debug)]
+pub struct Target {
+    /// The number, worse in the direction of its goal.
+    pub asked: Asked,
+    /// What it is compared by.
+    pub rule: KeyRule,
+    /// Is it an extreme that is sought at its bad end?
+    pub at_the_bad_end: bool,
+}
+
+/// How the designs of a search were settled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Searched {
+    /// In boxes that surely violate a requirement.
+    pub infeasible: u64,
+    /// In boxes that cannot hold what is sought.
+    pub beaten: u64,
+    /// In boxes of two groups of axes.
+    pub pairs: u64,
+    /// Judged in f64.
+    pub evaluated: u64,
+    /// Boxes looked at.
+    pub boxes: u64,
+    /// Designs judged in f64, those that were tried as rivals among them.
+    pub evaluations: u64,
+}
+
+impl Searched {
+    /// All designs that were settled.
+    pub fn designs(&self) -> u64 {
+        self.infeasible + self.beaten + self.pairs + self.evaluated
+    }
+
+    fn add(&mut self, other: &Self) {
+        self.infeasible += other.infeasible;
+        self.beaten += other.beaten;
+        self.pairs += other.pairs;
+        self.evaluated += other.evaluated;
+        self.boxes += other.boxes;
+        self.evaluations += other.evaluations;
+    }
+}
+
+/// A box that waits.
+#[derive(Clone, Debug)]
+struct Waiting {
+    spans: Spans,
+    open: Vec<Open>,
+    /// Per target: the scenarios in which it may be worst.
+    covers: Vec<Vec<Spans>>,
+}
+
+/// What came of a box.
+enum Fate {
+    Infeasible,
+    Beaten,
+    /// What is left of it is to be judged design by design.
+    Leaf(Spans),
+    /// What is left of it is cut in two; with designs to try.
+    Cut(Box<[Waiting; 2]>, [u64; 2]),
+}
+
+/// What all threads of a search share.
+pub struct Search<'a> {
+    /// The axes.
+    pub axes: &'a Axes,
+    /// What a design must satisfy.
+    pub requirements: &'a [Bounded],
+    /// How designs are reduced.
+    pub reduction: &'a Reduction,
+    /// Scenarios of every design.
+    pub scenarios: u64,
+    /// Set to end the search.
+    pub stop: &'a AtomicBool,
+    /// Told how many designs were settled.
+    pub progress: &'a (dyn Fn(u64) + Sync),
+    /// What is sought, and the numbers that it is about.
+    pub sought: Sought,
+    /// One for an extreme or the best, one per objective for the front.
+    pub targets: Vec<Target>,
+}
+
+/// What a thread works with.
+pub struct Worker<'t> {
+    /// Bounds boxes.
+    pub bounder: Bounder<'t>,
+    /// Judges designs.
+    pub engine: CpuEngine<'t>,
+}
+
+/// The best so far, while a batch is looked at.
+enum Rival<'a> {
+    Front(&'a Front),
+    /// Key and index of the last of the best K, once there are K.
+    Top(Option<(f64, u64)>),
+    Extreme(Option<Extreme>),
+}
+
+/// What the bounds of all that is open and sought say of a box.
+struct View {
+    /// How much every axis moves it.
+    pull: [f64; AXES],
+    /// Which ends of axes make the rest superfluous.
+    ends: Ends,
+    /// Which end of every axis all that is sought agrees to be better: `None` where it does not.
+    better: [Option<Option<bool>>; AXES],
+}
+
+impl View {
+    /// Takes in one more number.
+    fn agree(&mut self, bounds: &Bounds, worse_is_sought: bool, designs: usize) {
+        for (axis, better) in self.better.iter_mut().enumerate().take(designs) {
+            let own = bounds.better_up(axis).map(|up| up != worse_is_sought);
+            if own.is_some() {
+                *better = match *better {
+                    Some(None) => Some(own),
+                    Some(held) if held == own => Some(held),
+                    _ => None,
+                };
+            } else if bounds.spread[axis] > 0.0 {
+                *better = None;
+            }
+        }
+    }
+}
+
+impl Search<'_> {
+    /// Searches boxes and takes what it finds into `found`; `None` if it was stopped.
+    pub fn run(&self, roots: &[Spans], workers: &mut [Worker<'_>], found: &mut Reducers) -> Option<Searched> {
+        let root = |spans: &Spans| Waiting {
+            spans: *spans,
+            open: all_open(self.requirements, self.axes),
+            covers: self.targets.iter().map(|_| vec![self.axes.whole()]).collect(),
+        };
+        let mut batches: Vec<Vec<Waiting>> = vec![roots.iter().map(root).collect()];
+        let mut total = Searched::default();
+        while let Some(mut batch) = batches.pop() {
+            if batch.len() > BATCH {
+                let now = batch.split_off(batch.len() - BATCH);
+                batches.push(std::mem::replace(&mut batch, now));
+            }
+            let (next, settled) = self.look_at(&batch, workers, found);
+            if self.stop.load(Ordering::Relaxed) {
+                return None;
+            }
+            (self.progress)(settled.designs());
+            total.add(&settled);
+            if !next.is_empty() {
+                batches.push(next);
+            }
+        }
+        Some(total)
+    }
+
+    /// Looks at a batch of boxes on all threads; returns their parts.
+    fn look_at(&self, batch: &[Waiting], workers: &mut [Worker<'_>], found: &mut Reducers) -> (Vec<Waiting>, Searched) {
+        // Whatever waits to be compared is compared now.
+        found.front.points();
+        let rival = match self.sought {
+            Sought::Front => Rival::Front(&found.front),
+            Sought::Top => Rival::Top(found.top.as_mut().and_then(crate::reduce::Top::worst)),
+            Sought::Extreme { objective, largest } => {
+                Rival::Extreme(if largest { found.extremes.largest[objective] } else { found.extremes.least[objective] })
+            }
+        };
+        let share = batch.len().div_ceil(workers.len()).max(1);
+        let parts: Vec<_> = std::thread::scope(|scope| {
+            let rival = &rival;
+            let mut started = Vec::new();
+            for (part, worker) in batch.chunks(share).zip(workers) {
+                started.push(scope.spawn(move || self.look_at_part(part, worker, rival)));
+            }
+            started.into_iter().map(|it| it.join().expect("a search does not panic")).collect()
+        });
+        let (mut next, mut settled) = (Vec::new(), Searched::default());
+        for (parts, own, reducers) in parts {
+            next.extend(parts);
+            settled.add(&own);
+            found.merge(reducers.into_fresh());
+        }
+        (next, settled)
+    }
+
+    fn look_at_part(&self, part: &[Waiting], worker: &mut Worker<'_>, rival: &Rival<'_>) -> (Vec<Waiting>, Searched, Reducers) {
+        let mut settled = Searched::default();
+        let mut next = Vec::new();
+        let mut positions = Vec::new();
+        for waiting in part {
+            if self.stop.load(Ordering::Relaxed) {
+                break;
+            }
+            settled.boxes += 1;
+            let size = self.axes.count(&waiting.spans);
+            match self.fate(waiting, rival, &mut worker.bounder) {
+                Fate::Infeasible => settled.infeasible += size,
+                Fate::Beaten => settled.beaten += size,
+                Fate::Leaf(left) => {
+                    settled.evaluated += self.axes.count(&left);
+                    settled.beaten += size - self.axes.count(&left);
+                    self.axes.positions(&left, |position| positions.push(position));
+                }
+                Fate::Cut(parts, tries) => {
+                    settled.beaten += size - parts.iter().map(|part| self.axes.count(&part.spans)).sum::<u64>();
+                    positions.extend(tries);
+                    next.extend(*parts);
+                }
+            }
+        }
+        positions.sort_unstable();
+        positions.dedup();
+        settled.evaluations += positions.len() as u64;
+        let mut reducers = self.reduction.start();
+        worker.engine.screen_some(&positions, |block| self.reduction.absorb_counted(&mut reducers, block));
+        (next, settled, reducers)
+    }
+
+    /// What is to be done with a box.
+    fn fate(&self, waiting: &Waiting, rival: &Rival<'_>, bounder: &mut Bounder<'_>) -> Fate {
+        let mut now = waiting.clone();
+        loop {
+            let mut view = match decide(self.requirements, bounder, self.axes, &now.spans, &now.open) {
+                Outcome::Infeasible => return Fate::Infeasible,
+                Outcome::Open(open, pull, ends) => {
+                    now.open = open;
+                    View { pull, ends, better: [Some(None); AXES] }
+                }
+            };
+            let mut hopes = [0.0; MOST_OBJECTIVES];
+            for ((target, cover), hope) in self.targets.iter().zip(&mut now.covers).zip(&mut hopes) {
+                let (least, most) = self.worst(target, bounder, &now.spans, cover, &mut view);
+                let badness = if target.at_the_bad_end { most } else { least };
+                *hope = if target.asked.higher_is_worse { badness } else { -badness };
+            }
+            if self.is_beaten(&hopes[..self.targets.len()], self.axes.least_index(&now.spans), rival) {
+                return Fate::Beaten;
+            }
+            // What another design of the box makes superfluous need not be looked at.
+            let left = if self.sought == Sought::Top { now.spans } else { view.ends.collapse(&now.spans, self.axes) };
+            if left == now.spans {
+                return self.leaf_or_cut(now, &view);
+            }
+            now.spans = left;
+        }
+    }
+
+    fn leaf_or_cut(&self, now: Waiting, view: &View) -> Fate {
+        let size = self.axes.count(&now.spans);
+        if size <= LEAF_DESIGNS && size.saturating_mul(self.scenarios) <= LEAF || size == 1 {
+            return Fate::Leaf(now.spans);
+        }
+        let axis = self.axis_to_cut(&now.spans, &view.pull);
+        let tries = self.tries(&now.spans, &view.better);
+        let parts = now.spans[axis].halves().map(|half| {
+            let mut part = now.clone();
+            part.spans[axis] = half;
+            part
+        });
+        Fate::Cut(Box::new(parts), tries)
+    }
+
+    /// Bounds of the worst value over all scenarios, as badness; the cover becomes the scenarios that may be worst.
+    fn worst(&self, target: &Target, bounder: &mut Bounder<'_>, spans: &Spans, cover: &mut Vec<Spans>, view: &mut View) -> (f64, f64) {
+        let bounded: Vec<_> = cover.iter().map(|part| (*part, bounder.bounds(&target.asked, &over(spans, part, self.axes)))).collect();
+        let least = bounded.iter().fold(f64::NEG_INFINITY, |least, (_, it)| least.max(it.least));
+        let most = bounded.iter().fold(f64::NEG_INFINITY, |most, (_, it)| most.max(it.most));
+        let room = cover.len() < COVER;
+        cover.clear();
+        // Where another scenario is worse for every design of the box, this one decides nothing.
+        for (part, it) in bounded.iter().filter(|(_, it)| it.most >= least) {
+            let whole = over(spans, part, self.axes);
+            add_pull(&mut view.pull, it, &whole, self.axes);
+            view.ends.narrow(&target.asked, it, target.at_the_bad_end, !target.rule.has_steps() || target.at_the_bad_end);
+            view.agree(it, target.at_the_bad_end, self.axes.designs);
+            match scenario_to_split(&target.asked, it, &whole, self.axes).filter(|_| room) {
+                Some(axis) => cover.extend(whole[axis].halves().map(|half| {
+                    let mut part = *part;
+                    part[axis] = half;
+                    part
+                })),
+                None => cover.push(*part),
+            }
+        }
+        (least, most)
+    }
+
+    /// Can no design of a box be what is sought, given the best that it may have?
+    fn is_beaten(&self, hopes: &[f64], least_index: u64, rival: &Rival<'_>) -> bool {
+        match rival {
+            Rival::Front(front) => {
+                let mut keys = [0.0; MOST_OBJECTIVES];
+                for ((key, hope), target) in keys.iter_mut().zip(hopes).zip(&self.targets) {
+                    *key = target.rule.key(*hope);
+                }
+                let keys = &keys[..hopes.len()];
+                !keys.iter().any(|key| key.is_nan()) && front.beats_from(keys, least_index)
+            }
+            Rival::Top(last) => {
+                let key = self.targets[0].rule.key(hopes[0]);
+                last.is_some_and(|(worst, index)| worst < key || worst == key && index < least_index)
+            }
+            Rival::Extreme(held) => held.is_some_and(|held| {
+                let Sought::Extreme { largest, .. } = self.sought else { return false };
+                let beyond = if largest { held.value > hopes[0] } else { held.value < hopes[0] };
+                beyond || held.value == hopes[0] && held.index < least_index
+            }),
+        }
+    }
+
+    /// The axis along which what is open and what is sought differ most.
+    fn axis_to_cut(&self, spans: &Spans, pull: &[f64; AXES]) -> usize {
+        let candidates = (0..self.axes.designs).filter(|&axis| !spans[axis].is_single());
+        let by = |a: &usize, b: &usize| pull[*a].total_cmp(&pull[*b]).then(spans[*a].count().cmp(&spans[*b].count()));
+        candidates.max_by(by).expect("a box of more than one design has such an axis")
+    }
+
+    /// Positions of two designs to try: where all that is sought agrees to be better, else in the middle; and the middle of all.
+    fn tries(&self, spans: &Spans, better: &[Option<Option<bool>>; AXES]) -> [u64; 2] {
+        let (mut best, mut middle) = (*spans, *spans);
+        for axis in 0..self.axes.designs {
+            let Span { low, high } = spans[axis];
+            let half = low + (high - low) / 2;
+            middle[axis] = Span::at(half);
+            best[axis] = Span::at(match better[axis] {
+                Some(Some(true)) => high,
+                Some(Some(false) | None) => low,
+                None => half,
+            });
+        }
+        [self.axes.first_position(&best), self.axes.first_position(&middle)]
+    }
+}

@@ -1,0 +1,1 @@
+//! Bounds against looking at every design.
