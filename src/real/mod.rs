@@ -1,17 +1,22 @@
 //! The number types that the model formulas are generic over.
 //!
 //! A formula is written once, over [`Real`], and evaluated with several instances: `f64` is the reference, `f32` the twin of
-//! what a shader computes, [`Lanes`] eight f64 designs at a time, [`Dependence`] tells which inputs a value depends on, and
-//! [`RunningError`] how far the f32 value may be from the exact one. That is why `Real` has no comparison and no branching:
-//! a formula selects with [`Real::select`], clamps with `min` and `max`, and answers questions with signed margins.
+//! what a shader computes, [`Lanes`] eight f64 designs at a time, [`Dependence`] tells which inputs a value depends on,
+//! [`RunningError`] how far the f32 value may be from the exact one, [`Interval`] what values a whole box of designs has, and [`Dual`]
+//! carries derivatives. That is why `Real` has no comparison and no branching: a formula selects with [`Real::select`], clamps with
+//! `min` and `max`, and answers questions with signed margins.
 
 mod dependence;
+mod dual;
 mod float;
 pub mod functions;
+mod interval;
 mod lanes;
 mod running_error;
 
 pub use dependence::Dependence;
+pub use dual::Dual;
+pub use interval::{EVERYTHING, Interval};
 pub use lanes::{LANES, Lanes};
 pub use running_error::{FUNCTION_ULP, RunningError, nearest_f32};
 
@@ -51,6 +56,12 @@ pub trait Real:
     fn asin(self) -> Self;
     /// `at_least_zero` where `margin >= 0`, else `below_zero`. Both are evaluated: neither may be a NaN that leaks.
     fn select(margin: Self, at_least_zero: Self, below_zero: Self) -> Self;
+    /// The slope, in some direction, of what [`Real::select`] gives, from the branches' slopes and from the margin's own: a number that
+    /// stands for many designs does not know it where the choice changes on the way.
+    #[inline(always)]
+    fn select_slope(margin: Self, _margin_slope: Self, at_least_zero: Self, below_zero: Self) -> Self {
+        Self::select(margin, at_least_zero, below_zero)
+    }
     /// The sum of two whole numbers that are small enough for every instance to hold exactly.
     fn plus_whole(self, other: Self) -> Self;
     /// A whole number as the turns of a loop: the largest value that it may have, at most `most`. Turns beyond the value itself must

@@ -1,0 +1,511 @@
+//! All values that a quantity takes over a box of designs, and how far f64 is from the exact ones.
+//!
+//! The two ends hold what the reference computes for any design of the box as well as what exact arithmetic gives, so a margin of one
+//! sign decides for the whole box. The error is carried beside them, because a wide box has a wide range but the same rounding.
+//! Nothing here asks the processor to round in another direction: every result is moved outwards instead.
+
+use super::Real;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// Half an ULP of an f64, relative: one correctly rounded operation.
+const ROUNDING: f64 = f64::EPSILON / 2.0;
+/// ULP that a function of `libm` may be off by, as an error and as what moves an end outwards.
+const FUNCTION: f64 = 4.0 * f64::EPSILON;
+/// Factors that move a positive number at least to its neighbour.
+const DOWN: f64 = 1.0 - ROUNDING;
+const UP: f64 = 1.0 + f64::EPSILON;
+/// What the additions and products of an error may round off it.
+const OF_ERRORS: f64 = 1.0 + 8.0 * f64::EPSILON;
+/// Below this a product or quotient may have lost digits to underflow, which this much makes up for.
+const UNDERFLOW: f64 = 1e-290;
+const LOST: f64 = f64::MIN_POSITIVE;
+/// Beyond this a sine's argument is not reduced to a period: nothing but [-1, 1] is known.
+const PERIODS: f64 = 1e5;
+
+/// All numbers between two ends, and the rounding error of each.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    /// No value is less, neither of f64 nor the exact one.
+    pub low: f64,
+    /// No value is larger, neither of f64 nor the exact one.
+    pub high: f64,
+    /// Largest possible distance of an f64 value from the exact value of the same design.
+    pub error: f64,
+}
+
+/// Nothing is known; the value may be a NaN.
+pub const EVERYTHING: Interval = Interval { low: f64::NEG_INFINITY, high: f64::INFINITY, error: f64::INFINITY };
+const ZERO: Interval = Interval { low: 0.0, high: 0.0, error: 0.0 };
+
+/// Like `minsd`: the second of two numbers that do not compare.
+#[inline(always)]
+fn lesser(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+#[inline(always)]
+fn greater(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// Below what was rounded to `x`; finite where that overflowed, because the exact value is.
+#[inline(always)]
+fn down(x: f64) -> f64 {
+    lesser(f64::MAX, lesser(x * DOWN, x * UP))
+}
+
+/// Above what was rounded to `x`.
+#[inline(always)]
+fn up(x: f64) -> f64 {
+    greater(f64::MIN, greater(x * DOWN, x * UP))
+}
+
+impl Interval {
+    /// All inputs between two numbers that are exact.
+    #[inline(always)]
+    pub fn new(low: f64, high: f64) -> Self {
+        if low <= high && low.is_finite() && high.is_finite() { Self { low, high, error: 0.0 } } else { EVERYTHING }
+    }
+
+    /// One exact number.
+    #[inline(always)]
+    pub fn point(value: f64) -> Self {
+        Self::new(value, value)
+    }
+
+    /// Is this a value of it?
+    #[inline(always)]
+    pub fn contains(self, value: f64) -> bool {
+        self.low <= value && value <= self.high
+    }
+
+    /// Distance of its ends.
+    #[inline(always)]
+    pub fn width(self) -> f64 {
+        self.high - self.low
+    }
+
+    /// Are both ends known?
+    #[inline(always)]
+    pub fn is_finite(self) -> bool {
+        self.low > f64::NEG_INFINITY && self.high < f64::INFINITY
+    }
+
+    /// All values of either.
+    #[inline(always)]
+    #[must_use]
+    pub fn hull(self, other: Self) -> Self {
+        Self { low: lesser(self.low, other.low), high: greater(self.high, other.high), error: greater(self.error, other.error) }
+    }
+
+    #[inline(always)]
+    fn middle(self) -> f64 {
+        0.5 * (self.low + self.high)
+    }
+
+    /// The largest magnitude of any value.
+    #[inline(always)]
+    fn magnitude(self) -> f64 {
+        greater(f64::abs(self.low), f64::abs(self.high))
+    }
+
+    /// Ends that were moved outwards: [`EVERYTHING`] if one is a NaN. No error exceeds the distance of the ends, because f64 and exact
+    /// value both lie between them.
+    #[inline(always)]
+    fn known(low: f64, high: f64, error: f64) -> Self {
+        if low <= high { Self { low, high, error: lesser(error, (high - low) * UP) } } else { EVERYTHING }
+    }
+
+    /// Ends as they were computed, rounded to nearest; `inherited` is what the operands' errors make of this one's.
+    #[inline(always)]
+    fn rounded(low: f64, high: f64, inherited: f64) -> Self {
+        let (low, high) = (down(low), up(high));
+        Self::known(low, high, (inherited + ROUNDING * greater(f64::abs(low), f64::abs(high))) * OF_ERRORS)
+    }
+
+    /// Ends of a product or quotient that may have underflowed, and its error.
+    #[inline(always)]
+    fn with_underflow(low: f64, high: f64, inherited: f64) -> Self {
+        let result = Self::rounded(low, high, inherited);
+        Self::known(result.low - LOST, result.high + LOST, result.error + LOST)
+    }
+
+    /// The part of it that is not negative, or not positive: of a result whose sign is sure.
+    #[inline(always)]
+    fn with_sign(self, is_not_negative: bool, is_not_positive: bool) -> Self {
+        let low = if is_not_negative { greater(self.low, 0.0) } else { self.low };
+        let high = if is_not_positive { lesser(self.high, 0.0) } else { self.high };
+        Self { low, high, ..self }
+    }
+
+    #[inline(never)]
+    fn product(self, other: Self) -> Self {
+        let ends = [self.low * other.low, self.low * other.high, self.high * other.low, self.high * other.high];
+        // Also where two infinities meet, which leaves everything open too.
+        if (ends[0] + ends[1] + ends[2] + ends[3]).is_nan() {
+            return EVERYTHING;
+        }
+        if self.is_zero() || other.is_zero() {
+            return ZERO;
+        }
+        let low = lesser(lesser(ends[0], ends[1]), lesser(ends[2], ends[3]));
+        let high = greater(greater(ends[0], ends[1]), greater(ends[2], ends[3]));
+        let inherited = self.magnitude() * other.error + other.magnitude() * self.error;
+        let alike = (self.low >= 0.0 && other.low >= 0.0) || (self.high <= 0.0 && other.high <= 0.0);
+        let unlike = (self.low >= 0.0 && other.high <= 0.0) || (self.high <= 0.0 && other.low >= 0.0);
+        Self::with_underflow(low, high, inherited).with_sign(alike, unlike)
+    }
+
+    /// The quotient by what is positive.
+    #[inline(always)]
+    fn over_positive(self, divisor: Self) -> Self {
+        let low = self.low / if self.low >= 0.0 { divisor.high } else { divisor.low };
+        let high = self.high / if self.high >= 0.0 { divisor.low } else { divisor.high };
+        // (a' - q b')/b with the errors of a and b, and any quotient q.
+        let quotient = greater(f64::abs(low), f64::abs(high)) * UP;
+        let inherited = (self.error + quotient * divisor.error) / divisor.low;
+        if self.low > UNDERFLOW && low > UNDERFLOW && high < f64::INFINITY {
+            return Self::rounded(low, high, inherited);
+        }
+        // Infinity over infinity is a NaN; zero over anything else is zero.
+        if !self.is_finite() && !divisor.is_finite() {
+            return EVERYTHING;
+        }
+        if self.is_zero() {
+            return ZERO;
+        }
+        Self::with_underflow(low, high, inherited).with_sign(self.low >= 0.0, self.high <= 0.0)
+    }
+
+    /// A function of `libm` that increases: its values at both ends, and the error with which its argument's error comes to
+    /// `inherited`.
+    #[inline(always)]
+    fn increasing(self, function: impl Fn(f64) -> f64, inherited: impl Fn(Self) -> f64) -> Self {
+        let low = function(self.low);
+        let high = if self.low == self.high { low } else { function(self.high) };
+        Self::of_function(low, high, inherited)
+    }
+
+    /// Ends as a function of `libm` gave them: exact where they are zero.
+    #[inline(always)]
+    fn of_function(low: f64, high: f64, inherited: impl Fn(Self) -> f64) -> Self {
+        let low = if low == 0.0 { 0.0 } else { low - f64::abs(low) * FUNCTION - LOST };
+        let high = if high == 0.0 { 0.0 } else { high + f64::abs(high) * FUNCTION + LOST };
+        let range = Self::known(low, high, f64::INFINITY);
+        Self::known(low, high, (inherited(range) + FUNCTION * range.magnitude() + LOST) * OF_ERRORS)
+    }
+
+    /// A sine or cosine with these values at the ends, largest or least at `peak + k pi` for even or odd k.
+    #[inline]
+    fn wave(self, function: impl Fn(f64) -> f64, peak: f64) -> Self {
+        use std::f64::consts::PI;
+        if !self.is_finite() {
+            return EVERYTHING;
+        }
+        let ends = Self::new(lesser(self.low, self.high), self.high);
+        if ends.magnitude() > PERIODS {
+            return Self::known(-1.0, 1.0, self.error + FUNCTION);
+        }
+        let (a, b) =
+            if self.low == self.high { (function(self.low), function(self.low)) } else { (function(self.low), function(self.high)) };
+        let error = self.error;
+        let mut range = Self::of_function(lesser(a, b), greater(a, b), |_| error);
+        // A peak that rounding puts on the wrong side of an end is less than an ULP above that end's value.
+        let (first, last) = (((self.low - peak) / PI).ceil(), ((self.high - peak) / PI).floor());
+        if first <= last {
+            let is_even = first % 2.0 == 0.0;
+            if is_even || last > first {
+                range.high = 1.0;
+            }
+            if !is_even || last > first {
+                range.low = -1.0;
+            }
+        }
+        Self::known(greater(range.low, -1.0), lesser(range.high, 1.0), (error + FUNCTION) * OF_ERRORS)
+    }
+}
+
+impl Add for Interval {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self::rounded(self.low + other.low, self.high + other.high, self.error + other.error)
+    }
+}
+
+impl Sub for Interval {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self::rounded(self.low - other.high, self.high - other.low, self.error + other.error)
+    }
+}
+
+impl Mul for Interval {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        let (low, high) = (self.low * other.low, self.high * other.high);
+        // Nothing is negative, infinite or near underflow: hardly any product is of another kind.
+        if self.low > 0.0 && other.low > 0.0 && low > UNDERFLOW && high < f64::INFINITY {
+            return Self::rounded(low, high, self.high * other.error + other.high * self.error);
+        }
+        self.product(other)
+    }
+}
+
+impl Div for Interval {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        if other.low > 0.0 {
+            self.over_positive(other)
+        } else if other.high < 0.0 {
+            (-self).over_positive(-other)
+        } else {
+            EVERYTHING
+        }
+    }
+}
+
+impl Neg for Interval {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self { low: -self.high, high: -self.low, error: self.error }
+    }
+}
+
+impl Real for Interval {
+    type Shared = Self;
+    #[inline(always)]
+    fn shared(value: Self) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn plus_whole(self, other: Self) -> Self {
+        Self::known(self.low + other.low, self.high + other.high, self.error + other.error)
+    }
+    #[inline(always)]
+    fn turns(self, most: usize) -> usize {
+        self.high.turns(most)
+    }
+    #[inline(always)]
+    fn is_zero(self) -> bool {
+        self.low == 0.0 && self.high == 0.0
+    }
+    #[inline(always)]
+    fn constant(value: f64) -> Self {
+        Self::point(value)
+    }
+    #[inline]
+    fn sqrt(self) -> Self {
+        if !(self.high >= 0.0) {
+            return EVERYTHING;
+        }
+        let low = greater(self.low, 0.0).sqrt();
+        let by_slope = self.error / (2.0 * low * DOWN);
+        // Near zero the slope has no bound, but two roots are no farther apart than the root of their squares' distance.
+        let inherited = if low > 0.0 { lesser(by_slope, self.error.sqrt()) } else { self.error.sqrt() };
+        Self::rounded(low, self.high.sqrt(), inherited)
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        if self.low >= 0.0 {
+            self
+        } else if self.high <= 0.0 {
+            -self
+        } else {
+            Self { low: 0.0, high: self.magnitude(), error: self.error }
+        }
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        if self.high <= other.low {
+            self
+        } else if other.high < self.low {
+            other
+        } else if self == EVERYTHING {
+            // Of a NaN and a number f64 keeps the NaN if it comes first.
+            self
+        } else {
+            Self::known(lesser(self.low, other.low), lesser(self.high, other.high), greater(self.error, other.error))
+        }
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        if self.low >= other.high {
+            self
+        } else if other.low > self.high {
+            other
+        } else if self == EVERYTHING {
+            self
+        } else {
+            Self::known(greater(self.low, other.low), greater(self.high, other.high), greater(self.error, other.error))
+        }
+    }
+    #[inline]
+    fn exp_m1(self) -> Self {
+        let error = self.error;
+        self.increasing(libm::expm1, |range| error * (range.high + 1.0))
+    }
+    #[inline]
+    fn ln_1p(self) -> Self {
+        if !(self.low >= -1.0) {
+            return EVERYTHING;
+        }
+        let (low, error) = (self.low, self.error);
+        self.increasing(libm::log1p, |_| error / ((1.0 + low) * DOWN))
+    }
+    #[inline]
+    fn sin(self) -> Self {
+        self.wave(libm::sin, std::f64::consts::FRAC_PI_2)
+    }
+    #[inline]
+    fn cos(self) -> Self {
+        self.wave(libm::cos, 0.0)
+    }
+    #[inline]
+    fn asin(self) -> Self {
+        let error = self.error;
+        let magnitude = lesser(self.magnitude(), 1.0);
+        // At the ends the slope has no bound, but nowhere does asin change by more than acos(1 - error) <= 2.3 sqrt(error).
+        let slope = 1.0 / ((1.0 - magnitude) * (1.0 + magnitude) * DOWN).sqrt();
+        let inherited = lesser(error * slope, 2.3 * error.sqrt());
+        self.increasing(|value| libm::asin(value.clamp(-1.0, 1.0)), |_| inherited)
+    }
+    #[inline(always)]
+    fn select(margin: Self, at_least_zero: Self, below_zero: Self) -> Self {
+        if margin.low >= 0.0 {
+            at_least_zero
+        } else if margin.high < 0.0 {
+            below_zero
+        } else {
+            let hull = at_least_zero.hull(below_zero);
+            // Where the margin has an error f64 may choose the other of the two: any distance between them is possible.
+            let apart = greater(at_least_zero.high - below_zero.low, below_zero.high - at_least_zero.low) * UP;
+            let error = if margin.error == 0.0 { hull.error } else { greater(hull.error, apart) };
+            Self::known(hull.low, hull.high, error)
+        }
+    }
+    #[inline(always)]
+    fn select_slope(margin: Self, margin_slope: Self, at_least_zero: Self, below_zero: Self) -> Self {
+        let is_decided = margin.low >= 0.0 || margin.high < 0.0;
+        if is_decided || margin_slope.is_zero() { Self::select(margin, at_least_zero, below_zero) } else { EVERYTHING }
+    }
+    #[inline(always)]
+    fn squared(self) -> Self {
+        let size = self.abs();
+        size * size
+    }
+    fn monotone_root(bracket: (Self, Self), start: Self, function: impl Fn(Self) -> (Self, Self)) -> Self {
+        let (least, largest) = (bracket.0.low, bracket.1.high);
+        let anywhere = Self::known(least, largest, f64::INFINITY);
+        // What lies in the bracket of every design.
+        let inner = Self::new(bracket.0.high, bracket.1.low);
+        if !anywhere.is_finite() || !inner.is_finite() {
+            return anywhere;
+        }
+        let search = Search { inner, function: |x| function(Self::point(x)) };
+        let near = search.newton(start.middle());
+        let (below, above) = (search.edge(near, true), search.edge(near, false));
+        let (low, high) = match (below, above) {
+            // Every design has its root between the two.
+            (Some(low), Some(high)) => {
+                let (value, slope) = function(Self::new(low, high));
+                let size = greater(f64::abs(low), f64::abs(high));
+                // f64 stops where its value is lost in rounding. Where the slope may vanish nothing is known of how far that is from
+                // the root, but that it stays where values are.
+                let error = if slope.low > 0.0 { 3.0 * value.error / slope.low + 1e-14 * size } else { f64::INFINITY };
+                let apart = lesser(error, 1e-13 * size);
+                return Self::known(greater(low - apart, least), lesser(high + apart, largest), error * OF_ERRORS);
+            }
+            // There may be none, and then f64 goes up from its start; what has a root has it above.
+            (Some(low), None) => (lesser(low, greater(start.low, least)), largest),
+            (None, Some(high)) => (least, greater(high, lesser(start.high, largest))),
+            (None, None) => (least, largest),
+        };
+        Self::known(low, high, f64::INFINITY)
+    }
+}
+
+/// The search for the ends of the range that roots lie in.
+struct Search<F> {
+    /// Where to search.
+    inner: Interval,
+    /// Values and slopes of all functions at one place.
+    function: F,
+}
+
+/// A place and what the functions are there.
+#[derive(Clone, Copy)]
+struct Place {
+    x: f64,
+    value: Interval,
+    slope: f64,
+}
+
+impl<F: Fn(f64) -> (Interval, Interval)> Search<F> {
+    fn place(&self, x: f64) -> Place {
+        let x = x.max(self.inner.low).min(self.inner.high);
+        let (value, slope) = (self.function)(x);
+        Place { x, value, slope: slope.middle() }
+    }
+
+    /// Somewhere among the roots: where the values are as much above zero as below.
+    fn newton(&self, start: f64) -> Place {
+        let mut place = self.place(start);
+        for _ in 0..10 {
+            let step = place.value.middle() / place.slope;
+            let close = greater(0.1 * place.value.width() / place.slope, 1e-15 * f64::abs(place.x));
+            if !(place.slope > 0.0) || !(f64::abs(step) > close) {
+                break;
+            }
+            let next = self.place(place.x - step);
+            if next.x == place.x {
+                break;
+            }
+            place = next;
+        }
+        place
+    }
+
+    /// A place below every root, close to the least of them (or above every root, close to the largest), if there is one to be found.
+    fn edge(&self, near: Place, is_below: bool) -> Option<f64> {
+        let outwards = if is_below { -1.0 } else { 1.0 };
+        // Less than zero beyond all roots, by more than f64 can be wrong.
+        let beyond = |value: Interval| 2.0 * value.error + if is_below { value.high } else { -value.low };
+        let mut place = near;
+        let mut excess = beyond(place.value);
+        let mut best = None;
+        let mut slope = place.slope;
+        let mut pad = 0.0;
+        for _ in 0..12 {
+            if !(slope > 0.0) {
+                break;
+            }
+            // Nothing is gained by an end that is known better than a small part of the range.
+            let close = greater(2e-3 * place.value.width() / slope, 4e-15 * f64::abs(place.x));
+            if excess < 0.0 {
+                best = Some(place.x);
+                if -excess <= 2.0 * close * slope {
+                    break;
+                }
+                pad = 0.5 * close;
+            } else {
+                pad = greater(8.0 * pad, 0.5 * close);
+            }
+            let next = self.place(place.x + outwards * (excess / slope + pad));
+            let moved = outwards * (next.x - place.x);
+            if moved == 0.0 {
+                break;
+            }
+            let next_excess = beyond(next.value);
+            // The functions that reach zero last may be steeper or flatter than the middle of all.
+            let secant = (excess - next_excess) / moved;
+            slope = if secant > 0.2 * next.slope && secant < 5.0 * next.slope { secant } else { next.slope };
+            (place, excess) = (next, next_excess);
+        }
+        best
+    }
+}
