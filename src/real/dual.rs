@@ -26,7 +26,11 @@ impl<T: Real<Shared = T>, const N: usize> Dual<T, N> {
     /// The variable of a direction: it changes by as much as one goes.
     #[inline(always)]
     pub fn variable(value: T, direction: usize) -> Self {
-        Self { value, slopes: std::array::from_fn(|at| T::constant(if at == direction { 1.0 } else { 0.0 })) }
+        let mut variable = Self::fixed(value);
+        if let Some(slope) = variable.slopes.get_mut(direction) {
+            *slope = T::constant(1.0);
+        }
+        variable
     }
 
     /// A function of this value with this slope.
@@ -36,13 +40,27 @@ impl<T: Real<Shared = T>, const N: usize> Dual<T, N> {
             return Self::fixed(value);
         }
         let slope = slope();
-        Self { value, slopes: self.slopes.map(|own| times(own, slope)) }
+        self.with_slopes(value, |own| if own.is_zero() { own } else { own * slope })
+    }
+
+    /// Another value, with slopes made of this one's. Loops over slopes are plain ones: compilers make calls of those over arrays.
+    #[inline(always)]
+    fn with_slopes(mut self, value: T, slope: impl Fn(T) -> T) -> Self {
+        self.value = value;
+        for own in &mut self.slopes {
+            *own = slope(*own);
+        }
+        self
     }
 
     /// The slopes of two values, merged one by one.
     #[inline(always)]
-    fn merged(self, other: Self, value: T, merge: impl Fn(T, T) -> T) -> Self {
-        Self { value, slopes: std::array::from_fn(|at| merge(self.slopes[at], other.slopes[at])) }
+    fn merged(mut self, other: Self, value: T, merge: impl Fn(T, T) -> T) -> Self {
+        self.value = value;
+        for (own, other) in self.slopes.iter_mut().zip(&other.slopes) {
+            *own = merge(*own, *other);
+        }
+        self
     }
 }
 
@@ -104,7 +122,7 @@ impl<T: Real<Shared = T>, const N: usize> Neg for Dual<T, N> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self { value: -self.value, slopes: self.slopes.map(|slope| -slope) }
+        self.with_slopes(-self.value, |slope| -slope)
     }
 }
 
@@ -138,8 +156,7 @@ impl<T: Real<Shared = T>, const N: usize> Real for Dual<T, N> {
     }
     #[inline(always)]
     fn abs(self) -> Self {
-        let slopes = self.slopes.map(|slope| if slope.is_zero() { slope } else { T::select(self.value, slope, -slope) });
-        Self { value: self.value.abs(), slopes }
+        self.with_slopes(self.value.abs(), |slope| if slope.is_zero() { slope } else { T::select(self.value, slope, -slope) })
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {
@@ -181,8 +198,12 @@ impl<T: Real<Shared = T>, const N: usize> Real for Dual<T, N> {
     }
     #[inline(always)]
     fn select(margin: Self, at_least_zero: Self, below_zero: Self) -> Self {
-        let slope = |at: usize| T::select_slope(margin.value, margin.slopes[at], at_least_zero.slopes[at], below_zero.slopes[at]);
-        Self { value: T::select(margin.value, at_least_zero.value, below_zero.value), slopes: std::array::from_fn(slope) }
+        let mut selected = Self { value: T::select(margin.value, at_least_zero.value, below_zero.value), ..margin };
+        let branches = at_least_zero.slopes.iter().zip(&below_zero.slopes);
+        for (slope, (at_least_zero, below_zero)) in selected.slopes.iter_mut().zip(branches) {
+            *slope = T::select_slope(margin.value, *slope, *at_least_zero, *below_zero);
+        }
+        selected
     }
     /// The slopes are those of the root, by the rule for implicit functions; they mean something only where there is a root, which the
     /// formula states as a condition.
@@ -193,7 +214,7 @@ impl<T: Real<Shared = T>, const N: usize> Real for Dual<T, N> {
             (value.value, slope.value)
         });
         let (change, slope) = function(Self::fixed(root));
-        Self { value: root, slopes: change.slopes.map(|change| if change.is_zero() { change } else { -(change / slope.value) }) }
+        change.with_slopes(root, |change| if change.is_zero() { change } else { -(change / slope.value) })
     }
     #[inline(always)]
     fn squared(self) -> Self {
