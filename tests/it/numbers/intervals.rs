@@ -1,12 +1,12 @@
 //! The formulas over intervals: no design of a box leaves what the box gives, neither in f64 nor exactly, and f64 is no farther from
 //! the exact values than it says.
 
-use super::boxes::{Sides, a_box, everything, formulas, inner, on_a_boundary, over, run_over, sample};
+use super::boxes::{Sides, a_box, around, everything, formulas, inner, on_a_boundary, over, run_over, sample};
 use super::precise::Precise;
 use super::{meaningful_si, outputs_si, si};
-use crate::physics::Region;
+use crate::physics::{Region, draw};
 use crate::random::Random;
-use beltspace::models::{CONDITIONS, Formula, Model, OUTPUTS, Visitor, find, run, visit};
+use beltspace::models::{CONDITIONS, Formula, Model, OUTPUTS, Status, Visitor, evaluate, find, run, visit};
 use beltspace::real::{EVERYTHING, Interval};
 
 const REGIONS: [Region; 3] = [Region::Usual, Region::Wide, Region::Edges];
@@ -78,7 +78,7 @@ fn the_intervals_of_small_boxes_are_narrow() {
             let random = &mut Random::new(22);
             let mut widths: Vec<f64> = Vec::new();
             for _ in 0..500 {
-                let sides = super::boxes::around(model, &crate::physics::draw(model, Region::Usual, random), width, random);
+                let sides = around(model, &draw(model, Region::Usual, random), width, random);
                 let outputs = run_over(model, over(model, &sides)).0;
                 let middle = sides.iter().map(|(low, high)| 0.5 * (low + high)).collect::<Vec<_>>();
                 let present =
@@ -134,7 +134,9 @@ impl Errors {
                 // Without a meaning there may be no exact value: a radius beyond its bracket.
                 value.2 = Precise::from(reference.0[at]);
             }
-            all.extend((0..2).map(|at| (margins[at], reference.1[at], precise.1[at])));
+            if evaluate(model, &inputs).status == Status::Ok {
+                all.extend((0..model.conditions.len()).map(|at| (margins[at], reference.1[at], precise.1[at])));
+            }
             for (number, (interval, value, exact)) in all.into_iter().enumerate() {
                 if value.is_nan() || !value.is_finite() {
                     continue;

@@ -153,7 +153,7 @@ impl Real for Precise {
         if self.is_below(other) { other } else { self }
     }
     fn exp_m1(self) -> Self {
-        if !(self.high.abs() < 701.0) {
+        if self.high.is_nan() || self.high.abs() >= 701.0 {
             return Self::from(libm::expm1(self.high));
         }
         // The series where it converges fast, then e^2x - 1 = (e^x - 1)(e^x + 1) as often as needed: relative digits are kept.
@@ -205,14 +205,19 @@ impl Real for Precise {
     fn select(margin: Self, at_least_zero: Self, below_zero: Self) -> Self {
         if margin.high >= 0.0 { at_least_zero } else { below_zero }
     }
-    fn monotone_root(bracket: (Self, Self), start: Self, function: impl Fn(Self) -> (Self, Self)) -> Self {
-        let near = f64::monotone_root((bracket.0.high, bracket.1.high), start.high, |x| {
-            let (value, slope) = function(Self::from(x));
+    fn monotone_root<const P: usize>(
+        bracket: (Self, Self),
+        start: Self,
+        parameters: [Self; P],
+        function: impl Fn([Self; P], Self) -> (Self, Self),
+    ) -> Self {
+        let near = f64::monotone_root((bracket.0.high, bracket.1.high), start.high, [], |[], x| {
+            let (value, slope) = function(parameters, Self::from(x));
             (value.high, slope.high)
         });
         let mut root = Self::from(near);
         for _ in 0..3 {
-            let (value, slope) = function(root);
+            let (value, slope) = function(parameters, root);
             root = Real::min(Real::max(root - value / slope, bracket.0), bracket.1);
         }
         root
