@@ -5,6 +5,7 @@
 //! Nothing here asks the processor to round in another direction: every result is moved outwards instead.
 
 use super::Real;
+use super::common_root::root_of_all;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Half an ULP of an f64, relative: one correctly rounded operation.
@@ -39,12 +40,12 @@ const ZERO: Interval = Interval { low: 0.0, high: 0.0, error: 0.0 };
 
 /// Like `minsd`: the second of two numbers that do not compare.
 #[inline(always)]
-fn lesser(a: f64, b: f64) -> f64 {
+pub(super) fn lesser(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
 #[inline(always)]
-fn greater(a: f64, b: f64) -> f64 {
+pub(super) fn greater(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
@@ -99,7 +100,7 @@ impl Interval {
     }
 
     #[inline(always)]
-    fn middle(self) -> f64 {
+    pub(super) fn middle(self) -> f64 {
         0.5 * (self.low + self.high)
     }
 
@@ -112,7 +113,7 @@ impl Interval {
     /// Ends that were moved outwards: [`EVERYTHING`] if one is a NaN. No error exceeds the distance of the ends, because f64 and exact
     /// value both lie between them.
     #[inline(always)]
-    fn known(low: f64, high: f64, error: f64) -> Self {
+    pub(super) fn known(low: f64, high: f64, error: f64) -> Self {
         if low <= high { Self { low, high, error: lesser(error, (high - low) * UP) } } else { EVERYTHING }
     }
 
@@ -412,115 +413,7 @@ impl Real for Interval {
         parameters: [Self; P],
         function: impl Fn([Self; P], Self) -> (Self, Self),
     ) -> Self {
-        let (least, largest) = (bracket.0.low, bracket.1.high);
-        let anywhere = Self::known(least, largest, f64::INFINITY);
-        // What lies in the bracket of every design.
-        let inner = Self::new(bracket.0.high, bracket.1.low);
-        if !anywhere.is_finite() || !inner.is_finite() {
-            return anywhere;
-        }
-        let search = Search { inner, function: |x| function(parameters, Self::point(x)) };
-        let near = search.newton(start.middle());
-        let (below, above) = (search.edge(near, true), search.edge(near, false));
-        let (low, high) = match (below, above) {
-            // Every design has its root between the two.
-            (Some(low), Some(high)) => {
-                let (value, slope) = function(parameters, Self::new(low, high));
-                let size = greater(f64::abs(low), f64::abs(high));
-                // f64 stops where its value is lost in rounding. Where the slope may vanish nothing is known of how far that is from
-                // the root, but that it stays where values are.
-                let error = if slope.low > 0.0 { 3.0 * value.error / slope.low + 1e-14 * size } else { f64::INFINITY };
-                let apart = lesser(error, 1e-13 * size);
-                return Self::known(greater(low - apart, least), lesser(high + apart, largest), error * OF_ERRORS);
-            }
-            // There may be none, and then f64 goes up from its start; what has a root has it above.
-            (Some(low), None) => (lesser(low, greater(start.low, least)), largest),
-            (None, Some(high)) => (least, greater(high, lesser(start.high, largest))),
-            (None, None) => (least, largest),
-        };
-        Self::known(low, high, f64::INFINITY)
-    }
-}
-
-/// The search for the ends of the range that roots lie in.
-struct Search<F> {
-    /// Where to search.
-    inner: Interval,
-    /// Values and slopes of all functions at one place.
-    function: F,
-}
-
-/// A place and what the functions are there.
-#[derive(Clone, Copy)]
-struct Place {
-    x: f64,
-    value: Interval,
-    slope: f64,
-}
-
-impl<F: Fn(f64) -> (Interval, Interval)> Search<F> {
-    fn place(&self, x: f64) -> Place {
-        let x = x.max(self.inner.low).min(self.inner.high);
-        let (value, slope) = (self.function)(x);
-        Place { x, value, slope: slope.middle() }
-    }
-
-    /// Somewhere among the roots: where the values are as much above zero as below.
-    fn newton(&self, start: f64) -> Place {
-        let mut place = self.place(start);
-        for _ in 0..10 {
-            let step = place.value.middle() / place.slope;
-            let close = greater(0.1 * place.value.width() / place.slope, 1e-15 * f64::abs(place.x));
-            let is_far = place.slope > 0.0 && f64::abs(step) > close;
-            if !is_far {
-                break;
-            }
-            let next = self.place(place.x - step);
-            if next.x == place.x {
-                break;
-            }
-            place = next;
-        }
-        place
-    }
-
-    /// A place below every root, close to the least of them (or above every root, close to the largest), if there is one to be found.
-    fn edge(&self, near: Place, is_below: bool) -> Option<f64> {
-        let outwards = if is_below { -1.0 } else { 1.0 };
-        // Less than zero beyond all roots, by more than f64 can be wrong.
-        let beyond = |value: Interval| 2.0 * value.error + if is_below { value.high } else { -value.low };
-        let mut place = near;
-        let mut excess = beyond(place.value);
-        let mut best = None;
-        let mut slope = place.slope;
-        let mut pad = 0.0;
-        for _ in 0..12 {
-            if slope <= 0.0 || slope.is_nan() {
-                break;
-            }
-            // Nothing is gained by an end that is known better than a small part of the range.
-            let close = greater(2e-3 * place.value.width() / slope, 4e-15 * f64::abs(place.x));
-            if excess < 0.0 {
-                best = Some(place.x);
-                if -excess <= 2.0 * close * slope {
-                    break;
-                }
-                pad = 0.5 * close;
-            } else {
-                pad = greater(8.0 * pad, 0.5 * close);
-            }
-            let next = self.place(place.x + outwards * (excess / slope + pad));
-            let moved = outwards * (next.x - place.x);
-            if moved == 0.0 {
-                break;
-            }
-            let next_excess = beyond(next.value);
-            // The functions that reach zero last may be steeper or flatter than the middle of all.
-            let secant = (excess - next_excess) / moved;
-            slope = if secant > 0.2 * next.slope && secant < 5.0 * next.slope { secant } else { next.slope };
-            (place, excess) = (next, next_excess);
-        }
-        best
+        root_of_all(bracket, start, |place| function(parameters, place))
     }
 }
 

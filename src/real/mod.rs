@@ -6,6 +6,7 @@
 //! carries derivatives. That is why `Real` has no comparison and no branching: a formula selects with [`Real::select`], clamps with
 //! `min` and `max`, and answers questions with signed margins.
 
+mod common_root;
 mod dependence;
 mod dual;
 mod float;
