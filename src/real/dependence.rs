@@ -127,15 +127,20 @@ impl Real for Dependence {
             _ => Self { inputs: margin.inputs | at_least_zero.inputs | below_zero.inputs, range: None },
         }
     }
-    fn monotone_root(bracket: (Self, Self), start: Self, function: impl Fn(Self) -> (Self, Self)) -> Self {
+    fn monotone_root<const P: usize>(
+        bracket: (Self, Self),
+        start: Self,
+        parameters: [Self; P],
+        function: impl Fn([Self; P], Self) -> (Self, Self),
+    ) -> Self {
         let asked = bracket.0 + bracket.1 + start;
-        let (value, slope) = function(asked);
+        let (value, slope) = function(parameters, asked);
         if let (Some(low), Some(high), Some(first)) = (bracket.0.known(), bracket.1.known(), start.known())
             && value.known().is_some()
             && slope.known().is_some()
         {
             return Self::fixed(bracketed_newton((low, high), first, f64::EPSILON, |x| {
-                let (value, slope) = function(Self::fixed(x));
+                let (value, slope) = function(parameters, Self::fixed(x));
                 (value.known().unwrap_or(f64::NAN), slope.known().unwrap_or(f64::NAN))
             }));
         }
@@ -160,12 +165,14 @@ mod tests {
     }
 
     #[test]
-    fn a_root_depends_on_what_its_function_captures() {
+    fn a_root_depends_on_what_its_function_is_given_and_captures() {
         let target = Dependence::varied(2, 1.0, 4.0);
         let bracket = (Dependence::fixed(0.0), Dependence::fixed(9.0));
-        let root = Real::monotone_root(bracket, Dependence::fixed(1.0), |x| (x * x - target, x + x));
+        let root = Real::monotone_root(bracket, Dependence::fixed(1.0), [], |[], x| (x * x - target, x + x));
         assert_eq!(root.inputs, 0b100);
-        let known = Real::monotone_root(bracket, Dependence::fixed(1.0), |x| (x * x - Dependence::fixed(4.0), x + x));
+        let root = Real::monotone_root(bracket, Dependence::fixed(1.0), [target], |[target], x| (x * x - target, x + x));
+        assert_eq!(root.inputs, 0b100);
+        let known = Real::monotone_root(bracket, Dependence::fixed(1.0), [], |[], x| (x * x - Dependence::fixed(4.0), x + x));
         assert_eq!(known.known(), Some(2.0));
     }
 }

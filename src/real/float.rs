@@ -73,10 +73,15 @@ macro_rules! float {
             }
             #[inline]
             #[allow(clippy::cast_possible_truncation, reason = "f32 is the shader's twin: rounding is its meaning")]
-            fn monotone_root(bracket: (Self, Self), start: Self, function: impl Fn(Self) -> (Self, Self)) -> Self {
+            fn monotone_root<const P: usize>(
+                bracket: (Self, Self),
+                start: Self,
+                parameters: [Self; P],
+                function: impl Fn([Self; P], Self) -> (Self, Self),
+            ) -> Self {
                 let bracket = (f64::from(bracket.0), f64::from(bracket.1));
                 let root = bracketed_newton(bracket, f64::from(start), f64::from($float::EPSILON), |x| {
-                    let (value, slope) = function(x as $float);
+                    let (value, slope) = function(parameters, x as $float);
                     (f64::from(value), f64::from(slope))
                 });
                 root as $float

@@ -5,6 +5,7 @@
 //! Nothing here asks the processor to round in another direction: every result is moved outwards instead.
 
 use super::Real;
+use super::common_root::root_of_all;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Half an ULP of an f64, relative: one correctly rounded operation.
@@ -39,12 +40,12 @@ const ZERO: Interval = Interval { low: 0.0, high: 0.0, error: 0.0 };
 
 /// Like `minsd`: the second of two numbers that do not compare.
 #[inline(always)]
-fn lesser(a: f64, b: f64) -> f64 {
+pub(super) fn lesser(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
 #[inline(always)]
-fn greater(a: f64, b: f64) -> f64 {
+pub(super) fn greater(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
@@ -99,7 +100,7 @@ impl Interval {
     }
 
     #[inline(always)]
-    fn middle(self) -> f64 {
+    pub(super) fn middle(self) -> f64 {
         0.5 * (self.low + self.high)
     }
 
@@ -112,7 +113,7 @@ impl Interval {
     /// Ends that were moved outwards: [`EVERYTHING`] if one is a NaN. No error exceeds the distance of the ends, because f64 and exact
     /// value both lie between them.
     #[inline(always)]
-    fn known(low: f64, high: f64, error: f64) -> Self {
+    pub(super) fn known(low: f64, high: f64, error: f64) -> Self {
         if low <= high { Self { low, high, error: lesser(error, (high - low) * UP) } } else { EVERYTHING }
     }
 
@@ -140,6 +141,15 @@ impl Interval {
 
     #[inline(never)]
     fn product(self, other: Self) -> Self {
+        // A slope times a value that is positive: two products are enough.
+        if other.low > 0.0 {
+            let low = self.low * if self.low >= 0.0 { other.low } else { other.high };
+            let high = self.high * if self.high >= 0.0 { other.high } else { other.low };
+            let far = greater(f64::abs(low), f64::abs(high));
+            if lesser(f64::abs(low), f64::abs(high)) > UNDERFLOW && far < f64::INFINITY {
+                return Self::rounded(low, high, self.magnitude() * other.error + other.high * self.error);
+            }
+        }
         let ends = [self.low * other.low, self.low * other.high, self.high * other.low, self.high * other.high];
         // Also where two infinities meet, which leaves everything open too.
         if (ends[0] + ends[1] + ends[2] + ends[3]).is_nan() {
@@ -202,12 +212,11 @@ impl Interval {
         if !self.is_finite() {
             return EVERYTHING;
         }
-        let ends = Self::new(lesser(self.low, self.high), self.high);
-        if ends.magnitude() > PERIODS {
+        if self.magnitude() > PERIODS {
             return Self::known(-1.0, 1.0, self.error + FUNCTION);
         }
-        let (a, b) =
-            if self.low == self.high { (function(self.low), function(self.low)) } else { (function(self.low), function(self.high)) };
+        let a = function(self.low);
+        let b = if self.low == self.high { a } else { function(self.high) };
         let error = self.error;
         let mut range = Self::of_function(lesser(a, b), greater(a, b), |_| error);
         // A peak that rounding puts on the wrong side of an end is less than an ULP above that end's value.
@@ -300,7 +309,7 @@ impl Real for Interval {
     }
     #[inline]
     fn sqrt(self) -> Self {
-        if !(self.high >= 0.0) {
+        if self.high < 0.0 {
             return EVERYTHING;
         }
         let low = greater(self.low, 0.0).sqrt();
@@ -351,7 +360,7 @@ impl Real for Interval {
     }
     #[inline]
     fn ln_1p(self) -> Self {
-        if !(self.low >= -1.0) {
+        if self.low < -1.0 {
             return EVERYTHING;
         }
         let (low, error) = (self.low, self.error);
@@ -398,114 +407,114 @@ impl Real for Interval {
         let size = self.abs();
         size * size
     }
-    fn monotone_root(bracket: (Self, Self), start: Self, function: impl Fn(Self) -> (Self, Self)) -> Self {
-        let (least, largest) = (bracket.0.low, bracket.1.high);
-        let anywhere = Self::known(least, largest, f64::INFINITY);
-        // What lies in the bracket of every design.
-        let inner = Self::new(bracket.0.high, bracket.1.low);
-        if !anywhere.is_finite() || !inner.is_finite() {
-            return anywhere;
+    fn monotone_root<const P: usize>(
+        bracket: (Self, Self),
+        start: Self,
+        parameters: [Self; P],
+        function: impl Fn([Self; P], Self) -> (Self, Self),
+    ) -> Self {
+        root_of_all(bracket, start, |place| function(parameters, place))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::Cell;
+    use std::f64::consts::PI;
+
+    fn between(low: f64, high: f64) -> Interval {
+        Interval::new(low, high)
+    }
+
+    #[test]
+    fn ends_are_moved_outwards_by_hardly_anything() {
+        let third = between(1.0, 1.0) / between(3.0, 3.0);
+        assert!(third.low < 1.0 / 3.0 && 1.0 / 3.0 < third.high && third.width() < 2e-16, "{third:?}");
+        assert!(third.error > 1e-17 && third.error < 1e-16, "{third:?}");
+        let product = between(-2.0, 3.0) * between(-5.0, 1.0);
+        assert!(product.low <= -15.0 && product.high >= 10.0 && product.width() < 25.1);
+    }
+
+    #[test]
+    fn what_has_no_meaning_is_everything() {
+        assert_eq!(between(1.0, 2.0) / between(-1.0, 1.0), EVERYTHING);
+        assert_eq!(Interval::constant(0.0) * EVERYTHING, EVERYTHING);
+        assert_eq!((EVERYTHING - EVERYTHING).min(Interval::constant(1.0)), EVERYTHING, "f64 keeps a NaN that comes first");
+        assert_eq!(Real::sqrt(between(-2.0, -1.0)), EVERYTHING);
+        assert_eq!(Real::ln_1p(between(-2.0, 1.0)), EVERYTHING);
+        assert_eq!(Interval::point(f64::NAN), EVERYTHING);
+    }
+
+    #[test]
+    fn zero_stays_zero_and_signs_are_kept() {
+        let zero = Interval::constant(0.0);
+        assert!((zero * between(-1.0, 2.0)).is_zero() && (zero / between(1.0, 2.0)).is_zero() && (zero + zero).is_zero());
+        assert_eq!((between(0.0, 1.0) * between(2.0, 3.0)).low, 0.0);
+        assert_eq!(between(-1.0, 2.0).squared().low, 0.0);
+        let tiny = Interval::constant(1e-200);
+        assert!((tiny * tiny).low <= 0.0 && (tiny * tiny).high > 0.0, "it underflows to zero, but is none");
+        assert!((tiny * -tiny).high <= 0.0);
+    }
+
+    #[test]
+    fn waves_reach_their_peaks() {
+        let cosine = Real::cos(between(3.0, 3.5));
+        assert_eq!(cosine.low, -1.0);
+        assert!((cosine.high - 3.5f64.cos()).abs() < 1e-15);
+        assert_eq!((Real::sin(between(1.0, 2.0)).high, Real::sin(between(-2.0, -1.0)).low), (1.0, -1.0));
+        assert_eq!((Real::cos(between(-1.0, 7.0)).low, Real::cos(between(-1.0, 7.0)).high), (-1.0, 1.0));
+        let steep = Real::sin(between(0.1, 0.2));
+        assert!((steep.low - 0.1f64.sin()).abs() < 1e-15 && (steep.high - 0.2f64.sin()).abs() < 1e-15);
+        assert!(Real::cos(between(PI, PI)).contains(-1.0));
+    }
+
+    #[test]
+    fn f64_may_choose_the_other_branch_only_where_the_margin_has_an_error() {
+        let (one, three) = (Interval::constant(1.0), Interval::constant(3.0));
+        let exact = Real::select(between(-1.0, 1.0), one, three);
+        assert_eq!((exact.low, exact.high, exact.error), (1.0, 3.0, 0.0));
+        let rounded = Real::select(between(-1.0, 1.0) + Interval::constant(0.1), one, three);
+        assert!(rounded.error >= 2.0, "{rounded:?}");
+        assert_eq!(Real::select(between(0.0, 1.0), one, three), one);
+        assert_eq!(Interval::select_slope(between(-1.0, 1.0), one, one, three), EVERYTHING, "the choice changes on the way");
+        assert_eq!(Interval::select_slope(between(-1.0, 1.0), Interval::constant(0.0), one, three).high, 3.0);
+    }
+
+    #[test]
+    fn a_root_takes_few_evaluations_and_is_tight() {
+        for width in [0.0, 1e-12, 1e-6, 1e-2, 0.5] {
+            let count = Cell::new(0);
+            let target = between(2.0 - width, 2.0 + width);
+            let root = Interval::monotone_root(
+                (Interval::constant(0.0), Interval::constant(10.0)),
+                Interval::constant(9.0),
+                [target],
+                |[target], x| {
+                    count.set(count.get() + 1);
+                    (x * x * x - target, Interval::constant(3.0) * x * x)
+                },
+            );
+            let (low, high) = ((2.0 - width).cbrt(), (2.0 + width).cbrt());
+            assert!(root.contains(low) && root.contains(high), "{root:?} holds {low} and {high}");
+            assert!(root.width() <= 1.01 * (high - low) + 1e-13, "{root:?} is as wide as {low} to {high}");
+            assert!(root.error < 1e-13 && count.get() <= 20, "{root:?} after {} evaluations", count.get());
         }
-        let search = Search { inner, function: |x| function(Self::point(x)) };
-        let near = search.newton(start.middle());
-        let (below, above) = (search.edge(near, true), search.edge(near, false));
-        let (low, high) = match (below, above) {
-            // Every design has its root between the two.
-            (Some(low), Some(high)) => {
-                let (value, slope) = function(Self::new(low, high));
-                let size = greater(f64::abs(low), f64::abs(high));
-                // f64 stops where its value is lost in rounding. Where the slope may vanish nothing is known of how far that is from
-                // the root, but that it stays where values are.
-                let error = if slope.low > 0.0 { 3.0 * value.error / slope.low + 1e-14 * size } else { f64::INFINITY };
-                let apart = lesser(error, 1e-13 * size);
-                return Self::known(greater(low - apart, least), lesser(high + apart, largest), error * OF_ERRORS);
-            }
-            // There may be none, and then f64 goes up from its start; what has a root has it above.
-            (Some(low), None) => (lesser(low, greater(start.low, least)), largest),
-            (None, Some(high)) => (least, greater(high, lesser(start.high, largest))),
-            (None, None) => (least, largest),
+    }
+
+    #[test]
+    fn where_some_have_no_root_everything_in_the_bracket_above_the_others_is_possible() {
+        let at = |target: Interval| {
+            Interval::monotone_root(
+                (Interval::constant(0.0), Interval::constant(10.0)),
+                Interval::constant(5.0),
+                [target],
+                |[target], x| (x - target, Interval::constant(1.0)),
+            )
         };
-        Self::known(low, high, f64::INFINITY)
-    }
-}
-
-/// The search for the ends of the range that roots lie in.
-struct Search<F> {
-    /// Where to search.
-    inner: Interval,
-    /// Values and slopes of all functions at one place.
-    function: F,
-}
-
-/// A place and what the functions are there.
-#[derive(Clone, Copy)]
-struct Place {
-    x: f64,
-    value: Interval,
-    slope: f64,
-}
-
-impl<F: Fn(f64) -> (Interval, Interval)> Search<F> {
-    fn place(&self, x: f64) -> Place {
-        let x = x.max(self.inner.low).min(self.inner.high);
-        let (value, slope) = (self.function)(x);
-        Place { x, value, slope: slope.middle() }
-    }
-
-    /// Somewhere among the roots: where the values are as much above zero as below.
-    fn newton(&self, start: f64) -> Place {
-        let mut place = self.place(start);
-        for _ in 0..10 {
-            let step = place.value.middle() / place.slope;
-            let close = greater(0.1 * place.value.width() / place.slope, 1e-15 * f64::abs(place.x));
-            if !(place.slope > 0.0) || !(f64::abs(step) > close) {
-                break;
-            }
-            let next = self.place(place.x - step);
-            if next.x == place.x {
-                break;
-            }
-            place = next;
-        }
-        place
-    }
-
-    /// A place below every root, close to the least of them (or above every root, close to the largest), if there is one to be found.
-    fn edge(&self, near: Place, is_below: bool) -> Option<f64> {
-        let outwards = if is_below { -1.0 } else { 1.0 };
-        // Less than zero beyond all roots, by more than f64 can be wrong.
-        let beyond = |value: Interval| 2.0 * value.error + if is_below { value.high } else { -value.low };
-        let mut place = near;
-        let mut excess = beyond(place.value);
-        let mut best = None;
-        let mut slope = place.slope;
-        let mut pad = 0.0;
-        for _ in 0..12 {
-            if !(slope > 0.0) {
-                break;
-            }
-            // Nothing is gained by an end that is known better than a small part of the range.
-            let close = greater(2e-3 * place.value.width() / slope, 4e-15 * f64::abs(place.x));
-            if excess < 0.0 {
-                best = Some(place.x);
-                if -excess <= 2.0 * close * slope {
-                    break;
-                }
-                pad = 0.5 * close;
-            } else {
-                pad = greater(8.0 * pad, 0.5 * close);
-            }
-            let next = self.place(place.x + outwards * (excess / slope + pad));
-            let moved = outwards * (next.x - place.x);
-            if moved == 0.0 {
-                break;
-            }
-            let next_excess = beyond(next.value);
-            // The functions that reach zero last may be steeper or flatter than the middle of all.
-            let secant = (excess - next_excess) / moved;
-            slope = if secant > 0.2 * next.slope && secant < 5.0 * next.slope { secant } else { next.slope };
-            (place, excess) = (next, next_excess);
-        }
-        best
+        let some = at(between(4.0, 12.0));
+        assert!(some.low > 3.9 && some.low <= 4.0 && some.high == 10.0, "{some:?}");
+        let none = at(between(11.0, 12.0));
+        assert!(none.low >= 5.0 && none.high == 10.0, "{none:?}");
     }
 }

@@ -141,10 +141,15 @@ impl Real for Lanes {
         chosen
     }
     /// One lane after the other: each must take the very steps that the scalar takes.
-    fn monotone_root(bracket: (Self, Self), start: Self, function: impl Fn(Self) -> (Self, Self)) -> Self {
+    fn monotone_root<const P: usize>(
+        bracket: (Self, Self),
+        start: Self,
+        parameters: [Self; P],
+        function: impl Fn([Self; P], Self) -> (Self, Self),
+    ) -> Self {
         Self(from_fn(|lane| {
             bracketed_newton((bracket.0.0[lane], bracket.1.0[lane]), start.0[lane], f64::EPSILON, |x| {
-                let (value, slope) = function(Self::splat(x));
+                let (value, slope) = function(parameters, Self::splat(x));
                 (value.0[lane], slope.0[lane])
             })
         }))

@@ -6,6 +6,7 @@
 //! carries derivatives. That is why `Real` has no comparison and no branching: a formula selects with [`Real::select`], clamps with
 //! `min` and `max`, and answers questions with signed margins.
 
+mod common_root;
 mod dependence;
 mod dual;
 mod float;
@@ -73,9 +74,14 @@ pub trait Real:
     fn is_zero(self) -> bool;
     /// The root of an increasing function, between the ends of `bracket`, found from `start`.
     ///
-    /// `function` returns value and slope. If there is no root in the bracket the result is some number inside it: the
-    /// caller states the condition under which a root exists as a status of its own.
-    fn monotone_root(bracket: (Self, Self), start: Self, function: impl Fn(Self) -> (Self, Self)) -> Self;
+    /// `function` takes the parameters that it depends on and the place, and returns value and slope. If there is no root in the bracket
+    /// the result is some number inside it: the caller states the condition under which a root exists as a status of its own.
+    fn monotone_root<const P: usize>(
+        bracket: (Self, Self),
+        start: Self,
+        parameters: [Self; P],
+        function: impl Fn([Self; P], Self) -> (Self, Self),
+    ) -> Self;
 
     /// Square.
     #[inline(always)]
@@ -120,7 +126,9 @@ mod tests {
     /// The cube root of 2, on every instance that has a value.
     fn cube_root<R: Real>() -> R {
         let two = R::constant(2.0);
-        R::monotone_root((R::constant(0.0), R::constant(10.0)), R::constant(9.0), |x| (x * x * x - two, R::constant(3.0) * x * x))
+        R::monotone_root((R::constant(0.0), R::constant(10.0)), R::constant(9.0), [two], |[two], x| {
+            (x * x * x - two, R::constant(3.0) * x * x)
+        })
     }
 
     #[test]
@@ -131,12 +139,15 @@ mod tests {
         assert_eq!(cube_root::<Lanes>().0, [cube_root::<f64>(); LANES], "lanes must round like the scalar");
         let bounded = cube_root::<RunningError>();
         assert!((f64::from(bounded.value) - exact).abs() <= bounded.bound);
+        let over_all = cube_root::<Interval>();
+        assert!(over_all.contains(exact) && over_all.contains(cube_root::<f64>()) && over_all.width() < 1e-13, "{over_all:?}");
+        assert_eq!(cube_root::<Dual<f64, 1>>().value, cube_root::<f64>());
         assert!(bounded.bound < 1e-5, "the bound of a well-conditioned root is useful: {}", bounded.bound);
     }
 
     #[test]
     fn without_a_root_the_result_stays_inside_the_bracket() {
-        let x = f64::monotone_root((1.0, 3.0), 2.0, |x| (x + 1.0, 1.0));
+        let x = f64::monotone_root((1.0, 3.0), 2.0, [1.0], |[one], x| (x + one, one));
         assert!((1.0..=3.0).contains(&x), "{x}");
     }
 }

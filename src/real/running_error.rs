@@ -161,9 +161,14 @@ impl Real for RunningError {
         let apart = (f64::from(chosen.value) - f64::from(other.value)).abs();
         Self { value: chosen.value, bound: chosen.bound.max(apart + other.bound) }
     }
-    fn monotone_root(bracket: (Self, Self), start: Self, function: impl Fn(Self) -> (Self, Self)) -> Self {
+    fn monotone_root<const P: usize>(
+        bracket: (Self, Self),
+        start: Self,
+        parameters: [Self; P],
+        function: impl Fn([Self; P], Self) -> (Self, Self),
+    ) -> Self {
         let ends = (f64::from(bracket.0.value), f64::from(bracket.1.value));
-        let at = |x: f64| function(Self { value: round(x), bound: 0.0 });
+        let at = |x: f64| function(parameters, Self { value: round(x), bound: 0.0 });
         let root = round(bracketed_newton(ends, f64::from(start.value), f64::from(f32::EPSILON), |x| {
             let (value, slope) = at(x);
             (f64::from(value.value), f64::from(slope.value))

@@ -290,14 +290,19 @@ impl Real for Trace {
     fn is_zero(self) -> bool {
         self.known() == Some(0.0)
     }
-    fn monotone_root(bracket: (Self, Self), start: Self, function: impl Fn(Self) -> (Self, Self)) -> Self {
+    fn monotone_root<const P: usize>(
+        bracket: (Self, Self),
+        start: Self,
+        parameters: [Self; P],
+        function: impl Fn([Self; P], Self) -> (Self, Self),
+    ) -> Self {
         let number = with(|recorder| recorder.roots.len());
         let index = u8::try_from(number).expect("a formula has few roots");
         let argument = Self(with(|recorder| recorder.push(Operation::Argument(index))));
         // Taken at once, so that a root within this function gets a number of its own.
         let unknown = Root { bracket: (0, 0), start: 0, argument: argument.0, value: 0, slope: 0 };
         with(|recorder| recorder.roots.push(unknown));
-        let (value, slope) = function(argument);
+        let (value, slope) = function(parameters, argument);
         if let (Some(low), Some(high), Some(first)) = (bracket.0.known(), bracket.1.known(), start.known()) {
             let root = with(|recorder| recorder.constant_root(argument.0, value.0, slope.0, (low, high), first));
             if let Some(root) = root {

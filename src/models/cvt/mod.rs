@@ -120,7 +120,9 @@ fn driver_radius<R: Real>(belt: &Drive<R>) -> R {
     // Beyond A/|R - 1| one pulley would lie inside the other. Equal pulleys have no such end: any large one serves.
     let largest = centre_distance / step.abs().max(R::constant(1e-9));
     let start = (belt_length - two * centre_distance) / both;
-    R::monotone_root((R::constant(0.0), largest), start, |radius| {
+    R::monotone_root((R::constant(0.0), largest), start, [step, both, belt_length, centre_distance], |parameters, radius| {
+        let [one, two] = [1.0, 2.0].map(R::constant);
+        let [step, both, belt_length, centre_distance] = parameters;
         let sine = (step * radius / centre_distance).min(one).max(-one);
         let lean = sine.asin();
         let free = two * centre_distance * ((one - sine) * (one + sine)).sqrt();

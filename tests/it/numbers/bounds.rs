@@ -166,7 +166,7 @@ fn a_sure_decision_is_the_f64_one_and_most_decisions_are_sure() {
 }
 
 /// Moves one input of a design with another status than its neighbour onto the boundary between them.
-fn onto_a_boundary(model: &Model, random: &mut Random) -> Option<Vec<f64>> {
+pub fn onto_a_boundary(model: &Model, random: &mut Random) -> Option<Vec<f64>> {
     let inputs = draw(model, Region::Usual, random);
     let status = |inputs: &[f64]| evaluate(model, inputs).status == Status::Ok;
     let input = random.below(model.inputs.len());

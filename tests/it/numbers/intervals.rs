@@ -1,103 +1,94 @@
-//! The formulas over intervals: no design of a box leaves what the box gives.
+//! The formulas over intervals: no design of a box leaves what the box gives, neither in f64 nor exactly, and f64 is no farther from
+//! the exact values than it says.
 
-use super::interval::Interval;
-use super::{meaningful_si, si};
+use super::boxes::{Sides, a_box, around, everything, formulas, inner, on_a_boundary, over, run_over, sample};
+use super::precise::Precise;
+use super::{meaningful_si, outputs_si, si};
 use crate::physics::{Region, draw};
 use crate::random::Random;
-use beltspace::models::{CONDITIONS, Formula, INPUTS, MODELS, Model, OUTPUTS, Visitor, find, run, visit};
-use beltspace::real::Real;
+use beltspace::models::{CONDITIONS, Formula, Model, OUTPUTS, Status, Visitor, evaluate, find, run, visit};
+use beltspace::real::{EVERYTHING, Interval};
 
-/// The models that are formulas over any number type.
-fn formulas() -> impl Iterator<Item = &'static Model> {
-    struct Any;
-    impl Visitor for Any {
-        type Output = ();
-        fn visit<F: Formula>(self) {}
+const REGIONS: [Region; 3] = [Region::Usual, Region::Wide, Region::Edges];
+const WIDTHS: [f64; 6] = [0.0, 1e-12, 1e-9, 1e-3, 0.05, 0.5];
+
+type Both = ([Interval; OUTPUTS], [Interval; CONDITIONS]);
+
+/// Is this what f64 may compute? A NaN only where nothing is known.
+fn holds(interval: Interval, value: f64) -> bool {
+    if value.is_nan() { interval == EVERYTHING } else { interval.contains(value) }
+}
+
+/// The first output or margin of a design that f64 computes outside.
+fn outside(model: &Model, inputs: &[f64], intervals: &Both) -> Option<String> {
+    let si = si(model, inputs);
+    let margins = model.kernel.conditions(&model.kernel.prepared(&si), &si);
+    let outputs = outputs_si(model, &si);
+    let outputs = model.outputs.iter().map(|output| output.name).zip(intervals.0).zip(outputs);
+    let margins = model.conditions.iter().map(|condition| condition.reason).zip(intervals.1).zip(margins);
+    let ((name, interval), value) = outputs.chain(margins).find(|&((_, interval), value)| !holds(interval, value))?;
+    Some(format!("{name} = {value:?} is not in {interval:?}: {inputs:?}"))
+}
+
+fn check(model: &Model, sides: &Sides, random: &mut Random) {
+    let intervals = run_over(model, over(model, sides));
+    for _ in 0..20 {
+        let inputs = sample(model, sides, random);
+        assert_eq!(outside(model, &inputs, &intervals), None, "{} in {sides:?}", model.name);
     }
-    MODELS.iter().copied().filter(|model| visit(model.name, Any).is_some())
-}
-
-/// Both stages over a box.
-struct OverBox([Interval; INPUTS]);
-
-impl Visitor for OverBox {
-    type Output = ([Interval; OUTPUTS], [Interval; CONDITIONS]);
-    fn visit<F: Formula>(self) -> Self::Output {
-        run::<F, Interval>(&self.0)
-    }
-}
-
-/// A box of designs around one, in the inputs' units; a word stays what it is.
-fn a_box(model: &Model, width: f64, random: &mut Random) -> Vec<(f64, f64)> {
-    let centre = draw(model, Region::Usual, random);
-    let side = |(input, value): (&beltspace::models::Input, f64)| {
-        let reach = value * width * random.unit();
-        if input.word_for(value).is_some() { (value, value) } else { (value - reach, (value + reach).min(input.valid.high)) }
-    };
-    model.inputs.iter().zip(centre).map(side).collect()
-}
-
-fn interval_outputs(model: &Model, sides: &[(f64, f64)]) -> [Interval; OUTPUTS] {
-    let ends = |end: fn(&(f64, f64)) -> f64| si(model, &sides.iter().map(end).collect::<Vec<_>>());
-    let (low, high) = (ends(|side| side.0), ends(|side| side.1));
-    let mut inputs = [Interval::constant(0.0); INPUTS];
-    for (input, (&low, &high)) in inputs.iter_mut().zip(low.iter().zip(&high)) {
-        *input = Interval::new(low, high);
-    }
-    visit(model.name, OverBox(inputs)).expect("every model of the list can be visited").0
-}
-
-/// A design of the box: inside, or on one of its corners.
-fn sample(sides: &[(f64, f64)], random: &mut Random) -> Vec<f64> {
-    let corner = random.chance(0.5);
-    let side = |&(low, high): &(f64, f64)| {
-        let share = if corner { random.pick(&[0.0, 1.0]) } else { random.unit() };
-        if share == 1.0 { high } else { (low + share * (high - low)).min(high) }
-    };
-    sides.iter().map(side).collect()
-}
-
-/// The first output of a design that is outside.
-fn outside(model: &Model, inputs: &[f64], outputs: &[Interval; OUTPUTS]) -> Option<String> {
-    let values = meaningful_si(model, inputs);
-    let left = values.iter().zip(outputs).position(|(value, interval)| value.is_some_and(|value| !interval.contains(value)))?;
-    Some(format!("{} = {:?} is not in {:?}: {inputs:?}", model.outputs[left].name, values[left], outputs[left]))
 }
 
 #[test]
 fn no_design_of_a_box_leaves_the_intervals() {
     for model in formulas() {
-        for width in [0.0, 1e-9, 1e-3, 0.05, 0.5] {
-            let random = &mut Random::new(21);
-            for _ in 0..500 {
-                let sides = a_box(model, width, random);
-                let outputs = interval_outputs(model, &sides);
-                for _ in 0..20 {
-                    let inputs = sample(&sides, random);
-                    assert_eq!(outside(model, &inputs, &outputs), None, "{} in a box of width {width}: {sides:?}", model.name);
-                }
+        let random = &mut Random::new(21);
+        for (region, width) in REGIONS.into_iter().flat_map(|region| WIDTHS.map(|width| (region, width))) {
+            for _ in 0..100 {
+                check(model, &a_box(model, region, width, random), random);
             }
+        }
+        for _ in 0..20 {
+            check(model, &everything(model), random);
         }
     }
 }
 
 #[test]
+fn no_design_about_a_boundary_leaves_the_intervals() {
+    for model in formulas() {
+        let random = &mut Random::new(24);
+        for width in WIDTHS {
+            for _ in 0..50 {
+                check(model, &on_a_boundary(model, width, random), random);
+            }
+        }
+    }
+}
+
+/// Middle and end of what was measured.
+fn median_and_most(mut values: Vec<f64>) -> (f64, f64) {
+    values.sort_by(f64::total_cmp);
+    (values[values.len() / 2], values[values.len() * 95 / 100])
+}
+
+#[test]
 fn the_intervals_of_small_boxes_are_narrow() {
     for model in formulas() {
-        let random = &mut Random::new(22);
-        let mut widths: Vec<f64> = Vec::new();
-        for _ in 0..500 {
-            let sides = a_box(model, 1e-9, random);
-            let outputs = interval_outputs(model, &sides);
-            let middle = sides.iter().map(|(low, high)| 0.5 * (low + high)).collect::<Vec<_>>();
-            let present =
-                meaningful_si(model, &middle).into_iter().zip(outputs).filter(|(value, _)| value.is_some_and(|value| value != 0.0));
-            widths.extend(present.map(|(value, interval)| interval.width() / value.unwrap_or(1.0).abs()));
+        for (width, median_limit, most_limit) in [(0.0, 1e-12, 1e-9), (1e-9, 1e-7, 1e-4)] {
+            let random = &mut Random::new(22);
+            let mut widths: Vec<f64> = Vec::new();
+            for _ in 0..500 {
+                let sides = around(model, &draw(model, Region::Usual, random), width, random);
+                let outputs = run_over(model, over(model, &sides)).0;
+                let middle = sides.iter().map(|(low, high)| 0.5 * (low + high)).collect::<Vec<_>>();
+                let present =
+                    meaningful_si(model, &middle).into_iter().zip(outputs).filter(|(value, _)| value.is_some_and(|value| value != 0.0));
+                widths.extend(present.map(|(value, interval)| interval.width() / value.unwrap_or(1.0).abs()));
+            }
+            let (median, most) = median_and_most(widths);
+            eprintln!("{}: relative widths {median:.1e} (median), {most:.1e} (95 %) of boxes of {width:e}", model.name);
+            assert!(median < median_limit && most < most_limit, "{}: {median:e} {most:e}", model.name);
         }
-        widths.sort_by(f64::total_cmp);
-        let (median, most) = (widths[widths.len() / 2], widths[widths.len() * 95 / 100]);
-        eprintln!("{}: relative widths {median:.1e} (median), {most:.1e} (95 %)", model.name);
-        assert!(median < 1e-7 && most < 1e-4, "{}: {median:e} {most:e}", model.name);
     }
 }
 
@@ -107,19 +98,107 @@ fn designs_of_another_box_are_noticed() {
         let random = &mut Random::new(23);
         let mut noticed = 0;
         for _ in 0..200 {
-            let sides = a_box(model, 0.05, random);
+            let sides = a_box(model, Region::Usual, 0.05, random);
             // The intervals of a box a tenth as wide do not hold what the whole box has.
-            let inner: Vec<_> = sides
-                .iter()
-                .map(|(low, high)| {
-                    let (middle, half) = (0.5 * (low + high), 0.05 * (high - low));
-                    (middle - half, middle + half)
-                })
-                .collect();
-            let outputs = interval_outputs(model, &inner);
-            noticed += usize::from((0..20).any(|_| outside(model, &sample(&sides, random), &outputs).is_some()));
+            let intervals = run_over(model, over(model, &inner(model, &sides)));
+            noticed += usize::from((0..20).any(|_| outside(model, &sample(model, &sides, random), &intervals).is_some()));
         }
         assert!(noticed > 100, "{}: {noticed}", model.name);
+    }
+}
+
+/// What the errors of many boxes look like beside those that f64 really has.
+#[derive(Default)]
+struct Errors {
+    checked: usize,
+    broken: usize,
+    example: String,
+    /// Bounds relative to the value.
+    relative: Vec<f64>,
+    /// Largest share of a bound that was used.
+    used: f64,
+}
+
+impl Errors {
+    /// Compares f64 with more precise values of designs of the box, with every bound divided by `shrink`.
+    fn compare(&mut self, model: &Model, sides: &Sides, shrink: f64, random: &mut Random) {
+        let (outputs, margins) = run_over(model, over(model, sides));
+        for _ in 0..4 {
+            let inputs = sample(model, sides, random);
+            let si = si(model, &inputs);
+            let precise = run_over(model, si.map(Precise::from));
+            let reference = run_over(model, si);
+            let mut all: Vec<_> = (0..model.outputs.len()).map(|at| (outputs[at], reference.0[at], precise.0[at])).collect();
+            let meaningful = meaningful_si(model, &inputs);
+            for (at, value) in all.iter_mut().enumerate().filter(|(at, _)| meaningful[*at].is_none()) {
+                // Without a meaning there may be no exact value: a radius beyond its bracket.
+                value.2 = Precise::from(reference.0[at]);
+            }
+            if evaluate(model, &inputs).status == Status::Ok {
+                all.extend((0..model.conditions.len()).map(|at| (margins[at], reference.1[at], precise.1[at])));
+            }
+            for (number, (interval, value, exact)) in all.into_iter().enumerate() {
+                if value.is_nan() || !value.is_finite() {
+                    continue;
+                }
+                self.checked += 1;
+                let error = exact.distance(value);
+                if error > interval.error / shrink || !interval.contains(exact.rounded()) {
+                    self.broken += 1;
+                    self.example = format!("number {number} is {value:e}, off by {error:e} of {interval:?}: {inputs:?} of {sides:?}");
+                }
+                if interval.error > 0.0 {
+                    self.used = self.used.max(error / interval.error);
+                }
+                if value != 0.0 {
+                    self.relative.push(interval.error / value.abs());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn f64_is_as_near_to_the_exact_value_as_the_error_says() {
+    for model in formulas() {
+        for region in REGIONS {
+            let random = &mut Random::new(25);
+            let mut errors = Errors::default();
+            for width in WIDTHS {
+                for _ in 0..40 {
+                    let sides = a_box(model, region, width, random);
+                    errors.compare(model, &sides, 1.0, random);
+                }
+                for _ in 0..10 {
+                    let sides = on_a_boundary(model, width, random);
+                    errors.compare(model, &sides, 1.0, random);
+                }
+            }
+            assert_eq!(errors.broken, 0, "{} {region:?}: {} of {}, {}", model.name, errors.broken, errors.checked, errors.example);
+            eprintln!("{} {region:?}: {} values, at most {:.3} of an error used", model.name, errors.checked, errors.used);
+        }
+        let random = &mut Random::new(26);
+        let mut errors = Errors::default();
+        for _ in 0..200 {
+            let sides = a_box(model, Region::Usual, 1e-6, random);
+            errors.compare(model, &sides, 1.0, random);
+        }
+        let (median, most) = median_and_most(errors.relative);
+        eprintln!("{}: relative errors {median:.1e} (median), {most:.1e} (95 %)", model.name);
+        assert!(median < 1e-10, "{}: {median:e}", model.name);
+    }
+}
+
+#[test]
+fn an_error_ten_thousand_times_too_small_is_noticed() {
+    for model in formulas() {
+        let random = &mut Random::new(27);
+        let mut errors = Errors::default();
+        for _ in 0..100 {
+            let sides = a_box(model, Region::Usual, 0.0, random);
+            errors.compare(model, &sides, 1e4, random);
+        }
+        assert!(errors.broken > errors.checked / 100, "{}: {} of {}", model.name, errors.broken, errors.checked);
     }
 }
 

@@ -1,10 +1,12 @@
-//! Every model over every number type: f32 with its error bound, intervals, dependence, and eight designs at a time.
+//! Every model over every number type: f32 with its error bound, intervals, derivatives, dependence, and eight designs at a time.
 
 mod bounds;
+mod boxes;
 mod columns;
 mod dependence;
-mod interval;
+mod derivatives;
 mod intervals;
+mod precise;
 
 use beltspace::models::{INPUTS, Model, OUTPUTS, evaluate};
 
