@@ -33,10 +33,7 @@ pub fn run(path: &Path) -> Result<()> {
             axes.row([role.to_owned(), name(axis), levels, ends.join(", ")]);
         }
     }
-    let (rate, how) = match trial(&plan, &tables) {
-        Some(rate) => (rate, "measured over a moment"),
-        None => (plan.seconds_per_design().recip(), "by what the model usually takes"),
-    };
+    let (rate, how) = rate(&plan, &tables);
     let cores = threads(None);
     #[allow(clippy::cast_precision_loss, reason = "an estimate for people")]
     let evaluations = designs as f64 * scenarios as f64;
@@ -78,6 +75,14 @@ fn ends(plan: &Plan, axis: &Axis, column: usize, input: usize) -> String {
     if low == high { text(low) } else { format!("{} to {}", text(low), text(high)) }
 }
 
+/// Designs per second of one thread, and how that is known.
+pub fn rate(plan: &Plan, tables: &Tables) -> (f64, &'static str) {
+    match trial(plan, tables) {
+        Some(rate) => (rate, "measured over a moment"),
+        None => (plan.seconds_per_design().recip(), "by what the model usually takes"),
+    }
+}
+
 /// Designs per second of one thread, over rows spread over the study; `None` if a single design takes too long to try.
 #[allow(clippy::cast_precision_loss, reason = "an estimate for people")]
 fn trial(plan: &Plan, tables: &Tables) -> Option<f64> {
@@ -112,7 +117,7 @@ fn trial(plan: &Plan, tables: &Tables) -> Option<f64> {
 }
 
 /// Megabytes that tables, bins, map cells and blocks take.
-fn memory(plan: &Plan, threads: usize) -> u64 {
+pub fn memory(plan: &Plan, threads: usize) -> u64 {
     let report = &plan.study.report;
     let cells: u64 = report.maps.iter().map(|map| plan.study.design[map.x].count() * plan.study.design[map.y].count()).sum();
     let bins: u64 = report.histograms.iter().map(|it| it.bins as u64).sum();

@@ -40,6 +40,9 @@ pub fn run(request: &cli::Sweep) -> Result<()> {
     let control = Arc::new(Control::default());
     stop_on_ctrl_c(&control)?;
     let mut checkpoint = open_checkpoint(&out, &plan, &text, shard, request)?;
+    if request.shard.is_some() && checkpoint.is_finished() {
+        return finish_shard(&plan, &out, &checkpoint, request.quiet);
+    }
     let resumed = checkpoint.has_progress();
     let options = Options { threads: threads(request.threads), tile: request.tile, shard, ..Options::default() };
     let bar = Bar::start(&control, shard.range(plan.designs()), request.quiet);
@@ -78,7 +81,9 @@ fn judge<'p>(
     on: Option<&OnDevice>,
 ) -> Result<(Duration, u64, Option<Outcome<'p>>, Option<DeviceRecord>)> {
     let tables = Tables::new(plan);
-    let tally = Tally::watched(plan, &tables, options.threads, control)?;
+    // Of a slow model the sample is a large part of the work, or all of it: a shard does without where it can.
+    let sampled = whole || plan.shards_sample();
+    let tally = if sampled { Tally::watched(plan, &tables, options.threads, control)? } else { Tally::empty(plan) };
     let reduction = Reduction::new(plan, &tally.histogram_ranges(plan));
     let (Swept { state, designs, time }, did) = match on {
         None => (sweep(plan, &tables, &reduction, options, Some(checkpoint), control)?, None),
@@ -110,7 +115,7 @@ fn emit_shader(plan: &Plan, wrong: &Wrong, threads: usize, file: &Path) -> Resul
 }
 
 /// `results/<study name>`, of a shard `results/<study name>-K-of-N`.
-fn default_out(study: &Path, shard: Option<Shard>) -> PathBuf {
+pub fn default_out(study: &Path, shard: Option<Shard>) -> PathBuf {
     let stem = study.file_stem().unwrap_or(study.as_os_str()).to_string_lossy();
     let suffix = shard.map_or(String::new(), |shard| format!("-{}-of-{}", shard.number, shard.of));
     Path::new("results").join(format!("{stem}{suffix}"))
