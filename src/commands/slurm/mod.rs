@@ -146,7 +146,7 @@ fn remark(plan: &Plan, work: &Work, request: &cli::Slurm, shards: u64) {
             terminal::remark(
                 "warning",
                 &format!(
-                    "the histogram of {} has no from and to: every shard judges {} designs more to find them, about {}; give both",
+                    "histograms without from and to ({}): every shard judges {} designs more to find them, about {}; give both",
                     names.join(", "),
                     grouped(work.sample),
                     span(work.of_shard(shards) - work.of_own(shards))
