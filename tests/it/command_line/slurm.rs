@@ -1,4 +1,7 @@
-//! `slurm`: the scripts that it writes, run in order by a stand-in for the scheduler. With a real Slurm see `crate::slurm`.
+//! `slurm`: the scripts that it writes, run in order by a stand-in for the scheduler. With a real Slurm see `real`.
+
+/// A real Slurm.
+mod real;
 
 use super::{Answer, Files, SMALL, ask, ask_words, changed, files, folder_with, json_of, read, same_result, write};
 use std::os::unix::fs::PermissionsExt;
