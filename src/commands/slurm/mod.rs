@@ -96,6 +96,11 @@ pub fn run(request: &cli::Slurm) -> Result<()> {
         sweep: request.sweep.iter().map(|it| terminal::quoted_word(it)).collect(),
     };
     std::fs::create_dir_all(&jobs).map_err(Error::io(&jobs))?;
+    // What fails in between leaves nothing to submit.
+    let submit = jobs.join(SUBMIT);
+    if submit.exists() {
+        std::fs::remove_file(&submit).map_err(Error::io(&submit))?;
+    }
     for (name, text) in scripts.scripts() {
         let path = jobs.join(name);
         replace(&path, text.as_bytes())?;
