@@ -33,7 +33,10 @@ pub fn run(path: &Path) -> Result<()> {
             axes.row([role.to_owned(), name(axis), levels, ends.join(", ")]);
         }
     }
-    let (rate, how) = rate(&plan, &tables);
+    let (rate, how) = match trial(&plan, &tables) {
+        Some(rate) => (rate, "measured over a moment"),
+        None => (plan.seconds_per_design().recip(), "by what the model usually takes"),
+    };
     let cores = threads(None);
     #[allow(clippy::cast_precision_loss, reason = "an estimate for people")]
     let evaluations = designs as f64 * scenarios as f64;
@@ -73,14 +76,6 @@ fn ends(plan: &Plan, axis: &Axis, column: usize, input: usize) -> String {
     }
     let (low, high) = axis.ends(column);
     if low == high { text(low) } else { format!("{} to {}", text(low), text(high)) }
-}
-
-/// Designs per second of one thread, and how that is known.
-pub fn rate(plan: &Plan, tables: &Tables) -> (f64, &'static str) {
-    match trial(plan, tables) {
-        Some(rate) => (rate, "measured over a moment"),
-        None => (plan.seconds_per_design().recip(), "by what the model usually takes"),
-    }
 }
 
 /// Designs per second of one thread, over rows spread over the study; `None` if a single design takes too long to try.

@@ -2,6 +2,7 @@
 
 mod scripts;
 mod sizing;
+mod speed;
 
 use super::sweep::{default_out, refuse_to_overwrite};
 use super::{check, read_study};
@@ -11,7 +12,6 @@ use beltspace::checkpoint::{Checkpoint, replace};
 use beltspace::error::{Error, Result};
 use beltspace::export::CHECKPOINT;
 use beltspace::plan::Plan;
-use beltspace::screen::Tables;
 use beltspace::study::differences;
 use clap::Parser;
 use scripts::{MERGE, SHARDS, SUBMIT};
@@ -66,8 +66,8 @@ pub fn run(request: &cli::Slurm) -> Result<()> {
     let own = checked_options(&file, &request.sweep)?;
     let options = request.option.iter().map(|it| one_line(it)).collect::<Result<Vec<_>>>()?;
     let time = request.time.as_deref().map(sizing::read_clock).transpose()?;
-    let (rate, how) = check::rate(&plan, &Tables::new(&plan));
-    let work = work(&plan, rate, request.cpus);
+    let (seconds, how) = speed::seconds_per_design(&plan);
+    let work = work(&plan, seconds, request.cpus);
     let wish = Wish { shards: request.shards, shortest: request.shortest, limit: request.array_limit };
     let shards = sizing::shards(&work, &wish, scheduler)?;
     refuse_to_overwrite(&out, request.force)?;
@@ -139,7 +139,7 @@ fn remark(plan: &Plan, work: &Work, request: &cli::Slurm, shards: u64) {
             "warning",
             &format!("{them} shards would take about {short} each; {shards} {word} of about {long} written (--shortest 0 keeps {them})"),
         );
-    } else if work.of_all() < f64::from(request.shortest) {
+    } else if !request.quiet && work.of_all() < f64::from(request.shortest) {
         let whole = span(work.of_all());
         terminal::remark("note", &format!("a single job would take about {whole}; beltspace sweep does it here, without a cluster"));
     }
@@ -161,11 +161,11 @@ fn remark(plan: &Plan, work: &Work, request: &cli::Slurm, shards: u64) {
     }
 }
 
-fn work(plan: &Plan, rate: f64, cpus: u16) -> Work {
+fn work(plan: &Plan, seconds: f64, cpus: u16) -> Work {
     let designs = plan.designs();
     let sample = designs.min(plan.study.model.sample);
     let listed = if plan.study.report.variants { designs } else { 0 };
-    Work { designs, seconds: rate.recip(), sample: if plan.shards_sample() { sample } else { 0 }, again: sample + listed, cpus }
+    Work { designs, seconds, sample: if plan.shards_sample() { sample } else { 0 }, again: sample + listed, cpus }
 }
 
 /// The options for the sweep, read as the shards will read them: what is wrong is said now and not by every job.
@@ -255,7 +255,8 @@ fn refuse_foreign_shards(plan: &Plan, jobs: &Path, shards: u64) -> Result<()> {
         if !Checkpoint::exists(&folder.join(CHECKPOINT)) {
             continue;
         }
-        let checkpoint = Checkpoint::open(&folder.join(CHECKPOINT))?;
+        let unusable = |error| Error::Request(format!("{error}; unless a job is at work there, remove {}", quoted(&folder)));
+        let checkpoint = Checkpoint::open(&folder.join(CHECKPOINT)).map_err(unusable)?;
         if checkpoint.study_hash() != plan.study.hash() {
             let changed = differences(checkpoint.description(), &plan.study.describe()).join("; ");
             return Err(Error::Request(format!(

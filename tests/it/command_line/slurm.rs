@@ -320,6 +320,9 @@ fn scripts_results_and_shards_of_another_study_stay() {
     write(folder.path(), "small.toml", &changed(SMALL, &[("strength_MPa = 800", "strength_MPa = 900")]));
     let err = ask("slurm small.toml --shards 2 --shortest 0 --force").refusal(2);
     assert!(err.contains("shard-1-of-2 is of another study (") && err.contains("remove the directory of the jobs"), "{err}");
+    write(&folder.path().join("results/small-jobs/shard-1-of-2/checkpoint"), "manifest.json", "{}");
+    let err = ask("slurm small.toml --shards 2 --shortest 0 --force").refusal(2);
+    assert!(err.contains("the manifest is damaged (") && err.contains("unless a job is at work there, remove "), "{err}");
     ask("slurm small.toml --shards 3 --shortest 0 --force").text();
     cluster.bash(&folder.path().join("results/small-jobs/submit.sh")).text();
     assert!(read(&folder.path().join("results/small/study.toml")).contains("strength_MPa = 900"), "--force replaces the result too");

@@ -228,7 +228,7 @@ fn shards_and_their_merge_run_under_slurm() {
     say("four shards of metal-cvt, merged: the files of one run");
 
     // A node takes back a job and starts it again; another job is cancelled, so that its array fails.
-    let place = Place::new(&larger(81));
+    let place = Place::new(&larger(161));
     place.ask("--shards 2 --shortest 0 --memory 500").text();
     let [array, merge] = slurm.submit(&place);
     slurm.wait("shard 1 is under way", |_| place.is_under_way(1, 2));
