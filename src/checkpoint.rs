@@ -157,6 +157,12 @@ impl Checkpoint {
         self.progress.as_ref().is_some_and(|progress| progress.done.count() > 0)
     }
 
+    /// Was all of its shard finished before?
+    pub fn is_finished(&self) -> bool {
+        let range = self.manifest.shard.range(self.manifest.designs);
+        self.progress.as_ref().is_some_and(|progress| progress.done.missing_from(range).count() == 0)
+    }
+
     /// What was finished before, once.
     pub fn take_progress(&mut self) -> Option<Progress> {
         self.progress.take()

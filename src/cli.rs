@@ -32,6 +32,8 @@ pub enum Command {
     Sweep(Sweep),
     /// Put the shards of a study together: the same result as one run
     Merge(Merge),
+    /// Write the job scripts that run a study on a cluster with Slurm or PBS
+    Slurm(Slurm),
     /// Make the page that shows a result: one HTML file, opened by double click
     Report(Report),
     /// Compare a GPU with f64: errors per output, wrong decisions, promise kept or not
@@ -256,6 +258,57 @@ pub struct Merge {
     /// Replace an existing result
     #[arg(long)]
     pub force: bool,
+}
+
+/// Options of `slurm`.
+#[derive(Debug, Args)]
+#[command(after_help = "Submit with bash DIR/submit.sh, and after a failure again: finished shards cost nothing, the others go on. \
+    Every node must see the study, the program and both directories under the paths that they have here.")]
+pub struct Slurm {
+    /// Study file
+    pub study: PathBuf,
+    /// Number of shards [default: so many that one takes about ten minutes]; fewer where one would take less than --shortest
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub shards: Option<u64>,
+    /// Result directory [default: results/<study name>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Directory of the scripts, the shards and their logs [default: <result directory>-jobs]
+    #[arg(long, value_name = "DIR")]
+    pub jobs: Option<PathBuf>,
+    /// Write for PBS (PBS Professional, OpenPBS) instead of Slurm
+    #[arg(long)]
+    pub pbs: bool,
+    /// Processors of a job
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub cpus: u16,
+    /// Memory of a job in megabytes [default: by the study, at least 1000]
+    #[arg(long, value_name = "MB", value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
+    pub memory: Option<u64>,
+    /// Time limit of a job [default: four times what it is expected to take, at least 00:10:00]
+    #[arg(long, value_name = "HH:MM:SS")]
+    pub time: Option<String>,
+    /// Any other option of the scheduler for the jobs, such as --option=--partition=long or --option="-q long". May be repeated
+    #[arg(long, value_name = "OPTION", allow_hyphen_values = true)]
+    pub option: Vec<String>,
+    /// Seconds that a shard takes at least: fewer shards than asked for are written if need be; 0 writes what is asked for
+    #[arg(long, value_name = "SECONDS", default_value_t = 60, value_parser = clap::value_parser!(u32).range(0..=86_400))]
+    pub shortest: u32,
+    /// Most shards that the scheduler takes as one array [default: 1000, with --pbs 10000]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub array_limit: Option<u64>,
+    /// The program as the nodes find it [default: the path of this one]
+    #[arg(long, value_name = "PROGRAM")]
+    pub program: Option<PathBuf>,
+    /// Replace scripts that are there, and a result when the shards are merged; shards are kept and go on
+    #[arg(long)]
+    pub force: bool,
+    /// Print nothing but errors and warnings
+    #[arg(long)]
+    pub quiet: bool,
+    /// Options for the sweep of every shard, such as -- --engine cpu
+    #[arg(last = true, value_name = "SWEEP OPTIONS")]
+    pub sweep: Vec<String>,
 }
 
 /// Options of `reproduce`.

@@ -205,6 +205,11 @@ impl Plan {
         prepare / self.fast.count() as f64 + finish
     }
 
+    /// Does each shard judge the sample for itself? It does where the study leaves the range of a histogram to the sample.
+    pub fn shards_sample(&self) -> bool {
+        self.study.report.histograms.iter().any(|it| it.range.is_none())
+    }
+
     /// Slow scenarios, the first ones, whose prepared numbers a thread keeps for all designs of a row.
     pub fn kept_scenarios(&self) -> u64 {
         let bytes = 8 * self.study.model.kernel.prepared_len().max(1) as u64;

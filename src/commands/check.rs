@@ -112,7 +112,7 @@ fn trial(plan: &Plan, tables: &Tables) -> Option<f64> {
 }
 
 /// Megabytes that tables, bins, map cells and blocks take.
-fn memory(plan: &Plan, threads: usize) -> u64 {
+pub fn memory(plan: &Plan, threads: usize) -> u64 {
     let report = &plan.study.report;
     let cells: u64 = report.maps.iter().map(|map| plan.study.design[map.x].count() * plan.study.design[map.y].count()).sum();
     let bins: u64 = report.histograms.iter().map(|it| it.bins as u64).sum();

@@ -10,6 +10,7 @@ mod method;
 mod models;
 mod report;
 mod reproduce;
+mod slurm;
 mod sweep;
 mod verify;
 
@@ -30,6 +31,7 @@ pub fn run(command: Command) -> Result<()> {
         Command::Check { study } => check::run(&study),
         Command::Sweep(request) => sweep::run(&request),
         Command::Merge(request) => merge::run(&request),
+        Command::Slurm(request) => slurm::run(&request),
         Command::Report(request) => report::run(&request),
         Command::Verify(request) => verify::run(&request),
         Command::Reproduce(request) => reproduce::run(&request),

@@ -44,6 +44,9 @@ pub fn run(request: &cli::Sweep) -> Result<()> {
     let control = Arc::new(Control::default());
     stop_on_ctrl_c(&control)?;
     let mut checkpoint = open_checkpoint(&out, &plan, &text, shard, request)?;
+    if request.shard.is_some() && checkpoint.is_finished() {
+        return finish_shard(&plan, &out, &checkpoint, request.quiet);
+    }
     let resumed = checkpoint.has_progress();
     let options = Options { threads, tile: request.tile, shard, ..Options::default() };
     let bar = Bar::start(&control, shard.range(plan.designs()), request.quiet);
@@ -103,7 +106,9 @@ fn judge<'p>(
     how: How<'_>,
 ) -> Result<Judged<'p>> {
     let tables = Tables::new(plan);
-    let tally = Tally::watched(plan, &tables, options.threads, control)?;
+    // Of a slow model the sample is a large part of the work, or all of it: a shard does without where it can.
+    let sampled = whole || plan.shards_sample();
+    let tally = if sampled { Tally::watched(plan, &tables, options.threads, control)? } else { Tally::empty(plan) };
     let reduction = Reduction::new(plan, &tally.histogram_ranges(plan));
     let (mut did, mut certificate) = (None, None);
     let Swept { state, designs, time } = match how {
@@ -142,7 +147,7 @@ fn emit_shader(plan: &Plan, wrong: &Wrong, threads: usize, file: &Path) -> Resul
 }
 
 /// `results/<study name>`, of a shard `results/<study name>-K-of-N`.
-fn default_out(study: &Path, shard: Option<Shard>) -> PathBuf {
+pub fn default_out(study: &Path, shard: Option<Shard>) -> PathBuf {
     let stem = study.file_stem().unwrap_or(study.as_os_str()).to_string_lossy();
     let suffix = shard.map_or(String::new(), |shard| format!("-{}-of-{}", shard.number, shard.of));
     Path::new("results").join(format!("{stem}{suffix}"))

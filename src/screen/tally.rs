@@ -87,7 +87,8 @@ impl Tally {
         plan.study.report.histograms.iter().map(|it| it.range.unwrap_or_else(|| automatic(it.of))).collect()
     }
 
-    fn empty(plan: &Plan) -> Self {
+    /// Before the first design of the sample.
+    pub fn empty(plan: &Plan) -> Self {
         let constraints = plan.constraints.len();
         Self {
             sampled: 0,

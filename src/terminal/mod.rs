@@ -97,9 +97,14 @@ pub fn quoted(path: &Path) -> String {
     if text.starts_with('-') {
         text.insert_str(0, "./");
     }
+    quoted_word(&text)
+}
+
+/// Text as a shell reads it back as one word.
+pub fn quoted_word(text: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "/.-_:+=,@%".contains(c) || (cfg!(windows) && c == '\\');
     if !text.is_empty() && text.chars().all(plain) {
-        text
+        text.to_owned()
     } else if cfg!(windows) {
         format!("\"{text}\"")
     } else {

@@ -43,6 +43,31 @@ fn the_session_is_what_the_program_prints() {
 }
 
 #[test]
+fn the_jobs_are_what_the_program_writes() {
+    let out = tempfile::tempdir().expect("a temporary directory");
+    let study = out.path().join("fine.toml");
+    let readme = readme();
+    let finer = readme.lines().find(|line| line.starts_with("$ sed ") && line.ends_with(" > fine.toml")).expect("it makes a study");
+    let words: Vec<&str> = finer.split('\'').collect();
+    let [from, to] = [1, 2].map(|at| words[1].split('/').nth(at).expect("sed replaces"));
+    let coarse = std::fs::read_to_string(root().join("studies/metal-grid.toml")).expect("the study is shipped");
+    assert!(coarse.contains(from), "{finer}");
+    std::fs::write(&study, coarse.replace(from, to)).expect("it can be written");
+    let [study, result] = [study, out.path().join("fine")].map(|it| it.display().to_string());
+    let (printed, _) = run(&["slurm", &study, "--out", &result, "--cpus", "2"]);
+    let shown = block(finer);
+    let shown = shown.strip_prefix("$ beltspace slurm fine.toml --cpus 2\n").and_then(|it| it.split_once("\n$ bash "));
+    let (shown, _) = shown.expect("the block shows both commands");
+    // How long it takes decides how many there are and what they ask for; where they are is ours.
+    let words = |text: &str| -> Vec<String> {
+        let measured = ["shards ", "asks for ", "jobs ", "result ", "submit with:"];
+        let word = |line: &str| measured.iter().find(|it| line.starts_with(**it)).map_or(line.to_owned(), |it| (*it).to_owned());
+        text.trim_end().lines().map(word).collect()
+    };
+    assert_eq!(words(shown), words(&printed));
+}
+
+#[test]
 fn the_evaluation_is_what_the_program_prints() {
     let (printed, note) = run(&["eval", "timing-belt"]);
     let shown = block("$ beltspace eval timing-belt --profile teeth.csv --plot teeth.svg");

@@ -10,6 +10,9 @@ mod models_and_eval;
 mod recovery;
 /// The page of a result.
 mod report;
+/// Scripts for a cluster, run by programs that stand in for its scheduler.
+#[cfg(unix)]
+mod slurm;
 /// `check`, `sweep` and the result directory.
 mod sweep;
 /// Requests that cannot be met.

@@ -1,0 +1,286 @@
+//! `beltspace slurm`: the scripts that spread a study over a cluster.
+
+mod scripts;
+mod sizing;
+mod speed;
+
+use super::sweep::{default_out, refuse_to_overwrite};
+use super::{check, read_study};
+use crate::cli::{self, Cli, Command};
+use crate::terminal::{self, Grid, bold, grouped, quoted, span};
+use beltspace::checkpoint::{Checkpoint, replace};
+use beltspace::error::{Error, Result};
+use beltspace::export::CHECKPOINT;
+use beltspace::plan::Plan;
+use beltspace::study::differences;
+use clap::Parser;
+use scripts::{MERGE, SHARDS, SUBMIT};
+use sizing::{Wish, Work};
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+/// Least megabytes that jobs ask for: shards, and the merge.
+const LEAST_MEMORY: [u64; 2] = [1000, 2000];
+/// Seconds that the merge is expected to take at least: it writes the result, its pictures and its page.
+const LEAST_MERGE: f64 = 300.0;
+
+/// Who runs the jobs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scheduler {
+    Slurm,
+    Pbs,
+}
+
+impl Scheduler {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Slurm => "Slurm",
+            Self::Pbs => "PBS",
+        }
+    }
+
+    /// Most jobs of an array that it takes where its administrators have changed nothing.
+    fn usual_limit(self) -> u64 {
+        match self {
+            Self::Slurm => 1000,
+            Self::Pbs => 10_000,
+        }
+    }
+
+    fn where_the_limit_is(self) -> &'static str {
+        match self {
+            Self::Slurm => "MaxArraySize of scontrol show config, less one",
+            Self::Pbs => "max_array_size of qstat -Bf",
+        }
+    }
+}
+
+pub fn run(request: &cli::Slurm) -> Result<()> {
+    let scheduler = if request.pbs { Scheduler::Pbs } else { Scheduler::Slurm };
+    let (study, _) = read_study(&request.study)?;
+    let plan = Plan::new(study);
+    let file = absolute(&request.study)?;
+    let out = absolute(&request.out.clone().unwrap_or_else(|| default_out(&request.study, None)))?;
+    let jobs = absolute(&request.jobs.clone().unwrap_or_else(|| jobs_beside(&out)))?;
+    let program = program(request.program.as_deref())?;
+    let own = checked_options(&file, &request.sweep)?;
+    let options = request.option.iter().map(|it| one_line(it)).collect::<Result<Vec<_>>>()?;
+    let time = request.time.as_deref().map(sizing::read_clock).transpose()?;
+    let (seconds, how) = speed::seconds_per_design(&plan);
+    let work = work(&plan, seconds, request.cpus);
+    let wish = Wish { shards: request.shards, shortest: request.shortest, limit: request.array_limit };
+    let shards = sizing::shards(&work, &wish, scheduler)?;
+    refuse_to_overwrite(&out, request.force)?;
+    refuse_to_replace(&jobs, request.force)?;
+    refuse_foreign_shards(&plan, &jobs, shards)?;
+
+    let least = request.memory.map_or(LEAST_MEMORY, |asked| [asked; 2]);
+    let wanted = (2 * check::memory(&plan, request.cpus.into()) + 500).next_multiple_of(100);
+    let memory = least.map(|least| if request.memory.is_some() { least } else { least.max(wanted) });
+    let expected = [work.of_shard(shards), LEAST_MERGE + work.of_merge()];
+    let time = expected.map(|seconds| time.clone().unwrap_or_else(|| sizing::clock(sizing::limit(seconds))));
+    let scripts = scripts::Plan {
+        scheduler,
+        title: plan.study.title.chars().map(|it| if it.is_control() { ' ' } else { it }).collect(),
+        name: job_name(&request.study),
+        program: word(&program)?,
+        study: word(&file)?,
+        out: word(&out)?,
+        jobs: word(&jobs)?,
+        shards,
+        cpus: request.cpus,
+        memory,
+        time,
+        options,
+        page: !own.no_report,
+        sweep: request.sweep.iter().map(|it| terminal::quoted_word(it)).collect(),
+    };
+    std::fs::create_dir_all(&jobs).map_err(Error::io(&jobs))?;
+    // What fails in between leaves nothing to submit.
+    let submit = jobs.join(SUBMIT);
+    if submit.exists() {
+        std::fs::remove_file(&submit).map_err(Error::io(&submit))?;
+    }
+    for (name, text) in scripts.scripts() {
+        let path = jobs.join(name);
+        replace(&path, text.as_bytes())?;
+        make_executable(&path)?;
+    }
+    remark(&plan, &work, request, shards);
+    if request.quiet { Ok(()) } else { terminal::print(&summary(&plan, &work, how, &scripts, &out, &jobs)) }
+}
+
+fn summary(plan: &Plan, work: &Work, how: &str, scripts: &scripts::Plan, out: &Path, jobs: &Path) -> String {
+    let (shards, cpus) = (scripts.shards, scripts.cpus);
+    let on = if cpus == 1 { "1 processor".to_owned() } else { format!("{cpus} processors") };
+    let each = if shards == 1 { "" } else { " each" };
+    let mut facts = Grid::default();
+    let mut fact = |what: &str, value: String| facts.row([bold(what), value]);
+    fact("designs", grouped(plan.designs()));
+    fact("shards", format!("{}, about {}{each} on {on}, {how}", grouped(shards), span(work.of_shard(shards))));
+    fact(
+        "asks for",
+        format!(
+            "{on}, {} MB, at most {}{each}; the merge {} MB, {}",
+            scripts.memory[0], scripts.time[0], scripts.memory[1], scripts.time[1]
+        ),
+    );
+    fact("jobs", format!("{SHARDS}, {MERGE} and {SUBMIT} in {}", jobs.display()));
+    fact("result", format!("{}, after the merge", out.display()));
+    format!("{}\n\n{}\nsubmit with: bash {}\n", bold(&plan.study.title), facts.indented(0), quoted(&jobs.join(SUBMIT)))
+}
+
+/// Says what is other than the user may expect.
+fn remark(plan: &Plan, work: &Work, request: &cli::Slurm, shards: u64) {
+    if let Some(asked) = request.shards.filter(|&asked| asked > shards) {
+        let (short, long) = (span(work.of_own(asked)), span(work.of_own(shards)));
+        let (them, word) = (grouped(asked), if shards == 1 { "shard" } else { "shards" });
+        terminal::remark(
+            "warning",
+            &format!("{them} shards would take about {short} each; {shards} {word} of about {long} written (--shortest 0 keeps {them})"),
+        );
+    } else if !request.quiet && work.of_all() < f64::from(request.shortest) {
+        let whole = span(work.of_all());
+        terminal::remark("note", &format!("a single job would take about {whole}; beltspace sweep does it here, without a cluster"));
+    }
+    if shards > 1 && work.sample > 0 {
+        let open: Vec<_> = plan.study.report.histograms.iter().filter(|it| it.range.is_none()).collect();
+        let names: Vec<_> = open.iter().map(|it| it.of.name(plan.study.model)).collect();
+        // Of a fast model nobody notices.
+        if work.of_shard(shards) > 1.1 * work.of_own(shards) {
+            terminal::remark(
+                "warning",
+                &format!(
+                    "histograms without from and to ({}): every shard judges {} designs more to find them, about {}; give both",
+                    names.join(", "),
+                    grouped(work.sample),
+                    span(work.of_shard(shards) - work.of_own(shards))
+                ),
+            );
+        }
+    }
+}
+
+fn work(plan: &Plan, seconds: f64, cpus: u16) -> Work {
+    let designs = plan.designs();
+    let sample = designs.min(plan.study.model.sample);
+    let listed = if plan.study.report.variants { designs } else { 0 };
+    Work { designs, seconds, sample: if plan.shards_sample() { sample } else { 0 }, again: sample + listed, cpus }
+}
+
+/// The options for the sweep, read as the shards will read them: what is wrong is said now and not by every job.
+fn checked_options(study: &Path, options: &[String]) -> Result<cli::Sweep> {
+    let mut words: Vec<OsString> = ["beltspace", "sweep"].map(OsString::from).to_vec();
+    words.push(study.into());
+    words.extend(["--shard", "1/1", "--out", "shard", "--resume", "--quiet", "--threads", "1"].map(OsString::from));
+    words.extend(options.iter().map(OsString::from));
+    let wrong = |why: &str| {
+        let why = why.strip_prefix("error: ").unwrap_or(why);
+        Error::Request(format!(
+            "options for the sweep: {why}; behind -- stand options of sweep, but not STUDY, --shard, --out, --resume, --force, --quiet, --threads"
+        ))
+    };
+    match Cli::try_parse_from(words) {
+        Ok(Cli { command: Command::Sweep(sweep) }) => Ok(sweep),
+        Ok(_) => unreachable!("it began with sweep"),
+        Err(error) => Err(wrong(error.to_string().lines().next().unwrap_or_default())),
+    }
+}
+
+/// An option of the scheduler: a line of a script.
+fn one_line(option: &str) -> Result<String> {
+    if !option.starts_with('-') || option.chars().any(char::is_control) {
+        return Err(Error::Request(format!(
+            "--option {option:?}: an option of the scheduler is one line that begins with a dash, such as --option=--partition=long"
+        )));
+    }
+    Ok(option.to_owned())
+}
+
+/// The path of the program itself; a name without directory is left for the nodes to find.
+fn program(asked: Option<&Path>) -> Result<PathBuf> {
+    match asked {
+        None => std::env::current_exe()
+            .map_err(|error| Error::Request(format!("cannot find the path of this program ({error}); name it with --program"))),
+        Some(name) if name.components().count() == 1 => Ok(name.to_owned()),
+        Some(path) => absolute(path),
+    }
+}
+
+fn absolute(path: &Path) -> Result<PathBuf> {
+    std::path::absolute(path).map_err(|error| Error::Request(format!("{}: {error}", path.display())))
+}
+
+/// A path as a word of a script.
+fn word(path: &Path) -> Result<String> {
+    match path.to_str() {
+        Some(_) => Ok(quoted(path)),
+        None => Err(Error::Request(format!("{}: a script takes names in UTF-8 only; rename it", path.display()))),
+    }
+}
+
+/// `<result directory>-jobs`.
+fn jobs_beside(out: &Path) -> PathBuf {
+    let mut name = out.as_os_str().to_owned();
+    name.push("-jobs");
+    name.into()
+}
+
+/// The study's name in characters that every scheduler takes.
+fn job_name(study: &Path) -> String {
+    let stem = study.file_stem().unwrap_or_default().to_string_lossy();
+    let plain: String = stem.chars().map(|it| if it.is_ascii_alphanumeric() { it } else { '-' }).collect();
+    let begins = plain.starts_with(|it: char| it.is_ascii_alphabetic());
+    if begins { plain } else { format!("s{plain}") }
+}
+
+/// Scripts stay unless `--force` says otherwise.
+fn refuse_to_replace(jobs: &Path, force: bool) -> Result<()> {
+    if jobs.exists() && !jobs.is_dir() {
+        return Err(Error::Request(format!("{} is a file; name a directory with --jobs", jobs.display())));
+    }
+    match [SHARDS, MERGE, SUBMIT].into_iter().find(|name| jobs.join(name).exists()) {
+        Some(name) if !force => Err(Error::Request(format!(
+            "{} has a {name}; replace it with --force, or write to another directory with --jobs",
+            jobs.display()
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Shards of the same number but of another study would make every job fail.
+fn refuse_foreign_shards(plan: &Plan, jobs: &Path, shards: u64) -> Result<()> {
+    for number in 1..=shards {
+        let folder = jobs.join(scripts::folder(&number.to_string(), shards));
+        if !Checkpoint::exists(&folder.join(CHECKPOINT)) {
+            continue;
+        }
+        let unusable = |error| Error::Request(format!("{error}; unless a job is at work there, remove {}", quoted(&folder)));
+        let checkpoint = Checkpoint::open(&folder.join(CHECKPOINT)).map_err(unusable)?;
+        if checkpoint.study_hash() != plan.study.hash() {
+            let changed = differences(checkpoint.description(), &plan.study.describe()).join("; ");
+            return Err(Error::Request(format!(
+                "{} is of another study ({changed}); restore the study, remove the directory of the jobs, or name another with --jobs",
+                folder.display()
+            )));
+        }
+        // One speaks for all: they were written together.
+        return Ok(());
+    }
+    Ok(())
+}
+
+#[cfg(unix)]
+fn make_executable(path: &Path) -> Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    let metadata = std::fs::metadata(path).map_err(Error::io(path))?;
+    let mode = metadata.permissions().mode();
+    // Whoever may read it may run it.
+    let permissions = std::fs::Permissions::from_mode(mode | (mode & 0o444) >> 2);
+    std::fs::set_permissions(path, permissions).map_err(Error::io(path))
+}
+
+#[cfg(not(unix))]
+fn make_executable(_: &Path) -> Result<()> {
+    Ok(())
+}
