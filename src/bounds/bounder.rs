@@ -2,18 +2,21 @@
 //!
 //! The recorded formula runs over intervals, and over intervals with derivatives. Where a derivative has one sign all over the box, the
 //! number is largest at one end of that axis and least at the other, and the bounds of the corner are as good as a single design's.
-//! The corner bounds the exact value; what f64 may differ from it by is added.
+//! Elsewhere the middle and the largest derivative do. Both bound the exact value; what f64 may differ from it by is added.
 
 use super::axes::{AXES, Axes, Axis, Span, Spans};
 use super::requirement::Source;
 use super::tape::Tape;
 use crate::real::trace::{Node, Operation};
-use crate::real::{Dual, Interval, Real};
+use crate::real::{Dual, EVERYTHING, Interval, Real};
 use std::collections::HashMap;
 
 /// Most directions that derivatives are followed in: the first axes of a study.
 pub const DIRECTIONS: usize = 8;
 type Slopes = Dual<Interval, DIRECTIONS>;
+
+/// More than rounding can make of a sum of a few products.
+const OUTWARD: f64 = 1.0 + 64.0 * f64::EPSILON;
 
 /// Most spans of one axis whose numbers are kept.
 const KEPT: usize = 1 << 14;
@@ -232,8 +235,10 @@ impl<'t> Bounder<'t> {
         let value = whole.value;
         // What rounding and the conversion to a unit may hide.
         let hidden = 4.0 * value.error + 8.0 * f64::EPSILON * value.low.abs().max(value.high.abs());
-        // The corners where the number is worst, and where it is best in the scenario that is worst there.
+        // The corners where the number is worst, and where it is best in the scenario that is worst there. Along axes whose direction is
+        // not known they are in the middle, and as much is added as the number can change from there.
         let (mut worst, mut best) = (*spans, *spans);
+        let (mut beyond_worst, mut beyond_best) = (0.0, 0.0);
         for &axis in &asked.axes {
             if spans[axis].is_single() {
                 continue;
@@ -241,7 +246,7 @@ impl<'t> Bounder<'t> {
             let is_scenario = axis >= self.axes.designs;
             let table = &self.axes.all[axis];
             let known = axis < DIRECTIONS && !table.is_joint();
-            let slope = if known { whole.slopes[axis] } else { crate::real::EVERYTHING };
+            let slope = if known { whole.slopes[axis] } else { EVERYTHING };
             let (low, high) = Axis::ends(&table.si[0], table.ordered, spans[axis]);
             let middle = spans[axis].low + (spans[axis].high - spans[axis].low) / 2;
             spread[axis] = slope.low.abs().max(slope.high.abs()) * (high - low);
@@ -251,33 +256,41 @@ impl<'t> Bounder<'t> {
             if table.ordered && (slope.low >= 0.0 || slope.high <= 0.0) {
                 monotone |= 1 << axis;
                 let rises = (slope.low >= 0.0) == (table.si[0][spans[axis].low as usize] <= table.si[0][spans[axis].high as usize]);
-                let (up, down) = if rises == asked.higher_is_worse { (spans[axis].high, spans[axis].low) } else { (spans[axis].low, spans[axis].high) };
+                let (up, down) =
+                    if rises == asked.higher_is_worse { (spans[axis].high, spans[axis].low) } else { (spans[axis].low, spans[axis].high) };
                 better_at_last |= u64::from(down == spans[axis].high) << axis;
                 strict |= u64::from(slope.low.abs().min(slope.high.abs()) * table.least_step > hidden) << axis;
                 worst[axis] = Span::at(up);
                 best[axis] = Span::at(if is_scenario { up } else { down });
-            } else if is_scenario {
+            } else {
+                worst[axis] = Span::at(middle);
                 best[axis] = Span::at(middle);
+                let centre = table.si[0][middle as usize];
+                let up = (slope.high * (high - centre)).max(slope.low * (low - centre));
+                let down = (slope.low * (high - centre)).min(slope.high * (low - centre));
+                let (worse, better) = if asked.higher_is_worse { (up, -down) } else { (-down, up) };
+                beyond_worst += or_infinite(worse);
+                beyond_best += if is_scenario { 0.0 } else { or_infinite(better) };
             }
         }
-        let own = asked.badness(shown(asked.source, whole.value.low, whole.value.high));
+        let own = asked.badness(shown(asked.source, value.low, value.high));
         let (mut least, mut most) = own;
-        let error = whole.value.error;
-        if error.is_finite() {
-            if worst != *spans {
-                most = most.min(self.corner(asked, node, &worst, error).1);
+        if value.error < f64::INFINITY {
+            if beyond_worst < f64::INFINITY {
+                most = most.min(self.corner(asked, node, &worst, value.error + beyond_worst * OUTWARD).1);
             }
-            if best != *spans {
-                least = least.max(self.corner(asked, node, &best, error).0);
+            if beyond_best < f64::INFINITY {
+                least = least.max(self.corner(asked, node, &best, value.error + beyond_best * OUTWARD).0);
             }
-        } else if best != *spans {
+        }
+        if least == own.0 && best.0[self.axes.designs..] != spans.0[self.axes.designs..] {
             // A single scenario bounds what the worst is at least, derivatives or not.
             let mut only = *spans;
             only.0[self.axes.designs..].copy_from_slice(&best.0[self.axes.designs..]);
             let range = self.range(asked, &only);
             least = least.max(asked.badness(range).0);
         }
-        Bounds { most, least, finite: whole.value.is_finite(), spread, monotone, better_at_last, strict }
+        Bounds { most, least, finite: value.is_finite(), spread, monotone, better_at_last, strict }
     }
 
     /// Badness over a part of the box, for designs of the whole box that are no better or worse but for rounding.
@@ -286,6 +299,11 @@ impl<'t> Bounder<'t> {
         let it = self.values.slots[node as usize];
         asked.badness(shown(asked.source, (it.low - error).next_down(), (it.high + error).next_up()))
     }
+}
+
+/// What is not a number may be anything.
+fn or_infinite(value: f64) -> f64 {
+    if value.is_nan() { f64::INFINITY } else { value.max(0.0) }
 }
 
 /// Ends in the unit that the number is shown in: the conversion never swaps the order of two numbers, and what f64 computes is converted

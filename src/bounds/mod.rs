@@ -14,6 +14,7 @@ mod pairs;
 mod requirement;
 mod search;
 mod sorted;
+mod staircase;
 mod tape;
 #[cfg(test)]
 mod tests;
@@ -25,17 +26,17 @@ use crate::models::{Formula, Visitor, visit};
 use crate::plan::Plan;
 use crate::reduce::{KeyRule, Reducers, Reduction};
 use crate::screen::{CpuEngine, Tables};
-use crate::study::{Axis, Goal, Objective, TopSpec};
+use crate::study::{Axis, Constraint, Goal, Objective, Quantity, TopSpec};
 use axes::{Axes, Spans};
 use bounder::{Asked, Bounder};
 use open::{Bounded, all_open};
 use pairs::{Best, Pairing, Pairs};
 use requirement::{Source, Test, requirements};
-use search::{Search, Target};
+use search::{Limit, Product, Search, Target};
 use serde_json::{Value, json};
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
-use tape::Tape;
+use tape::{Merit, Tape};
 
 /// Why bounds cannot serve a study: something that asks about every design; `None` if they can.
 pub fn refusal(plan: &Plan) -> Option<String> {
@@ -150,8 +151,18 @@ impl Layout {
             progress(range.end - range.start);
             return Some(searched);
         }
-        let scenarios = plan.scenarios();
-        let search = Search { axes: &self.axes, requirements: &self.requirements, reduction, scenarios, stop, progress, sought, targets };
+        let search = Search {
+            axes: &self.axes,
+            requirements: &self.requirements,
+            reduction,
+            stop,
+            progress,
+            sought,
+            targets,
+            product: (sought == Sought::Front).then(|| self.product(plan)).flatten(),
+            effort: plan.effort(),
+            row: plan.fast.count(),
+        };
         search.run(&roots, workers, found)
     }
 
@@ -159,7 +170,8 @@ impl Layout {
         let target = |objective: &Objective, at_the_bad_end: bool| {
             let source = Source::of(objective.quantity, plan, &self.tape);
             let asked = Asked::new(&self.tape, source, objective.goal == Goal::Min);
-            Target { asked, rule: KeyRule::from(objective), at_the_bad_end }
+            let limits = self.limits(plan, objective.quantity, asked.higher_is_worse == at_the_bad_end);
+            Target { asked, rule: KeyRule::from(objective), at_the_bad_end, limits }
         };
         match sought {
             Sought::Front => plan.study.objectives.iter().map(|objective| target(objective, false)).collect(),
@@ -172,6 +184,48 @@ impl Layout {
                 vec![target(objective, (objective.goal == Goal::Min) == largest)]
             }
         }
+    }
+
+    /// A product or quotient of two outputs, if factors cancel and scenarios do not matter; with what takes it to their units.
+    fn merit(&self, plan: &Plan, merit: Merit) -> Option<(Asked, f64)> {
+        let &(_, node) = self.tape.merits.iter().find(|(it, _)| *it == merit)?;
+        let outputs = [merit.first, merit.second];
+        let all = outputs.iter().filter_map(|(output, _)| self.tape.outputs[*output]).chain([node]);
+        let depends = all.fold(0, |set, node| set | self.tape.axes[node as usize]);
+        if (self.axes.designs..self.axes.all.len()).any(|axis| depends >> axis & 1 == 1 && self.axes.all[axis].count() > 1) {
+            return None;
+        }
+        let unit = outputs.iter().fold(1.0, |unit, &(output, is_above)| {
+            let own = plan.study.model.outputs[output].unit.from_si(1.0);
+            if is_above { unit * own } else { unit / own }
+        });
+        Some((Asked::new(&self.tape, Source::Node(node, None), true), unit))
+    }
+
+    /// The product of two objectives that are compared as they are.
+    fn product(&self, plan: &Plan) -> Option<Product> {
+        let [a, b] = &plan.study.objectives[..] else { return None };
+        let (Quantity::Output(first), Quantity::Output(second)) = (a.quantity, b.quantity) else { return None };
+        if a.resolution.is_some() || b.resolution.is_some() {
+            return None;
+        }
+        let largest = [a.goal == Goal::Max, b.goal == Goal::Max];
+        let (asked, unit) = self.merit(plan, Merit { first: (first, largest[0]), second: (second, largest[1]) })?;
+        Some(Product { asked, unit, largest })
+    }
+
+    /// What limits a quantity of which large (or small) values are sought.
+    fn limits(&self, plan: &Plan, quantity: Quantity, is_large_sought: bool) -> Vec<Limit> {
+        let Quantity::Output(first) = quantity else { return Vec::new() };
+        let limit = |constraint: &Constraint| {
+            let Quantity::Output(second) = constraint.quantity else { return None };
+            let (bound, _) = if is_large_sought { constraint.high } else { constraint.low }?;
+            let (quotient, unit) = self.merit(plan, Merit { first: (first, is_large_sought), second: (second, !is_large_sought) })?;
+            let limited = Asked::new(&self.tape, Source::of(constraint.quantity, plan, &self.tape), false);
+            // A quotient of the better over the worse: for small values it stands in the denominator.
+            Some(Limit { quotient, limited, bound: if is_large_sought { bound * unit } else { bound / unit } })
+        };
+        plan.study.constraints.iter().filter_map(limit).collect()
     }
 
     /// The extreme of a number that a requirement cuts off at that very end: almost every box on the cut might hold it, so bounds alone
@@ -212,7 +266,7 @@ impl Layout {
             let sources: Vec<Source> = open.iter().map(|it| self.requirements[it.requirement].requirement.source).collect();
             let sources: Vec<Source> = sources.into_iter().chain([target.asked.source]).collect();
             let pairing = Pairing::find(&self.tape, &self.axes, spans, &sources)?;
-            if !pairing.is_through_both(open.len()) || pairing.cost > 0.05 * self.axes.count(spans) as f64 || pairing.cost > PAIRED_EXTREME {
+            if !pairing.is_through_both(open.len()) || pairing.cost > self.axes.count(spans) as f64 || pairing.cost > PAIRED_EXTREME {
                 return None;
             }
             planned.push((*spans, open, pairing));

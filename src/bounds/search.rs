@@ -7,18 +7,24 @@
 use super::axes::{AXES, Axes, Span, Spans};
 use super::bounder::{Asked, Bounder, Bounds};
 use super::open::{Bounded, Ends, Open, Outcome, add_pull, all_open, decide, over, scenario_to_split};
+use super::staircase::{Fit, Staircase};
+use crate::models::Effort;
 use crate::reduce::{Extreme, Front, KeyRule, MOST_OBJECTIVES, Reducers, Reduction};
 use crate::screen::CpuEngine;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Most boxes that are looked at before their designs are judged.
 const BATCH: usize = 1 << 14;
-/// A box is judged by the engine where that takes about as long as a few more bounds: evaluations of a design in a scenario.
-const LEAF: u64 = 2048;
-/// Most designs of such a box.
-const LEAF_DESIGNS: u64 = 512;
+/// A box is judged by the engine where that takes about as long as a few more bounds: seconds, by what the model says.
+const LEAF: f64 = 2e-5;
+/// Seconds that a design takes besides where it is judged alone, not with all of its row.
+const SINGLE: f64 = 1e-7;
+/// A batch this small is one of the first: of what is tried there, the whole row is.
+const FIRST_BATCHES: usize = 64;
 /// Most boxes of scenarios that a number is followed over.
 const COVER: usize = 32;
+/// More than rounding can make of a product of a few numbers.
+const OUTWARD: f64 = 1.0 + 256.0 * f64::EPSILON;
 
 /// What is searched for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,6 +51,30 @@ pub struct Target {
     pub rule: KeyRule,
     /// Is it an extreme that is sought at its bad end?
     pub at_the_bad_end: bool,
+    /// What limits it through a number that it shares factors with.
+    pub limits: Vec<Limit>,
+}
+
+/// A requirement that limits a number through their quotient, without the factors that cancel.
+#[derive(Debug)]
+pub struct Limit {
+    /// The quotient, of the better over the worse.
+    pub quotient: Asked,
+    /// What the requirement is about.
+    pub limited: Asked,
+    /// Its bound, times what takes the quotient from SI to the units of both.
+    pub bound: f64,
+}
+
+/// The product of both objectives, without the factors that cancel: larger where better.
+#[derive(Debug)]
+pub struct Product {
+    /// In SI.
+    pub asked: Asked,
+    /// What takes it to the units of both.
+    pub unit: f64,
+    /// Which objectives are to be large.
+    pub largest: [bool; 2],
 }
 
 /// How the designs of a search were settled.
@@ -107,8 +137,6 @@ pub struct Search<'a> {
     pub requirements: &'a [Bounded],
     /// How designs are reduced.
     pub reduction: &'a Reduction,
-    /// Scenarios of every design.
-    pub scenarios: u64,
     /// Set to end the search.
     pub stop: &'a AtomicBool,
     /// Told how many designs were settled.
@@ -117,6 +145,12 @@ pub struct Search<'a> {
     pub sought: Sought,
     /// One for an extreme or the best, one per objective for the front.
     pub targets: Vec<Target>,
+    /// For a front of two objectives.
+    pub product: Option<Product>,
+    /// How long a design takes: the first stage of a row, the second of a design, over all scenarios.
+    pub effort: Effort,
+    /// Designs of a row.
+    pub row: u64,
 }
 
 /// What a thread works with.
@@ -129,7 +163,7 @@ pub struct Worker<'t> {
 
 /// The best so far, while a batch is looked at.
 enum Rival<'a> {
-    Front(&'a Front),
+    Front(&'a Front, Option<Staircase>),
     /// Key and index of the last of the best K, once there are K.
     Top(Option<(f64, u64)>),
     Extreme(Option<Extreme>),
@@ -193,10 +227,12 @@ impl Search<'_> {
 
     /// Looks at a batch of boxes on all threads; returns their parts.
     fn look_at(&self, batch: &[Waiting], workers: &mut [Worker<'_>], found: &mut Reducers) -> (Vec<Waiting>, Searched) {
-        // Whatever waits to be compared is compared now.
-        found.front.points();
         let rival = match self.sought {
-            Sought::Front => Rival::Front(&found.front),
+            Sought::Front => {
+                let points = found.front.points();
+                let staircase = self.product.as_ref().map(|product| Staircase::new(points, product.largest));
+                Rival::Front(&found.front, staircase)
+            }
             Sought::Top => Rival::Top(found.top.as_mut().and_then(crate::reduce::Top::worst)),
             Sought::Extreme { objective, largest } => {
                 Rival::Extreme(if largest { found.extremes.largest[objective] } else { found.extremes.least[objective] })
@@ -207,7 +243,7 @@ impl Search<'_> {
             let rival = &rival;
             let mut started = Vec::new();
             for (part, worker) in batch.chunks(share).zip(workers) {
-                started.push(scope.spawn(move || self.look_at_part(part, worker, rival)));
+                started.push(scope.spawn(move || self.look_at_part(part, worker, rival, batch.len() <= FIRST_BATCHES)));
             }
             started.into_iter().map(|it| it.join().expect("a search does not panic")).collect()
         });
@@ -220,10 +256,10 @@ impl Search<'_> {
         (next, settled)
     }
 
-    fn look_at_part(&self, part: &[Waiting], worker: &mut Worker<'_>, rival: &Rival<'_>) -> (Vec<Waiting>, Searched, Reducers) {
+    fn look_at_part(&self, part: &[Waiting], worker: &mut Worker<'_>, rival: &Rival<'_>, is_first: bool) -> (Vec<Waiting>, Searched, Reducers) {
         let mut settled = Searched::default();
         let mut next = Vec::new();
-        let mut positions = Vec::new();
+        let (mut positions, mut rows) = (Vec::new(), Vec::new());
         for waiting in part {
             if self.stop.load(Ordering::Relaxed) {
                 break;
@@ -240,7 +276,11 @@ impl Search<'_> {
                 }
                 Fate::Cut(parts, tries) => {
                     settled.beaten += size - parts.iter().map(|part| self.axes.count(&part.spans)).sum::<u64>();
-                    positions.extend(tries);
+                    if is_first {
+                        rows.extend(tries.map(|position| position / self.row));
+                    } else {
+                        positions.extend(tries);
+                    }
                     next.extend(*parts);
                 }
             }
@@ -250,6 +290,12 @@ impl Search<'_> {
         settled.evaluations += positions.len() as u64;
         let mut reducers = self.reduction.start();
         worker.engine.screen_some(&positions, |block| self.reduction.absorb_counted(&mut reducers, block));
+        rows.sort_unstable();
+        rows.dedup();
+        for row in rows {
+            settled.evaluations += self.row;
+            worker.engine.screen(row * self.row..(row + 1) * self.row, |block| self.reduction.absorb_counted(&mut reducers, block));
+        }
         (next, settled, reducers)
     }
 
@@ -269,9 +315,30 @@ impl Search<'_> {
                 let (least, most) = self.worst(target, bounder, &now.spans, cover, &mut view);
                 let badness = if target.at_the_bad_end { most } else { least };
                 *hope = if target.asked.higher_is_worse { badness } else { -badness };
+                for limit in &target.limits {
+                    *hope = self.limited(target, limit, *hope, bounder, &now.spans);
+                }
             }
             if self.is_beaten(&hopes[..self.targets.len()], self.axes.least_index(&now.spans), rival) {
                 return Fate::Beaten;
+            }
+            if let (Rival::Front(_, Some(staircase)), Some(product)) = (rival, &self.product) {
+                let bounds = bounder.bounds(&product.asked, &now.spans);
+                // What is to be small must not be negative: then its inverse would be no measure of it.
+                let is_measure = (0..2).all(|at| product.largest[at] || hopes[at] >= 0.0);
+                let lower = [0, 1].map(|at| self.targets[at].rule.key(hopes[at]));
+                match if is_measure { staircase.fit(lower, bounds.most * product.unit) } else { Fit::Few } {
+                    Fit::None => return Fate::Beaten,
+                    Fit::Few => {}
+                    // It is the product that must come down, wherever on the stairs the designs are.
+                    Fit::Many => {
+                        let mut pull = [0.0; AXES];
+                        add_pull(&mut pull, &bounds, &now.spans, self.axes);
+                        if pull.iter().any(|&it| it > 0.0) {
+                            view.pull = pull;
+                        }
+                    }
+                }
             }
             // What another design of the box makes superfluous need not be looked at.
             let left = if self.sought == Sought::Top { now.spans } else { view.ends.collapse(&now.spans, self.axes) };
@@ -282,9 +349,22 @@ impl Search<'_> {
         }
     }
 
+    /// The best that a number may be, given what limits it.
+    fn limited(&self, target: &Target, limit: &Limit, hope: f64, bounder: &mut Bounder<'_>, spans: &Spans) -> f64 {
+        let is_large_sought = target.asked.higher_is_worse == target.at_the_bad_end;
+        // Both numbers must be of one sign, or their quotient limits nothing.
+        let least = if is_large_sought { bounder.range(&limit.limited, spans).0 } else { hope };
+        let most = bounder.bounds(&limit.quotient, spans).most;
+        if !(least >= 0.0 && most > 1e-100 && most < 1e100) {
+            return hope;
+        }
+        if is_large_sought { hope.min(most * limit.bound * OUTWARD) } else { hope.max(limit.bound / most / OUTWARD) }
+    }
+
     fn leaf_or_cut(&self, now: Waiting, view: &View) -> Fate {
         let size = self.axes.count(&now.spans);
-        if size <= LEAF_DESIGNS && size.saturating_mul(self.scenarios) <= LEAF || size == 1 {
+        let rows = size.div_ceil(self.row.min(size)) as f64;
+        if size == 1 || rows * self.effort.prepare + size as f64 * (self.effort.finish + SINGLE) <= LEAF {
             return Fate::Leaf(now.spans);
         }
         let axis = self.axis_to_cut(&now.spans, &view.pull);
@@ -325,7 +405,7 @@ impl Search<'_> {
     /// Can no design of a box be what is sought, given the best that it may have?
     fn is_beaten(&self, hopes: &[f64], least_index: u64, rival: &Rival<'_>) -> bool {
         match rival {
-            Rival::Front(front) => {
+            Rival::Front(front, _) => {
                 let mut keys = [0.0; MOST_OBJECTIVES];
                 for ((key, hope), target) in keys.iter_mut().zip(hopes).zip(&self.targets) {
                     *key = target.rule.key(*hope);

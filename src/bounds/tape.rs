@@ -4,7 +4,8 @@ use super::axes::Axes;
 use crate::models::{CONDITIONS, Formula, INPUTS, OUTPUTS, Visitor, input_to_si, visit};
 use crate::plan::Plan;
 use crate::real::Real;
-use crate::real::trace::{Known, Node, Operation, Recording, Root, Trace};
+use crate::real::trace::{Binary, Known, Node, Operation, Recording, Root, Trace};
+use crate::study::{Goal, Quantity};
 use std::cell::RefCell;
 
 /// The recorded formula of a study.
@@ -24,6 +25,17 @@ pub struct Tape {
     pub outputs: [Option<Node>; OUTPUTS],
     /// Node of every condition's margin that matters.
     pub conditions: [Option<Node>; CONDITIONS],
+    /// Products and quotients of two outputs, without the factors that cancel.
+    pub merits: Vec<(Merit, Node)>,
+}
+
+/// A product of two outputs or their inverses, in SI.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Merit {
+    /// Number of an output; is it above the line?
+    pub first: (usize, bool),
+    /// Of the other.
+    pub second: (usize, bool),
 }
 
 /// A root with the operations of its function.
@@ -78,16 +90,19 @@ impl Tape {
         let wanted = plan.used_outputs();
         let mattering = plan.row_conditions.iter().chain(&plan.lane_conditions).fold(0u64, |set, &number| set | 1 << number);
         let (recording, results) = visit(model.name, Record { known: &known, outputs: wanted, conditions: mattering })?;
+        let mut recording = recording;
+        let merits: Vec<(Merit, Node)> =
+            merits_of(plan).into_iter().filter_map(|merit| Some((merit, cancelled(&mut recording, merit, &results)?))).collect();
         let is_wanted = |at: usize| if at < OUTPUTS { wanted >> at & 1 == 1 } else { mattering >> (at - OUTPUTS) & 1 == 1 };
         let asked: Vec<Option<Node>> = results.into_iter().enumerate().map(|(at, node)| is_wanted(at).then_some(node)).collect();
-        Some(Self::cut(recording, &asked, input_axes))
+        Some(Self::cut(recording, &asked, merits, input_axes))
     }
 
     /// Keeps what is asked for and follows who depends on what.
-    fn cut(recording: Recording, asked: &[Option<Node>], input_axes: [Option<(u8, u8)>; INPUTS]) -> Self {
+    fn cut(recording: Recording, asked: &[Option<Node>], merits: Vec<(Merit, Node)>, input_axes: [Option<(u8, u8)>; INPUTS]) -> Self {
         let Recording { operations, roots, .. } = recording;
         let mut needed = vec![false; operations.len()];
-        asked.iter().flatten().for_each(|&node| needed[node as usize] = true);
+        asked.iter().flatten().chain(merits.iter().map(|(_, node)| node)).for_each(|&node| needed[node as usize] = true);
         for node in (0..operations.len()).rev() {
             if needed[node] {
                 if let Operation::Root(number) = operations[node] {
@@ -108,6 +123,7 @@ impl Tape {
             input_axes,
             outputs: [None; OUTPUTS],
             conditions: [None; CONDITIONS],
+            merits: Vec::new(),
         };
         // Of every operation: the roots whose argument it depends on.
         let mut arguments: Vec<u64> = Vec::new();
@@ -146,6 +162,7 @@ impl Tape {
             tape.axes.push(depends);
             arguments.push(within);
         }
+        tape.merits = merits.into_iter().map(|(merit, node)| (merit, place[node as usize])).collect();
         tape.inner = arguments.iter().map(|&within| within != 0).collect();
         for (number, node) in asked.iter().enumerate() {
             let node = node.map(|node| place[node as usize]);
@@ -196,7 +213,7 @@ impl Tape {
             Operation::Constant(bits) => R::constant(f64::from_bits(bits)),
             Operation::Root(number) => self.root(number, slots),
             Operation::Unary(operation, a) => operation.of(slots[a as usize]),
-            Operation::Binary(crate::real::trace::Binary::Mul, a, b) if a == b => slots[a as usize].squared(),
+            Operation::Binary(Binary::Mul, a, b) if a == b => slots[a as usize].squared(),
             Operation::Binary(operation, a, b) => operation.of(slots[a as usize], slots[b as usize]),
             Operation::Select(margin, a, b) => R::select(slots[margin as usize], slots[a as usize], slots[b as usize]),
         };
@@ -216,5 +233,77 @@ impl Tape {
             }
             (slots[root.value as usize], slots[root.slope as usize])
         })
+    }
+}
+
+/// The products and quotients that tell more than either output: of two objectives, larger where both are better; of an objective
+/// and what a requirement limits, so that the limit of the one limits the other.
+fn merits_of(plan: &Plan) -> Vec<Merit> {
+    let study = &plan.study;
+    let output = |quantity| if let Quantity::Output(output) = quantity { Some(output) } else { None };
+    let mut merits = Vec::new();
+    if let [a, b] = &study.objectives[..]
+        && let (Some(first), Some(second)) = (output(a.quantity), output(b.quantity))
+    {
+        merits.push(Merit { first: (first, a.goal == Goal::Max), second: (second, b.goal == Goal::Max) });
+    }
+    for objective in &study.objectives {
+        for constraint in &study.constraints {
+            if let (Some(first), Some(second)) = (output(objective.quantity), output(constraint.quantity))
+                && first != second
+            {
+                for is_above in [false, true] {
+                    let limited = if is_above { constraint.high } else { constraint.low };
+                    if limited.is_some_and(|(bound, _)| bound > 0.0) {
+                        merits.push(Merit { first: (first, is_above), second: (second, !is_above) });
+                    }
+                }
+            }
+        }
+    }
+    merits
+}
+
+/// Writes a merit down without the factors that cancel; `None` if none does that varies.
+fn cancelled(recording: &mut Recording, merit: Merit, results: &[Node]) -> Option<Node> {
+    let (mut above, mut below) = (Vec::new(), Vec::new());
+    for (output, is_above) in [merit.first, merit.second] {
+        let sides = if is_above { (&mut above, &mut below) } else { (&mut below, &mut above) };
+        factors(recording, results[output], sides.0, sides.1);
+    }
+    let mut any = false;
+    above.retain(|factor| {
+        let same = below.iter().position(|it| it == factor);
+        if let Some(same) = same {
+            below.remove(same);
+            any |= !matches!(recording.operations[*factor as usize], Operation::Constant(_));
+        }
+        same.is_none()
+    });
+    if !any {
+        return None;
+    }
+    let mut merit = recording.push(Operation::Constant(1f64.to_bits()));
+    for factor in above {
+        merit = recording.push(Operation::Binary(Binary::Mul, merit, factor));
+    }
+    for factor in below {
+        merit = recording.push(Operation::Binary(Binary::Div, merit, factor));
+    }
+    Some(merit)
+}
+
+/// The factors of a number, above and below the line.
+fn factors(recording: &Recording, node: Node, above: &mut Vec<Node>, below: &mut Vec<Node>) {
+    match recording.operations[node as usize] {
+        Operation::Binary(Binary::Mul, a, b) => {
+            factors(recording, a, above, below);
+            factors(recording, b, above, below);
+        }
+        Operation::Binary(Binary::Div, a, b) => {
+            factors(recording, a, above, below);
+            factors(recording, b, below, above);
+        }
+        _ => above.push(node),
     }
 }

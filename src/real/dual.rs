@@ -219,8 +219,7 @@ impl<T: Real<Shared = T>, const N: usize> Real for Dual<T, N> {
         }
         selected
     }
-    /// The slopes are those of the root, by the rule for implicit functions; they mean something only where there is a root, which the
-    /// formula states as a condition.
+    /// Where it is not sure that every design of a box has a root in its bracket, nothing is known of the slopes.
     #[inline]
     fn monotone_root<const P: usize>(
         bracket: (Self, Self),

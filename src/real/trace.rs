@@ -178,7 +178,8 @@ impl Recording {
         (with(std::mem::take), results)
     }
 
-    fn push(&mut self, operation: Operation) -> Node {
+    /// Writes an operation down, unless it stands there already.
+    pub fn push(&mut self, operation: Operation) -> Node {
         let next = Node::try_from(self.operations.len()).expect("a formula has fewer than 2^32 operations");
         *self.known.entry(operation).or_insert_with(|| {
             self.operations.push(operation);
