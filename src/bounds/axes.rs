@@ -192,30 +192,22 @@ impl Axes {
         }
     }
 
-    /// Calls `each` with the position of every design of a box, ascending.
-    pub fn positions(&self, spans: &Spans, mut each: impl FnMut(u64)) {
-        let mut levels = [0u32; AXES];
-        let designs = self.designs;
-        levels[..designs].iter_mut().zip(&spans.0).for_each(|(level, span)| *level = span.low);
-        let mut position = self.first_position(spans);
-        loop {
-            each(position);
-            // Like a mileage counter: the last axis first.
-            let mut axis = designs;
-            loop {
-                if axis == 0 {
-                    return;
-                }
-                axis -= 1;
-                if levels[axis] < spans[axis].high {
-                    levels[axis] += 1;
-                    position += self.steps[axis];
-                    break;
-                }
-                position -= u64::from(levels[axis] - spans[axis].low) * self.steps[axis];
-                levels[axis] = spans[axis].low;
-            }
+    /// The rows that a box touches and the places that it has in each, ascending; a row has so many designs.
+    pub fn rows(&self, spans: &Spans, row: u64) -> (Vec<u64>, Vec<u64>) {
+        let slow = self.steps.iter().take_while(|&&step| step >= row).count();
+        let mut rows = self.sums(spans, 0..slow);
+        rows.iter_mut().for_each(|position| *position /= row);
+        (rows, self.sums(spans, slow..self.designs))
+    }
+
+    /// All positions that some axes of a box reach, ascending.
+    fn sums(&self, spans: &Spans, axes: Range<usize>) -> Vec<u64> {
+        let mut sums = vec![0];
+        for axis in axes {
+            let (span, step) = (spans[axis], self.steps[axis]);
+            sums = sums.into_iter().flat_map(|sum| (span.low..=span.high).map(move |level| sum + u64::from(level) * step)).collect();
         }
+        sums
     }
 }
 
@@ -246,7 +238,9 @@ mod tests {
                 let boxes = axes.boxes(&(first..end));
                 for spans in &boxes {
                     let before = positions.len() as u64;
-                    axes.positions(spans, |position| positions.push(position));
+                    let row = plan.fast.count();
+                    let (rows, places) = axes.rows(spans, row);
+                    positions.extend(rows.iter().flat_map(|it| places.iter().map(move |place| it * row + place)));
                     assert_eq!(positions.len() as u64 - before, axes.count(spans));
                 }
                 assert_eq!(positions, (first..end).collect::<Vec<_>>());

@@ -13,7 +13,6 @@ use std::collections::HashMap;
 
 /// Most directions that derivatives are followed in: the first axes of a study.
 pub const DIRECTIONS: usize = 8;
-type Slopes = Dual<Interval, DIRECTIONS>;
 
 /// More than rounding can make of a sum of a few products.
 const OUTWARD: f64 = 1.0 + 64.0 * f64::EPSILON;
@@ -33,12 +32,28 @@ impl Boxed for Interval {
     }
 }
 
-impl Boxed for Slopes {
+impl<const N: usize> Boxed for Dual<Interval, N> {
     fn input(values: Interval, direction: Option<usize>) -> Self {
         match direction {
-            Some(direction) if direction < DIRECTIONS => Self::variable(values, direction),
+            Some(direction) if direction < N => Self::variable(values, direction),
             _ => Self::fixed(values),
         }
+    }
+}
+
+/// Runs the tape with derivatives, in as many directions as it takes: each costs time, whether it is needed or not.
+trait Sloped: std::fmt::Debug + Send {
+    /// A number over a box, and its derivatives along the first axes.
+    fn slopes(&mut self, asked: &Asked, node: Node, spans: &Spans) -> (Interval, [Interval; DIRECTIONS]);
+}
+
+impl<const N: usize> Sloped for Runner<'_, Dual<Interval, N>> {
+    fn slopes(&mut self, asked: &Asked, node: Node, spans: &Spans) -> (Interval, [Interval; DIRECTIONS]) {
+        self.run(asked, spans);
+        let it = &self.slots[node as usize];
+        let mut slopes = [Interval::point(0.0); DIRECTIONS];
+        slopes[..N].copy_from_slice(&it.slopes);
+        (it.value, slopes)
     }
 }
 
@@ -51,6 +66,10 @@ struct Runner<'t, R> {
     kept: Vec<HashMap<Span, Box<[R]>>>,
     now: [Option<Span>; AXES],
     slots: Vec<R>,
+    /// When every axis turned to its span, and when every operation was computed, in turns and runs.
+    clock: u64,
+    turned: [u64; AXES],
+    computed: Vec<u64>,
 }
 
 impl<'t, R: Boxed> Runner<'t, R> {
@@ -64,16 +83,23 @@ impl<'t, R: Boxed> Runner<'t, R> {
                 _ => {}
             }
         }
-        Self { tape, axes, alone, kept: (0..axes.all.len()).map(|_| HashMap::new()).collect(), now: [None; AXES], slots }
+        Self { tape, axes, alone, kept: (0..axes.all.len()).map(|_| HashMap::new()).collect(), now: [None; AXES], clock: 1, turned: [0; AXES], computed: vec![0; slots.len()], slots }
     }
 
     /// Computes what `asked` needs over a box.
     fn run(&mut self, asked: &Asked, spans: &Spans) {
+        self.clock += 1;
+        let mut last = 0;
         for &axis in &asked.axes {
             self.turn(axis, spans[axis]);
+            last = last.max(self.turned[axis]);
         }
+        // What another number of the same box needed too is there already.
         for &node in &asked.several {
-            self.tape.compute(node, &mut self.slots);
+            if self.computed[node as usize] < last {
+                self.tape.compute(node, &mut self.slots);
+                self.computed[node as usize] = self.clock;
+            }
         }
     }
 
@@ -82,6 +108,7 @@ impl<'t, R: Boxed> Runner<'t, R> {
             return;
         }
         self.now[axis] = Some(span);
+        self.turned[axis] = self.clock;
         if let Some(values) = self.kept[axis].get(&span) {
             for (&node, &value) in self.alone[axis].iter().zip(values) {
                 self.slots[node as usize] = value;
@@ -179,13 +206,23 @@ impl Bounds {
 pub struct Bounder<'t> {
     axes: &'t Axes,
     values: Runner<'t, Interval>,
-    slopes: Runner<'t, Slopes>,
+    slopes: Box<dyn Sloped + 't>,
+    /// Bounds that were found last: requirements and objectives are often about the same number.
+    recent: Vec<(Node, bool, Spans, Bounds)>,
 }
+
+/// How many bounds are remembered.
+const RECENT: usize = 8;
 
 impl<'t> Bounder<'t> {
     /// A bounder for a tape.
     pub fn new(tape: &'t Tape, axes: &'t Axes) -> Self {
-        Self { axes, values: Runner::new(tape, axes), slopes: Runner::new(tape, axes) }
+        let slopes: Box<dyn Sloped + 't> = match axes.all.len() {
+            0..=3 => Box::new(Runner::<Dual<Interval, 3>>::new(tape, axes)),
+            4 | 5 => Box::new(Runner::<Dual<Interval, 5>>::new(tape, axes)),
+            _ => Box::new(Runner::<Dual<Interval, DIRECTIONS>>::new(tape, axes)),
+        };
+        Self { axes, values: Runner::new(tape, axes), slopes, recent: Vec::new() }
     }
 
     /// The number without derivatives: least and largest value in its unit, and whether all are finite.
@@ -206,6 +243,25 @@ impl<'t> Bounder<'t> {
 
     /// Bounds of the worst over the scenarios that the box spans.
     pub fn bounds(&mut self, asked: &Asked, spans: &Spans) -> Bounds {
+        let Source::Node(node, _) = asked.source else { return self.new_bounds(asked, spans) };
+        let same = |it: &&(Node, bool, Spans, Bounds)| it.0 == node && it.1 == asked.higher_is_worse && it.2 == *spans;
+        if let Some(held) = self.recent.iter().rev().find(same) {
+            return held.3;
+        }
+        let bounds = self.new_bounds(asked, spans);
+        if self.recent.len() == RECENT {
+            self.recent.remove(0);
+        }
+        self.recent.push((node, asked.higher_is_worse, *spans, bounds));
+        bounds
+    }
+
+    /// Are the bounds of a number at hand?
+    pub fn has(&self, asked: &Asked, spans: &Spans) -> bool {
+        matches!(asked.source, Source::Node(node, _) if self.recent.iter().any(|it| it.0 == node && it.1 == asked.higher_is_worse && it.2 == *spans))
+    }
+
+    fn new_bounds(&mut self, asked: &Asked, spans: &Spans) -> Bounds {
         let Source::Node(node, _) = asked.source else {
             let whole = self.range(asked, spans);
             let (mut least, most) = asked.badness(whole);
@@ -228,11 +284,9 @@ impl<'t> Bounder<'t> {
             }
             return bounds;
         };
-        self.slopes.run(asked, spans);
-        let whole = self.slopes.slots[node as usize];
+        let (value, slopes) = self.slopes.slopes(asked, node, spans);
         let mut spread = [0.0; AXES];
         let (mut monotone, mut better_at_last, mut strict) = (0u64, 0u64, 0u64);
-        let value = whole.value;
         // What rounding and the conversion to a unit may hide.
         let hidden = 4.0 * value.error + 8.0 * f64::EPSILON * value.low.abs().max(value.high.abs());
         // The corners where the number is worst, and where it is best in the scenario that is worst there. Along axes whose direction is
@@ -246,7 +300,7 @@ impl<'t> Bounder<'t> {
             let is_scenario = axis >= self.axes.designs;
             let table = &self.axes.all[axis];
             let known = axis < DIRECTIONS && !table.is_joint();
-            let slope = if known { whole.slopes[axis] } else { EVERYTHING };
+            let slope = if known { slopes[axis] } else { EVERYTHING };
             let (low, high) = Axis::ends(&table.si[0], table.ordered, spans[axis]);
             let middle = spans[axis].low + (spans[axis].high - spans[axis].low) / 2;
             spread[axis] = slope.low.abs().max(slope.high.abs()) * (high - low);

@@ -243,7 +243,9 @@ impl Layout {
     ) -> Option<Searched> {
         let Source::Node(node, _) = target.asked.source else { return None };
         let cuts = |it: &&Bounded| it.requirement.source == target.asked.source && matches!(it.requirement.test, Test::High(..)) == largest;
-        self.requirements.iter().filter(|it| it.requirement.test != Test::Finite).find(cuts)?;
+        // What comes near a bound of 0 has a small factor, and boxes do tell where that is.
+        let is_far = |it: &&Bounded| matches!(it.requirement.test, Test::High(bound, _) | Test::Low(bound, _) if bound != 0.0);
+        self.requirements.iter().filter(is_far).find(cuts)?;
         let scenario_axes = (self.axes.designs..self.axes.all.len()).filter(|&axis| self.axes.all[axis].count() > 1);
         if scenario_axes.clone().any(|axis| self.tape.axes[node as usize] >> axis & 1 == 1) {
             return None;

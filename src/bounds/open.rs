@@ -97,13 +97,15 @@ pub fn decide(requirements: &[Bounded], bounder: &mut Bounder<'_>, axes: &Axes, 
         for part in &item.cover {
             let spans = over(designs, part, axes);
             // Without derivatives it is cheaper, and often enough.
-            let (low, high) = bounder.range(&it.asked, &spans);
-            let finite = !it.requirement.finite || low > f64::NEG_INFINITY && high < f64::INFINITY;
-            if finite && it.requirement.test.holds(low) && it.requirement.test.holds(high) {
-                continue;
-            }
-            if !matches!(it.requirement.test, Test::Finite) && violated(it.requirement.test, low, high) {
-                return Outcome::Infeasible;
+            if !bounder.has(&it.asked, &spans) {
+                let (low, high) = bounder.range(&it.asked, &spans);
+                let finite = !it.requirement.finite || low > f64::NEG_INFINITY && high < f64::INFINITY;
+                if finite && it.requirement.test.holds(low) && it.requirement.test.holds(high) {
+                    continue;
+                }
+                if violated(it.requirement.test, low, high) {
+                    return Outcome::Infeasible;
+                }
             }
             let bounds = bounder.bounds(&it.asked, &spans);
             let (worst, best) = if it.asked.higher_is_worse { (bounds.most, bounds.least) } else { (-bounds.most, -bounds.least) };
@@ -145,6 +147,17 @@ fn violated(test: Test, low: f64, high: f64) -> bool {
         Test::High(..) => !test.holds(low),
         Test::Finite => false,
     }
+}
+
+/// Does every design of a box violate one of the requirements, as far as bounds without derivatives tell?
+pub fn is_infeasible(requirements: &[Bounded], bounder: &mut Bounder<'_>, axes: &Axes, designs: &Spans, open: &[Open]) -> bool {
+    open.iter().any(|item| {
+        let it = &requirements[item.requirement];
+        item.cover.iter().any(|part| {
+            let (low, high) = bounder.range(&it.asked, &over(designs, part, axes));
+            violated(it.requirement.test, low, high)
+        })
+    })
 }
 
 /// Adds how much each axis of designs moves a number, relative to the sum over all axes.

@@ -6,7 +6,7 @@
 
 use super::axes::{AXES, Axes, Span, Spans};
 use super::bounder::{Asked, Bounder, Bounds};
-use super::open::{Bounded, Ends, Open, Outcome, add_pull, all_open, decide, over, scenario_to_split};
+use super::open::{Bounded, Ends, Open, Outcome, add_pull, all_open, decide, is_infeasible, over, scenario_to_split};
 use super::staircase::{Fit, Staircase};
 use crate::models::Effort;
 use crate::reduce::{Extreme, Front, KeyRule, MOST_OBJECTIVES, Reducers, Reduction};
@@ -16,9 +16,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Most boxes that are looked at before their designs are judged.
 const BATCH: usize = 1 << 14;
 /// A box is judged by the engine where that takes about as long as a few more bounds: seconds, by what the model says.
-const LEAF: f64 = 2e-5;
-/// Seconds that a design takes besides where it is judged alone, not with all of its row.
-const SINGLE: f64 = 1e-7;
+const LEAF: f64 = 5e-5;
+const ROW: f64 = 3e-4;
+/// Seconds that a design takes besides, and a place of a row.
+const DESIGN: f64 = 7e-9;
+const PLACE: f64 = 7e-8;
+/// Designs of a box above which single ones are tried: smaller ones are soon judged whole.
+const WORTH_A_TRY: u64 = 1 << 20;
 /// A batch this small is one of the first: of what is tried there, the whole row is.
 const FIRST_BATCHES: usize = 64;
 /// Most boxes of scenarios that a number is followed over.
@@ -177,6 +181,8 @@ struct View {
     ends: Ends,
     /// Which end of every axis all that is sought agrees to be better: `None` where it does not.
     better: [Option<Option<bool>>; AXES],
+    /// Is it known already what must be cut?
+    is_steered: bool,
 }
 
 impl View {
@@ -259,6 +265,7 @@ impl Search<'_> {
     fn look_at_part(&self, part: &[Waiting], worker: &mut Worker<'_>, rival: &Rival<'_>, is_first: bool) -> (Vec<Waiting>, Searched, Reducers) {
         let mut settled = Searched::default();
         let mut next = Vec::new();
+        let mut reducers = self.reduction.start();
         let (mut positions, mut rows) = (Vec::new(), Vec::new());
         for waiting in part {
             if self.stop.load(Ordering::Relaxed) {
@@ -270,15 +277,18 @@ impl Search<'_> {
                 Fate::Infeasible => settled.infeasible += size,
                 Fate::Beaten => settled.beaten += size,
                 Fate::Leaf(left) => {
-                    settled.evaluated += self.axes.count(&left);
-                    settled.beaten += size - self.axes.count(&left);
-                    self.axes.positions(&left, |position| positions.push(position));
+                    let own = self.axes.count(&left);
+                    settled.evaluated += own;
+                    settled.evaluations += own;
+                    settled.beaten += size - own;
+                    let (rows, places) = self.axes.rows(&left, self.row);
+                    worker.engine.screen_rows(&rows, &places, |block| self.reduction.absorb_counted(&mut reducers, block));
                 }
                 Fate::Cut(parts, tries) => {
                     settled.beaten += size - parts.iter().map(|part| self.axes.count(&part.spans)).sum::<u64>();
                     if is_first {
                         rows.extend(tries.map(|position| position / self.row));
-                    } else {
+                    } else if size > WORTH_A_TRY {
                         positions.extend(tries);
                     }
                     next.extend(*parts);
@@ -288,7 +298,6 @@ impl Search<'_> {
         positions.sort_unstable();
         positions.dedup();
         settled.evaluations += positions.len() as u64;
-        let mut reducers = self.reduction.start();
         worker.engine.screen_some(&positions, |block| self.reduction.absorb_counted(&mut reducers, block));
         rows.sort_unstable();
         rows.dedup();
@@ -301,42 +310,27 @@ impl Search<'_> {
 
     /// What is to be done with a box.
     fn fate(&self, waiting: &Waiting, rival: &Rival<'_>, bounder: &mut Bounder<'_>) -> Fate {
+        // First what is cheap: bounds without derivatives settle many boxes.
+        if is_infeasible(self.requirements, bounder, self.axes, &waiting.spans, &waiting.open) {
+            return Fate::Infeasible;
+        }
+        if self.is_hopeless(waiting, rival, bounder) {
+            return Fate::Beaten;
+        }
         let mut now = waiting.clone();
         loop {
-            let mut view = match decide(self.requirements, bounder, self.axes, &now.spans, &now.open) {
+            let mut view = View { pull: [0.0; AXES], ends: Ends::ANY, better: [Some(None); AXES], is_steered: false };
+            if self.has_no_hope(&mut now, rival, bounder, &mut view) {
+                return Fate::Beaten;
+            }
+            match decide(self.requirements, bounder, self.axes, &now.spans, &now.open) {
                 Outcome::Infeasible => return Fate::Infeasible,
                 Outcome::Open(open, pull, ends) => {
                     now.open = open;
-                    View { pull, ends, better: [Some(None); AXES] }
-                }
-            };
-            let mut hopes = [0.0; MOST_OBJECTIVES];
-            for ((target, cover), hope) in self.targets.iter().zip(&mut now.covers).zip(&mut hopes) {
-                let (least, most) = self.worst(target, bounder, &now.spans, cover, &mut view);
-                let badness = if target.at_the_bad_end { most } else { least };
-                *hope = if target.asked.higher_is_worse { badness } else { -badness };
-                for limit in &target.limits {
-                    *hope = self.limited(target, limit, *hope, bounder, &now.spans);
-                }
-            }
-            if self.is_beaten(&hopes[..self.targets.len()], self.axes.least_index(&now.spans), rival) {
-                return Fate::Beaten;
-            }
-            if let (Rival::Front(_, Some(staircase)), Some(product)) = (rival, &self.product) {
-                let bounds = bounder.bounds(&product.asked, &now.spans);
-                // What is to be small must not be negative: then its inverse would be no measure of it.
-                let is_measure = (0..2).all(|at| product.largest[at] || hopes[at] >= 0.0);
-                let lower = [0, 1].map(|at| self.targets[at].rule.key(hopes[at]));
-                match if is_measure { staircase.fit(lower, bounds.most * product.unit) } else { Fit::Few } {
-                    Fit::None => return Fate::Beaten,
-                    Fit::Few => {}
-                    // It is the product that must come down, wherever on the stairs the designs are.
-                    Fit::Many => {
-                        let mut pull = [0.0; AXES];
-                        add_pull(&mut pull, &bounds, &now.spans, self.axes);
-                        if pull.iter().any(|&it| it > 0.0) {
-                            view.pull = pull;
-                        }
+                    view.ends.first &= ends.first;
+                    view.ends.last &= ends.last;
+                    if !view.is_steered {
+                        view.pull.iter_mut().zip(pull).for_each(|(all, own)| *all += own);
                     }
                 }
             }
@@ -349,22 +343,73 @@ impl Search<'_> {
         }
     }
 
-    /// The best that a number may be, given what limits it.
-    fn limited(&self, target: &Target, limit: &Limit, hope: f64, bounder: &mut Bounder<'_>, spans: &Spans) -> f64 {
-        let is_large_sought = target.asked.higher_is_worse == target.at_the_bad_end;
-        // Both numbers must be of one sign, or their quotient limits nothing.
-        let least = if is_large_sought { bounder.range(&limit.limited, spans).0 } else { hope };
-        let most = bounder.bounds(&limit.quotient, spans).most;
-        if !(least >= 0.0 && most > 1e-100 && most < 1e100) {
-            return hope;
+    /// The same by bounds without derivatives, but for the product of both objectives.
+    fn is_hopeless(&self, waiting: &Waiting, rival: &Rival<'_>, bounder: &mut Bounder<'_>) -> bool {
+        let mut hopes = [0.0; MOST_OBJECTIVES];
+        for ((target, cover), hope) in self.targets.iter().zip(&waiting.covers).zip(&mut hopes) {
+            let is_low_sought = target.asked.higher_is_worse != target.at_the_bad_end;
+            let ranges = cover.iter().map(|part| bounder.range(&target.asked, &over(&waiting.spans, part, self.axes)));
+            *hope = if is_low_sought {
+                ranges.fold(f64::INFINITY, |hope, (low, _)| hope.min(low))
+            } else {
+                ranges.fold(f64::NEG_INFINITY, |hope, (_, high)| hope.max(high))
+            };
         }
-        if is_large_sought { hope.min(most * limit.bound * OUTWARD) } else { hope.max(limit.bound / most / OUTWARD) }
+        let hopes = &hopes[..self.targets.len()];
+        if self.is_beaten(hopes, self.axes.least_index(&waiting.spans), rival) {
+            return true;
+        }
+        self.fit(hopes, rival, &waiting.spans, bounder).is_some_and(|(fit, _)| fit == Fit::None)
+    }
+
+    /// Into how many notches of the front the product of both objectives fits, with its bounds.
+    fn fit(&self, hopes: &[f64], rival: &Rival<'_>, spans: &Spans, bounder: &mut Bounder<'_>) -> Option<(Fit, Bounds)> {
+        let (Rival::Front(_, Some(staircase)), Some(product)) = (rival, &self.product) else { return None };
+        let bounds = bounder.bounds(&product.asked, spans);
+        // What is to be small must not be negative: then its inverse would be no measure of it.
+        let is_measure = (0..2).all(|at| product.largest[at] || hopes[at] >= 0.0);
+        let lower = [0, 1].map(|at| self.targets[at].rule.key(hopes[at]));
+        Some((if is_measure { staircase.fit(lower, bounds.most * product.unit) } else { Fit::Few }, bounds))
+    }
+
+    /// Can no design of a box be what is sought, by the best that it may have?
+    fn has_no_hope(&self, now: &mut Waiting, rival: &Rival<'_>, bounder: &mut Bounder<'_>, view: &mut View) -> bool {
+        let mut hopes = [0.0; MOST_OBJECTIVES];
+        for ((target, cover), hope) in self.targets.iter().zip(&mut now.covers).zip(&mut hopes) {
+            let (least, most) = self.worst(target, bounder, &now.spans, cover, view);
+            let badness = if target.at_the_bad_end { most } else { least };
+            *hope = if target.asked.higher_is_worse { badness } else { -badness };
+            for limit in &target.limits {
+                let bounds = bounder.bounds(&limit.quotient, &now.spans);
+                *hope = self.limited(target, limit, *hope, bounds.most, bounder, &now.spans);
+            }
+        }
+        if self.is_beaten(&hopes[..self.targets.len()], self.axes.least_index(&now.spans), rival) {
+            return true;
+        }
+        match self.fit(&hopes[..self.targets.len()], rival, &now.spans, bounder) {
+            Some((Fit::None, _)) => return true,
+            // It is the product that must come down, wherever on the stairs the designs are.
+            Some((Fit::Many, bounds)) => {
+                let mut pull = [0.0; AXES];
+                add_pull(&mut pull, &bounds, &now.spans, self.axes);
+                if pull.iter().any(|&it| it > 0.0) {
+                    view.pull = pull;
+                    view.is_steered = true;
+                }
+            }
+            _ => {}
+        }
+        false
     }
 
     fn leaf_or_cut(&self, now: Waiting, view: &View) -> Fate {
         let size = self.axes.count(&now.spans);
-        let rows = size.div_ceil(self.row.min(size)) as f64;
-        if size == 1 || rows * self.effort.prepare + size as f64 * (self.effort.finish + SINGLE) <= LEAF {
+        let places: u64 = self.axes.steps.iter().zip(&now.spans.0).filter(|(step, _)| **step < self.row).map(|(_, span)| span.count()).product();
+        let rows = (size / places) as f64;
+        let time = rows * self.effort.prepare + size as f64 * (self.effort.finish + DESIGN) + places as f64 * PLACE;
+        // A single row has nothing in common with others that bounds could use.
+        if size == 1 || time <= if rows > 1.0 { LEAF } else { ROW } {
             return Fate::Leaf(now.spans);
         }
         let axis = self.axis_to_cut(&now.spans, &view.pull);
@@ -375,6 +420,17 @@ impl Search<'_> {
             part
         });
         Fate::Cut(Box::new(parts), tries)
+    }
+
+    /// The best that a number may be, given what limits it.
+    fn limited(&self, target: &Target, limit: &Limit, hope: f64, most: f64, bounder: &mut Bounder<'_>, spans: &Spans) -> f64 {
+        let is_large_sought = target.asked.higher_is_worse == target.at_the_bad_end;
+        // Both numbers must be of one sign, or their quotient limits nothing.
+        let least = if is_large_sought { bounder.range(&limit.limited, spans).0 } else { hope };
+        if !(least >= 0.0 && most > 1e-100 && most < 1e100) {
+            return hope;
+        }
+        if is_large_sought { hope.min(most * limit.bound * OUTWARD) } else { hope.max(limit.bound / most / OUTWARD) }
     }
 
     /// Bounds of the worst value over all scenarios, as badness; the cover becomes the scenarios that may be worst.

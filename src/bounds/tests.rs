@@ -1,37 +1,134 @@
-//! Bounds against looking at every design.
+//! Bounds against single designs: what the formula itself computes never leaves them.
 
+use super::axes::{AXES, Span};
+use super::columns::{CHUNK, Columns};
+use super::open::over;
 use super::*;
-use crate::study::Study;
+use crate::models::{OUTPUTS, find, to_si};
+use crate::sample::mix;
+use crate::study::study_of;
+
+/// Studies with scenarios, words, kinks and axes of all kinds.
+const STUDIES: &[(&str, &str)] = &[
+    (
+        "metal-cvt",
+        "[design]\ngroove_angle_deg = { from = 18, to = 30, count = 9 }\nband_thickness_mm = { from = 0.1, to = 0.4, count = 7 }\n\
+         traction = [0.5, \"limit\", 0.3]\n[operation]\nratio = { from = 0.5, to = 2.0, count = 5, spacing = \"log\" }\ntorque_Nm = [50, 150]\n\
+         [uncertainty]\nfriction = { from = 0.065, to = 0.095, count = 3 }\n[constraints]\nslip_margin = { min = 0 }\nstress_margin = { min = 0 }\n\
+         [objectives]\naxial_force_N = \"min\"\nstress_margin = \"max\"\ntorque_capacity_Nm = \"max\"\n",
+    ),
+    (
+        "timing-belt",
+        "[design]\nteeth_in_mesh = { from = 10, to = 14 }\ntight_tension_N = { from = 100, to = 400, count = 6 }\n\
+         slack_tension_N = [0, 20, 90]\n[operation]\npulley_speed_rpm = { from = 2000, to = 7000, count = 6 }\n[uncertainty]\nfriction = [0.3, 0.5]\n\
+         [objectives]\nboundary_tooth = \"max\"\npeak_tooth_load_complete_N = \"min\"\nlift_speed_rpm = \"max\"\n",
+    ),
+    (
+        "pulley-load",
+        "[design]\nmean_radius_mm = { from = 30, to = 90, count = 8 }\nwrap_angle_deg = { from = 60, to = 200, count = 7 }\n\
+         [operation]\ncases = [{ power_kW = 3, speed_rpm = 3000 }, { power_kW = 5, speed_rpm = 2000 }, { power_kW = 1, speed_rpm = 6000 }]\n\
+         [objectives]\nfriction_used = \"min\"\nresultant_force_N = \"min\"\n",
+    ),
+];
+
+fn plans() -> impl Iterator<Item = Plan> {
+    STUDIES.iter().map(|(model, text)| Plan::new(study_of(find(model).expect("it is a model"), text).expect("the study is right")))
+}
+
+/// A random box of designs; all scenarios.
+fn a_box(layout: &Layout, seed: u64) -> Spans {
+    let mut spans = layout.axes.whole();
+    for axis in 0..layout.axes.designs {
+        let count = layout.axes.all[axis].count();
+        let (a, b) = (mix(seed * 64 + axis as u64) % count, mix(seed * 64 + 32 + axis as u64) % count);
+        // Often narrow: there bounds are tight, and wrong ones show.
+        let b = if seed.is_multiple_of(2) { b } else { (a + b % 2).min(count - 1) };
+        spans[axis] = Span { low: a.min(b) as u32, high: a.max(b) as u32 };
+    }
+    spans
+}
+
+/// An output by the formula itself.
+fn by_formula(plan: &Plan, design: u64, scenario: u64, output: usize) -> f64 {
+    let model = plan.study.model;
+    let si = to_si(model, &plan.space.inputs(design, scenario));
+    let mut outputs = [0.0; OUTPUTS];
+    model.kernel.finish(&model.kernel.prepared(&si), &si, 1 << output, &mut outputs);
+    model.outputs[output].unit.from_si(outputs[output])
+}
+
+/// How badly a design does at worst.
+fn worst(plan: &Plan, design: u64, output: usize, higher_is_worse: bool) -> f64 {
+    let each = (0..plan.scenarios()).map(|scenario| by_formula(plan, design, scenario, output));
+    each.fold(f64::NEG_INFINITY, |worst, value| worst.max(if higher_is_worse { value } else { -value }))
+}
+
+/// How many worst values leave bounds that were moved inwards by this share of their size.
+fn outside(inwards: f64) -> (u32, u32) {
+    let (mut looked, mut out) = (0, 0);
+    for plan in plans() {
+        let layout = Layout::new(&plan).expect("bounds serve it");
+        let mut bounder = Bounder::new(&layout.tape, &layout.axes);
+        for seed in 0..120 {
+            let spans = a_box(&layout, seed);
+            for objective in &plan.study.objectives {
+                let Quantity::Output(output) = objective.quantity else { continue };
+                let higher_is_worse = objective.goal == Goal::Min;
+                let asked = Asked::new(&layout.tape, Source::of(objective.quantity, &plan, &layout.tape), higher_is_worse);
+                let bounds = bounder.bounds(&asked, &over(&spans, &layout.axes.whole(), &layout.axes));
+                let (rows, places) = layout.axes.rows(&spans, plan.fast.count());
+                let width = plan.fast.count();
+                let positions = rows.iter().flat_map(|row| places.iter().map(move |place| row * width + place));
+                for position in positions.step_by(7) {
+                    let value = worst(&plan, plan.design_at(position), output, higher_is_worse);
+                    let room = inwards * (bounds.most - bounds.least).abs();
+                    looked += 1;
+                    out += u32::from(bounds.finite && !(value >= bounds.least + room && value <= bounds.most - room));
+                }
+            }
+        }
+    }
+    (looked, out)
+}
 
 #[test]
-fn debug() {
-    let text = std::fs::read_to_string("/tmp/b7/g98.toml").unwrap();
-    let plan = Plan::new(Study::parse(&text, "x.toml", ".".as_ref()).unwrap());
-    let layout = Layout::new(&plan).unwrap();
-    eprintln!("ops {} merits {:?}", layout.tape.operations.len(), layout.tape.merits);
-    let product = layout.product(&plan).unwrap();
-    eprintln!("axes {:b} needed {}", product.asked.axis_set(), layout.tape.needed_by(&[layout.tape.merits[0].1]).len());
-    let mut b = Bounder::new(&layout.tape, &layout.axes);
-    let mut s = layout.axes.whole();
-    for _ in 0..8 {
-        let it = b.bounds(&product.asked, &s);
-        eprintln!("{:?} most {} least {} spread {:?} mono {:b}", &s.0[..5], it.most*product.unit, it.least*product.unit, &it.spread[..5], it.monotone);
-        for t in layout.targets(&plan, Sought::Front) { let it = b.bounds(&t.asked, &s); eprintln!("    {} {} mono {:b} strict {:b} spread {:?}", it.least, it.most, it.monotone, it.strict, &it.spread[..5]); }
-        for a in 0..5 { if !s[a].is_single() {s[a] = s[a].halves()[1]; }} s[3]=axes::Span{low:10,high:20};
+fn the_worst_of_a_design_never_leaves_the_bounds_of_its_box() {
+    let (looked, out) = outside(0.0);
+    assert!(looked > 5000 && out == 0, "{out} of {looked}");
+    assert!(outside(0.2).1 > looked / 20, "bounds that are too narrow are noticed");
+}
+
+#[test]
+fn columns_have_the_bits_of_the_formula() {
+    for plan in plans() {
+        let layout = Layout::new(&plan).expect("bounds serve it");
+        let mut columns = Columns::new(&layout.tape, &layout.axes);
+        for seed in 0..60 {
+            let spans = a_box(&layout, seed);
+            let scenario = mix(seed) % plan.scenarios();
+            let mut at = spans;
+            for (axis, (_, stride)) in (layout.axes.designs..).zip(plan.space.scenarios.dimensions()) {
+                at[axis] = Span::at((scenario / stride % layout.axes.all[axis].count()) as u32);
+            }
+            let varying: Vec<usize> = (0..layout.axes.designs).filter(|&axis| !spans[axis].is_single()).collect();
+            let size = layout.axes.count(&spans);
+            for output in (0..OUTPUTS).filter(|output| plan.used_outputs() >> output & 1 == 1) {
+                let node = layout.tape.outputs[output].expect("the plan asks for it");
+                let needed = layout.tape.needed_by(&[node]);
+                columns.enter(&needed, &at, &varying);
+                for first in (0..size).step_by(CHUNK) {
+                    let count = (size - first).min(CHUNK as u64) as usize;
+                    columns.chunk(&needed, first, count);
+                    for lane in (0..count).step_by(5) {
+                        let levels: [u32; AXES] = columns.levels(first + lane as u64);
+                        let strides = layout.axes.all[..layout.axes.designs].iter().zip(levels);
+                        let design = strides.map(|(axis, level)| u64::from(level) * axis.stride).sum();
+                        let expected = by_formula(&plan, design, scenario, output);
+                        let found = plan.study.model.outputs[output].unit.from_si(columns.value(node).at(lane));
+                        assert!(found.to_bits() == expected.to_bits() || found.is_nan() && expected.is_nan(), "{found} {expected}");
+                    }
+                }
+            }
+        }
     }
-    let start = std::time::Instant::now();
-    for i in 0..10000u32 { let mut s = layout.axes.whole(); for a in 0..4 { s[a] = axes::Span{low: (i>>a)%50, high: (i>>a)%50+7}; } s[4] = axes::Span::at(3); b.bounds(&product.asked, &s); }
-    eprintln!("product {:?} per box", start.elapsed()/10000);
-    let t = layout.targets(&plan, Sought::Front);
-    let start = std::time::Instant::now();
-    for i in 0..10000u32 { let mut s = layout.axes.whole(); for a in 0..4 { s[a] = axes::Span{low: (i>>a)%50, high: (i>>a)%50+7}; } s[4] = axes::Span::at(3); b.bounds(&t[0].asked, &s); }
-    eprintln!("target {:?} per box", start.elapsed()/10000);
-    let start = std::time::Instant::now();
-    for i in 0..10000u32 { let mut s = layout.axes.whole(); for a in 0..4 { s[a] = axes::Span{low: (i>>a)%50, high: (i>>a)%50+7}; } s[4] = axes::Span::at(3); b.range(&t[0].asked, &s); }
-    eprintln!("range {:?} per box", start.elapsed()/10000);
-    let start = std::time::Instant::now();
-    let open = all_open(&layout.requirements, &layout.axes);
-    for i in 0..10000u32 { let mut s = layout.axes.whole(); for a in 0..4 { s[a] = axes::Span{low: (i>>a)%50, high: (i>>a)%50+7}; } s[4] = axes::Span::at(3); open::decide(&layout.requirements, &mut b, &layout.axes, &s, &open); }
-    eprintln!("decide {:?} per box", start.elapsed()/10000);
-    eprintln!("effort {:?}", plan.effort());
 }

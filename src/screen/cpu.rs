@@ -169,6 +169,19 @@ impl<'p> CpuEngine<'p> {
         }
     }
 
+    /// Judges the designs of some rows that stand at the same places of each, and hands each block with a feasible design to `absorb`.
+    /// What the rows have in common is made once.
+    pub fn screen_rows(&mut self, rows: &[u64], places: &[u64], mut absorb: impl FnMut(&Block<'_>)) {
+        let blocks: Vec<FastBlock> = places.chunks(BLOCK).map(|places| FastBlock::new(self.plan, places.iter().copied())).collect();
+        for &row in rows {
+            if self.enter_row(row) && self.row_feasible {
+                for block in &blocks {
+                    self.screen_block(block, &mut absorb);
+                }
+            }
+        }
+    }
+
     /// Judges a part of the current row; returns where it stopped, the end if nobody told it to.
     fn screen_row(&mut self, fast: Range<u64>, absorb: &mut impl FnMut(&Block<'_>)) -> u64 {
         let tables = self.tables;
