@@ -212,7 +212,8 @@ fn cover(draft: &Draft, plan: &Plan, state: &State, certificate: &Certificate, t
         }
     };
     note(study.model.name, true);
-    let mixed = |line: &str| line.contains(" = [") && line.contains('"') && !line.contains('{') && line.chars().any(|it| it.is_ascii_digit());
+    let mixed =
+        |line: &str| line.contains(" = [") && line.contains('"') && !line.contains('{') && line.chars().any(|it| it.is_ascii_digit());
     note("words and numbers on one axis", text.lines().any(mixed));
     note("inert axis", !plan.inert_axes().is_empty());
     note("several scenarios", plan.scenarios() > 1);

@@ -82,7 +82,9 @@ fn the_rubber_belt_in_three_load_cases() {
     let text = shipped("rubber-cvt.toml");
     let edits: &[_] = match full() {
         true => &[],
-        false => &[("count = 41", "count = 11"), ("step = 0.05 }", "step = 0.2 }"), ("step = 0.5 }", "step = 2 }"), ("count = 21", "count = 6")],
+        false => {
+            &[("count = 41", "count = 11"), ("step = 0.05 }", "step = 0.2 }"), ("step = 0.5 }", "step = 2 }"), ("count = 21", "count = 6")]
+        }
     };
     compare(&changed(&text, edits), 10_000);
 }

@@ -56,7 +56,12 @@ pub fn unaccounted(plan: &Plan, certificate: &Certificate, counted: u64, searche
 }
 
 /// One run by bounds.
-pub fn by_bounds(pipeline: &Pipeline<'_>, options: &Options, checkpoint: Option<&mut Checkpoint>, control: &Control) -> Outcome<(Swept, Certificate)> {
+pub fn by_bounds(
+    pipeline: &Pipeline<'_>,
+    options: &Options,
+    checkpoint: Option<&mut Checkpoint>,
+    control: &Control,
+) -> Outcome<(Swept, Certificate)> {
     sweep_by_bounds(pipeline.plan, &pipeline.tables, &pipeline.reduction, options, checkpoint, control)
 }
 
