@@ -2,6 +2,8 @@
 
 /// Broken study files: each with the message it must give.
 mod bad_studies;
+/// Sweeps by bounds against sweeps design by design.
+mod bounds;
 /// A browser to look at pages with.
 mod browser;
 /// The pulley as a model for CalculiX, and its solution against the harmonics.

@@ -4,6 +4,8 @@
 mod checkpoints;
 /// Lines over maps, held against the models.
 mod contours;
+/// Judging every design, or bounding boxes of them.
+mod method;
 /// `models` and `eval`.
 mod models_and_eval;
 /// Interrupted, divided and resumed runs.

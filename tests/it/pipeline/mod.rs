@@ -2,10 +2,10 @@
 
 mod answer;
 mod expected;
-mod naive;
+pub mod naive;
 mod random_axes;
-mod random_study;
-mod runs;
+pub mod random_study;
+pub mod runs;
 
 use crate::random::Random;
 use answer::{Answer, Cell};
@@ -22,10 +22,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// How many studies had what, so that the loop cannot come to test nothing.
-type Coverage = BTreeMap<String, usize>;
+pub type Coverage = BTreeMap<String, usize>;
 
 /// Is this the full stage of the continuous integration?
-fn full() -> bool {
+pub fn full() -> bool {
     std::env::var("BELTSPACE_FULL").is_ok_and(|value| value == "1")
 }
 
@@ -40,7 +40,7 @@ fn same(a: &State, b: &State) -> bool {
     best(a) == best(b) && rest(a) == rest(b)
 }
 
-fn parse(text: &str) -> Study {
+pub fn parse(text: &str) -> Study {
     Study::parse(text, "random.toml", Path::new(".")).unwrap_or_else(|errors| panic!("{errors}"))
 }
 

@@ -35,14 +35,20 @@ fn combinations(axes: &[&Axis]) -> u64 {
 
 impl Evaluated {
     pub fn new(study: &Study) -> Self {
+        let designs = study.sample.map_or_else(|| combinations(&study.design.iter().collect::<Vec<_>>()), |sample| sample.count);
+        Self::of(study, 0..designs)
+    }
+
+    /// Some designs, which are numbered anew.
+    pub fn of(study: &Study, chosen: impl IntoIterator<Item = u64>) -> Self {
         let design: Vec<&Axis> = study.design.iter().collect();
         let scenario: Vec<&Axis> = study.operation.iter().chain(&study.uncertainty).collect();
         // The sampler has tests of its own: its designs are taken as they come.
         let space = Space::new(study);
-        let designs = study.sample.map_or_else(|| combinations(&design), |sample| sample.count);
         let scenarios = combinations(&scenario);
-        let mut cases = Vec::new();
-        for index in 0..designs {
+        let (mut cases, mut designs) = (Vec::new(), 0);
+        for index in chosen {
+            designs += 1;
             let mut inputs = study.fixed.clone();
             if study.sample.is_some() {
                 let sampled = space.inputs(index, 0);

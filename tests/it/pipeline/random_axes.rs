@@ -54,6 +54,8 @@ pub fn three_digits(value: f64) -> f64 {
 pub struct Generator<'r> {
     pub random: &'r mut Random,
     pub model: &'static Model,
+    /// May design axes walk several inputs together?
+    pub joint_designs: bool,
 }
 
 impl Generator<'_> {
@@ -193,7 +195,7 @@ impl Generator<'_> {
             let even = left.powf(1.0 / (number - axis) as f64);
             let count = (even * self.random.between(0.6, 1.5)).round().max(1.0).min(left.max(1.0)) as u64;
             let Some(input) = free.pop() else { break };
-            let made = if self.random.chance(0.2) && !free.is_empty() {
+            let made = if (role > 0 || self.joint_designs) && self.random.chance(0.2) && !free.is_empty() {
                 let mut inputs = vec![input, free.pop().expect("it is not empty")];
                 if self.random.chance(0.3) {
                     inputs.extend(free.pop());

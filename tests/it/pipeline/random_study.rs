@@ -13,7 +13,7 @@ type Ends = Option<(f64, f64)>;
 
 /// A study file in parts.
 pub struct Draft {
-    model: &'static Model,
+    pub model: &'static Model,
     title: String,
     sample: Option<String>,
     /// Design, operation, uncertainty.
@@ -24,32 +24,51 @@ pub struct Draft {
     objectives: Vec<(Quantity, &'static str, Option<f64>)>,
     /// Quantity, bins, range.
     histograms: Vec<(Quantity, usize, Ends)>,
+    /// Only what bounds can serve: nothing that asks about every design.
+    for_bounds: bool,
     report: Vec<String>,
 }
 
 const ROLES: [&str; 3] = ["design", "operation", "uncertainty"];
 /// Most evaluations that a small study costs the oracle.
 const MOST_EVALUATIONS: u64 = 30_000;
+/// Most evaluations of a study that the sweep judges instead.
+const MOST_BY_THE_SWEEP: u64 = 1_000_000;
 
 impl Draft {
     /// A study without constraints: those are placed once its designs are known.
     pub fn new(seed: u64) -> Self {
+        Self::drawn(seed, false)
+    }
+
+    /// The same for a study that bounds can serve, which may have more designs.
+    pub fn for_bounds(seed: u64) -> Self {
+        Self::drawn(seed, true)
+    }
+
+    fn drawn(seed: u64, for_bounds: bool) -> Self {
         let random = &mut Random::new(seed);
         // What a short loop must not miss goes by the seed, everything else by chance.
         let turn = seed as usize;
         // A solver is too slow for studies of this size: it has one of its own.
         let models: Vec<_> = MODELS.iter().copied().filter(|model| !is_slow(model)).collect();
         let model = models[turn % models.len()];
-        let mut generator = Generator { random, model };
-        let sampled = turn.is_multiple_of(4);
+        let mut generator = Generator { random, model, joint_designs: !for_bounds };
+        let sampled = turn.is_multiple_of(4) && !for_bounds;
         // A large one now and then: only those give the front a head start.
         let large = turn % 20 == 7;
-        let designs = if large { generator.random.between(33e3, 50e3) } else { generator.random.log_between(50.0, 3000.0) };
-        let scenarios = generator.random.log_between(1.0, 40.0).min(MOST_EVALUATIONS as f64 / designs).max(1.0);
+        let designs = match turn % 6 {
+            0 if for_bounds => generator.random.log_between(3e4, 2e5),
+            _ if for_bounds => generator.random.log_between(1.0, 3e4),
+            _ if large => generator.random.between(33e3, 50e3),
+            _ => generator.random.log_between(50.0, 3000.0),
+        };
+        let most = if for_bounds { MOST_BY_THE_SWEEP } else { MOST_EVALUATIONS };
+        let scenarios = generator.random.log_between(1.0, 40.0).min(most as f64 / designs).max(1.0);
         // What a shader does not know would keep the study from the device.
-        let mut free: Vec<usize> = (0..model.inputs.len()).filter(|&input| !model.inputs[input].processor_only).collect();
+        let mut free: Vec<usize> = (0..model.inputs.len()).filter(|&input| for_bounds || !model.inputs[input].processor_only).collect();
         generator.random.shuffle(&mut free);
-        let design = generator.axes(0, &mut free, 4, designs, sampled);
+        let design = generator.axes(0, &mut free, if for_bounds { 5 } else { 4 }, designs, sampled);
         let operation = generator.axes(1, &mut free, 2, scenarios.sqrt(), false);
         let uncertainty = generator.axes(2, &mut free, 2, scenarios.sqrt(), false);
         let fixed = free.into_iter().filter(|_| generator.random.chance(0.2)).collect::<Vec<_>>();
@@ -68,13 +87,16 @@ impl Draft {
             constraints: Vec::new(),
             objectives: Vec::new(),
             histograms: Vec::new(),
+            for_bounds,
             report: Vec::new(),
         };
         let listed: usize = draft.axes[0].iter().map(|axis| axis.rows.len()).product();
-        if turn % 3 == 1 && !sampled && listed <= 1000 {
+        if turn % 3 == 1 && !sampled && !for_bounds && listed <= 1000 {
             draft.report.push("variants = true".to_owned());
         }
-        draft.ask(random, [2, 3, 1, 0, 2, 4, 6, 2, 5, 3][turn % 10]);
+        // Models go by the seed too, and four of them share a factor with ten numbers.
+        let number = if for_bounds { turn + turn / 4 } else { turn };
+        draft.ask(random, [2, 3, 1, 0, 2, 4, 6, 2, 5, 3][number % 10]);
         draft
     }
 
@@ -141,12 +163,13 @@ impl Draft {
             let goal = if random.chance(0.5) { format!(", goal = \"{}\"", goal(random)) } else { String::new() };
             self.report.push(format!("top = {{ by = \"{by}\", count = {count}{goal} }}"));
         }
-        for _ in 0..random.pick(&[0, 0, 1, 2]) {
+        let histograms = if self.for_bounds { 0 } else { random.pick(&[0, 0, 1, 2]) };
+        for _ in 0..histograms {
             let bins = random.pick(&[1, 7, 50]);
             self.histograms.push((self.draw(random, &quantities), bins, None));
         }
         let mut single: Vec<&str> = self.axes[0].iter().filter(|axis| axis.kind != "joint").map(|axis| axis.key.as_str()).collect();
-        if self.sample.is_none() && single.len() >= 2 {
+        if self.sample.is_none() && single.len() >= 2 && !self.for_bounds {
             let mut maps = Vec::new();
             for _ in 0..random.pick(&[0, 1, 1, 3]) {
                 random.shuffle(&mut single);
@@ -202,13 +225,19 @@ impl Draft {
                 false => bound,
             };
             let key = random.pick(if high { &["max", "below"] } else { &["min", "above"] });
+            let inner = values[if high { values.len() / 10 } else { values.len() - 1 - values.len() / 10 }];
             let other = match random.below(5) {
+                1 if self.for_bounds && high && inner < bound => format!(", {} = {inner}", random.pick(&["min", "above"])),
+                1 if self.for_bounds && !high && inner > bound => format!(", {} = {inner}", random.pick(&["max", "below"])),
                 0 if high => format!(", min = {}", values[0] - 0.1 * width),
                 0 => format!(", max = {}", values[values.len() - 1] + 0.1 * width),
                 _ => String::new(),
             };
             let (bound, other) = (bound + 0.0, if impossible { String::new() } else { other });
             self.constraints.push(format!("{} = {{ {key} = {bound}{other} }}", quantity.name(self.model)));
+        }
+        if self.for_bounds && random.chance(0.4) {
+            self.bound_at_zero(random, &used);
         }
         let worst_values = |quantity: Quantity| {
             let values = evaluated.sorted_worst_values(study, quantity, quantity.worse(self.model))?;
@@ -227,6 +256,26 @@ impl Draft {
                 let ends = worst_values(*quantity).map(|values| (values[values.len() / 10], values[values.len() - 1 - values.len() / 5]));
                 *range = ends.filter(|(low, high)| low < high);
             }
+        }
+    }
+
+    /// A bound at 0, where plateaus are: what carries nothing, what lifts nowhere.
+    fn bound_at_zero(&mut self, random: &mut Random, used: &[Quantity]) {
+        let at_zero = [
+            ("torque_capacity_Nm", "above"),
+            ("torque_capacity_Nm", "min"),
+            ("slip_margin", "min"),
+            ("slip_margin", "above"),
+            ("stress_margin", "min"),
+            ("friction_margin", "min"),
+            ("incomplete_teeth", "max"),
+            ("least_tooth_load_N", "min"),
+        ];
+        let known = |name: &str| self.model.output(name).map(Quantity::Output);
+        let free: Vec<_> = at_zero.into_iter().filter(|(name, _)| known(name).is_some_and(|it| !used.contains(&it))).collect();
+        if !free.is_empty() {
+            let (name, key) = random.pick(&free);
+            self.constraints.push(format!("{name} = {{ {key} = 0 }}"));
         }
     }
 

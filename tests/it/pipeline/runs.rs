@@ -2,7 +2,7 @@
 
 use crate::random::Random;
 use beltspace::checkpoint::Checkpoint;
-use beltspace::export::{Outcome, RunRecord};
+use beltspace::export::{MethodRecord, Outcome, RunRecord};
 use beltspace::merge::{check_set, merge};
 use beltspace::plan::Plan;
 use beltspace::reduce::{Reduction, State};
@@ -18,9 +18,9 @@ use std::time::Duration;
 pub struct Pipeline<'p> {
     pub plan: &'p Plan,
     text: &'p str,
-    tables: Tables,
+    pub tables: Tables,
     tally: Tally,
-    reduction: Reduction,
+    pub reduction: Reduction,
 }
 
 /// The bytes of a result's files by name, `run.json` left out.
@@ -50,8 +50,15 @@ impl<'p> Pipeline<'p> {
         (state, files)
     }
 
-    /// Several shards, each with a checkpoint, some of them resumed from a part of their own, merged in a random order.
+    /// Several shards by the ordinary sweep.
     pub fn sharded(&self, random: &mut Random, folder: &Path) -> State {
+        self.sharded_by(random, folder, |_, options, checkpoint| {
+            sweep(self.plan, &self.tables, &self.reduction, options, Some(checkpoint), &Control::default()).expect("the sweep ends");
+        })
+    }
+
+    /// Several shards, each with a checkpoint, some of them resumed from a part of their own, merged in a random order.
+    pub fn sharded_by(&self, random: &mut Random, folder: &Path, mut judge: impl FnMut(&mut Random, &Options, &mut Checkpoint)) -> State {
         let of = random.whole(2, 5) as u64;
         let mut folders = Vec::new();
         for number in 1..=of {
@@ -66,7 +73,7 @@ impl<'p> Pipeline<'p> {
                 checkpoint.require(&self.plan.study, shard).expect("it is of this study and shard");
             }
             let options = Options { shard, ..options(random, 7.max(self.plan.designs() / 2000)) };
-            sweep(self.plan, &self.tables, &self.reduction, &options, Some(&mut checkpoint), &Control::default()).expect("the sweep ends");
+            judge(random, &options, &mut checkpoint);
             folders.push(folder);
         }
         random.shuffle(&mut folders);
@@ -102,6 +109,7 @@ impl<'p> Pipeline<'p> {
             origin: "a test".to_owned(),
             certified: outcome.front.len() + outcome.top.len(),
             device: None,
+            method: MethodRecord { certificate: None, why: "a test".to_owned() },
         };
         outcome.write(folder, self.text, &record).expect("a result can be written");
         files(folder)

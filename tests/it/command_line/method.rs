@@ -1,0 +1,211 @@
+//! `sweep --method`: what bounds refuse, what `auto` says, and that nobody can tell from the files which of them ran.
+
+use super::{Files, SMALL, ask, changed, files, folder_with, json_of, larger, read, same_result, write};
+use std::path::Path;
+#[cfg(unix)]
+use std::process::Command;
+use std::sync::OnceLock;
+#[cfg(unix)]
+use std::time::{Duration, Instant};
+
+/// What of [`SMALL`] asks for every design.
+const HISTOGRAM: &str = "histograms = [{ of = \"axial_force_N\", bins = 40 }]\n";
+const MAPS: &str = "maps = [\n    { x = \"band_thickness_mm\", y = \"groove_angle_deg\", value = \"axial_force_N\" },\n    \
+                    { x = \"band_thickness_mm\", y = \"band_count\", best = \"share\" },\n]\n";
+
+/// A study without it.
+fn for_bounds(study: &str) -> String {
+    changed(study, &[(HISTOGRAM, ""), (MAPS, "")])
+}
+
+/// What one undisturbed run of it design by design writes.
+fn one_by_one() -> &'static Files {
+    static FILES: OnceLock<Files> = OnceLock::new();
+    FILES.get_or_init(|| {
+        let folder = folder_with("grid.toml", &for_bounds(SMALL));
+        ask(folder.path(), "sweep grid.toml --method exhaustive --out out").text();
+        let run = json_of(&folder.path().join("out/run.json"));
+        assert_eq!((&run["method"], &run["method_chosen"]), (&"exhaustive".into(), &"asked for".into()));
+        assert!(run["certificate"].is_null(), "{run}");
+        files(&folder.path().join("out"))
+    })
+}
+
+#[test]
+fn bounds_refuse_what_asks_for_every_design_and_say_what_to_do() {
+    let plain = for_bounds(SMALL);
+    let report = |line: &str| changed(&plain, &[("[report]\n", &format!("[report]\n{line}\n"))]);
+    let sampled = |line: &str| changed(&plain, &[("[design]\n", &format!("[sample]\n{line}\n[design]\n"))]);
+    let cases = "cases = [{ band_count = 8, traction = 0.3 }, { band_count = 9, traction = 0.4 }]";
+    let cases = changed(
+        &plain,
+        &[("band_count        = { from = 6, to = 14 }", cases), ("traction          = { from = 0.30, to = 0.50, count = 5 }\n", "")],
+    );
+    let folder = folder_with("small.toml", SMALL);
+    let pulley = ask(folder.path(), "models pulley --study").text();
+    let refused = [
+        ("histograms in [report]", report("histograms = [{ of = \"axial_force_N\", bins = 4 }]")),
+        ("maps in [report]", report("maps = [{ x = \"band_thickness_mm\", y = \"band_count\", best = \"share\" }]")),
+        ("variants in [report]", changed(&report("variants = true"), &[("to = 0.50, count = 5", "to = 0.50, count = 2")])),
+        ("[sample]", sampled("method = \"sobol\"\ncount = 1000")),
+        ("cases in [design]", cases),
+        ("pulley is no formula", pulley),
+        ("histograms in [report]", SMALL.to_owned()),
+    ];
+    for (thing, study) in refused {
+        write(folder.path(), "refused.toml", &study);
+        let before = files(folder.path());
+        let err = ask(folder.path(), "sweep refused.toml --method bounds --out out").refusal(2);
+        assert!(err.contains("--method bounds cannot serve this study") && err.contains(thing), "{thing}: {err}");
+        assert!(err.contains("use --method exhaustive, or change the study"), "{thing}: {err}");
+        assert!(!err.contains("panicked"), "{err}");
+        assert_eq!(files(folder.path()), before, "{thing}: a refusal writes nothing");
+    }
+    write(folder.path(), "grid.toml", &plain);
+    for (option, line) in [("--engine gpu", "--engine gpu"), ("--adapter llvmpipe", "--adapter llvmpipe")] {
+        let err = ask(folder.path(), &format!("sweep grid.toml --method bounds {line} --out out")).refusal(2);
+        assert!(err.contains("on the processor") && err.contains(option) && err.contains("leave one of them out"), "{err}");
+    }
+    let err = ask(folder.path(), "sweep grid.toml --method guesses").refusal(2);
+    assert!(err.contains("invalid value 'guesses' for '--method <METHOD>'"), "{err}");
+    assert!(!folder.path().join("out").exists());
+}
+
+/// The counts of a certificate in `run.json`.
+fn assert_certified(run: &serde_json::Value) {
+    let number = |value: &serde_json::Value| value.as_u64().unwrap_or_else(|| panic!("{value} is no count in {run}"));
+    let sum = |of: &serde_json::Value, rules: &[&str]| rules.iter().map(|rule| number(&of[*rule])).sum::<u64>();
+    let (certificate, designs) = (&run["certificate"], number(&run["designs"]));
+    let count = &certificate["count"];
+    let rules = ["in_infeasible_boxes", "in_feasible_boxes", "in_products", "in_pairs_of_lists", "judged_in_f64"];
+    assert_eq!((number(&count["designs"]), sum(count, &rules)), (designs, designs), "{run}");
+    let searches = certificate["searches"].as_array().expect("there are searches");
+    let names: Vec<_> = searches.iter().map(|it| it["for"].as_str().expect("they are named")).collect();
+    let expected = [
+        "front",
+        "top",
+        "least axial_force_N",
+        "largest axial_force_N",
+        "least stress_margin",
+        "largest stress_margin",
+        "least band_count",
+        "largest band_count",
+    ];
+    assert_eq!(names, expected);
+    for it in searches {
+        let settled = sum(it, &["in_infeasible_boxes", "in_beaten_boxes", "in_pairs_of_lists", "judged_in_f64"]);
+        assert_eq!((number(&it["designs"]), settled), (designs, designs), "{it}");
+    }
+    for what in ["boxes", "evaluations"] {
+        let all = number(&count[what]) + searches.iter().map(|it| number(&it[what])).sum::<u64>();
+        assert_eq!(number(&certificate[what]), all, "{what}");
+    }
+    assert!(number(&certificate["compared_one_by_one"]) > 0, "{run}");
+}
+
+#[test]
+fn the_files_are_the_same_and_the_record_says_how_they_came_about() {
+    let folder = folder_with("grid.toml", &for_bounds(SMALL));
+    for options in ["--threads 1", "--threads 3 --engine cpu", "--threads 2 --tile 7"] {
+        ask(folder.path(), &format!("sweep grid.toml --method bounds --out out --force {options}")).text();
+        let out = folder.path().join("out");
+        assert_eq!(same_result(one_by_one(), &files(&out)), Ok(()), "{options}");
+        let run = json_of(&out.join("run.json"));
+        assert_eq!((&run["method"], &run["method_chosen"], &run["engine"]), (&"bounds".into(), &"asked for".into(), &"cpu".into()));
+        assert_certified(&run);
+    }
+}
+
+#[test]
+fn auto_says_why() {
+    let folder = folder_with("grid.toml", &for_bounds(SMALL));
+    write(folder.path(), "small.toml", SMALL);
+    let chosen = |line: &str| {
+        ask(folder.path(), &format!("sweep {line} --out out --force")).text();
+        let run = json_of(&folder.path().join("out/run.json"));
+        let word = |name: &str| run[name].as_str().expect("it is said").to_owned();
+        assert_eq!(run["certificate"].is_null(), run["method"] == "exhaustive", "{run}");
+        (word("method"), word("method_chosen"))
+    };
+    let small = ("exhaustive".to_owned(), "the study is small enough to judge every design".to_owned());
+    assert_eq!(chosen("grid.toml"), small);
+    assert_eq!(chosen("grid.toml --method auto"), small);
+    let (method, why) = chosen("small.toml");
+    assert!(method == "exhaustive" && why.starts_with("bounds cannot serve the study: histograms in [report]"), "{why}");
+}
+
+/// The plain grid of the repository on so many levels that one thread would judge every design for a while.
+#[test]
+fn auto_takes_bounds_where_every_design_takes_long() {
+    if !crate::pipeline::full() {
+        return;
+    }
+    let text = read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("studies/metal-grid.toml"));
+    let folder = folder_with("grid.toml", &changed(&text, &[("count = 37", "count = 97")]));
+    ask(folder.path(), "sweep grid.toml --threads 1 --engine cpu --out out --quiet --no-report").text();
+    let run = json_of(&folder.path().join("out/run.json"));
+    let why = run["method_chosen"].as_str().expect("it is said");
+    assert!(run["method"] == "bounds" && why.starts_with("judging every design would take about "), "{why}");
+}
+
+#[test]
+fn shards_by_either_method_merge_to_the_same_files() {
+    let folder = folder_with("grid.toml", &for_bounds(SMALL));
+    for methods in [["bounds"; 3], ["bounds", "exhaustive", "bounds"]] {
+        let mut parts = Vec::new();
+        for (at, method) in methods.iter().enumerate() {
+            let part = format!("part-{}", at + 1);
+            let line = format!("sweep grid.toml --shard {}/3 --out {part} --method {method} --threads {} --force", at + 1, 1 + at % 2);
+            ask(folder.path(), &line).text();
+            assert!(!folder.path().join(&part).join("summary.json").exists(), "a part is no result");
+            parts.push(part);
+        }
+        parts.reverse();
+        ask(folder.path(), &format!("merge {} --out whole --force", parts.join(" "))).text();
+        assert_eq!(same_result(one_by_one(), &files(&folder.path().join("whole"))), Ok(()), "{methods:?}");
+    }
+    // What has finished by one method is finished for the other.
+    for method in ["bounds", "exhaustive"] {
+        ask(folder.path(), &format!("sweep grid.toml --shard 1/3 --out part-1 --resume --method {method}")).text();
+    }
+}
+
+/// Ctrl-C while boxes are bounded: what is kept serves the other method too.
+#[cfg(unix)]
+#[test]
+fn a_run_by_bounds_that_is_interrupted_goes_on_design_by_design() {
+    let folder = folder_with("large.toml", &for_bounds(&larger(41)));
+    ask(folder.path(), "sweep large.toml --method exhaustive --out plain").text();
+    let manifest = folder.path().join("out/checkpoint/manifest.json");
+    // Before the boxes comes a sample, of which nothing is kept: then once more, and later.
+    let mut patience = Duration::from_millis(200);
+    loop {
+        interrupt(folder.path(), &manifest, patience);
+        if json_of(&manifest)["manifest"]["state"][0].is_string() {
+            break;
+        }
+        patience += patience / 2;
+    }
+    ask(folder.path(), "sweep large.toml --method exhaustive --out out --resume").text();
+    let run = json_of(&folder.path().join("out/run.json"));
+    assert_eq!(run["method"], "exhaustive");
+    assert_eq!(same_result(&files(&folder.path().join("plain")), &files(&folder.path().join("out"))), Ok(()));
+}
+
+/// Begins a run by bounds and interrupts it so long after its checkpoint is there.
+#[cfg(unix)]
+fn interrupt(folder: &Path, manifest: &Path, patience: Duration) {
+    let words = ["sweep", "large.toml", "--method", "bounds", "--threads", "1", "--out", "out", "--force"];
+    let _ = std::fs::remove_dir_all(folder.join("out"));
+    let mut child = super::program(folder, &words).spawn().expect("the program starts");
+    let begun = Instant::now();
+    while !manifest.exists() && begun.elapsed() < Duration::from_secs(60) {
+        assert!(child.try_wait().expect("it can be asked").is_none(), "it ended before it could be interrupted");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    std::thread::sleep(patience);
+    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill can be run");
+    assert!(sent.success(), "it ended before it could be interrupted");
+    let err = super::Answer::from(child.wait_with_output().expect("the output can be read")).refusal(1);
+    assert!(err.contains("stopped") && err.contains("--resume") && !folder.join("out/summary.json").exists(), "{err}");
+}
