@@ -123,7 +123,11 @@ impl Axes {
         for axis in (1..count).rev() {
             steps[axis - 1] = steps[axis] * designs[axis].0.count();
         }
-        Some(Self { all: designs.into_iter().chain(scenarios).map(|(dimension, stride)| axis(plan, dimension, stride)).collect(), designs: count, steps })
+        Some(Self {
+            all: designs.into_iter().chain(scenarios).map(|(dimension, stride)| axis(plan, dimension, stride)).collect(),
+            designs: count,
+            steps,
+        })
     }
 }
 
@@ -213,9 +217,11 @@ impl Axes {
 
 fn axis(plan: &Plan, dimension: &Dimension, stride: u64) -> Axis {
     let inputs = dimension.inputs().to_vec();
-    let own: Vec<Vec<f64>> = (0..inputs.len()).map(|column| (0..dimension.count()).map(|level| dimension.value(column, level)).collect()).collect();
+    let own: Vec<Vec<f64>> =
+        (0..inputs.len()).map(|column| (0..dimension.count()).map(|level| dimension.value(column, level)).collect()).collect();
     let table = plan.study.model.inputs;
-    let si: Vec<Vec<f64>> = inputs.iter().zip(&own).map(|(&input, own)| own.iter().map(|&value| input_to_si(&table[input], value)).collect()).collect();
+    let si: Vec<Vec<f64>> =
+        inputs.iter().zip(&own).map(|(&input, own)| own.iter().map(|&value| input_to_si(&table[input], value)).collect()).collect();
     let ordered = own.iter().chain(&si).all(|values| values.is_sorted() || values.iter().rev().is_sorted());
     let least_step = si[0].windows(2).map(|it| (it[1] - it[0]).abs()).fold(f64::INFINITY, f64::min);
     Axis { inputs, own, si, ordered, least_step, stride }

@@ -83,7 +83,17 @@ impl<'t, R: Boxed> Runner<'t, R> {
                 _ => {}
             }
         }
-        Self { tape, axes, alone, kept: (0..axes.all.len()).map(|_| HashMap::new()).collect(), now: [None; AXES], clock: 1, turned: [0; AXES], computed: vec![0; slots.len()], slots }
+        Self {
+            tape,
+            axes,
+            alone,
+            kept: (0..axes.all.len()).map(|_| HashMap::new()).collect(),
+            now: [None; AXES],
+            clock: 1,
+            turned: [0; AXES],
+            computed: vec![0; slots.len()],
+            slots,
+        }
     }
 
     /// Computes what `asked` needs over a box.

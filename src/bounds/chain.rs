@@ -120,7 +120,8 @@ fn follow(
         found(node, path);
     }
     *looked += 1;
-    if path.len() == LONGEST || *looked > MOST {
+    // Of what depends on one axis alone, only what others read is tabulated.
+    if path.len() == LONGEST || *looked > MOST || tape.axes[node as usize].is_power_of_two() {
         return;
     }
     match tape.operations[node as usize] {

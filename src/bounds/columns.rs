@@ -61,7 +61,8 @@ impl<'t> Columns<'t> {
     /// An evaluator of a tape.
     pub fn new(tape: &'t Tape, axes: &'t Axes) -> Self {
         let count = tape.operations.len();
-        let own_axis = |node: usize| (!tape.inner[node] && tape.axes[node].is_power_of_two()).then(|| tape.axes[node].trailing_zeros() as usize);
+        let own_axis =
+            |node: usize| (!tape.inner[node] && tape.axes[node].is_power_of_two()).then(|| tape.axes[node].trailing_zeros() as usize);
         let mut alone = vec![Vec::new(); axes.all.len()];
         (0..count).for_each(|node| {
             if let Some(axis) = own_axis(node) {

@@ -102,7 +102,7 @@ impl<'t> Counter<'t> {
             requirements,
             bounder: Bounder::new(tape, axes),
             columns: Columns::new(tape, axes),
-            pairs: Pairs::new(tape, axes),
+            pairs: Pairs::new(tape, axes, stop),
             stop,
             settled: Settled::default(),
         }
@@ -174,7 +174,7 @@ impl<'t> Counter<'t> {
             && let Some(found) = self.count_pairs(&reduced, &open, exhaustive)
         {
             settle(&mut self.settled.pairs, size);
-            return Some(free * found);
+            return (!self.stop.load(Ordering::Relaxed)).then_some(free * found);
         }
         let axis = self.axis_to_cut(&reduced, &open, &pull);
         let mut total = 0;

@@ -35,7 +35,7 @@ use requirement::{Source, Test, requirements};
 use search::{Limit, Product, Search, Target};
 use serde_json::{Value, json};
 use std::ops::Range;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use tape::{Merit, Tape};
 
 /// Why bounds cannot serve a study: something that asks about every design; `None` if they can.
@@ -130,7 +130,8 @@ impl Layout {
         front.into_iter().chain(top).chain(extremes).collect()
     }
 
-    /// Searches a range of positions and takes what it finds into `found`; `None` if it was stopped.
+    /// Searches a range of positions and takes what it finds into `found`; `None` if it was stopped, or the front grew far beyond its
+    /// budget.
     #[allow(clippy::too_many_arguments, reason = "what a search needs")]
     pub fn search(
         &self,
@@ -146,10 +147,10 @@ impl Layout {
         let roots = self.axes.boxes(range);
         let targets = self.targets(plan, sought);
         if let Sought::Extreme { objective, largest } = sought
-            && let Some(searched) = self.extreme_of_pairs(reduction, objective, largest, &targets[0], &roots, workers, found)
+            && let Some(searched) = self.extreme_of_pairs(reduction, objective, largest, &targets[0], &roots, workers, found, stop)
         {
             progress(range.end - range.start);
-            return Some(searched);
+            return (!stop.load(Ordering::Relaxed)).then_some(searched);
         }
         let search = Search {
             axes: &self.axes,
@@ -162,6 +163,7 @@ impl Layout {
             product: (sought == Sought::Front).then(|| self.product(plan)).flatten(),
             effort: plan.effort(),
             row: plan.fast.count(),
+            most_points: plan.study.report.front_budget.saturating_mul(4),
         };
         search.run(&roots, workers, found)
     }
@@ -240,6 +242,7 @@ impl Layout {
         roots: &[Spans],
         workers: &mut [Worker<'_>],
         found: &mut Reducers,
+        stop: &AtomicBool,
     ) -> Option<Searched> {
         let Source::Node(node, _) = target.asked.source else { return None };
         let cuts = |it: &&Bounded| it.requirement.source == target.asked.source && matches!(it.requirement.test, Test::High(..)) == largest;
@@ -253,7 +256,8 @@ impl Layout {
         let mut searched = Searched::default();
         let held = if largest { found.extremes.largest[objective] } else { found.extremes.least[objective] };
         let beyond = if largest { f64::NEG_INFINITY } else { f64::INFINITY };
-        let mut best = held.map_or(Best { largest, value: beyond, index: u64::MAX }, |it| Best { largest, value: it.value, index: it.index });
+        let mut best =
+            held.map_or(Best { largest, value: beyond, index: u64::MAX }, |it| Best { largest, value: it.value, index: it.index });
         let mut planned = Vec::new();
         for spans in roots {
             searched.boxes += 1;
@@ -278,7 +282,7 @@ impl Layout {
             let parts = pairing.parts(&spans, workers.len());
             let count = |part: &Spans| {
                 let mut own = best;
-                let mut pairs = Pairs::new(&self.tape, &self.axes);
+                let mut pairs = Pairs::new(&self.tape, &self.axes, stop);
                 pairs.count(&pairing, part, &instances, Some((open.len(), &mut own)));
                 (own, pairs.evaluated)
             };
@@ -293,6 +297,9 @@ impl Layout {
                 }
             }
             searched.pairs += self.axes.count(&spans);
+        }
+        if stop.load(Ordering::Relaxed) {
+            return Some(searched);
         }
         if best.index < u64::MAX && held.is_none_or(|held| held.index != best.index) {
             let mut reducers = reduction.start();

@@ -11,6 +11,7 @@ use super::requirement::{Requirement, Source};
 use super::sorted::Buckets;
 use super::tape::Tape;
 use crate::real::trace::Node;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Most members of the first group's list: they are held in memory.
 const LIST: u64 = 1 << 22;
@@ -187,12 +188,13 @@ pub struct Pairs<'t> {
     members: Vec<u32>,
     /// Evaluations so far, of members of either group.
     pub evaluated: u64,
+    stop: &'t AtomicBool,
 }
 
 impl<'t> Pairs<'t> {
-    /// A counter for a tape.
-    pub fn new(tape: &'t Tape, axes: &'t Axes) -> Self {
-        Self { tape, axes, columns: Columns::new(tape, axes), members: Vec::new(), evaluated: 0 }
+    /// A counter for a tape; what it says after `stop` was set means nothing.
+    pub fn new(tape: &'t Tape, axes: &'t Axes, stop: &'t AtomicBool) -> Self {
+        Self { tape, axes, columns: Columns::new(tape, axes), members: Vec::new(), evaluated: 0, stop }
     }
 
     /// How many designs of a box satisfy all instances; looks for the `best` value of the number in role `goal` on the way, if asked to.
@@ -205,7 +207,7 @@ impl<'t> Pairs<'t> {
             total += self.count_at(pairing, &at, instances, best.as_mut().map(|(role, best)| (*role, &mut **best)));
             let mut rest = pairing.outer.iter().rev();
             loop {
-                let Some(&axis) = rest.next() else { return total };
+                let Some(&axis) = rest.next().filter(|_| !self.stop.load(Ordering::Relaxed)) else { return total };
                 if at[axis].low < spans[axis].high {
                     at[axis] = Span::at(at[axis].low + 1);
                     break;
@@ -269,7 +271,8 @@ impl<'t> Pairs<'t> {
         let mut alive = vec![true; size];
         for (number, scenario) in scenarios.iter().enumerate() {
             let here: Vec<&Instance<'_>> = instances.iter().filter(|it| same_scenario(&it.scenario, scenario, self.axes)).collect();
-            let masks: Vec<&Requirement> = here.iter().filter(|it| pairing.roles[it.role] == Role::First).map(|it| it.requirement).collect();
+            let masks: Vec<&Requirement> =
+                here.iter().filter(|it| pairing.roles[it.role] == Role::First).map(|it| it.requirement).collect();
             let roles = here.iter().map(|it| it.role).chain(goal.filter(|_| number == 0));
             let mut starts: Vec<Node> = Vec::new();
             for role in roles {
@@ -282,7 +285,12 @@ impl<'t> Pairs<'t> {
             let asked = masks.iter().filter_map(|it| if let Source::Node(node, _) = it.source { Some(node) } else { None });
             let needed = self.tape.needed_by(&asked.chain(starts.iter().copied()).collect::<Vec<_>>());
             let from = channels.len();
-            channels.extend(starts.iter().map(|&node| Channel { node, scenario: number, values: Vec::with_capacity(size), ..Channel::default() }));
+            channels.extend(starts.iter().map(|&node| Channel {
+                node,
+                scenario: number,
+                values: Vec::with_capacity(size),
+                ..Channel::default()
+            }));
             self.columns.enter(&needed, &with_scenario(spans, scenario, self.axes), &pairing.first);
             self.evaluated += size as u64;
             for first in (0..size).step_by(CHUNK) {
@@ -348,7 +356,8 @@ impl<'t> Pairs<'t> {
             let masks: Vec<&Requirement> =
                 instances.iter().filter(here).filter(|it| pairing.roles[it.role] == Role::Second).map(|it| it.requirement).collect();
             if !masks.is_empty() {
-                let asked: Vec<Node> = masks.iter().filter_map(|it| if let Source::Node(node, _) = it.source { Some(node) } else { None }).collect();
+                let asked: Vec<Node> =
+                    masks.iter().filter_map(|it| if let Source::Node(node, _) = it.source { Some(node) } else { None }).collect();
                 let needed = self.tape.needed_by(&asked);
                 self.columns.enter(&needed, &with_scenario(spans, scenario, self.axes), &pairing.second);
                 self.evaluated += size as u64;
@@ -435,7 +444,10 @@ impl<'t> Pairs<'t> {
                 (Some(only), None, true) => channels[only].within(limits[only]),
                 _ => {
                     let all = 0..self.members.len();
-                    all.filter(|&at| is_inside(channels, &limits, at) && self.is_clear(pairing, instances, channels, links, &unclear, member, at)).count() as u64
+                    all.filter(|&at| {
+                        is_inside(channels, &limits, at) && self.is_clear(pairing, instances, channels, links, &unclear, member, at)
+                    })
+                    .count() as u64
                 }
             };
             total += found;
@@ -461,7 +473,16 @@ impl<'t> Pairs<'t> {
 
     /// Does a pair satisfy what no threshold was found for?
     #[allow(clippy::too_many_arguments, reason = "all that was listed before")]
-    fn is_clear(&self, pairing: &Pairing, instances: &[Instance<'_>], channels: &[Channel], links: &[Link], unclear: &[usize], member: usize, at: usize) -> bool {
+    fn is_clear(
+        &self,
+        pairing: &Pairing,
+        instances: &[Instance<'_>],
+        channels: &[Channel],
+        links: &[Link],
+        unclear: &[usize],
+        member: usize,
+        at: usize,
+    ) -> bool {
         unclear.iter().all(|&number| {
             let link = &links[number];
             let Role::Both(chain) = &pairing.roles[instances[link.instance].role] else { return true };
@@ -542,7 +563,9 @@ impl Channel {
 }
 
 fn is_inside(channels: &[Channel], limits: &[(f64, f64)], at: usize) -> bool {
-    channels.iter().zip(limits).all(|(channel, (low, high))| channel.values[at] >= *low && channel.values[at] <= *high || *low == f64::NEG_INFINITY && *high == f64::INFINITY)
+    channels.iter().zip(limits).all(|(channel, (low, high))| {
+        channel.values[at] >= *low && channel.values[at] <= *high || *low == f64::NEG_INFINITY && *high == f64::INFINITY
+    })
 }
 
 /// The last number on the way from a good to a bad one that is good, for a function that rises or falls all the way; both come with

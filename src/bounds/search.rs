@@ -155,6 +155,8 @@ pub struct Search<'a> {
     pub effort: Effort,
     /// Designs of a row.
     pub row: u64,
+    /// Points of a front at which it is given up.
+    pub most_points: u64,
 }
 
 /// What a thread works with.
@@ -204,7 +206,7 @@ impl View {
 }
 
 impl Search<'_> {
-    /// Searches boxes and takes what it finds into `found`; `None` if it was stopped.
+    /// Searches boxes and takes what it finds into `found`; `None` if it was stopped or given up.
     pub fn run(&self, roots: &[Spans], workers: &mut [Worker<'_>], found: &mut Reducers) -> Option<Searched> {
         let root = |spans: &Spans| Waiting {
             spans: *spans,
@@ -219,7 +221,7 @@ impl Search<'_> {
                 batches.push(std::mem::replace(&mut batch, now));
             }
             let (next, settled) = self.look_at(&batch, workers, found);
-            if self.stop.load(Ordering::Relaxed) {
+            if self.stop.load(Ordering::Relaxed) || found.front.len() as u64 > self.most_points {
                 return None;
             }
             (self.progress)(settled.designs());
@@ -262,7 +264,13 @@ impl Search<'_> {
         (next, settled)
     }
 
-    fn look_at_part(&self, part: &[Waiting], worker: &mut Worker<'_>, rival: &Rival<'_>, is_first: bool) -> (Vec<Waiting>, Searched, Reducers) {
+    fn look_at_part(
+        &self,
+        part: &[Waiting],
+        worker: &mut Worker<'_>,
+        rival: &Rival<'_>,
+        is_first: bool,
+    ) -> (Vec<Waiting>, Searched, Reducers) {
         let mut settled = Searched::default();
         let mut next = Vec::new();
         let mut reducers = self.reduction.start();
@@ -405,7 +413,8 @@ impl Search<'_> {
 
     fn leaf_or_cut(&self, now: Waiting, view: &View) -> Fate {
         let size = self.axes.count(&now.spans);
-        let places: u64 = self.axes.steps.iter().zip(&now.spans.0).filter(|(step, _)| **step < self.row).map(|(_, span)| span.count()).product();
+        let places: u64 =
+            self.axes.steps.iter().zip(&now.spans.0).filter(|(step, _)| **step < self.row).map(|(_, span)| span.count()).product();
         let rows = (size / places) as f64;
         let time = rows * self.effort.prepare + size as f64 * (self.effort.finish + DESIGN) + places as f64 * PLACE;
         // A single row has nothing in common with others that bounds could use.

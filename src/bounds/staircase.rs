@@ -95,7 +95,12 @@ mod tests {
         let (mut none, mut some) = (0, 0);
         for round in 0..300 {
             // Points (-a, b): a is to be large, b to be small, and a/b is at most 1 or so.
-            let mut all: Vec<(f64, f64)> = (0..40).map(|i| { let b = number(round * 100 + i); (-b * (1.0 - (mix(round * 100 + i + 50) % 100) as f64 / 400.0), b) }).collect();
+            let mut all: Vec<(f64, f64)> = (0..40)
+                .map(|i| {
+                    let b = number(round * 100 + i);
+                    (-b * (1.0 - (mix(round * 100 + i + 50) % 100) as f64 / 400.0), b)
+                })
+                .collect();
             all.sort_by(|x, y| x.partial_cmp(y).expect("they are numbers"));
             let mut points = Points::default();
             let mut best = f64::INFINITY;

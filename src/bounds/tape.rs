@@ -144,14 +144,24 @@ impl Tape {
                 Operation::Root(number) => {
                     let root = &mut tape.roots[number as usize];
                     let Root { bracket, start, argument, value, slope } = root.root;
-                    root.root = Root { bracket: (at(bracket.0), at(bracket.1)), start: at(start), argument: at(argument), value: at(value), slope: at(slope) };
+                    root.root = Root {
+                        bracket: (at(bracket.0), at(bracket.1)),
+                        start: at(start),
+                        argument: at(argument),
+                        value: at(value),
+                        slope: at(slope),
+                    };
                     let Root { bracket, start, value, slope, .. } = root.root;
                     for node in [bracket.0, bracket.1, start, value, slope] {
                         depends |= tape.axes[node as usize];
                         within |= arguments[node as usize];
                     }
                     within &= !(1 << number);
-                    root.inner = (0..new).filter(|&node| arguments[node as usize] >> number & 1 == 1 && tape.operations[node as usize] != Operation::Argument(number)).collect();
+                    root.inner = (0..new)
+                        .filter(|&node| {
+                            arguments[node as usize] >> number & 1 == 1 && tape.operations[node as usize] != Operation::Argument(number)
+                        })
+                        .collect();
                 }
                 other => other.operands(|operand| {
                     depends |= tape.axes[operand as usize];

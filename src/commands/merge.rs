@@ -43,7 +43,7 @@ pub fn run(request: &cli::Merge) -> Result<()> {
         origin: format!("merged from {count} shards; the time is that of merging"),
         certified: outcome.front.len() + outcome.top.len(),
         device: None,
-        method: MethodRecord { certificate: None, why: "the shards were judged before".to_owned() },
+        method: MethodRecord { name: "merge", why: "the shards were judged before, each by its own method".to_owned(), certificate: None },
     };
     outcome.write(&request.out, &text, &record)?;
     let page = if request.no_report {

@@ -27,7 +27,9 @@ pub fn choose(plan: &Plan, method: Method, engine: Engine, adapter: Option<&str>
             Err(Error::Request(format!("--method bounds judges on the processor, but {what} was asked for; leave one of them out")))
         }
         Method::Bounds => match refusal(plan) {
-            Some(why) => Err(Error::Request(format!("--method bounds cannot serve this study: {why}; use --method exhaustive, or change the study"))),
+            Some(why) => {
+                Err(Error::Request(format!("--method bounds cannot serve this study: {why}; use --method exhaustive, or change the study")))
+            }
             None => Ok(Chosen { bounds: true, why: "asked for".to_owned() }),
         },
         Method::Auto if wants_a_gpu => exhaustive("a GPU was asked for, and bounds are found on the processor".to_owned()),

@@ -3,9 +3,9 @@
 use super::{engine, method, read_study, report as page, threads};
 use crate::cli;
 use crate::terminal::{self, progress::Bar, report};
+use beltspace::bounds::Certificate;
 use beltspace::checkpoint::{Checkpoint, replace};
 use beltspace::error::{Error, Result};
-use beltspace::bounds::Certificate;
 use beltspace::export::{CHECKPOINT, MARK, MethodRecord, Outcome, RunRecord, in_the_way};
 use beltspace::plan::Plan;
 use beltspace::reduce::Reduction;
@@ -71,7 +71,7 @@ pub fn run(request: &cli::Sweep) -> Result<()> {
         origin,
         certified: outcome.front.len() + outcome.top.len(),
         device: device.zip(did).map(|(device, did)| describe_device(&device, &did)),
-        method: MethodRecord { certificate, why: method.why },
+        method: MethodRecord { name: if method.bounds { "bounds" } else { "exhaustive" }, why: method.why, certificate },
     };
     outcome.write(&out, &text, &record)?;
     checkpoint.remove()?;

@@ -148,17 +148,12 @@ pub struct RunRecord {
 /// How designs were judged, and why so.
 #[derive(Clone, Debug)]
 pub struct MethodRecord {
-    /// By bounds? Then, what settled the designs.
-    pub certificate: Option<Certificate>,
+    /// Its name on the command line; of merged shards, each had its own.
+    pub name: &'static str,
     /// Why.
     pub why: String,
-}
-
-impl MethodRecord {
-    /// Its name on the command line.
-    pub fn name(&self) -> &'static str {
-        if self.certificate.is_some() { "bounds" } else { "exhaustive" }
-    }
+    /// Of bounds: what settled the designs.
+    pub certificate: Option<Certificate>,
 }
 
 impl RunRecord {
@@ -173,7 +168,7 @@ impl RunRecord {
         json!({
             "program": concat!("beltspace ", env!("CARGO_PKG_VERSION")),
             "engine": self.engine,
-            "method": self.method.name(),
+            "method": self.method.name,
             "method_chosen": self.method.why,
             "origin": self.origin,
             "threads": self.threads,

@@ -55,10 +55,10 @@ pub fn sweep_by_bounds(
     let searched = search(plan, tables, reduction, options, &layout, &whole, &mut work, control, &mut certificate);
     let state = work.reducers.state();
     work.save(&state)?;
+    check_budget(plan, &state)?;
     if !searched {
         return Err(stopped());
     }
-    check_budget(plan, &state)?;
     let passes = Layout::sought(plan).len() as u64 + 1;
     let work = Mutex::new(work);
     let settled: Vec<Settled> = std::thread::scope(|scope| {
@@ -175,7 +175,15 @@ fn adds_up(certificate: &Certificate, counted: u64, searched: u64) -> Result<()>
 }
 
 /// Judges random ranges design by design: the count must be the same, and no design may be better than what was found.
-fn compare(plan: &Plan, tables: &Tables, reduction: &Reduction, layout: &Layout, whole: &Range<u64>, state: &State, control: &Control) -> Result<u64> {
+fn compare(
+    plan: &Plan,
+    tables: &Tables,
+    reduction: &Reduction,
+    layout: &Layout,
+    whole: &Range<u64>,
+    state: &State,
+    control: &Control,
+) -> Result<u64> {
     let size = whole.end - whole.start;
     let affordable = (COMPARED_TIME / plan.seconds_per_design().max(1e-12)) as u64;
     let length = COMPARED.min(size / COMPARED_RANGES).min(affordable / COMPARED_RANGES).max(1).min(size);
@@ -194,7 +202,9 @@ fn compare(plan: &Plan, tables: &Tables, reduction: &Reduction, layout: &Layout,
         }
         if known.feasible - before != counted {
             let judged = known.feasible - before;
-            return Err(Error::Certificate(format!("at positions {range:?} bounds counted {counted} feasible designs, one by one they are {judged}")));
+            return Err(Error::Certificate(format!(
+                "at positions {range:?} bounds counted {counted} feasible designs, one by one they are {judged}"
+            )));
         }
         compared += length;
     }

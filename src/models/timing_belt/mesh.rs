@@ -276,8 +276,10 @@ pub fn boundaries<R: Real>(rows: &Rows<R>, e: &Elimination<R>, complete: &Comple
         boundaries[j - 1] = [star, first, own, before, force_last.over(rows.lifted_flank)];
     }
     // Without a boundary: the complete mesh; T* has no meaning there.
+    let (first, mut last) = (complete.load[0], complete.load[0]);
     for j in 2..=teeth + 1 {
-        let (first, last) = (complete.load[0], complete.load[j - 2]);
+        // Beyond the last tooth, its load stays the last.
+        last = if j == 2 { last } else { Linear::select(rows.reaches_last(j - 2), last, complete.load[j - 2]) };
         let of_complete = [none, first, first, last, last];
         let is_none = rows.reaches_last(j - 1);
         for (value, complete) in boundaries[j - 1].iter_mut().zip(of_complete) {

@@ -227,6 +227,7 @@ impl Formula for TimingBelt {
                 part += 1;
             }
         }
+        boundary_tooth = boundary_tooth.min(p.teeth.plus_whole(one));
         out[OUT.boundary_tooth] = boundary_tooth;
         out[OUT.incomplete_teeth] = p.teeth.plus_whole(one).plus_whole(-boundary_tooth);
         let inside = boundary_tooth - one + before / (before - at);
@@ -261,7 +262,8 @@ fn walk<R: Real>(p: &Prepared<R>, i: &Inputs<R>, prepared: &[R::Shared], force: 
         boundary_tooth = boundary_tooth.plus_whole(meshes);
         tooth += 1;
     }
-    boundary_tooth
+    // Where others have more teeth, the walk goes on over some that never lift.
+    boundary_tooth.min(p.teeth.plus_whole(one))
 }
 
 /// What both tensions do to a part of boundary number `at` + 1.

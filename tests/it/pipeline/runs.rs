@@ -109,7 +109,7 @@ impl<'p> Pipeline<'p> {
             origin: "a test".to_owned(),
             certified: outcome.front.len() + outcome.top.len(),
             device: None,
-            method: MethodRecord { certificate: None, why: "a test".to_owned() },
+            method: MethodRecord { name: "exhaustive", why: "a test".to_owned(), certificate: None },
         };
         outcome.write(folder, self.text, &record).expect("a result can be written");
         files(folder)
