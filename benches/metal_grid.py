@@ -67,7 +67,7 @@ def with_numpy(ax):
     return count, best[moocore.is_nondominated(best)]
 
 
-@nb.njit(parallel=True, fastmath=True)
+@nb.njit(parallel=True, fastmath=True, cache=True)
 def _slab(mu, a, r1, r2, w1, w2, h, n, cap, force):
     total = 0
     for q in nb.prange(len(a)):
@@ -106,7 +106,7 @@ def with_numba(ax):
     return count, best[moocore.is_nondominated(best)]
 
 
-@nb.njit(parallel=True, fastmath=True)
+@nb.njit(parallel=True, fastmath=True, cache=True)
 def _rows(mu, a, r1, r2, w1, w2, h, n, ceiling, coarse, start, cap, force, survivors):
     """One friction: counts feasible designs, and per row (angle, ratio) those that `ceiling` does not rule out. ceiling[b] is the
     largest capacity known at a force below bin b, `coarse` the same of fewer bins. With `start`, writes the survivors of each row
