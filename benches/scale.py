@@ -61,7 +61,7 @@ def run_peer(name, levels, folder, limit):
     command = [sys.executable, __file__, "--peer", name, str(levels), str(file)]
     # The time limit is that of the work: loading and compiling come on top.
     try:
-        told = subprocess.run(command, check=True, stdout=subprocess.PIPE, timeout=limit + 60).stdout
+        told = subprocess.run(command, check=True, stdout=subprocess.PIPE, timeout=limit + 30).stdout
     except subprocess.TimeoutExpired:
         return {"stopped_after": limit}, None
     except subprocess.CalledProcessError as error:
@@ -110,7 +110,7 @@ def compare(designs, rows, fronts, folders, problems):
         for file in differences(reference, out):
             problems.append(f"{designs} designs: {file} differs between {first} and {name}")
     worst = 0.0
-    if reference is not None:
+    if reference is not None and fronts:
         ours = measures.front_of(reference)
         for name, theirs in fronts.items():
             if ours.shape == theirs.shape:
@@ -288,6 +288,18 @@ def left_out(record):
     return lines
 
 
+def cvt_page(record):
+    force, stress, slip = record["resolutions"]
+    lines = [f"`metal-cvt`, refined, each design in 434 scenarios, without histograms and maps, which bounds cannot give; a front of four "
+             f"objectives in steps of {force:g} N, {stress:g} and {slip:g} (stress and slip margin):", ""]
+    lines += table_of_times(record["cvt"], record["fits"]["cvt"]) + [""]
+    lines += table_of_bounds(record["cvt"], record["fits"]["cvt"]) + [""]
+    ended = [study for study in record["cvt"] if "seconds" in study["methods"]["bounds"]]
+    if ended:
+        lines += [f"What settled the {ended[-1]['designs']:.2e} designs: {words_of_rules(ended[-1])}.", ""]
+    return lines
+
+
 def page(record):
     """What is printed, and stands in results/bench/scale.md and in the README."""
     lines = [f"{record['machine']}, {record['cores']} cores, {record['memory_GB']:.0f} GB, {record['date']}; {', '.join(record['versions'])}.", "",
@@ -298,14 +310,8 @@ def page(record):
     ended = [study for study in record["grid"] if "seconds" in study["methods"]["bounds"]]
     if ended:
         lines += [f"What settled the {ended[-1]['designs']:.2e} designs: {words_of_rules(ended[-1])}.", ""]
-    force, stress, slip = record["resolutions"]
-    lines += [f"`metal-cvt`, refined, each design in 434 scenarios, without histograms and maps, which bounds cannot give; a front of four "
-              f"objectives in steps of {force:g} N, {stress:g} and {slip:g} (stress and slip margin):", ""]
-    lines += table_of_times(record["cvt"], record["fits"]["cvt"]) + [""]
-    lines += table_of_bounds(record["cvt"], record["fits"]["cvt"]) + [""]
-    ended = [study for study in record["cvt"] if "seconds" in study["methods"]["bounds"]]
-    if ended:
-        lines += [f"What settled the {ended[-1]['designs']:.2e} designs: {words_of_rules(ended[-1])}.", ""]
+    if record["cvt"]:
+        lines += cvt_page(record)
     lines += [f"Where methods meet, counts and fronts are the same, our files to the byte, values of the others within "
               f"{max(study['largest_difference'] for study in record['grid']):.0e}." if not record["problems"] else "METHODS DISAGREE:"]
     lines += [f"- {it}" for it in record["problems"]] + [""]
@@ -335,6 +341,12 @@ def versions(record):
     own = {row["program"] for row in rows if "program" in row} | {row["driver"] for row in rows if "driver" in row}
     return [*sorted(own), version_of(["rustc", "-V"]).split(" (")[0], f"Python {platform.python_version()}", f"numpy {np.__version__}",
             f"numba {numba.__version__}", f"moocore {moocore.__version__}"]
+
+
+def conclude(record):
+    record["fits"] = {name: fits(record[name]) for name in ("grid", "cvt")}
+    record["versions"] = versions(record)
+    return record
 
 
 def write(record, out, readme):
@@ -374,10 +386,14 @@ def main():
                   "memory_GB": os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 1e9,
                   "command": "benches/scale" + "".join(f" --{name}" for name in ("short", "long") if getattr(given, name)),
                   "limit_seconds": given.limit, "resolutions": given.resolutions}
-        record["grid"] = [grid(given.program, levels, given.long, given.limit, folder, problems) for levels in ((16, 31) if given.short else LEVELS)]
-        record["cvt"] = [cvt(given.program, levels, given.resolutions, given.limit, folder, problems) for levels in (CVT_LEVELS[:1] if given.short else CVT_LEVELS)]
-        record["fits"] = {name: fits(record[name]) for name in ("grid", "cvt")}
-        record["versions"], record["problems"] = versions(record), problems
+        record["grid"], record["cvt"], record["problems"] = [], [], problems
+        # Written after each size: a run of half an hour that is stopped leaves what it has.
+        for levels in (16, 31) if given.short else LEVELS:
+            record["grid"].append(grid(given.program, levels, given.long, given.limit, folder, problems))
+            write(conclude(record), out, False)
+        for levels in CVT_LEVELS[:1] if given.short else CVT_LEVELS:
+            record["cvt"].append(cvt(given.program, levels, given.resolutions, given.limit, folder, problems))
+            write(conclude(record), out, False)
         print(write(record, out, given.readme), end="")
     if problems:
         sys.exit("methods disagree")
