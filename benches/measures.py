@@ -5,6 +5,7 @@ Counts, fronts and values are compared, not only times: a disagreement ends the 
 import argparse
 import csv
 import json
+import math
 import os
 import platform
 import statistics
@@ -29,29 +30,44 @@ STUDY = Path("studies/metal-grid.toml").read_text()
 FLOOR = 67e9 / 130
 
 
-def peak_of(process):
-    """Largest resident memory of a running process in MB, as the kernel keeps it; rusage would count the parent it was forked from."""
-    peak = 0
+def largest_memory(process):
+    """Largest resident memory so far of a process in MB, as the kernel keeps it; rusage would count the parent it was forked from."""
+    lines = Path(f"/proc/{process}/status").read_text().splitlines()
+    return max([int(line.split()[1]) / 1024 for line in lines if line.startswith("VmHWM")], default=0)
+
+
+def peak_of(process, limit=math.inf):
+    """Largest resident memory of a running process in MB, when it has ended; None if it did not end within so many seconds and
+    was killed."""
+    peak, start = 0, time.monotonic()
     while process.poll() is None:
+        if time.monotonic() - start > limit:
+            process.kill()
+            process.wait()
+            return None
         try:
-            lines = Path(f"/proc/{process.pid}/status").read_text().splitlines()
-            peak = max([peak] + [int(line.split()[1]) for line in lines if line.startswith("VmHWM")])
+            peak = max(peak, largest_memory(process.pid))
         except OSError:
             pass
-        time.sleep(0.02)
-    if process.returncode:
-        sys.exit(f"{process.args}: exit code {process.returncode}")
-    return peak / 1024
+        try:
+            process.wait(0.02)
+        except subprocess.TimeoutExpired:
+            pass
+    return peak
 
 
 def sweep(program, levels, folder, engine="cpu"):
-    """Sweeps metal-grid with so many levels per axis on an engine; returns the result directory, the wall time of the whole command
-    and its peak memory in MB."""
+    """Sweeps metal-grid with so many levels per axis on an engine, design by design; returns the result directory, the wall
+    time of the whole command and its peak memory in MB."""
     study = folder / f"metal-grid-{levels}.toml"
     study.write_text(STUDY.replace("count = 37", f"count = {levels}"))
     out = folder / f"result-{levels}-{engine}"
     start = time.perf_counter()
-    peak = peak_of(subprocess.Popen([program, "sweep", study, "--engine", engine, "--out", out, "--quiet", "--force", "--no-report"]))
+    command = [program, "sweep", study, "--engine", engine, "--method", "exhaustive", "--out", out, "--quiet", "--force", "--no-report"]
+    process = subprocess.Popen(command)
+    peak = peak_of(process)
+    if process.returncode:
+        sys.exit(f"{command}: exit code {process.returncode}")
     return out, time.perf_counter() - start, peak
 
 

@@ -45,7 +45,7 @@ FLOOR_SECTION = 2400 * 16 * 2 * (30**2 / 2 + 4 * 2 * 30) / 8 / 3e9
 def sweep(program, name, text, folder):
     study, out = folder / f"{name}.toml", folder / f"result-{name}"
     study.write_text(text)
-    subprocess.run([program, "sweep", study, "--engine", "cpu", "--out", out, "--quiet", "--force", "--no-report"], check=True)
+    subprocess.run([program, "sweep", study, "--engine", "cpu", "--method", "exhaustive", "--out", out, "--quiet", "--force", "--no-report"], check=True)
     summary, run = (json.loads((out / file).read_text()) for file in ("summary.json", "run.json"))
     return summary, run
 

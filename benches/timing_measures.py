@@ -48,7 +48,7 @@ def sweep(program, name, text, folder):
     study, out = folder / f"{name}.toml", folder / f"result-{name}"
     study.write_text(text)
     start = time.perf_counter()
-    subprocess.run([program, "sweep", study, "--engine", "cpu", "--out", out, "--quiet", "--force", "--no-report"], check=True)
+    subprocess.run([program, "sweep", study, "--engine", "cpu", "--method", "exhaustive", "--out", out, "--quiet", "--force", "--no-report"], check=True)
     return out, time.perf_counter() - start
 
 

@@ -1,6 +1,7 @@
 //! The README tells the truth: what it shows is what the program says. Times are the only thing that may differ.
 
 use beltspace::models::MODELS;
+use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
 
@@ -134,4 +135,49 @@ fn the_accuracy_table_has_the_outputs_that_verify_prints() {
     assert!(printed.contains("the promise was kept everywhere"), "{printed}{error}");
     assert_eq!(names_of(&shown), names_of(&printed));
     assert!(names_of(&shown).len() > 30 && shown.contains("the promise was kept everywhere"));
+}
+
+/// The cell of a method on a grid, as benches/scale writes it.
+fn cell(row: &Value, designs: f64) -> String {
+    let exponent = |text: String| {
+        let (digits, power) = text.split_once('e').expect("written with an exponent");
+        let power: i32 = power.parse().expect("a number");
+        format!("{digits}e{}{:02}", if power < 0 { '-' } else { '+' }, power.abs())
+    };
+    match row["seconds"].as_f64() {
+        None => format!("> {:.0} s", row["stopped_after"].as_f64().expect("a run ended or was stopped")),
+        Some(seconds) => {
+            let rate = exponent(format!("{:.1e}", designs / seconds));
+            if seconds < 100.0 { format!("{seconds:.2} s, {rate}/s") } else { format!("{seconds:.0} s, {rate}/s") }
+        }
+    }
+}
+
+#[test]
+fn the_scale_is_what_the_record_says() {
+    let read = |name: &str| std::fs::read_to_string(root().join("results/bench").join(name)).expect("the record is committed");
+    let page = read("scale.md");
+    assert!(readme().contains(&page), "README.md has another results/bench/scale.md: benches/scale --render --readme writes both");
+    let record: Value = serde_json::from_str(&read("scale.json")).expect("JSON");
+    assert_eq!(record["problems"], Value::Array(Vec::new()), "committed with methods that disagree");
+    let mut tables = page.split("| designs ").skip(1);
+    for studies in ["grid", "cvt"] {
+        let table = tables.next().expect("a table of times for each study");
+        let rows: Vec<Vec<&str>> = table.lines().map(|line| line.split('|').map(str::trim).collect()).collect();
+        for (column, study) in record[studies].as_array().expect("sizes").iter().enumerate() {
+            let designs = study["designs"].as_f64().expect("a number");
+            let mut found = Vec::new();
+            for (name, method) in study["methods"].as_object().expect("methods") {
+                let row = rows.iter().find(|row| row.get(1) == Some(&name.as_str())).unwrap_or_else(|| panic!("no row of {name}"));
+                assert_eq!(row[column + 2], cell(method, designs), "{name}, {designs} designs");
+                found.extend(method.get("seconds").map(|_| (&method["feasible"], &method["front"])));
+            }
+            assert!(found.iter().all(|it| *it == found[0]), "{designs} designs: {found:?}");
+        }
+        for (method, quantities) in record["fits"][studies].as_object().expect("fits") {
+            let Some(slope) = quantities["time"]["all"].as_f64() else { continue };
+            let row = rows.iter().find(|row| row.get(1) == Some(&method.as_str())).expect("the method has a row");
+            assert_eq!(row[row.len() - 3], format!("{slope:.2}"), "{method}");
+        }
+    }
 }
