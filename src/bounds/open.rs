@@ -164,11 +164,11 @@ pub fn is_infeasible(requirements: &[Bounded], bounder: &mut Bounder<'_>, axes: 
 pub fn add_pull(pull: &mut [f64; super::axes::AXES], bounds: &Bounds, spans: &Spans, axes: &Axes) {
     let moves = |axis: usize| if spans[axis].is_single() { 0.0 } else { bounds.spread[axis] };
     let all: f64 = (0..axes.designs).map(moves).sum();
-    for axis in 0..axes.designs {
+    for (axis, pull) in pull.iter_mut().enumerate().take(axes.designs) {
         let own = moves(axis);
         if own > 0.0 {
             // Where a derivative is unbounded, the axes that may be to blame share it.
-            pull[axis] += if all.is_finite() { own / all } else { f64::from(u8::from(own.is_infinite())) };
+            *pull += if all.is_finite() { own / all } else { f64::from(u8::from(own.is_infinite())) };
         }
     }
 }

@@ -4,124 +4,15 @@
 //! both through a [`Chain`]: then every member of the second group has a threshold, and what counts is how many numbers of the first
 //! group's list are on its good side. That is exact in f64, because a chain never swaps the order of two numbers.
 
-use super::axes::{AXES, Axes, Span, Spans};
+use super::axes::{Axes, Span, Spans};
 use super::chain::Chain;
 use super::columns::{CHUNK, Columns};
+use super::pairing::{Pairing, Role};
 use super::requirement::{Requirement, Source};
 use super::sorted::Buckets;
 use super::tape::Tape;
 use crate::real::trace::Node;
 use std::sync::atomic::{AtomicBool, Ordering};
-
-/// Most members of the first group's list: they are held in memory.
-const LIST: u64 = 1 << 22;
-/// What looking for a threshold costs, in operations of a column.
-const THRESHOLD: f64 = 150.0;
-
-/// How a number is made of the two groups.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Role {
-    /// Of neither.
-    Outer,
-    /// Of the first alone.
-    First,
-    /// Of the second alone.
-    Second,
-    /// Of both.
-    Both(Chain),
-}
-
-/// Two groups of axes, and those that both share.
-#[derive(Clone, Debug)]
-pub struct Pairing {
-    outer: Vec<usize>,
-    first: Vec<usize>,
-    second: Vec<usize>,
-    roles: Vec<Role>,
-    /// About how many operations of f64 it takes, for one scenario.
-    pub cost: f64,
-}
-
-fn list(set: u64) -> Vec<usize> {
-    (0..AXES).filter(|axis| set >> axis & 1 == 1).collect()
-}
-
-impl Pairing {
-    /// The cheapest way to see the numbers asked for as made of two groups of the axes that vary in a box.
-    pub fn find(tape: &Tape, axes: &Axes, spans: &Spans, sources: &[Source]) -> Option<Self> {
-        let varying = (0..axes.designs).filter(|&axis| !spans[axis].is_single()).fold(0u64, |set, axis| set | 1 << axis);
-        let widest = sources.iter().max_by_key(|source| (source.axes(tape) & varying).count_ones())?;
-        let mut best: Option<Self> = None;
-        for chain in Chain::all(tape, *widest, varying) {
-            if let Some(found) = Self::about(tape, spans, sources, varying, &chain)
-                && best.as_ref().is_none_or(|best| found.cost < best.cost)
-            {
-                best = Some(found);
-            }
-        }
-        best
-    }
-
-    /// Is the number in this role made of both groups?
-    pub fn is_through_both(&self, role: usize) -> bool {
-        matches!(self.roles[role], Role::Both(_))
-    }
-
-    /// A box in about so many parts that can be counted apart at no greater cost.
-    pub fn parts(&self, spans: &Spans, count: usize) -> Vec<Spans> {
-        let Some(&axis) = self.outer.iter().max_by_key(|&&axis| spans[axis].count()) else { return vec![*spans] };
-        let Span { low, high } = spans[axis];
-        let levels = spans[axis].count();
-        let count = (count as u64).min(levels);
-        let edge = |part: u64| low + (levels * part / count) as u32;
-        let part = |part: u64| {
-            let mut own = *spans;
-            own[axis] = Span { low: edge(part), high: (edge(part + 1) - 1).min(high) };
-            own
-        };
-        (0..count).map(part).collect()
-    }
-
-    /// The groups that one chain suggests.
-    fn about(tape: &Tape, spans: &Spans, sources: &[Source], varying: u64, chain: &Chain) -> Option<Self> {
-        let (start, others) = (tape.axes[chain.channel as usize] & varying, chain.other_axes & varying);
-        let mut outer = start & others;
-        let (first, second) = (start & !outer, others & !outer);
-        if first == 0 || second == 0 {
-            return None;
-        }
-        let within = |set: u64, outer: u64, group: u64| set & varying & !outer & !group == 0;
-        let mut roles = Vec::new();
-        for &source in sources {
-            let own = source.axes(tape) & varying;
-            outer |= own & !(first | second);
-            roles.push(if within(own, outer, 0) {
-                Role::Outer
-            } else if within(own, outer, first) {
-                Role::First
-            } else if within(own, outer, second) {
-                Role::Second
-            } else {
-                let fits = |it: &Chain| within(tape.axes[it.channel as usize], outer, first) && within(it.other_axes, outer, second);
-                let same = |it: &&Chain| it.channel == chain.channel && fits(it);
-                let all = Chain::all(tape, source, varying);
-                Role::Both(all.iter().find(same).or_else(|| all.iter().find(|it| fits(it)))?.clone())
-            });
-        }
-        let size = |set: u64| list(set).into_iter().map(|axis| spans[axis].count()).product::<u64>();
-        if size(first) > LIST || size(second) > LIST {
-            return None;
-        }
-        let needed = |nodes: &[Node]| tape.needed_by(nodes).len() as f64;
-        let both: Vec<&Chain> = roles.iter().filter_map(|role| if let Role::Both(chain) = role { Some(chain) } else { None }).collect();
-        let channels: Vec<Node> = both.iter().map(|chain| chain.channel).collect();
-        let of_others: Vec<Node> = both.iter().flat_map(|chain| chain.others.iter().copied()).collect();
-        let per_first = needed(&channels) + 10.0;
-        let per_second = needed(&of_others) + THRESHOLD * both.len() as f64;
-        let cost = size(outer) as f64 * (size(first) as f64 * per_first + size(second) as f64 * per_second);
-        Some(Self { outer: list(outer), first: list(first), second: list(second), roles, cost })
-    }
-}
 
 /// A requirement in one scenario.
 #[derive(Clone, Copy, Debug)]
