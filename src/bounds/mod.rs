@@ -1,8 +1,8 @@
 //! Exact answers without looking at every design: boxes of designs are bounded, and settled whole where their bounds decide.
 //!
-//! The formula of a study is recorded as a [`tape`] and run over intervals and derivatives ([`bounder`]). What limits feasibility is
-//! [counted](count) by boxes, what a result names is [searched for](search) by branch and bound; both end in f64, with the bits of the
-//! ordinary engines, so a result does not show how it was found. Which rule settled how many designs is the [`Certificate`].
+//! The formula of a study is recorded as a tape (`tape`) and run over intervals and derivatives (`bounder`). Feasible designs are
+//! counted by boxes (`count`), what a result names is searched for by branch and bound (`search`); both end in f64, with the bits of
+//! the ordinary engines, so a result does not show how it was found. Which rule settled how many designs is the [`Certificate`].
 
 mod axes;
 mod bounder;

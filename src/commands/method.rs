@@ -7,7 +7,7 @@ use beltspace::error::{Error, Result};
 use beltspace::plan::Plan;
 
 /// Seconds that judging every design may take before bounds are thought of.
-const LONG: f64 = 20.0;
+const LONG: f64 = 60.0;
 
 /// How designs are judged, and why.
 pub struct Chosen {

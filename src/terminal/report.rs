@@ -33,6 +33,10 @@ pub fn summary(outcome: &Outcome<'_>, record: &RunRecord, out: &Path, page: Opti
         },
     );
     fact("feasible", format!("{} ({} %)", grouped(feasible), short((share * 100.0).round() / 100.0)));
+    if let Some(certificate) = &record.method.certificate {
+        let [boxes, evaluations] = [certificate.boxes(), certificate.evaluations()].map(grouped);
+        fact("bounds", format!("{boxes} boxes and {evaluations} evaluations settled every design; which rule how many is in run.json"));
+    }
     if let Some(device) = &record.device {
         let count = |name: &str| grouped(device[name].as_u64().unwrap_or(0));
         let compared = grouped(device["compared_with_f64"]["designs"].as_u64().unwrap_or(0));
