@@ -43,3 +43,24 @@ pub fn choose(plan: &Plan, method: Method, engine: Engine, adapter: Option<&str>
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use beltspace::study::Study;
+
+    fn grid(levels: &str) -> Plan {
+        let text = include_str!("../../studies/metal-grid.toml").replace("count = 37", &format!("count = {levels}"));
+        Plan::new(Study::parse(&text, "grid.toml", ".".as_ref()).expect("the study is right"))
+    }
+
+    #[test]
+    fn auto_takes_bounds_where_every_design_takes_long_and_no_gpu_is_asked_for() {
+        let auto = |levels, engine, adapter| choose(&grid(levels), Method::Auto, engine, adapter, 2).expect("auto serves all");
+        let chosen = auto("560", Engine::Auto, None);
+        assert!(chosen.bounds && chosen.why.starts_with("judging every design would take about "), "{}", chosen.why);
+        for chosen in [auto("37", Engine::Auto, None), auto("560", Engine::Gpu, None), auto("560", Engine::Auto, Some("any"))] {
+            assert!(!chosen.bounds, "{}", chosen.why);
+        }
+    }
+}

@@ -1,6 +1,6 @@
 //! `sweep --method`: what bounds refuse, what `auto` says, and that nobody can tell from the files which of them ran.
 
-use super::{Files, SMALL, ask, changed, files, folder_with, json_of, larger, read, same_result, write};
+use super::{Files, SMALL, ask, changed, files, folder_with, json_of, larger, same_result, write};
 use std::path::Path;
 #[cfg(unix)]
 use std::process::Command;
@@ -132,20 +132,6 @@ fn auto_says_why() {
     assert_eq!(chosen("grid.toml --method auto"), small);
     let (method, why) = chosen("small.toml");
     assert!(method == "exhaustive" && why.starts_with("bounds cannot serve the study: histograms in [report]"), "{why}");
-}
-
-/// The plain grid of the repository on so many levels that one thread would judge every design for a while.
-#[test]
-fn auto_takes_bounds_where_every_design_takes_long() {
-    if !crate::pipeline::full() {
-        return;
-    }
-    let text = read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("studies/metal-grid.toml"));
-    let folder = folder_with("grid.toml", &changed(&text, &[("count = 37", "count = 97")]));
-    ask(folder.path(), "sweep grid.toml --threads 1 --engine cpu --out out --quiet --no-report").text();
-    let run = json_of(&folder.path().join("out/run.json"));
-    let why = run["method_chosen"].as_str().expect("it is said");
-    assert!(run["method"] == "bounds" && why.starts_with("judging every design would take about "), "{why}");
 }
 
 #[test]
