@@ -88,6 +88,17 @@ impl std::ops::IndexMut<usize> for Spans {
     }
 }
 
+impl Spans {
+    /// Both halves of a box along an axis.
+    pub fn halves(&self, axis: usize) -> [Self; 2] {
+        self[axis].halves().map(|half| {
+            let mut part = *self;
+            part[axis] = half;
+            part
+        })
+    }
+}
+
 impl Axis {
     /// Least and largest of a column over a span.
     pub fn ends(values: &[f64], ordered: bool, span: Span) -> (f64, f64) {

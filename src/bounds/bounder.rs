@@ -9,7 +9,7 @@ use super::requirement::Source;
 use super::tape::Tape;
 use crate::real::trace::{Node, Operation};
 use crate::real::{Dual, EVERYTHING, Interval, Real};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// Most directions that derivatives are followed in: the first axes of a study.
 pub const DIRECTIONS: usize = 8;
@@ -63,7 +63,9 @@ struct Runner<'t, R> {
     tape: &'t Tape,
     axes: &'t Axes,
     alone: Vec<Vec<Node>>,
-    kept: Vec<HashMap<Span, Box<[R]>>>,
+    /// Of these: what others read or the study asks for, and its values by span.
+    read: Vec<Vec<Node>>,
+    kept: Vec<FxHashMap<Span, Box<[R]>>>,
     now: [Option<Span>; AXES],
     slots: Vec<R>,
     /// When every axis turned to its span, and when every operation was computed, in turns and runs.
@@ -74,20 +76,16 @@ struct Runner<'t, R> {
 
 impl<'t, R: Boxed> Runner<'t, R> {
     fn new(tape: &'t Tape, axes: &'t Axes) -> Self {
-        let mut alone = vec![Vec::new(); axes.all.len()];
         let mut slots = vec![R::constant(0.0); tape.operations.len()];
-        for node in (0..tape.operations.len()).filter(|&node| !tape.inner[node]) {
-            match tape.axes[node] {
-                0 => tape.compute(node as Node, &mut slots),
-                set if set.is_power_of_two() => alone[set.trailing_zeros() as usize].push(node as Node),
-                _ => {}
-            }
+        for node in (0..tape.operations.len()).filter(|&node| !tape.inner[node] && tape.axes[node] == 0) {
+            tape.compute(node as Node, &mut slots);
         }
         Self {
             tape,
             axes,
-            alone,
-            kept: (0..axes.all.len()).map(|_| HashMap::new()).collect(),
+            alone: tape.alone(axes.all.len()),
+            read: tape.kept(axes.all.len()),
+            kept: (0..axes.all.len()).map(|_| FxHashMap::default()).collect(),
             now: [None; AXES],
             clock: 1,
             turned: [0; AXES],
@@ -99,13 +97,17 @@ impl<'t, R: Boxed> Runner<'t, R> {
     /// Computes what `asked` needs over a box.
     fn run(&mut self, asked: &Asked, spans: &Spans) {
         self.clock += 1;
-        let mut last = 0;
         for &axis in &asked.axes {
             self.turn(axis, spans[axis]);
-            last = last.max(self.turned[axis]);
         }
-        // What another number of the same box needed too is there already.
+        // What another box, or another number of this one, needed over the same spans is there already.
         for &node in &asked.several {
+            let mut set = self.tape.axes[node as usize];
+            let mut last = 0;
+            while set != 0 {
+                last = last.max(self.turned[set.trailing_zeros() as usize]);
+                set &= set - 1;
+            }
             if self.computed[node as usize] < last {
                 self.tape.compute(node, &mut self.slots);
                 self.computed[node as usize] = self.clock;
@@ -120,7 +122,7 @@ impl<'t, R: Boxed> Runner<'t, R> {
         self.now[axis] = Some(span);
         self.turned[axis] = self.clock;
         if let Some(values) = self.kept[axis].get(&span) {
-            for (&node, &value) in self.alone[axis].iter().zip(values) {
+            for (&node, &value) in self.read[axis].iter().zip(values) {
                 self.slots[node as usize] = value;
             }
             return;
@@ -139,7 +141,7 @@ impl<'t, R: Boxed> Runner<'t, R> {
         if self.kept[axis].len() >= KEPT {
             self.kept[axis].clear();
         }
-        let values = self.alone[axis].iter().map(|&node| self.slots[node as usize]).collect();
+        let values = self.read[axis].iter().map(|&node| self.slots[node as usize]).collect();
         self.kept[axis].insert(span, values);
     }
 }
@@ -218,7 +220,30 @@ pub struct Bounder<'t> {
     values: Runner<'t, Interval>,
     slopes: Box<dyn Sloped + 't>,
     /// Bounds that were found last: requirements and objectives are often about the same number.
-    recent: Vec<(Node, bool, Spans, Bounds)>,
+    recent: Vec<Found>,
+    oldest: usize,
+}
+
+/// Which end of a number is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// [`Bounds::most`].
+    Most,
+    /// [`Bounds::least`].
+    Least,
+    /// Both.
+    Both,
+}
+
+/// Bounds that were found, and the corners that were not looked at yet, with what is to be added there.
+#[derive(Debug)]
+struct Found {
+    node: Node,
+    higher_is_worse: bool,
+    spans: Spans,
+    bounds: Bounds,
+    worst: Option<(Spans, f64)>,
+    best: Option<(Spans, f64)>,
 }
 
 /// How many bounds are remembered.
@@ -232,7 +257,7 @@ impl<'t> Bounder<'t> {
             4 | 5 => Box::new(Runner::<Dual<Interval, 5>>::new(tape, axes)),
             _ => Box::new(Runner::<Dual<Interval, DIRECTIONS>>::new(tape, axes)),
         };
-        Self { axes, values: Runner::new(tape, axes), slopes, recent: Vec::new() }
+        Self { axes, values: Runner::new(tape, axes), slopes, recent: Vec::new(), oldest: 0 }
     }
 
     /// The number without derivatives: least and largest value in its unit, and whether all are finite.
@@ -251,49 +276,82 @@ impl<'t> Bounder<'t> {
         }
     }
 
-    /// Bounds of the worst over the scenarios that the box spans.
-    pub fn bounds(&mut self, asked: &Asked, spans: &Spans) -> Bounds {
-        let Source::Node(node, _) = asked.source else { return self.new_bounds(asked, spans) };
-        let same = |it: &&(Node, bool, Spans, Bounds)| it.0 == node && it.1 == asked.higher_is_worse && it.2 == *spans;
-        if let Some(held) = self.recent.iter().rev().find(same) {
-            return held.3;
+    /// Bounds of the worst over the scenarios that the box spans; what is not asked for is bounded less well.
+    pub fn bounds(&mut self, asked: &Asked, spans: &Spans, wanted: Wanted) -> Bounds {
+        let Source::Node(node, _) = asked.source else { return self.of_axis(asked, spans) };
+        let at = self.place_of(asked, node, spans).unwrap_or_else(|| {
+            let found = self.look(asked, node, spans);
+            if self.recent.len() < RECENT {
+                self.recent.push(found);
+                return self.recent.len() - 1;
+            }
+            self.oldest = (self.oldest + 1) % RECENT;
+            self.recent[self.oldest] = found;
+            self.oldest
+        });
+        if matches!(wanted, Wanted::Most | Wanted::Both) {
+            if let Some((corner, beyond)) = self.recent[at].worst.take() {
+                let most = self.corner(asked, node, &corner, beyond).1;
+                let bounds = &mut self.recent[at].bounds;
+                bounds.most = bounds.most.min(most);
+            }
         }
-        let bounds = self.new_bounds(asked, spans);
-        if self.recent.len() == RECENT {
-            self.recent.remove(0);
+        if matches!(wanted, Wanted::Least | Wanted::Both) {
+            if let Some((corner, beyond)) = self.recent[at].best.take() {
+                let known = self.recent[at].bounds.least;
+                let mut least = known;
+                if beyond < f64::INFINITY {
+                    least = least.max(self.corner(asked, node, &corner, beyond).0);
+                }
+                let scenarios = self.axes.designs..;
+                if least == known && corner.0[scenarios.clone()] != spans.0[scenarios.clone()] {
+                    // A single scenario bounds what the worst is at least, derivatives or not.
+                    let mut only = *spans;
+                    only.0[scenarios.clone()].copy_from_slice(&corner.0[scenarios]);
+                    let range = self.range(asked, &only);
+                    least = least.max(asked.badness(range).0);
+                }
+                self.recent[at].bounds.least = least;
+            }
         }
-        self.recent.push((node, asked.higher_is_worse, *spans, bounds));
-        bounds
+        self.recent[at].bounds
     }
 
     /// Are the bounds of a number at hand?
     pub fn has(&self, asked: &Asked, spans: &Spans) -> bool {
-        matches!(asked.source, Source::Node(node, _) if self.recent.iter().any(|it| it.0 == node && it.1 == asked.higher_is_worse && it.2 == *spans))
+        matches!(asked.source, Source::Node(node, _) if self.place_of(asked, node, spans).is_some())
     }
 
-    fn new_bounds(&mut self, asked: &Asked, spans: &Spans) -> Bounds {
-        let Source::Node(node, _) = asked.source else {
-            let whole = self.range(asked, spans);
-            let (mut least, most) = asked.badness(whole);
-            if let Source::Axis(axis, _) = asked.source
-                && axis >= self.axes.designs
-            {
-                least = most;
+    fn place_of(&self, asked: &Asked, node: Node, spans: &Spans) -> Option<usize> {
+        self.recent.iter().position(|it| it.node == node && it.higher_is_worse == asked.higher_is_worse && it.spans == *spans)
+    }
+
+    /// The bounds of an input.
+    fn of_axis(&mut self, asked: &Asked, spans: &Spans) -> Bounds {
+        let whole = self.range(asked, spans);
+        let (mut least, most) = asked.badness(whole);
+        if let Source::Axis(axis, _) = asked.source
+            && axis >= self.axes.designs
+        {
+            least = most;
+        }
+        let mut bounds = Bounds { most, least, finite: true, spread: [0.0; AXES], monotone: 0, better_at_last: 0, strict: 0 };
+        if let Source::Axis(axis, column) = asked.source {
+            let (table, span) = (&self.axes.all[axis], spans[axis]);
+            bounds.spread[axis] = whole.1 - whole.0;
+            if table.ordered {
+                let values = &table.own[column];
+                let rises = values[span.low as usize] <= values[span.high as usize];
+                bounds.monotone = 1 << axis;
+                bounds.better_at_last = u64::from(rises != asked.higher_is_worse) << axis;
+                bounds.strict = u64::from(values.windows(2).all(|it| it[0] != it[1])) << axis;
             }
-            let mut bounds = Bounds { most, least, finite: true, spread: [0.0; AXES], monotone: 0, better_at_last: 0, strict: 0 };
-            if let Source::Axis(axis, column) = asked.source {
-                let (table, span) = (&self.axes.all[axis], spans[axis]);
-                bounds.spread[axis] = whole.1 - whole.0;
-                if table.ordered {
-                    let values = &table.own[column];
-                    let rises = values[span.low as usize] <= values[span.high as usize];
-                    bounds.monotone = 1 << axis;
-                    bounds.better_at_last = u64::from(rises != asked.higher_is_worse) << axis;
-                    bounds.strict = u64::from(values.windows(2).all(|it| it[0] != it[1])) << axis;
-                }
-            }
-            return bounds;
-        };
+        }
+        bounds
+    }
+
+    /// Bounds by the formula over the whole box, and the corners that may tell more.
+    fn look(&mut self, asked: &Asked, node: Node, spans: &Spans) -> Found {
         let (value, slopes) = self.slopes.slopes(asked, node, spans);
         let mut spread = [0.0; AXES];
         let (mut monotone, mut better_at_last, mut strict) = (0u64, 0u64, 0u64);
@@ -337,24 +395,19 @@ impl<'t> Bounder<'t> {
                 beyond_best += if is_scenario { 0.0 } else { or_infinite(better) };
             }
         }
-        let own = asked.badness(shown(asked.source, value.low, value.high));
-        let (mut least, mut most) = own;
-        if value.error < f64::INFINITY {
-            if beyond_worst < f64::INFINITY {
-                most = most.min(self.corner(asked, node, &worst, value.error + beyond_worst * OUTWARD).1);
-            }
-            if beyond_best < f64::INFINITY {
-                least = least.max(self.corner(asked, node, &best, value.error + beyond_best * OUTWARD).0);
-            }
+        let (least, most) = asked.badness(shown(asked.source, value.low, value.high));
+        let is_known = value.error < f64::INFINITY;
+        let margin = |beyond: f64| value.error + beyond * OUTWARD;
+        let has_other_scenario = best.0[self.axes.designs..] != spans.0[self.axes.designs..];
+        Found {
+            node,
+            higher_is_worse: asked.higher_is_worse,
+            spans: *spans,
+            bounds: Bounds { most, least, finite: value.is_finite(), spread, monotone, better_at_last, strict },
+            worst: (is_known && beyond_worst < f64::INFINITY).then(|| (worst, margin(beyond_worst))),
+            best: (is_known && beyond_best < f64::INFINITY || has_other_scenario)
+                .then(|| (best, if is_known { margin(beyond_best) } else { f64::INFINITY })),
         }
-        if least == own.0 && best.0[self.axes.designs..] != spans.0[self.axes.designs..] {
-            // A single scenario bounds what the worst is at least, derivatives or not.
-            let mut only = *spans;
-            only.0[self.axes.designs..].copy_from_slice(&best.0[self.axes.designs..]);
-            let range = self.range(asked, &only);
-            least = least.max(asked.badness(range).0);
-        }
-        Bounds { most, least, finite: value.is_finite(), spread, monotone, better_at_last, strict }
     }
 
     /// Badness over a part of the box, for designs of the whole box that are no better or worse but for rounding.

@@ -61,24 +61,7 @@ impl<'t> Columns<'t> {
     /// An evaluator of a tape.
     pub fn new(tape: &'t Tape, axes: &'t Axes) -> Self {
         let count = tape.operations.len();
-        let own_axis =
-            |node: usize| (!tape.inner[node] && tape.axes[node].is_power_of_two()).then(|| tape.axes[node].trailing_zeros() as usize);
-        let mut alone = vec![Vec::new(); axes.all.len()];
-        (0..count).for_each(|node| {
-            if let Some(axis) = own_axis(node) {
-                alone[axis].push(node as Node);
-            }
-        });
-        let mut read = vec![false; count];
-        tape.outputs.iter().chain(&tape.conditions).flatten().for_each(|&node| read[node as usize] = true);
-        for node in (0..count).filter(|&node| own_axis(node).is_none()) {
-            let mut mark = |operand: Node| read[operand as usize] = true;
-            match tape.operations[node] {
-                Operation::Root(number) => tape.outside(number, mark),
-                operation => operation.operands(&mut mark),
-            }
-        }
-        let kept: Vec<Vec<Node>> = alone.iter().map(|nodes| nodes.iter().copied().filter(|&node| read[node as usize]).collect()).collect();
+        let (alone, kept) = (tape.alone(axes.all.len()), tape.kept(axes.all.len()));
         let mut place = vec![0; count];
         for nodes in &kept {
             nodes.iter().enumerate().for_each(|(at, &node)| place[node as usize] = at as u32);

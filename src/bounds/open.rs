@@ -1,7 +1,8 @@
 //! Requirements that are not decided yet over a box of designs, each with the scenarios that still matter.
 
 use super::axes::{Axes, Span, Spans};
-use super::bounder::{Asked, Bounder, Bounds};
+use super::bounder::{Asked, Bounder, Bounds, Wanted};
+use std::sync::Arc;
 use super::requirement::{Requirement, Test};
 
 /// Most boxes of scenarios that a number is followed over.
@@ -22,7 +23,7 @@ pub struct Open {
     /// Its place among all requirements.
     pub requirement: usize,
     /// Boxes of scenarios; their spans of design axes mean nothing.
-    pub cover: Vec<Spans>,
+    pub cover: Arc<[Spans]>,
 }
 
 /// What became of the requirements over a box.
@@ -83,7 +84,7 @@ pub fn over(designs: &Spans, scenarios: &Spans, axes: &Axes) -> Spans {
 
 /// All requirements over all scenarios.
 pub fn all_open(requirements: &[Bounded], axes: &Axes) -> Vec<Open> {
-    (0..requirements.len()).map(|requirement| Open { requirement, cover: vec![axes.whole()] }).collect()
+    (0..requirements.len()).map(|requirement| Open { requirement, cover: Arc::new([axes.whole()]) }).collect()
 }
 
 /// Bounds the open requirements over a box.
@@ -93,23 +94,26 @@ pub fn decide(requirements: &[Bounded], bounder: &mut Bounder<'_>, axes: &Axes, 
     let mut ends = Ends::ANY;
     for item in open {
         let it = &requirements[item.requirement];
-        let mut cover = Vec::new();
-        for part in &item.cover {
+        // The scenarios that are left: mostly the same as before.
+        let mut cover: Option<Vec<Spans>> = None;
+        for (at, part) in item.cover.iter().enumerate() {
             let spans = over(designs, part, axes);
             // Without derivatives it is cheaper, and often enough.
             if !bounder.has(&it.asked, &spans) {
                 let (low, high) = bounder.range(&it.asked, &spans);
                 let finite = !it.requirement.finite || low > f64::NEG_INFINITY && high < f64::INFINITY;
                 if finite && it.requirement.test.holds(low) && it.requirement.test.holds(high) {
+                    cover.get_or_insert_with(|| item.cover[..at].to_vec());
                     continue;
                 }
                 if violated(it.requirement.test, low, high) {
                     return Outcome::Infeasible;
                 }
             }
-            let bounds = bounder.bounds(&it.asked, &spans);
+            let bounds = bounder.bounds(&it.asked, &spans, Wanted::Both);
             let (worst, best) = if it.asked.higher_is_worse { (bounds.most, bounds.least) } else { (-bounds.most, -bounds.least) };
             if (bounds.finite || !it.requirement.finite) && it.requirement.test.holds(worst) {
+                cover.get_or_insert_with(|| item.cover[..at].to_vec());
                 continue;
             }
             if !matches!(it.requirement.test, Test::Finite) && !it.requirement.test.holds(best) && !best.is_nan() {
@@ -125,16 +129,18 @@ pub fn decide(requirements: &[Bounded], bounder: &mut Bounder<'_>, axes: &Axes, 
             }
             let room = item.cover.len() < COVER;
             match scenario_to_split(&it.asked, &bounds, &spans, axes).filter(|_| room) {
-                Some(axis) => cover.extend(spans[axis].halves().map(|half| {
-                    let mut part = *part;
-                    part[axis] = half;
-                    part
-                })),
-                None => cover.push(*part),
+                Some(axis) => cover.get_or_insert_with(|| item.cover[..at].to_vec()).extend(part.halves(axis)),
+                None => {
+                    if let Some(cover) = &mut cover {
+                        cover.push(*part);
+                    }
+                }
             }
         }
-        if !cover.is_empty() {
-            left.push(Open { requirement: item.requirement, cover });
+        match cover {
+            None => left.push(item.clone()),
+            Some(cover) if cover.is_empty() => {}
+            Some(cover) => left.push(Open { requirement: item.requirement, cover: cover.into() }),
         }
     }
     Outcome::Open(left, pull, ends)

@@ -5,13 +5,14 @@
 //! design of each is judged at once, so that the next batch meets better rivals.
 
 use super::axes::{AXES, Axes, Span, Spans};
-use super::bounder::{Asked, Bounder, Bounds};
+use super::bounder::{Asked, Bounder, Bounds, Wanted};
 use super::open::{Bounded, Ends, Open, Outcome, add_pull, all_open, decide, is_infeasible, over, scenario_to_split};
 use super::staircase::{Fit, Staircase};
 use crate::models::Effort;
 use crate::reduce::{Extreme, Front, KeyRule, MOST_OBJECTIVES, Reducers, Reduction};
 use crate::screen::CpuEngine;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Most boxes that are looked at before their designs are judged.
 const BATCH: usize = 1 << 14;
@@ -23,8 +24,8 @@ const DESIGN: f64 = 7e-9;
 const PLACE: f64 = 7e-8;
 /// Designs of a box above which single ones are tried: smaller ones are soon judged whole.
 const WORTH_A_TRY: u64 = 1 << 20;
-/// A batch this small is one of the first: of what is tried there, the whole row is.
-const FIRST_BATCHES: usize = 64;
+/// Boxes that a thread takes at a time. A batch of one share is one of the first: of what is tried there, the whole row is.
+const SHARE: usize = 64;
 /// Most boxes of scenarios that a number is followed over.
 const COVER: usize = 32;
 /// More than rounding can make of a product of a few numbers.
@@ -120,7 +121,7 @@ struct Waiting {
     spans: Spans,
     open: Vec<Open>,
     /// Per target: the scenarios in which it may be worst.
-    covers: Vec<Vec<Spans>>,
+    covers: Vec<Arc<[Spans]>>,
 }
 
 /// What came of a box.
@@ -211,7 +212,7 @@ impl Search<'_> {
         let root = |spans: &Spans| Waiting {
             spans: *spans,
             open: all_open(self.requirements, self.axes),
-            covers: self.targets.iter().map(|_| vec![self.axes.whole()]).collect(),
+            covers: vec![Arc::new([self.axes.whole()]); self.targets.len()],
         };
         let mut batches: Vec<Vec<Waiting>> = vec![roots.iter().map(root).collect()];
         let mut total = Searched::default();
@@ -235,6 +236,7 @@ impl Search<'_> {
 
     /// Looks at a batch of boxes on all threads; returns their parts.
     fn look_at(&self, batch: &[Waiting], workers: &mut [Worker<'_>], found: &mut Reducers) -> (Vec<Waiting>, Searched) {
+        let known = found.front.points().clone();
         let rival = match self.sought {
             Sought::Front => {
                 let points = found.front.points();
@@ -246,19 +248,33 @@ impl Search<'_> {
                 Rival::Extreme(if largest { found.extremes.largest[objective] } else { found.extremes.least[objective] })
             }
         };
-        let share = batch.len().div_ceil(workers.len()).max(1);
-        let parts: Vec<_> = std::thread::scope(|scope| {
-            let rival = &rival;
+        // Threads take boxes a share at a time, each starting with what is known: it drops most of what it judges there and then.
+        let shares: Vec<&[Waiting]> = batch.chunks(SHARE).collect();
+        let taken = AtomicUsize::new(0);
+        let mut reducers: Vec<Reducers> = workers.iter().take(shares.len()).map(|_| self.reduction.start_after(known.clone())).collect();
+        let mut parts: Vec<_> = std::thread::scope(|scope| {
+            let (rival, shares, taken) = (&rival, &shares, &taken);
             let mut started = Vec::new();
-            for (part, worker) in batch.chunks(share).zip(workers) {
-                started.push(scope.spawn(move || self.look_at_part(part, worker, rival, batch.len() <= FIRST_BATCHES)));
+            for (worker, reducers) in workers.iter_mut().zip(&mut reducers) {
+                started.push(scope.spawn(move || {
+                    let mut own = Vec::new();
+                    loop {
+                        let share = taken.fetch_add(1, Ordering::Relaxed);
+                        let Some(part) = shares.get(share) else { return own };
+                        own.push((share, self.look_at_part(part, worker, rival, reducers, shares.len() == 1)));
+                    }
+                }));
             }
-            started.into_iter().map(|it| it.join().expect("a search does not panic")).collect()
+            started.into_iter().flat_map(|it| it.join().expect("a search does not panic")).collect()
         });
+        // In the order of the boxes, whoever took them.
+        parts.sort_unstable_by_key(|(share, _)| *share);
         let (mut next, mut settled) = (Vec::new(), Searched::default());
-        for (parts, own, reducers) in parts {
+        for (_, (parts, own)) in parts {
             next.extend(parts);
             settled.add(&own);
+        }
+        for reducers in reducers {
             found.merge(reducers.into_fresh());
         }
         (next, settled)
@@ -269,11 +285,11 @@ impl Search<'_> {
         part: &[Waiting],
         worker: &mut Worker<'_>,
         rival: &Rival<'_>,
+        reducers: &mut Reducers,
         is_first: bool,
-    ) -> (Vec<Waiting>, Searched, Reducers) {
+    ) -> (Vec<Waiting>, Searched) {
         let mut settled = Searched::default();
         let mut next = Vec::new();
-        let mut reducers = self.reduction.start();
         let (mut positions, mut rows) = (Vec::new(), Vec::new());
         for waiting in part {
             if self.stop.load(Ordering::Relaxed) {
@@ -290,7 +306,7 @@ impl Search<'_> {
                     settled.evaluations += own;
                     settled.beaten += size - own;
                     let (rows, places) = self.axes.rows(&left, self.row);
-                    worker.engine.screen_rows(&rows, &places, |block| self.reduction.absorb_counted(&mut reducers, block));
+                    worker.engine.screen_rows(&rows, &places, |block| self.reduction.absorb_counted(reducers, block));
                 }
                 Fate::Cut(parts, tries) => {
                     settled.beaten += size - parts.iter().map(|part| self.axes.count(&part.spans)).sum::<u64>();
@@ -306,14 +322,14 @@ impl Search<'_> {
         positions.sort_unstable();
         positions.dedup();
         settled.evaluations += positions.len() as u64;
-        worker.engine.screen_some(&positions, |block| self.reduction.absorb_counted(&mut reducers, block));
+        worker.engine.screen_some(&positions, |block| self.reduction.absorb_counted(reducers, block));
         rows.sort_unstable();
         rows.dedup();
         for row in rows {
             settled.evaluations += self.row;
-            worker.engine.screen(row * self.row..(row + 1) * self.row, |block| self.reduction.absorb_counted(&mut reducers, block));
+            worker.engine.screen(row * self.row..(row + 1) * self.row, |block| self.reduction.absorb_counted(reducers, block));
         }
-        (next, settled, reducers)
+        (next, settled)
     }
 
     /// What is to be done with a box.
@@ -373,7 +389,7 @@ impl Search<'_> {
     /// Into how many notches of the front the product of both objectives fits, with its bounds.
     fn fit(&self, hopes: &[f64], rival: &Rival<'_>, spans: &Spans, bounder: &mut Bounder<'_>) -> Option<(Fit, Bounds)> {
         let (Rival::Front(_, Some(staircase)), Some(product)) = (rival, &self.product) else { return None };
-        let bounds = bounder.bounds(&product.asked, spans);
+        let bounds = bounder.bounds(&product.asked, spans, Wanted::Most);
         // What is to be small must not be negative: then its inverse would be no measure of it.
         let is_measure = (0..2).all(|at| product.largest[at] || hopes[at] >= 0.0);
         let lower = [0, 1].map(|at| self.targets[at].rule.key(hopes[at]));
@@ -388,7 +404,7 @@ impl Search<'_> {
             let badness = if target.at_the_bad_end { most } else { least };
             *hope = if target.asked.higher_is_worse { badness } else { -badness };
             for limit in &target.limits {
-                let bounds = bounder.bounds(&limit.quotient, &now.spans);
+                let bounds = bounder.bounds(&limit.quotient, &now.spans, Wanted::Most);
                 *hope = self.limited(target, limit, *hope, bounds.most, bounder, &now.spans);
             }
         }
@@ -423,12 +439,9 @@ impl Search<'_> {
         }
         let axis = self.axis_to_cut(&now.spans, &view.pull);
         let tries = self.tries(&now.spans, &view.better);
-        let parts = now.spans[axis].halves().map(|half| {
-            let mut part = now.clone();
-            part.spans[axis] = half;
-            part
-        });
-        Fate::Cut(Box::new(parts), tries)
+        let [first, second] = now.spans.halves(axis);
+        let other = Waiting { spans: second, ..now.clone() };
+        Fate::Cut(Box::new([Waiting { spans: first, ..now }, other]), tries)
     }
 
     /// The best that a number may be, given what limits it.
@@ -443,12 +456,19 @@ impl Search<'_> {
     }
 
     /// Bounds of the worst value over all scenarios, as badness; the cover becomes the scenarios that may be worst.
-    fn worst(&self, target: &Target, bounder: &mut Bounder<'_>, spans: &Spans, cover: &mut Vec<Spans>, view: &mut View) -> (f64, f64) {
-        let bounded: Vec<_> = cover.iter().map(|part| (*part, bounder.bounds(&target.asked, &over(spans, part, self.axes)))).collect();
+    fn worst(&self, target: &Target, bounder: &mut Bounder<'_>, spans: &Spans, cover: &mut Arc<[Spans]>, view: &mut View) -> (f64, f64) {
+        // Which of several scenarios decides takes both ends of each.
+        let wanted = match (cover.len(), target.at_the_bad_end) {
+            (1, true) => Wanted::Most,
+            (1, false) => Wanted::Least,
+            _ => Wanted::Both,
+        };
+        let bounded: Vec<_> =
+            cover.iter().map(|part| (*part, bounder.bounds(&target.asked, &over(spans, part, self.axes), wanted))).collect();
         let least = bounded.iter().fold(f64::NEG_INFINITY, |least, (_, it)| least.max(it.least));
         let most = bounded.iter().fold(f64::NEG_INFINITY, |most, (_, it)| most.max(it.most));
         let room = cover.len() < COVER;
-        cover.clear();
+        let mut left = Vec::new();
         // Where another scenario is worse for every design of the box, this one decides nothing.
         for (part, it) in bounded.iter().filter(|(_, it)| it.most >= least) {
             let whole = over(spans, part, self.axes);
@@ -456,13 +476,12 @@ impl Search<'_> {
             view.ends.narrow(&target.asked, it, target.at_the_bad_end, !target.rule.has_steps() || target.at_the_bad_end);
             view.agree(it, target.at_the_bad_end, self.axes.designs);
             match scenario_to_split(&target.asked, it, &whole, self.axes).filter(|_| room) {
-                Some(axis) => cover.extend(whole[axis].halves().map(|half| {
-                    let mut part = *part;
-                    part[axis] = half;
-                    part
-                })),
-                None => cover.push(*part),
+                Some(axis) => left.extend(part.halves(axis)),
+                None => left.push(*part),
             }
+        }
+        if left[..] != cover[..] {
+            *cover = left.into();
         }
         (least, most)
     }

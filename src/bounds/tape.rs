@@ -198,6 +198,39 @@ impl Tape {
         (0..self.operations.len() as Node).filter(|&node| needed[node as usize] && !self.inner[node as usize]).collect()
     }
 
+    /// Per axis: the operations that depend on it alone, operands first.
+    pub fn alone(&self, axes: usize) -> Vec<Vec<Node>> {
+        let mut alone = vec![Vec::new(); axes];
+        for node in 0..self.operations.len() {
+            if let Some(axis) = self.own_axis(node) {
+                alone[axis].push(node as Node);
+            }
+        }
+        alone
+    }
+
+    /// Of these: those that others need or the study asks for.
+    pub fn kept(&self, axes: usize) -> Vec<Vec<Node>> {
+        let mut read = vec![false; self.operations.len()];
+        let asked = self.outputs.iter().chain(&self.conditions).flatten().chain(self.merits.iter().map(|(_, node)| node));
+        asked.for_each(|&node| read[node as usize] = true);
+        for node in (0..self.operations.len()).filter(|&node| self.own_axis(node).is_none()) {
+            let mut mark = |operand: Node| read[operand as usize] = true;
+            match self.operations[node] {
+                Operation::Root(number) => self.outside(number, mark),
+                operation => operation.operands(&mut mark),
+            }
+        }
+        let mut kept = self.alone(axes);
+        kept.iter_mut().for_each(|nodes| nodes.retain(|&node| read[node as usize]));
+        kept
+    }
+
+    /// The axis that an operation depends on alone.
+    fn own_axis(&self, node: usize) -> Option<usize> {
+        (!self.inner[node] && self.axes[node].is_power_of_two()).then(|| self.axes[node].trailing_zeros() as usize)
+    }
+
     /// Calls `each` with what a root and its function read that does not depend on what the function is asked at.
     pub fn outside(&self, number: u8, mut each: impl FnMut(Node)) {
         let TapeRoot { root, inner } = &self.roots[number as usize];

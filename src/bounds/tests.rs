@@ -75,7 +75,7 @@ fn outside(inwards: f64) -> (u32, u32) {
                 let Quantity::Output(output) = objective.quantity else { continue };
                 let higher_is_worse = objective.goal == Goal::Min;
                 let asked = Asked::new(&layout.tape, Source::of(objective.quantity, &plan, &layout.tape), higher_is_worse);
-                let bounds = bounder.bounds(&asked, &over(&spans, &layout.axes.whole(), &layout.axes));
+                let bounds = bounder.bounds(&asked, &over(&spans, &layout.axes.whole(), &layout.axes), Wanted::Both);
                 let (rows, places) = layout.axes.rows(&spans, plan.fast.count());
                 let width = plan.fast.count();
                 let positions = rows.iter().flat_map(|row| places.iter().map(move |place| row * width + place));
