@@ -2,8 +2,8 @@
 
 use super::axes::{Axes, Span, Spans};
 use super::bounder::{Asked, Bounder, Bounds, Wanted};
-use std::sync::Arc;
 use super::requirement::{Requirement, Test};
+use std::sync::Arc;
 
 /// Most boxes of scenarios that a number is followed over.
 const COVER: usize = 64;

@@ -14,8 +14,8 @@ use crate::screen::CpuEngine;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// Most boxes that are looked at before their designs are judged.
-const BATCH: usize = 1 << 14;
+/// Boxes that are looked at before what was found in them counts against others: more where it takes longer to sort that in.
+const BATCH: std::ops::RangeInclusive<usize> = 1 << 10..=1 << 14;
 /// A box is judged by the engine where that takes about as long as a few more bounds: seconds, by what the model says.
 const LEAF: f64 = 5e-5;
 const ROW: f64 = 3e-4;
@@ -23,7 +23,7 @@ const ROW: f64 = 3e-4;
 const DESIGN: f64 = 7e-9;
 const PLACE: f64 = 7e-8;
 /// Designs of a box above which single ones are tried: smaller ones are soon judged whole.
-const WORTH_A_TRY: u64 = 1 << 20;
+const WORTH_A_TRY: u64 = 1 << 22;
 /// Boxes that a thread takes at a time. A batch of one share is one of the first: of what is tried there, the whole row is.
 const SHARE: usize = 64;
 /// Most boxes of scenarios that a number is followed over.
@@ -122,6 +122,53 @@ struct Waiting {
     open: Vec<Open>,
     /// Per target: the scenarios in which it may be worst.
     covers: Vec<Arc<[Spans]>>,
+    /// How many times as large as what it mostly must be the product of both objectives may be; infinite where nobody knows.
+    surplus: f64,
+}
+
+/// Boxes that wait, most promising first: what they hold makes short work of the others.
+#[derive(Debug, Default)]
+struct Queue {
+    /// By how promising they are.
+    levels: Vec<Vec<Waiting>>,
+    count: usize,
+}
+
+/// Of a queue: surpluses are told apart by powers of two of what they are more or less than one.
+const LEVELS: usize = 49;
+/// From here on.
+const ALIKE: f64 = 1e-6;
+/// Boxes that wait beyond which those with few designs, of little promise, are looked at first: they are soon gone.
+const MOST_WAITING: usize = 1 << 20;
+
+impl Queue {
+    fn new() -> Self {
+        Self { levels: (0..LEVELS).map(|_| Vec::new()).collect(), count: 0 }
+    }
+
+    fn push(&mut self, waiting: Waiting) {
+        let more = waiting.surplus.min(16.0) - 1.0;
+        let middle = (LEVELS / 2) as f64;
+        let level = middle - (1.0 + more.abs() / ALIKE).log2().copysign(more);
+        self.levels[level as usize].push(waiting);
+        self.count += 1;
+    }
+
+    /// The next batch: of equal promise the newest, which have the fewest designs.
+    fn pop(&mut self, most: usize) -> Vec<Waiting> {
+        let mut batch = Vec::new();
+        let mut take = |level: &mut Vec<Waiting>| {
+            let kept = level.len().saturating_sub(most - batch.len());
+            batch.extend(level.drain(kept..));
+        };
+        if self.count > MOST_WAITING {
+            self.levels.iter_mut().rev().for_each(&mut take)
+        } else {
+            self.levels.iter_mut().for_each(&mut take)
+        }
+        self.count -= batch.len();
+        batch
+    }
 }
 
 /// What came of a box.
@@ -213,23 +260,20 @@ impl Search<'_> {
             spans: *spans,
             open: all_open(self.requirements, self.axes),
             covers: vec![Arc::new([self.axes.whole()]); self.targets.len()],
+            surplus: f64::INFINITY,
         };
-        let mut batches: Vec<Vec<Waiting>> = vec![roots.iter().map(root).collect()];
+        let mut queue = Queue::new();
+        roots.iter().map(root).for_each(|root| queue.push(root));
         let mut total = Searched::default();
-        while let Some(mut batch) = batches.pop() {
-            if batch.len() > BATCH {
-                let now = batch.split_off(batch.len() - BATCH);
-                batches.push(std::mem::replace(&mut batch, now));
-            }
+        while queue.count > 0 {
+            let batch = queue.pop((found.front.len() / 4).clamp(*BATCH.start(), *BATCH.end()));
             let (next, settled) = self.look_at(&batch, workers, found);
             if self.stop.load(Ordering::Relaxed) || found.front.len() as u64 > self.most_points {
                 return None;
             }
             (self.progress)(settled.designs());
             total.add(&settled);
-            if !next.is_empty() {
-                batches.push(next);
-            }
+            next.into_iter().for_each(|part| queue.push(part));
         }
         Some(total)
     }
@@ -393,7 +437,7 @@ impl Search<'_> {
         // What is to be small must not be negative: then its inverse would be no measure of it.
         let is_measure = (0..2).all(|at| product.largest[at] || hopes[at] >= 0.0);
         let lower = [0, 1].map(|at| self.targets[at].rule.key(hopes[at]));
-        Some((if is_measure { staircase.fit(lower, bounds.most * product.unit) } else { Fit::Few }, bounds))
+        Some((if is_measure { staircase.fit(lower, bounds.most * product.unit) } else { Fit::Few(f64::INFINITY) }, bounds))
     }
 
     /// Can no design of a box be what is sought, by the best that it may have?
@@ -413,8 +457,10 @@ impl Search<'_> {
         }
         match self.fit(&hopes[..self.targets.len()], rival, &now.spans, bounder) {
             Some((Fit::None, _)) => return true,
+            Some((Fit::Few(surplus), _)) => now.surplus = surplus,
             // It is the product that must come down, wherever on the stairs the designs are.
-            Some((Fit::Many, bounds)) => {
+            Some((Fit::Many(surplus), bounds)) => {
+                now.surplus = surplus;
                 let mut pull = [0.0; AXES];
                 add_pull(&mut pull, &bounds, &now.spans, self.axes);
                 if pull.iter().any(|&it| it > 0.0) {
@@ -422,7 +468,7 @@ impl Search<'_> {
                     view.is_steered = true;
                 }
             }
-            _ => {}
+            None => {}
         }
         false
     }

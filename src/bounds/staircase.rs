@@ -25,14 +25,14 @@ pub struct Staircase {
 const USABLE: f64 = 1e100;
 
 /// What became of a box among the notches.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fit {
     /// It fits into none.
     None,
-    /// Its product fits into fewer than about half of those that its corner reaches.
-    Few,
-    /// It fits into most of them, or more than notches.
-    Many,
+    /// Its product fits into fewer than about half of those that its corner reaches; how many times as large as that of the middle one it is.
+    Few(f64),
+    /// It fits into most of them, or more than notches; likewise.
+    Many(f64),
 }
 
 /// What a coordinate is worth: its value or the inverse, larger where better; `None` where it is not positive.
@@ -62,24 +62,25 @@ impl Staircase {
     /// Into how many notches might a design fit that has at least these coordinates and at most this product? Where it fits into none,
     /// the points make it superfluous.
     pub fn fit(&self, lower: [f64; 2], most: f64) -> Fit {
-        let (Some(&last), true) = (self.second.last(), self.first.len() > 1) else { return Fit::Many };
+        let (Some(&last), true) = (self.second.last(), self.first.len() > 1) else { return Fit::Many(f64::INFINITY) };
         // Before the first point and after the last the stairs have no notch.
         let is_outside = lower[0] <= self.first[0] || lower[1] <= last;
         // Notch i lies between points i and i + 1: a design fits there if its corner is not beyond it.
         let from = self.first.partition_point(|&key| key < lower[0]).max(1) - 1;
         let to = self.second.partition_point(|&key| key >= lower[1]).min(self.least[0].len());
         if from >= to {
-            return if is_outside { Fit::Few } else { Fit::None };
+            return if is_outside { Fit::Few(f64::INFINITY) } else { Fit::None };
         }
         let level = (to - from).ilog2() as usize;
         let least = self.least[level][from].min(self.least[level][to - (1 << level)]);
         let middle = self.least[0][from + (to - from) / 2];
+        let surplus = if middle > 0.0 { most / middle } else { f64::INFINITY };
         if !is_outside && most < least * (1.0 - HIDDEN) {
             Fit::None
         } else if most < middle {
-            Fit::Few
+            Fit::Few(surplus)
         } else {
-            Fit::Many
+            Fit::Many(surplus)
         }
     }
 }

@@ -162,8 +162,8 @@ impl<'p> CpuEngine<'p> {
         for row in positions.chunk_by(|a, b| a / width == b / width) {
             if self.enter_row(row[0] / width) && self.row_feasible {
                 for block in row.chunks(BLOCK) {
-                    let fast = FastBlock::new(self.plan, block.iter().map(|position| position % width));
-                    self.screen_block(&fast, &mut absorb);
+                    let places: Vec<u64> = block.iter().map(|position| position % width).collect();
+                    self.screen_block(&FastBlock::picked(self.plan, self.tables, &places), &mut absorb);
                 }
             }
         }
@@ -172,7 +172,7 @@ impl<'p> CpuEngine<'p> {
     /// Judges the designs of some rows that stand at the same places of each, and hands each block with a feasible design to `absorb`.
     /// What the rows have in common is made once.
     pub fn screen_rows(&mut self, rows: &[u64], places: &[u64], mut absorb: impl FnMut(&Block<'_>)) {
-        let blocks: Vec<FastBlock> = places.chunks(BLOCK).map(|places| FastBlock::new(self.plan, places.iter().copied())).collect();
+        let blocks: Vec<FastBlock> = places.chunks(BLOCK).map(|places| FastBlock::picked(self.plan, self.tables, places)).collect();
         for &row in rows {
             if self.enter_row(row) && self.row_feasible {
                 for block in &blocks {
@@ -439,6 +439,28 @@ impl FastBlock {
             (*input, column.iter().map(|&value| models::input_to_si(input_table, value)).collect())
         });
         Self { count, offsets, si: si.collect(), own: columns }
+    }
+
+    /// The same, out of the blocks that are kept.
+    fn picked(plan: &Plan, tables: &Tables, designs: &[u64]) -> Self {
+        let Some(first) = tables.blocks.first() else { return Self::new(plan, designs.iter().copied()) };
+        let room = designs.len().next_multiple_of(LANES);
+        let columns = |of: fn(&Self) -> &[(usize, Vec<f64>)]| -> Vec<(usize, Vec<f64>)> {
+            let column = |number: usize| {
+                let at = |&design: &u64| of(&tables.blocks[design as usize / BLOCK])[number].1[design as usize % BLOCK];
+                let mut column = Vec::with_capacity(room);
+                column.extend(designs.iter().map(at));
+                column.resize(room, *column.last().expect("a block has a design"));
+                column
+            };
+            of(first).iter().enumerate().map(|(number, (input, _))| (*input, column(number))).collect()
+        };
+        Self {
+            count: designs.len(),
+            offsets: designs.iter().map(|&design| tables.blocks[design as usize / BLOCK].offsets[design as usize % BLOCK]).collect(),
+            si: columns(|it| &it.si),
+            own: columns(|it| &it.own),
+        }
     }
 
     pub(super) fn own(&self, input: usize) -> &[f64] {
