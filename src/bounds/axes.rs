@@ -162,6 +162,11 @@ impl Axes {
         self.all[..self.designs].iter().zip(&spans.0).map(|(axis, span)| u64::from(span.low) * axis.stride).sum()
     }
 
+    /// The lowest scenario index of a box.
+    pub fn scenario_index(&self, spans: &Spans) -> u64 {
+        self.all.iter().zip(&spans.0).skip(self.designs).map(|(axis, span)| u64::from(span.low) * axis.stride).sum()
+    }
+
     /// The position at which the sweep meets the first design of a box.
     pub fn first_position(&self, spans: &Spans) -> u64 {
         self.steps.iter().zip(&spans.0).map(|(step, span)| u64::from(span.low) * step).sum()

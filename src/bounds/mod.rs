@@ -163,6 +163,7 @@ impl Layout {
             sought,
             targets,
             product: (sought == Sought::Front).then(|| self.product(plan)).flatten(),
+            plan,
             effort: plan.effort(),
             row: plan.fast.count(),
             most_points: plan.study.report.front_budget.saturating_mul(4),

@@ -128,6 +128,11 @@ pub fn decide(requirements: &[Bounded], bounder: &mut Bounder<'_>, axes: &Axes, 
                 ends.narrow(&it.asked, &bounds, false, false);
             }
             let room = item.cover.len() < COVER;
+            let worst = worst_scenarios(part, &bounds, axes);
+            if worst != *part && !matches!(it.requirement.test, Test::Finite) {
+                cover.get_or_insert_with(|| item.cover[..at].to_vec()).push(worst);
+                continue;
+            }
             match scenario_to_split(&it.asked, &bounds, &spans, axes).filter(|_| room) {
                 Some(axis) => cover.get_or_insert_with(|| item.cover[..at].to_vec()).extend(part.halves(axis)),
                 None => {
@@ -177,6 +182,17 @@ pub fn add_pull(pull: &mut [f64; super::axes::AXES], bounds: &Bounds, spans: &Sp
             *pull += if all.is_finite() { own / all } else { f64::from(u8::from(own.is_infinite())) };
         }
     }
+}
+
+/// Of a box of scenarios: those that decide about a number for every design that its bounds are of, in f64 too.
+pub fn worst_scenarios(part: &Spans, bounds: &Bounds, axes: &Axes) -> Spans {
+    let mut worst = *part;
+    if bounds.finite {
+        for axis in (axes.designs..axes.all.len()).filter(|&axis| bounds.strict >> axis & 1 == 1) {
+            worst[axis] = Span::at(if bounds.better_at_last >> axis & 1 == 1 { part[axis].low } else { part[axis].high });
+        }
+    }
+    worst
 }
 
 /// The scenario axis that a box of scenarios should be cut along, if the scenarios leave more open than the designs do.

@@ -6,9 +6,13 @@
 
 use super::axes::{AXES, Axes, Span, Spans};
 use super::bounder::{Asked, Bounder, Bounds, Wanted};
-use super::open::{Bounded, Ends, Open, Outcome, add_pull, all_open, decide, is_infeasible, over, scenario_to_split};
+use super::open::{
+    Bounded, Ends, Open, Outcome, add_pull, all_open, decide, each_scenario, is_infeasible, over, scenario_to_split, scenarios,
+    worst_scenarios,
+};
 use super::staircase::{Fit, Staircase};
 use crate::models::Effort;
+use crate::plan::Plan;
 use crate::reduce::{Extreme, Front, KeyRule, MOST_OBJECTIVES, Reducers, Reduction};
 use crate::screen::CpuEngine;
 use std::sync::Arc;
@@ -22,6 +26,8 @@ const ROW: f64 = 3e-4;
 /// Seconds that a design takes besides, and a place of a row.
 const DESIGN: f64 = 7e-9;
 const PLACE: f64 = 7e-8;
+/// And a scenario of a row.
+const SCENARIO: f64 = 2e-7;
 /// Designs of a box above which single ones are tried: smaller ones are soon judged whole.
 const WORTH_A_TRY: u64 = 1 << 22;
 /// Boxes that a thread takes at a time. A batch of one share is one of the first: of what is tried there, the whole row is.
@@ -176,7 +182,7 @@ enum Fate {
     Infeasible,
     Beaten,
     /// What is left of it is to be judged design by design.
-    Leaf(Spans),
+    Leaf(Waiting),
     /// What is left of it is cut in two; with designs to try.
     Cut(Box<[Waiting; 2]>, [u64; 2]),
 }
@@ -199,6 +205,8 @@ pub struct Search<'a> {
     pub targets: Vec<Target>,
     /// For a front of two objectives.
     pub product: Option<Product>,
+    /// The study.
+    pub plan: &'a Plan,
     /// How long a design takes: the first stage of a row, the second of a design, over all scenarios.
     pub effort: Effort,
     /// Designs of a row.
@@ -345,12 +353,19 @@ impl Search<'_> {
                 Fate::Infeasible => settled.infeasible += size,
                 Fate::Beaten => settled.beaten += size,
                 Fate::Leaf(left) => {
-                    let own = self.axes.count(&left);
+                    let own = self.axes.count(&left.spans);
                     settled.evaluated += own;
                     settled.evaluations += own;
                     settled.beaten += size - own;
-                    let (rows, places) = self.axes.rows(&left, self.row);
-                    worker.engine.screen_rows(&rows, &places, |block| self.reduction.absorb_counted(reducers, block));
+                    let (rows, places) = self.axes.rows(&left.spans, self.row);
+                    let chosen = self.chosen(&left);
+                    worker.engine.screen_rows(&rows, &places, &chosen, |block| match self.sought {
+                        _ if chosen.is_empty() => self.reduction.absorb_counted(reducers, block),
+                        // Of anything else the block may not hold the worst.
+                        Sought::Front => self.reduction.absorb_objectives(reducers, block),
+                        Sought::Top => self.reduction.absorb_top(reducers, block),
+                        Sought::Extreme { objective, .. } => self.reduction.absorb_objective(reducers, block, objective),
+                    });
                 }
                 Fate::Cut(parts, tries) => {
                     settled.beaten += size - parts.iter().map(|part| self.axes.count(&part.spans)).sum::<u64>();
@@ -473,15 +488,50 @@ impl Search<'_> {
         false
     }
 
+    /// Seconds that it takes to judge designs in some of the scenarios.
+    fn time(&self, rows: f64, designs: f64, chosen: u64) -> f64 {
+        let share = |all: u64| (chosen as f64 / all as f64).min(1.0);
+        let prepare = self.effort.prepare * share(self.plan.slow_scenarios.count());
+        let finish = self.effort.finish * share(self.plan.scenarios());
+        rows * (prepare + chosen as f64 * SCENARIO) + designs * (finish + DESIGN)
+    }
+
+    /// At most how many scenarios decide about the designs of a box.
+    fn chosen_count(&self, waiting: &Waiting) -> u64 {
+        let targets = self.targets.iter().zip(&waiting.covers).map(|(target, cover)| scenarios(cover, &target.asked, self.axes));
+        let open = waiting.open.iter().map(|item| scenarios(&item.cover, &self.requirements[item.requirement].asked, self.axes));
+        targets.chain(open).sum::<u64>().min(self.plan.scenarios())
+    }
+
+    /// The scenarios, slow and fast, that decide about the designs of a box: in which what is sought may be worst, or what is open be
+    /// violated. None where it may be any.
+    fn chosen(&self, waiting: &Waiting) -> Vec<(u64, u64)> {
+        if self.chosen_count(waiting) == self.plan.scenarios() {
+            return Vec::new();
+        }
+        let mut chosen = Vec::new();
+        let mut choose = |cover: &[Spans], asked: &Asked| {
+            each_scenario(cover, asked, self.axes, |scenario| {
+                let index = self.axes.scenario_index(&scenario);
+                chosen.push((self.plan.slow_scenarios.index_of(index), self.plan.fast_scenarios.index_of(index)));
+            });
+        };
+        self.targets.iter().zip(&waiting.covers).for_each(|(target, cover)| choose(cover, &target.asked));
+        waiting.open.iter().for_each(|item| choose(&item.cover, &self.requirements[item.requirement].asked));
+        chosen.sort_unstable();
+        chosen.dedup();
+        chosen
+    }
+
     fn leaf_or_cut(&self, now: Waiting, view: &View) -> Fate {
         let size = self.axes.count(&now.spans);
         let places: u64 =
             self.axes.steps.iter().zip(&now.spans.0).filter(|(step, _)| **step < self.row).map(|(_, span)| span.count()).product();
         let rows = (size / places) as f64;
-        let time = rows * self.effort.prepare + size as f64 * (self.effort.finish + DESIGN) + places as f64 * PLACE;
+        let time = self.time(rows, size as f64, self.chosen_count(&now)) + places as f64 * PLACE;
         // A single row has nothing in common with others that bounds could use.
         if size == 1 || time <= if rows > 1.0 { LEAF } else { ROW } {
-            return Fate::Leaf(now.spans);
+            return Fate::Leaf(now);
         }
         let axis = self.axis_to_cut(&now.spans, &view.pull);
         let tries = self.tries(&now.spans, &view.better);
@@ -517,6 +567,7 @@ impl Search<'_> {
         let mut left = Vec::new();
         // Where another scenario is worse for every design of the box, this one decides nothing.
         for (part, it) in bounded.iter().filter(|(_, it)| it.most >= least) {
+            let part = &worst_scenarios(part, it, self.axes);
             let whole = over(spans, part, self.axes);
             add_pull(&mut view.pull, it, &whole, self.axes);
             view.ends.narrow(&target.asked, it, target.at_the_bad_end, !target.rule.has_steps() || target.at_the_bad_end);

@@ -35,10 +35,10 @@ impl Extremes {
         Self { least: vec![None; objectives], largest: vec![None; objectives] }
     }
 
-    /// Takes in a block; `columns` are the positions of the objectives among its values.
-    pub fn absorb(&mut self, block: &Block<'_>, columns: &[usize]) {
+    /// Takes in a block; `columns` are objectives and their positions among its values.
+    pub fn absorb(&mut self, block: &Block<'_>, columns: impl Iterator<Item = (usize, usize)>) {
         let lowest_index = || block.row_index + block.offsets.iter().min().copied().unwrap_or(0);
-        for (objective, &column) in columns.iter().enumerate() {
+        for (objective, column) in columns {
             let values = block.column(column);
             let (low, high) = ends(block.alive, values);
             // Which design it is matters only where the value is new, or old with a chance of a lower index.

@@ -90,7 +90,7 @@ impl Reduction {
     pub fn absorb(&self, reducers: &mut Reducers, block: &Block<'_>) {
         reducers.feasible += block.feasible_count;
         reducers.front.absorb(block, &self.objectives);
-        reducers.extremes.absorb(block, &self.objectives);
+        reducers.extremes.absorb(block, self.objectives.iter().copied().enumerate());
         if let (Some((column, _)), Some(top)) = (&self.top, &mut reducers.top) {
             top.absorb(block, *column);
         }
@@ -104,15 +104,30 @@ impl Reduction {
 
     /// Takes in a block of designs that were counted elsewhere: for the front, the extremes, the top list and the maps' best only.
     pub fn absorb_counted(&self, reducers: &mut Reducers, block: &Block<'_>) {
-        reducers.front.absorb(block, &self.objectives);
-        reducers.extremes.absorb(block, &self.objectives);
-        if let (Some((column, _)), Some(top)) = (&self.top, &mut reducers.top) {
-            top.absorb(block, *column);
-        }
+        self.absorb_objectives(reducers, block);
+        self.absorb_top(reducers, block);
         for ((column, _), map) in self.maps.iter().zip(&mut reducers.maps) {
             if column.is_some() {
                 map.absorb(block, *column);
             }
+        }
+    }
+
+    /// Takes in a block of which only the objectives are known: for the front and the extremes.
+    pub fn absorb_objectives(&self, reducers: &mut Reducers, block: &Block<'_>) {
+        reducers.front.absorb(block, &self.objectives);
+        reducers.extremes.absorb(block, self.objectives.iter().copied().enumerate());
+    }
+
+    /// Takes in a block of which one objective is known: for its extremes.
+    pub fn absorb_objective(&self, reducers: &mut Reducers, block: &Block<'_>, objective: usize) {
+        reducers.extremes.absorb(block, std::iter::once((objective, self.objectives[objective])));
+    }
+
+    /// Takes in a block of which what the top list is by is known: for that.
+    pub fn absorb_top(&self, reducers: &mut Reducers, block: &Block<'_>) {
+        if let (Some((column, _)), Some(top)) = (&self.top, &mut reducers.top) {
+            top.absorb(block, *column);
         }
     }
 

@@ -85,6 +85,8 @@ pub struct CpuEngine<'p> {
     scratch: Scratch,
     /// Set to end the work as soon as may be.
     stop: Option<&'p AtomicBool>,
+    /// The only scenarios, slow and fast, that are looked at; none means all.
+    chosen: Vec<(u64, u64)>,
 }
 
 impl<'p> CpuEngine<'p> {
@@ -129,6 +131,7 @@ impl<'p> CpuEngine<'p> {
             row_index: 0,
             scratch: Scratch::default(),
             stop: None,
+            chosen: Vec::new(),
         }
     }
 
@@ -170,8 +173,12 @@ impl<'p> CpuEngine<'p> {
     }
 
     /// Judges the designs of some rows that stand at the same places of each, and hands each block with a feasible design to `absorb`.
-    /// What the rows have in common is made once.
-    pub fn screen_rows(&mut self, rows: &[u64], places: &[u64], mut absorb: impl FnMut(&Block<'_>)) {
+    /// What the rows have in common is made once. If some scenarios are `chosen` (slow and fast, sorted), only they are looked at.
+    pub fn screen_rows(&mut self, rows: &[u64], places: &[u64], chosen: &[(u64, u64)], mut absorb: impl FnMut(&Block<'_>)) {
+        if !chosen.is_empty() {
+            self.row = None;
+        }
+        self.chosen.extend(chosen);
         let blocks: Vec<FastBlock> = places.chunks(BLOCK).map(|places| FastBlock::picked(self.plan, self.tables, places)).collect();
         for &row in rows {
             if self.enter_row(row) && self.row_feasible {
@@ -179,6 +186,10 @@ impl<'p> CpuEngine<'p> {
                     self.screen_block(block, &mut absorb);
                 }
             }
+        }
+        if !chosen.is_empty() {
+            self.chosen.clear();
+            self.row = None;
         }
     }
 
@@ -218,21 +229,50 @@ impl<'p> CpuEngine<'p> {
         for (worst, (tracked, _)) in self.row_worst.iter_mut().zip(&self.plan.tracked) {
             *worst = least_bad(tracked.worse);
         }
-        for q in 0..self.plan.slow_scenarios.count() {
-            let prepared = self.prepare(q);
-            for t in 0..self.plan.fast_scenarios.count() {
-                if self.stopped() {
-                    self.row = None;
-                    return false;
-                }
-                self.set_fast_scenario(t);
-                if !self.judge_row_scenario(prepared.clone()) {
-                    self.row_feasible = false;
-                    return true;
+        let done = self.each_scenario(|engine, prepared, _, _| {
+            engine.row_feasible &= engine.judge_row_scenario(prepared);
+            engine.row_feasible
+        });
+        if !done {
+            self.row = None;
+        }
+        done
+    }
+
+    /// Turns to one scenario after the other, as long as `judge` wants to go on; false if it was stopped before that. `judge` is told
+    /// where the prepared numbers stand, whether the scenario is the first, and whether it is the last with these numbers.
+    fn each_scenario(&mut self, mut judge: impl FnMut(&mut Self, Range<usize>, bool, bool) -> bool) -> bool {
+        let (slow, fast) = (self.plan.slow_scenarios.count(), self.plan.fast_scenarios.count());
+        if self.chosen.is_empty() {
+            for q in 0..slow {
+                let prepared = self.prepare(q);
+                for t in 0..fast {
+                    if self.stopped() {
+                        return false;
+                    }
+                    self.set_fast_scenario(t);
+                    if !judge(self, prepared.clone(), q == 0 && t == 0, t + 1 == fast) {
+                        return true;
+                    }
                 }
             }
+            return true;
         }
-        true
+        let chosen = std::mem::take(&mut self.chosen);
+        let mut goes_on = true;
+        for (at, part) in chosen.chunk_by(|a, b| a.0 == b.0).enumerate() {
+            // What is kept is always that of the first scenarios: these find room beside it.
+            let prepared = self.prepare_at(part[0].0, self.room);
+            for (number, &(_, t)) in part.iter().enumerate() {
+                self.set_fast_scenario(t);
+                goes_on = goes_on && judge(self, prepared.clone(), at == 0 && number == 0, number + 1 == part.len());
+            }
+            if !goes_on || self.stopped() {
+                break;
+            }
+        }
+        self.chosen = chosen;
+        !self.stopped()
     }
 
     pub(super) fn set_row(&mut self, row: u64) {
@@ -308,19 +348,13 @@ impl<'p> CpuEngine<'p> {
             }
         }
         if !self.results.is_empty() {
-            for q in 0..plan.slow_scenarios.count() {
-                let prepared = self.prepare(q);
-                for t in 0..plan.fast_scenarios.count() {
-                    if self.stopped() {
-                        return false;
-                    }
-                    self.set_fast_scenario(t);
-                    self.evaluate(prepared.clone(), fast);
-                    self.judge_block_scenario(q == 0 && t == 0);
-                }
-                if !any(&self.alive) {
-                    return true;
-                }
+            let done = self.each_scenario(|engine, prepared, is_first, is_last| {
+                engine.evaluate(prepared, fast);
+                engine.judge_block_scenario(is_first);
+                !is_last || any(&engine.alive)
+            });
+            if !done {
+                return false;
             }
         }
         let feasible = columns::count(&self.alive);
@@ -377,14 +411,26 @@ impl<'p> CpuEngine<'p> {
     /// Where the row's prepared numbers of slow scenario `q` stand; its inputs become the current ones. A row asks for its
     /// scenarios in order, so that what is kept is always the first ones.
     pub(super) fn prepare(&mut self, q: u64) -> Range<usize> {
-        self.set_slow_scenario(q);
-        let at = q.min(self.room) as usize * self.width;
-        let place = at..at + self.width;
         if q >= self.kept {
-            self.plan.study.model.kernel.prepare(&self.si, self.wanted, &mut self.prepared[place.clone()]);
+            let place = self.prepare_at(q, q.min(self.room));
             self.kept = self.kept.max((q + 1).min(self.room));
+            return place;
         }
+        self.set_slow_scenario(q);
+        self.place(q)
+    }
+
+    /// Prepares a slow scenario at some place.
+    fn prepare_at(&mut self, q: u64, at: u64) -> Range<usize> {
+        self.set_slow_scenario(q);
+        let place = self.place(at);
+        self.plan.study.model.kernel.prepare(&self.si, self.wanted, &mut self.prepared[place.clone()]);
         place
+    }
+
+    fn place(&self, at: u64) -> Range<usize> {
+        let at = at as usize * self.width;
+        at..at + self.width
     }
 
     fn set_slow_scenario(&mut self, q: u64) {
