@@ -30,8 +30,10 @@ const PLACE: f64 = 7e-8;
 const SCENARIO: f64 = 2e-7;
 /// Designs of a box above which single ones are tried: smaller ones are soon judged whole.
 const WORTH_A_TRY: u64 = 1 << 22;
-/// Boxes that a thread takes at a time. A batch of one share is one of the first: of what is tried there, the whole row is.
+/// Most boxes that a thread takes at a time.
 const SHARE: usize = 64;
+/// A batch this small is one of the first: of what is tried there, the whole row is.
+const FIRST_BATCHES: usize = 64;
 /// Most boxes of scenarios that a number is followed over.
 const COVER: usize = 32;
 /// More than rounding can make of a product of a few numbers.
@@ -301,8 +303,9 @@ impl Search<'_> {
             }
         };
         // Threads take boxes a share at a time, each starting with what is known: it drops most of what it judges there and then.
-        let shares: Vec<&[Waiting]> = batch.chunks(SHARE).collect();
+        let shares: Vec<&[Waiting]> = batch.chunks((batch.len() / (8 * workers.len())).clamp(1, SHARE)).collect();
         let taken = AtomicUsize::new(0);
+        let is_first = batch.len() <= FIRST_BATCHES;
         let mut reducers: Vec<Reducers> = workers.iter().take(shares.len()).map(|_| self.reduction.start_after(known.clone())).collect();
         let mut parts: Vec<_> = std::thread::scope(|scope| {
             let (rival, shares, taken) = (&rival, &shares, &taken);
@@ -313,7 +316,7 @@ impl Search<'_> {
                     loop {
                         let share = taken.fetch_add(1, Ordering::Relaxed);
                         let Some(part) = shares.get(share) else { return own };
-                        own.push((share, self.look_at_part(part, worker, rival, reducers, shares.len() == 1)));
+                        own.push((share, self.look_at_part(part, worker, rival, reducers, is_first)));
                     }
                 }));
             }

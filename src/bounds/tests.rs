@@ -1,6 +1,7 @@
 //! Bounds against single designs: what the formula itself computes never leaves them.
 
 use super::axes::{AXES, Span};
+use super::bounder::Wanted;
 use super::columns::{CHUNK, Columns};
 use super::open::over;
 use super::*;

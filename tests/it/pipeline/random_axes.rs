@@ -155,7 +155,8 @@ impl Generator<'_> {
     fn integer(&mut self, input: usize, count: u64, axis: impl FnOnce(&'static str, String, Vec<f64>, bool) -> AxisDraft) -> AxisDraft {
         let (low, high) = range(self.model, input);
         let (low, high) = (low as u64, high as u64);
-        let from = low + self.random.below(2) as u64;
+        // Of two values there are, neither twice.
+        let from = (low + self.random.below(2) as u64).min(high - 1);
         let to = (from + count - 1).min(high);
         let values = |step: u64| (from..=to).step_by(step as usize).map(|value| value as f64).collect();
         let (text, values): (_, Vec<f64>) = match self.random.below(4) {
