@@ -12,6 +12,7 @@ mod count;
 mod open;
 mod pairing;
 mod pairs;
+mod queue;
 mod requirement;
 mod search;
 mod sorted;

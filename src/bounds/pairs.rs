@@ -459,6 +459,16 @@ fn is_inside(channels: &[Channel], limits: &[(f64, f64)], at: usize) -> bool {
     })
 }
 
+/// Guesses of a threshold by straight lines, before halves.
+const STRAIGHT: u32 = 9;
+
+/// The number with as many between it and either: near zero there are as many as anywhere else.
+fn halfway(a: f64, b: f64) -> f64 {
+    let flip = |bits: i64| bits ^ ((bits >> 63) as u64 >> 1) as i64;
+    let (a, b) = (flip(a.to_bits() as i64), flip(b.to_bits() as i64));
+    f64::from_bits(flip((a & b) + ((a ^ b) >> 1)) as u64)
+}
+
 /// The last number on the way from a good to a bad one that is good, for a function that rises or falls all the way; both come with
 /// their values.
 #[inline]
@@ -477,7 +487,7 @@ fn threshold(function: impl Fn(f64) -> f64, requirement: &Requirement, good: (f6
         let share = (bound - good.1) / (bad.1 - good.1);
         let straight = good.0 + (bad.0 - good.0) * share;
         let mut guess = match attempt % 3 {
-            _ if attempt > 24 => 0.5 * (good.0 + bad.0),
+            _ if attempt > STRAIGHT => halfway(good.0, bad.0),
             0 => straight,
             1 => straight + (straight.abs() * f64::EPSILON) * f64::from(1u32 << (attempt / 3)) * (bad.0 - good.0).signum(),
             _ => straight - (straight.abs() * f64::EPSILON) * f64::from(1u32 << (attempt / 3)) * (bad.0 - good.0).signum(),
@@ -515,4 +525,35 @@ pub fn with_scenario(designs: &Spans, scenario: &Spans, axes: &Axes) -> Spans {
     let mut spans = *designs;
     spans.0[axes.designs..].copy_from_slice(&scenario.0[axes.designs..]);
     spans
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::requirement::Test;
+    use super::*;
+    use std::cell::Cell;
+
+    /// A threshold of a function, and how often it was asked for.
+    fn found(test: Test, good: f64, bad: f64, function: fn(f64) -> f64) -> (f64, u32) {
+        let requirement = Requirement { source: Source::Known(0.0), test, finite: false, needed: Vec::new() };
+        let asked = Cell::new(0);
+        let counted = |start| {
+            asked.set(asked.get() + 1);
+            function(start)
+        };
+        (threshold(counted, &requirement, (good, function(good)), (bad, function(bad))), asked.get())
+    }
+
+    #[test]
+    fn a_threshold_is_the_last_good_number_wherever_it_lies() {
+        let (last, asked) = found(Test::High(3.0, false), 0.0, 100.0, |x| 3.0 * x + 1.5);
+        assert!(last == 0.5 && asked < 20, "{last} after {asked}");
+        let (last, asked) = found(Test::High(2.0, false), 0.0, 100.0, f64::sqrt);
+        assert!(last.sqrt() == 2.0 && last.next_up().sqrt() > 2.0 && asked < 80, "{last} after {asked}");
+        // Next to zero there are more numbers than between one and a thousand.
+        let (last, asked) = found(Test::Low(0.0, true), 1000.0, 0.0, |x| 5.0 * x);
+        assert!(last == f64::from_bits(1) && asked < 80, "{last:e} after {asked}");
+        let (last, asked) = found(Test::High(0.0, true), -1000.0, 7.0, |x| x);
+        assert!(last == -f64::from_bits(1) && asked < 80, "{last:e} after {asked}");
+    }
 }

@@ -7,9 +7,9 @@
 use super::axes::{AXES, Axes, Span, Spans};
 use super::bounder::{Asked, Bounder, Bounds, Wanted};
 use super::open::{
-    Bounded, Ends, Open, Outcome, add_pull, all_open, decide, each_scenario, is_infeasible, over, scenario_to_split, scenarios,
-    worst_scenarios,
+    Bounded, Ends, Outcome, add_pull, all_open, decide, each_scenario, is_infeasible, over, scenario_to_split, scenarios, worst_scenarios,
 };
+use super::queue::{Queue, Waiting};
 use super::staircase::{Fit, Staircase};
 use crate::models::Effort;
 use crate::plan::Plan;
@@ -123,62 +123,6 @@ impl Searched {
     }
 }
 
-/// A box that waits.
-#[derive(Clone, Debug)]
-struct Waiting {
-    spans: Spans,
-    open: Vec<Open>,
-    /// Per target: the scenarios in which it may be worst.
-    covers: Vec<Arc<[Spans]>>,
-    /// How many times as large as what it mostly must be the product of both objectives may be; infinite where nobody knows.
-    surplus: f64,
-}
-
-/// Boxes that wait, most promising first: what they hold makes short work of the others.
-#[derive(Debug, Default)]
-struct Queue {
-    /// By how promising they are.
-    levels: Vec<Vec<Waiting>>,
-    count: usize,
-}
-
-/// Of a queue: surpluses are told apart by powers of two of what they are more or less than one.
-const LEVELS: usize = 49;
-/// From here on.
-const ALIKE: f64 = 1e-6;
-/// Boxes that wait beyond which those with few designs, of little promise, are looked at first: they are soon gone.
-const MOST_WAITING: usize = 1 << 20;
-
-impl Queue {
-    fn new() -> Self {
-        Self { levels: (0..LEVELS).map(|_| Vec::new()).collect(), count: 0 }
-    }
-
-    fn push(&mut self, waiting: Waiting) {
-        let more = waiting.surplus.min(16.0) - 1.0;
-        let middle = (LEVELS / 2) as f64;
-        let level = middle - (1.0 + more.abs() / ALIKE).log2().copysign(more);
-        self.levels[level as usize].push(waiting);
-        self.count += 1;
-    }
-
-    /// The next batch: of equal promise the newest, which have the fewest designs.
-    fn pop(&mut self, most: usize) -> Vec<Waiting> {
-        let mut batch = Vec::new();
-        let mut take = |level: &mut Vec<Waiting>| {
-            let kept = level.len().saturating_sub(most - batch.len());
-            batch.extend(level.drain(kept..));
-        };
-        if self.count > MOST_WAITING {
-            self.levels.iter_mut().rev().for_each(&mut take)
-        } else {
-            self.levels.iter_mut().for_each(&mut take)
-        }
-        self.count -= batch.len();
-        batch
-    }
-}
-
 /// What came of a box.
 enum Fate {
     Infeasible,
@@ -275,7 +219,7 @@ impl Search<'_> {
         let mut queue = Queue::new();
         roots.iter().map(root).for_each(|root| queue.push(root));
         let mut total = Searched::default();
-        while queue.count > 0 {
+        while !queue.is_empty() {
             let batch = queue.pop((found.front.len() / 4).clamp(*BATCH.start(), *BATCH.end()));
             let (next, settled) = self.look_at(&batch, workers, found);
             if self.stop.load(Ordering::Relaxed) || found.front.len() as u64 > self.most_points {
@@ -569,7 +513,7 @@ impl Search<'_> {
         let room = cover.len() < COVER;
         let mut left = Vec::new();
         // Where another scenario is worse for every design of the box, this one decides nothing.
-        for (part, it) in bounded.iter().filter(|(_, it)| it.most >= least) {
+        for (part, it) in bounded.iter().filter(|(_, it)| it.most >= least || it.most.is_nan()) {
             let part = &worst_scenarios(part, it, self.axes);
             let whole = over(spans, part, self.axes);
             add_pull(&mut view.pull, it, &whole, self.axes);

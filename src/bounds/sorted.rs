@@ -1,5 +1,8 @@
 //! Numbers in buckets: how many are at most a threshold, without sorting them all.
 
+/// Numbers of a bucket beyond which they are sorted.
+const FEW: usize = 16;
+
 /// Numbers cast into buckets of equal width, in the order of the buckets.
 #[derive(Debug, Default)]
 pub struct Buckets {
@@ -35,6 +38,13 @@ impl Buckets {
             self.starts[bucket] += 1;
         }
         self.starts.pop();
+        // A few numbers far from the others leave those in few buckets.
+        for ends in self.starts.windows(2) {
+            let bucket = &mut self.values[ends[0] as usize..ends[1] as usize];
+            if bucket.len() > FEW {
+                bucket.sort_unstable_by(f64::total_cmp);
+            }
+        }
     }
 
     /// The bucket of a number: it never falls as the number rises, so what is in lower buckets is lower.
@@ -55,38 +65,52 @@ impl Buckets {
     #[inline(always)]
     pub fn at_most(&self, number: f64) -> u64 {
         let (before, same) = self.of(number);
-        before as u64 + same.iter().map(|&it| u64::from(it <= number)).sum::<u64>()
+        (before + first_ones(same, |it| it <= number)) as u64
     }
 
     /// How many are below this.
     #[inline(always)]
     pub fn below(&self, number: f64) -> u64 {
         let (before, same) = self.of(number);
-        before as u64 + same.iter().map(|&it| u64::from(it < number)).sum::<u64>()
+        (before + first_ones(same, |it| it < number)) as u64
     }
 
     /// The largest that is at most this.
     pub fn last_at_most(&self, number: f64) -> Option<f64> {
         let (before, same) = self.of(number);
-        let best = same.iter().copied().filter(|&it| it <= number).fold(f64::NEG_INFINITY, f64::max);
-        if best > f64::NEG_INFINITY {
-            return Some(best);
-        }
         // The last bucket before that has any ends where this one begins.
-        let last = self.values[..before].last()?;
-        Some(self.of(*last).1.iter().copied().fold(f64::NEG_INFINITY, f64::max))
+        let own = largest(same, |it| it <= number);
+        own.or_else(|| largest(self.of(*self.values[..before].last()?).1, |_| true))
     }
 
     /// The least that is at least this.
     pub fn first_at_least(&self, number: f64) -> Option<f64> {
         let (before, same) = self.of(number);
-        let best = same.iter().copied().filter(|&it| it >= number).fold(f64::INFINITY, f64::min);
-        if best < f64::INFINITY {
-            return Some(best);
-        }
-        let first = self.values[before + same.len()..].first()?;
-        Some(self.of(*first).1.iter().copied().fold(f64::INFINITY, f64::min))
+        let own = least(same, |it| it >= number);
+        own.or_else(|| least(self.of(*self.values[before + same.len()..].first()?).1, |_| true))
     }
+}
+
+/// How many of a bucket's numbers are of a kind that larger ones are not.
+#[inline(always)]
+fn first_ones(bucket: &[f64], is: impl Fn(f64) -> bool) -> usize {
+    if bucket.len() <= FEW { bucket.iter().map(|&it| usize::from(is(it))).sum() } else { bucket.partition_point(|&it| is(it)) }
+}
+
+/// The largest of a bucket's numbers of such a kind.
+fn largest(bucket: &[f64], is: impl Fn(f64) -> bool) -> Option<f64> {
+    if bucket.len() <= FEW {
+        return bucket.iter().copied().filter(|&it| is(it)).reduce(f64::max);
+    }
+    bucket[..bucket.partition_point(|&it| is(it))].last().copied()
+}
+
+/// The least of a bucket's numbers of a kind that smaller ones are not.
+fn least(bucket: &[f64], is: impl Fn(f64) -> bool) -> Option<f64> {
+    if bucket.len() <= FEW {
+        return bucket.iter().copied().filter(|&it| is(it)).reduce(f64::min);
+    }
+    bucket[bucket.partition_point(|&it| !is(it))..].first().copied()
 }
 
 #[cfg(test)]
@@ -96,8 +120,12 @@ mod tests {
 
     #[test]
     fn the_buckets_agree_with_looking_at_every_number() {
-        for (count, levels) in [(1, 1), (2, 1), (50, 7), (1000, 100_000), (1000, 3)] {
-            let numbers: Vec<f64> = (0..count).map(|i| (mix(i) % levels) as f64 * 0.37 - 5.0).collect();
+        let sizes = [(1, 1), (2, 1), (50, 7), (1000, 100_000), (1000, 3)];
+        for ((count, levels), far) in sizes.into_iter().flat_map(|it| [(it, false), (it, true)]) {
+            let mut numbers: Vec<f64> = (0..count).map(|i| (mix(i) % levels) as f64 * 0.37 - 5.0).collect();
+            if far {
+                numbers.extend([-1e9, 1e12, 1e12]);
+            }
             let ends = numbers.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &it| (it.min(low), it.max(high)));
             let mut buckets = Buckets::default();
             // Room that was used before must not show.

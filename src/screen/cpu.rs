@@ -5,55 +5,16 @@
 
 use super::Block;
 use super::columns::{self, any, keep_finite, keep_margin, keep_within, lower, raise};
+use super::tables::{FastBlock, Setting, Tables, setting};
 use crate::decision::Decision;
-use crate::models::{self, CONDITIONS, Columns, INPUTS, LANES, OUTPUTS, Scratch, Worse};
-use crate::plan::{FAST_DESIGNS, Plan, Source};
+use crate::models::{self, CONDITIONS, Columns, INPUTS, OUTPUTS, Scratch, Worse};
+use crate::plan::{Plan, Source};
 use crate::space::Product;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Most designs in a block: its columns stay in the first-level cache.
 pub const BLOCK: usize = 512;
-/// Most scenarios, slow or fast, whose settings are kept rather than computed again.
-const TABLE: u64 = 1 << 15;
-
-/// Values that one combination of scenario axes sets: input number, in its unit, in SI.
-type Setting = Vec<(usize, f64, f64)>;
-
-/// The inputs of the designs of one block that the fast axes set.
-#[derive(Debug)]
-pub(super) struct FastBlock {
-    count: usize,
-    offsets: Vec<u64>,
-    /// By input number, in SI units.
-    si: Vec<(usize, Vec<f64>)>,
-    /// By input number, in the input's unit, where the plan tracks or constrains the input itself.
-    own: Vec<(usize, Vec<f64>)>,
-}
-
-/// What all threads of an engine share: made once per plan.
-#[derive(Debug)]
-pub struct Tables {
-    /// Settings of the slow and of the fast scenarios, while they are few.
-    slow_scenarios: Vec<Setting>,
-    fast_scenarios: Vec<Setting>,
-    /// Blocks of the fast design axes, while they are few.
-    blocks: Vec<FastBlock>,
-}
-
-impl Tables {
-    /// The tables of a plan.
-    pub fn new(plan: &Plan) -> Self {
-        let settings = |product: &Product| -> Vec<Setting> {
-            let kept = if product.count() <= TABLE { product.count() } else { 0 };
-            (0..kept).map(|index| setting(plan, product, index)).collect()
-        };
-        let kept = if plan.fast.count() <= FAST_DESIGNS { plan.fast.count() } else { 0 };
-        let blocks = (0..kept).step_by(BLOCK).map(|first| FastBlock::new(plan, first..kept.min(first + BLOCK as u64))).collect();
-        Self { slow_scenarios: settings(&plan.slow_scenarios), fast_scenarios: settings(&plan.fast_scenarios), blocks }
-    }
-}
-
 /// Judges ranges of designs; one per thread.
 #[derive(Debug)]
 pub struct CpuEngine<'p> {
@@ -459,71 +420,6 @@ impl<'p> CpuEngine<'p> {
     }
 }
 
-impl FastBlock {
-    /// The given designs of the fast axes, at most [`BLOCK`].
-    pub(super) fn new(plan: &Plan, designs: impl Iterator<Item = u64>) -> Self {
-        let model = plan.study.model;
-        let set = plan.fast.inputs();
-        let mut columns: Vec<(usize, Vec<f64>)> =
-            (0..model.inputs.len()).filter(|input| set >> input & 1 == 1).map(|input| (input, Vec::with_capacity(BLOCK))).collect();
-        let mut inputs = vec![0.0; model.inputs.len()];
-        let mut offsets = Vec::with_capacity(BLOCK);
-        for design in designs {
-            plan.fast.set(design, &mut inputs);
-            offsets.push(plan.fast.source_index(design));
-            for (input, column) in &mut columns {
-                column.push(inputs[*input]);
-            }
-        }
-        let count = offsets.len();
-        for (_, column) in &mut columns {
-            // Idle lanes repeat the last design, so that they are as harmless as it is.
-            column.resize(count.next_multiple_of(LANES), *column.last().expect("a block has a design"));
-        }
-        let si = columns.iter().map(|(input, column)| {
-            let input_table = &model.inputs[*input];
-            (*input, column.iter().map(|&value| models::input_to_si(input_table, value)).collect())
-        });
-        Self { count, offsets, si: si.collect(), own: columns }
-    }
-
-    /// The same, out of the blocks that are kept.
-    fn picked(plan: &Plan, tables: &Tables, designs: &[u64]) -> Self {
-        let Some(first) = tables.blocks.first() else { return Self::new(plan, designs.iter().copied()) };
-        let room = designs.len().next_multiple_of(LANES);
-        let columns = |of: fn(&Self) -> &[(usize, Vec<f64>)]| -> Vec<(usize, Vec<f64>)> {
-            let column = |number: usize| {
-                let at = |&design: &u64| of(&tables.blocks[design as usize / BLOCK])[number].1[design as usize % BLOCK];
-                let mut column = Vec::with_capacity(room);
-                column.extend(designs.iter().map(at));
-                column.resize(room, *column.last().expect("a block has a design"));
-                column
-            };
-            of(first).iter().enumerate().map(|(number, (input, _))| (*input, column(number))).collect()
-        };
-        Self {
-            count: designs.len(),
-            offsets: designs.iter().map(|&design| tables.blocks[design as usize / BLOCK].offsets[design as usize % BLOCK]).collect(),
-            si: columns(|it| &it.si),
-            own: columns(|it| &it.own),
-        }
-    }
-
-    pub(super) fn own(&self, input: usize) -> &[f64] {
-        &self.own.iter().find(|(it, _)| *it == input).expect("a lane input is set by a fast axis").1
-    }
-}
-
-/// What one combination of scenario axes sets.
-fn setting(plan: &Plan, product: &Product, index: u64) -> Setting {
-    let model = plan.study.model;
-    let mut inputs = plan.study.fixed.clone();
-    product.set(index, &mut inputs);
-    let set = product.inputs();
-    let each = (0..model.inputs.len()).filter(|input| set >> input & 1 == 1);
-    each.map(|input| (input, inputs[input], models::input_to_si(&model.inputs[input], inputs[input]))).collect()
-}
-
 /// Does a condition hold? In f64 the answer is never unsure.
 pub(super) fn holds(plan: &Plan, condition: usize, margin: f64) -> bool {
     models::holds(plan.study.model, condition, margin, 0.0) == Decision::Yes
@@ -606,6 +502,35 @@ mod tests {
             assert_eq!(judged(&mut engine, 0..plan.designs()), (all.clone(), end), "room for {room}");
             assert!(kernel.prepared.load(Ordering::Relaxed) - before > 3 * slow);
         }
+    }
+
+    #[test]
+    fn the_scenarios_that_are_chosen_are_the_only_ones_that_count() {
+        let (model, _) = watched(Duration::ZERO, 0);
+        let plan = plan_of(model);
+        let tables = Tables::new(&plan);
+        let mut engine = CpuEngine::new(&plan, &tables);
+        let places: Vec<u64> = (0..plan.fast.count()).collect();
+        let mut chosen = |scenarios: &[(u64, u64)]| {
+            let mut found = std::collections::BTreeMap::new();
+            engine.screen_rows(&[0, 1, 2], &places, scenarios, |block| {
+                found.extend(block.feasible().map(|lane| (block.index(lane), block.column(0)[lane])));
+            });
+            found
+        };
+        let all: Vec<(u64, u64)> = (0..3).flat_map(|q| [(q, 0), (q, 1)]).collect();
+        let whole = chosen(&[]);
+        assert!(whole.len() > 1000 && chosen(&all) == whole);
+        let alone: Vec<_> = all.iter().map(|&it| chosen(&[it])).collect();
+        for (first, second) in (0..all.len()).flat_map(|a| (a + 1..all.len()).map(move |b| (a, b))) {
+            let both = chosen(&[all[first], all[second]]);
+            let expected = alone[first].iter().filter_map(|(index, a)| Some((*index, a.min(*alone[second].get(index)?))));
+            assert!(both == expected.collect(), "{first} and {second}");
+        }
+        let different = alone.iter().filter(|it| **it != whole).count();
+        assert!(different > 2, "the scenarios differ: {different}");
+        // The same engine goes on with all of them.
+        assert_eq!(chosen(&[]), whole);
     }
 
     #[test]

@@ -5,13 +5,16 @@
 mod columns;
 mod cpu;
 pub mod gpu;
+mod tables;
 mod tally;
 
 pub(crate) use columns::ends;
-pub use cpu::{BLOCK, CpuEngine, Tables};
+pub use cpu::{BLOCK, CpuEngine};
+pub use tables::Tables;
 pub use tally::Tally;
 
 use std::sync::atomic::{AtomicBool, AtomicU64};
+use std::sync::{Mutex, PoisonError};
 
 /// What others may see and do while designs are judged.
 #[derive(Debug, Default)]
@@ -20,14 +23,28 @@ pub struct Control {
     pub sample: AtomicU64,
     /// Of these, designs looked at so far.
     pub sampled: AtomicU64,
-    /// Designs judged so far, those of a resumed checkpoint included.
+    /// Designs judged so far, those of a resumed checkpoint included. By bounds: the settled share, over all that is searched for.
     pub done: AtomicU64,
+    /// By bounds: what boxes are being settled for.
+    pub settling: Mutex<Option<String>>,
     /// Designs that are reported, once it is known how many they are; one that stands in two lists counts twice.
     pub reported: AtomicU64,
     /// Of these, designs certified so far.
     pub certified: AtomicU64,
     /// Set to end the work as soon as may be, keeping the checkpoint.
     pub stop: AtomicBool,
+}
+
+impl Control {
+    /// What boxes are being settled for, if bounds judge them.
+    pub fn settled_for(&self) -> Option<String> {
+        self.settling.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Says so.
+    pub(crate) fn settles(&self, what: String) {
+        *self.settling.lock().unwrap_or_else(PoisonError::into_inner) = Some(what);
+    }
 }
 
 /// Judged designs of one row: who is feasible, and the worst values of what the plan tracks.

@@ -5,7 +5,8 @@
 //! the sweep.
 
 use super::Control;
-use super::cpu::{BLOCK, CpuEngine, FastBlock, Tables, holds, row_value};
+use super::cpu::{BLOCK, CpuEngine, holds, row_value};
+use super::tables::{FastBlock, Tables};
 use crate::error::{Error, Result};
 use crate::models::{CONDITIONS, INPUTS, OUTPUTS};
 use crate::plan::{Plan, Source, Tracked, worst_end};

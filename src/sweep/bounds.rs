@@ -60,6 +60,7 @@ pub fn sweep_by_bounds(
         return Err(stopped());
     }
     let passes = Layout::sought(plan).len() as u64 + 1;
+    control.settles(format!("count, {passes} of {passes}"));
     let work = Mutex::new(work);
     let settled: Vec<Settled> = std::thread::scope(|scope| {
         let count = || count_on_thread(plan, &layout, options, passes, &work, control);
@@ -105,7 +106,8 @@ fn search(
     let progress = |designs: u64| {
         control.done.fetch_add(designs / passes, Ordering::Relaxed);
     };
-    for sought in all {
+    for (number, sought) in all.into_iter().enumerate() {
+        control.settles(format!("{}, {} of {passes}", in_words(plan, sought), number + 1));
         let found = layout.search(plan, reduction, sought, whole, &mut workers, &mut work.reducers, &control.stop, &progress);
         match found {
             Some(searched) => certificate.searches.push((in_words(plan, sought), searched)),

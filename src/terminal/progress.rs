@@ -44,6 +44,7 @@ fn follow(control: &Control, total: u64, finished: &AtomicBool) {
     let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr_with_hz(10));
     let style = ProgressStyle::with_template("{wide_bar} {percent:>3} %  {msg}").expect("the template is a constant");
     bar.set_style(style.progress_chars("█▉▊▋▌▍▎▏ "));
+    let start = Instant::now();
     let mut last = 0;
     // Since when designs have been judged, and how many a checkpoint had brought before: neither counts for the speed.
     let mut begun: Option<(Instant, u64)> = None;
@@ -60,6 +61,8 @@ fn follow(control: &Control, total: u64, finished: &AtomicBool) {
         } else if done == total {
             let [certified, reported] = [&control.certified, &control.reported].map(|it| it.load(Ordering::Relaxed));
             format!("certifying what is reported, {} % ...", 100 * certified / reported.max(1))
+        } else if let Some(what) = control.settled_for() {
+            format!("settled: {what}, {}", span(start.elapsed().as_secs_f64()))
         } else if rate > 0.0 {
             format!("{}designs/s, {} left", scaled(rate), span((total - done) as f64 / rate))
         } else {

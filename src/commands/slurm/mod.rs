@@ -5,7 +5,7 @@ mod sizing;
 mod speed;
 
 use super::sweep::{default_out, refuse_to_overwrite};
-use super::{check, read_study};
+use super::{check, method, read_study};
 use crate::cli::{self, Cli, Command};
 use crate::terminal::{self, Grid, bold, grouped, quoted, span};
 use beltspace::checkpoint::{Checkpoint, replace};
@@ -107,6 +107,14 @@ pub fn run(request: &cli::Slurm) -> Result<()> {
         make_executable(&path)?;
     }
     remark(&plan, &work, request, shards);
+    let method = method::choose(&plan, own.method, own.engine, own.adapter.as_deref(), request.cpus.into())?;
+    if !request.quiet && method.bounds && own.method == cli::Method::Auto {
+        terminal::remark(
+            "note",
+            "the shards will take bounds, which settle boxes of designs at once: they may be done in seconds, and one beltspace sweep \
+             here may do; -- --method exhaustive judges every design",
+        );
+    }
     if request.quiet { Ok(()) } else { terminal::print(&summary(&plan, &work, how, &scripts, &out, &jobs)) }
 }
 

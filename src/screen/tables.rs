@@ -1,0 +1,111 @@
+//! What the threads of the processor's engine share: settings of scenarios, and the designs of the fast axes by blocks.
+
+use super::cpu::BLOCK;
+use crate::models::{self, LANES};
+use crate::plan::{FAST_DESIGNS, Plan};
+use crate::space::Product;
+
+/// Most scenarios, slow or fast, whose settings are kept rather than computed again.
+const TABLE: u64 = 1 << 15;
+
+/// Values that one combination of scenario axes sets: input number, in its unit, in SI.
+pub(super) type Setting = Vec<(usize, f64, f64)>;
+
+/// The inputs of the designs of one block that the fast axes set.
+#[derive(Debug)]
+pub(super) struct FastBlock {
+    pub(super) count: usize,
+    pub(super) offsets: Vec<u64>,
+    /// By input number, in SI units.
+    pub(super) si: Vec<(usize, Vec<f64>)>,
+    /// By input number, in the input's unit, where the plan tracks or constrains the input itself.
+    pub(super) own: Vec<(usize, Vec<f64>)>,
+}
+
+/// What all threads of an engine share: made once per plan.
+#[derive(Debug)]
+pub struct Tables {
+    /// Settings of the slow and of the fast scenarios, while they are few.
+    pub(super) slow_scenarios: Vec<Setting>,
+    pub(super) fast_scenarios: Vec<Setting>,
+    /// Blocks of the fast design axes, while they are few.
+    pub(super) blocks: Vec<FastBlock>,
+}
+
+impl Tables {
+    /// The tables of a plan.
+    pub fn new(plan: &Plan) -> Self {
+        let settings = |product: &Product| -> Vec<Setting> {
+            let kept = if product.count() <= TABLE { product.count() } else { 0 };
+            (0..kept).map(|index| setting(plan, product, index)).collect()
+        };
+        let kept = if plan.fast.count() <= FAST_DESIGNS { plan.fast.count() } else { 0 };
+        let blocks = (0..kept).step_by(BLOCK).map(|first| FastBlock::new(plan, first..kept.min(first + BLOCK as u64))).collect();
+        Self { slow_scenarios: settings(&plan.slow_scenarios), fast_scenarios: settings(&plan.fast_scenarios), blocks }
+    }
+}
+
+impl FastBlock {
+    /// The given designs of the fast axes, at most [`BLOCK`].
+    pub(super) fn new(plan: &Plan, designs: impl Iterator<Item = u64>) -> Self {
+        let model = plan.study.model;
+        let set = plan.fast.inputs();
+        let mut columns: Vec<(usize, Vec<f64>)> =
+            (0..model.inputs.len()).filter(|input| set >> input & 1 == 1).map(|input| (input, Vec::with_capacity(BLOCK))).collect();
+        let mut inputs = vec![0.0; model.inputs.len()];
+        let mut offsets = Vec::with_capacity(BLOCK);
+        for design in designs {
+            plan.fast.set(design, &mut inputs);
+            offsets.push(plan.fast.source_index(design));
+            for (input, column) in &mut columns {
+                column.push(inputs[*input]);
+            }
+        }
+        let count = offsets.len();
+        for (_, column) in &mut columns {
+            // Idle lanes repeat the last design, so that they are as harmless as it is.
+            column.resize(count.next_multiple_of(LANES), *column.last().expect("a block has a design"));
+        }
+        let si = columns.iter().map(|(input, column)| {
+            let input_table = &model.inputs[*input];
+            (*input, column.iter().map(|&value| models::input_to_si(input_table, value)).collect())
+        });
+        Self { count, offsets, si: si.collect(), own: columns }
+    }
+
+    /// The same, out of the blocks that are kept.
+    pub(super) fn picked(plan: &Plan, tables: &Tables, designs: &[u64]) -> Self {
+        let Some(first) = tables.blocks.first() else { return Self::new(plan, designs.iter().copied()) };
+        let room = designs.len().next_multiple_of(LANES);
+        let columns = |of: fn(&Self) -> &[(usize, Vec<f64>)]| -> Vec<(usize, Vec<f64>)> {
+            let column = |number: usize| {
+                let at = |&design: &u64| of(&tables.blocks[design as usize / BLOCK])[number].1[design as usize % BLOCK];
+                let mut column = Vec::with_capacity(room);
+                column.extend(designs.iter().map(at));
+                column.resize(room, *column.last().expect("a block has a design"));
+                column
+            };
+            of(first).iter().enumerate().map(|(number, (input, _))| (*input, column(number))).collect()
+        };
+        Self {
+            count: designs.len(),
+            offsets: designs.iter().map(|&design| tables.blocks[design as usize / BLOCK].offsets[design as usize % BLOCK]).collect(),
+            si: columns(|it| &it.si),
+            own: columns(|it| &it.own),
+        }
+    }
+
+    pub(super) fn own(&self, input: usize) -> &[f64] {
+        &self.own.iter().find(|(it, _)| *it == input).expect("a lane input is set by a fast axis").1
+    }
+}
+
+/// What one combination of scenario axes sets.
+pub(super) fn setting(plan: &Plan, product: &Product, index: u64) -> Setting {
+    let model = plan.study.model;
+    let mut inputs = plan.study.fixed.clone();
+    product.set(index, &mut inputs);
+    let set = product.inputs();
+    let each = (0..model.inputs.len()).filter(|input| set >> input & 1 == 1);
+    each.map(|input| (input, inputs[input], models::input_to_si(&model.inputs[input], inputs[input]))).collect()
+}
