@@ -238,7 +238,8 @@ pub enum Wanted {
 /// Bounds that were found, and the corners that were not looked at yet, with what is to be added there.
 #[derive(Debug)]
 struct Found {
-    node: Node,
+    /// With its unit: two numbers of one operation may have different ones.
+    source: Source,
     higher_is_worse: bool,
     spans: Spans,
     bounds: Bounds,
@@ -279,7 +280,7 @@ impl<'t> Bounder<'t> {
     /// Bounds of the worst over the scenarios that the box spans; what is not asked for is bounded less well.
     pub fn bounds(&mut self, asked: &Asked, spans: &Spans, wanted: Wanted) -> Bounds {
         let Source::Node(node, _) = asked.source else { return self.of_axis(asked, spans) };
-        let at = self.place_of(asked, node, spans).unwrap_or_else(|| {
+        let at = self.place_of(asked, spans).unwrap_or_else(|| {
             let found = self.look(asked, node, spans);
             if self.recent.len() < RECENT {
                 self.recent.push(found);
@@ -289,41 +290,41 @@ impl<'t> Bounder<'t> {
             self.recent[self.oldest] = found;
             self.oldest
         });
-        if matches!(wanted, Wanted::Most | Wanted::Both) {
-            if let Some((corner, beyond)) = self.recent[at].worst.take() {
-                let most = self.corner(asked, node, &corner, beyond).1;
-                let bounds = &mut self.recent[at].bounds;
-                bounds.most = bounds.most.min(most);
-            }
+        if matches!(wanted, Wanted::Most | Wanted::Both)
+            && let Some((corner, beyond)) = self.recent[at].worst.take()
+        {
+            let most = self.corner(asked, node, &corner, beyond).1;
+            let bounds = &mut self.recent[at].bounds;
+            bounds.most = bounds.most.min(most);
         }
-        if matches!(wanted, Wanted::Least | Wanted::Both) {
-            if let Some((corner, beyond)) = self.recent[at].best.take() {
-                let known = self.recent[at].bounds.least;
-                let mut least = known;
-                if beyond < f64::INFINITY {
-                    least = least.max(self.corner(asked, node, &corner, beyond).0);
-                }
-                let scenarios = self.axes.designs..;
-                if least == known && corner.0[scenarios.clone()] != spans.0[scenarios.clone()] {
-                    // A single scenario bounds what the worst is at least, derivatives or not.
-                    let mut only = *spans;
-                    only.0[scenarios.clone()].copy_from_slice(&corner.0[scenarios]);
-                    let range = self.range(asked, &only);
-                    least = least.max(asked.badness(range).0);
-                }
-                self.recent[at].bounds.least = least;
+        if matches!(wanted, Wanted::Least | Wanted::Both)
+            && let Some((corner, beyond)) = self.recent[at].best.take()
+        {
+            let known = self.recent[at].bounds.least;
+            let mut least = known;
+            if beyond < f64::INFINITY {
+                least = least.max(self.corner(asked, node, &corner, beyond).0);
             }
+            let scenarios = self.axes.designs..;
+            if least == known && corner.0[scenarios.clone()] != spans.0[scenarios.clone()] {
+                // A single scenario bounds what the worst is at least, derivatives or not.
+                let mut only = *spans;
+                only.0[scenarios.clone()].copy_from_slice(&corner.0[scenarios]);
+                let range = self.range(asked, &only);
+                least = least.max(asked.badness(range).0);
+            }
+            self.recent[at].bounds.least = least;
         }
         self.recent[at].bounds
     }
 
     /// Are the bounds of a number at hand?
     pub fn has(&self, asked: &Asked, spans: &Spans) -> bool {
-        matches!(asked.source, Source::Node(node, _) if self.place_of(asked, node, spans).is_some())
+        self.place_of(asked, spans).is_some()
     }
 
-    fn place_of(&self, asked: &Asked, node: Node, spans: &Spans) -> Option<usize> {
-        self.recent.iter().position(|it| it.node == node && it.higher_is_worse == asked.higher_is_worse && it.spans == *spans)
+    fn place_of(&self, asked: &Asked, spans: &Spans) -> Option<usize> {
+        self.recent.iter().position(|it| it.source == asked.source && it.higher_is_worse == asked.higher_is_worse && it.spans == *spans)
     }
 
     /// The bounds of an input.
@@ -400,7 +401,7 @@ impl<'t> Bounder<'t> {
         let margin = |beyond: f64| value.error + beyond * OUTWARD;
         let has_other_scenario = best.0[self.axes.designs..] != spans.0[self.axes.designs..];
         Found {
-            node,
+            source: asked.source,
             higher_is_worse: asked.higher_is_worse,
             spans: *spans,
             bounds: Bounds { most, least, finite: value.is_finite(), spread, monotone, better_at_last, strict },

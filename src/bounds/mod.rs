@@ -157,6 +157,7 @@ impl Layout {
         }
         let search = Search {
             axes: &self.axes,
+            range,
             requirements: &self.requirements,
             reduction,
             stop,

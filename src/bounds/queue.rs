@@ -43,10 +43,10 @@ impl Queue {
 
     /// Adds a box.
     pub fn push(&mut self, waiting: Waiting) {
-        // What is not a number may be anything.
-        let more = waiting.surplus.min(16.0).max(0.0) - 1.0;
+        let more = waiting.surplus.clamp(0.0, 16.0) - 1.0;
         let middle = (LEVELS / 2) as f64;
         let level = middle - (1.0 + more.abs() / ALIKE).log2().copysign(more);
+        // What is not a number, and may be anything, is cast to the first.
         self.levels[level as usize].push(waiting);
         self.count += 1;
     }

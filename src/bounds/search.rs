@@ -15,6 +15,7 @@ use crate::models::Effort;
 use crate::plan::Plan;
 use crate::reduce::{Extreme, Front, KeyRule, MOST_OBJECTIVES, Reducers, Reduction};
 use crate::screen::CpuEngine;
+use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -34,6 +35,8 @@ const WORTH_A_TRY: u64 = 1 << 22;
 const SHARE: usize = 64;
 /// A batch this small is one of the first: of what is tried there, the whole row is.
 const FIRST_BATCHES: usize = 64;
+/// Most scenarios of a leaf that are listed: of more, all are looked at.
+const CHOSEN: u64 = 1 << 12;
 /// Most boxes of scenarios that a number is followed over.
 const COVER: usize = 32;
 /// More than rounding can make of a product of a few numbers.
@@ -137,6 +140,8 @@ enum Fate {
 pub struct Search<'a> {
     /// The axes.
     pub axes: &'a Axes,
+    /// The positions that are searched.
+    pub range: &'a Range<u64>,
     /// What a design must satisfy.
     pub requirements: &'a [Bounded],
     /// How designs are reduced.
@@ -213,7 +218,7 @@ impl Search<'_> {
         let root = |spans: &Spans| Waiting {
             spans: *spans,
             open: all_open(self.requirements, self.axes),
-            covers: vec![Arc::new([self.axes.whole()]); self.targets.len()],
+            covers: self.targets.iter().map(|_| [self.axes.whole()].into()).collect(),
             surplus: f64::INFINITY,
         };
         let mut queue = Queue::new();
@@ -332,8 +337,10 @@ impl Search<'_> {
         rows.sort_unstable();
         rows.dedup();
         for row in rows {
-            settled.evaluations += self.row;
-            worker.engine.screen(row * self.row..(row + 1) * self.row, |block| self.reduction.absorb_counted(reducers, block));
+            // What stands in another shard is another shard's to find.
+            let range = (row * self.row).max(self.range.start)..((row + 1) * self.row).min(self.range.end);
+            settled.evaluations += range.end - range.start;
+            worker.engine.screen(range, |block| self.reduction.absorb_counted(reducers, block));
         }
         (next, settled)
     }
@@ -443,11 +450,12 @@ impl Search<'_> {
         rows * (prepare + chosen as f64 * SCENARIO) + designs * (finish + DESIGN)
     }
 
-    /// At most how many scenarios decide about the designs of a box.
+    /// How many scenarios of a leaf are looked at, at most.
     fn chosen_count(&self, waiting: &Waiting) -> u64 {
         let targets = self.targets.iter().zip(&waiting.covers).map(|(target, cover)| scenarios(cover, &target.asked, self.axes));
         let open = waiting.open.iter().map(|item| scenarios(&item.cover, &self.requirements[item.requirement].asked, self.axes));
-        targets.chain(open).sum::<u64>().min(self.plan.scenarios())
+        let chosen = targets.chain(open).fold(0, u64::saturating_add);
+        if chosen > CHOSEN { self.plan.scenarios() } else { chosen.min(self.plan.scenarios()) }
     }
 
     /// The scenarios, slow and fast, that decide about the designs of a box: in which what is sought may be worst, or what is open be

@@ -133,3 +133,16 @@ fn columns_have_the_bits_of_the_formula() {
         }
     }
 }
+
+#[test]
+fn bounds_of_one_operation_in_two_units_are_not_mixed_up() {
+    let plan = plans().nth(1).expect("the timing belt is the second");
+    let layout = Layout::new(&plan).expect("bounds serve it");
+    let mut bounder = Bounder::new(&layout.tape, &layout.axes);
+    let speed = plan.study.objectives[2].quantity;
+    let Source::Node(node, Some(unit)) = Source::of(speed, &plan, &layout.tape) else { panic!("a speed has a unit of its own") };
+    let whole = layout.axes.whole();
+    let mut most = |source| bounder.bounds(&Asked::new(&layout.tape, source, true), &whole, Wanted::Most).most;
+    let (own, si) = (most(Source::Node(node, Some(unit))), most(Source::Node(node, None)));
+    assert!(own.is_finite() && (own / unit.from_si(si) - 1.0).abs() < 1e-12 && (own / si - 1.0).abs() > 1.0, "{own} {si}");
+}

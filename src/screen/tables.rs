@@ -11,15 +11,18 @@ const TABLE: u64 = 1 << 15;
 /// Values that one combination of scenario axes sets: input number, in its unit, in SI.
 pub(super) type Setting = Vec<(usize, f64, f64)>;
 
+/// Values of the designs of a block, by input number.
+type Inputs = Vec<(usize, Vec<f64>)>;
+
 /// The inputs of the designs of one block that the fast axes set.
 #[derive(Debug)]
 pub(super) struct FastBlock {
     pub(super) count: usize,
     pub(super) offsets: Vec<u64>,
     /// By input number, in SI units.
-    pub(super) si: Vec<(usize, Vec<f64>)>,
+    pub(super) si: Inputs,
     /// By input number, in the input's unit, where the plan tracks or constrains the input itself.
-    pub(super) own: Vec<(usize, Vec<f64>)>,
+    pub(super) own: Inputs,
 }
 
 /// What all threads of an engine share: made once per plan.
@@ -50,7 +53,7 @@ impl FastBlock {
     pub(super) fn new(plan: &Plan, designs: impl Iterator<Item = u64>) -> Self {
         let model = plan.study.model;
         let set = plan.fast.inputs();
-        let mut columns: Vec<(usize, Vec<f64>)> =
+        let mut columns: Inputs =
             (0..model.inputs.len()).filter(|input| set >> input & 1 == 1).map(|input| (input, Vec::with_capacity(BLOCK))).collect();
         let mut inputs = vec![0.0; model.inputs.len()];
         let mut offsets = Vec::with_capacity(BLOCK);
@@ -77,7 +80,7 @@ impl FastBlock {
     pub(super) fn picked(plan: &Plan, tables: &Tables, designs: &[u64]) -> Self {
         let Some(first) = tables.blocks.first() else { return Self::new(plan, designs.iter().copied()) };
         let room = designs.len().next_multiple_of(LANES);
-        let columns = |of: fn(&Self) -> &[(usize, Vec<f64>)]| -> Vec<(usize, Vec<f64>)> {
+        let columns = |of: fn(&Self) -> &Inputs| -> Inputs {
             let column = |number: usize| {
                 let at = |&design: &u64| of(&tables.blocks[design as usize / BLOCK])[number].1[design as usize % BLOCK];
                 let mut column = Vec::with_capacity(room);
