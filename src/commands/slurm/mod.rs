@@ -64,6 +64,8 @@ pub fn run(request: &cli::Slurm) -> Result<()> {
     let jobs = absolute(&request.jobs.clone().unwrap_or_else(|| jobs_beside(&out)))?;
     let program = program(request.program.as_deref())?;
     let own = checked_options(&file, &request.sweep)?;
+    // What every shard would refuse is refused before anything is written.
+    let method = method::choose(&plan, own.method, own.engine, own.adapter.as_deref(), request.cpus.into())?;
     let options = request.option.iter().map(|it| one_line(it)).collect::<Result<Vec<_>>>()?;
     let time = request.time.as_deref().map(sizing::read_clock).transpose()?;
     let (seconds, how) = speed::seconds_per_design(&plan);
@@ -107,7 +109,6 @@ pub fn run(request: &cli::Slurm) -> Result<()> {
         make_executable(&path)?;
     }
     remark(&plan, &work, request, shards);
-    let method = method::choose(&plan, own.method, own.engine, own.adapter.as_deref(), request.cpus.into())?;
     if !request.quiet && method.bounds && own.method == cli::Method::Auto {
         terminal::remark(
             "note",

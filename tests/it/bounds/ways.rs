@@ -94,6 +94,9 @@ pub fn sharded(pipeline: &Pipeline<'_>, random: &mut Random, folder: &Path) -> S
         let range = shard.range(pipeline.plan.designs());
         let problem = unaccounted(pipeline.plan, &certificate, swept.designs, range.end - range.start);
         assert_eq!(problem, None, "shard {shard}");
+        // What stands in a shard is of that shard, as it is design by design.
+        let foreign = swept.state.front.indices.iter().find(|&&design| !range.contains(&pipeline.plan.position_of(design)));
+        assert_eq!(foreign, None, "shard {shard}");
     })
 }
 

@@ -251,6 +251,11 @@ fn a_shard_takes_minutes_and_not_seconds() {
         answer.err
     );
     assert!(place.script("shards.sh").contains("#SBATCH --array=1-1\n"));
+    // Bounds are done sooner than judging every design, by which shards are sized.
+    let fine = include_str!("../../../studies/metal-grid.toml").replace("count = 37", "count = 560");
+    let place = Place::new(&fine);
+    assert!(place.ask("").err.starts_with("note: the shards will take bounds"));
+    assert!(!place.ask("--force -- --method exhaustive").err.contains("bounds"));
     let place = Place::new(&endless());
     assert!(place.ask("").text().contains("\nshards    1000, about "));
     assert!(place.ask("--force --pbs").text().contains("\nshards    10 000, about "));
@@ -292,6 +297,7 @@ fn what_cannot_be_is_refused_and_writes_nothing() {
         ),
         ("small.toml -- other.toml", dear),
         ("small.toml -- --help", dear),
+        ("small.toml -- --method bounds --engine gpu", "--method bounds judges on the processor, but --engine gpu was asked for"),
     ] {
         let err = ask(folder.path(), &format!("slurm {line}")).refusal(2);
         assert!(err.contains(message), "{line}: {err}");
