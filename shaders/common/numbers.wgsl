@@ -1,8 +1,9 @@
 // A number and a bound on its distance from exact arithmetic: the shader's twin of `RunningError` in src/real.
 //
 // The bound grows by what WGSL permits, not by what one GPU does: sums and products rounded once (contraction rounds less),
-// division 2.5 ULP, square root 4.5 ULP, results below the least normal number flushed to zero. It is carried in f32 too: what
-// rounds in the bound itself is covered by the thousandth that every unit and every promise is raised by.
+// division 2.5 ULP by divisors from 2^-126 to 2^126 and anything by others (a reciprocal that is flushed makes them 0), square root
+// 4.5 ULP, results below the least normal number flushed to zero. It is carried in f32 too: what rounds in the bound itself is
+// covered by the thousandth that every unit and every promise is raised by.
 
 struct Real {
     value: f32,
@@ -16,6 +17,7 @@ const SQUARE_ROOT: f32 = 9.0 * ROUNDING;
 // Own functions: within FUNCTION_ULP of src/real/running_error.rs.
 const FUNCTION: f32 = 8.0 * ROUNDING;
 const FLUSH: f32 = 1.1754944e-38;
+const LARGEST_DIVISOR: f32 = 8.50705917e37;
 const PI: f32 = 3.14159265;
 
 fn constant(value: f32) -> Real {
@@ -47,12 +49,15 @@ fn square(a: Real) -> Real {
     return mul(a, a);
 }
 
+// A part of a bound over a divisor, which is `least` at least and `most` at most; none where WGSL promises nothing of the quotient.
+fn bound_over(part: f32, least: f32, most: f32) -> f32 {
+    return select(infinity(), part / least, least >= FLUSH && most <= LARGEST_DIVISOR);
+}
+
 fn div(a: Real, b: Real) -> Real {
     let quotient = a.value / b.value;
-    let divisor = abs(b.value) - b.bound;
-    let inherited = (a.bound + abs(quotient) * b.bound) / divisor;
-    // Division by what may be zero has no bound.
-    return rounded(quotient, select(infinity(), inherited, divisor > 0.0), DIVISION);
+    let size = abs(b.value);
+    return rounded(quotient, bound_over(a.bound + abs(quotient) * b.bound, size - b.bound, size), DIVISION);
 }
 
 fn neg(a: Real) -> Real {
@@ -113,8 +118,8 @@ fn exp_m1_(a: Real) -> Real {
 }
 
 fn ln_1p_(a: Real) -> Real {
-    let divisor = 1.0 + a.value - a.bound - ROUNDING * abs(1.0 + a.value);
-    return rounded(ln_1p(a.value), select(infinity(), a.bound / divisor, divisor > 0.0), FUNCTION);
+    let argument = 1.0 + a.value;
+    return rounded(ln_1p(a.value), bound_over(a.bound, argument - a.bound - ROUNDING * abs(argument), argument), FUNCTION);
 }
 
 fn sin_(a: Real) -> Real {
@@ -137,6 +142,5 @@ fn asin_(a: Real) -> Real {
 // `value.bound` of the f32 one. The slope varies little over a few ULP, for which a factor 2 is ample.
 fn root(at: f32, value: Real, slope: Real) -> Real {
     let least_slope = 0.5 * (abs(slope.value) - slope.bound);
-    let inherited = (abs(value.value) + value.bound) / least_slope;
-    return rounded(at, select(infinity(), inherited, least_slope > 0.0), ROUNDING);
+    return rounded(at, bound_over(abs(value.value) + value.bound, least_slope, least_slope), ROUNDING);
 }

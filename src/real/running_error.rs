@@ -1,8 +1,8 @@
 //! An f32 value together with a bound on its distance from the exact result.
 //!
 //! The bound follows what WGSL permits a GPU to do, not what one GPU does: sums and products rounded once (contraction into
-//! a fused multiply-add only rounds less), division and square root several ULP, subnormal numbers flushed to zero, inputs
-//! rounded to f32. Transcendental functions are allowed [`FUNCTION_ULP`] ULP of their own error.
+//! a fused multiply-add only rounds less), division and square root several ULP, but no promise for divisors beyond 2^126 or below
+//! 2^-126, subnormal numbers flushed to zero, inputs rounded to f32. Transcendental functions are allowed [`FUNCTION_ULP`] ULP of their own error.
 //! Bounds are carried in f64, where their own rounding is nine orders of magnitude below what they measure.
 
 use super::{Real, bracketed_newton};
@@ -12,6 +12,8 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 const ROUNDING: f64 = 1.0 / (1 << 24) as f64;
 /// WGSL: division is accurate to 2.5 ULP.
 const DIVISION: f64 = 2.5 * 2.0 * ROUNDING;
+/// WGSL: for divisors of this size at most, and of its inverse at least; the reciprocal of others may be flushed to zero.
+const LARGEST_DIVISOR: f64 = 1.0 / FLUSH;
 /// WGSL: `sqrt` inherits from `1 / inverseSqrt`, 2 ULP and a division.
 const SQUARE_ROOT: f64 = (2.0 + 2.5) * 2.0 * ROUNDING;
 /// ULP that an elementary function (exp, log, sin, ...) may be off by, beyond what its argument's error explains.
@@ -94,9 +96,11 @@ impl Mul for RunningError {
 impl Div for RunningError {
     type Output = Self;
     fn div(self, other: Self) -> Self {
-        let divisor = f64::from(other.value).abs() - other.bound;
+        let size = f64::from(other.value).abs();
+        let divisor = size - other.bound;
         let quotient = (f64::from(self.value) / f64::from(other.value)).abs();
-        let inherited = if divisor > 0.0 { (self.bound + quotient * other.bound) / divisor } else { f64::INFINITY };
+        let promised = divisor >= FLUSH && size <= LARGEST_DIVISOR;
+        let inherited = if promised { (self.bound + quotient * other.bound) / divisor } else { f64::INFINITY };
         Self::rounded(self.value / other.value, inherited, DIVISION)
     }
 }
@@ -201,6 +205,16 @@ mod tests {
     fn division_by_what_may_be_zero_has_no_bound() {
         let zero = RunningError::input(0.1) - RunningError::input(0.1);
         assert_eq!((RunningError::input(1.0) / zero).bound, f64::INFINITY);
+    }
+
+    #[test]
+    fn division_by_what_has_no_reciprocal_in_f32_has_no_bound() {
+        let quotient = |divisor: f64| RunningError::input(1.0) / RunningError { value: round(divisor), bound: 0.0 };
+        let largest = 2f64.powi(126);
+        for (inside, outside) in [(largest, largest * 1.000_001), (1.0 / largest, 0.999_999 / largest), (-largest, -largest * 1.000_001)] {
+            assert!(quotient(inside).bound.is_finite(), "{inside}");
+            assert_eq!(quotient(outside).bound, f64::INFINITY, "{outside}");
+        }
     }
 
     #[test]

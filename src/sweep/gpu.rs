@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::gpu::Device;
 use crate::plan::Plan;
 use crate::reduce::{Reducers, Reduction, State};
-use crate::screen::gpu::{Answers, GpuEngine, InFlight, Survivor, TileCounts, Wrong, value_maps};
+use crate::screen::gpu::{Answers, GpuEngine, InFlight, Survivor, Survivors, TileCounts, Wrong, value_maps};
 use crate::screen::{CpuEngine, Tables};
 use crate::study::{MapSpec, Quantity};
 use crate::tiles::Ranges;
@@ -20,8 +20,8 @@ use std::time::{Duration, Instant};
 const FIRST_TILE: u64 = 80_000;
 /// How long a tile should take.
 const TILE_TIME: Duration = Duration::from_millis(60);
-/// Evaluations of survivors above which they are shared among threads.
-const SHARED: u64 = 1 << 18;
+/// Least evaluations that a thread is started for, and least survivors to be looked through.
+const LEAST_SHARE: u64 = 1 << 13;
 
 /// A device that a study is to be swept on.
 #[derive(Clone, Debug)]
@@ -40,7 +40,7 @@ impl DeviceRecord {
         serde_json::json!({
             "designs": self.designs, "unsure_designs": self.unsure, "survivors": self.survivors,
             "survivors_evaluated_in_f64": self.evaluated, "tiles": self.tiles, "repeated_tiles": self.repeated,
-            "compared_with_f64": self.recheck.to_json(),
+            "seconds_waiting": self.waiting.as_secs_f64(), "compared_with_f64": self.recheck.to_json(),
         })
     }
 }
@@ -60,6 +60,8 @@ pub struct DeviceRecord {
     pub tiles: u64,
     /// Tiles that had to be repeated in parts because too many designs survived.
     pub repeated: u64,
+    /// How long the processor waited for it, with nothing else to do.
+    pub waiting: Duration,
     /// The comparison with f64 of whole tiles.
     pub recheck: Recheck,
 }
@@ -174,7 +176,9 @@ impl Run<'_, '_> {
                 flying.push_back((self.engine.start(tile, &answers), Instant::now()));
             }
             let Some((tile, begun)) = flying.pop_front() else { return Ok(()) };
+            let waiting = Instant::now();
             let finished = self.engine.finish(&tile);
+            self.record.waiting += waiting.elapsed();
             let device_time = begun.elapsed() / (1 + flying.len() as u32);
             let range = tile.range.clone();
             let found = match finished {
@@ -211,7 +215,7 @@ impl Run<'_, '_> {
     }
 
     /// Adds what the device counted, and decides in f64 what it could not.
-    fn take_in(&mut self, work: &mut Work<'_>, counts: &TileCounts, survivors: &[Survivor]) -> Result<()> {
+    fn take_in(&mut self, work: &mut Work<'_>, counts: &TileCounts, survivors: &Survivors) -> Result<()> {
         let TileCounts { sure, unsure, histograms, shares } = counts;
         self.reduction.add_counts(&mut work.reducers, *sure, histograms, shares);
         self.record.unsure += unsure;
@@ -222,9 +226,22 @@ impl Run<'_, '_> {
         let front = &work.reducers.front;
         let on_front = |it: &Survivor| it.front.is_some_and(|keys| !front.beats(&lower_keys(plan, &keys)));
         let cells = Cells::new(plan, survivors);
-        let matters = |it: &&Survivor| !it.unsure && (it.end || on_front(it) || cells.may_be_best(plan, it));
-        let sure: Vec<u64> = survivors.iter().filter(matters).map(|it| it.position).collect();
-        let unsure: Vec<u64> = survivors.iter().filter(|it| it.unsure).map(|it| it.position).collect();
+        let looked = in_shares(survivors.len(), LEAST_SHARE as usize, self.threads, |part| {
+            let (mut sure, mut unsure) = (Vec::new(), Vec::new());
+            for it in part.map(|at| survivors.get(at)) {
+                if it.unsure {
+                    unsure.push(it.position);
+                } else if it.end || on_front(&it) || cells.may_be_best(plan, &it) {
+                    sure.push(it.position);
+                }
+            }
+            // Neighbours in a row are evaluated together.
+            sure.sort_unstable();
+            unsure.sort_unstable();
+            (sure, unsure)
+        });
+        let (sure, unsure): (Vec<_>, Vec<_>) = looked.into_iter().unzip();
+        let (sure, unsure) = (sure.concat(), unsure.concat());
         self.record.evaluated += (sure.len() + unsure.len()) as u64;
         let feasible = self.evaluate(&mut work.reducers, &sure, true);
         if feasible != sure.len() as u64 {
@@ -237,12 +254,16 @@ impl Run<'_, '_> {
     /// Evaluates designs in f64 and takes in the feasible ones, `counted` or not; returns how many these are.
     fn evaluate(&mut self, reducers: &mut Reducers, positions: &[u64], counted: bool) -> u64 {
         let (plan, reduction, tables) = (self.plan, self.reduction, self.tables);
-        let evaluations = (positions.len() as u64).saturating_mul(plan.scenarios());
         let absorb = |reducers: &mut Reducers, block: &crate::screen::Block<'_>| {
             if counted { reduction.absorb_counted(reducers, block) } else { reduction.absorb(reducers, block) }
         };
+        // Each share begins with histograms and maps of its own, and ends with merging them.
+        let report = &plan.study.report;
+        let cells = |map: &MapSpec| plan.study.design[map.x].count() * plan.study.design[map.y].count();
+        let own: u64 = report.histograms.iter().map(|it| it.bins as u64).chain(report.maps.iter().map(cells)).sum();
+        let least = LEAST_SHARE.max(own).div_ceil(plan.scenarios()) as usize;
         let mut feasible = 0;
-        if evaluations < SHARED || self.threads == 1 {
+        if positions.len() < 2 * least || self.threads == 1 {
             self.host.screen_some(positions, |block| {
                 feasible += block.feasible_count;
                 absorb(reducers, block);
@@ -250,23 +271,13 @@ impl Run<'_, '_> {
             return feasible;
         }
         let known = reducers.front.points().clone();
-        let share = positions.len().div_ceil(self.threads);
-        let parts: Vec<(State, u64)> = std::thread::scope(|scope| {
-            let parts: Vec<_> = positions
-                .chunks(share)
-                .map(|part| {
-                    let known = known.clone();
-                    scope.spawn(move || {
-                        let (mut own, mut feasible) = (reduction.start_after(known), 0);
-                        CpuEngine::new(plan, tables).screen_some(part, |block| {
-                            feasible += block.feasible_count;
-                            absorb(&mut own, block);
-                        });
-                        (own.into_fresh(), feasible)
-                    })
-                })
-                .collect();
-            parts.into_iter().map(|part| part.join().expect("the f64 engine does not panic")).collect()
+        let parts: Vec<(State, u64)> = in_shares(positions.len(), least, self.threads, |part| {
+            let (mut own, mut feasible) = (reduction.start_after(known.clone()), 0);
+            CpuEngine::new(plan, tables).screen_some(&positions[part], |block| {
+                feasible += block.feasible_count;
+                absorb(&mut own, block);
+            });
+            (own.into_fresh(), feasible)
         });
         for (state, found) in parts {
             reducers.merge(state);
@@ -300,6 +311,20 @@ impl Run<'_, '_> {
         self.engine.tell_cells(&answers);
         Recheckable::new(self.plan, self.tables, self.reduction, self.engine, &answers, whole, self.threads)
     }
+}
+
+/// Does `each` share of so many things, in threads of their own if there are several shares; the results in order.
+fn in_shares<T: Send>(count: usize, least: usize, threads: usize, each: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
+    let shares = (count / least.max(1)).clamp(1, threads);
+    let part = |number: usize| count * number / shares..count * (number + 1) / shares;
+    if shares == 1 {
+        return vec![each(part(0))];
+    }
+    std::thread::scope(|scope| {
+        let each = &each;
+        let parts: Vec<_> = (0..shares).map(|number| scope.spawn(move || each(part(number)))).collect();
+        parts.into_iter().map(|part| part.join().expect("the f64 engine does not panic")).collect()
+    })
 }
 
 /// The answers so far as the device is told of them.
@@ -345,8 +370,11 @@ struct Cells {
 }
 
 impl Cells {
-    fn new(plan: &Plan, survivors: &[Survivor]) -> Self {
+    fn new(plan: &Plan, survivors: &Survivors) -> Self {
         let mut cells = Self::default();
+        if value_maps(plan).next().is_none() {
+            return cells;
+        }
         for survivor in survivors.iter().filter(|it| !it.unsure) {
             let design = plan.design_at(survivor.position);
             for (number, keys) in survivor.maps.iter().flatten().enumerate() {
@@ -361,8 +389,9 @@ impl Cells {
     }
 
     fn may_be_best(&self, plan: &Plan, survivor: &Survivor) -> bool {
+        let Some(maps) = &survivor.maps else { return false };
         let design = plan.design_at(survivor.position);
-        survivor.maps.iter().flatten().enumerate().any(|(number, keys)| {
+        maps.iter().enumerate().any(|(number, keys)| {
             let (spec, at) = spec_of(plan, number);
             keys[0] <= self.best[&(number, cell_of(plan, spec, design))]
                 && self.first[&(number, known_equal(plan, spec, at, design))] == design
@@ -392,4 +421,18 @@ fn spec_of(plan: &Plan, number: usize) -> (&MapSpec, usize) {
 fn cell_of(plan: &Plan, spec: &MapSpec, design: u64) -> u64 {
     let designs = &plan.space.designs;
     designs.digit(spec.y, design) * plan.study.design[spec.x].count() + designs.digit(spec.x, design)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::in_shares;
+
+    #[test]
+    fn shares_are_in_order_and_leave_nothing_out() {
+        for (count, least, threads) in [(0, 4, 3), (1, 4, 3), (11, 4, 3), (12, 4, 3), (100, 4, 3), (100, 0, 7), (5, 1, 1)] {
+            let parts = in_shares(count, least, threads, |part| part);
+            assert!(parts.len() <= threads && (parts.len() == 1 || parts.iter().all(|part| part.len() >= least)), "{parts:?}");
+            assert_eq!(parts.into_iter().flatten().collect::<Vec<_>>(), (0..count).collect::<Vec<_>>());
+        }
+    }
 }

@@ -297,7 +297,8 @@ fn require_counts(
             continue;
         };
         reduction.add_counts(&mut reducers, counts.sure, &counts.histograms, &counts.shares);
-        let unsure: Vec<u64> = survivors.iter().filter(|it| it.unsure).map(|it| it.position).collect();
+        let mut unsure: Vec<u64> = survivors.iter().filter(|it| it.unsure).map(|it| it.position).collect();
+        unsure.sort_unstable();
         if unsure.len() as u64 != counts.unsure {
             return Err(Error::Promise(format!("the GPU counted {} unsure designs and handed over {}", counts.unsure, unsure.len())));
         }

@@ -181,3 +181,36 @@ fn the_scale_is_what_the_record_says() {
         }
     }
 }
+
+#[test]
+fn the_runs_on_a_gpu_are_what_the_record_says() {
+    let text = std::fs::read_to_string(root().join("results/bench/gpu-h100.json")).expect("the record is committed");
+    let record: Value = serde_json::from_str(&text).expect("JSON");
+    let run = |command: &str| {
+        let runs = record["runs"].as_array().expect("runs");
+        runs.iter().find(|it| it["command"] == format!("beltspace sweep {command}")).unwrap_or_else(|| panic!("no run of {command}"))
+    };
+    let (device, bounds) = (run("metal-grid-560.toml --engine gpu"), run("metal-grid-560.toml --method bounds"));
+    assert_eq!((&device["feasible"], &device["front"]), (&bounds["feasible"], &bounds["front"]));
+    let grouped = |value: &Value| {
+        let digits = value.to_string();
+        let parts: Vec<&str> = digits.as_bytes().rchunks(3).rev().map(|part| std::str::from_utf8(part).expect("digits")).collect();
+        parts.join(" ")
+    };
+    let seconds = |value: &Value| format!("{:.1} s", value.as_f64().expect("a number"));
+    let rate = device["run"]["designs_per_second"].as_f64().expect("a number");
+    let fine = run("metal-cvt-481.toml --engine gpu");
+    let page = readme();
+    let paragraph = page.split("\n\n").find(|it| it.contains("gpu-h100.json")).expect("the README has the runs").replace('\n', " ");
+    for said in [
+        format!("{} designs judged", grouped(&device["run"]["designs"])),
+        format!("took {}, {rate:.2e} designs/s: {:.0} % of the floor", seconds(&device["wall_seconds"]), 100.0 * rate / 2.6e11),
+        format!("For {} of it", seconds(&device["run"]["device"]["seconds_waiting"])),
+        format!("into {} survivors", grouped(&device["run"]["device"]["survivors"])),
+        format!("evaluated {}.", grouped(&device["run"]["device"]["survivors_evaluated_in_f64"])),
+        format!("took {} on the same machine", seconds(&bounds["wall_seconds"])),
+        format!("{} for {} designs", seconds(&fine["wall_seconds"]), grouped(&fine["run"]["designs"])),
+    ] {
+        assert!(paragraph.contains(&said), "the README does not say \"{said}\"");
+    }
+}

@@ -68,6 +68,50 @@ pub struct Survivor {
     pub maps: Option<Vec<[f32; 2]>>,
 }
 
+/// The survivors of a tile, as they came back: in the order in which the device met them, which is roughly that of the rows.
+#[derive(Clone, Debug)]
+pub struct Survivors {
+    records: Vec<u32>,
+    /// Words of a record.
+    words: usize,
+    first_row: u64,
+    /// Designs of a row.
+    width: u64,
+    objectives: usize,
+}
+
+impl Survivors {
+    /// How many.
+    pub fn len(&self) -> usize {
+        self.records.len() / self.words
+    }
+
+    /// Survived none?
+    pub fn is_empty(&self) -> bool {
+        self.records.is_empty()
+    }
+
+    /// Number `at`.
+    pub fn get(&self, at: usize) -> Survivor {
+        let record = &self.records[at * self.words..(at + 1) * self.words];
+        let (lane, why) = (u64::from(record[1] & 0x00ff_ffff), record[1] >> 24);
+        let front = (why & 2 != 0).then(|| {
+            let mut keys = [0.0; 6];
+            keys.iter_mut().zip(&record[2..2 + self.objectives]).for_each(|(key, &bits)| *key = f32::from_bits(bits));
+            keys
+        });
+        let maps = (why & 8 != 0)
+            .then(|| record[2 + self.objectives..].chunks(2).map(|it| [f32::from_bits(it[0]), f32::from_bits(it[1])]).collect());
+        let position = (self.first_row + u64::from(record[0])) * self.width + lane;
+        Survivor { position, unsure: why & 1 != 0, end: why & 4 != 0, front, maps }
+    }
+
+    /// One after the other.
+    pub fn iter(&self) -> impl Iterator<Item = Survivor> {
+        (0..self.len()).map(|at| self.get(at))
+    }
+}
+
 /// What a device counted in a tile.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TileCounts {
@@ -341,7 +385,7 @@ impl<'p> GpuEngine<'p> {
     ///
     /// # Errors
     /// [`Error::Gpu`](crate::error::Error::Gpu).
-    pub fn finish(&self, tile: &InFlight) -> Result<Option<(TileCounts, Vec<Survivor>)>> {
+    pub fn finish(&self, tile: &InFlight) -> Result<Option<(TileCounts, Survivors)>> {
         let slot = &self.slots[tile.slot];
         let words = survivor_words(self.plan);
         let landed: Vec<u32> = self.device.read(&slot.landing, (slot.landing.size() / 4) as usize, &tile.wait)?;
@@ -350,12 +394,10 @@ impl<'p> GpuEngine<'p> {
         if appended as u64 > slot.survivors.size() / (4 * words as u64) {
             return Ok(None);
         }
-        let second_trip: Vec<u32>;
-        let survivors = if appended * words <= first_trip.len() {
-            &first_trip[..appended * words]
+        let records = if appended * words <= first_trip.len() {
+            first_trip[..appended * words].to_vec()
         } else {
-            second_trip = self.device.fetch(&slot.survivors, appended * words)?;
-            &second_trip[..]
+            self.device.fetch(&slot.survivors, appended * words)?
         };
         let mut rest = &counts[HEAD..];
         let mut take = |count: usize| {
@@ -369,23 +411,8 @@ impl<'p> GpuEngine<'p> {
             |spec: &crate::study::MapSpec| (self.plan.study.design[spec.x].count() * self.plan.study.design[spec.y].count()) as usize;
         let shares = report.maps.iter().filter(|it| it.value == Best::Share).map(|it| take(cells(it))).collect();
         let counts = TileCounts { sure: counts[0].into(), unsure: counts[1].into(), histograms, shares };
-        let mut survivors: Vec<Survivor> = survivors.chunks(words).map(|record| self.survivor(tile, record)).collect();
-        survivors.sort_unstable_by_key(|it| it.position);
-        Ok(Some((counts, survivors)))
-    }
-
-    fn survivor(&self, tile: &InFlight, record: &[u32]) -> Survivor {
-        let (lane, why) = (u64::from(record[1] & 0x00ff_ffff), record[1] >> 24);
-        let objectives = self.plan.study.objectives.len();
-        let front = (why & 2 != 0).then(|| {
-            let mut keys = [0.0; 6];
-            keys.iter_mut().zip(&record[2..2 + objectives]).for_each(|(key, &bits)| *key = f32::from_bits(bits));
-            keys
-        });
-        let maps =
-            (why & 8 != 0).then(|| record[2 + objectives..].chunks(2).map(|it| [f32::from_bits(it[0]), f32::from_bits(it[1])]).collect());
-        let position = (tile.rows.start + u64::from(record[0])) * self.plan.fast.count() + lane;
-        Survivor { position, unsure: why & 1 != 0, end: why & 4 != 0, front, maps }
+        let (width, objectives) = (self.plan.fast.count(), self.plan.study.objectives.len());
+        Ok(Some((counts, Survivors { records, words, first_row: tile.rows.start, width, objectives })))
     }
 
     /// Everything that the device says of the designs of a tile, in order.

@@ -8,7 +8,7 @@ mod kernel;
 mod known;
 mod layout;
 
-pub use engine::{Checked, GpuEngine, InFlight, Survivor, TileCounts, Wrong, kernel_of, supports};
+pub use engine::{Checked, GpuEngine, InFlight, Survivor, Survivors, TileCounts, Wrong, kernel_of, supports};
 pub(crate) use kernel::value_maps;
 pub use known::Answers;
 pub(crate) use layout::on_device;

@@ -61,3 +61,29 @@ fn the_shipped_studies_are_decided_as_in_f64_on_both_sides_of_their_constraints(
         assert!((report.unsure > 0) == bounded && report.unsure * 4 < report.points, "{}: {} unsure", path.display(), report.unsure);
     }
 }
+
+/// The text with one piece replaced.
+fn with(text: &str, piece: &str, other: &str) -> String {
+    assert!(text.contains(piece), "the shader has no {piece}");
+    text.replace(piece, other)
+}
+
+#[test]
+fn a_device_that_flushes_reciprocals_keeps_the_promise() {
+    // As some hardware divides: by a product with the reciprocal, which is flushed to zero for divisors above 2^126.
+    let flushed = "let inverse = 1.0 / b.value;\n    let quotient = a.value * select(inverse, 0.0, abs(inverse) < FLUSH);";
+    for &model in MODELS.iter().filter(|model| model.device.is_some()) {
+        let source = with(&PointKernel::source(model, &[]).expect("it has a kernel"), "let quotient = a.value / b.value;", flushed);
+        let compared = |source: &str| {
+            let kernel = PointKernel::from_source(&device().device, model, source).expect("the kernel compiles");
+            let random = &mut Random::new(21);
+            let points: Vec<_> = (0..20_000).map(|_| draw(model, Region::Wide, random)).collect();
+            compare(&kernel, model, &[], &points.into()).expect("the device works")
+        };
+        assert_kept(&compared(&source), model.name);
+        if model.name == "rubber-cvt" {
+            let blind = with(&source, "const LARGEST_DIVISOR: f32 = 8.50705917e37;", "const LARGEST_DIVISOR: f32 = 3.4e38;");
+            assert!(compared(&blind).flips > 0, "a bound that trusts such a division is wrong, and nobody notices");
+        }
+    }
+}
