@@ -6,6 +6,8 @@
 
 /// Points in a leaf.
 const LEAF: usize = 16;
+/// Most nodes that wait in a search: one for each time that all points can be halved, and the one looked at.
+const MOST_PENDING: usize = 65;
 /// Points that are searched one by one before they become a tree.
 const BUFFER: usize = 64;
 
@@ -127,15 +129,21 @@ impl Tree {
     }
 
     fn find(&self, key: &[f64], dimensions: usize, beats: impl Fn(&Points, usize) -> bool) -> Option<usize> {
-        let mut pending = vec![0];
-        while let Some(number) = pending.pop() {
+        // On the stack: this is asked of every design that may be on a front.
+        let (mut pending, mut count) = ([0; MOST_PENDING], 1);
+        while count > 0 {
+            count -= 1;
+            let number = pending[count];
             let corner = &self.corners[number * dimensions..][..dimensions];
             if corner.iter().zip(key).any(|(corner, key)| corner > key) {
                 continue;
             }
             let node = &self.nodes[number];
             match node.right {
-                Some(right) => pending.extend([right, number + 1]),
+                Some(right) => {
+                    pending[count..count + 2].copy_from_slice(&[right, number + 1]);
+                    count += 2;
+                }
                 None => {
                     if let Some(point) = (node.first..node.last).find(|&point| beats(&self.points, point)) {
                         return Some(point);

@@ -6,7 +6,7 @@ use crate::checkpoint::{Checkpoint, Progress};
 use crate::error::{Error, Result};
 use crate::gpu::Device;
 use crate::plan::Plan;
-use crate::reduce::{Reducers, Reduction, State};
+use crate::reduce::{MOST_OBJECTIVES, Reducers, Reduction, State};
 use crate::screen::gpu::{Answers, GpuEngine, InFlight, Survivor, Survivors, TileCounts, Wrong, value_maps};
 use crate::screen::{CpuEngine, Tables};
 use crate::study::{MapSpec, Quantity};
@@ -223,8 +223,8 @@ impl Run<'_, '_> {
         // The front has grown since the tile was started, and the tile has met the best of its cells: most of what survived is
         // behind them by now.
         let plan = self.plan;
-        let front = &work.reducers.front;
-        let on_front = |it: &Survivor| it.front.is_some_and(|keys| !front.beats(&lower_keys(plan, &keys)));
+        let (front, objectives) = (&work.reducers.front, plan.study.objectives.len());
+        let on_front = |it: &Survivor| it.front.is_some_and(|keys| !front.beats(&lower_keys(plan, &keys)[..objectives]));
         let cells = Cells::new(plan, survivors);
         let looked = in_shares(survivors.len(), LEAST_SHARE as usize, self.threads, |part| {
             let (mut sure, mut unsure) = (Vec::new(), Vec::new());
@@ -342,22 +342,23 @@ pub(super) fn answers(plan: &Plan, reducers: &mut Reducers) -> Answers {
     }
 }
 
-/// A survivor's lower bounds as f64 keys of the front.
-fn lower_keys(plan: &Plan, keys: &[f32; 6]) -> Vec<f64> {
-    let key = |(objective, &lower): (&crate::study::Objective, &f32)| {
-        let Quantity::Output(output) = objective.quantity else {
+/// A survivor's lower bounds as f64 keys of the front, a coordinate per objective.
+fn lower_keys(plan: &Plan, keys: &[f32; MOST_OBJECTIVES]) -> [f64; MOST_OBJECTIVES] {
+    let mut lowered = [0.0; MOST_OBJECTIVES];
+    for ((lowered, objective), &lower) in lowered.iter_mut().zip(&plan.study.objectives).zip(keys) {
+        let lower = f64::from(lower);
+        *lowered = match objective.quantity {
             // The device has inputs as f32 rounds them.
-            return f64::from(lower) - f64::from(lower).abs() * 6e-8;
+            Quantity::Input(_) => lower - lower.abs() * 6e-8,
+            Quantity::Output(_) if objective.resolution.is_some() => lower,
+            Quantity::Output(output) => {
+                let value = plan.study.model.outputs[output].unit.from_si(lower);
+                // The conversion rounds in f64.
+                value - value.abs() * 1e-14
+            }
         };
-        if objective.resolution.is_some() {
-            return f64::from(lower);
-        }
-        let unit = plan.study.model.outputs[output].unit;
-        let value = unit.from_si(f64::from(lower));
-        // The conversion rounds in f64.
-        value - value.abs() * 1e-14
-    };
-    plan.study.objectives.iter().zip(keys).map(key).collect()
+    }
+    lowered
 }
 
 /// Who may be the best of a map's cell, among the survivors of a tile.

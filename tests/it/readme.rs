@@ -55,9 +55,10 @@ fn the_jobs_are_what_the_program_writes() {
     assert!(coarse.contains(from), "{finer}");
     std::fs::write(&study, coarse.replace(from, to)).expect("it can be written");
     let [study, result] = [study, out.path().join("fine")].map(|it| it.display().to_string());
-    let (printed, _) = run(&["slurm", &study, "--out", &result, "--cpus", "2"]);
+    let (printed, _) = run(&["slurm", &study, "--out", &result, "--cpus", "2", "--", "--method", "exhaustive"]);
     let shown = block(finer);
-    let shown = shown.strip_prefix("$ beltspace slurm fine.toml --cpus 2\n").and_then(|it| it.split_once("\n$ bash "));
+    let shown =
+        shown.strip_prefix("$ beltspace slurm fine.toml --cpus 2 -- --method exhaustive\n").and_then(|it| it.split_once("\n$ bash "));
     let (shown, _) = shown.expect("the block shows both commands");
     // How long it takes decides how many there are and what they ask for; where they are is ours.
     let words = |text: &str| -> Vec<String> {

@@ -70,7 +70,7 @@ pub fn run(request: &cli::Slurm) -> Result<()> {
     let time = request.time.as_deref().map(sizing::read_clock).transpose()?;
     let (seconds, how) = speed::seconds_per_design(&plan);
     let work = work(&plan, seconds, request.cpus);
-    let wish = Wish { shards: request.shards, shortest: request.shortest, limit: request.array_limit };
+    let wish = Wish { bounds: method.bounds, shards: request.shards, shortest: request.shortest, limit: request.array_limit };
     let shards = sizing::shards(&work, &wish, scheduler)?;
     refuse_to_overwrite(&out, request.force)?;
     refuse_to_replace(&jobs, request.force)?;
@@ -79,8 +79,9 @@ pub fn run(request: &cli::Slurm) -> Result<()> {
     let least = request.memory.map_or(LEAST_MEMORY, |asked| [asked; 2]);
     let wanted = (2 * check::memory(&plan, request.cpus.into()) + 500).next_multiple_of(100);
     let memory = least.map(|least| if request.memory.is_some() { least } else { least.max(wanted) });
-    let expected = [work.of_shard(shards), LEAST_MERGE + work.of_merge()];
-    let time = expected.map(|seconds| time.clone().unwrap_or_else(|| sizing::clock(sizing::limit(seconds))));
+    let limit = if method.bounds { sizing::limit_of_bounds } else { sizing::limit };
+    let limits = [limit(work.of_shard(shards)), sizing::limit(LEAST_MERGE + work.of_merge())];
+    let time = limits.map(|seconds| time.clone().unwrap_or_else(|| sizing::clock(seconds)));
     let scripts = scripts::Plan {
         scheduler,
         title: plan.study.title.chars().map(|it| if it.is_control() { ' ' } else { it }).collect(),
@@ -110,23 +111,26 @@ pub fn run(request: &cli::Slurm) -> Result<()> {
     }
     remark(&plan, &work, request, shards);
     if !request.quiet && method.bounds && own.method == cli::Method::Auto {
-        terminal::remark(
-            "note",
-            "the shards will take bounds, which settle boxes of designs at once: they may be done in seconds, and one beltspace sweep \
-             here may do; -- --method exhaustive judges every design",
-        );
+        let what = "bounds settle boxes of designs at once, and a shard may be done in seconds";
+        let then = match request.shards {
+            None => "one job is written, and one beltspace sweep here may do; --shards N splits it all the same",
+            Some(_) => "every shard looks for the front anew; without --shards one job is written",
+        };
+        terminal::remark("note", &format!("{what}: {then}; -- --method exhaustive judges every design"));
     }
-    if request.quiet { Ok(()) } else { terminal::print(&summary(&plan, &work, how, &scripts, &out, &jobs)) }
+    if request.quiet { Ok(()) } else { terminal::print(&summary(&plan, &work, (method.bounds, how), &scripts, &out, &jobs)) }
 }
 
-fn summary(plan: &Plan, work: &Work, how: &str, scripts: &scripts::Plan, out: &Path, jobs: &Path) -> String {
+fn summary(plan: &Plan, work: &Work, (bounds, how): (bool, &str), scripts: &scripts::Plan, out: &Path, jobs: &Path) -> String {
     let (shards, cpus) = (scripts.shards, scripts.cpus);
     let on = if cpus == 1 { "1 processor".to_owned() } else { format!("{cpus} processors") };
     let each = if shards == 1 { "" } else { " each" };
     let mut facts = Grid::default();
     let mut fact = |what: &str, value: String| facts.row([bold(what), value]);
     fact("designs", grouped(plan.designs()));
-    fact("shards", format!("{}, about {}{each} on {on}, {how}", grouped(shards), span(work.of_shard(shards))));
+    let long = span(work.of_shard(shards));
+    let time = if bounds { format!("by bounds; every design would take about {long}") } else { format!("about {long}") };
+    fact("shards", format!("{}, {time}{each} on {on}, {how}", grouped(shards)));
     fact(
         "asks for",
         format!(

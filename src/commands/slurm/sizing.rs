@@ -10,6 +10,8 @@ const LEAST_LIMIT: f64 = 600.0;
 /// The time limit is so many times what is expected, and a whole number of steps.
 const CAUTION: f64 = 4.0;
 const LIMIT_STEP: u64 = 300;
+/// Most that is asked for where bounds are taken.
+const LONGEST_OF_BOUNDS: f64 = 86_400.0;
 
 /// What there is to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,6 +57,8 @@ impl Work {
 /// What the user said about the number of shards.
 #[derive(Clone, Copy, Debug)]
 pub struct Wish {
+    /// Shards take bounds: each would begin to bound the whole front anew, so one does where nobody says how many.
+    pub bounds: bool,
     pub shards: Option<u64>,
     /// Least seconds of a shard.
     pub shortest: u32,
@@ -69,7 +73,7 @@ pub struct Wish {
 pub fn shards(work: &Work, wish: &Wish, scheduler: Scheduler) -> Result<u64> {
     let limit = wish.limit.unwrap_or(scheduler.usual_limit());
     let Some(asked) = wish.shards else {
-        return Ok(((work.of_all() / GOAL).ceil() as u64).clamp(1, limit.min(work.designs)));
+        return Ok(if wish.bounds { 1 } else { ((work.of_all() / GOAL).ceil() as u64).clamp(1, limit.min(work.designs)) });
     };
     if asked > work.designs {
         let (designs, word) = (work.designs, if work.designs == 1 { "design" } else { "designs" });
@@ -95,6 +99,11 @@ pub fn shards(work: &Work, wish: &Wish, scheduler: Scheduler) -> Result<u64> {
 pub fn limit(expected: f64) -> u64 {
     // Beyond the range of numbers the cast stays at its end.
     ((CAUTION * expected).max(LEAST_LIMIT).ceil() as u64).div_ceil(LIMIT_STEP).saturating_mul(LIMIT_STEP)
+}
+
+/// A time limit in seconds for bounds, which are taken because judging every design takes longer than they do.
+pub fn limit_of_bounds(exhaustive: f64) -> u64 {
+    (exhaustive.clamp(LEAST_LIMIT, LONGEST_OF_BOUNDS).ceil() as u64).next_multiple_of(LIMIT_STEP)
 }
 
 /// A time limit as both schedulers read it.
@@ -132,7 +141,7 @@ mod tests {
 
     #[test]
     fn a_shard_takes_about_ten_minutes() {
-        let free = Wish { shards: None, shortest: 60, limit: None };
+        let free = Wish { bounds: false, shards: None, shortest: 60, limit: None };
         // 2500 s on four processors.
         assert_eq!(shards_of(&WORK, &free).ok(), Some(5));
         assert_eq!(shards_of(&Work { cpus: 1, ..WORK }, &free).ok(), Some(17));
@@ -144,8 +153,15 @@ mod tests {
     }
 
     #[test]
+    fn bounds_take_one_shard_unless_more_are_asked_for() {
+        let of = |shards| shards_of(&WORK, &Wish { bounds: true, shards, shortest: 60, limit: None }).ok();
+        assert_eq!([of(None), of(Some(7))], [Some(1), Some(7)]);
+        assert_eq!([1.0, 601.0, 1e9].map(limit_of_bounds).map(clock), ["00:10:00", "00:15:00", "24:00:00"]);
+    }
+
+    #[test]
     fn a_shard_takes_no_less_than_asked_for() {
-        let of = |asked, shortest| shards_of(&WORK, &Wish { shards: Some(asked), shortest, limit: None }).ok();
+        let of = |asked, shortest| shards_of(&WORK, &Wish { bounds: false, shards: Some(asked), shortest, limit: None }).ok();
         assert_eq!([of(3, 60), of(41, 60), of(42, 60), of(900, 60)], [Some(3), Some(41), Some(41), Some(41)]);
         assert_eq!([of(900, 0), of(900, 1), of(2, 86_400)], [Some(900), Some(900), Some(1)]);
     }
@@ -153,7 +169,7 @@ mod tests {
     #[test]
     fn more_shards_than_designs_or_places_in_an_array_are_refused() {
         let refusal = |shards, limit| {
-            let wish = Wish { shards: Some(shards), shortest: 0, limit };
+            let wish = Wish { bounds: false, shards: Some(shards), shortest: 0, limit };
             shards_of(&Work { designs: 5000, ..WORK }, &wish).expect_err("it is too many").to_string()
         };
         assert_eq!(refusal(5001, None), "--shards 5001: the study has 5000 designs, and a shard needs one; ask for at most 5000");
@@ -163,7 +179,7 @@ mod tests {
              1000, or say with --array-limit that yours takes more"
         );
         assert!(refusal(11, Some(10)).contains("ask for at most 10"));
-        let wish = Wish { shards: Some(4000), shortest: 0, limit: Some(4000) };
+        let wish = Wish { bounds: false, shards: Some(4000), shortest: 0, limit: Some(4000) };
         assert_eq!(shards_of(&Work { designs: 5000, ..WORK }, &wish).ok(), Some(4000));
     }
 

@@ -251,11 +251,17 @@ fn a_shard_takes_minutes_and_not_seconds() {
         answer.err
     );
     assert!(place.script("shards.sh").contains("#SBATCH --array=1-1\n"));
-    // Bounds are done sooner than judging every design, by which shards are sized.
+    // Bounds are done sooner than judging every design, and every shard would begin them anew.
     let fine = include_str!("../../../studies/metal-grid.toml").replace("count = 37", "count = 560");
     let place = Place::new(&fine);
-    assert!(place.ask("").err.starts_with("note: the shards will take bounds"));
-    assert!(!place.ask("--force -- --method exhaustive").err.contains("bounds"));
+    let answer = place.ask("");
+    assert!(answer.err.starts_with("note: bounds settle boxes of designs at once") && answer.err.contains("one job is written"));
+    assert!(answer.text().contains("\nshards    1, by bounds; every design would take about "));
+    let answer = place.ask("--force --shards 3");
+    assert!(answer.err.contains("every shard looks for the front anew"), "{}", answer.err);
+    assert!(answer.text().contains("\nshards    3, by bounds; every design would take about "));
+    let answer = place.ask("--force -- --method exhaustive");
+    assert!(!answer.err.contains("bounds") && !answer.text().contains("bounds"));
     let place = Place::new(&endless());
     assert!(place.ask("").text().contains("\nshards    1000, about "));
     assert!(place.ask("--force --pbs").text().contains("\nshards    10 000, about "));
