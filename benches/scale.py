@@ -123,7 +123,11 @@ def compare(designs, rows, fronts, folders, problems):
 def known_elsewhere(designs):
     """Committed records of metal-grid with so many designs, judged one by one on a device."""
     for name in ("device-1e11.json", "gpu-h100.json"):
-        record = json.loads(Path("results/bench", name).read_text())
+        file = Path("results/bench", name)
+        if not file.exists():
+            say(f"{file} is not there: nothing to compare with")
+            continue
+        record = json.loads(file.read_text())
         for row in record.get("runs", [record]):
             if row["command"].startswith("beltspace sweep metal-grid") and row["run"]["engine"] == "gpu" and row["run"]["designs"] == designs:
                 yield name, row

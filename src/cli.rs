@@ -267,7 +267,7 @@ pub struct Merge {
 pub struct Slurm {
     /// Study file
     pub study: PathBuf,
-    /// Number of shards [default: so many that one takes about ten minutes]; fewer where one would take less than --shortest
+    /// Number of shards [default: so many that one takes about ten minutes, one where bounds are taken]; fewer where one would take less than --shortest
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub shards: Option<u64>,
     /// Result directory [default: results/<study name>]
@@ -285,7 +285,7 @@ pub struct Slurm {
     /// Memory of a job in megabytes [default: by the study, at least 1000]
     #[arg(long, value_name = "MB", value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
     pub memory: Option<u64>,
-    /// Time limit of a job [default: four times what it is expected to take, at least 00:10:00]
+    /// Time limit of a job [default: four times what it is expected to take, at least 00:10:00; by bounds at most 24:00:00]
     #[arg(long, value_name = "HH:MM:SS")]
     pub time: Option<String>,
     /// Any other option of the scheduler for the jobs, such as --option=--partition=long or --option="-q long". May be repeated

@@ -1,8 +1,9 @@
 //! An f32 value together with a bound on its distance from the exact result.
 //!
-//! The bound follows what WGSL permits a GPU to do, not what one GPU does: sums and products rounded once (contraction into
-//! a fused multiply-add only rounds less), division and square root several ULP, but no promise for divisors beyond 2^126 or below
-//! 2^-126, subnormal numbers flushed to zero, inputs rounded to f32. Transcendental functions are allowed [`FUNCTION_ULP`] ULP of their own error.
+//! The bound follows what WGSL permits a GPU to do, not what one GPU does: sums and products rounded once (contraction into a
+//! fused multiply-add only rounds less), division and square root several ULP, but no promise for divisors beyond 2^126 or
+//! below 2^-126, subnormal numbers flushed to zero, inputs rounded to f32. Transcendental functions are allowed
+//! [`FUNCTION_ULP`] ULP of their own error.
 //! Bounds are carried in f64, where their own rounding is nine orders of magnitude below what they measure.
 
 use super::{Real, bracketed_newton};

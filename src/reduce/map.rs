@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
 
 /// Cells above which only those that were met are kept while a chunk is swept.
-const DENSE: u64 = 1 << 16;
+pub const DENSE: u64 = 1 << 16;
 
 /// What a cell holds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

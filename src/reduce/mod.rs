@@ -15,6 +15,7 @@ pub use dominance::{Dominance, beats};
 pub use extremes::{Extreme, Extremes};
 pub use front::{Front, KeyRule, MOST_OBJECTIVES, Points};
 pub use histogram::Histogram;
+pub(crate) use map::DENSE;
 pub use map::{Cell, Map};
 pub use top::Top;
 

@@ -6,7 +6,7 @@ use crate::checkpoint::{Checkpoint, Progress};
 use crate::error::{Error, Result};
 use crate::gpu::Device;
 use crate::plan::Plan;
-use crate::reduce::{MOST_OBJECTIVES, Reducers, Reduction, State};
+use crate::reduce::{DENSE, MOST_OBJECTIVES, Points, Reducers, Reduction, State};
 use crate::screen::gpu::{Answers, GpuEngine, InFlight, Survivor, Survivors, TileCounts, Wrong, value_maps};
 use crate::screen::{CpuEngine, Tables};
 use crate::study::{MapSpec, Quantity};
@@ -257,10 +257,12 @@ impl Run<'_, '_> {
         let absorb = |reducers: &mut Reducers, block: &crate::screen::Block<'_>| {
             if counted { reduction.absorb_counted(reducers, block) } else { reduction.absorb(reducers, block) }
         };
-        // Each share begins with histograms and maps of its own, and ends with merging them.
+        // Each share begins with a front, histograms and maps of its own, and ends with merging them.
+        let known = reducers.front.points().clone();
         let report = &plan.study.report;
-        let cells = |map: &MapSpec| plan.study.design[map.x].count() * plan.study.design[map.y].count();
+        let cells = |map: &MapSpec| (plan.study.design[map.x].count() * plan.study.design[map.y].count()).min(DENSE);
         let own: u64 = report.histograms.iter().map(|it| it.bins as u64).chain(report.maps.iter().map(cells)).sum();
+        let own = own + (known.keys.len() + known.len()) as u64;
         let least = LEAST_SHARE.max(own).div_ceil(plan.scenarios()) as usize;
         let mut feasible = 0;
         if positions.len() < 2 * least || self.threads == 1 {
@@ -270,7 +272,6 @@ impl Run<'_, '_> {
             });
             return feasible;
         }
-        let known = reducers.front.points().clone();
         let parts: Vec<(State, u64)> = in_shares(positions.len(), least, self.threads, |part| {
             let (mut own, mut feasible) = (reduction.start_after(known.clone()), 0);
             CpuEngine::new(plan, tables).screen_some(&positions[part], |block| {
@@ -279,10 +280,15 @@ impl Run<'_, '_> {
             });
             (own.into_fresh(), feasible)
         });
-        for (state, found) in parts {
+        // All at once: merging into a front takes as long as the front is.
+        let mut fresh = Points::default();
+        for (mut state, found) in parts {
+            fresh.keys.append(&mut state.front.keys);
+            fresh.indices.append(&mut state.front.indices);
             reducers.merge(state);
             feasible += found;
         }
+        reducers.front.merge(fresh);
         feasible
     }
 
@@ -294,6 +300,8 @@ impl Run<'_, '_> {
             host.screen_some(&[**position], |block| feasible += block.feasible_count);
             feasible == 0
         };
+        let mut positions = positions.to_vec();
+        positions.sort_unstable();
         let design = positions.iter().find(infeasible).map_or(0, |&position| self.plan.design_at(position));
         Error::Promise(format!("design {design}: the GPU is sure that it is feasible, f64 is sure that it is not"))
     }

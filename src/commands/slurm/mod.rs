@@ -79,9 +79,8 @@ pub fn run(request: &cli::Slurm) -> Result<()> {
     let least = request.memory.map_or(LEAST_MEMORY, |asked| [asked; 2]);
     let wanted = (2 * check::memory(&plan, request.cpus.into()) + 500).next_multiple_of(100);
     let memory = least.map(|least| if request.memory.is_some() { least } else { least.max(wanted) });
-    let limit = if method.bounds { sizing::limit_of_bounds } else { sizing::limit };
-    let limits = [limit(work.of_shard(shards)), sizing::limit(LEAST_MERGE + work.of_merge())];
-    let time = limits.map(|seconds| time.clone().unwrap_or_else(|| sizing::clock(seconds)));
+    let limit = if method.bounds { sizing::limit_of_bounds(work.of_all()) } else { sizing::limit(work.of_shard(shards)) };
+    let time = [limit, sizing::limit(LEAST_MERGE + work.of_merge())].map(|seconds| time.clone().unwrap_or_else(|| sizing::clock(seconds)));
     let scripts = scripts::Plan {
         scheduler,
         title: plan.study.title.chars().map(|it| if it.is_control() { ' ' } else { it }).collect(),
@@ -112,9 +111,10 @@ pub fn run(request: &cli::Slurm) -> Result<()> {
     remark(&plan, &work, request, shards);
     if !request.quiet && method.bounds && own.method == cli::Method::Auto {
         let what = "bounds settle boxes of designs at once, and a shard may be done in seconds";
-        let then = match request.shards {
-            None => "one job is written, and one beltspace sweep here may do; --shards N splits it all the same",
-            Some(_) => "every shard looks for the front anew; without --shards one job is written",
+        let then = if shards == 1 {
+            "one job is written, and one beltspace sweep here may do; --shards N splits it all the same"
+        } else {
+            "every shard looks for the front anew; without --shards one job is written"
         };
         terminal::remark("note", &format!("{what}: {then}; -- --method exhaustive judges every design"));
     }

@@ -101,9 +101,10 @@ pub fn limit(expected: f64) -> u64 {
     ((CAUTION * expected).max(LEAST_LIMIT).ceil() as u64).div_ceil(LIMIT_STEP).saturating_mul(LIMIT_STEP)
 }
 
-/// A time limit in seconds for bounds, which are taken because judging every design takes longer than they do.
+/// A time limit in seconds for bounds, of whose time nothing is known but that judging every design usually takes longer, whether
+/// they are for a shard or for all.
 pub fn limit_of_bounds(exhaustive: f64) -> u64 {
-    (exhaustive.clamp(LEAST_LIMIT, LONGEST_OF_BOUNDS).ceil() as u64).next_multiple_of(LIMIT_STEP)
+    limit(exhaustive.min(LONGEST_OF_BOUNDS / CAUTION))
 }
 
 /// A time limit as both schedulers read it.
@@ -156,7 +157,7 @@ mod tests {
     fn bounds_take_one_shard_unless_more_are_asked_for() {
         let of = |shards| shards_of(&WORK, &Wish { bounds: true, shards, shortest: 60, limit: None }).ok();
         assert_eq!([of(None), of(Some(7))], [Some(1), Some(7)]);
-        assert_eq!([1.0, 601.0, 1e9].map(limit_of_bounds).map(clock), ["00:10:00", "00:15:00", "24:00:00"]);
+        assert_eq!([1.0, 601.0, 1e9].map(limit_of_bounds).map(clock), ["00:10:00", "00:45:00", "24:00:00"]);
     }
 
     #[test]

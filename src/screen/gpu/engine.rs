@@ -7,6 +7,7 @@ use crate::error::Result;
 use crate::gpu::{Buffer, Device, Program, Wait};
 use crate::plan::Plan;
 use crate::real::RunningError;
+use crate::reduce::MOST_OBJECTIVES;
 use crate::study::{Best, Quantity};
 use bytemuck::{Pod, Zeroable};
 use std::mem::offset_of;
@@ -63,7 +64,7 @@ pub struct Survivor {
     /// May it be part of the top list, or an extreme?
     pub end: bool,
     /// A lower bound of each coordinate of the front, as the device has it, if it may be on the front.
-    pub front: Option<[f32; 6]>,
+    pub front: Option<[f32; MOST_OBJECTIVES]>,
     /// A lower and an upper bound of the key in each map of values, if it may be the best of a cell.
     pub maps: Option<Vec<[f32; 2]>>,
 }
@@ -96,7 +97,7 @@ impl Survivors {
         let record = &self.records[at * self.words..(at + 1) * self.words];
         let (lane, why) = (u64::from(record[1] & 0x00ff_ffff), record[1] >> 24);
         let front = (why & 2 != 0).then(|| {
-            let mut keys = [0.0; 6];
+            let mut keys = [0.0; MOST_OBJECTIVES];
             keys.iter_mut().zip(&record[2..2 + self.objectives]).for_each(|(key, &bits)| *key = f32::from_bits(bits));
             keys
         });
