@@ -60,7 +60,7 @@ pub struct DeviceRecord {
     pub tiles: u64,
     /// Tiles that had to be repeated in parts because too many designs survived.
     pub repeated: u64,
-    /// How long the processor waited for it, with nothing else to do.
+    /// How long the processor waited for its results. What a driver takes for itself when work is handed to it is not counted.
     pub waiting: Duration,
     /// The comparison with f64 of whole tiles.
     pub recheck: Recheck,

@@ -6,7 +6,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::ops::Range;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
@@ -56,20 +56,48 @@ fn follow(control: &Control, total: u64, finished: &AtomicBool) {
         last = done;
         bar.set_position(done);
         let rate = begun.map_or(0.0, |(since, before)| (done - before) as f64 / since.elapsed().as_secs_f64().max(1e-3));
-        bar.set_message(if control.stop.load(Ordering::Relaxed) {
-            "stopping, keeping what is done ...".to_owned()
-        } else if done == total {
-            let [certified, reported] = [&control.certified, &control.reported].map(|it| it.load(Ordering::Relaxed));
-            format!("certifying what is reported, {} % ...", 100 * certified / reported.max(1))
-        } else if let Some(what) = control.settled_for() {
-            format!("settled: {what}, {}", span(start.elapsed().as_secs_f64()))
-        } else if rate > 0.0 {
-            format!("{}designs/s, {} left", scaled(rate), span((total - done) as f64 / rate))
-        } else {
-            let [sampled, sample] = [&control.sampled, &control.sample].map(|it| it.load(Ordering::Relaxed));
-            format!("looking at a sample, {} % ...", 100 * sampled / sample.max(1))
-        });
+        bar.set_message(message(control, done..total, rate, start.elapsed()));
         std::thread::sleep(Duration::from_millis(50));
     }
     bar.finish_and_clear();
+}
+
+/// What stands beside the bar: `rest` from the designs done to all of them, `rate` in designs per second.
+#[allow(clippy::cast_precision_loss, reason = "times for people")]
+fn message(control: &Control, rest: Range<u64>, rate: f64, elapsed: Duration) -> String {
+    let percent = |part: &AtomicU64, of: &AtomicU64| 100 * part.load(Ordering::Relaxed) / of.load(Ordering::Relaxed).max(1);
+    if control.stop.load(Ordering::Relaxed) {
+        "stopping, keeping what is done ...".to_owned()
+    } else if rest.is_empty() {
+        format!("certifying what is reported, {} % ...", percent(&control.certified, &control.reported))
+    } else if let Some(what) = control.settled_for() {
+        format!("settled: {what}, {}", span(elapsed.as_secs_f64()))
+    } else if rate > 0.0 {
+        format!("{}designs/s, {} left", scaled(rate), span((rest.end - rest.start) as f64 / rate))
+    } else {
+        format!("looking at a sample, {} % ...", percent(&control.sampled, &control.sample))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_bar_says_what_is_done_and_how_long_it_takes() {
+        let control = Control::default();
+        let at = |done: u64, rate: f64| message(&control, done..1_000_000, rate, Duration::from_millis(16_900));
+        control.sample.store(65_536, Ordering::Relaxed);
+        control.sampled.store(16_384, Ordering::Relaxed);
+        assert_eq!(at(0, 0.0), "looking at a sample, 25 % ...");
+        assert_eq!(at(400_000, 20_000.0), "20.0 kdesigns/s, 30.0 s left");
+        *control.settling.lock().expect("nobody holds it") = Some("front, 1 of 11".to_owned());
+        assert_eq!(at(400_000, 20_000.0), "settled: front, 1 of 11, 16.9 s");
+        assert_eq!(at(1_000_000, 20_000.0), "certifying what is reported, 0 % ...");
+        control.reported.store(8, Ordering::Relaxed);
+        control.certified.store(2, Ordering::Relaxed);
+        assert_eq!(at(1_000_000, 20_000.0), "certifying what is reported, 25 % ...");
+        control.stop.store(true, Ordering::Relaxed);
+        assert_eq!(at(400_000, 20_000.0), "stopping, keeping what is done ...");
+    }
 }
