@@ -267,7 +267,7 @@ pub struct Merge {
 pub struct Slurm {
     /// Study file
     pub study: PathBuf,
-    /// Number of shards [default: so many that one takes about ten minutes, one where bounds are taken]; fewer where one would take less than --shortest
+    /// Number of shards [default: one by bounds, else for ten minutes each]; fewer where one would take less than --shortest
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub shards: Option<u64>,
     /// Result directory [default: results/<study name>]

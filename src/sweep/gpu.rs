@@ -258,12 +258,12 @@ impl Run<'_, '_> {
             if counted { reduction.absorb_counted(reducers, block) } else { reduction.absorb(reducers, block) }
         };
         // Each share begins with a front, histograms and maps of its own, and ends with merging them.
-        let known = reducers.front.points().clone();
+        let front = reducers.front.points();
+        let front = (front.keys.len() + front.len()) as u64;
         let report = &plan.study.report;
         let cells = |map: &MapSpec| (plan.study.design[map.x].count() * plan.study.design[map.y].count()).min(DENSE);
         let own: u64 = report.histograms.iter().map(|it| it.bins as u64).chain(report.maps.iter().map(cells)).sum();
-        let own = own + (known.keys.len() + known.len()) as u64;
-        let least = LEAST_SHARE.max(own).div_ceil(plan.scenarios()) as usize;
+        let least = LEAST_SHARE.max(own + front).div_ceil(plan.scenarios()) as usize;
         let mut feasible = 0;
         if positions.len() < 2 * least || self.threads == 1 {
             self.host.screen_some(positions, |block| {
@@ -272,6 +272,7 @@ impl Run<'_, '_> {
             });
             return feasible;
         }
+        let known = reducers.front.points().clone();
         let parts: Vec<(State, u64)> = in_shares(positions.len(), least, self.threads, |part| {
             let (mut own, mut feasible) = (reduction.start_after(known.clone()), 0);
             CpuEngine::new(plan, tables).screen_some(&positions[part], |block| {
