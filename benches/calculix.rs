@@ -33,7 +33,7 @@ fn main() {
     let mut words = std::env::args().skip(1).filter(|word| !word.starts_with("--"));
     let out = PathBuf::from(words.next().expect("a folder for the tables"));
     let only = words.next();
-    let program = calculix().expect("ccx is needed");
+    let program = calculix();
     let sheet = Fineness { through: 2, straight: 1.0, bend: 0.4, held: 0.7, solid: 1.6, harmonics: 24, every: true };
     let models = [
         ("pressed-cup-coarse", job(Kind::PressedCup, COARSE, 50)),

@@ -20,6 +20,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parent))
 import metal_grid  # noqa: E402
+from peak import peak_of  # noqa: E402
 import pulley_measures  # noqa: E402
 import timing_measures  # noqa: E402
 
@@ -28,32 +29,6 @@ STUDY = Path("studies/metal-grid.toml").read_text()
 # (10 for the values, the rest for bounds, decisions and 16 comparisons with the front), at 67e9 operations/s, which lavapipe was
 # measured to make on two cores. Bytes do not count: a row's 1100 designs share what is loaded.
 FLOOR = 67e9 / 130
-
-
-def largest_memory(process):
-    """Largest resident memory so far of a process in MB, as the kernel keeps it; rusage would count the parent it was forked from."""
-    lines = Path(f"/proc/{process}/status").read_text().splitlines()
-    return max([int(line.split()[1]) / 1024 for line in lines if line.startswith("VmHWM")], default=0)
-
-
-def peak_of(process, limit=math.inf):
-    """Largest resident memory of a running process in MB, when it has ended; None if it did not end within so many seconds and
-    was killed."""
-    peak, start = 0, time.monotonic()
-    while process.poll() is None:
-        if time.monotonic() - start > limit:
-            process.kill()
-            process.wait()
-            return None
-        try:
-            peak = max(peak, largest_memory(process.pid))
-        except OSError:
-            pass
-        try:
-            process.wait(0.02)
-        except subprocess.TimeoutExpired:
-            pass
-    return peak
 
 
 def sweep(program, levels, folder, engine="cpu"):

@@ -21,6 +21,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parent))
 import measures  # noqa: E402
 import metal_grid  # noqa: E402
+from peak import largest_memory, peak_of  # noqa: E402
 
 # Levels of the four continuous axes of metal-grid: 1e7, 1e8, ... 1e12 designs.
 LEVELS = (31, 56, 98, 174, 309, 560)
@@ -53,7 +54,7 @@ def peer(name, levels, file):
     seconds = time.perf_counter() - start
     np.save(file, best)
     print(json.dumps({"seconds": seconds, "feasible": count, "front": len(best),
-                      "peak_MB": measures.largest_memory("self")}))
+                      "peak_MB": largest_memory("self")}))
 
 
 def run_peer(name, levels, folder, limit):
@@ -76,7 +77,7 @@ def run_own(program, study, engine, method, out, limit):
     command = [program, "sweep", study, "--engine", engine, "--method", method, "--out", out, "--quiet", "--force", "--no-report"]
     start = time.perf_counter()
     process = subprocess.Popen(command)
-    peak = measures.peak_of(process, limit)
+    peak = peak_of(process, limit)
     seconds = time.perf_counter() - start
     if peak is None:
         return {"stopped_after": limit}

@@ -4,11 +4,12 @@
 //! design that it finds infeasible, or whose objectives differ from what the sweep saw, stops the program.
 
 use crate::error::{Error, Result};
-use crate::models::{OUTPUTS, Status, Worse, judge, shown, to_si};
+use crate::models::{Latest, OUTPUTS, Status, Worse, judge, shown, to_si};
+use crate::parallel::on_threads;
 use crate::plan::{Plan, worst_end};
 use crate::reduce::{KeyRule, Points};
 use crate::screen::Control;
-use crate::study::{Constraint, Quantity, Study};
+use crate::study::{Axis, Constraint, Quantity, Study};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Why a column is in the tables.
@@ -67,7 +68,7 @@ impl Worst {
 /// The columns of a study's tables: objectives, constraints, report columns, in file order, each quantity once where one column
 /// serves all.
 pub fn columns(study: &Study) -> Vec<Column> {
-    let model = study.model;
+    let model = &study.model;
     let mut columns: Vec<Column> = Vec::new();
     let objectives = study.objectives.iter().enumerate().map(|(n, it)| (it.quantity, Role::Objective(n), Worst::End(it.goal.worse())));
     let constraints = study.constraints.iter().enumerate().map(|(n, it)| (it.quantity, Role::Constraint(n), Worst::Margin(*it)));
@@ -83,6 +84,12 @@ pub fn columns(study: &Study) -> Vec<Column> {
         }
     }
     columns
+}
+
+/// Position of a quantity among the inputs that design axes set, in file order; `None` if it is not one of them. Such a quantity is the
+/// same in every scenario, and has its column among the design inputs, whatever else it is.
+pub fn design_input(study: &Study, quantity: Quantity) -> Option<usize> {
+    study.design.iter().flat_map(Axis::inputs).position(|&input| quantity == Quantity::Input(input))
 }
 
 /// A value and the scenario in which it is taken.
@@ -115,23 +122,18 @@ pub fn rows(plan: &Plan, columns: &[Column], designs: &[u64], threads: usize, co
     let mut order: Vec<(u64, usize)> = designs.iter().enumerate().map(|(at, &design)| (plan.position_of(design), at)).collect();
     order.sort_unstable();
     let share = order.len().div_ceil(threads.max(1)).max(1);
-    let mut rows: Vec<(usize, Row)> = std::thread::scope(|scope| {
-        let parts = order.chunks(share).map(|part| {
-            scope.spawn(move || {
-                let mut reference = Reference::new(plan, columns, &control.stop);
-                let certified = |&(position, at): &(u64, usize)| {
-                    let row = reference.row(position)?;
-                    control.certified.fetch_add(1, Ordering::Relaxed);
-                    Some((at, row))
-                };
-                part.iter().map_while(certified).collect::<Vec<_>>()
-            })
-        });
-        let parts: Vec<_> = parts.collect();
-        parts.into_iter().flat_map(|part| part.join().expect("the reference does not panic")).collect()
+    let parts = on_threads(order.chunks(share), |part| {
+        let mut reference = Reference::new(plan, columns, &control.stop);
+        let certified = |&(position, at): &(u64, usize)| {
+            let row = reference.row(position)?;
+            control.certified.fetch_add(1, Ordering::Relaxed);
+            Some((at, row))
+        };
+        part.iter().map_while(certified).collect::<Vec<_>>()
     });
+    let mut rows: Vec<(usize, Row)> = parts.into_iter().flatten().collect();
     if rows.len() < designs.len() {
-        return Err(Error::Stopped { checkpoint: String::new(), resume: String::new() });
+        return Err(Error::Stopped { kept: None });
     }
     rows.sort_unstable_by_key(|(at, _)| *at);
     Ok(rows.into_iter().map(|(_, row)| row).collect())
@@ -154,7 +156,7 @@ pub fn front(plan: &Plan, columns: &[Column], points: &Points, threads: usize, c
         for ((objective, &column), &seen) in objectives.iter().zip(&column_of).zip(keys) {
             let value = row.columns[column].value.unwrap_or(f64::NAN);
             if KeyRule::from(objective).key(value) != seen {
-                let name = objective.quantity.name(plan.study.model);
+                let name = objective.quantity.name(&plan.study.model);
                 return Err(Error::Certificate(format!(
                     "{name} of design {}: the sweep compared {seen}, the f64 reference gives {value}",
                     row.index
@@ -193,6 +195,8 @@ struct Reference<'p> {
     prepared: Vec<Vec<f64>>,
     /// Of another one.
     beyond: Vec<f64>,
+    /// Rows that differ in what their section does not read share what is prepared.
+    latest: Latest,
     stop: &'p AtomicBool,
 }
 
@@ -204,13 +208,13 @@ impl<'p> Reference<'p> {
             Quantity::Output(output) => set | 1 << output,
             Quantity::Input(_) => set,
         });
-        Self { plan, columns, wanted, row: None, prepared: Vec::new(), beyond: Vec::new(), stop }
+        Self { plan, columns, wanted, row: None, prepared: Vec::new(), beyond: Vec::new(), latest: Latest::new(&plan.study.model), stop }
     }
 
     /// The row of a design; `None` if it was stopped.
     fn row(&mut self, position: u64) -> Option<Row> {
         let plan = self.plan;
-        let model = plan.study.model;
+        let model = &plan.study.model;
         let index = plan.design_at(position);
         let mut inputs = plan.space.inputs(index, 0);
         let first = inputs.clone();
@@ -233,7 +237,7 @@ impl<'p> Reference<'p> {
                 if t == 0 && (!kept || self.prepared.len() as u64 == q) {
                     let mut prepared = std::mem::take(&mut self.beyond);
                     prepared.resize(model.kernel.prepared_len(), 0.0);
-                    model.kernel.prepare(&si, self.wanted, &mut prepared);
+                    self.latest.prepare(&si, self.wanted, &mut prepared);
                     if kept { self.prepared.push(prepared) } else { self.beyond = prepared }
                 }
                 let prepared = if kept { &self.prepared[q as usize] } else { &self.beyond };

@@ -1,7 +1,8 @@
 //! Every option of the command line.
 
+use beltspace::run::{Engine, Judging};
 use beltspace::tiles::Shard;
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 
 /// Explores belt-drive designs by the billion: every combination, judged in its worst case, down to the exact Pareto front.
@@ -37,8 +38,10 @@ pub enum Command {
     /// Make the page that shows a result: one HTML file, opened by double click
     Report(Report),
     /// Compare a GPU with f64: errors per output, wrong decisions, promise kept or not
+    #[cfg(feature = "gpu")]
     Verify(Verify),
     /// List the GPUs of this machine, their limits, and whether their drivers can be trusted
+    #[cfg(feature = "gpu")]
     Adapters {
         /// Print JSON
         #[arg(long)]
@@ -124,28 +127,6 @@ pub struct Eval {
     pub plot: Option<PathBuf>,
 }
 
-/// What judges the designs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Engine {
-    /// A GPU where there is one and the study is large enough for it, else the processor
-    Auto,
-    /// A GPU, or a driver that does its work in software; f64 decides what it cannot
-    Gpu,
-    /// The processor, in f64
-    Cpu,
-}
-
-/// How designs are judged.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Method {
-    /// Bounds where they can serve the study and judging every design would take long, else every design
-    Auto,
-    /// Every design, one by one
-    Exhaustive,
-    /// Boxes of designs by bounds of the formula: the same result, with a certificate of what settled each design
-    Bounds,
-}
-
 /// Options of `sweep`.
 #[derive(Debug, Args)]
 pub struct Sweep {
@@ -159,7 +140,7 @@ pub struct Sweep {
     pub engine: Engine,
     /// How designs are judged; the result is the same
     #[arg(long, value_enum, default_value = "auto")]
-    pub method: Method,
+    pub method: Judging,
     /// GPU to use: a part of its name [default: the best, see `adapters`]
     #[arg(long, value_name = "NAME")]
     pub adapter: Option<String>,
@@ -172,13 +153,16 @@ pub struct Sweep {
     /// Run only part K of N; `merge` puts the parts together
     #[arg(long, value_name = "K/N")]
     pub shard: Option<Shard>,
+    /// Memory in megabytes that the front may take while it is looked for; it may be larger then than in the end
+    #[arg(long, value_name = "MB", default_value_t = beltspace::reduce::FRONT_BYTES >> 20, value_parser = clap::value_parser!(u64).range(1..=1 << 30))]
+    pub front_memory: u64,
     /// Do not write report.html, the page that shows the result
     #[arg(long)]
     pub no_report: bool,
     /// Print nothing but errors
     #[arg(long)]
     pub quiet: bool,
-    /// Replace an existing result or checkpoint
+    /// Replace a result or checkpoint of beltspace; files of others are never touched
     #[arg(long, conflicts_with = "resume")]
     pub force: bool,
     /// Designs between two looks at the clock; changes no result (for testing)
@@ -215,6 +199,7 @@ pub struct Report {
 }
 
 /// Options of `verify`.
+#[cfg(feature = "gpu")]
 #[derive(Debug, Args)]
 pub struct Verify {
     /// Study file, or name of a model

@@ -7,30 +7,111 @@ use std::path::{Path, PathBuf};
 
 /// An error of the library and the command line.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum Error {
     /// The study file asks for something that cannot be.
     #[error(transparent)]
     Study(#[from] StudyErrors),
-    /// A request that cannot be met as it stands: a wrong name, value or combination of options.
+    /// A request that cannot be met as it stands: a wrong value or combination of options, in words.
     #[error("{0}")]
     Request(String),
-    /// The run was stopped by the user; its checkpoint is kept.
-    #[error("stopped; what is done is kept in {checkpoint}, go on with: {resume}")]
+    /// A model has no input of that name.
+    #[error("{name} is no input of {model}{}", did_you_mean(.closest))]
+    NoSuchInput {
+        /// The model.
+        model: String,
+        /// The name that it does not have.
+        name: String,
+        /// The name that was probably meant.
+        closest: Option<String>,
+    },
+    /// Columns of inputs that do not go together.
+    #[error("{}", columns(name, *rows, *expected))]
+    Columns {
+        /// The input.
+        name: String,
+        /// Rows of its column.
+        rows: usize,
+        /// Rows of the first column; as many as `rows` if the input has two columns.
+        expected: usize,
+    },
+    /// No adapter's name contains what was asked for, or there is no adapter at all.
+    #[error("{}", no_adapter(.name.as_deref(), there))]
+    NoAdapter {
+        /// What was asked for.
+        name: Option<String>,
+        /// Names of the adapters that there are.
+        there: Vec<String>,
+    },
+    /// The model is computed in f64 on the CPU only.
+    #[error("{model} is computed in f64 on the processor only{}", after("; ", .remedy))]
+    CpuOnly {
+        /// The model.
+        model: String,
+        /// What to do about it.
+        remedy: Option<String>,
+    },
+    /// A device cannot serve the study.
+    #[error("this study cannot be screened on a GPU: {why}; use --engine cpu")]
+    NotOnDevice {
+        /// Why not.
+        why: String,
+    },
+    /// Bounds cannot serve the study.
+    #[error("bounds cannot serve this study: {why}")]
+    NotByBounds {
+        /// Why not.
+        why: String,
+    },
+    /// Shards that do not make a whole.
+    #[error("cannot merge: {}{}", in_short(problems), after("; ", .remedy))]
+    NotMergeable {
+        /// What is missing, doubled, unfinished or of another study, at least one.
+        problems: Vec<String>,
+        /// What to do about it.
+        remedy: Option<String>,
+    },
+    /// A directory holds something that a result would replace.
+    #[error("{path} {by}")]
+    Occupied {
+        /// The directory.
+        path: PathBuf,
+        /// What is there.
+        by: Occupant,
+    },
+    /// The run was stopped by the user.
+    #[error("stopped{}", way_back(.kept))]
     Stopped {
-        /// Where the checkpoint is.
-        checkpoint: String,
-        /// The command that resumes.
-        resume: String,
+        /// What is kept, if there is a checkpoint.
+        kept: Option<Kept>,
     },
     /// More non-dominated designs than the study's budget.
     #[error(
-        "the Pareto front has more than {budget} points; give objectives a resolution, such as {example}, drop an objective, or raise front_budget in [report]"
+        "the Pareto front has {points} points, more than the {budget} of front_budget; give objectives a resolution, such as {example}, drop an objective, or raise front_budget in [report]{resume}"
     )]
     FrontBudget {
+        /// The points.
+        points: u64,
         /// The budget.
         budget: u64,
         /// An objective of the study with a resolution.
         example: String,
+        /// How to go on without judging the designs again.
+        resume: String,
+    },
+    /// The designs that nothing beats so far take too much memory.
+    #[error(
+        "the front so far has {points} points, more than {megabytes} MB hold; give objectives a resolution, such as {example}, or drop an objective{resume}"
+    )]
+    FrontMemory {
+        /// The points.
+        points: u64,
+        /// The memory that they may take.
+        megabytes: u64,
+        /// An objective of the study with a resolution.
+        example: String,
+        /// How to go on without judging the designs again.
+        resume: String,
     },
     /// A graphics device failed; the run's checkpoint is kept.
     #[error("{device}: {problem}")]
@@ -44,8 +125,15 @@ pub enum Error {
     #[error("{0}")]
     Promise(String),
     /// A result is complete, but the page that shows it could not be made.
-    #[error("{0}")]
-    Page(String),
+    #[error("the result in {path} is complete, but its page could not be made ({why}); try: {again}")]
+    Page {
+        /// The result directory.
+        path: PathBuf,
+        /// Why not.
+        why: Box<Error>,
+        /// The command that makes the page.
+        again: String,
+    },
     /// What was computed twice does not agree: the program is wrong and says so rather than report it.
     #[error("{0}; this is a fault of the program, please report it with the study")]
     Certificate(String),
@@ -57,6 +145,34 @@ pub enum Error {
         /// What is wrong with it and what to do.
         problem: String,
     },
+    /// Reading or writing failed in a run whose checkpoint is kept.
+    #[error("{path}: {source}; what is done is kept in {checkpoint}, go on with: {resume}")]
+    Interrupted {
+        /// Where.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+        /// Where the checkpoint is.
+        checkpoint: String,
+        /// The command that resumes.
+        resume: String,
+    },
+    /// A file of a result directory says what no result does.
+    #[error("{path}: {problem}")]
+    Result {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// Another process is at work in a directory.
+    #[error("{path}: another beltspace is at work here ({holder}); wait for it, or use another directory")]
+    Busy {
+        /// The directory.
+        path: PathBuf,
+        /// Who it is, as far as that is known.
+        holder: String,
+    },
     /// Reading or writing failed.
     #[error("{path}: {source}")]
     Io {
@@ -65,6 +181,86 @@ pub enum Error {
         /// Why.
         source: std::io::Error,
     },
+}
+
+/// What is kept of a run that was stopped.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Kept {
+    /// Where the checkpoint is.
+    pub checkpoint: String,
+    /// The command that resumes.
+    pub resume: String,
+}
+
+/// What is in the way in a result directory.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Occupant {
+    /// The directory is a file.
+    #[error("is a file; name a directory with --out")]
+    File,
+    /// A finished result.
+    #[error("holds a finished result; replace it with --force, or write to another --out")]
+    Finished,
+    /// An unfinished run.
+    #[error("holds an unfinished run; go on with --resume, or start again with --force")]
+    Unfinished,
+    /// Files and folders that this program did not write.
+    #[error("{}", foreign(.0))]
+    Foreign(Vec<String>),
+}
+
+fn foreign(names: &[String]) -> String {
+    let (it, them) = if names.len() == 1 { ("a file or folder", "it") } else { ("files or folders", "them") };
+    let names = names.join(", ");
+    format!("has {it} that this program did not write and a result would replace ({names}); move {them} away, or write to another --out")
+}
+
+fn after(sign: &str, text: &Option<String>) -> String {
+    text.as_ref().map_or(String::new(), |text| format!("{sign}{text}"))
+}
+
+fn did_you_mean(closest: &Option<String>) -> String {
+    closest.as_ref().map_or(String::new(), |closest| format!("; did you mean {closest}?"))
+}
+
+fn columns(name: &str, rows: usize, expected: usize) -> String {
+    if rows == expected {
+        return format!("there are two columns {name}");
+    }
+    format!("the column {name} has {rows} rows, the first has {expected}")
+}
+
+fn no_adapter(name: Option<&str>, there: &[String]) -> String {
+    if there.is_empty() {
+        return "no GPU driver was found; install one (in software: the Debian package mesa-vulkan-drivers), or use --engine cpu"
+            .to_owned();
+    }
+    let there: Vec<_> = there.iter().map(|name| format!("\"{name}\"")).collect();
+    format!("no adapter's name contains \"{}\"; there is: {}", name.unwrap_or_default(), there.join(", "))
+}
+
+fn way_back(kept: &Option<Kept>) -> String {
+    let said = |Kept { checkpoint, resume }: &Kept| format!("; what is done is kept in {checkpoint}, go on with: {resume}");
+    kept.as_ref().map_or(String::new(), said)
+}
+
+/// The first of some words, and how many more there are.
+pub(crate) fn in_short(words: &[String]) -> String {
+    const MOST: usize = 20;
+    let more = if words.len() > MOST { format!("; and {} more", words.len() - MOST) } else { String::new() };
+    words.iter().take(MOST).cloned().collect::<Vec<_>>().join("; ") + &more
+}
+
+/// What a file said, in a message: on one line, and no longer than a person reads.
+pub fn brief(text: &str) -> String {
+    const MOST: usize = 500;
+    let mut plain: String =
+        text.chars().take(MOST).flat_map(|c| if c.is_control() { c.escape_default().collect() } else { vec![c] }).collect();
+    if text.chars().nth(MOST).is_some() {
+        plain.push_str("...");
+    }
+    plain
 }
 
 impl Error {
@@ -76,14 +272,27 @@ impl Error {
     /// The process exit code: 2 for a wrong request, 1 for a failure while running.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Study(_) | Self::Request(_) => 2,
+            Self::Study(_)
+            | Self::Request(_)
+            | Self::NoSuchInput { .. }
+            | Self::Columns { .. }
+            | Self::NoAdapter { .. }
+            | Self::CpuOnly { .. }
+            | Self::NotOnDevice { .. }
+            | Self::NotByBounds { .. }
+            | Self::NotMergeable { .. }
+            | Self::Occupied { .. } => 2,
             Self::Io { .. }
             | Self::Stopped { .. }
             | Self::FrontBudget { .. }
+            | Self::FrontMemory { .. }
             | Self::Gpu { .. }
             | Self::Promise(_)
-            | Self::Page(_)
+            | Self::Page { .. }
             | Self::Certificate(_)
+            | Self::Interrupted { .. }
+            | Self::Busy { .. }
+            | Self::Result { .. }
             | Self::Checkpoint { .. } => 1,
         }
     }

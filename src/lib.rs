@@ -1,28 +1,13 @@
 //! Belt-drive designs by the billion: every combination of what the engineer may choose, judged in the worst of everything the
 //! drive must survive, down to the exact Pareto front.
 //!
-//! ```text
-//! study.toml -> study -> space, plan -> tiles -> screen -> reduce -> certify -> export -> report
-//! ```
-//!
-//! A [`study`] names a [model](models), which of its inputs the engineer chooses (the design), which the drive must survive (the
-//! operation) and which nobody knows exactly (the uncertainty). The [`plan`] splits the [`space`] into what is slow and what is
-//! fast, [`screen`] judges it, eight designs at a time in f64 or on a graphics device ([`gpu`]) in f32 with error bounds,
-//! [`reduce`] keeps what matters of it, [`sweep`] runs that with a [`checkpoint`], [`certify`] computes what is reported once more
-//! with the scalar f64 reference, [`contours`] finds the lines over maps, [`export`] writes it, and [`report`] makes a page of it.
-//! [`papers`] computes the papers behind the models again.
-//! A module imports only what stands to its left, and `models`, `real`, `units` and `error`.
+//! A [`Study`] names a [model](models), which of its inputs the engineer chooses (the design), which the drive must survive (the
+//! operation) and which nobody knows exactly (the uncertainty). [`Study::sweep`] judges every design in every scenario and gives an
+//! [`Outcome`]:
 //!
 //! ```
-//! use beltspace::{models, plan::Plan, reduce::Reduction, screen::Tables, study::Study, sweep};
+//! use beltspace::{Options, Study};
 //!
-//! // One design of the paper's metal belt.
-//! let model = models::find("metal-cvt").unwrap();
-//! let evaluation = models::evaluate(model, &model.defaults());
-//! let limit = model.output("traction_limit").unwrap();
-//! assert!((evaluation.outputs[limit].unwrap() - 0.577).abs() < 5e-4, "the paper measured slip at 0.58");
-//!
-//! // A small study of it.
 //! let text = r#"
 //!     model = "metal-cvt"
 //!     [design]
@@ -34,37 +19,112 @@
 //!     torque_capacity_Nm = "max"
 //!     capacity_axial_force_N = "min"
 //! "#;
-//! let plan = Plan::new(Study::parse(text, "example.toml", ".".as_ref())?);
-//! let tables = Tables::new(&plan);
-//! let reduction = Reduction::new(&plan, &[]);
-//! let swept = sweep::sweep(&plan, &tables, &reduction, &sweep::Options::default(), None, &sweep::Control::default())?;
-//! assert_eq!(plan.designs(), 341);
-//! assert!(swept.state.feasible > 0 && !swept.state.front.is_empty());
-//! # Ok::<(), beltspace::error::Error>(())
+//! let outcome = Study::parse(text)?.sweep(Options::default())?;
+//! assert_eq!((outcome.counts.designs, outcome.counts.feasible), (341, 102));
+//! let knee = outcome.summary.knee.expect("there is a front").row;
+//! let torque = outcome.front.number("torque_capacity_Nm", knee).expect("an objective has a value");
+//! assert!(torque > 0.0);
+//! # Ok::<(), beltspace::Error>(())
 //! ```
+//!
+//! # The doors
+//!
+//! - [`Study::parse`] and [`Study::read`] check a study, [`Study::sweep`] judges it; [`Options`] choose threads, engine and method, and
+//!   change no result.
+//! - [`models::evaluate`] and [`models::evaluate_many`] evaluate designs without a study.
+//! - [`Stored::read`] reads the directory that `beltspace sweep` has written.
+//! - `gpu::adapters` lists the GPUs of this machine, for [`Options::adapter`].
+//!
+//! Each has an example in `examples/`. Errors are variants of [`Error`], whose messages name the thing, the value, the limit and the
+//! remedy.
+//!
+//! # Features
+//!
+//! All are on by default; without them the crate takes half as many packages, and sweeps all the same.
+//!
+//! - `cli`: the program. Implies `parquet` and `pictures`.
+//! - `gpu`: sweeps on a GPU. Without it asking for one is an error.
+//! - `parquet`: tables in Parquet in a result directory. Without it there are those in CSV.
+//! - `pictures`: pictures, pages, and the papers' figures.
+//!
+//! # What is behind them
+//!
+//! ```text
+//! study.toml -> study -> space, plan -> tiles -> screen -> reduce -> certify -> export -> report
+//! ```
+//!
+//! `plan` splits the `space` of designs into what is slow and what is fast, `screen` judges it, eight designs at a time in f64 or on a
+//! graphics device (`gpu`) in f32 with error bounds, `reduce` keeps what matters of it, `sweep` runs that with a `checkpoint`, `certify`
+//! computes what is reported once more with the scalar f64 reference, `contours` finds the lines over maps, `export` writes it, and
+//! `report` makes a page of it. `papers` computes the papers behind the models again, `run` puts it all together. A module imports only
+//! what stands to its left, and `models`, `real`, `units` and `error`.
+//!
+//! These modules are public for the program and its tests only: they are not shown here, and may change with every version.
 
+#[doc(hidden)]
 pub mod bounds;
+#[doc(hidden)]
 pub mod certify;
+#[doc(hidden)]
 pub mod checkpoint;
+#[doc(hidden)]
 pub mod contours;
+#[doc(hidden)]
 pub mod decision;
+#[doc(hidden)]
+pub mod directory;
 pub mod error;
+#[doc(hidden)]
 pub mod export;
+#[doc(hidden)]
+pub mod files;
+#[cfg(feature = "gpu")]
 pub mod gpu;
+#[doc(hidden)]
+pub mod likeness;
+#[doc(hidden)]
+pub mod memory;
+#[doc(hidden)]
 pub mod merge;
 pub mod models;
+#[doc(hidden)]
+pub mod names;
+#[cfg(feature = "pictures")]
+#[doc(hidden)]
 pub mod papers;
+#[doc(hidden)]
+pub mod parallel;
+#[cfg(feature = "pictures")]
+#[doc(hidden)]
 pub mod pictures;
+#[doc(hidden)]
 pub mod plan;
+#[doc(hidden)]
 pub mod pulley;
 pub mod real;
+#[doc(hidden)]
 pub mod reduce;
+#[cfg(feature = "pictures")]
+#[doc(hidden)]
 pub mod report;
+pub mod run;
 mod sample;
+#[doc(hidden)]
 pub mod screen;
+#[doc(hidden)]
 pub mod space;
 pub mod study;
+#[doc(hidden)]
 pub mod sweep;
+pub mod tape;
+#[doc(hidden)]
 pub mod tiles;
 pub mod units;
+#[cfg(feature = "gpu")]
+#[doc(hidden)]
 pub mod verify;
+
+pub use error::{Error, Result};
+pub use export::{Data, Table, TableColumn};
+pub use run::{Control, Engine, Judging, Options, Outcome, Stored};
+pub use study::Study;

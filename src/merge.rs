@@ -1,17 +1,18 @@
 //! Shards of one study, put together.
 
-use crate::checkpoint::Checkpoint;
-use crate::error::{Error, Result};
+use crate::checkpoint::Saved;
+use crate::error::{Error, Result, in_short};
 use crate::plan::Plan;
 use crate::reduce::{Reduction, State};
 use crate::study::differences;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Checks that these are all shards of one study, each once.
 ///
 /// # Errors
-/// [`Error::Request`] that names what is missing, doubled or foreign, all of it at once.
-pub fn check_set(shards: &[(PathBuf, Checkpoint)]) -> Result<()> {
+/// [`Error::NotMergeable`] that names what is missing, doubled or foreign, all of it at once.
+pub fn check_set(shards: &[(PathBuf, Saved)]) -> Result<()> {
     let Some((_, first)) = shards.first() else {
         return Err(Error::Request("there are no shards to merge".to_owned()));
     };
@@ -26,30 +27,49 @@ pub fn check_set(shards: &[(PathBuf, Checkpoint)]) -> Result<()> {
         }
     }
     if problems.is_empty() {
-        for number in 1..=of {
-            let same: Vec<_> =
-                shards.iter().filter(|(_, it)| it.shard().number == number).map(|(path, _)| path.display().to_string()).collect();
-            match same.as_slice() {
-                [] => problems.push(format!("shard {number}/{of} is missing")),
-                [_] => {}
-                several => problems.push(format!("shard {number}/{of} is there more than once: {}", several.join(", "))),
-            }
-        }
+        problems = missing_and_doubled(shards, of);
     }
-    if problems.is_empty() { Ok(()) } else { Err(Error::Request(format!("cannot merge: {}", problems.join("; ")))) }
+    if problems.is_empty() { Ok(()) } else { Err(Error::NotMergeable { problems, remedy: None }) }
+}
+
+/// Which of `of` shards are missing or there more than once, in the order of their numbers.
+fn missing_and_doubled(shards: &[(PathBuf, Saved)], of: u64) -> Vec<String> {
+    let mut places: BTreeMap<u64, Vec<String>> = BTreeMap::new();
+    for (path, shard) in shards {
+        places.entry(shard.shard().number).or_default().push(path.display().to_string());
+    }
+    let mut problems = Vec::new();
+    // Of as many as a number can say, most may be missing: gaps, not shards, are gone through.
+    let mut gap = |first: u64, last: u64| match last.wrapping_sub(first) {
+        _ if first > last => {}
+        0 => problems.push((first, format!("shard {first}/{of} is missing"))),
+        _ => problems.push((first, format!("shards {first} to {last} of {of} are missing"))),
+    };
+    let mut next = 1;
+    for &number in places.keys() {
+        gap(next, number - 1);
+        next = number.saturating_add(1);
+    }
+    if places.last_key_value().is_none_or(|(&last, _)| last < of) {
+        gap(next, of);
+    }
+    let doubled = places.iter().filter(|(_, paths)| paths.len() > 1);
+    problems.extend(doubled.map(|(&number, paths)| (number, format!("shard {number}/{of} is there more than once: {}", in_short(paths)))));
+    problems.sort();
+    problems.into_iter().map(|(_, problem)| problem).collect()
 }
 
 /// Merges the states of a complete set of shards.
 ///
 /// # Errors
-/// [`Error::Request`] if a shard has not finished; [`Error::Certificate`] if the shards together do not cover the study.
-pub fn merge(plan: &Plan, reduction: &Reduction, shards: Vec<(PathBuf, Checkpoint)>) -> Result<State> {
+/// [`Error::NotMergeable`] if a shard has not finished; [`Error::Checkpoint`] if it does not fit the study; [`Error::Certificate`] if the shards together do not cover the study.
+pub fn merge(plan: &Plan, reduction: &Reduction, shards: Vec<(PathBuf, Saved)>) -> Result<State> {
     let mut reducers = reduction.start();
     let mut unfinished = Vec::new();
     let mut covered = 0;
     for (path, mut checkpoint) in shards {
         let range = checkpoint.shard().range(plan.designs());
-        let progress = checkpoint.take_progress();
+        let progress = checkpoint.take_progress(plan, reduction)?;
         let missing = progress.as_ref().map_or(range.end - range.start, |it| it.done.missing_from(range.clone()).count());
         if missing > 0 {
             unfinished.push(format!("{} (shard {}) has {missing} designs to go", path.display(), checkpoint.shard()));
@@ -59,12 +79,12 @@ pub fn merge(plan: &Plan, reduction: &Reduction, shards: Vec<(PathBuf, Checkpoin
         }
     }
     if !unfinished.is_empty() {
-        return Err(Error::Request(format!("cannot merge: {}; finish with sweep --resume", unfinished.join("; "))));
+        return Err(Error::NotMergeable { problems: unfinished, remedy: Some("finish with sweep --resume".to_owned()) });
     }
     if covered != plan.designs() {
         return Err(Error::Certificate(format!("the shards cover {covered} of {} designs", plan.designs())));
     }
     let state = reducers.state();
-    crate::sweep::check_budget(plan, &state)?;
+    crate::sweep::Settings::default().check_budget(plan, &state)?;
     Ok(state)
 }

@@ -4,10 +4,11 @@
 //! fast; a *row* is one combination of the slow axes with all combinations of the fast ones. An output that no fast design axis
 //! touches is one number for the whole row, so it is evaluated once per row and scenario and never in the inner loop.
 
-use crate::models::{Effort, INPUTS, Reach, Worse, input_to_si};
-use crate::real::Dependence;
+use crate::models::{Effort, Reach, Worse, input_to_si};
 use crate::space::{Product, Space};
-use crate::study::{Best, Goal, Quantity, Study};
+pub use crate::study::worst_end;
+use crate::study::{Quantity, Study};
+use crate::tape::Known;
 
 /// Most combinations of the fast design axes that one row has, so that their values can be kept in a table.
 pub const FAST_DESIGNS: u64 = 1 << 15;
@@ -91,31 +92,17 @@ fn quantities_to_track(study: &Study) -> Vec<Tracked> {
     for objective in &study.objectives {
         track(objective.quantity, objective.goal.worse());
     }
-    if let Some(top) = study.report.top {
-        track(top.by, top.goal.worse());
-    }
-    for histogram in &study.report.histograms {
-        track(histogram.of, worst_end(study, histogram.of));
-    }
-    for map in &study.report.maps {
-        if let Best::Value(quantity, goal) = map.value {
-            track(quantity, goal.worse());
-        }
+    for (quantity, worse) in study.report.followed(study) {
+        track(quantity, worse);
     }
     tracked
-}
-
-/// The end of a quantity's scatter that its worst value is: by its objective if it has one, else by nature.
-pub fn worst_end(study: &Study, quantity: Quantity) -> Worse {
-    let goal = study.objectives.iter().find(|objective| objective.quantity == quantity).map(|objective| objective.goal);
-    goal.map_or(quantity.worse(study.model), Goal::worse)
 }
 
 impl Plan {
     /// Lays out a study.
     pub fn new(study: Study) -> Self {
         let space = Space::new(&study);
-        let reach = study.model.kernel.reach(&dependences(&study, &space));
+        let reach = study.model.kernel.reach(&knowns(&study, &space));
         let (slow, fast) = space.designs.split(reach.prepared);
         // The values of the fast axes are tabulated: what would make the table too large is walked with the slow axes.
         let (outer, fast) = fast.narrow(FAST_DESIGNS);
@@ -150,7 +137,7 @@ impl Plan {
         });
         let objectives = objectives.collect();
         // A quiet condition matters only where it takes away an output that is used.
-        let model = study.model;
+        let model = &study.model;
         let matters = |number: &usize| {
             let condition = &model.conditions[*number];
             !condition.quiet
@@ -174,6 +161,15 @@ impl Plan {
             space,
             study,
         }
+    }
+
+    /// Where the worst value of a quantity that the study follows is among [`Plan::tracked`].
+    ///
+    /// # Panics
+    /// If it does not follow it.
+    pub fn position(&self, quantity: Quantity, worse: Worse) -> usize {
+        let wanted = Tracked { quantity, worse };
+        self.tracked.iter().position(|(it, _)| *it == wanted).expect("the plan tracks what the report asks for")
     }
 
     /// Outputs that the study asks for, as a bit set.
@@ -245,23 +241,18 @@ impl Plan {
         });
         let conditions = self.row_conditions.iter().chain(&self.lane_conditions);
         let mattering = conditions.fold(quantities, |set, &condition| set | self.reach.conditions[condition]);
-        let on_a_map = |axis: &usize| study.report.maps.iter().any(|map| map.x == *axis || map.y == *axis);
+        let shown = study.report.axes();
         let inert = |axis: &usize| study.design[*axis].inputs().iter().all(|&input| mattering >> input & 1 == 0);
-        (0..study.design.len()).filter(inert).filter(|axis| !on_a_map(axis)).collect()
+        (0..study.design.len()).filter(inert).filter(|axis| !shown.contains(axis)).collect()
     }
 }
 
-/// The inputs as the dependence type sees them: fixed numbers, or ranges that an axis covers.
-pub(crate) fn dependences(study: &Study, space: &Space) -> [Dependence; INPUTS] {
-    let mut inputs = [Dependence::fixed(0.0); INPUTS];
+/// What a study says of the inputs: fixed numbers, or ranges that an axis covers.
+pub(crate) fn knowns(study: &Study, space: &Space) -> Vec<Known> {
     let si = |input: usize, value: f64| input_to_si(&study.model.inputs[input], value);
-    for (input, &value) in study.fixed.iter().enumerate() {
-        inputs[input] = Dependence::fixed(si(input, value));
-    }
+    let mut inputs: Vec<Known> = study.fixed.iter().enumerate().map(|(input, &value)| Known::Fixed(si(input, value))).collect();
     for product in [&space.designs, &space.scenarios] {
-        product.for_each_range(|input, (least, largest)| {
-            inputs[input] = Dependence::varied(input, si(input, least), si(input, largest));
-        });
+        product.for_each_range(|input, (least, largest)| inputs[input] = Known::Within(si(input, least), si(input, largest)));
     }
     inputs
 }

@@ -131,6 +131,33 @@ impl Product {
         self.places.iter().flat_map(|place| place.dimension.inputs()).fold(0, |set, &input| set | 1 << input)
     }
 
+    /// At most `most` combinations on a coarser grid, in order: of every dimension so large a share of the levels, evenly spread with both ends
+    /// among them, and two at least of those that have more than one, as long as so many fit.
+    #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "which levels is not critical")]
+    pub fn coarse(&self, most: u64) -> Vec<u64> {
+        let levels = |share: f64| -> Vec<u64> {
+            self.places.iter().map(|place| ((place.count as f64 * share).round() as u64).clamp(place.count.min(2), place.count)).collect()
+        };
+        let size = |share: f64| levels(share).iter().fold(1, |size: u64, &count| size.saturating_mul(count));
+        let (mut fits, mut exceeds) = (0.0, 1.0);
+        if size(exceeds) <= most {
+            fits = 1.0;
+        }
+        for _ in 0..f64::MANTISSA_DIGITS {
+            let middle = 0.5 * (fits + exceeds);
+            if size(middle) <= most { fits = middle } else { exceeds = middle }
+        }
+        let mut chosen = vec![0];
+        for (place, count) in self.places.iter().zip(levels(fits)) {
+            // Of very many dimensions not even two levels of each fit: the last ones stay where they begin.
+            let count = if (chosen.len() as u64).saturating_mul(count) > most { 1 } else { count };
+            let level =
+                |step: u64| if count < 2 { 0 } else { (u128::from(step) * u128::from(place.count - 1) / u128::from(count - 1)) as u64 };
+            chosen = chosen.iter().flat_map(|&before| (0..count).map(move |step| before + level(step) * place.stride)).collect();
+        }
+        chosen
+    }
+
     /// The index of combination `index` in the study's order, less what the other dimensions contribute.
     pub fn source_index(&self, index: u64) -> u64 {
         self.places.iter().map(|place| place.digit(index) * place.source_stride).sum()
@@ -157,6 +184,7 @@ impl Product {
     }
 
     /// The position of combination `index` along each dimension, outermost first.
+    #[cfg(feature = "gpu")]
     pub(crate) fn digits(&self, index: u64) -> Vec<u64> {
         self.places.iter().map(|place| place.digit(index)).collect()
     }
@@ -204,5 +232,40 @@ impl Space {
         self.designs.set(design, &mut inputs);
         self.scenarios.set(scenario, &mut inputs);
         inputs
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::Plan;
+    use crate::study::{Levels, Study};
+
+    #[test]
+    fn a_coarser_grid_of_very_many_axes_is_no_larger() {
+        let axis = |input| Dimension::Axis(Axis::Single { input, levels: Levels::List(vec![0.0, 1.0]) });
+        let designs = Product::new((0..60).map(axis)).expect("2^60 fit");
+        let coarse = designs.coarse(1000);
+        assert_eq!(coarse.len(), 512);
+        assert!(coarse.is_sorted_by(|a, b| a < b) && coarse[511] < designs.count());
+    }
+
+    #[test]
+    fn a_coarser_grid_has_the_ends_of_every_axis_and_no_more_than_asked() {
+        let text = "model = \"metal-cvt\"\n[design]\nratio = { from = 0.5, to = 2, count = 31 }\nband_count = [6, 7, 9]\n\
+                    friction = { from = 0.05, to = 0.09, count = 11 }\n[objectives]\naxial_force_N = \"min\"\n";
+        let designs = Plan::new(Study::parse_in(text, "study.toml", ".".as_ref()).expect("it is a study")).space.designs;
+        for most in [8, 9, 100, 500, 1022] {
+            let coarse = designs.coarse(most);
+            assert!(coarse.len() as u64 <= most && coarse.len() as u64 * 4 > most, "{} of {most}", coarse.len());
+            assert!(coarse.is_sorted_by(|a, b| a < b) && coarse.ends_with(&[designs.count() - 1]) && coarse[0] == 0);
+        }
+        assert_eq!(designs.coarse(1), [0]);
+        for most in 2..8 {
+            assert!((2..=most).contains(&(designs.coarse(most).len() as u64)), "{most}");
+        }
+        for most in [1023, u64::MAX] {
+            assert_eq!(designs.coarse(most), (0..designs.count()).collect::<Vec<_>>());
+        }
     }
 }

@@ -80,6 +80,11 @@ impl Unit {
         value * self.divide / self.multiply
     }
 
+    /// The same conversions for any number type: a value in SI units is the one in this unit times the first, divided by the second.
+    pub fn factors(self) -> (f64, f64) {
+        (self.multiply, self.divide)
+    }
+
     /// Is a value in this unit the SI value itself?
     pub fn is_si(self) -> bool {
         self.multiply == 1.0 && self.divide == 1.0

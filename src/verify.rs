@@ -7,9 +7,9 @@ use crate::error::{Error, Result};
 use crate::gpu::PointKernel;
 use crate::models::{CONDITION_PROMISE, Condition, INPUTS, Input, Model, OUTPUTS, evaluate, holds, judge, to_si};
 use crate::plan::Plan;
-use crate::real::RunningError;
 use crate::sample::mix;
 use crate::study::{Constraint, Quantity};
+use crate::tape::RunningError;
 
 /// What was found of one output or condition.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -170,7 +170,7 @@ fn sides(model: &Model, here: &[f64], there: &[f64], input: usize, same: impl Fn
 /// Points of a study: corners of its space, random designs in random scenarios, and both sides of its constraints between them.
 pub fn points_of_study(plan: &Plan, samples: usize, seed: u64) -> Points {
     let mut random = Random(mix(seed));
-    let model = plan.study.model;
+    let model = &plan.study.model;
     let kept = |inputs: &[f64]| {
         let found = evaluate(model, inputs);
         let value = |quantity| match quantity {
@@ -210,8 +210,8 @@ pub fn points_of_study(plan: &Plan, samples: usize, seed: u64) -> Points {
 pub fn compare(kernel: &PointKernel, model: &Model, constraints: &[Constraint], points: &Points) -> Result<Report> {
     let si: Vec<[f64; INPUTS]> = points.inputs.iter().map(|inputs| to_si(model, inputs)).collect();
     let found = kernel.evaluate(&si)?;
-    let mut outputs: Vec<Collector> = model.outputs.iter().map(|it| Collector::new(it.name)).collect();
-    let mut conditions: Vec<Collector> = model.conditions.iter().map(|it| Collector::new(it.reason)).collect();
+    let mut outputs: Vec<Collector> = model.outputs.iter().map(|it| Collector::new(&it.name)).collect();
+    let mut conditions: Vec<Collector> = model.conditions.iter().map(|it| Collector::new(&it.reason)).collect();
     let mut report = Report { points: points.len() as u64, ..Report::default() };
     for (((inputs, &on_boundary), si), (values, margins)) in points.inputs.iter().zip(&points.on_boundary).zip(&si).zip(&found) {
         let prepared = model.kernel.prepared(si);
@@ -264,7 +264,7 @@ pub fn compare(kernel: &PointKernel, model: &Model, constraints: &[Constraint], 
 
 /// Does a condition that fails take away an output that is constrained?
 fn takes_away(model: &Model, condition: &Condition, constraints: &[Constraint]) -> bool {
-    let constrained = |name: &&str| constraints.iter().any(|it| model.output(name).map(Quantity::Output) == Some(it.quantity));
+    let constrained = |name: &String| constraints.iter().any(|it| model.output(name).map(Quantity::Output) == Some(it.quantity));
     condition.invalidates.iter().any(constrained)
 }
 

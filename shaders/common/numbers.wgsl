@@ -1,4 +1,4 @@
-// A number and a bound on its distance from exact arithmetic: the shader's twin of `RunningError` in src/real.
+// A number and a bound on its distance from exact arithmetic, as `RunningError` of src/tape/error_bound.rs.
 //
 // The bound grows by what WGSL permits, not by what one GPU does: sums and products rounded once (contraction rounds less),
 // division 2.5 ULP by divisors from 2^-126 to 2^126 and anything by others (a reciprocal that is flushed makes them 0), square root
@@ -14,7 +14,7 @@ struct Real {
 const ROUNDING: f32 = 5.9665e-8;
 const DIVISION: f32 = 5.0 * ROUNDING;
 const SQUARE_ROOT: f32 = 9.0 * ROUNDING;
-// Own functions: within FUNCTION_ULP of src/real/running_error.rs.
+// Own functions: within FUNCTION_ULP of src/real/functions.rs.
 const FUNCTION: f32 = 8.0 * ROUNDING;
 const FLUSH: f32 = 1.1754944e-38;
 const LARGEST_DIVISOR: f32 = 8.50705917e37;
@@ -45,6 +45,16 @@ fn mul(a: Real, b: Real) -> Real {
     return rounded(a.value * b.value, abs(a.value) * b.bound + (abs(b.value) + b.bound) * a.bound, ROUNDING);
 }
 
+fn is_zero(a: Real) -> bool {
+    return a.value == 0.0 && a.bound == 0.0;
+}
+
+// The same where a number may be exactly zero, and the product with it: a plateau is known to be one.
+fn mul_or_zero(a: Real, b: Real) -> Real {
+    let product = mul(a, b);
+    return Real(product.value, select(product.bound, 0.0, is_zero(a) || is_zero(b)));
+}
+
 fn square(a: Real) -> Real {
     return mul(a, a);
 }
@@ -64,13 +74,22 @@ fn neg(a: Real) -> Real {
     return Real(-a.value, a.bound);
 }
 
-// Products with powers of two are exact.
+// Products with powers of two are exact, but for what is flushed to zero.
+fn scaled_(a: Real, power: f32) -> Real {
+    return Real(power * a.value, power * a.bound + select(0.0, FLUSH, power < 1.0));
+}
+
 fn twice(a: Real) -> Real {
-    return Real(2.0 * a.value, 2.0 * a.bound);
+    return scaled_(a, 2.0);
 }
 
 fn half(a: Real) -> Real {
-    return Real(0.5 * a.value, 0.5 * a.bound);
+    return scaled_(a, 0.5);
+}
+
+// Whole numbers that f32 holds exactly.
+fn plus_whole(a: Real, b: Real) -> Real {
+    return Real(a.value + b.value, a.bound + b.bound);
 }
 
 fn abs_(a: Real) -> Real {
@@ -136,6 +155,33 @@ fn asin_(a: Real) -> Real {
     let steep = a.bound / sqrt((1.0 - end) * (1.0 + end));
     let inherited = min(select(infinity(), steep, end < 1.0), 1.5708 * sqrt(a.bound));
     return rounded(arc_sine(a.value), inherited, FUNCTION);
+}
+
+// The search for the root of an increasing function: Newton's steps inside a shrinking bracket, as in `bracketed_newton` of src/real.
+struct Search {
+    low: f32,
+    high: f32,
+    x: f32,
+    last: f32,
+    done: bool,
+}
+
+const NEWTON_STEPS: i32 = 40;
+// Steps so small, relative to the place, are at the level of rounding: they end when they no longer shrink.
+const AT_ROUNDING: f32 = 1.2e-3;
+
+fn begin_search(low: f32, high: f32, start: f32) -> Search {
+    return Search(low, high, min(max(start, low), high), infinity(), false);
+}
+
+fn newton_step(search: Search, value: f32, slope: f32) -> Search {
+    let low = select(search.x, search.low, value > 0.0);
+    let high = select(search.high, search.x, value > 0.0);
+    let newton = search.x - value / slope;
+    let next = select(0.5 * (low + high), newton, newton >= low && newton <= high);
+    let moved = abs(next - search.x);
+    let done = moved == 0.0 || (moved <= AT_ROUNDING * abs(search.x) && moved >= 0.5 * search.last);
+    return Search(low, high, next, moved, done);
 }
 
 // The root of an increasing function that f32 steps ended at, from the value and slope there: the exact function is within

@@ -1,25 +1,18 @@
-// Loads of a V-belt on one pulley: the twin of src/models/pulley_load.rs. Equation numbers are the paper's.
+// Generated from src/models/pulley_load.rs by shaders/write.
 
 fn prepare(i: Inputs) -> Prepared {
     let belt_speed = mul(i.mean_radius, i.speed);
     let effective_tension = div(i.power, belt_speed);
     let centrifugal_tension = mul(i.belt_mass, square(belt_speed));
-    // What presses the belt on the pulley at either end of the wrap.
     let slack_pressing = sub(i.slack_tension, centrifugal_tension);
     let tight_pressing = add(slack_pressing, effective_tension);
-    // (13): log((T_t - T_c)/(T_s - T_c)), exact also for a small load.
     let effective_friction = div(ln_1p_(div(effective_tension, slack_pressing)), i.wrap_angle);
-
-    let sine = sin_(half(i.groove_angle));
-    let cosine = cos_(half(i.groove_angle));
+    let n19 = half(i.groove_angle);
+    let groove_sine = sin_(n19);
     let along = cos_(i.friction_direction);
-    let across = mul(sin_(i.friction_direction), cosine);
+    let across = mul(sin_(i.friction_direction), cos_(n19));
     let balance_margin = sub(along, mul(effective_friction, across));
-    let friction_used = div(mul(effective_friction, sine), balance_margin);
-    // The two strands pull at an angle of pi - theta_w to each other. The square cannot be negative but for rounding.
-    let both = add(square(slack_pressing), square(tight_pressing));
-    let towards = mul(twice(mul(slack_pressing, tight_pressing)), cos_(i.wrap_angle));
-
+    let friction_used = div(mul(effective_friction, groove_sine), balance_margin);
     var p: Prepared;
     p.belt_speed = belt_speed;
     p.effective_tension = effective_tension;
@@ -27,10 +20,18 @@ fn prepare(i: Inputs) -> Prepared {
     p.effective_friction = effective_friction;
     p.friction_used = friction_used;
     p.torque = mul(effective_tension, i.mean_radius);
-    p.resultant_force = sqrt_(max_(sub(both, towards), constant(0.0)));
+    p.resultant_force = sqrt_(
+        max_(
+            sub(
+                add(square(slack_pressing), square(tight_pressing)),
+                mul(mul(twice(slack_pressing), tight_pressing), cos_(i.wrap_angle)),
+            ),
+            constant(0.0),
+        ),
+    );
     p.slack_end_line_force = div(slack_pressing, i.mean_radius);
     p.tight_end_line_force = div(tight_pressing, i.mean_radius);
-    p.flank_per_line = div(constant(1.0), twice(add(sine, mul(friction_used, across)))); // (10), for one groove
+    p.flank_per_line = div(constant(1.0), twice(add(groove_sine, mul(friction_used, across))));
     p.lift_margin = slack_pressing;
     p.balance_margin = balance_margin;
     return p;
@@ -38,29 +39,26 @@ fn prepare(i: Inputs) -> Prepared {
 
 fn conditions(p: Prepared, i: Inputs) -> array<Real, CONDITIONS> {
     var margins: array<Real, CONDITIONS>;
-    for (var number = 0; number < i32(CONDITIONS); number++) {
-        margins[number] = constant(1.0);
-    }
     margins[0] = p.lift_margin;
     margins[1] = p.balance_margin;
     return margins;
 }
 
 fn finish(p: Prepared, i: Inputs) -> Outputs {
-    let flank_per_line = div(p.flank_per_line, i.groove_count);
+    let n16 = div(p.flank_per_line, i.groove_count);
     var out: Outputs;
-    out.belt_speed = p.belt_speed;
-    out.tight_tension = add(i.slack_tension, p.effective_tension);
-    out.effective_tension = p.effective_tension;
-    out.centrifugal_tension = p.centrifugal_tension;
-    out.effective_friction = p.effective_friction;
-    out.friction_used = p.friction_used;
-    out.friction_margin = sub(constant(1.0), div(p.friction_used, i.friction_limit));
-    out.torque = p.torque;
-    out.resultant_force = p.resultant_force;
-    out.slack_end_line_force = p.slack_end_line_force;
-    out.tight_end_line_force = p.tight_end_line_force;
-    out.slack_end_flank_force = mul(p.slack_end_line_force, flank_per_line);
-    out.tight_end_flank_force = mul(p.tight_end_line_force, flank_per_line);
+    out.belt_speed = p.belt_speed; // (2)
+    out.tight_tension = add(i.slack_tension, p.effective_tension); // (2), (15)
+    out.effective_tension = p.effective_tension; // T_t - T_s
+    out.centrifugal_tension = p.centrifugal_tension; // w v^2
+    out.effective_friction = p.effective_friction; // (13)
+    out.friction_used = p.friction_used; // (12)
+    out.friction_margin = sub(constant(1.0), div(p.friction_used, i.friction_limit)); // 1 - friction_used/friction_limit
+    out.torque = p.torque; // (T_t - T_s) R_b
+    out.resultant_force = p.resultant_force; // vectors T_t - T_c, T_s - T_c
+    out.slack_end_line_force = p.slack_end_line_force; // (9)
+    out.tight_end_line_force = p.tight_end_line_force; // (9)
+    out.slack_end_flank_force = mul(p.slack_end_line_force, n16); // (10)
+    out.tight_end_flank_force = mul(p.tight_end_line_force, n16); // (10)
     return out;
 }

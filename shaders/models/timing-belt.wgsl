@@ -1,4 +1,5 @@
-// Timing belt on one pulley: the twin of src/models/timing_belt. Equation numbers are the paper's.
+// Timing belt on one pulley, written by hand after src/models/timing_belt: as a list its loops would be thousands of operations.
+// Equation numbers are the paper's.
 //
 // The number of teeth is whole and exact, so loops end at it and nothing has to be masked. The tables go where they belong number by
 // number, through functions `set_...`, and few are kept on the way: long private arrays are slow, to run and to compile.

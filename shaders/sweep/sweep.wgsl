@@ -38,6 +38,7 @@ fn closer_look(lane: Lane, horizon: Horizon, index: vec2<u32>, local: vec3<u32>)
         why |= select(0u, MAY_BE_END, may_be_extreme(lane, horizon) && !is_known_extreme(lane, horizon, index));
     }
     why |= select(0u, MAY_BE_END, may_be_top(lane, horizon) && !is_known_top(lane, horizon, index));
+    why |= select(0u, MAY_BE_END, may_be_sampled(index));
     return why;
 }
 

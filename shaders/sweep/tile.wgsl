@@ -30,6 +30,8 @@ struct Known {
     extreme_indices: array<vec4<u32>, 6>,
     // Where the look-up table starts and bins per unit, for its two coordinates.
     table: vec4<f32>,
+    // The largest place, two words, that may still be part of a sample of feasible designs.
+    last_place: vec4<u32>,
 }
 
 @group(0) @binding(0) var<uniform> tile: Tile;
@@ -49,7 +51,7 @@ const SURE: u32 = 0u;
 const UNDECIDED: u32 = 1u;
 const APPENDED: u32 = 2u;
 
-// Why a survivor is one: see `Survivor` in src/screen/gpu/engine.rs. An end is an extreme or a place in the top list.
+// Why a survivor is one: see `Survivor` in src/screen/gpu/engine.rs. An end is an extreme, a place in the top list, or one in a sample.
 const IS_UNSURE: u32 = 1u;
 const MAY_BE_FRONT: u32 = 2u;
 const MAY_BE_END: u32 = 4u;

@@ -235,7 +235,7 @@ fn axis(plan: &Plan, dimension: &Dimension, stride: u64) -> Axis {
     let inputs = dimension.inputs().to_vec();
     let own: Vec<Vec<f64>> =
         (0..inputs.len()).map(|column| (0..dimension.count()).map(|level| dimension.value(column, level)).collect()).collect();
-    let table = plan.study.model.inputs;
+    let table = &plan.study.model.inputs;
     let si: Vec<Vec<f64>> =
         inputs.iter().zip(&own).map(|(&input, own)| own.iter().map(|&value| input_to_si(&table[input], value)).collect()).collect();
     let ordered = own.iter().chain(&si).all(|values| values.is_sorted() || values.iter().rev().is_sorted());
@@ -252,7 +252,7 @@ mod tests {
     fn the_boxes_of_a_range_are_its_positions_in_order() {
         let text = "[design]\npower_kW = [1, 2, 3]\nspeed_rpm = { from = 1000, to = 4000, count = 4 }\n\
                     friction_limit = { from = 0.2, to = 0.5, count = 5 }\n[objectives]\nfriction_margin = \"max\"\n";
-        let plan = Plan::new(study_of(crate::models::find("pulley-load").expect("it is a model"), text).expect("the study is right"));
+        let plan = Plan::new(study_of(&crate::models::find("pulley-load").expect("it is a model"), text).expect("the study is right"));
         let axes = Axes::new(&plan).expect("there are few");
         for first in 0..60 {
             for end in first..=60 {

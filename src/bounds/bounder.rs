@@ -7,8 +7,9 @@
 use super::axes::{AXES, Axes, Axis, Span, Spans};
 use super::requirement::Source;
 use super::tape::Tape;
-use crate::real::trace::{Node, Operation};
-use crate::real::{Dual, EVERYTHING, Interval, Real};
+use crate::real::Real;
+use crate::tape::{Dual, EVERYTHING, Interval};
+use crate::tape::{Node, Operation};
 use rustc_hash::FxHashMap;
 
 /// Most directions that derivatives are followed in: the first axes of a study.
@@ -76,9 +77,9 @@ struct Runner<'t, R> {
 
 impl<'t, R: Boxed> Runner<'t, R> {
     fn new(tape: &'t Tape, axes: &'t Axes) -> Self {
-        let mut slots = vec![R::constant(0.0); tape.operations.len()];
-        for node in (0..tape.operations.len()).filter(|&node| !tape.inner[node] && tape.axes[node] == 0) {
-            tape.compute(node as Node, &mut slots);
+        let mut slots = vec![R::constant(0.0); tape.list.operations.len()];
+        for node in (0..tape.list.operations.len()).filter(|&node| !tape.list.inner[node] && tape.axes[node] == 0) {
+            tape.list.compute(node as Node, &mut slots);
         }
         Self {
             tape,
@@ -109,7 +110,7 @@ impl<'t, R: Boxed> Runner<'t, R> {
                 set &= set - 1;
             }
             if self.computed[node as usize] < last {
-                self.tape.compute(node, &mut self.slots);
+                self.tape.list.compute(node, &mut self.slots);
                 self.computed[node as usize] = self.clock;
             }
         }
@@ -129,13 +130,13 @@ impl<'t, R: Boxed> Runner<'t, R> {
         }
         let table: &Axis = &self.axes.all[axis];
         for &node in &self.alone[axis] {
-            if let Operation::Input(input) = self.tape.operations[node as usize] {
+            if let Operation::Input(input) = self.tape.list.operations[node as usize] {
                 let column = self.tape.input_axes[input as usize].map_or(0, |(_, column)| column as usize);
                 let (low, high) = Axis::ends(&table.si[column], table.ordered, span);
                 let direction = (!table.is_joint() && low < high).then_some(axis);
                 self.slots[node as usize] = R::input(Interval::new(low, high), direction);
             } else {
-                self.tape.compute(node, &mut self.slots);
+                self.tape.list.compute(node, &mut self.slots);
             }
         }
         if self.kept[axis].len() >= KEPT {
@@ -163,7 +164,7 @@ pub struct Asked {
 impl Asked {
     /// A number of a tape.
     pub fn new(tape: &Tape, source: Source, higher_is_worse: bool) -> Self {
-        let needed = if let Source::Node(node, _) = source { tape.needed_by(&[node]) } else { Vec::new() };
+        let needed = if let Source::Node(node, _) = source { tape.list.needed_by(&[node]) } else { Vec::new() };
         // What is needed may depend on an axis that the result does not: a selection with equal branches.
         let axis_set = needed.iter().fold(source.axes(tape), |set, &node| set | tape.axes[node as usize]);
         Self {

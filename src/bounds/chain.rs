@@ -7,7 +7,7 @@
 use super::columns::Columns;
 use super::requirement::Source;
 use super::tape::Tape;
-use crate::real::trace::{Binary, Node, Operation, Unary};
+use crate::tape::{Binary, Node, Operation, Unary};
 
 /// One operation on the way.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -124,7 +124,7 @@ fn follow(
     if path.len() == LONGEST || *looked > MOST || tape.axes[node as usize].is_power_of_two() {
         return;
     }
-    match tape.operations[node as usize] {
+    match tape.list.operations[node as usize] {
         Operation::Unary(unary @ (Unary::Neg | Unary::Sqrt), a) if depends(a) != 0 => {
             path.push((Step::Alone(unary), None));
             follow(tape, a, varying, path, looked, found);

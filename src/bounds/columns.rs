@@ -6,7 +6,7 @@
 use super::axes::{AXES, Axes, Spans};
 use super::tape::Tape;
 use crate::real::Real;
-use crate::real::trace::{Binary, Node, Operation, Unary};
+use crate::tape::{Binary, Node, Operation, Unary};
 use multiversion::multiversion;
 
 /// Most designs in a chunk: a column fits the first-level cache.
@@ -60,15 +60,15 @@ pub struct Columns<'t> {
 impl<'t> Columns<'t> {
     /// An evaluator of a tape.
     pub fn new(tape: &'t Tape, axes: &'t Axes) -> Self {
-        let count = tape.operations.len();
+        let count = tape.list.operations.len();
         let (alone, kept) = (tape.alone(axes.all.len()), tape.kept(axes.all.len()));
         let mut place = vec![0; count];
         for nodes in &kept {
             nodes.iter().enumerate().for_each(|(at, &node)| place[node as usize] = at as u32);
         }
         let mut slots = vec![0.0; count];
-        for node in (0..count).filter(|&node| tape.axes[node] == 0 && !tape.inner[node]) {
-            tape.compute(node as Node, &mut slots);
+        for node in (0..count).filter(|&node| tape.axes[node] == 0 && !tape.list.inner[node]) {
+            tape.list.compute(node as Node, &mut slots);
         }
         Self {
             tape,
@@ -109,7 +109,7 @@ impl<'t> Columns<'t> {
         for &node in needed {
             let depends = self.tape.axes[node as usize];
             if depends & self.varying_set == 0 && depends.count_ones() > 1 {
-                self.tape.compute(node, &mut self.slots);
+                self.tape.list.compute(node, &mut self.slots);
             }
         }
     }
@@ -127,11 +127,11 @@ impl<'t> Columns<'t> {
                 continue;
             }
             for &node in &self.alone[axis] {
-                if let Operation::Input(input) = self.tape.operations[node as usize] {
+                if let Operation::Input(input) = self.tape.list.operations[node as usize] {
                     let column = self.tape.input_axes[input as usize].map_or(0, |(_, column)| column);
                     self.slots[node as usize] = self.axes.all[axis].si[column as usize][level];
                 } else {
-                    self.tape.compute(node, &mut self.slots);
+                    self.tape.list.compute(node, &mut self.slots);
                 }
             }
             for (at, &node) in self.kept[axis].iter().enumerate() {
@@ -194,7 +194,7 @@ impl<'t> Columns<'t> {
 
     fn compute(&mut self, node: Node, column: &mut [f64]) {
         let count = column.len();
-        match self.tape.operations[node as usize] {
+        match self.tape.list.operations[node as usize] {
             Operation::Unary(operation, a) => unary(operation, self.of(a, count), column),
             Operation::Binary(operation, a, b) => binary(operation, self.of(a, count), self.of(b, count), column),
             Operation::Select(margin, a, b) => {
@@ -205,12 +205,12 @@ impl<'t> Columns<'t> {
             }
             Operation::Root(number) => {
                 let mut reads = Vec::new();
-                self.tape.outside(number, |node| reads.push(node));
+                self.tape.list.outside(number, |node| reads.push(node));
                 for (lane, it) in column.iter_mut().enumerate() {
                     for &read in &reads {
                         self.slots[read as usize] = self.value(read).at(lane);
                     }
-                    self.tape.compute(node, &mut self.slots);
+                    self.tape.list.compute(node, &mut self.slots);
                     *it = self.slots[node as usize];
                 }
             }

@@ -85,6 +85,17 @@ pub struct Counter<'t> {
     stop: &'t AtomicBool,
     /// How designs were settled.
     pub settled: Settled,
+    told: Told<'t>,
+}
+
+/// Who is told of every box how many designs were settled.
+#[derive(Clone, Copy)]
+struct Told<'t>(&'t dyn Fn(u64));
+
+impl std::fmt::Debug for Told<'_> {
+    fn fmt(&self, to: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        to.write_str("Told")
+    }
 }
 
 /// Which rule settled a box: where it is not the box's own, but that of a part of a product.
@@ -106,7 +117,13 @@ impl<'t> Counter<'t> {
             pairs: Pairs::new(tape, axes, stop),
             stop,
             settled: Settled::default(),
+            told: Told(&|_| ()),
         }
+    }
+
+    /// Tells of every box how many designs were settled.
+    pub fn telling(self, told: &'t dyn Fn(u64)) -> Self {
+        Self { told: Told(told), ..self }
     }
 
     /// Feasible designs of a box; `None` if it was stopped.
@@ -124,9 +141,11 @@ impl<'t> Counter<'t> {
         }
         self.settled.boxes += 1;
         let size = self.axes.count(spans);
+        let told = self.told;
         let settle = |rule: &mut u64, designs: u64| {
             if inside == Inside::Box {
                 *rule += designs * weight;
+                (told.0)(designs * weight);
             }
         };
         let (open, pull) = match decide(self.requirements, &mut self.bounder, self.axes, spans, open) {

@@ -24,9 +24,9 @@ mod tests;
 pub use count::{Counter, Settled};
 pub use search::{Searched, Sought, Worker};
 
-use crate::models::{Formula, Visitor, visit};
+use crate::parallel::on_threads;
 use crate::plan::Plan;
-use crate::reduce::{KeyRule, Reducers, Reduction};
+use crate::reduce::{KeyRule, Needs, Reducers, Reduction, Reported};
 use crate::screen::{CpuEngine, Tables};
 use crate::study::{Axis, Constraint, Goal, Objective, Quantity, TopSpec};
 use axes::{Axes, Spans};
@@ -43,13 +43,8 @@ use tape::{Merit, Tape};
 
 /// Why bounds cannot serve a study: something that asks about every design; `None` if they can.
 pub fn refusal(plan: &Plan) -> Option<String> {
-    struct Any;
-    impl Visitor for Any {
-        type Output = ();
-        fn visit<F: Formula>(self) {}
-    }
     let study = &plan.study;
-    if visit(study.model.name, Any).is_none() {
+    if study.model.kernel.formula().is_none() {
         return Some(format!("{} is no formula that could be bounded", study.model.name));
     }
     if study.sample.is_some() {
@@ -58,11 +53,8 @@ pub fn refusal(plan: &Plan) -> Option<String> {
     if study.design.iter().any(|axis| matches!(axis, Axis::Joint { .. })) {
         return Some("cases in [design] are single designs, and bounds need a grid".to_owned());
     }
-    if !study.report.histograms.is_empty() {
-        return Some("histograms in [report] ask for every feasible design".to_owned());
-    }
-    if !study.report.maps.is_empty() {
-        return Some("maps in [report] ask for the best of every cell".to_owned());
+    if let Some(why) = Reported::needs(&study.report).into_iter().find_map(Needs::beyond_bounds) {
+        return Some(why.to_owned());
     }
     if study.report.variants {
         return Some("variants in [report] lists every design".to_owned());
@@ -79,6 +71,8 @@ pub struct Layout {
     axes: Axes,
     tape: Tape,
     requirements: Vec<Bounded>,
+    /// Points of a front at which a search gives up.
+    pub most_points: u64,
 }
 
 impl Layout {
@@ -94,7 +88,8 @@ impl Layout {
             Bounded { requirement, asked }
         };
         let requirements = requirements(plan, &tape, &axes).into_iter().map(bounded).collect();
-        Some(Self { axes, tape, requirements })
+        let most_points = crate::reduce::most_points(plan.study.objectives.len(), crate::reduce::FRONT_BYTES);
+        Some(Self { axes, tape, requirements, most_points })
     }
 
     /// A counter for one thread.
@@ -133,8 +128,8 @@ impl Layout {
         front.into_iter().chain(top).chain(extremes).collect()
     }
 
-    /// Searches a range of positions and takes what it finds into `found`; `None` if it was stopped, or the front grew far beyond its
-    /// budget.
+    /// Searches a range of positions and takes what it finds into `found`; `None` if it was stopped, or the front has more than
+    /// [`Layout::most_points`].
     #[allow(clippy::too_many_arguments, reason = "what a search needs")]
     pub fn search(
         &self,
@@ -167,8 +162,9 @@ impl Layout {
             product: (sought == Sought::Front).then(|| self.product(plan)).flatten(),
             plan,
             effort: plan.effort(),
+            bounding: self.tape.list.operations.len() as f64 * OPERATION,
             row: plan.fast.count(),
-            most_points: plan.study.report.front_budget.saturating_mul(4),
+            most_points: self.most_points,
         };
         search.run(&roots, workers, found)
     }
@@ -291,10 +287,7 @@ impl Layout {
                 pairs.count(&pairing, part, &instances, Some((open.len(), &mut own)));
                 (own, pairs.evaluated)
             };
-            let counted: Vec<_> = std::thread::scope(|scope| {
-                let started: Vec<_> = parts.iter().map(|part| scope.spawn(|| count(part))).collect();
-                started.into_iter().map(|it| it.join().expect("counting does not panic")).collect()
-            });
+            let counted = on_threads(&parts, count);
             for (own, evaluations) in counted {
                 searched.evaluations += evaluations;
                 if best.beats(own.value, own.index) {
@@ -322,6 +315,8 @@ impl Layout {
     }
 }
 
+/// Seconds that an operation of a formula takes in all bounds of a box.
+const OPERATION: f64 = 1e-7;
 /// Most operations of a search by pairs: some hours of one thread.
 const PAIRED_EXTREME: f64 = 1e14;
 
@@ -376,7 +371,7 @@ pub fn in_words(plan: &Plan, sought: Sought) -> String {
         Sought::Front => "front".to_owned(),
         Sought::Top => "top".to_owned(),
         Sought::Extreme { objective, largest } => {
-            let name = plan.study.objectives[objective].quantity.name(plan.study.model);
+            let name = plan.study.objectives[objective].quantity.name(&plan.study.model);
             format!("{} {name}", if largest { "largest" } else { "least" })
         }
     }

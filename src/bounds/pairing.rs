@@ -4,7 +4,7 @@ use super::axes::{AXES, Axes, Span, Spans};
 use super::chain::Chain;
 use super::requirement::Source;
 use super::tape::Tape;
-use crate::real::trace::Node;
+use crate::tape::Node;
 
 /// Most members of the first group's list: they are held in memory.
 const LIST: u64 = 1 << 22;
@@ -109,7 +109,7 @@ impl Pairing {
         if size(first) > LIST || size(second) > LIST {
             return None;
         }
-        let needed = |nodes: &[Node]| tape.needed_by(nodes).len() as f64;
+        let needed = |nodes: &[Node]| tape.list.needed_by(nodes).len() as f64;
         let both: Vec<&Chain> = roles.iter().filter_map(|role| if let Role::Both(chain) = role { Some(chain) } else { None }).collect();
         let channels: Vec<Node> = both.iter().map(|chain| chain.channel).collect();
         let of_others: Vec<Node> = both.iter().flat_map(|chain| chain.others.iter().copied()).collect();

@@ -11,7 +11,7 @@ use super::pairing::{Pairing, Role};
 use super::requirement::{Requirement, Source};
 use super::sorted::Buckets;
 use super::tape::Tape;
-use crate::real::trace::Node;
+use crate::tape::Node;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A requirement in one scenario.
@@ -174,7 +174,7 @@ impl<'t> Pairs<'t> {
                 }
             }
             let asked = masks.iter().filter_map(|it| if let Source::Node(node, _) = it.source { Some(node) } else { None });
-            let needed = self.tape.needed_by(&asked.chain(starts.iter().copied()).collect::<Vec<_>>());
+            let needed = self.tape.list.needed_by(&asked.chain(starts.iter().copied()).collect::<Vec<_>>());
             let from = channels.len();
             channels.extend(starts.iter().map(|&node| Channel {
                 node,
@@ -249,7 +249,7 @@ impl<'t> Pairs<'t> {
             if !masks.is_empty() {
                 let asked: Vec<Node> =
                     masks.iter().filter_map(|it| if let Source::Node(node, _) = it.source { Some(node) } else { None }).collect();
-                let needed = self.tape.needed_by(&asked);
+                let needed = self.tape.list.needed_by(&asked);
                 self.columns.enter(&needed, &with_scenario(spans, scenario, self.axes), &pairing.second);
                 self.evaluated += size as u64;
                 for first in (0..size).step_by(CHUNK) {
@@ -272,7 +272,7 @@ impl<'t> Pairs<'t> {
     /// What a chain combines its starts with, for every member of the second group.
     fn others_of(&mut self, pairing: &Pairing, spans: &Spans, chain: &Chain, scenario: &Spans) -> (usize, Vec<f64>) {
         let size = pairing.second.iter().map(|&axis| spans[axis].count()).product::<u64>() as usize;
-        let needed = self.tape.needed_by(&chain.others);
+        let needed = self.tape.list.needed_by(&chain.others);
         self.columns.enter(&needed, &with_scenario(spans, scenario, self.axes), &pairing.second);
         self.evaluated += size as u64;
         let width = chain.others.len();

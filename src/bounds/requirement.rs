@@ -4,8 +4,8 @@ use super::axes::Axes;
 use super::tape::Tape;
 use crate::models::Model;
 use crate::plan::Plan;
-use crate::real::trace::Node;
 use crate::study::Quantity;
+use crate::tape::Node;
 use crate::units::Unit;
 
 /// A bound on a number.
@@ -101,10 +101,10 @@ impl Requirement {
 
 /// All that a feasible design of a plan satisfies.
 pub fn requirements(plan: &Plan, tape: &Tape, axes: &Axes) -> Vec<Requirement> {
-    let model: &Model = plan.study.model;
+    let model: &Model = &plan.study.model;
     let mut all = Vec::new();
     let needed = |source: Source| match source {
-        Source::Node(node, _) => tape.needed_by(&[node]),
+        Source::Node(node, _) => tape.list.needed_by(&[node]),
         _ => Vec::new(),
     };
     for (number, node) in tape.conditions.iter().enumerate() {

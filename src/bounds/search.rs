@@ -12,6 +12,7 @@ use super::open::{
 use super::queue::{Queue, Waiting};
 use super::staircase::{Fit, Staircase};
 use crate::models::Effort;
+use crate::parallel::on_threads;
 use crate::plan::Plan;
 use crate::reduce::{Extreme, Front, KeyRule, MOST_OBJECTIVES, Reducers, Reduction};
 use crate::screen::CpuEngine;
@@ -160,6 +161,8 @@ pub struct Search<'a> {
     pub plan: &'a Plan,
     /// How long a design takes: the first stage of a row, the second of a design, over all scenarios.
     pub effort: Effort,
+    /// Seconds that the bounds of a box take, about.
+    pub bounding: f64,
     /// Designs of a row.
     pub row: u64,
     /// Points of a front at which it is given up.
@@ -230,7 +233,6 @@ impl Search<'_> {
             if self.stop.load(Ordering::Relaxed) || found.front.len() as u64 > self.most_points {
                 return None;
             }
-            (self.progress)(settled.designs());
             total.add(&settled);
             next.into_iter().for_each(|part| queue.push(part));
         }
@@ -246,7 +248,7 @@ impl Search<'_> {
                 let staircase = self.product.as_ref().map(|product| Staircase::new(points, product.largest));
                 Rival::Front(&found.front, staircase)
             }
-            Sought::Top => Rival::Top(found.top.as_mut().and_then(crate::reduce::Top::worst)),
+            Sought::Top => Rival::Top(found.reported.top.first_mut().and_then(crate::reduce::Top::worst)),
             Sought::Extreme { objective, largest } => {
                 Rival::Extreme(if largest { found.extremes.largest[objective] } else { found.extremes.least[objective] })
             }
@@ -256,21 +258,17 @@ impl Search<'_> {
         let taken = AtomicUsize::new(0);
         let is_first = batch.len() <= FIRST_BATCHES;
         let mut reducers: Vec<Reducers> = workers.iter().take(shares.len()).map(|_| self.reduction.start_after(known.clone())).collect();
-        let mut parts: Vec<_> = std::thread::scope(|scope| {
-            let (rival, shares, taken) = (&rival, &shares, &taken);
-            let mut started = Vec::new();
-            for (worker, reducers) in workers.iter_mut().zip(&mut reducers) {
-                started.push(scope.spawn(move || {
-                    let mut own = Vec::new();
-                    loop {
-                        let share = taken.fetch_add(1, Ordering::Relaxed);
-                        let Some(part) = shares.get(share) else { return own };
-                        own.push((share, self.look_at_part(part, worker, rival, reducers, is_first)));
-                    }
-                }));
+        let parts = on_threads(workers.iter_mut().zip(&mut reducers), |(worker, reducers)| {
+            let mut own = Vec::new();
+            loop {
+                let share = taken.fetch_add(1, Ordering::Relaxed);
+                let Some(part) = shares.get(share) else { return own };
+                let (next, settled) = self.look_at_part(part, worker, &rival, reducers, is_first);
+                (self.progress)(settled.designs());
+                own.push((share, (next, settled)));
             }
-            started.into_iter().flat_map(|it| it.join().expect("a search does not panic")).collect()
         });
+        let mut parts: Vec<_> = parts.into_iter().flatten().collect();
         // In the order of the boxes, whoever took them.
         parts.sort_unstable_by_key(|(share, _)| *share);
         let (mut next, mut settled) = (Vec::new(), Searched::default());
@@ -485,7 +483,7 @@ impl Search<'_> {
         let rows = (size / places) as f64;
         let time = self.time(rows, size as f64, self.chosen_count(&now)) + places as f64 * PLACE;
         // A single row has nothing in common with others that bounds could use.
-        if size == 1 || time <= if rows > 1.0 { LEAF } else { ROW } {
+        if size == 1 || time <= (if rows > 1.0 { LEAF } else { ROW }).max(self.bounding) {
             return Fate::Leaf(now);
         }
         let axis = self.axis_to_cut(&now.spans, &view.pull);

@@ -33,7 +33,7 @@ const STUDIES: &[(&str, &str)] = &[
 ];
 
 fn plans() -> impl Iterator<Item = Plan> {
-    STUDIES.iter().map(|(model, text)| Plan::new(study_of(find(model).expect("it is a model"), text).expect("the study is right")))
+    STUDIES.iter().map(|(model, text)| Plan::new(study_of(&find(model).expect("it is a model"), text).expect("the study is right")))
 }
 
 /// A random box of designs; all scenarios.
@@ -51,7 +51,7 @@ fn a_box(layout: &Layout, seed: u64) -> Spans {
 
 /// An output by the formula itself.
 fn by_formula(plan: &Plan, design: u64, scenario: u64, output: usize) -> f64 {
-    let model = plan.study.model;
+    let model = &plan.study.model;
     let si = to_si(model, &plan.space.inputs(design, scenario));
     let mut outputs = [0.0; OUTPUTS];
     model.kernel.finish(&model.kernel.prepared(&si), &si, 1 << output, &mut outputs);
@@ -115,7 +115,7 @@ fn columns_have_the_bits_of_the_formula() {
             let size = layout.axes.count(&spans);
             for output in (0..OUTPUTS).filter(|output| plan.used_outputs() >> output & 1 == 1) {
                 let node = layout.tape.outputs[output].expect("the plan asks for it");
-                let needed = layout.tape.needed_by(&[node]);
+                let needed = layout.tape.list.needed_by(&[node]);
                 columns.enter(&needed, &at, &varying);
                 for first in (0..size).step_by(CHUNK) {
                     let count = (size - first).min(CHUNK as u64) as usize;

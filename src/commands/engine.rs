@@ -1,95 +1,21 @@
-//! The choice of what judges the designs.
+//! What the command line says to a device: errors on purpose, and the kernel as a file.
 
-use crate::cli::Engine;
-use crate::terminal;
 use beltspace::error::{Error, Result};
-use beltspace::gpu::{self, Adapter, self_test};
+use beltspace::files::{MOVE, refuse_foreign, replace};
 use beltspace::models::Model;
 use beltspace::plan::Plan;
-use beltspace::screen::gpu::{GpuEngine, Wrong, supports};
-use beltspace::sweep::OnDevice;
+use beltspace::run::device::{Wrong, needs_a_twin};
+use beltspace::screen::gpu::kernel_of;
+use beltspace::screen::{Tables, Tally};
+use std::path::Path;
 
-/// Evaluations below which starting a device costs more than it saves.
-const WORTH_A_DEVICE: f64 = 2e8;
-
-/// A device that has passed its self-test.
-pub struct Trusted {
-    pub adapter: Adapter,
-    pub report: self_test::Report,
-    pub on: OnDevice,
-}
-
-/// The device to sweep a study on; `None` for the processor.
-pub fn choose(plan: &Plan, engine: Engine, adapter: Option<&str>, wrong: Wrong) -> Result<Option<Trusted>> {
-    if engine != Engine::Gpu && !wrong.perturb.is_empty() {
-        return Err(Error::Request("--perturb makes a GPU's kernel wrong on purpose: it needs --engine gpu".to_owned()));
-    }
-    let insists = engine == Engine::Gpu || (engine == Engine::Auto && adapter.is_some());
-    if insists {
-        needs_a_twin(plan.study.model, "use --engine cpu, or leave --engine and --adapter out")?;
-    }
-    match engine {
-        Engine::Cpu if adapter.is_some() => Err(Error::Request("--adapter names a GPU, but --engine cpu was asked for".to_owned())),
-        Engine::Cpu => Ok(None),
-        Engine::Auto if adapter.is_none() => Ok(automatic(plan, wrong)),
-        Engine::Gpu | Engine::Auto => serving(plan, trusted(adapter, wrong)?).map(Some),
-    }
-}
-
-/// A wrong request of a model that is computed on the processor only, and what to do about it.
-pub fn needs_a_twin(model: &Model, remedy: &str) -> Result<()> {
-    model.on_device().map(drop).map_err(|error| Error::Request(format!("{error}; {remedy}")))
-}
-
-/// A hardware adapter for a study that is large enough; whatever is wrong with it is a remark.
-#[allow(clippy::cast_precision_loss, reason = "an estimate")]
-fn automatic(plan: &Plan, wrong: Wrong) -> Option<Trusted> {
-    if plan.study.model.device.is_none() || (plan.designs() as f64) * (plan.scenarios() as f64) < WORTH_A_DEVICE {
-        return None;
-    }
-    let adapter = gpu::adapters().into_iter().find(Adapter::is_hardware)?;
-    match test(adapter, wrong).and_then(|device| serving(plan, device)) {
-        Ok(trusted) => Some(trusted),
-        Err(error) => {
-            terminal::remark("warning", &format!("{error}; the processor judges the designs"));
-            None
-        }
-    }
-}
-
-/// A device, if it can serve the study.
-fn serving(plan: &Plan, device: Trusted) -> Result<Trusted> {
-    supports(plan, device.on.limited_loops)?;
-    Ok(device)
-}
-
-/// Makes the study's kernel and buffers on a device, as the sweep will: what a driver refuses shows here.
-pub fn try_out(plan: &Plan, device: &Trusted) -> Result<()> {
-    let ranges = vec![(0.0, 1.0); plan.study.report.histograms.len()];
-    GpuEngine::new(plan, &ranges, &device.on.device, device.on.limited_loops, &device.on.wrong).map(|_| ())
-}
-
-/// The adapter of that name, or the best, if its driver can be trusted.
-pub fn trusted(adapter: Option<&str>, wrong: Wrong) -> Result<Trusted> {
-    test(gpu::choose(adapter)?, wrong)
-}
-
-fn test(adapter: Adapter, wrong: Wrong) -> Result<Trusted> {
-    let device = adapter.open()?;
-    let report = self_test::run(&device)?;
-    let problems = report.problems();
-    if !problems.is_empty() {
-        return Err(Error::Gpu {
-            device: adapter.name.clone(),
-            problem: format!("its driver failed the self-test ({}); use --engine cpu", problems.join("; ")),
-        });
-    }
-    let on = OnDevice { device, limited_loops: report.limited_loops(), wrong };
-    Ok(Trusted { adapter, report, on })
+/// What is to be wrong with a device's kernel, from the words of `--perturb`.
+pub fn wrong(model: &Model, words: &[String]) -> Result<Wrong> {
+    Ok(Wrong { perturb: perturbations(model, words)?, ..Wrong::default() })
 }
 
 /// Reads `OUTPUT=PART` of `--perturb`.
-pub fn perturbations(model: &Model, words: &[String]) -> Result<Vec<(usize, f64)>> {
+fn perturbations(model: &Model, words: &[String]) -> Result<Vec<(usize, f64)>> {
     let one = |word: &String| {
         let parts = word.split_once('=').and_then(|(name, part)| Some((name.trim(), part.trim().parse::<f64>().ok()?)));
         let (name, part) = parts
@@ -101,31 +27,57 @@ pub fn perturbations(model: &Model, words: &[String]) -> Result<Vec<(usize, f64)
     words.iter().map(one).collect()
 }
 
+/// First line of a kernel's file.
+const KERNEL: &str = "// The kernel of a study, written by beltspace sweep --emit-shader.";
+
+/// Writes the kernel of a study.
+pub fn emit_shader(plan: &Plan, wrong: &Wrong, threads: usize, file: &Path) -> Result<()> {
+    needs_a_twin(&plan.study.model, "it has no shader to write; leave --emit-shader out")?;
+    refuse_foreign(file, MOVE, |head| head.starts_with(KERNEL))?;
+    let ranges = Tally::new(plan, &Tables::new(plan), threads).histogram_ranges(plan);
+    let kernel = kernel_of(plan, &ranges, &wrong.perturb)?;
+    replace(file, format!("{KERNEL}\n{kernel}").as_bytes())
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::unlike::on_the_processor_only;
     use super::*;
+    use beltspace::run::Engine;
+    use beltspace::run::device::choose;
+    use beltspace::screen::gpu::supports;
     use beltspace::study::Study;
 
     #[test]
     fn a_model_without_a_twin_is_refused_a_gpu_and_left_to_the_processor_otherwise() {
         let model = on_the_processor_only();
-        let text = beltspace::models::find("pulley-load").expect("it is a model").starter;
-        let mut study = Study::parse(text, "study.toml", ".".as_ref()).expect("the starter is right");
+        let text = beltspace::models::find("pulley-load").expect("it is a model").starter.clone();
+        let mut study = Study::parse_in(&text, "study.toml", ".".as_ref()).expect("the starter is right");
         study.model = model;
         let plan = Plan::new(study);
         for (engine, adapter) in [(Engine::Gpu, None), (Engine::Gpu, Some("any")), (Engine::Auto, Some("any"))] {
-            let refused = choose(&plan, engine, adapter, Wrong::default()).map(drop).expect_err("it has no twin");
-            assert!(matches!(refused, Error::Request(_)));
+            let refused = choose(&plan, engine, adapter, Wrong::default(), &mut |_| ()).map(drop).expect_err("it has no twin");
+            assert!(matches!(refused, Error::CpuOnly { .. }));
             assert_eq!(
                 refused.to_string(),
                 "no-twin is computed in f64 on the processor only; use --engine cpu, or leave --engine and --adapter out"
             );
         }
         for engine in [Engine::Auto, Engine::Cpu] {
-            assert!(choose(&plan, engine, None, Wrong::default()).expect("that is what the processor is for").is_none());
+            assert!(choose(&plan, engine, None, Wrong::default(), &mut |_| ()).expect("that is what the processor is for").is_none());
         }
         let refused = supports(&plan, true).expect_err("it has no twin").to_string();
         assert_eq!(refused, "no-twin is computed in f64 on the processor only");
+    }
+
+    #[test]
+    fn a_model_without_a_twin_has_no_shader_to_write() {
+        let text = beltspace::models::find("pulley-load").expect("it is a model").starter.clone();
+        let mut study = Study::parse_in(&text, "study.toml", ".".as_ref()).expect("the starter is right");
+        study.model = on_the_processor_only();
+        let refused = emit_shader(&Plan::new(study), &Wrong::default(), 1, Path::new("unwritten.wgsl")).expect_err("it has no twin");
+        assert!(matches!(refused, Error::CpuOnly { .. }));
+        let expected = "no-twin is computed in f64 on the processor only; it has no shader to write; leave --emit-shader out";
+        assert_eq!((refused.to_string().as_str(), Path::new("unwritten.wgsl").exists()), (expected, false));
     }
 }

@@ -4,10 +4,12 @@ use super::{find_model, read_study};
 use crate::cli;
 use crate::terminal::{self, Grid, bold, dim, short};
 use beltspace::certify;
-use beltspace::checkpoint::replace;
 use beltspace::error::{Error, Result};
 use beltspace::export::{Data, Table, TableColumn, csv_text, pulley};
-use beltspace::models::{Evaluation, Model, Profile, Status, evaluate};
+use beltspace::files::{MOVE, refuse_foreign, replace};
+use beltspace::likeness::closest;
+use beltspace::models::{self, Evaluation, Evaluator, Model, Profile, Status, evaluate};
+use beltspace::names::is_picture;
 use beltspace::pictures::{self, Quantity, Series};
 use beltspace::plan::Plan;
 use beltspace::screen::Control;
@@ -25,8 +27,8 @@ pub fn run(request: &cli::Eval) -> Result<()> {
     if request.design.is_some() {
         return Err(Error::Request(format!("--design numbers the designs of a study, and {} is a model; use --set", model.name)));
     }
-    let inputs = inputs_of(model, request.preset.as_deref(), &request.set)?;
-    print_one(model, &inputs, None, request)
+    let inputs = inputs_of(&model, request.preset.as_deref(), &request.set)?;
+    print_one(&model, &inputs, None, request)
 }
 
 /// Defaults, then the preset, then every `--set`.
@@ -55,10 +57,8 @@ fn parse_assignment(model: &Model, assignment: &str) -> std::result::Result<(usi
         if model.output(name).is_some() {
             return Err(format!("{name} is an output of {}; only inputs can be set", model.name));
         }
-        let likeness = |it: &str| strsim::jaro_winkler(it, name);
-        let nearest = model.inputs.iter().map(|it| it.name).max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
-        // Far-off names would only confuse.
-        let remedy = match nearest.filter(|it| likeness(it) > 0.8) {
+        let names: Vec<_> = model.inputs.iter().map(|it| it.name.as_str()).collect();
+        let remedy = match closest(name, &names) {
             Some(near) => format!("did you mean {near}?"),
             None => format!("beltspace models {} lists them", model.name),
         };
@@ -96,9 +96,7 @@ fn print_one(model: &Model, inputs: &[f64], of_study: Option<(u64, u64)>, reques
             &format!("{} = {value} lies outside {} to {}, which the source covers", input.name, input.usual.0, input.usual.1),
         );
     }
-    if let Some(notes) = model.notes {
-        notes(inputs, &evaluation).iter().for_each(|note| terminal::remark("note", note));
-    }
+    model.notes_on(inputs, &evaluation).iter().for_each(|note| terminal::remark("note", note));
     along_the_belt(model, inputs, &evaluation, request)?;
     let reason = evaluation.status.reason(model);
     if request.json {
@@ -112,15 +110,16 @@ fn print_one(model: &Model, inputs: &[f64], of_study: Option<(u64, u64)>, reques
     let mut table = Grid::default();
     for (input, &value) in model.inputs.iter().zip(inputs) {
         let text = input.word_for(value).map_or_else(|| short(value), str::to_owned);
-        table.row([input.name.to_owned(), text, dim(input.doc)]);
+        table.row([input.name.to_owned(), text, dim(&input.doc)]);
     }
     let mut results = Grid::default();
     for (output, value) in model.outputs.iter().zip(&evaluation.outputs) {
-        results.row([output.name.to_owned(), value.map_or("-".to_owned(), short), dim(output.doc)]);
+        results.row([output.name.to_owned(), value.map_or("-".to_owned(), short), dim(&output.doc)]);
     }
     let why = match evaluation.status {
         Status::Ok => String::new(),
         Status::Failed(condition) => format!("  (unless: {})", model.conditions[condition].doc),
+        Status::Overflow => "  (a value is beyond what a number of 64 bits holds)".to_owned(),
     };
     terminal::print(&format!(
         "{}\n{}\n{}\n{}\n{} {reason}{why}\n",
@@ -137,7 +136,7 @@ fn named_inputs(model: &Model, inputs: &[f64]) -> Map<String, Value> {
 }
 
 fn named_outputs(model: &Model, evaluation: &Evaluation) -> Map<String, Value> {
-    let present = model.outputs.iter().zip(&evaluation.outputs).filter_map(|(output, value)| Some((output.name, (*value)?)));
+    let present = model.outputs.iter().zip(&evaluation.outputs).filter_map(|(output, value)| Some((&output.name, (*value)?)));
     present.map(|(name, value)| (name.to_owned(), number(value))).collect()
 }
 
@@ -146,44 +145,61 @@ fn along_the_belt(model: &Model, inputs: &[f64], evaluation: &Evaluation, reques
     if request.profile.is_none() && request.plot.is_none() {
         return Ok(());
     }
-    let Some(profile) = model.profile else {
-        let with: Vec<_> = beltspace::models::MODELS.iter().filter(|it| it.profile.is_some()).map(|it| it.name).collect();
+    if model.profile.is_none() {
+        let with: Vec<_> = models::all().iter().filter(|it| it.profile.is_some()).map(|it| it.name.as_str()).collect();
         return Err(Error::Request(format!(
             "{} has no values along the belt for --profile and --plot; models that have: {}",
             model.name,
             with.join(", ")
         )));
-    };
+    }
     if evaluation.status != Status::Ok {
         return Err(Error::Request(format!("no values along the belt: the status is \"{}\"", evaluation.status.reason(model))));
     }
-    let Profile { columns, rows } = profile(inputs);
+    refuse_foreign_files(model, request)?;
+    let Some(Profile { columns, rows }) = model.along_the_belt(inputs) else { return Ok(()) };
     let column = |at: usize| rows.iter().map(|row| row[at]).collect::<Vec<_>>();
     if let Some(path) = &request.profile {
         let columns = columns.iter().enumerate().map(|(at, it)| TableColumn {
             unit: it.unit.symbol.to_owned(),
-            ..TableColumn::new(it.name, "profile", "", Data::Number(column(at).into_iter().map(Some).collect()))
+            ..TableColumn::new(&it.name, "profile", "", Data::Number(column(at).into_iter().map(Some).collect()))
         });
         replace(path, &csv_text(&Table { columns: columns.collect() }))?;
     }
     if let Some(path) = &request.plot {
         let mut panels: Vec<(Quantity, Vec<Series>)> = Vec::new();
         for (at, it) in columns.iter().enumerate().skip(1) {
-            let Some(drawn) = it.drawn else { continue };
-            let series = Series { label: it.label.to_owned(), x: column(0), y: column(at) };
-            match panels.iter_mut().find(|(quantity, _)| quantity.name == drawn) {
+            let Some(drawn) = &it.drawn else { continue };
+            let series = Series { label: it.label.clone(), x: column(0), y: column(at) };
+            match panels.iter_mut().find(|(quantity, _)| quantity.name == *drawn) {
                 Some((_, beside)) => beside.push(series),
                 None => panels.push((Quantity::new(drawn, it.unit.symbol), vec![series])),
             }
         }
-        let position = Quantity::new(columns[0].name, columns[0].unit.symbol);
-        replace(path, pictures::curves(model.summary, &position, &panels).as_bytes())?;
+        let position = Quantity::new(&columns[0].name, columns[0].unit.symbol);
+        replace(path, pictures::curves(&model.summary, &position, &panels).as_bytes())?;
         // A pulley is more than curves: the others stand beside the file, named after it.
-        for (name, text) in pulley::pictures(model, model.summary, inputs) {
+        for (name, text) in pulley::pictures(model, &model.summary, inputs) {
             replace(&beside(path, name), text.as_bytes())?;
         }
     }
     Ok(())
+}
+
+/// `--profile` and `--plot` replace what such a request wrote before, and nothing else.
+fn refuse_foreign_files(model: &Model, request: &cli::Eval) -> Result<()> {
+    if let Some(path) = &request.profile {
+        let headers: Vec<String> = models::all()
+            .iter()
+            .filter_map(|model| model.along_the_belt(&model.defaults()))
+            .map(|profile| profile.columns.iter().map(|it| it.name.as_str()).collect::<Vec<_>>().join(",") + "\n")
+            .collect();
+        refuse_foreign(path, MOVE, |head| headers.iter().any(|header| head.starts_with(header)))?;
+    }
+    let Some(path) = &request.plot else { return Ok(()) };
+    let further = if model.pulley.is_some() { &pulley::PICTURES[..] } else { &[] };
+    let pictures = std::iter::once(path.clone()).chain(further.iter().map(|name| beside(path, name)));
+    pictures.into_iter().try_for_each(|path| refuse_foreign(&path, MOVE, is_picture))
 }
 
 /// `plot.svg` and `section` make `plot-section.svg`.
@@ -210,7 +226,7 @@ fn of_study(request: &cli::Eval, path: &Path) -> Result<()> {
         return Err(Error::Request("--set and --preset are for models; a study's designs are numbered: use --design N".to_owned()));
     }
     let (plan, design) = studied(path, request.design)?;
-    let model = plan.study.model;
+    let model = &plan.study.model;
     let scenarios = plan.scenarios();
     if let Some(scenario) = request.scenario.or((scenarios == 1).then_some(0)) {
         if scenario >= scenarios {
@@ -227,13 +243,15 @@ fn of_study(request: &cli::Eval, path: &Path) -> Result<()> {
 /// Prints a design's inputs, every output at its worst scenario, and the constraints with their margins.
 fn print_worst(plan: &Plan, design: u64, as_json: bool) -> Result<()> {
     let study = &plan.study;
-    let model = study.model;
+    let model = &study.model;
     // The study's own columns plus every output: ask for them as report columns.
     let mut everything = Study::clone(study);
     everything.report.columns = (0..model.outputs.len()).map(Which::Output).collect();
     let columns = certify::columns(&everything);
     let row = certify::rows(plan, &columns, &[design], 1, &Control::default())?.remove(0);
-    let statuses = (0..plan.scenarios()).map(|scenario| (scenario, evaluate(model, &plan.space.inputs(design, scenario)).status));
+    let mut evaluator = Evaluator::new(model);
+    let statuses = (0..plan.scenarios())
+        .map(|scenario| (scenario, evaluator.evaluate(&plan.space.inputs(design, scenario), plan.used_outputs()).status));
     let failed = statuses.filter(|(_, status)| *status != Status::Ok).collect::<Vec<_>>();
     let status = failed.first().map_or(Status::Ok, |(_, status)| *status).reason(model);
 
@@ -273,7 +291,7 @@ fn print_worst(plan: &Plan, design: u64, as_json: bool) -> Result<()> {
     for input in inputs {
         let value = row.inputs[input];
         let text = model.inputs[input].word_for(value).map_or_else(|| short(value), str::to_owned);
-        table.row([model.inputs[input].name.to_owned(), text, dim(model.inputs[input].doc)]);
+        table.row([model.inputs[input].name.to_owned(), text, dim(&model.inputs[input].doc)]);
     }
     let mut results = Grid::default();
     results.row(["", "worst", "in scenario", ""].map(str::to_owned));
@@ -320,10 +338,10 @@ mod tests {
     fn an_enumeration_is_set_by_its_words_only() {
         let model = with_a_section();
         let section = model.enumeration().expect("it has one");
-        assert_eq!(parse_assignment(model, "section = welded-discs"), Ok((section, 2.0)));
+        assert_eq!(parse_assignment(&model, "section = welded-discs"), Ok((section, 2.0)));
         for wrong in ["2", "cast", ""] {
             let expected = format!("section = {wrong}: section takes words only; it is \"machined\", \"welded-discs\" or \"pressed-cup\"");
-            assert_eq!(parse_assignment(model, &format!("section={wrong}")), Err(expected));
+            assert_eq!(parse_assignment(&model, &format!("section={wrong}")), Err(expected));
         }
     }
 }

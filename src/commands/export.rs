@@ -5,22 +5,23 @@ use super::find_model;
 use crate::cli;
 use crate::terminal::{self, Grid, bold, short};
 use beltspace::error::{Error, Result};
-use beltspace::models::{Design, Model, Status, evaluate, pulley_design};
+use beltspace::models::{Design, Model, Status, evaluate};
 use beltspace::pulley::calculix::{self, Comparison, Job};
 use std::path::Path;
+use std::sync::Arc;
 
 pub fn run(request: &cli::Export) -> Result<()> {
     if request.compare {
         return compare(&request.calculix);
     }
     let (model, inputs) = design_of(request)?;
-    let Some(design) = pulley_design(model, &inputs) else {
+    let Some(design) = model.pulley_of(&inputs) else {
         return Err(Error::Request(format!("{} has no finite elements to export; the model pulley has", model.name)));
     };
-    let evaluation = evaluate(model, &inputs);
+    let evaluation = evaluate(&model, &inputs);
     if evaluation.status != Status::Ok {
-        let notes = model.notes.map_or(Vec::new(), |notes| notes(&inputs, &evaluation)).join("; ");
-        let reason = evaluation.status.reason(model);
+        let notes = model.notes_on(&inputs, &evaluation).join("; ");
+        let reason = evaluation.status.reason(&model);
         return Err(Error::Request(format!("there is nothing to export: the status is \"{reason}\"{}", before(": ", &notes))));
     }
     let Design { kind, dimensions, fineness, case, poisson, density, .. } = design;
@@ -46,7 +47,7 @@ fn failed(error: &calculix::Error) -> Error {
 }
 
 /// Model and inputs that a request names: a model with its settings, or a design of a study.
-fn design_of(request: &cli::Export) -> Result<(&'static Model, Vec<f64>)> {
+fn design_of(request: &cli::Export) -> Result<(Arc<Model>, Vec<f64>)> {
     let target = request.target.as_deref().ok_or_else(|| Error::Request("which design? name the model pulley or a study".to_owned()))?;
     let path = Path::new(target);
     if beltspace::models::find(target).is_none() && (path.extension().is_some_and(|it| it == "toml") || path.exists()) {
@@ -60,13 +61,14 @@ fn design_of(request: &cli::Export) -> Result<(&'static Model, Vec<f64>)> {
             .or((scenarios == 1).then_some(0))
             .filter(|scenario| *scenario < scenarios)
             .ok_or_else(|| Error::Request(format!("a deck is of one scenario; add --scenario K, from 0 to {}", scenarios - 1)))?;
-        return Ok((plan.study.model, plan.space.inputs(design, scenario)));
+        return Ok((plan.study.model.clone(), plan.space.inputs(design, scenario)));
     }
     let model = find_model(target)?;
     if request.design.is_some() {
         return Err(Error::Request(format!("--design numbers the designs of a study, and {} is a model; use --set", model.name)));
     }
-    Ok((model, inputs_of(model, request.preset.as_deref(), &request.set)?))
+    let inputs = inputs_of(&model, request.preset.as_deref(), &request.set)?;
+    Ok((model, inputs))
 }
 
 /// Prints what CalculiX found beside the harmonics.

@@ -1,39 +1,57 @@
 //! `beltspace merge`: shards into one result.
 
-use super::sweep::refuse_to_overwrite;
+use super::sweep::files_of;
 use super::{report as page, threads};
 use crate::cli;
 use crate::terminal::{self, report};
-use beltspace::checkpoint::Checkpoint;
+use beltspace::checkpoint::{Checkpoint, Saved};
+use beltspace::directory::{self, Contents};
 use beltspace::error::{Error, Result};
-use beltspace::export::{CHECKPOINT, MethodRecord, Outcome, RunRecord};
+use beltspace::export::{Certified, MethodRecord, RunRecord};
+use beltspace::files::Reading;
 use beltspace::merge::{check_set, merge};
+use beltspace::names::CHECKPOINT;
 use beltspace::plan::Plan;
 use beltspace::reduce::Reduction;
 use beltspace::screen::{Control, Tables, Tally};
+use beltspace::tiles::{Ranges, Shard};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 pub fn run(request: &cli::Merge) -> Result<()> {
-    refuse_to_overwrite(&request.out, request.force)?;
     let start = Instant::now();
     let folders = request.shards.iter().map(|folder| checkpoint_in(folder)).collect::<Result<Vec<_>>>()?;
     refuse_twice(&request.shards, &folders)?;
-    let open = |(named, folder): (&PathBuf, &PathBuf)| Ok((named.clone(), Checkpoint::open(folder)?));
-    let mut shards = request.shards.iter().zip(&folders).map(open).collect::<Result<Vec<_>>>()?;
+    refuse_into_a_shard(&request.out, &folders)?;
+    // What is refused anyway is refused before shards are read. The directory is taken first: one that somebody else is at work in may look
+    // like anything.
+    let taken = directory::claim(&request.out, &terminal::command_line())?;
+    Contents::of(&request.out)?.refuse_to_overwrite(&[], request.force, false)?;
+    let mut shards = Vec::new();
+    let mut reading = Vec::new();
+    for (named, folder) in request.shards.iter().zip(&folders) {
+        reading.push(Reading::without_trace(directory_of(named, folder))?);
+        shards.push((named.clone(), Saved::read(folder)?));
+    }
     check_set(&shards)?;
     // Whatever the order they are named in: the first shard's study file becomes the result's.
     shards.sort_by_key(|(_, shard)| shard.shard().number);
     let first = &shards.first().ok_or_else(|| Error::Request("name the directories of the shards".to_owned()))?.1;
     let text = first.study_text().to_owned();
     let plan = Plan::new(first.study().clone());
+
+    Contents::of(&request.out)?.refuse_to_overwrite(&files_of(&plan, request.no_report), request.force, false)?;
     let tables = Tables::new(&plan);
     let threads = threads(request.threads);
     let tally = Tally::new(&plan, &tables, threads);
     let reduction = Reduction::new(&plan, &tally.histogram_ranges(&plan));
     let count = shards.len();
     let state = merge(&plan, &reduction, shards)?;
-    let outcome = Outcome::certify(&plan, state, tally, threads, &Control::default())?;
+    drop(reading);
+    // What is merged is a run that has come to its end: whatever interrupts it now, `sweep --resume` goes on.
+    let mut checkpoint = Checkpoint::create(&taken.claim, &plan.study, &text, Shard::WHOLE, plan.designs())?;
+    checkpoint.save(&Ranges::of(0..plan.designs()), &state)?;
+    let outcome = Certified::certify(&plan, state, tally, threads, &Control::default())?;
     let record = RunRecord {
         engine: "cpu",
         threads,
@@ -41,11 +59,16 @@ pub fn run(request: &cli::Merge) -> Result<()> {
         scenarios: plan.scenarios(),
         time: start.elapsed(),
         origin: format!("merged from {count} shards; the time is that of merging"),
-        certified: outcome.front.len() + outcome.top.len(),
+        certified: outcome.certified(),
         device: None,
-        method: MethodRecord { name: "merge", why: "the shards were judged before, each by its own method".to_owned(), certificate: None },
+        method: MethodRecord {
+            name: "merge",
+            why: "the shards were judged before, each by its own method".to_owned(),
+            certificate: None,
+            left: None,
+        },
     };
-    outcome.write(&request.out, &text, &record)?;
+    outcome.write(checkpoint, &text, &record)?;
     let page = if request.no_report {
         None
     } else {
@@ -57,8 +80,23 @@ pub fn run(request: &cli::Merge) -> Result<()> {
 
 /// The checkpoint of a result directory, or the directory itself if it is one.
 fn checkpoint_in(folder: &Path) -> Result<PathBuf> {
-    let found = [folder.join(CHECKPOINT), folder.to_owned()].into_iter().find(|it| Checkpoint::exists(it));
-    found.ok_or_else(|| Error::Request(format!("{}: there is no checkpoint here", folder.display())))
+    let there = [folder.join(CHECKPOINT), folder.to_owned()].into_iter().find(|it| it.join("manifest.json").exists());
+    there.ok_or_else(|| Error::Request(format!("{}: there is no checkpoint here", folder.display())))
+}
+
+/// The result directory that a checkpoint is in: what a run at work there has locked.
+fn directory_of<'a>(named: &'a Path, checkpoint: &'a Path) -> &'a Path {
+    if named == checkpoint { checkpoint.parent().filter(|it| !it.as_os_str().is_empty()).unwrap_or(Path::new(".")) } else { named }
+}
+
+/// What is merged is kept.
+fn refuse_into_a_shard(out: &Path, folders: &[PathBuf]) -> Result<()> {
+    let real = |path: &Path| path.canonicalize().ok();
+    let own = real(&out.join(CHECKPOINT));
+    if own.is_some() && folders.iter().any(|folder| real(folder) == own) {
+        return Err(Error::Request(format!("cannot merge: {} is one of the shards; write to another --out", out.display())));
+    }
+    Ok(())
 }
 
 /// A directory named twice would look like one that another run is using.

@@ -1,26 +1,30 @@
 //! What each command does. A command reads its request, finds everything that is wrong with it, then works.
 
+#[cfg(feature = "gpu")]
 mod adapters;
 mod check;
+#[cfg_attr(not(feature = "gpu"), path = "no_engine.rs")]
 mod engine;
 mod eval;
 mod export;
 mod merge;
-mod method;
 mod models;
 mod report;
 mod reproduce;
 mod slurm;
 mod sweep;
+#[cfg(feature = "gpu")]
 mod verify;
 
 use crate::cli::{Cli, Command};
 use crate::terminal;
 use beltspace::error::{Error, Result};
-use beltspace::models::{MODELS, Model};
+use beltspace::models::Model;
+use beltspace::parallel::to_be_had;
 use beltspace::study::Study;
 use clap::CommandFactory;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Runs a command.
 pub fn run(command: Command) -> Result<()> {
@@ -33,8 +37,10 @@ pub fn run(command: Command) -> Result<()> {
         Command::Merge(request) => merge::run(&request),
         Command::Slurm(request) => slurm::run(&request),
         Command::Report(request) => report::run(&request),
+        #[cfg(feature = "gpu")]
         Command::Verify(request) => verify::run(&request),
         Command::Reproduce(request) => reproduce::run(&request),
+        #[cfg(feature = "gpu")]
         Command::Adapters { json } => adapters::run(json),
         Command::Completions { shell } => {
             let mut script = Vec::new();
@@ -45,9 +51,9 @@ pub fn run(command: Command) -> Result<()> {
 }
 
 /// The model of that name.
-fn find_model(name: &str) -> Result<&'static Model> {
+fn find_model(name: &str) -> Result<Arc<Model>> {
     beltspace::models::find(name).ok_or_else(|| {
-        let names: Vec<_> = MODELS.iter().map(|model| model.name).collect();
+        let names: Vec<_> = beltspace::models::all().iter().map(|model| model.name.as_str()).collect();
         Error::Request(format!("unknown model \"{name}\"; models are: {}", names.join(", ")))
     })
 }
@@ -60,31 +66,38 @@ fn read_study(path: &Path) -> Result<(Study, String)> {
     })
 }
 
-/// Number of threads asked for, or one per core.
+/// Number of threads asked for, or one per core, as far as they can be had: some machines let nobody start many.
 fn threads(asked: Option<u16>) -> usize {
-    asked.map_or_else(|| std::thread::available_parallelism().map_or(1, std::num::NonZero::get), usize::from)
+    let wanted = asked.map_or_else(|| std::thread::available_parallelism().map_or(1, std::num::NonZero::get), usize::from);
+    let had = to_be_had(wanted);
+    if had < wanted {
+        terminal::remark("warning", &format!("{wanted} threads were wanted, and only {had} can be started here"));
+    }
+    had
 }
 
 /// Models that no shipped one is like.
 #[cfg(test)]
 mod unlike {
-    use beltspace::models::{Input, Model, find};
+    use beltspace::models::{Input, Model, Preset, find};
+    use std::sync::Arc;
 
     const SECTIONS: &[(&str, f64)] = &[("machined", 1.0), ("welded-discs", 2.0), ("pressed-cup", 4.0)];
-    const PRESETS: &[(&str, &[(&str, f64)])] = &[("welded", &[("section", 2.0)])];
 
     /// Computed on the processor only.
-    pub fn on_the_processor_only() -> &'static Model {
-        Box::leak(Box::new(Model { name: "no-twin", device: None, ..*find("pulley-load").expect("it is a model") }))
+    pub fn on_the_processor_only() -> Arc<Model> {
+        let model = find("pulley-load").expect("it is a model");
+        Arc::new(Model { name: "no-twin".into(), shader: None, ..Model::clone(&model) })
     }
 
     /// With an input whose every value is a word, and one that is read for one of them only.
-    pub fn with_a_section() -> &'static Model {
+    pub fn with_a_section() -> Arc<Model> {
         let model = find("pulley-load").expect("it is a model");
         let section = Input::enumeration("section", "", SECTIONS, 4.0, "How the pulley is made.", "chosen");
         let mass = Input::new("disc_mass_g", "", beltspace::units::GRAM, 10.0, (1.0, 100.0), "Mass of a disc.", "chosen");
-        let mass = Input { only_for: &["machined", "welded-discs"], ..mass };
-        let inputs: Vec<Input> = model.inputs.iter().copied().chain([section, mass]).collect();
-        Box::leak(Box::new(Model { name: "sections", inputs: Vec::leak(inputs), presets: PRESETS, ..*model }))
+        let mass = mass.read_only_for(&["machined", "welded-discs"]);
+        let inputs: Vec<Input> = model.inputs.iter().cloned().chain([section, mass]).collect();
+        let presets = vec![Preset::new("welded", &[("section", 2.0)])];
+        Arc::new(Model { name: "sections".into(), inputs, presets, ..Model::clone(&model) })
     }
 }

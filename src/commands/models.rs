@@ -4,7 +4,7 @@ use super::find_model;
 use crate::cli;
 use crate::terminal::{self, Grid, bold, dim};
 use beltspace::error::Result;
-use beltspace::models::{Input, MODELS, Model, Range, Worse};
+use beltspace::models::{self, Input, Model, Range, Worse};
 use beltspace::study::{number, value_of};
 use serde_json::{Map, Value, json};
 
@@ -12,9 +12,9 @@ pub fn run(request: &cli::Models) -> Result<()> {
     let model = request.name.as_deref().map(find_model).transpose()?;
     let text = match (model, request.json) {
         (Some(model), _) if request.study => model.starter.to_owned(),
-        (Some(model), true) => format!("{:#}\n", describe(model)),
-        (None, true) => format!("{:#}\n", MODELS.iter().map(|model| describe(model)).collect::<Value>()),
-        (Some(model), false) => page(model),
+        (Some(model), true) => format!("{:#}\n", describe(&model)),
+        (None, true) => format!("{:#}\n", models::all().iter().map(|model| describe(model)).collect::<Value>()),
+        (Some(model), false) => page(&model),
         (None, false) => list(),
     };
     terminal::print(&text)
@@ -22,8 +22,8 @@ pub fn run(request: &cli::Models) -> Result<()> {
 
 fn list() -> String {
     let mut grid = Grid::default();
-    for model in MODELS {
-        grid.row([bold(model.name), model.summary.to_owned()]);
+    for model in models::all() {
+        grid.row([bold(&model.name), model.summary.to_owned()]);
     }
     format!(
         "{}\nInputs, outputs, units, ranges and sources of one:  beltspace models NAME\nA study to start from:  beltspace models NAME --study\n",
@@ -34,10 +34,10 @@ fn list() -> String {
 fn page(model: &Model) -> String {
     let mut inputs = Grid::default();
     inputs.row(["input", "default", "usual", "valid"].map(bold));
-    for input in model.inputs {
+    for input in &model.inputs {
         let (low, high) = input.usual;
         let word = input.word_for(input.default);
-        let default = match word.zip(input.follows.and_then(|other| model.input(other))) {
+        let default = match word.zip(input.follows.as_ref().and_then(|other| model.input(other))) {
             Some((word, other)) => format!("{} ({word})", model.inputs[other].default),
             None => word.map_or_else(|| input.default.to_string(), str::to_owned),
         };
@@ -47,8 +47,8 @@ fn page(model: &Model) -> String {
     let inputs = described(&inputs, model.inputs.iter().map(|input| format!("{} [{}]{}", input.doc, input.source, only_for(model, input))));
     let mut outputs = Grid::default();
     outputs.row(["output", "symbol", "equation"].map(bold));
-    for output in model.outputs {
-        outputs.row([output.name, output.symbol, output.source].map(str::to_owned));
+    for output in &model.outputs {
+        outputs.row([&output.name, &output.symbol, &output.source].map(String::clone));
     }
     let outputs = described(&outputs, model.outputs.iter().map(|output| output.doc.to_owned()));
     let mut statuses = Grid::default();
@@ -56,12 +56,12 @@ fn page(model: &Model) -> String {
     for condition in model.conditions.iter().filter(|condition| !condition.quiet) {
         statuses.row([condition.reason.to_owned(), format!("unless: {}", condition.doc)]);
     }
-    let presets: Vec<_> = model.presets.iter().map(|(name, _)| *name).collect();
+    let presets: Vec<_> = model.presets.iter().map(|it| it.name.as_str()).collect();
     let presets = if presets.is_empty() { String::new() } else { format!("presets: {}\n\n", presets.join(", ")) };
-    let where_run = if model.device.is_none() { "\nComputed in f64 on the processor only." } else { "" };
+    let where_run = if model.shader.is_none() { "\nComputed in f64 on the processor only." } else { "" };
     format!(
         "{}  {}\n\n{}{where_run}\n\n{}\n{}\n{}\n{presets}{} {}\n",
-        bold(model.name),
+        bold(&model.name),
         model.summary,
         model.source,
         inputs,
@@ -101,7 +101,7 @@ fn describe(model: &Model) -> Value {
     let defaults = model.spelled_out(&model.defaults());
     let inputs = model.inputs.iter().enumerate().map(|(at, input)| {
         // A single word beside a range of numbers has a key of its own; of several, all are listed.
-        let word = if let [(word, _)] = input.words { Some(*word) } else { None };
+        let word = if let [(word, _)] = &input.words[..] { Some(word) } else { None };
         let mut described = json!({
             "name": input.name, "symbol": input.symbol, "unit": input.unit.symbol,
             "default": value_of(model, at, defaults[at]),
@@ -112,10 +112,10 @@ fn describe(model: &Model) -> Value {
             (described["valid"], described["usual"]) = (Value::Null, Value::Null);
         }
         if input.words.len() > 1 {
-            described["words"] = input.words.iter().map(|(word, _)| *word).collect();
+            described["words"] = input.words.iter().map(|(word, _)| word.as_str()).collect();
         }
         if !input.only_for.is_empty() {
-            described["only_for"] = input.only_for.into();
+            described["only_for"] = input.only_for.clone().into();
         }
         described
     });
@@ -133,18 +133,18 @@ fn describe(model: &Model) -> Value {
     let presets: Map<_, _> = model
         .presets
         .iter()
-        .map(|(name, values)| {
-            let value = |(input, value): &(&str, f64)| {
+        .map(|preset| {
+            let value = |(input, value): &(String, f64)| {
                 let at = model.input(input).expect("a preset names inputs of its model");
-                ((*input).to_owned(), value_of(model, at, *value))
+                (input.clone(), value_of(model, at, *value))
             };
-            let values: Map<_, _> = values.iter().map(value).collect();
-            ((*name).to_owned(), Value::from(values))
+            let values: Map<_, _> = preset.changes.iter().map(value).collect();
+            (preset.name.clone(), Value::from(values))
         })
         .collect();
     json!({
         "name": model.name, "summary": model.summary, "source": model.source, "limits": model.limits,
-        "gpu": model.device.is_some(),
+        "gpu": model.shader.is_some(),
         "inputs": inputs.collect::<Vec<_>>(), "outputs": outputs.collect::<Vec<_>>(),
         "statuses": conditions.collect::<Vec<_>>(), "presets": presets,
     })
@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn an_enumeration_is_listed_with_its_words_and_what_it_decides() {
-        let page = page(with_a_section());
+        let page = page(&with_a_section());
         let line = |start: &str| page.lines().find(|line| line.trim_start().starts_with(start)).expect("it is listed").to_owned();
         assert_eq!(
             line("section ").split_whitespace().collect::<Vec<_>>().join(" "),
@@ -169,13 +169,13 @@ mod tests {
     #[test]
     fn a_model_of_the_processor_alone_says_so() {
         let says = |model: &Model| page(model).contains("Computed in f64 on the processor only.");
-        assert!(says(on_the_processor_only()) && !says(with_a_section()));
-        assert_eq!((&describe(on_the_processor_only())["gpu"], &describe(with_a_section())["gpu"]), (&json!(false), &json!(true)));
+        assert!(says(&on_the_processor_only()) && !says(&with_a_section()));
+        assert_eq!((&describe(&on_the_processor_only())["gpu"], &describe(&with_a_section())["gpu"]), (&json!(false), &json!(true)));
     }
 
     #[test]
     fn json_has_the_words_of_an_enumeration_and_what_it_decides() {
-        let described = describe(with_a_section());
+        let described = describe(&with_a_section());
         let inputs = described["inputs"].as_array().expect("a list");
         let [section, mass] = [&inputs[inputs.len() - 2], &inputs[inputs.len() - 1]];
         assert_eq!(section["words"], json!(["machined", "welded-discs", "pressed-cup"]));

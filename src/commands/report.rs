@@ -3,15 +3,13 @@
 use super::threads;
 use crate::cli;
 use crate::terminal::{self, quoted};
-use beltspace::checkpoint::replace;
 use beltspace::error::{Error, Result};
-use beltspace::export::PAGE;
+use beltspace::files::{Reading, refuse_foreign, replace};
+use beltspace::names::{PAGE, is_page};
 use beltspace::plan::Plan;
-use beltspace::report::{GENERATOR, Page, Request, of_result, study_of};
+use beltspace::report::{Page, Request, of_result, study_of};
 use beltspace::screen::Control;
 use beltspace::study::Study;
-use std::fs::File;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -20,6 +18,7 @@ const LEAST_PATIENCE: Duration = Duration::from_secs(3);
 
 pub fn run(request: &cli::Report) -> Result<()> {
     let folder = &request.dir;
+    let _reading = Reading::new(folder, &terminal::command_line())?;
     let plan = Plan::new(study_of(folder)?);
     let file = request.out.clone().unwrap_or_else(|| folder.join(PAGE));
     refuse_to_replace(&file, request.force)?;
@@ -56,17 +55,10 @@ fn refuse_to_replace(file: &Path, force: bool) -> Result<()> {
     if !folder.is_dir() {
         return refuse(&format!("there is no directory {}; make it, or name another file", folder.display()));
     }
-    if !file.exists() || force {
+    if force {
         return Ok(());
     }
-    // Of a page the first few hundred bytes say what made it.
-    let mut head = Vec::new();
-    let read = File::open(file).and_then(|it| it.take(2048).read_to_end(&mut head));
-    read.map_err(Error::io(file))?;
-    if String::from_utf8_lossy(&head).contains(GENERATOR) {
-        return Ok(());
-    }
-    refuse("a file is there that this program did not write; replace it with --force, or name another")
+    refuse_foreign(file, "replace it with --force, or name another", is_page)
 }
 
 /// Writes the page of a result that has just been written, and says where. `study` is the file that the user named.
@@ -76,7 +68,7 @@ pub fn beside(plan: &Plan, out: &Path, study: &Path, took: Duration, threads: us
     // Whatever goes wrong here, the result is whole.
     let lost = |error: Error| {
         let again = format!("beltspace report {}", quoted(out));
-        Error::Page(format!("the result in {} is complete, but its page could not be made ({error}); try: {again}", out.display()))
+        Error::Page { path: out.to_owned(), why: Box::new(error), again }
     };
     page.and_then(|page| replace(&file, page.html.as_bytes())).map_err(lost)?;
     Ok(file)

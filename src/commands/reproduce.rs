@@ -2,24 +2,23 @@
 
 use crate::cli;
 use crate::terminal::{self, Grid, bold, dim};
-use beltspace::checkpoint::replace;
 use beltspace::error::{Error, Result};
-use beltspace::export::PAGE as HTML;
+use beltspace::files::{Claim, MOVE, is_regular, refuse_foreign, replace};
+use beltspace::names::{PAGE as HTML, is_page};
 use beltspace::papers::{PAGE, Paper, Reproduction, reproduce};
 use beltspace::report::of_papers;
 use std::path::Path;
 
 pub fn run(request: &cli::Reproduce) -> Result<()> {
     let out = &request.out;
-    if out.is_file() {
-        return Err(Error::Request(format!("{} is a file; name a directory with --out", out.display())));
-    }
+    let directory = Claim::new(out, &terminal::command_line())?;
     let all = reproduce()?;
-    if !request.force {
-        refuse_to_overwrite(&all, out)?;
-    }
-    all.write(out)?;
+    refuse_to_overwrite(&all, out, request.force)?;
     let page = out.join(HTML);
+    if !request.no_report {
+        refuse_foreign(&page, MOVE, is_page)?;
+    }
+    all.write(&directory)?;
     if !request.no_report {
         replace(&page, of_papers(&all).as_bytes())?;
     }
@@ -30,15 +29,15 @@ pub fn run(request: &cli::Reproduce) -> Result<()> {
     terminal::print(&(shown(&all, out) + &page))
 }
 
-/// Files that are there stay unless `--force` says otherwise.
-fn refuse_to_overwrite(all: &Reproduction, out: &Path) -> Result<()> {
+/// Files that are there stay unless they are of a reproduction and `--force` says otherwise.
+fn refuse_to_overwrite(all: &Reproduction, out: &Path, force: bool) -> Result<()> {
+    let own = Reproduction::is_in(out);
     let files = all.in_the_way(out);
-    let Some(first) = files.first() else { return Ok(()) };
+    let link = files.iter().find(|name| !is_regular(&out.join(name)));
+    let Some(first) = link.or(files.first()).filter(|_| !(own && force && link.is_none())) else { return Ok(()) };
     let more = if files.len() > 1 { format!(" and {} more", files.len() - 1) } else { String::new() };
-    Err(Error::Request(format!(
-        "{} has files that would be replaced ({first}{more}); replace them with --force, or write to another --out",
-        out.display()
-    )))
+    let remedy = if own && link.is_none() { "replace them with --force" } else { "this program did not write them: move them away" };
+    Err(Error::Request(format!("{} has files that would be replaced ({first}{more}); {remedy}, or write to another --out", out.display())))
 }
 
 /// The comparisons, paper by paper.

@@ -8,13 +8,14 @@ use beltspace::gpu::PointKernel;
 use beltspace::models::Model;
 use beltspace::plan::Plan;
 use beltspace::reduce::Reduction;
-use beltspace::screen::gpu::Wrong;
+use beltspace::run::device::{self, Trusted};
 use beltspace::screen::{Tables, Tally};
 use beltspace::study::Constraint;
 use beltspace::sweep::{Recheck, recheck_on_device};
 use beltspace::verify::{Points, Report, Statistics, compare, points_of_model, points_of_study};
 use serde_json::{Value, json};
 use std::path::Path;
+use std::sync::Arc;
 
 pub fn run(request: &cli::Verify) -> Result<()> {
     let path = Path::new(&request.target);
@@ -22,7 +23,7 @@ pub fn run(request: &cli::Verify) -> Result<()> {
     if beltspace::models::find(&request.target).is_none() && (path.extension().is_some_and(|it| it == "toml") || path.exists()) {
         let (study, _) = read_study(path)?;
         let plan = Plan::new(study);
-        let model = plan.study.model;
+        let model = &plan.study.model;
         let device = open(request, model)?;
         let points = points_of_study(&plan, samples, request.seed);
         let report = of_points(&device, model, &plan.study.constraints, &points)?;
@@ -34,32 +35,31 @@ pub fn run(request: &cli::Verify) -> Result<()> {
             Ok(()) => Some(recheck_on_device(&plan, &tables, &reduction, threads(None), &device.on)?),
             Err(_) => None,
         };
-        return print(request, &plan.study.title, &device, &report, swept.as_ref());
+        return print(request, &terminal::told(&plan.study.title), &device, &report, swept.as_ref());
     }
     let model = find_model(&request.target)?;
-    let device = open(request, model)?;
-    let report = of_points(&device, model, &[], &points_of_model(model, samples, request.seed))?;
-    print(request, model.name, &device, &report, None)
+    let device = open(request, &model)?;
+    let report = of_points(&device, &model, &[], &points_of_model(&model, samples, request.seed))?;
+    print(request, &model.name, &device, &report, None)
 }
 
-fn open(request: &cli::Verify, model: &Model) -> Result<engine::Trusted> {
-    engine::needs_a_twin(model, "there is nothing on a GPU to compare with it")?;
-    let wrong = Wrong { perturb: engine::perturbations(model, &request.perturb)?, ..Wrong::default() };
-    engine::trusted(request.adapter.as_deref(), wrong)
+fn open(request: &cli::Verify, model: &Model) -> Result<Trusted> {
+    device::needs_a_twin(model, "there is nothing on a GPU to compare with it")?;
+    device::trusted(request.adapter.as_deref(), engine::wrong(model, &request.perturb)?)
 }
 
-fn of_points(device: &engine::Trusted, model: &'static Model, constraints: &[Constraint], points: &Points) -> Result<Report> {
+fn of_points(device: &Trusted, model: &Arc<Model>, constraints: &[Constraint], points: &Points) -> Result<Report> {
     let kernel = PointKernel::new(&device.on.device, model, &device.on.wrong.perturb)?;
     compare(&kernel, model, constraints, points)
 }
 
-fn print(request: &cli::Verify, what: &str, device: &engine::Trusted, report: &Report, swept: Option<&Recheck>) -> Result<()> {
+fn print(request: &cli::Verify, what: &str, device: &Trusted, report: &Report, swept: Option<&Recheck>) -> Result<()> {
     let text = if request.json { format!("{:#}\n", describe(device, report, swept)) } else { page(what, device, report, swept) };
     terminal::print(&text)?;
     report.require()
 }
 
-fn page(what: &str, device: &engine::Trusted, report: &Report, swept: Option<&Recheck>) -> String {
+fn page(what: &str, device: &Trusted, report: &Report, swept: Option<&Recheck>) -> String {
     let mut grid = Grid::default();
     grid.row(["", "values", "error median", "largest", "promise median", "99 %", "used"].map(bold));
     let row = |it: &Statistics| {
@@ -94,7 +94,7 @@ fn page(what: &str, device: &engine::Trusted, report: &Report, swept: Option<&Re
     )
 }
 
-fn describe(device: &engine::Trusted, report: &Report, swept: Option<&Recheck>) -> Value {
+fn describe(device: &Trusted, report: &Report, swept: Option<&Recheck>) -> Value {
     let statistics = |it: &Statistics| {
         json!({
             "name": it.name, "values": it.values, "unbounded": it.unbounded, "broken": it.broken, "example": it.example,
@@ -119,8 +119,8 @@ mod tests {
     #[test]
     fn a_model_without_a_twin_cannot_be_verified() {
         let request = cli::Verify { target: "no-twin".to_owned(), samples: 1, seed: 1, adapter: None, perturb: Vec::new(), json: false };
-        let refused = open(&request, on_the_processor_only()).map(drop).expect_err("it has no twin");
-        assert!(matches!(refused, Error::Request(_)));
+        let refused = open(&request, &on_the_processor_only()).map(drop).expect_err("it has no twin");
+        assert!(matches!(refused, Error::CpuOnly { .. }));
         assert_eq!(refused.to_string(), "no-twin is computed in f64 on the processor only; there is nothing on a GPU to compare with it");
     }
 }

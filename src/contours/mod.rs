@@ -14,6 +14,7 @@ pub use link::Along;
 pub use side::Side;
 
 use crate::models::Worse;
+use crate::parallel::on_threads;
 use crate::plan::{Plan, worst_end};
 use crate::study::{Axis, Best, ContourSpec, MapSpec, Quantity, Study, Thresholds};
 use link::Edge;
@@ -25,6 +26,8 @@ const FINEST: u64 = 256;
 const COARSEST: u64 = 24;
 /// Evaluations on the grid beyond which it is made coarser.
 const MOST_EVALUATIONS: u64 = 4_000_000;
+/// Most changes of a whole number that get a line.
+const MOST_CHANGES: usize = 1000;
 
 /// Where a contour crosses an edge of the grid: known to lie in a bracket along one axis, whose ends answer differently.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,7 +107,9 @@ fn thresholds(spec: &ContourSpec, values: impl Iterator<Item = f64>) -> Vec<f64>
                 Some((low.min(value), high.max(value)))
             });
             let Some((low, high)) = ends else { return Vec::new() };
-            std::iter::successors(Some(low + 1.0), |at| Some(at + 1.0)).take_while(|at| *at <= high).collect()
+            // So many that nobody could tell them apart: every so many of them.
+            let step = ((high - low) / MOST_CHANGES as f64).ceil().max(1.0);
+            std::iter::successors(Some(low + 1.0), |at| Some(at + step)).take_while(|at| *at <= high).take(MOST_CHANGES).collect()
         }
     }
 }
@@ -139,10 +144,7 @@ where
 /// Does the same to every item, on several threads; the results in the order of the items.
 fn in_parallel<T: Sync, R: Send>(items: &[T], threads: usize, work: impl Fn(&T) -> R + Sync) -> Vec<R> {
     let share = items.len().div_ceil(threads.max(1)).max(1);
-    std::thread::scope(|scope| {
-        let parts: Vec<_> = items.chunks(share).map(|part| scope.spawn(|| part.iter().map(&work).collect::<Vec<_>>())).collect();
-        parts.into_iter().flat_map(|part| part.join().expect("the model does not panic")).collect()
-    })
+    on_threads(items.chunks(share), |part| part.iter().map(&work).collect::<Vec<_>>()).into_iter().flatten().collect()
 }
 
 #[cfg(test)]

@@ -226,7 +226,7 @@ fn the_lines_of_what_a_map_shows_are_about_the_end_that_it_shows() {
             "model = \"metal-cvt\"\n[design]\ntraction = [0.2, 0.3]\nbelt_length_mm = [613, 620]\n\
              [objectives]\n{objectives}\n[report]\nmaps = [{{ x = \"traction\", y = \"belt_length_mm\", {maps} }}]\n"
         );
-        Study::parse(&text, "study.toml", ".".as_ref()).unwrap_or_else(|errors| panic!("{errors}"))
+        Study::parse_in(&text, "study.toml", ".".as_ref()).unwrap_or_else(|errors| panic!("{errors}"))
     };
     let ends = |maps: &str, objectives: &str| {
         let study = study(&format!("{maps}, contours = [0, {{ of = \"stress_margin\", at = [0] }}]"), objectives);

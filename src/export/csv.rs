@@ -4,6 +4,7 @@ use super::number::plain;
 use super::table::Table;
 use crate::plan::Plan;
 use csv::Writer;
+use std::io::{self, Write};
 
 const IN_MEMORY: &str = "writing into memory does not fail";
 
@@ -18,13 +19,16 @@ pub fn write(table: &Table) -> Vec<u8> {
 }
 
 /// Every scenario with its inputs. Rows are written as they are made: scenarios can be many.
-pub fn scenarios(plan: &Plan) -> Vec<u8> {
+///
+/// # Errors
+/// Those of `out`.
+pub fn scenarios(plan: &Plan, out: &mut dyn Write) -> io::Result<()> {
     let study = &plan.study;
     let axes = study.operation.iter().chain(&study.uncertainty);
     let inputs: Vec<usize> = axes.flat_map(|axis| axis.inputs()).copied().collect();
-    let mut writer = Writer::from_writer(Vec::new());
-    let names = inputs.iter().map(|&input| study.model.inputs[input].name);
-    writer.write_record(std::iter::once("scenario").chain(names)).expect(IN_MEMORY);
+    let mut writer = Writer::from_writer(out);
+    let names = inputs.iter().map(|&input| study.model.inputs[input].name.as_str());
+    writer.write_record(std::iter::once("scenario").chain(names))?;
     let mut values = study.fixed.clone();
     for scenario in 0..plan.scenarios() {
         plan.space.scenarios.set(scenario, &mut values);
@@ -32,7 +36,7 @@ pub fn scenarios(plan: &Plan) -> Vec<u8> {
             Some(word) => word.to_owned(),
             None => plain(values[input]),
         });
-        writer.write_record(std::iter::once(scenario.to_string()).chain(cells)).expect(IN_MEMORY);
+        writer.write_record(std::iter::once(scenario.to_string()).chain(cells))?;
     }
-    writer.into_inner().expect(IN_MEMORY)
+    writer.flush()
 }

@@ -1,5 +1,7 @@
 //! Numbers as text.
 
+use crate::models::Input;
+
 /// The shortest decimal text that reads back as the same f64; plain where that is short, with an exponent beyond; no "-0".
 pub fn plain(value: f64) -> String {
     let magnitude = value.abs();
@@ -10,6 +12,17 @@ pub fn plain(value: f64) -> String {
     } else {
         format!("{value:e}")
     }
+}
+
+/// A number with at most six significant digits.
+pub fn short(value: f64) -> String {
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    plain(rounded)
+}
+
+/// A value of an input as a person writes it.
+pub fn written(input: &Input, value: f64) -> String {
+    input.word_for(value).map_or_else(|| plain(value), str::to_owned)
 }
 
 #[cfg(test)]

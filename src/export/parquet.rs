@@ -24,7 +24,8 @@ pub fn write(table: &Table) -> Result<Vec<u8>> {
     let failed = |error: ParquetError| Error::Io { path: PathBuf::from("Parquet table"), source: std::io::Error::other(error) };
     let fields = table.columns.iter().map(|column| {
         let (physical, repetition, logical) = match column.data {
-            Data::Whole(_) => (Physical::INT64, Repetition::OPTIONAL, None),
+            // A study may have more designs than a signed number counts.
+            Data::Whole(_) => (Physical::INT64, Repetition::OPTIONAL, Some(LogicalType::integer(64, false))),
             Data::Number(_) => (Physical::DOUBLE, Repetition::OPTIONAL, None),
             Data::Text(_) => (Physical::BYTE_ARRAY, Repetition::REQUIRED, Some(LogicalType::String)),
         };
@@ -34,12 +35,8 @@ pub fn write(table: &Table) -> Result<Vec<u8>> {
     let fields = fields.collect::<std::result::Result<Vec<_>, _>>().map_err(failed)?;
     let schema = Type::group_type_builder("designs").with_fields(fields).build().map(Arc::new).map_err(failed)?;
     let metadata = table.columns.iter().flat_map(|column| {
-        let about = [
-            ("unit", &column.unit),
-            ("role", &column.role.to_owned()),
-            ("direction", &column.direction),
-            ("description", &column.description),
-        ];
+        let about =
+            [("unit", &column.unit), ("role", &column.role), ("direction", &column.direction), ("description", &column.description)];
         about.map(|(what, text)| KeyValue::new(format!("{}.{what}", column.name), text.clone()))
     });
     let mut properties = WriterProperties::builder()
@@ -113,7 +110,7 @@ mod tests {
         let words = (0..70_000).map(|i| format!("w{i}")).collect();
         let table = Table {
             columns: vec![
-                TableColumn::index("index", "", (0..70_000).map(Some)),
+                TableColumn::index("index", "", (0..70_000).map(|i| Some(i + (u64::MAX - 70_000)))),
                 number,
                 TableColumn::new("word", "design", "", Data::Text(words)),
             ],
@@ -127,7 +124,7 @@ mod tests {
         assert!(keys.contains(&KeyValue::new("force_N.unit".to_owned(), "N".to_owned())));
         for (i, row) in reader.get_row_iter(None).unwrap().enumerate() {
             let row = row.unwrap();
-            assert_eq!(row.get_long(0).unwrap(), i as i64);
+            assert_eq!(row.get_ulong(0).unwrap(), i as u64 + (u64::MAX - 70_000));
             assert_eq!(row.get_double(1).ok(), numbers[i]);
             assert_eq!(row.get_string(2).unwrap(), &format!("w{i}"));
         }

@@ -1,6 +1,6 @@
 //! What people look at of one pulley: its section, deformed and stressed, the stresses around it and over its surface.
 
-use crate::models::{Design, Model, Status, evaluate, pulley_design};
+use crate::models::{Design, Model, Status, evaluate};
 use crate::pictures::pulley;
 use crate::pulley::around::Around;
 use crate::pulley::field::{Answers, Field};
@@ -10,7 +10,7 @@ use crate::pulley::section::mesh;
 use crate::pulley::turn::{Peak, Turn};
 
 /// Names of the pictures of a pulley, without `.svg`.
-pub const PICTURES: [&str; 4] = ["section", "deformed", "around", "surface"];
+pub use crate::names::KNEE_PICTURES as PICTURES;
 
 /// What such a picture shows, in a few words.
 pub fn caption(name: &str) -> &'static str {
@@ -74,7 +74,7 @@ struct Solved<'t> {
 
 /// Solves a pulley and shows it to `look`; `None` if the model is another one or the status is not ok.
 fn solve<T>(model: &Model, inputs: &[f64], look: impl FnOnce(&Solved<'_>) -> T) -> Option<T> {
-    let design = pulley_design(model, inputs)?;
+    let design = model.pulley_of(inputs)?;
     let Design { kind, dimensions, poisson, fineness, case, .. } = design;
     let mesh = mesh(kind, &dimensions, &fineness).ok()?;
     if evaluate(model, inputs).status != Status::Ok {

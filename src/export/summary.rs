@@ -1,8 +1,10 @@
 //! What a study found, in one page: `summary.json`, and `run.json` on how it was found.
 
-use super::Outcome;
+use super::Certified;
 use crate::bounds::Certificate;
+use crate::models::OVERFLOW;
 use crate::study::{Goal, Objective, number, value_of};
+use crate::sweep::Left;
 use serde_json::{Map, Value, json};
 use std::time::Duration;
 
@@ -18,7 +20,7 @@ pub struct Knee {
 /// Numbers that describe a front and a sweep.
 #[derive(Debug)]
 pub struct Summary<'a> {
-    outcome: &'a Outcome<'a>,
+    outcome: &'a Certified<'a>,
     /// Best of each objective on the front; `None` without a front.
     pub ideal: Option<Vec<f64>>,
     /// Least distance to the ideal; of equals the lowest index.
@@ -27,7 +29,7 @@ pub struct Summary<'a> {
 
 impl<'a> Summary<'a> {
     /// Describes an outcome.
-    pub fn new(outcome: &'a Outcome<'a>) -> Self {
+    pub fn new(outcome: &'a Certified<'a>) -> Self {
         let mut summary = Self { outcome, ideal: None, knee: None };
         let points = summary.points();
         let objectives = &outcome.plan.study.objectives;
@@ -65,9 +67,9 @@ impl<'a> Summary<'a> {
 
     /// As JSON, in a fixed order.
     pub fn to_json(&self) -> Value {
-        let Outcome { plan, state, tally, front, .. } = self.outcome;
+        let Certified { plan, state, tally, front, .. } = self.outcome;
         let study = &plan.study;
-        let model = study.model;
+        let model = &study.model;
         let names: Vec<_> = study.objectives.iter().map(|objective| objective.quantity.name(model)).collect();
         let named =
             |values: &[f64]| -> Map<_, _> { names.iter().zip(values).map(|(name, &value)| ((*name).to_owned(), number(value))).collect() };
@@ -83,6 +85,11 @@ impl<'a> Summary<'a> {
             Some(((*name).to_owned(), json!({ "least": end(least.as_ref()?), "largest": end(largest.as_ref()?) })))
         });
         let conditions = model.conditions.iter().zip(&tally.conditions).filter(|(condition, _)| !condition.quiet);
+        let mut status: Map<_, Value> = conditions.map(|(condition, &count)| (condition.reason.to_owned(), count.into())).collect();
+        // Rare enough that most summaries do without.
+        if tally.overflow > 0 {
+            status.insert(OVERFLOW.to_owned(), tally.overflow.into());
+        }
         let constraints = study.constraints.iter().zip(tally.constraints.iter().zip(&tally.only)).map(|(constraint, (violated, only))| {
             json!({ "of": constraint.quantity.name(model), "bounds": constraint.in_words(), "violated": violated, "only": only })
         });
@@ -102,7 +109,7 @@ impl<'a> Summary<'a> {
                 "of": "a fixed sample of the designs; one design may count in several places",
                 "sampled": tally.sampled,
                 "feasible": tally.feasible,
-                "status": conditions.map(|(condition, &count)| (condition.reason.to_owned(), count.into())).collect::<Map<_, Value>>(),
+                "status": status,
                 "constraints": constraints.collect::<Vec<_>>(),
             },
         });
@@ -114,7 +121,15 @@ impl<'a> Summary<'a> {
     }
 }
 
-impl Outcome<'_> {
+impl Certified<'_> {
+    /// The objective values of designs that are drawn behind the front.
+    pub fn behind_the_front(&self) -> Vec<Vec<f64>> {
+        let columns = self.objective_columns();
+        let values = |row: &crate::certify::Row| columns.iter().map(|&column| row.columns[column].value.unwrap_or(f64::NAN)).collect();
+        let drawn = self.named.iter().zip(self.state.reported.behind_the_front()).filter(|(_, behind)| *behind);
+        drawn.flat_map(|(rows, _)| rows).map(values).collect()
+    }
+
     /// Position of each objective among the columns.
     pub fn objective_columns(&self) -> Vec<usize> {
         let column = |objective: &Objective| self.columns.iter().position(|column| column.quantity == objective.quantity);
@@ -148,12 +163,14 @@ pub struct RunRecord {
 /// How designs were judged, and why so.
 #[derive(Clone, Debug)]
 pub struct MethodRecord {
-    /// Its name on the command line; of merged shards, each had its own.
+    /// Its name on the command line, or both names where one was left for the other; of merged shards, each had its own.
     pub name: &'static str,
     /// Why.
     pub why: String,
     /// Of bounds: what settled the designs.
     pub certificate: Option<Certificate>,
+    /// How bounds were left, if they were.
+    pub left: Option<Left>,
 }
 
 impl RunRecord {
@@ -163,8 +180,8 @@ impl RunRecord {
         self.designs as f64 / self.time.as_secs_f64().max(1e-9)
     }
 
-    /// As JSON.
-    pub fn to_json(&self) -> Value {
+    /// As JSON, with the names of the files that belong to the result: what else lies beside them is not this program's.
+    pub fn to_json(&self, files: &[String]) -> Value {
         json!({
             "program": concat!("beltspace ", env!("CARGO_PKG_VERSION")),
             "engine": self.engine,
@@ -179,7 +196,9 @@ impl RunRecord {
             "certified_designs": self.certified,
             "device": self.device,
             "certificate": self.method.certificate.as_ref().map(Certificate::to_json),
+            "bounds_left": self.method.left.as_ref().map(Left::to_json),
             "platform": format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+            "files": files,
         })
     }
 }

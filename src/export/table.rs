@@ -31,8 +31,9 @@ pub struct TableColumn {
     pub name: String,
     /// Unit; empty for plain numbers.
     pub unit: String,
-    /// `design`, `objective`, `constraint`, `report`, `index`, ...
-    pub role: &'static str,
+    /// `design`, `objective`, `constraint`, `report`, `index`, ...; several, with commas between them, where a design input is also an
+    /// objective or bounded.
+    pub role: String,
     /// `min` or `max` for an objective, the bounds in words for a constraint, else empty.
     pub direction: String,
     /// What it is, in a sentence.
@@ -48,8 +49,15 @@ impl TableColumn {
     }
 
     /// A column without unit and direction.
-    pub fn new(name: &str, role: &'static str, description: &str, data: Data) -> Self {
-        Self { name: name.to_owned(), unit: String::new(), role, direction: String::new(), description: description.to_owned(), data }
+    pub fn new(name: &str, role: &str, description: &str, data: Data) -> Self {
+        Self {
+            name: name.to_owned(),
+            unit: String::new(),
+            role: role.to_owned(),
+            direction: String::new(),
+            description: description.to_owned(),
+            data,
+        }
     }
 }
 
@@ -68,5 +76,35 @@ impl Table {
             Data::Number(values) => values.len(),
             Data::Text(values) => values.len(),
         })
+    }
+
+    /// The table as CSV, as it stands in a result directory: a header, dot decimals, the shortest numbers that read back as the same f64,
+    /// nothing for what is absent.
+    pub fn csv(&self) -> Vec<u8> {
+        super::csv_text(self)
+    }
+
+    /// The column of that name.
+    pub fn column(&self, name: &str) -> Option<&TableColumn> {
+        self.columns.iter().find(|column| column.name == name)
+    }
+
+    /// The number in a row of the column of that name, in the column's unit; `None` if there is no such row or column, the cell is empty
+    /// or holds a word. Rows count from 0.
+    pub fn number(&self, name: &str, row: usize) -> Option<f64> {
+        match &self.column(name)?.data {
+            #[allow(clippy::cast_precision_loss, reason = "who asks for a number takes the nearest")]
+            Data::Whole(values) => values.get(row).copied().flatten().map(|value| value as f64),
+            Data::Number(values) => values.get(row).copied().flatten(),
+            Data::Text(_) => None,
+        }
+    }
+
+    /// The index of the design in a row of a table of designs; `None` if there is no such row, or the table is another.
+    pub fn design(&self, row: usize) -> Option<u64> {
+        match &self.column("design_index")?.data {
+            Data::Whole(values) => values.get(row).copied().flatten(),
+            Data::Number(_) | Data::Text(_) => None,
+        }
     }
 }

@@ -1,12 +1,12 @@
 //! A study whose axes are words: every file says them, and never the numbers that stand for them.
 
-use super::Outcome;
+use super::Certified;
 use crate::models::tests::with_a_section;
 use crate::plan::Plan;
 use crate::reduce::Reduction;
 use crate::screen::{Tables, Tally};
 use crate::study::study_of;
-use crate::sweep::{Control, Options, sweep};
+use crate::sweep::{Control, Settings, sweep};
 
 const STUDY: &str = r#"
     preset = "welded"
@@ -24,16 +24,21 @@ const STUDY: &str = r#"
 
 /// The files of a study of the model with a section.
 fn files(text: &str) -> Vec<(String, String)> {
-    let plan = Plan::new(study_of(with_a_section(), text).expect("the study is right"));
+    let plan = Plan::new(study_of(&with_a_section(), text).expect("the study is right"));
     let tables = Tables::new(&plan);
     let tally = Tally::new(&plan, &tables, 1);
     let reduction = Reduction::new(&plan, &tally.histogram_ranges(&plan));
-    let swept = sweep(&plan, &tables, &reduction, &Options::default(), None, &Control::default()).expect("the sweep ends");
-    let files = Outcome::certify(&plan, swept.state, tally, 1, &Control::default())
-        .expect("it is certified")
-        .files(text, 1)
-        .expect("the tables are written");
-    files.into_iter().map(|(name, bytes)| (name, String::from_utf8_lossy(&bytes).into_owned())).collect()
+    let swept = sweep(&plan, &tables, &reduction, &Settings::default(), None, &Control::default()).expect("the sweep ends");
+    let outcome = Certified::certify(&plan, swept.state, tally, 1, &Control::default()).expect("it is certified");
+    let mut files = Vec::new();
+    let mut put = |name: &str, part: super::Part<'_>| {
+        let mut bytes = Vec::new();
+        part.write(&mut bytes).expect("there is memory");
+        files.push((name.to_owned(), String::from_utf8_lossy(&bytes).into_owned()));
+        Ok(())
+    };
+    outcome.make_files(text, 1, &mut put).expect("the tables are written");
+    files
 }
 
 #[test]

@@ -85,6 +85,7 @@ impl Adapter {
     ///
     /// # Errors
     /// [`Error::Gpu`] if the driver refuses, or offers less than the kernels need.
+    #[doc(hidden)]
     pub fn open(&self) -> Result<Device> {
         Device::open(self)
     }
@@ -109,20 +110,18 @@ pub fn adapters() -> Vec<Adapter> {
 /// The best adapter, or the best of those whose name contains `name`, whatever the case of the letters.
 ///
 /// # Errors
-/// [`Error::Request`] that lists what there is.
+/// [`Error::NoAdapter`] that lists what there is.
 pub fn choose(name: Option<&str>) -> Result<Adapter> {
     let adapters = adapters();
     if adapters.is_empty() {
-        return Err(Error::Request(
-            "no GPU driver was found; install one (in software: the Debian package mesa-vulkan-drivers), or use --engine cpu".to_owned(),
-        ));
+        return Err(Error::NoAdapter { name: name.map(str::to_owned), there: Vec::new() });
     }
     let wanted = name.unwrap_or_default().to_lowercase();
     match adapters.iter().find(|adapter| adapter.name.to_lowercase().contains(&wanted)) {
         Some(adapter) => Ok(adapter.clone()),
         None => {
-            let names: Vec<_> = adapters.iter().map(|adapter| format!("\"{}\"", adapter.name)).collect();
-            Err(Error::Request(format!("no adapter's name contains \"{}\"; there is: {}", name.unwrap_or_default(), names.join(", "))))
+            let there = adapters.into_iter().map(|adapter| adapter.name).collect();
+            Err(Error::NoAdapter { name: name.map(str::to_owned), there })
         }
     }
 }

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// A buffer of the device.
-pub type Buffer = wgpu::Buffer;
+pub(crate) type Buffer = wgpu::Buffer;
 
 /// How long a submission may take before the device counts as hung. Dispatches are sized to a tenth of a second.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -22,12 +22,12 @@ pub struct Device {
     /// Of the adapter.
     pub name: String,
     /// Limits that it was opened with: all that the adapter has.
-    pub limits: wgpu::Limits,
+    pub(crate) limits: wgpu::Limits,
 }
 
 /// A submission that may still be running.
 #[derive(Clone, Debug)]
-pub struct Wait(wgpu::SubmissionIndex);
+pub(crate) struct Wait(wgpu::SubmissionIndex);
 
 impl Device {
     pub(super) fn open(adapter: &Adapter) -> Result<Self> {
@@ -65,7 +65,7 @@ impl Device {
     }
 
     /// An error of this device.
-    pub fn error(&self, problem: impl Into<String>) -> Error {
+    pub(crate) fn error(&self, problem: impl Into<String>) -> Error {
         Error::Gpu { device: self.name.clone(), problem: problem.into() }
     }
 
@@ -73,7 +73,7 @@ impl Device {
     ///
     /// # Errors
     /// [`Error::Gpu`] with the first thing that did.
-    pub fn check(&self) -> Result<()> {
+    pub(crate) fn check(&self) -> Result<()> {
         match &*self.failure.lock().unwrap_or_else(PoisonError::into_inner) {
             Some(problem) => Err(self.error(problem.clone())),
             None => Ok(()),
@@ -87,7 +87,7 @@ impl Device {
     }
 
     /// A buffer of `bytes`, at least 16, for what `usage` says; it can be written and read back.
-    pub fn buffer(&self, label: &str, bytes: u64, usage: wgpu::BufferUsages) -> Buffer {
+    pub(crate) fn buffer(&self, label: &str, bytes: u64, usage: wgpu::BufferUsages) -> Buffer {
         self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(label),
             size: bytes.max(16).next_multiple_of(16),
@@ -97,12 +97,12 @@ impl Device {
     }
 
     /// A storage buffer that holds `values`.
-    pub fn storage<T: NoUninit>(&self, label: &str, values: &[T]) -> Buffer {
+    pub(crate) fn storage<T: NoUninit>(&self, label: &str, values: &[T]) -> Buffer {
         self.filled(label, values, wgpu::BufferUsages::STORAGE)
     }
 
     /// A uniform buffer that holds `values`.
-    pub fn uniform<T: NoUninit>(&self, label: &str, values: &[T]) -> Buffer {
+    pub(crate) fn uniform<T: NoUninit>(&self, label: &str, values: &[T]) -> Buffer {
         self.filled(label, values, wgpu::BufferUsages::UNIFORM)
     }
 
@@ -113,14 +113,14 @@ impl Device {
     }
 
     /// Writes `values` at an offset in bytes, before whatever is submitted next.
-    pub fn write<T: NoUninit>(&self, buffer: &Buffer, offset: u64, values: &[T]) {
+    pub(crate) fn write<T: NoUninit>(&self, buffer: &Buffer, offset: u64, values: &[T]) {
         if !values.is_empty() {
             self.queue.write_buffer(buffer, offset, bytemuck::cast_slice(values));
         }
     }
 
     /// A buffer that results are copied to for reading.
-    pub fn landing(&self, label: &str, bytes: u64) -> Buffer {
+    pub(crate) fn landing(&self, label: &str, bytes: u64) -> Buffer {
         self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(label),
             size: bytes.max(16).next_multiple_of(16),
@@ -130,7 +130,7 @@ impl Device {
     }
 
     /// Submits what `record` records.
-    pub fn submit(&self, record: impl FnOnce(&mut wgpu::CommandEncoder)) -> Wait {
+    pub(crate) fn submit(&self, record: impl FnOnce(&mut wgpu::CommandEncoder)) -> Wait {
         let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         record(&mut encoder);
         Wait(self.queue.submit([encoder.finish()]))
@@ -140,7 +140,7 @@ impl Device {
     ///
     /// # Errors
     /// [`Error::Gpu`] if it does not end, or something went wrong.
-    pub fn wait(&self, submission: &Wait) -> Result<()> {
+    pub(crate) fn wait(&self, submission: &Wait) -> Result<()> {
         let start = Instant::now();
         loop {
             let poll = wgpu::PollType::Wait { submission_index: Some(submission.0.clone()), timeout: Some(Duration::from_secs(1)) };
@@ -158,7 +158,7 @@ impl Device {
     ///
     /// # Errors
     /// [`Error::Gpu`].
-    pub fn read<T: Pod>(&self, landing: &Buffer, count: usize, submission: &Wait) -> Result<Vec<T>> {
+    pub(crate) fn read<T: Pod>(&self, landing: &Buffer, count: usize, submission: &Wait) -> Result<Vec<T>> {
         let bytes = (count * size_of::<T>()) as u64;
         if count == 0 {
             return Ok(Vec::new());
@@ -192,7 +192,7 @@ impl Device {
     ///
     /// # Errors
     /// [`Error::Gpu`].
-    pub fn fetch<T: Pod>(&self, buffer: &Buffer, count: usize) -> Result<Vec<T>> {
+    pub(crate) fn fetch<T: Pod>(&self, buffer: &Buffer, count: usize) -> Result<Vec<T>> {
         let bytes = ((count * size_of::<T>()) as u64).next_multiple_of(4);
         let landing = self.landing("fetch", bytes);
         let submission = self.submit(|encoder| encoder.copy_buffer_to_buffer(buffer, 0, &landing, 0, bytes));

@@ -9,11 +9,15 @@ mod device;
 mod points;
 pub(crate) mod program;
 
+#[doc(hidden)]
 pub mod self_test;
 pub(crate) mod source;
 
 pub use adapter::{Adapter, Kind, adapters, choose};
-pub use device::{Buffer, Device, Wait};
+#[doc(hidden)]
+pub use device::Device;
+pub(crate) use device::{Buffer, Wait};
+#[doc(hidden)]
 pub use points::PointKernel;
-pub use program::{Binding, Program};
-pub use source::{model_prelude, model_source, tables};
+pub(crate) use program::Program;
+pub(crate) use source::{model_prelude, model_source, tables};

@@ -3,9 +3,10 @@
 use super::source::COMMON;
 use super::{Device, Program, model_prelude, model_source, tables};
 use crate::error::Result;
-use crate::models::{self, CONDITIONS, INPUTS, Model, OUTPUTS};
-use crate::real::{RunningError, nearest_f32};
+use crate::models::{CONDITIONS, Fields, INPUTS, Model, OUTPUTS};
+use crate::tape::{RunningError, nearest_f32};
 use std::fmt::Write;
+use std::sync::Arc;
 
 /// Points per dispatch.
 const BATCH: usize = 1 << 16;
@@ -13,15 +14,14 @@ const BATCH: usize = 1 << 16;
 const BATCH_TABLES: usize = 1 << 22;
 
 /// Numbers in a model's tables.
-fn table_numbers(formula: &models::Device) -> usize {
-    let fields = formula.twin.fields();
+fn table_numbers(fields: &Fields) -> usize {
     fields.prepared_len() - fields.prepared.len()
 }
 
 /// A model's formula on a device, for points one by one.
 #[derive(Debug)]
 pub struct PointKernel {
-    model: &'static Model,
+    model: Arc<Model>,
     /// Numbers in the tables of one point.
     table_numbers: usize,
     device: Device,
@@ -37,18 +37,18 @@ impl PointKernel {
     /// # Errors
     /// [`Error::Request`](crate::error::Error::Request) if the model is computed on the processor only.
     pub fn source(model: &Model, perturb: &[(usize, f64)]) -> Result<String> {
-        let formula = model.on_device()?;
-        let fields = formula.twin.fields();
+        let on_device = model.on_device()?;
+        let fields = on_device.formula.fields();
         let all: Vec<usize> = (0..model.conditions.len()).collect();
-        let mut text = model_prelude(formula, all.len(), u64::MAX, &all);
+        let mut text = model_prelude(&fields, all.len(), u64::MAX, &all);
         let places: Vec<usize> = fields.places().map(|(first, _)| first).collect();
-        text.push_str(&tables(formula, |field, place| Some(format!("scratch[{place} + {}u + at]", places[field] - fields.prepared.len()))));
+        text.push_str(&tables(&fields, |field, place| Some(format!("scratch[{place} + {}u + at]", places[field] - fields.prepared.len()))));
         let begin = if fields.tables.is_empty() { "" } else { "table_place = point * TABLE_NUMBERS;" };
         let hold = if fields.tables.is_empty() { "" } else { "held.place = point * TABLE_NUMBERS;" };
         let (inputs, outputs) = (fields.inputs.len(), model.outputs.len());
         let mut line = |it: std::fmt::Arguments<'_>| writeln!(text, "{it}").expect("a text takes everything");
         line(format_args!("const INPUTS: u32 = {inputs}u;\nconst OUTPUTS: u32 = {outputs}u;"));
-        line(format_args!("const TABLE_NUMBERS: u32 = {}u;\n", table_numbers(formula)));
+        line(format_args!("const TABLE_NUMBERS: u32 = {}u;\n", table_numbers(&fields)));
         line(format_args!("@group(0) @binding(3) var<storage, read_write> scratch: array<Real>;\n"));
         line(format_args!("fn prepare_point(point: u32, inputs: Inputs) -> Prepared {{\n    {begin}"));
         line(format_args!("    var held = prepare(inputs);\n    {hold}\n    return held;\n}}\n"));
@@ -63,7 +63,7 @@ impl PointKernel {
             line(format_args!("    found[at + {number}u] = Real(out.{field}.value * {factor:?}, out.{field}.bound);"));
         }
         line(format_args!("}}\n"));
-        Ok([COMMON, &text, &model_source(formula), include_str!("../../shaders/evaluate.wgsl")].join("\n"))
+        Ok([COMMON, &text, &model_source(model, on_device), include_str!("../../shaders/evaluate.wgsl")].join("\n"))
     }
 
     /// Compiles the kernel of a model.
@@ -71,7 +71,7 @@ impl PointKernel {
     /// # Errors
     /// [`Error::Gpu`](crate::error::Error::Gpu); [`Error::Request`](crate::error::Error::Request) if the model is computed on the
     /// processor only.
-    pub fn new(device: &Device, model: &'static Model, perturb: &[(usize, f64)]) -> Result<Self> {
+    pub fn new(device: &Device, model: &Arc<Model>, perturb: &[(usize, f64)]) -> Result<Self> {
         Self::from_source(device, model, &Self::source(model, perturb)?)
     }
 
@@ -79,10 +79,10 @@ impl PointKernel {
     ///
     /// # Errors
     /// As [`PointKernel::new`].
-    pub fn from_source(device: &Device, model: &'static Model, source: &str) -> Result<Self> {
-        let table_numbers = table_numbers(model.on_device()?);
+    pub fn from_source(device: &Device, model: &Arc<Model>, source: &str) -> Result<Self> {
+        let table_numbers = table_numbers(&model.on_device()?.formula.fields());
         let program = Program::new(device, source, &["evaluate"])?;
-        Ok(Self { model, table_numbers, device: device.clone(), program })
+        Ok(Self { model: model.clone(), table_numbers, device: device.clone(), program })
     }
 
     /// Evaluates points given in SI units.

@@ -6,7 +6,7 @@ use wgpu::naga;
 
 /// What a binding is, as the text declares it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Binding {
+pub(crate) struct Binding {
     /// Name of the variable.
     pub name: String,
     /// Its number.
@@ -17,7 +17,7 @@ pub struct Binding {
 
 /// A kernel: text, bindings found in it by reflection, and one pipeline per entry point.
 #[derive(Debug)]
-pub struct Program {
+pub(crate) struct Program {
     device: Device,
     module: naga::Module,
     bindings: Vec<Binding>,
@@ -76,7 +76,7 @@ impl Program {
     ///
     /// # Errors
     /// [`Error::Gpu`](crate::error::Error::Gpu) with what naga or the driver says.
-    pub fn new(device: &Device, source: &str, entries: &[&str]) -> Result<Self> {
+    pub(crate) fn new(device: &Device, source: &str, entries: &[&str]) -> Result<Self> {
         let module = parse(source).map_err(|problem| device.error(format!("a kernel does not compile: {problem}")))?;
         let memory = workgroup_memory(&module);
         if memory > device.limits.max_compute_workgroup_storage_size {
@@ -120,7 +120,7 @@ impl Program {
     ///
     /// # Errors
     /// [`Error::Gpu`](crate::error::Error::Gpu) with the first difference.
-    pub fn require_structure(&self, name: &str, size: usize, members: &[(&str, usize)]) -> Result<()> {
+    pub(crate) fn require_structure(&self, name: &str, size: usize, members: &[(&str, usize)]) -> Result<()> {
         let wrong = |what: String| Err(self.device.error(format!("the kernel and the program differ in {name}: {what}")));
         let Some((span, found)) = structure(&self.module, name) else { return wrong("the kernel has none".to_owned()) };
         if span as usize != size {
@@ -137,7 +137,7 @@ impl Program {
     ///
     /// # Panics
     /// If a variable is left out: the kernel and the caller were written for each other.
-    pub fn bind(&self, buffers: &[(&str, &Buffer)]) -> wgpu::BindGroup {
+    pub(crate) fn bind(&self, buffers: &[(&str, &Buffer)]) -> wgpu::BindGroup {
         let entry = |binding: &Binding| {
             let (_, buffer) = buffers.iter().find(|(name, _)| *name == binding.name).expect("every variable of a kernel is bound");
             wgpu::BindGroupEntry { binding: binding.number, resource: buffer.as_entire_binding() }
@@ -153,7 +153,7 @@ impl Program {
     ///
     /// # Panics
     /// If the entry point was not compiled.
-    pub fn dispatch(&self, encoder: &mut wgpu::CommandEncoder, entry: &str, bound: &wgpu::BindGroup, groups: [u32; 2]) {
+    pub(crate) fn dispatch(&self, encoder: &mut wgpu::CommandEncoder, entry: &str, bound: &wgpu::BindGroup, groups: [u32; 2]) {
         let (_, pipeline) = self.pipelines.iter().find(|(name, _)| name == entry).expect("the entry point was compiled");
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         pass.set_pipeline(pipeline);

@@ -1,6 +1,7 @@
 //! The texts of the shaders, and the declarations that follow from a model's Rust records.
 
-use crate::models::{self, CONDITIONS, Fields};
+use crate::models::{CONDITIONS, Device, Fields, Model, Shader};
+use crate::tape::wgsl;
 use std::fmt::Write;
 
 /// Numbers, own functions and decisions, for every kernel.
@@ -13,9 +14,16 @@ pub const COMMON: &str = concat!(
     "\n"
 );
 
-/// The text of a model: its own file, after what it shares with others.
-pub fn model_source(formula: &models::Device) -> String {
-    formula.shader.join("\n")
+/// The text of a model: written from its recorded formula, or its own file.
+pub fn model_source(model: &Model, device: Device<'_>) -> String {
+    match device.shader {
+        Shader::Recorded => wgsl::text(
+            device.formula,
+            model.conditions.len(),
+            &model.outputs.iter().map(|output| output.source.as_str()).collect::<Vec<_>>(),
+        ),
+        Shader::ByHand(text) => text.to_owned(),
+    }
 }
 
 /// A structure of `Real`s.
@@ -26,8 +34,8 @@ fn structure(text: &mut String, name: &str, fields: &[&str]) {
 
 /// The declarations that a model's text relies on: its records as the Rust code has them, and which of its outputs (a bit set) and
 /// its `count` conditions are asked for. What the first stage does with its tables, and how the second reads them, [`tables`] says.
-pub fn model_prelude(formula: &models::Device, count: usize, wanted: u64, conditions: &[usize]) -> String {
-    let Fields { inputs, prepared, tables, outputs, .. } = formula.twin.fields();
+pub fn model_prelude(fields: &Fields, count: usize, wanted: u64, conditions: &[usize]) -> String {
+    let Fields { inputs, prepared, tables, outputs, .. } = fields;
     let mut text = format!("const CONDITIONS: u32 = {CONDITIONS}u;\n");
     for (number, field) in outputs.iter().enumerate() {
         writeln!(text, "const WANTS_{field}: bool = {};", wanted >> number & 1 == 1).expect("a text takes everything");
@@ -47,8 +55,7 @@ pub fn model_prelude(formula: &models::Device, count: usize, wanted: u64, condit
 
 /// Functions that set and read every table of a model, where a kernel has them: `entry` says where number `at` of a table stands,
 /// given the number of its field and the place where the tables of this row start; `None` for a table that nobody reads.
-pub fn tables(formula: &models::Device, entry: impl Fn(usize, &str) -> Option<String>) -> String {
-    let fields = formula.twin.fields();
+pub fn tables(fields: &Fields, entry: impl Fn(usize, &str) -> Option<String>) -> String {
     if fields.tables.is_empty() {
         return String::new();
     }

@@ -1,9 +1,12 @@
 //! What a model says of itself: the table behind `beltspace models`, the study file, the result columns and the docs.
 
 use super::evaluation::Evaluation;
-use super::formula::{Kernel, Twin};
+use super::formula::Kernel;
+use super::pulley::Design;
 use crate::error::{Error, Result};
+use crate::tape::Recordable;
 use crate::units::Unit;
+use std::sync::Arc;
 
 /// Numbers that an input may take.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,12 +63,12 @@ impl Range {
 }
 
 /// One input of a model. Its name carries the unit.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Input {
     /// Name in study files, on the command line and in results, such as `groove_angle_deg`.
-    pub name: &'static str,
+    pub name: String,
     /// Symbol in the source.
-    pub symbol: &'static str,
+    pub symbol: String,
     /// Unit of the values.
     pub unit: Unit,
     /// Value where none is given.
@@ -77,58 +80,70 @@ pub struct Input {
     /// Only whole numbers make sense.
     pub integer: bool,
     /// Words that stand for values (`"limit"`), each with the number that encodes it.
-    pub words: &'static [(&'static str, f64)],
+    pub words: Vec<(String, f64)>,
     /// The words of the model's first [enumeration](Input::is_enumeration) for which this input is read at all; empty: always.
-    pub only_for: &'static [&'static str],
+    pub only_for: Vec<String>,
     /// The input whose value its words stand for, if it is that simple: single designs show that value instead of the word.
-    pub follows: Option<&'static str>,
+    pub follows: Option<String>,
     /// Does the twin know the default only? Then a study that sets it otherwise is for the processor.
     pub processor_only: bool,
     /// What it is, in a sentence.
-    pub doc: &'static str,
+    pub doc: String,
     /// Where the default and the usual range come from.
-    pub source: &'static str,
+    pub source: String,
 }
 
 impl Input {
     /// An input that takes any number greater than zero; other ranges are set in place.
-    pub const fn new(
-        name: &'static str,
-        symbol: &'static str,
+    pub fn new(
+        name: impl Into<String>,
+        symbol: impl Into<String>,
         unit: Unit,
         default: f64,
         usual: (f64, f64),
-        doc: &'static str,
-        source: &'static str,
+        doc: impl Into<String>,
+        source: impl Into<String>,
     ) -> Self {
         Self {
-            name,
-            symbol,
+            name: name.into(),
+            symbol: symbol.into(),
             unit,
             default,
             valid: Range::POSITIVE,
             usual,
             integer: false,
-            words: &[],
-            only_for: &[],
+            words: Vec::new(),
+            only_for: Vec::new(),
             follows: None,
             processor_only: false,
-            doc,
-            source,
+            doc: doc.into(),
+            source: source.into(),
         }
     }
 
     /// An input whose every value is one of these words; `default` is the number that encodes one of them.
-    pub const fn enumeration(
-        name: &'static str,
-        symbol: &'static str,
-        words: &'static [(&'static str, f64)],
+    pub fn enumeration(
+        name: impl Into<String>,
+        symbol: impl Into<String>,
+        words: &[(&str, f64)],
         default: f64,
-        doc: &'static str,
-        source: &'static str,
+        doc: impl Into<String>,
+        source: impl Into<String>,
     ) -> Self {
         let input = Self::new(name, symbol, crate::units::NONE, default, (default, default), doc, source);
-        Self { valid: Range::NONE, words, ..input }
+        Self { valid: Range::NONE, ..input }.with_words(words)
+    }
+
+    /// The same input, which takes these words too, each for the number that encodes it.
+    #[must_use]
+    pub fn with_words(self, words: &[(&str, f64)]) -> Self {
+        Self { words: valued(words), ..self }
+    }
+
+    /// The same input, read only for these words of the model's first [enumeration](Input::is_enumeration).
+    #[must_use]
+    pub fn read_only_for(self, words: &[&str]) -> Self {
+        Self { only_for: owned(words), ..self }
     }
 
     /// Is every value of the input a word?
@@ -137,18 +152,18 @@ impl Input {
     }
 
     /// The value as a person writes it, if it is one of the input's words.
-    pub fn word_for(&self, value: f64) -> Option<&'static str> {
-        self.words.iter().find(|(_, encoded)| *encoded == value).map(|&(word, _)| word)
+    pub fn word_for(&self, value: f64) -> Option<&str> {
+        self.words.iter().find(|(_, encoded)| *encoded == value).map(|(word, _)| word.as_str())
     }
 
     /// The number that a word stands for.
     pub fn value_of(&self, word: &str) -> Option<f64> {
-        self.words.iter().find(|(it, _)| *it == word).map(|&(_, encoded)| encoded)
+        self.words.iter().find(|(it, _)| it == word).map(|&(_, encoded)| encoded)
     }
 
     /// Its words as a person lists them, `"a", "b" or "c"`; `None` if it has none.
     pub fn words_listed(&self) -> Option<String> {
-        (!self.words.is_empty()).then(|| either(self.words.iter().map(|(word, _)| *word)))
+        (!self.words.is_empty()).then(|| either(self.words.iter().map(|(word, _)| word.as_str())))
     }
 
     /// What it may be: `whole, at least 0`, `greater than 0, or "limit"`, or its words alone.
@@ -165,6 +180,16 @@ impl Input {
     pub fn accepts(&self, value: f64) -> bool {
         self.word_for(value).is_some() || (self.valid.contains(value) && (!self.integer || value.fract() == 0.0))
     }
+}
+
+/// Texts of a table, as a model owns them.
+fn owned(words: &[&str]) -> Vec<String> {
+    words.iter().map(|word| (*word).to_owned()).collect()
+}
+
+/// Names with their numbers, as a model owns them.
+fn valued(pairs: &[(&str, f64)]) -> Vec<(String, f64)> {
+    pairs.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect()
 }
 
 /// Words in quotes, the last two joined by "or".
@@ -184,20 +209,20 @@ pub enum Worse {
 }
 
 /// One output of a model. Its name carries the unit.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Output {
     /// Name in study files and results.
-    pub name: &'static str,
+    pub name: String,
     /// Symbol in the source.
-    pub symbol: &'static str,
+    pub symbol: String,
     /// Unit of the values.
     pub unit: Unit,
     /// The worse end.
     pub worse: Worse,
     /// What it is, in a sentence.
-    pub doc: &'static str,
+    pub doc: String,
     /// The equation it comes from.
-    pub source: &'static str,
+    pub source: String,
     /// How far f32 may be from f64, in units of its running error bound: at least four times the worst that was seen.
     pub promise: f64,
     /// Are all its values whole numbers?
@@ -206,17 +231,27 @@ pub struct Output {
 
 impl Output {
     /// An output that is promised to its running error bound; a larger promise is set with [`Output::promising`].
-    pub const fn new(name: &'static str, symbol: &'static str, unit: Unit, worse: Worse, source: &'static str, doc: &'static str) -> Self {
+    pub fn new(
+        name: impl Into<String>,
+        symbol: impl Into<String>,
+        unit: Unit,
+        worse: Worse,
+        source: impl Into<String>,
+        doc: impl Into<String>,
+    ) -> Self {
+        let [name, symbol, source, doc] = [name.into(), symbol.into(), source.into(), doc.into()];
         Self { name, symbol, unit, worse, doc, source, promise: 1.0, integer: false }
     }
 
     /// The same output with another promise: where few roundings add up, some value comes close to the bound itself.
-    pub const fn promising(self, promise: f64) -> Self {
+    #[must_use]
+    pub fn promising(self, promise: f64) -> Self {
         Self { promise, ..self }
     }
 
     /// The same output, whose values are whole numbers: a map of it has lines where it changes.
-    pub const fn whole(self) -> Self {
+    #[must_use]
+    pub fn whole(self) -> Self {
         Self { integer: true, ..self }
     }
 }
@@ -238,46 +273,78 @@ pub const SAMPLE: u64 = 65_536;
 pub const CONDITION_PROMISE: f64 = 4.5;
 
 /// A condition under which the formula, or a part of it, has a meaning: a signed margin that must not be negative.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Condition {
     /// The status of a design that fails it, such as `slip`.
-    pub reason: &'static str,
+    pub reason: String,
     /// Must the margin be greater than zero (rather than at least zero)?
     pub strict: bool,
     /// Fails without making the status other than ok: only the outputs it invalidates are absent.
     pub quiet: bool,
     /// Outputs that have no meaning when it fails.
-    pub invalidates: &'static [&'static str],
+    pub invalidates: Vec<String>,
     /// What it means, in a sentence.
-    pub doc: &'static str,
+    pub doc: String,
+}
+
+impl Condition {
+    /// A condition that gives the status when it fails; one that does not is made by [`Condition::quiet`].
+    pub fn new(reason: impl Into<String>, strict: bool, invalidates: &[&str], doc: impl Into<String>) -> Self {
+        Self { reason: reason.into(), strict, quiet: false, invalidates: owned(invalidates), doc: doc.into() }
+    }
+
+    /// The same condition, which takes outputs away and leaves the status as it is.
+    #[must_use]
+    pub fn quiet(self) -> Self {
+        Self { quiet: true, ..self }
+    }
+}
+
+/// A named set of inputs that differ from the defaults.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Preset {
+    /// Name on the command line and in study files.
+    pub name: String,
+    /// Names of the inputs that it sets, with their values in the inputs' units.
+    pub changes: Vec<(String, f64)>,
+}
+
+impl Preset {
+    /// A preset of that name that sets these inputs.
+    pub fn new(name: impl Into<String>, changes: &[(&str, f64)]) -> Self {
+        Self { name: name.into(), changes: valued(changes) }
+    }
 }
 
 /// A column of a [`Profile`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ProfileColumn {
     /// Name in the table, with its unit.
-    pub name: &'static str,
+    pub name: String,
     /// Unit of the values.
     pub unit: Unit,
     /// The quantity that it is drawn as, together with others of the same; `None` if it is not drawn.
-    pub drawn: Option<&'static str>,
+    pub drawn: Option<String>,
     /// What tells it from those others; empty for one alone.
-    pub label: &'static str,
+    pub label: String,
 }
 
 impl ProfileColumn {
     /// A column that is drawn for itself.
-    pub const fn new(name: &'static str, unit: Unit) -> Self {
-        Self { name, unit, drawn: Some(name), label: "" }
+    pub fn new(name: impl Into<String>, unit: Unit) -> Self {
+        let name = name.into();
+        Self { drawn: Some(name.clone()), name, unit, label: String::new() }
     }
 
     /// The same column, drawn as `quantity` beside others of that name.
-    pub const fn drawn(self, quantity: &'static str, label: &'static str) -> Self {
-        Self { drawn: Some(quantity), label, ..self }
+    #[must_use]
+    pub fn drawn(self, quantity: impl Into<String>, label: impl Into<String>) -> Self {
+        Self { drawn: Some(quantity.into()), label: label.into(), ..self }
     }
 
     /// The same column, in the table only.
-    pub const fn hidden(self) -> Self {
+    #[must_use]
+    pub fn hidden(self) -> Self {
         Self { drawn: None, ..self }
     }
 }
@@ -292,59 +359,75 @@ pub struct Profile {
 }
 
 /// Sentences on a study, from the values of the inputs that no axis sets.
-pub type Remarks = fn(&[Option<f64>]) -> Vec<String>;
-/// Sentences on one evaluation, from its inputs in their units.
-pub type Notes = fn(&[f64], &Evaluation) -> Vec<String>;
+pub type Remarks = Arc<dyn Fn(&[Option<f64>]) -> Vec<String> + Send + Sync>;
+/// Sentences on one evaluation of the model, from its inputs in their units.
+pub type Notes = Arc<dyn Fn(&Model, &[f64], &Evaluation) -> Vec<String> + Send + Sync>;
+/// Values along the belt of the model, from inputs in their units.
+pub type AlongTheBelt = Arc<dyn Fn(&Model, &[f64]) -> Profile + Send + Sync>;
+/// The pulley behind inputs of the model in their units.
+pub type PulleyOf = Arc<dyn Fn(&Model, &[f64]) -> Design + Send + Sync>;
 
-/// A model's formula on a device, with what is known of its errors.
-#[derive(Clone, Copy)]
-pub struct Device {
-    /// The formula in WGSL: the texts that make it up, what is shared first.
-    pub shader: &'static [&'static str],
-    /// The formula in f32 with error bounds.
-    pub twin: &'static dyn Twin,
+/// Where a model's text in WGSL comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shader {
+    /// It is written from the recorded formula.
+    Recorded,
+    /// It was written by hand, for a formula whose recorded loops would be too long.
+    ByHand(&'static str),
 }
 
-impl std::fmt::Debug for Device {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_tuple("Device").field(&self.twin.fields().prepared).finish()
-    }
+/// A model's formula on a device.
+#[derive(Clone, Copy)]
+pub struct Device<'a> {
+    /// The formula.
+    pub formula: &'a dyn Recordable,
+    /// Where its text comes from.
+    pub shader: Shader,
 }
 
 /// A model: everything that the rest of the program knows about it.
+///
+/// It is plain data with a formula, so one may be made at run time as well as be one of [`all`](super::all). It is passed about as
+/// `Arc<Model>`; to change one, clone what it points to. Two are equal if their tables are and they share one formula.
+#[derive(Clone)]
 pub struct Model {
     /// Name in study files and on the command line.
-    pub name: &'static str,
+    pub name: String,
+    /// What tells this model from an earlier one of its name; empty for those that come with the program. Where it is not empty it is
+    /// part of a study's hash, so that results of two versions are never put together.
+    pub version: String,
     /// One line on what it computes.
-    pub summary: &'static str,
+    pub summary: String,
     /// Where the formula comes from.
-    pub source: &'static str,
+    pub source: String,
     /// What the model does not cover, in plain sentences.
-    pub limits: &'static str,
+    pub limits: String,
     /// Its inputs; the position is the input's number.
-    pub inputs: &'static [Input],
+    pub inputs: Vec<Input>,
     /// Its outputs; the position is the output's number.
-    pub outputs: &'static [Output],
+    pub outputs: Vec<Output>,
     /// Its conditions, the first failing one being the status.
-    pub conditions: &'static [Condition],
+    pub conditions: Vec<Condition>,
     /// Named sets of inputs that differ from the defaults.
-    pub presets: &'static [(&'static str, &'static [(&'static str, f64)])],
+    pub presets: Vec<Preset>,
     /// A study to start from, in the study file's language.
-    pub starter: &'static str,
+    pub starter: String,
     /// The formula in f64.
-    pub kernel: &'static dyn Kernel,
+    pub kernel: Arc<dyn Kernel>,
     /// How long it takes.
     pub effort: Effort,
     /// Most designs of which it is counted why they are not feasible: [`SAMPLE`], or fewer of a slow model. Part of every result.
     pub sample: u64,
     /// The formula on a device; `None`: it is computed in f64 on the processor only.
-    pub device: Option<Device>,
+    pub shader: Option<Shader>,
     /// What a person should know of a whole study's answer, given the values of the inputs that no axis sets.
     pub remarks: Option<Remarks>,
-    /// What a person should know of one evaluation besides its numbers, for inputs in their units.
+    /// What a person should know of one evaluation besides its numbers.
     pub notes: Option<Notes>,
-    /// Values along the belt for inputs in their units, where the model has such.
-    pub profile: Option<fn(&[f64]) -> Profile>,
+    /// Values along the belt, where the model has such.
+    pub profile: Option<AlongTheBelt>,
+    /// The pulley that its inputs describe, where designs are solved by finite elements: there are pictures of such.
+    pub pulley: Option<PulleyOf>,
 }
 
 impl Model {
@@ -361,9 +444,10 @@ impl Model {
     /// Its formula on a device.
     ///
     /// # Errors
-    /// [`Error::Request`] if the model is computed on the processor only.
-    pub fn on_device(&self) -> Result<&Device> {
-        self.device.as_ref().ok_or_else(|| Error::Request(format!("{} is computed in f64 on the processor only", self.name)))
+    /// [`Error::CpuOnly`] if the model is computed on the processor only.
+    pub fn on_device(&self) -> Result<Device<'_>> {
+        let device = self.shader.and_then(|shader| Some(Device { formula: self.kernel.formula()?, shader }));
+        device.ok_or_else(|| Error::CpuOnly { model: self.name.clone(), remedy: None })
     }
 
     /// The defaults of all inputs, in their units.
@@ -376,16 +460,31 @@ impl Model {
     /// # Errors
     /// A sentence that lists the presets, if there is none of that name.
     pub fn preset(&self, name: &str) -> std::result::Result<Vec<f64>, String> {
-        let Some((_, changes)) = self.presets.iter().find(|(it, _)| *it == name) else {
-            let names: Vec<_> = self.presets.iter().map(|(name, _)| *name).collect();
+        let Some(preset) = self.presets.iter().find(|it| it.name == name) else {
+            let names: Vec<_> = self.presets.iter().map(|it| it.name.as_str()).collect();
             let known = if names.is_empty() { "it has none".to_owned() } else { format!("presets are: {}", names.join(", ")) };
             return Err(format!("{} has no preset \"{name}\"; {known}", self.name));
         };
         let mut inputs = self.defaults();
-        for (input, value) in *changes {
+        for (input, value) in &preset.changes {
             inputs[self.input(input).expect("a preset names inputs of its model")] = *value;
         }
         Ok(inputs)
+    }
+
+    /// What a person should know of one evaluation besides its numbers, for inputs in their units.
+    pub fn notes_on(&self, inputs: &[f64], evaluation: &Evaluation) -> Vec<String> {
+        self.notes.as_ref().map_or_else(Vec::new, |notes| notes(self, inputs, evaluation))
+    }
+
+    /// Values along the belt for inputs in their units, whose status must be ok; `None` if the model has no such values.
+    pub fn along_the_belt(&self, inputs: &[f64]) -> Option<Profile> {
+        self.profile.as_ref().map(|profile| profile(self, inputs))
+    }
+
+    /// Section, loads and strength behind inputs in their units; `None` if the model has no pulley that is solved by finite elements.
+    pub fn pulley_of(&self, inputs: &[f64]) -> Option<Design> {
+        self.pulley.as_ref().map(|pulley| pulley(self, inputs))
     }
 
     /// The first input whose every value is a word; [`Input::only_for`] names its words.
@@ -395,7 +494,7 @@ impl Model {
 
     /// The same inputs with a value in place of every word that stands for another input's.
     pub fn spelled_out(&self, inputs: &[f64]) -> Vec<f64> {
-        let value = |(input, &value): (&Input, &f64)| match input.follows.filter(|_| input.word_for(value).is_some()) {
+        let value = |(input, &value): (&Input, &f64)| match input.follows.as_ref().filter(|_| input.word_for(value).is_some()) {
             Some(other) => inputs[self.input(other).expect("an input follows one of its model")],
             None => value,
         };
@@ -411,6 +510,13 @@ impl std::fmt::Debug for Model {
 
 impl PartialEq for Model {
     fn eq(&self, other: &Self) -> bool {
-        self.name == other.name
+        fn texts(model: &Model) -> [&String; 6] {
+            let Model { name, version, summary, source, limits, starter, .. } = model;
+            [name, version, summary, source, limits, starter]
+        }
+        Arc::ptr_eq(&self.kernel, &other.kernel)
+            && texts(self) == texts(other)
+            && (&self.inputs, &self.outputs, &self.conditions) == (&other.inputs, &other.outputs, &other.conditions)
+            && (&self.presets, self.effort, self.sample) == (&other.presets, other.effort, other.sample)
     }
 }

@@ -3,7 +3,6 @@
 use super::description::{Input, Model};
 use super::formula::{CONDITIONS, INPUTS, OUTPUTS};
 use crate::decision::Decision;
-use crate::real::RunningError;
 
 /// What became of an evaluation: ok, or the first condition that failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,14 +11,20 @@ pub enum Status {
     Ok,
     /// Number of the condition that failed.
     Failed(usize),
+    /// A value is beyond what f64 holds, and absent.
+    Overflow,
 }
+
+/// The reason of [`Status::Overflow`].
+pub const OVERFLOW: &str = "overflow";
 
 impl Status {
     /// `ok` or the reason.
-    pub fn reason(self, model: &Model) -> &'static str {
+    pub fn reason(self, model: &Model) -> &str {
         match self {
             Self::Ok => "ok",
-            Self::Failed(condition) => model.conditions[condition].reason,
+            Self::Failed(condition) => &model.conditions[condition].reason,
+            Self::Overflow => OVERFLOW,
         }
     }
 }
@@ -41,7 +46,7 @@ pub(crate) fn input_to_si(input: &Input, value: f64) -> f64 {
 /// The inputs in SI units, padded to the length that formulas take.
 pub(crate) fn to_si(model: &Model, inputs: &[f64]) -> [f64; INPUTS] {
     let mut si = [0.0; INPUTS];
-    for ((si, input), &value) in si.iter_mut().zip(model.inputs).zip(inputs) {
+    for ((si, input), &value) in si.iter_mut().zip(&model.inputs).zip(inputs) {
         *si = input_to_si(input, value);
     }
     si
@@ -61,7 +66,7 @@ pub(crate) fn judge(model: &Model, margins: &[f64; CONDITIONS]) -> (Status, u64)
             if status == Status::Ok && !condition.quiet {
                 status = Status::Failed(number);
             }
-            for name in condition.invalidates {
+            for name in &condition.invalidates {
                 present &= !model.output(name).map_or(0, |output| 1 << output);
             }
         }
@@ -79,20 +84,23 @@ pub(crate) fn shown(model: &Model, outputs: &[f64; OUTPUTS], present: u64, outpu
 ///
 /// The values are not checked against the inputs' ranges: what has no meaning shows as a status.
 pub fn evaluate(model: &Model, inputs: &[f64]) -> Evaluation {
-    let si = to_si(model, inputs);
-    let prepared = model.kernel.prepared(&si);
-    let mut outputs = [0.0; OUTPUTS];
-    model.kernel.finish(&prepared, &si, u64::MAX, &mut outputs);
-    let (status, present) = judge(model, &model.kernel.conditions(&prepared, &si));
-    Evaluation { status, outputs: (0..model.outputs.len()).map(|output| shown(model, &outputs, present, output)).collect() }
+    evaluate_asked(model, inputs, u64::MAX)
 }
 
-/// What f32 arithmetic can say of the same design: is its status ok, and each output with its error bound in SI units. `None`: the
-/// model is computed in f64 only.
-pub fn evaluate_decided(model: &Model, inputs: &[f64]) -> Option<(Decision, [RunningError; OUTPUTS])> {
-    let (outputs, margins) = model.device?.twin.bounded(&to_si(model, inputs).map(RunningError::input));
-    let ok = (0..model.conditions.len())
-        .filter(|&number| !model.conditions[number].quiet)
-        .fold(Decision::Yes, |all, number| all.and(holds(model, number, f64::from(margins[number].value), margins[number].bound)));
-    Some((ok, outputs))
+/// The same where only the outputs of a bit set are asked for: an overflow of another one leaves the status as it is.
+pub fn evaluate_asked(model: &Model, inputs: &[f64], asked: u64) -> Evaluation {
+    let si = to_si(model, inputs);
+    evaluated(model, &si, &model.kernel.prepared(&si), asked)
+}
+
+/// The second stage of an evaluation, of inputs in SI units and what was prepared of them.
+pub(super) fn evaluated(model: &Model, si: &[f64; INPUTS], prepared: &[f64], asked: u64) -> Evaluation {
+    let mut outputs = [0.0; OUTPUTS];
+    model.kernel.finish(prepared, si, u64::MAX, &mut outputs);
+    let (status, present) = judge(model, &model.kernel.conditions(prepared, si));
+    let outputs: Vec<_> = (0..model.outputs.len()).map(|output| shown(model, &outputs, present, output)).collect();
+    // What no condition takes away and is absent all the same has overflowed.
+    let overflow = outputs.iter().enumerate().any(|(output, value)| value.is_none() && (asked & present) >> output & 1 == 1);
+    let status = if status == Status::Ok && overflow { Status::Overflow } else { status };
+    Evaluation { status, outputs }
 }

@@ -1,7 +1,8 @@
 //! The two stages of a formula, and the same formula behind a table of functions for every number type.
 
 use super::description::Model;
-use crate::real::{Dependence, LANES, Lanes, Real, RunningError};
+use crate::real::{LANES, Lanes, Real};
+use crate::tape::{Fields, Known, List, Operation, Recordable, Recording, Second, Trace, Whole};
 
 /// Most inputs that a model may have.
 pub const INPUTS: usize = 64;
@@ -16,7 +17,7 @@ pub const CONDITIONS: usize = 12;
 /// allows: a sweep runs it once for every combination of the inputs that it reads. `finish` is the inner loop. What passes
 /// between them is [`Fields::prepared_len`] numbers.
 pub trait Formula {
-    /// Names of what the formula reads and writes, for its twin in WGSL.
+    /// Names of what the formula reads and writes, for the shader.
     const FIELDS: Fields;
     /// First stage: what depends on the slow inputs only, as far as the outputs in `wanted` need it.
     fn prepare<R: Real>(inputs: &[R; INPUTS], wanted: u64, prepared: &mut [R]);
@@ -29,37 +30,6 @@ pub trait Formula {
     #[inline(always)]
     fn finish_block(_prepared: &[f64], _inputs: &[Lanes; INPUTS], _columns: &Columns<'_>, _results: &mut [Vec<f64>]) -> bool {
         false
-    }
-}
-
-/// The names of a formula's values, in the order of its arrays.
-#[derive(Clone, Copy, Debug)]
-pub struct Fields {
-    /// Of the inputs.
-    pub inputs: &'static [&'static str],
-    /// Of the single numbers that the first stage passes on.
-    pub prepared: &'static [&'static str],
-    /// Of the tables that it passes on after them, with their lengths.
-    pub tables: &'static [(&'static str, usize)],
-    /// Most loop turns that the twin's second stage and conditions take together, for drivers that end long loops.
-    pub turns: u64,
-    /// Of the outputs; there may be more than the model lists.
-    pub outputs: &'static [&'static str],
-}
-
-impl Fields {
-    /// How many numbers the first stage passes on.
-    pub fn prepared_len(&self) -> usize {
-        self.tables.iter().fold(self.prepared.len(), |sum, (_, length)| sum + length)
-    }
-
-    /// Of each field that the first stage passes on, tables after single numbers: where it starts and how long it is.
-    pub fn places(&self) -> impl Iterator<Item = (usize, usize)> {
-        let lengths = self.prepared.iter().map(|_| 1).chain(self.tables.iter().map(|(_, length)| *length));
-        lengths.scan(0, |next, length| {
-            *next += length;
-            Some((*next - length, length))
-        })
     }
 }
 
@@ -119,12 +89,21 @@ impl Default for Scratch {
 }
 
 /// A formula as a sweep in f64 needs it, behind one table of functions. Every [`Formula`] is one; a model that is no formula over
-/// any number type, such as a solver of its own, implements it directly and has no [`Twin`].
-pub trait Kernel: Sync {
+/// any number type, such as a solver of its own, implements it directly and cannot be recorded.
+pub trait Kernel: Send + Sync {
     /// How many numbers the first stage passes on.
     fn prepared_len(&self) -> usize;
     /// First stage in f64, as far as the outputs in `wanted` need it; `prepared` has [`Kernel::prepared_len`] places.
     fn prepare(&self, inputs: &[f64; INPUTS], wanted: u64, prepared: &mut [f64]);
+    /// How many of the numbers that the first stage passed on are in use, from the first.
+    fn prepared_used(&self, prepared: &[f64]) -> usize {
+        prepared.len()
+    }
+    /// Inputs that the first stage reads for a design with these inputs, where it takes so long that what it passed on is worth keeping
+    /// for another design of which these are the same: bit `i` for input number `i`. All: it is not worth keeping.
+    fn prepared_reads(&self, _inputs: &[f64; INPUTS]) -> u64 {
+        u64::MAX
+    }
     /// Margins of all conditions in f64.
     fn conditions(&self, prepared: &[f64], inputs: &[f64; INPUTS]) -> [f64; CONDITIONS];
     /// Second stage in f64.
@@ -147,32 +126,115 @@ pub trait Kernel: Sync {
         scratch: &mut Scratch,
         results: &mut [Vec<f64>],
     );
-    /// What depends on what.
-    fn reach(&self, inputs: &[Dependence; INPUTS]) -> Reach;
+    /// What depends on what, given what is known of the inputs.
+    fn reach(&self, inputs: &[Known]) -> Reach;
+    /// The formula to be recorded; `None` if it is none over any number type.
+    fn formula(&self) -> Option<&dyn Recordable> {
+        None
+    }
+    /// Bytes that a thread needs for a design: an estimate before anything is solved.
+    fn footprint(&self, _inputs: &[f64; INPUTS]) -> Footprint {
+        Footprint { prepared: 8 * self.prepared_len() as u64, scratch: 0 }
+    }
 }
 
-/// The same formula as a device has it: in f32, with bounds on its errors. Every [`Formula`] is one.
-pub trait Twin: Sync {
-    /// The names of the formula's values.
-    fn fields(&self) -> Fields;
-    /// What the second stage and the conditions read, to give the outputs in `wanted`.
-    fn reads(&self, inputs: &[Dependence; INPUTS], wanted: u64) -> Reads;
-    /// Outputs and condition margins in f32 with bounds on their errors.
-    fn bounded(&self, inputs: &[RunningError; INPUTS]) -> ([RunningError; OUTPUTS], [RunningError; CONDITIONS]);
-    /// Outputs and condition margins in f32, as a shader computes them.
-    fn twin(&self, inputs: &[f32; INPUTS]) -> ([f32; OUTPUTS], [f32; CONDITIONS]);
+/// Bytes that a thread needs for a design.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Footprint {
+    /// What the first stage passes on.
+    pub prepared: u64,
+    /// What it needs meanwhile.
+    pub scratch: u64,
 }
 
-/// Both stages with every output, over any number type.
-pub fn run<F: Formula, R: Real<Shared = R>>(inputs: &[R; INPUTS]) -> ([R; OUTPUTS], [R; CONDITIONS]) {
-    let mut prepared = vec![R::constant(0.0); F::FIELDS.prepared_len()];
-    F::prepare(inputs, u64::MAX, &mut prepared);
-    let mut outputs = [R::constant(0.0); OUTPUTS];
-    F::finish(&prepared, inputs, u64::MAX, &mut outputs);
-    (outputs, F::conditions(&prepared, inputs, u64::MAX))
+impl<F: Formula + Send + Sync> Recordable for F {
+    fn fields(&self) -> Fields {
+        F::FIELDS
+    }
+
+    fn whole(&self, known: &[Known], wanted: u64, conditions: u64) -> Whole {
+        let mut lengths = [0; 2];
+        let (recording, nodes) = Recording::of(known, |named| {
+            let inputs = padded(named);
+            let mut prepared = vec![Trace::constant(0.0); F::FIELDS.prepared_len()];
+            F::prepare(&inputs, wanted, &mut prepared);
+            let [outputs, margins] = finish::<F>(&prepared, &inputs, wanted, conditions);
+            lengths = [prepared.len(), outputs.len()];
+            [prepared, outputs, margins].concat()
+        });
+        let (prepared, rest) = nodes.split_at(lengths[0]);
+        let (outputs, conditions) = rest.split_at(lengths[1]);
+        Whole { recording, prepared: prepared.to_vec(), outputs: outputs.to_vec(), conditions: conditions.to_vec() }
+    }
+
+    fn second(&self, known: &[Known], wanted: u64, conditions: u64) -> Second {
+        let passed = vec![Known::ANY; F::FIELDS.prepared_len()];
+        let mut count = 0;
+        let (recording, nodes) = Recording::of(&[known, &passed].concat(), |named| {
+            let (inputs, prepared) = named.split_at(known.len());
+            let [outputs, margins] = finish::<F>(prepared, &padded(inputs), wanted, conditions);
+            count = outputs.len();
+            [outputs, margins].concat()
+        });
+        let (outputs, conditions) = nodes.split_at(count);
+        Second { recording, outputs: outputs.to_vec(), conditions: conditions.to_vec() }
+    }
 }
 
-impl<F: Formula + Sync> Kernel for F {
+/// Inputs of a formula that is recorded, as an array of the length that formulas take.
+fn padded(named: &[Trace]) -> [Trace; INPUTS] {
+    let mut inputs = [Trace::constant(0.0); INPUTS];
+    inputs[..named.len()].copy_from_slice(named);
+    inputs
+}
+
+/// Outputs and margins of the second stage of a formula that is recorded.
+fn finish<F: Formula>(prepared: &[Trace], inputs: &[Trace; INPUTS], wanted: u64, conditions: u64) -> [Vec<Trace>; 2] {
+    let mut outputs = [Trace::constant(0.0); OUTPUTS];
+    F::finish(prepared, inputs, wanted, &mut outputs);
+    let margins = F::conditions(prepared, inputs, conditions);
+    [outputs[..F::FIELDS.outputs.len()].to_vec(), margins.to_vec()]
+}
+
+impl Reach {
+    /// Of a formula that can be recorded.
+    pub fn of(formula: &dyn Recordable, inputs: &[Known]) -> Self {
+        let whole = formula.whole(inputs, u64::MAX, u64::MAX);
+        let list = List::cut(
+            &whole.recording,
+            &whole.prepared.iter().chain(&whole.outputs).chain(&whole.conditions).copied().map(Some).collect::<Vec<_>>(),
+        );
+        let sets = list.dependencies(|input| 1 << input);
+        let of: Vec<u64> = list.results.iter().flatten().map(|&node| sets[node as usize]).collect();
+        let (prepared, rest) = of.split_at(whole.prepared.len());
+        let (from_outputs, from_conditions) = rest.split_at(whole.outputs.len());
+        let (mut outputs, mut conditions) = ([0; OUTPUTS], [0; CONDITIONS]);
+        outputs[..from_outputs.len()].copy_from_slice(from_outputs);
+        conditions[..from_conditions.len()].copy_from_slice(from_conditions);
+        Self { prepared: prepared.iter().fold(0, |all, set| all | set), outputs, conditions }
+    }
+}
+
+impl Reads {
+    /// Of a formula that can be recorded, to give the outputs in `wanted` and all conditions.
+    pub fn of(formula: &dyn Recordable, inputs: &[Known], wanted: u64) -> Self {
+        let list = formula.second(inputs, wanted, u64::MAX).list(wanted, u64::MAX);
+        let field_of: Vec<usize> =
+            formula.fields().places().enumerate().flat_map(|(field, (_, length))| std::iter::repeat_n(field, length)).collect();
+        let mut reads = Self { prepared: 0, inputs: 0 };
+        for operation in &list.operations {
+            if let Operation::Input(input) = *operation {
+                match usize::from(input).checked_sub(inputs.len()) {
+                    Some(passed) => reads.prepared |= 1 << field_of[passed],
+                    None => reads.inputs |= 1 << input,
+                }
+            }
+        }
+        reads
+    }
+}
+
+impl<F: Formula + Send + Sync> Kernel for F {
     fn prepared_len(&self) -> usize {
         F::FIELDS.prepared_len()
     }
@@ -210,42 +272,12 @@ impl<F: Formula + Sync> Kernel for F {
         }
     }
 
-    fn reach(&self, inputs: &[Dependence; INPUTS]) -> Reach {
-        let (outputs, conditions) = run::<F, Dependence>(inputs);
-        let mut prepared = vec![Dependence::fixed(0.0); F::FIELDS.prepared_len()];
-        F::prepare(inputs, u64::MAX, &mut prepared);
-        let prepared = prepared.iter().fold(0, |set, value| set | value.inputs);
-        Reach { prepared, outputs: outputs.map(|value| value.inputs), conditions: conditions.map(|value| value.inputs) }
-    }
-}
-
-impl<F: Formula + Sync> Twin for F {
-    fn fields(&self) -> Fields {
-        F::FIELDS
+    fn reach(&self, inputs: &[Known]) -> Reach {
+        Reach::of(self, inputs)
     }
 
-    fn reads(&self, inputs: &[Dependence; INPUTS], wanted: u64) -> Reads {
-        let union = |prepared: &[Dependence], inputs: &[Dependence; INPUTS]| {
-            let mut outputs = [Dependence::fixed(0.0); OUTPUTS];
-            F::finish(prepared, inputs, wanted, &mut outputs);
-            let asked = outputs.iter().enumerate().filter(|(output, _)| wanted >> output & 1 == 1).map(|(_, value)| value.inputs);
-            asked.chain(F::conditions(prepared, inputs, u64::MAX).iter().map(|margin| margin.inputs)).fold(0, |all, set| all | set)
-        };
-        // Once with a bit for each field passed on and none for the inputs, once the other way round.
-        let fields = F::FIELDS.places().enumerate();
-        let field = |(field, (_, length))| std::iter::repeat_n(Dependence::varied(field, f64::NEG_INFINITY, f64::INFINITY), length);
-        let passed: Vec<_> = fields.flat_map(field).collect();
-        let silent = inputs.map(Dependence::without_inputs);
-        let unknown = vec![Dependence::within(0, f64::NEG_INFINITY, f64::INFINITY); passed.len()];
-        Reads { prepared: union(&passed, &silent), inputs: union(&unknown, inputs) }
-    }
-
-    fn bounded(&self, inputs: &[RunningError; INPUTS]) -> ([RunningError; OUTPUTS], [RunningError; CONDITIONS]) {
-        run::<F, RunningError>(inputs)
-    }
-
-    fn twin(&self, inputs: &[f32; INPUTS]) -> ([f32; OUTPUTS], [f32; CONDITIONS]) {
-        run::<F, f32>(inputs)
+    fn formula(&self) -> Option<&dyn Recordable> {
+        Some(self)
     }
 }
 

@@ -1,10 +1,11 @@
 //! Metal push-belt variator. The formula is [`super::cvt`]'s, with two packs of n bands of width b and thickness h.
 
-use super::cvt::{Belt, CONDITION_TABLE, Cvt, Drive, LIMIT, OUTPUT_TABLE, SHADER, groove_angle, ratio, torque, traction};
-use super::description::{Device, Effort, Input, Model, SAMPLE};
+use super::cvt::{Belt, Cvt, Drive, LIMIT, condition_table, groove_angle, output_table, ratio, torque, traction};
+use super::description::{Effort, Input, Model, SAMPLE, Shader};
 use super::formula::{INPUTS, record};
 use crate::real::Real;
 use crate::units::{MEGAPASCAL, MILLIMETRE, NONE};
+use std::sync::Arc;
 
 record! {
     /// Inputs in the order of the table.
@@ -17,53 +18,55 @@ record! {
 const PAPER: &str = "paper, test rig";
 
 /// The model.
-pub const MODEL: Model = Model {
-    name: "metal-cvt",
-    summary: "Metal push-belt variator: axial forces, stress and torque capacity",
-    source: "H. S. Kim, K. W. Kim: ratio, torque load and axial force of rubber and metal V-belt CVTs, eqs (6)-(16), (22)-(28)",
-    limits: "The belt is taken to be self-locked on the driver, which holds for friction > tan(groove_angle/2) and so only weakly \
+pub fn model() -> Model {
+    Model {
+        name: "metal-cvt".into(),
+        version: String::new(),
+        summary: "Metal push-belt variator: axial forces, stress and torque capacity".into(),
+        source: "H. S. Kim, K. W. Kim: ratio, torque load and axial force of rubber and metal V-belt CVTs, eqs (6)-(16), (22)-(28)".into(),
+        limits: "The belt is taken to be self-locked on the driver, which holds for friction > tan(groove_angle/2) and so only weakly \
              for metal belts. Bands that carry torque, centrifugal force, the sliding angle, lubrication, pulley bending and shift \
-             dynamics are neglected.",
-    inputs: &[
-        Input::new("friction", "mu", NONE, 0.08, (0.05, 0.14), "Coefficient of friction between blocks and pulley.", PAPER),
-        groove_angle(22.0, (18.0, 30.0), "paper; 11 degrees a side is standard"),
-        ratio((0.4, 2.5), PAPER),
-        Input::new("belt_length_mm", "L", MILLIMETRE, 613.0, (300.0, 1200.0), "Pitch length of the belt.", PAPER),
-        Input::new("centre_distance_mm", "A", MILLIMETRE, 156.0, (80.0, 300.0), "Distance of the pulley axes.", PAPER),
-        Input::new("band_width_mm", "b", MILLIMETRE, 9.0, (5.0, 20.0), "Width of a band.", PAPER),
-        Input::new("band_thickness_mm", "h", MILLIMETRE, 0.2, (0.1, 0.4), "Thickness of a band.", PAPER),
-        Input {
-            integer: true,
-            ..Input::new(
-                "band_count",
-                "n",
-                NONE,
-                10.0,
-                (4.0, 14.0),
-                "Bands in each of the two packs.",
-                "paper; a series car of the time has 10",
-            )
-        },
-        Input::new("elastic_modulus_MPa", "E", MEGAPASCAL, 2.1e5, (1.8e5, 2.2e5), "Modulus of elasticity of the bands.", PAPER),
-        Input::new("strength_MPa", "sigma_y", MEGAPASCAL, 500.0, (200.0, 2200.0), "Largest permissible stress of a band.", PAPER),
-        traction(LIMIT, "chosen: squeezed just enough"),
-        torque(100.0, (10.0, 500.0)),
-    ],
-    outputs: OUTPUT_TABLE,
-    conditions: CONDITION_TABLE,
-    presets: &[],
-    starter: include_str!("../../studies/metal-cvt.toml"),
-    kernel: &Cvt(MetalBelt),
-    profile: None,
-    notes: None,
-    remarks: None,
-    effort: Effort { prepare: 5e-7, finish: 3e-9 },
-    sample: SAMPLE,
-    device: Some(Device { shader: &[SHADER, include_str!("../../shaders/models/metal-cvt.wgsl")], twin: &Cvt(MetalBelt) }),
-};
-
-/// The formula.
-pub(super) type Own = Cvt<MetalBelt>;
+             dynamics are neglected."
+            .into(),
+        inputs: vec![
+            Input::new("friction", "mu", NONE, 0.08, (0.05, 0.14), "Coefficient of friction between blocks and pulley.", PAPER),
+            groove_angle(22.0, (18.0, 30.0), "paper; 11 degrees a side is standard"),
+            ratio((0.4, 2.5), PAPER),
+            Input::new("belt_length_mm", "L", MILLIMETRE, 613.0, (300.0, 1200.0), "Pitch length of the belt.", PAPER),
+            Input::new("centre_distance_mm", "A", MILLIMETRE, 156.0, (80.0, 300.0), "Distance of the pulley axes.", PAPER),
+            Input::new("band_width_mm", "b", MILLIMETRE, 9.0, (5.0, 20.0), "Width of a band.", PAPER),
+            Input::new("band_thickness_mm", "h", MILLIMETRE, 0.2, (0.1, 0.4), "Thickness of a band.", PAPER),
+            Input {
+                integer: true,
+                ..Input::new(
+                    "band_count",
+                    "n",
+                    NONE,
+                    10.0,
+                    (4.0, 14.0),
+                    "Bands in each of the two packs.",
+                    "paper; a series car of the time has 10",
+                )
+            },
+            Input::new("elastic_modulus_MPa", "E", MEGAPASCAL, 2.1e5, (1.8e5, 2.2e5), "Modulus of elasticity of the bands.", PAPER),
+            Input::new("strength_MPa", "sigma_y", MEGAPASCAL, 500.0, (200.0, 2200.0), "Largest permissible stress of a band.", PAPER),
+            traction(LIMIT, "chosen: squeezed just enough"),
+            torque(100.0, (10.0, 500.0)),
+        ],
+        outputs: output_table(),
+        conditions: condition_table(),
+        presets: Vec::new(),
+        starter: include_str!("../../studies/metal-cvt.toml").into(),
+        kernel: Arc::new(Cvt(MetalBelt)),
+        pulley: None,
+        profile: None,
+        notes: None,
+        remarks: None,
+        effort: Effort { prepare: 5e-7, finish: 3e-9 },
+        sample: SAMPLE,
+        shader: Some(Shader::Recorded),
+    }
+}
 
 pub(super) struct MetalBelt;
 

@@ -17,9 +17,10 @@
 //! - The second friction component acts along the flank, inwards and towards the groove's mid-plane: the loads balance
 //!   exactly only then (the paper's "radial" taken literally is 0.67 % off in its example).
 
-use super::description::{Condition, Device, Effort, Input, Model, Output, Profile, ProfileColumn, Range, SAMPLE, Worse};
-use super::formula::{CONDITIONS, Fields, Formula, INPUTS, OUTPUTS, bits, record};
+use super::description::{Condition, Effort, Input, Model, Output, Profile, ProfileColumn, Range, SAMPLE, Shader, Worse};
+use super::formula::{CONDITIONS, Formula, INPUTS, OUTPUTS, bits, record};
 use crate::real::Real;
+use crate::tape::Fields;
 use crate::units::{
     self, DEGREE, KILOGRAM_PER_METRE, KILOWATT, METRE_PER_SECOND, MILLIMETRE, NEWTON, NEWTON_METRE, NEWTON_PER_MILLIMETRE, NONE,
 };
@@ -51,6 +52,7 @@ record! {
 const OUT: Result<usize> = Result::NUMBER;
 
 use Worse::{Higher, Lower};
+use std::sync::Arc;
 
 const PAPER: &str = "paper, Table 1";
 
@@ -58,158 +60,175 @@ const PAPER: &str = "paper, Table 1";
 const SIMPLE: f64 = 4.5;
 
 /// The model.
-pub const MODEL: Model = Model {
-    name: "pulley-load",
-    summary: "V-belt pulley: tensions, friction and line loads over the wrap",
-    source: "K.-S. Lee et al.: design and analysis system for V-belt pulleys, eqs (1)-(16)",
-    limits: "The belt load is the steady one: no shock, no vibration, no heat. Friction acts in one direction all over the wrap. \
-             What the load does to the pulley is not part of this model.",
-    inputs: &[
-        Input {
-            valid: Range::NOT_NEGATIVE,
-            ..Input::new("power_kW", "P", KILOWATT, 3.0, (0.1, 50.0), "Power that the belt transmits.", PAPER)
-        },
-        Input::new("speed_rpm", "n", units::RPM, 3000.0, (100.0, 10_000.0), "Speed of the pulley.", PAPER),
-        Input::new("slack_tension_N", "T_s", NEWTON, 700.0, (50.0, 3000.0), "Tension of the slack side, all grooves together.", PAPER),
-        Input {
-            valid: Range { high: 360.0, includes_high: true, ..Range::POSITIVE },
-            ..Input::new("wrap_angle_deg", "theta_w", DEGREE, 88.0, (30.0, 240.0), "Angle over which the belt touches the pulley.", PAPER)
-        },
-        Input::new("mean_radius_mm", "R_b", MILLIMETRE, 60.0, (20.0, 300.0), "Radius at which the belt pulls.", "chosen; not printed"),
-        Input {
-            valid: Range::between(0.0, 180.0),
-            ..Input::new("groove_angle_deg", "beta", DEGREE, 36.0, (32.0, 40.0), "Angle between the two flanks of a groove.", "SAE J636")
-        },
-        Input {
-            integer: true,
-            ..Input::new("groove_count", "N", NONE, 1.0, (1.0, 12.0), "Number of grooves that share the load.", "chosen")
-        },
-        Input::new(
-            "belt_mass_kg_per_m",
-            "w",
-            KILOGRAM_PER_METRE,
-            0.11,
-            (0.03, 1.0),
-            "Mass of all belts per length.",
-            "13 mm belt, 1300 kg/m3",
-        ),
-        Input::new(
-            "friction_limit",
-            "mu_max",
-            NONE,
-            0.3,
-            (0.25, 0.5),
-            "Total friction that is available.",
-            "dry rubber on steel, customary",
-        ),
-        Input {
-            valid: Range::from_until(0.0, 90.0),
-            ..Input::new(
-                "friction_direction_deg",
-                "gamma",
-                DEGREE,
-                45.0,
-                (0.0, 45.0),
-                "Direction of friction from around the circumference (0) towards along the flank; the paper's is 45.",
-                "paper, (16)",
-            )
-        },
-    ],
-    outputs: &[
-        Output::new("belt_speed_m_per_s", "v", METRE_PER_SECOND, Higher, "(2)", "Speed of the belt.").promising(SIMPLE),
-        Output::new("tight_tension_N", "T_t", NEWTON, Higher, "(2), (15)", "Tension of the tight side.").promising(SIMPLE),
-        Output::new("effective_tension_N", "T_e", NEWTON, Higher, "T_t - T_s", "Tension that transmits the power.").promising(SIMPLE),
-        Output::new("centrifugal_tension_N", "T_c", NEWTON, Higher, "w v^2", "Tension that bends the moving belt and presses nothing.")
-            .promising(SIMPLE),
-        Output::new("effective_friction", "mu'", NONE, Higher, "(13)", "Friction of the wedge that the load needs.").promising(SIMPLE),
-        Output::new("friction_used", "mu", NONE, Higher, "(12)", "Total coefficient of friction that the load needs.").promising(SIMPLE),
-        Output::new(
-            "friction_margin",
-            "",
-            NONE,
-            Lower,
-            "1 - friction_used/friction_limit",
-            "Distance to the available friction, relative.",
-        )
-        .promising(SIMPLE),
-        Output::new("torque_Nm", "", NEWTON_METRE, Higher, "(T_t - T_s) R_b", "Torque on the pulley.").promising(SIMPLE),
-        Output::new("resultant_force_N", "", NEWTON, Higher, "vectors T_t - T_c, T_s - T_c", "Force of the belt on the shaft.")
-            .promising(SIMPLE),
-        Output::new(
-            "slack_end_line_force_N_per_mm",
-            "Q(0)",
-            NEWTON_PER_MILLIMETRE,
-            Higher,
-            "(9)",
-            "Radial load per length at the slack end.",
-        )
-        .promising(SIMPLE),
-        Output::new(
-            "tight_end_line_force_N_per_mm",
-            "Q(theta_w)",
-            NEWTON_PER_MILLIMETRE,
-            Higher,
-            "(9)",
-            "Radial load per length at the tight end.",
-        )
-        .promising(SIMPLE),
-        Output::new(
-            "slack_end_flank_force_N_per_mm",
-            "R(0)",
-            NEWTON_PER_MILLIMETRE,
-            Higher,
-            "(10)",
-            "Normal force per flank and length at the slack end.",
-        )
-        .promising(SIMPLE),
-        Output::new(
-            "tight_end_flank_force_N_per_mm",
-            "R(theta_w)",
-            NEWTON_PER_MILLIMETRE,
-            Higher,
-            "(10)",
-            "Normal force per flank and length at the tight end.",
-        )
-        .promising(SIMPLE),
-    ],
-    conditions: &[
-        Condition {
-            reason: "belt lifts",
-            strict: true,
-            quiet: false,
-            invalidates: &[
-                "effective_friction",
-                "friction_used",
+pub fn model() -> Model {
+    Model {
+        name: "pulley-load".into(),
+        version: String::new(),
+        summary: "V-belt pulley: tensions, friction and line loads over the wrap".into(),
+        source: "K.-S. Lee et al.: design and analysis system for V-belt pulleys, eqs (1)-(16)".into(),
+        limits: "The belt load is the steady one: no shock, no vibration, no heat. Friction acts in one direction all over the wrap. \
+             What the load does to the pulley is not part of this model."
+            .into(),
+        inputs: vec![
+            Input {
+                valid: Range::NOT_NEGATIVE,
+                ..Input::new("power_kW", "P", KILOWATT, 3.0, (0.1, 50.0), "Power that the belt transmits.", PAPER)
+            },
+            Input::new("speed_rpm", "n", units::RPM, 3000.0, (100.0, 10_000.0), "Speed of the pulley.", PAPER),
+            Input::new("slack_tension_N", "T_s", NEWTON, 700.0, (50.0, 3000.0), "Tension of the slack side, all grooves together.", PAPER),
+            Input {
+                valid: Range { high: 360.0, includes_high: true, ..Range::POSITIVE },
+                ..Input::new(
+                    "wrap_angle_deg",
+                    "theta_w",
+                    DEGREE,
+                    88.0,
+                    (30.0, 240.0),
+                    "Angle over which the belt touches the pulley.",
+                    PAPER,
+                )
+            },
+            Input::new("mean_radius_mm", "R_b", MILLIMETRE, 60.0, (20.0, 300.0), "Radius at which the belt pulls.", "chosen; not printed"),
+            Input {
+                valid: Range::between(0.0, 180.0),
+                ..Input::new(
+                    "groove_angle_deg",
+                    "beta",
+                    DEGREE,
+                    36.0,
+                    (32.0, 40.0),
+                    "Angle between the two flanks of a groove.",
+                    "SAE J636",
+                )
+            },
+            Input {
+                integer: true,
+                ..Input::new("groove_count", "N", NONE, 1.0, (1.0, 12.0), "Number of grooves that share the load.", "chosen")
+            },
+            Input::new(
+                "belt_mass_kg_per_m",
+                "w",
+                KILOGRAM_PER_METRE,
+                0.11,
+                (0.03, 1.0),
+                "Mass of all belts per length.",
+                "13 mm belt, 1300 kg/m3",
+            ),
+            Input::new(
+                "friction_limit",
+                "mu_max",
+                NONE,
+                0.3,
+                (0.25, 0.5),
+                "Total friction that is available.",
+                "dry rubber on steel, customary",
+            ),
+            Input {
+                valid: Range::from_until(0.0, 90.0),
+                ..Input::new(
+                    "friction_direction_deg",
+                    "gamma",
+                    DEGREE,
+                    45.0,
+                    (0.0, 45.0),
+                    "Direction of friction from around the circumference (0) towards along the flank; the paper's is 45.",
+                    "paper, (16)",
+                )
+            },
+        ],
+        outputs: vec![
+            Output::new("belt_speed_m_per_s", "v", METRE_PER_SECOND, Higher, "(2)", "Speed of the belt.").promising(SIMPLE),
+            Output::new("tight_tension_N", "T_t", NEWTON, Higher, "(2), (15)", "Tension of the tight side.").promising(SIMPLE),
+            Output::new("effective_tension_N", "T_e", NEWTON, Higher, "T_t - T_s", "Tension that transmits the power.").promising(SIMPLE),
+            Output::new("centrifugal_tension_N", "T_c", NEWTON, Higher, "w v^2", "Tension that bends the moving belt and presses nothing.")
+                .promising(SIMPLE),
+            Output::new("effective_friction", "mu'", NONE, Higher, "(13)", "Friction of the wedge that the load needs.").promising(SIMPLE),
+            Output::new("friction_used", "mu", NONE, Higher, "(12)", "Total coefficient of friction that the load needs.")
+                .promising(SIMPLE),
+            Output::new(
                 "friction_margin",
-                "resultant_force_N",
+                "",
+                NONE,
+                Lower,
+                "1 - friction_used/friction_limit",
+                "Distance to the available friction, relative.",
+            )
+            .promising(SIMPLE),
+            Output::new("torque_Nm", "", NEWTON_METRE, Higher, "(T_t - T_s) R_b", "Torque on the pulley.").promising(SIMPLE),
+            Output::new("resultant_force_N", "", NEWTON, Higher, "vectors T_t - T_c, T_s - T_c", "Force of the belt on the shaft.")
+                .promising(SIMPLE),
+            Output::new(
                 "slack_end_line_force_N_per_mm",
+                "Q(0)",
+                NEWTON_PER_MILLIMETRE,
+                Higher,
+                "(9)",
+                "Radial load per length at the slack end.",
+            )
+            .promising(SIMPLE),
+            Output::new(
                 "tight_end_line_force_N_per_mm",
+                "Q(theta_w)",
+                NEWTON_PER_MILLIMETRE,
+                Higher,
+                "(9)",
+                "Radial load per length at the tight end.",
+            )
+            .promising(SIMPLE),
+            Output::new(
                 "slack_end_flank_force_N_per_mm",
+                "R(0)",
+                NEWTON_PER_MILLIMETRE,
+                Higher,
+                "(10)",
+                "Normal force per flank and length at the slack end.",
+            )
+            .promising(SIMPLE),
+            Output::new(
                 "tight_end_flank_force_N_per_mm",
-            ],
-            doc: "The slack tension exceeds the centrifugal tension: otherwise the belt lifts off.",
-        },
-        Condition {
-            reason: "no friction balances the load",
-            strict: true,
-            quiet: false,
-            invalidates: &["friction_used", "friction_margin", "slack_end_flank_force_N_per_mm", "tight_end_flank_force_N_per_mm"],
-            doc: "Friction in this direction can carry the load: cos(gamma) > mu' sin(gamma) cos(beta/2).",
-        },
-    ],
-    presets: &[],
-    starter: include_str!("../../studies/pulley-load.toml"),
-    kernel: &PulleyLoad,
-    profile: Some(profile),
-    notes: None,
-    remarks: None,
-    effort: Effort { prepare: 2e-7, finish: 2e-9 },
-    sample: SAMPLE,
-    device: Some(Device { shader: &[include_str!("../../shaders/models/pulley-load.wgsl")], twin: &PulleyLoad }),
-};
-
-/// The formula.
-pub(super) type Own = PulleyLoad;
+                "R(theta_w)",
+                NEWTON_PER_MILLIMETRE,
+                Higher,
+                "(10)",
+                "Normal force per flank and length at the tight end.",
+            )
+            .promising(SIMPLE),
+        ],
+        conditions: vec![
+            Condition::new(
+                "belt lifts",
+                true,
+                &[
+                    "effective_friction",
+                    "friction_used",
+                    "friction_margin",
+                    "resultant_force_N",
+                    "slack_end_line_force_N_per_mm",
+                    "tight_end_line_force_N_per_mm",
+                    "slack_end_flank_force_N_per_mm",
+                    "tight_end_flank_force_N_per_mm",
+                ],
+                "The slack tension exceeds the centrifugal tension: otherwise the belt lifts off.",
+            ),
+            Condition::new(
+                "no friction balances the load",
+                true,
+                &["friction_used", "friction_margin", "slack_end_flank_force_N_per_mm", "tight_end_flank_force_N_per_mm"],
+                "Friction in this direction can carry the load: cos(gamma) > mu' sin(gamma) cos(beta/2).",
+            ),
+        ],
+        presets: Vec::new(),
+        pulley: None,
+        starter: include_str!("../../studies/pulley-load.toml").into(),
+        kernel: Arc::new(PulleyLoad),
+        profile: Some(Arc::new(profile)),
+        notes: None,
+        remarks: None,
+        effort: Effort { prepare: 2e-7, finish: 2e-9 },
+        sample: SAMPLE,
+        shader: Some(Shader::Recorded),
+    }
+}
 
 pub(super) struct PulleyLoad;
 
@@ -229,13 +248,14 @@ impl Formula for PulleyLoad {
         let effective_tension = i.power / belt_speed;
         let centrifugal_tension = i.belt_mass * belt_speed.squared();
         // What presses the belt on the pulley at either end of the wrap.
-        let slack_pressing = i.slack_tension - centrifugal_tension;
-        let tight_pressing = slack_pressing + effective_tension;
+        let slack_pressing = (i.slack_tension - centrifugal_tension).named("slack_pressing", "");
+        let tight_pressing = (slack_pressing + effective_tension).named("tight_pressing", "");
         // (13): log((T_t - T_c)/(T_s - T_c)), exact also for a small load.
         let effective_friction = (effective_tension / slack_pressing).ln_1p() / i.wrap_angle;
 
-        let (sine, cosine) = ((i.groove_angle / two).sin(), (i.groove_angle / two).cos());
-        let (along, across) = (i.friction_direction.cos(), i.friction_direction.sin() * cosine);
+        let (sine, cosine) = ((i.groove_angle / two).sin().named("groove_sine", ""), (i.groove_angle / two).cos());
+        let along = i.friction_direction.cos().named("along", "");
+        let across = (i.friction_direction.sin() * cosine).named("across", "");
         let balance_margin = along - effective_friction * across;
         let friction_used = effective_friction * sine / balance_margin;
         let both = slack_pressing.squared() + tight_pressing.squared();
@@ -296,22 +316,22 @@ impl Formula for PulleyLoad {
 
 /// What a pulley's finite elements need of the belt's load, in SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct WrapLoad {
+pub(super) struct WrapLoad<R> {
     /// Margins of the two conditions.
-    pub margins: [f64; 2],
+    pub margins: [R; 2],
     /// mu' of (13).
-    pub effective_friction: f64,
+    pub effective_friction: R,
     /// Total coefficient of friction that the load needs.
-    pub friction_used: f64,
+    pub friction_used: R,
     /// R(0) of (10): normal force per flank and length at the slack end.
-    pub flank_force: f64,
+    pub flank_force: R,
 }
 
 /// The belt's load, for inputs that begin with those of this model.
-pub(super) fn wrap_load(si: &[f64; INPUTS]) -> WrapLoad {
-    let mut prepared = [0.0; Prepared::<usize>::NAMES.len()];
+pub(super) fn wrap_load<R: Real<Shared = R>>(si: &[R; INPUTS]) -> WrapLoad<R> {
+    let mut prepared = [R::constant(0.0); Prepared::<usize>::NAMES.len()];
     PulleyLoad::prepare(si, u64::MAX, &mut prepared);
-    let p = Prepared::<f64>::shared(&prepared);
+    let p = Prepared::<R>::shared(&prepared);
     WrapLoad {
         margins: [p.lift_margin, p.balance_margin],
         effective_friction: p.effective_friction,
@@ -321,21 +341,21 @@ pub(super) fn wrap_load(si: &[f64; INPUTS]) -> WrapLoad {
 }
 
 /// All outputs of this model, for inputs and outputs that begin with its own.
-pub(super) fn finish_all(si: &[f64; INPUTS], outputs: &mut [f64; OUTPUTS]) {
-    let mut prepared = [0.0; Prepared::<usize>::NAMES.len()];
+pub(super) fn finish_all<R: Real<Shared = R>>(si: &[R; INPUTS], outputs: &mut [R; OUTPUTS]) {
+    let mut prepared = [R::constant(0.0); Prepared::<usize>::NAMES.len()];
     PulleyLoad::prepare(si, u64::MAX, &mut prepared);
     PulleyLoad::finish(&prepared, si, u64::MAX, outputs);
 }
 
 /// Tension, line force and flank force over the wrap, (14), (9), (10): from the slack end (0) to the tight end, a row a degree
 /// or a little closer. `inputs` are in their units and must have status ok.
-fn profile(inputs: &[f64]) -> Profile {
+fn profile(model: &Model, inputs: &[f64]) -> Profile {
     let mut si = [0.0; INPUTS];
-    for ((si, &value), input) in si.iter_mut().zip(inputs).zip(MODEL.inputs) {
+    for ((si, &value), input) in si.iter_mut().zip(inputs).zip(&model.inputs) {
         *si = input.unit.to_si(value);
     }
     let i = Inputs::read(&si);
-    let p = Prepared::<f64>::shared(&MODEL.kernel.prepared(&si));
+    let p = Prepared::<f64>::shared(&model.kernel.prepared(&si));
     let steps = inputs[Inputs::NUMBER.wrap_angle].ceil();
     let count = steps as u32;
     let rows = (0..=count).map(|step| {

@@ -1,9 +1,10 @@
 //! Tests that loop over every model.
 
 use super::*;
-use crate::real::Dependence;
 use crate::screen::Control;
+use crate::tape::Known;
 use std::collections::HashSet;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, OnceLock};
 use std::thread::ThreadId;
@@ -11,7 +12,7 @@ use std::time::Duration;
 
 /// The formula of `pulley-load` as a slow model without a twin would compute it, watched.
 pub(crate) struct Watched {
-    inner: &'static dyn Kernel,
+    inner: Arc<dyn Kernel>,
     /// How long the first stage sleeps.
     pause: Duration,
     /// Numbers that it passes on and nobody reads.
@@ -69,35 +70,34 @@ impl Kernel for Watched {
         self.count(&self.blocks);
     }
 
-    fn reach(&self, inputs: &[Dependence; INPUTS]) -> Reach {
+    fn reach(&self, inputs: &[Known]) -> Reach {
         self.inner.reach(inputs)
     }
 }
 
 /// A model that is watched: it goes by the name of the one that it computes like.
-pub(crate) fn watched(pause: Duration, idle: usize) -> (&'static Model, &'static Watched) {
+pub(crate) fn watched(pause: Duration, idle: usize) -> (Arc<Model>, Arc<Watched>) {
     let model = find("pulley-load").expect("it is a model");
     let [prepared, blocks] = [const { AtomicU64::new(0) }; 2];
-    let kernel = Watched { inner: model.kernel, pause, idle, prepared, blocks, threads: Mutex::default(), stop: OnceLock::new() };
-    let kernel: &Watched = Box::leak(Box::new(kernel));
+    let kernel = Watched { inner: model.kernel.clone(), pause, idle, prepared, blocks, threads: Mutex::default(), stop: OnceLock::new() };
+    let kernel = Arc::new(kernel);
     let effort = Effort { prepare: pause.as_secs_f64(), finish: 1e-8 };
-    (Box::leak(Box::new(Model { kernel, effort, sample: 50, device: None, ..*model })), kernel)
+    (Arc::new(Model { kernel: kernel.clone(), effort, sample: 50, shader: None, ..Model::clone(&model) }), kernel)
 }
 
 /// Words of an enumeration, for tests where no model needs them.
 const SECTIONS: &[(&str, f64)] = &[("machined", 1.0), ("welded-discs", 2.0), ("double-groove", 3.0), ("pressed-cup", 4.0)];
 
-const PRESETS: &[(&str, &[(&str, f64)])] = &[("welded", &[("section", 2.0), ("power_kW", 5.0)])];
-
 /// A model with an enumeration and an input that is read for one of its words only; its formula reads neither.
-pub(crate) fn with_a_section() -> &'static Model {
+pub(crate) fn with_a_section() -> Arc<Model> {
     let model = find("pulley-load").expect("it is a model");
     let doc = "How the pulley is made.";
     let section = Input::enumeration("section", "", SECTIONS, 4.0, doc, "chosen");
     let mass = Input::new("disc_mass_g", "", crate::units::GRAM, 10.0, (1.0, 100.0), "Mass of a disc.", "chosen");
-    let mass = Input { only_for: &["welded-discs"], ..mass };
-    let inputs: Vec<Input> = model.inputs.iter().copied().chain([section, mass]).collect();
-    Box::leak(Box::new(Model { name: "sections", inputs: Vec::leak(inputs), presets: PRESETS, ..*model }))
+    let mass = mass.read_only_for(&["welded-discs"]);
+    let inputs: Vec<Input> = model.inputs.iter().cloned().chain([section, mass]).collect();
+    let presets = vec![Preset::new("welded", &[("section", 2.0), ("power_kW", 5.0)])];
+    Arc::new(Model { name: "sections".into(), inputs, presets, ..Model::clone(&model) })
 }
 
 #[test]
@@ -107,10 +107,11 @@ fn an_enumeration_takes_its_words_and_nothing_else() {
     assert!(section.is_enumeration() && section.accepts(3.0) && !section.accepts(5.0) && !section.accepts(2.5));
     assert_eq!((section.word_for(2.0), section.value_of("machined"), section.value_of("2")), (Some("welded-discs"), Some(1.0), None));
     assert_eq!(section.valid_in_words(), r#""machined", "welded-discs", "double-groove" or "pressed-cup""#);
-    let traction = find("metal-cvt").and_then(|model| model.inputs.iter().find(|it| it.name == "traction")).expect("it is an input");
+    let traction =
+        find("metal-cvt").and_then(|model| model.inputs.iter().find(|it| it.name == "traction").cloned()).expect("it is an input");
     assert!(!traction.is_enumeration() && traction.accepts(0.5) && traction.accepts(-1.0) && !traction.accepts(-2.0));
     assert_eq!(traction.valid_in_words(), r#"at least 0 and less than 1, or "limit""#);
-    assert_eq!(evaluate(model, &model.defaults()).status, Status::Ok);
+    assert_eq!(evaluate(&model, &model.defaults()).status, Status::Ok);
 }
 
 #[test]
@@ -126,18 +127,18 @@ fn a_preset_changes_the_defaults_and_an_unknown_one_lists_what_there_is() {
 
 #[test]
 fn words_are_unique_and_presets_and_conditions_of_inputs_name_what_exists() {
-    for model in MODELS.iter().copied().chain([with_a_section()]) {
-        for input in model.inputs {
+    for model in all().iter().cloned().chain([with_a_section()]) {
+        for input in &model.inputs {
             let words: HashSet<_> = input.words.iter().map(|(word, _)| word).collect();
             let numbers: HashSet<_> = input.words.iter().map(|(_, number)| number.to_bits()).collect();
             assert!(words.len() == input.words.len() && numbers.len() == words.len(), "{}: {}", model.name, input.name);
             assert!(input.words.iter().all(|(_, number)| !input.valid.contains(*number)), "{}: {}", model.name, input.name);
             let enumeration = model.enumeration().map(|of| &model.inputs[of]);
-            let known = |word: &&str| enumeration.is_some_and(|of| of.value_of(word).is_some());
+            let known = |word: &String| enumeration.is_some_and(|of| of.value_of(word).is_some());
             assert!(input.only_for.iter().all(known), "{}: {}", model.name, input.name);
         }
-        for (name, changes) in model.presets {
-            for (input, value) in *changes {
+        for Preset { name, changes } in &model.presets {
+            for (input, value) in changes {
                 let input = &model.inputs[model.input(input).unwrap_or_else(|| panic!("{}: {name} sets {input}", model.name))];
                 assert!(input.accepts(*value), "{}: {name} sets {} to {value}", model.name, input.name);
             }
@@ -147,9 +148,9 @@ fn words_are_unique_and_presets_and_conditions_of_inputs_name_what_exists() {
 
 #[test]
 fn names_are_unique_and_carry_their_unit() {
-    for model in MODELS {
+    for model in all() {
         let mut seen = HashSet::new();
-        let quantities = model.inputs.iter().map(|i| (i.name, i.unit)).chain(model.outputs.iter().map(|o| (o.name, o.unit)));
+        let quantities = model.inputs.iter().map(|i| (&i.name, i.unit)).chain(model.outputs.iter().map(|o| (&o.name, o.unit)));
         for (name, unit) in quantities {
             assert!(seen.insert(name), "{}: {name} stands twice", model.name);
             let suffix = unit.suffix();
@@ -161,8 +162,8 @@ fn names_are_unique_and_carry_their_unit() {
 
 #[test]
 fn defaults_are_usual_and_evaluate_to_every_output() {
-    for model in MODELS {
-        for input in model.inputs {
+    for model in all() {
+        for input in &model.inputs {
             let default = input.default;
             assert!(input.accepts(default), "{}: {}", model.name, input.name);
             assert!(input.word_for(default).is_some() || (input.usual.0..=input.usual.1).contains(&default), "{}", input.name);
@@ -170,8 +171,8 @@ fn defaults_are_usual_and_evaluate_to_every_output() {
         let evaluation = evaluate(model, &model.defaults());
         assert_eq!(evaluation.status, Status::Ok, "{}", model.name);
         // What a quiet condition may leave out is there only if it is asked for.
-        let optional = |name: &str| model.conditions.iter().any(|condition| condition.quiet && condition.invalidates.contains(&name));
-        let missing = model.outputs.iter().zip(&evaluation.outputs).filter(|(_, value)| value.is_none()).map(|(output, _)| output.name);
+        let optional = |name: &String| model.conditions.iter().any(|condition| condition.quiet && condition.invalidates.contains(name));
+        let missing = model.outputs.iter().zip(&evaluation.outputs).filter(|(_, value)| value.is_none()).map(|(output, _)| &output.name);
         assert!(missing.clone().all(optional), "{}: {:?}", model.name, missing.collect::<Vec<_>>());
     }
 }
@@ -179,11 +180,11 @@ fn defaults_are_usual_and_evaluate_to_every_output() {
 #[test]
 fn conditions_invalidate_outputs_that_exist() {
     // The two belts share one table; the rubber belt lacks the metal belt's last two outputs.
-    let known: HashSet<_> = MODELS.iter().flat_map(|model| model.outputs).map(|output| output.name).collect();
-    for model in MODELS {
-        for condition in model.conditions {
-            for name in condition.invalidates {
-                assert!(known.contains(name), "{}: \"{}\" invalidates {name}", model.name, condition.reason);
+    let known: HashSet<_> = all().iter().flat_map(|model| &model.outputs).map(|output| &output.name).collect();
+    for model in all() {
+        for condition in &model.conditions {
+            for name in &condition.invalidates {
+                assert!(known.contains(&name), "{}: \"{}\" invalidates {name}", model.name, condition.reason);
             }
         }
     }

@@ -1,11 +1,12 @@
 //! A model with inputs, asked by name.
 
 use crate::models::{Model, Status, evaluate, find};
+use std::sync::Arc;
 
 /// Inputs of a model.
 #[derive(Clone)]
 pub(super) struct Inputs {
-    pub model: &'static Model,
+    pub model: Arc<Model>,
     pub values: Vec<f64>,
 }
 
@@ -13,13 +14,13 @@ impl Inputs {
     /// The defaults of a model, which are its paper's data as far as it prints them.
     pub fn of(model: &str) -> Self {
         let model = find(model).expect("there is such a model");
-        Self { model, values: model.defaults() }
+        Self { values: model.defaults(), model }
     }
 
     /// A preset of a model.
     pub fn preset(model: &str, preset: &str) -> Self {
         let model = find(model).expect("there is such a model");
-        Self { model, values: model.preset(preset).expect("the model has it") }
+        Self { values: model.preset(preset).expect("the model has it"), model }
     }
 
     /// The same with these values, in the inputs' units.
@@ -43,8 +44,8 @@ impl Inputs {
 
     /// Every output by name.
     pub fn outputs(&self) -> Outputs {
-        let evaluation = evaluate(self.model, &self.values);
-        Outputs { model: self.model, status: evaluation.status, values: evaluation.outputs }
+        let evaluation = evaluate(&self.model, &self.values);
+        Outputs { model: self.model.clone(), status: evaluation.status, values: evaluation.outputs }
     }
 
     /// One output that must have a value.
@@ -54,7 +55,7 @@ impl Inputs {
 
     /// A column of the values along the belt.
     pub fn column(&self, name: &str) -> Vec<f64> {
-        let profile = self.model.profile.expect("the model has values along the belt")(&self.values);
+        let profile = self.model.along_the_belt(&self.values).expect("the model has values along the belt");
         let at = profile.columns.iter().position(|column| column.name == name).expect("there is such a column");
         profile.rows.iter().map(|row| row[at]).collect()
     }
@@ -62,7 +63,7 @@ impl Inputs {
 
 /// Outputs of a model.
 pub(super) struct Outputs {
-    model: &'static Model,
+    model: Arc<Model>,
     pub status: Status,
     values: Vec<Option<f64>>,
 }
@@ -75,6 +76,6 @@ impl Outputs {
 
     /// An output that must have a value.
     pub fn get(&self, name: &str) -> f64 {
-        self.find(name).unwrap_or_else(|| panic!("{name} of {}: {}", self.model.name, self.status.reason(self.model)))
+        self.find(name).unwrap_or_else(|| panic!("{name} of {}: {}", self.model.name, self.status.reason(&self.model)))
     }
 }

@@ -16,16 +16,17 @@ pub use comparison::{Comparison, Printed, Verdict, check};
 
 use evaluated::Inputs;
 
-use crate::checkpoint::replace;
 use crate::error::{Error, Result};
 use crate::export::{Data, Table, TableColumn, csv_text};
-use std::fs;
+use crate::files::{Claim, is_there, read_at_most, replace};
 use std::path::Path;
 
 /// Name of the page that a reproduction is read from.
 pub const PAGE: &str = "README.md";
 /// Name of the table of all comparisons, whose presence makes a folder a reproduction.
 pub const MARK: &str = "comparison.csv";
+/// Most bytes of it.
+const MOST_BYTES: u64 = 1 << 24;
 
 /// One of the papers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -219,16 +220,21 @@ impl Reproduction {
     /// Files of a folder that writing there would replace, in the order of their writing.
     pub fn in_the_way(&self, folder: &Path) -> Vec<String> {
         let names = self.files().into_iter().map(|(name, _)| name);
-        names.filter(|name| folder.join(name).exists()).collect()
+        names.filter(|name| is_there(&folder.join(name))).collect()
     }
 
-    /// Writes all files. Each is either whole or not there, and [`MARK`] comes last.
+    /// Is there a reproduction in a folder, of this version or an older one?
+    pub fn is_in(folder: &Path) -> bool {
+        let header = csv_text(&comparison::table(&[]));
+        read_at_most(&folder.join(MARK), MOST_BYTES).is_ok_and(|bytes| bytes.starts_with(&header))
+    }
+
+    /// Writes all files into a directory that this process holds. Each is either whole or not there, and [`MARK`] comes last.
     ///
     /// # Errors
     /// [`Error::Io`].
-    pub fn write(&self, folder: &Path) -> Result<()> {
-        fs::create_dir_all(folder).map_err(Error::io(folder))?;
-        self.files().iter().try_for_each(|(name, bytes)| replace(&folder.join(name), bytes))
+    pub fn write(&self, directory: &Claim) -> Result<()> {
+        self.files().iter().try_for_each(|(name, bytes)| replace(&directory.path().join(name), bytes))
     }
 }
 

@@ -17,6 +17,8 @@ pub(super) const HATCH: RGBColor = RGBColor(170, 170, 170);
 pub(super) const BLUE: RGBColor = RGBColor(0, 114, 178);
 /// The main colour, lighter.
 pub(super) const LIGHT_BLUE: RGBColor = RGBColor(158, 202, 225);
+/// Data behind the data: darker than the grid, lighter than everything else.
+pub(super) const SAMPLE: RGBColor = RGBColor(190, 190, 190);
 /// What stands out from the data.
 pub(super) const VERMILION: RGBColor = RGBColor(213, 94, 0);
 

@@ -1,7 +1,6 @@
 //! The head of a picture: its title and, below, a legend that can cover no data.
 
 use super::colours::{ABSENT, GREY, HATCH, INK};
-use super::lines::Marker;
 use super::sheet::{Area, Dash, Drawn, Sheet, UNIT, WIDTH};
 use super::words::{clean, line_height, shortened, text, text_width, wrap};
 use plotters::prelude::*;
@@ -12,6 +11,17 @@ const TITLE_TEXT: i32 = 17;
 const LEGEND_TEXT: i32 = 13;
 const LEGEND_ROW: i32 = 21 * UNIT;
 const MARK_WIDTH: i32 = 30 * UNIT;
+
+/// What stands at every point of a [`Line`](super::Line).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Marker {
+    /// Nothing.
+    None,
+    /// A ring.
+    Open,
+    /// A dot.
+    Filled,
+}
 
 /// What stands in front of a legend entry.
 #[derive(Debug, Clone, Copy)]

@@ -3,6 +3,7 @@
 use super::Quantity;
 use super::axis::{Axis, Numbers};
 use super::colours::LINES;
+pub use super::header::Marker;
 use super::header::{Header, Mark, sentence};
 use super::panel::{PanelPlan, axis_label, x_labels_height, y_labels_width};
 use super::range::bounds;
@@ -28,17 +29,6 @@ pub enum Stroke {
     Dotted,
     /// Not at all: its marks stand alone.
     None,
-}
-
-/// What stands at every point of a [`Line`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Marker {
-    /// Nothing.
-    None,
-    /// A ring.
-    Open,
-    /// A dot.
-    Filled,
 }
 
 /// One line of [`lines()`].

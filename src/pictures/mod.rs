@@ -27,6 +27,7 @@ pub mod pulley;
 mod range;
 mod raster;
 mod scatter;
+mod scatter_front;
 mod scatter_grid;
 mod sheet;
 mod staircase;
@@ -37,7 +38,7 @@ pub use curves::curves;
 pub use heatmap::heatmap;
 pub use histogram::histogram;
 pub use lines::{Guide, Line, Marker, Scale, Stroke, lines};
-pub use scatter::front;
+pub use scatter::{front, front_over};
 
 /// One quantity on an axis.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -1,14 +1,11 @@
 //! The picture of a Pareto front.
 
-use super::axis::Axis;
-use super::colours::{BLUE, INK, VERMILION};
+use super::colours::{BLUE, INK, SAMPLE, VERMILION};
 use super::header::{Header, Mark, sentence};
-use super::panel::axis_label;
-use super::range::bounds;
+use super::scatter_front::Front;
 use super::scatter_grid::{Grid, dots};
 use super::sheet::Sheet;
-use super::staircase::staircase;
-use super::thinning::thinned;
+use super::thinning::{DRAWN_AT_MOST, thinned};
 use super::{Goal, Objective, number};
 
 /// Draws a Pareto front: for two objectives one scatter with the staircase that bounds what is
@@ -20,6 +17,19 @@ use super::{Goal, Objective, number};
 /// the knee, and the picture says so. No points: the picture says that no design is feasible. One
 /// objective has a best value rather than a front; the picture states it.
 pub fn front(title: &str, objectives: &[Objective], points: &[Vec<f64>], knee: Option<usize>, ideal: Option<&[f64]>) -> String {
+    front_over(title, objectives, points, knee, ideal, &[])
+}
+
+/// The same over a `sample` of the feasible designs, `[design][objective]`: light dots behind the front. Of more than 5000 an even
+/// selection is drawn, and the picture says so.
+pub fn front_over(
+    title: &str,
+    objectives: &[Objective],
+    points: &[Vec<f64>],
+    knee: Option<usize>,
+    ideal: Option<&[f64]>,
+    sample: &[Vec<f64>],
+) -> String {
     let complete = |p: &[f64]| p.len() == objectives.len() && p.iter().all(|v| v.is_finite());
     let usable: Vec<usize> = (0..points.len()).filter(|&i| complete(&points[i])).collect();
     let rows: Vec<&[f64]> = usable.iter().map(|&i| &points[i][..]).collect();
@@ -36,8 +46,9 @@ pub fn front(title: &str, objectives: &[Objective], points: &[Vec<f64>], knee: O
         points: drawn.iter().map(|&i| rows[i]).collect(),
         knee: knee.map(|k| rows[k]),
         ideal: ideal.filter(|p| complete(p)),
+        sample: evenly(sample.iter().map(Vec::as_slice).filter(|p| complete(p)).collect()),
     };
-    let header = Header::new(title, front.legend(rows.len()));
+    let header = Header::new(title, front.legend(rows.len(), sample.len()));
     let grid = Grid::new(&front, header.height());
     let mut sheet = Sheet::new(grid.bottom);
     let pairs = sheet.draw(|area| {
@@ -45,7 +56,10 @@ pub fn front(title: &str, objectives: &[Objective], points: &[Vec<f64>], knee: O
         grid.draw(area, &front)
     });
     for pair in &pairs {
-        sheet.insert(&dots(&pair.dots, front.dot_size()));
+        if !pair.sample.is_empty() {
+            sheet.insert(&dots(&pair.sample, SAMPLE, front.sample_size()));
+        }
+        sheet.insert(&dots(&pair.dots, BLUE, front.dot_size()));
     }
     sheet.draw(|area| {
         for pair in &pairs {
@@ -61,70 +75,10 @@ pub fn front(title: &str, objectives: &[Objective], points: &[Vec<f64>], knee: O
     sheet.finish()
 }
 
-/// What is drawn, thinned already.
-pub(super) struct Front<'a> {
-    pub objectives: &'a [Objective],
-    pub points: Vec<&'a [f64]>,
-    pub knee: Option<&'a [f64]>,
-    pub ideal: Option<&'a [f64]>,
-}
-
-impl Front<'_> {
-    fn legend(&self, total: usize) -> Vec<(Mark, String)> {
-        let designs = if total == 1 { "design" } else { "designs" };
-        let count = number::count(total as u64);
-        let name = format!("front of {count} {designs}");
-        let mut legend = vec![(Mark::Dot(BLUE), name)];
-        if self.knee.is_some() {
-            legend.push((Mark::Diamond(VERMILION), "knee".to_owned()));
-        }
-        if self.ideal.is_some() {
-            let name = "ideal: best of each objective".to_owned();
-            legend.push((Mark::Plus(INK), name));
-        }
-        if self.points.len() < total {
-            let some = number::count(self.points.len() as u64);
-            legend.push((Mark::None, format!("{some} of {count} points drawn")));
-        }
-        legend
-    }
-
-    /// Range of one objective, wide enough that no mark touches the frame.
-    pub fn bounds(&self, objective: usize) -> (f64, f64) {
-        let shown = self.points.iter().chain(&self.ideal);
-        // Marks are as large in small panels.
-        let margin = if self.objectives.len() > 3 { 0.09 } else { 0.05 };
-        bounds(shown.map(|p| p[objective]), margin).unwrap_or((0.0, 1.0))
-    }
-
-    /// Diameter of a dot, in units of paper: large while there are few.
-    pub fn dot_size(&self) -> i32 {
-        let size = match self.points.len() {
-            0..=60 => 70,
-            61..=400 => 55,
-            401..=1500 => 42,
-            _ => 32,
-        };
-        match self.objectives.len() {
-            2 => size,
-            3 | 4 => size * 4 / 5,
-            _ => size * 3 / 5,
-        }
-    }
-
-    /// The staircase of the first two objectives.
-    pub fn staircase(&self) -> Vec<(f64, f64)> {
-        let goals = (self.objectives[0].goal, self.objectives[1].goal);
-        staircase(goals, self.points.iter().map(|p| (p[0], p[1])))
-    }
-
-    /// Lines of text for the axis of an objective.
-    pub fn label(&self, objective: usize, axis: &Axis, room: i32) -> Vec<String> {
-        let Objective { quantity, goal } = &self.objectives[objective];
-        let mut lines = axis_label(quantity, axis, room);
-        lines.push(goal.words().to_owned());
-        lines
-    }
+/// As many of these as are drawn, evenly along the list.
+fn evenly(points: Vec<&[f64]>) -> Vec<&[f64]> {
+    let drawn = points.len().min(DRAWN_AT_MOST);
+    (0..drawn).map(|k| points[k * points.len() / drawn]).collect()
 }
 
 /// One objective: the sentence that states its best value.
@@ -223,6 +177,22 @@ mod tests {
         assert!(svg.contains("front of 100 000 designs"));
         let small = front("", &objectives(2), &points(5_000, 2), None, None);
         assert!(!small.contains("points drawn"));
+    }
+
+    #[test]
+    fn a_sample_lies_behind_the_front_and_is_named() {
+        let sample = points(7_001, 3);
+        let over = |sample: &[Vec<f64>]| front_over("", &objectives(3), &points(20, 3), None, None, sample);
+        let svg = over(&sample);
+        assert_svg(&svg);
+        // Dots that fall on one another are drawn once.
+        assert!(dot_count(&svg) > 10_000 && svg.contains("sample of 7 001 feasible designs, 5 000 drawn"));
+        let first = |colour: &str| svg.find(colour).unwrap_or_else(|| panic!("{colour} is not drawn"));
+        assert!(svg.rfind("stroke=\"#BEBEBE\"") < svg.rfind("stroke=\"#0072B2\"") && first("#BEBEBE") > 0);
+        assert!(over(&sample[..1]).contains("sample of 1 feasible design\n"));
+        assert_eq!(over(&[]), front("", &objectives(3), &points(20, 3), None, None));
+        // A design far away is within the frame.
+        assert_ne!(over(&[vec![9e6; 3]]), over(&[vec![5e4; 3]]));
     }
 
     #[test]

@@ -1,9 +1,9 @@
 //! The panels of a Pareto front and what lies in them.
 
 use super::axis::{Axis, Numbers};
-use super::colours::{BLUE, LIGHT_BLUE};
+use super::colours::LIGHT_BLUE;
 use super::panel::{PanelPlan, x_labels_height, y_labels_width};
-use super::scatter::Front;
+use super::scatter_front::Front;
 use super::sheet::{Area, Dash, Drawn, Frame, UNIT, WIDTH, stroked};
 use plotters::prelude::*;
 use std::fmt::Write;
@@ -13,6 +13,7 @@ type Place = (i32, i32);
 /// Where the data of one pair of objectives lie on the paper.
 pub(super) struct Pair {
     pub dots: Vec<Place>,
+    pub sample: Vec<Place>,
     pub knee: Option<Place>,
     pub ideal: Option<Place>,
 }
@@ -90,13 +91,14 @@ impl Grid {
             panel.draw_series(LineSeries::new(front.staircase(), stroke))?;
         }
         let place = |p: &[f64]| panel.backend_coord(&(p[j], p[i]));
-        Ok(Pair { dots: front.points.iter().map(|p| place(p)).collect(), knee: front.knee.map(place), ideal: front.ideal.map(place) })
+        let places = |points: &[&[f64]]| points.iter().map(|p| place(p)).collect();
+        Ok(Pair { dots: places(&front.points), sample: places(&front.sample), knee: front.knee.map(place), ideal: front.ideal.map(place) })
     }
 }
 
 /// Many dots as one path: each is a line of no length with a round end, placed relative to the
 /// one before. An element each would take ten times the room.
-pub(super) fn dots(places: &[Place], size: i32) -> String {
+pub(super) fn dots(places: &[Place], colour: RGBColor, size: i32) -> String {
     let mut places = places.to_vec();
     places.sort_unstable();
     places.dedup();
@@ -107,16 +109,17 @@ pub(super) fn dots(places: &[Place], size: i32) -> String {
         write!(path, "m{}{sign}{}h0", x - last.0, y - last.1).expect("writing into a string does not fail");
         last = (x, y);
     }
-    stroked(&path, BLUE, size, Dash::Solid)
+    stroked(&path, colour, size, Dash::Solid)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::colours::BLUE;
     use super::*;
 
     #[test]
     fn dots_are_placed_relative_to_each_other_and_drawn_once() {
-        let path = dots(&[(30, 5), (10, 20), (30, 5), (10, 7)], 40);
+        let path = dots(&[(30, 5), (10, 20), (30, 5), (10, 7)], BLUE, 40);
         assert!(path.contains("d=\"m10 7h0m0 13h0m20-15h0\""), "{path}");
     }
 }

@@ -26,9 +26,16 @@ pub struct Matrices {
 }
 
 impl Matrices {
-    /// Zero matrices of `size` rows and `half` diagonals below the main one.
-    pub fn new(size: usize, half: usize) -> Self {
-        Self { size, half, entries: vec![[0.0; 3]; size * (half + 1)], reach: (1..=size).collect() }
+    /// Zero matrices of `size` rows and `half` diagonals below the main one, in the place of `entries`, which do not matter.
+    pub fn reusing(mut entries: Vec<[f64; 3]>, size: usize, half: usize) -> Self {
+        entries.clear();
+        entries.resize(size * (half + 1), [0.0; 3]);
+        Self { size, half, entries, reach: (1..=size).collect() }
+    }
+
+    /// Gives the entries away, for other matrices.
+    pub fn take_entries(&mut self) -> Vec<[f64; 3]> {
+        std::mem::take(&mut self.entries)
     }
 
     /// The place of an entry on or below the diagonal.
@@ -288,7 +295,7 @@ mod tests {
                 _ => 0.0,
             }
         };
-        let mut matrices = Matrices::new(size, half);
+        let mut matrices = Matrices::reusing(Vec::new(), size, half);
         for column in 0..size {
             for row in column..size.min(column + half + 1) {
                 *matrices.entry(row, column) = std::array::from_fn(|it| part(row, column, it));

@@ -3,17 +3,25 @@
 use super::band::{Factors, Matrices, WIDTH, Wide};
 use super::element::{Coupling, Lame, couple, samples};
 use super::mesh::Mesh;
-use std::cell::RefCell;
+use std::sync::{Mutex, PoisonError};
 
-thread_local! {
-    /// Megabytes that a thread fills anew for every section.
-    static FACTORS: RefCell<Factors> = RefCell::default();
+/// Megabytes that are filled anew for every section: the factors, and the entries of the matrices.
+#[derive(Clone, Debug, Default)]
+struct Room {
+    factors: Factors,
+    entries: Vec<[f64; 3]>,
 }
+
+/// Room that nobody uses: one for each thread that has solved sections at the same time as others. Threads come and go with the parts of a
+/// run, and what an allocator keeps of each would add up. It is room only: what a section before has left in it is written over before
+/// it is read, so that no answer depends on what was solved earlier.
+static ROOMS: Mutex<Vec<Room>> = Mutex::new(Vec::new());
 
 /// The equations of a section, for an elastic modulus of 1 MPa. Harmonics without enough fixed to stop rigid motions have no solution.
 #[derive(Clone, Debug)]
 pub struct Equations {
     matrices: Matrices,
+    factors: Factors,
     fixed: Vec<[bool; 3]>,
     values: Vec<Wide>,
     sides: usize,
@@ -22,7 +30,8 @@ pub struct Equations {
 impl Equations {
     /// Of a mesh; `fixed` tells of every node which of its displacements along r, z and the circumference are zero in all harmonics.
     pub fn new(mesh: &Mesh, poisson: f64, fixed: Vec<[bool; 3]>) -> Self {
-        Self { matrices: stiffness(mesh, poisson, &fixed), fixed, values: Vec::new(), sides: 0 }
+        let Room { factors, entries } = ROOMS.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default();
+        Self { matrices: stiffness(mesh, poisson, &fixed, entries), factors, fixed, values: Vec::new(), sides: 0 }
     }
 
     /// Zero loads in so many right sides (three to five), to be filled: `loads[(3 * node + axis) * sides + side]`, N per rad; those of
@@ -41,8 +50,25 @@ impl Equations {
         for place in places(&self.fixed) {
             self.values[place * sides..(place + 1) * sides].fill([0.0; WIDTH]);
         }
-        FACTORS.with_borrow_mut(|factors| factors.solve(&self.matrices, orders, &mut self.values, sides));
+        self.factors.solve(&self.matrices, orders, &mut self.values, sides);
         Displacements { orders, count, sides, values: &self.values }
+    }
+}
+
+/// Bytes of the equations of a mesh with their factors and right sides.
+pub fn bytes(mesh: &Mesh) -> u64 {
+    let (size, half) = (3 * mesh.nodes.len() as u64, 3 * mesh.reach() as u64 + 2);
+    let (parts, factors) = (size_of::<[f64; 3]>() as u64, size_of::<Wide>() as u64);
+    size * (half + 1) * parts + size * (half + 4) * factors + size * MOST_SIDES * factors
+}
+
+/// Most right sides: three of the belt, one of the clamp, one of the spin.
+const MOST_SIDES: u64 = 5;
+
+impl Drop for Equations {
+    fn drop(&mut self) {
+        let room = Room { factors: std::mem::take(&mut self.factors), entries: self.matrices.take_entries() };
+        ROOMS.lock().unwrap_or_else(PoisonError::into_inner).push(room);
     }
 }
 
@@ -74,9 +100,11 @@ fn places(fixed: &[[bool; 3]]) -> impl Iterator<Item = usize> + '_ {
 }
 
 /// The matrices of a section's stiffness, for a modulus of 1 MPa; what is fixed has the identity's rows.
-pub fn stiffness(mesh: &Mesh, poisson: f64, fixed: &[[bool; 3]]) -> Matrices {
+///
+/// `entries` is room for them, whose numbers do not matter.
+pub fn stiffness(mesh: &Mesh, poisson: f64, fixed: &[[bool; 3]], entries: Vec<[f64; 3]>) -> Matrices {
     let held = fixed.as_flattened();
-    let mut matrices = Matrices::new(3 * mesh.nodes.len(), 3 * mesh.reach() + 2);
+    let mut matrices = Matrices::reusing(entries, 3 * mesh.nodes.len(), 3 * mesh.reach() + 2);
     let lame = Lame::new(1.0, poisson);
     for element in &mesh.elements {
         let nodes = element.nodes();

@@ -4,7 +4,7 @@ use super::loads::clamp_pressure;
 use super::response::{LONGEST, respond};
 use super::section::{Dimensions, Fineness, Kind, mesh};
 use super::turn::Case;
-use crate::models::{find, pulley_design};
+use crate::models::find;
 use crate::pulley::mesh::Mesh;
 use std::f64::consts::PI;
 
@@ -13,7 +13,7 @@ pub fn sections() -> [(Kind, Dimensions); 4] {
     let model = find("pulley").expect("there is such a model");
     Kind::ALL.map(|kind| {
         let inputs = model.preset(kind.name()).expect("every type has a preset");
-        (kind, pulley_design(model, &inputs).expect("it is a pulley").dimensions)
+        (kind, model.pulley_of(&inputs).expect("it is a pulley").dimensions)
     })
 }
 

@@ -5,6 +5,7 @@
 use super::element::samples;
 use super::mesh::{Edge, Face, Mesh};
 use super::section::Dimensions;
+use crate::real::Real;
 use glam::DVec2;
 use std::f64::consts::PI;
 
@@ -192,6 +193,6 @@ pub fn spin(mesh: &Mesh, mut add: impl FnMut(usize, f64)) {
 }
 
 /// Pressure under the bolt heads, MPa, of a force per bolt in N.
-pub fn clamp_pressure(d: &Dimensions, force: f64) -> f64 {
-    force / (PI * (d.bolt_head_radius * d.bolt_head_radius - d.bolt_hole_radius * d.bolt_hole_radius))
+pub fn clamp_pressure<R: Real>(d: &Dimensions<R>, force: R) -> R {
+    force / (R::constant(PI) * (d.bolt_head_radius * d.bolt_head_radius - d.bolt_hole_radius * d.bolt_hole_radius))
 }

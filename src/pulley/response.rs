@@ -285,6 +285,13 @@ pub fn respond(mesh: &Mesh, kind: Kind, dimensions: &Dimensions, poisson: f64, f
     sizes.length()
 }
 
+/// Bytes of the table that [`respond`] writes, and those that it needs meanwhile.
+pub fn bytes(mesh: &Mesh, dimensions: &Dimensions, fineness: &Fineness) -> (u64, u64) {
+    let orders = fineness.harmonics + 1;
+    let sizes = Sizes { padded: padded(surface_points(mesh).0.len()), orders, clamps: (orders - 1) / dimensions.bolt_count as usize + 1 };
+    (8 * sizes.length() as u64, super::equations::bytes(mesh))
+}
+
 /// Where the stresses of all points under a unit load in a harmonic stand, if they are kept.
 fn row_of(sizes: &Sizes, order: usize, side: usize, bolts: usize) -> Option<usize> {
     match side {

@@ -1,4 +1,4 @@
-//! `f64`, the reference, and `f32`, the shader's twin.
+//! `f64`, the reference, and `f32`, the arithmetic of a shader.
 //!
 //! Transcendental functions of f64 come from the pure-Rust `libm`, never from the system, so that f64 gives the same bits on
 //! every machine; those of f32 are the shaders' own. `min` and `max` are written as comparisons because that is what one vector instruction does.
@@ -27,7 +27,7 @@ macro_rules! float {
                 self == 0.0
             }
             #[inline(always)]
-            #[allow(clippy::cast_possible_truncation, reason = "f32 is the shader's twin: rounding is its meaning")]
+            #[allow(clippy::cast_possible_truncation, reason = "rounding is the meaning of f32")]
             fn constant(value: f64) -> Self {
                 value as $float
             }
@@ -72,7 +72,7 @@ macro_rules! float {
                 if margin >= 0.0 { at_least_zero } else { below_zero }
             }
             #[inline]
-            #[allow(clippy::cast_possible_truncation, reason = "f32 is the shader's twin: rounding is its meaning")]
+            #[allow(clippy::cast_possible_truncation, reason = "rounding is the meaning of f32")]
             fn monotone_root<const P: usize>(
                 bracket: (Self, Self),
                 start: Self,

@@ -1,26 +1,16 @@
 //! The number types that the model formulas are generic over.
 //!
-//! A formula is written once, over [`Real`], and evaluated with several instances: `f64` is the reference, `f32` the twin of
-//! what a shader computes, [`Lanes`] eight f64 designs at a time, [`Dependence`] tells which inputs a value depends on,
-//! [`RunningError`] how far the f32 value may be from the exact one, [`Interval`] what values a whole box of designs has, and [`Dual`]
-//! carries derivatives. That is why `Real` has no comparison and no branching: a formula selects with [`Real::select`], clamps with
-//! `min` and `max`, and answers questions with signed margins.
+//! A formula is written once, over [`Real`]. `f64` is the reference, [`Lanes`] are eight f64 designs at a time, `f32` is the arithmetic
+//! of a shader, and [`Trace`](crate::tape::Trace) records what the formula does, for everything else: bounds, shaders, dependencies.
+//! That is why `Real` has no comparison and no branching: a formula selects with [`Real::select`], clamps with `min` and `max`, and
+//! answers questions with signed margins.
 
-mod common_root;
-mod dependence;
-mod dual;
 mod float;
 pub mod functions;
-mod interval;
 mod lanes;
-mod running_error;
-pub mod trace;
 
-pub use dependence::Dependence;
-pub use dual::Dual;
-pub use interval::{EVERYTHING, Interval};
+pub use functions::FUNCTION_ULP;
 pub use lanes::{LANES, Lanes};
-pub use running_error::{FUNCTION_ULP, RunningError, nearest_f32};
 
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -88,6 +78,17 @@ pub trait Real:
     fn squared(self) -> Self {
         self * self
     }
+    /// Times two to this power.
+    #[inline(always)]
+    fn scaled(self, power: i16) -> Self {
+        self * Self::constant(f64::from_bits(((i64::from(power) + 1023) as u64) << 52))
+    }
+    /// The same number, with the name and the equation (empty where there is none) that it has in what is written of the formula.
+    #[inline(always)]
+    #[must_use]
+    fn named(self, _name: &'static str, _equation: &'static str) -> Self {
+        self
+    }
 }
 
 /// Newton steps kept inside a shrinking bracket: the scalar definition of [`Real::monotone_root`], shared by every instance
@@ -117,37 +118,4 @@ pub(crate) fn bracketed_newton(bracket: (f64, f64), start: f64, rounding: f64, m
         last_step = step;
     }
     x
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The cube root of 2, on every instance that has a value.
-    fn cube_root<R: Real>() -> R {
-        let two = R::constant(2.0);
-        R::monotone_root((R::constant(0.0), R::constant(10.0)), R::constant(9.0), [two], |[two], x| {
-            (x * x * x - two, R::constant(3.0) * x * x)
-        })
-    }
-
-    #[test]
-    fn the_root_of_a_monotone_function_is_found_to_rounding() {
-        let exact = 2f64.powf(1.0 / 3.0);
-        assert!((cube_root::<f64>() - exact).abs() <= 4.0 * f64::EPSILON);
-        assert!((f64::from(cube_root::<f32>()) - exact).abs() <= 4.0 * f64::from(f32::EPSILON));
-        assert_eq!(cube_root::<Lanes>().0, [cube_root::<f64>(); LANES], "lanes must round like the scalar");
-        let bounded = cube_root::<RunningError>();
-        assert!((f64::from(bounded.value) - exact).abs() <= bounded.bound);
-        let over_all = cube_root::<Interval>();
-        assert!(over_all.contains(exact) && over_all.contains(cube_root::<f64>()) && over_all.width() < 1e-13, "{over_all:?}");
-        assert_eq!(cube_root::<Dual<f64, 1>>().value, cube_root::<f64>());
-        assert!(bounded.bound < 1e-5, "the bound of a well-conditioned root is useful: {}", bounded.bound);
-    }
-
-    #[test]
-    fn without_a_root_the_result_stays_inside_the_bracket() {
-        let x = f64::monotone_root((1.0, 3.0), 2.0, [1.0], |[one], x| (x + one, one));
-        assert!((1.0..=3.0).contains(&x), "{x}");
-    }
 }

@@ -55,6 +55,14 @@ impl Extremes {
         }
     }
 
+    /// Can these be the extremes of so many designs under so many objectives?
+    pub(super) fn fits(&self, objectives: usize, designs: u64) -> bool {
+        let good = |ends: &[Option<Extreme>]| {
+            ends.len() == objectives && ends.iter().flatten().all(|end| end.value.is_finite() && end.index < designs)
+        };
+        good(&self.least) && good(&self.largest)
+    }
+
     /// Takes in the extremes of other designs.
     pub fn merge(&mut self, other: &Self) {
         for (held, offered) in self.least.iter_mut().zip(&other.least) {

@@ -3,25 +3,35 @@
 //! Each takes in blocks in any order, merges with another that took in other blocks, and ends up the same whatever the split:
 //! counts are integers, ties go to the lowest design index, and no floats are added. Memory is bounded by the front, the best
 //! K, the bins and the map cells.
+//!
+//! What `[report]` asks for are [`Reducer`]s, see there for what a new one takes; the front and the extremes, which every engine is
+//! built around, are not.
 
+mod answers;
 mod dominance;
 mod extremes;
 mod front;
-mod histogram;
-mod map;
+pub(crate) mod histogram;
+mod list;
+pub(crate) mod map;
+mod naming;
+mod reducer;
+mod sample;
 mod top;
 
+pub use answers::Answers;
 pub use dominance::{Dominance, beats};
 pub use extremes::{Extreme, Extremes};
-pub use front::{Front, KeyRule, MOST_OBJECTIVES, Points};
+pub use front::{FRONT_BYTES, Front, KeyRule, MOST_OBJECTIVES, Points, most_points};
 pub use histogram::Histogram;
-pub(crate) use map::DENSE;
-pub use map::{Cell, Map};
+pub use list::{Places, Reported};
+pub use map::{CSV_CELLS, Cell, Map};
+pub use reducer::{Needs, Put, Reducer, Results, Room};
+pub use sample::{FeasibleSample, ROUNDS, Shuffle};
 pub use top::Top;
 
-use crate::plan::{Plan, Tracked, worst_end};
+use crate::plan::Plan;
 use crate::screen::Block;
-use crate::study::{Best, Quantity};
 use serde::{Deserialize, Serialize};
 
 /// Where each reducer finds its values in a block, and how it starts.
@@ -29,45 +39,22 @@ use serde::{Deserialize, Serialize};
 pub struct Reduction {
     rules: Vec<KeyRule>,
     objectives: Vec<usize>,
-    top: Option<(usize, Top)>,
-    histograms: Vec<(usize, Histogram)>,
-    maps: Vec<(Option<usize>, Map)>,
+    reported: Reported,
 }
 
 impl Reduction {
     /// The reducers that a plan asks for; `ranges` has the range of every histogram.
     pub fn new(plan: &Plan, ranges: &[(f64, f64)]) -> Self {
-        let study = &plan.study;
-        let column = |quantity: Quantity, worse| {
-            let wanted = Tracked { quantity, worse };
-            plan.tracked.iter().position(|(it, _)| *it == wanted).expect("the plan tracks what the report asks for")
-        };
-        let histograms = study.report.histograms.iter().zip(ranges);
         Self {
-            rules: study.objectives.iter().map(KeyRule::from).collect(),
+            rules: plan.study.objectives.iter().map(KeyRule::from).collect(),
             objectives: plan.objectives.clone(),
-            top: study.report.top.map(|top| (column(top.by, top.goal.worse()), Top::new(top.goal, top.count))),
-            histograms: histograms
-                .map(|(spec, &range)| (column(spec.of, worst_end(study, spec.of)), Histogram::new(range, spec.bins)))
-                .collect(),
-            maps: study
-                .report
-                .maps
-                .iter()
-                .map(|spec| {
-                    let column = match spec.value {
-                        Best::Value(quantity, goal) => Some(column(quantity, goal.worse())),
-                        Best::Share => None,
-                    };
-                    (column, Map::new(plan, spec))
-                })
-                .collect(),
+            reported: Reported::new(plan, ranges),
         }
     }
 
     /// The range of every histogram.
     pub fn histogram_ranges(&self) -> Vec<(f64, f64)> {
-        self.histograms.iter().map(|(_, histogram)| (histogram.from, histogram.to)).collect()
+        self.reported.histograms.iter().map(|histogram| (histogram.from, histogram.to)).collect()
     }
 
     /// Reducers that have seen nothing.
@@ -80,38 +67,22 @@ impl Reduction {
         Reducers {
             feasible: 0,
             front: Front::seeded(&self.rules, known),
-            top: self.top.as_ref().map(|(_, top)| top.clone()),
             extremes: Extremes::new(self.objectives.len()),
-            histograms: self.histograms.iter().map(|(_, histogram)| histogram.clone()).collect(),
-            maps: self.maps.iter().map(|(_, map)| map.clone()).collect(),
+            reported: self.reported.clone(),
         }
     }
 
     /// Takes in a block.
     pub fn absorb(&self, reducers: &mut Reducers, block: &Block<'_>) {
         reducers.feasible += block.feasible_count;
-        reducers.front.absorb(block, &self.objectives);
-        reducers.extremes.absorb(block, self.objectives.iter().copied().enumerate());
-        if let (Some((column, _)), Some(top)) = (&self.top, &mut reducers.top) {
-            top.absorb(block, *column);
-        }
-        for ((column, _), histogram) in self.histograms.iter().zip(&mut reducers.histograms) {
-            histogram.absorb(block, *column);
-        }
-        for ((column, _), map) in self.maps.iter().zip(&mut reducers.maps) {
-            map.absorb(block, *column);
-        }
+        self.absorb_objectives(reducers, block);
+        reducers.reported.absorb(block);
     }
 
-    /// Takes in a block of designs that were counted elsewhere: for the front, the extremes, the top list and the maps' best only.
+    /// Takes in a block of designs that were counted elsewhere: for the front, the extremes and what asks for candidates.
     pub fn absorb_counted(&self, reducers: &mut Reducers, block: &Block<'_>) {
         self.absorb_objectives(reducers, block);
-        self.absorb_top(reducers, block);
-        for ((column, _), map) in self.maps.iter().zip(&mut reducers.maps) {
-            if column.is_some() {
-                map.absorb(block, *column);
-            }
-        }
+        reducers.reported.absorb_counted(block);
     }
 
     /// Takes in a block of which only the objectives are known: for the front and the extremes.
@@ -127,20 +98,34 @@ impl Reduction {
 
     /// Takes in a block of which what the top list is by is known: for that.
     pub fn absorb_top(&self, reducers: &mut Reducers, block: &Block<'_>) {
-        if let (Some((column, _)), Some(top)) = (&self.top, &mut reducers.top) {
-            top.absorb(block, *column);
-        }
+        reducers.reported.top.iter_mut().for_each(|top| top.absorb(block));
     }
 
-    /// Adds counts that were made elsewhere: feasible designs, per histogram below, bins and above, per map of shares its cells.
-    pub fn add_counts(&self, reducers: &mut Reducers, feasible: u64, histograms: &[Vec<u32>], shares: &[Vec<u32>]) {
+    /// Adds counts that were made elsewhere: feasible designs, and those that each reducer asks a device for.
+    pub fn add_counts(&self, reducers: &mut Reducers, feasible: u64, counts: &[Vec<u32>]) {
         reducers.feasible += feasible;
-        for (histogram, counts) in reducers.histograms.iter_mut().zip(histograms) {
-            histogram.add(counts);
-        }
-        let of_shares = self.maps.iter().zip(&mut reducers.maps).filter(|((column, _), _)| column.is_none());
-        for ((_, map), counts) in of_shares.zip(shares) {
-            map.add(counts);
+        reducers.reported.add_counts(counts);
+    }
+
+    /// Can this be what remains of at most `met` designs, all of them below `designs`? A state that was read may have been changed.
+    ///
+    /// # Errors
+    /// The part that cannot be.
+    pub fn check(&self, state: &State, met: u64, designs: u64) -> Result<(), String> {
+        let State { feasible, front, extremes, reported } = state;
+        let objectives = self.objectives.len();
+        let whole_points = front.indices.len().checked_mul(objectives) == Some(front.keys.len());
+        let no_front = objectives > 0 || front.indices.is_empty();
+        let parts = [
+            ("number of feasible designs", *feasible <= met),
+            ("front", whole_points && no_front && front.keys.iter().all(|key| !key.is_nan())),
+            ("front's designs", front.indices.iter().all(|&index| index < designs)),
+            ("extremes", extremes.fits(objectives, designs)),
+        ];
+        let misfit = parts.into_iter().find(|(_, fits)| !fits).map(|(part, _)| part);
+        match misfit.or_else(|| reported.misfit(&self.reported, met, designs)) {
+            Some(part) => Err(format!("its {part} cannot be of this study")),
+            None => Ok(()),
         }
     }
 
@@ -159,14 +144,10 @@ pub struct Reducers {
     pub feasible: u64,
     /// The Pareto front.
     pub front: Front,
-    /// The best by one quantity.
-    pub top: Option<Top>,
     /// Least and largest objective values.
     pub extremes: Extremes,
-    /// Histograms.
-    pub histograms: Vec<Histogram>,
-    /// Maps.
-    pub maps: Vec<Map>,
+    /// What the report asks for.
+    pub reported: Reported,
 }
 
 /// The same as plain data: what a chunk hands over and a checkpoint keeps.
@@ -176,21 +157,24 @@ pub struct State {
     pub feasible: u64,
     /// Points of the front.
     pub front: Points,
-    /// The best by one quantity.
-    pub top: Option<Top>,
     /// Least and largest objective values.
     pub extremes: Extremes,
-    /// Histograms.
-    pub histograms: Vec<Histogram>,
-    /// Maps.
-    pub maps: Vec<Map>,
+    /// What the report asks for.
+    pub reported: Reported,
+}
+
+impl State {
+    /// Does this name designs as `fuller` does, which has taken in all that this has and more? Else this has missed some.
+    pub fn names_all_of(&self, fuller: &Self) -> bool {
+        self.front == fuller.front && self.extremes == fuller.extremes && self.reported.lacks(&fuller.reported).is_none()
+    }
 }
 
 impl Reducers {
     /// What a chunk hands over: all but the front points that it was given.
     pub fn into_fresh(self) -> State {
-        let Self { feasible, front, top, extremes, histograms, maps } = self;
-        State { feasible, front: front.into_fresh(), top, extremes, histograms, maps }
+        let Self { feasible, front, extremes, reported } = self;
+        State { feasible, front: front.into_fresh(), extremes, reported }
     }
 
     /// A copy of everything.
@@ -198,10 +182,8 @@ impl Reducers {
         State {
             feasible: self.feasible,
             front: self.front.points().clone(),
-            top: self.top.clone(),
             extremes: self.extremes.clone(),
-            histograms: self.histograms.clone(),
-            maps: self.maps.clone(),
+            reported: self.reported.state(),
         }
     }
 
@@ -209,15 +191,7 @@ impl Reducers {
     pub fn merge(&mut self, other: State) {
         self.feasible += other.feasible;
         self.front.merge(other.front);
-        if let (Some(top), Some(other)) = (&mut self.top, other.top) {
-            top.merge(other);
-        }
         self.extremes.merge(&other.extremes);
-        for (histogram, other) in self.histograms.iter_mut().zip(&other.histograms) {
-            histogram.merge(other);
-        }
-        for (map, other) in self.maps.iter_mut().zip(other.maps) {
-            map.merge(other);
-        }
+        self.reported.merge(other.reported);
     }
 }

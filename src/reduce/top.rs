@@ -1,8 +1,20 @@
 //! The best K designs by one quantity.
 
+use super::Answers;
+use super::reducer::{Needs, Put, Reducer, Results, Room};
+use crate::error::Result;
+use crate::export::csv;
+use crate::plan::Plan;
+#[cfg(feature = "pictures")]
+use crate::report::{designs, reading::Folder};
 use crate::screen::Block;
-use crate::study::Goal;
+use crate::study::{Goal, Report, Study};
 use serde::{Deserialize, Serialize};
+#[cfg(feature = "pictures")]
+use serde_json::{Map, Value, json};
+
+/// Its file.
+const FILE: &str = "top.csv";
 
 /// The best designs so far.
 ///
@@ -10,6 +22,9 @@ use serde::{Deserialize, Serialize};
 /// them and none worse than `worst_kept` can be part of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Top {
+    /// Where its values are among those of a block; none where it was read from a checkpoint.
+    #[serde(skip)]
+    column: Option<usize>,
     goal: Goal,
     count: usize,
     /// Key (less is better) and index.
@@ -18,27 +33,9 @@ pub struct Top {
 }
 
 impl Top {
-    /// Nothing seen yet; `count` is at least 1.
-    pub fn new(goal: Goal, count: usize) -> Self {
-        Self { goal, count, best: Vec::new(), worst_kept: f64::INFINITY }
-    }
-
-    /// Takes in a block.
-    pub fn absorb(&mut self, block: &Block<'_>, column: usize) {
-        let values = block.column(column);
-        for (lane, (&value, &alive)) in values.iter().zip(block.alive).enumerate() {
-            let key = if self.goal == Goal::Min { value } else { -value };
-            if alive != 0 && key <= self.worst_kept {
-                self.push(key + 0.0, block.index(lane));
-            }
-        }
-    }
-
-    /// Takes in the best of other designs.
-    pub fn merge(&mut self, other: Self) {
-        for (key, index) in other.best {
-            self.push(key, index);
-        }
+    /// Nothing seen yet; `count` is at least 1, and `column` where the values are among those of a block.
+    pub fn new(goal: Goal, count: usize, column: usize) -> Self {
+        Self { column: Some(column), goal, count, best: Vec::new(), worst_kept: f64::INFINITY }
     }
 
     /// Key (less is better) and index of the worst of the best K, once there are K.
@@ -72,6 +69,84 @@ impl Top {
     }
 }
 
+impl Reducer for Top {
+    const STATE: &'static str = "list of the best";
+
+    fn asked(plan: &Plan, _ranges: &[(f64, f64)]) -> Vec<Self> {
+        let top = plan.study.report.top.iter();
+        top.map(|top| Self::new(top.goal, top.count, plan.position(top.by, top.goal.worse()))).collect()
+    }
+
+    fn needs(report: &Report) -> Option<Needs> {
+        report.top.map(|_| Needs::Candidates)
+    }
+
+    fn absorb(&mut self, block: &Block<'_>) {
+        let values = block.column(self.column.expect("a list that takes in blocks was made for a plan"));
+        for (lane, (&value, &alive)) in values.iter().zip(block.alive).enumerate() {
+            let key = if self.goal == Goal::Min { value } else { -value };
+            if alive != 0 && key <= self.worst_kept {
+                self.push(key + 0.0, block.index(lane));
+            }
+        }
+    }
+
+    fn merge(&mut self, other: Self) {
+        for (key, index) in other.best {
+            self.push(key, index);
+        }
+    }
+
+    fn fits(&self, asked: &Self, _met: u64, designs: u64) -> bool {
+        let same = (self.goal, self.count) == (asked.goal, asked.count) && self.best.len() <= 2 * asked.count;
+        same && self.best.iter().all(|&(key, index)| !key.is_nan() && index < designs)
+    }
+
+    fn tell(&mut self, answers: &mut Answers) {
+        answers.top = self.worst();
+    }
+
+    fn lacks(&self, fuller: &Self) -> Option<(&'static str, u64)> {
+        let have = self.indices();
+        let missing = fuller.indices().into_iter().enumerate().find(|(place, index)| have.get(*place) != Some(index));
+        missing.map(|(_, index)| ("top list", index))
+    }
+
+    fn designs(&self) -> Vec<u64> {
+        self.indices()
+    }
+
+    fn files(study: &Study) -> Vec<String> {
+        study.report.top.iter().map(|_| FILE.to_owned()).collect()
+    }
+
+    fn is_file(name: &str) -> bool {
+        name == FILE
+    }
+
+    fn write(&self, results: &Results<'_>, put: &mut Put<'_>) -> Result<()> {
+        put(FILE, csv::write(&(results.table)()))
+    }
+
+    #[cfg(feature = "pictures")]
+    fn page(folder: &Folder<'_>, data: &mut Map<String, Value>) -> Result<()> {
+        let study = &folder.plan.study;
+        let mut list = Value::Null;
+        if let Some(top) = study.report.top {
+            list = designs::list(&folder.path.join(FILE), folder.plan, top.count as u64, false)?;
+            (list["by"], list["goal"]) = (top.by.name(&study.model).into(), json!(top.goal));
+        }
+        data.insert("top".to_owned(), list);
+        Ok(())
+    }
+
+    fn room(plan: &Plan) -> Room {
+        let Some(top) = plan.study.report.top else { return Room::default() };
+        let rows = (top.count as u64).min(plan.designs());
+        Room { rows, lists: vec![(FILE.to_owned(), rows)], ..Room::default() }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -81,12 +156,12 @@ mod tests {
     fn the_best_are_those_of_sorting_everything() {
         for (goal, count) in [(Goal::Min, 1), (Goal::Min, 7), (Goal::Max, 50), (Goal::Max, 2000)] {
             let value = |index: u64| (mix(index) % 60) as f64;
-            let mut top = Top::new(goal, count);
+            let mut top = Top::new(goal, count, 0);
             for first in [600u64, 0, 900, 300] {
                 let values = (first..first + 300).map(value).collect();
                 let alive: Vec<u64> = (first..first + 300).map(|index| if index % 3 == 0 { 0 } else { u64::MAX }).collect();
                 let offsets: Vec<u64> = (0..300).collect();
-                top.absorb(&Block { row_index: first, offsets: &offsets, feasible_count: 200, alive: &alive, values: &[values] }, 0);
+                top.absorb(&Block { row_index: first, offsets: &offsets, feasible_count: 200, alive: &alive, values: &[values] });
             }
             let mut all: Vec<u64> = (0..1200).filter(|index| index % 3 != 0).collect();
             let sign = if goal == Goal::Min { 1.0 } else { -1.0 };

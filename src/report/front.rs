@@ -1,22 +1,23 @@
 //! The designs that a page shows: the result's front table as it was written, completed with every other output of the model.
 
+use super::designs::{check_header, check_row, header, inputs};
 use super::packed::{Packed, packed};
-use super::{changed, unreadable};
+use super::reading::{changed, table_reader, unreadable};
 use crate::certify::{self, Column, Role, Row};
 use crate::error::Result;
 use crate::export::written;
+use crate::names::MOST_ON_PAGE;
+use crate::parallel;
 use crate::plan::Plan;
 use crate::screen::Control;
 use crate::study::{Axis, Goal, Quantity, Study};
 use serde_json::{Value, json};
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
-/// Most designs on a page; of a larger front so many are taken, evenly along the table.
-const MOST_ROWS: usize = 200_000;
 /// Most scenarios whose inputs a page tells.
 const MOST_SCENARIOS: usize = 20_000;
 /// Stands for a scenario where the value is absent.
@@ -39,7 +40,7 @@ pub struct Front {
 struct Shown {
     name: String,
     unit: &'static str,
-    doc: &'static str,
+    doc: String,
     role: &'static str,
     direction: String,
     words: Option<Vec<String>>,
@@ -54,32 +55,16 @@ struct Shown {
 pub fn read(file: &Path, all: usize, plan: &Plan, threads: usize, patience: Duration, control: &Control) -> Result<Front> {
     let study = &plan.study;
     let columns = certify::columns(study);
-    let taken = all.min(MOST_ROWS);
-    let rows = rows_of(file, study, &columns, all, taken)?;
-    let index = |row: &csv::StringRecord| row[0].parse::<u64>().ok().filter(|&it| it < plan.designs());
-    let designs: Option<Vec<u64>> = rows.iter().map(index).collect();
-    let designs = designs.ok_or_else(|| changed(file, "a design_index is not one of the study"))?;
-
-    for (row, &design) in rows.iter().zip(&designs) {
-        let own = plan.space.inputs(design, 0);
-        let differs =
-            inputs(study).enumerate().find(|(at, (_, _, input))| row[at + 1] != *written(&study.model.inputs[*input], own[*input]));
-        if let Some((at, (_, _, input))) = differs {
-            let table = &study.model.inputs[input];
-            let found =
-                format!("{} of design {design} is {}, and the study gives {}", table.name, &row[at + 1], written(table, own[input]));
-            return Err(changed(file, &found));
-        }
-    }
+    let taken = all.min(MOST_ON_PAGE);
+    let (rows, designs) = rows_of(file, plan, &columns, all, taken)?;
     let mut shown = vec![Shown {
         name: "design_index".to_owned(),
         unit: "",
-        doc: "Index of the design in the study.",
+        doc: "Index of the design in the study.".to_owned(),
         role: "index",
         direction: String::new(),
         words: None,
-        #[allow(clippy::cast_precision_loss, reason = "indices are far below 2^53")]
-        values: Packed::F64(designs.iter().map(|&it| it as f64).collect()),
+        values: Packed::U64(designs.clone()),
         scenarios: None,
     }];
     for (axis, column, input) in inputs(study) {
@@ -87,10 +72,12 @@ pub fn read(file: &Path, all: usize, plan: &Plan, threads: usize, patience: Dura
         shown.push(input_column(study, axis, column, input, rows.iter().map(|row| &row[at])));
     }
     let design_inputs = shown.len();
-    // A column about a design input repeats it: the input's own column stands for both.
+    // A quantity that is a design input has its column there.
     let mut place = Vec::new();
-    for (at, column) in columns.iter().enumerate() {
-        if let Some(own) = own_column(study, column.quantity) {
+    let mut further = 0;
+    for column in &columns {
+        if let Some(own) = certify::design_input(study, column.quantity) {
+            let own = own + 1;
             place.push(own);
             if shown[own].direction.is_empty() {
                 shown[own].direction = direction(study, column);
@@ -98,13 +85,11 @@ pub fn read(file: &Path, all: usize, plan: &Plan, threads: usize, patience: Dura
             continue;
         }
         place.push(shown.len());
-        let cell = design_inputs + 2 * at;
+        let cell = design_inputs + 2 * further;
+        further += 1;
         let number = |text: &str| if text.is_empty() { Some(f64::NAN) } else { text.parse().ok() };
         let values: Option<Vec<f64>> = rows.iter().map(|row| number(&row[cell])).collect();
         let scenarios: Vec<u32> = rows.iter().map(|row| row[cell + 1].parse().unwrap_or(NOWHERE)).collect();
-        if scenarios.iter().any(|&it| it != NOWHERE && u64::from(it) >= plan.scenarios()) {
-            return Err(changed(file, &format!("{}_scenario is not one of the study's {} scenarios", column.name, plan.scenarios())));
-        }
         let values = values.ok_or_else(|| changed(file, &format!("{} has something that is no number", column.name)))?;
         shown.push(Shown::of(study, column, Packed::F64(values), scenarios));
     }
@@ -149,37 +134,25 @@ fn scenario_number(scenario: u64) -> u32 {
     u32::try_from(scenario).unwrap_or(NOWHERE)
 }
 
-/// The rows of the front table that a page takes, as text: `taken` of `all`, evenly.
-fn rows_of(file: &Path, study: &Study, columns: &[Column], all: usize, taken: usize) -> Result<Vec<csv::StringRecord>> {
-    let mut reader = csv::Reader::from_path(file).map_err(|error| unreadable(file, error))?;
-    let inputs = inputs(study).map(|(_, _, input)| study.model.inputs[input].name.to_owned());
-    let columns = columns.iter().flat_map(|it| [it.name.clone(), format!("{}_scenario", it.name)]);
-    let expected: Vec<String> = std::iter::once("design_index".to_owned()).chain(inputs).chain(columns).collect();
-    let header = reader.headers().map_err(|error| unreadable(file, error))?;
-    if *header != expected {
-        let differs = expected.iter().zip(header.iter()).find(|(expected, found)| expected.as_str() != *found);
-        let differs = differs.map_or("their number".to_owned(), |(expected, found)| format!("\"{found}\" in place of \"{expected}\""));
-        return Err(changed(file, &format!("its columns are not those of the study: {differs}")));
-    }
-    let (mut rows, mut seen) = (Vec::with_capacity(taken), 0);
+/// The rows of the front table that a page takes, as text, with their designs: `taken` of `all`, evenly.
+fn rows_of(file: &Path, plan: &Plan, columns: &[Column], all: usize, taken: usize) -> Result<(Vec<csv::StringRecord>, Vec<u64>)> {
+    let mut reader = table_reader(file)?;
+    let expected = header(&plan.study, columns);
+    check_header(file, reader.headers().map_err(|error| unreadable(file, error))?, &expected)?;
+    let (mut rows, mut designs, mut known, mut seen) = (Vec::new(), Vec::new(), HashSet::new(), 0);
     for row in reader.into_records() {
         let row = row.map_err(|error| unreadable(file, error))?;
-        if rows.len() < taken && seen == rows.len() * all / taken {
+        if rows.len() < taken && seen as u128 == rows.len() as u128 * all as u128 / taken as u128 {
+            let design = check_row(file, &row, plan, &expected)?;
+            if !known.insert(design) {
+                return Err(changed(file, &format!("design {design} is there twice")));
+            }
+            designs.push(design);
             rows.push(row);
         }
         seen += 1;
     }
-    if seen == all { Ok(rows) } else { Err(changed(file, &format!("it has {seen} designs, and summary.json says {all}"))) }
-}
-
-/// The inputs that design axes set: axis, column of the axis, input.
-fn inputs(study: &Study) -> impl Iterator<Item = (&Axis, usize, usize)> {
-    study.design.iter().flat_map(|axis| axis.inputs().iter().enumerate().map(move |(column, &input)| (axis, column, input)))
-}
-
-/// Position of the design input that a quantity is.
-fn own_column(study: &Study, quantity: Quantity) -> Option<usize> {
-    inputs(study).position(|(_, _, input)| quantity == Quantity::Input(input)).map(|at| at + 1)
+    if seen == all { Ok((rows, designs)) } else { Err(changed(file, &format!("it has {seen} designs, and summary.json says {all}"))) }
 }
 
 /// A design input; where one of its values is a word, all are taken by name.
@@ -204,7 +177,7 @@ fn input_column<'r>(study: &Study, axis: &Axis, column: usize, input: usize, cel
     Shown {
         name: table.name.to_owned(),
         unit: table.unit.symbol,
-        doc: table.doc,
+        doc: table.doc.clone(),
         role: "design",
         direction: String::new(),
         words,
@@ -225,8 +198,8 @@ impl Shown {
     fn of(study: &Study, column: &Column, values: Packed, scenarios: Vec<u32>) -> Self {
         Self {
             name: column.name.clone(),
-            unit: column.quantity.unit(study.model),
-            doc: column.quantity.doc(study.model),
+            unit: column.quantity.unit(&study.model),
+            doc: column.quantity.doc(&study.model).to_owned(),
             role: match column.role {
                 Role::Objective(_) => "objective",
                 Role::Constraint(_) => "constraint",
@@ -270,7 +243,8 @@ fn complete(
     let (finished, waiting) = channel::<()>();
     let rows = std::thread::scope(|scope| {
         let own = &own;
-        scope.spawn(move || {
+        // Without somebody who looks at the clock it might take for ever.
+        parallel::start(scope, move || {
             let start = Instant::now();
             // Ends with the work, when the patience does, or when everything is to stop.
             while waiting.recv_timeout(Duration::from_millis(20)) == Err(RecvTimeoutError::Timeout) {
@@ -279,12 +253,12 @@ fn complete(
                     return;
                 }
             }
-        });
+        })?;
         let rows = certify::rows(plan, &all, designs, threads, own);
         drop(finished);
-        rows
+        rows.ok()
     });
-    Some((all[columns.len()..].to_vec(), rows.ok()?))
+    Some((all[columns.len()..].to_vec(), rows?))
 }
 
 /// What the table says and what the study gives must be the same numbers.

@@ -3,23 +3,27 @@
 //! The page is assembled from the files of a result directory and from what the study says of them; what it shows of a design is
 //! what `front.csv` says of it, checked against the study, and every other output at its worst scenario.
 
+pub(crate) mod designs;
 mod front;
-mod maps;
-mod packed;
+pub(crate) mod packed;
 mod page;
 mod papers;
+mod picture;
+pub(crate) mod reading;
+mod summary;
 
-pub use page::GENERATOR;
 pub use papers::of_papers;
 
-use crate::checkpoint::Checkpoint;
+use crate::checkpoint::{Found, found};
 use crate::error::{Error, Result};
-use crate::export::{CHECKPOINT, MARK, pulley, table_names, written};
+use crate::export::{pulley, written};
+use crate::names::{CHECKPOINT, MARK, RUN};
 use crate::plan::Plan;
+use crate::reduce::Reported;
 use crate::screen::Control;
 use crate::study::{Axis, Study, number, value_of};
+use reading::{Folder, STUDY, changed, json_of, picture_of, text_of};
 use serde_json::{Map, Value, json};
-use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
@@ -59,7 +63,7 @@ pub fn study_of(folder: &Path) -> Result<Study> {
     if !folder.join(MARK).exists() {
         let hint = match () {
             () if !folder.is_dir() => "is no directory; name the one that `beltspace sweep` wrote".to_owned(),
-            () if Checkpoint::exists(&folder.join(CHECKPOINT)) || Checkpoint::exists(folder) => {
+            () if [folder.join(CHECKPOINT).as_path(), folder].iter().any(|it| matches!(found(it), Found::Checkpoint)) => {
                 "holds an unfinished sweep or a shard; go on with `beltspace sweep --resume`, or put the shards together with \
                  `beltspace merge`"
                     .to_owned()
@@ -68,15 +72,15 @@ pub fn study_of(folder: &Path) -> Result<Study> {
         };
         return Err(Error::Request(format!("{} {hint}", folder.display())));
     }
-    let (described, summary) = (json_of(folder, "study.json")?, json_of(folder, MARK)?);
+    let (described, summary) = (json_of(folder, STUDY)?, json_of(folder, MARK)?);
     let study = Study::from_description(&described)
-        .map_err(|problem| changed(&folder.join("study.json"), &format!("not a study that this version describes: {problem}")))?;
+        .map_err(|problem| changed(&folder.join(STUDY), &format!("not a study that this version describes: {problem}")))?;
     if summary["study_hash"] != study.hash().as_str() {
         return Err(changed(&folder.join(MARK), "it is the summary of another study than study.json"));
     }
     // The text may name tables that are elsewhere; then it cannot be read from here.
     let (file, text) = (folder.join("study.toml"), text_of(folder, "study.toml")?);
-    match Study::parse(&text, "study.toml", folder) {
+    match Study::parse_in(&text, "study.toml", folder) {
         Ok(written) if written.hash() == study.hash() => {}
         Err(_) if text.contains("csv") => {}
         _ => return Err(changed(&file, "it is not the study that study.json describes")),
@@ -91,10 +95,11 @@ pub fn study_of(folder: &Path) -> Result<Study> {
 pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
     let Request { folder, plan, evaluate, threads, patience } = *request;
     let study = &plan.study;
-    let model = study.model;
+    let model = &study.model;
     let summary = json_of(folder, MARK)?;
     let feasible = summary["feasible"].as_u64().filter(|&it| it <= plan.designs() && summary["designs"] == plan.designs());
     let feasible = feasible.ok_or_else(|| changed(&folder.join(MARK), "its numbers of designs are not those of the study"))?;
+    summary::check(&summary, plan).map_err(|problem| changed(&folder.join(MARK), &problem))?;
     let front = if study.objectives.is_empty() {
         None
     } else {
@@ -118,11 +123,7 @@ pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
         }
         constraint
     });
-    let (histograms, maps) = table_names(study);
-    let histograms =
-        study.report.histograms.iter().zip(histograms).map(|(spec, name)| maps::histogram(folder, study, spec, &name, feasible));
-    let maps = study.report.maps.iter().zip(maps).map(|(spec, name)| maps::map(folder, study, spec, &name));
-    let data = json!({
+    let mut data = json!({
         "program": concat!("beltspace ", env!("CARGO_PKG_VERSION")),
         "kind": "result",
         "title": study.title,
@@ -131,7 +132,7 @@ pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
             "file": "study.toml", "text": text_of(folder, "study.toml")?, "hash": summary["study_hash"],
             "designs": plan.designs(), "scenarios": plan.scenarios(), "feasible": feasible,
         },
-        "run": json_of(folder, "run.json").ok(),
+        "run": json_of(folder, RUN).ok().filter(summary::is_run),
         "inputs": inputs(study),
         "objectives": objectives.collect::<Vec<_>>(),
         "constraints": constraints.collect::<Vec<_>>(),
@@ -141,12 +142,10 @@ pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
         "tally": summary["tally"],
         "extremes": summary["extremes"],
         "notes": summary["notes"],
-        "histograms": histograms.collect::<Result<Vec<_>>>()?,
-        "maps": maps.collect::<Result<Vec<_>>>()?,
-        "figures": figures(folder),
-        "top": top(folder, study)?,
-        "variants": variants(folder, study)?,
+        "figures": figures(folder)?,
+        "variants": variants(folder, plan)?,
     });
+    Reported::page(&Folder { path: folder, plan, feasible }, data.as_object_mut().expect("it is one"))?;
     let rows = |key: &str| data["front"][key].as_u64().map_or(0, |it| usize::try_from(it).unwrap_or(usize::MAX));
     Ok(Page { html: page::page(&study.title, &data), designs: rows("rows"), of: rows("of"), complete: data["front"]["complete"] != false })
 }
@@ -162,7 +161,7 @@ fn with_knee(front: &front::Front, summary: &Value) -> Value {
 
 /// Every input with its part in the study; the value of those that no axis sets.
 fn inputs(study: &Study) -> Vec<Value> {
-    let model = study.model;
+    let model = &study.model;
     let sets = |axes: &[Axis], input: usize| axes.iter().any(|axis| axis.inputs().contains(&input));
     let role = |input| match () {
         () if sets(&study.design, input) => "design",
@@ -210,89 +209,29 @@ fn scenario_inputs<'s>(plan: &Plan, numbers: impl IntoIterator<Item = &'s u64>) 
     let mut values = study.fixed.clone();
     let rows = numbers.into_iter().map(|&number| {
         plan.space.scenarios.set(number, &mut values);
-        (number.to_string(), inputs.iter().map(|&input| value_of(study.model, input, values[input])).collect::<Value>())
+        (number.to_string(), inputs.iter().map(|&input| value_of(&study.model, input, values[input])).collect::<Value>())
     });
     let rows: Map<_, _> = rows.collect();
     json!({ "columns": columns.collect::<Vec<_>>(), "rows": rows })
 }
 
 /// The pictures of the knee, for models that have such.
-fn figures(folder: &Path) -> Vec<Value> {
-    let picture = |name: &&str| {
-        let svg = fs::read_to_string(folder.join(format!("knee-{name}.svg"))).ok()?;
-        Some(
+fn figures(folder: &Path) -> Result<Vec<Value>> {
+    let mut figures = Vec::new();
+    for name in pulley::PICTURES {
+        let file = folder.join(format!("knee-{name}.svg"));
+        if !file.exists() {
+            continue;
+        }
+        let svg = picture_of(&file)?;
+        figures.push(
             json!({ "id": format!("knee-{name}"), "title": pulley::caption(name), "caption": "", "svg": svg, "csv": null, "group": "The knee" }),
-        )
-    };
-    pulley::PICTURES.iter().filter_map(picture).collect()
-}
-
-/// The list of the best designs, as it was written.
-fn top(folder: &Path, study: &Study) -> Result<Option<Value>> {
-    let Some(top) = study.report.top else { return Ok(None) };
-    let mut table = table(&folder.join("top.csv"), study)?;
-    (table["by"], table["goal"]) = (top.by.name(study.model).into(), json!(top.goal));
-    Ok(Some(table))
+        );
+    }
+    Ok(figures)
 }
 
 /// Every design, feasible or not, if the study lists them.
-fn variants(folder: &Path, study: &Study) -> Result<Option<Value>> {
-    study.report.variants.then(|| table(&folder.join("variants.csv"), study)).transpose()
-}
-
-/// A table of designs as text, with the units of its columns.
-fn table(file: &Path, study: &Study) -> Result<Value> {
-    let mut reader = csv::Reader::from_path(file).map_err(|error| unreadable(file, error))?;
-    let columns: Vec<String> = reader.headers().map_err(|error| unreadable(file, error))?.iter().map(str::to_owned).collect();
-    let model = study.model;
-    let unit = |name: &String| {
-        let name = name.strip_suffix("_constrained").unwrap_or(name);
-        let input = model.input(name).map(|it| model.inputs[it].unit.symbol);
-        input.or_else(|| model.output(name).map(|it| model.outputs[it].unit.symbol)).unwrap_or_default()
-    };
-    if columns.first().is_none_or(|it| it != "design_index") {
-        return Err(changed(file, "it is no table of designs"));
-    }
-    let units: Vec<_> = columns.iter().map(unit).collect();
-    let rows: std::result::Result<Vec<Vec<String>>, _> =
-        reader.records().map(|row| row.map(|row| row.iter().map(str::to_owned).collect())).collect();
-    let rows = rows.map_err(|error| unreadable(file, error))?;
-    Ok(json!({ "columns": columns, "units": units, "rows": rows }))
-}
-
-fn unreadable(file: &Path, error: csv::Error) -> Error {
-    match error.into_kind() {
-        csv::ErrorKind::Io(source) => unreadable_file(file, source),
-        csv::ErrorKind::UnequalLengths { pos, expected_len, len } => {
-            let line = pos.map_or(String::new(), |pos| format!("line {}: ", pos.line()));
-            changed(file, &format!("{line}{len} cells where there should be {expected_len}"))
-        }
-        csv::ErrorKind::Utf8 { .. } => changed(file, "it is no text"),
-        _ => changed(file, "it cannot be read as a table"),
-    }
-}
-
-fn text_of(folder: &Path, name: &str) -> Result<String> {
-    let path = folder.join(name);
-    fs::read_to_string(&path).map_err(|source| unreadable_file(&path, source))
-}
-
-/// A file that is not there is as good as one that was changed.
-fn unreadable_file(file: &Path, source: std::io::Error) -> Error {
-    if source.kind() == std::io::ErrorKind::NotFound {
-        return Error::Request(format!("{} is missing from the result: sweep the study again", file.display()));
-    }
-    Error::io(file)(source)
-}
-
-fn json_of(folder: &Path, name: &str) -> Result<Value> {
-    serde_json::from_str(&text_of(folder, name)?).map_err(|error| changed(&folder.join(name), &format!("it is no JSON: {error}")))
-}
-
-/// A file of a result that this version would not have written.
-fn changed(file: &Path, problem: &str) -> Error {
-    Error::Request(format!(
-        "{}: {problem}; the file was changed or comes from another version of the program: sweep the study again",
-        file.display()
-    ))
+fn variants(folder: &Path, plan: &Plan) -> Result<Option<Value>> {
+    plan.study.report.variants.then(|| designs::list(&folder.join("variants.csv"), plan, plan.designs(), true)).transpose()
 }

@@ -12,6 +12,8 @@ pub enum Packed {
     /// What is shown to six digits only.
     F32(Vec<f32>),
     U32(Vec<u32>),
+    /// Design indices, which a page keeps to the last digit.
+    U64(Vec<u64>),
 }
 
 impl Packed {
@@ -20,6 +22,7 @@ impl Packed {
             Self::F64(_) => "f64",
             Self::F32(_) => "f32",
             Self::U32(_) => "u32",
+            Self::U64(_) => "u64",
         }
     }
 
@@ -28,6 +31,7 @@ impl Packed {
             Self::F64(values) => values.iter().flat_map(|it| it.to_le_bytes()).collect(),
             Self::F32(values) => values.iter().flat_map(|it| it.to_le_bytes()).collect(),
             Self::U32(values) => values.iter().flat_map(|it| it.to_le_bytes()).collect(),
+            Self::U64(values) => values.iter().flat_map(|it| it.to_le_bytes()).collect(),
         }
     }
 }

@@ -2,9 +2,6 @@
 
 use serde_json::Value;
 
-/// Stands near the start of every page: what made it.
-pub const GENERATOR: &str = "name=\"generator\" content=\"beltspace\"";
-
 const TEMPLATE: &str = include_str!("page/page.html");
 const STYLE: &str = include_str!("page/style.css");
 /// D3 (<https://d3js.org>, licence in `page/vendor`): scales, axes, brushes and colours.
@@ -66,6 +63,7 @@ fn escaped(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::names::GENERATOR;
 
     #[test]
     fn nothing_inside_ends_its_element_and_nothing_is_fetched() {

@@ -5,16 +5,14 @@
 
 use super::Block;
 use super::columns::{self, any, keep_finite, keep_margin, keep_within, lower, raise};
-use super::tables::{FastBlock, Setting, Tables, setting};
+use super::tables::{BLOCK, FastBlock, Setting, Tables, setting};
 use crate::decision::Decision;
-use crate::models::{self, CONDITIONS, Columns, INPUTS, OUTPUTS, Scratch, Worse};
+use crate::models::{self, CONDITIONS, Columns, INPUTS, Latest, OUTPUTS, Scratch, Worse};
 use crate::plan::{Plan, Source};
 use crate::space::Product;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Most designs in a block: its columns stay in the first-level cache.
-pub const BLOCK: usize = 512;
 /// Judges ranges of designs; one per thread.
 #[derive(Debug)]
 pub struct CpuEngine<'p> {
@@ -44,6 +42,8 @@ pub struct CpuEngine<'p> {
     values: Vec<Vec<f64>>,
     row_index: u64,
     scratch: Scratch,
+    /// Rows and scenarios that differ in what the first stage does not read for them share what it passed on.
+    latest: Latest,
     /// Set to end the work as soon as may be.
     stop: Option<&'p AtomicBool>,
     /// The only scenarios, slow and fast, that are looked at; none means all.
@@ -91,6 +91,7 @@ impl<'p> CpuEngine<'p> {
             values: vec![vec![0.0; BLOCK]; plan.tracked.len()],
             row_index: 0,
             scratch: Scratch::default(),
+            latest: Latest::new(&plan.study.model),
             stop: None,
             chosen: Vec::new(),
         }
@@ -242,7 +243,7 @@ impl<'p> CpuEngine<'p> {
         let before = self.own.clone();
         self.own.copy_from_slice(&self.first);
         self.plan.slow.set(row, &mut self.own);
-        self.si = crate::models::to_si(self.plan.study.model, &self.own);
+        self.si = crate::models::to_si(&self.plan.study.model, &self.own);
         self.row_index = self.plan.slow.source_index(row);
         // The outer of the axes that the first stage does not read is walked with the slow ones: rows along it share what is prepared.
         let read = self.plan.reach.prepared & self.plan.slow.inputs();
@@ -280,7 +281,7 @@ impl<'p> CpuEngine<'p> {
 
     /// Condition margins and row outputs (SI) in the current scenario.
     pub(super) fn row_values(&self, prepared: Range<usize>) -> ([f64; CONDITIONS], [f64; OUTPUTS]) {
-        let kernel = self.plan.study.model.kernel;
+        let kernel = &self.plan.study.model.kernel;
         let prepared = &self.prepared[prepared];
         let mut outputs = [0.0; OUTPUTS];
         if self.plan.row_outputs != 0 {
@@ -331,7 +332,7 @@ impl<'p> CpuEngine<'p> {
         let plan = self.plan;
         let prepared = &self.prepared[prepared];
         let columns = Columns { count: fast.count, varying: &fast.si, outputs: &plan.lane_outputs, conditions: &plan.lane_conditions };
-        plan.study.model.kernel.finish_columns(plan.study.model, prepared, &self.si, &columns, &mut self.scratch, &mut self.results);
+        plan.study.model.kernel.finish_columns(&plan.study.model, prepared, &self.si, &columns, &mut self.scratch, &mut self.results);
     }
 
     fn judge_block_scenario(&mut self, first: bool) {
@@ -385,7 +386,7 @@ impl<'p> CpuEngine<'p> {
     fn prepare_at(&mut self, q: u64, at: u64) -> Range<usize> {
         self.set_slow_scenario(q);
         let place = self.place(at);
-        self.plan.study.model.kernel.prepare(&self.si, self.wanted, &mut self.prepared[place.clone()]);
+        self.latest.prepare(&self.si, self.wanted, &mut self.prepared[place.clone()]);
         place
     }
 
@@ -422,7 +423,7 @@ impl<'p> CpuEngine<'p> {
 
 /// Does a condition hold? In f64 the answer is never unsure.
 pub(super) fn holds(plan: &Plan, condition: usize, margin: f64) -> bool {
-    models::holds(plan.study.model, condition, margin, 0.0) == Decision::Yes
+    models::holds(&plan.study.model, condition, margin, 0.0) == Decision::Yes
 }
 
 /// A value that is the same for the whole row, in its unit.
@@ -456,6 +457,7 @@ mod tests {
     use crate::models::Model;
     use crate::models::tests::watched;
     use crate::study::study_of;
+    use std::sync::Arc;
     use std::time::Duration;
 
     /// Three rows of four blocks, in three slow and two fast scenarios.
@@ -472,8 +474,8 @@ mod tests {
         friction_margin = "max"
     "#;
 
-    fn plan_of(model: &'static Model) -> Plan {
-        let plan = Plan::new(study_of(model, STUDY).expect("the study is right"));
+    fn plan_of(model: Arc<Model>) -> Plan {
+        let plan = Plan::new(study_of(&model, STUDY).expect("the study is right"));
         assert_eq!((plan.slow.count(), plan.fast.count()), (3, 2000));
         plan
     }

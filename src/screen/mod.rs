@@ -4,16 +4,17 @@
 
 mod columns;
 mod cpu;
+#[cfg(feature = "gpu")]
 pub mod gpu;
 mod tables;
 mod tally;
 
 pub(crate) use columns::ends;
-pub use cpu::{BLOCK, CpuEngine};
-pub use tables::Tables;
+pub use cpu::CpuEngine;
+pub use tables::{BLOCK, Tables};
 pub use tally::Tally;
 
-use std::sync::atomic::{AtomicBool, AtomicU64};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// What others may see and do while designs are judged.
@@ -44,6 +45,12 @@ impl Control {
     /// Says so.
     pub(crate) fn settles(&self, what: String) {
         *self.settling.lock().unwrap_or_else(PoisonError::into_inner) = Some(what);
+    }
+
+    /// Says that bounds are left: from now on designs are judged, so many of which are done.
+    pub(crate) fn judges(&self, done: u64) {
+        *self.settling.lock().unwrap_or_else(PoisonError::into_inner) = None;
+        self.done.store(done, Ordering::Relaxed);
     }
 }
 

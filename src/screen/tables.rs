@@ -1,9 +1,11 @@
 //! What the threads of the processor's engine share: settings of scenarios, and the designs of the fast axes by blocks.
 
-use super::cpu::BLOCK;
 use crate::models::{self, LANES};
 use crate::plan::{FAST_DESIGNS, Plan};
 use crate::space::Product;
+
+/// Most designs in a block: its columns stay in the first-level cache.
+pub const BLOCK: usize = 512;
 
 /// Most scenarios, slow or fast, whose settings are kept rather than computed again.
 const TABLE: u64 = 1 << 15;
@@ -46,12 +48,23 @@ impl Tables {
         let blocks = (0..kept).step_by(BLOCK).map(|first| FastBlock::new(plan, first..kept.min(first + BLOCK as u64))).collect();
         Self { slow_scenarios: settings(&plan.slow_scenarios), fast_scenarios: settings(&plan.fast_scenarios), blocks }
     }
+
+    /// About how many bytes the tables of a plan take.
+    pub fn bytes(plan: &Plan) -> u64 {
+        let settings = |product: &Product| {
+            let one = size_of::<Setting>() + product.inputs().count_ones() as usize * size_of::<(usize, f64, f64)>();
+            if product.count() <= TABLE { product.count() * one as u64 } else { 0 }
+        };
+        let numbers = 1 + 2 * u64::from(plan.fast.inputs().count_ones());
+        let blocks = if plan.fast.count() <= FAST_DESIGNS { plan.fast.count() * 8 * numbers } else { 0 };
+        settings(&plan.slow_scenarios) + settings(&plan.fast_scenarios) + blocks
+    }
 }
 
 impl FastBlock {
     /// The given designs of the fast axes, at most [`BLOCK`].
     pub(super) fn new(plan: &Plan, designs: impl Iterator<Item = u64>) -> Self {
-        let model = plan.study.model;
+        let model = &plan.study.model;
         let set = plan.fast.inputs();
         let mut columns: Inputs =
             (0..model.inputs.len()).filter(|input| set >> input & 1 == 1).map(|input| (input, Vec::with_capacity(BLOCK))).collect();
@@ -105,7 +118,7 @@ impl FastBlock {
 
 /// What one combination of scenario axes sets.
 pub(super) fn setting(plan: &Plan, product: &Product, index: u64) -> Setting {
-    let model = plan.study.model;
+    let model = &plan.study.model;
     let mut inputs = plan.study.fixed.clone();
     product.set(index, &mut inputs);
     let set = product.inputs();

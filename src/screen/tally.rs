@@ -5,10 +5,11 @@
 //! the sweep.
 
 use super::Control;
-use super::cpu::{BLOCK, CpuEngine, holds, row_value};
-use super::tables::{FastBlock, Tables};
+use super::cpu::{CpuEngine, holds, row_value};
+use super::tables::{BLOCK, FastBlock, Tables};
 use crate::error::{Error, Result};
 use crate::models::{CONDITIONS, INPUTS, OUTPUTS};
+use crate::parallel::on_threads;
 use crate::plan::{Plan, Source, Tracked, worst_end};
 use crate::sample::mix;
 use serde::{Deserialize, Serialize};
@@ -23,6 +24,8 @@ pub struct Tally {
     pub feasible: u64,
     /// Per condition of the model: designs whose status it is in some scenario.
     pub conditions: Vec<u64>,
+    /// Designs of which a value that the study asks for is beyond what f64 holds in some scenario.
+    pub overflow: u64,
     /// Per constraint of the study: designs that violate it in some scenario in which they have a meaning.
     pub constraints: Vec<u64>,
     /// Per constraint: designs that would be feasible but for it.
@@ -37,8 +40,10 @@ type Failures = u128;
 
 /// Bit of the first constraint.
 const FIRST_CONSTRAINT: usize = CONDITIONS;
+/// Bit of a value that the study asks for and that is beyond what f64 holds.
+const OVERFLOW: usize = Failures::BITS as usize - 1;
 
-const _: () = assert!(CONDITIONS + INPUTS + OUTPUTS <= Failures::BITS as usize);
+const _: () = assert!(CONDITIONS + INPUTS + OUTPUTS <= OVERFLOW);
 
 impl Tally {
     /// Counts the sample of a plan.
@@ -53,7 +58,7 @@ impl Tally {
     pub fn watched(plan: &Plan, tables: &Tables, threads: usize, control: &Control) -> Result<Self> {
         let tally = Self::count(plan, tables, threads, control);
         if control.stop.load(Ordering::Relaxed) {
-            return Err(Error::Stopped { checkpoint: String::new(), resume: String::new() });
+            return Err(Error::Stopped { kept: None });
         }
         Ok(tally)
     }
@@ -65,11 +70,7 @@ impl Tally {
         positions.sort_unstable();
         control.sample.store(positions.len() as u64, Ordering::Relaxed);
         let share = positions.len().div_ceil(threads.max(1)).max(1);
-        let parts: Vec<Self> = std::thread::scope(|scope| {
-            let count = |part| scope.spawn(move || Counter::new(plan, tables, control).count(part));
-            let parts: Vec<_> = positions.chunks(share).map(count).collect();
-            parts.into_iter().map(|part| part.join().expect("counting does not panic")).collect()
-        });
+        let parts = on_threads(positions.chunks(share), |part| Counter::new(plan, tables, control).count(part));
         parts.into_iter().fold(Self::empty(plan), Self::merge)
     }
 
@@ -81,7 +82,10 @@ impl Tally {
             match self.ranges[column] {
                 Some((low, high)) if low < high => (low, high),
                 // One value needs a bin around it; without a feasible design any range will do.
-                Some((value, _)) => (value - value.abs().max(1.0) / 2.0, value + value.abs().max(1.0) / 2.0),
+                Some((value, _)) => {
+                    let half = value.abs().max(1.0) / 2.0;
+                    ((value - half).max(f64::MIN), (value + half).min(f64::MAX))
+                }
                 None => (0.0, 1.0),
             }
         };
@@ -95,6 +99,7 @@ impl Tally {
             sampled: 0,
             feasible: 0,
             conditions: vec![0; plan.study.model.conditions.len()],
+            overflow: 0,
             constraints: vec![0; constraints],
             only: vec![0; constraints],
             ranges: vec![None; plan.tracked.len()],
@@ -105,6 +110,7 @@ impl Tally {
         let add = |to: &mut [u64], from: &[u64]| to.iter_mut().zip(from).for_each(|(to, from)| *to += from);
         self.sampled += other.sampled;
         self.feasible += other.feasible;
+        self.overflow += other.overflow;
         add(&mut self.conditions, &other.conditions);
         add(&mut self.constraints, &other.constraints);
         add(&mut self.only, &other.only);
@@ -120,6 +126,7 @@ impl Tally {
     fn count_design(&mut self, failures: Failures) {
         self.sampled += 1;
         self.feasible += u64::from(failures == 0);
+        self.overflow += u64::from(failures >> OVERFLOW & 1 == 1);
         for (number, count) in self.conditions.iter_mut().enumerate() {
             *count += u64::from(failures >> number & 1 == 1);
         }
@@ -205,18 +212,20 @@ impl<'p> Counter<'p> {
         true
     }
 
-    /// Constraints that a design violates in the current scenario.
+    /// Constraints that a design violates in the current scenario, and whether a value is beyond what f64 holds.
     fn violated(&self, lane: usize, fast: &FastBlock, outputs: &[f64; OUTPUTS]) -> Failures {
-        let sources = self.plan.study.constraints.iter().zip(&self.plan.constraints).enumerate();
-        sources.fold(0, |set, (number, (constraint, &source))| {
-            let value = match source {
-                Source::LaneInput(input) => fast.own(input)[lane],
-                Source::LaneOutput(position) => self.engine.results[position][lane],
-                Source::RowInput(_) | Source::RowOutput(_) => row_value(self.plan, source, &self.engine.own, outputs),
-            };
-            let satisfied = value.is_finite() && constraint.holds(value);
-            set | Failures::from(!satisfied) << (FIRST_CONSTRAINT + number)
-        })
+        let value = |source| match source {
+            Source::LaneInput(input) => fast.own(input)[lane],
+            Source::LaneOutput(position) => self.engine.results[position][lane],
+            Source::RowInput(_) | Source::RowOutput(_) => row_value(self.plan, source, &self.engine.own, outputs),
+        };
+        let constraints = self.plan.study.constraints.iter().zip(&self.plan.constraints).enumerate();
+        let violated = constraints.fold(0, |set, (number, (constraint, &source))| match value(source) {
+            value if !value.is_finite() => set | 1 << OVERFLOW,
+            value => set | Failures::from(!constraint.holds(value)) << (FIRST_CONSTRAINT + number),
+        });
+        let tracked = self.plan.tracked.iter().any(|&(_, source)| !value(source).is_finite());
+        violated | Failures::from(tracked) << OVERFLOW
     }
 
     /// Takes the worst values of the block's feasible designs into account; false if it was stopped.
@@ -259,7 +268,7 @@ mod tests {
     #[test]
     fn a_slow_model_is_sampled_less_and_prepares_each_design_of_the_sample_once() {
         let (model, kernel) = watched(Duration::ZERO, 0);
-        let plan = Plan::new(study_of(model, STUDY).expect("the study is right"));
+        let plan = Plan::new(study_of(&model, STUDY).expect("the study is right"));
         let control = Control::default();
         let tally = Tally::watched(&plan, &Tables::new(&plan), 2, &control).expect("nobody stops it");
         assert_eq!((tally.sampled, kernel.prepared.load(Ordering::Relaxed)), (50, 100));
@@ -273,7 +282,7 @@ mod tests {
         let (model, kernel) = watched(Duration::from_millis(1), 0);
         let control: &Control = Box::leak(Box::default());
         assert!(kernel.stop.set((20, control)).is_ok());
-        let plan = Plan::new(study_of(model, STUDY).expect("the study is right"));
+        let plan = Plan::new(study_of(&model, STUDY).expect("the study is right"));
         let stopped = Tally::watched(&plan, &Tables::new(&plan), 2, control);
         assert!(matches!(stopped, Err(Error::Stopped { .. })), "{stopped:?}");
         assert!(kernel.prepared.load(Ordering::Relaxed) < 24 && control.sampled.load(Ordering::Relaxed) < 24);

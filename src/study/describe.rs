@@ -1,14 +1,17 @@
 //! The resolved study in words and names: `study.json`, the study's hash, and what changed between two studies.
 
+use super::read::shown;
 use super::{Axis, Best, Constraint, ContourSpec, Goal, Levels, Quantity, Study, Thresholds};
+use crate::error::brief;
 use crate::models::Model;
 use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
 
 impl Study {
     /// Everything that the study asks for, by name and in units; arrays where the order matters.
+    #[doc(hidden)]
     pub fn describe(&self) -> Value {
-        let model = self.model;
+        let model = &self.model;
         let taken: Vec<usize> =
             [&self.design, &self.operation, &self.uncertainty].into_iter().flatten().flat_map(Axis::inputs).copied().collect();
         let fixed: Map<_, _> = (0..model.inputs.len())
@@ -16,7 +19,7 @@ impl Study {
             .map(|input| (model.inputs[input].name.to_owned(), value_of(model, input, self.fixed[input])))
             .collect();
         let axes = |axes: &[Axis]| Value::from(axes.iter().map(|axis| axis_of(model, axis)).collect::<Vec<_>>());
-        let axis_name = |axis: usize| model.inputs[self.design[axis].inputs()[0]].name;
+        let axis_name = |axis: usize| model.inputs[self.design[axis].inputs()[0]].name.as_str();
         let report = &self.report;
         let mut described = json!({
             "model": model.name,
@@ -51,8 +54,14 @@ impl Study {
             "front_budget": report.front_budget,
         });
         // As with lines: what is not asked for leaves the hash alone.
+        if let Some(sample) = report.sample {
+            described["feasible_sample"] = json!({ "count": sample.count, "seed": sample.seed });
+        }
         if report.variants {
             described["variants"] = true.into();
+        }
+        if !model.version.is_empty() {
+            described["model_version"] = model.version.clone().into();
         }
         described
     }
@@ -62,6 +71,14 @@ impl Study {
         let digest = Sha256::digest(self.describe().to_string());
         digest.iter().map(|byte| format!("{byte:02x}")).collect()
     }
+}
+
+/// Most entries of a list that are told to differ.
+const MOST_DIFFERENCES: usize = 10;
+
+/// A part in which two descriptions differ.
+fn told(name: &str, was: &Value, is: &Value) -> String {
+    format!("{}: was {}, is {}", brief(name), brief(&was.to_string()), brief(&is.to_string()))
 }
 
 /// The parts in which two descriptions differ, as `name: was ..., is ...`.
@@ -78,9 +95,10 @@ pub fn differences(was: &Value, is: &Value) -> Vec<String> {
         // Of a list only the entries that differ are worth reading.
         match (was.as_array(), is.as_array()) {
             (Some(was), Some(is)) if was.len() == is.len() => {
-                changed.extend(was.iter().zip(is).filter(|(was, is)| was != is).map(|(was, is)| format!("{name}: was {was}, is {is}")));
+                changed
+                    .extend(was.iter().zip(is).filter(|(was, is)| was != is).take(MOST_DIFFERENCES).map(|(was, is)| told(name, was, is)));
             }
-            _ => changed.push(format!("{name}: was {was}, is {is}")),
+            _ => changed.push(told(name, was, is)),
         }
     }
     changed
@@ -100,7 +118,7 @@ pub fn number(value: f64) -> Value {
 fn axis_of(model: &Model, axis: &Axis) -> Value {
     match axis {
         Axis::Single { input, levels } => {
-            let name = model.inputs[*input].name;
+            let name = &model.inputs[*input].name;
             let spacing = |log: bool| if log { "log" } else { "linear" };
             match levels {
                 Levels::List(values) => {
@@ -119,7 +137,7 @@ fn axis_of(model: &Model, axis: &Axis) -> Value {
         }
         Axis::Joint { inputs, rows } => {
             let row = |row: &Vec<f64>| -> Value { inputs.iter().zip(row).map(|(&input, &value)| value_of(model, input, value)).collect() };
-            let names: Vec<_> = inputs.iter().map(|&input| model.inputs[input].name).collect();
+            let names: Vec<_> = inputs.iter().map(|&input| model.inputs[input].name.as_str()).collect();
             json!({ "inputs": names, "rows": rows.iter().map(row).collect::<Vec<_>>() })
         }
     }
@@ -146,8 +164,8 @@ fn contours_of(model: &Model, contours: &ContourSpec) -> Value {
 impl Constraint {
     /// The bounds in words, such as `at least 0 and at most 30000`.
     pub fn in_words(&self) -> String {
-        let low = self.low.map(|(bound, excluded)| format!("{} {bound}", if excluded { "above" } else { "at least" }));
-        let high = self.high.map(|(bound, excluded)| format!("{} {bound}", if excluded { "below" } else { "at most" }));
+        let low = self.low.map(|(bound, excluded)| format!("{} {}", if excluded { "above" } else { "at least" }, shown(bound)));
+        let high = self.high.map(|(bound, excluded)| format!("{} {}", if excluded { "below" } else { "at most" }, shown(bound)));
         low.into_iter().chain(high).collect::<Vec<_>>().join(" and ")
     }
 }
@@ -162,10 +180,10 @@ impl Quantity {
     }
 
     /// What it is, in a sentence.
-    pub fn doc(self, model: &Model) -> &'static str {
+    pub fn doc(self, model: &Model) -> &str {
         match self {
-            Self::Input(input) => model.inputs[input].doc,
-            Self::Output(output) => model.outputs[output].doc,
+            Self::Input(input) => &model.inputs[input].doc,
+            Self::Output(output) => &model.outputs[output].doc,
         }
     }
 }

@@ -1,9 +1,10 @@
 //! A study back from what [`Study::describe`] says of it: a result directory is enough, wherever its study file and tables lie.
 
 use super::{
-    Axis, Best, Constraint, ContourSpec, Goal, HistogramSpec, Levels, MapSpec, Objective, Quantity, Report, Study, Thresholds, TopSpec,
+    Axis, Best, Constraint, ContourSpec, Goal, HistogramSpec, Levels, MapSpec, Objective, Quantity, Report, SampleSpec, Study, Thresholds,
+    TopSpec,
 };
-use crate::models::{Model, find};
+use crate::models::{Model, Models};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
@@ -14,27 +15,37 @@ impl Study {
     ///
     /// # Errors
     /// The first thing that is missing, or is not what a description has there.
+    #[doc(hidden)]
     pub fn from_description(described: &Value) -> Result<Self, String> {
+        Self::from_description_with(&Models::new(), described)
+    }
+
+    /// The same where the model is one of these.
+    ///
+    /// # Errors
+    /// As [`Study::from_description`].
+    #[doc(hidden)]
+    pub fn from_description_with(models: &Models, described: &Value) -> Result<Self, String> {
         let name = text(described, "model")?;
-        let model = find(name).ok_or_else(|| format!("there is no model \"{name}\""))?;
-        let axes = |role: &str| list(described, role)?.iter().map(|axis| axis_of(model, axis)).collect::<Found<Vec<_>>>();
+        let model = models.find(name).ok_or_else(|| format!("there is no model \"{name}\""))?;
+        let axes = |role: &str| list(described, role)?.iter().map(|axis| axis_of(&model, axis)).collect::<Found<Vec<_>>>();
         let mut fixed = model.defaults();
         for (name, value) in described["fixed"].as_object().ok_or("\"fixed\" is missing")? {
-            let input = input_of(model, name)?;
-            fixed[input] = value_of(model, input, value)?;
+            let input = input_of(&model, name)?;
+            fixed[input] = value_of(&model, input, value)?;
         }
         let study = Self {
-            model,
+            model: model.clone(),
             title: text(described, "title")?.to_owned(),
             design: axes("design")?,
             sample: plain(&described["sample"], "sample")?,
             operation: axes("operation")?,
             uncertainty: axes("uncertainty")?,
             fixed,
-            constraints: each(described, "constraints", |it| constraint_of(model, it))?,
+            constraints: each(described, "constraints", |it| constraint_of(&model, it))?,
             objectives: each(described, "objectives", |it| {
                 Ok(Objective {
-                    quantity: quantity_of(model, &it["of"])?,
+                    quantity: quantity_of(&model, &it["of"])?,
                     goal: plain(&it["goal"], "goal")?,
                     resolution: plain(&it["resolution"], "resolution")?,
                 })
@@ -43,6 +54,7 @@ impl Study {
         };
         let report = report_of(&study, described)?;
         let study = Self { report, ..study };
+        study.check()?;
         // What this version would describe otherwise was not written by it.
         match super::differences(described, &study.describe()).first() {
             None => Ok(study),
@@ -52,7 +64,7 @@ impl Study {
 }
 
 fn report_of(study: &Study, described: &Value) -> Found<Report> {
-    let model = study.model;
+    let model = &study.model;
     let top = match &described["top"] {
         Value::Null => None,
         top => {
@@ -63,21 +75,26 @@ fn report_of(study: &Study, described: &Value) -> Found<Report> {
         let [from, to]: [Option<f64>; 2] = [plain(&it["from"], "from")?, plain(&it["to"], "to")?];
         Ok(HistogramSpec { of: quantity_of(model, &it["of"])?, range: from.zip(to), bins: plain(&it["bins"], "bins")? })
     };
+    let sample = match &described["feasible_sample"] {
+        Value::Null => None,
+        sample => Some(SampleSpec { count: plain(&sample["count"], "count")?, seed: plain(&sample["seed"], "seed")? }),
+    };
     Ok(Report {
         columns: each(described, "columns", |it| quantity_of(model, it))?,
         top,
         histograms: each(described, "histograms", histogram)?,
         maps: each(described, "maps", |it| map_of(study, it))?,
+        sample,
         front_budget: plain(&described["front_budget"], "front_budget")?,
         variants: described["variants"] == true,
     })
 }
 
 fn map_of(study: &Study, map: &Value) -> Found<MapSpec> {
-    let model = study.model;
+    let model = &study.model;
     let axis = |key: &str| {
         let input = input_of(model, text(map, key)?)?;
-        let position = study.design.iter().position(|axis| axis.inputs()[0] == input);
+        let position = study.design.iter().position(|axis| axis.inputs().first() == Some(&input));
         position.ok_or_else(|| format!("a map's {key} is no design axis"))
     };
     let value = match text(map, "best")? {
@@ -208,11 +225,12 @@ mod tests {
             columns = ["max_stress_MPa"]
             maps = [{ x = "traction", y = "band_thickness_mm", best = "share" }]
             histograms = [{ of = "axial_force_N", bins = 4 }]
+            sample = { count = 100, seed = 7 }
         "#;
         let sampled = "model = \"metal-cvt\"\n[design]\nband_thickness_mm = { from = 0.1, to = 0.4 }\n[sample]\nmethod = \"sobol\"\n\
                        count = 16\nseed = 3\n[objectives]\naxial_force_N = \"min\"\n";
         for text in [text, sampled] {
-            let study = Study::parse(text, "study.toml", Path::new(".")).unwrap_or_else(|errors| panic!("{errors}"));
+            let study = Study::parse_in(text, "study.toml", Path::new(".")).unwrap_or_else(|errors| panic!("{errors}"));
             let described = study.describe();
             let back = Study::from_description(&described).expect("it comes back");
             assert_eq!(Study { fixed: study.fixed.clone(), ..back }, study);

@@ -5,14 +5,21 @@
 //! shards can be merged without the file they came from.
 
 mod axis;
+mod check;
 mod describe;
 mod described;
 mod read;
 mod resolved;
 
 pub use axis::{Axis, Levels, Method, Sample};
+#[doc(hidden)]
 pub use describe::{differences, number, value_of};
 #[cfg(test)]
 pub(crate) use read::tests::study_of;
 pub use read::{Problem, StudyErrors};
-pub use resolved::{Best, Constraint, ContourSpec, Goal, HistogramSpec, MapSpec, Objective, Quantity, Report, Study, Thresholds, TopSpec};
+pub(crate) use resolved::Stored;
+#[doc(hidden)]
+pub use resolved::worst_end;
+pub use resolved::{
+    Best, Constraint, ContourSpec, Goal, HistogramSpec, MapSpec, Objective, Quantity, Report, SampleSpec, Study, Thresholds, TopSpec,
+};

@@ -1,8 +1,10 @@
 //! The resolved study.
 
 use super::axis::{Axis, Sample};
-use crate::models::{Model, Worse};
-use serde::{Deserialize, Serialize};
+use crate::models::{Model, Models, Worse};
+use serde::{Deserialize, Serialize, Serializer};
+use serde_json::Value;
+use std::sync::Arc;
 
 /// An input or output that a constraint, objective, column or picture is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -16,10 +18,10 @@ pub enum Quantity {
 
 impl Quantity {
     /// Its name, with the unit.
-    pub fn name(self, model: &Model) -> &'static str {
+    pub fn name(self, model: &Model) -> &str {
         match self {
-            Self::Input(input) => model.inputs[input].name,
-            Self::Output(output) => model.outputs[output].name,
+            Self::Input(input) => &model.inputs[input].name,
+            Self::Output(output) => &model.outputs[output].name,
         }
     }
 
@@ -131,6 +133,15 @@ pub enum Best {
     Share,
 }
 
+/// A sample of the feasible designs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SampleSpec {
+    /// How many designs, at least 1; all feasible ones if there are fewer.
+    pub count: usize,
+    /// What shuffles the order that they are taken from.
+    pub seed: u64,
+}
+
 /// The values of a quantity whose lines a map shows.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -175,6 +186,9 @@ pub struct Report {
     pub histograms: Vec<HistogramSpec>,
     /// Maps, in file order.
     pub maps: Vec<MapSpec>,
+    /// A sample of the feasible designs.
+    #[serde(default)]
+    pub sample: Option<SampleSpec>,
     /// Most points that a front may have.
     pub front_budget: u64,
     /// Is every design to be listed, feasible or not?
@@ -182,12 +196,36 @@ pub struct Report {
     pub variants: bool,
 }
 
+impl Report {
+    /// Quantities whose worst values a sweep must follow for what is reported, with the end that is worst.
+    pub(crate) fn followed(&self, study: &Study) -> Vec<(Quantity, Worse)> {
+        let top = self.top.iter().map(|top| (top.by, top.goal.worse()));
+        let histograms = self.histograms.iter().map(|it| (it.of, worst_end(study, it.of)));
+        let maps = self.maps.iter().filter_map(|it| match it.value {
+            Best::Value(quantity, goal) => Some((quantity, goal.worse())),
+            Best::Share => None,
+        });
+        top.chain(histograms).chain(maps).collect()
+    }
+
+    /// Positions of the design axes over which something is shown.
+    pub(crate) fn axes(&self) -> Vec<usize> {
+        self.maps.iter().flat_map(|map| [map.x, map.y]).collect()
+    }
+}
+
+/// The end of a quantity's scatter that its worst value is: by its objective if it has one, else by nature.
+pub fn worst_end(study: &Study, quantity: Quantity) -> Worse {
+    let goal = study.objectives.iter().find(|objective| objective.quantity == quantity).map(|objective| objective.goal);
+    goal.map_or(quantity.worse(&study.model), Goal::worse)
+}
+
 /// A request: which designs to judge, over which scenarios, by what.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Study {
-    /// The model.
-    #[serde(with = "model_by_name")]
-    pub model: &'static Model,
+    /// The model; stored by its name.
+    #[serde(serialize_with = "name_of")]
+    pub model: Arc<Model>,
     /// Title for people.
     pub title: String,
     /// Design axes in file order; the last varies fastest in the design index.
@@ -208,27 +246,55 @@ pub struct Study {
     pub report: Report,
 }
 
+/// A study as it stands in a file that may have been changed: it is none before its model has been found and it has been checked.
+#[derive(Deserialize)]
+pub(crate) struct Stored {
+    model: String,
+    title: String,
+    design: Vec<Axis>,
+    sample: Option<Sample>,
+    operation: Vec<Axis>,
+    uncertainty: Vec<Axis>,
+    fixed: Vec<f64>,
+    constraints: Vec<Constraint>,
+    objectives: Vec<Objective>,
+    report: Report,
+}
+
+impl Stored {
+    /// Name of its model.
+    pub(crate) fn model(&self) -> &str {
+        &self.model
+    }
+
+    /// The study, whose model is one of these.
+    pub(crate) fn study(self, models: &Models) -> Result<Study, String> {
+        let Self { model, title, design, sample, operation, uncertainty, fixed, constraints, objectives, report } = self;
+        let model = models.find(&model).ok_or_else(|| format!("unknown model \"{model}\""))?;
+        let study = Study { model, title, design, sample, operation, uncertainty, fixed, constraints, objectives, report };
+        study.check().map(|()| study)
+    }
+}
+
 impl Study {
+    /// A study from what serialising it gave, whose model is one of these.
+    ///
+    /// # Errors
+    /// The first thing that is missing or cannot be.
+    #[doc(hidden)]
+    pub fn from_stored(models: &Models, stored: Value) -> Result<Self, String> {
+        serde_json::from_value::<Stored>(stored).map_err(|error| error.to_string())?.study(models)
+    }
+
     /// What the model has to say of this study as a whole.
     pub fn remarks(&self) -> Vec<String> {
         let set_by_axes =
             |input: &usize| self.design.iter().chain(&self.operation).chain(&self.uncertainty).any(|axis| axis.inputs().contains(input));
         let fixed: Vec<_> = (0..self.fixed.len()).map(|input| (!set_by_axes(&input)).then_some(self.fixed[input])).collect();
-        self.model.remarks.map_or(Vec::new(), |remarks| remarks(&fixed))
+        self.model.remarks.as_ref().map_or_else(Vec::new, |remarks| remarks(&fixed))
     }
 }
 
-/// A model is stored by its name.
-mod model_by_name {
-    use crate::models::{Model, find};
-    use serde::{Deserialize, Deserializer, Serializer, de::Error};
-
-    pub fn serialize<S: Serializer>(model: &&'static Model, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(model.name)
-    }
-
-    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<&'static Model, D::Error> {
-        let name = String::deserialize(deserializer)?;
-        find(&name).ok_or_else(|| D::Error::custom(format!("unknown model \"{name}\"")))
-    }
+fn name_of<S: Serializer>(model: &Arc<Model>, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(&model.name)
 }

@@ -3,17 +3,19 @@
 //! A range counts as done when it is counted; the search comes first and covers all of it, so that whatever a checkpoint holds is as
 //! complete as that of a sweep design by design, and either may go on with the other's.
 
-use super::{Control, Options, Swept, Work, check_budget, head_start, look_around};
+use super::costs::Promise;
+use super::watch::{Leaving, OFTEN, Teller, Watch};
+use super::{Control, Settings, Swept, Work};
 use crate::bounds::{Certificate, Layout, Settled, Worker, in_words, refusal};
-use crate::checkpoint::{Checkpoint, Progress};
+use crate::checkpoint::Checkpoint;
 use crate::error::{Error, Result};
+use crate::parallel::{on_threads, start};
 use crate::plan::Plan;
 use crate::reduce::{Reduction, State};
 use crate::screen::{CpuEngine, Tables};
-use crate::tiles::Ranges;
 use std::ops::Range;
-use std::sync::atomic::Ordering;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// How long a range should take to count: what a killed run loses per thread.
@@ -29,62 +31,138 @@ const COMPARED_TIME: f64 = 2.0;
 /// Sweeps a plan by bounds. With a checkpoint, starts from what it holds, however that was made.
 ///
 /// # Errors
-/// As [`sweep`](super::sweep); [`Error::Request`] if bounds cannot serve the study; [`Error::Certificate`] if designs judged one by one do
+/// As [`sweep`](super::sweep); [`Error::NotByBounds`] if bounds cannot serve the study; [`Error::Certificate`] if designs judged one by one do
 /// not agree with what the bounds say, or the rules do not add up to all designs.
 pub fn sweep_by_bounds(
     plan: &Plan,
     tables: &Tables,
     reduction: &Reduction,
-    options: &Options,
-    mut checkpoint: Option<&mut Checkpoint>,
+    options: &Settings,
+    checkpoint: Option<&mut Checkpoint>,
     control: &Control,
 ) -> Result<(Swept, Certificate)> {
     let start = Instant::now();
-    let refuse = || Error::Request(format!("bounds cannot serve this study: {}", refusal(plan).unwrap_or_default()));
-    let layout = Layout::new(plan).ok_or_else(refuse)?;
+    let mut work = Work::begin(plan, tables, reduction, options, checkpoint, control)?;
+    let designs = work.todo.count();
+    match settle(plan, tables, reduction, options, &mut work, control, None)? {
+        Settling::Done(state, certificate) => Ok((Swept { state, designs, time: start.elapsed() }, certificate)),
+        Settling::Left(_) => Err(stopped()),
+    }
+}
+
+/// What came of bounds.
+pub(super) enum Settling {
+    /// They settled every design.
+    Done(State, Certificate),
+    /// They were left; what they counted and found is kept in the work.
+    Left(Remains),
+}
+
+/// What bounds leave behind.
+pub(super) struct Remains {
+    pub promise: Promise,
+    /// What they were at.
+    pub at: String,
+    /// Designs that they counted.
+    pub counted: u64,
+    /// What the result names, if they had found all of it.
+    pub found: Option<State>,
+}
+
+/// Settles designs by bounds until there are none left, or, where `leaving` says when and how many seconds a design takes one by one,
+/// until that pays no more.
+pub(super) fn settle(
+    plan: &Plan,
+    tables: &Tables,
+    reduction: &Reduction,
+    options: &Settings,
+    work: &mut Work<'_>,
+    control: &Control,
+    leaving: Option<(Leaving, f64)>,
+) -> Result<Settling> {
+    let refuse = || Error::NotByBounds { why: refusal(plan).unwrap_or_default() };
+    let mut layout = Layout::new(plan).ok_or_else(refuse)?;
+    layout.most_points = options.most_points(plan);
     let whole = options.shard.range(plan.designs());
-    let progress = match checkpoint.as_deref_mut() {
-        Some(checkpoint) => checkpoint.take_progress(),
-        None => None,
-    };
-    let fresh = || head_start(reduction, &mut look_around(plan, tables, reduction, &whole, control));
-    let progress = progress.unwrap_or_else(|| Progress { done: Ranges::default(), state: fresh() });
-    let mut work = Work::new(progress, whole.clone(), reduction, checkpoint, control);
+    let passes = Layout::sought(plan).len() as u64 + 1;
+    let watch = Watch::new(control, leaving, whole.end - whole.start, work.todo.count(), passes);
+    let over = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        // Where no thread can be had, those who settle boxes look at the clock.
+        let look = || {
+            while !over.load(Ordering::Relaxed) {
+                watch.look();
+                std::thread::sleep(OFTEN);
+            }
+        };
+        let _watcher = if watch.may_leave() { start(scope, look) } else { None };
+        // Whatever happens, the watcher ends.
+        let _end = AtEnd(&over);
+        settle_watched(plan, tables, reduction, options, &layout, &whole, work, &watch, control)
+    })
+}
+
+/// Sets a flag when it goes.
+struct AtEnd<'a>(&'a AtomicBool);
+
+impl Drop for AtEnd<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
+#[allow(clippy::too_many_arguments, reason = "what a sweep has")]
+fn settle_watched(
+    plan: &Plan,
+    tables: &Tables,
+    reduction: &Reduction,
+    options: &Settings,
+    layout: &Layout,
+    whole: &Range<u64>,
+    work: &mut Work<'_>,
+    watch: &Watch<'_>,
+    control: &Control,
+) -> Result<Settling> {
     let designs = work.todo.count();
     let mut certificate = Certificate::default();
-    let searched = search(plan, tables, reduction, options, &layout, &whole, &mut work, control, &mut certificate);
+    let searched = search(plan, tables, reduction, options, layout, whole, work, watch, control, &mut certificate);
     let state = work.reducers.state();
     work.save(&state)?;
-    check_budget(plan, &state)?;
+    options.check_memory(plan, state.front.len())?;
+    let left = || watch.left().filter(|_| !control.stop.load(Ordering::Relaxed));
+    let at = || control.settled_for().unwrap_or_default();
     if !searched {
-        return Err(stopped());
+        let promise = left().ok_or_else(stopped)?;
+        return Ok(Settling::Left(Remains { promise, at: at(), counted: 0, found: None }));
     }
+    // What was searched is final.
+    options.check_budget(plan, &state)?;
     let passes = Layout::sought(plan).len() as u64 + 1;
     control.settles(format!("count, {passes} of {passes}"));
-    let work = Mutex::new(work);
-    let settled: Vec<Settled> = std::thread::scope(|scope| {
-        let count = || count_on_thread(plan, &layout, options, passes, &work, control);
-        let threads: Vec<_> = (0..options.threads.max(1)).map(|_| scope.spawn(count)).collect();
-        threads.into_iter().map(|it| it.join().expect("counting does not panic")).collect()
-    });
+    watch.counts();
+    let shared = Mutex::new(work);
+    let settled = on_threads(0..options.threads.max(1), |_| count_on_thread(plan, layout, options, &shared, watch));
     settled.iter().for_each(|it| certificate.count.add(it));
-    let mut work = work.into_inner().unwrap_or_else(PoisonError::into_inner);
-    if let Some(failure) = work.failure {
+    let work = shared.into_inner().unwrap_or_else(PoisonError::into_inner);
+    if let Some(failure) = work.failure.take() {
         return Err(failure);
     }
     let state = work.reducers.state();
     work.save(&state)?;
-    if work.todo.count() > 0 || control.stop.load(Ordering::Relaxed) {
-        return Err(stopped());
+    let counted = designs - work.todo.count();
+    if counted < designs || control.stop.load(Ordering::Relaxed) {
+        let promise = left().ok_or_else(stopped)?;
+        adds_up(&certificate, counted, whole.end - whole.start)?;
+        return Ok(Settling::Left(Remains { promise, at: at(), counted, found: Some(state) }));
     }
     adds_up(&certificate, designs, whole.end - whole.start)?;
-    certificate.compared = compare(plan, tables, reduction, &layout, &whole, &state, control)?;
+    certificate.compared = compare(plan, tables, reduction, layout, whole, &state, control)?;
     control.done.store(whole.end - whole.start, Ordering::Relaxed);
-    Ok((Swept { state, designs, time: start.elapsed() }, certificate))
+    Ok(Settling::Done(state, certificate))
 }
 
-fn stopped() -> Error {
-    Error::Stopped { checkpoint: String::new(), resume: String::new() }
+pub(super) fn stopped() -> Error {
+    Error::Stopped { kept: None }
 }
 
 /// Searches for everything that the result names; false if it was stopped.
@@ -93,22 +171,21 @@ fn search(
     plan: &Plan,
     tables: &Tables,
     reduction: &Reduction,
-    options: &Options,
+    options: &Settings,
     layout: &Layout,
     whole: &Range<u64>,
     work: &mut Work<'_>,
+    watch: &Watch<'_>,
     control: &Control,
     certificate: &mut Certificate,
 ) -> bool {
     let all = Layout::sought(plan);
     let passes = all.len() as u64 + 1;
-    let mut workers: Vec<Worker<'_>> = (0..options.threads.max(1)).map(|_| layout.worker(plan, tables, &control.stop)).collect();
-    let progress = |designs: u64| {
-        control.done.fetch_add(designs / passes, Ordering::Relaxed);
-    };
+    let mut workers: Vec<Worker<'_>> = (0..options.threads.max(1)).map(|_| layout.worker(plan, tables, watch.stop())).collect();
+    let progress = |designs: u64| watch.settle(designs);
     for (number, sought) in all.into_iter().enumerate() {
         control.settles(format!("{}, {} of {passes}", in_words(plan, sought), number + 1));
-        let found = layout.search(plan, reduction, sought, whole, &mut workers, &mut work.reducers, &control.stop, &progress);
+        let found = layout.search(plan, reduction, sought, whole, &mut workers, &mut work.reducers, watch.stop(), &progress);
         match found {
             Some(searched) => certificate.searches.push((in_words(plan, sought), searched)),
             None => return false,
@@ -118,8 +195,10 @@ fn search(
 }
 
 /// Counts ranges until there are none left.
-fn count_on_thread(plan: &Plan, layout: &Layout, options: &Options, passes: u64, work: &Mutex<Work<'_>>, control: &Control) -> Settled {
-    let mut counter = layout.counter(&control.stop);
+fn count_on_thread(plan: &Plan, layout: &Layout, options: &Settings, work: &Mutex<&mut Work<'_>>, watch: &Watch<'_>) -> Settled {
+    let teller = Teller::new(watch);
+    let settle = |designs: u64| teller.settle(designs);
+    let mut counter = layout.counter(watch.stop()).telling(&settle);
     let lock = || work.lock().unwrap_or_else(PoisonError::into_inner);
     let all = options.shard.range(plan.designs());
     let least = (all.end - all.start) / PARTS;
@@ -127,12 +206,13 @@ fn count_on_thread(plan: &Plan, layout: &Layout, options: &Options, passes: u64,
     loop {
         let range = {
             let mut work = lock();
-            if control.stop.load(Ordering::Relaxed) || work.failure.is_some() {
+            if watch.stop().load(Ordering::Relaxed) || work.failure.is_some() {
                 return settled;
             }
             let Some(first) = work.todo.first() else { return settled };
             let fair = work.todo.count() / options.threads.max(1) as u64;
-            let about = work.rate.map_or(least, |rate| ((rate * CHUNK.as_secs_f64()) as u64).min(fair.max(least)));
+            let chunk = CHUNK.as_secs_f64().min(watch.chunk());
+            let about = work.rate.map_or(least, |rate| ((rate * chunk) as u64).min(fair.max(least)));
             let end = layout.round(&first, about.max(1));
             work.todo.take(end - first.start).unwrap_or(first)
         };
@@ -147,14 +227,14 @@ fn count_on_thread(plan: &Plan, layout: &Layout, options: &Options, passes: u64,
                 let mut own = counter.settled;
                 own.subtract(&before);
                 settled.add(&own);
-                control.done.fetch_add((range.end - range.start) / passes, Ordering::Relaxed);
-                hand_over(plan, range, feasible, start.elapsed(), lock());
+                teller.tell();
+                hand_over(plan, range, feasible, start.elapsed(), &mut lock());
             }
         }
     }
 }
 
-fn hand_over(plan: &Plan, range: Range<u64>, feasible: u64, time: Duration, mut work: MutexGuard<'_, Work<'_>>) {
+fn hand_over(plan: &Plan, range: Range<u64>, feasible: u64, time: Duration, work: &mut Work<'_>) {
     work.rate = Some((range.end - range.start) as f64 / time.as_secs_f64().max(1e-6));
     work.reducers.feasible += feasible;
     if let Err(failure) = work.finish(plan, range) {
@@ -210,9 +290,7 @@ fn compare(
         }
         compared += length;
     }
-    let seen = known.state();
-    let best = |state: &State| state.top.as_ref().map(crate::reduce::Top::indices);
-    if seen.front != state.front || seen.extremes != state.extremes || best(&seen) != best(state) {
+    if !state.names_all_of(&known.state()) {
         return Err(Error::Certificate("designs judged one by one are better than what bounds found".to_owned()));
     }
     Ok(compared)

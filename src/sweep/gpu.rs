@@ -1,13 +1,14 @@
 //! The sweep on a device: tiles judged there, survivors in f64 here, one host thread that keeps the answers.
 
 use super::recheck::{Recheck, Recheckable};
-use super::{Control, Options, Swept, Work, head_start, look_around};
+use super::{Control, Settings, Swept, Work, head_start, look_around};
 use crate::checkpoint::{Checkpoint, Progress};
 use crate::error::{Error, Result};
 use crate::gpu::Device;
+use crate::parallel::on_threads;
 use crate::plan::Plan;
-use crate::reduce::{DENSE, MOST_OBJECTIVES, Points, Reducers, Reduction, State};
-use crate::screen::gpu::{Answers, GpuEngine, InFlight, Survivor, Survivors, TileCounts, Wrong, value_maps};
+use crate::reduce::{Answers, MOST_OBJECTIVES, Points, Reducers, Reduction, State};
+use crate::screen::gpu::{GpuEngine, InFlight, Survivor, Survivors, TileCounts, Wrong, value_maps};
 use crate::screen::{CpuEngine, Tables};
 use crate::study::{MapSpec, Quantity};
 use crate::tiles::Ranges;
@@ -75,21 +76,36 @@ pub fn sweep_on_device(
     plan: &Plan,
     tables: &Tables,
     reduction: &Reduction,
-    options: &Options,
+    options: &Settings,
     mut checkpoint: Option<&mut Checkpoint>,
+    control: &Control,
+    on: &OnDevice,
+) -> Result<(Swept, DeviceRecord)> {
+    let progress = match checkpoint.as_deref_mut() {
+        Some(checkpoint) => checkpoint.take_progress(plan, reduction)?,
+        None => None,
+    };
+    go_on(plan, tables, reduction, options, progress, checkpoint, control, on)
+}
+
+/// The same with what was done before.
+#[allow(clippy::too_many_arguments, reason = "what a sweep has")]
+pub(super) fn go_on(
+    plan: &Plan,
+    tables: &Tables,
+    reduction: &Reduction,
+    options: &Settings,
+    progress: Option<Progress>,
+    checkpoint: Option<&mut Checkpoint>,
     control: &Control,
     on: &OnDevice,
 ) -> Result<(Swept, DeviceRecord)> {
     let start = Instant::now();
     let mut engine = GpuEngine::new(plan, &reduction.histogram_ranges(), &on.device, on.limited_loops, &on.wrong)?;
     let whole = options.shard.range(plan.designs());
-    let progress = match checkpoint.as_deref_mut() {
-        Some(checkpoint) => checkpoint.take_progress(),
-        None => None,
-    };
     let mut seen = look_around(plan, tables, reduction, &whole, control);
     let progress = progress.unwrap_or_else(|| Progress { done: Ranges::default(), state: head_start(reduction, &mut seen) });
-    let mut work = Work::new(progress, whole.clone(), reduction, checkpoint, control);
+    let mut work = Work::new(plan, options, progress, reduction, checkpoint, control);
     let designs = work.todo.count();
     let mut run = Run {
         plan,
@@ -98,7 +114,7 @@ pub fn sweep_on_device(
         host: CpuEngine::new(plan, tables),
         tables,
         threads: options.threads.max(1),
-        hints: answers(plan, &mut seen),
+        hints: answers(&mut seen),
         record: DeviceRecord::default(),
     };
     // Should the device turn out not to keep its promise, nothing that it counted may be kept.
@@ -116,9 +132,9 @@ pub fn sweep_on_device(
     work.save(&state)?;
     let rechecked = outcome?;
     if control.stop.load(Ordering::Relaxed) && work.todo.count() > 0 {
-        return Err(Error::Stopped { checkpoint: String::new(), resume: String::new() });
+        return Err(Error::Stopped { kept: None });
     }
-    super::check_budget(plan, &state)?;
+    options.check_budget(plan, &state)?;
     let record = DeviceRecord { recheck: rechecked.into_report(), ..record };
     Ok((Swept { state, designs, time: start.elapsed() }, record))
 }
@@ -130,7 +146,7 @@ pub fn sweep_on_device(
 pub fn recheck_on_device(plan: &Plan, tables: &Tables, reduction: &Reduction, threads: usize, on: &OnDevice) -> Result<Recheck> {
     let mut engine = GpuEngine::new(plan, &reduction.histogram_ranges(), &on.device, on.limited_loops, &on.wrong)?;
     let whole = 0..plan.designs();
-    let answers = answers(plan, &mut look_around(plan, tables, reduction, &whole, &Control::default()));
+    let answers = answers(&mut look_around(plan, tables, reduction, &whole, &Control::default()));
     engine.tell_cells(&answers);
     Recheckable::new(plan, tables, reduction, &mut engine, &answers, &whole, threads).map(Recheckable::into_report)
 }
@@ -153,7 +169,7 @@ impl Run<'_, '_> {
         let mut rechecked = self.recheck(&mut work.reducers, whole)?;
         self.run(work, control)?;
         if work.todo.count() == 0 {
-            rechecked.require_in(self.plan, self.reduction, &work.reducers.state())?;
+            rechecked.require_in(self.reduction, &work.reducers.state())?;
         }
         Ok(rechecked)
     }
@@ -216,8 +232,8 @@ impl Run<'_, '_> {
 
     /// Adds what the device counted, and decides in f64 what it could not.
     fn take_in(&mut self, work: &mut Work<'_>, counts: &TileCounts, survivors: &Survivors) -> Result<()> {
-        let TileCounts { sure, unsure, histograms, shares } = counts;
-        self.reduction.add_counts(&mut work.reducers, *sure, histograms, shares);
+        let TileCounts { sure, unsure, reported } = counts;
+        self.reduction.add_counts(&mut work.reducers, *sure, reported);
         self.record.unsure += unsure;
         self.record.survivors += survivors.len() as u64;
         // The front has grown since the tile was started, and the tile has met the best of its cells: most of what survived is
@@ -257,12 +273,10 @@ impl Run<'_, '_> {
         let absorb = |reducers: &mut Reducers, block: &crate::screen::Block<'_>| {
             if counted { reduction.absorb_counted(reducers, block) } else { reduction.absorb(reducers, block) }
         };
-        // Each share begins with a front, histograms and maps of its own, and ends with merging them.
+        // Each share begins with a front and reducers of its own, and ends with merging them.
         let front = reducers.front.points();
         let front = (front.keys.len() + front.len()) as u64;
-        let report = &plan.study.report;
-        let cells = |map: &MapSpec| (plan.study.design[map.x].count() * plan.study.design[map.y].count()).min(DENSE);
-        let own: u64 = report.histograms.iter().map(|it| it.bins as u64).chain(report.maps.iter().map(cells)).sum();
+        let own = reducers.reported.size();
         let least = LEAST_SHARE.max(own + front).div_ceil(plan.scenarios()) as usize;
         let mut feasible = 0;
         if positions.len() < 2 * least || self.threads == 1 {
@@ -309,7 +323,7 @@ impl Run<'_, '_> {
 
     /// The answers so far, or the hints where they say more.
     fn answers(&self, reducers: &mut Reducers) -> Answers {
-        let mut answers = answers(self.plan, reducers);
+        let mut answers = answers(reducers);
         answers.tighten(&self.hints);
         answers
     }
@@ -326,29 +340,18 @@ impl Run<'_, '_> {
 fn in_shares<T: Send>(count: usize, least: usize, threads: usize, each: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
     let shares = (count / least.max(1)).clamp(1, threads);
     let part = |number: usize| count * number / shares..count * (number + 1) / shares;
-    if shares == 1 {
-        return vec![each(part(0))];
-    }
-    std::thread::scope(|scope| {
-        let each = &each;
-        let parts: Vec<_> = (0..shares).map(|number| scope.spawn(move || each(part(number)))).collect();
-        parts.into_iter().map(|part| part.join().expect("the f64 engine does not panic")).collect()
-    })
+    on_threads((0..shares).map(part), each)
 }
 
 /// The answers so far as the device is told of them.
-pub(super) fn answers(plan: &Plan, reducers: &mut Reducers) -> Answers {
+pub(super) fn answers(reducers: &mut Reducers) -> Answers {
     let extremes = &reducers.extremes;
     let ends = extremes.least.iter().zip(&extremes.largest);
     let end = |it: &Option<crate::reduce::Extreme>| it.map(|it| (it.value, it.index));
     let extremes = ends.map(|(least, largest)| [end(least), end(largest)]).collect();
-    let of_values = plan.study.report.maps.iter().zip(&reducers.maps).filter(|(spec, _)| spec.value != crate::study::Best::Share);
-    Answers {
-        extremes,
-        cells: of_values.map(|(_, map)| map.keys()).collect(),
-        top: reducers.top.as_mut().and_then(crate::reduce::Top::worst),
-        front: reducers.front.points().keys.clone(),
-    }
+    let mut answers = Answers { extremes, front: reducers.front.points().keys.clone(), ..Answers::default() };
+    reducers.reported.tell(&mut answers);
+    answers
 }
 
 /// A survivor's lower bounds as f64 keys of the front, a coordinate per objective.

@@ -2,23 +2,38 @@
 //!
 //! On the processor a thread takes a chunk of positions, screens it with reducers of its own (which may drop what the front known so far beats)
 //! and hands the result over as a whole. What is merged is therefore always complete for the ranges that the checkpoint names,
-//! and the result does not depend on how the work was cut. On a graphics device see [`sweep_on_device`].
+//! and the result does not depend on how the work was cut. On a graphics device see `sweep_on_device`.
 
+mod auto;
 mod bounds;
+pub mod costs;
+#[cfg(feature = "gpu")]
 mod gpu;
+#[cfg(not(feature = "gpu"))]
+mod no_device;
+#[cfg(feature = "gpu")]
 mod recheck;
 #[cfg(test)]
 mod tests;
+mod watch;
 
 pub use crate::screen::Control;
+pub use auto::{Auto, Left, Rule, Settler, sweep_auto};
 pub use bounds::sweep_by_bounds;
+pub use costs::Promise;
+#[cfg(feature = "gpu")]
 pub use gpu::{DeviceRecord, OnDevice, recheck_on_device, sweep_on_device};
+#[cfg(not(feature = "gpu"))]
+pub use no_device::{DeviceRecord, OnDevice};
+#[cfg(feature = "gpu")]
 pub use recheck::{LEAST_DESIGNS, Recheck};
+pub use watch::Leaving;
 
 use crate::checkpoint::{Checkpoint, Progress};
 use crate::error::{Error, Result};
+use crate::parallel::on_threads;
 use crate::plan::Plan;
-use crate::reduce::{Points, Reducers, Reduction, State};
+use crate::reduce::{FRONT_BYTES, Points, Reducers, Reduction, State, most_points};
 use crate::screen::{BLOCK, CpuEngine, Tables};
 use crate::tiles::{Ranges, Shard};
 use std::sync::atomic::Ordering;
@@ -27,7 +42,7 @@ use std::time::{Duration, Instant};
 
 /// How to run; nothing here changes a result.
 #[derive(Clone, Copy, Debug)]
-pub struct Options {
+pub struct Settings {
     /// Worker threads, at least 1.
     pub threads: usize,
     /// Most designs that a thread works on between looks at the clock.
@@ -36,13 +51,53 @@ pub struct Options {
     pub chunk: Duration,
     /// Which part of the study.
     pub shard: Shard,
+    /// Bytes that the front may take while it is looked for.
+    pub front_bytes: u64,
 }
 
-impl Default for Options {
+impl Default for Settings {
     fn default() -> Self {
         let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-        Self { threads, tile: 1 << 16, chunk: Duration::from_millis(500), shard: Shard::WHOLE }
+        Self { threads, tile: 1 << 16, chunk: Duration::from_millis(500), shard: Shard::WHOLE, front_bytes: FRONT_BYTES }
     }
+}
+
+impl Settings {
+    /// Points that the front of a study may have while it is looked for.
+    pub(crate) fn most_points(&self, plan: &Plan) -> u64 {
+        most_points(plan.study.objectives.len(), self.front_bytes)
+    }
+
+    /// The front so far, of a shard or of a sweep that goes on, may have more points than the budget: better designs to come may beat
+    /// most of them. It must fit into memory all the same.
+    ///
+    /// # Errors
+    /// [`Error::FrontMemory`].
+    pub(crate) fn check_memory(&self, plan: &Plan, points: usize) -> Result<()> {
+        if points as u64 <= self.most_points(plan) {
+            return Ok(());
+        }
+        Err(Error::FrontMemory { points: points as u64, megabytes: self.front_bytes >> 20, example: coarser(plan), resume: String::new() })
+    }
+
+    /// The front of a whole study must keep within its budget.
+    ///
+    /// # Errors
+    /// [`Error::FrontBudget`].
+    pub(crate) fn check_budget(&self, plan: &Plan, state: &State) -> Result<()> {
+        let (points, budget) = (state.front.len() as u64, plan.study.report.front_budget);
+        if self.shard != Shard::WHOLE || points <= budget {
+            return Ok(());
+        }
+        Err(Error::FrontBudget { points, budget, example: coarser(plan), resume: String::new() })
+    }
+}
+
+/// The first objective with a resolution to be filled in.
+fn coarser(plan: &Plan) -> String {
+    let objective = plan.study.objectives[0];
+    let goal = if objective.goal == crate::study::Goal::Min { "min" } else { "max" };
+    format!("{} = {{ goal = \"{goal}\", resolution = ... }}", objective.quantity.name(&plan.study.model))
 }
 
 /// What a finished sweep knows.
@@ -76,6 +131,7 @@ const HEAD_START_TIME: f64 = 0.3;
 
 /// What the threads share.
 struct Work<'a> {
+    options: Settings,
     todo: Ranges,
     done: Ranges,
     reducers: Reducers,
@@ -92,19 +148,41 @@ struct Work<'a> {
 }
 
 impl<'a> Work<'a> {
+    /// What a checkpoint holds, or nothing yet but the front of a few designs.
+    fn begin(
+        plan: &Plan,
+        tables: &Tables,
+        reduction: &Reduction,
+        options: &Settings,
+        mut checkpoint: Option<&'a mut Checkpoint>,
+        control: &Control,
+    ) -> Result<Self> {
+        let progress = match checkpoint.as_deref_mut() {
+            Some(checkpoint) => checkpoint.take_progress(plan, reduction)?,
+            None => None,
+        };
+        let whole = options.shard.range(plan.designs());
+        let fresh = || head_start(reduction, &mut look_around(plan, tables, reduction, &whole, control));
+        let progress = progress.unwrap_or_else(|| Progress { done: Ranges::default(), state: fresh() });
+        Ok(Self::new(plan, options, progress, reduction, checkpoint, control))
+    }
+
     fn new(
+        plan: &Plan,
+        options: &Settings,
         progress: Progress,
-        whole: std::ops::Range<u64>,
         reduction: &Reduction,
         checkpoint: Option<&'a mut Checkpoint>,
         control: &Control,
     ) -> Self {
         let Progress { done, state } = progress;
+        let whole = options.shard.range(plan.designs());
         control.done.store(done.count(), Ordering::Relaxed);
         let mut reducers = reduction.restore(state);
         let known = Arc::new(reducers.front.points().clone());
         let start = Instant::now();
         Self {
+            options: *options,
             todo: done.missing_from(whole),
             done,
             reducers,
@@ -122,9 +200,10 @@ impl<'a> Work<'a> {
     /// Counts a range, all of whose designs have been taken in, as done; keeps the checkpoint from time to time.
     fn finish(&mut self, plan: &Plan, range: std::ops::Range<u64>) -> Result<()> {
         self.done.add(range);
-        // The front may shrink again while better designs arrive; well beyond the budget it would only fill the memory.
-        if self.reducers.front.len() as u64 > plan.study.report.front_budget.saturating_mul(4) {
-            return Err(over_budget(plan));
+        if let Err(too_large) = self.options.check_memory(plan, self.reducers.front.len()) {
+            let state = self.reducers.state();
+            self.save(&state)?;
+            return Err(too_large);
         }
         if self.checkpoint.is_some() && self.saved.elapsed() >= LEAST_CHUNK.max(5 * self.saving) {
             let start = Instant::now();
@@ -147,45 +226,38 @@ impl<'a> Work<'a> {
 /// Sweeps a plan. With a checkpoint, starts from what it holds and keeps it up to date.
 ///
 /// # Errors
-/// [`Error::Stopped`] after `control.stop`; [`Error::FrontBudget`]; [`Error::Io`] if the checkpoint cannot be written.
+/// [`Error::Stopped`] after `control.stop`; [`Error::FrontBudget`] of a whole study; [`Error::FrontMemory`]; [`Error::Io`] if the
+/// checkpoint cannot be written. What was judged is kept in the checkpoint whichever it is.
 pub fn sweep(
     plan: &Plan,
     tables: &Tables,
     reduction: &Reduction,
-    options: &Options,
-    mut checkpoint: Option<&mut Checkpoint>,
+    options: &Settings,
+    checkpoint: Option<&mut Checkpoint>,
     control: &Control,
 ) -> Result<Swept> {
     let start = Instant::now();
-    let whole = options.shard.range(plan.designs());
-    let progress = match checkpoint.as_deref_mut() {
-        Some(checkpoint) => checkpoint.take_progress(),
-        None => None,
-    };
-    let fresh = || head_start(reduction, &mut look_around(plan, tables, reduction, &whole, control));
-    let progress = progress.unwrap_or_else(|| Progress { done: Ranges::default(), state: fresh() });
-    let work = Work::new(progress, whole, reduction, checkpoint, control);
+    let work = Work::begin(plan, tables, reduction, options, checkpoint, control)?;
     let designs = work.todo.count();
+    let state = judge(plan, tables, reduction, options, work, control)?;
+    Ok(Swept { state, designs, time: start.elapsed() })
+}
+
+/// Judges what is left to do, design by design.
+fn judge(plan: &Plan, tables: &Tables, reduction: &Reduction, options: &Settings, work: Work<'_>, control: &Control) -> Result<State> {
     let work = Mutex::new(work);
-    std::thread::scope(|scope| {
-        for _ in 0..options.threads.max(1) {
-            scope.spawn(|| run_thread(plan, tables, reduction, options, &work, control));
-        }
-    });
+    on_threads(0..options.threads.max(1), |_| run_thread(plan, tables, reduction, options, &work, control));
     let mut work = work.into_inner().unwrap_or_else(PoisonError::into_inner);
     if let Some(failure) = work.failure {
         return Err(failure);
     }
     let state = work.reducers.state();
-    let finished = work.todo.count() == 0 && !control.stop.load(Ordering::Relaxed);
-    if finished {
-        check_budget(plan, &state)?;
-    }
     work.save(&state)?;
-    if !finished {
-        return Err(Error::Stopped { checkpoint: String::new(), resume: String::new() });
+    if work.todo.count() > 0 || control.stop.load(Ordering::Relaxed) {
+        return Err(Error::Stopped { kept: None });
     }
-    Ok(Swept { state, designs, time: start.elapsed() })
+    options.check_budget(plan, &state)?;
+    Ok(state)
 }
 
 /// What remains of a few designs from all over a range, so that the first chunks have something to compare with.
@@ -210,22 +282,7 @@ fn head_start(reduction: &Reduction, seen: &mut Reducers) -> State {
     state
 }
 
-/// A front must keep within the study's budget.
-///
-/// # Errors
-/// [`Error::FrontBudget`].
-pub fn check_budget(plan: &Plan, state: &State) -> Result<()> {
-    if state.front.len() as u64 > plan.study.report.front_budget { Err(over_budget(plan)) } else { Ok(()) }
-}
-
-fn over_budget(plan: &Plan) -> Error {
-    let objective = plan.study.objectives[0];
-    let goal = if objective.goal == crate::study::Goal::Min { "min" } else { "max" };
-    let example = format!("{} = {{ goal = \"{goal}\", resolution = ... }}", objective.quantity.name(plan.study.model));
-    Error::FrontBudget { budget: plan.study.report.front_budget, example }
-}
-
-fn run_thread(plan: &Plan, tables: &Tables, reduction: &Reduction, options: &Options, work: &Mutex<Work<'_>>, control: &Control) {
+fn run_thread(plan: &Plan, tables: &Tables, reduction: &Reduction, options: &Settings, work: &Mutex<Work<'_>>, control: &Control) {
     let mut engine = CpuEngine::new(plan, tables).stopping_on(&control.stop);
     // Work is cut by time: a tile of a slow model may be a single design.
     let tile_at = |rate: f64| ((rate * TILE_TIME.as_secs_f64()) as u64).clamp(1, options.tile);

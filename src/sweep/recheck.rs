@@ -2,13 +2,14 @@
 
 use crate::error::{Error, Result};
 use crate::models::{judge, to_si};
+use crate::parallel::on_threads;
 use crate::plan::Plan;
-use crate::real::RunningError;
 use crate::reduce::{Reduction, State};
 use crate::sample::mix;
 use crate::screen::gpu::{Answers, Checked, GpuEngine, on_device};
 use crate::screen::{CpuEngine, Tables};
 use crate::study::Quantity;
+use crate::tape::RunningError;
 use serde_json::{Value, json};
 use std::collections::HashSet;
 use std::ops::Range;
@@ -120,17 +121,8 @@ impl Recheckable {
             let checked = engine.check(&range)?;
             let used = engine.used_outputs();
             let share = checked.len().div_ceil(threads.max(1)).max(1);
-            let parts: Vec<Result<(Recheck, State)>> = std::thread::scope(|scope| {
-                let parts: Vec<_> = checked
-                    .chunks(share)
-                    .enumerate()
-                    .map(|(number, part)| {
-                        let start = range.start + (number * share) as u64;
-                        let used = &used;
-                        scope.spawn(move || compare(plan, tables, reduction, used, start, part))
-                    })
-                    .collect();
-                parts.into_iter().map(|part| part.join().expect("the f64 engine does not panic")).collect()
+            let parts = on_threads(checked.chunks(share).enumerate(), |(number, part)| {
+                compare(plan, tables, reduction, &used, range.start + (number * share) as u64, part)
             });
             let mut state = reduction.start();
             for part in parts {
@@ -149,7 +141,7 @@ impl Recheckable {
     ///
     /// # Errors
     /// [`Error::Promise`] that names a design that is.
-    pub fn require_in(&mut self, plan: &Plan, reduction: &Reduction, end: &State) -> Result<()> {
+    pub fn require_in(&mut self, reduction: &Reduction, end: &State) -> Result<()> {
         let mut both = reduction.restore(end.clone());
         for state in std::mem::take(&mut self.states) {
             both.merge(State { feasible: 0, ..state });
@@ -161,22 +153,12 @@ impl Recheckable {
         if let Some(&index) = both.front.indices.iter().find(|index| !held.contains(index)) {
             return lost("front", index);
         }
-        let best = |state: &State| state.top.as_ref().map(crate::reduce::Top::indices).unwrap_or_default();
-        let have = best(end);
-        if let Some((_, index)) = best(&both).into_iter().enumerate().find(|(place, index)| have.get(*place) != Some(index)) {
-            return lost("top list", index);
-        }
         let ends = |state: &State| -> Vec<_> { state.extremes.least.iter().chain(&state.extremes.largest).copied().collect() };
         if let Some((_, Some(extreme))) = ends(end).iter().zip(ends(&both)).find(|(a, b)| *a != b) {
             return lost("extremes", extreme.index);
         }
-        let maps = plan.study.report.maps.iter().zip(both.maps.iter().zip(&end.maps));
-        for (_, (both, end)) in maps.filter(|(spec, _)| spec.value != crate::study::Best::Share) {
-            let (width, height) = both.size();
-            let best = |map: &crate::reduce::Map, at| map.cell(at).map(|cell| (map.value(cell).to_bits(), cell.index));
-            if let Some(at) = (0..width * height).find(|&at| best(both, at) != best(end, at)) {
-                return lost("map", best(both, at).map_or(0, |(_, index)| index));
-            }
+        if let Some((what, index)) = end.reported.lacks(&both.reported) {
+            return lost(what, index);
         }
         Ok(())
     }
@@ -199,7 +181,7 @@ fn compare(
     let mut report = Recheck { designs: checked.len() as u64, ..Recheck::default() };
     let mut reducers = reduction.start();
     let mut broken = None;
-    let model = plan.study.model;
+    let model = &plan.study.model;
     // What f64 says of every design: feasible or not, and the worst values of the feasible ones.
     let mut engine = CpuEngine::new(plan, tables);
     let mut feasible = vec![false; checked.len()];
@@ -267,7 +249,7 @@ fn broken_promise(plan: &Plan, quantity: Quantity, design: u64, (found, bound): 
     let (found, exact, bound) = (in_unit(found), in_unit(exact), in_unit(bound));
     Error::Promise(format!(
         "{} of design {design} {place}: the GPU gives {found}, f64 gives {exact}; they differ by {:.3e}, promised were at most {bound:.3e}",
-        quantity.name(plan.study.model),
+        quantity.name(&plan.study.model),
         (found - exact).abs(),
     ))
 }
@@ -296,7 +278,7 @@ fn require_counts(
             rest.extend([tile.start..middle, middle..tile.end]);
             continue;
         };
-        reduction.add_counts(&mut reducers, counts.sure, &counts.histograms, &counts.shares);
+        reduction.add_counts(&mut reducers, counts.sure, &counts.reported);
         let mut unsure: Vec<u64> = survivors.iter().filter(|it| it.unsure).map(|it| it.position).collect();
         unsure.sort_unstable();
         if unsure.len() as u64 != counts.unsure {
@@ -315,20 +297,8 @@ fn require_counts(
     if found.feasible != state.feasible {
         return differ("feasible designs", found.feasible, state.feasible);
     }
-    for (gpu, f64s) in found.histograms.iter().zip(&state.histograms) {
-        if gpu != f64s {
-            let wrong = gpu.counts.iter().zip(&f64s.counts).find(|(a, b)| a != b);
-            let (&gpu, &f64s) = wrong.unwrap_or((&gpu.below, &f64s.below));
-            return differ("designs in a bin", gpu, f64s);
-        }
-    }
-    for (spec, (gpu, f64s)) in plan.study.report.maps.iter().zip(found.maps.iter().zip(&state.maps)) {
-        let (width, height) = gpu.size();
-        let count = |map: &crate::reduce::Map, at| map.cell(at).map_or(0, |cell| cell.feasible);
-        let wrong = (0..width * height).find(|&at| count(gpu, at) != count(f64s, at));
-        if let (crate::study::Best::Share, Some(at)) = (spec.value, wrong) {
-            return differ("feasible designs in a map's cell", count(gpu, at), count(f64s, at));
-        }
+    if let Some((what, gpu, f64s)) = found.reported.miscounts(&state.reported) {
+        return differ(what, gpu, f64s);
     }
     Ok(())
 }

@@ -4,6 +4,8 @@ pub mod progress;
 pub mod report;
 
 use beltspace::error::{Error, Result};
+pub use beltspace::export::short;
+pub use beltspace::sweep::costs::span;
 use console::Style;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
@@ -11,7 +13,7 @@ use std::path::Path;
 /// Prints to standard output. A reader that has gone away is no error.
 pub fn print(text: &str) -> Result<()> {
     let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    match out.write_all(harmless(text, true).as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Error::io(Path::new("standard output"))(error)),
         _ => Ok(()),
     }
@@ -21,13 +23,45 @@ pub fn print(text: &str) -> Result<()> {
 pub fn report_error(error: &Error) {
     let style = Style::new().for_stderr().red().bold();
     // Nothing is left to do if even this cannot be written.
-    let _ = writeln!(std::io::stderr(), "{} {error}", style.apply_to("error:"));
+    let _ = writeln!(std::io::stderr(), "{} {}", style.apply_to("error:"), harmless(&error.to_string(), false));
 }
 
 /// Prints a remark to standard error.
 pub fn remark(kind: &str, text: &str) {
     let style = Style::new().for_stderr().yellow().bold();
-    let _ = writeln!(std::io::stderr(), "{} {text}", style.apply_to(format!("{kind}:")));
+    let _ = writeln!(std::io::stderr(), "{} {}", style.apply_to(format!("{kind}:")), harmless(text, false));
+}
+
+/// Text that somebody wrote into a file, such as a title, on one line: what a terminal would obey is shown escaped.
+pub fn told(text: &str) -> String {
+    harmless(text, false).replace('\n', "\\n").replace('\t', "\\t")
+}
+
+/// Text with what a terminal would obey shown escaped, but for line ends, tabs and, if asked for, this program's own bold and colours.
+fn harmless(text: &str, styled: bool) -> String {
+    let mut shown = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(next) = rest.chars().next() {
+        let style = if styled { style_at(rest) } else { 0 };
+        let (head, tail) = rest.split_at(style.max(next.len_utf8()));
+        match next {
+            _ if style > 0 => shown.push_str(head),
+            '\n' | '\t' => shown.push(next),
+            // Of the other characters these turn the text around or end the line.
+            '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => shown.extend(next.escape_unicode()),
+            next if next.is_control() => shown.extend(next.escape_default()),
+            next => shown.push(next),
+        }
+        rest = tail;
+    }
+    shown
+}
+
+/// Bytes of the sequence for bold, colour or the like that a text begins with; 0 if it begins otherwise.
+fn style_at(text: &str) -> usize {
+    let Some(code) = text.strip_prefix("\u{1b}[") else { return 0 };
+    let digits = code.bytes().take_while(|byte| byte.is_ascii_digit() || *byte == b';').count();
+    if code[digits..].starts_with('m') { 2 + digits + 1 } else { 0 }
 }
 
 /// Bold, where standard output is a terminal.
@@ -73,23 +107,6 @@ pub fn scaled(value: f64) -> String {
     format!("{value:.digits$}{prefix}")
 }
 
-/// A time span for people.
-pub fn span(seconds: f64) -> String {
-    match seconds {
-        s if s < 1.0 => format!("{:.0} ms", s * 1e3),
-        s if s < 120.0 => format!("{s:.1} s"),
-        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
-        s if s < 172_800.0 => format!("{:.1} h", s / 3600.0),
-        s => format!("{:.0} days", s / 86_400.0),
-    }
-}
-
-/// A number with at most six significant digits.
-pub fn short(value: f64) -> String {
-    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
-    beltspace::export::plain(rounded)
-}
-
 /// A path as a shell reads it back as one word.
 pub fn quoted(path: &Path) -> String {
     let mut text = path.display().to_string();
@@ -110,6 +127,14 @@ pub fn quoted_word(text: &str) -> String {
     } else {
         format!("'{}'", text.replace('\'', r"'\''"))
     }
+}
+
+/// The command that is running, as a shell reads it; a long one is cut off.
+pub fn command_line() -> String {
+    const MOST: usize = 200;
+    let words = std::env::args_os().skip(1).map(|word| quoted_word(&word.to_string_lossy()));
+    let line = std::iter::once("beltspace".to_owned()).chain(words).collect::<Vec<_>>().join(" ");
+    if line.chars().count() > MOST { line.chars().take(MOST).chain(" ...".chars()).collect() } else { line }
 }
 
 /// Text in columns, each as wide as its widest cell; the last one runs free.
@@ -189,5 +214,16 @@ mod tests {
         mixed.row(["what", "12 345"].map(str::to_owned));
         mixed.row(["time", "about 3 s"].map(str::to_owned));
         assert_eq!(mixed.indented(0), "what  12 345\ntime  about 3 s\n");
+    }
+
+    #[test]
+    fn what_a_terminal_would_obey_is_shown() {
+        assert_eq!(
+            told("\u{1b}[31mred\u{7}\0x\r\ny\tz \u{202e}\u{9b}K grün"),
+            "\\u{1b}[31mred\\u{7}\\u{0}x\\r\\ny\\tz \\u{202e}\\u{9b}K grün"
+        );
+        // Own bold passes, a sequence that moves or asks does not, nor one that ends too soon.
+        assert_eq!(harmless("\u{1b}[1mTitle\u{1b}[0m\n\u{1b}[2J\u{1b}[", true), "\u{1b}[1mTitle\u{1b}[0m\n\\u{1b}[2J\\u{1b}[");
+        assert_eq!(harmless("\u{1b}[1m", false), "\\u{1b}[1m");
     }
 }

@@ -22,11 +22,12 @@ impl Bar {
         let finished = Arc::new(AtomicBool::new(false));
         let total = designs.end - designs.start;
         let shown = !quiet && std::io::stderr().is_terminal();
-        let thread = shown.then(|| {
+        let start = || {
             let (control, finished) = (Arc::clone(control), Arc::clone(&finished));
-            std::thread::spawn(move || follow(&control, total, &finished))
-        });
-        Self { finished, thread }
+            // Without a thread there is no bar, which is no reason to fail.
+            std::thread::Builder::new().spawn(move || follow(&control, total, &finished)).ok()
+        };
+        Self { thread: if shown { start() } else { None }, finished }
     }
 
     /// Takes the bar away.
@@ -51,6 +52,10 @@ fn follow(control: &Control, total: u64, finished: &AtomicBool) {
     while !finished.load(Ordering::Relaxed) {
         let done = control.done.load(Ordering::Relaxed).min(total);
         if done != last && begun.is_none() {
+            begun = Some((Instant::now(), done));
+        }
+        // Where bounds are left, what counts is what is kept of them.
+        if done < last {
             begun = Some((Instant::now(), done));
         }
         last = done;

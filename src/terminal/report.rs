@@ -2,7 +2,8 @@
 
 use super::{Grid, bold, dim, grouped, scaled, short, span, width};
 use beltspace::certify::Row;
-use beltspace::export::{Outcome, RunRecord, Summary};
+use beltspace::export::{Certified, RunRecord, Summary};
+use beltspace::models::OVERFLOW;
 use beltspace::study::{Axis, Goal};
 use std::path::{Path, PathBuf};
 use textplots::{Chart, Plot, Shape};
@@ -12,7 +13,7 @@ const SHOWN: usize = 8;
 
 /// The summary as text.
 #[allow(clippy::cast_precision_loss, reason = "shares for people")]
-pub fn summary(outcome: &Outcome<'_>, record: &RunRecord, out: &Path, page: Option<&PathBuf>) -> String {
+pub fn summary(outcome: &Certified<'_>, record: &RunRecord, out: &Path, page: Option<&PathBuf>) -> String {
     let plan = outcome.plan;
     let study = &plan.study;
     let feasible = outcome.state.feasible;
@@ -37,6 +38,11 @@ pub fn summary(outcome: &Outcome<'_>, record: &RunRecord, out: &Path, page: Opti
         let [boxes, evaluations] = [certificate.boxes(), certificate.evaluations()].map(grouped);
         fact("bounds", format!("{boxes} boxes and {evaluations} evaluations settled every design; which rule how many is in run.json"));
     }
+    if let Some(left) = &record.method.left {
+        let (counted, judged) = (grouped(left.counted), grouped(left.judged));
+        let spent = span(left.promise.spent);
+        fact("bounds", format!("left after {spent} ({}), with {counted} designs counted; {judged} were judged one by one", left.at));
+    }
     if let Some(device) = &record.device {
         let count = |name: &str| grouped(device[name].as_u64().unwrap_or(0));
         let compared = grouped(device["compared_with_f64"]["designs"].as_u64().unwrap_or(0));
@@ -57,7 +63,7 @@ pub fn summary(outcome: &Outcome<'_>, record: &RunRecord, out: &Path, page: Opti
         };
         fact("front", format!("{designs} certified in f64 over every scenario"));
     }
-    let mut text = format!("{}\n\n{}", bold(&study.title), facts.indented(0));
+    let mut text = format!("{}\n\n{}", bold(&super::told(&study.title)), facts.indented(0));
     text.push_str(&limits(outcome));
     if !outcome.front.is_empty() {
         text.push_str(&front(outcome));
@@ -75,12 +81,13 @@ pub fn summary(outcome: &Outcome<'_>, record: &RunRecord, out: &Path, page: Opti
 
 /// What limits feasibility, worst first.
 #[allow(clippy::cast_precision_loss, reason = "shares for people")]
-fn limits(outcome: &Outcome<'_>) -> String {
+fn limits(outcome: &Certified<'_>) -> String {
     let tally = &outcome.tally;
     let study = &outcome.plan.study;
-    let model = study.model;
+    let model = &study.model;
     let statuses = model.conditions.iter().zip(&tally.conditions).filter(|(condition, _)| !condition.quiet);
     let mut reasons: Vec<(u64, u64, String)> = statuses.map(|(condition, &count)| (count, 0, condition.reason.to_owned())).collect();
+    reasons.push((tally.overflow, 0, OVERFLOW.to_owned()));
     for (constraint, (&violated, &only)) in study.constraints.iter().zip(tally.constraints.iter().zip(&tally.only)) {
         let unit = constraint.quantity.unit(model);
         reasons.push((
@@ -109,9 +116,9 @@ fn limits(outcome: &Outcome<'_>) -> String {
 }
 
 /// Ideal, knee and the best designs by the first objective, and what the knee is made of.
-fn front(outcome: &Outcome<'_>) -> String {
+fn front(outcome: &Certified<'_>) -> String {
     let study = &outcome.plan.study;
-    let model = study.model;
+    let model = &study.model;
     let summary = Summary::new(outcome);
     let columns = outcome.objective_columns();
     let goals =
@@ -150,7 +157,7 @@ fn front(outcome: &Outcome<'_>) -> String {
 
 /// A front of two objectives as a picture of characters, where the terminal is wide enough.
 #[allow(clippy::cast_possible_truncation, reason = "a picture of a few hundred dots")]
-fn plot(outcome: &Outcome<'_>) -> String {
+fn plot(outcome: &Certified<'_>) -> String {
     let points = Summary::new(outcome).points();
     let study = &outcome.plan.study;
     let columns = match width() {
@@ -170,7 +177,7 @@ fn plot(outcome: &Outcome<'_>) -> String {
     chart.borders();
     chart.axis();
     chart.figures();
-    let name = |objective: usize| study.objectives[objective].quantity.name(study.model);
+    let name = |objective: usize| study.objectives[objective].quantity.name(&study.model);
     format!(
         "\n{}\n{chart}{}\n",
         dim(&format!("{} upwards", name(1))),

@@ -36,7 +36,7 @@ maps = [{ x = "band_thickness_mm", y = "groove_angle_deg", value = "axial_force_
 "#;
 
 fn parse(text: &str) -> Result<Study, beltspace::study::StudyErrors> {
-    Study::parse(text, "study.toml", Path::new("tests"))
+    Study::parse_in(text, "study.toml", Path::new("tests"))
 }
 
 /// All problems of a text, one per line, without the file's name.
@@ -192,17 +192,17 @@ fn problems_of_a_csv_file_name_its_line_and_field() {
     ];
     for (csv, expected) in cases {
         std::fs::write(folder.path().join("belts.csv"), csv).unwrap();
-        let errors = Study::parse(&text, "study.toml", folder.path()).unwrap_err().to_string();
+        let errors = Study::parse_in(&text, "study.toml", folder.path()).unwrap_err().to_string();
         let found: Vec<_> = errors.lines().map(|line| line.strip_prefix("belts.csv:").unwrap_or(line)).collect();
         let fits = found.len() == expected.len() && found.iter().zip(*expected).all(|(found, expected)| reads_as(found, expected));
         assert!(fits, "{csv:?}: {errors}");
     }
     // Named from where the user is, as the study is.
-    let errors = Study::parse(&text, "studies/study.toml", folder.path()).unwrap_err();
+    let errors = Study::parse_in(&text, "studies/study.toml", folder.path()).unwrap_err();
     assert_eq!(Path::new(&errors.problems[0].file), Path::new("studies/belts.csv"));
     // A hopeless file is not reported line by line.
     std::fs::write(folder.path().join("belts.csv"), format!("ratio\n{}", "x\n".repeat(1000))).unwrap();
-    assert!(Study::parse(&text, "study.toml", folder.path()).unwrap_err().problems.len() < 30);
+    assert!(Study::parse_in(&text, "study.toml", folder.path()).unwrap_err().problems.len() < 30);
 }
 
 /// A small random number generator, so that a seed is enough to see a failure again.
@@ -448,6 +448,7 @@ fn the_example_means_what_it_says() {
             top: Some(TopSpec { by: force, goal: Goal::Min, count: 20 }),
             histograms: vec![HistogramSpec { of: force, range: Some((0.0, 60_000.0)), bins: 60 }],
             maps: vec![MapSpec { x: 1, y: 0, value: Best::Value(force, Goal::Min), contours: Vec::new() }],
+            sample: None,
             front_budget: 1_000_000,
         }
     );
@@ -458,7 +459,7 @@ fn axes_keep_the_order_of_the_file() {
     let names = ["torque_Nm", "band_count", "strength_MPa", "friction", "ratio"];
     let axes: String = names.iter().map(|name| format!("{name} = 1\n")).collect();
     let study = parse(&format!("model = \"metal-cvt\"\n[objectives]\nslip_margin = \"max\"\n[design]\n{axes}")).unwrap();
-    let found: Vec<_> = study.design.iter().map(|axis| study.model.inputs[axis.inputs()[0]].name).collect();
+    let found: Vec<_> = study.design.iter().map(|axis| study.model.inputs[axis.inputs()[0]].name.as_str()).collect();
     assert_eq!(found, names);
     assert_eq!(study.title, study.model.summary);
 }

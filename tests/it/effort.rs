@@ -1,6 +1,6 @@
 //! How much of a test a model can afford: thousands of evaluations of a formula, a few of a solver.
 
-use beltspace::models::{MODELS, Model};
+use beltspace::models::{self, Model};
 
 /// Seconds that the repeated evaluations of one test may take, by what the model says of itself.
 const SECONDS: f64 = 0.2;
@@ -18,8 +18,8 @@ pub fn is_slow(model: &Model) -> bool {
 
 #[test]
 fn formulas_are_tried_as_often_as_wanted_and_solvers_less() {
-    for model in MODELS {
-        assert_eq!(is_slow(model), model.device.is_none(), "{}", model.name);
+    for model in models::all() {
+        assert_eq!(is_slow(model), model.shader.is_none(), "{}", model.name);
         assert!(evaluations(model, 20_000) == 20_000 || is_slow(model), "{}", model.name);
         assert!(evaluations(model, 10) == 10, "{}: too slow for any test", model.name);
     }

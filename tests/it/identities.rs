@@ -5,20 +5,21 @@ use beltspace::models::{
     Model, Status, evaluate, find, optimum_thickness, printed_torque_coefficient, torque_coefficient, traction_limit, wedge_factor,
 };
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 const DESIGNS: u64 = 2000;
 
 /// A design by name: inputs and outputs.
 struct Design {
-    model: &'static Model,
+    model: Arc<Model>,
     inputs: Vec<f64>,
     outputs: Vec<Option<f64>>,
     status: Status,
 }
 
 impl Design {
-    fn new(model: &'static Model, inputs: Vec<f64>) -> Self {
-        let evaluation = evaluate(model, &inputs);
+    fn new(model: Arc<Model>, inputs: Vec<f64>) -> Self {
+        let evaluation = evaluate(&model, &inputs);
         Self { model, inputs, outputs: evaluation.outputs, status: evaluation.status }
     }
 
@@ -28,7 +29,7 @@ impl Design {
         for (name, value) in changes {
             inputs[self.model.input(name).expect("it is an input")] = *value;
         }
-        Self::new(self.model, inputs)
+        Self::new(self.model.clone(), inputs)
     }
 
     /// An input or output in its unit.
@@ -71,7 +72,7 @@ impl Design {
 impl std::fmt::Debug for Design {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let named = self.model.inputs.iter().zip(&self.inputs).map(|(input, value)| format!("{} = {value}", input.name));
-        write!(f, "{} {:?} ({})", self.model.name, named.collect::<Vec<_>>(), self.status.reason(self.model))
+        write!(f, "{} {:?} ({})", self.model.name, named.collect::<Vec<_>>(), self.status.reason(&self.model))
     }
 }
 
@@ -99,7 +100,7 @@ fn for_belts(seed: u64, check: impl Fn(Design, &mut Random)) {
             let radius = random.between(0.1, 0.95) * centre / (1.0 + ratio);
             let lean = ((ratio - 1.0) * radius / centre).asin();
             inputs[at("belt_length_mm")] = 2.0 * centre * lean.cos() + PI * (1.0 + ratio) * radius + 2.0 * lean * (ratio - 1.0) * radius;
-            let design = Design::new(model, inputs);
+            let design = Design::new(model.clone(), inputs);
             if design.status == Status::Ok {
                 checked += 1;
                 check(design, random);
@@ -290,7 +291,7 @@ fn without_traction_or_torque_the_forces_have_their_limits() {
         let hardly = design.with(&[("traction", 1e-9), ("torque_Nm", 0.0)]);
         close(hardly.get("driven_axial_coefficient"), idle.get("driven_axial_coefficient"), 1e-7, &idle);
         let stuck = design.with(&[("traction", 0.0)]);
-        assert_eq!(stuck.status.reason(stuck.model), "no traction");
+        assert_eq!(stuck.status.reason(&stuck.model), "no traction");
         assert_eq!(stuck.outputs[stuck.model.output("axial_force_N").expect("it is an output")], None);
         let half_groove = design.half_groove().tan();
         close(k, (1.0 - design.get("friction") * half_groove) / (design.get("friction") + half_groove), 1e-13, &design);

@@ -16,8 +16,12 @@ mod effort;
 mod gpu;
 /// Identities of the V-belt variator, and the tables of its paper.
 mod identities;
+/// What is read, mangled: no panic, no hang, no more memory than there is.
+mod mutations;
 /// The models over every number type: f32 with bounds, intervals, dependence, columns.
 mod numbers;
+/// A model made at run time.
+mod own_model;
 /// The papers' figures and tables, computed again.
 mod papers;
 /// The models against their second implementation.
@@ -38,6 +42,8 @@ mod readme;
 mod report_page;
 /// Independent second implementations of the models, and printed golden values.
 mod second;
+/// The committed shaders against the formulas.
+mod shaders;
 /// The timing belt: figures, closed forms, similarity.
 mod timing_mesh;
 /// The tutorials of `docs/`, run and held against what the program says.

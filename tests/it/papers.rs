@@ -16,7 +16,8 @@ fn committed() -> PathBuf {
 #[test]
 fn what_is_committed_is_what_comes_out() {
     let folder = tempfile::tempdir().expect("a temporary directory");
-    ALL.write(folder.path()).expect("the files can be written");
+    let claim = beltspace::files::Claim::new(folder.path(), "a test").expect("nobody has it");
+    ALL.write(&claim).expect("the files can be written");
     let files = |folder: &Path| -> BTreeSet<String> {
         let entries = fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
         entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect()
@@ -187,10 +188,17 @@ fn files_that_are_there_stay_unless_forced() {
     };
     fs::create_dir(&out).expect("a folder");
     fs::write(out.join("cvt-fig-1.svg"), "mine").expect("a file");
+    for option in ["--quiet", "--force"] {
+        let (code, _, error) = run(&[option]);
+        assert_eq!(code, Some(2));
+        assert!(error.contains("cvt-fig-1.svg") && error.contains("did not write them: move them away"), "{error}");
+        assert_eq!(fs::read_to_string(out.join("cvt-fig-1.svg")).expect("it is there"), "mine");
+    }
+    // With a comparison beside it, it is the figure of an older reproduction.
+    fs::copy(committed().join("comparison.csv"), out.join("comparison.csv")).expect("a file");
     let (code, _, error) = run(&["--quiet"]);
     assert_eq!(code, Some(2));
-    assert!(error.contains("cvt-fig-1.svg") && error.contains("--force"), "{error}");
-    assert_eq!(fs::read_to_string(out.join("cvt-fig-1.svg")).expect("it is there"), "mine");
+    assert!(error.contains("(cvt-fig-1.svg and 1 more); replace them with --force"), "{error}");
     let (code, printed, error) = run(&["--force"]);
     assert_eq!((code, error.as_str()), (Some(0), ""));
     assert!(printed.contains("C_R with the printed radii") && printed.contains(&ALL.summary()), "{printed}");

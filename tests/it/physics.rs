@@ -3,10 +3,11 @@
 use crate::effort::is_slow;
 use crate::random::Random;
 use crate::second::{GOLDEN, Golden, Values, metal_cvt, pulley_load, rubber_cvt, timing_belt};
-use beltspace::models::{Evaluation, INPUTS, MODELS, Model, OUTPUTS, Status, evaluate, find};
-use beltspace::real::Dependence;
+use beltspace::models::{self, Evaluation, INPUTS, Input, Model, OUTPUTS, Status, evaluate, find};
+use beltspace::tape::Known;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// Inputs by name, as the second implementation takes them: a word is the absence of a number.
 fn by_name(model: &Model, inputs: &[f64]) -> BTreeMap<String, f64> {
@@ -16,7 +17,7 @@ fn by_name(model: &Model, inputs: &[f64]) -> BTreeMap<String, f64> {
 
 fn second(model: &Model, inputs: &[f64]) -> (&'static str, Values) {
     let inputs = by_name(model, inputs);
-    match model.name {
+    match model.name.as_str() {
         "rubber-cvt" => rubber_cvt(&inputs),
         "metal-cvt" => metal_cvt(&inputs),
         "pulley-load" => pulley_load(&inputs),
@@ -86,9 +87,9 @@ pub fn draw(model: &Model, region: Region, random: &mut Random) -> Vec<f64> {
         return near_a_preset(model, region, random);
     }
     let mut inputs: Vec<f64> = Vec::new();
-    for input in model.inputs {
+    for input in &model.inputs {
         let (low, high) = input.usual;
-        let (low, high) = match (region, input.name) {
+        let (low, high) = match (region, input.name.as_str()) {
             (Region::Wide, "groove_angle_deg") => (2.0, 170.0),
             (Region::Wide, "traction") => (0.001, 0.999),
             (Region::Wide, "wrap_angle_deg") => (1.0, 359.0),
@@ -106,7 +107,7 @@ pub fn draw(model: &Model, region: Region, random: &mut Random) -> Vec<f64> {
             value = value.round();
         }
         if !input.words.is_empty() && (input.is_enumeration() || random.chance(0.3)) {
-            value = random.word(input.words);
+            value = random.word(&input.words);
         }
         inputs.push(value);
     }
@@ -129,17 +130,15 @@ pub fn draw(model: &Model, region: Region, random: &mut Random) -> Vec<f64> {
 
 /// Inputs that what is prepared depends on, as far as the model can say without their values.
 pub fn slow_inputs(model: &Model) -> u64 {
-    let mut inputs = [Dependence::fixed(0.0); INPUTS];
-    for (input, table) in model.inputs.iter().enumerate() {
-        inputs[input] = Dependence::varied(input, table.words.iter().fold(0.0, |least, (_, word)| word.min(least)), 1e9);
-    }
+    let least = |table: &Input| table.words.iter().fold(0.0, |least: f64, (_, word)| word.min(least));
+    let inputs: Vec<Known> = model.inputs.iter().map(|table| Known::Within(least(table), 1e9)).collect();
     model.kernel.reach(&inputs).prepared
 }
 
 /// Presets whose first stage takes no longer than the model says. A solid section takes a hundred times as long: it is tried where
 /// each input is changed in turn.
-fn quick_presets(model: &Model) -> impl Iterator<Item = &'static str> {
-    model.presets.iter().map(|(name, _)| *name).filter(|name| *name != "machined")
+fn quick_presets(model: &Model) -> impl Iterator<Item = &str> {
+    model.presets.iter().map(|it| it.name.as_str()).filter(|name| *name != "machined")
 }
 
 fn near_a_preset(model: &Model, region: Region, random: &mut Random) -> Vec<f64> {
@@ -147,7 +146,7 @@ fn near_a_preset(model: &Model, region: Region, random: &mut Random) -> Vec<f64>
     let mut inputs = model.preset(random.pick(&presets)).expect("it is one of them");
     let slow = slow_inputs(model);
     let part = if region == Region::Wide { 0.05 } else { 0.005 };
-    for (number, (value, input)) in inputs.iter_mut().zip(model.inputs).enumerate() {
+    for (number, (value, input)) in inputs.iter_mut().zip(&model.inputs).enumerate() {
         let of_section = slow >> number & 1 == 1;
         if input.is_enumeration() || (of_section && input.integer) {
             continue;
@@ -155,7 +154,7 @@ fn near_a_preset(model: &Model, region: Region, random: &mut Random) -> Vec<f64>
         let (low, high) = input.usual;
         *value = match of_section {
             true => *value * (1.0 + random.between(-part, part)),
-            false if !input.words.is_empty() && random.chance(0.3) => random.word(input.words),
+            false if !input.words.is_empty() && random.chance(0.3) => random.word(&input.words),
             false if low > 0.0 => random.log_between(low, high),
             false => random.between(low, high),
         };
@@ -173,10 +172,9 @@ fn close_the_belt(model: &Model, length: usize, inputs: &mut [f64], random: &mut
 }
 
 fn put_on_an_edge(model: &Model, inputs: &mut [f64], random: &mut Random) {
-    let name = random.pick(model.inputs).name;
-    let at = model.input(name).expect("it is an input");
+    let at = random.below(model.inputs.len());
     let near = [0.0, 1e-15, -1e-15, 1e-12, -1e-12, 1e-9, -1e-9];
-    match name {
+    match model.inputs[at].name.as_str() {
         "ratio" => inputs[at] = 1.0 + random.pick(&near),
         "torque_Nm" | "power_kW" | "pulley_speed_rpm" | "slack_tension_N" => inputs[at] = random.pick(&[0.0, 1e-12]),
         "friction" if model.name == "timing-belt" => inputs[at] = random.pick(&[0.0, 1e-9]),
@@ -213,38 +211,38 @@ struct Comparison {
     /// Designs of which three outputs are not compared.
     cancelled: usize,
     worst: f64,
-    worst_output: &'static str,
+    worst_output: String,
     statuses: BTreeMap<&'static str, usize>,
 }
 
 /// Status and values of one design in both implementations: the largest error and whose it is, or what they disagree on.
-fn agree(model: &Model, evaluation: &Evaluation, (status, values): &(&str, Values), rest: f64) -> Result<(f64, &'static str), String> {
+fn agree(model: &Model, evaluation: &Evaluation, (status, values): &(&str, Values), rest: f64) -> Result<(f64, String), String> {
     let own = evaluation.status.reason(model);
     if own != *status {
         return Err(format!("the status is {own}, should be {status}"));
     }
-    let mut worst = (0.0, "");
+    let mut worst = (0.0, String::new());
     for (output, value) in model.outputs.iter().zip(&evaluation.outputs) {
-        let (value, other) = match (*value, values.get(output.name).copied()) {
+        let (value, other) = match (*value, values.get(output.name.as_str()).copied()) {
             (None, None) => continue,
             (Some(value), Some(other)) => (value, other),
             (value, other) => return Err(format!("{} is {value:?}, should be {other:?}", output.name)),
         };
-        let scale = match output.name {
+        let scale = match output.name.as_str() {
             name if is_margin(name) => other.abs().max(1.0),
             // The least load is what is left of the largest where the teeth at the slack side carry nothing.
             "least_tooth_load_N" => other.abs().max(1e-3 * values["peak_tooth_load_N"].abs()),
             _ => other.abs(),
         };
         let error = if value == other { 0.0 } else { (value - other).abs() / scale };
-        if rest < CANCELLED && HANGS_ON_THE_REST.contains(&output.name) {
+        if rest < CANCELLED && HANGS_ON_THE_REST.contains(&output.name.as_str()) {
             continue;
         }
         if error > 1e-9 || error.is_nan() {
             return Err(format!("{} is {value:e}, should be {other:e}: {error:e} apart", output.name));
         }
         if error > worst.0 {
-            worst = (error, output.name);
+            worst = (error, output.name.clone());
         }
     }
     Ok(worst)
@@ -283,20 +281,20 @@ fn compare(model: &Model, region: Region, count: u64, random: &mut Random) -> Co
 /// formula, are held against `pulley-load` below, and that against its second implementation here.
 const NOT_COMPARED: [&str; 1] = ["pulley"];
 
-fn compared() -> impl Iterator<Item = &'static Model> {
-    assert!(NOT_COMPARED.iter().all(|name| find(name).is_some_and(is_slow)), "only a solver may do without");
-    MODELS.iter().copied().filter(|model| !NOT_COMPARED.contains(&model.name))
+fn compared() -> impl Iterator<Item = &'static Arc<Model>> {
+    assert!(NOT_COMPARED.iter().all(|name| find(name).is_some_and(|model| is_slow(&model))), "only a solver may do without");
+    models::all().iter().filter(|model| !NOT_COMPARED.contains(&model.name.as_str()))
 }
 
 #[test]
 fn the_belt_loads_of_a_pulley_are_those_of_pulley_load() {
     let [load, pulley] = ["pulley-load", "pulley"].map(|name| find(name).expect("it is a model"));
     let count = load.outputs.len();
-    for (own, other) in load.inputs.iter().zip(pulley.inputs).map(|(own, other)| (own.name, other.name)) {
+    for (own, other) in load.inputs.iter().zip(&pulley.inputs).map(|(own, other)| (&own.name, &other.name)) {
         assert_eq!(own, other);
     }
-    for (own, other) in load.outputs.iter().zip(pulley.outputs) {
-        assert_eq!((own.name, own.doc), (other.name, other.doc));
+    for (own, other) in load.outputs.iter().zip(&pulley.outputs) {
+        assert_eq!((&own.name, &own.doc), (&other.name, &other.doc));
     }
     let random = &mut Random::new(44);
     let defaults = pulley.defaults();
@@ -304,12 +302,12 @@ fn the_belt_loads_of_a_pulley_are_those_of_pulley_load() {
     let mut statuses = BTreeMap::<_, u64>::new();
     for number in 0..6000 {
         let region = random.pick(&[Region::Usual, Region::Wide, Region::Edges]);
-        let (own, other) = both(&draw(load, region, random));
+        let (own, other) = both(&draw(&load, region, random));
         // The loads alone ask for no elements; a few are evaluated in full.
         let wanted = (1 << count) - 1;
-        let [expected, found] = [(load, &own), (pulley, &other)].map(|(model, inputs)| {
+        let [expected, found] = [(&load, &own), (&pulley, &other)].map(|(model, inputs)| {
             let (mut si, mut outputs) = ([0.0; INPUTS], [0.0; OUTPUTS]);
-            for ((si, input), &value) in si.iter_mut().zip(model.inputs).zip(inputs) {
+            for ((si, input), &value) in si.iter_mut().zip(&model.inputs).zip(inputs) {
                 *si = if input.word_for(value).is_some() { value } else { input.unit.to_si(value) };
             }
             let mut prepared = vec![0.0; model.kernel.prepared_len()];
@@ -320,10 +318,10 @@ fn the_belt_loads_of_a_pulley_are_those_of_pulley_load() {
         });
         assert_eq!(expected, found, "{own:?}");
         if number % 600 == 0 {
-            let [expected, found] = [evaluate(load, &own), evaluate(pulley, &other)];
+            let [expected, found] = [evaluate(&load, &own), evaluate(&pulley, &other)];
             assert_eq!(expected.outputs, found.outputs[..count], "{own:?}");
-            let reason = expected.status.reason(load);
-            assert!(reason == "ok" || reason == found.status.reason(pulley), "{own:?}: {reason}");
+            let reason = expected.status.reason(&load);
+            assert!(reason == "ok" || reason == found.status.reason(&pulley), "{own:?}: {reason}");
             *statuses.entry(reason).or_default() += 1;
         }
     }
@@ -340,9 +338,10 @@ fn the_models_agree_with_their_second_implementation() {
             assert!(found.skipped * 50 < found.compared, "too many designs lie on a boundary: {found:?}");
             found.statuses.into_iter().for_each(|(status, count)| *seen.entry(status).or_default() += count);
         }
-        let every_status = model.conditions.iter().filter(|condition| !condition.quiet).map(|condition| condition.reason).chain(["ok"]);
+        let every_status =
+            model.conditions.iter().filter(|condition| !condition.quiet).map(|condition| condition.reason.as_str()).chain(["ok"]);
         for status in every_status {
-            assert!(seen.get(status).is_some_and(|&count| count >= 10), "{}: hardly any design has the status {status}", model.name);
+            assert!(seen.get(&status).is_some_and(|&count| count >= 10), "{}: hardly any design has the status {status}", model.name);
         }
         assert!(seen["ok"] > 10_000, "{}: {seen:?}", model.name);
     }
@@ -361,7 +360,7 @@ fn the_comparison_objects_to_any_wrong_value_and_status() {
                 wrong.outputs[number] = change(right.outputs[number].expect("defaults have every output"));
                 agree(model, &wrong, &expected, 1.0).is_err()
             };
-            assert!(wrong(&|value| Some(value + 3e-9 * value.abs().max(f64::from(u8::from(is_margin(output.name)))))), "{}", output.name);
+            assert!(wrong(&|value| Some(value + 3e-9 * value.abs().max(f64::from(u8::from(is_margin(&output.name)))))), "{}", output.name);
             assert!(wrong(&|_| None) && wrong(&|_| Some(f64::NAN)), "{}", output.name);
         }
         let wrong = Evaluation { status: Status::Failed(0), ..right.clone() };
@@ -385,7 +384,7 @@ fn every_printed_number_comes_out() {
         for (input, value) in golden.inputs {
             inputs[model.input(input).expect("it is an input")] = *value;
         }
-        let evaluation = evaluate(model, &inputs);
+        let evaluation = evaluate(&model, &inputs);
         let output = model.output(golden.output).expect("it is an output");
         let value = evaluation.outputs[output].expect("it has a meaning");
         let error = (value - golden.expected).abs();
@@ -396,7 +395,7 @@ fn every_printed_number_comes_out() {
 
 #[test]
 fn the_printed_numbers_cover_every_model() {
-    for model in MODELS {
+    for model in models::all() {
         assert!(printed().any(|(name, _)| name == model.name), "{} has no golden value", model.name);
     }
 }

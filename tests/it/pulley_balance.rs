@@ -3,9 +3,10 @@
 use crate::random::Random;
 use beltspace::models::{Model, Status, evaluate, find};
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 struct Pulley {
-    model: &'static Model,
+    model: Arc<Model>,
     inputs: Vec<f64>,
     outputs: Vec<Option<f64>>,
 }
@@ -13,7 +14,7 @@ struct Pulley {
 impl Pulley {
     fn new(inputs: Vec<f64>) -> Option<Self> {
         let model = find("pulley-load").expect("it is a model");
-        let evaluation = evaluate(model, &inputs);
+        let evaluation = evaluate(&model, &inputs);
         (evaluation.status == Status::Ok).then_some(Self { model, inputs, outputs: evaluation.outputs })
     }
 
@@ -158,9 +159,8 @@ fn the_direction_of_friction_has_the_two_known_members() {
 #[test]
 fn tension_and_loads_grow_along_the_wrap_as_the_profile_says() {
     let model = find("pulley-load").expect("it is a model");
-    let profile_of = model.profile.expect("the model has a profile");
     for pulley in pulleys(4).take(200) {
-        let profile = profile_of(&pulley.inputs);
+        let profile = model.along_the_belt(&pulley.inputs).expect("the model has a profile");
         let column = |name: &str| profile.columns.iter().position(|it| it.name == name).expect("it is a column");
         let (first, last) = (&profile.rows[0], &profile.rows[profile.rows.len() - 1]);
         let ends = [

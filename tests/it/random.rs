@@ -52,7 +52,7 @@ impl Random {
     }
 
     /// The number that encodes one of an input's words; the only one needs no number drawn for it.
-    pub fn word(&mut self, words: &[(&str, f64)]) -> f64 {
+    pub fn word(&mut self, words: &[(String, f64)]) -> f64 {
         words[if words.len() == 1 { 0 } else { self.below(words.len()) }].1
     }
 

@@ -1,5 +1,5 @@
-//! The page of a result in Chromium, used with mouse and keys. Where BELTSPACE_CHROMIUM is not set the tests say that they are
-//! skipped; the full stage of the checks sets it, and then a missing browser is a failure.
+//! The page of a result in Chromium, used with mouse and keys. These tests need a browser, so they run where they are asked for, as in the
+//! full stage of the checks, and a missing browser is a failure.
 
 use crate::browser::Browser;
 use crate::random::Random;
@@ -8,14 +8,6 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use tempfile::TempDir;
-
-fn asked_for() -> bool {
-    let asked = std::env::var_os("BELTSPACE_CHROMIUM").is_some();
-    if !asked {
-        eprintln!("SKIPPED: set BELTSPACE_CHROMIUM=1 to drive the page in Chromium");
-    }
-    asked
-}
 
 fn beltspace(words: &[&str]) -> String {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -80,10 +72,8 @@ fn brush(browser: &mut Browser, x: &str, y: &str, from: [f64; 2], to: [f64; 2]) 
 }
 
 #[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored report_page --test-threads 1"]
 fn a_front_is_brushed_and_a_card_says_what_the_table_says() {
-    if !asked_for() {
-        return;
-    }
     let swept = Swept::shipped("metal-cvt");
     let size = std::fs::metadata(swept.page()).expect("there is a page").len();
     assert!(size < 8_000_000, "{size} bytes");
@@ -161,10 +151,8 @@ fn a_front_is_brushed_and_a_card_says_what_the_table_says() {
 }
 
 #[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored report_page --test-threads 1"]
 fn axes_are_brushed_turned_and_moved_and_a_point_is_reached_with_the_keyboard() {
-    if !asked_for() {
-        return;
-    }
     let swept = Swept::shipped("rubber-cvt");
     let mut browser = Browser::open(&swept.page(), "");
     let front = swept.front();
@@ -203,10 +191,8 @@ fn axes_are_brushed_turned_and_moved_and_a_point_is_reached_with_the_keyboard() 
 }
 
 #[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored report_page --test-threads 1"]
 fn dark_and_light_maps_and_pictures_of_a_pulley() {
-    if !asked_for() {
-        return;
-    }
     for name in ["pulley-thickness", "timing-map", "pulley-load"] {
         let swept = Swept::shipped(name);
         let mut browser = Browser::open(&swept.page(), "#t=dark");
@@ -236,10 +222,8 @@ axial_force_N = "min"
 "#;
 
 #[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored report_page --test-threads 1"]
 fn a_page_with_one_point_and_one_with_none() {
-    if !asked_for() {
-        return;
-    }
     let swept = Swept::text(POINT);
     assert_eq!(swept.front().len(), 1);
     let mut browser = Browser::open(&swept.page(), "");
@@ -259,10 +243,8 @@ fn a_page_with_one_point_and_one_with_none() {
 }
 
 #[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored report_page --test-threads 1"]
 fn a_hundred_thousand_points_are_brushed() {
-    if !asked_for() {
-        return;
-    }
     // Points of a sphere dominate each other nowhere: every row of a catalogue is on the front.
     let folder = tempfile::tempdir().expect("there is room");
     let random = &mut Random::new(1);
@@ -297,10 +279,8 @@ fn a_hundred_thousand_points_are_brushed() {
 }
 
 #[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored report_page --test-threads 1"]
 fn the_papers_have_a_page_of_the_same_kind() {
-    if !asked_for() {
-        return;
-    }
     let folder = tempfile::tempdir().expect("there is room");
     beltspace(&["reproduce", "--out", folder.path().to_str().expect("a path of characters"), "--quiet"]);
     let mut browser = Browser::open(&folder.path().join("report.html"), "");

@@ -8,7 +8,7 @@
 //! - A number of the prose must stand in a block, or in the section "The requirement"; with three digits or more it may be rounded.
 //! - A file name in inline code must be a file that the page made, and a link must lead to a file.
 
-use beltspace::models::MODELS;
+use beltspace::models;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -269,7 +269,7 @@ fn tutorials_say_what_the_program_prints() {
 #[test]
 fn every_model_has_a_tutorial_and_the_index_has_every_page() {
     let pages = pages();
-    for model in MODELS {
+    for model in models::all() {
         assert!(pages.iter().any(|(_, page)| page.contains(&format!("\nmodel = \"{}\"\n", model.name))), "{}", model.name);
     }
     let (_, index) = pages.iter().find(|(name, _)| name == "README.md").expect("an index");

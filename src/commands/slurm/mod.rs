@@ -2,23 +2,30 @@
 
 mod scripts;
 mod sizing;
-mod speed;
 
-use super::sweep::{default_out, refuse_to_overwrite};
-use super::{check, method, read_study};
+use super::read_study;
+use super::sweep::{default_out, files_of};
 use crate::cli::{self, Cli, Command};
 use crate::terminal::{self, Grid, bold, grouped, quoted, span};
-use beltspace::checkpoint::{Checkpoint, replace};
+use beltspace::checkpoint::Saved;
+use beltspace::directory::Contents;
 use beltspace::error::{Error, Result};
-use beltspace::export::CHECKPOINT;
+use beltspace::files::{Claim, MOVE, Reading, is_there, refuse_foreign, replace};
+use beltspace::memory::Needs;
+use beltspace::names::CHECKPOINT;
 use beltspace::plan::Plan;
+use beltspace::run::{Judging, method};
 use beltspace::study::differences;
+use beltspace::sweep::costs::Speed;
 use clap::Parser;
 use scripts::{MERGE, SHARDS, SUBMIT};
 use sizing::{Wish, Work};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
+/// How long the speed is measured.
+const TRIAL: Duration = Duration::from_secs(1);
 /// Least megabytes that jobs ask for: shards, and the merge.
 const LEAST_MEMORY: [u64; 2] = [1000, 2000];
 /// Seconds that the merge is expected to take at least: it writes the result, its pictures and its page.
@@ -65,25 +72,31 @@ pub fn run(request: &cli::Slurm) -> Result<()> {
     let program = program(request.program.as_deref())?;
     let own = checked_options(&file, &request.sweep)?;
     // What every shard would refuse is refused before anything is written.
-    let method = method::choose(&plan, own.method, own.engine, own.adapter.as_deref(), request.cpus.into())?;
+    let mut speed = None;
+    let mut measure = || *speed.get_or_insert_with(|| Speed::measured(&plan, 1, TRIAL));
+    let method = method::choose(&plan, own.method, own.engine, own.adapter.as_deref(), request.cpus.into(), &mut measure)?;
     let options = request.option.iter().map(|it| one_line(it)).collect::<Result<Vec<_>>>()?;
     let time = request.time.as_deref().map(sizing::read_clock).transpose()?;
-    let (seconds, how) = speed::seconds_per_design(&plan);
-    let work = work(&plan, seconds, request.cpus);
+    let speed = measure();
+    let work = work(&plan, speed.seconds, request.cpus);
     let wish = Wish { bounds: method.bounds, shards: request.shards, shortest: request.shortest, limit: request.array_limit };
     let shards = sizing::shards(&work, &wish, scheduler)?;
-    refuse_to_overwrite(&out, request.force)?;
+    // Who is at work there is named: what the directory has meanwhile tells nothing.
+    let reading = Reading::without_trace(&out)?;
+    Contents::of(&out)?.refuse_to_overwrite(&files_of(&plan, own.no_report), request.force, false)?;
+    drop(reading);
     refuse_to_replace(&jobs, request.force)?;
     refuse_foreign_shards(&plan, &jobs, shards)?;
 
     let least = request.memory.map_or(LEAST_MEMORY, |asked| [asked; 2]);
-    let wanted = (2 * check::memory(&plan, request.cpus.into()) + 500).next_multiple_of(100);
-    let memory = least.map(|least| if request.memory.is_some() { least } else { least.max(wanted) });
+    let needs = Needs::of(&plan, request.cpus.into(), !own.no_report);
+    let wanted = [needs.shard, needs.merge].map(|bytes| (bytes + bytes / 2).div_ceil(1_000_000).next_multiple_of(100));
+    let memory = [0, 1].map(|job| if request.memory.is_some() { least[job] } else { least[job].max(wanted[job]) });
     let limit = if method.bounds { sizing::limit_of_bounds(work.of_all()) } else { sizing::limit(work.of_shard(shards)) };
     let time = [limit, sizing::limit(LEAST_MERGE + work.of_merge())].map(|seconds| time.clone().unwrap_or_else(|| sizing::clock(seconds)));
     let scripts = scripts::Plan {
         scheduler,
-        title: plan.study.title.chars().map(|it| if it.is_control() { ' ' } else { it }).collect(),
+        title: terminal::told(&plan.study.title),
         name: job_name(&request.study),
         program: word(&program)?,
         study: word(&file)?,
@@ -97,7 +110,8 @@ pub fn run(request: &cli::Slurm) -> Result<()> {
         page: !own.no_report,
         sweep: request.sweep.iter().map(|it| terminal::quoted_word(it)).collect(),
     };
-    std::fs::create_dir_all(&jobs).map_err(Error::io(&jobs))?;
+    let _claim = Claim::new(&jobs, &terminal::command_line())?;
+    refuse_to_replace(&jobs, request.force)?;
     // What fails in between leaves nothing to submit.
     let submit = jobs.join(SUBMIT);
     if submit.exists() {
@@ -109,8 +123,8 @@ pub fn run(request: &cli::Slurm) -> Result<()> {
         make_executable(&path)?;
     }
     remark(&plan, &work, request, shards);
-    if !request.quiet && method.bounds && own.method == cli::Method::Auto {
-        let what = "bounds settle boxes of designs at once, and a shard may be done in seconds";
+    if !request.quiet && method.bounds && own.method == Judging::Auto {
+        let what = "bounds settle boxes of designs at once, and a shard may be done in seconds; where they do not pay they are left";
         let then = if shards == 1 {
             "one job is written, and one beltspace sweep here may do; --shards N splits it all the same"
         } else {
@@ -118,7 +132,7 @@ pub fn run(request: &cli::Slurm) -> Result<()> {
         };
         terminal::remark("note", &format!("{what}: {then}; -- --method exhaustive judges every design"));
     }
-    if request.quiet { Ok(()) } else { terminal::print(&summary(&plan, &work, (method.bounds, how), &scripts, &out, &jobs)) }
+    if request.quiet { Ok(()) } else { terminal::print(&summary(&plan, &work, (method.bounds, speed.how()), &scripts, &out, &jobs)) }
 }
 
 fn summary(plan: &Plan, work: &Work, (bounds, how): (bool, &str), scripts: &scripts::Plan, out: &Path, jobs: &Path) -> String {
@@ -140,7 +154,7 @@ fn summary(plan: &Plan, work: &Work, (bounds, how): (bool, &str), scripts: &scri
     );
     fact("jobs", format!("{SHARDS}, {MERGE} and {SUBMIT} in {}", jobs.display()));
     fact("result", format!("{}, after the merge", out.display()));
-    format!("{}\n\n{}\nsubmit with: bash {}\n", bold(&plan.study.title), facts.indented(0), quoted(&jobs.join(SUBMIT)))
+    format!("{}\n\n{}\nsubmit with: bash {}\n", bold(&terminal::told(&plan.study.title)), facts.indented(0), quoted(&jobs.join(SUBMIT)))
 }
 
 /// Says what is other than the user may expect.
@@ -158,7 +172,7 @@ fn remark(plan: &Plan, work: &Work, request: &cli::Slurm, shards: u64) {
     }
     if shards > 1 && work.sample > 0 {
         let open: Vec<_> = plan.study.report.histograms.iter().filter(|it| it.range.is_none()).collect();
-        let names: Vec<_> = open.iter().map(|it| it.of.name(plan.study.model)).collect();
+        let names: Vec<_> = open.iter().map(|it| it.of.name(&plan.study.model)).collect();
         // Of a fast model nobody notices.
         if work.of_shard(shards) > 1.1 * work.of_own(shards) {
             terminal::remark(
@@ -252,7 +266,11 @@ fn refuse_to_replace(jobs: &Path, force: bool) -> Result<()> {
     if jobs.exists() && !jobs.is_dir() {
         return Err(Error::Request(format!("{} is a file; name a directory with --jobs", jobs.display())));
     }
-    match [SHARDS, MERGE, SUBMIT].into_iter().find(|name| jobs.join(name).exists()) {
+    for (name, first_line) in scripts::FIRST_LINES {
+        let is_own = |head: &str| head.lines().nth(1).is_some_and(|line| line.starts_with(first_line));
+        refuse_foreign(&jobs.join(name), MOVE, is_own)?;
+    }
+    match [SHARDS, MERGE, SUBMIT].into_iter().find(|name| is_there(&jobs.join(name))) {
         Some(name) if !force => Err(Error::Request(format!(
             "{} has a {name}; replace it with --force, or write to another directory with --jobs",
             jobs.display()
@@ -265,13 +283,14 @@ fn refuse_to_replace(jobs: &Path, force: bool) -> Result<()> {
 fn refuse_foreign_shards(plan: &Plan, jobs: &Path, shards: u64) -> Result<()> {
     for number in 1..=shards {
         let folder = jobs.join(scripts::folder(&number.to_string(), shards));
-        if !Checkpoint::exists(&folder.join(CHECKPOINT)) {
+        let checkpoint = folder.join(CHECKPOINT);
+        if !is_there(&checkpoint) {
             continue;
         }
         let unusable = |error| Error::Request(format!("{error}; unless a job is at work there, remove {}", quoted(&folder)));
-        let checkpoint = Checkpoint::open(&folder.join(CHECKPOINT)).map_err(unusable)?;
-        if checkpoint.study_hash() != plan.study.hash() {
-            let changed = differences(checkpoint.description(), &plan.study.describe()).join("; ");
+        let saved = Saved::read(&checkpoint).map_err(unusable)?;
+        if saved.study_hash() != plan.study.hash() {
+            let changed = differences(saved.description(), &plan.study.describe()).join("; ");
             return Err(Error::Request(format!(
                 "{} is of another study ({changed}); restore the study, remove the directory of the jobs, or name another with --jobs",
                 folder.display()

@@ -36,6 +36,10 @@ pub const MERGE: &str = "merge.sh";
 /// Name of the script that submits both.
 pub const SUBMIT: &str = "submit.sh";
 
+/// What the second line of each script begins with, which tells it from the scripts of others.
+pub const FIRST_LINES: [(&str, &str); 3] =
+    [(SHARDS, "# Judges a shard of \""), (MERGE, "# Puts the shards of \""), (SUBMIT, "# Submits the shards of \"")];
+
 /// Folder of a shard, in that of the jobs. It has the number of shards in its name, so that another division begins anew.
 pub fn folder(number: &str, shards: u64) -> String {
     format!("shard-{number}-of-{shards}")

@@ -29,16 +29,14 @@
 //! - The paper's "safety factor 2" is `sigma_y = 2 sigma_t`; with `sigma_b = sigma_t` at the optimum thickness the combined
 //!   stress is exactly `sigma_y`.
 
-use super::formula::{CONDITIONS, Fields, Formula, INPUTS, OUTPUTS, bits, record};
+use super::formula::{CONDITIONS, Formula, INPUTS, OUTPUTS, bits, record};
 use crate::real::Real;
+use crate::tape::Fields;
 use std::f64::consts::PI;
 
 mod table;
 
-pub(super) use table::{CONDITION_TABLE, OUTPUT_TABLE, groove_angle, ratio, torque, traction};
-
-/// The twin in WGSL of what both belts share.
-pub(super) const SHADER: &str = include_str!("../../../shaders/models/cvt.wgsl");
+pub(super) use table::{condition_table, groove_angle, output_table, ratio, torque, traction};
 
 /// The number that stands for traction "limit": the belt is squeezed just enough not to slip.
 pub const LIMIT: f64 = -1.0;
@@ -87,7 +85,7 @@ fn slip_pull<R: Real>(effective_friction: R, wrap: R) -> R {
 
 /// Largest traction coefficient without gross slip, from (12) with `theta_a` = wrap: `tanh(mu_e wrap / 2)`.
 pub fn traction_limit<R: Real>(effective_friction: R, wrap: R) -> R {
-    let pull = slip_pull(effective_friction, wrap);
+    let pull = slip_pull(effective_friction, wrap).named("pull", "e - 1");
     pull / (pull + R::constant(2.0))
 }
 
@@ -115,17 +113,17 @@ pub fn printed_torque_coefficient<R: Real>(pull: R, strength: R, elastic_modulus
 fn driver_radius<R: Real>(belt: &Drive<R>) -> R {
     let [one, two, pi] = [1.0, 2.0, PI].map(R::constant);
     let Drive { ratio, belt_length, centre_distance, .. } = *belt;
-    let step = ratio - one;
-    let both = pi * (one + ratio);
+    let step = (ratio - one).named("ratio_less_one", "");
+    let both = (pi * (one + ratio)).named("both_half_turns", "");
     // Beyond A/|R - 1| one pulley would lie inside the other. Equal pulleys have no such end: any large one serves.
-    let largest = centre_distance / step.abs().max(R::constant(1e-9));
-    let start = (belt_length - two * centre_distance) / both;
+    let largest = (centre_distance / step.abs().max(R::constant(1e-9))).named("largest_radius", "");
+    let start = ((belt_length - two * centre_distance) / both).named("first_radius", "");
     R::monotone_root((R::constant(0.0), largest), start, [step, both, belt_length, centre_distance], |parameters, radius| {
         let [one, two] = [1.0, 2.0].map(R::constant);
         let [step, both, belt_length, centre_distance] = parameters;
-        let sine = (step * radius / centre_distance).min(one).max(-one);
-        let lean = sine.asin();
-        let free = two * centre_distance * ((one - sine) * (one + sine)).sqrt();
+        let sine_of_lean = (step * radius / centre_distance).min(one).max(-one).named("sine_of_lean", "");
+        let lean = sine_of_lean.asin().named("lean", "");
+        let free = (two * centre_distance * ((one - sine_of_lean) * (one + sine_of_lean)).sqrt()).named("free", "");
         (free + both * radius + two * lean * step * radius - belt_length, both + two * lean * step)
     })
 }
@@ -136,26 +134,26 @@ fn prepare<R: Real>(belt: &Drive<R>) -> Prepared<R> {
     let [one, two, four, pi] = [1.0, 2.0, 4.0, PI].map(R::constant);
     let Drive { friction, groove_angle, ratio, belt_length, centre_distance, .. } = *belt;
 
-    let driver_radius = driver_radius(belt);
+    let driver_radius = driver_radius(belt).named("driver_radius", "");
     let driven_radius = ratio * driver_radius;
-    let lean = ((driven_radius - driver_radius) / centre_distance).min(one).max(-one).asin();
+    let lean = ((driven_radius - driver_radius) / centre_distance).min(one).max(-one).asin().named("lean", "");
     let driver_wrap = pi - two * lean;
     let driven_wrap = pi + two * lean;
 
-    let (sine, cosine) = ((groove_angle / two).sin(), (groove_angle / two).cos());
+    let (sine, cosine) = ((groove_angle / two).sin().named("groove_sine", ""), (groove_angle / two).cos().named("groove_cosine", ""));
     let effective_friction = friction / sine;
-    let wedge = wedge_factor(friction, sine, cosine);
+    let wedge = wedge_factor(friction, sine, cosine).named("wedge", "(1), (6)");
 
-    let driven_pull = slip_pull(effective_friction, driven_wrap);
+    let driven_pull = slip_pull(effective_friction, driven_wrap).named("driven_pull", "e - 1");
     let traction_limit = driven_pull / (driven_pull + two);
     let traction = R::select(belt.traction, belt.traction, traction_limit);
     // (12): log((1 + lambda)/(1 - lambda)), exact also for small lambda; at the limit the whole wrap is active.
-    let arc = ((two * traction / (one - traction)).ln_1p() / effective_friction).min(driven_wrap);
+    let arc = ((two * traction / (one - traction)).ln_1p() / effective_friction).min(driven_wrap).named("arc", "(12)");
     let active_arc = R::select(belt.traction, arc, driven_wrap);
 
     let smaller_radius = driver_radius.min(driven_radius);
-    let free_radius = belt_length / (two * pi);
-    let slack_share = (one - traction) / (one + traction);
+    let free_radius = (belt_length / (two * pi)).named("free_radius", "r0");
+    let slack_share = ((one - traction) / (one + traction)).named("slack_share", "");
     Prepared {
         driver_radius,
         driven_radius,
@@ -186,7 +184,7 @@ fn prepare<R: Real>(belt: &Drive<R>) -> Prepared<R> {
     }
 }
 
-/// Margins of [`CONDITION_TABLE`].
+/// Margins of [`condition_table`].
 #[inline(always)]
 fn conditions<R: Real>(prepared: &Prepared<R>, belt: &Drive<R>) -> [R; CONDITIONS] {
     let one = R::constant(1.0);
@@ -277,14 +275,14 @@ fn finish<R: Real>(p: &Prepared<R>, belt: &Drive<R>, wanted: u64, out: &mut [R; 
         out[OUT.driven_axial_coefficient] = p.driven_axial_coefficient;
         out[OUT.entry_compression] = p.entry_compression;
     }
-    let width = belt.sections * belt.width;
-    let area = width * belt.thickness;
+    let width = (belt.sections * belt.width).named("width", "");
+    let area = (width * belt.thickness).named("area", "");
     let bending_stress = belt.elastic_modulus * belt.thickness / two * p.curvature; // (18)
     out[OUT.bending_stress] = bending_stress;
     if wanted & FROM_TORQUE != 0 {
         let belt_force = belt.torque / p.driver_radius; // (3), (14)
         // F1 + F2 = P/lambda; with lambda = 0 it is 0 for P = 0 and has no meaning otherwise (condition "no traction").
-        let force_sum = belt_force / R::select(-p.traction, one, p.traction);
+        let force_sum = (belt_force / R::select(-p.traction, one, p.traction)).named("force_sum", "F1 + F2");
         let tight_force = force_sum * (one + p.traction) / two;
         let driver_axial_force = p.driver_axial_coefficient * force_sum;
         let driven_axial_force = p.driven_axial_coefficient * force_sum;
@@ -302,10 +300,11 @@ fn finish<R: Real>(p: &Prepared<R>, belt: &Drive<R>, wanted: u64, out: &mut [R; 
     }
     if wanted & CAPACITY != 0 {
         // A belt that bending alone overstrains carries nothing: capacity 0, not an error.
-        let tight_capacity = (belt.strength - bending_stress).max(R::constant(0.0)) * area;
-        let per_tight = two / (one + p.traction);
+        let tight_capacity = ((belt.strength - bending_stress).max(R::constant(0.0)) * area).named("tight_capacity", "");
+        let per_tight = (two / (one + p.traction)).named("per_tight", "");
+        let axial_per_tight = per_tight * p.driver_axial_coefficient.max(p.driven_axial_coefficient);
         out[OUT.torque_capacity] = tight_capacity * (per_tight * p.traction * p.driver_radius);
-        out[OUT.capacity_axial_force] = tight_capacity * (per_tight * p.driver_axial_coefficient.max(p.driven_axial_coefficient));
+        out[OUT.capacity_axial_force] = tight_capacity * axial_per_tight;
     }
     if wanted & AT_OPTIMUM != 0 {
         let Drive { strength, elastic_modulus, .. } = *belt;

@@ -16,19 +16,21 @@ mod tests;
 
 pub use design::Design;
 pub use profile::CHECK_POINT_STRESSES;
-pub use table::MODEL;
+pub use table::model;
 
 use super::description::Model;
-use super::formula::{CONDITIONS, Columns, INPUTS, Kernel, OUTPUTS, Reach, Scratch, run};
-use super::pulley_load::{self, PulleyLoad};
-use crate::pulley::response::{self, LONGEST, View};
-use crate::pulley::section::{self, Dimensions, Fineness, Flaw, Kind};
-use crate::pulley::turn::{Case, Summary, Turn};
-use crate::real::Dependence;
+use super::formula::{CONDITIONS, Columns, Footprint, INPUTS, Kernel, OUTPUTS, Reach, Scratch};
+use super::pulley_load;
+use crate::pulley::response::{self, CHECK_POINTS, LONGEST, View};
+use crate::pulley::section::{self, Flaw, Kind};
+use crate::pulley::turn::{Case, Peak, Summary, Turn};
+use crate::real::Real;
+use crate::tape::{Known, List, Recording, Trace};
 use crate::units::{CUBIC_MILLIMETRE, MEGAPASCAL, MILLIMETRE};
-use std::cell::RefCell;
-use table::{FINITE_ELEMENTS, Inputs, LOAD_OUTPUTS, OUT, Result, SECTION};
+use design::{Body, Loading};
+use table::{FINITE_ELEMENTS, Inputs, OUT, Result};
 
+/// The finite elements of a pulley.
 pub(super) struct Pulley;
 
 /// What stands before the section's answers: which condition its flaw fails (0: none), the margin of it, whether the answers are
@@ -57,72 +59,51 @@ fn answers(prepared: &[f64]) -> Option<View<'_>> {
     (prepared[2] != 0.0).then(|| View::new(&prepared[HEAD..]))
 }
 
-/// What decides a section's answers.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Key {
-    kind: Kind,
-    dimensions: Dimensions,
-    poisson: f64,
-    fineness: Fineness,
-    wanted: u64,
-}
-
-/// The last section that a thread has solved: axes that its type does not read leave it the same.
-#[derive(Default)]
-struct Last {
-    key: Option<Key>,
-    answers: Vec<f64>,
-}
-
-impl Last {
-    fn recall(&self, key: &Key, prepared: &mut [f64]) -> bool {
-        let known = self.key.as_ref() == Some(key);
-        if known {
-            prepared[..self.answers.len()].copy_from_slice(&self.answers);
+/// First stage, for all that it is told: what its answers depend on is what a [`Body`] has.
+fn solve(body: &Body<f64>, wanted: u64, prepared: &mut [f64]) {
+    let (kind, dimensions, fineness) = (body.kind(), &body.dimensions, body.fineness());
+    prepared[..HEAD].fill(0.0);
+    // Loads and flaws need no elements; volume and mass need no solution.
+    let refused = |flaw: Flaw, prepared: &mut [f64]| {
+        prepared[0] = condition_of(&flaw) as f64;
+        prepared[1] = flaw.margin();
+    };
+    if let Err(flaw) = section::checked_outline(kind, dimensions) {
+        return refused(flaw, prepared);
+    }
+    if wanted & (FINITE_ELEMENTS | 1 << OUT.volume | 1 << OUT.mass) == 0 {
+        return;
+    }
+    match section::mesh(kind, dimensions, &fineness) {
+        Err(flaw) => refused(flaw, prepared),
+        Ok(mesh) if response::folds_over(&mesh) => refused(Flaw::Mesh { reason: "its elements fold over" }, prepared),
+        Ok(mesh) => {
+            prepared[3] = response::volume(&mesh);
+            if wanted & FINITE_ELEMENTS != 0 {
+                response::respond(&mesh, kind, dimensions, body.poisson, &fineness, &mut prepared[HEAD..]);
+                prepared[2] = 1.0;
+            }
         }
-        known
-    }
-
-    fn keep(&mut self, key: Key, prepared: &[f64]) {
-        self.key = Some(key);
-        self.answers.clear();
-        self.answers.extend(&prepared[..HEAD + View::new(&prepared[HEAD..]).length()]);
     }
 }
 
-thread_local! {
-    static LAST: RefCell<Last> = RefCell::default();
-}
-
-/// The dimensions that a type reads; the others are zero.
-fn of_kind(kind: Kind, dimensions: &Dimensions) -> Dimensions {
-    let d = *dimensions;
-    let sheet = Dimensions { wall_thickness: 0.0, rim_thickness: 0.0, lip_thickness: 0.0, fillet_radius: 0.0, groove_offset: 0.0, ..d };
-    match kind {
-        Kind::Machined => Dimensions {
-            hub_bend_radius: 0.0,
-            web_bend_radius: 0.0,
-            fold_radius: 0.0,
-            wall_radius: 0.0,
-            wall_offset: 0.0,
-            ridge_width: 0.0,
-            weld_radius: 0.0,
-            ..d
-        },
-        Kind::WeldedDiscs => Dimensions {
-            cup_radius: 0.0,
-            wall_radius: 0.0,
-            wall_offset: 0.0,
-            web_bend_radius: 0.0,
-            fold_radius: 0.0,
-            ridge_width: 0.0,
-            floor_bend_radius: 0.0,
-            floor_depth: 0.0,
-            ..sheet
-        },
-        Kind::DoubleGroove => Dimensions { weld_radius: 0.0, ..sheet },
-        Kind::PressedCup => Dimensions { ridge_width: 0.0, weld_radius: 0.0, ..sheet },
+/// Margins of all conditions; `flaw` is that of a condition that a flaw of the section fails.
+fn margins<R: Real>(belt: [R; 2], inputs: &[R; INPUTS], flaw: impl Fn(usize) -> R) -> [R; CONDITIONS] {
+    let [yes, no] = [1.0, -1.0].map(R::constant);
+    let i = Inputs::read(inputs);
+    let mut margins = [yes; CONDITIONS];
+    margins[..2].copy_from_slice(&belt);
+    for condition in [NO_SECTION, BAND, SEAT] {
+        margins[condition] = flaw(condition);
     }
+    // Types are numbered from 1: machined is 1, welded discs are 2.
+    let from = |number: f64, then: R, otherwise: R| R::select(i.section - R::constant(number - 0.5), then, otherwise);
+    margins[BOTH_SIDES] = from(2.0, yes, no);
+    margins[WITH_F] = from(3.0, yes, from(2.0, no, yes));
+    // The word that stands for no point is a number below zero.
+    margins[OWN[0]] = R::select(i.point_1_r, yes, no);
+    margins[OWN[1]] = R::select(i.point_2_r, yes, no);
+    margins
 }
 
 impl Kernel for Pulley {
@@ -131,54 +112,28 @@ impl Kernel for Pulley {
     }
 
     fn prepare(&self, inputs: &[f64; INPUTS], wanted: u64, prepared: &mut [f64]) {
-        let (kind, dimensions) = (design::kind(inputs), design::dimensions(inputs));
-        let design = Design::new(inputs);
-        prepared[..HEAD].fill(0.0);
-        // Loads and flaws need no elements; volume and mass need no solution.
-        let refused = |flaw: Flaw, prepared: &mut [f64]| {
-            prepared[0] = condition_of(&flaw) as f64;
-            prepared[1] = flaw.margin();
-        };
-        if let Err(flaw) = section::checked_outline(kind, &dimensions) {
-            return refused(flaw, prepared);
-        }
-        if wanted & (FINITE_ELEMENTS | 1 << OUT.volume | 1 << OUT.mass) == 0 {
-            return;
-        }
-        let key = Key { kind, dimensions: of_kind(kind, &dimensions), poisson: design.poisson, fineness: design.fineness, wanted };
-        if LAST.with_borrow(|last| last.recall(&key, prepared)) {
-            return;
-        }
-        match section::mesh(kind, &dimensions, &design.fineness) {
-            Err(flaw) => refused(flaw, prepared),
-            Ok(mesh) if response::folds_over(&mesh) => refused(Flaw::Mesh { reason: "its elements fold over" }, prepared),
-            Ok(mesh) => {
-                prepared[3] = response::volume(&mesh);
-                if wanted & FINITE_ELEMENTS != 0 {
-                    response::respond(&mesh, kind, &dimensions, design.poisson, &design.fineness, &mut prepared[HEAD..]);
-                    prepared[2] = 1.0;
-                    LAST.with_borrow_mut(|last| last.keep(key, prepared));
-                }
-            }
-        }
+        solve(&Body::new(inputs, design::kind(inputs)), wanted, prepared);
+    }
+
+    fn prepared_used(&self, prepared: &[f64]) -> usize {
+        HEAD + answers(prepared).map_or(0, |view| view.length())
+    }
+
+    fn prepared_reads(&self, inputs: &[f64; INPUTS]) -> u64 {
+        read_by(design::kind(inputs))
+    }
+
+    fn footprint(&self, inputs: &[f64; INPUTS]) -> Footprint {
+        let body = Body::new(inputs, design::kind(inputs));
+        let Ok(mesh) = section::mesh(body.kind(), &body.dimensions, &body.fineness()) else { return Footprint::default() };
+        let (table, scratch) = response::bytes(&mesh, &body.dimensions, &body.fineness());
+        // The last section is kept beside the one that is asked for; the mesh and its loads take a tenth of what the equations do.
+        Footprint { prepared: 8 * HEAD as u64 + table, scratch: scratch + scratch / 10 + table }
     }
 
     fn conditions(&self, prepared: &[f64], inputs: &[f64; INPUTS]) -> [f64; CONDITIONS] {
-        let mut margins = [1.0; CONDITIONS];
-        let load = pulley_load::wrap_load(inputs);
-        margins[..2].copy_from_slice(&load.margins);
-        let flaw = prepared[0] as usize;
-        if flaw != 0 {
-            margins[flaw] = prepared[1];
-        }
-        let sure = |is: bool| if is { 1.0 } else { -1.0 };
-        let kind = design::kind(inputs);
-        let i = Inputs::read(inputs);
-        margins[BOTH_SIDES] = sure(kind != Kind::Machined);
-        margins[WITH_F] = sure(kind != Kind::WeldedDiscs);
-        margins[OWN[0]] = sure(i.point_1_r != table::POINT_NONE);
-        margins[OWN[1]] = sure(i.point_2_r != table::POINT_NONE);
-        margins
+        let flaw = |condition| if prepared[0] as usize == condition { prepared[1] } else { 1.0 };
+        margins(pulley_load::wrap_load(inputs).margins, inputs, flaw)
     }
 
     fn finish(&self, prepared: &[f64], inputs: &[f64; INPUTS], wanted: u64, outputs: &mut [f64; OUTPUTS]) {
@@ -217,51 +172,56 @@ impl Kernel for Pulley {
         }
     }
 
-    fn reach(&self, inputs: &[Dependence; INPUTS]) -> Reach {
-        let of = |set: &[usize]| set.iter().fold(0, |bits, &input| bits | inputs[input].inputs);
-        let number = Inputs::NUMBER;
-        let kinds = |name: &str| match inputs[number.section].known() {
-            Some(kind) => Kind::ALL.get(kind as usize - 1).is_some_and(|kind| kind.name() == name),
-            None => true,
-        };
-        let read = |input: &&usize| {
-            let only = MODEL.inputs[**input].only_for;
-            only.is_empty() || only.iter().any(|name| kinds(name))
-        };
-        let geometry: u64 = SECTION.iter().filter(read).fold(0, |bits, &input| bits | inputs[input].inputs);
-        let (load, margins) = run::<PulleyLoad, Dependence>(inputs);
-        let belt = (0..LOAD_OUTPUTS).filter(|&it| it != OUT.friction_margin).fold(0, |bits, output| bits | load[output].inputs);
-        // A force that is given does not ask for the torque.
-        let by_torque = inputs[number.clamp_force].known().is_none_or(|force| force == table::TORQUE);
-        let torque = [number.tightening_torque, number.bolt_friction, number.bolt_pitch, number.bolt_pitch_diameter];
-        let clamp = of(&[number.clamp_force]) | if by_torque { of(&torque) } else { 0 };
-        let stress = geometry | belt | clamp | of(&[number.friction_direction, number.density, number.bolt_angle]);
-        let own = [of(&[number.point_1_r, number.point_1_z]), of(&[number.point_2_r, number.point_2_z])];
-        let fatigue = stress | of(&[number.tensile_strength, number.endurance_limit]);
-        let mut outputs = [stress; OUTPUTS];
-        for (output, load) in load.iter().enumerate().take(LOAD_OUTPUTS) {
-            outputs[output] = load.inputs;
+    fn reach(&self, inputs: &[Known]) -> Reach {
+        let mut all = Reach { prepared: 0, outputs: [0; OUTPUTS], conditions: [0; CONDITIONS] };
+        let section = if let Known::Fixed(section) = inputs[Inputs::NUMBER.section] { Some(section) } else { None };
+        for kind in Kind::ALL.into_iter().filter(|kind| section.is_none_or(|section| design::kind_of(section) == *kind)) {
+            let of_kind = reach_of(inputs, kind);
+            all.prepared |= of_kind.prepared;
+            all.outputs.iter_mut().zip(of_kind.outputs).for_each(|(set, of)| *set |= of);
+            all.conditions.iter_mut().zip(of_kind.conditions).for_each(|(set, of)| *set |= of);
         }
-        outputs[OUT.own_1] |= own[0];
-        outputs[OUT.own_2] |= own[1];
-        outputs[OUT.rim_displacement] |= of(&[number.elastic_modulus]);
-        outputs[OUT.volume] = geometry;
-        outputs[OUT.mass] = geometry | of(&[number.density]);
-        outputs[OUT.excluded_radius] = geometry;
-        outputs[OUT.clamp_pressure] = geometry | clamp;
-        outputs[OUT.yield_safety] |= of(&[number.yield_strength]);
-        for output in [OUT.fatigue_safety, OUT.fatigue_amplitude, OUT.fatigue_mean] {
-            outputs[output] = fatigue;
-        }
-        let mut conditions = [0; CONDITIONS];
-        conditions[0] = margins[0].inputs;
-        conditions[1] = margins[1].inputs;
-        conditions[NO_SECTION..=SEAT].fill(geometry);
-        conditions[BOTH_SIDES..=WITH_F].fill(of(&[number.section]));
-        conditions[OWN[0]] = of(&[number.point_1_r]);
-        conditions[OWN[1]] = of(&[number.point_2_r]);
-        Reach { prepared: geometry, outputs, conditions }
+        all
     }
+}
+
+/// What depends on what for a type of section: the very code of both stages, recorded with a number in place of what is solved.
+fn reach_of(inputs: &[Known], kind: Kind) -> Reach {
+    let mut numbers = 0;
+    let (recording, nodes) = Recording::of(&[inputs, &[Known::ANY]].concat(), |named| {
+        let (unknown, mut inputs) = (named[inputs.len()], [Trace::constant(0.0); INPUTS]);
+        inputs[..named.len() - 1].copy_from_slice(&named[..named.len() - 1]);
+        let (body, loading) = (union(unknown, Body::new(&inputs, kind).numbers()), Loading::new(&inputs, kind));
+        let mut outputs = [Trace::constant(0.0); OUTPUTS];
+        pulley_load::finish_all(&inputs, &mut outputs);
+        let mut out = Result::read(&outputs);
+        write(&mut out, &Answered::depending(unknown, body, &loading), &loading);
+        out.write(&mut outputs);
+        let margins = margins(loading.margins, &inputs, |_| body);
+        numbers = margins.len();
+        [body].into_iter().chain(outputs).chain(margins).collect()
+    });
+    let list = List::cut(&recording, &nodes.into_iter().map(Some).collect::<Vec<_>>());
+    // What is solved depends on nothing else.
+    let sets = list.dependencies(|input| if usize::from(input) < inputs.len() { 1 << input } else { 0 });
+    let mut of = list.results.iter().flatten().map(|&node| sets[node as usize]);
+    let mut next = || of.next().expect("there is a node for every result");
+    let mut reach = Reach { prepared: next(), outputs: [0; OUTPUTS], conditions: [0; CONDITIONS] };
+    reach.outputs.iter_mut().for_each(|set| *set = next());
+    reach.conditions.iter_mut().take(numbers).for_each(|set| *set = next());
+    // A section that cannot be leaves all but the belt's outputs empty.
+    reach.outputs[OUT.max_stress..].iter_mut().for_each(|set| *set |= reach.prepared);
+    reach
+}
+
+/// Inputs that the first stage reads for a type of section: bit `i` for input number `i`.
+fn read_by(kind: Kind) -> u64 {
+    reach_of(&vec![Known::ANY; Inputs::<usize>::NAMES.len()], kind).prepared
+}
+
+/// Something that depends on all of these and of which nothing else is known.
+fn union(unknown: Trace, numbers: impl IntoIterator<Item = Trace>) -> Trace {
+    numbers.into_iter().fold(unknown, |all, number| all + number)
 }
 
 impl Pulley {
@@ -277,31 +237,30 @@ impl Pulley {
         // What this design does not have must not be left from the one before.
         outputs.fill(0.0);
         pulley_load::finish_all(inputs, outputs);
-        let load = pulley_load::wrap_load(inputs);
-        if load.margins.iter().any(|margin| *margin <= 0.0) || prepared[0] != 0.0 {
+        let loading = Loading::new(inputs, design::kind(inputs));
+        if loading.margins.iter().any(|margin| *margin <= 0.0) || prepared[0] != 0.0 {
             return;
         }
-        let design = Design::new(inputs);
-        let mut out = Result::read(outputs);
-        out.volume = CUBIC_MILLIMETRE.to_si(prepared[3]);
-        out.mass = out.volume * design.density;
-        out.excluded_radius = MILLIMETRE.to_si(design.dimensions.excluded_radius(design.kind));
-        out.clamp_pressure = MEGAPASCAL.to_si(design.case.pressure);
+        let mut answered = Answered { volume: prepared[3], ..Answered::default() };
         if wanted & FINITE_ELEMENTS != 0
             && let Some(view) = answers(prepared)
         {
             let fatigue = wanted & (1 << OUT.fatigue_safety | 1 << OUT.fatigue_amplitude | 1 << OUT.fatigue_mean) != 0;
             let asked = Asked {
-                strength: fatigue.then_some(design.strength),
-                own: design.own_points.map(|point| point.map(|point| nearest(&view, point))),
+                strength: fatigue.then_some(loading.strength()),
+                own: loading.own_points().map(|point| point.map(|point| nearest(&view, point))),
             };
+            // Stresses do not depend on the modulus, and displacements are divided by it afterwards.
+            let case = loading.pressing.case(1.0);
             let summary = match last {
-                Some((case, before, summary)) if *case == design.case && *before == asked => *summary,
-                _ => Turn::new(view, design.case).summary(asked.strength, asked.own),
+                Some((before, asked_before, summary)) if *before == case && *asked_before == asked => *summary,
+                _ => Turn::new(view, case).summary(asked.strength, asked.own),
             };
-            *last = Some((design.case, asked, summary));
-            write(&mut out, &summary, &view, &design);
+            *last = Some((case, asked, summary));
+            answered = Answered::new(prepared[3], &summary, &view);
         }
+        let mut out = Result::read(outputs);
+        write(&mut out, &answered, &loading);
         out.write(outputs);
     }
 }
@@ -322,21 +281,73 @@ pub(crate) fn nearest(view: &View<'_>, (z, r): (f64, f64)) -> usize {
     (0..view.points()).min_by(|&a, &b| square(a).total_cmp(&square(b))).unwrap_or(0)
 }
 
-fn write(out: &mut Result<f64>, summary: &Summary, view: &View<'_>, design: &Design) {
-    let stress = |value| MEGAPASCAL.to_si(value);
-    let peak = summary.largest;
-    out.max_stress = stress(peak.stress);
-    out.max_stress_r = MILLIMETRE.to_si(view.r()[peak.point]);
-    out.max_stress_z = MILLIMETRE.to_si(view.z()[peak.point]);
-    out.max_stress_theta = peak.theta;
-    let points = summary.check_points.map(|point| stress(point.map_or(0.0, |peak| peak.stress)));
-    [out.bl, out.br, out.cl, out.cr, out.dl, out.dr, out.el, out.er, out.fl, out.fr] = points;
-    [out.own_1, out.own_2] = summary.own_points.map(|point| stress(point.map_or(0.0, |peak| peak.stress)));
-    out.rim_displacement = MILLIMETRE.to_si(summary.rim_displacement);
-    out.yield_safety = design.yield_strength / peak.stress;
-    if let Some(fatigue) = summary.fatigue {
-        out.fatigue_safety = 1.0 / fatigue.used;
-        out.fatigue_amplitude = stress(fatigue.amplitude);
-        out.fatigue_mean = stress(fatigue.mean);
+/// What the section has answered to a load case, in mm, MPa and rad.
+#[derive(Clone, Copy, Debug, Default)]
+struct Answered<R> {
+    volume: R,
+    stress: R,
+    /// Where it is: r and z, and the angle.
+    place: [R; 2],
+    theta: R,
+    check_points: [R; CHECK_POINTS.len()],
+    own_points: [R; 2],
+    /// Largest displacement of the rim times the elastic modulus.
+    rim: R,
+    /// Share of the strength that fatigue uses, its amplitude and mean; `None` if nobody asked.
+    fatigue: Option<[R; 3]>,
+}
+
+impl Answered<f64> {
+    fn new(volume: f64, summary: &Summary, view: &View<'_>) -> Self {
+        let peak = summary.largest;
+        let stress = |point: Option<Peak>| point.map_or(0.0, |peak| peak.stress);
+        Self {
+            volume,
+            stress: peak.stress,
+            place: [view.r()[peak.point], view.z()[peak.point]],
+            theta: peak.theta,
+            check_points: summary.check_points.map(stress),
+            own_points: summary.own_points.map(stress),
+            rim: summary.rim_displacement,
+            fatigue: summary.fatigue.map(|it| [it.used, it.amplitude, it.mean]),
+        }
+    }
+}
+
+impl Answered<Trace> {
+    /// What answers depend on that come of a body and a load on it, whatever is computed of these.
+    fn depending(unknown: Trace, body: Trace, loading: &Loading<Trace>) -> Self {
+        let stress = union(unknown, loading.pressing.numbers().into_iter().chain([body]));
+        Self {
+            volume: body,
+            stress,
+            place: [stress; 2],
+            theta: stress,
+            check_points: [stress; CHECK_POINTS.len()],
+            own_points: loading.own_points.map(|point| union(unknown, [stress, point[0], point[1]])),
+            rim: stress,
+            fatigue: Some([union(unknown, [stress, loading.strength[0], loading.strength[1]]); 3]),
+        }
+    }
+}
+
+/// Everything that the pulley adds to the outputs of its belt.
+fn write<R: Real>(out: &mut Result<R>, answered: &Answered<R>, loading: &Loading<R>) {
+    let (stress, length) = (|value| design::to_si(MEGAPASCAL, value), |value| design::to_si(MILLIMETRE, value));
+    out.volume = design::to_si(CUBIC_MILLIMETRE, answered.volume);
+    out.mass = out.volume * loading.density;
+    out.excluded_radius = length(loading.excluded_radius);
+    out.clamp_pressure = stress(loading.pressing.pressure);
+    out.max_stress = stress(answered.stress);
+    [out.max_stress_r, out.max_stress_z] = answered.place.map(length);
+    out.max_stress_theta = answered.theta;
+    [out.bl, out.br, out.cl, out.cr, out.dl, out.dr, out.el, out.er, out.fl, out.fr] = answered.check_points.map(stress);
+    [out.own_1, out.own_2] = answered.own_points.map(stress);
+    out.rim_displacement = length(answered.rim / loading.modulus);
+    out.yield_safety = loading.yield_strength / answered.stress;
+    if let Some([used, amplitude, mean]) = answered.fatigue {
+        out.fatigue_safety = R::constant(1.0) / used;
+        out.fatigue_amplitude = stress(amplitude);
+        out.fatigue_mean = stress(mean);
     }
 }

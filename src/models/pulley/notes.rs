@@ -3,12 +3,12 @@
 use super::super::description::Model;
 use super::super::evaluation::{Evaluation, Status, to_si};
 use super::table::OUT;
-use super::{Design, MODEL, design};
+use super::{Design, design};
 use crate::pulley::section::{self, Dimensions, Kind};
 
 /// Sentences on one evaluation, for inputs in their units.
-pub(super) fn notes(inputs: &[f64], evaluation: &Evaluation) -> Vec<String> {
-    let si = to_si(&MODEL, inputs);
+pub(super) fn notes(model: &Model, inputs: &[f64], evaluation: &Evaluation) -> Vec<String> {
+    let si = to_si(model, inputs);
     let (kind, dimensions) = (design::kind(&si), design::dimensions(&si));
     if let Err(flaw) = section::checked_outline(kind, &dimensions) {
         return vec![flaw.to_string()];
@@ -17,7 +17,7 @@ pub(super) fn notes(inputs: &[f64], evaluation: &Evaluation) -> Vec<String> {
         return Vec::new();
     }
     let mut notes = Vec::new();
-    notes.extend(place(&MODEL, &Design::new(&si), evaluation));
+    notes.extend(place(model, &Design::new(&si), evaluation));
     notes.extend(tight_bends(kind, &dimensions));
     let overhang = dimensions.bolt_circle_radius + dimensions.bolt_head_radius - dimensions.bracket_radius;
     if overhang > 0.0 {
@@ -46,7 +46,7 @@ fn place(model: &Model, design: &Design, evaluation: &Evaluation) -> Option<Stri
     let beside = match near {
         // A check point within a tenth is the same place for a reader.
         Some((output, at)) if at > 0.9 * stress => {
-            let name = model.outputs[output].name;
+            let name = &model.outputs[output].name;
             format!("near check point {}", name.trim_start_matches("stress_").trim_end_matches("_MPa"))
         }
         _ => "away from the check points".to_owned(),

@@ -1,8 +1,8 @@
 //! Stress of every check point around the circumference.
 
-use super::super::description::{Profile, ProfileColumn};
+use super::super::description::{Model, Profile, ProfileColumn};
 use super::super::evaluation::to_si;
-use super::{Design, MODEL, answers};
+use super::{Design, answers};
 use crate::pulley::response::CHECK_POINTS;
 use crate::pulley::turn::Turn;
 use crate::units::{DEGREE, MEGAPASCAL};
@@ -23,9 +23,9 @@ pub const CHECK_POINT_STRESSES: [&str; CHECK_POINTS.len()] = [
 
 /// Von Mises stress of the check points that the section has, a row a degree from the belt's slack end. If the bolts' angle is open
 /// it is the one of the largest stress. `inputs` are in their units and must have status ok.
-pub(super) fn profile(inputs: &[f64]) -> Profile {
-    let si = to_si(&MODEL, inputs);
-    let prepared = MODEL.kernel.prepared(&si);
+pub(super) fn profile(model: &Model, inputs: &[f64]) -> Profile {
+    let si = to_si(model, inputs);
+    let prepared = model.kernel.prepared(&si);
     let design = Design::new(&si);
     let Some(view) = answers(&prepared) else {
         return Profile { columns: vec![ProfileColumn::new("theta_deg", DEGREE)], rows: Vec::new() };

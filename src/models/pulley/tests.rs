@@ -2,23 +2,30 @@
 
 use super::super::evaluation::{Status, evaluate};
 use super::*;
+use crate::models::find;
+use std::sync::Arc;
+
+/// The model.
+fn pulley() -> Arc<Model> {
+    find("pulley").expect("it is in the list")
+}
 
 fn with(changes: &[(&str, f64)]) -> Vec<f64> {
-    let mut inputs = MODEL.defaults();
+    let mut inputs = pulley().defaults();
     for (name, value) in changes {
-        inputs[MODEL.input(name).unwrap_or_else(|| panic!("{name}"))] = *value;
+        inputs[pulley().input(name).unwrap_or_else(|| panic!("{name}"))] = *value;
     }
     inputs
 }
 
 fn output(inputs: &[f64], name: &str) -> Option<f64> {
-    evaluate(&MODEL, inputs).outputs[MODEL.output(name).unwrap()]
+    evaluate(&pulley(), inputs).outputs[pulley().output(name).unwrap()]
 }
 
 #[test]
 fn a_tightening_torque_gives_the_clamp_force() {
     let inputs = with(&[("clamp_force_N", table::TORQUE)]);
-    let si = super::super::evaluation::to_si(&MODEL, &inputs);
+    let si = super::super::evaluation::to_si(&pulley(), &inputs);
     // Physics, 3.1: M6, 10 N m, friction 0.15, washer 12/6.6.
     let force = design::clamp_force(&Inputs::read(&si));
     assert!((force - 7470.0).abs() < 5.0, "{force}");
@@ -38,13 +45,13 @@ fn impossible_sections_and_loads_have_a_status_and_never_a_number() {
         (&[("bore_diameter_mm", 36.0)], SEAT),
     ];
     for (changes, condition) in cases {
-        let evaluation = evaluate(&MODEL, &with(changes));
+        let evaluation = evaluate(&pulley(), &with(changes));
         assert_eq!(evaluation.status, Status::Failed(condition), "{changes:?}");
         for name in ["max_stress_MPa", "stress_Fl_MPa", "mass_g", "yield_safety"] {
-            assert_eq!(evaluation.outputs[MODEL.output(name).unwrap()], None, "{changes:?}: {name}");
+            assert_eq!(evaluation.outputs[pulley().output(name).unwrap()], None, "{changes:?}: {name}");
         }
         if condition > 1 {
-            let said = notes::notes(&with(changes), &evaluation);
+            let said = notes::notes(&pulley(), &with(changes), &evaluation);
             assert_eq!(said.len(), 1, "{changes:?}: one sentence says what is wrong");
         }
     }
@@ -52,14 +59,14 @@ fn impossible_sections_and_loads_have_a_status_and_never_a_number() {
 
 #[test]
 fn a_load_case_on_a_solved_section_is_the_same_as_one_of_its_own() {
-    let si = |changes: &[(&str, f64)]| super::super::evaluation::to_si(&MODEL, &with(changes));
-    let prepared = MODEL.kernel.prepared(&si(&[]));
+    let si = |changes: &[(&str, f64)]| super::super::evaluation::to_si(&pulley(), &with(changes));
+    let prepared = pulley().kernel.prepared(&si(&[]));
     let mut shared = [0.0; OUTPUTS];
     let changes: &[(&str, f64)] =
         &[("power_kW", 2.0), ("wrap_angle_deg", 150.0), ("friction_direction_deg", 0.0), ("clamp_force_N", 5000.0)];
-    MODEL.kernel.finish(&prepared, &si(changes), u64::MAX, &mut shared);
+    pulley().kernel.finish(&prepared, &si(changes), u64::MAX, &mut shared);
     let mut own = [0.0; OUTPUTS];
-    MODEL.kernel.finish(&MODEL.kernel.prepared(&si(changes)), &si(changes), u64::MAX, &mut own);
+    pulley().kernel.finish(&pulley().kernel.prepared(&si(changes)), &si(changes), u64::MAX, &mut own);
     assert_eq!(shared, own);
 }
 
@@ -192,8 +199,9 @@ const COMMON: [&str; 34] = [
 #[test]
 fn the_inputs_of_each_type_keep_their_names() {
     for (kind, shape) in SHAPE {
-        let read = MODEL.inputs.iter().filter(|input| input.only_for.is_empty() || input.only_for.contains(&kind));
-        let mut read: Vec<&str> = read.map(|input| input.name).collect();
+        let model = pulley();
+        let read = model.inputs.iter().filter(|input| input.only_for.is_empty() || input.only_for.iter().any(|it| it == kind));
+        let mut read: Vec<&str> = read.map(|input| input.name.as_str()).collect();
         let mut expected: Vec<&str> = COMMON.iter().chain(shape).copied().collect();
         read.sort_unstable();
         expected.sort_unstable();
@@ -204,7 +212,7 @@ fn the_inputs_of_each_type_keep_their_names() {
 #[test]
 fn a_type_is_shaped_by_the_inputs_it_says_and_by_no_other() {
     let shaped = |inputs: &[f64]| {
-        let si = super::super::evaluation::to_si(&MODEL, inputs);
+        let si = super::super::evaluation::to_si(&pulley(), inputs);
         let (kind, dimensions) = (design::kind(&si), design::dimensions(&si));
         let outline = section::checked_outline(kind, &dimensions).expect("a preset and what is near it");
         // The weld does not show in the outline.
@@ -213,11 +221,11 @@ fn a_type_is_shaped_by_the_inputs_it_says_and_by_no_other() {
     };
     let any: std::collections::BTreeSet<&str> = SHAPE.iter().flat_map(|(_, shape)| *shape).copied().collect();
     for (kind, shape) in SHAPE {
-        let preset = MODEL.preset(kind).expect("each type has one");
+        let preset = pulley().preset(kind).expect("each type has one");
         let before = shaped(&preset);
         for &name in &any {
             let mut inputs = preset.clone();
-            inputs[MODEL.input(name).expect("an input")] *= 1.001;
+            inputs[pulley().input(name).expect("an input")] *= 1.001;
             assert_eq!(shaped(&inputs) != before, shape.contains(&name), "{kind}: {name}");
         }
     }

@@ -24,15 +24,16 @@
 //! - (20): specific weight is used as density; omega is printed in rpm; "f = 2.55 m/N" is micrometres per newton.
 //! - Step (4) calls j the boundary, Fig. 9 tooth 15 = j - 1.
 
-use super::formula::{CONDITIONS, Columns, Fields, Formula, INPUTS, OUTPUTS, bits, record};
+use super::formula::{CONDITIONS, Columns, Formula, INPUTS, OUTPUTS, bits, record};
 use crate::real::{Lanes, Real};
+use crate::tape::Fields;
 
 mod block;
 mod mesh;
 mod profile;
 mod table;
 
-pub use table::MODEL;
+pub use table::model;
 
 /// Most teeth in mesh.
 const TEETH: usize = 60;
@@ -108,9 +109,6 @@ const LIFT: u64 = bits(&[OUT.lift_speed]);
 const INCOMPLETE: u64 = bits(&[OUT.boundary_tension, OUT.peak_tooth_load, OUT.least_tooth_load]);
 /// Number of the condition that a tooth lifts.
 const LIFTS: usize = 2;
-
-/// The formula.
-pub(super) type Own = TimingBelt;
 
 pub(super) struct TimingBelt;
 

@@ -1,29 +1,22 @@
 //! The tables of the timing belt: inputs, outputs, conditions, presets.
 
-use super::super::description::{Condition, Device, Effort, Input, Model, Output, Range, SAMPLE, Worse};
+use super::super::description::{Condition, Effort, Input, Model, Output, Preset, Range, SAMPLE, Shader, Worse};
 use super::super::evaluation::{Evaluation, Status};
 use super::{INPUTS, Inputs, OUT, SPACE, TimingBelt, profile};
 use crate::units::{DEGREE, GIGAPASCAL, GRAM, MICROMETRE_PER_NEWTON, MILLIMETRE, NEWTON, NONE, RPM, SQUARE_MILLIMETRE, Unit};
 use Worse::{Higher, Lower};
+use std::sync::Arc;
 
 const PAPER: &str = "paper";
 const TRAPEZOID: &str = "chosen: ISO trapezoid L on 44 teeth";
 /// A few roundings: some value uses up all of its running error bound.
 const SIMPLE: f64 = 4.5;
 
-const fn angle(
-    name: &'static str,
-    symbol: &'static str,
-    default: f64,
-    usual: (f64, f64),
-    most: f64,
-    doc: &'static str,
-    source: &'static str,
-) -> Input {
+fn angle(name: &str, symbol: &str, default: f64, usual: (f64, f64), most: f64, doc: &str, source: &str) -> Input {
     Input { valid: Range::from_until(0.0, most), ..Input::new(name, symbol, DEGREE, default, usual, doc, source) }
 }
 
-const fn output(name: &'static str, symbol: &'static str, unit: Unit, worse: Worse, source: &'static str, doc: &'static str) -> Output {
+fn output(name: &str, symbol: &str, unit: Unit, worse: Worse, source: &str, doc: &str) -> Output {
     Output::new(name, symbol, unit, worse, source, doc)
 }
 
@@ -39,181 +32,198 @@ const OF_THE_MESH: &[&str] = &[
 ];
 
 /// The model.
-pub const MODEL: Model = Model {
-    name: "timing-belt",
-    summary: "Timing belt: tooth loads, and teeth that the centrifugal force lifts out of mesh",
-    source: "H. S. Kim, C. K. Yeo, I. H. Lee: force distribution of incomplete meshing teeth in timing belt drive, eqs (1)-(21)",
-    limits: "The boundary tooth is calibrated by the pitch mass, not predicted: the paper does not print the radial balance that it uses. \
-             One pulley at constant speed; shock, the belt's bending moment, tooth jumping and span vibration are not covered.",
-    inputs: &[
-        Input {
-            valid: Range::NOT_NEGATIVE,
-            ..Input::new("pulley_speed_rpm", "n", RPM, 5000.0, (0.0, 10_000.0), "Speed of the pulley.", "paper, Fig. 9")
-        },
-        Input::new("tight_tension_N", "T_t", NEWTON, 196.0, (50.0, 2000.0), "Tension of the tight side.", "paper, Fig. 9"),
-        Input {
-            valid: Range::NOT_NEGATIVE,
-            ..Input::new("slack_tension_N", "T_s", NEWTON, 0.0, (0.0, 500.0), "Tension of the slack side.", PAPER)
-        },
-        Input {
-            integer: true,
-            valid: Range { low: 4.0, high: super::TEETH as f64, includes_low: true, includes_high: true },
-            ..Input::new("teeth_in_mesh", "N+1", NONE, 23.0, (4.0, 60.0), "Teeth of the belt on the pulley.", "paper: 23 driven, 11 driver")
-        },
-        Input {
-            valid: Range::NOT_NEGATIVE,
-            ..Input::new("friction", "mu", NONE, 0.45, (0.3, 0.55), "Coefficient of friction between belt and pulley.", PAPER)
-        },
-        Input::new(
-            "tooth_compliance_um_per_N",
-            "f",
-            MICROMETRE_PER_NEWTON,
-            2.55,
-            (1.5, 8.0),
-            "Deflection of a tooth per load.",
-            "paper: 0.025 mm/kgf",
-        ),
-        Input::new("cord_modulus_GPa", "E", GIGAPASCAL, 78.4, (60.0, 90.0), "Modulus of elasticity of the cord.", PAPER),
-        Input::new("cord_area_mm2", "A", SQUARE_MILLIMETRE, 21.5, (4.7, 40.0), "Mean section of the belt.", "chosen: 12.7 mm x 1.69 mm"),
-        Input::new("tip_radius_mm", "r", MILLIMETRE, 66.32, (10.0, 150.0), "Tip radius of the pulley.", TRAPEZOID),
-        Input {
-            valid: Range::between(0.0, 30.0),
-            ..angle("land_half_angle_deg", "beta", 1.473, (0.5, 8.0), 30.0, "Half the angle of a tip land.", TRAPEZOID)
-        },
-        Input {
-            valid: Range::between(0.0, 30.0),
-            ..angle("space_half_angle_deg", "phi", 2.618, (1.0, 12.0), 30.0, "Half the angle of a tooth space.", TRAPEZOID)
-        },
-        Input::new("tooth_length_mm", "l", MILLIMETRE, 6.10, (3.0, 12.0), "Length of the belt's tooth part.", TRAPEZOID),
-        angle("pressure_angle_deg", "alpha", 20.0, (15.0, 25.0), 45.0, "Pressure angle of the tooth flank.", TRAPEZOID),
-        angle("tight_span_angle_deg", "Omega", 6.0, (0.0, 15.0), 60.0, "Inclination of the tight span at the first tooth.", "chosen"),
-        angle("slack_span_angle_deg", "psi", 6.0, (0.0, 15.0), 60.0, "Inclination of the slack span at the last tooth.", "chosen"),
-        Input::new(
-            "pitch_mass_g",
-            "m",
-            GRAM,
-            0.411,
-            (0.1, 3.0),
-            "Mass of one pitch of the belt, (20), (21).",
-            "calibrated: first lifted tooth 16 in Fig. 9",
-        ),
-        Input {
-            words: &[("space", SPACE)],
-            follows: Some("space_half_angle_deg"),
-            ..angle(
-                "lift_angle_deg",
-                "theta",
-                SPACE,
-                (0.0, 12.0),
-                30.0,
-                "Angle that lifted teeth are rotated by, at most the tooth space; \"space\": all of it.",
-                PAPER,
+pub fn model() -> Model {
+    Model {
+        name: "timing-belt".into(),
+        version: String::new(),
+        summary: "Timing belt: tooth loads, and teeth that the centrifugal force lifts out of mesh".into(),
+        source: "H. S. Kim, C. K. Yeo, I. H. Lee: force distribution of incomplete meshing teeth in timing belt drive, eqs (1)-(21)".into(),
+        limits:
+            "The boundary tooth is calibrated by the pitch mass, not predicted: the paper does not print the radial balance that it uses. \
+             One pulley at constant speed; shock, the belt's bending moment, tooth jumping and span vibration are not covered."
+                .into(),
+        inputs: vec![
+            Input {
+                valid: Range::NOT_NEGATIVE,
+                ..Input::new("pulley_speed_rpm", "n", RPM, 5000.0, (0.0, 10_000.0), "Speed of the pulley.", "paper, Fig. 9")
+            },
+            Input::new("tight_tension_N", "T_t", NEWTON, 196.0, (50.0, 2000.0), "Tension of the tight side.", "paper, Fig. 9"),
+            Input {
+                valid: Range::NOT_NEGATIVE,
+                ..Input::new("slack_tension_N", "T_s", NEWTON, 0.0, (0.0, 500.0), "Tension of the slack side.", PAPER)
+            },
+            Input {
+                integer: true,
+                valid: Range { low: 4.0, high: super::TEETH as f64, includes_low: true, includes_high: true },
+                ..Input::new(
+                    "teeth_in_mesh",
+                    "N+1",
+                    NONE,
+                    23.0,
+                    (4.0, 60.0),
+                    "Teeth of the belt on the pulley.",
+                    "paper: 23 driven, 11 driver",
+                )
+            },
+            Input {
+                valid: Range::NOT_NEGATIVE,
+                ..Input::new("friction", "mu", NONE, 0.45, (0.3, 0.55), "Coefficient of friction between belt and pulley.", PAPER)
+            },
+            Input::new(
+                "tooth_compliance_um_per_N",
+                "f",
+                MICROMETRE_PER_NEWTON,
+                2.55,
+                (1.5, 8.0),
+                "Deflection of a tooth per load.",
+                "paper: 0.025 mm/kgf",
+            ),
+            Input::new("cord_modulus_GPa", "E", GIGAPASCAL, 78.4, (60.0, 90.0), "Modulus of elasticity of the cord.", PAPER),
+            Input::new(
+                "cord_area_mm2",
+                "A",
+                SQUARE_MILLIMETRE,
+                21.5,
+                (4.7, 40.0),
+                "Mean section of the belt.",
+                "chosen: 12.7 mm x 1.69 mm",
+            ),
+            Input::new("tip_radius_mm", "r", MILLIMETRE, 66.32, (10.0, 150.0), "Tip radius of the pulley.", TRAPEZOID),
+            Input {
+                valid: Range::between(0.0, 30.0),
+                ..angle("land_half_angle_deg", "beta", 1.473, (0.5, 8.0), 30.0, "Half the angle of a tip land.", TRAPEZOID)
+            },
+            Input {
+                valid: Range::between(0.0, 30.0),
+                ..angle("space_half_angle_deg", "phi", 2.618, (1.0, 12.0), 30.0, "Half the angle of a tooth space.", TRAPEZOID)
+            },
+            Input::new("tooth_length_mm", "l", MILLIMETRE, 6.10, (3.0, 12.0), "Length of the belt's tooth part.", TRAPEZOID),
+            angle("pressure_angle_deg", "alpha", 20.0, (15.0, 25.0), 45.0, "Pressure angle of the tooth flank.", TRAPEZOID),
+            angle("tight_span_angle_deg", "Omega", 6.0, (0.0, 15.0), 60.0, "Inclination of the tight span at the first tooth.", "chosen"),
+            angle("slack_span_angle_deg", "psi", 6.0, (0.0, 15.0), 60.0, "Inclination of the slack span at the last tooth.", "chosen"),
+            Input::new(
+                "pitch_mass_g",
+                "m",
+                GRAM,
+                0.411,
+                (0.1, 3.0),
+                "Mass of one pitch of the belt, (20), (21).",
+                "calibrated: first lifted tooth 16 in Fig. 9",
+            ),
+            Input {
+                follows: Some("space_half_angle_deg".into()),
+                ..angle(
+                    "lift_angle_deg",
+                    "theta",
+                    SPACE,
+                    (0.0, 12.0),
+                    30.0,
+                    "Angle that lifted teeth are rotated by, at most the tooth space; \"space\": all of it.",
+                    PAPER,
+                )
+                .with_words(&[("space", SPACE)])
+            },
+            Input::new(
+                "pitch_mm",
+                "p",
+                MILLIMETRE,
+                9.525,
+                (5.0, 20.0),
+                "Pitch of the belt; read by centrifugal_land_friction only.",
+                TRAPEZOID,
+            ),
+            Input {
+                integer: true,
+                processor_only: true,
+                valid: Range { low: 0.0, high: 1.0, includes_low: true, includes_high: true },
+                ..Input::new(
+                    "centrifugal_land_friction",
+                    "",
+                    NONE,
+                    0.0,
+                    (0.0, 1.0),
+                    "1: in the incomplete mesh the centrifugal force relieves the lands of friction; 0: it does not.",
+                    "paper, step (5), not printed there",
+                )
+            },
+        ],
+        outputs: vec![
+            output("centrifugal_force_N", "F", NEWTON, Higher, "m r omega^2", "Centrifugal force on one pitch.").promising(SIMPLE),
+            output(
+                "boundary_tooth",
+                "j",
+                NONE,
+                Lower,
+                "steps (3), (4)",
+                "First tooth from the tight side that lifts; teeth_in_mesh + 1 if none does.",
             )
-        },
-        Input::new(
-            "pitch_mm",
-            "p",
-            MILLIMETRE,
-            9.525,
-            (5.0, 20.0),
-            "Pitch of the belt; read by centrifugal_land_friction only.",
-            TRAPEZOID,
-        ),
-        Input {
-            integer: true,
-            processor_only: true,
-            valid: Range { low: 0.0, high: 1.0, includes_low: true, includes_high: true },
-            ..Input::new(
-                "centrifugal_land_friction",
+            .whole(),
+            output(
+                "boundary_position",
                 "",
                 NONE,
-                0.0,
-                (0.0, 1.0),
-                "1: in the incomplete mesh the centrifugal force relieves the lands of friction; 0: it does not.",
-                "paper, step (5), not printed there",
-            )
-        },
-    ],
-    outputs: &[
-        output("centrifugal_force_N", "F", NEWTON, Higher, "m r omega^2", "Centrifugal force on one pitch.").promising(SIMPLE),
-        output(
-            "boundary_tooth",
-            "j",
-            NONE,
-            Lower,
-            "steps (3), (4)",
-            "First tooth from the tight side that lifts; teeth_in_mesh + 1 if none does.",
-        )
-        .whole(),
-        output(
-            "boundary_position",
-            "",
-            NONE,
-            Lower,
-            "steps (3), (4), interpolated",
-            "Where between two teeth the radial balance changes sign; 1 if the first tooth lifts.",
-        ),
-        output("incomplete_teeth", "", NONE, Higher, "N + 2 - j", "Teeth from the first lifted one to the slack side.").whole(),
-        output("lift_speed_rpm", "", RPM, Lower, "inward force = m r omega^2", "Speed at which the first tooth of all lifts; 0: at rest."),
-        output("boundary_tension_N", "T*", NEWTON, Higher, "(19)", "Tension between the last meshing and the first lifted tooth.")
-            .promising(2.0),
-        output("peak_tooth_load_N", "", NEWTON, Higher, "(8), (14)", "Largest tooth load of the mesh as it is."),
-        output("peak_tooth_load_complete_N", "", NEWTON, Higher, "(8)", "Largest tooth load if every tooth meshed."),
-        output(
-            "least_tooth_load_N",
-            "",
-            NEWTON,
-            Lower,
-            "(8), (14)",
-            "Least tooth load of the mesh as it is; where negative, a tooth is held by its other flank, which the model does not cover.",
-        ),
-        output("effective_tension_N", "P", NEWTON, Lower, "T_t - T_s", "Tension that the pulley transmits.").promising(SIMPLE),
-    ],
-    conditions: &[
-        Condition {
-            reason: "no effective tension",
-            strict: true,
-            quiet: false,
-            invalidates: OF_THE_MESH,
-            doc: "The tight side is tighter than the slack side.",
-        },
-        Condition {
-            reason: "lift angle exceeds tooth space",
-            strict: false,
-            quiet: false,
-            invalidates: &["boundary_tension_N", "peak_tooth_load_N", "least_tooth_load_N"],
-            doc: "A lifted tooth stays in its space: theta <= phi.",
-        },
-        Condition {
-            reason: "no tooth lifts",
-            strict: true,
-            quiet: true,
-            invalidates: &["boundary_tension_N"],
-            doc: "The centrifugal force exceeds the least inward force.",
-        },
-    ],
-    presets: &[
-        ("ohc-driven", &[]),
-        (
-            "ohc-driver",
-            &[
-                ("pulley_speed_rpm", 10_000.0),
-                ("teeth_in_mesh", 11.0),
-                ("tip_radius_mm", 32.97),
-                ("land_half_angle_deg", 2.945),
-                ("space_half_angle_deg", 5.236),
-            ],
-        ),
-    ],
-    starter: include_str!("../../../studies/timing-design.toml"),
-    kernel: &TimingBelt,
-    profile: Some(profile::profile),
-    notes: Some(notes),
-    remarks: Some(remarks),
-    effort: Effort { prepare: 1e-6, finish: 1e-8 },
-    sample: SAMPLE,
-    device: Some(Device { shader: &[include_str!("../../../shaders/models/timing-belt.wgsl")], twin: &TimingBelt }),
-};
+                Lower,
+                "steps (3), (4), interpolated",
+                "Where between two teeth the radial balance changes sign; 1 if the first tooth lifts.",
+            ),
+            output("incomplete_teeth", "", NONE, Higher, "N + 2 - j", "Teeth from the first lifted one to the slack side.").whole(),
+            output(
+                "lift_speed_rpm",
+                "",
+                RPM,
+                Lower,
+                "inward force = m r omega^2",
+                "Speed at which the first tooth of all lifts; 0: at rest.",
+            ),
+            output("boundary_tension_N", "T*", NEWTON, Higher, "(19)", "Tension between the last meshing and the first lifted tooth.")
+                .promising(2.0),
+            output("peak_tooth_load_N", "", NEWTON, Higher, "(8), (14)", "Largest tooth load of the mesh as it is."),
+            output("peak_tooth_load_complete_N", "", NEWTON, Higher, "(8)", "Largest tooth load if every tooth meshed."),
+            output(
+                "least_tooth_load_N",
+                "",
+                NEWTON,
+                Lower,
+                "(8), (14)",
+                "Least tooth load of the mesh as it is; where negative, a tooth is held by its other flank, which the model does not cover.",
+            ),
+            output("effective_tension_N", "P", NEWTON, Lower, "T_t - T_s", "Tension that the pulley transmits.").promising(SIMPLE),
+        ],
+        conditions: vec![
+            Condition::new("no effective tension", true, OF_THE_MESH, "The tight side is tighter than the slack side."),
+            Condition::new(
+                "lift angle exceeds tooth space",
+                false,
+                &["boundary_tension_N", "peak_tooth_load_N", "least_tooth_load_N"],
+                "A lifted tooth stays in its space: theta <= phi.",
+            ),
+            Condition::new("no tooth lifts", true, &["boundary_tension_N"], "The centrifugal force exceeds the least inward force.")
+                .quiet(),
+        ],
+        presets: vec![
+            Preset::new("ohc-driven", &[]),
+            Preset::new(
+                "ohc-driver",
+                &[
+                    ("pulley_speed_rpm", 10_000.0),
+                    ("teeth_in_mesh", 11.0),
+                    ("tip_radius_mm", 32.97),
+                    ("land_half_angle_deg", 2.945),
+                    ("space_half_angle_deg", 5.236),
+                ],
+            ),
+        ],
+        starter: include_str!("../../../studies/timing-design.toml").into(),
+        kernel: Arc::new(TimingBelt),
+        pulley: None,
+        profile: Some(Arc::new(profile::profile)),
+        notes: Some(Arc::new(notes)),
+        remarks: Some(Arc::new(remarks)),
+        effort: Effort { prepare: 1e-6, finish: 1e-8 },
+        sample: SAMPLE,
+        shader: Some(Shader::ByHand(include_str!("../../../shaders/models/timing-belt.wgsl"))),
+    }
+}
 
 /// The similarity law, where it holds.
 fn remarks(fixed: &[Option<f64>]) -> Vec<String> {
@@ -223,7 +233,7 @@ fn remarks(fixed: &[Option<f64>]) -> Vec<String> {
 }
 
 /// What a person should know of one evaluation besides its numbers.
-fn notes(inputs: &[f64], evaluation: &Evaluation) -> Vec<String> {
+fn notes(model: &Model, inputs: &[f64], evaluation: &Evaluation) -> Vec<String> {
     let mut notes = Vec::new();
     if evaluation.status != Status::Ok {
         return notes;
@@ -233,7 +243,7 @@ fn notes(inputs: &[f64], evaluation: &Evaluation) -> Vec<String> {
             "a tooth load is negative ({least:.3} N): that tooth is held by its other flank, which the model does not cover"
         ));
     }
-    let si: [f64; INPUTS] = super::super::to_si(&MODEL, inputs);
+    let si: [f64; INPUTS] = super::super::to_si(model, inputs);
     let i = Inputs::read(&si);
     let wrap = i.teeth_in_mesh * (2.0 * (i.land_half_angle + i.space_half_angle)).to_degrees();
     if wrap > 360.0 {

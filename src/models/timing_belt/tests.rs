@@ -1,13 +1,19 @@
 //! The tables of the formula against its own direct solve.
 
 use super::*;
-use crate::models::{Columns, to_si};
+use crate::models::{Columns, Model, find, to_si};
+use std::sync::Arc;
+
+/// The model.
+fn timing_belt() -> Arc<Model> {
+    find("timing-belt").expect("it is in the list")
+}
 
 /// Inputs in SI units: the default belt with these changes.
 fn belt(changes: &[(usize, f64)]) -> [f64; INPUTS] {
-    let mut inputs = MODEL.defaults();
+    let mut inputs = timing_belt().defaults();
     changes.iter().for_each(|&(input, value)| inputs[input] = value);
-    to_si(&MODEL, &inputs)
+    to_si(&timing_belt(), &inputs)
 }
 
 #[test]
@@ -73,7 +79,7 @@ fn with_the_option_off_the_direct_solve_needs_no_second_round() {
     let outputs = |on: f64| {
         let si = belt(&[(Inputs::NUMBER.centrifugal_land_friction, on)]);
         let mut out = [0.0; OUTPUTS];
-        TimingBelt::finish::<f64>(&MODEL.kernel.prepared(&si), &si, u64::MAX, &mut out);
+        TimingBelt::finish::<f64>(&timing_belt().kernel.prepared(&si), &si, u64::MAX, &mut out);
         out
     };
     let (on, off) = (outputs(1.0), outputs(0.0));
@@ -93,7 +99,7 @@ fn a_block_at_one_pair_of_tensions_has_the_bits_of_its_designs() {
     };
     for (teeth, slack, count) in [(23.0, 0.0, 100), (60.0, 40.0, 33), (4.0, 100.0, 8)] {
         let si = belt(&[(number.teeth_in_mesh, teeth), (number.slack_tension, slack), (number.friction, 0.3)]);
-        let prepared = MODEL.kernel.prepared(&si);
+        let prepared = timing_belt().kernel.prepared(&si);
         let padded = usize::next_multiple_of(count, 8);
         let speeds: Vec<f64> = (0..padded).map(|lane| 1500.0 / count as f64 * lane.min(count - 1) as f64).collect();
         let varying = [(number.pulley_speed, speeds.clone()), (number.tight_tension, vec![250.0; padded])];

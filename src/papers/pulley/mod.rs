@@ -111,7 +111,7 @@ impl Stressed {
     fn new(of: Type) -> Self {
         let pulley = Inputs::preset("pulley", of.preset);
         let title = format!("Fig. 13, {}: von Mises stress in the deformed section", of.words);
-        let (svg, nodes) = deformed(pulley.model, &title, &pulley.values).expect("the example has a solution");
+        let (svg, nodes) = deformed(&pulley.model, &title, &pulley.values).expect("the example has a solution");
         let outputs = pulley.outputs();
         let [largest, excluded] = ["max_stress_MPa", "excluded_radius_mm"].map(|name| outputs.get(name));
         let yield_strength = pulley.input("yield_strength_MPa");

@@ -5,12 +5,12 @@ use super::recovery::Surface;
 use super::results::Results;
 use super::sweep::Sweep;
 use super::{Error, Job, NAME};
+use crate::files::read_text;
 use crate::pulley::mesh::Mesh;
 use crate::pulley::response::{CHECK_POINTS, CHUNK, LONGEST, NAMED, View, respond};
 use crate::pulley::section::{self, Fineness};
 use crate::pulley::turn::{Case, Turn};
 use glam::DVec3;
-use std::fs;
 use std::path::Path;
 
 /// A quantity by both ways.
@@ -40,6 +40,9 @@ impl Comparison {
     }
 }
 
+/// Most bytes of a deck and of its results.
+const MOST_BYTES: u64 = 512 << 20;
+
 /// What both ways tell of a pulley.
 struct Answers {
     rim_displacement: f64,
@@ -57,14 +60,15 @@ struct Answers {
 pub fn compare(directory: &Path) -> Result<Vec<Comparison>, Error> {
     let read = |extension: &str| {
         let path = directory.join(NAME).with_extension(extension);
-        fs::read_to_string(&path).map_err(|source| Error::File { path, source })
+        read_text(&path, MOST_BYTES, "export a coarser mesh").map_err(|error| Error::Taken { what: error.to_string() })
     };
     let deck = read("inp")?;
     let job = Job::from_deck(&deck)?;
     let results = Results::new(&read("dat")?)?;
     let mesh = section::mesh(job.kind, &job.dimensions, &job.fineness).map_err(Error::Flaw)?;
     let sweep = Sweep::new(&mesh, job.sectors);
-    let positions = sweep.positions(&mesh);
+    // A node takes a line: what has more nodes than the deck has bytes is not even laid out.
+    let positions = if sweep.nodes() <= deck.len() { sweep.positions(&mesh) } else { Vec::new() };
     if !has_nodes(&deck, &positions) {
         let what =
             "the deck has other nodes than its first lines give: it was changed, or another version of beltspace wrote it".to_owned();
@@ -89,7 +93,11 @@ pub fn compare(directory: &Path) -> Result<Vec<Comparison>, Error> {
             row(format!("stress at {name}"), "MPa", usual, same, solid);
         }
     }
-    let reaction = Wrench::of(results.reactions.iter().map(|(&node, &force)| (positions[node], force)));
+    let at = |(&node, &force)| positions.get(node).map(|&position| (position, force));
+    let Some(reactions) = results.reactions.iter().map(at).collect::<Option<Vec<_>>>() else {
+        return Err(Error::Unreadable { what: "the results have a node that the deck has not: they are of another deck".to_owned() });
+    };
+    let reaction = Wrench::of(reactions.into_iter());
     let load = closed_form(&job.dimensions, &job.case);
     for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
         let expected = -load.force[axis];

@@ -24,6 +24,11 @@ pub struct Job {
     pub sectors: usize,
 }
 
+/// Longest dimension of a section and shortest edge of an element, mm; largest number of a load or material.
+const LONGEST: f64 = 1e4;
+const SHORTEST_EDGE: f64 = 0.05;
+const LARGEST: f64 = 1e15;
+
 impl Job {
     /// Sectors that resolve the belt's load to about 0.1 %.
     pub const USUAL_SECTORS: usize = 68;
@@ -63,7 +68,7 @@ impl Job {
     /// Reads the first lines of a deck.
     ///
     /// # Errors
-    /// An input that is missing or is no number.
+    /// An input that is missing, is no number, or is none that an export writes.
     pub fn from_deck(deck: &str) -> Result<Self, Error> {
         let lines = deck.lines().take_while(|line| line.starts_with("**"));
         let pairs = lines.filter_map(|line| line.trim_start_matches('*').split_once('='));
@@ -72,34 +77,52 @@ impl Job {
             let missing = || Error::Unreadable { what: format!("the deck's first lines do not say {name}") };
             values.get(name).and_then(|value| value.parse().ok()).ok_or_else(missing)
         };
-        let kind = get("section.type")? as usize;
+        // Somebody may have changed it: what no export writes may take all memory, or for ever.
+        let within = |name: &str, (least, most): (f64, f64)| -> Result<f64, Error> {
+            let value = get(name)?;
+            let what = || format!("the deck's first lines say {name} = {value:e}, and it is {least} to {most}; export the pulley again");
+            if (least..=most).contains(&value) { Ok(value) } else { Err(Error::Unreadable { what: what() }) }
+        };
+        let whole = |name: &str, range: (f64, f64)| -> Result<usize, Error> {
+            let value = within(name, range)?;
+            let what = || format!("the deck's first lines say {name} = {value}, and it is a whole number; export the pulley again");
+            if value.fract() == 0.0 { Ok(value as usize) } else { Err(Error::Unreadable { what: what() }) }
+        };
+        let dimension = |name: &'static str| match name {
+            "bolt_count" => whole("section.bolt_count", (1.0, 100.0)).map(|count| count as f64),
+            "groove_count" => whole("section.groove_count", (1.0, 100.0)).map(|count| count as f64),
+            _ => within(&format!("section.{name}"), (-LONGEST, LONGEST)),
+        };
+        let load = |name: &str| within(&format!("load.{name}"), (-LARGEST, LARGEST));
+        let length = |name: &str| within(&format!("mesh.{name}"), (SHORTEST_EDGE, LONGEST));
+        let kind = whole("section.type", (1.0, Kind::ALL.len() as f64))?;
         let unknown = || Error::Unreadable { what: format!("there is no type {kind} of section") };
         Ok(Self {
             kind: *kind.checked_sub(1).and_then(|number| Kind::ALL.get(number)).ok_or_else(unknown)?,
-            dimensions: Dimensions::from_entries(|name| get(&format!("section.{name}")))?,
+            dimensions: Dimensions::from_entries(dimension)?,
             fineness: Fineness {
-                through: get("mesh.through")? as usize,
-                straight: get("mesh.straight")?,
-                bend: get("mesh.bend")?,
-                held: get("mesh.held")?,
-                solid: get("mesh.solid")?,
-                harmonics: get("mesh.harmonics")? as usize,
-                every: get("mesh.every")? != 0.0,
+                through: whole("mesh.through", (1.0, 16.0))?,
+                straight: length("straight")?,
+                bend: length("bend")?,
+                held: length("held")?,
+                solid: length("solid")?,
+                harmonics: whole("mesh.harmonics", (1.0, 200.0))?,
+                every: whole("mesh.every", (0.0, 1.0))? == 1,
             },
             case: Case {
-                normal: get("load.normal")?,
-                along: get("load.along")?,
-                around: get("load.around")?,
-                growth: get("load.growth")?,
-                wrap: get("load.wrap")?,
-                pressure: get("load.pressure")?,
-                phase: Some(get("load.phase")?),
-                spin: get("load.spin")?,
-                modulus: get("material.modulus")?,
+                normal: load("normal")?,
+                along: load("along")?,
+                around: load("around")?,
+                growth: load("growth")?,
+                wrap: load("wrap")?,
+                pressure: load("pressure")?,
+                phase: Some(load("phase")?),
+                spin: load("spin")?,
+                modulus: within("material.modulus", (f64::MIN_POSITIVE, LARGEST))?,
             },
-            poisson: get("material.poisson")?,
-            density: get("material.density")?,
-            sectors: get("mesh.sectors")? as usize,
+            poisson: within("material.poisson", (0.0, 0.499))?,
+            density: within("material.density", (0.0, LARGEST))?,
+            sectors: whole("mesh.sectors", (8.0, 720.0))?,
         })
     }
 }

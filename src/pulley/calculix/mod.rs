@@ -20,8 +20,9 @@ pub use results::Results;
 pub use sweep::Sweep;
 
 use super::section::{self, Flaw};
+use crate::files::{MOVE, refuse_foreign, replace_with};
 use std::fs;
-use std::io::{self, Write as _};
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// Name of the deck, without `.inp`, and of the files that CalculiX writes.
@@ -41,6 +42,12 @@ pub enum Error {
         /// Why.
         source: io::Error,
     },
+    /// A file is there that this program did not write.
+    #[error("{what}")]
+    Taken {
+        /// Which, and what to do.
+        what: String,
+    },
     /// A file that does not hold what it should.
     #[error("{what}")]
     Unreadable {
@@ -52,7 +59,7 @@ pub enum Error {
 /// Writes `pulley.inp` and a `README.txt` into a directory, which is made if it does not exist.
 ///
 /// # Errors
-/// An impossible section, or a file that cannot be written.
+/// An impossible section, a file that cannot be written, or one that this program did not write.
 pub fn export(job: &Job, directory: &Path) -> Result<(), Error> {
     let mesh = section::mesh(job.kind, &job.dimensions, &job.fineness).map_err(Error::Flaw)?;
     let failed = |path: &Path| {
@@ -60,15 +67,19 @@ pub fn export(job: &Job, directory: &Path) -> Result<(), Error> {
         move |source| Error::File { path, source }
     };
     fs::create_dir_all(directory).map_err(failed(directory))?;
-    let deck = directory.join(format!("{NAME}.inp"));
-    let write = || -> io::Result<()> {
-        let mut out = io::BufWriter::new(fs::File::create(&deck)?);
-        write_deck(&mut out, &mesh, job)?;
-        out.flush()
+    let [deck, readme] = [format!("{NAME}.inp"), "README.txt".to_owned()].map(|name| directory.join(name));
+    let first_line = HOW_TO.lines().next().unwrap_or_default();
+    let own = refuse_foreign(&deck, MOVE, |head| head.contains("** written by beltspace "))
+        .and_then(|()| refuse_foreign(&readme, MOVE, |head| head.starts_with(first_line)));
+    own.map_err(|error| Error::Taken { what: error.to_string() })?;
+    let write = |path: &Path, text: &dyn Fn(&mut dyn io::Write) -> io::Result<()>| {
+        replace_with(path, |out| text(out)).map_err(|error| match error {
+            crate::error::Error::Io { path, source } => Error::File { path, source },
+            other => Error::Taken { what: other.to_string() },
+        })
     };
-    write().map_err(failed(&deck))?;
-    let readme = directory.join("README.txt");
-    fs::write(&readme, HOW_TO).map_err(failed(&readme))
+    write(&deck, &|mut out| write_deck(&mut out, &mesh, job))?;
+    write(&readme, &|out| out.write_all(HOW_TO.as_bytes()))
 }
 
 const HOW_TO: &str = "\

@@ -15,6 +15,7 @@ pub use outline::Outline;
 pub use sheet::SURFACE_POINTS;
 
 use super::mesh::Mesh;
+use crate::real::Real;
 
 /// The types of section, numbered as in the source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,17 +47,20 @@ impl Kind {
 
 macro_rules! dimensions {
     ($($(#[$doc:meta])* $field:ident),* $(,)?) => {
-        /// Dimensions of a section. Each type reads those that it has.
+        /// Dimensions of a section: numbers, or what stands for them. Each type reads those that [`Dimensions::of_kind`] leaves.
         #[derive(Clone, Copy, Debug, Default, PartialEq)]
-        pub struct Dimensions {
-            $($(#[$doc])* pub $field: f64),*
+        pub struct Dimensions<T = f64> {
+            $($(#[$doc])* pub $field: T),*
+        }
+
+        impl<T: Copy> Dimensions<T> {
+            /// All dimensions by name, mm and rad.
+            pub fn entries(&self) -> Vec<(&'static str, T)> {
+                vec![$((stringify!($field), self.$field)),*]
+            }
         }
 
         impl Dimensions {
-            /// All dimensions by name, mm and rad.
-            pub fn entries(&self) -> Vec<(&'static str, f64)> {
-                vec![$((stringify!($field), self.$field)),*]
-            }
 
             /// Dimensions from what `value` says of each name.
             ///
@@ -130,15 +134,69 @@ dimensions! {
     bolt_hole_radius,
 }
 
+impl<T: Copy> Dimensions<T> {
+    /// The dimensions that a type reads, with `none` in place of the others. What makes a section of a type and solves it is given no
+    /// others, so this is the one place that says what the type depends on.
+    #[must_use]
+    pub fn of_kind(self, kind: Kind, none: T) -> Self {
+        let of_sheet =
+            Self { wall_thickness: none, rim_thickness: none, lip_thickness: none, fillet_radius: none, groove_offset: none, ..self };
+        match kind {
+            Kind::Machined => Self {
+                hub_bend_radius: none,
+                web_bend_radius: none,
+                fold_radius: none,
+                wall_radius: none,
+                wall_offset: none,
+                ridge_width: none,
+                weld_radius: none,
+                ..self
+            },
+            Kind::WeldedDiscs => Self {
+                cup_radius: none,
+                wall_radius: none,
+                wall_offset: none,
+                web_bend_radius: none,
+                fold_radius: none,
+                ridge_width: none,
+                floor_bend_radius: none,
+                floor_depth: none,
+                ..of_sheet
+            },
+            Kind::DoubleGroove => Self { weld_radius: none, ..of_sheet },
+            Kind::PressedCup => Self { ridge_width: none, weld_radius: none, ..of_sheet },
+        }
+    }
+}
+
+impl<R: Real> Dimensions<R> {
+    /// Length of the contact band along a flank, mm.
+    pub fn band_length(&self) -> R {
+        self.contact_height / self.half_angle.cos()
+    }
+
+    /// Outermost edge of what holds the hub: of the bracket or of the bolt heads, mm from the axis.
+    pub fn held_radius(&self) -> R {
+        self.bracket_radius.max(self.head_edge())
+    }
+
+    /// Outer edge of the bolt heads, mm from the axis.
+    pub fn head_edge(&self) -> R {
+        self.bolt_circle_radius + self.bolt_head_radius
+    }
+
+    /// Radius inside which stress is not reported as the largest: the edges of bracket and bolt heads are singular, and the values
+    /// beside them grow without limit as the mesh gets finer.
+    pub fn excluded_radius(&self, kind: Kind) -> R {
+        let beside = if kind == Kind::Machined { self.thickness.min(self.fillet_radius) } else { self.thickness };
+        self.held_radius() + beside
+    }
+}
+
 impl Dimensions {
     /// Ends of the contact band, mm from the axis.
     pub fn band(&self) -> (f64, f64) {
         (self.mean_radius - 0.5 * self.contact_height, self.mean_radius + 0.5 * self.contact_height)
-    }
-
-    /// Length of the contact band along a flank, mm.
-    pub fn band_length(&self) -> f64 {
-        self.contact_height / libm::cos(self.half_angle)
     }
 
     /// Radius of the groove's top, mm.
@@ -161,26 +219,9 @@ impl Dimensions {
         0.5 * self.groove_width + (radius - self.top_radius()) * libm::tan(self.half_angle)
     }
 
-    /// Outermost edge of what holds the hub: of the bracket or of the bolt heads, mm from the axis.
-    pub fn held_radius(&self) -> f64 {
-        self.bracket_radius.max(self.head_edge())
-    }
-
-    /// Outer edge of the bolt heads, mm from the axis.
-    pub fn head_edge(&self) -> f64 {
-        self.bolt_circle_radius + self.bolt_head_radius
-    }
-
     /// Radius from which elements of the hub are short, mm.
     fn beside_bracket(&self) -> f64 {
         self.bracket_radius - self.thickness
-    }
-
-    /// Radius inside which stress is not reported as the largest: the edges of bracket and bolt heads are singular, and the values
-    /// beside them grow without limit as the mesh gets finer.
-    pub fn excluded_radius(&self, kind: Kind) -> f64 {
-        let beside = if kind == Kind::Machined { self.thickness.min(self.fillet_radius) } else { self.thickness };
-        self.held_radius() + beside
     }
 
     /// What is wrong with bracket and bolts, given the outer end of the hub's flat faces.

@@ -85,7 +85,7 @@ fn loaded(mesh: &Mesh, field: &Field) -> (Equations, [u32; 2]) {
 fn nodal_forces_of_constant_stress_are_those_of_its_tractions() {
     for cells in [Cells::Whole, Cells::Split] {
         let mesh = skewed(cells);
-        let matrices = stiffness(&mesh, POISSON, &vec![[false; 3]; mesh.nodes.len()]);
+        let matrices = stiffness(&mesh, POISSON, &vec![[false; 3]; mesh.nodes.len()], Vec::new());
         for field in &FIELDS {
             let (forces, expected) = (matrices.times(field.order, &field.nodal(&mesh)), tractions(&mesh, |_, point| field.traction(point)));
             for (place, (force, expected)) in forces.iter().zip(&expected).enumerate() {

@@ -16,10 +16,20 @@ use filter::{Filter, Table};
 
 /// Most objectives that a study may have.
 pub const MOST_OBJECTIVES: usize = 6;
+/// Bytes that a front may take while it is looked for, where nobody says otherwise: far beyond any budget, and less than it takes to
+/// bring a machine down.
+pub const FRONT_BYTES: u64 = 4 << 30;
+/// Copies of a front that a sweep holds at a time: its own with what compares with it, that of a checkpoint, those that threads know.
+const COPIES: u64 = 6;
 /// Recent killers that are remembered.
 const KILLERS: usize = 8;
 /// Least number of waiting designs before they are merged.
 const WAITING: usize = 2048;
+
+/// How many points a front of so many objectives may have to take so many bytes.
+pub fn most_points(objectives: usize, bytes: u64) -> u64 {
+    bytes / (COPIES * 8 * (objectives as u64 + 1))
+}
 
 /// The front of the designs seen so far.
 #[derive(Debug)]

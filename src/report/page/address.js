@@ -19,7 +19,7 @@
       if (list(state.parallel) !== defaults.parallel) parts.push(`pc=${list(state.parallel)}`);
       add("inv", list([...state.inverted]));
       if (state.colour !== defaults.colour) add("col", encode(state.colour ?? ""));
-      if (state.card !== null) add("d", String(page.designOf(state.card)));
+      if (state.card !== null) add("d", page.designOf(state.card));
     }
     add("t", state.theme);
     const hash = parts.length ? `#${parts.join("&")}` : "";
@@ -78,7 +78,7 @@
       const places = [state.matrix.indexOf(x), state.matrix.indexOf(y)];
       if (xRange && yRange && places[0] >= 0 && places[0] < places[1]) state.cells.set(`${x}*${y}`, { x, y, xRange, yRange });
     }
-    const row = given.has("d") ? page.rowOf(Number(given.get("d"))) : -1;
+    const row = given.has("d") ? page.rowOf(given.get("d")) : -1;
     return row >= 0 ? row : null;
   };
 

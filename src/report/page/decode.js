@@ -16,12 +16,14 @@
   const ABSENT = 0xffffffff;
   page.noScenario = ABSENT;
 
+  const widthOf = (type) => (type === "f64" || type === "u64" ? 8 : 4);
+
   // Whole-number columns become f64 too, so that an absent value is NaN everywhere.
   const readValues = (buffer, offset, rows, type) => {
-    const width = type === "f64" ? 8 : 4;
-    const part = buffer.slice(offset, offset + rows * width); // a copy: columns need not be aligned
+    const part = buffer.slice(offset, offset + rows * widthOf(type)); // a copy: columns need not be aligned
     if (type === "f64") return new Float64Array(part);
     if (type === "f32") return new Float32Array(part);
+    if (type === "u64") return Float64Array.from(new BigUint64Array(part), Number);
     return Float64Array.from(new Uint32Array(part), (value) => (value === ABSENT ? NaN : value));
   };
 
@@ -57,6 +59,7 @@
   page.valueText = (column, row, text = page.short) => {
     const value = column.values[row];
     if (column.words) return column.words[value] ?? text(NaN);
+    if (column.exact) return column.exact[row];
     return text(value, column.type);
   };
 
@@ -68,7 +71,9 @@
     for (const stored of front.columns) {
       const column = { ...stored, scenarios: null };
       column.values = readValues(buffer, offset, front.rows, stored.type);
-      offset += front.rows * (stored.type === "f64" ? 8 : 4);
+      // An f64 does not hold every digit of an index: what is shown and compared is its text.
+      if (stored.type === "u64") column.exact = Array.from(new BigUint64Array(buffer.slice(offset, offset + front.rows * 8)), String);
+      offset += front.rows * widthOf(stored.type);
       if (stored.scenario) {
         column.scenarios = new Uint32Array(buffer.slice(offset, offset + front.rows * 4));
         offset += front.rows * 4;
@@ -78,6 +83,25 @@
       columns.push(column);
     }
     return { ...front, columns, byName };
+  };
+
+  // A sample of the feasible designs behind the front: values by the names of objectives, which have their range.
+  const decodeSample = async (sample) => {
+    const buffer = sample.rows && sample.names.length ? await page.inflate(sample.packed) : new ArrayBuffer(0);
+    const byName = new Map();
+    sample.names.forEach((name, at) => {
+      const column = { values: readValues(buffer, at * sample.rows * 8, sample.rows, "f64") };
+      addRange(column);
+      byName.set(name, column);
+    });
+    return { ...sample, byName };
+  };
+
+  // What an axis of the scatter matrix spans: the front with the sample behind it.
+  page.wideDomain = (column) => {
+    const behind = page.sample && page.sample.byName.get(column.name);
+    if (!behind || Number.isNaN(behind.low) || Number.isNaN(column.low)) return page.domain(column);
+    return page.domain({ ...column, low: Math.min(column.low, behind.low), high: Math.max(column.high, behind.high) });
   };
 
   page.decode = async () => {
@@ -91,9 +115,10 @@
     front.index = front.columns.find((column) => column.role === "index");
     front.shown = front.columns.filter((column) => column !== front.index);
     page.front = front;
+    page.sample = data.sample ? await decodeSample(data.sample) : null;
     page.timings.decoded = performance.now();
   };
 
-  page.designOf = (row) => (page.front.index ? page.front.index.values[row] : row);
-  page.rowOf = (design) => (page.front.index ? page.front.index.values.indexOf(design) : -1);
+  page.designOf = (row) => String(page.front.index ? page.front.index.exact[row] : row);
+  page.rowOf = (design) => (page.front.index ? page.front.index.exact.indexOf(design) : -1);
 }

@@ -1,10 +1,29 @@
 // Pictures as the program drew them, by group; a click shows one as large as the window.
 {
-  // The SVG is ours, but it is read as XML and stripped of scripts and listeners all the same.
+  // The SVG is ours, but it is read as XML and only what our pictures consist of is left in it all the same.
+  const ELEMENTS = new Set("svg rect circle line polyline polygon path image text".split(" "));
+  const ATTRIBUTES = new Set(
+    ("viewBox width height x y x1 y1 x2 y2 cx cy r rx ry d dx dy points transform fill fill-opacity fill-rule opacity stroke stroke-width stroke-opacity " +
+      "stroke-dasharray stroke-linecap stroke-linejoin font-family font-size font-weight font-style text-anchor dominant-baseline preserveAspectRatio class").split(" "),
+  );
+  const passes = ({ name, value }) => {
+    if (name === "href") return /^data:image\/png;base64,[A-Za-z0-9+/=]*$/.test(value);
+    if (name === "style") return value === "image-rendering:pixelated";
+    return name === "xmlns" || (ATTRIBUTES.has(name) && !/url|[:\\]/i.test(value));
+  };
+  const strip = (node) => {
+    for (const attribute of [...node.attributes]) if (!passes(attribute)) node.removeAttributeNode(attribute);
+    for (const child of [...node.childNodes]) {
+      const known = child.nodeType === Node.ELEMENT_NODE && child.namespaceURI === "http://www.w3.org/2000/svg" && ELEMENTS.has(child.nodeName);
+      if (known) strip(child);
+      else if (child.nodeType !== Node.TEXT_NODE) child.remove();
+    }
+  };
+
   page.picture = (text) => {
     const parsed = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
-    if (parsed.nodeName !== "svg") return page.element("p", { class: "notice" }, "This picture cannot be shown.");
-    parsed.querySelectorAll("script, foreignObject").forEach((node) => node.remove());
+    if (parsed.nodeName !== "svg" || parsed.namespaceURI !== "http://www.w3.org/2000/svg") return page.element("p", { class: "notice" }, "This picture cannot be shown.");
+    strip(parsed);
     if (!parsed.getAttribute("viewBox")) parsed.setAttribute("viewBox", `0 0 ${parsed.getAttribute("width") || 900} ${parsed.getAttribute("height") || 600}`);
     parsed.removeAttribute("width");
     parsed.removeAttribute("height");

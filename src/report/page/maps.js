@@ -2,6 +2,7 @@
 {
   const WIDTH = 680;
   const HEIGHT = 440;
+  const NO_DESIGN = 2n ** 64n - 1n;
   const MARGIN = { left: 74, right: 30, top: 10, bottom: 50 };
 
   // Cells meet half-way between their values, on a log axis half-way of the logs; words are one step apart.
@@ -115,7 +116,7 @@
       const at = row * columns + column;
       const part = (name, value, unit) => `${name} ${page.short(value)}${unit ? ` ${unit}` : ""}`;
       const value = Number.isNaN(values[at]) ? "no feasible design" : part(map.value.name, values[at], map.value.unit);
-      const design = indices && !Number.isNaN(indices[at]) ? `, best design ${page.full(indices[at])}` : "";
+      const design = indices && indices[at] !== NO_DESIGN ? `, best design ${indices[at]}` : "";
       readout.textContent = `${part(map.x.name, map.x.values[column], map.x.unit)}, ${part(map.y.name, map.y.values[row], map.y.unit)}: ${value}${design}`;
       const [x0, x1] = [x.scale(x.edges[column]), x.scale(x.edges[column + 1])];
       const [y0, y1] = [y.scale(y.edges[row + 1]), y.scale(y.edges[row])];
@@ -164,9 +165,9 @@
     section.append(page.element("h2", { id: "maps-title" }, maps.length > 1 ? "Maps" : "Map"), page.element("div", { class: "figures" }, figures));
     for (const [i, map] of maps.entries()) {
       if (map.cells) {
-        const numbers = new Float64Array(await page.inflate(map.cells.packed));
+        const numbers = await page.inflate(map.cells.packed);
         const count = map.x.values.length * map.y.values.length;
-        drawCells(figures[i], map, numbers.subarray(0, count), map.cells.indices === false ? null : numbers.subarray(count, 2 * count));
+        drawCells(figures[i], map, new Float64Array(numbers, 0, count), map.cells.indices ? new BigUint64Array(numbers, 8 * count, count) : null);
       } else if (map.picture) figures[i].append(page.picture(map.picture));
     }
   };

@@ -5,7 +5,7 @@
   const BOTTOM = 50;
   const TOP = 8;
   let cells = []; // { x, y, left, top, xs, ys, image, base, brush, group }
-  let canvas, svg, size, ratio, disc;
+  let canvas, svg, size, ratio, disc, dot;
 
   const sizeFor = (width, count) => {
     const across = count - 1;
@@ -15,15 +15,30 @@
   };
 
   // Values to whole device pixels of a cell; -1 for an absent value.
-  const pixelsOf = (column, flip) => {
-    const [low, high] = page.domain(column);
+  const pixelsOf = (column, flip, values = column.values) => {
+    const [low, high] = page.wideDomain(column);
     const extent = Math.round(size * ratio);
-    const pixels = new Int16Array(column.values.length);
+    const pixels = new Int16Array(values.length);
     for (let i = 0; i < pixels.length; i++) {
-      const t = (column.values[i] - low) / (high - low);
+      const t = (values[i] - low) / (high - low);
       pixels[i] = t >= 0 && t <= 1 ? Math.round((flip ? 1 - t : t) * (extent - 1)) : -1;
     }
     return pixels;
+  };
+
+  // Where the sample of feasible designs lies in a cell of two objectives.
+  const sampleOf = (x, y) => {
+    const [across, up] = [x, y].map((column) => page.sample && page.sample.byName.get(column.name));
+    return across && up ? { xs: pixelsOf(x, false, across.values), ys: pixelsOf(y, true, up.values) } : null;
+  };
+
+  const nameSample = () => {
+    const { sample } = page;
+    const text = page.byId("sample");
+    text.hidden = !cells.some((cell) => cell.behind);
+    if (text.hidden) return;
+    const drawn = sample.rows < sample.of ? `, ${page.count(sample.rows)} drawn` : "";
+    text.replaceChildren(page.element("span", { class: "sample-dot", "aria-hidden": "true" }), `behind the front: a sample of ${page.count(sample.of)} feasible designs${drawn}`);
   };
 
   const layout = () => {
@@ -34,6 +49,7 @@
     page.byId("matrix-section").hidden = false;
     cells = [];
     box.replaceChildren();
+    nameSample();
     if (names.length < 2) {
       hint.textContent = names.length ? "Drag to select a range of values. Click the nearest design to open its card." : "";
       return page.drawStrip(box, front.byName.get(names[0]));
@@ -59,11 +75,14 @@
         cell.image = context.createImageData(extent, extent);
         cell.pixels = new Uint32Array(cell.image.data.buffer);
         cell.base = new Uint32Array(extent * extent);
-        cell.xScale = d3.scaleLinear(page.domain(cell.x), [0, size]);
-        cell.yScale = d3.scaleLinear(page.domain(cell.y), [size, 0]);
+        cell.behind = sampleOf(cell.x, cell.y);
+        cell.ground = cell.behind ? new Uint32Array(extent * extent) : null;
+        cell.xScale = d3.scaleLinear(page.wideDomain(cell.x), [0, size]);
+        cell.yScale = d3.scaleLinear(page.wideDomain(cell.y), [size, 0]);
         addCell(cell, at === 0, row === names.length - 1);
         cells.push(cell);
       }
+    dot = page.disc((page.sample && page.sample.rows > 3000 ? 0.7 / ratio : 1.2) * ratio);
     disc = page.disc((front.rows > 20000 ? 0.7 / ratio : front.rows > 4000 ? 1.6 : front.rows > 300 ? 2.4 : 3.4) * ratio);
     const readout = page.element("div", { id: "readout", "data-testid": "readout" });
     const stage = page.element("div", { class: "stage" }, canvas, svg.node());
@@ -75,6 +94,7 @@
     readout.style.width = `${free}px`;
     if (across > 1) readout.style.maxHeight = `${size + (across > 2 ? 0 : -4)}px`;
     draw(true);
+    nameSample();
     syncBrushes();
     showCurrent();
     page.showReadout();
@@ -220,9 +240,14 @@
     for (const cell of cells) {
       if (all) {
         cell.base.fill(ground);
+        if (cell.behind) {
+          page.drawPoints(cell.base, extent, extent, cell.behind.xs, cell.behind.ys, null, null, page.pixel(page.variable("--sample")), dot);
+          cell.ground.set(cell.base);
+        }
         page.drawPoints(cell.base, extent, extent, cell.xs, cell.ys, page.mask, null, faint, disc);
       }
-      if (everything) cell.pixels.fill(ground);
+      if (everything && cell.ground) cell.pixels.set(cell.ground);
+      else if (everything) cell.pixels.fill(ground);
       else cell.pixels.set(cell.base);
       page.drawPoints(cell.pixels, extent, extent, cell.xs, cell.ys, page.mask, everything ? null : 1, colours, disc);
       context.putImageData(cell.image, Math.round(cell.left * ratio), Math.round(cell.top * ratio));

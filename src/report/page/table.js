@@ -54,7 +54,7 @@
     const rows = sortedRows();
     const { knee } = page.front;
     const line = (row) => {
-      const cell = (column) => page.element("td", { class: column.words ? "" : "number" }, column === page.front.index ? page.full(column.values[row]) : page.valueText(column, row), column === page.front.index && row === knee ? page.element("span", { class: "mark" }, " knee") : null);
+      const cell = (column) => page.element("td", { class: column.words ? "" : "number" }, page.valueText(column, row), column === page.front.index && row === knee ? page.element("span", { class: "mark" }, " knee") : null);
       return page.element("tr", { "data-row": row, class: row === knee ? "is-knee" : "", tabindex: 0, "aria-label": `design ${page.designOf(row)}: open its card` }, columns.map(cell));
     };
     body.replaceChildren(...rows.slice(0, MOST).map(line));

@@ -1,14 +1,15 @@
 //! The device's side of a sweep: buffers, tiles in flight, and what comes back.
 
+use super::held::histogram_beyond_f32;
 use super::kernel::{self, Coordinate, ENTRIES, check_words, coordinates, survivor_words, text};
-use super::known::{self, Answers, Known};
-use super::layout::{Layout, Level, MOST_GROUPS, push_level};
+use super::known::{self, Known};
+use super::layout::{Layout, Level, MOST_GROUPS, push_level, refuse};
 use crate::error::Result;
 use crate::gpu::{Buffer, Device, Program, Wait};
 use crate::plan::Plan;
-use crate::real::RunningError;
-use crate::reduce::MOST_OBJECTIVES;
+use crate::reduce::{Answers, MOST_OBJECTIVES, Needs, Reported};
 use crate::study::{Best, Quantity};
+use crate::tape::RunningError;
 use bytemuck::{Pod, Zeroable};
 use std::mem::offset_of;
 use std::ops::Range;
@@ -61,7 +62,7 @@ pub struct Survivor {
     pub position: u64,
     /// Not counted by the device: f64 decides whether it is feasible.
     pub unsure: bool,
-    /// May it be part of the top list, or an extreme?
+    /// May it be part of the top list or a sample, or an extreme?
     pub end: bool,
     /// A lower bound of each coordinate of the front, as the device has it, if it may be on the front.
     pub front: Option<[f32; MOST_OBJECTIVES]>,
@@ -120,10 +121,8 @@ pub struct TileCounts {
     pub sure: u64,
     /// Designs that f64 must decide.
     pub unsure: u64,
-    /// Per histogram: below, bins, above.
-    pub histograms: Vec<Vec<u32>>,
-    /// Per map of shares: feasible designs per cell.
-    pub shares: Vec<Vec<u32>>,
+    /// What each reducer asks to be counted.
+    pub reported: Vec<Vec<u32>>,
 }
 
 /// A tile that the device is working on.
@@ -178,6 +177,8 @@ pub struct GpuEngine<'p> {
     window: Range<u64>,
     window_room: u64,
     count_words: u64,
+    /// Of these, what each reducer asks to be counted.
+    counted: Vec<usize>,
     words: usize,
     most_rows: u64,
 }
@@ -201,10 +202,12 @@ impl<'p> GpuEngine<'p> {
     /// An engine for a plan. `ranges`: of the study's histograms. `limited_loops`: does the driver end long loops?
     ///
     /// # Errors
-    /// [`Error::Request`](crate::error::Error::Request) if the study cannot be screened on a device,
+    /// [`Error::NotOnDevice`](crate::error::Error::NotOnDevice) if the study cannot be screened on a device,
     /// [`Error::Gpu`](crate::error::Error::Gpu) if the device fails.
     pub fn new(plan: &'p Plan, ranges: &[(f64, f64)], device: &Device, limited_loops: bool, wrong: &Wrong) -> Result<Self> {
+        supports_report(plan)?;
         let layout = Layout::new(plan, limited_loops, wrong.grouped)?;
+        supports_histograms(plan, ranges)?;
         let mut source = wrong.text.clone().unwrap_or_else(|| kernel_text(plan, &layout, ranges, &wrong.perturb));
         for (piece, other) in &wrong.replace {
             assert!(source.contains(piece), "the kernel has no {piece}");
@@ -230,10 +233,9 @@ impl<'p> GpuEngine<'p> {
         let levels = device.buffer("levels", (layout.levels.len() as u64 + window_room * columns) * 16, storage);
         device.write(&levels, 0, &layout.levels);
 
-        let shares = plan.study.report.maps.iter().filter(|it| it.value == Best::Share);
         let cells_of = |spec: &crate::study::MapSpec| plan.study.design[spec.x].count() * plan.study.design[spec.y].count();
-        let bins: usize = plan.study.report.histograms.iter().map(|it| it.bins + 2).sum();
-        let count_words = (HEAD + bins) as u64 + shares.map(cells_of).sum::<u64>();
+        let counted = Reported::new(plan, ranges).count_words();
+        let count_words = (HEAD + counted.iter().sum::<usize>()) as u64;
         let value_cells: u64 = plan.study.report.maps.iter().filter(|it| it.value != Best::Share).map(cells_of).sum();
         if count_words.max(value_cells) * 4 > binding {
             return Err(device.error("the maps of this study are larger than a buffer of this device; use --engine cpu"));
@@ -285,6 +287,7 @@ impl<'p> GpuEngine<'p> {
             window: 0..0,
             window_room,
             count_words,
+            counted,
             words,
             most_rows,
         })
@@ -406,12 +409,8 @@ impl<'p> GpuEngine<'p> {
             rest = left;
             taken.to_vec()
         };
-        let report = &self.plan.study.report;
-        let histograms = report.histograms.iter().map(|it| take(it.bins + 2)).collect();
-        let cells =
-            |spec: &crate::study::MapSpec| (self.plan.study.design[spec.x].count() * self.plan.study.design[spec.y].count()) as usize;
-        let shares = report.maps.iter().filter(|it| it.value == Best::Share).map(|it| take(cells(it))).collect();
-        let counts = TileCounts { sure: counts[0].into(), unsure: counts[1].into(), histograms, shares };
+        let reported = self.counted.iter().map(|&words| take(words)).collect();
+        let counts = TileCounts { sure: counts[0].into(), unsure: counts[1].into(), reported };
         let (width, objectives) = (self.plan.fast.count(), self.plan.study.objectives.len());
         Ok(Some((counts, Survivors { records, words, first_row: tile.rows.start, width, objectives })))
     }
@@ -472,16 +471,35 @@ impl<'p> GpuEngine<'p> {
 /// Can a study be screened on a device?
 ///
 /// # Errors
-/// [`Error::Request`](crate::error::Error::Request) that says why not.
+/// [`Error::NotOnDevice`](crate::error::Error::NotOnDevice) that says why not.
 pub fn supports(plan: &Plan, limited_loops: bool) -> Result<()> {
+    let given = plan.study.report.histograms.iter().map(|it| it.range.unwrap_or((0.0, 1.0))).collect::<Vec<_>>();
+    supports_report(plan)?;
+    supports_histograms(plan, &given)?;
     Layout::new(plan, limited_loops, false).map(|_| ())
+}
+
+/// Does the report ask for nothing but counts and candidates?
+fn supports_report(plan: &Plan) -> Result<()> {
+    let beyond = Reported::needs(&plan.study.report).into_iter().find_map(Needs::beyond_devices);
+    beyond.map_or(Ok(()), |why| Err(refuse(why.to_owned())))
+}
+
+/// Can a device count in the bins of a study's histograms, given their ranges?
+///
+/// # Errors
+/// [`Error::NotOnDevice`](crate::error::Error::NotOnDevice) that says why not.
+pub fn supports_histograms(plan: &Plan, ranges: &[(f64, f64)]) -> Result<()> {
+    histogram_beyond_f32(plan, ranges).map_or(Ok(()), |why| Err(refuse(why)))
 }
 
 /// The kernel that a study is screened with, as it would be on a driver that ends long loops.
 ///
 /// # Errors
-/// [`Error::Request`](crate::error::Error::Request) if the study cannot be screened on a device.
+/// [`Error::NotOnDevice`](crate::error::Error::NotOnDevice) if the study cannot be screened on a device.
 pub fn kernel_of(plan: &Plan, ranges: &[(f64, f64)], perturb: &[(usize, f64)]) -> Result<String> {
+    supports_report(plan)?;
+    supports_histograms(plan, ranges)?;
     Ok(kernel_text(plan, &Layout::new(plan, true, false)?, ranges, perturb))
 }
 

@@ -3,6 +3,7 @@
 use super::kernel::{Coordinate, bins, round_up, threshold, uses_table};
 use super::layout::{KILLERS, LIST, on_device, sign};
 use crate::plan::Plan;
+use crate::reduce::Answers;
 use crate::study::{Goal, Quantity};
 use bytemuck::{Pod, Zeroable};
 use std::mem::offset_of;
@@ -17,56 +18,20 @@ pub struct Known {
     extremes: [[f32; 4]; 6],
     extreme_indices: [[u32; 4]; 6],
     table: [f32; 4],
+    last_place: [u32; 4],
 }
 
 impl Known {
     /// Its members as the kernel must have them.
-    pub(super) const MEMBERS: [(&'static str, usize); 6] = [
+    pub(super) const MEMBERS: [(&'static str, usize); 7] = [
         ("killers", offset_of!(Known, killers)),
         ("top", offset_of!(Known, top)),
         ("top_index", offset_of!(Known, top_index)),
         ("extremes", offset_of!(Known, extremes)),
         ("extreme_indices", offset_of!(Known, extreme_indices)),
         ("table", offset_of!(Known, table)),
+        ("last_place", offset_of!(Known, last_place)),
     ];
-}
-
-/// What is known of the answers, in f64, as the reducers have it.
-#[derive(Clone, Debug, Default)]
-pub struct Answers {
-    /// Keys of certified points of the front, point after point; less is better.
-    pub front: Vec<f64>,
-    /// Key and index of the worst of the best K, once there are K.
-    pub top: Option<(f64, u64)>,
-    /// Per objective: least and largest value with their indices.
-    pub extremes: Vec<[Option<(f64, u64)>; 2]>,
-    /// Per map of values, per cell: the best key.
-    pub cells: Vec<Vec<f64>>,
-}
-
-impl Answers {
-    /// Takes over what `other` knows better; the fronts stay apart.
-    pub fn tighten(&mut self, other: &Self) {
-        let better = |a: (f64, u64), b: (f64, u64)| a.0 < b.0 || (a.0 == b.0 && a.1 < b.1);
-        if let Some(top) = other.top
-            && self.top.is_none_or(|own| better(top, own))
-        {
-            self.top = Some(top);
-        }
-        for (own, other) in self.extremes.iter_mut().zip(&other.extremes) {
-            for (side, (own, other)) in [1.0, -1.0].into_iter().zip(own.iter_mut().zip(other)) {
-                let key = |(value, index): (f64, u64)| (side * value, index);
-                if let Some(other) = other
-                    && own.is_none_or(|own| better(key(*other), key(own)))
-                {
-                    *own = Some(*other);
-                }
-            }
-        }
-        for (own, other) in self.cells.iter_mut().flatten().zip(other.cells.iter().flatten()) {
-            *own = own.min(*other);
-        }
-    }
 }
 
 fn halves(index: u64) -> [u32; 2] {
@@ -129,6 +94,7 @@ pub fn known(plan: &Plan, coordinates: &[Coordinate], is_exact: impl Fn(Quantity
         *extreme = [least, largest, least_exact, largest_exact];
         *indices = [least_index[0], least_index[1], largest_index[0], largest_index[1]];
     }
+    known.last_place[..2].copy_from_slice(&halves(answers.last_place.unwrap_or(u64::MAX)));
     let beaters = if uses_table(coordinates) {
         let (table, beaters) = table(&points, bins(coordinates) as usize, dimensions);
         known.table = table;

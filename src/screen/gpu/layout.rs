@@ -1,12 +1,13 @@
 //! How a study lies on the device: which values pass between the stages, where the levels of every axis stand, how the work is
 //! cut into invocations.
 
+use super::held::beyond_f32;
 use crate::error::{Error, Result};
-use crate::models::{Device, Fields, INPUTS, Worse, input_to_si};
-use crate::plan::{Plan, Source, dependences};
-use crate::real::nearest_f32;
+use crate::models::{Fields, INPUTS, Reads, Worse, input_to_si};
+use crate::plan::{Plan, Source, knowns};
 use crate::space::{Dimension, Product};
 use crate::study::{Axis, Goal, Levels, Quantity};
+use crate::tape::nearest_f32;
 
 /// Most loop turns of one invocation: some drivers end it after 65 535 without a word.
 pub const MOST_TURNS: u64 = 55_000;
@@ -129,11 +130,16 @@ fn passed(fields: &Fields, read: u64) -> Vec<Passed> {
         .collect()
 }
 
+/// The error of a study that a device cannot serve.
+pub fn refuse(why: String) -> Error {
+    Error::NotOnDevice { why }
+}
+
 /// A study as a device sees it.
 #[derive(Clone, Debug)]
 pub struct Layout {
-    /// The model's formula on a device.
-    pub formula: &'static Device,
+    /// The names of the formula's values.
+    pub fields: Fields,
     /// What passes from the first stage to the second.
     pub prepared: Vec<Passed>,
     /// Slow dimensions, outermost first.
@@ -164,12 +170,11 @@ impl Layout {
     /// Lays out a study. `grouped`: lanes are judged in groups even where the study is small.
     ///
     /// # Errors
-    /// [`Error::Request`] if it cannot be screened on a device, and why.
+    /// [`Error::NotOnDevice`] if it cannot be screened on a device, and why.
     pub fn new(plan: &Plan, limited_loops: bool, grouped: bool) -> Result<Self> {
-        let refuse = |why: String| Error::Request(format!("this study cannot be screened on a GPU: {why}; use --engine cpu"));
-        let model = plan.study.model;
-        let formula = model.on_device()?;
-        let fields = formula.twin.fields();
+        let model = &plan.study.model;
+        let formula = model.on_device()?.formula;
+        let fields = formula.fields();
         let scenarios = [&plan.slow_scenarios, &plan.fast_scenarios].map(Product::count);
         let turns = scenarios[0].saturating_mul(scenarios[1] + 1).saturating_mul(1 + fields.turns);
         if turns > MOST_TURNS && (limited_loops || turns > u64::from(u32::MAX) / 4) {
@@ -186,6 +191,9 @@ impl Layout {
         if let Some((_, input)) = processor_only {
             return Err(refuse(format!("the shader knows {} = {} only", input.name, input.default)));
         }
+        if let Some(why) = beyond_f32(plan) {
+            return Err(refuse(why));
+        }
         if scenarios[0] > MOST_GROUPS {
             return Err(refuse(format!("{} slow scenarios are more than {MOST_GROUPS}", scenarios[0])));
         }
@@ -193,7 +201,7 @@ impl Layout {
             return Err(refuse(format!("a row of {} designs is too long", plan.fast.count())));
         }
         let used = plan.used_outputs();
-        let reads = formula.twin.reads(&dependences(&plan.study, &plan.space), used);
+        let reads = Reads::of(formula, &knowns(&plan.study, &plan.space), used);
         let set = |inputs: u64, input: usize| inputs >> input & 1 == 1;
 
         let mut steady = Vec::new();
@@ -233,7 +241,7 @@ impl Layout {
         for (number, (dimension, stride)) in plan.slow.dimensions().enumerate() {
             let count = dimension.count();
             if number > 0 && levels.len() as u64 + count * dimension.inputs().len() as u64 > WINDOW {
-                let names: Vec<_> = dimension.inputs().iter().map(|&input| model.inputs[input].name).collect();
+                let names: Vec<_> = dimension.inputs().iter().map(|&input| model.inputs[input].name.as_str()).collect();
                 return Err(refuse(format!("the axis {} has {count} values and is not the first one", names.join(" + "))));
             }
             let offset = if number == 0 { u32::MAX } else { levels.len() as u32 };
@@ -247,7 +255,7 @@ impl Layout {
         }
         let slow_inputs = plan.slow.inputs();
         Ok(Self {
-            formula,
+            fields,
             prepared: passed(&fields, reads.prepared),
             row_inputs: (0..model.inputs.len()).filter(|&input| set(reads.inputs & slow_inputs, input)).collect(),
             slow,
@@ -465,7 +473,7 @@ mod tests {
                     .join(", "),
                 axis_name = axis.split(' ').next().unwrap_or_default(),
             );
-            Plan::new(Study::parse(&text, "test.toml", std::path::Path::new(".")).unwrap_or_else(|errors| panic!("{errors}")))
+            Plan::new(Study::parse_in(&text, "test.toml", std::path::Path::new(".")).unwrap_or_else(|errors| panic!("{errors}")))
         };
         let mut accepted = 0;
         for scenarios in [1, 2, 7, 40, 91, 130, 160, 302, 400, 5000] {
@@ -478,7 +486,7 @@ mod tests {
                 for grouped in [false, true] {
                     let Ok(layout) = Layout::new(&plan, true, grouped) else { continue };
                     let cut = layout.cut;
-                    let (shared, alone) = Cut::turns(&plan, layout.formula.twin.fields().turns, cut.keeps);
+                    let (shared, alone) = Cut::turns(&plan, layout.fields.turns, cut.keeps);
                     let turns = cut.lanes_each.div_ceil(cut.group) * shared + cut.lanes_each * alone;
                     // What one lane takes may pass the target by its closer look.
                     assert!(turns <= MOST_TURNS + 200, "{model}, {scenarios} scenarios: {cut:?} takes {turns} turns");

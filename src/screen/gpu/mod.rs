@@ -4,11 +4,12 @@
 //! the few designs that are unsure or may be part of an answer: those go to f64. Nothing that it computes is reported.
 
 mod engine;
+mod held;
 mod kernel;
 mod known;
 mod layout;
 
-pub use engine::{Checked, GpuEngine, InFlight, Survivor, Survivors, TileCounts, Wrong, kernel_of, supports};
+pub use crate::reduce::Answers;
+pub use engine::{Checked, GpuEngine, InFlight, Survivor, Survivors, TileCounts, Wrong, kernel_of, supports, supports_histograms};
 pub(crate) use kernel::value_maps;
-pub use known::Answers;
 pub(crate) use layout::on_device;

@@ -2,8 +2,9 @@
 
 use super::super::axis::{Axis, Levels};
 use super::Reader;
-use super::table::{Entry, Node, TOP_LEVEL_REMEDY, Table, is_top_level, shortened, suggestion};
+use super::table::{Entry, Node, TOP_LEVEL_REMEDY, Table, is_top_level, shortened};
 use super::value::{input_value, shown};
+use crate::likeness::closest;
 use std::collections::HashSet;
 use toml::de::DeValue;
 
@@ -43,7 +44,7 @@ pub(super) struct Claim {
     /// Is it an axis of this input alone?
     pub(super) single: bool,
     /// A word that is among the values.
-    pub(super) word: Option<&'static str>,
+    pub(super) word: Option<String>,
 }
 
 impl Reader<'_> {
@@ -53,13 +54,18 @@ impl Reader<'_> {
             let joint = entry.key.starts_with("cases") && self.model.input(entry.key).is_none();
             if joint { self.joint(role, entry) } else { self.single(role, entry) }
         };
-        table.entries.iter().filter_map(axis).collect()
+        let most = self.model.inputs.len();
+        if let Some(extra) = table.entries.get(most) {
+            let message = format!("[{}] has {} axes, but {} has {most} inputs", role.name(), table.entries.len(), self.model.name);
+            self.problems.add(extra.key_at, format!("{message}; every input has one axis at most, drop the others"));
+        }
+        table.entries.iter().take(most).take_while(|_| !self.problems.is_full()).filter_map(axis).collect()
     }
 
     /// The value of every input: fixed, of the preset, or default.
     pub(super) fn fixed(&self, table: Option<&Table<'_>>) -> Vec<f64> {
         let mut values = self.base.clone();
-        for entry in table.iter().flat_map(|table| &table.entries) {
+        for entry in table.iter().flat_map(|table| &table.entries).take_while(|_| !self.problems.is_full()) {
             let label = format!("fixed input \"{}\"", shortened(entry.key));
             let Some(number) = self.input(entry.key, entry.key_at, &label) else { continue };
             let input = &self.model.inputs[number];
@@ -71,7 +77,7 @@ impl Reader<'_> {
                 _ => input_value(entry.node, input),
             };
             let value = value.map_err(|error| self.problems.add(entry.node.at, format!("{label}: {error}"))).ok();
-            let word = value.and_then(|value| input.word_for(value));
+            let word = value.and_then(|value| input.word_for(value)).map(str::to_owned);
             self.claims.borrow_mut().push(Claim { input: number, role: Role::Fixed, at: entry.key_at, single: false, word });
             values[number] = value.unwrap_or(values[number]);
         }
@@ -95,8 +101,8 @@ impl Reader<'_> {
                 "{name} is an output; outputs can be constrained, made an objective or reported, only inputs can be given values"
             );
         }
-        let names: Vec<_> = self.model.inputs.iter().map(|input| input.name).collect();
-        let remedy = match suggestion(name, &names) {
+        let names: Vec<_> = self.model.inputs.iter().map(|input| input.name.as_str()).collect();
+        let remedy = match closest(name, &names) {
             _ if is_top_level(name) => TOP_LEVEL_REMEDY.to_owned(),
             Some(close) => format!("did you mean \"{close}\"?"),
             None => format!("its inputs are {}", names.join(", ")),
@@ -129,7 +135,7 @@ impl Reader<'_> {
             _ => self.input_value(entry.node, number, &label).map(|value| Levels::List(vec![value])),
         };
         let word = match &levels {
-            Some(Levels::List(values)) => values.iter().find_map(|&value| input.word_for(value)),
+            Some(Levels::List(values)) => values.iter().find_map(|&value| input.word_for(value)).map(str::to_owned),
             _ => None,
         };
         self.claims.borrow_mut().push(Claim { input: number, role, at: entry.key_at, single: true, word });
@@ -149,7 +155,7 @@ impl Reader<'_> {
             self.problems.add(node.at, format!("{label}: the list is empty; give at least one value"));
         }
         let (mut values, mut known) = (Vec::new(), HashSet::new());
-        for element in nodes.clone() {
+        for element in nodes.clone().take_while(|_| !self.problems.is_full()) {
             let Some(value) = self.input_value(element, number, label) else { continue };
             if !known.insert(value.to_bits()) {
                 let input = &self.model.inputs[number];
@@ -165,9 +171,9 @@ impl Reader<'_> {
     pub(super) fn check_claims(&self) {
         let mut claims = self.claims.borrow_mut();
         claims.sort_by_key(|claim| claim.at);
-        for (index, claim) in claims.iter().enumerate() {
+        for (index, claim) in claims.iter().enumerate().take_while(|_| !self.problems.is_full()) {
             if let Some(first) = claims[..index].iter().find(|first| first.input == claim.input) {
-                let name = self.model.inputs[claim.input].name;
+                let name = &self.model.inputs[claim.input].name;
                 let line = self.problems.line_number(first.at);
                 let message = format!("\"{name}\" is already set in [{}], line {line}; keep one of the two", first.role.name());
                 self.problems.add(claim.at, message);

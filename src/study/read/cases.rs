@@ -1,18 +1,21 @@
 //! Joint axes: several inputs that walk through rows together, written in the study or in a CSV file.
 
 use super::super::axis::Axis;
+use super::super::check::{MOST_ROWS, MOST_VALUES};
 use super::Reader;
 use super::axes::{Claim, Role};
 use super::table::{Entry, Lines, Node, Table, list, shortened};
 use super::value::input_text;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry as Row;
+use std::fs::File;
+use std::io::Read;
 use toml::de::DeValue;
 
 /// Most problems that are reported of one CSV file.
 const MOST_CSV_PROBLEMS: usize = 20;
 /// Largest CSV file that is read, in bytes.
-const MOST_CSV_BYTES: u64 = 1 << 28;
+const MOST_CSV_BYTES: u64 = 1 << 26;
 
 impl Reader<'_> {
     /// A joint axis.
@@ -43,7 +46,7 @@ impl Reader<'_> {
         let before = problems.count();
         let mut columns: Option<Vec<usize>> = None;
         let (mut rows, mut known) = (Vec::new(), HashMap::new());
-        for node in node.list()? {
+        for node in node.list()?.take_while(|_| !problems.is_full()) {
             let Some(table) = node.table() else {
                 problems.add(node.at, format!("{label}: found {}, wanted a row such as {{ {} }}", node.found(), self.example_row()));
                 continue;
@@ -54,7 +57,7 @@ impl Reader<'_> {
                 continue;
             }
             let mut row = vec![f64::NAN; inputs.len()];
-            for entry in &table.entries {
+            for entry in table.entries.iter().take_while(|_| !problems.is_full()) {
                 match (self.model.input(entry.key), inputs.iter().position(|&input| self.model.inputs[input].name == entry.key)) {
                     (Some(number), Some(column)) => row[column] = self.input_value(entry.node, number, label).unwrap_or(f64::NAN),
                     (Some(_), None) => problems.add(
@@ -66,7 +69,7 @@ impl Reader<'_> {
                 }
             }
             let missing: Vec<_> =
-                inputs.iter().map(|&input| self.model.inputs[input].name).filter(|name| table.get(name).is_none()).collect();
+                inputs.iter().map(|&input| self.model.inputs[input].name.as_str()).filter(|name| table.get(name).is_none()).collect();
             // A wrong name is likely the one that is missing.
             if !missing.is_empty() && table.entries.iter().all(|entry| self.model.input(entry.key).is_some()) {
                 problems.add(table.at, format!("{label}: this row lacks {}; give every row the same inputs", list(missing)));
@@ -90,7 +93,7 @@ impl Reader<'_> {
             self.problems.add(table.at, format!("{label}: the row names no input; write {{ {} }}", self.example_row()));
         }
         let mut inputs = Vec::new();
-        for entry in &table.entries {
+        for entry in table.entries.iter().take_while(|_| !self.problems.is_full()) {
             if let Some(input) = self.input(entry.key, entry.key_at, label) {
                 self.claims.borrow_mut().push(Claim { input, role, at: entry.key_at, single: false, word: None });
                 inputs.push(input);
@@ -103,7 +106,11 @@ impl Reader<'_> {
     fn mark_words(&self, inputs: &[usize], row: &[f64]) {
         for (&number, &value) in inputs.iter().zip(row) {
             if let Some(word) = self.model.inputs[number].word_for(value) {
-                self.claims.borrow_mut().iter_mut().filter(|claim| claim.input == number).for_each(|claim| claim.word = Some(word));
+                self.claims
+                    .borrow_mut()
+                    .iter_mut()
+                    .filter(|claim| claim.input == number)
+                    .for_each(|claim| claim.word = Some(word.to_owned()));
             }
         }
     }
@@ -138,10 +145,16 @@ impl Reader<'_> {
         if !file.is_file() {
             return Err(format!("\"{name}\" is not a file; name a CSV file"));
         }
+        let large = |bytes: u64| Err(format!("\"{name}\" has {bytes} bytes, at most {MOST_CSV_BYTES} are read; split it"));
         if file.len() > MOST_CSV_BYTES {
-            return Err(format!("\"{name}\" has {} bytes, at most {MOST_CSV_BYTES} are read; split it", file.len()));
+            return large(file.len());
         }
-        let bytes = std::fs::read(&path).map_err(unreadable)?;
+        // It may grow while it is read.
+        let mut bytes = Vec::new();
+        File::open(&path).and_then(|file| file.take(MOST_CSV_BYTES + 1).read_to_end(&mut bytes)).map_err(unreadable)?;
+        if bytes.len() as u64 > MOST_CSV_BYTES {
+            return large(bytes.len() as u64);
+        }
         let text = String::from_utf8(bytes).map_err(|_| format!("\"{name}\" is not UTF-8 text; save it in the encoding UTF-8"))?;
         Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
     }
@@ -155,7 +168,7 @@ impl Reader<'_> {
         let mut columns: Option<Vec<Option<usize>>> = None;
         let (mut rows, mut known) = (Vec::new(), HashMap::new());
         for record in reader.records() {
-            if self.problems.count() - before >= MOST_CSV_PROBLEMS {
+            if self.problems.is_full() || self.problems.count() - before >= MOST_CSV_PROBLEMS {
                 problem(lines.count(), 1, format!("there are at least {MOST_CSV_PROBLEMS} problems; the rest is not read"));
                 return None;
             }
@@ -185,6 +198,10 @@ impl Reader<'_> {
                 let value = if text.is_empty() { Err("the field is empty; give a value".to_owned()) } else { input_text(text, input) };
                 Some(value.map_err(|error| problem(line, field + 1, format!("column \"{}\": {error}", input.name))).unwrap_or(f64::NAN))
             };
+            if rows.len() >= MOST_ROWS || (rows.len() + 1) * columns.len() > MOST_VALUES {
+                problem(line, 1, format!("there are more rows than {} of {} values each; split the file", rows.len(), columns.len()));
+                return None;
+            }
             let row: Vec<f64> = record.iter().zip(columns).enumerate().filter_map(cell).collect();
             self.mark_words(&columns.iter().flatten().copied().collect::<Vec<_>>(), &row);
             if let Some(first) = duplicate(&mut known, &row, line) {
@@ -193,7 +210,7 @@ impl Reader<'_> {
             rows.push(row);
         }
         if rows.is_empty() && self.problems.count() == before {
-            let inputs = list(self.model.inputs.iter().take(2).map(|input| input.name));
+            let inputs = list(self.model.inputs.iter().take(2).map(|input| input.name.as_str()));
             problem(1, 1, format!("there are no rows; the first line names inputs, such as {inputs}, every other line gives their values"));
         }
         let inputs = columns?.into_iter().collect::<Option<Vec<_>>>()?;
@@ -203,7 +220,7 @@ impl Reader<'_> {
     /// The inputs that a CSV header names; `None` for a column with a problem.
     fn header(&self, role: Role, at: usize, record: &csv::StringRecord, problem: impl Fn(usize, String)) -> Vec<Option<usize>> {
         let mut inputs: Vec<Option<usize>> = Vec::new();
-        for (index, name) in record.iter().enumerate() {
+        for (index, name) in record.iter().enumerate().take_while(|_| !self.problems.is_full()) {
             let input = self.model.input(name);
             match input {
                 None if name.contains(';') || name.contains('\t') => {

@@ -1,6 +1,7 @@
 //! The `contours` of a map: at which values of which quantities lines are drawn.
 
 use super::super::axis::{Axis, Levels};
+use super::super::check::MOST_THRESHOLDS;
 use super::super::resolved::{Best, ContourSpec, Quantity, Thresholds};
 use super::table::{Entry, Node, Table, list};
 use super::value::{measured, shown, shown_in};
@@ -33,7 +34,7 @@ impl Reader<'_> {
             if nodes.len() == 0 {
                 self.problems.add(entry.node.at, format!("{LABEL}: the list is empty; write {} or drop it", self.contours_example()));
             }
-            for node in nodes {
+            for node in nodes.take_while(|_| !self.problems.is_full()) {
                 match node.table() {
                     Some(table) => self.contours_of_table(node, &table, plane, &mut asked),
                     None => self.own_quantity(node, plane).into_iter().for_each(|of| self.add_threshold(node, of, &mut asked)),
@@ -54,9 +55,9 @@ impl Reader<'_> {
 
     /// Lines need a plane: two axes of numbers in order, and nothing else that varies from design to design.
     fn check_plane(&self, entry: &Entry<'_>, plane: &Plane<'_>) {
-        let model = self.model;
+        let model = &self.model;
         let others = plane.design.iter().enumerate().filter(|(at, axis)| ![plane.x, plane.y].contains(at) && axis.count() > 1);
-        let names: Vec<_> = others.flat_map(|(_, axis)| axis.inputs()).map(|&input| model.inputs[input].name).collect();
+        let names: Vec<_> = others.flat_map(|(_, axis)| axis.inputs()).map(|&input| model.inputs[input].name.as_str()).collect();
         if !names.is_empty() {
             let names = list(names);
             self.problems.add(
@@ -111,7 +112,7 @@ impl Reader<'_> {
         if values.len() == 0 {
             self.problems.add(at.node.at, format!("{LABEL}: there are no values; give at least one, such as at = [0.1]"));
         }
-        values.for_each(|value| self.add_threshold(value, of, asked));
+        values.take_while(|_| !self.problems.is_full()).for_each(|value| self.add_threshold(value, of, asked));
     }
 
     /// Every change of a whole number.
@@ -143,6 +144,9 @@ impl Reader<'_> {
             }
             Some(Thresholds::At(values)) if values.contains(&value) => {
                 self.problems.add(node.at, format!("{LABEL}: {name} = {} is listed twice; drop one", shown_in(value, unit)));
+            }
+            Some(Thresholds::At(values)) if values.len() == MOST_THRESHOLDS => {
+                self.problems.add(node.at, format!("{LABEL}: {name} has more than {MOST_THRESHOLDS} lines; give fewer values"));
             }
             Some(Thresholds::At(values)) => values.push(value),
         }

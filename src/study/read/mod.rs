@@ -24,20 +24,28 @@ mod table;
 pub(crate) mod tests;
 mod value;
 
+pub(super) use quantities::MOST_OBJECTIVES;
+pub(super) use range::check_levels;
+pub(super) use report::{BINS, FRONT_BUDGET, MOST_CELLS, MOST_SAMPLE, MOST_TOP, MOST_VARIANTS};
+pub(super) use value::shown;
+
 use super::axis::{Axis, Method, Sample};
 use super::resolved::Study;
-use crate::error::{Error, Result};
-use crate::models::{MODELS, Model, find};
+use crate::error::Result;
+use crate::files::{STUDY_BYTES, read_bytes};
+use crate::likeness::closest;
+use crate::models::{Model, Models};
 use axes::{Claim, Role};
 use std::cell::{Cell, RefCell};
 use std::path::Path;
-use table::{Entry, Lines, Node, Problems, Table, list, shortened, suggestion};
-use value::{shown, whole};
+use std::sync::Arc;
+use table::{Entry, Lines, Node, Problems, Table, list, shortened};
+use value::whole;
 
 /// Most levels of one axis given by a rule: up to here an index is an exact f64.
-const MOST_LEVELS: u64 = 1 << 53;
+pub(super) const MOST_LEVELS: u64 = 1 << 53;
 /// Most scenarios of a study.
-const MOST_SCENARIOS: u64 = 1 << 32;
+pub(super) const MOST_SCENARIOS: u64 = 1 << 32;
 /// What a study file may hold.
 const TOP_LEVEL: &[&str] =
     &["model", "preset", "title", "design", "operation", "uncertainty", "fixed", "constraints", "objectives", "report", "sample"];
@@ -86,9 +94,10 @@ impl Study {
     /// Reads and checks a study file; returns the study and its text.
     ///
     /// # Errors
-    /// [`Error::Io`] if the file cannot be read, [`Error::Study`] with everything that is wrong with what it says.
+    /// [`Error::Io`](crate::error::Error::Io) if the file cannot be read, [`Error::Study`](crate::error::Error::Study) with everything that
+    /// is wrong with what it says.
     pub fn read(path: &Path) -> Result<(Self, String)> {
-        let bytes = std::fs::read(path).map_err(Error::io(path))?;
+        let bytes = read_bytes(path, STUDY_BYTES, "long lists of values go into a CSV file")?;
         let file = path.display().to_string();
         let text = String::from_utf8(bytes).map_err(|error| {
             let good = error.utf8_error().valid_up_to();
@@ -96,23 +105,42 @@ impl Study {
             let message = "this is not UTF-8 text; save the file in the encoding UTF-8".to_owned();
             StudyErrors { problems: vec![Problem { file: file.clone(), line, column, message }] }
         })?;
-        let study = Self::parse(&text, &file, path.parent().unwrap_or(Path::new("")))?;
+        let study = Self::parse_in(&text, &file, path.parent().unwrap_or(Path::new("")))?;
         Ok((study, text))
     }
 
-    /// Checks a study given as text. `file` is its name in messages, `folder` what paths of CSV files are relative to.
+    /// Checks a study given as text, such as `include_str!("study.toml")`. CSV files that it names are looked for in the current folder.
+    ///
+    /// # Errors
+    /// Everything that is wrong, in the order of the text, which messages call `study`.
+    pub fn parse(text: &str) -> std::result::Result<Self, StudyErrors> {
+        Self::parse_in(text, "study", Path::new("."))
+    }
+
+    /// The same where it comes from a file: `file` is its name in messages, `folder` what paths of CSV files are relative to.
     ///
     /// # Errors
     /// Everything that is wrong, in file order.
-    pub fn parse(text: &str, file: &str, folder: &Path) -> std::result::Result<Self, StudyErrors> {
+    pub fn parse_in(text: &str, file: &str, folder: &Path) -> std::result::Result<Self, StudyErrors> {
+        Self::parse_with(&Models::new(), text, file, folder)
+    }
+
+    /// The same where the model may be any of these.
+    ///
+    /// # Errors
+    /// As [`Study::parse_in`].
+    pub fn parse_with(models: &Models, text: &str, file: &str, folder: &Path) -> std::result::Result<Self, StudyErrors> {
         let problems = Problems::new(text, file);
         let study = syntax::understandable(text, &problems).and_then(|text| {
             // The syntax has been checked on this very text, so that there is nothing left to recover from.
             let (tree, _) = toml::de::DeTable::parse_recoverable(&text);
-            read_study(&Table::new(tree.get_ref(), 0), &problems, folder)
+            read_study(models, &Table::new(tree.get_ref(), 0), &problems, folder)
         });
         match (study, problems.into_sorted()) {
-            (Some(study), problems) if problems.is_empty() => Ok(study),
+            (Some(study), problems) if problems.is_empty() => study.check().map(|()| study).map_err(|problem| {
+                let message = format!("this study cannot be: {problem}");
+                StudyErrors { problems: vec![Problem { file: file.to_owned(), line: 1, column: 1, message }] }
+            }),
             (_, mut problems) => {
                 if problems.is_empty() {
                     // Not reachable as long as every `None` comes with a problem; better said than panicked about.
@@ -127,7 +155,7 @@ impl Study {
 
 /// What every part of the reader needs.
 struct Reader<'a> {
-    model: &'static Model,
+    model: &'a Arc<Model>,
     problems: &'a Problems<'a>,
     folder: &'a Path,
     /// The value of every input where the study gives none: the default, or what the preset says.
@@ -141,23 +169,23 @@ struct Reader<'a> {
 }
 
 /// Walks the whole file. `None` if a problem was reported that leaves no study.
-fn read_study(top: &Table<'_>, problems: &Problems<'_>, folder: &Path) -> Option<Study> {
-    read_study_of(read_model(top, problems), top, problems, folder)
+fn read_study(models: &Models, top: &Table<'_>, problems: &Problems<'_>, folder: &Path) -> Option<Study> {
+    read_study_of(read_model(models, top, problems), top, problems, folder)
 }
 
 /// The same for a model that has been found; `None` if that has a problem of its own.
-fn read_study_of(model: Option<&'static Model>, top: &Table<'_>, problems: &Problems<'_>, folder: &Path) -> Option<Study> {
-    check_top_level(top, model, problems);
+fn read_study_of(model: Option<Arc<Model>>, top: &Table<'_>, problems: &Problems<'_>, folder: &Path) -> Option<Study> {
+    check_top_level(top, model.as_deref(), problems);
     let title = top.get("title").and_then(|entry| text(entry.node, problems, "title"));
     let sample_table = section(top, "sample", problems);
     let sample = sample_table.as_ref().and_then(|table| read_sample(table, problems));
     let model = model?;
 
     let reader = Reader {
-        model,
+        model: &model,
         problems,
         folder,
-        base: read_preset(top, model, problems),
+        base: read_preset(top, &model, problems),
         sampled: top.get("sample").is_some(),
         claims: RefCell::default(),
         misnamed: Cell::default(),
@@ -179,14 +207,14 @@ fn read_study_of(model: Option<&'static Model>, top: &Table<'_>, problems: &Prob
 }
 
 /// The model that the file names.
-fn read_model(top: &Table<'_>, problems: &Problems<'_>) -> Option<&'static Model> {
-    let names = || list(MODELS.iter().map(|model| model.name));
+fn read_model(models: &Models, top: &Table<'_>, problems: &Problems<'_>) -> Option<Arc<Model>> {
+    let names = || list(models.iter().map(|model| model.name.as_str()));
     let Some(entry) = top.get("model") else {
         problems.add_if_complete(0, format!("no model is named; write model = \"...\", models are: {}", names()));
         return None;
     };
     let name = text(entry.node, problems, "model")?;
-    let model = find(&name);
+    let model = models.find(&name);
     if model.is_none() {
         problems.add(entry.node.at, format!("unknown model \"{}\"; models are: {}", shortened(&name), names()));
     }
@@ -202,7 +230,7 @@ fn read_preset(top: &Table<'_>, model: &Model, problems: &Problems<'_>) -> Vec<f
 
 /// Reports keys at the top level that mean nothing.
 fn check_top_level(top: &Table<'_>, model: Option<&Model>, problems: &Problems<'_>) {
-    for entry in top.unknown(TOP_LEVEL) {
+    for entry in top.unknown(TOP_LEVEL).take_while(|_| !problems.is_full()) {
         let key = entry.key;
         // The likely mistake: a value of the model written without a table.
         let misplaced = model.and_then(|model| {
@@ -214,7 +242,7 @@ fn check_top_level(top: &Table<'_>, model: Option<&Model>, problems: &Problems<'
                 None
             }
         });
-        let remedy = match (misplaced, suggestion(key, TOP_LEVEL)) {
+        let remedy = match (misplaced, closest(key, TOP_LEVEL)) {
             (Some(remedy), _) => remedy.to_owned(),
             (None, Some(close)) => format!("did you mean \"{close}\"?"),
             (None, None) => format!("a study has {}", list(TOP_LEVEL)),
@@ -281,7 +309,7 @@ impl Reader<'_> {
         let named = self.claims.borrow().iter().any(|claim| claim.role == Role::Design);
         let problems = self.problems;
         if design.is_empty() && !named && top.get("design").is_none_or(|entry| entry.node.table().is_some_and(|t| t.entries.is_empty())) {
-            let example = self.model.inputs.first().map_or("", |input| input.name);
+            let example = self.model.inputs.first().map_or("", |input| &input.name);
             problems.add_if_complete(
                 at(&["design"]),
                 format!("there is nothing to choose; name at least one input in [design], such as {example} = [...]"),
@@ -309,13 +337,13 @@ impl Reader<'_> {
         let asks = |key: &&str| report.is_some_and(|table| table.get(key).is_some());
         let broken = top.get("objectives").is_some() && objectives.is_none() || top.get("report").is_some() && report.is_none();
         let empty = objectives.is_none_or(|table| table.entries.is_empty());
-        if empty && !broken && !["top", "histograms", "maps", "variants"].iter().any(asks) {
+        if empty && !broken && !["top", "histograms", "maps", "sample", "variants"].iter().any(asks) {
             let example = self.some_output();
             self.problems.add_if_complete(
                 objectives.map_or(0, |table| table.at),
                 format!(
                     "the study asks for nothing; name an objective in [objectives], such as {example} = \"min\", \
-                     or top, histograms, maps or variants in [report]"
+                     or top, histograms, maps, a sample or variants in [report]"
                 ),
             );
         }

@@ -2,14 +2,15 @@
 
 use super::super::resolved::{Constraint, Goal, Objective, Quantity};
 use super::axes::Role;
-use super::table::{Entry, Table, shortened, suggestion};
+use super::table::{Entry, Table, shortened};
 use super::value::{measured, shown_in};
 use super::{Reader, choice};
+use crate::likeness::closest;
 use crate::units::Unit;
 use toml::de::DeValue;
 
 /// Most objectives of a study.
-const MOST_OBJECTIVES: usize = 6;
+pub(in super::super) const MOST_OBJECTIVES: usize = 6;
 /// The two directions as they are written.
 pub(super) const GOALS: &[(&str, Goal)] = &[("min", Goal::Min), ("max", Goal::Max)];
 
@@ -23,9 +24,14 @@ impl Reader<'_> {
     pub(super) fn quantity(&self, name: &str, at: usize, label: &str) -> Option<Quantity> {
         let found = self.find_quantity(name);
         if found.is_none() {
-            let names: Vec<_> =
-                self.model.outputs.iter().map(|output| output.name).chain(self.model.inputs.iter().map(|input| input.name)).collect();
-            let remedy = match suggestion(name, &names) {
+            let names: Vec<_> = self
+                .model
+                .outputs
+                .iter()
+                .map(|output| output.name.as_str())
+                .chain(self.model.inputs.iter().map(|input| input.name.as_str()))
+                .collect();
+            let remedy = match closest(name, &names) {
                 Some(close) => format!("did you mean \"{close}\"?"),
                 None => format!("beltspace models {} lists them", self.model.name),
             };
@@ -57,7 +63,7 @@ impl Reader<'_> {
             self.problems.add_if_complete(at, message);
             return None;
         }
-        if let Some((claim, word)) = claimed.find_map(|claim| Some((claim, claim.word?))) {
+        if let Some((claim, word)) = claimed.find_map(|claim| Some((claim, claim.word.as_ref()?))) {
             let place = format!("[{}], line {}", claim.role.name(), self.problems.line_number(claim.at));
             self.problems.add(at, format!("{label}: \"{name}\" takes \"{word}\" in {place}, which is no number; give it numbers only"));
             return None;
@@ -86,7 +92,7 @@ impl Reader<'_> {
 
     /// The `[constraints]` table.
     pub(super) fn constraints(&self, table: &Table<'_>, fixed: &[f64]) -> Vec<Constraint> {
-        table.entries.iter().filter_map(|entry| self.constraint(entry, fixed)).collect()
+        table.entries.iter().take_while(|_| !self.problems.is_full()).filter_map(|entry| self.constraint(entry, fixed)).collect()
     }
 
     fn constraint(&self, entry: &Entry<'_>, fixed: &[f64]) -> Option<Constraint> {
@@ -142,7 +148,7 @@ impl Reader<'_> {
                 ),
             );
         }
-        table.entries.iter().filter_map(|entry| self.objective(entry, fixed)).collect()
+        table.entries.iter().take_while(|_| !self.problems.is_full()).filter_map(|entry| self.objective(entry, fixed)).collect()
     }
 
     fn objective(&self, entry: &Entry<'_>, fixed: &[f64]) -> Option<Objective> {

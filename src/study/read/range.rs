@@ -3,7 +3,7 @@
 use super::super::axis::Levels;
 use super::axes::Role;
 use super::table::Table;
-use super::value::{input_number, measured, shown, shown_in, whole};
+use super::value::{checked, input_number, measured, shown, shown_in, whole};
 use super::{MOST_LEVELS, Reader, choice};
 use crate::models::Input;
 use crate::units::NONE;
@@ -30,6 +30,57 @@ impl Ends {
     /// Least distance at which levels differ, in the same measure.
     fn least_step(self) -> f64 {
         if self.log { LEAST_STEP } else { LEAST_STEP * self.from.abs().max(self.to.abs()) }
+    }
+}
+
+/// Levels that come from elsewhere than a study's text must be such as a text gives.
+pub(in super::super) fn check_levels(levels: &Levels, input: &Input) -> Result<(), String> {
+    if !matches!(levels, Levels::List(_)) && input.is_enumeration() {
+        return Err(format!("{} takes words only, and a range has none", input.name));
+    }
+    let counted = |count: u64| {
+        let good = (1..=MOST_LEVELS).contains(&count);
+        if good { Ok(()) } else { Err(format!("{count} levels are out of range; there must be 1 to {MOST_LEVELS}")) }
+    };
+    let ends = |from, to, log| {
+        let ends = Ends { from: checked(from, input)?, to, log };
+        check_ends(ends, input).map(|()| ends)
+    };
+    match *levels {
+        Levels::List(ref values) => match values.iter().find(|&&value| !input.accepts(value)) {
+            Some(&value) => checked(value, input).map(|_| ()),
+            None if values.is_empty() => Err("the list is empty; give at least one value".to_owned()),
+            None => Ok(()),
+        },
+        Levels::Even { from, to, count, log } => {
+            counted(count)?;
+            checked(to, input)?;
+            even(ends(from, to, log)?, count, input)?;
+            within(levels, input)
+        }
+        Levels::Step { from, step, count, log } => {
+            counted(count)?;
+            if !step.is_finite() {
+                return Err(format!("the step {step} cannot be used; give a finite number"));
+            }
+            checked_step(step, input)?;
+            within(levels, input)?;
+            stepped(ends(from, levels.value(count - 1), log)?, step, input).map(|_| ())
+        }
+        Levels::Continuous { from, to, log } => {
+            checked(to, input)?;
+            ends(from, to, log)?;
+            if from == to { Err(format!("from and to are both {}; write the value alone", shown(from))) } else { Ok(()) }
+        }
+    }
+}
+
+/// The ends are in range, but a step may go beyond by its rounding.
+fn within(levels: &Levels, input: &Input) -> Result<(), String> {
+    let (low, high) = levels.ends();
+    match [low, high].into_iter().find(|&level| !input.accepts(level)) {
+        Some(beyond) => Err(format!("the level {} is out of range; it must be {}; use count", shown(beyond), input.valid.in_words())),
+        None => Ok(()),
     }
 }
 
@@ -60,7 +111,7 @@ impl Reader<'_> {
         let count = table.get("count").map(|entry| whole(entry, problems, label, 1, MOST_LEVELS));
         let step = table.get("step").map(|entry| {
             let unit = if log == Some(true) { NONE } else { input.unit };
-            let step = measured(entry.node, unit).and_then(|step| self.checked_step(step, input));
+            let step = measured(entry.node, unit).and_then(|step| checked_step(step, input));
             step.map_err(|error| problems.add(entry.node.at, format!("{label}: {error}"))).ok()
         });
         if let (Some(_), Some(entry)) = (count, table.get("step")) {
@@ -71,58 +122,15 @@ impl Reader<'_> {
             return None;
         }
         let ends = Ends { from: from?, to: to?, log: log? };
-        let levels = self.check_ends(ends, input).and_then(|()| match (count, step) {
+        let levels = check_ends(ends, input).and_then(|()| match (count, step) {
             (Some(count), _) => count.map(|count| even(ends, count, input)).transpose(),
             (_, Some(step)) => step.map(|step| stepped(ends, step, input)).transpose(),
             (None, None) if input.integer => stepped(ends, 1.0, input).map(Some),
             (None, None) => self.unruled(ends, role).map(Some),
         });
         let levels = levels.map_err(|error| problems.add(table.at, format!("{label}: {error}"))).ok().flatten()?;
-        // The ends are in range, but a step may go beyond by its rounding.
-        let (low, high) = levels.ends();
-        if let Some(beyond) = [low, high].into_iter().find(|&level| !input.accepts(level)) {
-            let range = input.valid.in_words();
-            problems.add(table.at, format!("{label}: the level {} is out of range; it must be {range}; use count", shown(beyond)));
-            return None;
-        }
+        within(&levels, input).map_err(|error| problems.add(table.at, format!("{label}: {error}"))).ok()?;
         Some(levels)
-    }
-
-    /// A step must lead somewhere, and an integer input to whole numbers.
-    fn checked_step(&self, step: f64, input: &Input) -> Result<f64, String> {
-        if step <= 0.0 {
-            let remedy = "step must be greater than 0; to run downwards use count";
-            return Err(format!("the step {} leads nowhere; {remedy}", shown(step)));
-        }
-        if input.integer && step.fract() != 0.0 {
-            return Err(format!(
-                "the step {} is not a whole number, but {} takes whole numbers only; use step = 1",
-                shown(step),
-                input.name
-            ));
-        }
-        Ok(step)
-    }
-
-    /// What holds for every range.
-    fn check_ends(&self, ends: Ends, input: &Input) -> Result<(), String> {
-        let Ends { from, to, log } = ends;
-        if log && input.integer {
-            return Err("logarithmic levels of a whole number are not whole; list them, such as [1, 10, 100]".to_owned());
-        }
-        if log && (from <= 0.0 || to <= 0.0) {
-            let end = if from <= 0.0 { from } else { to };
-            return Err(format!("logarithmic spacing cannot reach {}; from and to must be greater than 0", shown(end)));
-        }
-        // Levels are computed as i * width / n: that must not overflow.
-        let most = if log { 300.0 } else { 1e290 };
-        if ends.width().abs() > most {
-            return Err(format!("from {} to {} is too wide to compute with; narrow the range", shown(from), shown(to)));
-        }
-        if input.integer && from.abs().max(to.abs()) > MOST_LEVELS as f64 {
-            return Err(format!("whole numbers beyond {} are not exact; narrow the range", shown(MOST_LEVELS as f64)));
-        }
-        Ok(())
     }
 
     /// A range with neither count nor step: for sampled designs only.
@@ -137,6 +145,39 @@ impl Reader<'_> {
             _ => Err(format!("a range needs count or step, such as {example}; only [design] can be sampled")),
         }
     }
+}
+
+/// A step must lead somewhere, and an integer input to whole numbers.
+fn checked_step(step: f64, input: &Input) -> Result<f64, String> {
+    if step <= 0.0 {
+        let remedy = "step must be greater than 0; to run downwards use count";
+        return Err(format!("the step {} leads nowhere; {remedy}", shown(step)));
+    }
+    if input.integer && step.fract() != 0.0 {
+        return Err(format!("the step {} is not a whole number, but {} takes whole numbers only; use step = 1", shown(step), input.name));
+    }
+    Ok(step)
+}
+
+/// What holds for every range.
+fn check_ends(ends: Ends, input: &Input) -> Result<(), String> {
+    let Ends { from, to, log } = ends;
+    if log && input.integer {
+        return Err("logarithmic levels of a whole number are not whole; list them, such as [1, 10, 100]".to_owned());
+    }
+    if log && (from <= 0.0 || to <= 0.0) {
+        let end = if from <= 0.0 { from } else { to };
+        return Err(format!("logarithmic spacing cannot reach {}; from and to must be greater than 0", shown(end)));
+    }
+    // Levels are computed as i * width / n: that must not overflow.
+    let most = if log { 300.0 } else { 1e290 };
+    if ends.width().abs() > most {
+        return Err(format!("from {} to {} is too wide to compute with; narrow the range", shown(from), shown(to)));
+    }
+    if input.integer && from.abs().max(to.abs()) > MOST_LEVELS as f64 {
+        return Err(format!("whole numbers beyond {} are not exact; narrow the range", shown(MOST_LEVELS as f64)));
+    }
+    Ok(())
 }
 
 /// `count` levels from end to end.

@@ -1,7 +1,8 @@
 //! The `[report]` table: what else to report.
 
 use super::super::axis::Axis;
-use super::super::resolved::{Best, Goal, HistogramSpec, MapSpec, Objective, Quantity, Report, TopSpec};
+use super::super::check::MOST_PICTURES;
+use super::super::resolved::{Best, Goal, HistogramSpec, MapSpec, Objective, Quantity, Report, SampleSpec, TopSpec};
 use super::axes::Role;
 use super::contours::Plane;
 use super::quantities::GOALS;
@@ -12,15 +13,18 @@ use crate::models::Worse;
 use toml::de::DeValue;
 
 /// Points that a front may have unless the study says otherwise, and at most.
-const FRONT_BUDGET: (u64, u64) = (1_000_000, 1_000_000_000);
+pub(in super::super) const FRONT_BUDGET: (u64, u64) = (1_000_000, 1_000_000_000);
 /// Bins of a histogram unless the study says otherwise, and at most.
-const BINS: (usize, u64) = (50, 100_000);
+pub(in super::super) const BINS: (usize, u64) = (50, 100_000);
 /// Most designs of the top list.
-const MOST_TOP: u64 = 1_000_000;
+pub(in super::super) const MOST_TOP: u64 = 1_000_000;
+/// Most designs of a sample of the feasible ones, and its seed unless the study says otherwise.
+pub(in super::super) const MOST_SAMPLE: u64 = 1_000_000;
+const SEED: u64 = 0;
 /// Most designs of a list of all.
-const MOST_VARIANTS: u64 = 10_000;
+pub(in super::super) const MOST_VARIANTS: u64 = 10_000;
 /// Most cells of a map.
-const MOST_CELLS: u64 = 1 << 26;
+pub(in super::super) const MOST_CELLS: u64 = 1 << 26;
 
 /// What the parts of a report refer to.
 struct Known<'a> {
@@ -51,7 +55,7 @@ impl Reader<'_> {
         let mut report = Report { front_budget: FRONT_BUDGET.0, ..Report::default() };
         let Some(table) = table else { return report };
         let known = Known { named, objectives, design, fixed };
-        table.check_keys(self.problems, "[report]", &["columns", "top", "histograms", "maps", "front_budget", "variants"]);
+        table.check_keys(self.problems, "[report]", &["columns", "top", "histograms", "maps", "sample", "front_budget", "variants"]);
         if let Some(entry) = table.get("columns") {
             report.columns = self.columns_of_report(entry, &known);
         }
@@ -63,11 +67,31 @@ impl Reader<'_> {
             items("histograms", "{ of = \"...\", bins = 50 }").iter().filter_map(|table| self.histogram(table, &known)).collect();
         report.maps =
             items("maps", "{ x = \"...\", y = \"...\", value = \"...\" }").iter().filter_map(|table| self.map(table, &known)).collect();
+        report.sample = table.get("sample").and_then(|entry| self.sample(entry));
         if let Some(budget) = table.get("front_budget").and_then(|entry| whole(entry, self.problems, "[report]", 1, FRONT_BUDGET.1)) {
             report.front_budget = budget;
         }
         report.variants = table.get("variants").is_some_and(|entry| self.variants(entry, design));
         report
+    }
+
+    /// A number of designs, or a table with it.
+    fn sample(&self, entry: &Entry<'_>) -> Option<SampleSpec> {
+        let (label, example) = ("sample", "sample = 2000 or { count = 2000, seed = 1 }");
+        let Some(table) = entry.node.table() else {
+            let DeValue::Integer(_) = entry.node.value else {
+                let found = entry.node.found();
+                self.problems.add(entry.node.at, format!("{label}: found {found}, wanted a number of designs, such as {example}"));
+                return None;
+            };
+            let count = whole(entry, self.problems, "[report]", 1, MOST_SAMPLE)?;
+            return Some(SampleSpec { count: usize::try_from(count).ok()?, seed: SEED });
+        };
+        let good = table.check_keys(self.problems, label, &["count", "seed"]);
+        let count = self.needed(&table, "count", label, example).and_then(|it| whole(it, self.problems, label, 1, MOST_SAMPLE));
+        let seed = table.get("seed").map_or(Some(SEED), |it| whole(it, self.problems, label, 0, u64::MAX));
+        let (count, seed) = (count?, seed?);
+        if good { Some(SampleSpec { count: usize::try_from(count).ok()?, seed }) } else { None }
     }
 
     /// Is every design to be listed?
@@ -106,6 +130,10 @@ impl Reader<'_> {
         if nodes.len() == 0 {
             self.problems.add(entry.node.at, format!("{label}: the list is empty; write [{example}] or drop the line"));
         }
+        if nodes.len() > MOST_PICTURES {
+            self.problems.add(entry.node.at, format!("{label}: there are {}; at most {MOST_PICTURES} fit on a page", nodes.len()));
+            return Vec::new();
+        }
         nodes.filter_map(|node| self.table_of(node, label, example)).collect()
     }
 
@@ -132,7 +160,7 @@ impl Reader<'_> {
                 .add(entry.node.at, format!("columns: found {found}, wanted a list of names such as [\"{}\"]", self.some_output()));
             return columns;
         };
-        for node in nodes {
+        for node in nodes.take_while(|_| !self.problems.is_full()) {
             let Some(name) = text(node, self.problems, "columns") else { continue };
             let Some(quantity) = self.numeric(&name, node.at, "columns", known.fixed) else { continue };
             match quantity {
@@ -147,9 +175,9 @@ impl Reader<'_> {
     }
 
     /// An output for examples, one that a study is likely about.
-    pub(super) fn some_output(&self) -> &'static str {
-        let outputs = self.model.outputs;
-        outputs.iter().find(|output| output.name.contains("force")).or(outputs.first()).map_or("", |output| output.name)
+    pub(super) fn some_output(&self) -> &str {
+        let outputs = &self.model.outputs;
+        outputs.iter().find(|output| output.name.contains("force")).or(outputs.first()).map_or("", |output| &output.name)
     }
 
     fn top(&self, table: &Table<'_>, known: &Known<'_>) -> Option<TopSpec> {

@@ -11,10 +11,23 @@ use toml::de::{DeTable, DeValue};
 
 /// Most syntax errors that are reported.
 const MOST_ERRORS: usize = 25;
+/// Bytes of a text beyond which the first error is the only one that is told: something as large as a table of values that is no TOML
+/// may have an error for every byte, and each takes memory and time.
+const LARGE: usize = 1 << 16;
 
 /// Reports the syntax errors of a text. Returns the text without the statements that have some, every other byte at its
 /// place, or `None` if the rest makes no sense either.
 pub(super) fn understandable<'t>(text: &'t str, problems: &Problems<'_>) -> Option<Cow<'t, str>> {
+    if text.len() > LARGE {
+        return match DeTable::parse(text) {
+            Ok(_) => Some(Cow::Borrowed(text)),
+            Err(error) => {
+                problems.mark_incomplete();
+                problems.add(start(&error), explained(&error, text));
+                None
+            }
+        };
+    }
     let (_, errors) = DeTable::parse_recoverable(text);
     if errors.is_empty() {
         return Some(Cow::Borrowed(text));

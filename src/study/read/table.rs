@@ -1,6 +1,7 @@
 //! Tables of the file in file order, positions in characters, and the list of problems.
 
 use super::Problem;
+use crate::likeness::closest;
 use std::cell::{Cell, RefCell};
 use std::path::Path;
 use toml::Spanned;
@@ -10,6 +11,8 @@ use toml::de::{DeTable, DeValue};
 pub(super) struct Lines<'t> {
     text: &'t str,
     starts: Vec<usize>,
+    /// Where the last visible character ends.
+    end: usize,
 }
 
 impl<'t> Lines<'t> {
@@ -18,7 +21,7 @@ impl<'t> Lines<'t> {
         // A byte order mark is invisible in an editor and takes no column.
         let first = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
         let starts = std::iter::once(first).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
-        Self { text, starts }
+        Self { text, starts, end: text.trim_end().len() }
     }
 
     /// Index of the line that holds the byte `at`.
@@ -42,10 +45,15 @@ impl<'t> Lines<'t> {
         &self.text[self.range(index)]
     }
 
+    /// The byte `at`, or what stands for it where there is nothing to be seen.
+    fn visible(&self, at: usize) -> usize {
+        at.min(self.end).max(self.starts[0])
+    }
+
     /// Line and column of the byte `at`, from 1, the column in characters. What lies behind the last visible character
     /// of the text is placed there: an editor has no place beyond.
     pub(super) fn position(&self, at: usize) -> (usize, usize) {
-        let at = at.min(self.text.trim_end().len()).max(self.starts[0]);
+        let at = self.visible(at);
         let index = self.index(at);
         let before = &self.text.as_bytes()[self.starts[index]..at];
         // Bytes that go on with a character are not counted, so that `at` need not be a boundary.
@@ -53,22 +61,32 @@ impl<'t> Lines<'t> {
     }
 }
 
+/// Most problems that are told of one study: nobody mends more at a time, and to find each takes a look at its line.
+const MOST_PROBLEMS: usize = 100;
+/// Most characters of a message.
+const MOST_CHARACTERS: usize = 2000;
+
 /// The problems found so far.
 pub(super) struct Problems<'t> {
     pub(super) lines: Lines<'t>,
     file: &'t str,
     found: RefCell<Vec<(usize, Problem)>>,
     incomplete: Cell<bool>,
+    /// Was anything left out or unread because of so many?
+    more: Cell<bool>,
 }
 
 impl<'t> Problems<'t> {
     /// None yet in this text.
     pub(super) fn new(text: &'t str, file: &'t str) -> Self {
-        Self { lines: Lines::new(text), file, found: RefCell::default(), incomplete: Cell::new(false) }
+        Self { lines: Lines::new(text), file, found: RefCell::default(), incomplete: Cell::new(false), more: Cell::new(false) }
     }
 
     /// Adds a problem at a byte of the study file.
     pub(super) fn add(&self, at: usize, message: impl AsRef<str>) {
+        if self.is_full() {
+            return;
+        }
         let (line, column) = self.lines.position(at);
         self.push(at, self.file.to_owned(), line, column, message.as_ref());
     }
@@ -82,6 +100,9 @@ impl<'t> Problems<'t> {
 
     /// Adds a problem in a CSV file that the study names at the byte `at`.
     pub(super) fn add_in(&self, at: usize, csv: &str, line: usize, column: usize, message: impl AsRef<str>) {
+        if self.is_full() {
+            return;
+        }
         // Named as the study itself is: relative to where the user is.
         let file = Path::new(self.file).parent().unwrap_or(Path::new("")).join(csv);
         self.push(at, file.display().to_string(), line, column, message.as_ref());
@@ -89,8 +110,19 @@ impl<'t> Problems<'t> {
 
     fn push(&self, at: usize, file: String, line: usize, column: usize, message: &str) {
         // One problem is one line, whatever the file puts into a quoted text.
-        let message = message.chars().flat_map(|c| if c.is_control() { c.escape_default().collect::<Vec<_>>() } else { vec![c] }).collect();
+        let plain = message.chars().flat_map(|c| if c.is_control() { c.escape_default().collect::<Vec<_>>() } else { vec![c] });
+        let mut message: String = plain.take(MOST_CHARACTERS + 1).collect();
+        if let Some((end, _)) = message.char_indices().nth(MOST_CHARACTERS) {
+            message.replace_range(end.., "...");
+        }
         self.found.borrow_mut().push((at, Problem { file, line, column, message }));
+    }
+
+    /// Are there as many as are told? Whoever asks has more to read, which then need not be read.
+    pub(super) fn is_full(&self) -> bool {
+        let full = self.found.borrow().len() >= MOST_PROBLEMS;
+        self.more.set(full || self.more.get());
+        full
     }
 
     /// Parts of the file are not understood.
@@ -100,7 +132,8 @@ impl<'t> Problems<'t> {
 
     /// Line number of a byte, for messages that point elsewhere.
     pub(super) fn line_number(&self, at: usize) -> usize {
-        self.lines.position(at).0
+        // Asked for every row: the column would take a look at the whole line.
+        self.lines.index(self.lines.visible(at)) + 1
     }
 
     /// Number of problems so far.
@@ -114,6 +147,10 @@ impl<'t> Problems<'t> {
         found.sort_by_key(|&(at, _)| at);
         let mut problems: Vec<_> = found.into_iter().map(|(_, problem)| problem).collect();
         problems.dedup();
+        if let Some(last) = problems.last().filter(|_| self.more.get()) {
+            let message = format!("there may be more problems than these {}; mend them first", problems.len());
+            problems.push(Problem { message, ..last.clone() });
+        }
         problems
     }
 }
@@ -145,8 +182,8 @@ impl<'a> Node<'a> {
     pub(super) fn found(self) -> String {
         match self.value {
             DeValue::String(text) => format!("the text \"{}\"", shortened(text)),
-            DeValue::Integer(number) => format!("the number {number}"),
-            DeValue::Float(number) => format!("the number {number}"),
+            DeValue::Integer(number) => format!("the number {}", shortened(&number.to_string())),
+            DeValue::Float(number) => format!("the number {}", shortened(&number.to_string())),
             DeValue::Boolean(value) => value.to_string(),
             DeValue::Datetime(_) => "a date or time".to_owned(),
             DeValue::Array(_) => "a list".to_owned(),
@@ -192,8 +229,8 @@ impl<'a> Table<'a> {
 
     /// Reports keys that are none of these; says whether there was none.
     pub(super) fn check_keys(&self, problems: &Problems<'_>, label: &str, allowed: &[&str]) -> bool {
-        for entry in self.unknown(allowed) {
-            let remedy = match suggestion(entry.key, allowed) {
+        for entry in self.unknown(allowed).take_while(|_| !problems.is_full()) {
+            let remedy = match closest(entry.key, allowed) {
                 _ if is_top_level(entry.key) => TOP_LEVEL_REMEDY.to_owned(),
                 Some(close) => format!("did you mean \"{close}\"?"),
                 None if allowed.len() == 1 => format!("allowed is {}", list(allowed)),
@@ -213,19 +250,6 @@ pub(super) fn is_top_level(key: &str) -> bool {
 /// What to do about such a key in a table.
 pub(super) const TOP_LEVEL_REMEDY: &str = "it belongs in front of the first table";
 
-/// The name most like `name`, if one is like enough to be what was meant.
-pub(super) fn suggestion<'n>(name: &str, names: &[&'n str]) -> Option<&'n str> {
-    let name = name.to_lowercase();
-    // Nothing that long is a name; the distance takes quadratic time.
-    if name.is_empty() || name.len() > 80 {
-        return None;
-    }
-    let without_unit = names.iter().find(|known| known.to_lowercase().starts_with(&format!("{name}_")));
-    let near = || names.iter().map(|known| (strsim::damerau_levenshtein(&name, &known.to_lowercase()), known)).min_by_key(|&(d, _)| d);
-    let close = || near().filter(|&(distance, _)| distance <= (name.chars().count() / 3).max(1)).map(|(_, known)| known);
-    without_unit.or_else(close).copied()
-}
-
 /// Names one after the other.
 pub(super) fn list<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> String {
     names.into_iter().map(|name| name.as_ref().to_owned()).collect::<Vec<_>>().join(", ")
@@ -234,5 +258,5 @@ pub(super) fn list<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> String 
 /// A text of the user, cut off where it would fill the screen.
 pub(super) fn shortened(text: &str) -> String {
     const MOST: usize = 60;
-    if text.chars().count() <= MOST { text.to_owned() } else { text.chars().take(MOST).chain("...".chars()).collect() }
+    if text.chars().nth(MOST).is_none() { text.to_owned() } else { text.chars().take(MOST).chain("...".chars()).collect() }
 }

@@ -8,13 +8,14 @@ use super::{Problem, read_study_of};
 use crate::models::Model;
 use crate::models::tests::with_a_section;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Reads a study of a model that is in no list.
-pub(crate) fn study_of(model: &'static Model, text: &str) -> Result<Study, Vec<Problem>> {
+pub(crate) fn study_of(model: &Arc<Model>, text: &str) -> Result<Study, Vec<Problem>> {
     let problems = Problems::new(text, "study.toml");
     let study = syntax::understandable(text, &problems).and_then(|text| {
         let (tree, _) = toml::de::DeTable::parse_recoverable(&text);
-        read_study_of(Some(model), &Table::new(tree.get_ref(), 0), &problems, Path::new("tests"))
+        read_study_of(Some(model.clone()), &Table::new(tree.get_ref(), 0), &problems, Path::new("tests"))
     });
     let problems = problems.into_sorted();
     if problems.is_empty() { Ok(study.expect("there is no problem")) } else { Err(problems) }
@@ -23,7 +24,7 @@ pub(crate) fn study_of(model: &'static Model, text: &str) -> Result<Study, Vec<P
 /// What is wrong with a study of which this is all but the model and the objective.
 fn wrong(text: &str) -> Vec<String> {
     let text = format!("{text}\n[objectives]\ntorque_Nm = \"max\"\n");
-    let problems = study_of(with_a_section(), &text).expect_err("something is wrong");
+    let problems = study_of(&with_a_section(), &text).expect_err("something is wrong");
     problems.into_iter().map(|it| format!("{}:{}: {}", it.line, it.column, it.message)).collect()
 }
 
@@ -40,16 +41,16 @@ fn an_enumeration_is_fixed_listed_and_joined_by_its_words() {
         torque_Nm = "max"
     "#;
     let model = with_a_section();
-    let study = study_of(model, text).expect("it is right");
+    let study = study_of(&model, text).expect("it is right");
     let section = model.enumeration().expect("it has one");
     assert_eq!(study.design, [Axis::Single { input: section, levels: Levels::List(vec![1.0, 4.0]) }]);
     assert_eq!(study.describe()["design"][0]["values"], serde_json::json!(["machined", "pressed-cup"]));
     let joint = text.replace("section = [\"machined\", \"pressed-cup\"]", "cases = [{ section = \"welded-discs\", groove_count = 2 }]");
-    assert_eq!(study_of(model, &joint).expect("it is right").design[0].value(0, 0), 2.0);
+    assert_eq!(study_of(&model, &joint).expect("it is right").design[0].value(0, 0), 2.0);
     let fixed = text
         .replace("[design]", "[fixed]")
         .replace("[\"machined\", \"pressed-cup\"]", "\"double-groove\"\n[design]\ngroove_count = [1, 2]");
-    let study = study_of(model, &fixed).expect("it is right");
+    let study = study_of(&model, &fixed).expect("it is right");
     assert_eq!(study.fixed[section], 3.0);
     assert_eq!(study.describe()["fixed"]["section"], "double-groove");
 }
@@ -90,7 +91,7 @@ fn words_have_no_order_to_constrain_or_weigh_them_by() {
 fn a_preset_is_the_base_of_what_is_fixed() {
     let model = with_a_section();
     let section = model.enumeration().expect("it has one");
-    let study = |head: &str| study_of(model, &format!("{head}\n[design]\ngroove_count = [1, 2]\n[objectives]\ntorque_Nm = \"max\"\n"));
+    let study = |head: &str| study_of(&model, &format!("{head}\n[design]\ngroove_count = [1, 2]\n[objectives]\ntorque_Nm = \"max\"\n"));
     let welded = study("preset = \"welded\"").expect("it is right");
     assert_eq!((welded.fixed[0], welded.fixed[section]), (5.0, 2.0));
     assert_eq!(welded.describe()["fixed"]["section"], "welded-discs");

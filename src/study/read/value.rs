@@ -6,7 +6,7 @@ use crate::units::{Unit, parse_value};
 use toml::de::DeValue;
 
 /// A number in a message: as short as it can be, and never hundreds of digits.
-pub(super) fn shown(value: f64) -> String {
+pub(in super::super) fn shown(value: f64) -> String {
     if value == 0.0 || (1e-5..1e16).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
 }
 
@@ -98,7 +98,7 @@ fn or_word(error: String, input: &Input) -> String {
 }
 
 /// Is this a value that the input can take?
-fn checked(value: f64, input: &Input) -> Result<f64, String> {
+pub(super) fn checked(value: f64, input: &Input) -> Result<f64, String> {
     if !input.valid.contains(value) {
         let mut unit = String::new();
         if !input.unit.symbol.is_empty() {

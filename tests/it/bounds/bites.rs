@@ -49,7 +49,7 @@ fn a_wrong_count_a_lost_point_and_another_extreme_are_noticed() {
         let moved = |state: &mut State| state.extremes.largest[at] = None;
         assert!(objection(&moved).contains("the extremes"));
     }
-    assert!(objection(&|state| state.top = None).contains("the best"));
+    assert!(objection(&|state| state.reported.top.clear()).contains("the best"));
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Sweeps by bounds: whatever the study, the same as looking at every design.
 
 mod bites;
+mod left;
 mod structured;
 mod ways;
 
@@ -14,7 +15,7 @@ use beltspace::error::Error;
 use beltspace::plan::Plan;
 use beltspace::reduce::State;
 use beltspace::study::{Quantity, Study};
-use beltspace::sweep::{Control, Options};
+use beltspace::sweep::{Control, Settings};
 use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
@@ -73,7 +74,7 @@ fn guarded(check: impl FnOnce() -> Result<(), String>) -> Result<(), String> {
 /// A study without the lines that a failure does not need.
 fn smallest(text: &str) -> String {
     let fails = |text: &str| {
-        let Ok(study) = Study::parse(text, "random.toml", ".".as_ref()) else { return false };
+        let Ok(study) = Study::parse_in(text, "random.toml", ".".as_ref()) else { return false };
         let plan = Plan::new(study);
         refusal(&plan).is_none() && guarded(|| plain_difference(&Pipeline::new(&plan, text)).map(|_| ())).is_err()
     };
@@ -98,7 +99,7 @@ fn smallest(text: &str) -> String {
 
 /// One run of either kind; what both found, and the certificate. `None` if both refuse the front for its size.
 fn plain_difference(pipeline: &Pipeline<'_>) -> Result<Option<(State, Certificate)>, String> {
-    let options = Options { threads: 2, ..Options::default() };
+    let options = Settings { threads: 2, ..Settings::default() };
     let reference = match ways::one_by_one(pipeline, &options, None, &Control::default()) {
         Ok(swept) => swept.state,
         Err(Error::FrontBudget { .. }) => {
@@ -211,7 +212,7 @@ fn cover(draft: &Draft, plan: &Plan, state: &State, certificate: &Certificate, t
             had.insert(feature.to_owned());
         }
     };
-    note(study.model.name, true);
+    note(&study.model.name, true);
     let mixed =
         |line: &str| line.contains(" = [") && line.contains('"') && !line.contains('{') && line.chars().any(|it| it.is_ascii_digit());
     note("words and numbers on one axis", text.lines().any(mixed));

@@ -5,9 +5,10 @@ use crate::random::Random;
 use beltspace::bounds::Certificate;
 use beltspace::checkpoint::Checkpoint;
 use beltspace::error::{Error, Result as Outcome};
+use beltspace::files::Claim;
 use beltspace::plan::Plan;
 use beltspace::reduce::{State, Top};
-use beltspace::sweep::{Control, Options, Swept, sweep, sweep_by_bounds};
+use beltspace::sweep::{Control, Settings, Swept, sweep, sweep_by_bounds};
 use beltspace::tiles::Shard;
 use std::path::Path;
 use std::sync::atomic::Ordering;
@@ -30,11 +31,12 @@ pub fn difference(expected: &State, found: &State) -> Option<String> {
     if expected.extremes != found.extremes {
         return Some(format!("the extremes are {:?}, not {:?}", expected.extremes, found.extremes));
     }
-    let best = |state: &State| state.top.as_ref().map(Top::indices);
+    let best = |state: &State| state.reported.top.first().map(Top::indices);
     if best(expected) != best(found) {
         return Some(format!("the best are {:?}, not {:?}", best(expected), best(found)));
     }
-    (expected.histograms != found.histograms || expected.maps != found.maps).then(|| "histograms or maps differ".to_owned())
+    let others = |state: &State| (state.reported.histograms.clone(), state.reported.maps.clone());
+    (others(expected) != others(found)).then(|| "histograms or maps differ".to_owned())
 }
 
 /// What a certificate does not account for.
@@ -58,7 +60,7 @@ pub fn unaccounted(plan: &Plan, certificate: &Certificate, counted: u64, searche
 /// One run by bounds.
 pub fn by_bounds(
     pipeline: &Pipeline<'_>,
-    options: &Options,
+    options: &Settings,
     checkpoint: Option<&mut Checkpoint>,
     control: &Control,
 ) -> Outcome<(Swept, Certificate)> {
@@ -66,13 +68,13 @@ pub fn by_bounds(
 }
 
 /// One run design by design.
-pub fn one_by_one(pipeline: &Pipeline<'_>, options: &Options, checkpoint: Option<&mut Checkpoint>, control: &Control) -> Outcome<Swept> {
+pub fn one_by_one(pipeline: &Pipeline<'_>, options: &Settings, checkpoint: Option<&mut Checkpoint>, control: &Control) -> Outcome<Swept> {
     sweep(pipeline.plan, &pipeline.tables, &pipeline.reduction, options, checkpoint, control)
 }
 
 /// The whole study by bounds, its certificate checked.
 pub fn whole(pipeline: &Pipeline<'_>, threads: usize) -> Result<(State, Certificate), String> {
-    let options = Options { threads, ..Options::default() };
+    let options = Settings { threads, ..Settings::default() };
     let (swept, certificate) = by_bounds(pipeline, &options, None, &Control::default()).map_err(|error| error.to_string())?;
     let designs = pipeline.plan.designs();
     match unaccounted(pipeline.plan, &certificate, designs, designs) {
@@ -103,12 +105,13 @@ pub fn sharded(pipeline: &Pipeline<'_>, random: &mut Random, folder: &Path) -> S
 /// A run that is stopped again and again and goes on by the other method each time; with how often it was stopped.
 pub fn stopped(pipeline: &Pipeline<'_>, random: &mut Random, text: &str, usual: Duration, folder: &Path) -> Result<(State, u32), String> {
     let plan = pipeline.plan;
-    let mut checkpoint = Checkpoint::create(folder, &plan.study, text, Shard::WHOLE, plan.designs()).expect("a folder can be made");
+    let claim = Claim::new(folder, "a test").expect("nobody has it");
+    let mut checkpoint = Checkpoint::create(&claim, &plan.study, text, Shard::WHOLE, plan.designs()).expect("a folder can be made");
     let mut bounds = random.chance(0.5);
     for stops in 0.. {
         let control = Control::default();
         let patience = usual.mul_f64(random.between(0.0, 0.6));
-        let options = Options { shard: Shard::WHOLE, ..options(random, 7.max(plan.designs() / 2000)) };
+        let options = Settings { shard: Shard::WHOLE, ..options(random, 7.max(plan.designs() / 2000)) };
         let (done, until) = (std::sync::atomic::AtomicBool::new(false), Instant::now() + patience);
         let result = std::thread::scope(|scope| {
             if stops < STOPS {
@@ -133,8 +136,8 @@ pub fn stopped(pipeline: &Pipeline<'_>, random: &mut Random, text: &str, usual: 
             Err(error) => return Err(format!("after {stops} stops, by {}: {error}", if bounds { "bounds" } else { "single designs" })),
         }
         drop(checkpoint);
-        checkpoint = Checkpoint::open(folder).expect("what was done is kept");
-        checkpoint.require(&plan.study, Shard::WHOLE).expect("it is of this study");
+        checkpoint = Checkpoint::open(&claim).expect("what was done is kept");
+        checkpoint.saved().require(&plan.study, Shard::WHOLE).expect("it is of this study");
         bounds = !bounds;
     }
     unreachable!("the last run is not stopped")

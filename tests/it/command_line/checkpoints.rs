@@ -85,14 +85,17 @@ fn a_damaged_manifest_is_refused() {
     let whole = read(&manifest);
     for text in ["", "{}", "[]", &whole[..whole.len() / 2], &whole[1..]] {
         write(&checkpoint, "manifest.json", text);
-        for line in [RESUME, "merge half --out whole"] {
-            let err = ask(folder.path(), line).refusal(1);
-            assert!(err.contains("the manifest is damaged") && err.contains("half"), "{line}: {err}");
+        for (line, code) in [(RESUME, 2), ("merge half --out whole", 1)] {
+            let err = ask(folder.path(), line).refusal(code);
+            let told = if line == RESUME { "its manifest.json is none of this program" } else { "the manifest is damaged" };
+            assert!(err.contains(told) && err.contains("half"), "{line}: {err}");
         }
     }
-    write(&checkpoint, "manifest.json", &changed(&whole, &[("\"version\": 1", "\"version\": 999")]));
-    let err = ask(folder.path(), RESUME).refusal(1);
-    assert!(err.contains("another version of beltspace"), "{err}");
+    for other in ["\"version\": 1", "\"version\": 999"] {
+        write(&checkpoint, "manifest.json", &changed(&whole, &[("\"version\": 2", other)]));
+        let err = ask(folder.path(), RESUME).refusal(1);
+        assert!(err.contains("another version of beltspace"), "{err}");
+    }
 }
 
 /// A wrong digit keeps the file readable, but designs would be counted twice, left out or judged by another study without a word.
@@ -141,7 +144,7 @@ fn a_manifest_that_claims_other_designs_is_refused() {
     for (from, to) in [("\"end\": 12285", "\"end\": 6000"), ("\"start\": 0", "\"start\": 6000"), ("\"end\": 12285", "\"end\": 99999")] {
         std::fs::write(&manifest, changed(&whole, &[(from, to)])).expect("it can be written");
         let answer = ask(folder.path(), "sweep small.toml --out all --resume");
-        assert_eq!(answer.code, Some(1), "{to} in place of {from} was believed:\n{}{}", answer.out, answer.err);
+        assert_eq!(answer.code, Some(2), "{to} in place of {from} was believed:\n{}{}", answer.out, answer.err);
         assert!(answer.err.contains("manifest") && !folder.path().join("all/summary.json").exists(), "{}", answer.err);
     }
     std::fs::write(&manifest, whole).expect("it can be written");
@@ -185,7 +188,7 @@ fn an_incomplete_or_mixed_set_of_shards_is_refused() {
     }
     copy_folder(&folder.path().join("s2/checkpoint"), &folder.path().join("copy"));
     let err = ask(folder.path(), "merge s1 s2 copy s3 --out whole").refusal(2);
-    assert!(err.contains("shard 2/3 is there more than once: s2, copy"), "{err}");
+    assert!(err.contains("shard 2/3 is there more than once: s2; copy"), "{err}");
 }
 
 fn copy_folder(from: &Path, to: &Path) {
@@ -210,4 +213,29 @@ fn an_unfinished_shard_is_refused_until_it_is_finished() {
     let err = ask(folder.path(), "merge s --out whole").refusal(2);
     assert!(err.contains("s (shard 1/1) has") && err.contains("designs to go") && err.contains("--resume"), "{err}");
     assert!(!folder.path().join("whole").exists());
+}
+
+/// Shards may be as many as a number can say; what is missing is told in a few words.
+#[test]
+fn a_set_that_lacks_most_of_its_shards_is_refused_in_a_few_words() {
+    let folder = folder_with(
+        "small.toml",
+        &changed(
+            SMALL,
+            &[("count = 13", "count = 2"), ("count = 21", "count = 2"), ("count = 40", "count = 4")]
+                .map(|(from, to)| if from == "count = 40" { ("bins = 40", "bins = 4") } else { (from, to) }),
+        ),
+    );
+    let most = u64::MAX;
+    let cases = [
+        (1, most, format!("cannot merge: shards 2 to {most} of {most} are missing")),
+        (most, most, format!("cannot merge: shards 1 to {} of {most} are missing", most - 1)),
+        (7, 1_000_000, "cannot merge: shards 1 to 6 of 1000000 are missing; shards 8 to 1000000 of 1000000 are missing".to_owned()),
+        (2, 3, "cannot merge: shard 1/3 is missing; shard 3/3 is missing".to_owned()),
+    ];
+    for (number, of, told) in cases {
+        ask(folder.path(), &format!("sweep small.toml --shard {number}/{of} --out one --quiet --force")).text();
+        let err = ask(folder.path(), "merge one --out all").refusal(2);
+        assert_eq!(err.trim_end(), format!("error: {told}"));
+    }
 }

@@ -46,6 +46,7 @@ fn bounds_refuse_what_asks_for_every_design_and_say_what_to_do() {
     let refused = [
         ("histograms in [report]", report("histograms = [{ of = \"axial_force_N\", bins = 4 }]")),
         ("maps in [report]", report("maps = [{ x = \"band_thickness_mm\", y = \"band_count\", best = \"share\" }]")),
+        ("sample in [report]", report("sample = 100")),
         ("variants in [report]", changed(&report("variants = true"), &[("to = 0.50, count = 5", "to = 0.50, count = 2")])),
         ("[sample]", sampled("method = \"sobol\"\ncount = 1000")),
         ("cases in [design]", cases),
@@ -132,6 +133,68 @@ fn auto_says_why() {
     assert_eq!(chosen("grid.toml --method auto"), small);
     let (method, why) = chosen("small.toml");
     assert!(method == "exhaustive" && why.starts_with("bounds cannot serve the study: histograms in [report]"), "{why}");
+}
+
+/// A drive that bounds settle next to nothing of, at so many frictions; it takes a second or two to judge.
+fn slow_by_bounds(frictions: u32) -> String {
+    format!(
+        r#"model = "timing-belt"
+preset = "ohc-driven"
+[design]
+space_half_angle_deg = {{ from = 9.74, to = 11.84, count = 23 }}
+friction = {{ from = 0.332, to = 0.436, count = {frictions} }}
+pulley_speed_rpm = {{ from = 9030, to = 8510, count = 60 }}
+[uncertainty]
+tooth_compliance_um_per_N = [7.57, 7.2, 6.96]
+teeth_in_mesh = {{ from = 22, to = 23 }}
+[objectives]
+least_tooth_load_N = {{ goal = "min", resolution = 0.05 }}
+peak_tooth_load_N = {{ goal = "min", resolution = 0.02 }}
+"#
+    )
+}
+
+#[test]
+fn auto_begins_by_bounds_and_leaves_them_where_they_do_not_pay() {
+    let grid = include_str!("../../../studies/metal-grid.toml").replace("count = 37", "count = 174");
+    let folder = folder_with("grid.toml", &grid);
+    let run_of = |line: &str| {
+        let answer = ask(folder.path(), &format!("sweep {line} --no-report --engine cpu --out out --force"));
+        (answer.text().to_owned(), json_of(&folder.path().join("out/run.json")))
+    };
+    // 1e10 designs, which bounds settle in a second.
+    let (_, run) = run_of("grid.toml");
+    let why = run["method_chosen"].as_str().expect("it is said");
+    assert!(run["method"] == "bounds" && why.starts_with("judging every design would take about "), "{run}");
+    assert!(run["bounds_left"].is_null() && run["certificate"].is_object(), "{run}");
+    let check = |file: &str| ask(folder.path(), &format!("check {file}")).text().to_owned();
+    assert!(check("grid.toml").contains("\nmethod         bounds, at most about "), "{}", check("grid.toml"));
+
+    // As many frictions as take a good second here, on one thread.
+    let mut frictions = 20;
+    let began = loop {
+        write(folder.path(), "slow.toml", &slow_by_bounds(frictions));
+        let (text, run) = run_of("slow.toml --threads 1");
+        if run["method"] != "exhaustive" {
+            break (text, run);
+        }
+        assert_eq!(run["method_chosen"], "the study is small enough to judge every design", "{run}");
+        assert!(frictions < 10_000, "judging never takes a second: {run}");
+        frictions *= 3;
+    };
+    let (text, run) = began;
+    let (left, why) = (&run["bounds_left"], run["method_chosen"].as_str().expect("it is said"));
+    assert!(run["method"] == "bounds, then exhaustive" && run["certificate"].is_null(), "{run}");
+    assert!(why.contains("; bounds had settled ") && why.contains("judging the rest one by one"), "{why}");
+    let counted = left["designs_counted"].as_u64().expect("it is counted");
+    assert_eq!(Some(counted + left["designs_judged"].as_u64().expect("it is counted")), run["designs"].as_u64(), "{run}");
+    assert!(text.contains("\nbounds    left after ") && text.contains(" were judged one by one"), "{text}");
+    let found = files(&folder.path().join("out"));
+    run_of("slow.toml --method exhaustive");
+    assert_eq!(same_result(&files(&folder.path().join("out")), &found), Ok(()));
+    write(folder.path(), "slow.toml", &slow_by_bounds(2));
+    let small = "\nmethod         every design: the study is small enough to judge every design";
+    assert!(check("slow.toml").contains(small), "{}", check("slow.toml"));
 }
 
 #[test]

@@ -1,17 +1,25 @@
 //! The program as people run it: exit codes, messages, files, and what a killed run leaves behind.
 
+/// The budget of a front.
+mod budget;
 /// Checkpoints and shards that must not be used.
 mod checkpoints;
 /// Lines over maps, held against the models.
 mod contours;
+/// What was changed, and what is no file.
+mod mangled;
 /// Judging every design, or bounding boxes of them.
 mod method;
 /// `models` and `eval`.
 mod models_and_eval;
+/// Who a directory belongs to, and what in it is whose.
+mod ownership;
 /// Interrupted, divided and resumed runs.
 mod recovery;
 /// The page of a result.
 mod report;
+/// A sample of the feasible designs.
+mod sample;
 /// Scripts for a cluster, run by programs that stand in for its scheduler.
 #[cfg(unix)]
 mod slurm;
@@ -261,7 +269,7 @@ fn the_comparison_of_results_sees_a_changed_byte_and_a_missing_file() {
     });
     assert!(cut.starts_with("top.csv differs at byte"), "{cut}");
     assert_eq!(spoilt(|files| drop(files.remove("front.parquet"))), "front.parquet is only in the first");
-    assert_eq!(spoilt(|files| drop(files.insert("x.writing".to_owned(), Some(Vec::new())))), "x.writing is only in the second");
+    assert_eq!(spoilt(|files| drop(files.insert(".x.writing".to_owned(), Some(Vec::new())))), ".x.writing is only in the second");
     assert_eq!(spoilt(|files| drop(files.insert("checkpoint".to_owned(), None))), "checkpoint is a folder");
     assert!(spoilt(|files| drop(files.remove("run.json"))).ends_with("the second is no finished result"));
     let mut other = good.clone();

@@ -266,6 +266,14 @@ fn values_along_the_belt_rise_from_slack_to_tight() {
     assert!(err.contains("belt lifts") && !folder.path().join("none.svg").exists(), "{err}");
 }
 
+/// A load whose stresses are beyond what f64 holds has no picture.
+#[test]
+fn a_picture_of_what_overflows_is_refused() {
+    let folder = tempfile::tempdir().expect("a temporary directory");
+    let said = ask(folder.path(), "eval pulley --preset double-groove --set clamp_force_N=1e160 --plot p.svg").refusal(2);
+    assert!(said.contains("the status is \"overflow\"") && !folder.path().join("p.svg").exists(), "{said}");
+}
+
 #[test]
 fn a_design_of_a_study_is_what_the_front_says() {
     let folder = folder_with("small.toml", SMALL);
@@ -282,7 +290,9 @@ fn a_design_of_a_study_is_what_the_front_says() {
         for name in columns {
             let said = |column: &str| front.column(column)[row];
             let worst = &object["outputs"][name];
-            let (value, scenario) = (said(name).parse::<f64>().expect("a number"), said(&format!("{name}_scenario")));
+            // A design input is the same in every scenario and needs no column for it.
+            let scenario = if name == "band_count" { "0" } else { said(&format!("{name}_scenario")) };
+            let value = said(name).parse::<f64>().expect("a number");
             assert_eq!(worst["value"].as_f64().map(f64::to_bits), Some(value.to_bits()), "{name} of design {design}");
             assert_eq!(worst["scenario"].to_string(), scenario, "{name} of design {design}");
             // The same design in that scenario alone takes that value there.
@@ -320,6 +330,9 @@ fn a_profile_of_a_study_wants_a_scenario() {
     write(folder.path(), "belt.csv", "old");
     let err = ask(folder.path(), "eval load.toml --design 90000 --profile belt.csv").refusal(2);
     assert!(err.contains("add --scenario K, from 0 to 35") && read(&folder.path().join("belt.csv")) == "old", "{err}");
+    let err = ask(folder.path(), "eval load.toml --design 90000 --scenario 0 --profile belt.csv").refusal(2);
+    assert!(err.contains("belt.csv: a file is there that this program did not write"), "{err}");
+    std::fs::remove_file(folder.path().join("belt.csv")).expect("it is there");
     ask(folder.path(), "eval load.toml --design 90000 --scenario 0 --profile belt.csv").text();
     assert!(Csv::read(&folder.path().join("belt.csv")).numbers("tension_N").is_sorted());
 }

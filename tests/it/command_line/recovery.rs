@@ -2,6 +2,7 @@
 
 use super::{
     Files, SMALL, ask, ask_words, files, folder_with, json_of, large, large_result, larger, plain_run, program, same_result, small_result,
+    write,
 };
 use crate::random::Random;
 use std::path::Path;
@@ -38,11 +39,16 @@ fn kill(child: &mut Child) {
     child.wait().expect("the process can be waited for");
 }
 
+/// Is this the name of something that was being written?
+fn is_writing(name: &str) -> bool {
+    name.starts_with('.') && name.ends_with(".writing")
+}
+
 /// What a run that was killed may leave in its result directory: whole files, the mark of a finished result last.
 fn assert_nothing_is_half_written(out: &Path, plain: &Files) {
     let Ok(entries) = out.read_dir() else { return };
     let left: Files = if entries.count() > 0 { files(out) } else { return };
-    let visible = || left.iter().filter(|(name, _)| name.as_str() != "checkpoint" && !name.ends_with(".writing"));
+    let visible = || left.iter().filter(|(name, _)| name.as_str() != "checkpoint" && !is_writing(name));
     // These two say how a run went, and differ from run to run.
     let told = |name: &str| name == "run.json" || name == "report.html";
     for (name, bytes) in visible().filter(|(name, _)| !told(name)) {
@@ -157,7 +163,7 @@ fn a_run_killed_again_and_again_ends_with_the_same_result() {
     let (mut expected, mut result) = (plain.clone(), files(&out));
     // A kill after the mark of a finished result leaves one all the same, with the checkpoint still or without the page yet.
     if cut_short {
-        result.retain(|name, _| name != "checkpoint" && !name.ends_with(".writing"));
+        result.retain(|name, _| name != "checkpoint" && !is_writing(name));
         if !result.contains_key("report.html") {
             expected.remove("report.html");
         }
@@ -170,7 +176,8 @@ fn a_run_killed_while_it_writes_its_result_shows_nothing_half_written() {
     let folder = folder_with("small.toml", SMALL);
     let out = folder.path().join("out");
     let mut random = Random::new(0xf11e);
-    let early = ["study.toml.writing", "study.toml", "scenarios.csv", "front.csv", "front.parquet", "top.csv", "map-axial_force_N.csv"];
+    let early =
+        ["checkpoint/result", "checkpoint/result/front.csv", "study.toml", "scenarios.csv", "front.parquet", "map-axial_force_N.csv"];
     let mut hits = 0;
     for round in 0..60 {
         let seen = out.join(random.pick(&early));
@@ -194,16 +201,22 @@ fn a_run_killed_while_it_writes_its_result_shows_nothing_half_written() {
 
 #[test]
 fn a_result_that_cannot_be_written_can_be_resumed() {
-    let folder = folder_with("small.toml", SMALL);
+    let folder = folder_with("large.toml", &large());
     let out = folder.path().join("out");
-    // A folder in the place of a picture: writing fails halfway.
-    std::fs::create_dir_all(out.join("map-axial_force_N.svg")).expect("folders can be made");
-    let err = ask(folder.path(), "sweep small.toml --out out").refusal(1);
+    let in_the_way = out.join("map-axial_force_N.svg");
+    let mut child = start(folder.path(), "sweep large.toml --out out");
+    assert!(wait_until(&mut child, || out.join("checkpoint/manifest.json").exists()), "it ended before it could be disturbed");
+    // A folder in the place of a picture, which was not there when the run began.
+    std::fs::create_dir(&in_the_way).expect("folders can be made");
+    let err = super::Answer::from(child.wait_with_output().expect("the output can be read")).refusal(2);
+    assert!(err.contains("map-axial_force_N.svg") && err.contains("did not write"), "{err}");
+    assert!(!out.join("summary.json").exists() && !out.join("front.csv").exists(), "nothing is in place");
+    let err = ask(folder.path(), "sweep large.toml --out out --resume").refusal(2);
     assert!(err.contains("map-axial_force_N.svg"), "{err}");
-    assert!(!out.join("summary.json").exists());
-    std::fs::remove_dir(out.join("map-axial_force_N.svg")).expect("it is empty");
-    ask(folder.path(), "sweep small.toml --out out --resume").text();
-    assert_eq!(same_result(small_result(), &files(&out)), Ok(()));
+    std::fs::remove_dir(&in_the_way).expect("it is empty");
+    ask(folder.path(), "sweep large.toml --out out --resume").text();
+    assert_eq!(json_of(&out.join("run.json"))["designs"], 0, "nothing is judged again");
+    assert_eq!(same_result(large_result(), &files(&out)), Ok(()));
 }
 
 #[test]
@@ -277,16 +290,51 @@ fn two_runs_cannot_share_a_folder() {
     let manifest = folder.path().join("out/checkpoint/manifest.json");
     let mut child = start(folder.path(), "sweep large.toml --out out --threads 1");
     assert!(wait_until(&mut child, || manifest.exists()), "it ended before it could be disturbed");
-    let unfinished = ask(folder.path(), "sweep large.toml --out out").refusal(2);
-    assert!(unfinished.contains("out holds an unfinished run"), "{unfinished}");
-    for line in ["sweep large.toml --out out --resume", "sweep large.toml --out out --force", "merge out --out whole"] {
+    let who = format!("process {} on ", child.id());
+    for line in [
+        "sweep large.toml --out out",
+        "sweep large.toml --out ./out/../out --resume",
+        "sweep large.toml --out out --force",
+        "merge out --out whole",
+        "report out",
+    ] {
         let err = ask_words(folder.path(), &line.split_whitespace().collect::<Vec<_>>()).refusal(1);
-        assert!(err.contains("another beltspace is running here"), "{line}: {err}");
+        assert!(err.contains("another beltspace is at work here") && err.contains(&who), "{line}: {err}");
+        assert!(err.contains("beltspace sweep large.toml --out out --threads 1); wait for it"), "{line}: {err}");
     }
     assert!(child.try_wait().expect("it can be asked").is_none(), "the first run must go on");
     assert!(manifest.exists() && !folder.path().join("whole").exists());
     kill(&mut child);
+    let unfinished = ask(folder.path(), "sweep large.toml --out out").refusal(2);
+    assert!(unfinished.contains("out holds an unfinished run"), "{unfinished}");
     // The folder of a process that is gone is free.
     let err = ask(folder.path(), "merge out --out whole").refusal(2);
     assert!(err.contains("designs to go"), "{err}");
+}
+
+/// Where threads cannot be started, as where processes or memory are limited, those that can do the work.
+#[cfg(target_os = "linux")]
+#[test]
+fn threads_that_cannot_be_had_are_done_without() {
+    let folder = folder_with("small.toml", SMALL);
+    // Stacks of 64 MB in an address space of 1 GB.
+    let limited = |options: &str| {
+        let line = format!("ulimit -v 1000000; RUST_MIN_STACK=67108864 exec \"$0\" sweep {options} --threads 64 --engine cpu");
+        let run = program_named("sh").args(["-c", &line, env!("CARGO_BIN_EXE_beltspace")]).current_dir(folder.path()).output();
+        super::Answer::from(run.expect("sh can be run"))
+    };
+    let answer = limited("small.toml --out out");
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    assert!(answer.err.contains("warning: 64 threads were wanted, and only ") && !answer.err.contains("panicked"), "{}", answer.err);
+    let out = folder.path().join("out");
+    let threads = json_of(&out.join("run.json"))["threads"].as_u64();
+    assert!(threads.is_some_and(|it| (1..20).contains(&it)), "{threads:?}");
+    assert_eq!(same_result(small_result(), &files(&out)), Ok(()));
+    // By bounds too.
+    let grid = include_str!("../../../studies/metal-grid.toml").replace("count = 37", "count = 9");
+    write(folder.path(), "grid.toml", &grid);
+    let answer = limited("grid.toml --out bounds --method bounds");
+    assert!(answer.code == Some(0) && !answer.err.contains("panicked"), "{}", answer.err);
+    ask(folder.path(), "sweep grid.toml --out plain --method exhaustive").text();
+    assert_eq!(same_result(&files(&folder.path().join("plain")), &files(&folder.path().join("bounds"))), Ok(()));
 }

@@ -56,11 +56,19 @@ fn a_result_has_all_its_files_and_columns() {
 
     let front = Csv::read(&out.join("front.csv"));
     let inputs = ["design_index", "groove_angle_deg", "band_thickness_mm", "band_count", "traction"].map(str::to_owned);
-    let judged = ["axial_force_N", "stress_margin", "band_count", "slip_margin", "stress_margin_constrained", "max_stress_MPa"];
+    // The objective band_count has its column among the design inputs.
+    let judged = ["axial_force_N", "stress_margin", "slip_margin", "stress_margin_constrained", "max_stress_MPa"];
     let pairs = judged.iter().flat_map(|name| [(*name).to_owned(), format!("{name}_scenario")]);
     let header: Vec<_> = inputs.into_iter().chain(pairs).collect();
     assert_eq!(front.header, header);
     assert_eq!(Csv::read(&out.join("top.csv")).header, header);
+    let parquet = std::fs::File::open(out.join("front.parquet")).expect("it is there");
+    let parquet = SerializedFileReader::new(parquet).expect("it can be read");
+    let fields = parquet.metadata().file_metadata().schema().get_fields();
+    assert_eq!(fields.iter().map(|it| it.name().to_owned()).collect::<Vec<_>>(), header);
+    let about = parquet.metadata().file_metadata().key_value_metadata().expect("columns are described");
+    let said = |key: &str| about.iter().find(|it| it.key == key).and_then(|it| it.value.clone()).expect("it is described");
+    assert_eq!([said("band_count.role"), said("band_count.direction")], ["design, objective", "min"]);
 
     // Objectives as "less is better"; best first, then index, and nobody beaten.
     let index = front.numbers("design_index");
@@ -184,7 +192,7 @@ fn a_study_that_nothing_meets_says_what_limits() {
     let [front, top, bins, map, share] =
         ["front.csv", "top.csv", "histogram-axial_force_N.csv", "map-axial_force_N.csv", "map-feasible_share.csv"]
             .map(|name| Csv::read(&at(name)));
-    assert!(front.rows.is_empty() && top.rows.is_empty() && front.header == Csv::read(&at("top.csv")).header && front.header.len() == 17);
+    assert!(front.rows.is_empty() && top.rows.is_empty() && front.header == Csv::read(&at("top.csv")).header && front.header.len() == 15);
     assert_eq!(bins.numbers("designs").iter().sum::<f64>(), 0.0);
     assert!(map.rows.len() == 21 * 13 && map.column("axial_force_N").iter().chain(&map.column("design_index")).all(|cell| cell.is_empty()));
     assert!(share.numbers("feasible_share").iter().all(|share| *share == 0.0));
@@ -323,4 +331,44 @@ fn the_starter_of_every_model_has_a_front_worth_reading() {
         let front = json_of(&folder.path().join("my/summary.json"))["front"].as_u64();
         assert!(front >= Some(20), "the starter of {model} has {front:?} designs on its front");
     }
+}
+
+/// A value beyond what f64 holds is a status of its own: it is in no file, and no design with it is feasible.
+#[test]
+fn a_value_that_overflows_is_a_status() {
+    let study = "model = \"metal-cvt\"\n[design]\nelastic_modulus_MPa = [1e5, 1e290, 1e302, 1e305, 1.5e308]\n\
+                 band_thickness_mm = [0.1, 1, 100, 1e10]\n[objectives]\ntorque_Nm = \"min\"\n[report]\n\
+                 columns = [\"bending_stress_MPa\", \"max_stress_MPa\"]\n\
+                 histograms = [{ of = \"bending_stress_MPa\", bins = 4 }, { of = \"max_stress_MPa\", bins = 4 }, { of = \"stress_margin\", bins = 3 }]\n\
+                 maps = [{ x = \"elastic_modulus_MPa\", y = \"band_thickness_mm\", value = \"bending_stress_MPa\", best = \"min\" }]\n\
+                 top = { by = \"stress_margin\", count = 30 }\nvariants = true\n";
+    let folder = folder_with("overflow.toml", study);
+    let text = ask(folder.path(), "sweep overflow.toml --out out").text();
+    let out = folder.path().join("out");
+    let summary = json_of(&out.join("summary.json"));
+    let (feasible, tally) = (&summary["feasible"], &summary["tally"]);
+    assert_eq!((tally["sampled"].as_u64(), &tally["feasible"]), (Some(20), feasible), "{summary}");
+    let overflow = tally["status"]["overflow"].as_u64();
+    assert_eq!(overflow, feasible.as_u64().map(|it| 20 - it), "{summary}");
+    assert!(overflow > Some(0) && text.lines().any(|line| line.trim_start().starts_with("overflow")), "{text}");
+    for name in ["histogram-bending_stress_MPa.csv", "histogram-max_stress_MPa.csv", "histogram-stress_margin.csv"] {
+        let bins = Csv::read(&out.join(name));
+        let (from, to) = (bins.column("from"), bins.column("to"));
+        assert!(
+            from.iter().chain(&to).all(|edge| edge.is_empty() || edge.parse::<f64>().is_ok_and(f64::is_finite)),
+            "{name}: {from:?} {to:?}"
+        );
+        assert!(from[1..].windows(2).all(|pair| pair[0].parse::<f64>().ok() < pair[1].parse::<f64>().ok()), "{name}: {from:?}");
+        assert_eq!(bins.numbers("designs").iter().sum::<f64>(), feasible.as_f64().expect("a number"), "{name}");
+    }
+    for (name, bytes) in files(&out).into_iter().filter(|(name, _)| name.ends_with(".csv")) {
+        let text = String::from_utf8(bytes.expect("it is a file")).expect("it is text");
+        assert!(!text.contains("NaN") && !text.contains("inf"), "{name}:\n{text}");
+    }
+    let one = ask(folder.path(), "eval metal-cvt --set elastic_modulus_MPa=1.5e308 --set band_thickness_mm=1e10 --json").json();
+    assert_eq!(one["status"], "overflow");
+    assert!(one["outputs"]["max_stress_MPa"].is_null() && one["outputs"]["driver_radius_mm"].is_number(), "{one}");
+    let design = ask(folder.path(), "eval overflow.toml --design 19 --json").json();
+    assert_eq!(design["status"], "overflow");
+    assert_eq!(ask(folder.path(), "eval overflow.toml --design 0 --json").json()["status"], "ok");
 }

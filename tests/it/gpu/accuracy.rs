@@ -4,15 +4,16 @@ use super::{device, shipped};
 use crate::physics::{Region, draw};
 use crate::random::Random;
 use beltspace::gpu::PointKernel;
-use beltspace::models::{MODELS, Model};
+use beltspace::models::{self, Model};
 use beltspace::plan::Plan;
 use beltspace::study::Study;
 use beltspace::verify::{Report, compare, points_of_model, points_of_study};
+use std::sync::Arc;
 
 /// What an error may take of its promise: a quarter.
 const SPARE: f64 = 0.25;
 
-fn kernel(model: &'static Model) -> PointKernel {
+fn kernel(model: &Arc<Model>) -> PointKernel {
     PointKernel::new(&device().device, model, &[]).expect("the kernel compiles")
 }
 
@@ -27,10 +28,10 @@ fn assert_kept(report: &Report, what: &str) {
 
 #[test]
 fn every_output_of_every_model_keeps_its_promise_four_times_over() {
-    for &model in MODELS.iter().filter(|model| model.device.is_some()) {
+    for model in models::all().iter().filter(|model| model.shader.is_some()) {
         let kernel = kernel(model);
         let report = compare(&kernel, model, &[], &points_of_model(model, 150_000, 1)).expect("the device works");
-        assert_kept(&report, model.name);
+        assert_kept(&report, &model.name);
         for it in &report.outputs {
             assert!(it.values > 10_000, "{}: only {} values of {}", model.name, it.values, it.name);
             // A quarter of the points lie on a boundary, where some things become infinite.
@@ -54,8 +55,8 @@ fn the_shipped_studies_are_decided_as_in_f64_on_both_sides_of_their_constraints(
     for path in shipped() {
         let (study, _) = Study::read(&path).expect("the study is right");
         let plan = Plan::new(study);
-        let kernel = kernel(plan.study.model);
-        let report = compare(&kernel, plan.study.model, &plan.study.constraints, &points_of_study(&plan, 40_000, 2)).expect("it works");
+        let kernel = kernel(&plan.study.model);
+        let report = compare(&kernel, &plan.study.model, &plan.study.constraints, &points_of_study(&plan, 40_000, 2)).expect("it works");
         assert_kept(&report, &path.display().to_string());
         let bounded = !plan.study.constraints.is_empty();
         assert!((report.unsure > 0) == bounded && report.unsure * 4 < report.points, "{}: {} unsure", path.display(), report.unsure);
@@ -71,9 +72,9 @@ fn with(text: &str, piece: &str, other: &str) -> String {
 #[test]
 fn a_device_that_flushes_reciprocals_keeps_the_promise() {
     // As some hardware divides: by a product with the reciprocal, which is flushed to zero for divisors above 2^126. No model comes
-    // near the other end, 2^-126, for which src/real/running_error.rs has a test.
+    // near the other end, 2^-126, for which src/tape/error_bound.rs has a test.
     let flushed = "let inverse = 1.0 / b.value;\n    let quotient = a.value * select(inverse, 0.0, abs(inverse) < FLUSH);";
-    for &model in MODELS.iter().filter(|model| model.device.is_some()) {
+    for model in models::all().iter().filter(|model| model.shader.is_some()) {
         let source = with(&PointKernel::source(model, &[]).expect("it has a kernel"), "let quotient = a.value / b.value;", flushed);
         let compared = |source: &str| {
             let kernel = PointKernel::from_source(&device().device, model, source).expect("the kernel compiles");
@@ -81,7 +82,7 @@ fn a_device_that_flushes_reciprocals_keeps_the_promise() {
             let points: Vec<_> = (0..20_000).map(|_| draw(model, Region::Wide, random)).collect();
             compare(&kernel, model, &[], &points.into()).expect("the device works")
         };
-        assert_kept(&compared(&source), model.name);
+        assert_kept(&compared(&source), &model.name);
         if model.name == "rubber-cvt" {
             let blind = with(&source, "const LARGEST_DIVISOR: f32 = 8.50705917e37;", "const LARGEST_DIVISOR: f32 = 3.4e38;");
             assert!(compared(&blind).flips > 0, "a bound that trusts such a division is wrong, and nobody notices");

@@ -83,9 +83,13 @@ fn the_kernel_can_be_read() {
     let (code, out, error) = ask(folder.path(), "sweep small.toml --emit-shader kernel.wgsl");
     assert_eq!((code, out.as_str()), (Some(0), ""), "{error}");
     let kernel = std::fs::read_to_string(folder.path().join("kernel.wgsl")).expect("it was written");
-    for piece in
-        ["fn prepare_belt", "fn finish_belt", "fn sweep(", "inputs.strength = Real(f32(800000000.0)", "const OBJECTIVES: u32 = 3u;"]
-    {
+    for piece in [
+        "fn prepare(i: Inputs)",
+        "fn finish(p: Prepared",
+        "fn sweep(",
+        "inputs.strength = Real(f32(800000000.0)",
+        "const OBJECTIVES: u32 = 3u;",
+    ] {
         assert!(kernel.contains(piece), "{piece}");
     }
     assert!(!folder.path().join("results").exists(), "nothing else is written");
@@ -152,4 +156,34 @@ fn without_a_driver_the_processor_does_the_work_and_asking_for_a_gpu_is_refused(
     assert_eq!(code, Some(0));
     assert!(page.contains("no GPU driver was found"), "{page}");
     assert_eq!(ask_without_driver(folder.path(), "sweep small.toml --out auto --quiet").0, Some(0));
+}
+
+/// What f32 does not hold is for f64: a device says so, and where none was asked for by name the processor does it.
+#[test]
+fn numbers_beyond_f32_are_left_to_the_processor() {
+    let design = "model = \"metal-cvt\"\n[design]\nratio = { from = 0.5, to = 2, count = 50 }\n";
+    let cases = [
+        (
+            format!(
+                "{design}band_thickness_mm = [1e-300, 2e-300, 0.1]\n[objectives]\nband_thickness_mm = \"min\"\naxial_force_N = \"min\"\n"
+            ),
+            "1e-300 mm",
+        ),
+        (
+            format!(
+                "{design}[objectives]\naxial_force_N = \"min\"\n[report]\nhistograms = [{{ of = \"stress_margin\", from = -1e39, to = 1, bins = 4 }}]\n"
+            ),
+            "the histogram of stress_margin has bins from -1e39 to 1e0",
+        ),
+    ];
+    for (text, told) in cases {
+        let folder = tempfile::tempdir().expect("a folder can be made");
+        std::fs::write(folder.path().join("s.toml"), text).expect("it can be written");
+        let (code, _, err) = ask(folder.path(), "sweep s.toml --out gpu --engine gpu");
+        assert_eq!(code, Some(2), "{err}");
+        assert!(err.contains("this study cannot be screened on a GPU") && err.contains(told) && err.contains("use --engine cpu"), "{err}");
+        assert!(!folder.path().join("gpu").exists(), "it is refused before anything is written");
+        let (code, _, err) = ask(folder.path(), "sweep s.toml --out auto --no-report");
+        assert_eq!(code, Some(0), "{err}");
+    }
 }

@@ -1,11 +1,13 @@
 //! The device against the processor: the same answers, however a sweep is cut, interrupted or handed over.
 
 use super::{Prepared, SMALL, assert_same, device, larger, open, shipped, wrong};
-use beltspace::checkpoint::Checkpoint;
+use beltspace::checkpoint::{Checkpoint, Saved};
 use beltspace::error::Error;
+use beltspace::files::Claim;
+use beltspace::names::CHECKPOINT;
 use beltspace::screen::gpu::{Wrong, supports};
 use beltspace::study::Study;
-use beltspace::sweep::{Control, Options, sweep, sweep_on_device};
+use beltspace::sweep::{Control, Settings, sweep, sweep_on_device};
 use beltspace::tiles::Shard;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
@@ -15,7 +17,7 @@ fn small_studies_of_every_model_give_the_same_answers() {
     for text in SMALL {
         let study = Prepared::parse(text);
         let (state, record) = study.on(device()).expect("the device works");
-        assert_same(&state, &study.on_processor(), study.plan.study.model.name);
+        assert_same(&state, &study.on_processor(), &study.plan.study.model.name);
         assert_eq!(record.designs, study.plan.designs());
         assert_eq!(record.recheck.designs, study.plan.designs().min(100_000));
         assert!(record.unsure * 100 < record.designs, "{record:?}");
@@ -112,8 +114,8 @@ maps = [
     let (state, _) = study.on(device()).expect("the device works");
     assert_same(&state, &study.on_processor(), "maps over one value");
     assert_eq!(
-        state.maps[1].cell(0).map(|cell| cell.feasible),
-        study.on_processor().maps[1].cell(0).map(|cell| cell.feasible),
+        state.reported.maps[1].cell(0).map(|cell| cell.feasible),
+        study.on_processor().reported.maps[1].cell(0).map(|cell| cell.feasible),
         "feasible designs of a cell"
     );
 }
@@ -150,9 +152,11 @@ fn shards_and_halves_go_together_whatever_ran_them() {
     let mut shards = Vec::new();
     for number in 1..=3 {
         let shard = Shard { number, of: 3 };
-        let options = Options { shard, threads: 1, ..Options::default() };
+        let options = Settings { shard, threads: 1, ..Settings::default() };
         let path = folder.path().join(number.to_string());
-        let mut checkpoint = Checkpoint::create(&path, &study.plan.study, text, shard, study.plan.designs()).expect("a folder can be made");
+        let claim = Claim::new(&path, "a test").expect("nobody has it");
+        let mut checkpoint =
+            Checkpoint::create(&claim, &study.plan.study, text, shard, study.plan.designs()).expect("a folder can be made");
         let control = Control::default();
         let Prepared { plan, tables, reduction } = &study;
         if number == 2 {
@@ -161,7 +165,7 @@ fn shards_and_halves_go_together_whatever_ran_them() {
             sweep_on_device(plan, tables, reduction, &options, Some(&mut checkpoint), &control, device()).expect("the sweep ends");
         }
         drop(checkpoint);
-        shards.push((path.clone(), Checkpoint::open(&path).expect("it was kept")));
+        shards.push((path.clone(), Saved::read(&path.join(CHECKPOINT)).expect("it was kept")));
     }
     let merged = beltspace::merge::merge(&study.plan, &study.reduction, shards).expect("the shards are complete");
     assert_same(&merged, &whole, "shards of both engines");
@@ -171,8 +175,9 @@ fn shards_and_halves_go_together_whatever_ran_them() {
 fn interrupted(text: &str, study: &Prepared, folder: &std::path::Path, end: impl Fn(&Control, &beltspace::gpu::Device) + Sync) -> Error {
     let on = open();
     let control = Control::default();
+    let claim = Claim::new(folder, "a test").expect("nobody has it");
     let mut checkpoint =
-        Checkpoint::create(folder, &study.plan.study, text, Shard::WHOLE, study.plan.designs()).expect("a folder can be made");
+        Checkpoint::create(&claim, &study.plan.study, text, Shard::WHOLE, study.plan.designs()).expect("a folder can be made");
     std::thread::scope(|scope| {
         scope.spawn(|| {
             while control.done.load(Ordering::Relaxed) == 0 {
@@ -180,7 +185,7 @@ fn interrupted(text: &str, study: &Prepared, folder: &std::path::Path, end: impl
             }
             end(&control, &on.device);
         });
-        let options = Options { threads: 1, ..Options::default() };
+        let options = Settings { threads: 1, ..Settings::default() };
         let swept = sweep_on_device(&study.plan, &study.tables, &study.reduction, &options, Some(&mut checkpoint), &control, &on);
         swept.map(|_| ()).expect_err("it was interrupted")
     })
@@ -195,9 +200,10 @@ fn a_lost_device_leaves_a_checkpoint_from_which_either_engine_goes_on() {
         let folder = tempfile::tempdir().expect("a folder can be made");
         let error = interrupted(&text, &study, folder.path(), |_, device| device.lose());
         assert!(matches!(&error, Error::Gpu { problem, .. } if problem.contains("lost")), "{error}");
-        let mut checkpoint = Checkpoint::open(folder.path()).expect("it was kept");
-        assert!(checkpoint.has_progress(), "what was done before the loss is kept");
-        let (control, options) = (Control::default(), Options::default());
+        let claim = Claim::new(folder.path(), "a test").expect("nobody has it");
+        let mut checkpoint = Checkpoint::open(&claim).expect("it was kept");
+        assert!(checkpoint.saved().has_progress(), "what was done before the loss is kept");
+        let (control, options) = (Control::default(), Settings::default());
         let Prepared { plan, tables, reduction } = &study;
         let state = if on_device {
             let swept = sweep_on_device(plan, tables, reduction, &options, Some(&mut checkpoint), &control, device());
@@ -216,8 +222,9 @@ fn a_stopped_run_goes_on_on_the_processor() {
     let folder = tempfile::tempdir().expect("a folder can be made");
     let error = interrupted(&text, &study, folder.path(), |control, _| control.stop.store(true, Ordering::Relaxed));
     assert!(matches!(error, Error::Stopped { .. }), "{error}");
-    let mut checkpoint = Checkpoint::open(folder.path()).expect("it was kept");
-    let swept = sweep(&study.plan, &study.tables, &study.reduction, &Options::default(), Some(&mut checkpoint), &Control::default());
+    let claim = Claim::new(folder.path(), "a test").expect("nobody has it");
+    let mut checkpoint = Checkpoint::open(&claim).expect("it was kept");
+    let swept = sweep(&study.plan, &study.tables, &study.reduction, &Settings::default(), Some(&mut checkpoint), &Control::default());
     assert_same(&swept.expect("the sweep ends").state, &study.on_processor(), "stopped and resumed");
 }
 
@@ -226,18 +233,19 @@ fn a_broken_promise_keeps_nothing_that_the_device_counted() {
     let text = larger();
     let study = Prepared::parse(&text);
     let folder = tempfile::tempdir().expect("a folder can be made");
+    let claim = Claim::new(folder.path(), "a test").expect("nobody has it");
     let mut checkpoint =
-        Checkpoint::create(folder.path(), &study.plan.study, &text, Shard::WHOLE, study.plan.designs()).expect("a folder can be made");
+        Checkpoint::create(&claim, &study.plan.study, &text, Shard::WHOLE, study.plan.designs()).expect("a folder can be made");
     // Wrong in a way that shows only in the end.
     let lost = Wrong { replace: vec![("    return beaten;".to_owned(), "    return true;".to_owned())], ..Wrong::default() };
-    let (options, control) = (Options::default(), Control::default());
+    let (options, control) = (Settings::default(), Control::default());
     let Prepared { plan, tables, reduction } = &study;
     let swept = sweep_on_device(plan, tables, reduction, &options, Some(&mut checkpoint), &control, &wrong(lost));
     let error = swept.map(|_| ()).expect_err("the front lacks designs");
     assert!(matches!(error, Error::Promise(_)), "{error}");
     drop(checkpoint);
-    let mut checkpoint = Checkpoint::open(folder.path()).expect("the folder is there");
-    assert!(!checkpoint.has_progress(), "what was counted is not kept");
+    let mut checkpoint = Checkpoint::open(&claim).expect("the folder is there");
+    assert!(!checkpoint.saved().has_progress(), "what was counted is not kept");
     let swept = sweep(plan, tables, reduction, &options, Some(&mut checkpoint), &control);
     assert_same(&swept.expect("the sweep ends").state, &study.on_processor(), "after a broken promise");
 }

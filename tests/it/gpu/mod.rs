@@ -4,14 +4,15 @@ mod accuracy;
 mod bites;
 mod commands;
 mod engines;
+mod hardware;
 
-use beltspace::gpu::{adapters, self_test};
+use beltspace::gpu::{Adapter, adapters, self_test};
 use beltspace::plan::Plan;
 use beltspace::reduce::{Reduction, State};
 use beltspace::screen::gpu::Wrong;
 use beltspace::screen::{Tables, Tally};
 use beltspace::study::Study;
-use beltspace::sweep::{Control, DeviceRecord, OnDevice, Options, sweep, sweep_on_device};
+use beltspace::sweep::{Control, DeviceRecord, OnDevice, Settings, sweep, sweep_on_device};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
@@ -24,7 +25,10 @@ pub fn device() -> &'static OnDevice {
 /// The same adapter, opened once more: for tests that lose it.
 fn open() -> OnDevice {
     let adapters = adapters();
-    let adapter = adapters.last().expect("there is no GPU driver: tests/run installs lavapipe (Debian package mesa-vulkan-drivers)");
+    opened(adapters.last().expect("there is no GPU driver: tests/run installs lavapipe (Debian package mesa-vulkan-drivers)"))
+}
+
+fn opened(adapter: &Adapter) -> OnDevice {
     let device = adapter.open().expect("the adapter opens");
     let report = self_test::run(&device).expect("the self-test runs");
     assert_eq!(report.problems(), Vec::<String>::new(), "{}", adapter.in_words());
@@ -53,17 +57,17 @@ impl Prepared {
     }
 
     fn parse(text: &str) -> Self {
-        Self::new(Study::parse(text, "test.toml", Path::new(".")).unwrap_or_else(|errors| panic!("{errors}")))
+        Self::new(Study::parse_in(text, "test.toml", Path::new(".")).unwrap_or_else(|errors| panic!("{errors}")))
     }
 
     pub fn on(&self, device: &OnDevice) -> beltspace::error::Result<(State, DeviceRecord)> {
-        let options = Options { threads: 2, ..Options::default() };
+        let options = Settings { threads: 2, ..Settings::default() };
         let (swept, record) = sweep_on_device(&self.plan, &self.tables, &self.reduction, &options, None, &Control::default(), device)?;
         Ok((swept.state, record))
     }
 
     fn on_processor(&self) -> State {
-        let swept = sweep(&self.plan, &self.tables, &self.reduction, &Options::default(), None, &Control::default());
+        let swept = sweep(&self.plan, &self.tables, &self.reduction, &Settings::default(), None, &Control::default());
         swept.expect("the sweep ends").state
     }
 }
@@ -73,10 +77,11 @@ fn assert_same(a: &State, b: &State, what: &str) {
     assert_eq!(a.feasible, b.feasible, "{what}: feasible");
     assert_eq!(a.front, b.front, "{what}: front");
     assert_eq!(a.extremes, b.extremes, "{what}: extremes");
-    assert_eq!(a.histograms, b.histograms, "{what}: histograms");
-    let best = |state: &State| state.top.as_ref().map(beltspace::reduce::Top::indices);
+    assert_eq!(a.reported.histograms, b.reported.histograms, "{what}: histograms");
+    let best = |state: &State| state.reported.top.first().map(beltspace::reduce::Top::indices);
     assert_eq!(best(a), best(b), "{what}: top list");
-    for (a, b) in a.maps.iter().zip(&b.maps) {
+    assert_eq!(a.reported.samples, b.reported.samples, "{what}: sample");
+    for (a, b) in a.reported.maps.iter().zip(&b.reported.maps) {
         let (width, height) = a.size();
         for at in 0..width * height {
             let value = |map: &beltspace::reduce::Map| map.cell(at).map(|cell| map.value(cell).to_bits());
@@ -90,7 +95,7 @@ fn shipped() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("studies");
     let mut paths: Vec<_> = std::fs::read_dir(folder).expect("studies are shipped").map(|it| it.expect("it is listed").path()).collect();
     paths.retain(|path| path.extension().is_some_and(|it| it == "toml"));
-    paths.retain(|path| Study::read(path).expect("a shipped study is right").0.model.device.is_some());
+    paths.retain(|path| Study::read(path).expect("a shipped study is right").0.model.shader.is_some());
     paths.sort();
     assert!(paths.len() >= 4);
     paths
@@ -125,6 +130,7 @@ stress_margin = "max"
 band_count = "min"
 [report]
 top = { by = "axial_force_N", count = 20 }
+sample = { count = 500, seed = 11 }
 histograms = [{ of = "axial_force_N", bins = 40 }]
 maps = [
     { x = "band_thickness_mm", y = "groove_angle_deg", value = "axial_force_N" },

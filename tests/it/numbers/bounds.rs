@@ -1,46 +1,31 @@
-//! The f32 twin and its error bound against f64.
+//! The recorded formula in f32 with error bounds, against f64.
 
+use super::boxes::run_over;
 use super::{meaningful_si, si};
 use crate::physics::{Region, draw};
 use crate::random::Random;
 use beltspace::decision::Decision;
-use beltspace::models::{MODELS, Model, OUTPUTS, Status, evaluate, evaluate_decided, find};
-use beltspace::real::RunningError;
+use beltspace::models::{self, Model, Status, evaluate, find};
+use beltspace::tape::RunningError;
+use std::sync::Arc;
 
 const DESIGNS: usize = 20_000;
 
 /// The models that are computed on a device too.
-fn with_a_twin() -> impl Iterator<Item = &'static Model> {
-    MODELS.iter().copied().filter(|model| model.device.is_some())
+fn on_a_device() -> impl Iterator<Item = &'static Arc<Model>> {
+    models::all().iter().filter(|model| model.shader.is_some())
 }
 
-fn decided(model: &Model, inputs: &[f64]) -> (Decision, [RunningError; OUTPUTS]) {
-    evaluate_decided(model, inputs).expect("it has a twin")
-}
-
-fn bits(value: f32) -> u32 {
-    if value.is_nan() { f32::NAN.to_bits() } else { value.to_bits() }
-}
-
-#[test]
-fn the_bounded_value_is_the_twin_bit_by_bit() {
-    for model in with_a_twin() {
-        let device = model.on_device().expect("it has a twin");
-        let random = &mut Random::new(11);
-        for region in [Region::Usual, Region::Wide, Region::Edges] {
-            for _ in 0..2000 {
-                let si = si(model, &draw(model, region, random));
-                let (twins, twin_margins) = device.twin.twin(&si.map(|value| value as f32));
-                let (outputs, margins) = device.twin.bounded(&si.map(RunningError::input));
-                for (number, (twin, bounded)) in twins.iter().zip(outputs).enumerate() {
-                    assert_eq!(bits(*twin), bits(bounded.value), "{}: output {number} of {si:?}", model.name);
-                }
-                for (number, (twin, bounded)) in twin_margins.iter().zip(margins).enumerate() {
-                    assert_eq!(bits(*twin), bits(bounded.value), "{}: condition {number} of {si:?}", model.name);
-                }
-            }
-        }
-    }
+/// What f32 arithmetic says of a design: is its status ok, and each output with its error bound in SI units.
+fn decided(model: &Model, inputs: &[f64]) -> (Decision, Vec<RunningError>) {
+    let (outputs, margins) = run_over(model, &si(model, inputs).map(RunningError::input));
+    let decision = |number: usize| {
+        let RunningError { value, bound } = margins[number];
+        let value = f64::from(value);
+        if model.conditions[number].strict { Decision::above_zero(value, bound) } else { Decision::at_least_zero(value, bound) }
+    };
+    let counts = |number: &usize| !model.conditions[*number].quiet;
+    ((0..model.conditions.len()).filter(counts).fold(Decision::Yes, |all, number| all.and(decision(number))), outputs)
 }
 
 /// What the bounds of many designs look like.
@@ -91,7 +76,7 @@ fn compare(model: &Model, region: Region, shrink: f64) -> Bounds {
 
 #[test]
 fn an_f32_value_lies_within_its_bound_of_the_f64_value_and_the_bound_is_useful() {
-    for model in with_a_twin() {
+    for model in on_a_device() {
         for region in [Region::Usual, Region::Wide, Region::Edges] {
             let mut found = compare(model, region, 1.0);
             eprintln!(
@@ -117,7 +102,7 @@ fn an_f32_value_lies_within_its_bound_of_the_f64_value_and_the_bound_is_useful()
 
 #[test]
 fn a_bound_ten_thousand_times_too_small_is_noticed() {
-    for model in with_a_twin() {
+    for model in on_a_device() {
         let found = compare(model, Region::Usual, 1e4);
         assert!(found.broken > found.checked / 100, "{}: {} of {}", model.name, found.broken, found.checked);
     }
@@ -151,7 +136,7 @@ fn decide(model: &Model, designs: impl Iterator<Item = Vec<f64>>) -> Decisions {
 
 #[test]
 fn a_sure_decision_is_the_f64_one_and_most_decisions_are_sure() {
-    for model in with_a_twin() {
+    for model in on_a_device() {
         for region in [Region::Usual, Region::Wide, Region::Edges] {
             let random = &mut Random::new(13);
             let found = decide(model, (0..DESIGNS).map(|_| draw(model, region, random)));
@@ -189,7 +174,7 @@ pub fn onto_a_boundary(model: &Model, random: &mut Random) -> Option<Vec<f64>> {
 
 #[test]
 fn on_a_boundary_the_decision_is_unsure() {
-    for model in with_a_twin() {
+    for model in on_a_device() {
         let random = &mut Random::new(14);
         let designs: Vec<_> = std::iter::repeat_with(|| onto_a_boundary(model, random)).flatten().take(500).collect();
         let found = decide(model, designs.into_iter());
@@ -200,7 +185,7 @@ fn on_a_boundary_the_decision_is_unsure() {
 
 #[test]
 fn a_traction_at_its_limit_surely_does_not_slip_and_has_no_margin() {
-    for model in MODELS.iter().filter(|model| model.input("traction").is_some()) {
+    for model in models::all().iter().filter(|model| model.input("traction").is_some()) {
         let random = &mut Random::new(15);
         let margin = model.output("slip_margin").expect("it is an output");
         let mut sure = 0;
@@ -219,7 +204,7 @@ fn a_traction_at_its_limit_surely_does_not_slip_and_has_no_margin() {
 
 #[test]
 fn a_traction_or_torque_of_exactly_zero_is_no_borderline_case() {
-    for model in MODELS.iter().filter(|model| model.input("traction").is_some()) {
+    for model in models::all().iter().filter(|model| model.input("traction").is_some()) {
         let decision = |traction: f64, torque: f64| {
             let mut inputs = model.defaults();
             inputs[model.input("traction").expect("it is an input")] = traction;
@@ -237,7 +222,7 @@ fn a_capacity_of_zero_is_known_to_be_zero() {
     let model = find("rubber-cvt").expect("it is a model");
     let mut inputs = model.defaults();
     inputs[model.input("belt_thickness_mm").expect("it is an input")] = 40.0;
-    let outputs = decided(model, &inputs).1;
+    let outputs = decided(&model, &inputs).1;
     for name in ["torque_capacity_Nm", "capacity_axial_force_N"] {
         let capacity = outputs[model.output(name).expect("it is an output")];
         // Nothing but what may be flushed to zero.

@@ -4,34 +4,40 @@ use super::bounds::onto_a_boundary;
 use super::si;
 use crate::physics::{Region, draw};
 use crate::random::Random;
-use beltspace::models::{CONDITIONS, Formula, INPUTS, Input, MODELS, Model, OUTPUTS, Visitor, run, visit};
-use beltspace::real::{Interval, Real};
+use beltspace::models::{self, CONDITIONS, INPUTS, Input, Model};
+use beltspace::real::Real;
+use beltspace::tape::Interval;
+use beltspace::tape::{Known, List};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::{Mutex, PoisonError};
 
 /// The least and the largest value of every input, in its unit. A word may lie below the numbers: then it is one of the values.
 pub type Sides = Vec<(f64, f64)>;
 
 /// The models that are formulas over any number type.
-pub fn formulas() -> impl Iterator<Item = &'static Model> {
-    struct Any;
-    impl Visitor for Any {
-        type Output = ();
-        fn visit<F: Formula>(self) {}
-    }
-    MODELS.iter().copied().filter(|model| visit(model.name, Any).is_some())
+pub fn formulas() -> impl Iterator<Item = &'static Arc<Model>> {
+    models::all().iter().filter(|model| model.kernel.formula().is_some())
 }
 
-/// Both stages over inputs of any number type.
-pub struct Run<R>(pub [R; INPUTS]);
-
-impl<R: Real<Shared = R>> Visitor for Run<R> {
-    type Output = ([R; OUTPUTS], [R; CONDITIONS]);
-    fn visit<F: Formula>(self) -> Self::Output {
-        run::<F, R>(&self.0)
-    }
+/// A model's formula from its inputs to outputs and conditions, recorded once for each number of turns that its whole numbers allow.
+fn list(model: &Model, turns: Vec<usize>) -> &'static List {
+    static LISTS: Mutex<BTreeMap<(String, Vec<usize>), &'static List>> = Mutex::new(BTreeMap::new());
+    let mut lists = LISTS.lock().unwrap_or_else(PoisonError::into_inner);
+    lists.entry((model.name.to_owned(), turns.clone())).or_insert_with(|| {
+        let formula = model.kernel.formula().expect("it is a formula");
+        let known = |(input, &turns): (&Input, &usize)| if input.integer { Known::Within(0.0, turns as f64) } else { Known::ANY };
+        let known: Vec<Known> = model.inputs.iter().zip(&turns).map(known).collect();
+        Box::leak(Box::new(formula.whole(&known, u64::MAX, u64::MAX).list(u64::MAX, u64::MAX)))
+    })
 }
 
-pub fn run_over<R: Real<Shared = R>>(model: &Model, inputs: [R; INPUTS]) -> ([R; OUTPUTS], [R; CONDITIONS]) {
-    visit(model.name, Run(inputs)).expect("every model of the list can be visited")
+/// Outputs and conditions over inputs of any number type, by the recorded formula.
+pub fn run_over<R: Real<Shared = R>>(model: &Model, inputs: &[R]) -> (Vec<R>, Vec<R>) {
+    let turns = model.inputs.iter().zip(inputs).map(|(input, value)| if input.integer { value.turns(60) } else { 0 }).collect();
+    let mut outputs = list(model, turns).run(inputs);
+    let conditions = outputs.split_off(outputs.len() - CONDITIONS);
+    (outputs, conditions)
 }
 
 /// A box around a design, as wide as `width` relative to every value; an input stays as it is where `width` is 0 or its value a word.
@@ -53,7 +59,7 @@ pub fn around(model: &Model, centre: &[f64], width: f64, random: &mut Random) ->
 pub fn a_box(model: &Model, region: Region, width: f64, random: &mut Random) -> Sides {
     let mut sides = around(model, &draw(model, region, random), width, random);
     if width > 0.0 {
-        for (side, input) in sides.iter_mut().zip(model.inputs) {
+        for (side, input) in sides.iter_mut().zip(&model.inputs) {
             if let (Some(&(_, word)), true) = (input.words.first(), random.chance(0.1)) {
                 let high = if input.is_enumeration() { input.words[input.words.len() - 1].1 } else { random.between(0.0, input.usual.1) };
                 *side = (word.min(high), word.max(high));

@@ -4,7 +4,7 @@ use super::si;
 use crate::effort::evaluations;
 use crate::physics::{Region, draw, slow_inputs};
 use crate::random::Random;
-use beltspace::models::{Columns, MODELS, Model, OUTPUTS, Scratch};
+use beltspace::models::{self, Columns, Model, OUTPUTS, Scratch};
 use beltspace::real::LANES;
 
 /// Inputs that may differ between designs that share what is prepared.
@@ -45,8 +45,8 @@ fn differing(model: &Model, count: usize, scratch: &mut Scratch, random: &mut Ra
         let mut scalar = [0.0; OUTPUTS];
         model.kernel.finish(&prepared, design, wanted, &mut scalar);
         let margins = model.kernel.conditions(&prepared, design);
-        let of_outputs = outputs.iter().map(|&output| (model.outputs[output].name, model.outputs[output].unit.from_si(scalar[output])));
-        let of_conditions = conditions.iter().map(|&condition| (model.conditions[condition].reason, margins[condition]));
+        let of_outputs = outputs.iter().map(|&output| (&model.outputs[output].name, model.outputs[output].unit.from_si(scalar[output])));
+        let of_conditions = conditions.iter().map(|&condition| (&model.conditions[condition].reason, margins[condition]));
         for ((name, expected), found) in of_outputs.chain(of_conditions).zip(&results) {
             let (expected, found) = (spoil(expected), found[lane]);
             if expected.to_bits() != found.to_bits() && !(expected.is_nan() && found.is_nan()) {
@@ -64,7 +64,7 @@ fn a_batch_has_the_same_bits_as_its_designs_alone() {
     let random = &mut Random::new(51);
     let counts: Vec<usize> = (0..40).flat_map(|_| 1..=17).collect();
     for (done, &count) in counts.iter().enumerate() {
-        for model in MODELS {
+        for model in models::all() {
             // Of a slow model some batches, of all lengths.
             let every = counts.len() as u64 / evaluations(model, counts.len() as u64);
             if (done as u64).is_multiple_of(every) {
@@ -77,7 +77,7 @@ fn a_batch_has_the_same_bits_as_its_designs_alone() {
 #[test]
 fn a_last_bit_is_noticed_in_a_batch() {
     let random = &mut Random::new(52);
-    for model in MODELS {
+    for model in models::all() {
         let tried = evaluations(model, 50);
         let noticed = (0..tried).filter(|_| differing(model, 9, &mut Scratch::default(), random, f64::next_up).is_some()).count();
         assert!(noticed as u64 * 5 > tried * 4, "{}: {noticed} of {tried}", model.name);
@@ -86,7 +86,7 @@ fn a_last_bit_is_noticed_in_a_batch() {
 
 #[test]
 fn every_model_has_inputs_that_its_first_stage_does_not_read() {
-    for model in MODELS {
+    for model in models::all() {
         assert!(!fast_inputs(model).is_empty(), "{}", model.name);
     }
 }

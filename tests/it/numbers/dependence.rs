@@ -4,9 +4,10 @@ use super::si;
 use crate::effort::is_slow;
 use crate::physics::{Region, draw};
 use crate::random::Random;
-use beltspace::models::{CONDITIONS, INPUTS, MODELS, Model, OUTPUTS, Reach, find};
-use beltspace::real::Dependence;
+use beltspace::models::{self, CONDITIONS, INPUTS, Model, OUTPUTS, Reach, find};
+use beltspace::tape::Known;
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// Everything that a formula computes of a design, by its bits.
 struct Parts {
@@ -42,7 +43,7 @@ fn missed(
     seen: &mut BTreeSet<(usize, usize)>,
 ) -> Option<String> {
     let names = |set: u64| set >> input & 1 == 1;
-    let by = model.inputs[input].name;
+    let by = &model.inputs[input].name;
     if before.prepared != after.prepared && !names(reach.prepared) {
         return Some(format!("{}: {by} changes what is prepared", model.name));
     }
@@ -70,13 +71,13 @@ fn try_changes(
         // Two designs span the ranges that the inputs vary over.
         let region = random.pick(&[Region::Usual, Region::Usual, Region::Edges]);
         let ends = [draw(model, region, random), draw(model, region, random)].map(|inputs| si(model, &inputs));
-        let mut inputs = [Dependence::fixed(0.0); INPUTS];
+        let mut inputs = vec![Known::Fixed(0.0); model.inputs.len()];
         let mut free = Vec::new();
         for input in 0..model.inputs.len() {
             let (low, high) = (ends[0][input].min(ends[1][input]), ends[0][input].max(ends[1][input]));
-            inputs[input] = Dependence::fixed(ends[0][input]);
+            inputs[input] = Known::Fixed(ends[0][input]);
             if varied(input, random) {
-                inputs[input] = Dependence::varied(input, low, high);
+                inputs[input] = Known::Within(low, high);
                 free.push(input);
             }
         }
@@ -104,8 +105,8 @@ fn try_changes(
 }
 
 /// Models that are quick enough for a walk of many steps; of the others each input is changed once, around each of their presets.
-fn walked() -> impl Iterator<Item = &'static Model> {
-    MODELS.iter().copied().filter(|model| !is_slow(model))
+fn walked() -> impl Iterator<Item = &'static Arc<Model>> {
+    models::all().iter().filter(|model| !is_slow(model))
 }
 
 /// Another value of an input, so near that the design stays what it is.
@@ -123,10 +124,10 @@ fn nudged(model: &Model, input: usize, value: f64) -> f64 {
 
 /// The reach where the inputs that `varied` names take every value and the others those of `si`.
 fn reach_of(model: &Model, si: &[f64; INPUTS], varied: impl Fn(usize) -> bool) -> Reach {
-    let mut inputs = si.map(Dependence::fixed);
+    let mut inputs: Vec<Known> = si[..model.inputs.len()].iter().map(|&value| Known::Fixed(value)).collect();
     for (input, table) in model.inputs.iter().enumerate().filter(|(input, _)| varied(*input)) {
         let least = table.words.iter().fold(0.0, |least, (_, word)| word.min(least));
-        inputs[input] = Dependence::varied(input, least, 1e9);
+        inputs[input] = Known::Within(least, 1e9);
     }
     model.kernel.reach(&inputs)
 }
@@ -162,9 +163,9 @@ fn changed_one_by_one(model: &Model, preset: &str, wanted: u64) -> (Vec<String>,
     let jumps = |name: &str| ["max_stress_r_mm", "max_stress_z_mm", "max_stress_theta_deg"].contains(&name);
     let fails = |number: &usize| f64::from_bits(before.conditions[*number]) < 0.0;
     let absent: BTreeSet<_> =
-        (0..model.conditions.len()).filter(fails).flat_map(|number| model.conditions[number].invalidates).copied().collect();
+        (0..model.conditions.len()).filter(fails).flat_map(|number| &model.conditions[number].invalidates).map(String::as_str).collect();
     let counts = |name: &str| !jumps(name) && !absent.contains(name);
-    let outputs = (0..model.outputs.len()).filter(|&number| wanted >> number & 1 == 1 && counts(model.outputs[number].name));
+    let outputs = (0..model.outputs.len()).filter(|&number| wanted >> number & 1 == 1 && counts(&model.outputs[number].name));
     let pairs = outputs.flat_map(|number| (0..model.inputs.len()).map(move |input| (input, number)));
     let named: Vec<_> = pairs.filter(|(input, number)| of_section.outputs[*number] >> input & 1 == 1).collect();
     let idle = named.iter().filter(|pair| !seen.contains(pair));
@@ -174,16 +175,16 @@ fn changed_one_by_one(model: &Model, preset: &str, wanted: u64) -> (Vec<String>,
 
 #[test]
 fn what_an_input_of_a_slow_model_changes_is_named_for_every_section_and_little_else() {
-    for model in MODELS.iter().filter(|model| is_slow(model)) {
+    for model in models::all().iter().filter(|model| is_slow(model)) {
         let section = model.enumeration().expect("it has sections");
         let mut changing = BTreeSet::from([section]);
-        for (preset, _) in model.presets {
+        for preset in model.presets.iter().map(|it| it.name.as_str()) {
             // A solid section takes seconds to solve. What its inputs do to loads, outline and mesh shows without; how stresses follow
             // from a mesh is the same for all sections.
-            let solved = *preset != "machined";
+            let solved = preset != "machined";
             let cheap = ["volume_mm3", "mass_g", "excluded_radius_mm", "clamp_pressure_MPa"];
             let loads = model.output("max_stress_MPa").expect("it is an output");
-            let wanted = |number: &usize| solved || *number < loads || cheap.contains(&model.outputs[*number].name);
+            let wanted = |number: &usize| solved || *number < loads || cheap.contains(&model.outputs[*number].name.as_str());
             let wanted = (0..model.outputs.len()).filter(wanted).fold(0, |set, number| set | 1 << number);
             let (idle, named, seen) = changed_one_by_one(model, preset, wanted);
             eprintln!("{preset}: {named} pairs are named, these {} were not seen to change: {idle:?}", idle.len());
@@ -196,7 +197,7 @@ fn what_an_input_of_a_slow_model_changes_is_named_for_every_section_and_little_e
 
 #[test]
 fn the_section_changes_all_but_the_loads() {
-    for model in MODELS.iter().filter(|model| is_slow(model)) {
+    for model in models::all().iter().filter(|model| is_slow(model)) {
         let section = model.enumeration().expect("it has sections");
         let before = Parts::new(model, &si(model, &model.defaults()));
         let every = reach_of(model, &si(model, &model.defaults()), |input| input == section);
@@ -260,15 +261,15 @@ fn a_traction_that_is_a_number_keeps_friction_out_of_the_torque_coefficient() {
         let model = find(name).expect("it is a model");
         let [friction, traction] = ["friction", "traction"].map(|name| model.input(name).expect("it is an input"));
         let coefficient = model.output("torque_coefficient_N_per_mm").expect("it is an output");
-        let names_friction = |given: Dependence| {
-            let mut inputs = si(model, &model.defaults()).map(Dependence::fixed);
-            inputs[friction] = Dependence::varied(friction, 0.05, 0.5);
+        let names_friction = |given: Known| {
+            let mut inputs = si(&model, &model.defaults()).map(Known::Fixed);
+            inputs[friction] = Known::Within(0.05, 0.5);
             inputs[traction] = given;
             model.kernel.reach(&inputs).outputs[coefficient] >> friction & 1 == 1
         };
-        assert!(!names_friction(Dependence::fixed(0.4)), "{name}");
-        assert!(!names_friction(Dependence::varied(traction, 0.1, 0.5)), "{name}: all values are numbers");
-        assert!(names_friction(Dependence::fixed(-1.0)), "{name}: the limit hangs on friction");
-        assert!(names_friction(Dependence::varied(traction, -1.0, 0.5)), "{name}: one of the values is the limit");
+        assert!(!names_friction(Known::Fixed(0.4)), "{name}");
+        assert!(!names_friction(Known::Within(0.1, 0.5)), "{name}: all values are numbers");
+        assert!(names_friction(Known::Fixed(-1.0)), "{name}: the limit hangs on friction");
+        assert!(names_friction(Known::Within(-1.0, 0.5)), "{name}: one of the values is the limit");
     }
 }

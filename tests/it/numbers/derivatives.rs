@@ -4,21 +4,22 @@ use super::boxes::{Sides, a_box, around, formulas, over, run_over, sample};
 use super::{meaningful_si, si};
 use crate::physics::{Region, draw};
 use crate::random::Random;
-use beltspace::models::{CONDITIONS, INPUTS, Model, OUTPUTS};
-use beltspace::real::{Dual, Interval, Real};
+use beltspace::models::{INPUTS, Model};
+use beltspace::real::Real;
+use beltspace::tape::{Dual, Interval};
 
 /// More directions than any formula has inputs.
 const DIRECTIONS: usize = 20;
-type Slopes = ([Dual<Interval, DIRECTIONS>; OUTPUTS], [Dual<Interval, DIRECTIONS>; CONDITIONS]);
+type Slopes = (Vec<Dual<Interval, DIRECTIONS>>, Vec<Dual<Interval, DIRECTIONS>>);
 
 /// Values and slopes with every input's own direction.
-fn derived<T: Real<Shared = T>>(model: &Model, inputs: [T; INPUTS]) -> ([Dual<T, DIRECTIONS>; OUTPUTS], [Dual<T, DIRECTIONS>; CONDITIONS]) {
+fn derived<T: Real<Shared = T>>(model: &Model, inputs: [T; INPUTS]) -> (Vec<Dual<T, DIRECTIONS>>, Vec<Dual<T, DIRECTIONS>>) {
     assert!(model.inputs.len() <= DIRECTIONS);
-    run_over(model, std::array::from_fn(|input| Dual::variable(inputs[input], input)))
+    run_over(model, &std::array::from_fn::<_, INPUTS, _>(|input| Dual::variable(inputs[input], input)))
 }
 
 /// Is the status surely ok all over the box?
-fn surely_ok(model: &Model, margins: &[Dual<Interval, DIRECTIONS>; CONDITIONS]) -> bool {
+fn surely_ok(model: &Model, margins: &[Dual<Interval, DIRECTIONS>]) -> bool {
     model
         .conditions
         .iter()

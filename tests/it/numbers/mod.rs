@@ -13,7 +13,7 @@ use beltspace::models::{INPUTS, Model, OUTPUTS, evaluate};
 /// Inputs in SI units, as formulas take them.
 fn si(model: &Model, inputs: &[f64]) -> [f64; INPUTS] {
     let mut si = [0.0; INPUTS];
-    for ((si, input), &value) in si.iter_mut().zip(model.inputs).zip(inputs) {
+    for ((si, input), &value) in si.iter_mut().zip(&model.inputs).zip(inputs) {
         *si = if input.word_for(value).is_some() { value } else { input.unit.to_si(value) };
     }
     si

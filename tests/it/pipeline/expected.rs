@@ -14,7 +14,8 @@ struct Column {
     badness: Box<dyn Fn(f64) -> f64>,
 }
 
-/// Objectives, constraints and report columns in file order, each quantity once unless its worst scenario differs.
+/// Objectives, constraints and report columns in file order, each quantity once unless its worst scenario differs. What a design axis
+/// sets has its column among the design inputs.
 fn columns(study: &Study) -> Vec<Column> {
     let end = |worse: Worse| -> Box<dyn Fn(f64) -> f64> {
         if worse == Worse::Higher { Box::new(|value| value) } else { Box::new(|value: f64| -value) }
@@ -22,11 +23,11 @@ fn columns(study: &Study) -> Vec<Column> {
     let mut columns: Vec<Column> = Vec::new();
     for objective in &study.objectives {
         let quantity = objective.quantity;
-        columns.push(Column { name: quantity.name(study.model).to_owned(), quantity, badness: end(worst_end(study, quantity)) });
+        columns.push(Column { name: quantity.name(&study.model).to_owned(), quantity, badness: end(worst_end(study, quantity)) });
     }
     for &constraint in &study.constraints {
         let quantity = constraint.quantity;
-        let name = quantity.name(study.model);
+        let name = quantity.name(&study.model);
         let objective = study.objectives.iter().find(|it| it.quantity == quantity);
         // A bound on the end that is the objective's worst has its worst scenario too.
         let served = matches!(
@@ -45,9 +46,11 @@ fn columns(study: &Study) -> Vec<Column> {
     }
     for &quantity in &study.report.columns {
         if columns.iter().all(|column| column.quantity != quantity) {
-            columns.push(Column { name: quantity.name(study.model).to_owned(), quantity, badness: end(worst_end(study, quantity)) });
+            columns.push(Column { name: quantity.name(&study.model).to_owned(), quantity, badness: end(worst_end(study, quantity)) });
         }
     }
+    let set: Vec<usize> = study.design.iter().flat_map(Axis::inputs).copied().collect();
+    columns.retain(|column| set.iter().all(|&input| column.quantity != Quantity::Input(input)));
     columns
 }
 
@@ -117,7 +120,7 @@ impl Expected {
     }
 
     fn fill_tables(&mut self, study: &Study, evaluated: &Evaluated) {
-        let model = study.model;
+        let model = &study.model;
         let tables = &mut self.answer.tables;
         let scenario_inputs: Vec<usize> = study.operation.iter().chain(&study.uncertainty).flat_map(Axis::inputs).copied().collect();
         let names = scenario_inputs.iter().map(|&input| model.inputs[input].name.to_owned());
@@ -140,6 +143,13 @@ impl Expected {
             });
             best.truncate(top.count);
             tables.insert("top.csv".to_owned(), designs_table(study, evaluated, &best));
+        }
+        if let Some(sample) = study.report.sample {
+            let mut drawn = self.feasible.clone();
+            drawn.sort_by_key(|&design| place(design, sample.seed));
+            drawn.truncate(sample.count);
+            drawn.sort_unstable();
+            tables.insert("sample.csv".to_owned(), designs_table(study, evaluated, &drawn));
         }
         if study.report.variants {
             let all: Vec<u64> = (0..evaluated.designs).collect();
@@ -171,7 +181,10 @@ impl Expected {
                 Best::Value(quantity, _) => quantity.name(model),
                 Best::Share => "feasible_share",
             };
-            let mut header = vec![model.inputs[x.inputs()[0]].name, model.inputs[y.inputs()[0]].name, value];
+            let [x_name, y_name] = [x, y].map(|axis| model.inputs[axis.inputs()[0]].name.as_str());
+            // A map of what one of its axes is.
+            let column = if [x_name, y_name].contains(&value) { format!("{value}_value") } else { value.to_owned() };
+            let mut header = vec![x_name, y_name, &column];
             header.extend((spec.value != Best::Share).then_some("design_index"));
             let place = |&design: &u64| {
                 let inputs = &evaluated.cases(design)[0].inputs;
@@ -236,7 +249,7 @@ impl Expected {
         }
         let mut scaled = vec![0.0; self.front.len()];
         for objective in &study.objectives {
-            let name = objective.quantity.name(study.model);
+            let name = objective.quantity.name(&study.model);
             for (end, sign) in [("least", 1.0), ("largest", -1.0)] {
                 let further =
                     |a: &&u64, b: &&u64| (sign * value(**a, objective)).partial_cmp(&(sign * value(**b, objective))).expect("numbers");
@@ -265,6 +278,25 @@ impl Expected {
         }
         self.answer.summary = summary;
     }
+}
+
+/// The place of a design in the shuffled order that a sample of feasible designs is taken from: four rounds over halves of 32 bits.
+pub fn place(design: u64, seed: u64) -> u64 {
+    let mask = u64::from(u32::MAX);
+    let mut key = seed;
+    let (mut high, mut low) = (design >> 32, design & mask);
+    for _ in 0..4 {
+        // The finaliser of SplitMix64, of which a key is the upper half.
+        key = key.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        key = (key ^ key >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        key = (key ^ key >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        key ^= key >> 31;
+        let mut hash = low ^ key >> 32;
+        hash = ((hash ^ hash >> 16) * 0x21f0_aaad) & mask;
+        hash = ((hash ^ hash >> 15) * 0x735a_2d97) & mask;
+        (high, low) = (low, high ^ hash ^ hash >> 15);
+    }
+    high << 32 | low
 }
 
 /// Counts per bin, with what lies below and above; without a range over what there is.

@@ -10,10 +10,10 @@ pub mod runs;
 use crate::random::Random;
 use answer::{Answer, Cell};
 use beltspace::plan::Plan;
-use beltspace::reduce::{State, Top};
+use beltspace::reduce::{Reported, State, Top};
 use beltspace::screen::BLOCK;
 use beltspace::study::{Best, Method, Quantity, Study};
-use beltspace::sweep::Options;
+use beltspace::sweep::Settings;
 use expected::Expected;
 use naive::Evaluated;
 use random_study::Draft;
@@ -35,13 +35,13 @@ fn studies() -> u64 {
 
 /// Do two states say the same? Of the best K one may still hold more than the other.
 fn same(a: &State, b: &State) -> bool {
-    let best = |state: &State| state.top.as_ref().map(Top::indices);
-    let rest = |state: &State| State { top: None, ..state.clone() };
+    let best = |state: &State| state.reported.top.first().map(Top::indices);
+    let rest = |state: &State| State { reported: Reported { top: Vec::new(), ..state.reported.clone() }, ..state.clone() };
     best(a) == best(b) && rest(a) == rest(b)
 }
 
 pub fn parse(text: &str) -> Study {
-    Study::parse(text, "random.toml", Path::new(".")).unwrap_or_else(|errors| panic!("{errors}"))
+    Study::parse_in(text, "random.toml", Path::new(".")).unwrap_or_else(|errors| panic!("{errors}"))
 }
 
 /// A random study: its text, what it means, and its answer.
@@ -90,14 +90,16 @@ fn check_all_ways(seed: u64, text: &str, study: Study, evaluated: &Evaluated) ->
     let pipeline = Pipeline::new(&plan, text);
     let folder = tempfile::tempdir().expect("a folder can be made");
 
-    let reference_state = pipeline.whole(&Options { threads: 1, ..Options::default() });
+    let reference_state = pipeline.whole(&Settings { threads: 1, ..Settings::default() });
     let reference = pipeline.write(reference_state.clone(), 1, &folder.path().join("whole"));
     let found = Answer::read(&folder.path().join("whole"));
     if let Some(difference) = expected.answer.difference(&found) {
         panic!("seed {seed}: {difference}");
     }
     assert_eq!(reference["study.toml"], text.as_bytes(), "seed {seed}");
-    for name in expected.answer.tables.keys().filter(|name| !["scenarios.csv", "top.csv", "variants.csv"].contains(&name.as_str())) {
+    for name in
+        expected.answer.tables.keys().filter(|name| !["scenarios.csv", "top.csv", "sample.csv", "variants.csv"].contains(&name.as_str()))
+    {
         assert!(reference.contains_key(&name.replace(".csv", ".svg")), "seed {seed}: there is no picture of {name}");
     }
 
@@ -105,7 +107,7 @@ fn check_all_ways(seed: u64, text: &str, study: Study, evaluated: &Evaluated) ->
     let mut ways: Vec<(String, State)> = Vec::new();
     // Handing over tens of thousands of single designs would only measure the lock.
     let least = evaluated.designs / 2000;
-    for tile in [1, 7, 1000, Options::default().tile].map(|tile| tile.max(least)) {
+    for tile in [1, 7, 1000, Settings::default().tile].map(|tile| tile.max(least)) {
         let options = options(random, tile);
         ways.push((format!("{options:?}"), pipeline.whole(&options)));
     }
@@ -122,7 +124,7 @@ fn check_all_ways(seed: u64, text: &str, study: Study, evaluated: &Evaluated) ->
             panic!("seed {seed}: {name} differs with {way}");
         }
     }
-    if plan.study.model.device.is_some() {
+    if plan.study.model.shader.is_some() {
         let (state, files) = pipeline.on_device(seed.is_multiple_of(2), &folder.path().join("device"));
         assert_eq!(state.feasible, reference_state.feasible, "seed {seed}: on the device");
         if let Some(name) = differing_file(&reference, &files) {
@@ -170,6 +172,7 @@ const EVERY_FEATURE: &[&str] = &[
     "input as objective",
     "input as constraint",
     "top",
+    "sample of feasible designs",
     "histogram, range given",
     "histogram, range automatic",
     "map of a value",
@@ -195,7 +198,7 @@ fn cover(draft: &Draft, plan: &Plan, evaluated: &Evaluated, expected: &Expected,
             had.insert(feature.to_owned());
         }
     };
-    note(study.model.name, true);
+    note(&study.model.name, true);
     for method in [Method::Sobol, Method::LatinHypercube, Method::Random] {
         note(&format!("sample {method:?}"), study.sample.is_some_and(|sample| sample.method == method));
     }
@@ -230,6 +233,7 @@ fn cover(draft: &Draft, plan: &Plan, evaluated: &Evaluated, expected: &Expected,
     note("input as objective", study.objectives.iter().any(|it| is_input(it.quantity)));
     note("input as constraint", study.constraints.iter().any(|it| is_input(it.quantity)));
     note("top", study.report.top.is_some());
+    note("sample of feasible designs", study.report.sample.is_some());
     note("histogram, range given", study.report.histograms.iter().any(|it| it.range.is_some()));
     note("histogram, range automatic", study.report.histograms.iter().any(|it| it.range.is_none()));
     note("map of a value", study.report.maps.iter().any(|it| matches!(it.value, Best::Value(..))));
@@ -301,7 +305,7 @@ maps = [{ x = "thickness_mm", y = "slack_tension_N", value = "mass_g" }]
 #[test]
 fn a_solver_gives_what_brute_force_gives_however_it_is_run() {
     let study = parse(SOLVED);
-    assert!(crate::effort::is_slow(study.model), "another study stands for formulas");
+    assert!(crate::effort::is_slow(&study.model), "another study stands for formulas");
     let evaluated = Evaluated::new(&study);
     let (plan, expected) = check_all_ways(1, SOLVED, study, &evaluated);
     let feasible = expected.feasible.len() as u64;
@@ -314,7 +318,7 @@ fn run(text: &str, study: Study) -> Answer {
     let plan = Plan::new(study);
     let pipeline = Pipeline::new(&plan, text);
     let folder = tempfile::tempdir().expect("a folder can be made");
-    pipeline.write(pipeline.whole(&Options::default()), 1, folder.path());
+    pipeline.write(pipeline.whole(&Settings::default()), 1, folder.path());
     Answer::read(folder.path())
 }
 
@@ -335,6 +339,61 @@ fn an_axis_whose_values_all_choose_the_same_branch_is_not_swept_with_the_default
             assert!(!expected.front.is_empty());
             assert_eq!(expected.answer.difference(&run(&text, study)), None, "{text}");
         }
+    }
+}
+
+/// Samples of every size, of all, some and no feasible designs, however the study is run; and a comparison that notices another order.
+#[test]
+fn a_sample_is_the_first_feasible_designs_of_the_shuffled_order() {
+    for (count, seed, bound) in [(1, 0, 0.0), (40, 1, 0.0), (40, 2, 0.0), (40, 2, 0.45), (5000, 3, -9.0), (10, 0, 9.0)] {
+        let text = format!(
+            "model = \"metal-cvt\"\n[design]\nband_thickness_mm = {{ from = 0.1, to = 0.3, count = 41 }}\nband_count = {{ from = 6, to = 12 }}\n\
+             groove_angle_deg = [18, 22, 30]\n[operation]\ntorque_Nm = [50, 90]\n[constraints]\nstress_margin = {{ min = {bound} }}\n\
+             [objectives]\naxial_force_N = \"min\"\nstress_margin = \"max\"\n[report]\nsample = {{ count = {count}, seed = {seed} }}\n"
+        );
+        let study = parse(&text);
+        let evaluated = Evaluated::new(&study);
+        let (_, expected) = check_all_ways(seed, &text, study.clone(), &evaluated);
+        let rows = &expected.answer.tables["sample.csv"].rows;
+        assert_eq!(rows.len(), count.min(expected.feasible.len()));
+        // Another seed takes others.
+        let mut other = study;
+        other.report.sample.as_mut().expect("it has one").seed += 1;
+        let differs = Expected::new(&other, &evaluated).answer.difference(&expected.answer);
+        assert_eq!(differs.is_some(), rows.len() < expected.feasible.len(), "{differs:?}");
+    }
+}
+
+/// A state that names another design than the sample has, or too few, is refused or noticed before anything is written.
+#[test]
+fn a_sample_with_a_design_that_is_not_feasible_or_one_too_few_is_not_written() {
+    let text = "model = \"metal-cvt\"\n[design]\nband_thickness_mm = { from = 0.1, to = 0.3, count = 41 }\nband_count = { from = 6, to = 12 }\n\
+                [constraints]\nstress_margin = { min = 0.4 }\n[objectives]\naxial_force_N = \"min\"\n[report]\nsample = 20\n";
+    let plan = Plan::new(parse(text));
+    let pipeline = Pipeline::new(&plan, text);
+    let good = pipeline.whole(&Settings { threads: 1, ..Settings::default() });
+    let evaluated = Evaluated::new(&plan.study);
+    let feasible = Expected::new(&plan.study, &evaluated).feasible;
+    let infeasible = (0..plan.designs()).find(|it| feasible.binary_search(it).is_err()).expect("some are not feasible");
+    let forged = |designs: &[u64]| {
+        // As it is kept: how many, the keys of the order, the designs.
+        let sample = beltspace::reduce::Shuffle::new(0);
+        let bytes = postcard::to_stdvec(&(20usize, sample, designs)).expect("it can be written");
+        let mut state = good.clone();
+        state.reported.samples = vec![postcard::from_bytes(&bytes).expect("that is how it is kept")];
+        state
+    };
+    let kept = good.reported.samples[0].indices();
+    assert_eq!(forged(&kept).reported.samples, good.reported.samples);
+    let check = |state: &State| pipeline.reduction.check(state, plan.designs(), plan.designs());
+    let certified = |state: State| pipeline.certified(state).map(drop).map_err(|error| error.to_string());
+    assert_eq!((check(&good), certified(good.clone())), (Ok(()), Ok(())));
+    let lost = certified(forged(&kept[1..])).expect_err("one is missing");
+    assert!(lost.contains("the sweep named 19 where there must be 20"), "{lost}");
+    let wrong = certified(forged(&[&[infeasible], &kept[1..]].concat())).expect_err("one is not feasible");
+    assert!(wrong.contains("the f64 reference does not"), "{wrong}");
+    for beyond in [forged(&[plan.designs()]), forged(&[0; 41])] {
+        assert_eq!(check(&beyond), Err("its sample cannot be of this study".to_owned()));
     }
 }
 

@@ -58,7 +58,7 @@ impl Evaluated {
             }
             for number in 0..scenarios {
                 set(&scenario, number, &mut inputs);
-                cases.push(Case { evaluation: evaluate(study.model, &inputs), inputs: inputs.clone() });
+                cases.push(Case { evaluation: evaluate(&study.model, &inputs), inputs: inputs.clone() });
             }
         }
         Self { designs, scenarios, cases }

@@ -2,6 +2,7 @@
 
 use crate::random::Random;
 use beltspace::models::Model;
+use std::sync::Arc;
 
 /// An axis as it is written, with the values that the file format promises for it.
 pub struct AxisDraft {
@@ -18,7 +19,7 @@ pub struct AxisDraft {
 /// Values of an input among which many designs have a meaning.
 fn range(model: &Model, number: usize) -> (f64, f64) {
     let input = &model.inputs[number];
-    match (model.name, input.name) {
+    match (model.name.as_str(), input.name.as_str()) {
         (_, "belt_length_mm") => (0.85 * input.default, 1.15 * input.default),
         (_, "centre_distance_mm") => (0.9 * input.default, 1.25 * input.default),
         ("timing-belt", "slack_tension_N") => (0.0, 150.0),
@@ -53,7 +54,7 @@ pub fn three_digits(value: f64) -> f64 {
 /// Draws axes and values of a model's inputs.
 pub struct Generator<'r> {
     pub random: &'r mut Random,
-    pub model: &'static Model,
+    pub model: Arc<Model>,
     /// May design axes walk several inputs together?
     pub joint_designs: bool,
 }
@@ -62,9 +63,9 @@ impl Generator<'_> {
     /// One value of an input, now and then one at the edge of what it may be.
     pub fn value(&mut self, input: usize) -> f64 {
         let table = &self.model.inputs[input];
-        let (low, high) = range(self.model, input);
+        let (low, high) = range(&self.model, input);
         if !table.words.is_empty() && (table.is_enumeration() || self.random.chance(0.25)) {
-            return self.random.word(table.words);
+            return self.random.word(&table.words);
         }
         if table.valid.includes_low && self.random.chance(0.08) {
             return table.valid.low;
@@ -90,9 +91,9 @@ impl Generator<'_> {
         };
         if count <= 1 {
             let value = self.value(input);
-            return axis("one value", written(self.model, input, value), vec![value], false);
+            return axis("one value", written(&self.model, input, value), vec![value], false);
         }
-        let (low, high) = range(self.model, input);
+        let (low, high) = range(&self.model, input);
         if table.integer {
             return self.integer(input, count, axis);
         }
@@ -111,7 +112,7 @@ impl Generator<'_> {
                         values.push(value);
                     }
                 }
-                let text = values.iter().map(|&value| written(self.model, input, value)).collect::<Vec<_>>().join(", ");
+                let text = values.iter().map(|&value| written(&self.model, input, value)).collect::<Vec<_>>().join(", ");
                 axis("list", format!("[{text}]"), values, false)
             }
             1 | 2 => {
@@ -153,7 +154,7 @@ impl Generator<'_> {
     }
 
     fn integer(&mut self, input: usize, count: u64, axis: impl FnOnce(&'static str, String, Vec<f64>, bool) -> AxisDraft) -> AxisDraft {
-        let (low, high) = range(self.model, input);
+        let (low, high) = range(&self.model, input);
         let (low, high) = (low as u64, high as u64);
         // Of two values there are, neither twice.
         let from = (low + self.random.below(2) as u64).min(high - 1);
@@ -177,10 +178,13 @@ impl Generator<'_> {
                 rows.push(row);
             }
         }
-        let name = |input: usize| self.model.inputs[input].name;
+        let name = |input: usize| &self.model.inputs[input].name;
         let row_text = |row: &Vec<f64>| {
-            let cells: Vec<_> =
-                inputs.iter().zip(row).map(|(&input, &value)| format!("{} = {}", name(input), written(self.model, input, value))).collect();
+            let cells: Vec<_> = inputs
+                .iter()
+                .zip(row)
+                .map(|(&input, &value)| format!("{} = {}", name(input), written(&self.model, input, value)))
+                .collect();
             format!("{{ {} }}", cells.join(", "))
         };
         let text = format!("[{}]", rows.iter().map(row_text).collect::<Vec<_>>().join(", "));

@@ -4,16 +4,17 @@ use super::naive::Evaluated;
 use super::random_axes::{AxisDraft, Generator, three_digits, written};
 use crate::effort::is_slow;
 use crate::random::Random;
-use beltspace::models::{MODELS, Model, Worse};
+use beltspace::models::{self, Model, Worse};
 use beltspace::study::{Axis, Quantity, Study};
 use std::fmt::Write;
+use std::sync::Arc;
 
 /// The range of a histogram, where it is given.
 type Ends = Option<(f64, f64)>;
 
 /// A study file in parts.
 pub struct Draft {
-    pub model: &'static Model,
+    pub model: Arc<Model>,
     title: String,
     sample: Option<String>,
     /// Design, operation, uncertainty.
@@ -51,9 +52,9 @@ impl Draft {
         // What a short loop must not miss goes by the seed, everything else by chance.
         let turn = seed as usize;
         // A solver is too slow for studies of this size: it has one of its own.
-        let models: Vec<_> = MODELS.iter().copied().filter(|model| !is_slow(model)).collect();
+        let models: Vec<_> = models::all().iter().filter(|model| !is_slow(model)).collect();
         let model = models[turn % models.len()];
-        let mut generator = Generator { random, model, joint_designs: !for_bounds };
+        let mut generator = Generator { random, model: model.clone(), joint_designs: !for_bounds };
         let sampled = turn.is_multiple_of(4) && !for_bounds;
         // A large one now and then: only those give the front a head start.
         let large = turn % 20 == 7;
@@ -79,7 +80,7 @@ impl Draft {
             format!("method = \"{method}\"\ncount = {}\nseed = {}", designs as u64, random.below(1000))
         });
         let mut draft = Self {
-            model,
+            model: model.clone(),
             title: format!("Random study {seed}"),
             sample,
             axes: [design, operation, uncertainty],
@@ -132,7 +133,7 @@ impl Draft {
             "peak_tooth_load_N",
         ];
         let chosen = |it: &&Quantity| matches!(it, Quantity::Input(input) if self.axes[0].iter().any(|axis| axis.inputs.contains(input)));
-        let favourite = |it: &&Quantity| favourites.contains(&it.name(self.model));
+        let favourite = |it: &&Quantity| favourites.contains(&it.name(&self.model));
         let output = |it: &&Quantity| matches!(it, Quantity::Output(_));
         let filtered: Vec<Quantity> = match random.below(20) {
             0..8 => quantities.iter().filter(favourite).copied().collect(),
@@ -145,7 +146,7 @@ impl Draft {
 
     /// Objectives and report.
     fn ask(&mut self, random: &mut Random, wanted: usize) {
-        let model = self.model;
+        let model = &self.model;
         let quantities = self.quantities();
         let mut objectives: Vec<Quantity> = Vec::new();
         while objectives.len() < wanted {
@@ -183,6 +184,14 @@ impl Draft {
             }
             if !maps.is_empty() {
                 self.report.push(format!("maps = [{}]", maps.join(", ")));
+            }
+        }
+        // Bounds cannot give one.
+        if !self.for_bounds {
+            match random.below(6) {
+                0 => self.report.push(format!("sample = {}", random.pick(&[1, 7, 100, 10_000]))),
+                1 => self.report.push(format!("sample = {{ count = {}, seed = {} }}", random.pick(&[3, 40]), random.below(1000))),
+                _ => {}
             }
         }
         let mut columns: Vec<String> = Vec::new();
@@ -234,13 +243,13 @@ impl Draft {
                 _ => String::new(),
             };
             let (bound, other) = (bound + 0.0, if impossible { String::new() } else { other });
-            self.constraints.push(format!("{} = {{ {key} = {bound}{other} }}", quantity.name(self.model)));
+            self.constraints.push(format!("{} = {{ {key} = {bound}{other} }}", quantity.name(&self.model)));
         }
         if self.for_bounds && random.chance(0.4) {
             self.bound_at_zero(random, &used);
         }
         let worst_values = |quantity: Quantity| {
-            let values = evaluated.sorted_worst_values(study, quantity, quantity.worse(self.model))?;
+            let values = evaluated.sorted_worst_values(study, quantity, quantity.worse(&self.model))?;
             (values[0] < values[values.len() - 1]).then_some(values)
         };
         for (quantity, _, resolution) in &mut self.objectives {
@@ -292,11 +301,11 @@ impl Draft {
             section(role, &axes.iter().map(|axis| format!("{} = {}", axis.key, axis.text)).collect::<Vec<_>>());
         }
         let fixed =
-            self.fixed.iter().map(|&(input, value)| format!("{} = {}", self.model.inputs[input].name, written(self.model, input, value)));
+            self.fixed.iter().map(|&(input, value)| format!("{} = {}", self.model.inputs[input].name, written(&self.model, input, value)));
         section("fixed", &fixed.collect::<Vec<_>>());
         section("constraints", &self.constraints);
         let objective = |&(quantity, goal, resolution): &(Quantity, &str, Option<f64>)| {
-            let name = quantity.name(self.model);
+            let name = quantity.name(&self.model);
             match resolution {
                 Some(resolution) => format!("{name} = {{ goal = \"{goal}\", resolution = {resolution} }}"),
                 None => format!("{name} = \"{goal}\""),
@@ -305,7 +314,7 @@ impl Draft {
         section("objectives", &self.objectives.iter().map(objective).collect::<Vec<_>>());
         let histogram = |&(quantity, bins, range): &(Quantity, usize, Ends)| {
             let range = range.map_or(String::new(), |(low, high)| format!(", from = {low}, to = {high}"));
-            format!("{{ of = \"{}\", bins = {bins}{range} }}", quantity.name(self.model))
+            format!("{{ of = \"{}\", bins = {bins}{range} }}", quantity.name(&self.model))
         };
         let histograms: Vec<_> = self.histograms.iter().map(histogram).collect();
         let histograms = (!histograms.is_empty()).then(|| format!("histograms = [{}]", histograms.join(", ")));

@@ -1,14 +1,16 @@
 //! The pipeline, run in every way that must not matter.
 
 use crate::random::Random;
-use beltspace::checkpoint::Checkpoint;
-use beltspace::export::{MethodRecord, Outcome, RunRecord};
+use beltspace::checkpoint::{Checkpoint, Saved};
+use beltspace::export::{Certified, MethodRecord, RunRecord};
+use beltspace::files::Claim;
 use beltspace::merge::{check_set, merge};
+use beltspace::names::CHECKPOINT;
 use beltspace::plan::Plan;
 use beltspace::reduce::{Reduction, State};
 use beltspace::screen::gpu::Wrong;
 use beltspace::screen::{CpuEngine, Tables, Tally};
-use beltspace::sweep::{Control, Options, sweep, sweep_on_device};
+use beltspace::sweep::{Control, Settings, sweep, sweep_on_device};
 use beltspace::tiles::{Ranges, Shard};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -35,7 +37,7 @@ impl<'p> Pipeline<'p> {
     }
 
     /// One run over the whole study.
-    pub fn whole(&self, options: &Options) -> State {
+    pub fn whole(&self, options: &Settings) -> State {
         let control = Control::default();
         sweep(self.plan, &self.tables, &self.reduction, options, None, &control).expect("the sweep ends").state
     }
@@ -43,7 +45,7 @@ impl<'p> Pipeline<'p> {
     /// One run on the device of the tests, lanes judged one by one or in groups; its state and files.
     pub fn on_device(&self, grouped: bool, folder: &Path) -> (State, Files) {
         let device = &crate::gpu::wrong(Wrong { grouped, ..Wrong::default() });
-        let (options, control) = (Options { threads: 2, ..Options::default() }, Control::default());
+        let (options, control) = (Settings { threads: 2, ..Settings::default() }, Control::default());
         let swept = sweep_on_device(self.plan, &self.tables, &self.reduction, &options, None, &control, device);
         let state = swept.unwrap_or_else(|error| panic!("{error}")).0.state;
         let files = self.write(state.clone(), 1, folder);
@@ -58,28 +60,29 @@ impl<'p> Pipeline<'p> {
     }
 
     /// Several shards, each with a checkpoint, some of them resumed from a part of their own, merged in a random order.
-    pub fn sharded_by(&self, random: &mut Random, folder: &Path, mut judge: impl FnMut(&mut Random, &Options, &mut Checkpoint)) -> State {
+    pub fn sharded_by(&self, random: &mut Random, folder: &Path, mut judge: impl FnMut(&mut Random, &Settings, &mut Checkpoint)) -> State {
         let of = random.whole(2, 5) as u64;
         let mut folders = Vec::new();
         for number in 1..=of {
             let shard = Shard { number, of };
             let folder = folder.join(format!("shard-{number}"));
+            let claim = Claim::new(&folder, "a test").expect("nobody has it");
             let mut checkpoint =
-                Checkpoint::create(&folder, &self.plan.study, self.text, shard, self.plan.designs()).expect("a folder can be made");
+                Checkpoint::create(&claim, &self.plan.study, self.text, shard, self.plan.designs()).expect("a folder can be made");
             if random.chance(0.5) {
                 self.begin(random, &mut checkpoint);
                 drop(checkpoint);
-                checkpoint = Checkpoint::open(&folder).expect("a part is kept");
-                checkpoint.require(&self.plan.study, shard).expect("it is of this study and shard");
+                checkpoint = Checkpoint::open(&claim).expect("a part is kept");
+                checkpoint.saved().require(&self.plan.study, shard).expect("it is of this study and shard");
             }
-            let options = Options { shard, ..options(random, 7.max(self.plan.designs() / 2000)) };
+            let options = Settings { shard, ..options(random, 7.max(self.plan.designs() / 2000)) };
             judge(random, &options, &mut checkpoint);
             folders.push(folder);
         }
         random.shuffle(&mut folders);
         let open = |folder: PathBuf| {
-            let checkpoint = Checkpoint::open(&folder).expect("a finished shard is kept");
-            (folder, checkpoint)
+            let saved = Saved::read(&folder.join(CHECKPOINT)).expect("a finished shard is kept");
+            (folder, saved)
         };
         let shards: Vec<_> = folders.into_iter().map(open).collect();
         check_set(&shards).expect("the shards are complete");
@@ -88,7 +91,7 @@ impl<'p> Pipeline<'p> {
 
     /// Keeps the state of some positions in the middle of a shard, as a run does that is killed later.
     fn begin(&self, random: &mut Random, checkpoint: &mut Checkpoint) {
-        let range = checkpoint.shard().range(self.plan.designs());
+        let range = checkpoint.saved().shard().range(self.plan.designs());
         let length = (range.end - range.start) as usize;
         let first = range.start + random.below(length + 1) as u64;
         let last = first + random.below((range.end - first) as usize + 1) as u64;
@@ -97,9 +100,14 @@ impl<'p> Pipeline<'p> {
         checkpoint.save(&Ranges::of(first..last), &reducers.state()).expect("a part can be kept");
     }
 
+    /// What is written of a state, if the reference agrees.
+    pub fn certified(&self, state: State) -> beltspace::error::Result<Certified<'_>> {
+        Certified::certify(self.plan, state, self.tally.clone(), 1, &Control::default())
+    }
+
     /// Certifies and writes a result; returns its files.
     pub fn write(&self, state: State, threads: usize, folder: &Path) -> Files {
-        let outcome = Outcome::certify(self.plan, state, self.tally.clone(), threads, &Control::default()).expect("the reference agrees");
+        let outcome = Certified::certify(self.plan, state, self.tally.clone(), threads, &Control::default()).expect("the reference agrees");
         let record = RunRecord {
             engine: "cpu",
             threads,
@@ -107,19 +115,22 @@ impl<'p> Pipeline<'p> {
             scenarios: self.plan.scenarios(),
             time: Duration::from_millis(1),
             origin: "a test".to_owned(),
-            certified: outcome.front.len() + outcome.top.len(),
+            certified: outcome.certified(),
             device: None,
-            method: MethodRecord { name: "exhaustive", why: "a test".to_owned(), certificate: None },
+            method: MethodRecord { name: "exhaustive", why: "a test".to_owned(), certificate: None, left: None },
         };
-        outcome.write(folder, self.text, &record).expect("a result can be written");
+        let claim = Claim::new(folder, "a test").expect("nobody has it");
+        let (study, designs) = (&self.plan.study, self.plan.designs());
+        let checkpoint = Checkpoint::create(&claim, study, self.text, Shard::WHOLE, designs).expect("a folder can be made");
+        outcome.write(checkpoint, self.text, &record).expect("a result can be written");
         files(folder)
     }
 }
 
 /// How to run, with chunks so short that there are many.
-pub fn options(random: &mut Random, tile: u64) -> Options {
+pub fn options(random: &mut Random, tile: u64) -> Settings {
     let chunk = Duration::from_micros(random.pick(&[0, 10, 1000]));
-    Options { threads: random.whole(1, 3), tile, chunk, ..Options::default() }
+    Settings { threads: random.whole(1, 3), tile, chunk, ..Settings::default() }
 }
 
 fn files(folder: &Path) -> Files {

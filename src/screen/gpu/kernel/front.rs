@@ -148,14 +148,21 @@ impl Prelude<'_> {
         let study = &plan.study;
         let (mut may, mut unknown) = ("false".to_owned(), "false".to_owned());
         if let Some(top) = study.report.top {
-            let position = plan.tracked.iter().position(|(it, _)| it.quantity == top.by && it.worse == top.goal.worse());
-            let [low, high] = self.ends(position.expect("the top list's quantity is tracked"));
+            let [low, high] = self.ends(plan.position(top.by, top.goal.worse()));
             let key = if top.goal == Goal::Min { low } else { format!("-{high}") };
             may = format!("{key} <= horizon.top");
             unknown = format!("!(known.top.y == 1.0 && {key} == known.top.x && wide_less(known.top_index.xy, index))");
         }
         self.function("may_be_top(lane: Lane, horizon: Horizon) -> bool", &[format!("return {may};")]);
         self.function("is_known_top(lane: Lane, horizon: Horizon, index: vec2<u32>) -> bool", &[format!("return !({may} && {unknown});")]);
+
+        let mut lines = vec!["return false;".to_owned()];
+        if let Some(sample) = study.report.sample {
+            lines = vec!["var place = index;".to_owned()];
+            lines.extend(Shuffle::new(sample.seed).keys.map(|key| format!("place = shuffled(place, {key}u);")));
+            lines.push("return !wide_less(known.last_place.xy, place);".to_owned());
+        }
+        self.function("may_be_sampled(index: vec2<u32>) -> bool", &lines);
 
         let mut may = vec!["var may = false;".to_owned()];
         let mut unknown = may.clone();

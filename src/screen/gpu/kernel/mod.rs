@@ -20,8 +20,9 @@ use super::layout::{BINS, KILLERS, LIST, Layout, Values, champions, on_device, s
 use crate::gpu::{model_prelude, model_source, source, tables};
 use crate::models::{CONDITION_PROMISE, Worse};
 use crate::plan::{Plan, Source};
-use crate::real::nearest_f32;
+use crate::reduce::Shuffle;
 use crate::study::{Best, Constraint, Goal, MapSpec, Objective, Quantity};
+use crate::tape::nearest_f32;
 use std::fmt::Write;
 
 /// Entry points of the kernel.
@@ -73,8 +74,7 @@ pub fn survivor_words(plan: &Plan) -> usize {
 pub fn value_maps(plan: &Plan) -> impl Iterator<Item = (&MapSpec, usize, Goal)> {
     plan.study.report.maps.iter().filter_map(|spec| {
         let Best::Value(quantity, goal) = spec.value else { return None };
-        let at = plan.tracked.iter().position(|(it, _)| it.quantity == quantity && it.worse == goal.worse());
-        Some((spec, at.expect("what a map shows is tracked"), goal))
+        Some((spec, plan.position(quantity, goal.worse()), goal))
     })
 }
 
@@ -116,10 +116,11 @@ pub fn text(plan: &Plan, layout: &Layout, perturb: &[(usize, f64)]) -> String {
     [
         source::COMMON,
         include_str!("../../../../shaders/common/wide.wgsl"),
-        &model_prelude(layout.formula, plan.study.model.conditions.len(), plan.used_outputs(), &asked),
+        &model_prelude(&layout.fields, plan.study.model.conditions.len(), plan.used_outputs(), &asked),
         &passed_tables(layout),
-        &model_source(layout.formula),
+        &model_source(&plan.study.model, plan.study.model.on_device().expect("a layout is for a device")),
         include_str!("../../../../shaders/sweep/tile.wgsl"),
+        include_str!("../../../../shaders/sweep/shuffle.wgsl"),
         &prelude.text,
         include_str!("../../../../shaders/sweep/prepare.wgsl"),
         include_str!("../../../../shaders/sweep/sweep.wgsl"),
@@ -130,7 +131,7 @@ pub fn text(plan: &Plan, layout: &Layout, perturb: &[(usize, f64)]) -> String {
 
 /// The tables that pass between the stages.
 fn passed_tables(layout: &Layout) -> String {
-    tables(layout.formula, |field, place| {
+    tables(&layout.fields, |field, place| {
         let passed = layout.prepared.iter().find(|it| it.field == field)?;
         Some(format!("prepared_table[{place} + ({}u + at) * tile.rows]", passed.offset))
     })
@@ -145,11 +146,11 @@ struct Prelude<'a> {
 
 impl Prelude<'_> {
     fn input(&self, input: usize) -> &'static str {
-        self.layout.formula.twin.fields().inputs[input]
+        self.layout.fields.inputs[input]
     }
 
     fn output(&self, output: usize) -> &'static str {
-        self.layout.formula.twin.fields().outputs[output]
+        self.layout.fields.outputs[output]
     }
 
     /// A function of these lines.
@@ -165,7 +166,8 @@ impl Prelude<'_> {
         let (plan, layout) = (self.plan, self.layout);
         let cut = layout.cut;
         let share_or_value = !plan.study.report.maps.is_empty();
-        let all = share_or_value || !plan.study.report.histograms.is_empty();
+        // Only the closer look knows the index of a design.
+        let all = share_or_value || !plan.study.report.histograms.is_empty() || plan.study.report.sample.is_some();
         let uses_champions = champions(plan);
         let each = if cut.keeps { cut.block } else { 1 };
         let shared = if uses_champions { cut.group_rows * cut.group_chunks * each } else { 1 };

@@ -26,7 +26,7 @@ impl Prelude<'_> {
         let mut offset = 3;
         for (number, spec) in report.histograms.iter().enumerate() {
             let worse = crate::plan::worst_end(&plan.study, spec.of);
-            let at = plan.tracked.iter().position(|(it, _)| it.quantity == spec.of && it.worse == worse).expect("it is tracked");
+            let at = plan.position(spec.of, worse);
             let bins = spec.bins;
             lines.push(format!("let h{number} = bins_of(lane.t{at}, HISTOGRAM_{number}, PER_UNIT_{number}, {bins}.0);"));
             // Where f64 has a value on the upper edge of the last bin, it belongs to that bin: never a sure answer here.

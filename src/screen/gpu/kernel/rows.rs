@@ -6,7 +6,7 @@ impl Prelude<'_> {
     /// Fixed inputs and scenarios.
     pub(super) fn inputs(&mut self) {
         let plan = self.plan;
-        let model = plan.study.model;
+        let model = &plan.study.model;
         // Inputs that a stage does not depend on still decide selections: every one has a value of its own axis.
         let first = crate::models::to_si(model, &plan.space.inputs(0, 0));
         let mut lines = vec!["var inputs: Inputs;".to_owned()];
@@ -73,7 +73,7 @@ impl Prelude<'_> {
     /// Values of the first stage, and what all lanes of a row share.
     pub(super) fn passing(&mut self) {
         let (plan, layout) = (self.plan, self.layout);
-        let fields = layout.formula.twin.fields();
+        let fields = layout.fields;
         let width = layout.prepared_width();
         let place = format!("q * {width}u * tile.rows + row");
         let at = |offset: usize| format!("prepared_table[{place} + {offset}u * tile.rows]");

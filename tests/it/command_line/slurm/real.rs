@@ -1,10 +1,10 @@
-//! The scripts under a real Slurm on this machine: one node, started for the test and stopped after it. Where BELTSPACE_SLURM is
-//! not set the test says that it is skipped; the full stage of the checks sets it, and then a missing Slurm is a failure.
+//! The scripts under a real Slurm on this machine: one node, started for the test and stopped after it. The test runs where it is asked
+//! for, as in the full stage of the checks, and a missing Slurm is a failure.
 
 use super::Place;
 use crate::command_line::{files, json_of, larger, read, same_result};
 use std::fmt::Write as _;
-use std::io::{Read as _, Write as _};
+use std::io::Read as _;
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -13,15 +13,6 @@ use tempfile::TempDir;
 
 /// Longest time that anything here may take before the test gives up.
 const PATIENCE: Duration = Duration::from_secs(180);
-
-fn asked_for() -> bool {
-    let asked = std::env::var_os("BELTSPACE_SLURM").is_some_and(|it| it == "1");
-    if !asked {
-        // Past the capture of a passing test's output.
-        let _ = writeln!(std::io::stderr(), "slurm: SKIPPED, set BELTSPACE_SLURM=1 to run jobs under a Slurm of the test's own");
-    }
-    asked
-}
 
 /// A Slurm of one node with two processors, and what it needs: munge, ports, folders.
 struct Slurm {
@@ -96,7 +87,7 @@ impl Slurm {
         let mut command = Command::new(program);
         command.args(words).env("SLURM_CONF", self.configuration()).stdin(Stdio::null());
         let child = command.stdout(log.try_clone().expect("it is open")).stderr(log).spawn();
-        self.daemons.push(child.unwrap_or_else(|error| panic!("BELTSPACE_SLURM=1, but {program} does not start: {error}")));
+        self.daemons.push(child.unwrap_or_else(|error| panic!("{program} does not start (Debian packages slurm-wlm and munge): {error}")));
     }
 
     fn configuration(&self) -> PathBuf {
@@ -210,10 +201,8 @@ impl Place {
 }
 
 #[test]
+#[ignore = "starts a Slurm of its own: cargo test --test it -- --ignored slurm::real"]
 fn shards_and_their_merge_run_under_slurm() {
-    if !asked_for() {
-        return;
-    }
     let start = Instant::now();
     let say = |what: &str| println!("{:6.1} s  {what}", start.elapsed().as_secs_f64());
     let slurm = Slurm::start();

@@ -1,0 +1,264 @@
+//! A lock beside what it protects: a file that is locked, says who holds it, and is gone when nobody needs it.
+//!
+//! A file that is removed while another process waits for it would be held twice: by who waited, and by who makes it anew. So it is
+//! removed only by who holds it alone, and whoever gets a lock asks whether the file is still the one of that name.
+
+use std::fs::{self, File, TryLockError};
+use std::io::{self, Read, Seek, Write};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// How often, and after which pauses, a lock is tried again before it counts as held.
+const ATTEMPTS: u32 = 20;
+const PAUSE: Duration = Duration::from_millis(10);
+/// Most files that are found gone, one after the other, before the file system counts as broken.
+const MOST_GONE: u32 = 10_000;
+/// What the first line of a lock begins with.
+const MARK: &str = "beltspace";
+/// Most bytes of that line that are read.
+const LINE: u64 = 1000;
+
+/// A lock that this process holds until it is dropped.
+#[derive(Debug)]
+pub struct Lock {
+    file: File,
+    path: PathBuf,
+}
+
+/// What came of asking for a lock.
+#[derive(Debug)]
+pub enum Taken {
+    /// It is held.
+    Held(Lock),
+    /// Somebody else holds it: who, as far as that is known.
+    Busy(String),
+}
+
+impl Lock {
+    /// Takes the lock at `path` for this process alone. `task` is what others are told.
+    ///
+    /// # Errors
+    /// Those of the file system; a file of that name that is no lock.
+    pub fn alone(path: &Path, task: &str) -> io::Result<Taken> {
+        Self::take(path, task, File::try_lock)
+    }
+
+    /// Takes the lock at `path` together with others that only read what it protects.
+    ///
+    /// # Errors
+    /// As [`Lock::alone`].
+    pub fn shared(path: &Path, task: &str) -> io::Result<Taken> {
+        Self::take(path, task, File::try_lock_shared)
+    }
+
+    /// Takes a lock that is there, together with others, without writing anything; `None` if there is none.
+    ///
+    /// # Errors
+    /// As [`Lock::alone`].
+    pub fn shared_if_there(path: &Path) -> io::Result<Option<Taken>> {
+        let file = match File::open(path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            file => file?,
+        };
+        let taken = try_for_a_while(&file, File::try_lock_shared)?;
+        Ok(Some(if taken { Taken::Held(Self { file, path: path.to_owned() }) } else { Taken::Busy(holder(&file)) }))
+    }
+
+    fn take(path: &Path, task: &str, lock: fn(&File) -> Result<(), TryLockError>) -> io::Result<Taken> {
+        for _ in 0..MOST_GONE {
+            // A link would have this program write into the file that it points to.
+            if fs::symlink_metadata(path).is_ok_and(|it| !it.is_file()) {
+                return Err(not_a_lock());
+            }
+            let (file, writable) = open(path)?;
+            if !is_at(&file, path) {
+                continue;
+            }
+            if !is_a_lock(&file)? {
+                return Err(not_a_lock());
+            }
+            if !try_for_a_while(&file, lock)? {
+                return Ok(Taken::Busy(holder(&file)));
+            }
+            // Removed by who held it before: another file is the lock now, or will be.
+            if !is_at(&file, path) {
+                continue;
+            }
+            let mut held = Self { file, path: path.to_owned() };
+            if writable {
+                held.say(task)?;
+            }
+            return Ok(Taken::Held(held));
+        }
+        Err(io::Error::other("the lock is another file whenever it is looked at"))
+    }
+
+    /// Says who holds it.
+    fn say(&mut self, task: &str) -> io::Result<()> {
+        #[cfg(feature = "cli")]
+        let host = gethostname::gethostname();
+        // Who uses the library alone need not depend on how a system is asked for its name; many say it here.
+        #[cfg(not(feature = "cli"))]
+        let host = std::env::var_os("HOSTNAME").unwrap_or_else(|| "this machine".into());
+        let line = format!("{MARK}: process {} on {}: {task}\n", std::process::id(), host.to_string_lossy());
+        self.file.set_len(0)?;
+        self.file.seek(io::SeekFrom::Start(0))?;
+        self.file.write_all(line.as_bytes())
+    }
+}
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        // Others that read too still need it. Elsewhere a file that is open cannot be known by its name, and stays.
+        if cfg!(unix) && self.file.try_lock().is_ok() && is_at(&self.file, &self.path) {
+            // A lock that stays is no harm.
+            let _ = fs::remove_file(&self.path);
+        }
+    }
+}
+
+/// Opens a lock, which is made if there is none; says whether it can be written to. What a run of another user left when it was killed
+/// can still be locked.
+fn open(path: &Path) -> io::Result<(File, bool)> {
+    match File::options().read(true).write(true).create(true).truncate(false).open(path) {
+        Err(error) if error.kind() == io::ErrorKind::PermissionDenied => File::open(path).map(|file| (file, false)).map_err(|_| error),
+        file => file.map(|file| (file, true)),
+    }
+}
+
+fn not_a_lock() -> io::Error {
+    io::Error::other("this is no lock of beltspace; move it away")
+}
+
+fn try_for_a_while(file: &File, lock: fn(&File) -> Result<(), TryLockError>) -> io::Result<bool> {
+    // A program that another process is just starting shares its files, and so a lock that was let go, until it runs.
+    let mut attempts = 0..ATTEMPTS;
+    loop {
+        match lock(file) {
+            Ok(()) => return Ok(true),
+            Err(TryLockError::WouldBlock) if attempts.next().is_some() => std::thread::sleep(PAUSE),
+            Err(TryLockError::WouldBlock) => return Ok(false),
+            Err(TryLockError::Error(error)) => return Err(error),
+        }
+    }
+}
+
+/// Is this open file still the one of that name? It is opened again rather than asked for by its name: file systems over a network
+/// look at the server only then.
+#[cfg(unix)]
+fn is_at(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let number = |file: &File| file.metadata().map(|it| (it.dev(), it.ino()));
+    match (number(file), File::open(path).and_then(|it| number(&it))) {
+        (Ok(own), Ok(there)) => own == there && fs::symlink_metadata(path).is_ok_and(|it| it.is_file()),
+        _ => false,
+    }
+}
+
+/// Nobody removes it here.
+#[cfg(not(unix))]
+fn is_at(_: &File, _: &Path) -> bool {
+    true
+}
+
+/// The first line of a lock; empty where it cannot be read.
+fn first_line(file: &File) -> String {
+    let mut file = file;
+    let mut bytes = Vec::new();
+    // Where locks keep others from reading, nobody is told who it is.
+    let read = file.seek(io::SeekFrom::Start(0)).and_then(|_| file.take(LINE).read_to_end(&mut bytes));
+    let text = if read.is_ok() { String::from_utf8_lossy(&bytes).into_owned() } else { String::new() };
+    text.lines().next().unwrap_or_default().to_owned()
+}
+
+fn is_a_lock(file: &File) -> io::Result<bool> {
+    Ok(file.metadata()?.len() == 0 || first_line(file).starts_with(MARK) || cfg!(not(unix)))
+}
+
+/// Who holds a lock, and for how long: `process 12 on host for 3 s: beltspace sweep study.toml`.
+fn holder(file: &File) -> String {
+    let line = first_line(file);
+    let since = file.metadata().and_then(|it| it.modified()).ok().and_then(|it| it.elapsed().ok());
+    let Some((who, what)) = line.strip_prefix(MARK).and_then(|it| it.strip_prefix(": ")).and_then(|it| it.split_once(": ")) else {
+        return "which one is not known".to_owned();
+    };
+    let since = since.map_or(String::new(), |it| format!(", for {}", for_people(it)));
+    // The file may have been written by anybody.
+    let plain =
+        |text: &str| text.chars().flat_map(|c| if c.is_control() { c.escape_default().collect() } else { vec![c] }).collect::<String>();
+    format!("{}{since}: {}", plain(who), plain(what))
+}
+
+fn for_people(span: Duration) -> String {
+    match span.as_secs() {
+        seconds @ 0..120 => format!("{seconds} s"),
+        seconds @ 120..7200 => format!("{} min", seconds / 60),
+        seconds => format!("{} h", seconds / 3600),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicU32, Ordering};
+
+    fn folder() -> tempfile::TempDir {
+        tempfile::tempdir().expect("there is room")
+    }
+
+    #[test]
+    fn a_lock_has_one_holder_who_says_what_it_does() {
+        let folder = folder();
+        let path = folder.path().join(".out.beltspace-lock");
+        let Ok(Taken::Held(first)) = Lock::alone(&path, "beltspace sweep a.toml") else { panic!("it is free") };
+        for second in [Lock::alone(&path, "another"), Lock::shared(&path, "another")] {
+            let Ok(Taken::Busy(who)) = second else { panic!("it is held") };
+            let own = format!("process {} on ", std::process::id());
+            assert!(who.starts_with(&own) && who.ends_with(": beltspace sweep a.toml"), "{who}");
+        }
+        drop(first);
+        assert!(!path.exists() || cfg!(not(unix)));
+        let Ok(Taken::Held(first)) = Lock::shared(&path, "beltspace report out") else { panic!("it is free again") };
+        let Ok(Taken::Held(second)) = Lock::shared(&path, "beltspace report out") else { panic!("readers share it") };
+        assert!(matches!(Lock::alone(&path, "beltspace sweep"), Ok(Taken::Busy(_))));
+        drop(first);
+        assert!(matches!(Lock::alone(&path, "beltspace sweep"), Ok(Taken::Busy(_))), "one still reads");
+        drop(second);
+        assert!(matches!(Lock::alone(&path, "beltspace sweep"), Ok(Taken::Held(_))));
+    }
+
+    #[test]
+    fn many_threads_never_hold_it_together() {
+        let folder = folder();
+        let path = folder.path().join("lock");
+        let (inside, rounds) = (AtomicU32::new(0), AtomicU32::new(0));
+        std::thread::scope(|scope| {
+            for _ in 0..8 {
+                scope.spawn(|| {
+                    while rounds.load(Ordering::SeqCst) < 400 {
+                        let Taken::Held(lock) = Lock::alone(&path, "turn").expect("the folder is there") else { continue };
+                        assert_eq!(inside.fetch_add(1, Ordering::SeqCst), 0, "two hold it");
+                        std::thread::yield_now();
+                        inside.fetch_sub(1, Ordering::SeqCst);
+                        rounds.fetch_add(1, Ordering::SeqCst);
+                        drop(lock);
+                    }
+                });
+            }
+        });
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn what_is_no_lock_is_left_alone() {
+        let folder = folder();
+        let [note, link, target] = ["note", "link", "target"].map(|name| folder.path().join(name));
+        fs::write(&note, "groceries").expect("it can be written");
+        std::os::unix::fs::symlink(&target, &link).expect("links can be made");
+        for path in [&note, &link] {
+            assert!(Lock::alone(path, "turn").expect_err("it is no lock").to_string().contains("no lock of beltspace"));
+        }
+        assert_eq!(fs::read(&note).expect("it is there"), b"groceries");
+        assert!(!target.exists());
+    }
+}

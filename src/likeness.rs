@@ -1,0 +1,28 @@
+//! "Did you mean": the one place that says which known name a wrong one was meant to be.
+
+/// The name most like `name`, if one is like enough to be what was meant.
+pub fn closest<'n>(name: &str, names: &[&'n str]) -> Option<&'n str> {
+    let name = name.to_lowercase();
+    // Nothing that long is a name; the distance takes quadratic time.
+    if name.is_empty() || name.len() > 80 {
+        return None;
+    }
+    let without_unit = names.iter().find(|known| known.to_lowercase().starts_with(&format!("{name}_")));
+    let near = || names.iter().map(|known| (strsim::damerau_levenshtein(&name, &known.to_lowercase()), known)).min_by_key(|&(d, _)| d);
+    let close = || near().filter(|&(distance, _)| distance <= (name.chars().count() / 3).max(1)).map(|(_, known)| known);
+    without_unit.or_else(close).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::closest;
+
+    #[test]
+    fn a_slip_is_understood_and_another_word_is_not() {
+        let names = ["band_count", "band_thickness_mm", "friction"];
+        assert_eq!(closest("band_thickness", &names), Some("band_thickness_mm"), "the unit was left out");
+        assert_eq!(closest("Frictoin", &names), Some("friction"));
+        assert_eq!(closest("speed", &names), None);
+        assert_eq!(closest("", &names), None);
+    }
+}

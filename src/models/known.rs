@@ -1,0 +1,184 @@
+//! Which model a name means, and what a model must be so that everything else can rely on it.
+
+use super::description::{Input, Model};
+use super::formula::{CONDITIONS, INPUTS, OUTPUTS};
+use crate::error::{Error, Result};
+use std::collections::HashSet;
+use std::sync::Arc;
+
+/// The models that names mean: those that come with the program, and others that were made at run time.
+///
+/// Whatever reads a model's name (a study, a result, a checkpoint) is given one of these, or knows the program's own only.
+#[derive(Clone, Debug, Default)]
+pub struct Models {
+    others: Vec<Arc<Model>>,
+}
+
+impl Models {
+    /// Those that come with the program.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The same and another one.
+    ///
+    /// # Errors
+    /// [`Error::Request`] if its name is taken, or as [`Model::check`].
+    pub fn with(mut self, model: Arc<Model>) -> Result<Self> {
+        model.check()?;
+        if self.find(&model.name).is_some() {
+            return Err(Error::Request(format!("there is a model \"{}\" already", model.name)));
+        }
+        self.others.push(model);
+        Ok(self)
+    }
+
+    /// All of them, those of the program first.
+    pub fn iter(&self) -> impl Iterator<Item = &Arc<Model>> {
+        super::all().iter().chain(&self.others)
+    }
+
+    /// The model of that name.
+    pub fn find(&self, name: &str) -> Option<Arc<Model>> {
+        self.iter().find(|model| model.name == name).cloned()
+    }
+}
+
+/// Is this a name that may stand before `=` in a study file and in a file's name?
+fn is_name(name: &str) -> bool {
+    name.starts_with(|it: char| it.is_ascii_alphabetic()) && name.bytes().all(|it| it.is_ascii_alphanumeric() || it == b'_')
+}
+
+impl Model {
+    /// Checks that the tables fit each other: names are unique and end in their units, defaults and presets are accepted, words and
+    /// conditions name what exists.
+    ///
+    /// # Errors
+    /// [`Error::Request`] with the first thing that is wrong.
+    pub fn check(&self) -> Result<()> {
+        self.flaw().map_or(Ok(()), |flaw| Err(Error::Request(format!("the model \"{}\" cannot be: {flaw}", self.name))))
+    }
+
+    fn flaw(&self) -> Option<String> {
+        if self.name.is_empty() || !self.name.bytes().all(|it| it.is_ascii_alphanumeric() || it == b'-' || it == b'_') {
+            return Some("its name has other characters than letters, digits, - and _".to_owned());
+        }
+        let sizes = [
+            ("inputs", self.inputs.len(), INPUTS),
+            ("outputs", self.outputs.len(), OUTPUTS),
+            ("conditions", self.conditions.len(), CONDITIONS),
+        ];
+        if let Some((what, count, most)) = sizes.into_iter().find(|(_, count, most)| count > most) {
+            return Some(format!("it has {count} {what}, at most {most} are possible"));
+        }
+        let mut seen = HashSet::new();
+        let of_inputs = self.inputs.iter().map(|it| (&it.name, it.unit));
+        for (name, unit) in of_inputs.chain(self.outputs.iter().map(|it| (&it.name, it.unit))) {
+            let suffix = unit.suffix();
+            if !is_name(name) {
+                return Some(format!("\"{name}\" is no name: letters, digits and _ make one, a letter first"));
+            }
+            if !seen.insert(name) {
+                return Some(format!("{name} stands twice"));
+            }
+            if !suffix.is_empty() && !name.ends_with(&format!("_{suffix}")) {
+                return Some(format!("{name} is in {}, so its name must end in _{suffix}", unit.symbol));
+            }
+        }
+        let flaw = self.inputs.iter().find_map(|input| self.flaw_of_input(input));
+        flaw.or_else(|| self.presets.iter().find_map(|preset| preset.changes.iter().find_map(|it| self.flaw_of_change(&preset.name, it))))
+            .or_else(|| {
+                let mut names = self.conditions.iter().flat_map(|it| it.invalidates.iter().map(move |name| (&it.reason, name)));
+                let (reason, name) = names.find(|(_, name)| self.output(name).is_none())?;
+                Some(format!("the condition \"{reason}\" takes away {name}, which is no output"))
+            })
+    }
+
+    fn flaw_of_input(&self, input: &Input) -> Option<String> {
+        let Input { name, words, only_for, follows, .. } = input;
+        let [mut texts, mut numbers] = [(); 2].map(|()| HashSet::new());
+        if !words.iter().all(|(word, number)| texts.insert(word.clone()) && numbers.insert(number.to_bits().to_string())) {
+            return Some(format!("two words of {name} are the same, or stand for the same number"));
+        }
+        if let Some((word, number)) = words.iter().find(|(_, number)| input.valid.contains(*number)) {
+            return Some(format!("the word \"{word}\" of {name} stands for {number}, which is also a value of its own"));
+        }
+        if !input.accepts(input.default) {
+            return Some(format!("the default of {name} must be {}", input.valid_in_words()));
+        }
+        let enumeration = self.enumeration().map(|number| &self.inputs[number]);
+        if let Some(word) = only_for.iter().find(|word| enumeration.is_none_or(|of| of.value_of(word).is_none())) {
+            return Some(format!("{name} is read for \"{word}\" only, which is no word of the model's first enumeration"));
+        }
+        let other = follows.as_ref().filter(|other| self.input(other).is_none())?;
+        Some(format!("a word of {name} stands for {other}, which is no input"))
+    }
+
+    fn flaw_of_change(&self, preset: &str, (name, value): &(String, f64)) -> Option<String> {
+        let Some(input) = self.input(name) else { return Some(format!("the preset \"{preset}\" sets {name}, which is no input")) };
+        let input = &self.inputs[input];
+        (!input.accepts(*value)).then(|| format!("the preset \"{preset}\" sets {name} to {value}; it must be {}", input.valid_in_words()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::models::{Condition, Output, Preset, Worse, all, find};
+    use crate::units::NEWTON;
+
+    /// A model that differs from one of the program in one thing.
+    fn other(change: impl FnOnce(&mut Model)) -> Model {
+        let mut model = Model::clone(&find("pulley-load").expect("it is a model"));
+        model.name = "mine".to_owned();
+        change(&mut model);
+        model
+    }
+
+    #[test]
+    fn the_models_of_the_program_are_right() {
+        assert!(!all().is_empty());
+        all().iter().for_each(|model| model.check().unwrap_or_else(|error| panic!("{error}")));
+    }
+
+    #[test]
+    fn a_model_of_ones_own_is_found_by_its_name_which_nobody_else_may_have() {
+        let model = Arc::new(other(|_| ()));
+        let models = Models::new().with(model.clone()).expect("it is right");
+        assert!(Arc::ptr_eq(&models.find("mine").expect("it was added"), &model));
+        assert_eq!(models.iter().count(), all().len() + 1);
+        assert!(models.find("pulley").is_some() && models.find("yours").is_none() && Models::new().find("mine").is_none());
+        let taken = models.with(model).expect_err("the name is taken").to_string();
+        assert_eq!(taken, "there is a model \"mine\" already");
+        assert!(Models::new().with(find("pulley").expect("it is a model")).is_err());
+    }
+
+    #[test]
+    fn tables_that_do_not_fit_each_other_are_refused_with_the_reason() {
+        type Change = fn(&mut Model);
+        let told = |change: Change| other(change).check().expect_err("it is wrong").to_string();
+        let cases: [(Change, &str); 9] = [
+            (|it| it.inputs[0].name = "power".into(), "power is in kW, so its name must end in _kW"),
+            (|it| it.inputs[1].name = it.inputs[0].name.clone(), "power_kW stands twice"),
+            (|it| it.inputs[0].default = -1.0, "the default of power_kW must be at least 0"),
+            (|it| it.inputs[0].follows = Some("speed".into()), "a word of power_kW stands for speed, which is no input"),
+            (
+                |it| it.inputs[0].only_for = vec!["cast".into()],
+                "power_kW is read for \"cast\" only, which is no word of the model's first enumeration",
+            ),
+            (|it| it.presets = vec![Preset::new("all", &[("force_N", 1.0)])], "the preset \"all\" sets force_N, which is no input"),
+            (
+                |it| it.conditions.push(Condition::new("odd", true, &["force_N"], "It is even.")),
+                "the condition \"odd\" takes away force_N, which is no output",
+            ),
+            (
+                |it| it.outputs.extend((0..OUTPUTS).map(|n| Output::new(format!("f{n}_N"), "", NEWTON, Worse::Higher, "", ""))),
+                "it has 61 outputs, at most 48 are possible",
+            ),
+            (|it| it.outputs[4].name = "a b".into(), "\"a b\" is no name: letters, digits and _ make one, a letter first"),
+        ];
+        for (change, problem) in cases {
+            assert_eq!(told(change), format!("the model \"mine\" cannot be: {problem}"));
+        }
+    }
+}

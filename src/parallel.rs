@@ -1,0 +1,78 @@
+//! Work on several threads, or on as many as there are to be had: where processes are limited, the caller does the rest.
+
+use std::sync::{Mutex, PoisonError};
+use std::thread::{Builder, Scope, ScopedJoinHandle};
+
+/// Does `work` on every part, each on a thread of its own, the last on the caller's; results in the order of the parts.
+///
+/// # Panics
+/// If `work` does.
+pub fn on_threads<T: Send, R: Send>(parts: impl IntoIterator<Item = T>, work: impl Fn(T) -> R + Sync) -> Vec<R> {
+    // A thread that cannot be started would take its part along, so each waits to be fetched.
+    let parts: Vec<Mutex<Option<T>>> = parts.into_iter().map(|part| Mutex::new(Some(part))).collect();
+    let fetch = |part: &Mutex<Option<T>>| part.lock().unwrap_or_else(PoisonError::into_inner).take();
+    let Some((last, others)) = parts.split_last() else { return Vec::new() };
+    std::thread::scope(|scope| {
+        let (work, fetch) = (&work, &fetch);
+        let started: Vec<_> = others.iter().map(|part| start(scope, move || fetch(part).map(work))).collect();
+        let own = fetch(last).map(work);
+        let ends = started.into_iter().zip(others).map(|(thread, part)| match thread {
+            Some(thread) => thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)),
+            None => fetch(part).map(work),
+        });
+        let results: Vec<Option<R>> = ends.collect();
+        results.into_iter().chain([own]).map(|result| result.expect("every part is fetched once")).collect()
+    })
+}
+
+/// Does `work` beside what the caller does until the scope ends; `None` if there is no thread for it.
+pub fn start<'scope, R: Send + 'scope>(
+    scope: &'scope Scope<'scope, '_>,
+    work: impl FnOnce() -> R + Send + 'scope,
+) -> Option<ScopedJoinHandle<'scope, R>> {
+    Builder::new().spawn_scoped(scope, work).ok()
+}
+
+/// How many of so many threads can be had here and now, the caller's being one of them.
+pub fn to_be_had(threads: usize) -> usize {
+    let all_tried = Mutex::new(());
+    let held = all_tried.lock().unwrap_or_else(PoisonError::into_inner);
+    let started = std::thread::scope(|scope| {
+        let wait = || drop(all_tried.lock().unwrap_or_else(PoisonError::into_inner));
+        let mut started = 1;
+        while started < threads && start(scope, wait).is_some() {
+            started += 1;
+        }
+        drop(held);
+        started
+    });
+    started.min(threads)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+    use std::sync::Barrier;
+
+    #[test]
+    fn every_part_is_done_once_in_order_and_on_a_thread_of_its_own() {
+        let barrier = Barrier::new(4);
+        let done = on_threads(0..4, |part| {
+            // All of them at the same time.
+            barrier.wait();
+            (part, std::thread::current().id())
+        });
+        assert_eq!(done.iter().map(|it| it.0).collect::<Vec<_>>(), [0, 1, 2, 3]);
+        assert_eq!(done.iter().map(|it| it.1).collect::<HashSet<_>>().len(), 4);
+        assert_eq!(done[3].1, std::thread::current().id(), "the last one is the caller's");
+        assert!(on_threads(Vec::<u8>::new(), |part| part).is_empty());
+        assert_eq!([0, 1, 3].map(to_be_had), [0, 1, 3]);
+    }
+
+    #[test]
+    fn a_panic_is_the_callers() {
+        let panicked = std::panic::catch_unwind(|| on_threads(0..3, |part| assert_ne!(part, 1, "as it happens")));
+        assert!(panicked.is_err());
+    }
+}

@@ -1,0 +1,261 @@
+//! A map over two design axes: the best of each cell over all other axes, or the feasible share.
+
+mod files;
+#[cfg(feature = "pictures")]
+mod page;
+#[cfg(feature = "pictures")]
+mod picture;
+
+pub use files::{CSV_CELLS, cells, contours, contours_name, names};
+
+use super::Answers;
+use super::reducer::{Needs, Put, Reducer, Results, Room};
+use crate::error::Result;
+use crate::plan::Plan;
+#[cfg(feature = "pictures")]
+use crate::report::reading::Folder;
+use crate::screen::Block;
+use crate::space::Product;
+use crate::study::{Best, Goal, MapSpec, Report, Study};
+use serde::{Deserialize, Serialize};
+#[cfg(feature = "pictures")]
+use serde_json::Value;
+use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
+
+/// Cells above which only those that were met are kept while a chunk is swept.
+const DENSE: u64 = 1 << 16;
+
+/// What a cell holds.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Cell {
+    /// Feasible designs met.
+    pub feasible: u64,
+    /// Best key (less is better).
+    key: f64,
+    /// The design that has it, the lowest index of equals.
+    pub index: u64,
+}
+
+const EMPTY: Cell = Cell { feasible: 0, key: f64::INFINITY, index: u64::MAX };
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+enum Cells {
+    All(Vec<Cell>),
+    Met(HashMap<u64, Cell, BuildHasherDefault<CellHasher>>),
+}
+
+/// Spreads the numbers of cells: nobody chooses them to collide, and the standard hash costs more than all else that a cell takes.
+#[derive(Clone, Default)]
+struct CellHasher(u64);
+
+impl Hasher for CellHasher {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+    fn write(&mut self, _bytes: &[u8]) {
+        unreachable!("cells are numbers")
+    }
+    fn write_u64(&mut self, number: u64) {
+        // The golden section, and the high bits, which it mixes best, brought to where the table looks.
+        self.0 = number.wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(32);
+    }
+}
+
+/// The cells of a map, row-major in y, then x.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Map {
+    goal: Goal,
+    width: u64,
+    height: u64,
+    x: usize,
+    y: usize,
+    /// Where the values that it shows are among those of a block; none in a map of shares.
+    #[serde(skip)]
+    column: Option<usize>,
+    /// The grid that the cells are of; none where it was read from a checkpoint.
+    #[serde(skip)]
+    designs: Option<Product>,
+    cells: Cells,
+}
+
+impl PartialEq for Map {
+    fn eq(&self, other: &Self) -> bool {
+        (self.goal, self.width, self.height) == (other.goal, other.width, other.height)
+            && (0..self.width * self.height).all(|cell| self.cell(cell) == other.cell(cell))
+    }
+}
+
+impl Cell {
+    fn take(&mut self, other: Self) {
+        self.feasible += other.feasible;
+        if other.key < self.key || (other.key == self.key && other.index < self.index) {
+            (self.key, self.index) = (other.key, other.index);
+        }
+    }
+}
+
+impl Map {
+    /// An empty map.
+    pub fn new(plan: &Plan, spec: &MapSpec) -> Self {
+        let (width, height) = (plan.study.design[spec.x].count(), plan.study.design[spec.y].count());
+        let (goal, column) = match spec.value {
+            Best::Value(quantity, goal) => (goal, Some(plan.position(quantity, goal.worse()))),
+            Best::Share => (Goal::Min, None),
+        };
+        let cells =
+            if width * height <= DENSE { Cells::All(vec![EMPTY; (width * height) as usize]) } else { Cells::Met(HashMap::default()) };
+        Self { goal, width, height, x: spec.x, y: spec.y, column, designs: Some(plan.space.designs.clone()), cells }
+    }
+
+    /// The best key of every cell, infinite where there is none: less is better.
+    pub fn keys(&self) -> Vec<f64> {
+        (0..self.width * self.height).map(|at| self.cell(at).map_or(f64::INFINITY, |cell| cell.key)).collect()
+    }
+
+    fn take(&mut self, at: u64, cell: Cell) {
+        match &mut self.cells {
+            Cells::All(cells) => cells[at as usize].take(cell),
+            Cells::Met(cells) => cells.entry(at).or_insert(EMPTY).take(cell),
+        }
+    }
+
+    /// Number of cells along x and y.
+    pub fn size(&self) -> (u64, u64) {
+        (self.width, self.height)
+    }
+
+    /// A cell, counted row by row; `None` if no feasible design lies in it.
+    pub fn cell(&self, at: u64) -> Option<Cell> {
+        let cell = match &self.cells {
+            Cells::All(cells) => cells.get(at as usize).copied(),
+            Cells::Met(cells) => cells.get(&at).copied(),
+        };
+        cell.filter(|cell| cell.feasible > 0)
+    }
+
+    /// The best value of a cell.
+    pub fn value(&self, cell: Cell) -> f64 {
+        (if self.goal == Goal::Min { cell.key } else { -cell.key }) + 0.0
+    }
+}
+
+impl Reducer for Map {
+    const STATE: &'static str = "maps";
+
+    fn asked(plan: &Plan, _ranges: &[(f64, f64)]) -> Vec<Self> {
+        plan.study.report.maps.iter().map(|spec| Self::new(plan, spec)).collect()
+    }
+
+    fn needs(report: &Report) -> Option<Needs> {
+        (!report.maps.is_empty()).then_some(Needs::Designs("maps in [report] ask for the best of every cell"))
+    }
+
+    fn absorb(&mut self, block: &Block<'_>) {
+        let designs = self.designs.take().expect("a map that takes in blocks was made for a plan");
+        for lane in block.feasible() {
+            let index = block.index(lane);
+            let cell = designs.digit(self.y, index) * self.width + designs.digit(self.x, index);
+            let value = self.column.map_or(0.0, |column| block.values[column][lane]);
+            let key = if self.goal == Goal::Min { value } else { -value };
+            self.take(cell, Cell { feasible: 1, key: key + 0.0, index });
+        }
+        self.designs = Some(designs);
+    }
+
+    fn absorb_counted(&mut self, block: &Block<'_>) {
+        if self.column.is_some() {
+            self.absorb(block);
+        }
+    }
+
+    fn merge(&mut self, other: Self) {
+        match other.cells {
+            Cells::All(cells) => {
+                cells.into_iter().zip(0..).filter(|(cell, _)| cell.feasible > 0).for_each(|(cell, at)| self.take(at, cell))
+            }
+            Cells::Met(cells) => cells.into_iter().for_each(|(at, cell)| self.take(at, cell)),
+        }
+        // Once most cells have been met a table is smaller than a map of them.
+        if let Cells::Met(cells) = &self.cells
+            && cells.len() as u64 * 4 > self.width * self.height
+        {
+            let mut all = vec![EMPTY; (self.width * self.height) as usize];
+            cells.iter().for_each(|(&at, &cell)| all[at as usize] = cell);
+            self.cells = Cells::All(all);
+        }
+    }
+
+    fn fits(&self, asked: &Self, met: u64, designs: u64) -> bool {
+        let place = |it: &Self| (it.goal, it.width, it.height, it.x, it.y);
+        let size = asked.width * asked.height;
+        let possible = |cell: &Cell| !cell.key.is_nan() && (cell.index < designs || cell.index == u64::MAX);
+        let (inside, cells): (bool, Box<dyn Iterator<Item = &Cell>>) = match &self.cells {
+            Cells::All(cells) => (cells.len() as u64 == size, Box::new(cells.iter())),
+            Cells::Met(cells) => (cells.keys().all(|&at| at < size), Box::new(cells.values())),
+        };
+        let mut sum = 0u64;
+        let mut good = cells.map(|cell| {
+            sum = sum.saturating_add(cell.feasible);
+            possible(cell) && sum <= met
+        });
+        place(self) == place(asked) && inside && good.all(|good| good)
+    }
+
+    fn size(&self) -> u64 {
+        (self.width * self.height).min(DENSE)
+    }
+
+    /// In a map of shares, its cells; the best of a cell comes back with the survivors.
+    fn count_words(&self) -> usize {
+        if self.column.is_some() { 0 } else { (self.width * self.height) as usize }
+    }
+
+    fn add_counts(&mut self, counts: &[u32]) {
+        for (at, &count) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
+            // In a map of shares every key is 0, and which design has it is not asked.
+            self.take(at as u64, Cell { feasible: u64::from(count), key: 0.0, index: u64::MAX });
+        }
+    }
+
+    fn tell(&mut self, answers: &mut Answers) {
+        if self.column.is_some() {
+            answers.cells.push(self.keys());
+        }
+    }
+
+    fn miscounts(&self, other: &Self) -> Option<(&'static str, u64, u64)> {
+        let count = |map: &Self, at| map.cell(at).map_or(0, |cell| cell.feasible);
+        let mut cells = (0..if self.column.is_some() { 0 } else { self.width * self.height }).map(|at| (count(self, at), count(other, at)));
+        cells.find(|(own, other)| own != other).map(|(own, other)| ("feasible designs in a map's cell", own, other))
+    }
+
+    fn lacks(&self, fuller: &Self) -> Option<(&'static str, u64)> {
+        // Of shares only the counts are reported.
+        let cells = 0..if self.column.is_some() { self.width * self.height } else { 0 };
+        let best = |map: &Self, at| map.cell(at).map(|cell| (map.value(cell).to_bits(), cell.index));
+        let at = cells.into_iter().find(|&at| best(fuller, at) != best(self, at))?;
+        Some(("map", best(fuller, at).map_or(0, |(_, index)| index)))
+    }
+
+    fn files(study: &Study) -> Vec<String> {
+        files::all(study)
+    }
+
+    fn is_file(name: &str) -> bool {
+        files::is_file(name)
+    }
+
+    fn write(&self, results: &Results<'_>, put: &mut Put<'_>) -> Result<()> {
+        files::write(self, results, put)
+    }
+
+    #[cfg(feature = "pictures")]
+    fn page(folder: &Folder<'_>, data: &mut serde_json::Map<String, Value>) -> Result<()> {
+        page::maps(folder, data)
+    }
+
+    fn room(plan: &Plan) -> Room {
+        files::room(&plan.study)
+    }
+}

@@ -1,0 +1,153 @@
+//! Tables of designs of a result, which must be as this program writes them: their columns, and of every row the design, its inputs and
+//! that there are numbers where numbers belong.
+
+use super::packed::{Packed, packed};
+use super::reading::{changed, table_reader, unreadable};
+use crate::certify::{self, Column};
+use crate::error::Result;
+use crate::export::written;
+use crate::names::MOST_DOTS;
+use crate::plan::Plan;
+use crate::study::{Axis, Study};
+use serde_json::{Value, json};
+use std::collections::HashSet;
+use std::path::Path;
+
+/// Most rows of a list on a page.
+const MOST_LISTED: usize = 20_000;
+/// The column of a list of all designs that says which are feasible.
+const FEASIBLE: &str = "feasible";
+
+/// The inputs that design axes set: axis, column of the axis, input.
+pub fn inputs(study: &Study) -> impl Iterator<Item = (&Axis, usize, usize)> {
+    study.design.iter().flat_map(|axis| axis.inputs().iter().enumerate().map(move |(column, &input)| (axis, column, input)))
+}
+
+/// A design by its number, written as this program writes it.
+pub fn design_of(text: &str, plan: &Plan) -> Option<u64> {
+    text.parse().ok().filter(|&it: &u64| it < plan.designs() && it.to_string() == text)
+}
+
+/// The header of such a table.
+pub fn header(study: &Study, columns: &[Column]) -> Vec<String> {
+    let inputs = inputs(study).map(|(_, _, input)| study.model.inputs[input].name.to_owned());
+    let columns = columns.iter().filter(|it| certify::design_input(study, it.quantity).is_none());
+    let columns = columns.flat_map(|it| [it.name.clone(), format!("{}_scenario", it.name)]);
+    std::iter::once("design_index".to_owned()).chain(inputs).chain(columns).collect()
+}
+
+/// Refuses a header that is not the expected one.
+pub fn check_header(file: &Path, found: &csv::StringRecord, expected: &[String]) -> Result<()> {
+    if *found == *expected {
+        return Ok(());
+    }
+    let differs = expected.iter().zip(found.iter()).find(|(expected, found)| expected.as_str() != *found);
+    let shown = |text: &str| text.chars().take(60).flat_map(char::escape_debug).collect::<String>();
+    let differs = differs.map_or("their number".to_owned(), |(expected, found)| format!("\"{}\" in place of \"{expected}\"", shown(found)));
+    Err(changed(file, &format!("its columns are not those of the study: {differs}")))
+}
+
+/// The design of a row, whose inputs are those that the study gives it, and whose values and scenarios are such.
+pub fn check_row(file: &Path, row: &csv::StringRecord, plan: &Plan, header: &[String]) -> Result<u64> {
+    let study = &plan.study;
+    let design = design_of(&row[0], plan).ok_or_else(|| changed(file, "a design_index is not one of the study"))?;
+    let own = plan.space.inputs(design, 0);
+    let shown = |text: &str| text.chars().take(60).flat_map(char::escape_debug).collect::<String>();
+    let mut at = 1;
+    for (_, _, input) in inputs(study) {
+        let (table, found) = (&study.model.inputs[input], &row[at]);
+        let given = written(table, own[input]);
+        if *found != given {
+            let name = &table.name;
+            return Err(changed(file, &format!("{name} of design {design} is {}, and the study gives {given}", shown(found))));
+        }
+        at += 1;
+    }
+    while at + 1 < header.len() {
+        let (name, value, scenario) = (&header[at], &row[at], &row[at + 1]);
+        if !value.is_empty() && !value.parse().is_ok_and(f64::is_finite) {
+            return Err(changed(file, &format!("{name} of design {design} is no number")));
+        }
+        let known = scenario.parse().is_ok_and(|it: u64| it < plan.scenarios() && it.to_string() == scenario);
+        if !(known || (value.is_empty() && scenario.is_empty())) {
+            let scenarios = plan.scenarios();
+            let found = shown(scenario);
+            let problem = format!("{name}_scenario is not one of the study's {scenarios} scenarios: design {design} has \"{found}\"");
+            return Err(changed(file, &problem));
+        }
+        at += 2;
+    }
+    Ok(design)
+}
+
+/// A list of at most so many designs as text, with the units of its columns; of all designs, it says which are feasible.
+pub fn list(file: &Path, plan: &Plan, most: u64, all: bool) -> Result<Value> {
+    let study = &plan.study;
+    let model = &study.model;
+    let own = header(study, &certify::columns(study));
+    let mut columns = own.clone();
+    columns.extend(all.then(|| FEASIBLE.to_owned()));
+    let mut reader = table_reader(file)?;
+    check_header(file, reader.headers().map_err(|error| unreadable(file, error))?, &columns)?;
+    let unit = |name: &String| {
+        let name = name.strip_suffix("_constrained").unwrap_or(name);
+        let input = model.input(name).map(|it| model.inputs[it].unit.symbol);
+        input.or_else(|| model.output(name).map(|it| model.outputs[it].unit.symbol)).unwrap_or_default()
+    };
+    let units: Vec<_> = columns.iter().map(unit).collect();
+    let (mut rows, mut known) = (Vec::new(), HashSet::new());
+    for row in reader.records() {
+        let row = row.map_err(|error| unreadable(file, error))?;
+        let design = check_row(file, &row, plan, &own)?;
+        if all && !["yes", "no"].contains(&&row[own.len()]) {
+            return Err(changed(file, &format!("it does not say whether design {design} is feasible")));
+        }
+        if !known.insert(design) {
+            return Err(changed(file, &format!("design {design} is there twice")));
+        }
+        if known.len() as u64 > most {
+            return Err(changed(file, &format!("it has more than {most} designs")));
+        }
+        if rows.len() < MOST_LISTED {
+            rows.push(row.iter().map(str::to_owned).collect::<Vec<_>>());
+        }
+    }
+    if all && known.len() as u64 != most {
+        return Err(changed(file, &format!("it has {} designs, not {most}", known.len())));
+    }
+    Ok(json!({ "columns": columns, "units": units, "rows": rows, "of": known.len() }))
+}
+
+/// The objectives of designs that are shown as dots: `all` designs, in rising order.
+pub fn dots(file: &Path, plan: &Plan, all: u64) -> Result<Value> {
+    let study = &plan.study;
+    let columns = header(study, &certify::columns(study));
+    let mut reader = table_reader(file)?;
+    check_header(file, reader.headers().map_err(|error| unreadable(file, error))?, &columns)?;
+    let names: Vec<&str> = study.objectives.iter().map(|it| it.quantity.name(&study.model)).collect();
+    let places: Vec<usize> = names.iter().filter_map(|name| columns.iter().position(|column| column == name)).collect();
+    let taken = all.min(MOST_DOTS);
+    let mut values = vec![Vec::new(); places.len()];
+    let (mut shown, mut seen, mut last) = (0, 0, None);
+    for row in reader.records() {
+        let row = row.map_err(|error| unreadable(file, error))?;
+        let design = check_row(file, &row, plan, &columns)?;
+        if last.is_some_and(|last| last >= design) {
+            return Err(changed(file, &format!("design {design} is not in rising order")));
+        }
+        last = Some(design);
+        if shown < taken && u128::from(seen) == u128::from(shown) * u128::from(all) / u128::from(taken) {
+            shown += 1;
+            for (values, &at) in values.iter_mut().zip(&places) {
+                let value = row[at].parse().ok().filter(|it: &f64| it.is_finite());
+                values.push(value.ok_or_else(|| changed(file, &format!("{} of design {design} is no number", columns[at])))?);
+            }
+        }
+        seen += 1;
+    }
+    if seen != all {
+        return Err(changed(file, &format!("it has {seen} designs, and of the feasible ones there must be {all}")));
+    }
+    let parts = values.into_iter().map(|values| Packed::F64(values).bytes());
+    Ok(json!({ "names": names, "rows": shown, "of": all, "packed": packed(parts) }))
+}

@@ -1,0 +1,127 @@
+//! A study swept and certified, by what was chosen for it.
+
+use super::Engine;
+use super::device::{Trusted, supports_histograms, sweep_on_device};
+use super::method::Chosen;
+use crate::checkpoint::Checkpoint;
+use crate::error::Result;
+use crate::export::{Certified, MethodRecord, short};
+use crate::plan::Plan;
+use crate::reduce::Reduction;
+use crate::screen::{Control, Tables, Tally};
+use crate::sweep::costs::span;
+use crate::sweep::{DeviceRecord, Leaving, OnDevice, Rule, Settings, Settler, Swept, sweep, sweep_auto, sweep_by_bounds};
+use std::time::Duration;
+
+/// What judges the designs.
+#[derive(Debug)]
+pub enum How<'a> {
+    /// The CPU, in f64.
+    Processor,
+    /// A device; where it was not asked for by name, the processor does what it cannot serve.
+    Device(&'a OnDevice, bool),
+    /// Bounds; with a rule, as long as they pay.
+    Bounds(Option<Rule<'a>>),
+}
+
+impl<'a> How<'a> {
+    /// By the method chosen, on the device chosen, if any; `asked` and `adapter` are what the user said.
+    pub fn new(method: &Chosen, device: Option<&'a Trusted>, asked: Engine, adapter: Option<&str>) -> Self {
+        match device {
+            _ if method.bounds => {
+                let device = device.map(Trusted::on);
+                Self::Bounds(method.leaves.map(|speed| Rule { speed, device, leaving: Leaving::WhereTheyDoNotPay }))
+            }
+            Some(device) => Self::Device(device.on(), asked == Engine::Auto && adapter.is_none()),
+            None => Self::Processor,
+        }
+    }
+}
+
+/// What came of it.
+#[derive(Debug)]
+pub struct Judged<'p> {
+    /// How long it took to judge the designs.
+    pub time: Duration,
+    /// Designs judged, without what a checkpoint brought.
+    pub designs: u64,
+    /// What is reported; of a shard nothing.
+    pub certified: Option<Certified<'p>>,
+    /// What a device did, if one judged designs.
+    pub did: Option<DeviceRecord>,
+    /// What settled the designs.
+    pub settler: Settler,
+}
+
+/// How designs were judged, for `run.json`.
+pub fn record_of(why: String, settler: Settler) -> MethodRecord {
+    let record = |name, certificate, left, why| MethodRecord { name, why, certificate, left };
+    match settler {
+        Settler::EveryDesign => record("exhaustive", None, None, why),
+        Settler::Bounds(certificate) => record("bounds", Some(certificate), None, why),
+        Settler::Both(left) => {
+            let (spent, share, judging) = (left.promise.spent, 100.0 * left.promise.settled, left.promise.judging);
+            let promised = if left.promise.bounds.is_finite() { span(left.promise.bounds) } else { "no end".to_owned() };
+            let why = format!(
+                "{why}; bounds had settled {} % of their work after {} and promised {promised} more, judging the rest one by one {}",
+                short((share * 10.0).round() / 10.0),
+                span(spent),
+                span(judging),
+            );
+            record("bounds, then exhaustive", None, Some(left), why)
+        }
+    }
+}
+
+/// Sweeps the study and, if it is `whole`, certifies what is to be reported; of a shard, the checkpoint is the result. `remark` is told what
+/// the CPU does in place of a device that nobody asked for.
+///
+/// # Errors
+/// As [`sweep`](crate::sweep::sweep()) and its like; [`Error::Certificate`](crate::error::Error::Certificate) if the f64 reference disagrees
+/// with the sweep.
+pub fn judge<'p>(
+    plan: &'p Plan,
+    settings: &Settings,
+    checkpoint: Option<&mut Checkpoint>,
+    control: &Control,
+    whole: bool,
+    how: How<'_>,
+    remark: &mut dyn FnMut(&str),
+) -> Result<Judged<'p>> {
+    let tables = Tables::new(plan);
+    // Of a slow model the sample is a large part of the work, or all of it: a shard does without where it can.
+    let sampled = whole || plan.shards_sample();
+    let tally = if sampled { Tally::watched(plan, &tables, settings.threads, control)? } else { Tally::empty(plan) };
+    let reduction = Reduction::new(plan, &tally.histogram_ranges(plan));
+    let how = match how {
+        How::Device(_, true) => match supports_histograms(plan, &reduction.histogram_ranges()) {
+            Ok(()) => how,
+            Err(error) => {
+                remark(&format!("{error}; the processor judges the designs"));
+                How::Processor
+            }
+        },
+        how => how,
+    };
+    let (mut did, mut settler) = (None, Settler::EveryDesign);
+    let Swept { state, designs, time } = match how {
+        How::Processor => sweep(plan, &tables, &reduction, settings, checkpoint, control)?,
+        How::Device(on, _) => {
+            let (swept, record) = sweep_on_device(plan, &tables, &reduction, settings, checkpoint, control, on)?;
+            did = Some(record);
+            swept
+        }
+        How::Bounds(None) => {
+            let (swept, found) = sweep_by_bounds(plan, &tables, &reduction, settings, checkpoint, control)?;
+            settler = Settler::Bounds(found);
+            swept
+        }
+        How::Bounds(Some(rule)) => {
+            let done = sweep_auto(plan, &tables, &reduction, settings, checkpoint, control, &rule)?;
+            (settler, did) = (done.settler, done.device);
+            done.swept
+        }
+    };
+    let certified = whole.then(|| Certified::certify(plan, state, tally, settings.threads, control)).transpose()?;
+    Ok(Judged { time, designs, certified, did, settler })
+}

@@ -1,0 +1,249 @@
+//! What holds for every study, whether it was read from a text, a result's description or a checkpoint.
+//!
+//! The reader of study files says what is wrong line by line; here the same is asked of the numbers that came out, so that a study
+//! from a file that somebody changed cannot ask for what no study file could.
+
+use super::axis::{Axis, Levels, Sample};
+use super::read::{
+    BINS, FRONT_BUDGET, MOST_CELLS, MOST_LEVELS, MOST_OBJECTIVES, MOST_SAMPLE, MOST_SCENARIOS, MOST_TOP, MOST_VARIANTS, check_levels,
+};
+use super::resolved::{Best, Constraint, ContourSpec, MapSpec, Quantity, Report, Study, Thresholds};
+use crate::models::Model;
+use std::collections::HashSet;
+
+/// Most rows of a joint axis, and most values in them.
+pub(super) const MOST_ROWS: usize = 1 << 21;
+pub(super) const MOST_VALUES: usize = 1 << 23;
+/// Most histograms of a study, and most maps.
+pub(super) const MOST_PICTURES: usize = 100;
+/// Most cells of all maps of a study together.
+const MOST_CELLS_IN_ALL: u64 = 2 * MOST_CELLS;
+/// Most values of a quantity at which a map has lines.
+pub(super) const MOST_THRESHOLDS: usize = 1000;
+
+type Checked = Result<(), String>;
+
+fn require(good: bool, problem: impl FnOnce() -> String) -> Checked {
+    if good { Ok(()) } else { Err(problem()) }
+}
+
+impl Study {
+    /// Could a study file ask for this? Every number of an input or output is one of the model, every value one that its input takes,
+    /// designs and scenarios can be numbered, and what is reported fits into memory.
+    ///
+    /// # Errors
+    /// The first thing that is wrong.
+    pub fn check(&self) -> Result<(), String> {
+        let model = &self.model;
+        let inputs = &model.inputs;
+        require(self.fixed.len() == inputs.len(), || format!("there are {} fixed values for {} inputs", self.fixed.len(), inputs.len()))?;
+        for (input, &value) in inputs.iter().zip(&self.fixed) {
+            require(input.accepts(value), || format!("{} cannot be {value:e}", input.name))?;
+        }
+        require(!self.design.is_empty(), || "there is nothing to choose; name at least one input in [design]".to_owned())?;
+        let mut taken = HashSet::new();
+        for axis in self.axes() {
+            check_axis(model, axis, &mut taken)?;
+        }
+        self.check_sizes()?;
+        let mut seen = HashSet::new();
+        for it in &self.constraints {
+            self.check_quantity(it.quantity)?;
+            let name = it.quantity.name(model);
+            require(seen.insert(it.quantity), || format!("\"{name}\" is constrained twice"))?;
+            check_bounds(it).map_err(|problem| format!("constraint \"{name}\": {problem}"))?;
+        }
+        require(self.objectives.len() <= MOST_OBJECTIVES, || {
+            format!("the study has {} objectives, at most {MOST_OBJECTIVES} can be weighed", self.objectives.len())
+        })?;
+        seen.clear();
+        for it in &self.objectives {
+            self.check_quantity(it.quantity)?;
+            let name = it.quantity.name(model);
+            require(seen.insert(it.quantity), || format!("\"{name}\" is an objective twice"))?;
+            require(it.resolution.is_none_or(|it| it > 0.0 && it.is_finite()), || {
+                format!("objective \"{name}\": its resolution is no width")
+            })?;
+        }
+        self.check_report(&self.report)
+    }
+
+    /// All axes.
+    fn axes(&self) -> impl Iterator<Item = &Axis> {
+        self.design.iter().chain(&self.operation).chain(&self.uncertainty)
+    }
+
+    /// Can designs and scenarios be numbered?
+    fn check_sizes(&self) -> Checked {
+        let product = |axes: &mut dyn Iterator<Item = &Axis>| axes.map(Axis::count).try_fold(1, u64::checked_mul);
+        match self.sample {
+            Some(Sample { count, .. }) => {
+                require((1..=MOST_LEVELS).contains(&count), || {
+                    format!("{count} designs cannot be sampled; count must be 1 to {MOST_LEVELS}")
+                })?;
+            }
+            None => {
+                require(product(&mut self.design.iter()).is_some(), || "the space has more designs than can be numbered".to_owned())?;
+            }
+        }
+        let continuous = |axis: &Axis| matches!(axis, Axis::Single { levels: Levels::Continuous { .. }, .. });
+        let sampled = if self.sample.is_some() { &self.design[..] } else { &[] };
+        let unruled = self.axes().filter(|axis| continuous(axis)).count() - sampled.iter().filter(|axis| continuous(axis)).count();
+        require(unruled == 0, || "a range has neither count nor step, and is not sampled".to_owned())?;
+        let scenarios = product(&mut self.operation.iter().chain(&self.uncertainty));
+        require(scenarios.is_some_and(|it| it <= MOST_SCENARIOS), || {
+            format!("[operation] and [uncertainty] make more than {MOST_SCENARIOS} scenarios")
+        })
+    }
+
+    /// Is this a quantity of the model whose values are all numbers?
+    fn check_quantity(&self, quantity: Quantity) -> Checked {
+        let model = &self.model;
+        let number = match quantity {
+            Quantity::Input(number) => number,
+            Quantity::Output(number) => {
+                return require(number < model.outputs.len(), || format!("{} has no output number {number}", model.name));
+            }
+        };
+        let input = model.inputs.get(number).ok_or_else(|| format!("{} has no input number {number}", model.name))?;
+        let is_word = |value: f64| input.word_for(value).is_some();
+        let of_axis = self.axes().find_map(|axis| Some((axis, axis.inputs().iter().position(|&it| it == number)?)));
+        let words = input.is_enumeration()
+            || match of_axis {
+                Some((Axis::Single { levels: Levels::List(values), .. }, _)) => values.iter().copied().any(is_word),
+                Some((Axis::Single { .. }, _)) => false,
+                Some((Axis::Joint { rows, .. }, column)) => rows.iter().any(|row| is_word(row[column])),
+                None => is_word(self.fixed[number]),
+            };
+        require(!words, || format!("\"{}\" takes words, which have no order", input.name))
+    }
+
+    fn check_report(&self, report: &Report) -> Checked {
+        let mut seen = HashSet::new();
+        for &column in &report.columns {
+            self.check_quantity(column)?;
+            let name = column.name(&self.model);
+            let chosen = matches!(column, Quantity::Input(input) if self.design.iter().any(|axis| axis.inputs().contains(&input)));
+            require(!chosen, || format!("columns: \"{name}\" is a design input, which the tables have anyway"))?;
+            require(seen.insert(column), || format!("columns: \"{name}\" is listed twice"))?;
+        }
+        if let Some(top) = report.top {
+            self.check_quantity(top.by)?;
+            require((1..=MOST_TOP).contains(&(top.count as u64)), || format!("top: count must be 1 to {MOST_TOP}"))?;
+        }
+        if let Some(sample) = report.sample {
+            require((1..=MOST_SAMPLE).contains(&(sample.count as u64)), || format!("sample: count must be 1 to {MOST_SAMPLE}"))?;
+        }
+        let (histograms, maps) = (&report.histograms, &report.maps);
+        require(histograms.len().max(maps.len()) <= MOST_PICTURES, || format!("there are more than {MOST_PICTURES} histograms or maps"))?;
+        for it in histograms {
+            self.check_quantity(it.of)?;
+            require((1..=BINS.1).contains(&(it.bins as u64)), || format!("histograms: bins must be 1 to {}", BINS.1))?;
+            let range = it.range.is_none_or(|(low, high)| low < high && (high - low).is_finite());
+            require(range, || "histograms: from must be less than to".to_owned())?;
+        }
+        let mut cells = 0;
+        for it in maps {
+            cells += self.check_map(it).map_err(|problem| format!("maps: {problem}"))?;
+        }
+        require(cells <= MOST_CELLS_IN_ALL, || {
+            format!("maps: they have {cells} cells together, at most {MOST_CELLS_IN_ALL} fit; use fewer levels or fewer maps")
+        })?;
+        require((1..=FRONT_BUDGET.1).contains(&report.front_budget), || format!("front_budget must be 1 to {}", FRONT_BUDGET.1))?;
+        let designs = self.design.iter().fold(1, |product: u64, axis| product.saturating_mul(axis.count()));
+        require(!report.variants || (self.sample.is_none() && designs <= MOST_VARIANTS), || {
+            format!("variants: a list of all is for grids of at most {MOST_VARIANTS} designs")
+        })?;
+        let lists = report.top.is_some() || report.sample.is_some() || report.variants;
+        let asks = !self.objectives.is_empty() || lists || !histograms.is_empty() || !maps.is_empty();
+        require(asks, || "the study asks for nothing".to_owned())
+    }
+
+    /// The number of cells.
+    fn check_map(&self, map: &MapSpec) -> Result<u64, String> {
+        require(self.sample.is_none(), || "sampled designs lie on no grid".to_owned())?;
+        require(map.x != map.y, || "x and y are the same axis".to_owned())?;
+        for axis in [map.x, map.y] {
+            require(matches!(self.design.get(axis), Some(Axis::Single { .. })), || {
+                format!("number {axis} is no design axis of one input")
+            })?;
+        }
+        let cells = self.design[map.x].count().checked_mul(self.design[map.y].count()).filter(|&it| it <= MOST_CELLS);
+        let cells = cells.ok_or_else(|| format!("one has more than {MOST_CELLS} cells; use fewer levels or choose other axes"))?;
+        if let Best::Value(quantity, _) = map.value {
+            self.check_quantity(quantity)?;
+        }
+        let mut seen = HashSet::new();
+        for it in &map.contours {
+            require(seen.insert(it.of), || "contours: a quantity is listed twice".to_owned())?;
+            self.check_contours(map, it).map_err(|problem| format!("contours: {problem}"))?;
+        }
+        Ok(cells)
+    }
+
+    /// Lines need a plane: two axes of numbers in order, and nothing else that varies from design to design.
+    fn check_contours(&self, map: &MapSpec, contours: &ContourSpec) -> Checked {
+        self.check_quantity(contours.of)?;
+        let varies = |(at, axis): (usize, &Axis)| ![map.x, map.y].contains(&at) && axis.count() > 1;
+        require(!self.design.iter().enumerate().any(varies), || "lines need a map of everything that is chosen".to_owned())?;
+        for axis in [map.x, map.y].map(|axis| &self.design[axis]) {
+            self.check_quantity(Quantity::Input(axis.inputs()[0]))?;
+            let Axis::Single { levels: Levels::List(values), .. } = axis else { continue };
+            require(values.is_sorted() || values.iter().rev().is_sorted(), || "the levels of an axis go up and down".to_owned())?;
+        }
+        match &contours.at {
+            Thresholds::Changes => {
+                require(contours.of.is_whole(&self.model), || "there are no changes of what is no whole number".to_owned())
+            }
+            Thresholds::At(values) => {
+                require((1..=MOST_THRESHOLDS).contains(&values.len()), || format!("there must be 1 to {MOST_THRESHOLDS} values"))?;
+                require(values.iter().all(|it| it.is_finite()), || "a value is not finite".to_owned())
+            }
+        }
+    }
+}
+
+/// An axis of inputs that no other one sets, with values that they take.
+fn check_axis(model: &Model, axis: &Axis, taken: &mut HashSet<usize>) -> Checked {
+    for &input in axis.inputs() {
+        require(input < model.inputs.len(), || format!("{} has no input number {input}", model.name))?;
+        require(taken.insert(input), || format!("\"{}\" is set twice", model.inputs[input].name))?;
+    }
+    let (first, problem) = match axis {
+        Axis::Single { input, levels } => {
+            let label = |problem| format!("axis \"{}\": {problem}", model.inputs[*input].name);
+            check_levels(levels, &model.inputs[*input]).map_err(label)?;
+            let Levels::List(values) = levels else { return Ok(()) };
+            let mut known = HashSet::new();
+            (*input, values.iter().any(|it| !known.insert((it + 0.0).to_bits())).then_some("a value is listed twice"))
+        }
+        Axis::Joint { inputs, rows } => {
+            let first = *inputs.first().ok_or("a joint axis has no inputs")?;
+            let taken = |row: &Vec<f64>| {
+                row.len() == inputs.len() && inputs.iter().zip(row).all(|(&input, &value)| model.inputs[input].accepts(value))
+            };
+            let mut known = HashSet::new();
+            let problem = if rows.is_empty() {
+                Some("it has no rows")
+            } else if rows.len() > MOST_ROWS || rows.len().saturating_mul(inputs.len()) > MOST_VALUES {
+                Some("it has too many rows; split the study")
+            } else if !rows.iter().all(taken) {
+                Some("a row is not one of values that its inputs take")
+            } else {
+                let bits = |row: &Vec<f64>| row.iter().map(|it| (it + 0.0).to_bits()).collect::<Vec<_>>();
+                rows.iter().any(|row| !known.insert(bits(row))).then_some("two rows are equal")
+            };
+            (first, problem)
+        }
+    };
+    problem.map_or(Ok(()), |problem| Err(format!("axis \"{}\": {problem}", model.inputs[first].name)))
+}
+
+/// Bounds that some value keeps.
+fn check_bounds(constraint: &Constraint) -> Checked {
+    let Constraint { low, high, .. } = *constraint;
+    require(low.is_some() || high.is_some(), || "there are no bounds".to_owned())?;
+    require(low.iter().chain(&high).all(|(bound, _)| bound.is_finite()), || "a bound is not finite".to_owned())?;
+    let empty = low.zip(high).is_some_and(|((least, no_least), (most, no_most))| least > most || (least == most && (no_least || no_most)));
+    require(!empty, || "no value keeps both bounds".to_owned())
+}

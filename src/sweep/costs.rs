@@ -1,0 +1,245 @@
+//! What judging every design takes here, and whether bounds pay: one estimate for `check`, `--method auto` and the jobs of a cluster.
+
+use crate::bounds::refusal;
+use crate::models::Effort;
+use crate::parallel::on_threads;
+use crate::plan::Plan;
+use crate::reduce::Reduction;
+use crate::screen::{CpuEngine, Tables};
+use std::time::{Duration, Instant};
+
+/// Seconds above which a single design is not tried.
+const LONGEST: f64 = 1.0;
+/// Places of the study that are tried.
+const PLACES: u64 = 5;
+/// Seconds that a piece between two looks at the clock should take at most, and most designs of one: those of a sweep.
+const PIECE: f64 = 0.1;
+const LARGEST: u64 = 1 << 16;
+/// How long `--method auto` measures.
+const BRIEFLY: Duration = Duration::from_millis(100);
+/// Seconds that judging every design may take before bounds are thought of.
+const SHORT: f64 = 1.0;
+/// Bounds may take this share of the time that judging every design would take before they must promise anything: what is lost where they
+/// are left.
+pub const PATIENCE: f64 = 0.25;
+/// A count keeps what it has counted, and is judged by its own pace after this share.
+const COUNT_PATIENCE: f64 = 0.1;
+/// Up to this share of that time the better of two paces counts, of late and on the whole: designs are settled in bursts. Then it is that of
+/// late, which shows where nothing moves any more.
+const BURSTS: f64 = 0.4;
+/// The pace of late is that of the last half of the time.
+const RECENT: f64 = 0.5;
+/// Bounds that promise to end within so many times the time of judging every design stay: leaving them would take as long.
+const TOLERANCE: f64 = 1.25;
+/// Seconds between two notes of the pace grow by this much.
+const SPACING: f64 = 1.05;
+
+/// How fast a thread judges designs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Speed {
+    /// Seconds that a thread takes for a design.
+    pub seconds: f64,
+    /// Was that measured, or is it what the model says?
+    pub measured: bool,
+}
+
+#[allow(clippy::cast_precision_loss, reason = "an estimate")]
+impl Speed {
+    /// What the model says.
+    pub fn told(plan: &Plan) -> Self {
+        Self { seconds: plan.seconds_per_design(), measured: false }
+    }
+
+    /// Measured for so long, on as many threads as shall judge, all at the same time. A model of which a single design takes long is
+    /// believed.
+    pub fn measured(plan: &Plan, threads: usize, time: Duration) -> Self {
+        let Effort { prepare, finish } = plan.effort();
+        if prepare + finish > LONGEST {
+            return Self::told(plan);
+        }
+        let tables = Tables::new(plan);
+        let seconds = on_threads(0..threads.max(1), |thread| trial(plan, &tables, thread as u64, threads.max(1) as u64, time));
+        Self { seconds: seconds.iter().sum::<f64>() / seconds.len() as f64, measured: true }
+    }
+
+    /// Measured for a moment, unless the model says that all designs together take no longer.
+    pub fn quick(plan: &Plan, threads: usize) -> Self {
+        let told = Self::told(plan);
+        if told.of(plan.designs(), threads) < BRIEFLY.as_secs_f64() { told } else { Self::measured(plan, threads, BRIEFLY) }
+    }
+
+    /// Seconds that so many threads take for so many designs.
+    pub fn of(&self, designs: u64, threads: usize) -> f64 {
+        self.seconds * designs as f64 / threads.max(1) as f64
+    }
+
+    /// How it is known, in words.
+    pub fn how(&self) -> &'static str {
+        if self.measured { "measured over a moment" } else { "by what the model usually takes" }
+    }
+}
+
+/// Seconds per design on one thread, at places all over the study.
+///
+/// At each place designs are judged one after another, as a sweep does: what neighbours share is most of the work of some models. Of a slow
+/// one only the beginnings of rows are tried; then the model says what that means for whole rows.
+#[allow(clippy::cast_precision_loss, reason = "an estimate")]
+fn trial(plan: &Plan, tables: &Tables, thread: u64, threads: u64, time: Duration) -> f64 {
+    let Effort { prepare, finish } = plan.effort();
+    let reduction = Reduction::new(plan, &vec![(0.0, 1.0); plan.study.report.histograms.len()]);
+    let mut reducers = reduction.start();
+    let mut engine = CpuEngine::new(plan, tables);
+    let moment = time / PLACES as u32;
+    let row = plan.fast.count();
+    let piece = ((PIECE.min(moment.as_secs_f64()) / plan.seconds_per_design()) as u64).clamp(1, LARGEST);
+    let places = (PLACES * threads).min(plan.designs());
+    let edge = |place: u64| (u128::from(plan.designs()) * u128::from(place) / u128::from(places)) as u64;
+    let (mut sum, mut tried) = (0.0, 0.0);
+    for place in (thread % places..places).step_by(threads as usize) {
+        let (first, last) = (edge(place), edge(place + 1));
+        let (start, mut at, mut rows) = (Instant::now(), first, 0u64);
+        while at < last && (at == first || start.elapsed() < moment) {
+            let end = last.min(at + piece);
+            engine.screen(at..end, |block| reduction.absorb(&mut reducers, block));
+            rows += (end - 1) / row - at / row + 1;
+            at = end;
+        }
+        let seconds = start.elapsed().as_secs_f64();
+        let judged = (at - first) as f64;
+        sum += if (at - first) >= row {
+            seconds / judged
+        } else {
+            plan.seconds_per_design() * seconds / (rows as f64 * prepare + judged * finish)
+        };
+        tried += 1.0;
+    }
+    sum / tried
+}
+
+/// Why `--method auto` judges every design of a study from the beginning, if that takes so many seconds; `None` if it begins by bounds.
+pub fn why_every_design(plan: &Plan, seconds: f64) -> Option<String> {
+    match refusal(plan) {
+        Some(why) => Some(format!("bounds cannot serve the study: {why}")),
+        None if seconds < SHORT => Some("the study is small enough to judge every design".to_owned()),
+        None => None,
+    }
+}
+
+/// What bounds promise, and judging one by one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Promise {
+    /// Seconds that bounds have taken.
+    pub spent: f64,
+    /// Share of what they are to settle that they had settled.
+    pub settled: f64,
+    /// Seconds that they would take for the rest; infinite if nothing moves.
+    pub bounds: f64,
+    /// Seconds that judging the rest would take.
+    pub judging: f64,
+}
+
+/// How bounds got on: when they had settled how much, in designs over all passes.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Pace {
+    notes: Vec<(f64, f64)>,
+}
+
+impl Pace {
+    pub fn note(&mut self, time: f64, settled: f64) {
+        if self.notes.last().is_none_or(|(last, _)| time > last * SPACING + 1e-3) {
+            self.notes.push((time, settled));
+        }
+    }
+
+    /// Seconds that the rest takes at this pace; infinite if nothing moves. `whole`: seconds that judging every design takes.
+    pub fn rest(&self, time: f64, settled: f64, rest: f64, whole: f64) -> f64 {
+        let begin = time * (1.0 - RECENT);
+        let (then, before) = self.notes.iter().rev().find(|(then, _)| *then <= begin).copied().unwrap_or((0.0, 0.0));
+        let pace = |settled: f64, time: f64| if settled > 0.0 { rest / settled * time } else { f64::INFINITY };
+        let recent = pace(settled - before, time - then);
+        if time < BURSTS * whole { recent.min(pace(settled, time)) } else { recent }
+    }
+}
+
+impl Promise {
+    /// Should bounds be left? They have taken so many seconds before what the promise is about; judging every design takes `whole`.
+    pub(super) fn is_poor(&self, whole: f64, counting_since: Option<f64>) -> bool {
+        let patience = counting_since.map_or(PATIENCE * whole, |since| since + COUNT_PATIENCE * whole);
+        self.spent > patience && self.bounds > self.judging && self.spent + self.bounds > TOLERANCE * whole
+    }
+}
+
+/// A time span for people.
+pub fn span(seconds: f64) -> String {
+    match seconds {
+        s if s < 1.0 => format!("{:.0} ms", s * 1e3),
+        s if s < 120.0 => format!("{s:.1} s"),
+        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
+        s if s < 172_800.0 => format!("{:.1} h", s / 3600.0),
+        s => format!("{:.0} days", s / 86_400.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::models::{Model, find};
+    use crate::study::Study;
+    use std::sync::Arc;
+
+    #[test]
+    fn a_design_that_takes_seconds_is_not_tried_and_a_fast_one_is_measured() {
+        let model = find("pulley-load").expect("it is a model");
+        let of = |effort: Effort| {
+            let mut study = Study::parse_in(&model.starter, "study.toml", ".".as_ref()).expect("the starter is right");
+            study.model = Arc::new(Model { effort, ..Model::clone(&model) });
+            let plan = Plan::new(study);
+            (Speed::measured(&plan, 2, Duration::from_millis(50)), Speed::told(&plan))
+        };
+        let (speed, told) = of(Effort { prepare: 60.0, finish: 0.0 });
+        assert_eq!((speed, speed.how()), (told, "by what the model usually takes"));
+        // It says that it is slow and is not: that is noticed, whether rows are judged whole or only begun.
+        for effort in [Effort { prepare: 1e-5, finish: 1e-5 }, Effort { prepare: 0.02, finish: 1e-3 }] {
+            let (speed, told) = of(effort);
+            assert!(speed.how() == "measured over a moment" && speed.seconds > 0.0, "{speed:?}");
+            assert!(speed.seconds < told.seconds / 3.0, "{speed:?} {told:?}");
+        }
+        assert_eq!(Speed { seconds: 0.5, measured: true }.of(12, 3), 2.0);
+    }
+
+    /// Pace of a run that settles by a function of time, looked at every 10 ms.
+    fn pace(until: f64, settled: impl Fn(f64) -> f64) -> Pace {
+        let mut pace = Pace::default();
+        (0..(until * 100.0) as u32).for_each(|look| pace.note(f64::from(look) / 100.0, settled(f64::from(look) / 100.0)));
+        pace
+    }
+
+    #[test]
+    fn the_rest_takes_what_the_better_pace_says_and_later_the_last() {
+        let near = |found: f64, expected: f64| assert!((found / expected - 1.0).abs() < 0.1, "{found} {expected}");
+        // 10 designs per second of 100.
+        near(pace(4.0, |time| 10.0 * time).rest(4.0, 40.0, 60.0, 8.0), 6.0);
+        // A burst in the first half and nothing since: early that means little, late everything.
+        let burst = |time: f64| if time < 1.0 { 40.0 * time } else { 40.0 };
+        near(pace(4.0, burst).rest(4.0, 40.0, 60.0, 20.0), 6.0);
+        assert_eq!(pace(4.0, burst).rest(4.0, 40.0, 60.0, 8.0), f64::INFINITY);
+        // Nothing in the first half: what counts is what comes now.
+        near(pace(4.0, |time| 20.0 * (time - 2.0).max(0.0)).rest(4.0, 40.0, 60.0, 20.0), 3.0);
+        assert_eq!(Pace::default().rest(4.0, 0.0, 60.0, 20.0), f64::INFINITY);
+    }
+
+    #[test]
+    fn bounds_are_left_where_they_promise_less_than_judging() {
+        let is_poor = |spent, bounds, judging| Promise { spent, settled: 0.1, bounds, judging }.is_poor(100.0, None);
+        // Before a quarter of the time nobody asks.
+        assert!(!is_poor(24.0, f64::INFINITY, 100.0) && is_poor(26.0, f64::INFINITY, 100.0));
+        assert!(!is_poor(26.0, 98.0, 100.0) && is_poor(26.0, 101.0, 100.0));
+        // A study of a day is not left because a minute settled nothing.
+        let day = Promise { spent: 60.0, settled: 0.0, bounds: f64::INFINITY, judging: 86_400.0 };
+        assert!(!day.is_poor(86_400.0, None));
+        // A count is asked sooner, and what it has done counts: little is won by leaving it near the end.
+        let counting = |spent, bounds, judging| Promise { spent, settled: 0.9, bounds, judging }.is_poor(100.0, Some(5.0));
+        assert!(!counting(14.0, 300.0, 100.0) && counting(16.0, 300.0, 100.0));
+        assert!(!counting(60.0, 55.0, 50.0) && counting(60.0, 70.0, 50.0) && !counting(90.0, 300.0, 301.0));
+    }
+}

@@ -1,0 +1,180 @@
+//! Watches bounds at work: do they settle designs faster than judging each would?
+
+use super::Control;
+use super::costs::{Pace, Promise};
+use std::cell::Cell;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// A range that is counted takes this share of the time that judging every design would take, at most.
+const CHUNK: f64 = 0.05;
+/// How often the watch is looked at where nobody reports progress.
+pub const OFTEN: Duration = Duration::from_millis(10);
+/// And how often a thread tells of the boxes that it counts.
+const SELDOM: Duration = Duration::from_millis(1);
+
+/// When bounds are left.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Leaving {
+    /// When judging the rest one by one promises to be faster.
+    WhereTheyDoNotPay,
+    /// When they have settled so large a share of all that they are to settle, whatever that took; for testing.
+    After(f64),
+}
+
+/// One run of bounds and those who watch it.
+pub struct Watch<'a> {
+    control: &'a Control,
+    leaving: Option<Leaving>,
+    /// Seconds that judging a design takes, all threads at work.
+    seconds: f64,
+    /// Designs of a search, and of the count.
+    search: u64,
+    count: u64,
+    passes: u64,
+    start: Instant,
+    /// Designs settled so far, over all passes: the bits of an f64, as they may be more than a u64 holds.
+    settled: AtomicU64,
+    stop: AtomicBool,
+    pace: Mutex<(Pace, Option<Counting>)>,
+    left: Mutex<Option<Promise>>,
+}
+
+/// Tells a watch what one thread settles, not more often than it is worth.
+pub struct Teller<'w> {
+    watch: &'w Watch<'w>,
+    untold: Cell<u64>,
+    told: Cell<Instant>,
+}
+
+impl<'w> Teller<'w> {
+    /// For one thread.
+    pub fn new(watch: &'w Watch<'w>) -> Self {
+        Self { watch, untold: Cell::new(0), told: Cell::new(Instant::now()) }
+    }
+
+    /// Takes in that so many designs were settled.
+    pub fn settle(&self, designs: u64) {
+        self.untold.set(self.untold.get() + designs);
+        let is_at_once = matches!(self.watch.leaving, Some(Leaving::After(_)));
+        if is_at_once || self.told.get().elapsed() >= SELDOM {
+            self.tell();
+        }
+    }
+
+    /// Tells what is not told yet.
+    pub fn tell(&self) {
+        self.watch.settle(self.untold.take());
+        self.told.set(Instant::now());
+    }
+}
+
+/// Since when is it counted, and what had been settled.
+#[derive(Clone, Copy, Debug)]
+struct Counting {
+    since: f64,
+    before: f64,
+}
+
+#[allow(clippy::cast_precision_loss, reason = "estimates")]
+impl<'a> Watch<'a> {
+    /// Over so many passes, the last of which is the count; `leaving` says when bounds are left, and how many seconds a design takes that is
+    /// judged, all threads at work.
+    pub fn new(control: &'a Control, leaving: Option<(Leaving, f64)>, search: u64, count: u64, passes: u64) -> Self {
+        Self {
+            control,
+            leaving: leaving.map(|it| it.0),
+            seconds: leaving.map_or(f64::INFINITY, |it| it.1),
+            search,
+            count,
+            passes,
+            start: Instant::now(),
+            settled: AtomicU64::new(0),
+            stop: AtomicBool::new(false),
+            pace: Mutex::default(),
+            left: Mutex::default(),
+        }
+    }
+
+    /// What ends the work: a request from outside, or that bounds do not pay.
+    pub fn stop(&self) -> &AtomicBool {
+        if self.leaving.is_some() { &self.stop } else { &self.control.stop }
+    }
+
+    /// May bounds be left?
+    pub fn may_leave(&self) -> bool {
+        self.leaving.is_some()
+    }
+
+    /// The promise at which bounds were left.
+    pub fn left(&self) -> Option<Promise> {
+        *self.left.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Seconds since bounds began.
+    pub fn spent(&self) -> f64 {
+        self.start.elapsed().as_secs_f64()
+    }
+
+    /// Designs of all searches.
+    fn searches(&self) -> f64 {
+        self.search as f64 * (self.passes - 1) as f64
+    }
+
+    /// Seconds that a range should take at most: what is counted of it is lost where bounds are left.
+    pub fn chunk(&self) -> f64 {
+        match self.leaving {
+            Some(Leaving::WhereTheyDoNotPay) => CHUNK * self.seconds * self.count as f64,
+            Some(Leaving::After(_)) | None => f64::INFINITY,
+        }
+    }
+
+    /// Takes in that so many designs were settled, in one pass.
+    pub fn settle(&self, designs: u64) {
+        let more = |bits: u64| Some((f64::from_bits(bits) + designs as f64).to_bits());
+        // It never refuses.
+        let _ = self.settled.fetch_update(Ordering::Relaxed, Ordering::Relaxed, more);
+        self.look();
+    }
+
+    /// From now on it is counted.
+    pub fn counts(&self) {
+        // What a search settles in another way counts for it all the same.
+        let before = self.searches();
+        self.settled.store(before.to_bits(), Ordering::Relaxed);
+        let mut pace = self.pace.lock().unwrap_or_else(PoisonError::into_inner);
+        *pace = (Pace::default(), Some(Counting { since: self.spent(), before }));
+    }
+
+    /// Looks how bounds get on, and stops them if they do not pay.
+    pub fn look(&self) {
+        let settled = f64::from_bits(self.settled.load(Ordering::Relaxed));
+        let all = (self.searches() + self.count as f64).max(1.0);
+        self.control.done.fetch_max(((settled / all) * self.search as f64) as u64, Ordering::Relaxed);
+        let Some(leaving) = self.leaving else { return };
+        if self.control.stop.load(Ordering::Relaxed) {
+            self.stop.store(true, Ordering::Relaxed);
+        }
+        // Whoever looks at the same time looks for all.
+        let Ok(mut pace) = self.pace.try_lock() else { return };
+        let (pace, counting) = &mut *pace;
+        let spent = self.spent();
+        let begin = counting.map_or((0.0, 0.0), |it| (it.since, it.before));
+        let (time, own) = (spent - begin.0, (settled - begin.1).max(0.0));
+        pace.note(time, own);
+        let rest = all - settled;
+        let whole = self.seconds * self.count as f64;
+        let judged = if counting.is_some() { own } else { 0.0 };
+        let judging = self.seconds * (self.count as f64 - judged);
+        let promise = Promise { spent, settled: settled / all, bounds: pace.rest(time, own, rest, whole), judging };
+        let leaves = rest > 0.0
+            && match leaving {
+                Leaving::WhereTheyDoNotPay => promise.is_poor(whole, counting.map(|it| it.since)),
+                Leaving::After(share) => promise.settled >= share,
+            };
+        if leaves && !self.stop.swap(true, Ordering::Relaxed) {
+            *self.left.lock().unwrap_or_else(PoisonError::into_inner) = Some(promise);
+        }
+    }
+}

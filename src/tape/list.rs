@@ -1,0 +1,180 @@
+//! A recorded formula cut down to what is asked for, run over any number type.
+
+use super::{Binary, Node, Operation, Recording, Root};
+use crate::real::Real;
+use std::cell::RefCell;
+
+/// What a number is called, and the equation that it comes from.
+pub type Name = (&'static str, &'static str);
+
+/// The operations that some results need, operands first.
+#[derive(Clone, Debug, Default)]
+pub struct List {
+    /// All operations, operands first.
+    pub operations: Vec<Operation>,
+    /// The roots among them.
+    pub roots: Vec<ListRoot>,
+    /// Of every operation: is it part of a root's function, so that it has a value only while the root is sought?
+    pub inner: Vec<bool>,
+    /// Of every operation: what the formula calls it.
+    pub names: Vec<Option<Name>>,
+    /// The results, in the order in which they were asked for; `None` for those that nobody asked for.
+    pub results: Vec<Option<Node>>,
+}
+
+/// A root with the operations of its function.
+#[derive(Clone, Debug)]
+pub struct ListRoot {
+    /// The root as recorded.
+    pub root: Root,
+    /// Operations that depend on what the function is asked at, operands first.
+    pub inner: Vec<Node>,
+}
+
+impl List {
+    /// Keeps what these results need.
+    pub fn cut(recording: &Recording, asked: &[Option<Node>]) -> Self {
+        let Recording { operations, roots, .. } = recording;
+        let mut needed = vec![false; operations.len()];
+        asked.iter().flatten().for_each(|&node| needed[node as usize] = true);
+        for node in (0..operations.len()).rev() {
+            if needed[node] {
+                if let Operation::Root(number) = operations[node] {
+                    let Root { bracket, start, argument, value, slope } = roots[number as usize];
+                    [bracket.0, bracket.1, start, argument, value, slope].iter().for_each(|&node| needed[node as usize] = true);
+                }
+                operations[node].operands(|operand| needed[operand as usize] = true);
+            }
+        }
+        let mut place = vec![Node::MAX; operations.len()];
+        let mut list = Self { roots: roots.iter().map(|root| ListRoot { root: *root, inner: Vec::new() }).collect(), ..Self::default() };
+        // Of every operation: the roots whose argument it depends on.
+        let mut arguments: Vec<u64> = Vec::new();
+        for (node, &operation) in operations.iter().enumerate().filter(|(node, _)| needed[*node]) {
+            let new = list.operations.len() as Node;
+            place[node] = new;
+            let at = |old: Node| place[old as usize];
+            let operation = match operation {
+                Operation::Unary(kind, a) => Operation::Unary(kind, at(a)),
+                Operation::Binary(kind, a, b) => Operation::Binary(kind, at(a), at(b)),
+                Operation::Select(margin, a, b) => Operation::Select(at(margin), at(a), at(b)),
+                other => other,
+            };
+            let mut within = 0;
+            match operation {
+                Operation::Argument(root) => within = 1 << root,
+                Operation::Root(number) => {
+                    let root = &mut list.roots[number as usize];
+                    let Root { bracket, start, argument, value, slope } = root.root;
+                    let bracket = (at(bracket.0), at(bracket.1));
+                    root.root = Root { bracket, start: at(start), argument: at(argument), value: at(value), slope: at(slope) };
+                    root.root.reads(|node| within |= arguments[node as usize]);
+                    within &= !(1 << number);
+                    let is_inner = |&node: &Node| {
+                        arguments[node as usize] >> number & 1 == 1 && list.operations[node as usize] != Operation::Argument(number)
+                    };
+                    root.inner = (0..new).filter(is_inner).collect();
+                }
+                other => other.operands(|operand| within |= arguments[operand as usize]),
+            }
+            list.operations.push(operation);
+            list.names.push(recording.name(node as Node));
+            arguments.push(within);
+        }
+        list.inner = arguments.iter().map(|&within| within != 0).collect();
+        list.results = asked.iter().map(|node| node.map(|node| place[node as usize])).collect();
+        list
+    }
+
+    /// Of every operation: the union of the sets that the inputs which it depends on have. Who depends on nothing has the empty set.
+    pub fn dependencies(&self, of_input: impl Fn(u16) -> u64) -> Vec<u64> {
+        let mut sets: Vec<u64> = Vec::with_capacity(self.operations.len());
+        for &operation in &self.operations {
+            let mut set = 0;
+            match operation {
+                Operation::Input(input) => set = of_input(input),
+                Operation::Root(number) => self.roots[number as usize].root.reads(|node| set |= sets[node as usize]),
+                other => other.operands(|operand| set |= sets[operand as usize]),
+            }
+            sets.push(set);
+        }
+        sets
+    }
+
+    /// The operations that these nodes need, operands first, without those inside the functions of roots.
+    pub fn needed_by(&self, nodes: &[Node]) -> Vec<Node> {
+        let mut needed = vec![false; self.operations.len()];
+        nodes.iter().for_each(|&node| needed[node as usize] = true);
+        for node in (0..self.operations.len()).rev().filter(|&node| !self.inner[node]) {
+            if !needed[node] {
+                continue;
+            }
+            let mut mark = |operand: Node| needed[operand as usize] = true;
+            match self.operations[node] {
+                Operation::Root(number) => self.outside(number, &mut mark),
+                operation => operation.operands(mark),
+            }
+        }
+        (0..self.operations.len() as Node).filter(|&node| needed[node as usize] && !self.inner[node as usize]).collect()
+    }
+
+    /// Calls `each` with what a root and its function read that does not depend on what the function is asked at.
+    pub fn outside(&self, number: u8, mut each: impl FnMut(Node)) {
+        let ListRoot { root, inner } = &self.roots[number as usize];
+        root.reads(|node| {
+            if !self.inner[node as usize] {
+                each(node);
+            }
+        });
+        for &node in inner {
+            self.operations[node as usize].operands(|operand| {
+                if !self.inner[operand as usize] {
+                    each(operand);
+                }
+            });
+        }
+    }
+
+    /// Computes one operation from its operands; what inputs are is the caller's business.
+    #[inline]
+    pub fn compute<R: Real>(&self, node: Node, slots: &mut [R]) {
+        let value = match self.operations[node as usize] {
+            Operation::Input(_) | Operation::Argument(_) => return,
+            Operation::Constant(bits) => R::constant(f64::from_bits(bits)),
+            Operation::Root(number) => self.root(number, slots),
+            Operation::Unary(operation, a) => operation.of(slots[a as usize]),
+            Operation::Binary(Binary::Mul, a, b) if a == b => slots[a as usize].squared(),
+            Operation::Binary(operation, a, b) => operation.of(slots[a as usize], slots[b as usize]),
+            Operation::Select(margin, a, b) => R::select(slots[margin as usize], slots[a as usize], slots[b as usize]),
+        };
+        slots[node as usize] = value;
+    }
+
+    fn root<R: Real>(&self, number: u8, slots: &mut [R]) -> R {
+        let ListRoot { root, inner } = &self.roots[number as usize];
+        let [low, high, start] = [root.bracket.0, root.bracket.1, root.start].map(|node| slots[node as usize]);
+        // The function is asked again and again, but by one caller at a time.
+        let slots = RefCell::new(slots);
+        R::monotone_root((low, high), start, [], |[], x| {
+            let mut slots = slots.borrow_mut();
+            slots[root.argument as usize] = x;
+            for &node in inner {
+                self.compute(node, &mut slots);
+            }
+            (slots[root.value as usize], slots[root.slope as usize])
+        })
+    }
+
+    /// Runs the list over numbers of any type, one per input; results that nobody asked for are zero.
+    pub fn run<R: Real>(&self, inputs: &[R]) -> Vec<R> {
+        let zero = R::constant(0.0);
+        let mut slots = vec![zero; self.operations.len()];
+        for (node, operation) in self.operations.iter().enumerate().filter(|(node, _)| !self.inner[*node]) {
+            match *operation {
+                Operation::Input(input) => slots[node] = inputs[input as usize],
+                _ => self.compute(node as Node, &mut slots),
+            }
+        }
+        self.results.iter().map(|result| result.map_or(zero, |node| slots[node as usize])).collect()
+    }
+}

@@ -1,0 +1,95 @@
+//! A model's formula recorded: as a whole, and as the two stages that a sweep runs it in.
+
+use super::{Known, List, Node, Recording};
+
+/// The names of a formula's values, in the order of its arrays.
+#[derive(Clone, Copy, Debug)]
+pub struct Fields {
+    /// Of the inputs.
+    pub inputs: &'static [&'static str],
+    /// Of the single numbers that the first stage passes on.
+    pub prepared: &'static [&'static str],
+    /// Of the tables that it passes on after them, with their lengths.
+    pub tables: &'static [(&'static str, usize)],
+    /// Most loop turns that the shader's second stage and conditions take together, for drivers that end long loops.
+    pub turns: u64,
+    /// Of the outputs; there may be more than the model lists.
+    pub outputs: &'static [&'static str],
+}
+
+impl Fields {
+    /// How many numbers the first stage passes on.
+    pub fn prepared_len(&self) -> usize {
+        self.tables.iter().fold(self.prepared.len(), |sum, (_, length)| sum + length)
+    }
+
+    /// Of each field that the first stage passes on, tables after single numbers: where it starts and how long it is.
+    pub fn places(&self) -> impl Iterator<Item = (usize, usize)> {
+        let lengths = self.prepared.iter().map(|_| 1).chain(self.tables.iter().map(|(_, length)| *length));
+        lengths.scan(0, |next, length| {
+            *next += length;
+            Some((*next - length, length))
+        })
+    }
+}
+
+/// A formula that can be recorded as a list of operations.
+pub trait Recordable: Send + Sync {
+    /// The names of the formula's values.
+    fn fields(&self) -> Fields;
+    /// The whole formula, given what is known of its inputs, for the outputs and conditions of these bit sets.
+    fn whole(&self, known: &[Known], wanted: u64, conditions: u64) -> Whole;
+    /// Its second stage.
+    fn second(&self, known: &[Known], wanted: u64, conditions: u64) -> Second;
+}
+
+/// A formula from its inputs to its results.
+#[derive(Clone, Debug)]
+pub struct Whole {
+    /// All operations.
+    pub recording: Recording,
+    /// What the first stage passes on.
+    pub prepared: Vec<Node>,
+    /// The outputs; those that were not asked for may be anything.
+    pub outputs: Vec<Node>,
+    /// The conditions' margins; those that were not asked for may be anything.
+    pub conditions: Vec<Node>,
+}
+
+/// A formula's second stage, from the inputs and what the first stage passes on to the results. The inputs of the list are the
+/// model's, then the numbers that are passed on.
+#[derive(Clone, Debug)]
+pub struct Second {
+    /// All operations.
+    pub recording: Recording,
+    /// The outputs; those that were not asked for may be anything.
+    pub outputs: Vec<Node>,
+    /// The conditions' margins; those that were not asked for may be anything.
+    pub conditions: Vec<Node>,
+}
+
+impl Whole {
+    /// Outputs, then conditions, as far as they are in these bit sets.
+    pub fn asked(&self, wanted: u64, conditions: u64) -> Vec<Option<Node>> {
+        asked(&self.outputs, wanted, &self.conditions, conditions)
+    }
+
+    /// What these need.
+    pub fn list(&self, wanted: u64, conditions: u64) -> List {
+        List::cut(&self.recording, &self.asked(wanted, conditions))
+    }
+}
+
+impl Second {
+    /// Outputs, then conditions, as far as they are in these bit sets.
+    pub fn list(&self, wanted: u64, conditions: u64) -> List {
+        List::cut(&self.recording, &asked(&self.outputs, wanted, &self.conditions, conditions))
+    }
+}
+
+fn asked(outputs: &[Node], wanted: u64, margins: &[Node], conditions: u64) -> Vec<Option<Node>> {
+    let of = |nodes: &[Node], set: u64| -> Vec<Option<Node>> {
+        nodes.iter().enumerate().map(|(number, &node)| (set >> number & 1 == 1).then_some(node)).collect()
+    };
+    [of(outputs, wanted), of(margins, conditions)].concat()
+}

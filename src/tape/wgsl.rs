@@ -1,0 +1,456 @@
+//! A recorded formula as text in WGSL: the functions `prepare`, `conditions` and `finish` of a model.
+//!
+//! Every operation of the list is one call of a function in `shaders/common/numbers.wgsl`, which computes in f32 with an error bound.
+//! What the formula names, and what is read more than once, stands in a line of its own. A root is found in plain f32, and its bound
+//! comes from one evaluation of its function there.
+
+use super::{Binary, Fields, Known, List, ListRoot, Node, Operation, Recordable, Root, Second, Unary, Whole, nearest_f32};
+
+use std::collections::{HashMap, HashSet};
+use std::fmt::Write;
+
+/// A line that is longer is cut into several.
+const WIDE: usize = 110;
+
+/// What the functions of every kernel are called, and what WGSL keeps for itself: no number may be.
+const TAKEN: &[&str] = &[
+    "a",
+    "abs",
+    "add",
+    "cosine",
+    "const",
+    "cos",
+    "div",
+    "exp",
+    "f32",
+    "fn",
+    "half",
+    "i",
+    "in",
+    "last",
+    "let",
+    "log",
+    "loop",
+    "max",
+    "min",
+    "mul",
+    "mul_or_zero",
+    "near",
+    "neg",
+    "number",
+    "out",
+    "p",
+    "pow",
+    "root",
+    "round",
+    "same",
+    "scaled_",
+    "search",
+    "select",
+    "sin",
+    "sine",
+    "sqrt",
+    "square",
+    "step",
+    "sub",
+    "tan",
+    "twice",
+    "value",
+    "var",
+    "x",
+];
+
+/// How a list's numbers are computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// With error bounds, by the functions of the shared text.
+    Bounded,
+    /// In plain f32, inside the search for a root.
+    Plain,
+}
+
+/// The text of a model's formula with so many conditions; `equations` has where each output comes from, as far as that is known.
+///
+/// # Panics
+/// If the formula passes tables between its stages: such a text is written by hand.
+pub fn text(formula: &dyn Recordable, conditions: usize, equations: &[&str]) -> String {
+    let fields = formula.fields();
+    assert!(fields.tables.is_empty(), "a formula with tables is written by hand");
+    let inputs = vec![Known::ANY; fields.inputs.len()];
+    let whole = formula.whole(&inputs, u64::MAX, u64::MAX);
+    let second = formula.second(&inputs, u64::MAX, u64::MAX);
+    first_stage(&fields, &whole) + &second_stage(&fields, &second, conditions, equations)
+}
+
+fn first_stage(fields: &Fields, whole: &Whole) -> String {
+    let asked: Vec<_> = whole.prepared.iter().copied().map(Some).collect();
+    let list = List::cut(&whole.recording, &asked);
+    let leaf = |input: usize| format!("i.{}", fields.inputs[input]);
+    let results: Vec<Line> = fields.prepared.iter().map(|field| Line { to: format!("p.{field}"), name: field, equation: "" }).collect();
+    let mut writer = Writer::new("prepare", &list, &leaf, &results);
+    writer.function("prepare(i: Inputs) -> Prepared", "var p: Prepared;", &results, "return p;");
+    writer.text()
+}
+
+fn second_stage(fields: &Fields, second: &Second, conditions: usize, equations: &[&str]) -> String {
+    let inputs = fields.inputs.len();
+    let leaf = |input: usize| match input.checked_sub(inputs) {
+        Some(passed) => format!("p.{}", fields.prepared[passed]),
+        None => format!("i.{}", fields.inputs[input]),
+    };
+    let cut = |nodes: &[Node]| List::cut(&second.recording, &nodes.iter().copied().map(Some).collect::<Vec<_>>());
+    let lines: Vec<Line> = (0..conditions).map(|number| Line { to: format!("margins[{number}]"), name: "", equation: "" }).collect();
+    let list = cut(&second.conditions[..conditions]);
+    let mut conditions = Writer::new("conditions", &list, &leaf, &lines);
+    let margins = "var margins: array<Real, CONDITIONS>;";
+    conditions.function("conditions(p: Prepared, i: Inputs) -> array<Real, CONDITIONS>", margins, &lines, "return margins;");
+    let line = |(number, field): (usize, &&'static str)| Line {
+        to: format!("out.{field}"),
+        name: field,
+        equation: equations.get(number).copied().unwrap_or_default(),
+    };
+    let lines: Vec<Line> = fields.outputs.iter().enumerate().map(line).collect();
+    let list = cut(&second.outputs);
+    let mut finish = Writer::new("finish", &list, &leaf, &lines);
+    finish.function("finish(p: Prepared, i: Inputs) -> Outputs", "var out: Outputs;", &lines, "return out;");
+    conditions.text() + &finish.text()
+}
+
+/// Where a result goes.
+struct Line<'a> {
+    /// The place that it is assigned to.
+    to: String,
+    /// What it is called; empty for one without a name.
+    name: &'a str,
+    /// The equation that it comes from; empty for none.
+    equation: &'a str,
+}
+
+struct Writer<'a> {
+    /// The function that is written.
+    stage: &'static str,
+    list: &'a List,
+    leaf: &'a dyn Fn(usize) -> String,
+    /// How often each number is read.
+    reads: Vec<u32>,
+    /// What each number that is kept is called.
+    names: HashMap<Node, String>,
+    /// Numbers that the function is given, and what they are called there.
+    given: HashMap<Node, String>,
+    taken: HashSet<String>,
+    /// The functions of roots, which come first.
+    roots: String,
+    text: String,
+}
+
+impl<'a> Writer<'a> {
+    fn new(stage: &'static str, list: &'a List, leaf: &'a dyn Fn(usize) -> String, results: &[Line<'_>]) -> Self {
+        let mut reads = vec![0; list.operations.len()];
+        let mut read = |node: Node| reads[node as usize] += 1;
+        list.results.iter().flatten().for_each(|&node| read(node));
+        for operation in &list.operations {
+            match *operation {
+                Operation::Root(number) => list.roots[number as usize].root.reads(&mut read),
+                operation => operation.operands(&mut read),
+            }
+        }
+        let taken = TAKEN.iter().map(|&name| name.to_owned()).collect();
+        let (roots, text) = Default::default();
+        let mut writer = Self { stage, list, leaf, reads, names: HashMap::new(), given: HashMap::new(), taken, roots, text };
+        for (node, name) in list.names.iter().enumerate() {
+            if let Some((name, _)) = name {
+                writer.call(node as Node, name);
+            }
+        }
+        for (line, node) in results.iter().zip(&list.results) {
+            if let Some(node) = *node
+                && writer.reads[node as usize] > 1
+                && !line.name.is_empty()
+            {
+                writer.call(node, line.name);
+            }
+        }
+        writer
+    }
+
+    /// Gives a number a name, unless it has one or needs none.
+    fn call(&mut self, node: Node, name: &str) {
+        if self.names.contains_key(&node) || matches!(self.list.operations[node as usize], Operation::Input(_) | Operation::Constant(_)) {
+            return;
+        }
+        let mut free = name.to_owned();
+        while !self.taken.insert(free.clone()) {
+            free.push('_');
+        }
+        self.names.insert(node, free);
+    }
+
+    /// The name of a number that is kept.
+    fn name(&mut self, node: Node) -> String {
+        self.call(node, &format!("n{node}"));
+        self.names[&node].clone()
+    }
+
+    /// Is a number written in a line of its own?
+    fn is_kept(&self, node: Node) -> bool {
+        match self.list.operations[node as usize] {
+            Operation::Input(_) | Operation::Constant(_) | Operation::Argument(_) => false,
+            Operation::Root(_) => true,
+            _ => self.reads[node as usize] > 1 || self.names.contains_key(&node),
+        }
+    }
+
+    /// The text of a number: its name, or how it is computed.
+    fn operand(&mut self, node: Node, kind: Kind) -> String {
+        match self.given.get(&node) {
+            Some(name) => name.clone(),
+            None if self.is_kept(node) => self.name(node),
+            None => self.expression(node, kind),
+        }
+    }
+
+    /// How a number is computed.
+    fn expression(&mut self, node: Node, kind: Kind) -> String {
+        match self.list.operations[node as usize] {
+            Operation::Input(input) => (self.leaf)(input.into()),
+            Operation::Constant(bits) => constant(f64::from_bits(bits), kind),
+            Operation::Argument(_) => "x".to_owned(),
+            Operation::Root(number) => self.root(node, number, kind),
+            Operation::Unary(operation, a) => {
+                let a = self.operand(a, kind);
+                if kind == Kind::Bounded { bounded_unary(operation, &a) } else { plain_unary(operation, &a) }
+            }
+            Operation::Binary(Binary::Mul, a, b) if a == b && kind == Kind::Bounded => format!("square({})", self.operand(a, kind)),
+            Operation::Binary(Binary::Mul, a, b) if kind == Kind::Bounded && (self.may_be_zero(a) || self.may_be_zero(b)) => {
+                format!("mul_or_zero({}, {})", self.operand(a, kind), self.operand(b, kind))
+            }
+            Operation::Binary(operation, a, b) => {
+                let (a, b) = (self.operand(a, kind), self.operand(b, kind));
+                if kind == Kind::Bounded { bounded_binary(operation, &a, &b) } else { plain_binary(operation, &a, &b) }
+            }
+            Operation::Select(margin, a, b) => {
+                let [margin, a, b] = [margin, a, b].map(|node| self.operand(node, kind));
+                match kind {
+                    Kind::Bounded => format!("select_({margin}, {a}, {b})"),
+                    Kind::Plain => format!("select({b}, {a}, {margin} >= 0.0)"),
+                }
+            }
+        }
+    }
+
+    /// Does the formula make a number exactly zero somewhere: by a clamp at zero, or as a product with one?
+    fn may_be_zero(&self, node: Node) -> bool {
+        let is_zero = |node: Node| self.list.operations[node as usize] == Operation::Constant(0);
+        match self.list.operations[node as usize] {
+            Operation::Binary(Binary::Max | Binary::Min, a, b) => is_zero(a) || is_zero(b),
+            Operation::Binary(Binary::Mul, a, b) => self.may_be_zero(a) || self.may_be_zero(b),
+            _ => false,
+        }
+    }
+
+    /// The lines that keep these numbers, operands first.
+    fn lines(&mut self, nodes: &[Node], kind: Kind, indent: &str) -> String {
+        let mut text = String::new();
+        for &node in nodes {
+            let expression = self.expression(node, kind);
+            let name = self.name(node);
+            let equation = self.list.names[node as usize].map_or("", |(_, equation)| equation);
+            put(&mut text, indent, &format!("let {name} = {expression};"), equation);
+        }
+        text
+    }
+
+    /// Writes a function that assigns the results.
+    fn function(&mut self, head: &str, begin: &str, results: &[Line<'_>], end: &str) {
+        let list = self.list;
+        let kept: Vec<Node> = (0..list.operations.len() as Node).filter(|&node| !list.inner[node as usize] && self.is_kept(node)).collect();
+        let lines = self.lines(&kept, Kind::Bounded, "    ");
+        let mut text = format!("\nfn {head} {{\n{lines}    {begin}\n");
+        for (line, node) in results.iter().zip(&list.results) {
+            if let Some(node) = *node {
+                let value = self.operand(node, Kind::Bounded);
+                put(&mut text, "    ", &format!("{} = {value};", line.to), line.equation);
+            }
+        }
+        write!(text, "    {end}\n}}\n").expect("a text takes everything");
+        self.text.push_str(&text);
+    }
+
+    /// The functions that find a root, and the call of one.
+    fn root(&mut self, node: Node, number: u8, kind: Kind) -> String {
+        let list = self.list;
+        let ListRoot { root: Root { bracket, start, argument, value, slope }, inner } = &list.roots[number as usize];
+        let own = self.name(node);
+        let name = format!("{}_{own}", self.stage);
+        // What the root and its function read, besides what depends on where the function is asked.
+        let mut outside = Vec::new();
+        let mut read = |node: Node| {
+            let is_constant = matches!(list.operations[node as usize], Operation::Constant(_));
+            if !is_constant && node != *argument && !inner.contains(&node) && !outside.contains(&node) {
+                outside.push(node);
+            }
+        };
+        list.roots[number as usize].root.reads(&mut read);
+        inner.iter().for_each(|&node| list.operations[node as usize].operands(&mut read));
+        let given: Vec<String> = outside.iter().map(|&node| self.operand(node, kind)).collect();
+        let call = format!("{name}_{}({})", if kind == Kind::Bounded { "root" } else { "near" }, given.join(", "));
+        if self.roots.contains(&format!("fn {name}_near(")) {
+            return call;
+        }
+
+        let mut inside = Writer {
+            stage: self.stage,
+            list,
+            leaf: self.leaf,
+            reads: self.reads.clone(),
+            names: self.names.clone(),
+            given: HashMap::new(),
+            taken: self.taken.clone(),
+            roots: String::new(),
+            text: String::new(),
+        };
+        let mut names = Vec::new();
+        for (at, &node) in outside.iter().enumerate() {
+            let mut own = match (list.operations[node as usize], self.names.get(&node)) {
+                (_, Some(name)) => name.clone(),
+                (Operation::Input(input), _) => (self.leaf)(input.into()).rsplit('.').next().unwrap_or_default().to_owned(),
+                _ => format!("given_{at}"),
+            };
+            if !self.names.contains_key(&node) {
+                while !inside.taken.insert(own.clone()) {
+                    own.push('_');
+                }
+            }
+            inside.given.insert(node, own.clone());
+            names.push(own);
+        }
+        let kept: Vec<Node> = inner.iter().copied().filter(|&node| inside.is_kept(node)).collect();
+        let [low, high, first] = [bracket.0, bracket.1, *start].map(|node| inside.operand(node, Kind::Plain));
+        let plain = inside.lines(&kept, Kind::Plain, "        ");
+        let [near_value, near_slope] = [*value, *slope].map(|node| inside.operand(node, Kind::Plain));
+        let bounded = inside.lines(&kept, Kind::Bounded, "    ");
+        let [value, slope] = [*value, *slope].map(|node| inside.operand(node, Kind::Bounded));
+        let parameters = |of: &str| names.iter().map(|name| format!("{name}: {of}")).collect::<Vec<_>>().join(", ");
+        let values = names.iter().map(|name| format!("{name}.value")).collect::<Vec<_>>().join(", ");
+        let mut text = String::new();
+        put(&mut text, "\n", &format!("fn {name}_near({}) -> f32 {{", parameters("f32")), "");
+        put(&mut text, "    ", &format!("var search = begin_search({low}, {high}, {first});"), "");
+        text.push_str("    for (var i = 0; i < NEWTON_STEPS && !search.done; i++) {\n        let x = search.x;\n");
+        text.push_str(&plain);
+        put(&mut text, "        ", &format!("search = newton_step(search, {near_value}, {near_slope});"), "");
+        text.push_str("    }\n    return search.x;\n}\n");
+        put(&mut text, "\n", &format!("fn {name}_root({}) -> Real {{", parameters("Real")), "");
+        put(&mut text, "    ", &format!("let x = constant({name}_near({values}));"), "");
+        text.push_str(&bounded);
+        put(&mut text, "    ", &format!("return root(x.value, {value}, {slope});"), "");
+        text.push_str("}\n");
+        self.roots.push_str(&inside.roots);
+        self.roots.push_str(&text);
+        call
+    }
+
+    fn text(self) -> String {
+        self.roots + &self.text
+    }
+}
+
+/// A line with the equation behind it, broken where it is too wide.
+fn put(text: &mut String, indent: &str, line: &str, equation: &str) {
+    let line = if line.len() > WIDE { broken(line, indent.trim_start_matches('\n')) } else { line.to_owned() };
+    let behind = if equation.is_empty() { String::new() } else { format!(" // {equation}") };
+    writeln!(text, "{indent}{line}{behind}").expect("a text takes everything");
+}
+
+/// The outermost call of a long line with each of its arguments in a line of its own.
+fn broken(line: &str, indent: &str) -> String {
+    let Some(open) = line.find('(') else { return line.to_owned() };
+    let Some(close) = line.rfind(')') else { return line.to_owned() };
+    let (mut depth, mut from, mut parts) = (0, open + 1, Vec::new());
+    for (at, byte) in line.bytes().enumerate().take(close).skip(open + 1) {
+        match byte {
+            b'(' => depth += 1,
+            b')' => depth -= 1,
+            b',' if depth == 0 => {
+                parts.push(line[from..at].trim());
+                from = at + 1;
+            }
+            _ => {}
+        }
+    }
+    parts.push(line[from..close].trim());
+    let inner = format!("{indent}    ");
+    let parts: String = parts
+        .iter()
+        .map(|part| {
+            let part = if part.len() > WIDE { broken(part, &inner) } else { (*part).to_owned() };
+            format!("{inner}{part},\n")
+        })
+        .collect();
+    format!("{}(\n{parts}{indent}){}", &line[..open], &line[close + 1..])
+}
+
+/// A constant: exact in f32, or with what f32 loses of it.
+fn constant(value: f64, kind: Kind) -> String {
+    let (near, bound) = nearest_f32(value);
+    match kind {
+        Kind::Plain if near < 0.0 => format!("({near:?})"),
+        Kind::Plain => format!("{near:?}"),
+        Kind::Bounded if bound == 0.0 => format!("constant({near:?})"),
+        Kind::Bounded => format!("Real({near:?}, {bound:?})"),
+    }
+}
+
+fn bounded_unary(operation: Unary, a: &str) -> String {
+    match operation {
+        Unary::Neg => format!("neg({a})"),
+        Unary::Sqrt => format!("sqrt_({a})"),
+        Unary::Abs => format!("abs_({a})"),
+        Unary::ExpM1 => format!("exp_m1_({a})"),
+        Unary::Ln1p => format!("ln_1p_({a})"),
+        Unary::Sin => format!("sin_({a})"),
+        Unary::Cos => format!("cos_({a})"),
+        Unary::Asin => format!("asin_({a})"),
+        Unary::Scale(1) => format!("twice({a})"),
+        Unary::Scale(-1) => format!("half({a})"),
+        Unary::Scale(power) => format!("scaled_({a}, {:?})", 2f32.powi(power.into())),
+    }
+}
+
+fn plain_unary(operation: Unary, a: &str) -> String {
+    match operation {
+        Unary::Neg => format!("(-{a})"),
+        // As with bounds: rounding may take a number that is zero below it.
+        Unary::Sqrt => format!("sqrt(max({a}, 0.0))"),
+        Unary::Abs => format!("abs({a})"),
+        Unary::ExpM1 => format!("exp_m1({a})"),
+        Unary::Ln1p => format!("ln_1p({a})"),
+        Unary::Sin => format!("sine({a})"),
+        Unary::Cos => format!("cosine({a})"),
+        Unary::Asin => format!("arc_sine({a})"),
+        Unary::Scale(power) => format!("({:?} * {a})", 2f32.powi(power.into())),
+    }
+}
+
+fn bounded_binary(operation: Binary, a: &str, b: &str) -> String {
+    let name = match operation {
+        Binary::Add => "add",
+        Binary::Sub => "sub",
+        Binary::Mul => "mul",
+        Binary::Div => "div",
+        Binary::Min => "min_",
+        Binary::Max => "max_",
+        Binary::PlusWhole => "plus_whole",
+    };
+    format!("{name}({a}, {b})")
+}
+
+fn plain_binary(operation: Binary, a: &str, b: &str) -> String {
+    match operation {
+        Binary::Add | Binary::PlusWhole => format!("({a} + {b})"),
+        Binary::Sub => format!("({a} - {b})"),
+        Binary::Mul => format!("({a} * {b})"),
+        Binary::Div => format!("({a} / {b})"),
+        Binary::Min => format!("min({a}, {b})"),
+        Binary::Max => format!("max({a}, {b})"),
+    }
+}
