@@ -169,11 +169,12 @@ fn axes_are_brushed_turned_and_moved_and_a_point_is_reached_with_the_keyboard() 
     // Turned over and moved with its buttons: the first axis becomes the second.
     let second = browser.text("beltspace.state.parallel[1]");
     browser.click_on(&format!("[data-focus=\"right {name}\"]"));
-    assert_eq!(browser.text("beltspace.state.parallel.slice(0, 2).join()"), format!("{second},{name}"));
+    browser.wait(&format!("beltspace.state.parallel.slice(0, 2).join() === {:?}", format!("{second},{name}")));
     let tick = format!("document.querySelector('#parallel .axis[data-name={name:?}] .tick').getAttribute('transform')");
     let upright = browser.text(&tick);
     browser.click_on(&format!("[data-focus=\"invert {name}\"]"));
-    assert_ne!(browser.text(&tick), upright, "the axis is drawn the other way round");
+    // The axis is drawn the other way round.
+    browser.wait(&format!("{tick} !== {upright:?}"));
     assert_eq!(browser.number("beltspace.selected().length"), expected as f64, "how an axis stands selects nothing");
     browser.click_on("#clear");
     // Keys only: into a cell of the matrix, to a point, its card, the next card, and out.

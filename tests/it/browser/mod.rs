@@ -108,17 +108,22 @@ impl Browser {
         }
     }
 
-    /// The rectangle of the first element that a selector finds, brought into view: left, top, width, height.
+    /// The rectangle of the first element that a selector finds, brought into view: left, top, width, height. The page may still be at
+    /// work, and what it shows next may push the element aside: so its place counts once it has stayed the same over three frames.
     #[track_caller]
     pub fn rectangle(&mut self, selector: &str) -> [f64; 4] {
         let script = format!(
-            "(() => {{ const e = document.querySelector({selector:?}); if (!e) return null; \
+            "(async () => {{ let [last, same] = ['', 0]; \
+             for (let frame = 0; frame < 600; frame++) {{ \
+             const e = document.querySelector({selector:?}); if (!e) return null; \
              e.scrollIntoView({{block: 'center', behavior: 'instant'}}); \
-             const r = e.getBoundingClientRect(); return [r.left, r.top, r.width, r.height]; }})()"
+             const r = e.getBoundingClientRect(); const place = [r.left, r.top, r.width, r.height]; \
+             same = place.join() === last ? same + 1 : 0; last = place.join(); if (same === 3) return place; \
+             await new Promise((done) => requestAnimationFrame(done)); }} return 'it never comes to rest'; }})()"
         );
         let found = self.evaluate(&script);
         let numbers: Vec<f64> =
-            found.as_array().unwrap_or_else(|| panic!("there is no {selector}")).iter().filter_map(Value::as_f64).collect();
+            found.as_array().unwrap_or_else(|| panic!("{selector}: {found}")).iter().filter_map(Value::as_f64).collect();
         numbers.try_into().expect("a rectangle has four numbers")
     }
 
