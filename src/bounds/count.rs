@@ -7,7 +7,7 @@
 use super::axes::{AXES, Axes, Span, Spans};
 use super::bounder::Bounder;
 use super::columns::{CHUNK, Columns};
-use super::open::{Bounded, Open, Outcome, decide, each_scenario, over, scenarios};
+use super::open::{Bounded, Decided, Open, decide, each_scenario, over, scenarios};
 use super::pairing::Pairing;
 use super::pairs::{Instance, Pairs};
 use super::requirement::Source;
@@ -149,11 +149,11 @@ impl<'t> Counter<'t> {
             }
         };
         let (open, pull) = match decide(self.requirements, &mut self.bounder, self.axes, spans, open) {
-            Outcome::Infeasible => {
+            Decided::Infeasible => {
                 settle(&mut self.settled.infeasible, size);
                 return Some(0);
             }
-            Outcome::Open(open, pull, _) => (open, pull),
+            Decided::Open(open, pull, _) => (open, pull),
         };
         if open.is_empty() {
             settle(&mut self.settled.feasible, size);

@@ -31,7 +31,7 @@ use crate::screen::{CpuEngine, Tables};
 use crate::study::{Axis, Constraint, Goal, Objective, Quantity, TopSpec};
 use axes::{Axes, Spans};
 use bounder::{Asked, Bounder};
-use open::{Bounded, all_open};
+use open::{Bounded, Decided, all_open};
 use pairing::Pairing;
 use pairs::{Best, Pairs};
 use requirement::{Source, Test, requirements};
@@ -63,6 +63,21 @@ pub fn refusal(plan: &Plan) -> Option<String> {
         return Some(format!("it has more than {} axes, or an axis of more than {} levels", axes::AXES, axes::LEVELS));
     }
     None
+}
+
+/// Where a search looks, and who follows it.
+#[derive(Clone, Copy)]
+pub struct SearchJob<'a> {
+    /// The study.
+    pub plan: &'a Plan,
+    /// What keeps the designs that are found.
+    pub reduction: &'a Reduction,
+    /// Positions of the designs that are searched.
+    pub range: &'a Range<u64>,
+    /// Ends the search.
+    pub stop: &'a AtomicBool,
+    /// Is told how many designs were settled.
+    pub progress: &'a (dyn Fn(u64) + Sync),
 }
 
 /// A study laid out for bounds.
@@ -130,23 +145,11 @@ impl Layout {
 
     /// Searches a range of positions and takes what it finds into `found`; `None` if it was stopped, or the front has more than
     /// [`Layout::most_points`].
-    #[allow(clippy::too_many_arguments, reason = "what a search needs")]
-    pub fn search(
-        &self,
-        plan: &Plan,
-        reduction: &Reduction,
-        sought: Sought,
-        range: &Range<u64>,
-        workers: &mut [Worker<'_>],
-        found: &mut Reducers,
-        stop: &AtomicBool,
-        progress: &(dyn Fn(u64) + Sync),
-    ) -> Option<Searched> {
+    pub fn search(&self, job: SearchJob<'_>, sought: Sought, workers: &mut [Worker<'_>], found: &mut Reducers) -> Option<Searched> {
+        let SearchJob { plan, reduction, range, stop, progress } = job;
         let roots = self.axes.boxes(range);
         let targets = self.targets(plan, sought);
-        if let Sought::Extreme { objective, largest } = sought
-            && let Some(searched) = self.extreme_of_pairs(reduction, objective, largest, &targets[0], &roots, workers, found, stop)
-        {
+        if let Some(searched) = self.extreme_of_pairs(job, sought, &targets[0], &roots, workers, found) {
             progress(range.end - range.start);
             return (!stop.load(Ordering::Relaxed)).then_some(searched);
         }
@@ -233,18 +236,17 @@ impl Layout {
 
     /// The extreme of a number that a requirement cuts off at that very end: almost every box on the cut might hold it, so bounds alone
     /// would not get far. Pairs find it while they count; `None` if the study is not made of pairs.
-    #[allow(clippy::too_many_arguments, reason = "what a search needs")]
     fn extreme_of_pairs(
         &self,
-        reduction: &Reduction,
-        objective: usize,
-        largest: bool,
+        job: SearchJob<'_>,
+        sought: Sought,
         target: &Target,
         roots: &[Spans],
         workers: &mut [Worker<'_>],
         found: &mut Reducers,
-        stop: &AtomicBool,
     ) -> Option<Searched> {
+        let Sought::Extreme { objective, largest } = sought else { return None };
+        let SearchJob { reduction, stop, .. } = job;
         let Source::Node(node, _) = target.asked.source else { return None };
         let cuts = |it: &&Bounded| it.requirement.source == target.asked.source && matches!(it.requirement.test, Test::High(..)) == largest;
         // What comes near a bound of 0 has a small factor, and boxes do tell where that is.
@@ -264,11 +266,11 @@ impl Layout {
             searched.boxes += 1;
             let open = all_open(&self.requirements, &self.axes);
             let open = match open::decide(&self.requirements, &mut workers[0].bounder, &self.axes, spans, &open) {
-                open::Outcome::Infeasible => {
+                Decided::Infeasible => {
                     searched.infeasible += self.axes.count(spans);
                     continue;
                 }
-                open::Outcome::Open(open, ..) => open,
+                Decided::Open(open, ..) => open,
             };
             let sources: Vec<Source> = open.iter().map(|it| self.requirements[it.requirement].requirement.source).collect();
             let sources: Vec<Source> = sources.into_iter().chain([target.asked.source]).collect();

@@ -27,7 +27,7 @@ pub struct Open {
 }
 
 /// What became of the requirements over a box.
-pub enum Outcome {
+pub enum Decided {
     /// Every design of the box violates one of them in some scenario.
     Infeasible,
     /// These are open; how much every axis moves them is summed up, relative to what is left to decide; and where they hold better.
@@ -88,7 +88,7 @@ pub fn all_open(requirements: &[Bounded], axes: &Axes) -> Vec<Open> {
 }
 
 /// Bounds the open requirements over a box.
-pub fn decide(requirements: &[Bounded], bounder: &mut Bounder<'_>, axes: &Axes, designs: &Spans, open: &[Open]) -> Outcome {
+pub fn decide(requirements: &[Bounded], bounder: &mut Bounder<'_>, axes: &Axes, designs: &Spans, open: &[Open]) -> Decided {
     let mut left = Vec::new();
     let mut pull = [0.0; super::axes::AXES];
     let mut ends = Ends::ANY;
@@ -107,7 +107,7 @@ pub fn decide(requirements: &[Bounded], bounder: &mut Bounder<'_>, axes: &Axes, 
                     continue;
                 }
                 if violated(it.requirement.test, low, high) {
-                    return Outcome::Infeasible;
+                    return Decided::Infeasible;
                 }
             }
             let bounds = bounder.bounds(&it.asked, &spans, Wanted::Both);
@@ -117,7 +117,7 @@ pub fn decide(requirements: &[Bounded], bounder: &mut Bounder<'_>, axes: &Axes, 
                 continue;
             }
             if !matches!(it.requirement.test, Test::Finite) && !it.requirement.test.holds(best) && !best.is_nan() {
-                return Outcome::Infeasible;
+                return Decided::Infeasible;
             }
             add_pull(&mut pull, &bounds, &spans, axes);
             if matches!(it.requirement.test, Test::Finite) {
@@ -148,7 +148,7 @@ pub fn decide(requirements: &[Bounded], bounder: &mut Bounder<'_>, axes: &Axes, 
             Some(cover) => left.push(Open { requirement: item.requirement, cover: cover.into() }),
         }
     }
-    Outcome::Open(left, pull, ends)
+    Decided::Open(left, pull, ends)
 }
 
 /// Does every number between two ends violate the test?

@@ -47,6 +47,14 @@ impl Best {
     }
 }
 
+/// What is counted: the pairs of a box, and what is known of each member of the second group.
+struct Listed<'a> {
+    pairing: &'a Pairing,
+    spans: &'a Spans,
+    instances: &'a [Instance<'a>],
+    links: Vec<Link>,
+}
+
 /// A chain in one scenario: where its starts and its others are.
 #[derive(Debug)]
 struct Link {
@@ -130,7 +138,7 @@ impl<'t> Pairs<'t> {
             }
             _ => None,
         });
-        self.count_members(pairing, spans, instances, &mut channels, &links, &second, goal)
+        self.count_members(&Listed { pairing, spans, instances, links }, &mut channels, &second, goal)
     }
 
     /// Does a requirement hold that no varying axis but the shared ones has to do with?
@@ -288,17 +296,8 @@ impl<'t> Pairs<'t> {
     }
 
     /// Counts the pairs, member by member of the second group.
-    #[allow(clippy::too_many_arguments, reason = "all that was listed before")]
-    fn count_members(
-        &self,
-        pairing: &Pairing,
-        spans: &Spans,
-        instances: &[Instance<'_>],
-        channels: &mut [Channel],
-        links: &[Link],
-        second: &[usize],
-        mut goal: Option<Goal<'_>>,
-    ) -> u64 {
+    fn count_members(&self, listed: &Listed<'_>, channels: &mut [Channel], second: &[usize], mut goal: Option<Goal<'_>>) -> u64 {
+        let Listed { pairing, spans, instances, links } = listed;
         let mut total = 0;
         // Of every channel: between which starts all is well.
         let mut limits = vec![(f64::NEG_INFINITY, f64::INFINITY); channels.len()];
@@ -335,10 +334,7 @@ impl<'t> Pairs<'t> {
                 (Some(only), None, true) => channels[only].within(limits[only]),
                 _ => {
                     let all = 0..self.members.len();
-                    all.filter(|&at| {
-                        is_inside(channels, &limits, at) && self.is_clear(pairing, instances, channels, links, &unclear, member, at)
-                    })
-                    .count() as u64
+                    all.filter(|&at| is_inside(channels, &limits, at) && listed.is_clear(channels, &unclear, member, at)).count() as u64
                 }
             };
             total += found;
@@ -347,7 +343,7 @@ impl<'t> Pairs<'t> {
                 && goal.may_improve(channels, &limits, member)
             {
                 for at in 0..self.members.len() {
-                    if is_inside(channels, &limits, at) && self.is_clear(pairing, instances, channels, links, &unclear, member, at) {
+                    if is_inside(channels, &limits, at) && listed.is_clear(channels, &unclear, member, at) {
                         let value = goal.value(channels, member, at);
                         if goal.best.reaches(value) {
                             let index = self.index(pairing, spans, u64::from(self.members[at]), member as u64);
@@ -362,26 +358,6 @@ impl<'t> Pairs<'t> {
         total
     }
 
-    /// Does a pair satisfy what no threshold was found for?
-    #[allow(clippy::too_many_arguments, reason = "all that was listed before")]
-    fn is_clear(
-        &self,
-        pairing: &Pairing,
-        instances: &[Instance<'_>],
-        channels: &[Channel],
-        links: &[Link],
-        unclear: &[usize],
-        member: usize,
-        at: usize,
-    ) -> bool {
-        unclear.iter().all(|&number| {
-            let link = &links[number];
-            let Role::Both(chain) = &pairing.roles[instances[link.instance].role] else { return true };
-            let value = chain.value(channels[link.channel].values[at], &link.others[member * link.width..][..link.width]);
-            instances[link.instance].requirement.holds(value)
-        })
-    }
-
     /// The design index of a pair.
     fn index(&self, pairing: &Pairing, spans: &Spans, first: u64, second: u64) -> u64 {
         let mut levels = spans.0.map(|span| span.low);
@@ -392,6 +368,19 @@ impl<'t> Pairs<'t> {
             }
         }
         self.axes.all[..self.axes.designs].iter().zip(levels).map(|(axis, level)| u64::from(level) * axis.stride).sum()
+    }
+}
+
+impl Listed<'_> {
+    /// Does a pair satisfy what no threshold was found for?
+    fn is_clear(&self, channels: &[Channel], unclear: &[usize], member: usize, at: usize) -> bool {
+        unclear.iter().all(|&number| {
+            let link = &self.links[number];
+            let instance = &self.instances[link.instance];
+            let Role::Both(chain) = &self.pairing.roles[instance.role] else { return true };
+            let value = chain.value(channels[link.channel].values[at], &link.others[member * link.width..][..link.width]);
+            instance.requirement.holds(value)
+        })
     }
 }
 

@@ -7,7 +7,7 @@
 use super::axes::{AXES, Axes, Span, Spans};
 use super::bounder::{Asked, Bounder, Bounds, Wanted};
 use super::open::{
-    Bounded, Ends, Outcome, add_pull, all_open, decide, each_scenario, is_infeasible, over, scenario_to_split, scenarios, worst_scenarios,
+    Bounded, Decided, Ends, add_pull, all_open, decide, each_scenario, is_infeasible, over, scenario_to_split, scenarios, worst_scenarios,
 };
 use super::queue::{Queue, Waiting};
 use super::staircase::{Fit, Staircase};
@@ -359,8 +359,8 @@ impl Search<'_> {
                 return Fate::Beaten;
             }
             match decide(self.requirements, bounder, self.axes, &now.spans, &now.open) {
-                Outcome::Infeasible => return Fate::Infeasible,
-                Outcome::Open(open, pull, ends) => {
+                Decided::Infeasible => return Fate::Infeasible,
+                Decided::Open(open, pull, ends) => {
                     now.open = open;
                     view.ends.first &= ends.first;
                     view.ends.last &= ends.last;

@@ -1,7 +1,7 @@
 //! The sweep on a device: tiles judged there, survivors in f64 here, one host thread that keeps the answers.
 
 use super::recheck::{Recheck, Recheckable};
-use super::{Control, Settings, Swept, Work, head_start, look_around};
+use super::{Control, Settings, SweepJob, Swept, Work, head_start, look_around};
 use crate::checkpoint::{Checkpoint, Progress};
 use crate::error::{Error, Result};
 use crate::gpu::Device;
@@ -85,27 +85,23 @@ pub fn sweep_on_device(
         Some(checkpoint) => checkpoint.take_progress(plan, reduction)?,
         None => None,
     };
-    go_on(plan, tables, reduction, options, progress, checkpoint, control, on)
+    go_on(SweepJob { plan, tables, reduction, options, control }, progress, checkpoint, on)
 }
 
 /// The same with what was done before.
-#[allow(clippy::too_many_arguments, reason = "what a sweep has")]
 pub(super) fn go_on(
-    plan: &Plan,
-    tables: &Tables,
-    reduction: &Reduction,
-    options: &Settings,
+    job: SweepJob<'_>,
     progress: Option<Progress>,
     checkpoint: Option<&mut Checkpoint>,
-    control: &Control,
     on: &OnDevice,
 ) -> Result<(Swept, DeviceRecord)> {
+    let SweepJob { plan, tables, reduction, options, control } = job;
     let start = Instant::now();
     let mut engine = GpuEngine::new(plan, &reduction.histogram_ranges(), &on.device, on.limited_loops, &on.wrong)?;
-    let whole = options.shard.range(plan.designs());
-    let mut seen = look_around(plan, tables, reduction, &whole, control);
+    let whole = job.whole();
+    let mut seen = look_around(job, &whole);
     let progress = progress.unwrap_or_else(|| Progress { done: Ranges::default(), state: head_start(reduction, &mut seen) });
-    let mut work = Work::new(plan, options, progress, reduction, checkpoint, control);
+    let mut work = Work::new(job, progress, checkpoint);
     let designs = work.todo.count();
     let mut run = Run {
         plan,
@@ -146,7 +142,8 @@ pub(super) fn go_on(
 pub fn recheck_on_device(plan: &Plan, tables: &Tables, reduction: &Reduction, threads: usize, on: &OnDevice) -> Result<Recheck> {
     let mut engine = GpuEngine::new(plan, &reduction.histogram_ranges(), &on.device, on.limited_loops, &on.wrong)?;
     let whole = 0..plan.designs();
-    let answers = answers(&mut look_around(plan, tables, reduction, &whole, &Control::default()));
+    let job = SweepJob { plan, tables, reduction, options: &Settings { threads, ..Settings::default() }, control: &Control::default() };
+    let answers = answers(&mut look_around(job, &whole));
     engine.tell_cells(&answers);
     Recheckable::new(plan, tables, reduction, &mut engine, &answers, &whole, threads).map(Recheckable::into_report)
 }
