@@ -5,6 +5,7 @@ mod bites;
 mod commands;
 mod engines;
 mod hardware;
+mod predicted;
 
 use beltspace::gpu::{Adapter, adapters, self_test};
 use beltspace::plan::Plan;
