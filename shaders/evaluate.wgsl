@@ -10,7 +10,7 @@ struct Points {
 // OUTPUTS outputs, then CONDITIONS margins per point.
 @group(0) @binding(2) var<storage, read_write> found: array<Real>;
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(WORKGROUP)
 fn evaluate(@builtin(global_invocation_id) id: vec3<u32>) {
     let point = id.x;
     if point >= points.count {

@@ -11,10 +11,8 @@ struct Test {
 @group(0) @binding(2) var<storage, read_write> found: array<f32>;
 @group(0) @binding(3) var<storage, read_write> counts: array<atomic<u32>>;
 
-const RESULTS: u32 = 10u;
-
 // Sum, difference, product, quotient, root, then the own functions.
-@compute @workgroup_size(64)
+@compute @workgroup_size(WORKGROUP)
 fn arithmetic(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= test.count {
         return;
@@ -47,7 +45,7 @@ fn loops() {
 }
 
 // Every invocation appends itself: each number must be there once.
-@compute @workgroup_size(64)
+@compute @workgroup_size(WORKGROUP)
 fn append(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= test.count {
         return;

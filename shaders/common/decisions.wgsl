@@ -1,10 +1,7 @@
 // Three-valued decisions: what a number with a promised error lets one conclude. The twin of src/decision.rs.
 //
-// The answers are ordered so that "both must hold" is `min`: a sure no wins over an unsure, an unsure over a yes.
-
-const NO: u32 = 0u;
-const UNSURE: u32 = 1u;
-const YES: u32 = 2u;
+// The answers (NO, UNSURE and YES of src/gpu/constants.rs) are ordered so that "both must hold" is `min`: a sure no wins over an unsure,
+// an unsure over a yes.
 
 // `promise` is in units of the running bound; see `promise` in src/models.
 fn promised(number: Real, promise: f32) -> Real {

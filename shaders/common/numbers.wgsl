@@ -10,14 +10,8 @@ struct Real {
     bound: f32,
 }
 
-// Half an ULP, and a thousandth for the rounding of the bound.
-const ROUNDING: f32 = 5.9665e-8;
-const DIVISION: f32 = 5.0 * ROUNDING;
-const SQUARE_ROOT: f32 = 9.0 * ROUNDING;
-// Own functions: within FUNCTION_ULP of src/real/functions.rs.
-const FUNCTION: f32 = 8.0 * ROUNDING;
-const FLUSH: f32 = 1.1754944e-38;
-const LARGEST_DIVISOR: f32 = 8.50705917e37;
+// The errors that the operations may make (ROUNDING, DIVISION and so on) are declared in src/gpu/constants.rs.
+
 const PI: f32 = 3.14159265;
 
 fn constant(value: f32) -> Real {

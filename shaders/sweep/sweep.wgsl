@@ -68,9 +68,9 @@ fn append(row: u32, lane: u32, why: u32, judged: Lane) {
     if at < tile.capacity {
         let word = at * SURVIVOR_WORDS;
         survivors[word] = row;
-        survivors[word + 1u] = lane | (why << 24u);
-        write_keys(word + 2u, judged);
-        write_map_keys(word + 2u + OBJECTIVES, judged);
+        survivors[word + 1u] = lane | (why << LANE_BITS);
+        write_keys(word + SURVIVOR_HEAD, judged);
+        write_map_keys(word + SURVIVOR_HEAD + OBJECTIVES, judged);
     }
 }
 

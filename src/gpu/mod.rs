@@ -5,6 +5,7 @@
 //! comes back as [`Error::Gpu`](crate::error::Error::Gpu) from the next call.
 
 mod adapter;
+pub(crate) mod constants;
 mod device;
 mod points;
 pub(crate) mod program;
@@ -14,6 +15,7 @@ pub mod self_test;
 pub(crate) mod source;
 
 pub use adapter::{Adapter, Kind, adapters, choose};
+pub(crate) use constants::{WORKGROUP, shared_constants};
 #[doc(hidden)]
 pub use device::Device;
 pub(crate) use device::{Buffer, Wait};

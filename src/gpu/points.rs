@@ -1,7 +1,7 @@
 //! A model evaluated point by point on a device: every output and condition margin with its bound.
 
-use super::source::COMMON;
-use super::{Device, Program, model_prelude, model_source, tables};
+use super::source::common;
+use super::{Device, Program, WORKGROUP, model_prelude, model_source, tables};
 use crate::error::Result;
 use crate::models::{CONDITIONS, Fields, INPUTS, Model, OUTPUTS};
 use crate::tape::{RunningError, nearest_f32};
@@ -63,7 +63,7 @@ impl PointKernel {
             line(format_args!("    found[at + {number}u] = Real(out.{field}.value * {factor:?}, out.{field}.bound);"));
         }
         line(format_args!("}}\n"));
-        Ok([COMMON, &text, &model_source(model, on_device), include_str!("../../shaders/evaluate.wgsl")].join("\n"))
+        Ok([&common(), &text, &model_source(model, on_device), include_str!("../../shaders/evaluate.wgsl")].join("\n"))
     }
 
     /// Compiles the kernel of a model.
@@ -109,7 +109,7 @@ impl PointKernel {
         let header = device.uniform("points", &[points.len() as u32, 0, 0, 0]);
         let scratch = device.buffer("scratch", (points.len() * self.table_numbers * 8).max(8) as u64, wgpu::BufferUsages::STORAGE);
         let bound = self.program.bind(&[("points", &header), ("given", &given), ("found", &results), ("scratch", &scratch)]);
-        let groups = (points.len() as u32).div_ceil(64);
+        let groups = (points.len() as u32).div_ceil(WORKGROUP);
         device.submit(|encoder| self.program.dispatch(encoder, "evaluate", &bound, [groups, 1]));
         let values: Vec<[f32; 2]> = device.fetch(&results, points.len() * width)?;
         let number = |[value, bound]: [f32; 2]| RunningError { value, bound: f64::from(bound) };

@@ -1,7 +1,7 @@
 //! Is a driver to be trusted? What has gone wrong on some driver without an error, tried on every one before it is used.
 
-use super::source::COMMON;
-use super::{Device, Program};
+use super::source::common;
+use super::{Device, Program, WORKGROUP, shared_constants};
 use crate::error::Result;
 use crate::real::FUNCTION_ULP;
 use serde_json::{Value, json};
@@ -12,10 +12,16 @@ const LOOPS: u32 = 100_000;
 pub const LOOP_LIMIT: u32 = 65_535;
 /// Points of the arithmetic.
 const POINTS: u32 = 1 << 14;
-/// Results per point, as in the shader.
-const RESULTS: usize = 10;
 /// Invocations that append themselves.
 const APPENDS: u32 = 1 << 16;
+
+shared_constants! {
+    /// What `shaders/self-test.wgsl` relies on.
+    fn self_test_constants;
+
+    /// Results per point.
+    const RESULTS: u32 = 10;
+}
 
 /// A quantity of the self-test: what was measured, and the most that is allowed.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,11 +82,11 @@ impl Report {
 /// # Errors
 /// [`Error::Gpu`](crate::error::Error::Gpu) if the device fails altogether.
 pub fn run(device: &Device) -> Result<Report> {
-    let source = [COMMON, include_str!("../../shaders/self-test.wgsl")].join("\n");
+    let source = [&common(), &self_test_constants(), include_str!("../../shaders/self-test.wgsl")].join("\n");
     let program = Program::new(device, &source, &["arithmetic", "loops", "append"])?;
     let points = points();
     let given = device.storage("given", &points);
-    let found = device.buffer("found", u64::from(POINTS) * RESULTS as u64 * 4, wgpu::BufferUsages::STORAGE);
+    let found = device.buffer("found", u64::from(POINTS) * u64::from(RESULTS) * 4, wgpu::BufferUsages::STORAGE);
     let run = |entry: &str, count: u32, groups: u32, words: usize| {
         let test = device.uniform("test", &[count, LOOPS, 0, 0]);
         let counts = device.buffer("counts", u64::from(1 + APPENDS) * 4, wgpu::BufferUsages::STORAGE);
@@ -89,14 +95,14 @@ pub fn run(device: &Device) -> Result<Report> {
         device.fetch::<u32>(&counts, words)
     };
     let loop_turns = run("loops", 1, 1, 1)?[0];
-    let appended = run("append", APPENDS, APPENDS / 64, 1 + APPENDS as usize)?;
+    let appended = run("append", APPENDS, APPENDS / WORKGROUP, 1 + APPENDS as usize)?;
     let wrong = appended[1..].iter().filter(|&&times| times != 1).count() as u32;
     let places: Vec<f32> = device.fetch(&found, APPENDS as usize)?;
     let mut seen = vec![false; APPENDS as usize];
     places.iter().for_each(|&it| seen[(it as usize).min(APPENDS as usize - 1)] = true);
     let missing = seen.iter().filter(|it| !**it).count() as u32;
-    run("arithmetic", POINTS, POINTS / 64, 1)?;
-    let results: Vec<f32> = device.fetch(&found, POINTS as usize * RESULTS)?;
+    run("arithmetic", POINTS, POINTS / WORKGROUP, 1)?;
+    let results: Vec<f32> = device.fetch(&found, (POINTS * RESULTS) as usize)?;
     Ok(Report { loop_turns, measures: measure(&points, &results), lost_appends: wrong.max(missing) })
 }
 
@@ -124,7 +130,7 @@ fn points() -> Vec<[f32; 2]> {
 #[allow(clippy::cast_possible_truncation, reason = "the spacing of f32 is asked for")]
 fn measure(points: &[[f32; 2]], results: &[f32]) -> Vec<Measure> {
     type Exact = fn(f64, f64) -> f64;
-    let cases: [(&'static str, f64, Exact); RESULTS] = [
+    let cases: [(&'static str, f64, Exact); RESULTS as usize] = [
         ("sum", 0.5, |a, b| a + b),
         ("difference", 0.5, |a, b| a - b),
         ("product", 0.5, |a, b| a * b),
@@ -142,7 +148,7 @@ fn measure(points: &[[f32; 2]], results: &[f32]) -> Vec<Measure> {
             let exact = exact(f64::from(a), f64::from(b));
             let near = (exact.abs() as f32).max(f32::MIN_POSITIVE);
             let ulp = f64::from(near.next_up()) - f64::from(near);
-            let error = (f64::from(results[at * RESULTS + number]) - exact).abs() / ulp;
+            let error = (f64::from(results[at * RESULTS as usize + number]) - exact).abs() / ulp;
             // A NaN must not hide behind a comparison.
             if error.is_nan() || worst.is_nan() { f64::NAN } else { worst.max(error) }
         })

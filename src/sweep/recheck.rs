@@ -1,5 +1,6 @@
 //! Whole tiles of a device's sweep, judged again in f64: values against the promise, counts, and that no survivor is missing.
 
+use crate::decision::Decision;
 use crate::error::{Error, Result};
 use crate::models::{judge, to_si};
 use crate::parallel::on_threads;
@@ -190,7 +191,7 @@ fn compare(
         for lane in block.feasible() {
             let at = (plan.position_of(block.index(lane)) - start) as usize;
             feasible[at] = true;
-            if checked[at].verdict != 2 {
+            if checked[at].verdict != Decision::Yes {
                 continue;
             }
             for (slot, ((tracked, _), values)) in plan.tracked.iter().zip(block.values).enumerate() {
@@ -206,7 +207,7 @@ fn compare(
         return Err(broken);
     }
     for (at, (checked, &feasible)) in checked.iter().zip(&feasible).enumerate() {
-        report.unsure += u64::from(checked.verdict == 1);
+        report.unsure += u64::from(checked.verdict == Decision::Unsure);
         let design = plan.design_at(start + at as u64);
         let scenario = plan.slow_scenarios.source_index(checked.scenario.0) + plan.fast_scenarios.source_index(checked.scenario.1);
         let inputs = plan.space.inputs(design, scenario);
@@ -232,7 +233,7 @@ fn compare(
                 ));
             }
         }
-        if (checked.verdict == 2) != feasible && checked.verdict != 1 {
+        if (checked.verdict == Decision::Yes) != feasible && checked.verdict != Decision::Unsure {
             let (gpu, f64s) = if feasible { ("infeasible", "feasible") } else { ("feasible", "infeasible") };
             return Err(Error::Promise(format!("design {design}: the GPU is sure that it is {gpu}, f64 finds it {f64s}")));
         }

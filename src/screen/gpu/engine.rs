@@ -1,11 +1,17 @@
 //! The device's side of a sweep: buffers, tiles in flight, and what comes back.
 
+use super::constants::{
+    APPENDED, DIGIT_VECTORS, FIRST_REPORTED, IS_UNSURE, LANE_BITS, MAY_BE_END, MAY_BE_FRONT, MAY_BE_IN_MAP, SCENARIO_PER_LANE,
+    SCENARIO_PER_ROW, SURE, SURVIVOR_HEAD, UNDECIDED,
+};
 use super::held::histogram_beyond_f32;
 use super::kernel::{self, Coordinate, ENTRIES, check_words, coordinates, survivor_words, text};
 use super::known::{self, Known};
 use super::layout::{Layout, Level, MOST_GROUPS, push_level, refuse};
+use crate::decision::Decision;
 use crate::error::Result;
-use crate::gpu::{Buffer, Device, Program, Wait};
+use crate::gpu::constants::{UNSURE, YES};
+use crate::gpu::{Buffer, Device, Program, WORKGROUP, Wait};
 use crate::plan::Plan;
 use crate::reduce::{Answers, MOST_OBJECTIVES, Needs, Reported};
 use crate::study::{Best, Quantity};
@@ -24,8 +30,6 @@ const CAPACITY: u64 = 1 << 20;
 const MOST_DESIGNS: u64 = 1 << 31;
 /// Evaluations of a first dispatch.
 const FIRST_EVALUATIONS: u64 = 1 << 26;
-/// Counts before the histograms.
-const HEAD: usize = 3;
 
 /// The uniform `Tile` of the kernel.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -38,7 +42,7 @@ pub(super) struct Tile {
     index: [u32; 2],
     window: u32,
     unused: u32,
-    digits: [u32; 48],
+    digits: [u32; 4 * DIGIT_VECTORS as usize],
 }
 
 impl Tile {
@@ -96,16 +100,17 @@ impl Survivors {
     /// Number `at`.
     pub fn get(&self, at: usize) -> Survivor {
         let record = &self.records[at * self.words..(at + 1) * self.words];
-        let (lane, why) = (u64::from(record[1] & 0x00ff_ffff), record[1] >> 24);
-        let front = (why & 2 != 0).then(|| {
-            let mut keys = [0.0; MOST_OBJECTIVES];
-            keys.iter_mut().zip(&record[2..2 + self.objectives]).for_each(|(key, &bits)| *key = f32::from_bits(bits));
-            keys
+        let (lane, why) = (u64::from(record[1] & ((1 << LANE_BITS) - 1)), record[1] >> LANE_BITS);
+        let keys = &record[SURVIVOR_HEAD as usize..];
+        let front = (why & MAY_BE_FRONT != 0).then(|| {
+            let mut lower = [0.0; MOST_OBJECTIVES];
+            lower.iter_mut().zip(&keys[..self.objectives]).for_each(|(key, &bits)| *key = f32::from_bits(bits));
+            lower
         });
-        let maps = (why & 8 != 0)
-            .then(|| record[2 + self.objectives..].chunks(2).map(|it| [f32::from_bits(it[0]), f32::from_bits(it[1])]).collect());
+        let maps = (why & MAY_BE_IN_MAP != 0)
+            .then(|| keys[self.objectives..].chunks(2).map(|it| [f32::from_bits(it[0]), f32::from_bits(it[1])]).collect());
         let position = (self.first_row + u64::from(record[0])) * self.width + lane;
-        Survivor { position, unsure: why & 1 != 0, end: why & 4 != 0, front, maps }
+        Survivor { position, unsure: why & IS_UNSURE != 0, end: why & MAY_BE_END != 0, front, maps }
     }
 
     /// One after the other.
@@ -138,8 +143,8 @@ pub struct InFlight {
 /// One design as the device judged it, for comparison with f64.
 #[derive(Clone, Debug)]
 pub struct Checked {
-    /// 0 no, 1 unsure, 2 yes.
-    pub verdict: u32,
+    /// Is it feasible?
+    pub verdict: Decision,
     /// Worst value and promised error of each tracked quantity, outputs in SI.
     pub worst: Vec<RunningError>,
     /// Value and promised error of each used output in one scenario, in SI.
@@ -235,7 +240,7 @@ impl<'p> GpuEngine<'p> {
 
         let cells_of = |spec: &crate::study::MapSpec| plan.study.design[spec.x].count() * plan.study.design[spec.y].count();
         let counted = Reported::new(plan, ranges).count_words();
-        let count_words = (HEAD + counted.iter().sum::<usize>()) as u64;
+        let count_words = (FIRST_REPORTED as usize + counted.iter().sum::<usize>()) as u64;
         let value_cells: u64 = plan.study.report.maps.iter().filter(|it| it.value != Best::Share).map(cells_of).sum();
         if count_words.max(value_cells) * 4 > binding {
             return Err(device.error("the maps of this study are larger than a buffer of this device; use --engine cpu"));
@@ -341,7 +346,7 @@ impl<'p> GpuEngine<'p> {
     }
 
     fn first_stage(&self, encoder: &mut wgpu::CommandEncoder, slot: &Slot, rows: &Range<u64>) {
-        let groups = ((rows.end - rows.start) as u32).div_ceil(64);
+        let groups = ((rows.end - rows.start) as u32).div_ceil(WORKGROUP);
         self.program.dispatch(encoder, "prepare_rows", &slot.bound, [groups, self.layout.slow_scenarios.count as u32]);
         self.program.dispatch(encoder, "judge_rows", &slot.bound, [groups, 1]);
     }
@@ -394,7 +399,7 @@ impl<'p> GpuEngine<'p> {
         let words = survivor_words(self.plan);
         let landed: Vec<u32> = self.device.read(&slot.landing, (slot.landing.size() / 4) as usize, &tile.wait)?;
         let (counts, first_trip) = landed.split_at(self.count_words as usize);
-        let appended = counts[2] as usize;
+        let appended = counts[APPENDED as usize] as usize;
         if appended as u64 > slot.survivors.size() / (4 * words as u64) {
             return Ok(None);
         }
@@ -403,14 +408,14 @@ impl<'p> GpuEngine<'p> {
         } else {
             self.device.fetch(&slot.survivors, appended * words)?
         };
-        let mut rest = &counts[HEAD..];
+        let mut rest = &counts[FIRST_REPORTED as usize..];
         let mut take = |count: usize| {
             let (taken, left) = rest.split_at(count);
             rest = left;
             taken.to_vec()
         };
         let reported = self.counted.iter().map(|&words| take(words)).collect();
-        let counts = TileCounts { sure: counts[0].into(), unsure: counts[1].into(), reported };
+        let counts = TileCounts { sure: counts[SURE as usize].into(), unsure: counts[UNDECIDED as usize].into(), reported };
         let (width, objectives) = (self.plan.fast.count(), self.plan.study.objectives.len());
         Ok(Some((counts, Survivors { records, words, first_row: tile.rows.start, width, objectives })))
     }
@@ -424,7 +429,7 @@ impl<'p> GpuEngine<'p> {
         let mut rest = range.clone();
         let room = self.slots[0].survivors.size() / (4 * self.words as u64);
         while !rest.is_empty() {
-            let part = self.tile(&rest, room.min(MOST_GROUPS * 64).min(self.at_once()));
+            let part = self.tile(&rest, room.min(MOST_GROUPS * u64::from(WORKGROUP)).min(self.at_once()));
             let (rows, _) = self.place(0, &part);
             let slot = &self.slots[0];
             let designs = part.end - part.start;
@@ -432,7 +437,7 @@ impl<'p> GpuEngine<'p> {
                 self.first_stage(encoder, slot, &rows);
                 let lanes = designs / (rows.end - rows.start);
                 let groups = (rows.end - rows.start) * lanes.div_ceil(self.layout.cut.group);
-                self.program.dispatch(encoder, "check", &slot.bound, [groups.div_ceil(64) as u32, 1]);
+                self.program.dispatch(encoder, "check", &slot.bound, [groups.div_ceil(WORKGROUP.into()) as u32, 1]);
             });
             self.device.wait(&wait)?;
             let words = check_words(self.plan);
@@ -449,11 +454,16 @@ impl<'p> GpuEngine<'p> {
         let position = part.start + at;
         let (row, lane) = ((position / width - first_row) as u32, (position % width) as u32);
         let (slow, fast) = (self.layout.slow_scenarios.count as u32, self.layout.fast_scenarios.count as u32);
-        let scenario = row.wrapping_mul(7919).wrapping_add(lane.wrapping_mul(104_729)) % slow.wrapping_mul(fast);
+        let scenario = row.wrapping_mul(SCENARIO_PER_ROW).wrapping_add(lane.wrapping_mul(SCENARIO_PER_LANE)) % slow.wrapping_mul(fast);
         let number = |pair: &[u32]| RunningError { value: f32::from_bits(pair[0]), bound: f64::from(f32::from_bits(pair[1])) };
         let mut numbers = record[1..].chunks(2).map(number);
         let worst = numbers.by_ref().take(self.plan.tracked.len()).collect();
-        Checked { verdict: record[0], worst, asked: numbers.collect(), scenario: (u64::from(scenario / fast), u64::from(scenario % fast)) }
+        let verdict = match record[0] {
+            YES => Decision::Yes,
+            UNSURE => Decision::Unsure,
+            _ => Decision::No,
+        };
+        Checked { verdict, worst, asked: numbers.collect(), scenario: (u64::from(scenario / fast), u64::from(scenario % fast)) }
     }
 
     /// The used outputs, in the order of [`Checked::asked`].

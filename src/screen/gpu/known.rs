@@ -3,7 +3,7 @@
 use super::kernel::{Coordinate, bins, round_up, threshold, uses_table};
 use super::layout::{KILLERS, LIST, on_device, sign};
 use crate::plan::Plan;
-use crate::reduce::Answers;
+use crate::reduce::{Answers, MOST_OBJECTIVES};
 use crate::study::{Goal, Quantity};
 use bytemuck::{Pod, Zeroable};
 use std::mem::offset_of;
@@ -15,8 +15,8 @@ pub struct Known {
     killers: [[f32; 8]; KILLERS],
     top: [f32; 4],
     top_index: [u32; 4],
-    extremes: [[f32; 4]; 6],
-    extreme_indices: [[u32; 4]; 6],
+    extremes: [[f32; 4]; MOST_OBJECTIVES],
+    extreme_indices: [[u32; 4]; MOST_OBJECTIVES],
     table: [f32; 4],
     last_place: [u32; 4],
 }

@@ -1,6 +1,7 @@
 //! How a study lies on the device: which values pass between the stages, where the levels of every axis stand, how the work is
 //! cut into invocations.
 
+use super::constants::LANE_BITS;
 use super::held::beyond_f32;
 use crate::error::{Error, Result};
 use crate::models::{Fields, INPUTS, Reads, Worse, input_to_si};
@@ -197,7 +198,7 @@ impl Layout {
         if scenarios[0] > MOST_GROUPS {
             return Err(refuse(format!("{} slow scenarios are more than {MOST_GROUPS}", scenarios[0])));
         }
-        if plan.fast.count() >= 1 << 24 {
+        if plan.fast.count() >= 1 << LANE_BITS {
             return Err(refuse(format!("a row of {} designs is too long", plan.fast.count())));
         }
         let used = plan.used_outputs();

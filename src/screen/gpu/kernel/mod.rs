@@ -16,6 +16,7 @@ mod lanes;
 mod report;
 mod rows;
 
+use super::constants::{FIRST_REPORTED, SURVIVOR_HEAD, sweep_constants};
 use super::layout::{BINS, KILLERS, LIST, Layout, Values, champions, on_device, scenario_worst, sign};
 use crate::gpu::{model_prelude, model_source, source, tables};
 use crate::models::{CONDITION_PROMISE, Worse};
@@ -67,7 +68,7 @@ pub fn bins(coordinates: &[Coordinate]) -> u64 {
 
 /// The words of a survivor: row, lane with the reason, a lower key per objective, a lower and an upper key per map of values.
 pub fn survivor_words(plan: &Plan) -> usize {
-    2 + plan.study.objectives.len() + 2 * value_maps(plan).count()
+    SURVIVOR_HEAD as usize + plan.study.objectives.len() + 2 * value_maps(plan).count()
 }
 
 /// The maps that show a value, with the position of what they show among the tracked quantities.
@@ -114,7 +115,8 @@ pub fn text(plan: &Plan, layout: &Layout, perturb: &[(usize, f64)]) -> String {
     prelude.report();
     let asked: Vec<usize> = plan.row_conditions.iter().chain(&plan.lane_conditions).copied().collect();
     [
-        source::COMMON,
+        &source::common(),
+        &sweep_constants(),
         include_str!("../../../../shaders/common/wide.wgsl"),
         &model_prelude(&layout.fields, plan.study.model.conditions.len(), plan.used_outputs(), &asked),
         &passed_tables(layout),

@@ -23,7 +23,7 @@ impl Prelude<'_> {
         );
         let mut lines = Vec::new();
         let mut add = Vec::new();
-        let mut offset = 3;
+        let mut offset = FIRST_REPORTED as usize;
         for (number, spec) in report.histograms.iter().enumerate() {
             let worse = crate::plan::worst_end(&plan.study, spec.of);
             let at = plan.position(spec.of, worse);
