@@ -26,6 +26,13 @@ impl InWgsl for f32 {
     }
 }
 
+impl InWgsl for bool {
+    const TYPE: &'static str = "bool";
+    fn literal(self) -> String {
+        self.to_string()
+    }
+}
+
 /// Appends the declaration of a constant to a kernel's text.
 pub(crate) fn declare<T: InWgsl>(text: &mut String, name: &str, value: T) {
     writeln!(text, "const {name}: {} = {};", T::TYPE, value.literal()).expect("a text takes everything");

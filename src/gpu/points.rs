@@ -1,5 +1,6 @@
 //! A model evaluated point by point on a device: every output and condition margin with its bound.
 
+use super::constants::declare;
 use super::source::common;
 use super::{Device, Program, WORKGROUP, model_prelude, model_source, tables};
 use crate::error::Result;
@@ -43,15 +44,14 @@ impl PointKernel {
         let mut text = model_prelude(&fields, all.len(), u64::MAX, &all);
         let places: Vec<usize> = fields.places().map(|(first, _)| first).collect();
         text.push_str(&tables(&fields, |field, place| Some(format!("scratch[{place} + {}u + at]", places[field] - fields.prepared.len()))));
-        let begin = if fields.tables.is_empty() { "" } else { "table_place = point * TABLE_NUMBERS;" };
-        let hold = if fields.tables.is_empty() { "" } else { "held.place = point * TABLE_NUMBERS;" };
+        let (begin, hold) = if fields.tables.is_empty() { ("", "") } else { ("table_place = place;", "(*held).place = place;") };
         let (inputs, outputs) = (fields.inputs.len(), model.outputs.len());
+        for (name, value) in [("INPUTS", inputs), ("OUTPUTS", outputs), ("TABLE_NUMBERS", table_numbers(&fields))] {
+            declare(&mut text, name, value as u32);
+        }
         let mut line = |it: std::fmt::Arguments<'_>| writeln!(text, "{it}").expect("a text takes everything");
-        line(format_args!("const INPUTS: u32 = {inputs}u;\nconst OUTPUTS: u32 = {outputs}u;"));
-        line(format_args!("const TABLE_NUMBERS: u32 = {}u;\n", table_numbers(&fields)));
-        line(format_args!("@group(0) @binding(3) var<storage, read_write> scratch: array<Real>;\n"));
-        line(format_args!("fn prepare_point(point: u32, inputs: Inputs) -> Prepared {{\n    {begin}"));
-        line(format_args!("    var held = prepare(inputs);\n    {hold}\n    return held;\n}}\n"));
+        line(format_args!("\nfn begin_tables(place: u32) {{\n    {begin}\n}}\n"));
+        line(format_args!("fn hold_tables(held: ptr<function, Prepared>, place: u32) {{\n    {hold}\n}}\n"));
         line(format_args!("fn read_inputs(at: u32) -> Inputs {{\n    var inputs: Inputs;"));
         for (number, field) in fields.inputs.iter().enumerate() {
             line(format_args!("    inputs.{field} = given[at + {number}u];"));

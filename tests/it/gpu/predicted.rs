@@ -49,7 +49,7 @@ fn compared(model: &Arc<Model>, designs: &[Vec<f64>], divisor: f64) -> Compared 
     let found = kernel.evaluate(&points).expect("the device works");
     let mut all = Compared::default();
     for ((inputs, point), (outputs, margins)) in designs.iter().zip(&points).zip(&found) {
-        let (listed, listed_margins) = run_over(model, &point.map(RunningError::input));
+        let (listed, listed_margins) = run_over(model, &point.iter().copied().map(RunningError::input).collect::<Vec<_>>());
         for (number, exact) in meaningful_si(model, inputs).into_iter().enumerate() {
             let output = &model.outputs[number];
             if let Some(exact) = exact.filter(|it| it.is_finite()) {

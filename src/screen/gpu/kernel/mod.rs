@@ -18,6 +18,7 @@ mod rows;
 
 use super::constants::{FIRST_REPORTED, SURVIVOR_HEAD, sweep_constants};
 use super::layout::{BINS, KILLERS, LIST, Layout, Values, champions, on_device, scenario_worst, sign};
+use crate::gpu::constants::declare;
 use crate::gpu::{model_prelude, model_source, source, tables};
 use crate::models::{CONDITION_PROMISE, Worse};
 use crate::plan::{Plan, Source};
@@ -123,6 +124,7 @@ pub fn text(plan: &Plan, layout: &Layout, perturb: &[(usize, f64)]) -> String {
         &model_source(&plan.study.model, plan.study.model.on_device().expect("a layout is for a device")),
         include_str!("../../../../shaders/sweep/tile.wgsl"),
         include_str!("../../../../shaders/sweep/shuffle.wgsl"),
+        include_str!("../../../../shaders/sweep/bins.wgsl"),
         &prelude.text,
         include_str!("../../../../shaders/sweep/prepare.wgsl"),
         include_str!("../../../../shaders/sweep/sweep.wgsl"),
@@ -190,11 +192,12 @@ impl Prelude<'_> {
             ("CHECK_WORDS", check_words(plan) as u64),
             ("WORST_WORDS", 2 * plan.tracked.len() as u64),
         ] {
-            put!(self, "const {name}: u32 = {value}u;");
+            declare(&mut self.text, name, u32::try_from(value).expect("the layout is cut to 32-bit numbers"));
         }
-        put!(self, "const KEEPS: bool = {};", cut.keeps);
-        put!(self, "const USES_CHAMPIONS: bool = {uses_champions};");
-        put!(self, "const LOOK_AT_ALL: bool = {all};\n");
+        for (name, value) in [("KEEPS", cut.keeps), ("USES_CHAMPIONS", uses_champions), ("LOOK_AT_ALL", all)] {
+            declare(&mut self.text, name, value);
+        }
+        self.text.push('\n');
         let space = if layout.steady_is_uniform() { "uniform" } else { "storage, read" };
         put!(self, "// Levels that never change: scenarios, then fast design axes.");
         put!(self, "@group(0) @binding(2) var<{space}> steady: array<vec4<f32>, {}>;\n", layout.steady.len().max(1));

@@ -7,20 +7,6 @@ impl Prelude<'_> {
     pub(super) fn report(&mut self) {
         let plan = self.plan;
         let report = &plan.study.report;
-        put!(
-            self,
-            "// The steps of a resolution that a value may be in.\nfn steps(low: f32, high: f32, resolution: f32) -> vec2<f32> {{\n    \
-             let first = low / resolution;\n    let last = high / resolution;\n    \
-             return vec2<f32>(floor(first - abs(first) * 1e-6), floor(last + abs(last) * 1e-6));\n}}\n\n\
-             // The bin of a value, -1 below the first and `bins` above the last; the bins of both ends of its bound.\n\
-             fn bins_of(number: Real, low: Real, per_unit: f32, bins: f32) -> vec2<f32> {{\n    \
-             let away = number.bound + low.bound + (abs(number.value) + abs(low.value)) * 2.0 * ROUNDING;\n    \
-             let middle = (number.value - low.value) * per_unit;\n    \
-             let slack = away * per_unit + abs(middle) * 1e-6 + 1e-30;\n    \
-             let bin = clamp(floor(vec2<f32>(middle - slack, middle + slack)), vec2<f32>(-1.0), vec2<f32>(bins));\n    \
-             let exact = number.bound == 0.0 && low.bound == 0.0 && number.value == low.value;\n    \
-             return select(bin, vec2<f32>(0.0), exact);\n}}\n"
-        );
         let mut lines = Vec::new();
         let mut add = Vec::new();
         let mut offset = FIRST_REPORTED as usize;
