@@ -3,7 +3,7 @@
 // The bound grows by what WGSL permits, not by what one GPU does: sums and products rounded once (contraction rounds less),
 // division 2.5 ULP by divisors from 2^-126 to 2^126 and anything by others (a reciprocal that is flushed makes them 0), square root
 // 4.5 ULP, results below the least normal number flushed to zero. It is carried in f32 too: what rounds in the bound itself is
-// covered by the thousandth that every unit and every promise is raised by.
+// covered by the thousandth that every rounding is raised by.
 
 struct Real {
     value: f32,
@@ -53,7 +53,7 @@ fn square(a: Real) -> Real {
     return mul(a, a);
 }
 
-// A part of a bound over a divisor, which is `least` at least and `most` at most; none where WGSL promises nothing of the quotient.
+// A part of a bound over a divisor that lies between `least` and `most`; infinite where WGSL does not say how accurate the quotient is.
 fn bound_over(part: f32, least: f32, most: f32) -> f32 {
     return select(infinity(), part / least, least >= FLUSH && most <= LARGEST_DIVISOR);
 }

@@ -22,7 +22,7 @@ struct Tile {
 // What is known of the front and of the other answers so far: what cannot be part of them need not be looked at.
 struct Known {
     // Certified designs of the front that most others fall behind, two vectors of coordinates each.
-    killers: array<vec4<f32>, KILLER_VECTORS>,
+    dominators: array<vec4<f32>, DOMINATOR_VECTORS>,
     // The worst of the best K: its key, and 1 where f32 holds it exactly; its index.
     top: vec4<f32>,
     top_index: vec4<u32>,
@@ -44,7 +44,7 @@ struct Known {
 // SURE feasible designs, UNDECIDED ones, those APPENDED to the survivors; then histograms; then feasible designs per map cell.
 @group(0) @binding(6) var<storage, read_write> counts: array<atomic<u32>>;
 @group(0) @binding(7) var<storage, read_write> survivors: array<u32>;
-@group(0) @binding(8) var<storage, read> beaters: array<f32>;
+@group(0) @binding(8) var<storage, read> dominator_table: array<f32>;
 // Best key so far of each map cell, as an ordered number.
 @group(0) @binding(9) var<storage, read_write> cells: array<atomic<u32>>;
 

@@ -1,4 +1,4 @@
-//! Graphics processors: which there are, whether their drivers can be trusted, and how a kernel is run on one.
+//! GPUs: which there are, whether their drivers can be trusted, and how a kernel is run on one.
 //!
 //! Nothing here knows of a study. An [`Adapter`] is chosen by kind or by name, opened as a [`Device`] and put through the
 //! [`self_test`] before anything it says is believed. A device never panics: what goes wrong on it, also later and elsewhere,

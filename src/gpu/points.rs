@@ -36,7 +36,7 @@ impl PointKernel {
     /// The kernel's text. `perturb`: outputs that are to come out wrong by this part of their value, for testing.
     ///
     /// # Errors
-    /// [`Error::Request`](crate::error::Error::Request) if the model is computed on the processor only.
+    /// [`Error::Request`](crate::error::Error::Request) if the model is computed on the CPU only.
     pub fn source(model: &Model, perturb: &[(usize, f64)]) -> Result<String> {
         let on_device = model.on_device()?;
         let fields = on_device.formula.fields();
@@ -70,7 +70,7 @@ impl PointKernel {
     ///
     /// # Errors
     /// [`Error::Gpu`](crate::error::Error::Gpu); [`Error::Request`](crate::error::Error::Request) if the model is computed on the
-    /// processor only.
+    /// CPU only.
     pub fn new(device: &Device, model: &Arc<Model>, perturb: &[(usize, f64)]) -> Result<Self> {
         Self::from_source(device, model, &Self::source(model, perturb)?)
     }

@@ -6,9 +6,9 @@ use crate::error::Result;
 use crate::real::FUNCTION_ULP;
 use serde_json::{Value, json};
 
-/// Turns of the long loop.
+/// Iterations of the long loop.
 const LOOPS: u32 = 100_000;
-/// Turns after which some drivers end an invocation.
+/// Iterations after which some drivers end an invocation.
 pub const LOOP_LIMIT: u32 = 65_535;
 /// Points of the arithmetic.
 const POINTS: u32 = 1 << 14;
@@ -37,7 +37,7 @@ pub struct Measure {
 /// What a driver's self-test found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
-    /// Turns that a loop of 100 000 made.
+    /// Iterations that a loop of 100 000 made.
     pub loop_turns: u32,
     /// Errors of arithmetic and own functions.
     pub measures: Vec<Measure>,
@@ -55,7 +55,7 @@ impl Report {
     pub fn problems(&self) -> Vec<String> {
         let mut problems = Vec::new();
         if self.loop_turns < LOOP_LIMIT {
-            problems.push(format!("a loop ends after {} turns", self.loop_turns));
+            problems.push(format!("a loop ends after {} iterations", self.loop_turns));
         }
         let wrong = self.measures.iter().filter(|it| it.ulp.is_nan() || it.ulp > it.allowed);
         problems.extend(wrong.map(|it| format!("{} is {:.1} ULP off, at most {} is allowed", it.name, it.ulp, it.allowed)));
@@ -175,7 +175,7 @@ mod tests {
         assert!(good().problems().is_empty() && !good().limited_loops());
         let limited = Report { loop_turns: LOOP_LIMIT, ..good() };
         assert!(limited.problems().is_empty() && limited.limited_loops(), "a known limit can be lived with");
-        assert_eq!(Report { loop_turns: 1000, ..good() }.problems(), ["a loop ends after 1000 turns"]);
+        assert_eq!(Report { loop_turns: 1000, ..good() }.problems(), ["a loop ends after 1000 iterations"]);
         assert_eq!(Report { lost_appends: 3, ..good() }.problems(), ["3 of 65536 simultaneous appends were lost"]);
         for ulp in [1.0, f64::NAN] {
             let wrong = Report { measures: vec![Measure { name: "sum", ulp, allowed: 0.51 }], ..good() };

@@ -80,15 +80,15 @@ impl Dominance {
     }
 
     /// A point of the set that makes this one superfluous, if there is one: its coordinates and index.
-    pub fn beater(&self, key: &[f64], index: u64) -> Option<(&[f64], u64)> {
+    pub fn dominator(&self, key: &[f64], index: u64) -> Option<(&[f64], u64)> {
         let dimensions = self.dimensions;
-        let beater_of = |points: &'_ Points, point: usize| beats(points.key(point, dimensions), points.indices[point], key, index);
+        let is_dominator = |points: &'_ Points, point: usize| beats(points.key(point, dimensions), points.indices[point], key, index);
         for tree in &self.trees {
-            if let Some(point) = tree.find(key, dimensions, beater_of) {
+            if let Some(point) = tree.find(key, dimensions, is_dominator) {
                 return Some((tree.points.key(point, dimensions), tree.points.indices[point]));
             }
         }
-        let found = (0..self.buffer.indices.len()).find(|&point| beater_of(&self.buffer, point))?;
+        let found = (0..self.buffer.indices.len()).find(|&point| is_dominator(&self.buffer, point))?;
         Some((self.buffer.key(found, dimensions), self.buffer.indices[found]))
     }
 }
@@ -169,7 +169,7 @@ mod tests {
             let points: Vec<_> = (0..700).map(point).collect();
             for (index, key) in points.iter().enumerate() {
                 let beaten = points[..index].iter().enumerate().any(|(other, it)| beats(it, other as u64, key, index as u64));
-                let found = set.beater(key, index as u64);
+                let found = set.dominator(key, index as u64);
                 assert_eq!(found.is_some(), beaten, "{dimensions} dimensions, point {index}");
                 if let Some((by, by_index)) = found {
                     assert!(beats(by, by_index, key, index as u64));

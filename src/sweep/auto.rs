@@ -25,7 +25,7 @@ use std::time::Instant;
 pub struct Rule<'d> {
     /// How fast designs are judged one by one.
     pub speed: Speed,
-    /// The device that judges them, if it is not the processor.
+    /// The device that judges them, if it is not the CPU.
     pub device: Option<&'d OnDevice>,
     /// When bounds are left.
     pub leaving: Leaving,

@@ -61,7 +61,7 @@ pub struct DeviceRecord {
     pub tiles: u64,
     /// Tiles that had to be repeated in parts because too many designs survived.
     pub repeated: u64,
-    /// How long the processor waited for its results. What a driver takes for itself when work is handed to it is not counted.
+    /// How long the CPU waited for its results. What a driver takes for itself when work is handed to it is not counted.
     pub waiting: Duration,
     /// The comparison with f64 of whole tiles.
     pub recheck: Recheck,
@@ -71,7 +71,7 @@ pub struct DeviceRecord {
 ///
 /// # Errors
 /// As [`sweep`](super::sweep); [`Error::Gpu`] if the device fails, the checkpoint then holding what was done before;
-/// [`Error::Promise`] if f64 disagrees with what the device promises; [`Error::Request`] if it cannot serve the study.
+/// [`Error::Promise`] if f64 says that the device broke an error bound; [`Error::Request`] if it cannot serve the study.
 pub fn sweep_on_device(
     plan: &Plan,
     tables: &Tables,
@@ -113,7 +113,7 @@ pub(super) fn go_on(
         hints: answers(&mut seen),
         record: DeviceRecord::default(),
     };
-    // Should the device turn out not to keep its promise, nothing that it counted may be kept.
+    // Should the device turn out to break an error bound, nothing that it counted may be kept.
     let before = (work.done.clone(), work.reducers.state());
     let outcome = run.whole_run(&mut work, &whole, control);
     let record = std::mem::take(&mut run.record);

@@ -1,8 +1,8 @@
 //! The sweep: ranges of designs handed to threads, their results merged and kept.
 //!
-//! On the processor a thread takes a chunk of positions, screens it with reducers of its own (which may drop what the front known so far beats)
+//! On the CPU a thread takes a chunk of positions, screens it with reducers of its own (which may drop what the front known so far beats)
 //! and hands the result over as a whole. What is merged is therefore always complete for the ranges that the checkpoint names,
-//! and the result does not depend on how the work was cut. On a graphics device see `sweep_on_device`.
+//! and the result does not depend on how the work was cut. For the sweep on a GPU see `sweep_on_device`.
 
 mod auto;
 mod bounds;
@@ -297,7 +297,7 @@ fn run_thread(job: SweepJob<'_>, work: &Mutex<Work<'_>>) {
     loop {
         let (chunk, known, planned, mut tile) = {
             let mut work = lock();
-            // Short chunks first, so that little is lost early too; a large front is dear to merge and to keep: longer ones then.
+            // Short chunks first, so that little is lost early too; a large front is expensive to merge and to keep: longer ones then.
             let young = (work.start.elapsed() / 2).max(LEAST_CHUNK).min(options.chunk);
             let seconds = young.max(10 * (work.saving + work.merging)).as_secs_f64();
             // Until the speed is known, it is what the model says.

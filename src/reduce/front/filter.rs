@@ -16,8 +16,8 @@ pub(super) enum Filter {
     Best(f64),
     /// Two objectives.
     Table(Table),
-    /// More: recent killers, then all points.
-    Killers { recent: Vec<(Vec<f64>, u64)>, next: usize, all: Dominance },
+    /// More: recent dominators, then all points.
+    Dominators { recent: Vec<(Vec<f64>, u64)>, next: usize, all: Dominance },
 }
 
 impl Filter {
@@ -33,7 +33,7 @@ impl Filter {
                     *alive &= if key <= best { u64::MAX } else { 0 };
                 }
             }
-            Self::Killers { recent, .. } => recent.iter().for_each(|(killer, _)| drop_dominated(alive, killer, keys)),
+            Self::Dominators { recent, .. } => recent.iter().for_each(|(dominator, _)| drop_dominated(alive, dominator, keys)),
             Self::Nothing | Self::Table(_) => {}
         }
     }
@@ -100,19 +100,19 @@ fn keep_unbeaten(table: &Table, feasible: &[u64], first: &[f64], second: &[f64],
     }
 }
 
-/// Drops what `killer` strictly dominates.
+/// Drops what `dominator` strictly dominates.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-fn drop_dominated(alive: &mut [u64], killer: &[f64], keys: &[&[f64]]) {
+fn drop_dominated(alive: &mut [u64], dominator: &[f64], keys: &[&[f64]]) {
     const CHUNK: usize = 64;
     for first in (0..alive.len()).step_by(CHUNK) {
         let alive = &mut alive[first..];
         let count = alive.len().min(CHUNK);
         let (mut no_better, mut worse) = ([u64::MAX; CHUNK], [0u64; CHUNK]);
-        for (&killer, keys) in killer.iter().zip(keys) {
+        for (&dominator, keys) in dominator.iter().zip(keys) {
             let keys = &keys[first..first + count];
             for ((no_better, worse), &key) in no_better.iter_mut().zip(&mut worse).zip(keys) {
-                *no_better &= if killer <= key { u64::MAX } else { 0 };
-                *worse |= if killer < key { u64::MAX } else { 0 };
+                *no_better &= if dominator <= key { u64::MAX } else { 0 };
+                *worse |= if dominator < key { u64::MAX } else { 0 };
             }
         }
         for ((alive, no_better), worse) in alive.iter_mut().zip(no_better).zip(worse) {

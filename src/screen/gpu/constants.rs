@@ -1,6 +1,6 @@
 //! Constants of the sweep that its kernel and the host both know.
 
-use super::layout::KILLERS;
+use super::layout::DOMINATORS;
 use crate::gpu::shared_constants;
 use crate::reduce::MOST_OBJECTIVES;
 
@@ -35,7 +35,7 @@ shared_constants! {
     /// Vectors of four digits that say where a tile begins, one digit a slow dimension.
     const DIGIT_VECTORS: u32 = 12;
     /// Vectors of four coordinates of the designs that every other is compared with, two vectors each.
-    const KILLER_VECTORS: u32 = 2 * KILLERS as u32;
+    const DOMINATOR_VECTORS: u32 = 2 * DOMINATORS as u32;
     /// Most objectives: so many pairs of extremes are known.
     const EXTREMES: u32 = MOST_OBJECTIVES as u32;
 }

@@ -145,9 +145,9 @@ pub struct InFlight {
 pub struct Checked {
     /// Is it feasible?
     pub verdict: Decision,
-    /// Worst value and promised error of each tracked quantity, outputs in SI.
+    /// Worst value and error bound of each tracked quantity, outputs in SI.
     pub worst: Vec<RunningError>,
-    /// Value and promised error of each used output in one scenario, in SI.
+    /// Value and error bound of each used output in one scenario, in SI.
     pub asked: Vec<RunningError>,
     /// That scenario: slow, fast.
     pub scenario: (u64, u64),
@@ -158,7 +158,7 @@ pub struct Checked {
 struct Slot {
     tile: Buffer,
     known: Buffer,
-    beaters: Buffer,
+    dominator_table: Buffer,
     counts: Buffer,
     survivors: Buffer,
     landing: Buffer,
@@ -258,7 +258,7 @@ impl<'p> GpuEngine<'p> {
         let slots = (0..2).map(|_| {
             let tile = device.buffer("tile", size_of::<Tile>() as u64, wgpu::BufferUsages::UNIFORM);
             let known = device.buffer("known", size_of::<Known>() as u64, wgpu::BufferUsages::UNIFORM);
-            let beaters = device.buffer("beaters", list * 4, storage);
+            let dominator_table = device.buffer("dominator_table", list * 4, storage);
             let counts = device.buffer("counts", count_words * 4, storage);
             let survivors = device.buffer("survivors", capacity * words as u64 * 4, storage);
             let landing = device.landing("landing", count_words * 4 + FIRST_TRIP.min(capacity) * survivor_words(plan) as u64 * 4);
@@ -271,10 +271,10 @@ impl<'p> GpuEngine<'p> {
                 ("row_table", &rows),
                 ("counts", &counts),
                 ("survivors", &survivors),
-                ("beaters", &beaters),
+                ("dominator_table", &dominator_table),
                 ("cells", &cells),
             ]);
-            Slot { tile, known, beaters, counts, survivors, landing, bound }
+            Slot { tile, known, dominator_table, counts, survivors, landing, bound }
         });
         let slots = slots.collect();
         device.check()?;
@@ -327,9 +327,9 @@ impl<'p> GpuEngine<'p> {
         let slot = self.next;
         self.next = (self.next + 1) % self.slots.len();
         let exact = |quantity| matches!(quantity, Quantity::Input(input) if kernel::is_exact(self.plan, &self.layout, input));
-        let (known, beaters) = known::known(self.plan, &self.coordinates, exact, answers);
+        let (known, dominator_table) = known::known(self.plan, &self.coordinates, exact, answers);
         self.device.write(&self.slots[slot].known, 0, &[known]);
-        self.device.write(&self.slots[slot].beaters, 0, &beaters);
+        self.device.write(&self.slots[slot].dominator_table, 0, &dominator_table);
         let (rows, groups) = self.place(slot, &range);
         let it = &self.slots[slot];
         let counts = self.count_words * 4;

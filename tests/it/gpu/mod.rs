@@ -1,4 +1,4 @@
-//! Screening on a graphics device. Where there is none, these tests fail: `tests/run` installs one that works in software.
+//! Screening on a GPU. Where there is none, these tests fail: `tests/run` installs one that works in software.
 
 mod accuracy;
 mod bites;
@@ -67,7 +67,7 @@ impl Prepared {
         Ok((swept.state, record))
     }
 
-    fn on_processor(&self) -> State {
+    fn on_cpu(&self) -> State {
         let swept = sweep(&self.plan, &self.tables, &self.reduction, &Settings::default(), None, &Control::default());
         swept.expect("the sweep ends").state
     }

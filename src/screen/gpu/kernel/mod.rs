@@ -17,7 +17,7 @@ mod report;
 mod rows;
 
 use super::constants::{FIRST_REPORTED, SURVIVOR_HEAD, sweep_constants};
-use super::layout::{BINS, KILLERS, LIST, Layout, Values, champions, on_device, scenario_worst, sign};
+use super::layout::{BINS, DOMINATORS, LIST, Layout, Values, on_device, row_dominators, scenario_worst, sign};
 use crate::gpu::constants::declare;
 use crate::gpu::{model_prelude, model_source, source, tables};
 use crate::models::{CONDITION_PROMISE, Worse};
@@ -172,9 +172,9 @@ impl Prelude<'_> {
         let share_or_value = !plan.study.report.maps.is_empty();
         // Only the closer look knows the index of a design.
         let all = share_or_value || !plan.study.report.histograms.is_empty() || plan.study.report.sample.is_some();
-        let uses_champions = champions(plan);
+        let uses_row_dominators = row_dominators(plan);
         let each = if cut.keeps { cut.block } else { 1 };
-        let shared = if uses_champions { cut.group_rows * cut.group_chunks * each } else { 1 };
+        let shared = if uses_row_dominators { cut.group_rows * cut.group_chunks * each } else { 1 };
         for (name, value) in [
             ("SLOW_SCENARIOS", layout.slow_scenarios.count),
             ("FAST_SCENARIOS", layout.fast_scenarios.count),
@@ -186,15 +186,15 @@ impl Prelude<'_> {
             ("KEPT", if cut.keeps { cut.block } else { 1 }),
             ("GROUP_ROWS", cut.group_rows),
             ("GROUP_CHUNKS", cut.group_chunks),
-            ("CHAMPIONS", shared),
-            ("CHAMPIONS_EACH", each),
+            ("ROW_DOMINATORS", shared),
+            ("ROW_DOMINATORS_EACH", each),
             ("SURVIVOR_WORDS", survivor_words(plan) as u64),
             ("CHECK_WORDS", check_words(plan) as u64),
             ("WORST_WORDS", 2 * plan.tracked.len() as u64),
         ] {
             declare(&mut self.text, name, u32::try_from(value).expect("the layout is cut to 32-bit numbers"));
         }
-        for (name, value) in [("KEEPS", cut.keeps), ("USES_CHAMPIONS", uses_champions), ("LOOK_AT_ALL", all)] {
+        for (name, value) in [("KEEPS", cut.keeps), ("USES_ROW_DOMINATORS", uses_row_dominators), ("LOOK_AT_ALL", all)] {
             declare(&mut self.text, name, value);
         }
         self.text.push('\n');

@@ -68,7 +68,7 @@ impl Prelude<'_> {
         self.function("write_worst(at: u32, judged: Lane)", &worst);
         let used = plan.used_outputs();
         let numbers: Vec<usize> = (0..plan.study.model.outputs.len()).filter(|output| used >> output & 1 == 1).collect();
-        let mut lines: Vec<_> = numbers.iter().map(|&output| format!("let o{output} = {};", self.promised(output))).collect();
+        let mut lines: Vec<_> = numbers.iter().map(|&output| format!("let o{output} = {};", self.bounded(output))).collect();
         lines.extend(pairs(numbers.iter().map(|output| format!("o{output}")).collect()));
         self.function("write_asked(at: u32, out: Outputs)", &lines);
     }
