@@ -20,7 +20,7 @@ struct Tile {
 }
 
 // What is known of the front and of the other answers so far: what cannot be part of them need not be looked at.
-struct Known {
+struct KnownUniform {
     // Certified designs of the front that most others fall behind, two vectors of coordinates each.
     dominators: array<vec4<f32>, DOMINATOR_VECTORS>,
     // The worst of the best K: its key, and 1 where f32 holds it exactly; its index.
@@ -36,7 +36,7 @@ struct Known {
 }
 
 @group(0) @binding(0) var<uniform> tile: Tile;
-@group(0) @binding(1) var<uniform> known: Known;
+@group(0) @binding(1) var<uniform> known: KnownUniform;
 // Levels of the slow design axes: value and bound in SI, value in its unit, 1 if constraints on inputs allow it.
 @group(0) @binding(3) var<storage, read> levels: array<vec4<f32>>;
 @group(0) @binding(4) var<storage, read_write> prepared_table: array<Real>;

@@ -36,7 +36,7 @@ pub struct Measure {
 
 /// What a driver's self-test found.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Report {
+pub struct SelfTest {
     /// Iterations that a loop of 100 000 made.
     pub loop_turns: u32,
     /// Errors of arithmetic and own functions.
@@ -45,7 +45,7 @@ pub struct Report {
     pub lost_appends: u32,
 }
 
-impl Report {
+impl SelfTest {
     /// Does the driver end long loops? Kernels are then kept short.
     pub fn limited_loops(&self) -> bool {
         self.loop_turns != LOOPS
@@ -81,7 +81,7 @@ impl Report {
 ///
 /// # Errors
 /// [`Error::Gpu`](crate::error::Error::Gpu) if the device fails altogether.
-pub fn run(device: &Device) -> Result<Report> {
+pub fn run(device: &Device) -> Result<SelfTest> {
     let source = [&common(), &self_test_constants(), include_str!("../../shaders/self-test.wgsl")].join("\n");
     let program = Program::new(device, &source, &["arithmetic", "loops", "append"])?;
     let points = points();
@@ -103,7 +103,7 @@ pub fn run(device: &Device) -> Result<Report> {
     let missing = seen.iter().filter(|it| !**it).count() as u32;
     run("arithmetic", POINTS, POINTS / WORKGROUP, 1)?;
     let results: Vec<f32> = device.fetch(&found, (POINTS * RESULTS) as usize)?;
-    Ok(Report { loop_turns, measures: measure(&points, &results), lost_appends: wrong.max(missing) })
+    Ok(SelfTest { loop_turns, measures: measure(&points, &results), lost_appends: wrong.max(missing) })
 }
 
 /// Pairs of numbers: of all sizes, near 1, near each other, around multiples of pi/2.
@@ -165,20 +165,20 @@ fn measure(points: &[[f32; 2]], results: &[f32]) -> Vec<Measure> {
 mod tests {
     use super::*;
 
-    fn good() -> Report {
+    fn good() -> SelfTest {
         let measures = vec![Measure { name: "sum", ulp: 0.5, allowed: 0.51 }];
-        Report { loop_turns: LOOPS, measures, lost_appends: 0 }
+        SelfTest { loop_turns: LOOPS, measures, lost_appends: 0 }
     }
 
     #[test]
     fn every_fault_is_named() {
         assert!(good().problems().is_empty() && !good().limited_loops());
-        let limited = Report { loop_turns: LOOP_LIMIT, ..good() };
+        let limited = SelfTest { loop_turns: LOOP_LIMIT, ..good() };
         assert!(limited.problems().is_empty() && limited.limited_loops(), "a known limit can be lived with");
-        assert_eq!(Report { loop_turns: 1000, ..good() }.problems(), ["a loop ends after 1000 iterations"]);
-        assert_eq!(Report { lost_appends: 3, ..good() }.problems(), ["3 of 65536 simultaneous appends were lost"]);
+        assert_eq!(SelfTest { loop_turns: 1000, ..good() }.problems(), ["a loop ends after 1000 iterations"]);
+        assert_eq!(SelfTest { lost_appends: 3, ..good() }.problems(), ["3 of 65536 simultaneous appends were lost"]);
         for ulp in [1.0, f64::NAN] {
-            let wrong = Report { measures: vec![Measure { name: "sum", ulp, allowed: 0.51 }], ..good() };
+            let wrong = SelfTest { measures: vec![Measure { name: "sum", ulp, allowed: 0.51 }], ..good() };
             assert_eq!(wrong.problems().len(), 1, "{ulp}");
         }
     }

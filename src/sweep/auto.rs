@@ -10,7 +10,7 @@ use super::gpu::go_on;
 #[cfg(not(feature = "gpu"))]
 use super::no_device::go_on;
 use super::watch::Leaving;
-use super::{Control, DeviceRecord, OnDevice, Settings, SweepJob, Swept, Work, judge};
+use super::{Control, DeviceRecord, OnDevice, Settings, SweepJob, SweepWork, Swept, judge};
 use crate::bounds::Certificate;
 use crate::checkpoint::{Checkpoint, Progress};
 use crate::error::{Error, Result};
@@ -94,7 +94,7 @@ pub fn sweep_auto(
 ) -> Result<Auto> {
     let start = Instant::now();
     let job = SweepJob { plan, tables, reduction, options, control };
-    let mut work = Work::begin(job, checkpoint)?;
+    let mut work = SweepWork::begin(job, checkpoint)?;
     let designs = work.todo.count();
     let done = |state: State, settler, device| Auto { swept: Swept { state, designs, time: start.elapsed() }, settler, device };
     let is_measured = rule.leaving == Leaving::WhereTheyDoNotPay;
@@ -119,14 +119,14 @@ pub fn sweep_auto(
 }
 
 /// Judges what is left to do.
-fn judge_rest(job: SweepJob<'_>, mut work: Work<'_>, device: Option<&OnDevice>) -> Result<(State, Option<DeviceRecord>)> {
+fn judge_rest(job: SweepJob<'_>, mut work: SweepWork<'_>, device: Option<&OnDevice>) -> Result<(State, Option<DeviceRecord>)> {
     let progress = Progress { done: work.done, state: work.reducers.state() };
     let checkpoint = work.checkpoint;
     if let Some(on) = device {
         let (swept, record) = go_on(job, Some(progress), checkpoint, on)?;
         return Ok((swept.state, Some(record)));
     }
-    Ok((judge(job, Work::new(job, progress, checkpoint))?, None))
+    Ok((judge(job, SweepWork::new(job, progress, checkpoint))?, None))
 }
 
 /// What bounds had found, if it was all that the result names, must be what is named in the end.

@@ -5,8 +5,8 @@
 
 use super::costs::Promise;
 use super::watch::{Leaving, OFTEN, Teller, Watch};
-use super::{Control, Settings, SweepJob, Swept, Work};
-use crate::bounds::{Certificate, Layout, SearchJob, Settled, Worker, in_words, refusal};
+use super::{Control, Settings, SweepJob, SweepWork, Swept};
+use crate::bounds::{BoundedStudy, Certificate, SearchJob, Settled, Worker, in_words, refusal};
 use crate::checkpoint::Checkpoint;
 use crate::error::{Error, Result};
 use crate::parallel::{on_threads, with_beside};
@@ -43,7 +43,7 @@ pub fn sweep_by_bounds(
 ) -> Result<(Swept, Certificate)> {
     let start = Instant::now();
     let job = SweepJob { plan, tables, reduction, options, control };
-    let mut work = Work::begin(job, checkpoint)?;
+    let mut work = SweepWork::begin(job, checkpoint)?;
     let designs = work.todo.count();
     match settle(job, &mut work, None)? {
         Settling::Done(state, certificate) => Ok((Swept { state, designs, time: start.elapsed() }, certificate)),
@@ -72,13 +72,13 @@ pub(super) struct Remains {
 
 /// Settles designs by bounds until there are none left, or, where `leaving` says when and how many seconds a design takes one by one,
 /// until that pays no more.
-pub(super) fn settle(job: SweepJob<'_>, work: &mut Work<'_>, leaving: Option<(Leaving, f64)>) -> Result<Settling> {
+pub(super) fn settle(job: SweepJob<'_>, work: &mut SweepWork<'_>, leaving: Option<(Leaving, f64)>) -> Result<Settling> {
     let SweepJob { plan, options, control, .. } = job;
     let refuse = || Error::NotByBounds { why: refusal(plan).unwrap_or_default() };
-    let mut layout = Layout::new(plan).ok_or_else(refuse)?;
+    let mut layout = BoundedStudy::new(plan).ok_or_else(refuse)?;
     layout.most_points = options.most_points(plan);
     let whole = job.whole();
-    let passes = Layout::sought(plan).len() as u64 + 1;
+    let passes = BoundedStudy::sought(plan).len() as u64 + 1;
     let watch = Watch::new(control, leaving, whole.end - whole.start, work.todo.count(), passes);
     let over = AtomicBool::new(false);
     let mut settle = || settle_watched(job, &layout, &whole, work, &watch);
@@ -108,7 +108,13 @@ impl Drop for AtEnd<'_> {
     }
 }
 
-fn settle_watched(job: SweepJob<'_>, layout: &Layout, whole: &Range<u64>, work: &mut Work<'_>, watch: &Watch<'_>) -> Result<Settling> {
+fn settle_watched(
+    job: SweepJob<'_>,
+    layout: &BoundedStudy,
+    whole: &Range<u64>,
+    work: &mut SweepWork<'_>,
+    watch: &Watch<'_>,
+) -> Result<Settling> {
     let SweepJob { plan, options, control, .. } = job;
     let designs = work.todo.count();
     let mut certificate = Certificate::default();
@@ -124,7 +130,7 @@ fn settle_watched(job: SweepJob<'_>, layout: &Layout, whole: &Range<u64>, work: 
     }
     // What was searched is final.
     options.check_budget(plan, &state)?;
-    let passes = Layout::sought(plan).len() as u64 + 1;
+    let passes = BoundedStudy::sought(plan).len() as u64 + 1;
     control.settles(format!("count, {passes} of {passes}"));
     watch.counts();
     let shared = Mutex::new(work);
@@ -155,14 +161,14 @@ pub(super) fn stopped() -> Error {
 /// Searches for everything that the result names; false if it was stopped.
 fn search(
     job: SweepJob<'_>,
-    layout: &Layout,
+    layout: &BoundedStudy,
     whole: &Range<u64>,
-    work: &mut Work<'_>,
+    work: &mut SweepWork<'_>,
     watch: &Watch<'_>,
     certificate: &mut Certificate,
 ) -> bool {
     let SweepJob { plan, tables, reduction, options, control } = job;
-    let all = Layout::sought(plan);
+    let all = BoundedStudy::sought(plan);
     let passes = all.len() as u64 + 1;
     let mut workers: Vec<Worker<'_>> = (0..options.threads.max(1)).map(|_| layout.worker(plan, tables, watch.stop())).collect();
     let progress = |designs: u64| watch.settle(designs);
@@ -178,7 +184,7 @@ fn search(
 }
 
 /// Counts ranges until there are none left.
-fn count_on_thread(plan: &Plan, layout: &Layout, options: &Settings, work: &Mutex<&mut Work<'_>>, watch: &Watch<'_>) -> Settled {
+fn count_on_thread(plan: &Plan, layout: &BoundedStudy, options: &Settings, work: &Mutex<&mut SweepWork<'_>>, watch: &Watch<'_>) -> Settled {
     let teller = Teller::new(watch);
     let settle = |designs: u64| teller.settle(designs);
     let mut counter = layout.counter(watch.stop()).telling(&settle);
@@ -217,7 +223,7 @@ fn count_on_thread(plan: &Plan, layout: &Layout, options: &Settings, work: &Mute
     }
 }
 
-fn hand_over(plan: &Plan, range: Range<u64>, feasible: u64, time: Duration, work: &mut Work<'_>) {
+fn hand_over(plan: &Plan, range: Range<u64>, feasible: u64, time: Duration, work: &mut SweepWork<'_>) {
     work.rate = Some((range.end - range.start) as f64 / time.as_secs_f64().max(1e-6));
     work.reducers.feasible += feasible;
     if let Err(failure) = work.finish(plan, range) {
@@ -240,7 +246,7 @@ fn adds_up(certificate: &Certificate, counted: u64, searched: u64) -> Result<()>
 }
 
 /// Judges random ranges design by design: the count must be the same, and no design may be better than what was found.
-fn compare(job: SweepJob<'_>, layout: &Layout, whole: &Range<u64>, state: &State) -> Result<u64> {
+fn compare(job: SweepJob<'_>, layout: &BoundedStudy, whole: &Range<u64>, state: &State) -> Result<u64> {
     let SweepJob { plan, tables, reduction, control, .. } = job;
     let size = whole.end - whole.start;
     let affordable = (COMPARED_TIME / plan.seconds_per_design().max(1e-12)) as u64;

@@ -1,7 +1,7 @@
 //! The sweep on a device: tiles judged there, survivors in f64 here, one host thread that keeps the answers.
 
 use super::recheck::{Recheck, Recheckable};
-use super::{Control, Settings, SweepJob, Swept, Work, head_start, look_around};
+use super::{Control, Settings, SweepJob, SweepWork, Swept, head_start, look_around};
 use crate::checkpoint::{Checkpoint, Progress};
 use crate::error::{Error, Result};
 use crate::gpu::Device;
@@ -101,7 +101,7 @@ pub(super) fn go_on(
     let whole = job.whole();
     let mut seen = look_around(job, &whole);
     let progress = progress.unwrap_or_else(|| Progress { done: Ranges::default(), state: head_start(reduction, &mut seen) });
-    let mut work = Work::new(job, progress, checkpoint);
+    let mut work = SweepWork::new(job, progress, checkpoint);
     let designs = work.todo.count();
     let mut run = Run {
         plan,
@@ -162,7 +162,7 @@ struct Run<'a, 'p> {
 
 impl Run<'_, '_> {
     /// Compares whole tiles with f64, judges all that is to do, and looks for what the tiles hold that got lost.
-    fn whole_run(&mut self, work: &mut Work<'_>, whole: &Range<u64>, control: &Control) -> Result<Recheckable> {
+    fn whole_run(&mut self, work: &mut SweepWork<'_>, whole: &Range<u64>, control: &Control) -> Result<Recheckable> {
         let mut rechecked = self.recheck(&mut work.reducers, whole)?;
         self.run(work, control)?;
         if work.todo.count() == 0 {
@@ -172,7 +172,7 @@ impl Run<'_, '_> {
     }
 
     /// Judges all that is to do, two tiles in flight.
-    fn run(&mut self, work: &mut Work<'_>, control: &Control) -> Result<()> {
+    fn run(&mut self, work: &mut SweepWork<'_>, control: &Control) -> Result<()> {
         let mut flying: VecDeque<(InFlight, Instant)> = VecDeque::new();
         let mut answers = self.answers(&mut work.reducers);
         self.engine.tell_cells(&answers);
@@ -228,7 +228,7 @@ impl Run<'_, '_> {
     }
 
     /// Adds what the device counted, and decides in f64 what it could not.
-    fn take_in(&mut self, work: &mut Work<'_>, counts: &TileCounts, survivors: &Survivors) -> Result<()> {
+    fn take_in(&mut self, work: &mut SweepWork<'_>, counts: &TileCounts, survivors: &Survivors) -> Result<()> {
         let TileCounts { sure, unsure, reported } = counts;
         self.reduction.add_counts(&mut work.reducers, *sure, reported);
         self.record.unsure += unsure;
@@ -238,7 +238,7 @@ impl Run<'_, '_> {
         let plan = self.plan;
         let (front, objectives) = (&work.reducers.front, plan.study.objectives.len());
         let on_front = |it: &Survivor| it.front.is_some_and(|keys| !front.beats(&lower_keys(plan, &keys)[..objectives]));
-        let cells = Cells::new(plan, survivors);
+        let cells = BestCells::new(plan, survivors);
         let looked = in_shares(survivors.len(), LEAST_SHARE as usize, self.threads, |part| {
             let (mut sure, mut unsure) = (Vec::new(), Vec::new());
             for it in part.map(|at| survivors.get(at)) {
@@ -372,14 +372,14 @@ fn lower_keys(plan: &Plan, keys: &[f32; MOST_OBJECTIVES]) -> [f64; MOST_OBJECTIV
 
 /// Who may be the best of a map's cell, among the survivors of a tile.
 #[derive(Default)]
-struct Cells {
+struct BestCells {
     /// Per map and cell: the least upper bound of the key.
     best: HashMap<(usize, u64), f32>,
     /// Per map: the lowest index of designs that agree on every axis that the shown value depends on. The others tie and lose.
     first: HashMap<(usize, u64), u64>,
 }
 
-impl Cells {
+impl BestCells {
     fn new(plan: &Plan, survivors: &Survivors) -> Self {
         let mut cells = Self::default();
         if value_maps(plan).next().is_none() {

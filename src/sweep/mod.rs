@@ -147,7 +147,7 @@ impl SweepJob<'_> {
 }
 
 /// What the threads share.
-struct Work<'a> {
+struct SweepWork<'a> {
     options: Settings,
     todo: Ranges,
     done: Ranges,
@@ -164,7 +164,7 @@ struct Work<'a> {
     merging: Duration,
 }
 
-impl<'a> Work<'a> {
+impl<'a> SweepWork<'a> {
     /// What a checkpoint holds, or nothing yet but the front of a few designs.
     fn begin(job: SweepJob<'_>, mut checkpoint: Option<&'a mut Checkpoint>) -> Result<Self> {
         let progress = match checkpoint.as_deref_mut() {
@@ -241,14 +241,14 @@ pub fn sweep(
 ) -> Result<Swept> {
     let start = Instant::now();
     let job = SweepJob { plan, tables, reduction, options, control };
-    let work = Work::begin(job, checkpoint)?;
+    let work = SweepWork::begin(job, checkpoint)?;
     let designs = work.todo.count();
     let state = judge(job, work)?;
     Ok(Swept { state, designs, time: start.elapsed() })
 }
 
 /// Judges what is left to do, design by design.
-fn judge(job: SweepJob<'_>, work: Work<'_>) -> Result<State> {
+fn judge(job: SweepJob<'_>, work: SweepWork<'_>) -> Result<State> {
     let SweepJob { plan, options, control, .. } = job;
     let work = Mutex::new(work);
     on_threads(0..options.threads.max(1), |_| run_thread(job, &work));
@@ -288,7 +288,7 @@ fn head_start(reduction: &Reduction, seen: &mut Reducers) -> State {
     state
 }
 
-fn run_thread(job: SweepJob<'_>, work: &Mutex<Work<'_>>) {
+fn run_thread(job: SweepJob<'_>, work: &Mutex<SweepWork<'_>>) {
     let SweepJob { plan, tables, reduction, options, control } = job;
     let mut engine = CpuEngine::new(plan, tables).stopping_on(&control.stop);
     // Work is cut by time: a tile of a slow model may be a single design.
@@ -343,7 +343,7 @@ fn hand_over(
     chunk_end: u64,
     reducers: Reducers,
     time: Duration,
-    mut work: MutexGuard<'_, Work<'_>>,
+    mut work: MutexGuard<'_, SweepWork<'_>>,
 ) {
     if finished.end < chunk_end {
         work.todo.add(finished.end..chunk_end);

@@ -15,7 +15,7 @@ pub(super) enum Filter {
     /// One objective: the best value.
     Best(f64),
     /// Two objectives.
-    Table(Table),
+    Table(BinTable),
     /// More: recent dominators, then all points.
     Dominators { recent: Vec<(Vec<f64>, u64)>, next: usize, all: Dominance },
 }
@@ -42,13 +42,13 @@ impl Filter {
 /// For every bin of the first coordinate, the best second coordinate of the points in bins strictly below: those points are
 /// strictly better in the first, so that value or more is surely beaten.
 #[derive(Debug)]
-pub(super) struct Table {
+pub(super) struct BinTable {
     low: f64,
     scale: f64,
     best: Box<[f64; BINS]>,
 }
 
-impl Table {
+impl BinTable {
     pub(super) fn new(points: &Points) -> Self {
         let (low, high) = (points.keys[0], points.keys[2 * (points.len() - 1)]);
         let scale = if high > low { (BINS - 2) as f64 / (high - low) } else { 0.0 };
@@ -79,7 +79,7 @@ impl Table {
 
 /// Keeps, of the feasible designs, those that the table does not know to be beaten.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-fn keep_unbeaten(table: &Table, feasible: &[u64], first: &[f64], second: &[f64], alive: &mut [u64]) {
+fn keep_unbeaten(table: &BinTable, feasible: &[u64], first: &[f64], second: &[f64], alive: &mut [u64]) {
     // Bins, then look-ups, then comparisons: the first and last vectorise, and nothing branches.
     const CHUNK: usize = 64;
     let mut bins = [0; CHUNK];

@@ -12,7 +12,7 @@ pub use keys::{KeyRule, Points};
 
 use super::dominance::{Dominance, beats};
 use crate::screen::Block;
-use filter::{Filter, Table};
+use filter::{BinTable, Filter};
 
 /// Most objectives that a study may have.
 pub const MOST_OBJECTIVES: usize = 6;
@@ -259,7 +259,7 @@ impl Front {
         self.filter = match (self.points.is_empty(), self.rules.len()) {
             (true, _) | (_, 0) => Filter::Nothing,
             (_, 1) => Filter::Best(self.points.keys[0]),
-            (_, 2) => Filter::Table(Table::new(&self.points)),
+            (_, 2) => Filter::Table(BinTable::new(&self.points)),
             _ => Filter::Dominators { recent: Vec::new(), next: 0, all },
         };
     }

@@ -6,14 +6,14 @@ use super::constants::{
 };
 use super::held::histogram_beyond_f32;
 use super::kernel::{self, Coordinate, ENTRIES, check_words, coordinates, survivor_words, text};
-use super::known::{self, Known};
-use super::layout::{Layout, Level, MOST_GROUPS, push_level, refuse};
+use super::known::{self, KnownUniform};
+use super::layout::{KernelLayout, Level, MOST_GROUPS, push_level, refuse};
 use crate::decision::Decision;
 use crate::error::Result;
 use crate::gpu::constants::{UNSURE, YES};
 use crate::gpu::{Buffer, Device, Program, WORKGROUP, Wait};
 use crate::plan::Plan;
-use crate::reduce::{Answers, MOST_OBJECTIVES, Needs, Reported};
+use crate::reduce::{Answers, MOST_OBJECTIVES, ReducerNeeds, Reported};
 use crate::study::{Best, Quantity};
 use crate::tape::RunningError;
 use bytemuck::{Pod, Zeroable};
@@ -169,7 +169,7 @@ struct Slot {
 #[derive(Debug)]
 pub struct GpuEngine<'p> {
     plan: &'p Plan,
-    layout: Layout,
+    layout: KernelLayout,
     coordinates: Vec<Coordinate>,
     device: Device,
     program: Program,
@@ -195,8 +195,6 @@ pub struct Wrong {
     pub perturb: Vec<(usize, f64)>,
     /// Pieces of the kernel's text to be replaced.
     pub replace: Vec<(String, String)>,
-    /// Another text for the whole kernel.
-    pub text: Option<String>,
     /// Judge lanes in groups also where the study is small.
     pub grouped: bool,
     /// Room for survivors, if not the usual.
@@ -211,16 +209,16 @@ impl<'p> GpuEngine<'p> {
     /// [`Error::Gpu`](crate::error::Error::Gpu) if the device fails.
     pub fn new(plan: &'p Plan, ranges: &[(f64, f64)], device: &Device, limited_loops: bool, wrong: &Wrong) -> Result<Self> {
         supports_report(plan)?;
-        let layout = Layout::new(plan, limited_loops, wrong.grouped)?;
+        let layout = KernelLayout::new(plan, limited_loops, wrong.grouped)?;
         supports_histograms(plan, ranges)?;
-        let mut source = wrong.text.clone().unwrap_or_else(|| kernel_text(plan, &layout, ranges, &wrong.perturb));
+        let mut source = kernel_text(plan, &layout, ranges, &wrong.perturb);
         for (piece, other) in &wrong.replace {
             assert!(source.contains(piece), "the kernel has no {piece}");
             source = source.replace(piece, other);
         }
         let program = Program::new(device, &source, ENTRIES)?;
         program.require_structure("Tile", size_of::<Tile>(), &Tile::MEMBERS)?;
-        program.require_structure("Known", size_of::<Known>(), &Known::MEMBERS)?;
+        program.require_structure("KnownUniform", size_of::<KnownUniform>(), &KnownUniform::MEMBERS)?;
         let coordinates = coordinates(plan, &layout);
         let storage = wgpu::BufferUsages::STORAGE;
         let binding = device.limits.max_storage_buffer_binding_size.min(device.limits.max_buffer_size);
@@ -257,7 +255,7 @@ impl<'p> GpuEngine<'p> {
         let list = known::known(plan, &coordinates, |_| false, &Answers::default()).1.len() as u64;
         let slots = (0..2).map(|_| {
             let tile = device.buffer("tile", size_of::<Tile>() as u64, wgpu::BufferUsages::UNIFORM);
-            let known = device.buffer("known", size_of::<Known>() as u64, wgpu::BufferUsages::UNIFORM);
+            let known = device.buffer("known", size_of::<KnownUniform>() as u64, wgpu::BufferUsages::UNIFORM);
             let dominator_table = device.buffer("dominator_table", list * 4, storage);
             let counts = device.buffer("counts", count_words * 4, storage);
             let survivors = device.buffer("survivors", capacity * words as u64 * 4, storage);
@@ -486,12 +484,12 @@ pub fn supports(plan: &Plan, limited_loops: bool) -> Result<()> {
     let given = plan.study.report.histograms.iter().map(|it| it.range.unwrap_or((0.0, 1.0))).collect::<Vec<_>>();
     supports_report(plan)?;
     supports_histograms(plan, &given)?;
-    Layout::new(plan, limited_loops, false).map(|_| ())
+    KernelLayout::new(plan, limited_loops, false).map(|_| ())
 }
 
 /// Does the report ask for nothing but counts and candidates?
 fn supports_report(plan: &Plan) -> Result<()> {
-    let beyond = Reported::needs(&plan.study.report).into_iter().find_map(Needs::beyond_devices);
+    let beyond = Reported::needs(&plan.study.report).into_iter().find_map(ReducerNeeds::beyond_devices);
     beyond.map_or(Ok(()), |why| Err(refuse(why.to_owned())))
 }
 
@@ -510,9 +508,9 @@ pub fn supports_histograms(plan: &Plan, ranges: &[(f64, f64)]) -> Result<()> {
 pub fn kernel_of(plan: &Plan, ranges: &[(f64, f64)], perturb: &[(usize, f64)]) -> Result<String> {
     supports_report(plan)?;
     supports_histograms(plan, ranges)?;
-    Ok(kernel_text(plan, &Layout::new(plan, true, false)?, ranges, perturb))
+    Ok(kernel_text(plan, &KernelLayout::new(plan, true, false)?, ranges, perturb))
 }
 
-fn kernel_text(plan: &Plan, layout: &Layout, ranges: &[(f64, f64)], perturb: &[(usize, f64)]) -> String {
+fn kernel_text(plan: &Plan, layout: &KernelLayout, ranges: &[(f64, f64)], perturb: &[(usize, f64)]) -> String {
     kernel::histogram_constants(plan, ranges) + &text(plan, layout, perturb)
 }

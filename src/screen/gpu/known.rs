@@ -11,7 +11,7 @@ use std::mem::offset_of;
 /// The uniform `Known` of the kernel.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-pub struct Known {
+pub struct KnownUniform {
     dominators: [[f32; 8]; DOMINATORS],
     top: [f32; 4],
     top_index: [u32; 4],
@@ -21,16 +21,16 @@ pub struct Known {
     last_place: [u32; 4],
 }
 
-impl Known {
+impl KnownUniform {
     /// Its members as the kernel must have them.
     pub(super) const MEMBERS: [(&'static str, usize); 7] = [
-        ("dominators", offset_of!(Known, dominators)),
-        ("top", offset_of!(Known, top)),
-        ("top_index", offset_of!(Known, top_index)),
-        ("extremes", offset_of!(Known, extremes)),
-        ("extreme_indices", offset_of!(Known, extreme_indices)),
-        ("table", offset_of!(Known, table)),
-        ("last_place", offset_of!(Known, last_place)),
+        ("dominators", offset_of!(KnownUniform, dominators)),
+        ("top", offset_of!(KnownUniform, top)),
+        ("top_index", offset_of!(KnownUniform, top_index)),
+        ("extremes", offset_of!(KnownUniform, extremes)),
+        ("extreme_indices", offset_of!(KnownUniform, extreme_indices)),
+        ("table", offset_of!(KnownUniform, table)),
+        ("last_place", offset_of!(KnownUniform, last_place)),
     ];
 }
 
@@ -61,10 +61,10 @@ fn end(plan: &Plan, exact: bool, quantity: Quantity, held: Option<(f64, u64)>, t
 }
 
 /// The uniform and the list or table that stand for the answers so far.
-pub fn known(plan: &Plan, coordinates: &[Coordinate], is_exact: impl Fn(Quantity) -> bool, answers: &Answers) -> (Known, Vec<f32>) {
+pub fn known(plan: &Plan, coordinates: &[Coordinate], is_exact: impl Fn(Quantity) -> bool, answers: &Answers) -> (KnownUniform, Vec<f32>) {
     let objectives = &plan.study.objectives;
     let dimensions = objectives.len();
-    let mut known = Known::zeroed();
+    let mut known = KnownUniform::zeroed();
     known.dominators = [[f32::INFINITY; 8]; DOMINATORS];
     // Sorted by the first coordinate, as the front is: the kernel relies on it where there are two.
     let points: Vec<Vec<f32>> = answers

@@ -138,7 +138,7 @@ pub fn refuse(why: String) -> Error {
 
 /// A study as a device sees it.
 #[derive(Clone, Debug)]
-pub struct Layout {
+pub struct KernelLayout {
     /// The names of the formula's values.
     pub fields: Fields,
     /// What passes from the first stage to the second.
@@ -167,7 +167,7 @@ pub struct Layout {
     pub cut: Cut,
 }
 
-impl Layout {
+impl KernelLayout {
     /// Lays out a study. `grouped`: lanes are judged in groups even where the study is small.
     ///
     /// # Errors
@@ -488,7 +488,7 @@ mod tests {
             ] {
                 let plan = study(model, axis, scenarios);
                 for grouped in [false, true] {
-                    let Ok(layout) = Layout::new(&plan, true, grouped) else { continue };
+                    let Ok(layout) = KernelLayout::new(&plan, true, grouped) else { continue };
                     let cut = layout.cut;
                     let (shared, alone) = Cut::iterations(&plan, layout.fields.turns, cut.keeps);
                     let iterations = cut.lanes_each.div_ceil(cut.group) * shared + cut.lanes_each * alone;

@@ -17,7 +17,7 @@ mod report;
 mod rows;
 
 use super::constants::{FIRST_REPORTED, SURVIVOR_HEAD, sweep_constants};
-use super::layout::{BINS, DOMINATORS, LIST, Layout, Values, on_device, row_dominators, scenario_worst, sign};
+use super::layout::{BINS, DOMINATORS, KernelLayout, LIST, Values, on_device, row_dominators, scenario_worst, sign};
 use crate::gpu::constants::declare;
 use crate::gpu::{model_prelude, model_source, source, tables};
 use crate::models::{CONDITION_PROMISE, Worse};
@@ -42,12 +42,12 @@ pub enum Coordinate {
 }
 
 /// Does f32 tell an input's values apart, so that they compare as in f64?
-pub fn is_exact(plan: &Plan, layout: &Layout, input: usize) -> bool {
+pub fn is_exact(plan: &Plan, layout: &KernelLayout, input: usize) -> bool {
     layout.exact >> input & 1 == 1 || plan.space.designs.inputs() >> input & 1 == 0
 }
 
 /// The kind of each objective's coordinate.
-pub fn coordinates(plan: &Plan, layout: &Layout) -> Vec<Coordinate> {
+pub fn coordinates(plan: &Plan, layout: &KernelLayout) -> Vec<Coordinate> {
     let kind = |objective: &Objective| match objective.quantity {
         _ if objective.resolution.is_some() => Coordinate::Stepped,
         Quantity::Input(input) if is_exact(plan, layout, input) => Coordinate::Exact,
@@ -103,7 +103,7 @@ fn real(value: f64) -> String {
 }
 
 /// The text of the kernel. `perturb`: outputs that are to come out wrong by this part of their value, for testing.
-pub fn text(plan: &Plan, layout: &Layout, perturb: &[(usize, f64)]) -> String {
+pub fn text(plan: &Plan, layout: &KernelLayout, perturb: &[(usize, f64)]) -> String {
     let mut prelude = Prelude { plan, layout, text: String::new(), coordinates: coordinates(plan, layout) };
     prelude.constants();
     prelude.inputs();
@@ -134,7 +134,7 @@ pub fn text(plan: &Plan, layout: &Layout, perturb: &[(usize, f64)]) -> String {
 }
 
 /// The tables that pass between the stages.
-fn passed_tables(layout: &Layout) -> String {
+fn passed_tables(layout: &KernelLayout) -> String {
     tables(&layout.fields, |field, place| {
         let passed = layout.prepared.iter().find(|it| it.field == field)?;
         Some(format!("prepared_table[{place} + ({}u + at) * tile.rows]", passed.offset))
@@ -143,7 +143,7 @@ fn passed_tables(layout: &Layout) -> String {
 
 struct Prelude<'a> {
     plan: &'a Plan,
-    layout: &'a Layout,
+    layout: &'a KernelLayout,
     text: String,
     coordinates: Vec<Coordinate>,
 }
