@@ -10,7 +10,17 @@ struct Points {
 // OUTPUTS outputs, then CONDITIONS margins per point.
 @group(0) @binding(2) var<storage, read_write> found: array<Real>;
 
-@compute @workgroup_size(64)
+// TABLE_NUMBERS numbers in the tables of a point.
+@group(0) @binding(3) var<storage, read_write> scratch: array<Real>;
+
+fn prepare_point(point: u32, inputs: Inputs) -> Prepared {
+    begin_tables(point * TABLE_NUMBERS);
+    var held = prepare(inputs);
+    hold_tables(&held, point * TABLE_NUMBERS);
+    return held;
+}
+
+@compute @workgroup_size(WORKGROUP)
 fn evaluate(@builtin(global_invocation_id) id: vec3<u32>) {
     let point = id.x;
     if point >= points.count {

@@ -11,10 +11,8 @@ struct Test {
 @group(0) @binding(2) var<storage, read_write> found: array<f32>;
 @group(0) @binding(3) var<storage, read_write> counts: array<atomic<u32>>;
 
-const RESULTS: u32 = 10u;
-
 // Sum, difference, product, quotient, root, then the own functions.
-@compute @workgroup_size(64)
+@compute @workgroup_size(WORKGROUP)
 fn arithmetic(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= test.count {
         return;
@@ -34,20 +32,20 @@ fn arithmetic(@builtin(global_invocation_id) id: vec3<u32>) {
     found[at + 9u] = arc_sine(a / (1.0 + abs(a)));
 }
 
-// Some drivers end an invocation after 65 535 turns of its loops, without a word.
+// Some drivers end an invocation after 65 535 iterations of its loops, without a word.
 @compute @workgroup_size(1)
 fn loops() {
-    var turns = 0u;
+    var iterations = 0u;
     var x = test.count;
     for (var i = 0u; i < test.loops; i++) {
         x = x * 1664525u + 1013904223u;
-        turns += 1u + (x & 0u);
+        iterations += 1u + (x & 0u);
     }
-    atomicStore(&counts[0], turns);
+    atomicStore(&counts[0], iterations);
 }
 
 // Every invocation appends itself: each number must be there once.
-@compute @workgroup_size(64)
+@compute @workgroup_size(WORKGROUP)
 fn append(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= test.count {
         return;

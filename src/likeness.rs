@@ -13,9 +13,14 @@ pub fn closest<'n>(name: &str, names: &[&'n str]) -> Option<&'n str> {
     without_unit.or_else(close).copied()
 }
 
+/// What to tell a person who wrote `name` where one of `names` should stand: the name that was meant, or `otherwise` where no name is like it.
+pub fn remedy(name: &str, names: &[&str], otherwise: impl FnOnce() -> String) -> String {
+    closest(name, names).map_or_else(otherwise, |close| format!("did you mean \"{close}\"?"))
+}
+
 #[cfg(test)]
 mod tests {
-    use super::closest;
+    use super::{closest, remedy};
 
     #[test]
     fn a_slip_is_understood_and_another_word_is_not() {
@@ -24,5 +29,7 @@ mod tests {
         assert_eq!(closest("Frictoin", &names), Some("friction"));
         assert_eq!(closest("speed", &names), None);
         assert_eq!(closest("", &names), None);
+        let told = |name: &str| remedy(name, &names, || "there are three".to_owned());
+        assert_eq!((told("frction").as_str(), told("speed").as_str()), ("did you mean \"friction\"?", "there are three"));
     }
 }

@@ -69,7 +69,7 @@ pub struct Needs {
 }
 
 /// What the parts of a study come to.
-struct Sizes {
+struct StudySizes {
     /// Cells of all maps, and bytes of the largest table of one.
     cells: u64,
     table: u64,
@@ -90,7 +90,7 @@ struct Sizes {
     objectives: u64,
 }
 
-impl Sizes {
+impl StudySizes {
     fn new(plan: &Plan) -> Self {
         let study = &plan.study;
         let report = &study.report;
@@ -131,7 +131,7 @@ impl Needs {
 
     /// The same where the size of the front is known.
     pub fn with_front(plan: &Plan, threads: usize, page: bool, front: u64) -> Self {
-        let sizes = Sizes::new(plan);
+        let sizes = StudySizes::new(plan);
         let threads = threads.max(1) as u64;
         let sum = |parts: &[u64]| parts.iter().fold(0, |sum: u64, &part| sum.saturating_add(part));
         let times = |count: u64, bytes: u64| count.saturating_mul(bytes);

@@ -25,8 +25,20 @@ pub fn on_threads<T: Send, R: Send>(parts: impl IntoIterator<Item = T>, work: im
     })
 }
 
+/// Does the caller's `work` while `beside` runs on a thread of its own, and waits for both. `work` is told whether there was a thread for
+/// `beside`: where there is none, `beside` is not run.
+///
+/// # Panics
+/// If `work` or `beside` does. Then `beside` must end all the same: whoever panics waits for it.
+pub fn with_beside<R>(beside: impl FnOnce() + Send, work: impl FnOnce(bool) -> R) -> R {
+    std::thread::scope(|scope| {
+        let runs = start(scope, beside).is_some();
+        work(runs)
+    })
+}
+
 /// Does `work` beside what the caller does until the scope ends; `None` if there is no thread for it.
-pub fn start<'scope, R: Send + 'scope>(
+fn start<'scope, R: Send + 'scope>(
     scope: &'scope Scope<'scope, '_>,
     work: impl FnOnce() -> R + Send + 'scope,
 ) -> Option<ScopedJoinHandle<'scope, R>> {
@@ -68,6 +80,20 @@ mod tests {
         assert_eq!(done[3].1, std::thread::current().id(), "the last one is the caller's");
         assert!(on_threads(Vec::<u8>::new(), |part| part).is_empty());
         assert_eq!([0, 1, 3].map(to_be_had), [0, 1, 3]);
+    }
+
+    #[test]
+    fn two_things_are_done_at_the_same_time() {
+        let (there, back) = (Barrier::new(2), Barrier::new(2));
+        let meet = || {
+            there.wait();
+            back.wait();
+        };
+        let done = with_beside(meet, |runs| {
+            meet();
+            runs
+        });
+        assert!(done);
     }
 
     #[test]

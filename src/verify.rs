@@ -304,7 +304,7 @@ impl Collector {
             if it.example.is_none() {
                 let (gpu, f64s, bound, point) = describe((f64::from(found.value), found.bound));
                 it.example = Some(format!(
-                    "{}: the GPU gives {gpu}, f64 gives {f64s}; they differ by {:.3e}, promised were at most {bound:.3e}, at {point}",
+                    "{}: the GPU gives {gpu}, f64 gives {f64s}; they differ by {:.3e}, more than the error bound {bound:.3e}, at {point}",
                     it.name,
                     (gpu - f64s).abs()
                 ));

@@ -1,14 +1,12 @@
-// Three-valued decisions: what a number with a promised error lets one conclude. The twin of src/decision.rs.
+// Three-valued decisions: what a number with an error bound lets one conclude. The GPU implementation of
+// src/decision.rs.
 //
-// The answers are ordered so that "both must hold" is `min`: a sure no wins over an unsure, an unsure over a yes.
+// The answers (NO, UNSURE and YES of src/gpu/constants.rs) are ordered so that "both must hold" is `min`: a sure no wins over an unsure,
+// an unsure over a yes.
 
-const NO: u32 = 0u;
-const UNSURE: u32 = 1u;
-const YES: u32 = 2u;
-
-// `promise` is in units of the running bound; see `promise` in src/models.
-fn promised(number: Real, promise: f32) -> Real {
-    return Real(number.value, number.bound * promise);
+// A number with its running error bound times a factor; see `promise` in src/models.
+fn bounded(number: Real, factor: f32) -> Real {
+    return Real(number.value, number.bound * factor);
 }
 
 fn is_known(number: Real) -> bool {

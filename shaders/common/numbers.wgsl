@@ -3,21 +3,15 @@
 // The bound grows by what WGSL permits, not by what one GPU does: sums and products rounded once (contraction rounds less),
 // division 2.5 ULP by divisors from 2^-126 to 2^126 and anything by others (a reciprocal that is flushed makes them 0), square root
 // 4.5 ULP, results below the least normal number flushed to zero. It is carried in f32 too: what rounds in the bound itself is
-// covered by the thousandth that every unit and every promise is raised by.
+// covered by the thousandth that every rounding is raised by.
 
 struct Real {
     value: f32,
     bound: f32,
 }
 
-// Half an ULP, and a thousandth for the rounding of the bound.
-const ROUNDING: f32 = 5.9665e-8;
-const DIVISION: f32 = 5.0 * ROUNDING;
-const SQUARE_ROOT: f32 = 9.0 * ROUNDING;
-// Own functions: within FUNCTION_ULP of src/real/functions.rs.
-const FUNCTION: f32 = 8.0 * ROUNDING;
-const FLUSH: f32 = 1.1754944e-38;
-const LARGEST_DIVISOR: f32 = 8.50705917e37;
+// The errors that the operations may make (ROUNDING, DIVISION and so on) are declared in src/gpu/constants.rs.
+
 const PI: f32 = 3.14159265;
 
 fn constant(value: f32) -> Real {
@@ -59,7 +53,7 @@ fn square(a: Real) -> Real {
     return mul(a, a);
 }
 
-// A part of a bound over a divisor, which is `least` at least and `most` at most; none where WGSL promises nothing of the quotient.
+// A part of a bound over a divisor that lies between `least` and `most`; infinite where WGSL does not say how accurate the quotient is.
 fn bound_over(part: f32, least: f32, most: f32) -> f32 {
     return select(infinity(), part / least, least >= FLUSH && most <= LARGEST_DIVISOR);
 }

@@ -1,6 +1,6 @@
 // For the comparison with f64: verdict, worst values and one scenario's outputs of every design of a tile, nothing left out.
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(WORKGROUP)
 fn check(@builtin(global_invocation_id) id: vec3<u32>) {
     let lanes = tile.last_lane - tile.first_lane;
     let groups = (lanes + GROUP - 1u) / GROUP;
@@ -23,7 +23,7 @@ fn check_lane(judged: Lane, row: u32, state: RowState, at: u32, lanes: u32) {
     survivors[word] = judged.verdict;
     write_worst(word + 1u, judged);
     // Any scenario will do, as long as all of them come up.
-    let scenario = (row * 7919u + lane * 104729u) % (SLOW_SCENARIOS * FAST_SCENARIOS);
+    let scenario = (row * SCENARIO_PER_ROW + lane * SCENARIO_PER_LANE) % (SLOW_SCENARIOS * FAST_SCENARIOS);
     let q = scenario / FAST_SCENARIOS;
     var inputs = fixed_inputs();
     set_row_inputs(&inputs, state);

@@ -1,6 +1,6 @@
 // First stage: `prepare` once per row and slow scenario, and what is the same for all lanes of a row.
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(WORKGROUP)
 fn prepare_rows(@builtin(global_invocation_id) id: vec3<u32>) {
     let row = id.x;
     let q = id.y;
@@ -15,7 +15,7 @@ fn prepare_rows(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 
 // Judges what the lanes of a row share, over all scenarios.
-@compute @workgroup_size(64)
+@compute @workgroup_size(WORKGROUP)
 fn judge_rows(@builtin(global_invocation_id) id: vec3<u32>) {
     let row = id.x;
     if row >= tile.rows {

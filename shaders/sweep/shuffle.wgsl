@@ -1,5 +1,5 @@
-// One round of the shuffle that decides which feasible designs a sample takes: twin of `Shuffle` in src/reduce/sample.rs. A number has
-// 64 bits, (low, high) words.
+// One round of the shuffle that decides which feasible designs a sample takes: as `Shuffle` in src/reduce/sample.rs does it. A
+// number has 64 bits, (low, high) words.
 fn shuffled(number: vec2<u32>, key: u32) -> vec2<u32> {
     var mixed = number.x ^ key;
     mixed = (mixed ^ (mixed >> 16u)) * 0x21f0aaadu;

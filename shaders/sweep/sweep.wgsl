@@ -7,13 +7,13 @@
 
 // Surely feasible designs: neighbours in the row are known to be equal to them in every objective that only the row decides, so
 // they prune where no bound could. One per invocation, or every lane where judged lanes are kept anyway; infinite where none is.
-var<workgroup> champions: array<Champion, CHAMPIONS>;
+var<workgroup> row_dominators: array<RowDominator, ROW_DOMINATORS>;
 
 // Is a neighbour surely better, or surely as good in all and better in one?
 fn beaten_in_the_row(keys: Keys, local: vec3<u32>) -> bool {
     for (var chunk = 0u; chunk < GROUP_CHUNKS; chunk++) {
-        for (var i = 0u; i < CHAMPIONS_EACH; i++) {
-            if beats_in_the_row(champions[champion_at(local.x, chunk, i)], keys) {
+        for (var i = 0u; i < ROW_DOMINATORS_EACH; i++) {
+            if beats_in_the_row(row_dominators[row_dominator_at(local.x, chunk, i)], keys) {
                 return true;
             }
         }
@@ -21,8 +21,8 @@ fn beaten_in_the_row(keys: Keys, local: vec3<u32>) -> bool {
     return false;
 }
 
-fn champion_at(row: u32, chunk: u32, i: u32) -> u32 {
-    return ((chunk * CHAMPIONS_EACH + i) * GROUP_ROWS + row) % CHAMPIONS;
+fn row_dominator_at(row: u32, chunk: u32, i: u32) -> u32 {
+    return ((chunk * ROW_DOMINATORS_EACH + i) * GROUP_ROWS + row) % ROW_DOMINATORS;
 }
 
 // Which of the answers a surely feasible design may be part of.
@@ -30,8 +30,8 @@ fn closer_look(lane: Lane, horizon: Horizon, index: vec2<u32>, local: vec3<u32>)
     var why = 0u;
     if OBJECTIVES > 0u {
         let keys = keys_of(lane);
-        var beaten = beaten_by_killers(keys, horizon) || beaten_by_table(keys);
-        if USES_CHAMPIONS && !beaten {
+        var beaten = beaten_by_dominators(keys, horizon) || beaten_by_table(keys);
+        if USES_ROW_DOMINATORS && !beaten {
             beaten = beaten_in_the_row(keys, local);
         }
         why |= select(MAY_BE_FRONT, 0u, beaten);
@@ -49,16 +49,16 @@ struct Seen {
 }
 
 // The first look at lane number `i` of a block.
-fn look_at(judged: Lane, horizon: Horizon, i: u32, count: u32, seen: ptr<function, Seen>, champion: ptr<function, Champion>) {
+fn look_at(judged: Lane, horizon: Horizon, i: u32, count: u32, seen: ptr<function, Seen>, row_dominator: ptr<function, RowDominator>) {
     let mark = select(0u, 1u << i, i < count);
     let is_sure = judged.verdict == YES;
     (*seen).sure |= select(0u, mark, is_sure);
     let look = judged.verdict == UNSURE || (is_sure && (LOOK_AT_ALL || may_matter(judged, horizon)));
     (*seen).flagged |= select(0u, mark, look);
-    if USES_CHAMPIONS && !KEEPS && is_sure && i < count {
-        let other = champion_of(keys_of(judged));
-        if is_worse_champion(*champion, other) {
-            *champion = other;
+    if USES_ROW_DOMINATORS && !KEEPS && is_sure && i < count {
+        let other = row_dominator_of(keys_of(judged));
+        if is_worse_row_dominator(*row_dominator, other) {
+            *row_dominator = other;
         }
     }
 }
@@ -68,9 +68,9 @@ fn append(row: u32, lane: u32, why: u32, judged: Lane) {
     if at < tile.capacity {
         let word = at * SURVIVOR_WORDS;
         survivors[word] = row;
-        survivors[word + 1u] = lane | (why << 24u);
-        write_keys(word + 2u, judged);
-        write_map_keys(word + 2u + OBJECTIVES, judged);
+        survivors[word + 1u] = lane | (why << LANE_BITS);
+        write_keys(word + SURVIVOR_HEAD, judged);
+        write_map_keys(word + SURVIVOR_HEAD + OBJECTIVES, judged);
     }
 }
 
@@ -91,24 +91,24 @@ fn sweep(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) 
         let start = first + block * BLOCK;
         let end = min(start + BLOCK, last);
         var seen = Seen(0u, 0u);
-        var champion = no_champion();
+        var row_dominator = no_row_dominator();
         var kept: array<Lane, KEPT>;
         for (var i = 0u; i < BLOCK; i += GROUP) {
             if start + i >= end {
                 break;
             }
             let group = judge_group(at, state, held, start + i);
-            look_at_group(group, horizon, i, end - start, &seen, &champion, &kept);
+            look_at_group(group, horizon, i, end - start, &seen, &row_dominator, &kept);
         }
-        if USES_CHAMPIONS {
-            for (var i = 0u; i < CHAMPIONS_EACH; i++) {
+        if USES_ROW_DOMINATORS {
+            for (var i = 0u; i < ROW_DOMINATORS_EACH; i++) {
                 if KEEPS {
-                    champion = no_champion();
+                    row_dominator = no_row_dominator();
                     if ((seen.sure >> i) & 1u) == 1u {
-                        champion = champion_of(keys_of(kept[i % KEPT]));
+                        row_dominator = row_dominator_of(keys_of(kept[i % KEPT]));
                     }
                 }
-                champions[champion_at(local.x, local.y, i)] = champion;
+                row_dominators[row_dominator_at(local.x, local.y, i)] = row_dominator;
             }
             workgroupBarrier();
         }
@@ -142,7 +142,7 @@ fn sweep(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) 
                 append(at, lane, why, judged);
             }
         }
-        if USES_CHAMPIONS {
+        if USES_ROW_DOMINATORS {
             workgroupBarrier();
         }
     }

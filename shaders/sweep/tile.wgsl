@@ -1,7 +1,8 @@
 // What a tile is and where its values lie: shared by all stages of a sweep.
 //
 // A row is one combination of the slow design axes; its lanes are the combinations of the fast ones. The constants in capitals,
-// the structures `RowState`, `Lane`, `Digits` and `Keys`, and the functions that know the study come from the prelude.
+// the structures `RowState`, `Lane`, `Digits` and `Keys`, and the functions that know the study come from the prelude; those that do not
+// depend on the study are declared in src/screen/gpu/constants.rs.
 
 struct Tile {
     rows: u32,
@@ -15,19 +16,19 @@ struct Tile {
     window: u32,
     unused: u32,
     // Position of the first row along each slow dimension; of the outermost one within its window of levels.
-    digits: array<vec4<u32>, 12>,
+    digits: array<vec4<u32>, DIGIT_VECTORS>,
 }
 
 // What is known of the front and of the other answers so far: what cannot be part of them need not be looked at.
-struct Known {
+struct KnownUniform {
     // Certified designs of the front that most others fall behind, two vectors of coordinates each.
-    killers: array<vec4<f32>, 16>,
+    dominators: array<vec4<f32>, DOMINATOR_VECTORS>,
     // The worst of the best K: its key, and 1 where f32 holds it exactly; its index.
     top: vec4<f32>,
     top_index: vec4<u32>,
     // Per objective: least and largest value, and whether f32 holds them exactly; their indices.
-    extremes: array<vec4<f32>, 6>,
-    extreme_indices: array<vec4<u32>, 6>,
+    extremes: array<vec4<f32>, EXTREMES>,
+    extreme_indices: array<vec4<u32>, EXTREMES>,
     // Where the look-up table starts and bins per unit, for its two coordinates.
     table: vec4<f32>,
     // The largest place, two words, that may still be part of a sample of feasible designs.
@@ -35,27 +36,17 @@ struct Known {
 }
 
 @group(0) @binding(0) var<uniform> tile: Tile;
-@group(0) @binding(1) var<uniform> known: Known;
+@group(0) @binding(1) var<uniform> known: KnownUniform;
 // Levels of the slow design axes: value and bound in SI, value in its unit, 1 if constraints on inputs allow it.
 @group(0) @binding(3) var<storage, read> levels: array<vec4<f32>>;
 @group(0) @binding(4) var<storage, read_write> prepared_table: array<Real>;
 @group(0) @binding(5) var<storage, read_write> row_table: array<u32>;
-// Surely feasible designs, unsure ones, survivors; then histograms; then feasible designs per map cell.
+// SURE feasible designs, UNDECIDED ones, those APPENDED to the survivors; then histograms; then feasible designs per map cell.
 @group(0) @binding(6) var<storage, read_write> counts: array<atomic<u32>>;
 @group(0) @binding(7) var<storage, read_write> survivors: array<u32>;
-@group(0) @binding(8) var<storage, read> beaters: array<f32>;
+@group(0) @binding(8) var<storage, read> dominator_table: array<f32>;
 // Best key so far of each map cell, as an ordered number.
 @group(0) @binding(9) var<storage, read_write> cells: array<atomic<u32>>;
-
-const SURE: u32 = 0u;
-const UNDECIDED: u32 = 1u;
-const APPENDED: u32 = 2u;
-
-// Why a survivor is one: see `Survivor` in src/screen/gpu/engine.rs. An end is an extreme, a place in the top list, or one in a sample.
-const IS_UNSURE: u32 = 1u;
-const MAY_BE_FRONT: u32 = 2u;
-const MAY_BE_END: u32 = 4u;
-const MAY_BE_IN_MAP: u32 = 8u;
 
 // The bits of an f32 as a number of the same order.
 fn ordered(x: f32) -> u32 {

@@ -13,7 +13,7 @@ pub const LEVELS: u64 = 1 << 20;
 
 /// One axis.
 #[derive(Debug)]
-pub struct Axis {
+pub struct BoxAxis {
     /// The inputs that it sets.
     pub inputs: Vec<usize>,
     /// Their values by level, in their units; one column per input.
@@ -32,7 +32,7 @@ pub struct Axis {
 #[derive(Debug)]
 pub struct Axes {
     /// Design axes, outermost of the sweep first, then scenario axes.
-    pub all: Vec<Axis>,
+    pub all: Vec<BoxAxis>,
     /// Number of design axes.
     pub designs: usize,
     /// Distance of two neighbours in the position of the sweep, of each design axis.
@@ -99,7 +99,7 @@ impl Spans {
     }
 }
 
-impl Axis {
+impl BoxAxis {
     /// Least and largest of a column over a span.
     pub fn ends(values: &[f64], ordered: bool, span: Span) -> (f64, f64) {
         let (first, last) = (values[span.low as usize], values[span.high as usize]);
@@ -231,7 +231,7 @@ impl Axes {
     }
 }
 
-fn axis(plan: &Plan, dimension: &Dimension, stride: u64) -> Axis {
+fn axis(plan: &Plan, dimension: &Dimension, stride: u64) -> BoxAxis {
     let inputs = dimension.inputs().to_vec();
     let own: Vec<Vec<f64>> =
         (0..inputs.len()).map(|column| (0..dimension.count()).map(|level| dimension.value(column, level)).collect()).collect();
@@ -240,7 +240,7 @@ fn axis(plan: &Plan, dimension: &Dimension, stride: u64) -> Axis {
         inputs.iter().zip(&own).map(|(&input, own)| own.iter().map(|&value| input_to_si(&table[input], value)).collect()).collect();
     let ordered = own.iter().chain(&si).all(|values| values.is_sorted() || values.iter().rev().is_sorted());
     let least_step = si[0].windows(2).map(|it| (it[1] - it[0]).abs()).fold(f64::INFINITY, f64::min);
-    Axis { inputs, own, si, ordered, least_step, stride }
+    BoxAxis { inputs, own, si, ordered, least_step, stride }
 }
 
 #[cfg(test)]

@@ -4,8 +4,8 @@
 //! number is largest at one end of that axis and least at the other, and the bounds of the corner are as good as a single design's.
 //! Elsewhere the middle and the largest derivative do. Both bound the exact value; what f64 may differ from it by is added.
 
-use super::axes::{AXES, Axes, Axis, Span, Spans};
-use super::requirement::Source;
+use super::axes::{AXES, Axes, BoxAxis, Span, Spans};
+use super::requirement::NumberSource;
 use super::tape::Tape;
 use crate::real::Real;
 use crate::tape::{Dual, EVERYTHING, Interval};
@@ -45,11 +45,11 @@ impl<const N: usize> Boxed for Dual<Interval, N> {
 /// Runs the tape with derivatives, in as many directions as it takes: each costs time, whether it is needed or not.
 trait Sloped: std::fmt::Debug + Send {
     /// A number over a box, and its derivatives along the first axes.
-    fn slopes(&mut self, asked: &Asked, node: Node, spans: &Spans) -> (Interval, [Interval; DIRECTIONS]);
+    fn slopes(&mut self, asked: &AskedNumber, node: Node, spans: &Spans) -> (Interval, [Interval; DIRECTIONS]);
 }
 
 impl<const N: usize> Sloped for Runner<'_, Dual<Interval, N>> {
-    fn slopes(&mut self, asked: &Asked, node: Node, spans: &Spans) -> (Interval, [Interval; DIRECTIONS]) {
+    fn slopes(&mut self, asked: &AskedNumber, node: Node, spans: &Spans) -> (Interval, [Interval; DIRECTIONS]) {
         self.run(asked, spans);
         let it = &self.slots[node as usize];
         let mut slopes = [Interval::point(0.0); DIRECTIONS];
@@ -96,7 +96,7 @@ impl<'t, R: Boxed> Runner<'t, R> {
     }
 
     /// Computes what `asked` needs over a box.
-    fn run(&mut self, asked: &Asked, spans: &Spans) {
+    fn run(&mut self, asked: &AskedNumber, spans: &Spans) {
         self.clock += 1;
         for &axis in &asked.axes {
             self.turn(axis, spans[axis]);
@@ -128,11 +128,11 @@ impl<'t, R: Boxed> Runner<'t, R> {
             }
             return;
         }
-        let table: &Axis = &self.axes.all[axis];
+        let table: &BoxAxis = &self.axes.all[axis];
         for &node in &self.alone[axis] {
             if let Operation::Input(input) = self.tape.list.operations[node as usize] {
                 let column = self.tape.input_axes[input as usize].map_or(0, |(_, column)| column as usize);
-                let (low, high) = Axis::ends(&table.si[column], table.ordered, span);
+                let (low, high) = BoxAxis::ends(&table.si[column], table.ordered, span);
                 let direction = (!table.is_joint() && low < high).then_some(axis);
                 self.slots[node as usize] = R::input(Interval::new(low, high), direction);
             } else {
@@ -149,9 +149,9 @@ impl<'t, R: Boxed> Runner<'t, R> {
 
 /// A number that bounds are asked of.
 #[derive(Clone, Debug)]
-pub struct Asked {
+pub struct AskedNumber {
     /// Where it comes from.
-    pub source: Source,
+    pub source: NumberSource,
     /// Is a larger value worse?
     pub higher_is_worse: bool,
     /// Axes that it depends on.
@@ -161,10 +161,10 @@ pub struct Asked {
     several: Vec<Node>,
 }
 
-impl Asked {
+impl AskedNumber {
     /// A number of a tape.
-    pub fn new(tape: &Tape, source: Source, higher_is_worse: bool) -> Self {
-        let needed = if let Source::Node(node, _) = source { tape.list.needed_by(&[node]) } else { Vec::new() };
+    pub fn new(tape: &Tape, source: NumberSource, higher_is_worse: bool) -> Self {
+        let needed = if let NumberSource::Node(node, _) = source { tape.list.needed_by(&[node]) } else { Vec::new() };
         // What is needed may depend on an axis that the result does not: a selection with equal branches.
         let axis_set = needed.iter().fold(source.axes(tape), |set, &node| set | tape.axes[node as usize]);
         Self {
@@ -221,7 +221,7 @@ pub struct Bounder<'t> {
     values: Runner<'t, Interval>,
     slopes: Box<dyn Sloped + 't>,
     /// Bounds that were found last: requirements and objectives are often about the same number.
-    recent: Vec<Found>,
+    recent: Vec<Bounding>,
     oldest: usize,
 }
 
@@ -238,9 +238,9 @@ pub enum Wanted {
 
 /// Bounds that were found, and the corners that were not looked at yet, with what is to be added there.
 #[derive(Debug)]
-struct Found {
+struct Bounding {
     /// With its unit: two numbers of one operation may have different ones.
-    source: Source,
+    source: NumberSource,
     higher_is_worse: bool,
     spans: Spans,
     bounds: Bounds,
@@ -263,14 +263,14 @@ impl<'t> Bounder<'t> {
     }
 
     /// The number without derivatives: least and largest value in its unit, and whether all are finite.
-    pub fn range(&mut self, asked: &Asked, spans: &Spans) -> (f64, f64) {
+    pub fn range(&mut self, asked: &AskedNumber, spans: &Spans) -> (f64, f64) {
         match asked.source {
-            Source::Known(value) => (value, value),
-            Source::Axis(axis, column) => {
+            NumberSource::Known(value) => (value, value),
+            NumberSource::Axis(axis, column) => {
                 let axis_table = &self.axes.all[axis];
-                Axis::ends(&axis_table.own[column], axis_table.ordered, spans[axis])
+                BoxAxis::ends(&axis_table.own[column], axis_table.ordered, spans[axis])
             }
-            Source::Node(node, _) => {
+            NumberSource::Node(node, _) => {
                 self.values.run(asked, spans);
                 let it = self.values.slots[node as usize];
                 shown(asked.source, it.low, it.high)
@@ -279,8 +279,8 @@ impl<'t> Bounder<'t> {
     }
 
     /// Bounds of the worst over the scenarios that the box spans; what is not asked for is bounded less well.
-    pub fn bounds(&mut self, asked: &Asked, spans: &Spans, wanted: Wanted) -> Bounds {
-        let Source::Node(node, _) = asked.source else { return self.of_axis(asked, spans) };
+    pub fn bounds(&mut self, asked: &AskedNumber, spans: &Spans, wanted: Wanted) -> Bounds {
+        let NumberSource::Node(node, _) = asked.source else { return self.of_axis(asked, spans) };
         let at = self.place_of(asked, spans).unwrap_or_else(|| {
             let found = self.look(asked, node, spans);
             if self.recent.len() < RECENT {
@@ -320,25 +320,25 @@ impl<'t> Bounder<'t> {
     }
 
     /// Are the bounds of a number at hand?
-    pub fn has(&self, asked: &Asked, spans: &Spans) -> bool {
+    pub fn has(&self, asked: &AskedNumber, spans: &Spans) -> bool {
         self.place_of(asked, spans).is_some()
     }
 
-    fn place_of(&self, asked: &Asked, spans: &Spans) -> Option<usize> {
+    fn place_of(&self, asked: &AskedNumber, spans: &Spans) -> Option<usize> {
         self.recent.iter().position(|it| it.source == asked.source && it.higher_is_worse == asked.higher_is_worse && it.spans == *spans)
     }
 
     /// The bounds of an input.
-    fn of_axis(&mut self, asked: &Asked, spans: &Spans) -> Bounds {
+    fn of_axis(&mut self, asked: &AskedNumber, spans: &Spans) -> Bounds {
         let whole = self.range(asked, spans);
         let (mut least, most) = asked.badness(whole);
-        if let Source::Axis(axis, _) = asked.source
+        if let NumberSource::Axis(axis, _) = asked.source
             && axis >= self.axes.designs
         {
             least = most;
         }
         let mut bounds = Bounds { most, least, finite: true, spread: [0.0; AXES], monotone: 0, better_at_last: 0, strict: 0 };
-        if let Source::Axis(axis, column) = asked.source {
+        if let NumberSource::Axis(axis, column) = asked.source {
             let (table, span) = (&self.axes.all[axis], spans[axis]);
             bounds.spread[axis] = whole.1 - whole.0;
             if table.ordered {
@@ -353,7 +353,7 @@ impl<'t> Bounder<'t> {
     }
 
     /// Bounds by the formula over the whole box, and the corners that may tell more.
-    fn look(&mut self, asked: &Asked, node: Node, spans: &Spans) -> Found {
+    fn look(&mut self, asked: &AskedNumber, node: Node, spans: &Spans) -> Bounding {
         let (value, slopes) = self.slopes.slopes(asked, node, spans);
         let mut spread = [0.0; AXES];
         let (mut monotone, mut better_at_last, mut strict) = (0u64, 0u64, 0u64);
@@ -371,7 +371,7 @@ impl<'t> Bounder<'t> {
             let table = &self.axes.all[axis];
             let known = axis < DIRECTIONS && !table.is_joint();
             let slope = if known { slopes[axis] } else { EVERYTHING };
-            let (low, high) = Axis::ends(&table.si[0], table.ordered, spans[axis]);
+            let (low, high) = BoxAxis::ends(&table.si[0], table.ordered, spans[axis]);
             let middle = spans[axis].low + (spans[axis].high - spans[axis].low) / 2;
             spread[axis] = slope.low.abs().max(slope.high.abs()) * (high - low);
             if spread[axis].is_nan() {
@@ -401,7 +401,7 @@ impl<'t> Bounder<'t> {
         let is_known = value.error < f64::INFINITY;
         let margin = |beyond: f64| value.error + beyond * OUTWARD;
         let has_other_scenario = best.0[self.axes.designs..] != spans.0[self.axes.designs..];
-        Found {
+        Bounding {
             source: asked.source,
             higher_is_worse: asked.higher_is_worse,
             spans: *spans,
@@ -413,7 +413,7 @@ impl<'t> Bounder<'t> {
     }
 
     /// Badness over a part of the box, for designs of the whole box that are no better or worse but for rounding.
-    fn corner(&mut self, asked: &Asked, node: Node, spans: &Spans, error: f64) -> (f64, f64) {
+    fn corner(&mut self, asked: &AskedNumber, node: Node, spans: &Spans, error: f64) -> (f64, f64) {
         self.values.run(asked, spans);
         let it = self.values.slots[node as usize];
         asked.badness(shown(asked.source, (it.low - error).next_down(), (it.high + error).next_up()))
@@ -427,6 +427,6 @@ fn or_infinite(value: f64) -> f64 {
 
 /// Ends in the unit that the number is shown in: the conversion never swaps the order of two numbers, and what f64 computes is converted
 /// from a number between the ends.
-fn shown(source: Source, low: f64, high: f64) -> (f64, f64) {
+fn shown(source: NumberSource, low: f64, high: f64) -> (f64, f64) {
     (source.shown(low), source.shown(high))
 }

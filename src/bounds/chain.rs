@@ -4,8 +4,8 @@
 //! way, then for fixed others the output in f64 rises or falls with v, rounding and all: sums, differences, products, quotients, roots,
 //! minima and maxima that IEEE 754 rounds never swap the order of two numbers. No derivative and no margin for errors is needed.
 
-use super::columns::Columns;
-use super::requirement::Source;
+use super::columns::NodeColumns;
+use super::requirement::NumberSource;
 use super::tape::Tape;
 use crate::tape::{Binary, Node, Operation, Unary};
 
@@ -32,7 +32,7 @@ pub struct Chain {
     /// Axes that the others depend on, as a bit set.
     pub other_axes: u64,
     /// The output.
-    pub source: Source,
+    pub source: NumberSource,
 }
 
 /// Longest chain that is followed, and most ways that are looked at.
@@ -41,10 +41,10 @@ const MOST: usize = 4096;
 
 impl Chain {
     /// All chains to an output whose start and others both depend on some of the `varying` axes.
-    pub fn all(tape: &Tape, source: Source, varying: u64) -> Vec<Self> {
+    pub fn all(tape: &Tape, source: NumberSource, varying: u64) -> Vec<Self> {
         let mut found = Vec::new();
         let mut looked = 0;
-        if let Source::Node(node, _) = source {
+        if let NumberSource::Node(node, _) = source {
             follow(tape, node, varying, &mut Vec::new(), &mut looked, &mut |channel, path| {
                 let mut chain = Self { channel, steps: Vec::new(), others: Vec::new(), other_axes: 0, source };
                 for (step, other) in path.iter().rev() {
@@ -92,7 +92,7 @@ impl Chain {
     }
 
     /// The others of one design of the box that columns were computed for.
-    pub fn others_at<'a>(&'a self, columns: &'a Columns<'_>, lane: usize) -> impl Iterator<Item = f64> + 'a {
+    pub fn others_at<'a>(&'a self, columns: &'a NodeColumns<'_>, lane: usize) -> impl Iterator<Item = f64> + 'a {
         self.others.iter().map(move |&other| columns.value(other).at(lane))
     }
 }

@@ -34,7 +34,7 @@ impl Value<'_> {
 
 /// Evaluates a tape over designs; one per thread.
 #[derive(Debug)]
-pub struct Columns<'t> {
+pub struct NodeColumns<'t> {
     tape: &'t Tape,
     axes: &'t Axes,
     /// Per axis: the operations that depend on it alone, operands first.
@@ -57,7 +57,7 @@ pub struct Columns<'t> {
     count: usize,
 }
 
-impl<'t> Columns<'t> {
+impl<'t> NodeColumns<'t> {
     /// An evaluator of a tape.
     pub fn new(tape: &'t Tape, axes: &'t Axes) -> Self {
         let count = tape.list.operations.len();

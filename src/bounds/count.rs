@@ -6,11 +6,11 @@
 
 use super::axes::{AXES, Axes, Span, Spans};
 use super::bounder::Bounder;
-use super::columns::{CHUNK, Columns};
-use super::open::{Bounded, Open, Outcome, decide, each_scenario, over, scenarios};
+use super::columns::{CHUNK, NodeColumns};
+use super::open::{Bounded, Decided, Open, decide, each_scenario, over, scenarios};
 use super::pairing::Pairing;
 use super::pairs::{Instance, Pairs};
-use super::requirement::Source;
+use super::requirement::NumberSource;
 use super::tape::Tape;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -75,12 +75,12 @@ impl Settled {
 
 /// Counts boxes; one per thread.
 #[derive(Debug)]
-pub struct Counter<'t> {
+pub struct BoxCounter<'t> {
     tape: &'t Tape,
     axes: &'t Axes,
     requirements: &'t [Bounded],
     bounder: Bounder<'t>,
-    columns: Columns<'t>,
+    columns: NodeColumns<'t>,
     pairs: Pairs<'t>,
     stop: &'t AtomicBool,
     /// How designs were settled.
@@ -105,7 +105,7 @@ enum Inside {
     Product,
 }
 
-impl<'t> Counter<'t> {
+impl<'t> BoxCounter<'t> {
     /// A counter for a tape.
     pub fn new(tape: &'t Tape, axes: &'t Axes, requirements: &'t [Bounded], stop: &'t AtomicBool) -> Self {
         Self {
@@ -113,7 +113,7 @@ impl<'t> Counter<'t> {
             axes,
             requirements,
             bounder: Bounder::new(tape, axes),
-            columns: Columns::new(tape, axes),
+            columns: NodeColumns::new(tape, axes),
             pairs: Pairs::new(tape, axes, stop),
             stop,
             settled: Settled::default(),
@@ -149,11 +149,11 @@ impl<'t> Counter<'t> {
             }
         };
         let (open, pull) = match decide(self.requirements, &mut self.bounder, self.axes, spans, open) {
-            Outcome::Infeasible => {
+            Decided::Infeasible => {
                 settle(&mut self.settled.infeasible, size);
                 return Some(0);
             }
-            Outcome::Open(open, pull, _) => (open, pull),
+            Decided::Open(open, pull, _) => (open, pull),
         };
         if open.is_empty() {
             settle(&mut self.settled.feasible, size);
@@ -219,7 +219,7 @@ impl<'t> Counter<'t> {
         if scenarios > PAIRED_SCENARIOS {
             return None;
         }
-        let sources: Vec<Source> = open.iter().map(|item| self.requirements[item.requirement].requirement.source).collect();
+        let sources: Vec<NumberSource> = open.iter().map(|item| self.requirements[item.requirement].requirement.source).collect();
         let pairing = Pairing::find(self.tape, self.axes, spans, &sources)?;
         let cost = pairing.cost * scenarios as f64 / open.len() as f64;
         if cost * SAVING > exhaustive || cost > AT_ONCE {
@@ -252,15 +252,15 @@ impl<'t> Counter<'t> {
                 *evaluations += size as u64;
                 let requirement = &it.requirement;
                 match requirement.source {
-                    Source::Known(value) => alive.iter_mut().for_each(|alive| *alive &= requirement.holds(value)),
-                    Source::Axis(axis, column) => {
+                    NumberSource::Known(value) => alive.iter_mut().for_each(|alive| *alive &= requirement.holds(value)),
+                    NumberSource::Axis(axis, column) => {
                         columns.enter(&[], &spans, &varying);
                         for (design, alive) in alive.iter_mut().enumerate() {
                             let level = if axis < axes.designs { columns.levels(design as u64)[axis] } else { spans[axis].low };
                             *alive &= requirement.holds(axes.all[axis].own[column][level as usize]);
                         }
                     }
-                    Source::Node(node, _) => {
+                    NumberSource::Node(node, _) => {
                         columns.enter(&requirement.needed, &spans, &varying);
                         for first in (0..size).step_by(CHUNK) {
                             let count = CHUNK.min(size - first);

@@ -21,21 +21,21 @@ mod tape;
 #[cfg(test)]
 mod tests;
 
-pub use count::{Counter, Settled};
+pub use count::{BoxCounter, Settled};
 pub use search::{Searched, Sought, Worker};
 
 use crate::parallel::on_threads;
 use crate::plan::Plan;
-use crate::reduce::{KeyRule, Needs, Reducers, Reduction, Reported};
+use crate::reduce::{KeyRule, ReducerNeeds, Reducers, Reduction, Reported};
 use crate::screen::{CpuEngine, Tables};
 use crate::study::{Axis, Constraint, Goal, Objective, Quantity, TopSpec};
 use axes::{Axes, Spans};
-use bounder::{Asked, Bounder};
-use open::{Bounded, all_open};
+use bounder::{AskedNumber, Bounder};
+use open::{Bounded, Decided, all_open};
 use pairing::Pairing;
-use pairs::{Best, Pairs};
-use requirement::{Source, Test, requirements};
-use search::{Limit, Product, Search, Target};
+use pairs::{BestPair, Pairs};
+use requirement::{NumberSource, Test, requirements};
+use search::{BoxSearch, ObjectiveProduct, QuotientLimit, Target};
 use serde_json::{Value, json};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -53,7 +53,7 @@ pub fn refusal(plan: &Plan) -> Option<String> {
     if study.design.iter().any(|axis| matches!(axis, Axis::Joint { .. })) {
         return Some("cases in [design] are single designs, and bounds need a grid".to_owned());
     }
-    if let Some(why) = Reported::needs(&study.report).into_iter().find_map(Needs::beyond_bounds) {
+    if let Some(why) = Reported::needs(&study.report).into_iter().find_map(ReducerNeeds::beyond_bounds) {
         return Some(why.to_owned());
     }
     if study.report.variants {
@@ -65,9 +65,24 @@ pub fn refusal(plan: &Plan) -> Option<String> {
     None
 }
 
+/// Where a search looks, and who follows it.
+#[derive(Clone, Copy)]
+pub struct SearchJob<'a> {
+    /// The study.
+    pub plan: &'a Plan,
+    /// What keeps the designs that are found.
+    pub reduction: &'a Reduction,
+    /// Positions of the designs that are searched.
+    pub range: &'a Range<u64>,
+    /// Ends the search.
+    pub stop: &'a AtomicBool,
+    /// Is told how many designs were settled.
+    pub progress: &'a (dyn Fn(u64) + Sync),
+}
+
 /// A study laid out for bounds.
 #[derive(Debug)]
-pub struct Layout {
+pub struct BoundedStudy {
     axes: Axes,
     tape: Tape,
     requirements: Vec<Bounded>,
@@ -75,7 +90,7 @@ pub struct Layout {
     pub most_points: u64,
 }
 
-impl Layout {
+impl BoundedStudy {
     /// Lays out a plan; `None` if bounds cannot serve it, see [`refusal`].
     pub fn new(plan: &Plan) -> Option<Self> {
         if refusal(plan).is_some() {
@@ -84,7 +99,7 @@ impl Layout {
         let axes = Axes::new(plan)?;
         let tape = Tape::new(plan, &axes)?;
         let bounded = |requirement: requirement::Requirement| {
-            let asked = Asked::new(&tape, requirement.source, matches!(requirement.test, Test::High(..)));
+            let asked = AskedNumber::new(&tape, requirement.source, matches!(requirement.test, Test::High(..)));
             Bounded { requirement, asked }
         };
         let requirements = requirements(plan, &tape, &axes).into_iter().map(bounded).collect();
@@ -93,8 +108,8 @@ impl Layout {
     }
 
     /// A counter for one thread.
-    pub fn counter<'a>(&'a self, stop: &'a AtomicBool) -> Counter<'a> {
-        Counter::new(&self.tape, &self.axes, &self.requirements, stop)
+    pub fn counter<'a>(&'a self, stop: &'a AtomicBool) -> BoxCounter<'a> {
+        BoxCounter::new(&self.tape, &self.axes, &self.requirements, stop)
     }
 
     /// What a thread searches with.
@@ -103,7 +118,7 @@ impl Layout {
     }
 
     /// Feasible designs at a range of positions; `None` if it was stopped.
-    pub fn count(&self, counter: &mut Counter<'_>, range: &Range<u64>) -> Option<u64> {
+    pub fn count(&self, counter: &mut BoxCounter<'_>, range: &Range<u64>) -> Option<u64> {
         let open = all_open(&self.requirements, &self.axes);
         let mut total = 0;
         for spans in self.axes.boxes(range) {
@@ -129,28 +144,16 @@ impl Layout {
     }
 
     /// Searches a range of positions and takes what it finds into `found`; `None` if it was stopped, or the front has more than
-    /// [`Layout::most_points`].
-    #[allow(clippy::too_many_arguments, reason = "what a search needs")]
-    pub fn search(
-        &self,
-        plan: &Plan,
-        reduction: &Reduction,
-        sought: Sought,
-        range: &Range<u64>,
-        workers: &mut [Worker<'_>],
-        found: &mut Reducers,
-        stop: &AtomicBool,
-        progress: &(dyn Fn(u64) + Sync),
-    ) -> Option<Searched> {
+    /// [`BoundedStudy::most_points`].
+    pub fn search(&self, job: SearchJob<'_>, sought: Sought, workers: &mut [Worker<'_>], found: &mut Reducers) -> Option<Searched> {
+        let SearchJob { plan, reduction, range, stop, progress } = job;
         let roots = self.axes.boxes(range);
         let targets = self.targets(plan, sought);
-        if let Sought::Extreme { objective, largest } = sought
-            && let Some(searched) = self.extreme_of_pairs(reduction, objective, largest, &targets[0], &roots, workers, found, stop)
-        {
+        if let Some(searched) = self.extreme_of_pairs(job, sought, &targets[0], &roots, workers, found) {
             progress(range.end - range.start);
             return (!stop.load(Ordering::Relaxed)).then_some(searched);
         }
-        let search = Search {
+        let search = BoxSearch {
             axes: &self.axes,
             range,
             requirements: &self.requirements,
@@ -171,8 +174,8 @@ impl Layout {
 
     fn targets(&self, plan: &Plan, sought: Sought) -> Vec<Target> {
         let target = |objective: &Objective, at_the_bad_end: bool| {
-            let source = Source::of(objective.quantity, plan, &self.tape);
-            let asked = Asked::new(&self.tape, source, objective.goal == Goal::Min);
+            let source = NumberSource::of(objective.quantity, plan, &self.tape);
+            let asked = AskedNumber::new(&self.tape, source, objective.goal == Goal::Min);
             let limits = self.limits(plan, objective.quantity, asked.higher_is_worse == at_the_bad_end);
             Target { asked, rule: KeyRule::from(objective), at_the_bad_end, limits }
         };
@@ -190,7 +193,7 @@ impl Layout {
     }
 
     /// A product or quotient of two outputs, if factors cancel and scenarios do not matter; with what takes it to their units.
-    fn merit(&self, plan: &Plan, merit: Merit) -> Option<(Asked, f64)> {
+    fn merit(&self, plan: &Plan, merit: Merit) -> Option<(AskedNumber, f64)> {
         let &(_, node) = self.tape.merits.iter().find(|(it, _)| *it == merit)?;
         let outputs = [merit.first, merit.second];
         let all = outputs.iter().filter_map(|(output, _)| self.tape.outputs[*output]).chain([node]);
@@ -202,11 +205,11 @@ impl Layout {
             let own = plan.study.model.outputs[output].unit.from_si(1.0);
             if is_above { unit * own } else { unit / own }
         });
-        Some((Asked::new(&self.tape, Source::Node(node, None), true), unit))
+        Some((AskedNumber::new(&self.tape, NumberSource::Node(node, None), true), unit))
     }
 
     /// The product of two objectives that are compared as they are.
-    fn product(&self, plan: &Plan) -> Option<Product> {
+    fn product(&self, plan: &Plan) -> Option<ObjectiveProduct> {
         let [a, b] = &plan.study.objectives[..] else { return None };
         let (Quantity::Output(first), Quantity::Output(second)) = (a.quantity, b.quantity) else { return None };
         if a.resolution.is_some() || b.resolution.is_some() {
@@ -214,38 +217,37 @@ impl Layout {
         }
         let largest = [a.goal == Goal::Max, b.goal == Goal::Max];
         let (asked, unit) = self.merit(plan, Merit { first: (first, largest[0]), second: (second, largest[1]) })?;
-        Some(Product { asked, unit, largest })
+        Some(ObjectiveProduct { asked, unit, largest })
     }
 
     /// What limits a quantity of which large (or small) values are sought.
-    fn limits(&self, plan: &Plan, quantity: Quantity, is_large_sought: bool) -> Vec<Limit> {
+    fn limits(&self, plan: &Plan, quantity: Quantity, is_large_sought: bool) -> Vec<QuotientLimit> {
         let Quantity::Output(first) = quantity else { return Vec::new() };
         let limit = |constraint: &Constraint| {
             let Quantity::Output(second) = constraint.quantity else { return None };
             let (bound, _) = if is_large_sought { constraint.high } else { constraint.low }?;
             let (quotient, unit) = self.merit(plan, Merit { first: (first, is_large_sought), second: (second, !is_large_sought) })?;
-            let limited = Asked::new(&self.tape, Source::of(constraint.quantity, plan, &self.tape), false);
+            let limited = AskedNumber::new(&self.tape, NumberSource::of(constraint.quantity, plan, &self.tape), false);
             // A quotient of the better over the worse: for small values it stands in the denominator.
-            Some(Limit { quotient, limited, bound: if is_large_sought { bound * unit } else { bound / unit } })
+            Some(QuotientLimit { quotient, limited, bound: if is_large_sought { bound * unit } else { bound / unit } })
         };
         plan.study.constraints.iter().filter_map(limit).collect()
     }
 
     /// The extreme of a number that a requirement cuts off at that very end: almost every box on the cut might hold it, so bounds alone
     /// would not get far. Pairs find it while they count; `None` if the study is not made of pairs.
-    #[allow(clippy::too_many_arguments, reason = "what a search needs")]
     fn extreme_of_pairs(
         &self,
-        reduction: &Reduction,
-        objective: usize,
-        largest: bool,
+        job: SearchJob<'_>,
+        sought: Sought,
         target: &Target,
         roots: &[Spans],
         workers: &mut [Worker<'_>],
         found: &mut Reducers,
-        stop: &AtomicBool,
     ) -> Option<Searched> {
-        let Source::Node(node, _) = target.asked.source else { return None };
+        let Sought::Extreme { objective, largest } = sought else { return None };
+        let SearchJob { reduction, stop, .. } = job;
+        let NumberSource::Node(node, _) = target.asked.source else { return None };
         let cuts = |it: &&Bounded| it.requirement.source == target.asked.source && matches!(it.requirement.test, Test::High(..)) == largest;
         // What comes near a bound of 0 has a small factor, and boxes do tell where that is.
         let is_far = |it: &&Bounded| matches!(it.requirement.test, Test::High(bound, _) | Test::Low(bound, _) if bound != 0.0);
@@ -258,20 +260,20 @@ impl Layout {
         let held = if largest { found.extremes.largest[objective] } else { found.extremes.least[objective] };
         let beyond = if largest { f64::NEG_INFINITY } else { f64::INFINITY };
         let mut best =
-            held.map_or(Best { largest, value: beyond, index: u64::MAX }, |it| Best { largest, value: it.value, index: it.index });
+            held.map_or(BestPair { largest, value: beyond, index: u64::MAX }, |it| BestPair { largest, value: it.value, index: it.index });
         let mut planned = Vec::new();
         for spans in roots {
             searched.boxes += 1;
             let open = all_open(&self.requirements, &self.axes);
             let open = match open::decide(&self.requirements, &mut workers[0].bounder, &self.axes, spans, &open) {
-                open::Outcome::Infeasible => {
+                Decided::Infeasible => {
                     searched.infeasible += self.axes.count(spans);
                     continue;
                 }
-                open::Outcome::Open(open, ..) => open,
+                Decided::Open(open, ..) => open,
             };
-            let sources: Vec<Source> = open.iter().map(|it| self.requirements[it.requirement].requirement.source).collect();
-            let sources: Vec<Source> = sources.into_iter().chain([target.asked.source]).collect();
+            let sources: Vec<NumberSource> = open.iter().map(|it| self.requirements[it.requirement].requirement.source).collect();
+            let sources: Vec<NumberSource> = sources.into_iter().chain([target.asked.source]).collect();
             let pairing = Pairing::find(&self.tape, &self.axes, spans, &sources)?;
             if !pairing.is_through_both(open.len()) || pairing.cost > self.axes.count(spans) as f64 || pairing.cost > PAIRED_EXTREME {
                 return None;

@@ -1,7 +1,7 @@
 //! Requirements that are not decided yet over a box of designs, each with the scenarios that still matter.
 
 use super::axes::{Axes, Span, Spans};
-use super::bounder::{Asked, Bounder, Bounds, Wanted};
+use super::bounder::{AskedNumber, Bounder, Bounds, Wanted};
 use super::requirement::{Requirement, Test};
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ pub struct Bounded {
     /// What is required.
     pub requirement: Requirement,
     /// Its number, worse in the direction of the bound.
-    pub asked: Asked,
+    pub asked: AskedNumber,
 }
 
 /// A requirement that some design of a box may violate in some of these scenarios.
@@ -27,16 +27,16 @@ pub struct Open {
 }
 
 /// What became of the requirements over a box.
-pub enum Outcome {
+pub enum Decided {
     /// Every design of the box violates one of them in some scenario.
     Infeasible,
     /// These are open; how much every axis moves them is summed up, relative to what is left to decide; and where they hold better.
-    Open(Vec<Open>, [f64; super::axes::AXES], Ends),
+    Open(Vec<Open>, [f64; super::axes::AXES], BetterEnds),
 }
 
 /// Ends of axes that are better in every respect.
 #[derive(Clone, Copy, Debug)]
-pub struct Ends {
+pub struct BetterEnds {
     /// Axes whose first level is no worse than any other, as a bit set.
     pub first: u64,
     /// Axes whose last level is.
@@ -45,12 +45,12 @@ pub struct Ends {
     pub strict: u64,
 }
 
-impl Ends {
+impl BetterEnds {
     /// Before anything was asked for.
     pub const ANY: Self = Self { first: u64::MAX, last: u64::MAX, strict: 0 };
 
     /// Narrows them down by one more number. `strictly`: does being better in it make up for a higher index?
-    pub fn narrow(&mut self, asked: &Asked, bounds: &Bounds, worse_is_sought: bool, strictly: bool) {
+    pub fn narrow(&mut self, asked: &AskedNumber, bounds: &Bounds, worse_is_sought: bool, strictly: bool) {
         // What has no part in a number leaves it as it is, bit by bit; elsewhere f64 must not swap two levels.
         let untouched = !asked.axis_set();
         let last = bounds.strict & if worse_is_sought { !bounds.better_at_last } else { bounds.better_at_last };
@@ -88,10 +88,10 @@ pub fn all_open(requirements: &[Bounded], axes: &Axes) -> Vec<Open> {
 }
 
 /// Bounds the open requirements over a box.
-pub fn decide(requirements: &[Bounded], bounder: &mut Bounder<'_>, axes: &Axes, designs: &Spans, open: &[Open]) -> Outcome {
+pub fn decide(requirements: &[Bounded], bounder: &mut Bounder<'_>, axes: &Axes, designs: &Spans, open: &[Open]) -> Decided {
     let mut left = Vec::new();
     let mut pull = [0.0; super::axes::AXES];
-    let mut ends = Ends::ANY;
+    let mut ends = BetterEnds::ANY;
     for item in open {
         let it = &requirements[item.requirement];
         // The scenarios that are left: mostly the same as before.
@@ -107,7 +107,7 @@ pub fn decide(requirements: &[Bounded], bounder: &mut Bounder<'_>, axes: &Axes, 
                     continue;
                 }
                 if violated(it.requirement.test, low, high) {
-                    return Outcome::Infeasible;
+                    return Decided::Infeasible;
                 }
             }
             let bounds = bounder.bounds(&it.asked, &spans, Wanted::Both);
@@ -117,7 +117,7 @@ pub fn decide(requirements: &[Bounded], bounder: &mut Bounder<'_>, axes: &Axes, 
                 continue;
             }
             if !matches!(it.requirement.test, Test::Finite) && !it.requirement.test.holds(best) && !best.is_nan() {
-                return Outcome::Infeasible;
+                return Decided::Infeasible;
             }
             add_pull(&mut pull, &bounds, &spans, axes);
             if matches!(it.requirement.test, Test::Finite) {
@@ -148,7 +148,7 @@ pub fn decide(requirements: &[Bounded], bounder: &mut Bounder<'_>, axes: &Axes, 
             Some(cover) => left.push(Open { requirement: item.requirement, cover: cover.into() }),
         }
     }
-    Outcome::Open(left, pull, ends)
+    Decided::Open(left, pull, ends)
 }
 
 /// Does every number between two ends violate the test?
@@ -196,7 +196,7 @@ pub fn worst_scenarios(part: &Spans, bounds: &Bounds, axes: &Axes) -> Spans {
 }
 
 /// The scenario axis that a box of scenarios should be cut along, if the scenarios leave more open than the designs do.
-pub fn scenario_to_split(asked: &Asked, bounds: &Bounds, spans: &Spans, axes: &Axes) -> Option<usize> {
+pub fn scenario_to_split(asked: &AskedNumber, bounds: &Bounds, spans: &Spans, axes: &Axes) -> Option<usize> {
     let all = axes.all.len();
     let undecided = |axis: &usize| asked.axis_set() >> axis & 1 == 1 && !spans[*axis].is_single() && bounds.monotone >> axis & 1 == 0;
     let widest = (axes.designs..all).filter(undecided).max_by(|a, b| bounds.spread[*a].total_cmp(&bounds.spread[*b]))?;
@@ -207,7 +207,7 @@ pub fn scenario_to_split(asked: &Asked, bounds: &Bounds, spans: &Spans, axes: &A
 }
 
 /// The scenarios of all boxes of a cover, one by one.
-pub fn each_scenario(cover: &[Spans], asked: &Asked, axes: &Axes, mut each: impl FnMut(Spans)) {
+pub fn each_scenario(cover: &[Spans], asked: &AskedNumber, axes: &Axes, mut each: impl FnMut(Spans)) {
     for part in cover {
         let mut at = *part;
         let moving: Vec<usize> = (axes.designs..axes.all.len()).filter(|&axis| asked.axis_set() >> axis & 1 == 1).collect();
@@ -229,7 +229,7 @@ pub fn each_scenario(cover: &[Spans], asked: &Asked, axes: &Axes, mut each: impl
 }
 
 /// How many scenarios a cover has, of those that make a difference to the number.
-pub fn scenarios(cover: &[Spans], asked: &Asked, axes: &Axes) -> u64 {
+pub fn scenarios(cover: &[Spans], asked: &AskedNumber, axes: &Axes) -> u64 {
     let differing = |part: &Spans| -> u64 {
         (axes.designs..axes.all.len()).filter(|&axis| asked.axis_set() >> axis & 1 == 1).map(|axis| part[axis].count()).product()
     };

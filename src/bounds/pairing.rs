@@ -2,7 +2,7 @@
 
 use super::axes::{AXES, Axes, Span, Spans};
 use super::chain::Chain;
-use super::requirement::Source;
+use super::requirement::NumberSource;
 use super::tape::Tape;
 use crate::tape::Node;
 
@@ -13,7 +13,7 @@ const THRESHOLD: f64 = 150.0;
 
 /// How a number is made of the two groups.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Role {
+pub enum PairRole {
     /// Of neither.
     Outer,
     /// Of the first alone.
@@ -34,7 +34,7 @@ pub struct Pairing {
     /// Axes of the second group.
     pub second: Vec<usize>,
     /// Of every number asked for: how it is made of the two.
-    pub roles: Vec<Role>,
+    pub roles: Vec<PairRole>,
     /// About how many operations of f64 it takes, for one scenario.
     pub cost: f64,
 }
@@ -45,7 +45,7 @@ fn list(set: u64) -> Vec<usize> {
 
 impl Pairing {
     /// The cheapest way to see the numbers asked for as made of two groups of the axes that vary in a box.
-    pub fn find(tape: &Tape, axes: &Axes, spans: &Spans, sources: &[Source]) -> Option<Self> {
+    pub fn find(tape: &Tape, axes: &Axes, spans: &Spans, sources: &[NumberSource]) -> Option<Self> {
         let varying = (0..axes.designs).filter(|&axis| !spans[axis].is_single()).fold(0u64, |set, axis| set | 1 << axis);
         let widest = sources.iter().max_by_key(|source| (source.axes(tape) & varying).count_ones())?;
         let mut best: Option<Self> = None;
@@ -61,7 +61,7 @@ impl Pairing {
 
     /// Is the number in this role made of both groups?
     pub fn is_through_both(&self, role: usize) -> bool {
-        matches!(self.roles[role], Role::Both(_))
+        matches!(self.roles[role], PairRole::Both(_))
     }
 
     /// A box in about so many parts that can be counted apart at no greater cost.
@@ -80,7 +80,7 @@ impl Pairing {
     }
 
     /// The groups that one chain suggests.
-    fn about(tape: &Tape, spans: &Spans, sources: &[Source], varying: u64, chain: &Chain) -> Option<Self> {
+    fn about(tape: &Tape, spans: &Spans, sources: &[NumberSource], varying: u64, chain: &Chain) -> Option<Self> {
         let (start, others) = (tape.axes[chain.channel as usize] & varying, chain.other_axes & varying);
         let mut outer = start & others;
         let (first, second) = (start & !outer, others & !outer);
@@ -93,16 +93,16 @@ impl Pairing {
             let own = source.axes(tape) & varying;
             outer |= own & !(first | second);
             roles.push(if within(own, outer, 0) {
-                Role::Outer
+                PairRole::Outer
             } else if within(own, outer, first) {
-                Role::First
+                PairRole::First
             } else if within(own, outer, second) {
-                Role::Second
+                PairRole::Second
             } else {
                 let fits = |it: &Chain| within(tape.axes[it.channel as usize], outer, first) && within(it.other_axes, outer, second);
                 let same = |it: &&Chain| it.channel == chain.channel && fits(it);
                 let all = Chain::all(tape, source, varying);
-                Role::Both(all.iter().find(same).or_else(|| all.iter().find(|it| fits(it)))?.clone())
+                PairRole::Both(all.iter().find(same).or_else(|| all.iter().find(|it| fits(it)))?.clone())
             });
         }
         let size = |set: u64| list(set).into_iter().map(|axis| spans[axis].count()).product::<u64>();
@@ -110,7 +110,7 @@ impl Pairing {
             return None;
         }
         let needed = |nodes: &[Node]| tape.list.needed_by(nodes).len() as f64;
-        let both: Vec<&Chain> = roles.iter().filter_map(|role| if let Role::Both(chain) = role { Some(chain) } else { None }).collect();
+        let both: Vec<&Chain> = roles.iter().filter_map(|role| if let PairRole::Both(chain) = role { Some(chain) } else { None }).collect();
         let channels: Vec<Node> = both.iter().map(|chain| chain.channel).collect();
         let of_others: Vec<Node> = both.iter().flat_map(|chain| chain.others.iter().copied()).collect();
         let per_first = needed(&channels) + 10.0;

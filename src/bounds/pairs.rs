@@ -6,9 +6,9 @@
 
 use super::axes::{Axes, Span, Spans};
 use super::chain::Chain;
-use super::columns::{CHUNK, Columns};
-use super::pairing::{Pairing, Role};
-use super::requirement::{Requirement, Source};
+use super::columns::{CHUNK, NodeColumns};
+use super::pairing::{PairRole, Pairing};
+use super::requirement::{NumberSource, Requirement};
 use super::sorted::Buckets;
 use super::tape::Tape;
 use crate::tape::Node;
@@ -27,7 +27,7 @@ pub struct Instance<'a> {
 
 /// The most extreme value of a number over feasible designs, and the lowest index of a design that has it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Best {
+pub struct BestPair {
     /// Is the largest sought, or the least?
     pub largest: bool,
     /// The value so far; beyond it something is to be found.
@@ -36,7 +36,7 @@ pub struct Best {
     pub index: u64,
 }
 
-impl Best {
+impl BestPair {
     /// Would this be better, or the same at a lower index?
     pub fn beats(&self, value: f64, index: u64) -> bool {
         let further = if self.largest { value > self.value } else { value < self.value };
@@ -45,6 +45,14 @@ impl Best {
     fn reaches(&self, value: f64) -> bool {
         if self.largest { value >= self.value } else { value <= self.value }
     }
+}
+
+/// What is counted: the pairs of a box, and what is known of each member of the second group.
+struct Listed<'a> {
+    pairing: &'a Pairing,
+    spans: &'a Spans,
+    instances: &'a [Instance<'a>],
+    links: Vec<Link>,
 }
 
 /// A chain in one scenario: where its starts and its others are.
@@ -74,7 +82,7 @@ struct Channel {
 pub struct Pairs<'t> {
     tape: &'t Tape,
     axes: &'t Axes,
-    columns: Columns<'t>,
+    columns: NodeColumns<'t>,
     /// Members of the first group that are not out by themselves.
     members: Vec<u32>,
     /// Evaluations so far, of members of either group.
@@ -85,12 +93,12 @@ pub struct Pairs<'t> {
 impl<'t> Pairs<'t> {
     /// A counter for a tape; what it says after `stop` was set means nothing.
     pub fn new(tape: &'t Tape, axes: &'t Axes, stop: &'t AtomicBool) -> Self {
-        Self { tape, axes, columns: Columns::new(tape, axes), members: Vec::new(), evaluated: 0, stop }
+        Self { tape, axes, columns: NodeColumns::new(tape, axes), members: Vec::new(), evaluated: 0, stop }
     }
 
     /// How many designs of a box satisfy all instances; looks for the `best` value of the number in role `goal` on the way, if asked to.
     /// Axes that do not vary in what is asked stay at their first level and count once.
-    pub fn count(&mut self, pairing: &Pairing, spans: &Spans, instances: &[Instance<'_>], mut best: Option<(usize, &mut Best)>) -> u64 {
+    pub fn count(&mut self, pairing: &Pairing, spans: &Spans, instances: &[Instance<'_>], mut best: Option<(usize, &mut BestPair)>) -> u64 {
         let mut total = 0;
         let mut at = *spans;
         pairing.outer.iter().for_each(|&axis| at[axis] = Span::at(spans[axis].low));
@@ -109,9 +117,9 @@ impl<'t> Pairs<'t> {
     }
 
     /// The same with the shared axes at one level.
-    fn count_at(&mut self, pairing: &Pairing, spans: &Spans, instances: &[Instance<'_>], best: Option<(usize, &mut Best)>) -> u64 {
+    fn count_at(&mut self, pairing: &Pairing, spans: &Spans, instances: &[Instance<'_>], best: Option<(usize, &mut BestPair)>) -> u64 {
         let scenarios = scenarios_of(instances, self.axes);
-        for instance in instances.iter().filter(|it| pairing.roles[it.role] == Role::Outer) {
+        for instance in instances.iter().filter(|it| pairing.roles[it.role] == PairRole::Outer) {
             if !self.holds_for_one(spans, instance) {
                 return 0;
             }
@@ -123,23 +131,23 @@ impl<'t> Pairs<'t> {
         let (alive, links) = self.list_second(pairing, spans, instances, &scenarios, &channels);
         let second: Vec<usize> = (0..alive.len()).filter(|&member| alive[member]).collect();
         let goal = best.and_then(|(role, best)| match &pairing.roles[role] {
-            Role::Both(chain) => {
+            PairRole::Both(chain) => {
                 let channel = channels.iter().position(|it| it.node == chain.channel)?;
                 let (_, others) = self.others_of(pairing, spans, chain, &scenarios[channels[channel].scenario]);
-                Some(Goal { chain, channel, others, best })
+                Some(PairGoal { chain, channel, others, best })
             }
             _ => None,
         });
-        self.count_members(pairing, spans, instances, &mut channels, &links, &second, goal)
+        self.count_members(&Listed { pairing, spans, instances, links }, &mut channels, &second, goal)
     }
 
     /// Does a requirement hold that no varying axis but the shared ones has to do with?
     fn holds_for_one(&mut self, spans: &Spans, instance: &Instance<'_>) -> bool {
         let spans = with_scenario(spans, &instance.scenario, self.axes);
         let value = match instance.requirement.source {
-            Source::Known(value) => value,
-            Source::Axis(axis, column) => self.axes.all[axis].own[column][spans[axis].low as usize],
-            Source::Node(node, _) => {
+            NumberSource::Known(value) => value,
+            NumberSource::Axis(axis, column) => self.axes.all[axis].own[column][spans[axis].low as usize],
+            NumberSource::Node(node, _) => {
                 self.columns.enter(&instance.requirement.needed, &spans, &[]);
                 instance.requirement.source.shown(self.columns.value(node).at(0))
             }
@@ -163,17 +171,17 @@ impl<'t> Pairs<'t> {
         for (number, scenario) in scenarios.iter().enumerate() {
             let here: Vec<&Instance<'_>> = instances.iter().filter(|it| same_scenario(&it.scenario, scenario, self.axes)).collect();
             let masks: Vec<&Requirement> =
-                here.iter().filter(|it| pairing.roles[it.role] == Role::First).map(|it| it.requirement).collect();
+                here.iter().filter(|it| pairing.roles[it.role] == PairRole::First).map(|it| it.requirement).collect();
             let roles = here.iter().map(|it| it.role).chain(goal.filter(|_| number == 0));
             let mut starts: Vec<Node> = Vec::new();
             for role in roles {
-                if let Role::Both(chain) = &pairing.roles[role]
+                if let PairRole::Both(chain) = &pairing.roles[role]
                     && !starts.contains(&chain.channel)
                 {
                     starts.push(chain.channel);
                 }
             }
-            let asked = masks.iter().filter_map(|it| if let Source::Node(node, _) = it.source { Some(node) } else { None });
+            let asked = masks.iter().filter_map(|it| if let NumberSource::Node(node, _) = it.source { Some(node) } else { None });
             let needed = self.tape.list.needed_by(&asked.chain(starts.iter().copied()).collect::<Vec<_>>());
             let from = channels.len();
             channels.extend(starts.iter().map(|&node| Channel {
@@ -213,19 +221,19 @@ impl<'t> Pairs<'t> {
     fn judge(&self, requirements: &[&Requirement], first: usize, alive: &mut [bool]) {
         for requirement in requirements {
             match requirement.source {
-                Source::Node(node, _) => {
+                NumberSource::Node(node, _) => {
                     let value = self.columns.value(node);
                     for (lane, alive) in alive.iter_mut().enumerate() {
                         *alive &= requirement.holds(requirement.source.shown(value.at(lane)));
                     }
                 }
-                Source::Axis(axis, column) => {
+                NumberSource::Axis(axis, column) => {
                     for (lane, alive) in alive.iter_mut().enumerate() {
                         let level = self.columns.levels((first + lane) as u64)[axis];
                         *alive &= requirement.holds(self.axes.all[axis].own[column][level as usize]);
                     }
                 }
-                Source::Known(value) => alive.iter_mut().for_each(|alive| *alive &= requirement.holds(value)),
+                NumberSource::Known(value) => alive.iter_mut().for_each(|alive| *alive &= requirement.holds(value)),
             }
         }
     }
@@ -245,10 +253,10 @@ impl<'t> Pairs<'t> {
         for (number, scenario) in scenarios.iter().enumerate() {
             let here = |it: &&Instance<'_>| same_scenario(&it.scenario, scenario, self.axes);
             let masks: Vec<&Requirement> =
-                instances.iter().filter(here).filter(|it| pairing.roles[it.role] == Role::Second).map(|it| it.requirement).collect();
+                instances.iter().filter(here).filter(|it| pairing.roles[it.role] == PairRole::Second).map(|it| it.requirement).collect();
             if !masks.is_empty() {
                 let asked: Vec<Node> =
-                    masks.iter().filter_map(|it| if let Source::Node(node, _) = it.source { Some(node) } else { None }).collect();
+                    masks.iter().filter_map(|it| if let NumberSource::Node(node, _) = it.source { Some(node) } else { None }).collect();
                 let needed = self.tape.list.needed_by(&asked);
                 self.columns.enter(&needed, &with_scenario(spans, scenario, self.axes), &pairing.second);
                 self.evaluated += size as u64;
@@ -259,7 +267,7 @@ impl<'t> Pairs<'t> {
                 }
             }
             for (at, instance) in instances.iter().enumerate().filter(|(_, it)| same_scenario(&it.scenario, scenario, self.axes)) {
-                if let Role::Both(chain) = &pairing.roles[instance.role] {
+                if let PairRole::Both(chain) = &pairing.roles[instance.role] {
                     let channel = channels.iter().position(|it| it.node == chain.channel && it.scenario == number);
                     let (width, others) = self.others_of(pairing, spans, chain, scenario);
                     links.push(Link { instance: at, channel: channel.expect("every chain's start was listed"), others, width });
@@ -288,17 +296,8 @@ impl<'t> Pairs<'t> {
     }
 
     /// Counts the pairs, member by member of the second group.
-    #[allow(clippy::too_many_arguments, reason = "all that was listed before")]
-    fn count_members(
-        &self,
-        pairing: &Pairing,
-        spans: &Spans,
-        instances: &[Instance<'_>],
-        channels: &mut [Channel],
-        links: &[Link],
-        second: &[usize],
-        mut goal: Option<Goal<'_>>,
-    ) -> u64 {
+    fn count_members(&self, listed: &Listed<'_>, channels: &mut [Channel], second: &[usize], mut goal: Option<PairGoal<'_>>) -> u64 {
+        let Listed { pairing, spans, instances, links } = listed;
         let mut total = 0;
         // Of every channel: between which starts all is well.
         let mut limits = vec![(f64::NEG_INFINITY, f64::INFINITY); channels.len()];
@@ -308,7 +307,7 @@ impl<'t> Pairs<'t> {
             unclear.clear();
             for (number, link) in links.iter().enumerate() {
                 let (channel, requirement) = (&channels[link.channel], instances[link.instance].requirement);
-                let Role::Both(chain) = &pairing.roles[instances[link.instance].role] else { continue };
+                let PairRole::Both(chain) = &pairing.roles[instances[link.instance].role] else { continue };
                 let others = &link.others[member * link.width..][..link.width];
                 let (low, high) = channel.ends;
                 let Some(ends) = chain.ends(low, high, others).filter(|_| channel.finite) else {
@@ -335,10 +334,7 @@ impl<'t> Pairs<'t> {
                 (Some(only), None, true) => channels[only].within(limits[only]),
                 _ => {
                     let all = 0..self.members.len();
-                    all.filter(|&at| {
-                        is_inside(channels, &limits, at) && self.is_clear(pairing, instances, channels, links, &unclear, member, at)
-                    })
-                    .count() as u64
+                    all.filter(|&at| is_inside(channels, &limits, at) && listed.is_clear(channels, &unclear, member, at)).count() as u64
                 }
             };
             total += found;
@@ -347,7 +343,7 @@ impl<'t> Pairs<'t> {
                 && goal.may_improve(channels, &limits, member)
             {
                 for at in 0..self.members.len() {
-                    if is_inside(channels, &limits, at) && self.is_clear(pairing, instances, channels, links, &unclear, member, at) {
+                    if is_inside(channels, &limits, at) && listed.is_clear(channels, &unclear, member, at) {
                         let value = goal.value(channels, member, at);
                         if goal.best.reaches(value) {
                             let index = self.index(pairing, spans, u64::from(self.members[at]), member as u64);
@@ -360,26 +356,6 @@ impl<'t> Pairs<'t> {
             }
         }
         total
-    }
-
-    /// Does a pair satisfy what no threshold was found for?
-    #[allow(clippy::too_many_arguments, reason = "all that was listed before")]
-    fn is_clear(
-        &self,
-        pairing: &Pairing,
-        instances: &[Instance<'_>],
-        channels: &[Channel],
-        links: &[Link],
-        unclear: &[usize],
-        member: usize,
-        at: usize,
-    ) -> bool {
-        unclear.iter().all(|&number| {
-            let link = &links[number];
-            let Role::Both(chain) = &pairing.roles[instances[link.instance].role] else { return true };
-            let value = chain.value(channels[link.channel].values[at], &link.others[member * link.width..][..link.width]);
-            instances[link.instance].requirement.holds(value)
-        })
     }
 
     /// The design index of a pair.
@@ -395,15 +371,28 @@ impl<'t> Pairs<'t> {
     }
 }
 
+impl Listed<'_> {
+    /// Does a pair satisfy what no threshold was found for?
+    fn is_clear(&self, channels: &[Channel], unclear: &[usize], member: usize, at: usize) -> bool {
+        unclear.iter().all(|&number| {
+            let link = &self.links[number];
+            let instance = &self.instances[link.instance];
+            let PairRole::Both(chain) = &self.pairing.roles[instance.role] else { return true };
+            let value = chain.value(channels[link.channel].values[at], &link.others[member * link.width..][..link.width]);
+            instance.requirement.holds(value)
+        })
+    }
+}
+
 /// What is sought besides the count.
-struct Goal<'a> {
+struct PairGoal<'a> {
     chain: &'a Chain,
     channel: usize,
     others: Vec<f64>,
-    best: &'a mut Best,
+    best: &'a mut BestPair,
 }
 
-impl Goal<'_> {
+impl PairGoal<'_> {
     fn others(&self, member: usize) -> &[f64] {
         let width = self.chain.others.len();
         &self.others[member * width..][..width]
@@ -535,7 +524,7 @@ mod tests {
 
     /// A threshold of a function, and how often it was asked for.
     fn found(test: Test, good: f64, bad: f64, function: fn(f64) -> f64) -> (f64, u32) {
-        let requirement = Requirement { source: Source::Known(0.0), test, finite: false, needed: Vec::new() };
+        let requirement = Requirement { source: NumberSource::Known(0.0), test, finite: false, needed: Vec::new() };
         let asked = Cell::new(0);
         let counted = |start| {
             asked.set(asked.get() + 1);

@@ -35,7 +35,7 @@ impl Test {
 
 /// Where a number comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Source {
+pub enum NumberSource {
     /// The same for all.
     Known(f64),
     /// An input, in its unit: axis and column.
@@ -44,7 +44,7 @@ pub enum Source {
     Node(Node, Option<Unit>),
 }
 
-impl Source {
+impl NumberSource {
     /// A quantity of a plan.
     pub fn of(quantity: Quantity, plan: &Plan, tape: &Tape) -> Self {
         match quantity {
@@ -82,7 +82,7 @@ impl Source {
 #[derive(Clone, Debug)]
 pub struct Requirement {
     /// Of which number.
-    pub source: Source,
+    pub source: NumberSource,
     /// What of it.
     pub test: Test,
     /// Must the number be finite besides? Outputs must, margins of conditions need not.
@@ -103,34 +103,34 @@ impl Requirement {
 pub fn requirements(plan: &Plan, tape: &Tape, axes: &Axes) -> Vec<Requirement> {
     let model: &Model = &plan.study.model;
     let mut all = Vec::new();
-    let needed = |source: Source| match source {
-        Source::Node(node, _) => tape.list.needed_by(&[node]),
+    let needed = |source: NumberSource| match source {
+        NumberSource::Node(node, _) => tape.list.needed_by(&[node]),
         _ => Vec::new(),
     };
     for (number, node) in tape.conditions.iter().enumerate() {
         if let Some(node) = node {
-            let source = Source::Node(*node, None);
+            let source = NumberSource::Node(*node, None);
             all.push(Requirement { source, test: Test::Low(0.0, model.conditions[number].strict), finite: false, needed: needed(source) });
         }
     }
     let mut bounded = Vec::new();
     for constraint in &plan.study.constraints {
-        let source = Source::of(constraint.quantity, plan, tape);
+        let source = NumberSource::of(constraint.quantity, plan, tape);
         bounded.push(source);
-        let finite = matches!(source, Source::Node(..));
+        let finite = matches!(source, NumberSource::Node(..));
         let low = constraint.low.map(|(bound, strict)| Test::Low(bound, strict));
         let high = constraint.high.map(|(bound, strict)| Test::High(bound, strict));
         all.extend([low, high].into_iter().flatten().map(|test| Requirement { source, test, finite, needed: needed(source) }));
     }
     for (tracked, _) in &plan.tracked {
-        let source = Source::of(tracked.quantity, plan, tape);
-        if matches!(source, Source::Node(..)) && !bounded.contains(&source) {
+        let source = NumberSource::of(tracked.quantity, plan, tape);
+        if matches!(source, NumberSource::Node(..)) && !bounded.contains(&source) {
             bounded.push(source);
             all.push(Requirement { source, test: Test::Finite, finite: true, needed: needed(source) });
         }
     }
     // What every design violates, and what none does, is found out by bounds like the rest; here only what costs nothing is dropped.
     let levels = |axis: usize| axes.all[axis].count();
-    all.retain(|it| !matches!(it.source, Source::Known(value) if it.holds(value)) && !matches!(it.source, Source::Axis(axis, column) if levels(axis) > 0 && axes.all[axis].own[column].iter().all(|&value| it.holds(value))));
+    all.retain(|it| !matches!(it.source, NumberSource::Known(value) if it.holds(value)) && !matches!(it.source, NumberSource::Axis(axis, column) if levels(axis) > 0 && axes.all[axis].own[column].iter().all(|&value| it.holds(value))));
     all
 }

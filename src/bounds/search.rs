@@ -5,9 +5,10 @@
 //! design of each is judged at once, so that the next batch meets better rivals.
 
 use super::axes::{AXES, Axes, Span, Spans};
-use super::bounder::{Asked, Bounder, Bounds, Wanted};
+use super::bounder::{AskedNumber, Bounder, Bounds, Wanted};
 use super::open::{
-    Bounded, Ends, Outcome, add_pull, all_open, decide, each_scenario, is_infeasible, over, scenario_to_split, scenarios, worst_scenarios,
+    BetterEnds, Bounded, Decided, add_pull, all_open, decide, each_scenario, is_infeasible, over, scenario_to_split, scenarios,
+    worst_scenarios,
 };
 use super::queue::{Queue, Waiting};
 use super::staircase::{Fit, Staircase};
@@ -63,31 +64,31 @@ pub enum Sought {
 #[derive(Debug)]
 pub struct Target {
     /// The number, worse in the direction of its goal.
-    pub asked: Asked,
+    pub asked: AskedNumber,
     /// What it is compared by.
     pub rule: KeyRule,
     /// Is it an extreme that is sought at its bad end?
     pub at_the_bad_end: bool,
     /// What limits it through a number that it shares factors with.
-    pub limits: Vec<Limit>,
+    pub limits: Vec<QuotientLimit>,
 }
 
 /// A requirement that limits a number through their quotient, without the factors that cancel.
 #[derive(Debug)]
-pub struct Limit {
+pub struct QuotientLimit {
     /// The quotient, of the better over the worse.
-    pub quotient: Asked,
+    pub quotient: AskedNumber,
     /// What the requirement is about.
-    pub limited: Asked,
+    pub limited: AskedNumber,
     /// Its bound, times what takes the quotient from SI to the units of both.
     pub bound: f64,
 }
 
 /// The product of both objectives, without the factors that cancel: larger where better.
 #[derive(Debug)]
-pub struct Product {
+pub struct ObjectiveProduct {
     /// In SI.
-    pub asked: Asked,
+    pub asked: AskedNumber,
     /// What takes it to the units of both.
     pub unit: f64,
     /// Which objectives are to be large.
@@ -138,7 +139,7 @@ enum Fate {
 }
 
 /// What all threads of a search share.
-pub struct Search<'a> {
+pub struct BoxSearch<'a> {
     /// The axes.
     pub axes: &'a Axes,
     /// The positions that are searched.
@@ -156,7 +157,7 @@ pub struct Search<'a> {
     /// One for an extreme or the best, one per objective for the front.
     pub targets: Vec<Target>,
     /// For a front of two objectives.
-    pub product: Option<Product>,
+    pub product: Option<ObjectiveProduct>,
     /// The study.
     pub plan: &'a Plan,
     /// How long a design takes: the first stage of a row, the second of a design, over all scenarios.
@@ -186,18 +187,18 @@ enum Rival<'a> {
 }
 
 /// What the bounds of all that is open and sought say of a box.
-struct View {
+struct BoxView {
     /// How much every axis moves it.
     pull: [f64; AXES],
     /// Which ends of axes make the rest superfluous.
-    ends: Ends,
+    ends: BetterEnds,
     /// Which end of every axis all that is sought agrees to be better: `None` where it does not.
     better: [Option<Option<bool>>; AXES],
     /// Is it known already what must be cut?
     is_steered: bool,
 }
 
-impl View {
+impl BoxView {
     /// Takes in one more number.
     fn agree(&mut self, bounds: &Bounds, worse_is_sought: bool, designs: usize) {
         for (axis, better) in self.better.iter_mut().enumerate().take(designs) {
@@ -215,7 +216,7 @@ impl View {
     }
 }
 
-impl Search<'_> {
+impl BoxSearch<'_> {
     /// Searches boxes and takes what it finds into `found`; `None` if it was stopped or given up.
     pub fn run(&self, roots: &[Spans], workers: &mut [Worker<'_>], found: &mut Reducers) -> Option<Searched> {
         let root = |spans: &Spans| Waiting {
@@ -354,13 +355,13 @@ impl Search<'_> {
         }
         let mut now = waiting.clone();
         loop {
-            let mut view = View { pull: [0.0; AXES], ends: Ends::ANY, better: [Some(None); AXES], is_steered: false };
+            let mut view = BoxView { pull: [0.0; AXES], ends: BetterEnds::ANY, better: [Some(None); AXES], is_steered: false };
             if self.has_no_hope(&mut now, rival, bounder, &mut view) {
                 return Fate::Beaten;
             }
             match decide(self.requirements, bounder, self.axes, &now.spans, &now.open) {
-                Outcome::Infeasible => return Fate::Infeasible,
-                Outcome::Open(open, pull, ends) => {
+                Decided::Infeasible => return Fate::Infeasible,
+                Decided::Open(open, pull, ends) => {
                     now.open = open;
                     view.ends.first &= ends.first;
                     view.ends.last &= ends.last;
@@ -408,7 +409,7 @@ impl Search<'_> {
     }
 
     /// Can no design of a box be what is sought, by the best that it may have?
-    fn has_no_hope(&self, now: &mut Waiting, rival: &Rival<'_>, bounder: &mut Bounder<'_>, view: &mut View) -> bool {
+    fn has_no_hope(&self, now: &mut Waiting, rival: &Rival<'_>, bounder: &mut Bounder<'_>, view: &mut BoxView) -> bool {
         let mut hopes = [0.0; MOST_OBJECTIVES];
         for ((target, cover), hope) in self.targets.iter().zip(&mut now.covers).zip(&mut hopes) {
             let (least, most) = self.worst(target, bounder, &now.spans, cover, view);
@@ -463,7 +464,7 @@ impl Search<'_> {
             return Vec::new();
         }
         let mut chosen = Vec::new();
-        let mut choose = |cover: &[Spans], asked: &Asked| {
+        let mut choose = |cover: &[Spans], asked: &AskedNumber| {
             each_scenario(cover, asked, self.axes, |scenario| {
                 let index = self.axes.scenario_index(&scenario);
                 chosen.push((self.plan.slow_scenarios.index_of(index), self.plan.fast_scenarios.index_of(index)));
@@ -476,7 +477,7 @@ impl Search<'_> {
         chosen
     }
 
-    fn leaf_or_cut(&self, now: Waiting, view: &View) -> Fate {
+    fn leaf_or_cut(&self, now: Waiting, view: &BoxView) -> Fate {
         let size = self.axes.count(&now.spans);
         let places: u64 =
             self.axes.steps.iter().zip(&now.spans.0).filter(|(step, _)| **step < self.row).map(|(_, span)| span.count()).product();
@@ -494,7 +495,7 @@ impl Search<'_> {
     }
 
     /// The best that a number may be, given what limits it.
-    fn limited(&self, target: &Target, limit: &Limit, hope: f64, most: f64, bounder: &mut Bounder<'_>, spans: &Spans) -> f64 {
+    fn limited(&self, target: &Target, limit: &QuotientLimit, hope: f64, most: f64, bounder: &mut Bounder<'_>, spans: &Spans) -> f64 {
         let is_large_sought = target.asked.higher_is_worse == target.at_the_bad_end;
         // Both numbers must be of one sign, or their quotient limits nothing.
         let least = if is_large_sought { bounder.range(&limit.limited, spans).0 } else { hope };
@@ -505,7 +506,7 @@ impl Search<'_> {
     }
 
     /// Bounds of the worst value over all scenarios, as badness; the cover becomes the scenarios that may be worst.
-    fn worst(&self, target: &Target, bounder: &mut Bounder<'_>, spans: &Spans, cover: &mut Arc<[Spans]>, view: &mut View) -> (f64, f64) {
+    fn worst(&self, target: &Target, bounder: &mut Bounder<'_>, spans: &Spans, cover: &mut Arc<[Spans]>, view: &mut BoxView) -> (f64, f64) {
         // Which of several scenarios decides takes both ends of each.
         let wanted = match (cover.len(), target.at_the_bad_end) {
             (1, true) => Wanted::Most,

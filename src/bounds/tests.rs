@@ -2,7 +2,7 @@
 
 use super::axes::{AXES, Span};
 use super::bounder::Wanted;
-use super::columns::{CHUNK, Columns};
+use super::columns::{CHUNK, NodeColumns};
 use super::open::over;
 use super::*;
 use crate::models::{OUTPUTS, find, to_si};
@@ -37,7 +37,7 @@ fn plans() -> impl Iterator<Item = Plan> {
 }
 
 /// A random box of designs; all scenarios.
-fn a_box(layout: &Layout, seed: u64) -> Spans {
+fn a_box(layout: &BoundedStudy, seed: u64) -> Spans {
     let mut spans = layout.axes.whole();
     for axis in 0..layout.axes.designs {
         let count = layout.axes.all[axis].count();
@@ -68,14 +68,14 @@ fn worst(plan: &Plan, design: u64, output: usize, higher_is_worse: bool) -> f64 
 fn outside(inwards: f64) -> (u32, u32) {
     let (mut looked, mut out) = (0, 0);
     for plan in plans() {
-        let layout = Layout::new(&plan).expect("bounds serve it");
+        let layout = BoundedStudy::new(&plan).expect("bounds serve it");
         let mut bounder = Bounder::new(&layout.tape, &layout.axes);
         for seed in 0..120 {
             let spans = a_box(&layout, seed);
             for objective in &plan.study.objectives {
                 let Quantity::Output(output) = objective.quantity else { continue };
                 let higher_is_worse = objective.goal == Goal::Min;
-                let asked = Asked::new(&layout.tape, Source::of(objective.quantity, &plan, &layout.tape), higher_is_worse);
+                let asked = AskedNumber::new(&layout.tape, NumberSource::of(objective.quantity, &plan, &layout.tape), higher_is_worse);
                 let bounds = bounder.bounds(&asked, &over(&spans, &layout.axes.whole(), &layout.axes), Wanted::Both);
                 let (rows, places) = layout.axes.rows(&spans, plan.fast.count());
                 let width = plan.fast.count();
@@ -102,8 +102,8 @@ fn the_worst_of_a_design_never_leaves_the_bounds_of_its_box() {
 #[test]
 fn columns_have_the_bits_of_the_formula() {
     for plan in plans() {
-        let layout = Layout::new(&plan).expect("bounds serve it");
-        let mut columns = Columns::new(&layout.tape, &layout.axes);
+        let layout = BoundedStudy::new(&plan).expect("bounds serve it");
+        let mut columns = NodeColumns::new(&layout.tape, &layout.axes);
         for seed in 0..60 {
             let spans = a_box(&layout, seed);
             let scenario = mix(seed) % plan.scenarios();
@@ -137,12 +137,14 @@ fn columns_have_the_bits_of_the_formula() {
 #[test]
 fn bounds_of_one_operation_in_two_units_are_not_mixed_up() {
     let plan = plans().nth(1).expect("the timing belt is the second");
-    let layout = Layout::new(&plan).expect("bounds serve it");
+    let layout = BoundedStudy::new(&plan).expect("bounds serve it");
     let mut bounder = Bounder::new(&layout.tape, &layout.axes);
     let speed = plan.study.objectives[2].quantity;
-    let Source::Node(node, Some(unit)) = Source::of(speed, &plan, &layout.tape) else { panic!("a speed has a unit of its own") };
+    let NumberSource::Node(node, Some(unit)) = NumberSource::of(speed, &plan, &layout.tape) else {
+        panic!("a speed has a unit of its own")
+    };
     let whole = layout.axes.whole();
-    let mut most = |source| bounder.bounds(&Asked::new(&layout.tape, source, true), &whole, Wanted::Most).most;
-    let (own, si) = (most(Source::Node(node, Some(unit))), most(Source::Node(node, None)));
+    let mut most = |source| bounder.bounds(&AskedNumber::new(&layout.tape, source, true), &whole, Wanted::Most).most;
+    let (own, si) = (most(NumberSource::Node(node, Some(unit))), most(NumberSource::Node(node, None)));
     assert!(own.is_finite() && (own / unit.from_si(si) - 1.0).abs() < 1e-12 && (own / si - 1.0).abs() > 1.0, "{own} {si}");
 }

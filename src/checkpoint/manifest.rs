@@ -5,7 +5,7 @@ use crate::error::{Error, Result, brief};
 use crate::files::{is_regular, is_there, read_at_most, replace};
 use crate::models::Models;
 use crate::space::Space;
-use crate::study::{Stored, Study};
+use crate::study::{StoredStudy, Study};
 use crate::tiles::{Ranges, Shard};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -97,7 +97,7 @@ fn refusal(folder: &Path, problem: String) -> Error {
     Error::Checkpoint { path: folder.to_owned(), problem }
 }
 
-impl Manifest<Stored> {
+impl Manifest<StoredStudy> {
     /// Reads the manifest of a checkpoint folder as far as nobody needs the model for.
     fn read_stored(folder: &Path) -> Result<Self> {
         if !is_regular(&folder.join(MANIFEST)) {
@@ -123,12 +123,12 @@ impl Manifest<Stored> {
 impl Manifest {
     /// Reads the manifest of a checkpoint folder, of a study of one of these models.
     pub(super) fn read(folder: &Path, models: &Models) -> Result<Self> {
-        Manifest::<Stored>::read_stored(folder)?.with_its_study(models).map_err(|why| damaged(folder, &why))
+        Manifest::<StoredStudy>::read_stored(folder)?.with_its_study(models).map_err(|why| damaged(folder, &why))
     }
 
     /// The result that waits in a checkpoint folder, whatever model it is of: to put it in place nobody needs the model.
     pub(super) fn switch(folder: &Path) -> Result<Option<Switch>> {
-        let stored = Manifest::<Stored>::read_stored(folder)?;
+        let stored = Manifest::<StoredStudy>::read_stored(folder)?;
         let models = Models::new();
         match models.find(stored.study.model()) {
             Some(_) => stored.with_its_study(&models).map(|it| it.switch).map_err(|why| damaged(folder, &why)),

@@ -21,7 +21,7 @@ pub fn run(json: bool) -> Result<()> {
 }
 
 /// The self-test's report, or why there is none.
-fn tested(adapter: &Adapter) -> std::result::Result<self_test::Report, String> {
+fn tested(adapter: &Adapter) -> std::result::Result<self_test::SelfTest, String> {
     adapter.open().and_then(|device| self_test::run(&device)).map_err(|error| error.to_string())
 }
 

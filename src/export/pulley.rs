@@ -25,8 +25,8 @@ pub fn caption(name: &str) -> &'static str {
 /// The pictures of a pulley, as SVG texts, in the order of [`PICTURES`]; none if the model is another one or the status is not ok.
 /// `inputs` are in their units.
 pub fn pictures(model: &Model, title: &str, inputs: &[f64]) -> Vec<(&'static str, String)> {
-    let draw = |solved: &Solved<'_>| {
-        let Solved { design: Design { kind, dimensions, yield_strength, .. }, mesh, turn, field, largest } = solved;
+    let draw = |solved: &SolvedPulley<'_>| {
+        let SolvedPulley { design: Design { kind, dimensions, yield_strength, .. }, mesh, turn, field, largest } = solved;
         let texts = [
             pulley::section(title, *kind, dimensions, mesh),
             pulley::deformed(title, mesh, turn, field),
@@ -52,7 +52,7 @@ pub struct NodeStress {
 /// The deformed section at the angle of its largest stress: the picture of [`pictures()`] and the values that it shows, node by node;
 /// `None` as there.
 pub fn deformed(model: &Model, title: &str, inputs: &[f64]) -> Option<(String, Vec<NodeStress>)> {
-    solve(model, inputs, |Solved { mesh, turn, field, .. }| {
+    solve(model, inputs, |SolvedPulley { mesh, turn, field, .. }| {
         let nodes = mesh.nodes.iter().zip(&field.displacement).zip(&field.von_mises);
         let values = nodes.map(|((at, moved), von_mises)| NodeStress {
             place: [at.x, at.y],
@@ -64,7 +64,7 @@ pub fn deformed(model: &Model, title: &str, inputs: &[f64]) -> Option<(String, V
 }
 
 /// A pulley with its stresses at the angle of the largest one.
-struct Solved<'t> {
+struct SolvedPulley<'t> {
     design: Design,
     mesh: Mesh,
     turn: Turn<'t>,
@@ -73,7 +73,7 @@ struct Solved<'t> {
 }
 
 /// Solves a pulley and shows it to `look`; `None` if the model is another one or the status is not ok.
-fn solve<T>(model: &Model, inputs: &[f64], look: impl FnOnce(&Solved<'_>) -> T) -> Option<T> {
+fn solve<T>(model: &Model, inputs: &[f64], look: impl FnOnce(&SolvedPulley<'_>) -> T) -> Option<T> {
     let design = model.pulley_of(inputs)?;
     let Design { kind, dimensions, poisson, fineness, case, .. } = design;
     let mesh = mesh(kind, &dimensions, &fineness).ok()?;
@@ -85,5 +85,5 @@ fn solve<T>(model: &Model, inputs: &[f64], look: impl FnOnce(&Solved<'_>) -> T) 
     let turn = Turn::new(View::new(&table), case);
     let largest = turn.summary(None, [None; 2]).largest;
     let field = Answers::new(&mesh, &dimensions, poisson, &fineness).field(&mesh, &turn, largest.theta, largest.phase);
-    Some(look(&Solved { design, mesh, turn, field, largest }))
+    Some(look(&SolvedPulley { design, mesh, turn, field, largest }))
 }

@@ -8,13 +8,13 @@ use crate::error::{Error, Result};
 pub enum Kind {
     /// A graphics card with memory of its own.
     Discrete,
-    /// A graphics processor that shares the memory of the machine.
+    /// A GPU that shares the memory of the machine.
     Integrated,
-    /// A graphics processor of a virtual machine.
+    /// A GPU of a virtual machine.
     Virtual,
     /// Of an unknown kind.
     Other,
-    /// A program that does a graphics processor's work on the processor, such as lavapipe.
+    /// A program that does a GPU's work on the CPU, such as lavapipe.
     Software,
 }
 
@@ -59,7 +59,7 @@ impl Adapter {
         Self { name: info.name, kind, driver, backend: format!("{:?}", info.backend), adapter }
     }
 
-    /// Does the kind of hardware promise more than the processor itself?
+    /// Is this kind of hardware likely to be faster than the CPU?
     pub fn is_hardware(&self) -> bool {
         matches!(self.kind, Kind::Discrete | Kind::Integrated | Kind::Virtual)
     }

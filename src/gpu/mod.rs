@@ -1,10 +1,11 @@
-//! Graphics processors: which there are, whether their drivers can be trusted, and how a kernel is run on one.
+//! GPUs: which there are, whether their drivers can be trusted, and how a kernel is run on one.
 //!
 //! Nothing here knows of a study. An [`Adapter`] is chosen by kind or by name, opened as a [`Device`] and put through the
 //! [`self_test`] before anything it says is believed. A device never panics: what goes wrong on it, also later and elsewhere,
 //! comes back as [`Error::Gpu`](crate::error::Error::Gpu) from the next call.
 
 mod adapter;
+pub(crate) mod constants;
 mod device;
 mod points;
 pub(crate) mod program;
@@ -14,6 +15,7 @@ pub mod self_test;
 pub(crate) mod source;
 
 pub use adapter::{Adapter, Kind, adapters, choose};
+pub(crate) use constants::{WORKGROUP, shared_constants};
 #[doc(hidden)]
 pub use device::Device;
 pub(crate) use device::{Buffer, Wait};

@@ -1,7 +1,8 @@
 //! A model evaluated point by point on a device: every output and condition margin with its bound.
 
-use super::source::COMMON;
-use super::{Device, Program, model_prelude, model_source, tables};
+use super::constants::declare;
+use super::source::common;
+use super::{Device, Program, WORKGROUP, model_prelude, model_source, tables};
 use crate::error::Result;
 use crate::models::{CONDITIONS, Fields, INPUTS, Model, OUTPUTS};
 use crate::tape::{RunningError, nearest_f32};
@@ -35,7 +36,7 @@ impl PointKernel {
     /// The kernel's text. `perturb`: outputs that are to come out wrong by this part of their value, for testing.
     ///
     /// # Errors
-    /// [`Error::Request`](crate::error::Error::Request) if the model is computed on the processor only.
+    /// [`Error::Request`](crate::error::Error::Request) if the model is computed on the CPU only.
     pub fn source(model: &Model, perturb: &[(usize, f64)]) -> Result<String> {
         let on_device = model.on_device()?;
         let fields = on_device.formula.fields();
@@ -43,15 +44,14 @@ impl PointKernel {
         let mut text = model_prelude(&fields, all.len(), u64::MAX, &all);
         let places: Vec<usize> = fields.places().map(|(first, _)| first).collect();
         text.push_str(&tables(&fields, |field, place| Some(format!("scratch[{place} + {}u + at]", places[field] - fields.prepared.len()))));
-        let begin = if fields.tables.is_empty() { "" } else { "table_place = point * TABLE_NUMBERS;" };
-        let hold = if fields.tables.is_empty() { "" } else { "held.place = point * TABLE_NUMBERS;" };
+        let (begin, hold) = if fields.tables.is_empty() { ("", "") } else { ("table_place = place;", "(*held).place = place;") };
         let (inputs, outputs) = (fields.inputs.len(), model.outputs.len());
+        for (name, value) in [("INPUTS", inputs), ("OUTPUTS", outputs), ("TABLE_NUMBERS", table_numbers(&fields))] {
+            declare(&mut text, name, value as u32);
+        }
         let mut line = |it: std::fmt::Arguments<'_>| writeln!(text, "{it}").expect("a text takes everything");
-        line(format_args!("const INPUTS: u32 = {inputs}u;\nconst OUTPUTS: u32 = {outputs}u;"));
-        line(format_args!("const TABLE_NUMBERS: u32 = {}u;\n", table_numbers(&fields)));
-        line(format_args!("@group(0) @binding(3) var<storage, read_write> scratch: array<Real>;\n"));
-        line(format_args!("fn prepare_point(point: u32, inputs: Inputs) -> Prepared {{\n    {begin}"));
-        line(format_args!("    var held = prepare(inputs);\n    {hold}\n    return held;\n}}\n"));
+        line(format_args!("\nfn begin_tables(place: u32) {{\n    {begin}\n}}\n"));
+        line(format_args!("fn hold_tables(held: ptr<function, Prepared>, place: u32) {{\n    {hold}\n}}\n"));
         line(format_args!("fn read_inputs(at: u32) -> Inputs {{\n    var inputs: Inputs;"));
         for (number, field) in fields.inputs.iter().enumerate() {
             line(format_args!("    inputs.{field} = given[at + {number}u];"));
@@ -63,14 +63,14 @@ impl PointKernel {
             line(format_args!("    found[at + {number}u] = Real(out.{field}.value * {factor:?}, out.{field}.bound);"));
         }
         line(format_args!("}}\n"));
-        Ok([COMMON, &text, &model_source(model, on_device), include_str!("../../shaders/evaluate.wgsl")].join("\n"))
+        Ok([&common(), &text, &model_source(model, on_device), include_str!("../../shaders/evaluate.wgsl")].join("\n"))
     }
 
     /// Compiles the kernel of a model.
     ///
     /// # Errors
     /// [`Error::Gpu`](crate::error::Error::Gpu); [`Error::Request`](crate::error::Error::Request) if the model is computed on the
-    /// processor only.
+    /// CPU only.
     pub fn new(device: &Device, model: &Arc<Model>, perturb: &[(usize, f64)]) -> Result<Self> {
         Self::from_source(device, model, &Self::source(model, perturb)?)
     }
@@ -109,7 +109,7 @@ impl PointKernel {
         let header = device.uniform("points", &[points.len() as u32, 0, 0, 0]);
         let scratch = device.buffer("scratch", (points.len() * self.table_numbers * 8).max(8) as u64, wgpu::BufferUsages::STORAGE);
         let bound = self.program.bind(&[("points", &header), ("given", &given), ("found", &results), ("scratch", &scratch)]);
-        let groups = (points.len() as u32).div_ceil(64);
+        let groups = (points.len() as u32).div_ceil(WORKGROUP);
         device.submit(|encoder| self.program.dispatch(encoder, "evaluate", &bound, [groups, 1]));
         let values: Vec<[f32; 2]> = device.fetch(&results, points.len() * width)?;
         let number = |[value, bound]: [f32; 2]| RunningError { value, bound: f64::from(bound) };

@@ -1,21 +1,27 @@
 //! Is a driver to be trusted? What has gone wrong on some driver without an error, tried on every one before it is used.
 
-use super::source::COMMON;
-use super::{Device, Program};
+use super::source::common;
+use super::{Device, Program, WORKGROUP, shared_constants};
 use crate::error::Result;
 use crate::real::FUNCTION_ULP;
 use serde_json::{Value, json};
 
-/// Turns of the long loop.
+/// Iterations of the long loop.
 const LOOPS: u32 = 100_000;
-/// Turns after which some drivers end an invocation.
+/// Iterations after which some drivers end an invocation.
 pub const LOOP_LIMIT: u32 = 65_535;
 /// Points of the arithmetic.
 const POINTS: u32 = 1 << 14;
-/// Results per point, as in the shader.
-const RESULTS: usize = 10;
 /// Invocations that append themselves.
 const APPENDS: u32 = 1 << 16;
+
+shared_constants! {
+    /// What `shaders/self-test.wgsl` relies on.
+    fn self_test_constants;
+
+    /// Results per point.
+    const RESULTS: u32 = 10;
+}
 
 /// A quantity of the self-test: what was measured, and the most that is allowed.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,8 +36,8 @@ pub struct Measure {
 
 /// What a driver's self-test found.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Report {
-    /// Turns that a loop of 100 000 made.
+pub struct SelfTest {
+    /// Iterations that a loop of 100 000 made.
     pub loop_turns: u32,
     /// Errors of arithmetic and own functions.
     pub measures: Vec<Measure>,
@@ -39,7 +45,7 @@ pub struct Report {
     pub lost_appends: u32,
 }
 
-impl Report {
+impl SelfTest {
     /// Does the driver end long loops? Kernels are then kept short.
     pub fn limited_loops(&self) -> bool {
         self.loop_turns != LOOPS
@@ -49,7 +55,7 @@ impl Report {
     pub fn problems(&self) -> Vec<String> {
         let mut problems = Vec::new();
         if self.loop_turns < LOOP_LIMIT {
-            problems.push(format!("a loop ends after {} turns", self.loop_turns));
+            problems.push(format!("a loop ends after {} iterations", self.loop_turns));
         }
         let wrong = self.measures.iter().filter(|it| it.ulp.is_nan() || it.ulp > it.allowed);
         problems.extend(wrong.map(|it| format!("{} is {:.1} ULP off, at most {} is allowed", it.name, it.ulp, it.allowed)));
@@ -75,12 +81,12 @@ impl Report {
 ///
 /// # Errors
 /// [`Error::Gpu`](crate::error::Error::Gpu) if the device fails altogether.
-pub fn run(device: &Device) -> Result<Report> {
-    let source = [COMMON, include_str!("../../shaders/self-test.wgsl")].join("\n");
+pub fn run(device: &Device) -> Result<SelfTest> {
+    let source = [&common(), &self_test_constants(), include_str!("../../shaders/self-test.wgsl")].join("\n");
     let program = Program::new(device, &source, &["arithmetic", "loops", "append"])?;
     let points = points();
     let given = device.storage("given", &points);
-    let found = device.buffer("found", u64::from(POINTS) * RESULTS as u64 * 4, wgpu::BufferUsages::STORAGE);
+    let found = device.buffer("found", u64::from(POINTS) * u64::from(RESULTS) * 4, wgpu::BufferUsages::STORAGE);
     let run = |entry: &str, count: u32, groups: u32, words: usize| {
         let test = device.uniform("test", &[count, LOOPS, 0, 0]);
         let counts = device.buffer("counts", u64::from(1 + APPENDS) * 4, wgpu::BufferUsages::STORAGE);
@@ -89,15 +95,15 @@ pub fn run(device: &Device) -> Result<Report> {
         device.fetch::<u32>(&counts, words)
     };
     let loop_turns = run("loops", 1, 1, 1)?[0];
-    let appended = run("append", APPENDS, APPENDS / 64, 1 + APPENDS as usize)?;
+    let appended = run("append", APPENDS, APPENDS / WORKGROUP, 1 + APPENDS as usize)?;
     let wrong = appended[1..].iter().filter(|&&times| times != 1).count() as u32;
     let places: Vec<f32> = device.fetch(&found, APPENDS as usize)?;
     let mut seen = vec![false; APPENDS as usize];
     places.iter().for_each(|&it| seen[(it as usize).min(APPENDS as usize - 1)] = true);
     let missing = seen.iter().filter(|it| !**it).count() as u32;
-    run("arithmetic", POINTS, POINTS / 64, 1)?;
-    let results: Vec<f32> = device.fetch(&found, POINTS as usize * RESULTS)?;
-    Ok(Report { loop_turns, measures: measure(&points, &results), lost_appends: wrong.max(missing) })
+    run("arithmetic", POINTS, POINTS / WORKGROUP, 1)?;
+    let results: Vec<f32> = device.fetch(&found, (POINTS * RESULTS) as usize)?;
+    Ok(SelfTest { loop_turns, measures: measure(&points, &results), lost_appends: wrong.max(missing) })
 }
 
 /// Pairs of numbers: of all sizes, near 1, near each other, around multiples of pi/2.
@@ -124,7 +130,7 @@ fn points() -> Vec<[f32; 2]> {
 #[allow(clippy::cast_possible_truncation, reason = "the spacing of f32 is asked for")]
 fn measure(points: &[[f32; 2]], results: &[f32]) -> Vec<Measure> {
     type Exact = fn(f64, f64) -> f64;
-    let cases: [(&'static str, f64, Exact); RESULTS] = [
+    let cases: [(&'static str, f64, Exact); RESULTS as usize] = [
         ("sum", 0.5, |a, b| a + b),
         ("difference", 0.5, |a, b| a - b),
         ("product", 0.5, |a, b| a * b),
@@ -142,7 +148,7 @@ fn measure(points: &[[f32; 2]], results: &[f32]) -> Vec<Measure> {
             let exact = exact(f64::from(a), f64::from(b));
             let near = (exact.abs() as f32).max(f32::MIN_POSITIVE);
             let ulp = f64::from(near.next_up()) - f64::from(near);
-            let error = (f64::from(results[at * RESULTS + number]) - exact).abs() / ulp;
+            let error = (f64::from(results[at * RESULTS as usize + number]) - exact).abs() / ulp;
             // A NaN must not hide behind a comparison.
             if error.is_nan() || worst.is_nan() { f64::NAN } else { worst.max(error) }
         })
@@ -159,20 +165,20 @@ fn measure(points: &[[f32; 2]], results: &[f32]) -> Vec<Measure> {
 mod tests {
     use super::*;
 
-    fn good() -> Report {
+    fn good() -> SelfTest {
         let measures = vec![Measure { name: "sum", ulp: 0.5, allowed: 0.51 }];
-        Report { loop_turns: LOOPS, measures, lost_appends: 0 }
+        SelfTest { loop_turns: LOOPS, measures, lost_appends: 0 }
     }
 
     #[test]
     fn every_fault_is_named() {
         assert!(good().problems().is_empty() && !good().limited_loops());
-        let limited = Report { loop_turns: LOOP_LIMIT, ..good() };
+        let limited = SelfTest { loop_turns: LOOP_LIMIT, ..good() };
         assert!(limited.problems().is_empty() && limited.limited_loops(), "a known limit can be lived with");
-        assert_eq!(Report { loop_turns: 1000, ..good() }.problems(), ["a loop ends after 1000 turns"]);
-        assert_eq!(Report { lost_appends: 3, ..good() }.problems(), ["3 of 65536 simultaneous appends were lost"]);
+        assert_eq!(SelfTest { loop_turns: 1000, ..good() }.problems(), ["a loop ends after 1000 iterations"]);
+        assert_eq!(SelfTest { lost_appends: 3, ..good() }.problems(), ["3 of 65536 simultaneous appends were lost"]);
         for ulp in [1.0, f64::NAN] {
-            let wrong = Report { measures: vec![Measure { name: "sum", ulp, allowed: 0.51 }], ..good() };
+            let wrong = SelfTest { measures: vec![Measure { name: "sum", ulp, allowed: 0.51 }], ..good() };
             assert_eq!(wrong.problems().len(), 1, "{ulp}");
         }
     }

@@ -1,18 +1,20 @@
 //! The texts of the shaders, and the declarations that follow from a model's Rust records.
 
+use super::constants::common_constants;
 use crate::models::{CONDITIONS, Device, Fields, Model, Shader};
 use crate::tape::wgsl;
 use std::fmt::Write;
 
 /// Numbers, own functions and decisions, for every kernel.
-pub const COMMON: &str = concat!(
-    include_str!("../../shaders/common/numbers.wgsl"),
-    "\n",
-    include_str!("../../shaders/common/functions.wgsl"),
-    "\n",
-    include_str!("../../shaders/common/decisions.wgsl"),
-    "\n"
-);
+pub fn common() -> String {
+    [
+        &common_constants(),
+        include_str!("../../shaders/common/numbers.wgsl"),
+        include_str!("../../shaders/common/functions.wgsl"),
+        include_str!("../../shaders/common/decisions.wgsl"),
+    ]
+    .join("\n")
+}
 
 /// The text of a model: written from its recorded formula, or its own file.
 pub fn model_source(model: &Model, device: Device<'_>) -> String {

@@ -132,7 +132,10 @@ impl Rows {
         };
         let verdict = if inside { Verdict::Agrees } else { Verdict::Differs };
         let computed = digits(value);
-        self.push(Row { at, what, unit, printed: &printed.text, computed, value: Some(value), difference, verdict }, reason.into());
+        self.push(
+            ComparisonRow { at, what, unit, printed: &printed.text, computed, value: Some(value), difference, verdict },
+            reason.into(),
+        );
     }
 
     /// The same, where an input was chosen to make it so.
@@ -157,31 +160,40 @@ impl Rows {
     /// A statement beside what was found; `holds` is computed, not judged.
     pub fn statement(&mut self, at: &'static str, what: &str, printed: &str, computed: String, holds: bool, reason: impl Into<String>) {
         let verdict = if holds { Verdict::Agrees } else { Verdict::Differs };
-        self.push(Row { at, what, unit: "", printed, computed, value: None, difference: "-".to_owned(), verdict }, reason.into());
+        self.push(ComparisonRow { at, what, unit: "", printed, computed, value: None, difference: "-".to_owned(), verdict }, reason.into());
     }
 
     /// A number that the paper does not print.
     pub fn unprinted(&mut self, at: &'static str, what: &str, unit: &'static str, value: f64, reason: impl Into<String>) {
         let (computed, difference) = (digits(value), "-".to_owned());
-        let row = Row { at, what, unit, printed: "-", computed, value: Some(value), difference, verdict: Verdict::NotPrinted };
+        let row = ComparisonRow { at, what, unit, printed: "-", computed, value: Some(value), difference, verdict: Verdict::NotPrinted };
         self.push(row, reason.into());
     }
 
     /// Something found that is no number and that the paper does not print.
     pub fn remark(&mut self, at: &'static str, what: &str, computed: String, reason: impl Into<String>) {
-        let row = Row { at, what, unit: "", printed: "-", computed, value: None, difference: "-".to_owned(), verdict: Verdict::NotPrinted };
+        let row = ComparisonRow {
+            at,
+            what,
+            unit: "",
+            printed: "-",
+            computed,
+            value: None,
+            difference: "-".to_owned(),
+            verdict: Verdict::NotPrinted,
+        };
         self.push(row, reason.into());
     }
 
-    fn push(&mut self, row: Row<'_>, reason: String) {
-        let Row { at, what, unit, printed, computed, value, difference, verdict } = row;
+    fn push(&mut self, row: ComparisonRow<'_>, reason: String) {
+        let ComparisonRow { at, what, unit, printed, computed, value, difference, verdict } = row;
         let (what, printed) = (what.to_owned(), printed.to_owned());
         self.rows.push(Comparison { group: self.paper, at, what, unit, printed, computed, value, difference, verdict, reason });
     }
 }
 
 /// A row before its reason.
-struct Row<'a> {
+struct ComparisonRow<'a> {
     at: &'static str,
     what: &'a str,
     unit: &'static str,

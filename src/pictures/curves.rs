@@ -33,7 +33,7 @@ pub fn curves(title: &str, x: &Quantity, panels: &[(Quantity, Vec<Series>)]) -> 
         2 => 270 * UNIT,
         _ => 210 * UNIT,
     };
-    let rows: Vec<Row> = panels.iter().map(|p| Row::new(p, height)).collect();
+    let rows: Vec<CurveRow> = panels.iter().map(|p| CurveRow::new(p, height)).collect();
     let tick_room = rows.iter().map(|row| row.axis.label_width()).max().unwrap_or(0);
     let widths = rows.iter().map(|row| y_labels_width(tick_room, &row.label));
     let left = 12 * UNIT + widths.max().unwrap_or(0);
@@ -66,13 +66,13 @@ pub fn curves(title: &str, x: &Quantity, panels: &[(Quantity, Vec<Series>)]) -> 
 }
 
 /// One panel.
-struct Row<'a> {
+struct CurveRow<'a> {
     series: &'a [Series],
     axis: Axis,
     label: Vec<String>,
 }
 
-impl<'a> Row<'a> {
+impl<'a> CurveRow<'a> {
     fn new((quantity, series): &'a (Quantity, Vec<Series>), height: i32) -> Self {
         let ordinates = series.iter().flat_map(|s| points(s).map(|(_, y)| y));
         let axis = match bounds(ordinates, 0.06) {

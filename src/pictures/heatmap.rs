@@ -43,7 +43,7 @@ pub fn heatmap(
     let mut entries = legend(&cells, value, lines.is_some());
     entries.extend(overlay::legend(given));
     let header = Header::new(title, entries);
-    let layout = Layout::new(x, y, &details.words, bar.as_ref(), header.height());
+    let layout = HeatmapLayout::new(x, y, &details.words, bar.as_ref(), header.height());
     let frame = layout.frame;
 
     let mut sheet = Sheet::new(layout.bottom());
@@ -101,7 +101,7 @@ fn legend(cells: &[Option<f64>], value: &Quantity, contours: bool) -> Vec<(Mark,
 }
 
 /// Where panel and colour bar stand.
-struct Layout {
+struct HeatmapLayout {
     frame: Frame,
     x: Axis,
     y: Axis,
@@ -109,7 +109,7 @@ struct Layout {
     y_label: Vec<String>,
 }
 
-impl Layout {
+impl HeatmapLayout {
     fn new(
         x: (&Quantity, &[f64]),
         y: (&Quantity, &[f64]),

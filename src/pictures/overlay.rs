@@ -58,13 +58,13 @@ pub(super) fn draw(sheet: &mut Sheet, contours: &[Contours], (x, y): (&[f64], &[
         let up = position(y, v) / y.len() as f64 * f64::from(frame.height);
         (frame.left + across.round() as i32, frame.bottom() - up.round() as i32)
     };
-    let mut lines: Vec<Line> = Vec::new();
+    let mut lines: Vec<OverlayLine> = Vec::new();
     for (dash, it) in contours.iter().enumerate().map(|(number, it)| (dash(number), it)) {
         let several = it.curves.iter().filter(|curve| !curve.lines.is_empty()).count() > 1;
         for curve in &it.curves {
             let label = several.then(|| number::significant(curve.at, 5));
             let placed = curve.lines.iter().filter(|line| !line.is_empty()).map(|line| line.iter().map(place).collect());
-            lines.extend(placed.map(|points| Line { points, dash, label: label.clone() }));
+            lines.extend(placed.map(|points| OverlayLine { points, dash, label: label.clone() }));
         }
     }
     for (width, halo) in [(HALO_WIDTH, true), (LINE_WIDTH, false)] {
@@ -99,13 +99,13 @@ fn position(levels: &[f64], value: f64) -> f64 {
 }
 
 /// A line on the paper.
-struct Line {
+struct OverlayLine {
     points: Vec<Point>,
     dash: Dash,
     label: Option<String>,
 }
 
-impl Line {
+impl OverlayLine {
     fn path(&self) -> String {
         let mut path = String::new();
         let mut last = self.points[0];
@@ -148,8 +148,8 @@ fn label_width(label: &str) -> i32 {
 }
 
 /// The labels that have room, each on its line, as near to its middle as possible: a label touches no other label and no other line.
-fn labels(lines: &[Line], frame: Frame) -> Vec<(Point, String)> {
-    let mut room = Room::new(frame);
+fn labels(lines: &[OverlayLine], frame: Frame) -> Vec<(Point, String)> {
+    let mut room = OverlayRoom::new(frame);
     for (owner, line) in lines.iter().enumerate() {
         line.places(f64::from(BLOCK / 2)).into_iter().for_each(|place| room.take(place, owner));
     }
@@ -173,7 +173,7 @@ fn labels(lines: &[Line], frame: Frame) -> Vec<(Point, String)> {
 }
 
 /// Which blocks of the map are taken, and by which line.
-struct Room {
+struct OverlayRoom {
     frame: Frame,
     columns: i32,
     owners: Vec<usize>,
@@ -184,7 +184,7 @@ const FREE: usize = usize::MAX;
 /// A block of a label, or of several lines.
 const SHARED: usize = usize::MAX - 1;
 
-impl Room {
+impl OverlayRoom {
     fn new(frame: Frame) -> Self {
         let (columns, rows) = (frame.width / BLOCK + 1, frame.height / BLOCK + 1);
         Self { frame, columns, owners: vec![FREE; (columns * rows) as usize] }
@@ -232,8 +232,8 @@ mod tests {
 
     const FRAME: Frame = Frame { left: 500, top: 300, width: 6000, height: 4000 };
 
-    fn line(points: &[Point], label: &str) -> Line {
-        Line { points: points.to_vec(), dash: Dash::Solid, label: Some(label.to_owned()) }
+    fn line(points: &[Point], label: &str) -> OverlayLine {
+        OverlayLine { points: points.to_vec(), dash: Dash::Solid, label: Some(label.to_owned()) }
     }
 
     /// Box of a label: left, top, right, bottom.
@@ -256,7 +256,8 @@ mod tests {
     #[test]
     fn labels_touch_no_other_label_and_no_other_line() {
         // Lines that come ever closer, and one across them all.
-        let mut lines: Vec<Line> = (0..40).map(|n| line(&[(700 + 3 * n * n, 400), (700 + 3 * n * n, 4200)], &n.to_string())).collect();
+        let mut lines: Vec<OverlayLine> =
+            (0..40).map(|n| line(&[(700 + 3 * n * n, 400), (700 + 3 * n * n, 4200)], &n.to_string())).collect();
         lines.push(line(&[(600, 2300), (6400, 2300)], "across"));
         let labels = labels(&lines, FRAME);
         assert!(labels.len() > 8 && labels.len() < 35, "{}: some have room and some have not", labels.len());
@@ -278,7 +279,7 @@ mod tests {
     fn short_lines_and_crowded_ones_have_no_label() {
         assert_eq!(labels(&[line(&[(1000, 1000), (1200, 1000)], "12")], FRAME), []);
         assert_eq!(labels(&[line(&[(1000, 1000), (3000, 1000)], "12")], FRAME), [((2000, 1000), "12".to_owned())]);
-        let crowd: Vec<Line> = (0..30).map(|n| line(&[(1000, 1000 + 50 * n), (5000, 1000 + 50 * n)], "12")).collect();
+        let crowd: Vec<OverlayLine> = (0..30).map(|n| line(&[(1000, 1000 + 50 * n), (5000, 1000 + 50 * n)], "12")).collect();
         assert_eq!(labels(&crowd, FRAME), []);
     }
 }

@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 
 /// Megabytes that are filled anew for every section: the factors, and the entries of the matrices.
 #[derive(Clone, Debug, Default)]
-struct Room {
+struct EquationRoom {
     factors: Factors,
     entries: Vec<[f64; 3]>,
 }
@@ -15,7 +15,7 @@ struct Room {
 /// Room that nobody uses: one for each thread that has solved sections at the same time as others. Threads come and go with the parts of a
 /// run, and what an allocator keeps of each would add up. It is room only: what a section before has left in it is written over before
 /// it is read, so that no answer depends on what was solved earlier.
-static ROOMS: Mutex<Vec<Room>> = Mutex::new(Vec::new());
+static ROOMS: Mutex<Vec<EquationRoom>> = Mutex::new(Vec::new());
 
 /// The equations of a section, for an elastic modulus of 1 MPa. Harmonics without enough fixed to stop rigid motions have no solution.
 #[derive(Clone, Debug)]
@@ -30,7 +30,7 @@ pub struct Equations {
 impl Equations {
     /// Of a mesh; `fixed` tells of every node which of its displacements along r, z and the circumference are zero in all harmonics.
     pub fn new(mesh: &Mesh, poisson: f64, fixed: Vec<[bool; 3]>) -> Self {
-        let Room { factors, entries } = ROOMS.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default();
+        let EquationRoom { factors, entries } = ROOMS.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default();
         Self { matrices: stiffness(mesh, poisson, &fixed, entries), factors, fixed, values: Vec::new(), sides: 0 }
     }
 
@@ -67,7 +67,7 @@ const MOST_SIDES: u64 = 5;
 
 impl Drop for Equations {
     fn drop(&mut self) {
-        let room = Room { factors: std::mem::take(&mut self.factors), entries: self.matrices.take_entries() };
+        let room = EquationRoom { factors: std::mem::take(&mut self.factors), entries: self.matrices.take_entries() };
         ROOMS.lock().unwrap_or_else(PoisonError::into_inner).push(room);
     }
 }

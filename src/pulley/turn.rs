@@ -59,7 +59,7 @@ struct Shares {
 
 /// Room for a chunk of points.
 #[derive(Clone, Debug, Default)]
-struct Room {
+struct TurnRoom {
     terms: Terms,
     belt: Field,
     held: Field,
@@ -111,7 +111,7 @@ impl<'t> Turn<'t> {
 
     /// Stresses of a chunk of points at all angles: from the belt, and from clamp and spin with the first bolt at the case's phase
     /// (at 0 if it is open).
-    fn fill(&self, chunk: usize, room: &mut Room) {
+    fn fill(&self, chunk: usize, room: &mut TurnRoom) {
         let places = chunk * CHUNK..(chunk + 1) * CHUNK;
         room.terms.iter_mut().for_each(Vec::clear);
         for (order, shares) in self.shares.iter().enumerate() {
@@ -157,7 +157,7 @@ impl<'t> Turn<'t> {
     /// Everything that a load case tells of the section. `own` are surface points that the engineer asks for.
     pub fn summary(&self, fatigue: Option<Strength>, own: [Option<usize>; 2]) -> Summary {
         let view = &self.view;
-        let mut room = Room::default();
+        let mut room = TurnRoom::default();
         let phases = self.phases();
         let mut largest = Peak::default();
         let mut tired: Vec<(f64, usize)> = Vec::new();
@@ -201,7 +201,7 @@ impl<'t> Turn<'t> {
 
     /// Peaks of the check points at the angles that all points are evaluated at, and the largest displacement of the rim times the
     /// modulus.
-    fn named(&self, phases: &[usize], room: &mut Room) -> ([Peak; CHECK_POINTS.len()], f64) {
+    fn named(&self, phases: &[usize], room: &mut TurnRoom) -> ([Peak; CHECK_POINTS.len()], f64) {
         let first = self.view.padded();
         let mut peaks: [Peak; CHECK_POINTS.len()] = std::array::from_fn(|number| Peak { point: first + number, ..Peak::default() });
         let mut rim: f64 = 0.0;
@@ -279,7 +279,7 @@ impl<'t> Turn<'t> {
     }
 
     /// The largest stress of one point over the turn and the phases.
-    fn peak(&self, point: usize, phases: &[usize], room: &mut Room) -> Peak {
+    fn peak(&self, point: usize, phases: &[usize], room: &mut TurnRoom) -> Peak {
         self.fill(point / CHUNK, room);
         let mut best = Peak { point, ..Peak::default() };
         for &shift in phases {
@@ -384,7 +384,7 @@ pub struct Summary {
 
 impl Turn<'_> {
     /// The point that tires first. `tired` are points with no less than what they can use of their strength.
-    fn fatigue(&self, strength: Strength, mut tired: Vec<(f64, usize)>, room: &mut Room) -> Fatigue {
+    fn fatigue(&self, strength: Strength, mut tired: Vec<(f64, usize)>, room: &mut TurnRoom) -> Fatigue {
         tired.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         let mut worst = Fatigue::default();
         for (possible, point) in tired {

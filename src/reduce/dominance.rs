@@ -16,17 +16,17 @@ const BUFFER: usize = 64;
 pub struct Dominance {
     dimensions: usize,
     trees: Vec<Tree>,
-    buffer: Points,
+    buffer: PointSet,
 }
 
 /// Coordinates, point after point, and the design index of each.
 #[derive(Clone, Debug, Default)]
-struct Points {
+struct PointSet {
     keys: Vec<f64>,
     indices: Vec<u64>,
 }
 
-impl Points {
+impl PointSet {
     fn key(&self, point: usize, dimensions: usize) -> &[f64] {
         &self.keys[point * dimensions..][..dimensions]
     }
@@ -39,7 +39,7 @@ impl Points {
 
 /// A node holds the points `first..last`; an inner node's left child follows it directly.
 #[derive(Debug)]
-struct Node {
+struct TreeNode {
     first: usize,
     last: usize,
     right: Option<usize>,
@@ -47,8 +47,8 @@ struct Node {
 
 #[derive(Debug)]
 struct Tree {
-    points: Points,
-    nodes: Vec<Node>,
+    points: PointSet,
+    nodes: Vec<TreeNode>,
     /// Best corner of every node.
     corners: Vec<f64>,
 }
@@ -61,7 +61,7 @@ pub fn beats(a: &[f64], a_index: u64, b: &[f64], b_index: u64) -> bool {
 impl Dominance {
     /// An empty set of points with so many coordinates.
     pub fn new(dimensions: usize) -> Self {
-        Self { dimensions, trees: Vec::new(), buffer: Points::default() }
+        Self { dimensions, trees: Vec::new(), buffer: PointSet::default() }
     }
 
     /// Adds a point.
@@ -80,23 +80,23 @@ impl Dominance {
     }
 
     /// A point of the set that makes this one superfluous, if there is one: its coordinates and index.
-    pub fn beater(&self, key: &[f64], index: u64) -> Option<(&[f64], u64)> {
+    pub fn dominator(&self, key: &[f64], index: u64) -> Option<(&[f64], u64)> {
         let dimensions = self.dimensions;
-        let beater_of = |points: &'_ Points, point: usize| beats(points.key(point, dimensions), points.indices[point], key, index);
+        let is_dominator = |points: &'_ PointSet, point: usize| beats(points.key(point, dimensions), points.indices[point], key, index);
         for tree in &self.trees {
-            if let Some(point) = tree.find(key, dimensions, beater_of) {
+            if let Some(point) = tree.find(key, dimensions, is_dominator) {
                 return Some((tree.points.key(point, dimensions), tree.points.indices[point]));
             }
         }
-        let found = (0..self.buffer.indices.len()).find(|&point| beater_of(&self.buffer, point))?;
+        let found = (0..self.buffer.indices.len()).find(|&point| is_dominator(&self.buffer, point))?;
         Some((self.buffer.key(found, dimensions), self.buffer.indices[found]))
     }
 }
 
 impl Tree {
-    fn new(points: Points, dimensions: usize) -> Self {
+    fn new(points: PointSet, dimensions: usize) -> Self {
         let mut order: Vec<usize> = (0..points.indices.len()).collect();
-        let mut tree = Self { points: Points::default(), nodes: Vec::new(), corners: Vec::new() };
+        let mut tree = Self { points: PointSet::default(), nodes: Vec::new(), corners: Vec::new() };
         tree.build(&points, &mut order, 0, dimensions);
         for &point in &order {
             tree.points.push(points.key(point, dimensions), points.indices[point]);
@@ -105,7 +105,7 @@ impl Tree {
     }
 
     /// Builds the node of `order`, which lies at `first` in the final order, and its children.
-    fn build(&mut self, points: &Points, order: &mut [usize], first: usize, dimensions: usize) {
+    fn build(&mut self, points: &PointSet, order: &mut [usize], first: usize, dimensions: usize) {
         let ends = |dimension: usize, order: &[usize]| {
             let values = order.iter().map(|&point| points.keys[point * dimensions + dimension]);
             values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
@@ -113,7 +113,7 @@ impl Tree {
         let spans: Vec<_> = (0..dimensions).map(|dimension| ends(dimension, order)).collect();
         self.corners.extend(spans.iter().map(|span| span.0));
         let node = self.nodes.len();
-        self.nodes.push(Node { first, last: first + order.len(), right: None });
+        self.nodes.push(TreeNode { first, last: first + order.len(), right: None });
         if order.len() <= LEAF {
             return;
         }
@@ -128,7 +128,7 @@ impl Tree {
         self.build(points, right, first + middle, dimensions);
     }
 
-    fn find(&self, key: &[f64], dimensions: usize, beats: impl Fn(&Points, usize) -> bool) -> Option<usize> {
+    fn find(&self, key: &[f64], dimensions: usize, beats: impl Fn(&PointSet, usize) -> bool) -> Option<usize> {
         // On the stack: this is asked of every design that may be on a front.
         let (mut pending, mut count) = ([0; MOST_PENDING], 1);
         while count > 0 {
@@ -169,7 +169,7 @@ mod tests {
             let points: Vec<_> = (0..700).map(point).collect();
             for (index, key) in points.iter().enumerate() {
                 let beaten = points[..index].iter().enumerate().any(|(other, it)| beats(it, other as u64, key, index as u64));
-                let found = set.beater(key, index as u64);
+                let found = set.dominator(key, index as u64);
                 assert_eq!(found.is_some(), beaten, "{dimensions} dimensions, point {index}");
                 if let Some((by, by_index)) = found {
                     assert!(beats(by, by_index, key, index as u64));

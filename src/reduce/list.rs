@@ -1,6 +1,6 @@
 //! The list of the reducers that a study may ask for.
 
-use super::reducer::{Needs, Put, Reducer, Results, Room};
+use super::reducer::{Put, Reducer, ReducerNeeds, ReducerResults, ReducerRoom};
 use super::{Answers, FeasibleSample, Histogram, Map, Top};
 use crate::error::Result;
 use crate::export::table::Table;
@@ -36,7 +36,7 @@ macro_rules! reducers {
             }
 
             /// What a report needs, kind after kind.
-            pub fn needs(report: &Report) -> Vec<Needs> {
+            pub fn needs(report: &Report) -> Vec<ReducerNeeds> {
                 [$(<$kind>::needs(report),)*].into_iter().flatten().collect()
             }
 
@@ -154,7 +154,7 @@ macro_rules! reducers {
                 let mut all = 0..;
                 $(
                     for ((number, it), place) in self.$field.iter().enumerate().zip(&mut all) {
-                        it.write(&Results { plan, number, threads, table: &|| table(place) }, put)?;
+                        it.write(&ReducerResults { plan, number, threads, table: &|| table(place) }, put)?;
                     }
                 )*
                 Ok(())
@@ -171,8 +171,8 @@ macro_rules! reducers {
             }
 
             /// What all take.
-            pub fn room(plan: &Plan) -> Room {
-                Room::default()$(.and(<$kind>::room(plan)))*
+            pub fn room(plan: &Plan) -> ReducerRoom {
+                ReducerRoom::default()$(.and(<$kind>::room(plan)))*
             }
         }
     };

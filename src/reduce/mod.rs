@@ -26,7 +26,7 @@ pub use front::{FRONT_BYTES, Front, KeyRule, MOST_OBJECTIVES, Points, most_point
 pub use histogram::Histogram;
 pub use list::{Places, Reported};
 pub use map::{CSV_CELLS, Cell, Map};
-pub use reducer::{Needs, Put, Reducer, Results, Room};
+pub use reducer::{Put, Reducer, ReducerNeeds, ReducerResults, ReducerRoom};
 pub use sample::{FeasibleSample, ROUNDS, Shuffle};
 pub use top::Top;
 

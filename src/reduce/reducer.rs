@@ -23,7 +23,7 @@ use serde_json::{Map, Value};
 /// What a reducer must be given of the feasible designs, which decides what can feed it. The text says what asks for it, for whoever
 /// cannot: "histograms in `[report]` ask for every feasible design".
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Needs {
+pub enum ReducerNeeds {
     /// Designs that may be among the best by one quantity: any engine may leave out what is surely not, and bounds can search for them.
     Candidates,
     /// Counts of all feasible designs, or candidates for places that designs from everywhere compete for: boxes of designs do not tell
@@ -34,7 +34,7 @@ pub enum Needs {
     Blocks(&'static str),
 }
 
-impl Needs {
+impl ReducerNeeds {
     /// Why bounds, which settle boxes of designs whole, cannot feed it; `None` if they can.
     pub fn beyond_bounds(self) -> Option<&'static str> {
         match self {
@@ -54,7 +54,7 @@ impl Needs {
 
 /// What reducers of one kind take, for the estimate before a run.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Room {
+pub struct ReducerRoom {
     /// Cells that are kept, saved and met.
     pub cells: u64,
     /// Tables of cells, which are made one after the other: cells and columns of each.
@@ -75,7 +75,7 @@ pub struct Room {
     pub lists: Vec<(String, u64)>,
 }
 
-impl Room {
+impl ReducerRoom {
     /// What both take.
     #[must_use]
     pub fn and(mut self, other: Self) -> Self {
@@ -97,7 +97,7 @@ impl Room {
 }
 
 /// What a reducer writes from.
-pub struct Results<'a> {
+pub struct ReducerResults<'a> {
     /// The study, laid out.
     pub plan: &'a Plan,
     /// Its number among those of its kind: its place in the study's list.
@@ -120,7 +120,7 @@ pub trait Reducer: Clone + Sized {
     fn asked(plan: &Plan, ranges: &[(f64, f64)]) -> Vec<Self>;
 
     /// What these need, if the report asks for any.
-    fn needs(report: &Report) -> Option<Needs>;
+    fn needs(report: &Report) -> Option<ReducerNeeds>;
 
     /// Takes in a block. The order of blocks, and who takes in which, must not show in the end.
     fn absorb(&mut self, block: &Block<'_>);
@@ -193,7 +193,7 @@ pub trait Reducer: Clone + Sized {
     ///
     /// # Errors
     /// Those of `put`, and of the writers of tables.
-    fn write(&self, results: &Results<'_>, put: &mut Put<'_>) -> Result<()>;
+    fn write(&self, results: &ReducerResults<'_>, put: &mut Put<'_>) -> Result<()>;
 
     /// Adds to the data of the page what the files of these say.
     ///
@@ -203,7 +203,7 @@ pub trait Reducer: Clone + Sized {
     fn page(folder: &Folder<'_>, data: &mut Map<String, Value>) -> Result<()>;
 
     /// What these take.
-    fn room(_plan: &Plan) -> Room {
-        Room::default()
+    fn room(_plan: &Plan) -> ReducerRoom {
+        ReducerRoom::default()
     }
 }

@@ -5,7 +5,7 @@
 //! that ends early is still a fair sample of what it has seen.
 
 use super::Answers;
-use super::reducer::{Needs, Put, Reducer, Results, Room};
+use super::reducer::{Put, Reducer, ReducerNeeds, ReducerResults, ReducerRoom};
 use crate::error::Result;
 use crate::export::csv;
 #[cfg(feature = "parquet")]
@@ -159,8 +159,8 @@ impl Reducer for FeasibleSample {
         plan.study.report.sample.iter().map(|sample| Self::new(sample.count, sample.seed)).collect()
     }
 
-    fn needs(report: &Report) -> Option<Needs> {
-        report.sample.map(|_| Needs::Designs("sample in [report] asks for designs from all over the feasible ones"))
+    fn needs(report: &Report) -> Option<ReducerNeeds> {
+        report.sample.map(|_| ReducerNeeds::Designs("sample in [report] asks for designs from all over the feasible ones"))
     }
 
     fn absorb(&mut self, block: &Block<'_>) {
@@ -233,7 +233,7 @@ impl Reducer for FeasibleSample {
         FILES.contains(&name)
     }
 
-    fn write(&self, results: &Results<'_>, put: &mut Put<'_>) -> Result<()> {
+    fn write(&self, results: &ReducerResults<'_>, put: &mut Put<'_>) -> Result<()> {
         let table = (results.table)();
         put(FILES[0], csv::write(&table))?;
         #[cfg(feature = "parquet")]
@@ -249,10 +249,10 @@ impl Reducer for FeasibleSample {
         Ok(())
     }
 
-    fn room(plan: &Plan) -> Room {
-        let Some(sample) = plan.study.report.sample else { return Room::default() };
+    fn room(plan: &Plan) -> ReducerRoom {
+        let Some(sample) = plan.study.report.sample else { return ReducerRoom::default() };
         let rows = (sample.count as u64).min(plan.designs());
-        Room { rows, indices: rows, dots: rows.min(MOST_DOTS), lists: vec![(FILES[0].to_owned(), rows)], ..Room::default() }
+        ReducerRoom { rows, indices: rows, dots: rows.min(MOST_DOTS), lists: vec![(FILES[0].to_owned(), rows)], ..ReducerRoom::default() }
     }
 }
 
@@ -278,10 +278,10 @@ mod tests {
 
     #[test]
     fn needs_say_who_can_feed_a_reducer() {
-        let of = |needs: Needs| (needs.beyond_bounds(), needs.beyond_devices());
-        assert_eq!(of(Needs::Candidates), (None, None));
-        assert_eq!(of(Needs::Designs("why")), (Some("why"), None));
-        assert_eq!(of(Needs::Blocks("why")), (Some("why"), Some("why")));
+        let of = |needs: ReducerNeeds| (needs.beyond_bounds(), needs.beyond_devices());
+        assert_eq!(of(ReducerNeeds::Candidates), (None, None));
+        assert_eq!(of(ReducerNeeds::Designs("why")), (Some("why"), None));
+        assert_eq!(of(ReducerNeeds::Blocks("why")), (Some("why"), Some("why")));
     }
 
     #[test]

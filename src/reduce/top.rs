@@ -1,7 +1,7 @@
 //! The best K designs by one quantity.
 
 use super::Answers;
-use super::reducer::{Needs, Put, Reducer, Results, Room};
+use super::reducer::{Put, Reducer, ReducerNeeds, ReducerResults, ReducerRoom};
 use crate::error::Result;
 use crate::export::csv;
 use crate::plan::Plan;
@@ -77,8 +77,8 @@ impl Reducer for Top {
         top.map(|top| Self::new(top.goal, top.count, plan.position(top.by, top.goal.worse()))).collect()
     }
 
-    fn needs(report: &Report) -> Option<Needs> {
-        report.top.map(|_| Needs::Candidates)
+    fn needs(report: &Report) -> Option<ReducerNeeds> {
+        report.top.map(|_| ReducerNeeds::Candidates)
     }
 
     fn absorb(&mut self, block: &Block<'_>) {
@@ -124,7 +124,7 @@ impl Reducer for Top {
         name == FILE
     }
 
-    fn write(&self, results: &Results<'_>, put: &mut Put<'_>) -> Result<()> {
+    fn write(&self, results: &ReducerResults<'_>, put: &mut Put<'_>) -> Result<()> {
         put(FILE, csv::write(&(results.table)()))
     }
 
@@ -140,10 +140,10 @@ impl Reducer for Top {
         Ok(())
     }
 
-    fn room(plan: &Plan) -> Room {
-        let Some(top) = plan.study.report.top else { return Room::default() };
+    fn room(plan: &Plan) -> ReducerRoom {
+        let Some(top) = plan.study.report.top else { return ReducerRoom::default() };
         let rows = (top.count as u64).min(plan.designs());
-        Room { rows, lists: vec![(FILE.to_owned(), rows)], ..Room::default() }
+        ReducerRoom { rows, lists: vec![(FILE.to_owned(), rows)], ..ReducerRoom::default() }
     }
 }
 

@@ -7,7 +7,7 @@ use crate::certify::{self, Column, Role, Row};
 use crate::error::Result;
 use crate::export::written;
 use crate::names::MOST_ON_PAGE;
-use crate::parallel;
+use crate::parallel::with_beside;
 use crate::plan::Plan;
 use crate::screen::Control;
 use crate::study::{Axis, Goal, Quantity, Study};
@@ -241,22 +241,25 @@ fn complete(
     }
     let own = Control::default();
     let (finished, waiting) = channel::<()>();
-    let rows = std::thread::scope(|scope| {
-        let own = &own;
-        // Without somebody who looks at the clock it might take for ever.
-        parallel::start(scope, move || {
-            let start = Instant::now();
-            // Ends with the work, when the patience does, or when everything is to stop.
-            while waiting.recv_timeout(Duration::from_millis(20)) == Err(RecvTimeoutError::Timeout) {
-                if start.elapsed() > patience || control.stop.load(Ordering::Relaxed) {
-                    own.stop.store(true, Ordering::Relaxed);
-                    return;
-                }
+    let own = &own;
+    let look = move || {
+        let start = Instant::now();
+        // Ends with the work, when the patience does, or when everything is to stop.
+        while waiting.recv_timeout(Duration::from_millis(20)) == Err(RecvTimeoutError::Timeout) {
+            if start.elapsed() > patience || control.stop.load(Ordering::Relaxed) {
+                own.stop.store(true, Ordering::Relaxed);
+                return;
             }
-        })?;
-        let rows = certify::rows(plan, &all, designs, threads, own);
-        drop(finished);
-        rows.ok()
+        }
+    };
+    let rows = with_beside(look, |is_watched| {
+        // It goes when the work ends, also in a panic.
+        let _finished = finished;
+        // Without somebody who looks at the clock it might take for ever.
+        if !is_watched {
+            return None;
+        }
+        certify::rows(plan, &all, designs, threads, own).ok()
     });
     Some((all[columns.len()..].to_vec(), rows?))
 }

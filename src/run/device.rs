@@ -25,7 +25,7 @@ pub struct Trusted {
     /// What it is.
     pub adapter: Adapter,
     /// What the self-test found.
-    pub report: self_test::Report,
+    pub report: self_test::SelfTest,
     /// As the sweep takes it.
     pub on: OnDevice,
 }

@@ -1,4 +1,4 @@
-//! What the threads of the processor's engine share: settings of scenarios, and the designs of the fast axes by blocks.
+//! What the threads of the CPU engine share: settings of scenarios, and the designs of the fast axes by blocks.
 
 use crate::models::{self, LANES};
 use crate::plan::{FAST_DESIGNS, Plan};

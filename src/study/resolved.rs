@@ -248,7 +248,7 @@ pub struct Study {
 
 /// A study as it stands in a file that may have been changed: it is none before its model has been found and it has been checked.
 #[derive(Deserialize)]
-pub(crate) struct Stored {
+pub(crate) struct StoredStudy {
     model: String,
     title: String,
     design: Vec<Axis>,
@@ -261,7 +261,7 @@ pub(crate) struct Stored {
     report: Report,
 }
 
-impl Stored {
+impl StoredStudy {
     /// Name of its model.
     pub(crate) fn model(&self) -> &str {
         &self.model
@@ -283,7 +283,7 @@ impl Study {
     /// The first thing that is missing or cannot be.
     #[doc(hidden)]
     pub fn from_stored(models: &Models, stored: Value) -> Result<Self, String> {
-        serde_json::from_value::<Stored>(stored).map_err(|error| error.to_string())?.study(models)
+        serde_json::from_value::<StoredStudy>(stored).map_err(|error| error.to_string())?.study(models)
     }
 
     /// What the model has to say of this study as a whole.

@@ -10,7 +10,7 @@ use super::gpu::go_on;
 #[cfg(not(feature = "gpu"))]
 use super::no_device::go_on;
 use super::watch::Leaving;
-use super::{Control, DeviceRecord, OnDevice, Settings, Swept, Work, judge};
+use super::{Control, DeviceRecord, OnDevice, Settings, SweepJob, SweepWork, Swept, judge};
 use crate::bounds::Certificate;
 use crate::checkpoint::{Checkpoint, Progress};
 use crate::error::{Error, Result};
@@ -25,7 +25,7 @@ use std::time::Instant;
 pub struct Rule<'d> {
     /// How fast designs are judged one by one.
     pub speed: Speed,
-    /// The device that judges them, if it is not the processor.
+    /// The device that judges them, if it is not the CPU.
     pub device: Option<&'d OnDevice>,
     /// When bounds are left.
     pub leaving: Leaving,
@@ -93,23 +93,24 @@ pub fn sweep_auto(
     rule: &Rule<'_>,
 ) -> Result<Auto> {
     let start = Instant::now();
-    let mut work = Work::begin(plan, tables, reduction, options, checkpoint, control)?;
+    let job = SweepJob { plan, tables, reduction, options, control };
+    let mut work = SweepWork::begin(job, checkpoint)?;
     let designs = work.todo.count();
     let done = |state: State, settler, device| Auto { swept: Swept { state, designs, time: start.elapsed() }, settler, device };
     let is_measured = rule.leaving == Leaving::WhereTheyDoNotPay;
     // Of a study that is resumed little may be left.
     if is_measured && why_every_design(plan, rule.speed.of(designs, options.threads)).is_some() {
-        let (state, device) = judge_rest(plan, tables, reduction, options, work, control, rule.device)?;
+        let (state, device) = judge_rest(job, work, rule.device)?;
         return Ok(done(state, Settler::EveryDesign, device));
     }
     let leaving = Some((rule.leaving, rule.speed.of(1, options.threads)));
-    let remains = match settle(plan, tables, reduction, options, &mut work, control, leaving)? {
+    let remains = match settle(job, &mut work, leaving)? {
         Settling::Done(state, certificate) => return Ok(done(state, Settler::Bounds(certificate), None)),
         Settling::Left(remains) => remains,
     };
     control.judges(work.done.count());
     let judged = work.todo.count();
-    let (state, device) = judge_rest(plan, tables, reduction, options, work, control, rule.device)?;
+    let (state, device) = judge_rest(job, work, rule.device)?;
     if let Some(found) = &remains.found {
         agree(found, &state)?;
     }
@@ -118,23 +119,14 @@ pub fn sweep_auto(
 }
 
 /// Judges what is left to do.
-fn judge_rest(
-    plan: &Plan,
-    tables: &Tables,
-    reduction: &Reduction,
-    options: &Settings,
-    mut work: Work<'_>,
-    control: &Control,
-    device: Option<&OnDevice>,
-) -> Result<(State, Option<DeviceRecord>)> {
+fn judge_rest(job: SweepJob<'_>, mut work: SweepWork<'_>, device: Option<&OnDevice>) -> Result<(State, Option<DeviceRecord>)> {
     let progress = Progress { done: work.done, state: work.reducers.state() };
     let checkpoint = work.checkpoint;
     if let Some(on) = device {
-        let (swept, record) = go_on(plan, tables, reduction, options, Some(progress), checkpoint, control, on)?;
+        let (swept, record) = go_on(job, Some(progress), checkpoint, on)?;
         return Ok((swept.state, Some(record)));
     }
-    let work = Work::new(plan, options, progress, reduction, checkpoint, control);
-    Ok((judge(plan, tables, reduction, options, work, control)?, None))
+    Ok((judge(job, SweepWork::new(job, progress, checkpoint))?, None))
 }
 
 /// What bounds had found, if it was all that the result names, must be what is named in the end.

@@ -5,11 +5,11 @@
 
 use super::costs::Promise;
 use super::watch::{Leaving, OFTEN, Teller, Watch};
-use super::{Control, Settings, Swept, Work};
-use crate::bounds::{Certificate, Layout, Settled, Worker, in_words, refusal};
+use super::{Control, Settings, SweepJob, SweepWork, Swept};
+use crate::bounds::{BoundedStudy, Certificate, SearchJob, Settled, Worker, in_words, refusal};
 use crate::checkpoint::Checkpoint;
 use crate::error::{Error, Result};
-use crate::parallel::{on_threads, start};
+use crate::parallel::{on_threads, with_beside};
 use crate::plan::Plan;
 use crate::reduce::{Reduction, State};
 use crate::screen::{CpuEngine, Tables};
@@ -42,9 +42,10 @@ pub fn sweep_by_bounds(
     control: &Control,
 ) -> Result<(Swept, Certificate)> {
     let start = Instant::now();
-    let mut work = Work::begin(plan, tables, reduction, options, checkpoint, control)?;
+    let job = SweepJob { plan, tables, reduction, options, control };
+    let mut work = SweepWork::begin(job, checkpoint)?;
     let designs = work.todo.count();
-    match settle(plan, tables, reduction, options, &mut work, control, None)? {
+    match settle(job, &mut work, None)? {
         Settling::Done(state, certificate) => Ok((Swept { state, designs, time: start.elapsed() }, certificate)),
         Settling::Left(_) => Err(stopped()),
     }
@@ -71,34 +72,30 @@ pub(super) struct Remains {
 
 /// Settles designs by bounds until there are none left, or, where `leaving` says when and how many seconds a design takes one by one,
 /// until that pays no more.
-pub(super) fn settle(
-    plan: &Plan,
-    tables: &Tables,
-    reduction: &Reduction,
-    options: &Settings,
-    work: &mut Work<'_>,
-    control: &Control,
-    leaving: Option<(Leaving, f64)>,
-) -> Result<Settling> {
+pub(super) fn settle(job: SweepJob<'_>, work: &mut SweepWork<'_>, leaving: Option<(Leaving, f64)>) -> Result<Settling> {
+    let SweepJob { plan, options, control, .. } = job;
     let refuse = || Error::NotByBounds { why: refusal(plan).unwrap_or_default() };
-    let mut layout = Layout::new(plan).ok_or_else(refuse)?;
+    let mut layout = BoundedStudy::new(plan).ok_or_else(refuse)?;
     layout.most_points = options.most_points(plan);
-    let whole = options.shard.range(plan.designs());
-    let passes = Layout::sought(plan).len() as u64 + 1;
+    let whole = job.whole();
+    let passes = BoundedStudy::sought(plan).len() as u64 + 1;
     let watch = Watch::new(control, leaving, whole.end - whole.start, work.todo.count(), passes);
     let over = AtomicBool::new(false);
-    std::thread::scope(|scope| {
-        // Where no thread can be had, those who settle boxes look at the clock.
-        let look = || {
-            while !over.load(Ordering::Relaxed) {
-                watch.look();
-                std::thread::sleep(OFTEN);
-            }
-        };
-        let _watcher = if watch.may_leave() { start(scope, look) } else { None };
+    let mut settle = || settle_watched(job, &layout, &whole, work, &watch);
+    if !watch.may_leave() {
+        return settle();
+    }
+    let look = || {
+        while !over.load(Ordering::Relaxed) {
+            watch.look();
+            std::thread::sleep(OFTEN);
+        }
+    };
+    // Where no thread can be had, those who settle boxes look at the clock.
+    with_beside(look, |_| {
         // Whatever happens, the watcher ends.
         let _end = AtEnd(&over);
-        settle_watched(plan, tables, reduction, options, &layout, &whole, work, &watch, control)
+        settle()
     })
 }
 
@@ -111,21 +108,17 @@ impl Drop for AtEnd<'_> {
     }
 }
 
-#[allow(clippy::too_many_arguments, reason = "what a sweep has")]
 fn settle_watched(
-    plan: &Plan,
-    tables: &Tables,
-    reduction: &Reduction,
-    options: &Settings,
-    layout: &Layout,
+    job: SweepJob<'_>,
+    layout: &BoundedStudy,
     whole: &Range<u64>,
-    work: &mut Work<'_>,
+    work: &mut SweepWork<'_>,
     watch: &Watch<'_>,
-    control: &Control,
 ) -> Result<Settling> {
+    let SweepJob { plan, options, control, .. } = job;
     let designs = work.todo.count();
     let mut certificate = Certificate::default();
-    let searched = search(plan, tables, reduction, options, layout, whole, work, watch, control, &mut certificate);
+    let searched = search(job, layout, whole, work, watch, &mut certificate);
     let state = work.reducers.state();
     work.save(&state)?;
     options.check_memory(plan, state.front.len())?;
@@ -137,7 +130,7 @@ fn settle_watched(
     }
     // What was searched is final.
     options.check_budget(plan, &state)?;
-    let passes = Layout::sought(plan).len() as u64 + 1;
+    let passes = BoundedStudy::sought(plan).len() as u64 + 1;
     control.settles(format!("count, {passes} of {passes}"));
     watch.counts();
     let shared = Mutex::new(work);
@@ -156,7 +149,7 @@ fn settle_watched(
         return Ok(Settling::Left(Remains { promise, at: at(), counted, found: Some(state) }));
     }
     adds_up(&certificate, designs, whole.end - whole.start)?;
-    certificate.compared = compare(plan, tables, reduction, layout, whole, &state, control)?;
+    certificate.compared = compare(job, layout, whole, &state)?;
     control.done.store(whole.end - whole.start, Ordering::Relaxed);
     Ok(Settling::Done(state, certificate))
 }
@@ -166,27 +159,23 @@ pub(super) fn stopped() -> Error {
 }
 
 /// Searches for everything that the result names; false if it was stopped.
-#[allow(clippy::too_many_arguments, reason = "what a sweep has")]
 fn search(
-    plan: &Plan,
-    tables: &Tables,
-    reduction: &Reduction,
-    options: &Settings,
-    layout: &Layout,
+    job: SweepJob<'_>,
+    layout: &BoundedStudy,
     whole: &Range<u64>,
-    work: &mut Work<'_>,
+    work: &mut SweepWork<'_>,
     watch: &Watch<'_>,
-    control: &Control,
     certificate: &mut Certificate,
 ) -> bool {
-    let all = Layout::sought(plan);
+    let SweepJob { plan, tables, reduction, options, control } = job;
+    let all = BoundedStudy::sought(plan);
     let passes = all.len() as u64 + 1;
     let mut workers: Vec<Worker<'_>> = (0..options.threads.max(1)).map(|_| layout.worker(plan, tables, watch.stop())).collect();
     let progress = |designs: u64| watch.settle(designs);
     for (number, sought) in all.into_iter().enumerate() {
         control.settles(format!("{}, {} of {passes}", in_words(plan, sought), number + 1));
-        let found = layout.search(plan, reduction, sought, whole, &mut workers, &mut work.reducers, watch.stop(), &progress);
-        match found {
+        let search = SearchJob { plan, reduction, range: whole, stop: watch.stop(), progress: &progress };
+        match layout.search(search, sought, &mut workers, &mut work.reducers) {
             Some(searched) => certificate.searches.push((in_words(plan, sought), searched)),
             None => return false,
         }
@@ -195,7 +184,7 @@ fn search(
 }
 
 /// Counts ranges until there are none left.
-fn count_on_thread(plan: &Plan, layout: &Layout, options: &Settings, work: &Mutex<&mut Work<'_>>, watch: &Watch<'_>) -> Settled {
+fn count_on_thread(plan: &Plan, layout: &BoundedStudy, options: &Settings, work: &Mutex<&mut SweepWork<'_>>, watch: &Watch<'_>) -> Settled {
     let teller = Teller::new(watch);
     let settle = |designs: u64| teller.settle(designs);
     let mut counter = layout.counter(watch.stop()).telling(&settle);
@@ -234,7 +223,7 @@ fn count_on_thread(plan: &Plan, layout: &Layout, options: &Settings, work: &Mute
     }
 }
 
-fn hand_over(plan: &Plan, range: Range<u64>, feasible: u64, time: Duration, work: &mut Work<'_>) {
+fn hand_over(plan: &Plan, range: Range<u64>, feasible: u64, time: Duration, work: &mut SweepWork<'_>) {
     work.rate = Some((range.end - range.start) as f64 / time.as_secs_f64().max(1e-6));
     work.reducers.feasible += feasible;
     if let Err(failure) = work.finish(plan, range) {
@@ -257,15 +246,8 @@ fn adds_up(certificate: &Certificate, counted: u64, searched: u64) -> Result<()>
 }
 
 /// Judges random ranges design by design: the count must be the same, and no design may be better than what was found.
-fn compare(
-    plan: &Plan,
-    tables: &Tables,
-    reduction: &Reduction,
-    layout: &Layout,
-    whole: &Range<u64>,
-    state: &State,
-    control: &Control,
-) -> Result<u64> {
+fn compare(job: SweepJob<'_>, layout: &BoundedStudy, whole: &Range<u64>, state: &State) -> Result<u64> {
+    let SweepJob { plan, tables, reduction, control, .. } = job;
     let size = whole.end - whole.start;
     let affordable = (COMPARED_TIME / plan.seconds_per_design().max(1e-12)) as u64;
     let length = COMPARED.min(size / COMPARED_RANGES).min(affordable / COMPARED_RANGES).max(1).min(size);

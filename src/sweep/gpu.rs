@@ -1,7 +1,7 @@
 //! The sweep on a device: tiles judged there, survivors in f64 here, one host thread that keeps the answers.
 
 use super::recheck::{Recheck, Recheckable};
-use super::{Control, Settings, Swept, Work, head_start, look_around};
+use super::{Control, Settings, SweepJob, SweepWork, Swept, head_start, look_around};
 use crate::checkpoint::{Checkpoint, Progress};
 use crate::error::{Error, Result};
 use crate::gpu::Device;
@@ -61,7 +61,7 @@ pub struct DeviceRecord {
     pub tiles: u64,
     /// Tiles that had to be repeated in parts because too many designs survived.
     pub repeated: u64,
-    /// How long the processor waited for its results. What a driver takes for itself when work is handed to it is not counted.
+    /// How long the CPU waited for its results. What a driver takes for itself when work is handed to it is not counted.
     pub waiting: Duration,
     /// The comparison with f64 of whole tiles.
     pub recheck: Recheck,
@@ -71,7 +71,7 @@ pub struct DeviceRecord {
 ///
 /// # Errors
 /// As [`sweep`](super::sweep); [`Error::Gpu`] if the device fails, the checkpoint then holding what was done before;
-/// [`Error::Promise`] if f64 disagrees with what the device promises; [`Error::Request`] if it cannot serve the study.
+/// [`Error::Promise`] if f64 says that the device broke an error bound; [`Error::Request`] if it cannot serve the study.
 pub fn sweep_on_device(
     plan: &Plan,
     tables: &Tables,
@@ -85,27 +85,23 @@ pub fn sweep_on_device(
         Some(checkpoint) => checkpoint.take_progress(plan, reduction)?,
         None => None,
     };
-    go_on(plan, tables, reduction, options, progress, checkpoint, control, on)
+    go_on(SweepJob { plan, tables, reduction, options, control }, progress, checkpoint, on)
 }
 
 /// The same with what was done before.
-#[allow(clippy::too_many_arguments, reason = "what a sweep has")]
 pub(super) fn go_on(
-    plan: &Plan,
-    tables: &Tables,
-    reduction: &Reduction,
-    options: &Settings,
+    job: SweepJob<'_>,
     progress: Option<Progress>,
     checkpoint: Option<&mut Checkpoint>,
-    control: &Control,
     on: &OnDevice,
 ) -> Result<(Swept, DeviceRecord)> {
+    let SweepJob { plan, tables, reduction, options, control } = job;
     let start = Instant::now();
     let mut engine = GpuEngine::new(plan, &reduction.histogram_ranges(), &on.device, on.limited_loops, &on.wrong)?;
-    let whole = options.shard.range(plan.designs());
-    let mut seen = look_around(plan, tables, reduction, &whole, control);
+    let whole = job.whole();
+    let mut seen = look_around(job, &whole);
     let progress = progress.unwrap_or_else(|| Progress { done: Ranges::default(), state: head_start(reduction, &mut seen) });
-    let mut work = Work::new(plan, options, progress, reduction, checkpoint, control);
+    let mut work = SweepWork::new(job, progress, checkpoint);
     let designs = work.todo.count();
     let mut run = Run {
         plan,
@@ -117,7 +113,7 @@ pub(super) fn go_on(
         hints: answers(&mut seen),
         record: DeviceRecord::default(),
     };
-    // Should the device turn out not to keep its promise, nothing that it counted may be kept.
+    // Should the device turn out to break an error bound, nothing that it counted may be kept.
     let before = (work.done.clone(), work.reducers.state());
     let outcome = run.whole_run(&mut work, &whole, control);
     let record = std::mem::take(&mut run.record);
@@ -146,7 +142,8 @@ pub(super) fn go_on(
 pub fn recheck_on_device(plan: &Plan, tables: &Tables, reduction: &Reduction, threads: usize, on: &OnDevice) -> Result<Recheck> {
     let mut engine = GpuEngine::new(plan, &reduction.histogram_ranges(), &on.device, on.limited_loops, &on.wrong)?;
     let whole = 0..plan.designs();
-    let answers = answers(&mut look_around(plan, tables, reduction, &whole, &Control::default()));
+    let job = SweepJob { plan, tables, reduction, options: &Settings { threads, ..Settings::default() }, control: &Control::default() };
+    let answers = answers(&mut look_around(job, &whole));
     engine.tell_cells(&answers);
     Recheckable::new(plan, tables, reduction, &mut engine, &answers, &whole, threads).map(Recheckable::into_report)
 }
@@ -165,7 +162,7 @@ struct Run<'a, 'p> {
 
 impl Run<'_, '_> {
     /// Compares whole tiles with f64, judges all that is to do, and looks for what the tiles hold that got lost.
-    fn whole_run(&mut self, work: &mut Work<'_>, whole: &Range<u64>, control: &Control) -> Result<Recheckable> {
+    fn whole_run(&mut self, work: &mut SweepWork<'_>, whole: &Range<u64>, control: &Control) -> Result<Recheckable> {
         let mut rechecked = self.recheck(&mut work.reducers, whole)?;
         self.run(work, control)?;
         if work.todo.count() == 0 {
@@ -175,7 +172,7 @@ impl Run<'_, '_> {
     }
 
     /// Judges all that is to do, two tiles in flight.
-    fn run(&mut self, work: &mut Work<'_>, control: &Control) -> Result<()> {
+    fn run(&mut self, work: &mut SweepWork<'_>, control: &Control) -> Result<()> {
         let mut flying: VecDeque<(InFlight, Instant)> = VecDeque::new();
         let mut answers = self.answers(&mut work.reducers);
         self.engine.tell_cells(&answers);
@@ -231,7 +228,7 @@ impl Run<'_, '_> {
     }
 
     /// Adds what the device counted, and decides in f64 what it could not.
-    fn take_in(&mut self, work: &mut Work<'_>, counts: &TileCounts, survivors: &Survivors) -> Result<()> {
+    fn take_in(&mut self, work: &mut SweepWork<'_>, counts: &TileCounts, survivors: &Survivors) -> Result<()> {
         let TileCounts { sure, unsure, reported } = counts;
         self.reduction.add_counts(&mut work.reducers, *sure, reported);
         self.record.unsure += unsure;
@@ -241,7 +238,7 @@ impl Run<'_, '_> {
         let plan = self.plan;
         let (front, objectives) = (&work.reducers.front, plan.study.objectives.len());
         let on_front = |it: &Survivor| it.front.is_some_and(|keys| !front.beats(&lower_keys(plan, &keys)[..objectives]));
-        let cells = Cells::new(plan, survivors);
+        let cells = BestCells::new(plan, survivors);
         let looked = in_shares(survivors.len(), LEAST_SHARE as usize, self.threads, |part| {
             let (mut sure, mut unsure) = (Vec::new(), Vec::new());
             for it in part.map(|at| survivors.get(at)) {
@@ -375,14 +372,14 @@ fn lower_keys(plan: &Plan, keys: &[f32; MOST_OBJECTIVES]) -> [f64; MOST_OBJECTIV
 
 /// Who may be the best of a map's cell, among the survivors of a tile.
 #[derive(Default)]
-struct Cells {
+struct BestCells {
     /// Per map and cell: the least upper bound of the key.
     best: HashMap<(usize, u64), f32>,
     /// Per map: the lowest index of designs that agree on every axis that the shown value depends on. The others tie and lose.
     first: HashMap<(usize, u64), u64>,
 }
 
-impl Cells {
+impl BestCells {
     fn new(plan: &Plan, survivors: &Survivors) -> Self {
         let mut cells = Self::default();
         if value_maps(plan).next().is_none() {

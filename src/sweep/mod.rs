@@ -1,8 +1,8 @@
 //! The sweep: ranges of designs handed to threads, their results merged and kept.
 //!
-//! On the processor a thread takes a chunk of positions, screens it with reducers of its own (which may drop what the front known so far beats)
+//! On the CPU a thread takes a chunk of positions, screens it with reducers of its own (which may drop what the front known so far beats)
 //! and hands the result over as a whole. What is merged is therefore always complete for the ranges that the checkpoint names,
-//! and the result does not depend on how the work was cut. On a graphics device see `sweep_on_device`.
+//! and the result does not depend on how the work was cut. For the sweep on a GPU see `sweep_on_device`.
 
 mod auto;
 mod bounds;
@@ -129,8 +129,25 @@ const HEAD_START_SHARE: u64 = 64;
 /// Seconds that it may take, by what the model says.
 const HEAD_START_TIME: f64 = 0.3;
 
+/// What is swept, how, and who may stop it.
+#[derive(Clone, Copy)]
+struct SweepJob<'a> {
+    plan: &'a Plan,
+    tables: &'a Tables,
+    reduction: &'a Reduction,
+    options: &'a Settings,
+    control: &'a Control,
+}
+
+impl SweepJob<'_> {
+    /// Positions of the designs of this shard.
+    fn whole(&self) -> std::ops::Range<u64> {
+        self.options.shard.range(self.plan.designs())
+    }
+}
+
 /// What the threads share.
-struct Work<'a> {
+struct SweepWork<'a> {
     options: Settings,
     todo: Ranges,
     done: Ranges,
@@ -147,36 +164,22 @@ struct Work<'a> {
     merging: Duration,
 }
 
-impl<'a> Work<'a> {
+impl<'a> SweepWork<'a> {
     /// What a checkpoint holds, or nothing yet but the front of a few designs.
-    fn begin(
-        plan: &Plan,
-        tables: &Tables,
-        reduction: &Reduction,
-        options: &Settings,
-        mut checkpoint: Option<&'a mut Checkpoint>,
-        control: &Control,
-    ) -> Result<Self> {
+    fn begin(job: SweepJob<'_>, mut checkpoint: Option<&'a mut Checkpoint>) -> Result<Self> {
         let progress = match checkpoint.as_deref_mut() {
-            Some(checkpoint) => checkpoint.take_progress(plan, reduction)?,
+            Some(checkpoint) => checkpoint.take_progress(job.plan, job.reduction)?,
             None => None,
         };
-        let whole = options.shard.range(plan.designs());
-        let fresh = || head_start(reduction, &mut look_around(plan, tables, reduction, &whole, control));
+        let fresh = || head_start(job.reduction, &mut look_around(job, &job.whole()));
         let progress = progress.unwrap_or_else(|| Progress { done: Ranges::default(), state: fresh() });
-        Ok(Self::new(plan, options, progress, reduction, checkpoint, control))
+        Ok(Self::new(job, progress, checkpoint))
     }
 
-    fn new(
-        plan: &Plan,
-        options: &Settings,
-        progress: Progress,
-        reduction: &Reduction,
-        checkpoint: Option<&'a mut Checkpoint>,
-        control: &Control,
-    ) -> Self {
+    fn new(job: SweepJob<'_>, progress: Progress, checkpoint: Option<&'a mut Checkpoint>) -> Self {
+        let SweepJob { reduction, options, control, .. } = job;
         let Progress { done, state } = progress;
-        let whole = options.shard.range(plan.designs());
+        let whole = job.whole();
         control.done.store(done.count(), Ordering::Relaxed);
         let mut reducers = reduction.restore(state);
         let known = Arc::new(reducers.front.points().clone());
@@ -237,16 +240,18 @@ pub fn sweep(
     control: &Control,
 ) -> Result<Swept> {
     let start = Instant::now();
-    let work = Work::begin(plan, tables, reduction, options, checkpoint, control)?;
+    let job = SweepJob { plan, tables, reduction, options, control };
+    let work = SweepWork::begin(job, checkpoint)?;
     let designs = work.todo.count();
-    let state = judge(plan, tables, reduction, options, work, control)?;
+    let state = judge(job, work)?;
     Ok(Swept { state, designs, time: start.elapsed() })
 }
 
 /// Judges what is left to do, design by design.
-fn judge(plan: &Plan, tables: &Tables, reduction: &Reduction, options: &Settings, work: Work<'_>, control: &Control) -> Result<State> {
+fn judge(job: SweepJob<'_>, work: SweepWork<'_>) -> Result<State> {
+    let SweepJob { plan, options, control, .. } = job;
     let work = Mutex::new(work);
-    on_threads(0..options.threads.max(1), |_| run_thread(plan, tables, reduction, options, &work, control));
+    on_threads(0..options.threads.max(1), |_| run_thread(job, &work));
     let mut work = work.into_inner().unwrap_or_else(PoisonError::into_inner);
     if let Some(failure) = work.failure {
         return Err(failure);
@@ -263,7 +268,8 @@ fn judge(plan: &Plan, tables: &Tables, reduction: &Reduction, options: &Settings
 /// What remains of a few designs from all over a range, so that the first chunks have something to compare with.
 ///
 /// They are designs like any other, judged in f64: the sweep will meet them again and finds those of the front there already.
-fn look_around(plan: &Plan, tables: &Tables, reduction: &Reduction, whole: &std::ops::Range<u64>, control: &Control) -> Reducers {
+fn look_around(job: SweepJob<'_>, whole: &std::ops::Range<u64>) -> Reducers {
+    let SweepJob { plan, tables, reduction, control, .. } = job;
     let mut seen = reduction.start();
     let mut engine = CpuEngine::new(plan, tables).stopping_on(&control.stop);
     let designs = whole.end - whole.start;
@@ -282,7 +288,8 @@ fn head_start(reduction: &Reduction, seen: &mut Reducers) -> State {
     state
 }
 
-fn run_thread(plan: &Plan, tables: &Tables, reduction: &Reduction, options: &Settings, work: &Mutex<Work<'_>>, control: &Control) {
+fn run_thread(job: SweepJob<'_>, work: &Mutex<SweepWork<'_>>) {
+    let SweepJob { plan, tables, reduction, options, control } = job;
     let mut engine = CpuEngine::new(plan, tables).stopping_on(&control.stop);
     // Work is cut by time: a tile of a slow model may be a single design.
     let tile_at = |rate: f64| ((rate * TILE_TIME.as_secs_f64()) as u64).clamp(1, options.tile);
@@ -290,7 +297,7 @@ fn run_thread(plan: &Plan, tables: &Tables, reduction: &Reduction, options: &Set
     loop {
         let (chunk, known, planned, mut tile) = {
             let mut work = lock();
-            // Short chunks first, so that little is lost early too; a large front is dear to merge and to keep: longer ones then.
+            // Short chunks first, so that little is lost early too; a large front is expensive to merge and to keep: longer ones then.
             let young = (work.start.elapsed() / 2).max(LEAST_CHUNK).min(options.chunk);
             let seconds = young.max(10 * (work.saving + work.merging)).as_secs_f64();
             // Until the speed is known, it is what the model says.
@@ -336,7 +343,7 @@ fn hand_over(
     chunk_end: u64,
     reducers: Reducers,
     time: Duration,
-    mut work: MutexGuard<'_, Work<'_>>,
+    mut work: MutexGuard<'_, SweepWork<'_>>,
 ) {
     if finished.end < chunk_end {
         work.todo.add(finished.end..chunk_end);

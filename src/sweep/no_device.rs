@@ -1,12 +1,9 @@
 //! What stands in place of a device where the crate is built without the feature `gpu`: types without a value, so that whoever may be
 //! handed a device needs no second form.
 
-use super::{Control, Settings, Swept};
+use super::{SweepJob, Swept};
 use crate::checkpoint::{Checkpoint, Progress};
 use crate::error::Result;
-use crate::plan::Plan;
-use crate::reduce::Reduction;
-use crate::screen::Tables;
 
 /// A device that a study is to be swept on: there is none.
 #[derive(Clone, Copy, Debug)]
@@ -24,16 +21,6 @@ impl DeviceRecord {
 }
 
 /// Sweeps what is left on a device.
-#[allow(clippy::too_many_arguments, reason = "what a sweep has")]
-pub(super) fn go_on(
-    _: &Plan,
-    _: &Tables,
-    _: &Reduction,
-    _: &Settings,
-    _: Option<Progress>,
-    _: Option<&mut Checkpoint>,
-    _: &Control,
-    on: &OnDevice,
-) -> Result<(Swept, DeviceRecord)> {
+pub(super) fn go_on(_: SweepJob<'_>, _: Option<Progress>, _: Option<&mut Checkpoint>, on: &OnDevice) -> Result<(Swept, DeviceRecord)> {
     match *on {}
 }

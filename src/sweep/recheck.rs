@@ -1,5 +1,6 @@
-//! Whole tiles of a device's sweep, judged again in f64: values against the promise, counts, and that no survivor is missing.
+//! Whole tiles of a device's sweep, judged again in f64: values against their error bounds, counts, and that no survivor is missing.
 
+use crate::decision::Decision;
 use crate::error::{Error, Result};
 use crate::models::{judge, to_si};
 use crate::parallel::on_threads;
@@ -26,7 +27,7 @@ pub struct Recheck {
     pub designs: u64,
     /// Of these, unsure ones.
     pub unsure: u64,
-    /// Per quantity: name, values compared, largest share of the promise that was used.
+    /// Per quantity: name, values compared, largest fraction of the error bound that was used.
     pub used: Vec<(String, u64, f64)>,
 }
 
@@ -37,7 +38,7 @@ impl Recheck {
         json!({ "designs": self.designs, "unsure": self.unsure, "error": used.collect::<serde_json::Map<_, _>>() })
     }
 
-    /// Counts a value; `Err` if it breaks the promise.
+    /// Counts a value; `Err` if it breaks the error bound.
     fn compare(&mut self, slot: usize, name: &str, found: RunningError, exact: f64) -> std::result::Result<(), (f64, f64)> {
         if self.used.len() <= slot {
             self.used.resize(slot + 1, (String::new(), 0, 0.0));
@@ -106,7 +107,7 @@ impl Recheckable {
     /// Compares tiles of a range.
     ///
     /// # Errors
-    /// [`Error::Promise`] that names output, design, both values and the promise, or the count that differs.
+    /// [`Error::Promise`] that names output, design, both values and the error bound, or the count that differs.
     pub fn new(
         plan: &Plan,
         tables: &Tables,
@@ -190,14 +191,14 @@ fn compare(
         for lane in block.feasible() {
             let at = (plan.position_of(block.index(lane)) - start) as usize;
             feasible[at] = true;
-            if checked[at].verdict != 2 {
+            if checked[at].verdict != Decision::Yes {
                 continue;
             }
             for (slot, ((tracked, _), values)) in plan.tracked.iter().zip(block.values).enumerate() {
                 let exact = on_device(plan, tracked.quantity, values[lane]);
                 let name = tracked.quantity.name(model);
                 if let Err(found) = report.compare(slot, name, checked[at].worst[slot], exact) {
-                    broken.get_or_insert_with(|| broken_promise(plan, tracked.quantity, block.index(lane), found, exact, "at its worst"));
+                    broken.get_or_insert_with(|| broken_bound(plan, tracked.quantity, block.index(lane), found, exact, "at its worst"));
                 }
             }
         }
@@ -206,7 +207,7 @@ fn compare(
         return Err(broken);
     }
     for (at, (checked, &feasible)) in checked.iter().zip(&feasible).enumerate() {
-        report.unsure += u64::from(checked.verdict == 1);
+        report.unsure += u64::from(checked.verdict == Decision::Unsure);
         let design = plan.design_at(start + at as u64);
         let scenario = plan.slow_scenarios.source_index(checked.scenario.0) + plan.fast_scenarios.source_index(checked.scenario.1);
         let inputs = plan.space.inputs(design, scenario);
@@ -222,7 +223,7 @@ fn compare(
             let slot = plan.tracked.len() + number;
             let name = format!("{} in one scenario", model.outputs[output].name);
             if let Err(found) = report.compare(slot, &name, checked.asked[number], outputs[output]) {
-                return Err(broken_promise(
+                return Err(broken_bound(
                     plan,
                     Quantity::Output(output),
                     design,
@@ -232,7 +233,7 @@ fn compare(
                 ));
             }
         }
-        if (checked.verdict == 2) != feasible && checked.verdict != 1 {
+        if (checked.verdict == Decision::Yes) != feasible && checked.verdict != Decision::Unsure {
             let (gpu, f64s) = if feasible { ("infeasible", "feasible") } else { ("feasible", "infeasible") };
             return Err(Error::Promise(format!("design {design}: the GPU is sure that it is {gpu}, f64 finds it {f64s}")));
         }
@@ -240,15 +241,15 @@ fn compare(
     Ok((report, reducers.state()))
 }
 
-/// The error for a value that is farther from f64 than promised.
-fn broken_promise(plan: &Plan, quantity: Quantity, design: u64, (found, bound): (f64, f64), exact: f64, place: &str) -> Error {
+/// The error for a value that is farther from f64 than its error bound.
+fn broken_bound(plan: &Plan, quantity: Quantity, design: u64, (found, bound): (f64, f64), exact: f64, place: &str) -> Error {
     let in_unit = |value: f64| match quantity {
         Quantity::Output(output) => plan.study.model.outputs[output].unit.from_si(value),
         Quantity::Input(_) => value,
     };
     let (found, exact, bound) = (in_unit(found), in_unit(exact), in_unit(bound));
     Error::Promise(format!(
-        "{} of design {design} {place}: the GPU gives {found}, f64 gives {exact}; they differ by {:.3e}, promised were at most {bound:.3e}",
+        "{} of design {design} {place}: the GPU gives {found}, f64 gives {exact}; they differ by {:.3e}, more than the error bound {bound:.3e}",
         quantity.name(&plan.study.model),
         (found - exact).abs(),
     ))

@@ -10,16 +10,17 @@ use crate::real::{FUNCTION_ULP, Real, bracketed_newton};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Half an ULP of an f32, relative: one correctly rounded operation.
-const ROUNDING: f64 = 1.0 / (1 << 24) as f64;
+pub(crate) const ROUNDING: f64 = 1.0 / (1 << 24) as f64;
 /// WGSL: division is accurate to 2.5 ULP.
-const DIVISION: f64 = 2.5 * 2.0 * ROUNDING;
+pub(crate) const DIVISION: f64 = 2.5 * 2.0 * ROUNDING;
 /// WGSL: for divisors of this size at most, and of its inverse at least; the reciprocal of others may be flushed to zero.
-const LARGEST_DIVISOR: f64 = 1.0 / FLUSH;
+pub(crate) const LARGEST_DIVISOR: f64 = 1.0 / FLUSH;
 /// WGSL: `sqrt` inherits from `1 / inverseSqrt`, 2 ULP and a division.
-const SQUARE_ROOT: f64 = (2.0 + 2.5) * 2.0 * ROUNDING;
-const FUNCTION: f64 = FUNCTION_ULP * 2.0 * ROUNDING;
+pub(crate) const SQUARE_ROOT: f64 = (2.0 + 2.5) * 2.0 * ROUNDING;
+/// Relative error of one of our own functions.
+pub(crate) const FUNCTION: f64 = FUNCTION_ULP * 2.0 * ROUNDING;
 /// Results below the least normal number may be flushed to zero.
-const FLUSH: f64 = f32::MIN_POSITIVE as f64;
+pub(crate) const FLUSH: f64 = f32::MIN_POSITIVE as f64;
 
 /// A value computed in f32 and how far it can be from the value of exact arithmetic on the exact inputs.
 #[derive(Clone, Copy, Debug)]

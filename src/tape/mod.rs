@@ -6,7 +6,7 @@
 //! error bounds in [`RunningError`], boxes in [`Interval`], derivatives in [`Dual`]), tells which inputs a result depends on, and [`wgsl`] writes the shader from it.
 
 mod dual;
-mod error_bound;
+pub(crate) mod error_bound;
 mod interval;
 mod list;
 mod record;

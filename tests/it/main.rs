@@ -42,6 +42,8 @@ mod readme;
 mod report_page;
 /// Independent second implementations of the models, and printed golden values.
 mod second;
+/// Numbers that Rust and the shaders both know.
+mod shader_constants;
 /// The committed shaders against the formulas.
 mod shaders;
 /// The timing belt: figures, closed forms, similarity.

@@ -1,7 +1,7 @@
 //! Figs 1, 2, 7, 9 and the first conclusion.
 
 use super::super::{Figure, Inputs, Paper, numbers};
-use super::{Curve, metal, rubber};
+use super::{PaperCurve, metal, rubber};
 use crate::export::Table;
 use crate::pictures::{Guide, Line, Marker, Quantity, Scale, Stroke, lines};
 
@@ -92,8 +92,8 @@ struct Drawn<'a> {
 
 impl Drawn<'_> {
     fn figure(&self) -> Figure {
-        let curves: Vec<_> = self.belts.iter().map(|(label, value, belt)| (label, *value, Curve::of(belt))).collect();
-        let line = |label: String, curve: &Curve, y: &[f64], colour, stroke| Line {
+        let curves: Vec<_> = self.belts.iter().map(|(label, value, belt)| (label, *value, PaperCurve::of(belt))).collect();
+        let line = |label: String, curve: &PaperCurve, y: &[f64], colour, stroke| Line {
             label,
             x: curve.traction.clone(),
             y: y.to_vec(),
@@ -101,16 +101,16 @@ impl Drawn<'_> {
             stroke,
             marker: Marker::None,
         };
-        let driver = |(colour, (label, _, curve)): (usize, &(&String, f64, Curve))| {
+        let driver = |(colour, (label, _, curve)): (usize, &(&String, f64, PaperCurve))| {
             line(format!("{label}, driver"), curve, &curve.driver, colour, Stroke::Solid)
         };
-        let driven = |(colour, (label, _, curve)): (usize, &(&String, f64, Curve))| {
+        let driven = |(colour, (label, _, curve)): (usize, &(&String, f64, PaperCurve))| {
             line(format!("{label}, driven"), curve, &curve.driven, colour, Stroke::Dashed)
         };
         let drawn: Vec<Line> = curves.iter().enumerate().map(driver).chain(curves.iter().enumerate().map(driven)).collect();
         let x = Scale { quantity: Quantity::new("traction coefficient λ", "–"), range: Some((0.0, 1.0)) };
         let y = Scale { quantity: Quantity::new(self.force, "–"), range: Some((0.0, from_zero(&drawn))) };
-        let along = |of: fn(&Curve) -> &[f64]| curves.iter().flat_map(move |(_, _, curve)| of(curve).iter().copied().map(Some));
+        let along = |of: fn(&PaperCurve) -> &[f64]| curves.iter().flat_map(move |(_, _, curve)| of(curve).iter().copied().map(Some));
         let parameter = curves.iter().flat_map(|(_, value, curve)| curve.traction.iter().map(|_| Some(*value)));
         Figure {
             id: self.id,

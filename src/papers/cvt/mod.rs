@@ -81,13 +81,13 @@ fn driver_force(belt: &Inputs, tight_force: f64, wrap: f64) -> f64 {
 }
 
 /// The two axial forces per sum of belt forces over the traction, up to gross slip.
-struct Curve {
+struct PaperCurve {
     traction: Vec<f64>,
     driver: Vec<f64>,
     driven: Vec<f64>,
 }
 
-impl Curve {
+impl PaperCurve {
     fn of(belt: &Inputs) -> Self {
         let limit = belt.output("traction_limit");
         let inside = (0..100).map(|step| f64::from(step) / 100.0).filter(|traction| *traction < limit);

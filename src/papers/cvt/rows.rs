@@ -4,7 +4,7 @@ use super::super::comparison::{Rows, digits, percent};
 use super::super::{Comparison, Paper, Printed};
 use super::figures::{Pretension, at_constant_pretension};
 use super::table_rows::{table_1, table_2, thickness};
-use super::{Curve, metal, rubber};
+use super::{PaperCurve, metal, rubber};
 
 /// What is still "nearly constant", as a share.
 const NEARLY: f64 = 0.1;
@@ -23,7 +23,7 @@ pub(super) fn all() -> Vec<Comparison> {
 }
 
 fn rubber_figures(rows: &mut Rows) {
-    let curve = Curve::of(&rubber());
+    let curve = PaperCurve::of(&rubber());
     let change = |from: f64, to: f64| curve.near(&curve.driven, to) / curve.near(&curve.driven, from) - 1.0;
     let bend = curve.driver_bend();
     rows.statement(
@@ -101,7 +101,7 @@ fn self_locking(rows: &mut Rows) {
 
 fn metal_figures(rows: &mut Rows) {
     let shared = [("friction", 0.4), ("groove_angle_deg", 30.0), ("belt_length_mm", 1066.0), ("centre_distance_mm", 260.0)];
-    let [of_rubber, of_metal] = [rubber(), metal().with(&shared)].map(|belt| Curve::of(&belt));
+    let [of_rubber, of_metal] = [rubber(), metal().with(&shared)].map(|belt| PaperCurve::of(&belt));
     let largest = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     let apart = largest(&of_rubber.driver, &of_metal.driver).max(largest(&of_rubber.driven, &of_metal.driven));
     rows.statement(
@@ -114,7 +114,7 @@ fn metal_figures(rows: &mut Rows) {
          printed mu - tan(alpha/2) of (8) and (11) is read as mu + tan(alpha/2), as (6), (15), (16) and Table 2 have it.",
     );
     let belt = metal().with(&[("friction", 0.1)]);
-    let curve = Curve::of(&belt);
+    let curve = PaperCurve::of(&belt);
     let limit = belt.output("traction_limit");
     let change = |from: f64, to: f64| curve.near(&curve.driven, to) / curve.near(&curve.driven, from) - 1.0;
     let (before, beyond) = (change(0.0, 0.3), change(0.3, limit));

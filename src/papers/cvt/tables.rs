@@ -69,7 +69,7 @@ pub(super) fn radius_at_2(belt: &super::Inputs) -> f64 {
     belt.with(&[("ratio", 2.0)]).output("driver_radius_mm")
 }
 
-struct Line(&'static str, &'static str, &'static str, &'static str, Option<f64>, f64);
+struct CvtLine(&'static str, &'static str, &'static str, &'static str, Option<f64>, f64);
 
 /// Both tables: quantity, unit, belt, reading, printed, computed.
 pub(super) fn all() -> Vec<PaperTable> {
@@ -79,36 +79,36 @@ pub(super) fn all() -> Vec<PaperTable> {
     let printed = "printed radii, r0 163, r1 45 mm";
     let index = |rubber: f64, metal: f64| 100.0 * rubber / metal;
     let first = [
-        Line("effective friction", "", "rubber", "mu/sin(alpha/2)", Some(1.545), rubber().output("effective_friction")),
-        Line("effective friction", "", "metal", "mu/sin(alpha/2)", Some(0.419), metal().output("effective_friction")),
-        Line("contact angle at R = 1", "deg", "rubber", "geometry", Some(180.0), rubber().output("driver_wrap_deg")),
-        Line("contact angle at R = 1", "deg", "metal", "geometry", Some(180.0), metal().output("driver_wrap_deg")),
-        Line("initial belt radius r0", "mm", "rubber", "L/(2 pi)", Some(r0), own_rubber),
-        Line("initial belt radius r0", "mm", "metal", "L/(2 pi)", Some(r0), own_metal),
-        Line("minimum belt radius r1", "mm", "rubber", "geometry at R = 2", Some(r1), small_rubber),
-        Line("minimum belt radius r1", "mm", "metal", "geometry at R = 2", Some(r1), small_metal),
-        Line("coefficient C_R", "N/mm", "rubber", printed, Some(20.5), rubber_constant(r0, r1)),
-        Line("coefficient C_R", "N/mm", "rubber", "r0 163 mm, own r1 at R = 2", Some(20.5), rubber_constant(r0, small_rubber)),
-        Line("coefficient C_R", "N/mm", "rubber", "own r0 and r1 at R = 2", Some(20.5), rubber_constant(own_rubber, small_rubber)),
-        Line("coefficient C_M", "N/mm", "metal", printed, Some(112.9), metal_constant(r0, r1)),
-        Line("coefficient C_M", "N/mm", "metal", "own r0, r1 30.58 mm", Some(112.9), metal_constant(own_metal, METAL_R1)),
-        Line("coefficient C_M", "N/mm", "metal", "own r0 and r1 at R = 2", Some(112.9), metal_constant(own_metal, small_metal)),
-        Line("coefficient C", "N/mm", "metal", "printed radii, slip limit in place of x", None, consistent_metal_constant(r0, r1)),
-        Line("index, metal 100", "", "rubber", "printed C_R over printed C_M", Some(16.0), index(20.5, 112.9)),
-        Line("index, metal 100", "", "rubber", printed, Some(16.0), index(rubber_constant(r0, r1), metal_constant(r0, r1))),
+        CvtLine("effective friction", "", "rubber", "mu/sin(alpha/2)", Some(1.545), rubber().output("effective_friction")),
+        CvtLine("effective friction", "", "metal", "mu/sin(alpha/2)", Some(0.419), metal().output("effective_friction")),
+        CvtLine("contact angle at R = 1", "deg", "rubber", "geometry", Some(180.0), rubber().output("driver_wrap_deg")),
+        CvtLine("contact angle at R = 1", "deg", "metal", "geometry", Some(180.0), metal().output("driver_wrap_deg")),
+        CvtLine("initial belt radius r0", "mm", "rubber", "L/(2 pi)", Some(r0), own_rubber),
+        CvtLine("initial belt radius r0", "mm", "metal", "L/(2 pi)", Some(r0), own_metal),
+        CvtLine("minimum belt radius r1", "mm", "rubber", "geometry at R = 2", Some(r1), small_rubber),
+        CvtLine("minimum belt radius r1", "mm", "metal", "geometry at R = 2", Some(r1), small_metal),
+        CvtLine("coefficient C_R", "N/mm", "rubber", printed, Some(20.5), rubber_constant(r0, r1)),
+        CvtLine("coefficient C_R", "N/mm", "rubber", "r0 163 mm, own r1 at R = 2", Some(20.5), rubber_constant(r0, small_rubber)),
+        CvtLine("coefficient C_R", "N/mm", "rubber", "own r0 and r1 at R = 2", Some(20.5), rubber_constant(own_rubber, small_rubber)),
+        CvtLine("coefficient C_M", "N/mm", "metal", printed, Some(112.9), metal_constant(r0, r1)),
+        CvtLine("coefficient C_M", "N/mm", "metal", "own r0, r1 30.58 mm", Some(112.9), metal_constant(own_metal, METAL_R1)),
+        CvtLine("coefficient C_M", "N/mm", "metal", "own r0 and r1 at R = 2", Some(112.9), metal_constant(own_metal, small_metal)),
+        CvtLine("coefficient C", "N/mm", "metal", "printed radii, slip limit in place of x", None, consistent_metal_constant(r0, r1)),
+        CvtLine("index, metal 100", "", "rubber", "printed C_R over printed C_M", Some(16.0), index(20.5, 112.9)),
+        CvtLine("index, metal 100", "", "rubber", printed, Some(16.0), index(rubber_constant(r0, r1), metal_constant(r0, r1))),
     ];
     let loaded = rubber_of_table_2();
     let consistent = band_tension(METAL_TRACTION);
     let rubber_force = loaded.output("driver_axial_force_N");
     let metal_force = |tension: f64| driver_force(&metal(), tension, PI);
     let second = [
-        Line("tight side tension", "N", "rubber", "P (1 + lambda)/(2 lambda), lambda 0.8", Some(2250.0), loaded.output("tight_force_N")),
-        Line("band tension", "N", "metal", "P (1 + lambda)/(2 lambda), lambda 0.58", Some(2800.0), consistent),
-        Line("driver axial force", "N", "rubber", "(1)", Some(4720.0), rubber_force),
-        Line("driver axial force", "N", "metal", "(6) with the printed tension 2800 N", Some(15_780.0), metal_force(2800.0)),
-        Line("driver axial force", "N", "metal", "(6) with the tension of lambda 0.58", Some(15_780.0), metal_force(consistent)),
-        Line("index, metal 100", "", "rubber", "printed forces", Some(34.0), index(4720.0, 15_780.0)),
-        Line(
+        CvtLine("tight side tension", "N", "rubber", "P (1 + lambda)/(2 lambda), lambda 0.8", Some(2250.0), loaded.output("tight_force_N")),
+        CvtLine("band tension", "N", "metal", "P (1 + lambda)/(2 lambda), lambda 0.58", Some(2800.0), consistent),
+        CvtLine("driver axial force", "N", "rubber", "(1)", Some(4720.0), rubber_force),
+        CvtLine("driver axial force", "N", "metal", "(6) with the printed tension 2800 N", Some(15_780.0), metal_force(2800.0)),
+        CvtLine("driver axial force", "N", "metal", "(6) with the tension of lambda 0.58", Some(15_780.0), metal_force(consistent)),
+        CvtLine("index, metal 100", "", "rubber", "printed forces", Some(34.0), index(4720.0, 15_780.0)),
+        CvtLine(
             "index, metal 100",
             "",
             "rubber",
@@ -139,8 +139,8 @@ pub(super) fn all() -> Vec<PaperTable> {
     ]
 }
 
-fn table(lines: &[Line]) -> Table {
-    let share = |line: &Line| line.4.map(|printed| 100.0 * (line.5 / printed - 1.0));
+fn table(lines: &[CvtLine]) -> Table {
+    let share = |line: &CvtLine| line.4.map(|printed| 100.0 * (line.5 / printed - 1.0));
     Table {
         columns: vec![
             words("quantity", "What it is.", lines.iter().map(|line| line.0)),

@@ -104,7 +104,7 @@ struct Stressed {
     largest: f64,
     excluded: f64,
     yield_strength: f64,
-    place: Place,
+    place: PulleyPlace,
 }
 
 impl Stressed {
@@ -115,7 +115,7 @@ impl Stressed {
         let outputs = pulley.outputs();
         let [largest, excluded] = ["max_stress_MPa", "excluded_radius_mm"].map(|name| outputs.get(name));
         let yield_strength = pulley.input("yield_strength_MPa");
-        Self { of, title, svg, nodes, largest, excluded, yield_strength, place: Place::of(&pulley, &outputs) }
+        Self { of, title, svg, nodes, largest, excluded, yield_strength, place: PulleyPlace::of(&pulley, &outputs) }
     }
 
     /// The largest stress inside the zone that is left out, MPa: at the bolt seats and the bracket's edge.
@@ -130,13 +130,13 @@ fn example() -> Inputs {
 }
 
 /// Where the largest stress of a pulley stands.
-struct Place {
+struct PulleyPlace {
     words: String,
     /// Is it in a bend, a corner or at the edge of the weld?
     shape_changes: bool,
 }
 
-impl Place {
+impl PulleyPlace {
     fn of(pulley: &Inputs, outputs: &Outputs) -> Self {
         let [r, z, theta] = ["max_stress_r_mm", "max_stress_z_mm", "max_stress_theta_deg"].map(|name| outputs.get(name));
         let section = pulley.model.input("section").expect("a pulley has a section");

@@ -15,15 +15,15 @@ pub(super) fn bolt_force(pulley: &Inputs) -> f64 {
     pulley.output("clamp_pressure_MPa") * std::f64::consts::FRAC_PI_4 * (outer * outer - inner * inner)
 }
 
-struct Line(&'static str, &'static str, f64, &'static str);
+struct PulleyLine(&'static str, &'static str, f64, &'static str);
 
 /// Printed data, data that had to be chosen, and what follows.
 pub(super) fn data() -> PaperTable {
     let pulley = example();
     let belt = Inputs::of("pulley-load");
     let outputs = belt.outputs();
-    let input = |what, unit, name: &str, origin| Line(what, unit, pulley.input(name), origin);
-    let output = |what, unit, name: &str, origin| Line(what, unit, outputs.get(name), origin);
+    let input = |what, unit, name: &str, origin| PulleyLine(what, unit, pulley.input(name), origin);
+    let output = |what, unit, name: &str, origin| PulleyLine(what, unit, outputs.get(name), origin);
     let (printed, chosen) = ("printed", "chosen");
     let by_torque = pulley.with_word("clamp_force_N", "torque");
     let lines = [
@@ -47,7 +47,7 @@ pub(super) fn data() -> PaperTable {
         output("effective tension T_e", "N", "effective_tension_N", "(1), (3)"),
         output("centrifugal tension", "N", "centrifugal_tension_N", "(4)"),
         output("effective friction mu'", "", "effective_friction", "(13)"),
-        Line("friction mu, each way", "", friction_each_way(&belt), "(12)"),
+        PulleyLine("friction mu, each way", "", friction_each_way(&belt), "(12)"),
         output("total friction", "", "friction_used", "sqrt(2) mu"),
         output("line force Q at the slack end", "N/mm", "slack_end_line_force_N_per_mm", "(9)"),
         output("line force Q at the tight end", "N/mm", "tight_end_line_force_N_per_mm", "(9)"),
@@ -55,8 +55,8 @@ pub(super) fn data() -> PaperTable {
         output("flank force R at the tight end", "N/mm", "tight_end_flank_force_N_per_mm", "(10)"),
         output("resultant of the belt's force", "N", "resultant_force_N", "balance"),
         output("torque", "Nm", "torque_Nm", "balance"),
-        Line("bolt force, M/(0.2 d)", "N", bolt_force(&pulley), "rule of thumb"),
-        Line("bolt force, thread and head friction 0.15", "N", bolt_force(&by_torque), "torque balance"),
+        PulleyLine("bolt force, M/(0.2 d)", "N", bolt_force(&pulley), "rule of thumb"),
+        PulleyLine("bolt force, thread and head friction 0.15", "N", bolt_force(&by_torque), "torque balance"),
     ];
     PaperTable {
         id: "pulley-table-1",

@@ -1,7 +1,7 @@
 //! Figs 8 to 11: load of every tooth.
 
 use super::super::{Figure, Paper, numbers, words};
-use super::{Mesh, driven, driver_at_rest};
+use super::{TimingMesh, driven, driver_at_rest};
 use crate::export::{Data, Table, TableColumn};
 use crate::pictures::{Guide, Line, Marker, Quantity, Scale, Stroke, lines};
 
@@ -11,7 +11,7 @@ pub(super) fn all() -> Vec<Figure> {
 }
 
 fn figure_8() -> Figure {
-    let meshes = [("driver pulley", Mesh::of(&driver_at_rest(490.0))), ("driven pulley", Mesh::of(&driven(0.0, 490.0)))];
+    let meshes = [("driver pulley", TimingMesh::of(&driver_at_rest(490.0))), ("driven pulley", TimingMesh::of(&driven(0.0, 490.0)))];
     let drawn: Vec<Line> = meshes.iter().enumerate().map(|(colour, (label, mesh))| whole(label, mesh, &mesh.load, colour)).collect();
     figure(
         "timing-fig-8",
@@ -25,7 +25,7 @@ fn figure_8() -> Figure {
 }
 
 fn figure_9() -> Figure {
-    let mesh = Mesh::of(&driven(5000.0, 196.0));
+    let mesh = TimingMesh::of(&driven(5000.0, 196.0));
     let mut drawn = vec![reference("complete meshing, at rest", &mesh, 4)];
     drawn.extend(lifted("5000 rpm", &mesh, 0));
     drawn.push(open_marks());
@@ -42,7 +42,7 @@ fn figure_9() -> Figure {
 }
 
 fn figure_10() -> Figure {
-    let meshes = [196.0, 490.0].map(|tension| (format!("{tension} N"), Mesh::of(&driven(4000.0, tension))));
+    let meshes = [196.0, 490.0].map(|tension| (format!("{tension} N"), TimingMesh::of(&driven(4000.0, tension))));
     let mut drawn = Vec::new();
     for (colour, (label, mesh)) in meshes.iter().enumerate() {
         drawn.push(reference(&format!("{label}, complete meshing"), mesh, colour));
@@ -61,7 +61,7 @@ fn figure_10() -> Figure {
 }
 
 fn figure_11() -> Figure {
-    let meshes = [2000.0, 3000.0, 4000.0, 5000.0].map(|speed| (format!("{speed} rpm"), Mesh::of(&driven(speed, 196.0))));
+    let meshes = [2000.0, 3000.0, 4000.0, 5000.0].map(|speed| (format!("{speed} rpm"), TimingMesh::of(&driven(speed, 196.0))));
     let mut drawn = vec![reference("complete meshing, at rest", &meshes[0].1, 4)];
     for (colour, (label, mesh)) in meshes.iter().enumerate() {
         drawn.extend(lifted(label, mesh, colour));
@@ -80,18 +80,18 @@ fn figure_11() -> Figure {
 }
 
 /// All teeth, in complete meshing.
-fn whole(label: &str, mesh: &Mesh, loads: &[f64], colour: usize) -> Line {
+fn whole(label: &str, mesh: &TimingMesh, loads: &[f64], colour: usize) -> Line {
     let (x, y) = (mesh.tooth.clone(), loads.to_vec());
     Line { label: label.to_owned(), x, y, colour, stroke: Stroke::Solid, marker: Marker::Filled }
 }
 
 /// The complete mesh to compare with.
-fn reference(label: &str, mesh: &Mesh, colour: usize) -> Line {
+fn reference(label: &str, mesh: &TimingMesh, colour: usize) -> Line {
     Line { stroke: Stroke::Dotted, marker: Marker::None, ..whole(label, mesh, &mesh.complete, colour) }
 }
 
 /// The mesh as it is: teeth that mesh, and from the last of them on those that are lifted, which come first so that they lie below.
-fn lifted(label: &str, mesh: &Mesh, colour: usize) -> [Line; 2] {
+fn lifted(label: &str, mesh: &TimingMesh, colour: usize) -> [Line; 2] {
     let meshing = mesh.first_lifted - 1;
     let part = |label: String, range: std::ops::Range<usize>, stroke, marker| Line {
         label,
@@ -115,12 +115,19 @@ fn open_marks() -> Line {
 }
 
 /// Between the last tooth that meshes and the first that is lifted.
-fn boundary(mesh: &Mesh, colour: usize) -> Guide {
+fn boundary(mesh: &TimingMesh, colour: usize) -> Guide {
     let first = mesh.first_lifted;
     Guide { at: first as f64 - 0.5, upright: true, words: format!("tooth {first} is the first lifted"), colour: Some(colour) }
 }
 
-fn figure(id: &'static str, title: &str, caption: &str, drawn: &[Line], guides: &[Guide], meshes: &[(&'static str, &Mesh)]) -> Figure {
+fn figure(
+    id: &'static str,
+    title: &str,
+    caption: &str,
+    drawn: &[Line],
+    guides: &[Guide],
+    meshes: &[(&'static str, &TimingMesh)],
+) -> Figure {
     let most = drawn.iter().flat_map(|line| &line.y).copied().fold(0.0, f64::max);
     let x = Scale { quantity: Quantity::new("tooth number i, from the tight side", "–"), range: Some((0.0, 24.0)) };
     let y = Scale { quantity: Quantity::new("tooth load Q(i)", "N"), range: Some((0.0, 1.12 * most)) };
@@ -134,12 +141,12 @@ fn figure(id: &'static str, title: &str, caption: &str, drawn: &[Line], guides: 
     }
 }
 
-fn table(meshes: &[(&'static str, &Mesh)]) -> Table {
-    let each = |of: fn(&Mesh, usize) -> f64| -> Vec<Option<f64>> {
+fn table(meshes: &[(&'static str, &TimingMesh)]) -> Table {
+    let each = |of: fn(&TimingMesh, usize) -> f64| -> Vec<Option<f64>> {
         meshes.iter().flat_map(|(_, mesh)| (0..mesh.tooth.len()).map(move |at| Some(of(mesh, at)))).collect()
     };
     let pulley = meshes.iter().flat_map(|(pulley, mesh)| mesh.tooth.iter().map(|_| *pulley));
-    let whole = |of: fn(&Mesh, usize) -> u64| -> Vec<Option<u64>> {
+    let whole = |of: fn(&TimingMesh, usize) -> u64| -> Vec<Option<u64>> {
         meshes.iter().flat_map(|(_, mesh)| (0..mesh.tooth.len()).map(move |at| Some(of(mesh, at)))).collect()
     };
     Table {

@@ -57,7 +57,7 @@ const LOST: &[Lost] = &[
 ];
 
 /// Tooth loads of a pulley.
-struct Mesh {
+struct TimingMesh {
     speed: f64,
     tension: f64,
     tooth: Vec<f64>,
@@ -71,7 +71,7 @@ struct Mesh {
     first_lifted: usize,
 }
 
-impl Mesh {
+impl TimingMesh {
     fn of(pulley: &Inputs) -> Self {
         Self {
             speed: pulley.input("pulley_speed_rpm"),

@@ -3,7 +3,7 @@
 use super::super::comparison::{Rows, digits, percent, percent_to};
 use super::super::{Comparison, Paper, Printed};
 use super::printed::boundary_tension;
-use super::{Mesh, driven, driver_at_rest};
+use super::{TimingMesh, driven, driver_at_rest};
 
 /// Newtons of a kilogram-force as the paper's data have it.
 const KILOGRAM_FORCE: f64 = 9.8;
@@ -50,7 +50,7 @@ fn data(rows: &mut Rows) {
 }
 
 fn loads(rows: &mut Rows) {
-    let (driver, driven_at_rest) = (Mesh::of(&driver_at_rest(490.0)), Mesh::of(&driven(0.0, 490.0)));
+    let (driver, driven_at_rest) = (TimingMesh::of(&driver_at_rest(490.0)), TimingMesh::of(&driven(0.0, 490.0)));
     let most = driven_at_rest.load.iter().copied().fold(0.0, f64::max);
     let least = driver.load.iter().copied().fold(f64::INFINITY, f64::min);
     rows.statement(
@@ -61,7 +61,7 @@ fn loads(rows: &mut Rows) {
         most < least,
         "23 teeth share what 11 do. The values themselves rest on a chosen belt: section, radii and angles are not printed.",
     );
-    let mesh = Mesh::of(&driven(5000.0, 196.0));
+    let mesh = TimingMesh::of(&driven(5000.0, 196.0));
     let changes = mesh.changes();
     let (before, behind) = changes.split_at(mesh.first_lifted - 1);
     let range = |part: &[f64]| {

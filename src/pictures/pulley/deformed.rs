@@ -32,7 +32,7 @@ pub fn deformed(title: &str, mesh: &Mesh, turn: &Turn<'_>, field: &Field) -> Str
     let value = Quantity::new("von Mises stress", "MPa");
     let range = (0.0, if largest.stress > 0.0 { largest.stress } else { 1.0 });
     let bar = Bar::new(range, &value, HEIGHT, false);
-    let layout = Layout::new(mesh, &places, &bar, header.height());
+    let layout = DeformedLayout::new(mesh, &places, &bar, header.height());
     let mut sheet = Sheet::new(layout.bottom());
     sheet.draw(|area| header.draw(area));
     let (frame, scale) = (layout.frame, &layout.scale);
@@ -164,7 +164,7 @@ fn exclude(drawing: &mut Drawing, frame: Frame, scale: &Scale, radius: f64) {
 }
 
 /// Where panel and colour bar stand.
-struct Layout {
+struct DeformedLayout {
     frame: Frame,
     scale: Scale,
     z: Axis,
@@ -172,7 +172,7 @@ struct Layout {
     labels: [Vec<String>; 2],
 }
 
-impl Layout {
+impl DeformedLayout {
     fn new(mesh: &Mesh, places: &[DVec2], bar: &Bar, top: i32) -> Self {
         let (rest, moved) = (bounds(&mesh.nodes), bounds(places));
         let (low, high) = (rest.0.min(moved.0), rest.1.max(moved.1));

@@ -27,7 +27,7 @@ pub fn section(title: &str, kind: Kind, dimensions: &Dimensions, mesh: &Mesh) ->
         Err(flaw) => return sentence(title, &flaw.to_string()),
     };
     let header = Header::new(title, legend(dimensions));
-    let plan = Plan::new(kind, dimensions, mesh, header.height());
+    let plan = SectionPlan::new(kind, dimensions, mesh, header.height());
     let drawing = plan.drawing(&outline);
     let mut sheet = Sheet::new(plan.axis + 34 * UNIT);
     sheet.draw(|area| header.draw(area));
@@ -56,7 +56,7 @@ fn diameter(radius: f64) -> String {
 }
 
 /// Where everything stands.
-struct Plan<'a> {
+struct SectionPlan<'a> {
     kind: Kind,
     d: &'a Dimensions,
     mesh: &'a Mesh,
@@ -70,7 +70,7 @@ struct Plan<'a> {
     header: i32,
 }
 
-impl<'a> Plan<'a> {
+impl<'a> SectionPlan<'a> {
     fn new(kind: Kind, d: &'a Dimensions, mesh: &'a Mesh, header: i32) -> Self {
         let z = |pick: fn(f64, f64) -> f64, start| mesh.nodes.iter().map(|node| node.x).fold(start, pick);
         let ends = (z(f64::min, f64::INFINITY), z(f64::max, f64::NEG_INFINITY));
@@ -291,7 +291,7 @@ mod tests {
             ] {
                 assert_eq!(shown(&words), 1, "{kind:?} {words}");
             }
-            let plan = Plan::new(kind, &d, &mesh, 0);
+            let plan = SectionPlan::new(kind, &d, &mesh, 0);
             assert_eq!(plan.drawing(&checked_outline(kind, &d).unwrap().parts).overlap(), None, "{kind:?}");
             assert_eq!(plan.grooves().len(), kind.grooves() as usize);
         }

@@ -56,7 +56,7 @@ pub fn unrolled(title: &str, mesh: &Mesh, turn: &Turn<'_>, largest: &Peak) -> St
     let mut y = top;
     for (number, stretch) in stretches.iter().enumerate() {
         let frame = Frame { left, top: y, width, height: heights[number] };
-        let map = Map { turn, largest, stretch, frame };
+        let map = UnrolledMap { turn, largest, stretch, frame };
         let rows = ((ROWS * share(stretch)).round() as usize).max(40);
         sheet.insert(&image(frame, &map.indices(rows, range), COLUMNS, rows));
         map.draw(&mut sheet);
@@ -105,14 +105,14 @@ fn by_cell(turn: &Turn<'_>, point: usize, phase: f64) -> Vec<f64> {
 }
 
 /// The map of one stretch.
-struct Map<'a> {
+struct UnrolledMap<'a> {
     turn: &'a Turn<'a>,
     largest: &'a Peak,
     stretch: &'a Stretch,
     frame: Frame,
 }
 
-impl Map<'_> {
+impl UnrolledMap<'_> {
     /// Palette indices of the cells, the top row first.
     fn indices(&self, rows: usize, (low, high): (f64, f64)) -> Vec<u8> {
         let stress = |point: &usize| by_cell(self.turn, *point, self.largest.phase);

@@ -44,7 +44,7 @@ impl Comparison {
 const MOST_BYTES: u64 = 512 << 20;
 
 /// What both ways tell of a pulley.
-struct Answers {
+struct SolverAnswers {
     rim_displacement: f64,
     volume: f64,
     largest: f64,
@@ -118,7 +118,7 @@ fn has_nodes(deck: &str, positions: &[DVec3]) -> bool {
     block.into_iter().all(|line| expected.next().is_some_and(|at| same(line, at))) && expected.next().is_none()
 }
 
-fn harmonics(job: &Job, fineness: &Fineness) -> Result<Answers, Error> {
+fn harmonics(job: &Job, fineness: &Fineness) -> Result<SolverAnswers, Error> {
     let mesh = section::mesh(job.kind, &job.dimensions, fineness).map_err(Error::Flaw)?;
     let case = Case { phase: Some(job.case.phase.unwrap_or(0.0)), ..job.case };
     // No more than three points per edge and twelve stresses per harmonic.
@@ -128,7 +128,7 @@ fn harmonics(job: &Job, fineness: &Fineness) -> Result<Answers, Error> {
     let view = View::new(&table[..length]);
     let summary = Turn::new(view, case).summary(None, [None; 2]);
     let largest = summary.largest;
-    Ok(Answers {
+    Ok(SolverAnswers {
         rim_displacement: summary.rim_displacement,
         volume: view.volume(),
         largest: largest.stress,
@@ -137,7 +137,7 @@ fn harmonics(job: &Job, fineness: &Fineness) -> Result<Answers, Error> {
     })
 }
 
-fn calculix(mesh: &Mesh, job: &Job, sweep: &Sweep, results: &Results) -> Result<Answers, Error> {
+fn calculix(mesh: &Mesh, job: &Job, sweep: &Sweep, results: &Results) -> Result<SolverAnswers, Error> {
     let surface = Surface::new(mesh, job, sweep, results)?;
     let peaks = surface.peaks();
     let excluded = job.dimensions.excluded_radius(job.kind);
@@ -154,7 +154,7 @@ fn calculix(mesh: &Mesh, job: &Job, sweep: &Sweep, results: &Results) -> Result<
         let node = mesh.points.iter().find(|point| point.name == name)?.node;
         peaks.iter().find(|peak| peak.node == node).map(|peak| peak.stress)
     };
-    Ok(Answers {
+    Ok(SolverAnswers {
         rim_displacement: surface.rim_displacement(),
         volume: results.volume.unwrap_or(f64::NAN),
         largest: largest.stress,

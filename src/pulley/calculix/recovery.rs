@@ -49,7 +49,7 @@ impl<'m> Surface<'m> {
     /// A surface node without displacement.
     pub fn new(mesh: &'m Mesh, job: &'m Job, sweep: &Sweep, results: &Results) -> Result<Self, Error> {
         let mut rings = HashMap::new();
-        let waves = Waves::new(sweep.sectors());
+        let waves = RecoveredWaves::new(sweep.sectors());
         for node in mesh.surface.iter().flat_map(|edge| edge.nodes).chain([mesh.rim]) {
             if rings.contains_key(&node) {
                 continue;
@@ -148,13 +148,13 @@ impl<'m> Surface<'m> {
 }
 
 /// Cosines and sines of the trigonometric polynomial through equally spaced planes.
-struct Waves {
+struct RecoveredWaves {
     planes: usize,
     /// At the evaluated angles.
     table: Vec<(f64, f64)>,
 }
 
-impl Waves {
+impl RecoveredWaves {
     fn new(planes: usize) -> Self {
         let count = FINER * planes;
         let wave = |step: usize| {

@@ -21,24 +21,24 @@ impl Results {
     /// # Errors
     /// A line that is no result, or a file without displacements or reactions.
     pub fn new(text: &str) -> Result<Self, Error> {
-        enum Block {
+        enum FrdBlock {
             Displacements,
             Reactions,
             Volume,
             Other,
         }
         let mut results = Self::default();
-        let mut block = Block::Other;
+        let mut block = FrdBlock::Other;
         for line in text.lines().map(str::trim).filter(|line| !line.is_empty()) {
             if line.starts_with(|it: char| it.is_ascii_alphabetic()) {
                 block = if line.starts_with("displacements") {
-                    Block::Displacements
+                    FrdBlock::Displacements
                 } else if line.starts_with("forces") {
-                    Block::Reactions
+                    FrdBlock::Reactions
                 } else if line.starts_with("total volume") {
-                    Block::Volume
+                    FrdBlock::Volume
                 } else {
-                    Block::Other
+                    FrdBlock::Other
                 };
                 continue;
             }
@@ -50,16 +50,16 @@ impl Results {
                 Some((node.checked_sub(1)?, DVec3::new(x?, y?, z?)))
             };
             match block {
-                Block::Displacements => {
+                FrdBlock::Displacements => {
                     let (node, value) = vector().ok_or_else(unreadable)?;
                     results.displacements.insert(node, value);
                 }
-                Block::Reactions => {
+                FrdBlock::Reactions => {
                     let (node, value) = vector().ok_or_else(unreadable)?;
                     results.reactions.insert(node, value);
                 }
-                Block::Volume => results.volume = Some(line.parse().map_err(|_| unreadable())?),
-                Block::Other => (),
+                FrdBlock::Volume => results.volume = Some(line.parse().map_err(|_| unreadable())?),
+                FrdBlock::Other => (),
             }
         }
         if results.displacements.is_empty() || results.reactions.is_empty() {

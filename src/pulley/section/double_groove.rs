@@ -3,13 +3,13 @@
 //! From the bore: flat hub, bend B, cup wall, bend C, radial wall, ridge (D and a second bend), first groove (E, F), ridge, second
 //! groove, rim.
 
-use super::pressed_cup::Line;
+use super::pressed_cup::CupLine;
 use super::strip::{Corner, rounded};
 use super::{Dimensions, Fineness, Flaw, Outline};
 use crate::pulley::mesh::Mesh;
 use glam::DVec2;
 
-fn line(d: &Dimensions) -> Result<Line, Flaw> {
+fn line(d: &Dimensions) -> Result<CupLine, Flaw> {
     let (floor, rim) = (d.floor_radius(), d.rim_radius());
     let (at_floor, at_rim) = (d.half_width(floor), d.half_width(rim));
     let order = |larger, smaller, by| if by > 0.0 { Ok(()) } else { Err(Flaw::Order { larger, smaller, by }) };
@@ -39,7 +39,7 @@ fn line(d: &Dimensions) -> Result<Line, Flaw> {
         ("the second groove's second corner", "end"),
     ];
     let end = DVec2::new(second + at_rim, rim);
-    let line = Line::new(rounded(DVec2::new(0.0, d.bore_radius), &corners, end, d.thickness)?, &FLANKS);
+    let line = CupLine::new(rounded(DVec2::new(0.0, d.bore_radius), &corners, end, d.thickness)?, &FLANKS);
     line.check(d)?;
     Ok(line)
 }

@@ -10,7 +10,7 @@ use glam::DVec2;
 
 /// The line of a one-sheet section, and what is where on it.
 #[derive(Debug)]
-pub(super) struct Line {
+pub(super) struct CupLine {
     pub pieces: Vec<Piece>,
     /// The straight hub.
     pub hub: usize,
@@ -27,7 +27,7 @@ pub(super) fn sides(bend: &str) -> Option<[&'static str; 2]> {
     NAMES.iter().find(|(name, _)| *name == bend).map(|(_, sides)| *sides)
 }
 
-impl Line {
+impl CupLine {
     /// Finds hub, flanks and bends among the pieces. `flanks` are the bends between which a flank lies, in order.
     pub fn new(pieces: Vec<Piece>, flanks: &[(&str, &str)]) -> Self {
         let name = |piece: Option<&Piece>| match piece {
@@ -109,7 +109,7 @@ impl Line {
     }
 }
 
-fn line(d: &Dimensions) -> Result<Line, Flaw> {
+fn line(d: &Dimensions) -> Result<CupLine, Flaw> {
     let tangent = libm::tan(d.half_angle);
     let fold = d.fold_radius * (1.0 + libm::cos(d.half_angle));
     // The fold ends at the groove's top, which places the groove.
@@ -129,7 +129,7 @@ fn line(d: &Dimensions) -> Result<Line, Flaw> {
     order("wall_diameter_mm", "cup_diameter_mm", d.wall_radius - d.cup_radius)?;
     order("the groove's floor", "wall_diameter_mm", floor - d.wall_radius)?;
     let end = DVec2::new(mid_plane + d.half_width(rim), rim);
-    let line = Line::new(rounded(DVec2::new(0.0, d.bore_radius), &corners, end, d.thickness)?, &[("D", "E"), ("F", "end")]);
+    let line = CupLine::new(rounded(DVec2::new(0.0, d.bore_radius), &corners, end, d.thickness)?, &[("D", "E"), ("F", "end")]);
     line.check(d)?;
     Ok(line)
 }

@@ -10,19 +10,19 @@ use crate::pulley::recovery::surface_points;
 use glam::DVec2;
 
 /// A displacement field linear in z and r, and its constant strains (e_rr, e_zz, e_tt, g_rz, g_rt, g_zt).
-struct Field {
+struct PatchField {
     name: &'static str,
     order: usize,
     at: fn(DVec2) -> [f64; 3],
     strain: [f64; 6],
 }
 
-const fn field(name: &'static str, order: usize, at: fn(DVec2) -> [f64; 3], strain: [f64; 6]) -> Field {
-    Field { name, order, at, strain }
+const fn field(name: &'static str, order: usize, at: fn(DVec2) -> [f64; 3], strain: [f64; 6]) -> PatchField {
+    PatchField { name, order, at, strain }
 }
 
 /// In Cartesian axes each of them is linear, so its strains are constant there, and so are their amplitudes here.
-const FIELDS: [Field; 9] = [
+const FIELDS: [PatchField; 9] = [
     field("axial", 0, |p| [0.0, p.x, 0.0], [0.0, 1.0, 0.0, 0.0, 0.0, 0.0]),
     field("equibiaxial", 0, |p| [p.y, 0.0, 0.0], [1.0, 0.0, 1.0, 0.0, 0.0, 0.0]),
     field("shear across", 1, |p| [p.x, 0.0, -p.x], [0.0, 0.0, 0.0, 1.0, 0.0, -1.0]),
@@ -34,7 +34,7 @@ const FIELDS: [Field; 9] = [
     field("tilt", 1, |p| [p.x, -p.y, -p.x], [0.0; 6]),
 ];
 
-impl Field {
+impl PatchField {
     /// Stresses (s_rr, s_zz, s_tt, t_rz, t_rt, t_zt) for a modulus.
     fn stress(&self, modulus: f64) -> [f64; 6] {
         let Lame { lambda, mu } = Lame::new(modulus, POISSON);
@@ -68,7 +68,7 @@ fn skewed(cells: Cells) -> Mesh {
 }
 
 /// The patch under the tractions of a field, with just enough fixed to stop rigid motions; and the two nodes that do it.
-fn loaded(mesh: &Mesh, field: &Field) -> (Equations, [u32; 2]) {
+fn loaded(mesh: &Mesh, field: &PatchField) -> (Equations, [u32; 2]) {
     let ends = [node(mesh, -1.0, 10.0), node(mesh, 7.0, 17.2)];
     let mut fixed = vec![[false; 3]; mesh.nodes.len()];
     match field.order {

@@ -15,9 +15,9 @@ pub(super) enum Filter {
     /// One objective: the best value.
     Best(f64),
     /// Two objectives.
-    Table(Table),
-    /// More: recent killers, then all points.
-    Killers { recent: Vec<(Vec<f64>, u64)>, next: usize, all: Dominance },
+    Table(BinTable),
+    /// More: recent dominators, then all points.
+    Dominators { recent: Vec<(Vec<f64>, u64)>, next: usize, all: Dominance },
 }
 
 impl Filter {
@@ -33,7 +33,7 @@ impl Filter {
                     *alive &= if key <= best { u64::MAX } else { 0 };
                 }
             }
-            Self::Killers { recent, .. } => recent.iter().for_each(|(killer, _)| drop_dominated(alive, killer, keys)),
+            Self::Dominators { recent, .. } => recent.iter().for_each(|(dominator, _)| drop_dominated(alive, dominator, keys)),
             Self::Nothing | Self::Table(_) => {}
         }
     }
@@ -42,13 +42,13 @@ impl Filter {
 /// For every bin of the first coordinate, the best second coordinate of the points in bins strictly below: those points are
 /// strictly better in the first, so that value or more is surely beaten.
 #[derive(Debug)]
-pub(super) struct Table {
+pub(super) struct BinTable {
     low: f64,
     scale: f64,
     best: Box<[f64; BINS]>,
 }
 
-impl Table {
+impl BinTable {
     pub(super) fn new(points: &Points) -> Self {
         let (low, high) = (points.keys[0], points.keys[2 * (points.len() - 1)]);
         let scale = if high > low { (BINS - 2) as f64 / (high - low) } else { 0.0 };
@@ -79,7 +79,7 @@ impl Table {
 
 /// Keeps, of the feasible designs, those that the table does not know to be beaten.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-fn keep_unbeaten(table: &Table, feasible: &[u64], first: &[f64], second: &[f64], alive: &mut [u64]) {
+fn keep_unbeaten(table: &BinTable, feasible: &[u64], first: &[f64], second: &[f64], alive: &mut [u64]) {
     // Bins, then look-ups, then comparisons: the first and last vectorise, and nothing branches.
     const CHUNK: usize = 64;
     let mut bins = [0; CHUNK];
@@ -100,19 +100,19 @@ fn keep_unbeaten(table: &Table, feasible: &[u64], first: &[f64], second: &[f64],
     }
 }
 
-/// Drops what `killer` strictly dominates.
+/// Drops what `dominator` strictly dominates.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-fn drop_dominated(alive: &mut [u64], killer: &[f64], keys: &[&[f64]]) {
+fn drop_dominated(alive: &mut [u64], dominator: &[f64], keys: &[&[f64]]) {
     const CHUNK: usize = 64;
     for first in (0..alive.len()).step_by(CHUNK) {
         let alive = &mut alive[first..];
         let count = alive.len().min(CHUNK);
         let (mut no_better, mut worse) = ([u64::MAX; CHUNK], [0u64; CHUNK]);
-        for (&killer, keys) in killer.iter().zip(keys) {
+        for (&dominator, keys) in dominator.iter().zip(keys) {
             let keys = &keys[first..first + count];
             for ((no_better, worse), &key) in no_better.iter_mut().zip(&mut worse).zip(keys) {
-                *no_better &= if killer <= key { u64::MAX } else { 0 };
-                *worse |= if killer < key { u64::MAX } else { 0 };
+                *no_better &= if dominator <= key { u64::MAX } else { 0 };
+                *worse |= if dominator < key { u64::MAX } else { 0 };
             }
         }
         for ((alive, no_better), worse) in alive.iter_mut().zip(no_better).zip(worse) {

@@ -12,7 +12,7 @@ pub use keys::{KeyRule, Points};
 
 use super::dominance::{Dominance, beats};
 use crate::screen::Block;
-use filter::{Filter, Table};
+use filter::{BinTable, Filter};
 
 /// Most objectives that a study may have.
 pub const MOST_OBJECTIVES: usize = 6;
@@ -21,8 +21,8 @@ pub const MOST_OBJECTIVES: usize = 6;
 pub const FRONT_BYTES: u64 = 4 << 30;
 /// Copies of a front that a sweep holds at a time: its own with what compares with it, that of a checkpoint, those that threads know.
 const COPIES: u64 = 6;
-/// Recent killers that are remembered.
-const KILLERS: usize = 8;
+/// Recent dominators that are remembered.
+const DOMINATORS: usize = 8;
 /// Least number of waiting designs before they are merged.
 const WAITING: usize = 2048;
 
@@ -116,13 +116,13 @@ impl Front {
                     return;
                 }
             }
-            Filter::Killers { recent, next, all } => {
-                if let Some((killer, killer_index)) = all.beater(key, index) {
-                    let killer = (killer.to_vec(), killer_index);
-                    if recent.len() < KILLERS {
-                        recent.push(killer);
+            Filter::Dominators { recent, next, all } => {
+                if let Some((dominator, dominator_index)) = all.dominator(key, index) {
+                    let dominator = (dominator.to_vec(), dominator_index);
+                    if recent.len() < DOMINATORS {
+                        recent.push(dominator);
                     } else {
-                        recent[*next % KILLERS] = killer;
+                        recent[*next % DOMINATORS] = dominator;
                     }
                     *next += 1;
                     return;
@@ -142,7 +142,7 @@ impl Front {
                 let beyond = self.points.not_beyond(lower[0], dimensions);
                 beyond > 0 && beats(self.points.key(beyond - 1, dimensions), u64::MAX, lower, 0)
             }
-            Filter::Killers { all, .. } => all.beater(lower, 0).is_some(),
+            Filter::Dominators { all, .. } => all.dominator(lower, 0).is_some(),
         }
     }
 
@@ -156,7 +156,7 @@ impl Front {
                 let beyond = self.points.not_beyond(lower[0], dimensions);
                 beyond > 0 && beats(self.points.key(beyond - 1, dimensions), self.points.indices[beyond - 1], lower, least_index)
             }
-            Filter::Killers { all, .. } => all.beater(lower, least_index).is_some(),
+            Filter::Dominators { all, .. } => all.dominator(lower, least_index).is_some(),
         }
     }
 
@@ -228,7 +228,7 @@ impl Front {
                 || match dimensions {
                     1 => !self.points.is_empty(),
                     2 => key[1] >= best_second,
-                    _ => kept.beater(key, index).is_some(),
+                    _ => kept.dominator(key, index).is_some(),
                 };
             last = Some(index);
             if !beaten {
@@ -259,8 +259,8 @@ impl Front {
         self.filter = match (self.points.is_empty(), self.rules.len()) {
             (true, _) | (_, 0) => Filter::Nothing,
             (_, 1) => Filter::Best(self.points.keys[0]),
-            (_, 2) => Filter::Table(Table::new(&self.points)),
-            _ => Filter::Killers { recent: Vec::new(), next: 0, all },
+            (_, 2) => Filter::Table(BinTable::new(&self.points)),
+            _ => Filter::Dominators { recent: Vec::new(), next: 0, all },
         };
     }
 }

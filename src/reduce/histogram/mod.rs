@@ -4,7 +4,7 @@
 mod page;
 
 use super::naming::{is_named, numbered};
-use super::reducer::{Needs, Put, Reducer, Results, Room};
+use super::reducer::{Put, Reducer, ReducerNeeds, ReducerResults, ReducerRoom};
 use crate::error::Result;
 use crate::export::csv;
 use crate::export::table::{Data, Table, TableColumn};
@@ -114,8 +114,8 @@ impl Reducer for Histogram {
         all.map(|(spec, &range)| Self::new(range, spec.bins, plan.position(spec.of, worst_end(&plan.study, spec.of)))).collect()
     }
 
-    fn needs(report: &Report) -> Option<Needs> {
-        (!report.histograms.is_empty()).then_some(Needs::Designs("histograms in [report] ask for every feasible design"))
+    fn needs(report: &Report) -> Option<ReducerNeeds> {
+        (!report.histograms.is_empty()).then_some(ReducerNeeds::Designs("histograms in [report] ask for every feasible design"))
     }
 
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, reason = "the edges decide")]
@@ -193,7 +193,7 @@ impl Reducer for Histogram {
         is_named(name, "histogram-", &[], &["csv", "parquet", "svg"])
     }
 
-    fn write(&self, results: &Results<'_>, put: &mut Put<'_>) -> Result<()> {
+    fn write(&self, results: &ReducerResults<'_>, put: &mut Put<'_>) -> Result<()> {
         let study = &results.plan.study;
         let name = &names(study)[results.number];
         put(&format!("{name}.csv"), csv::write(&self.table()))?;
@@ -207,8 +207,8 @@ impl Reducer for Histogram {
         page::histograms(folder, data)
     }
 
-    fn room(plan: &Plan) -> Room {
-        Room { bins: plan.study.report.histograms.iter().map(|it| it.bins as u64).sum(), ..Room::default() }
+    fn room(plan: &Plan) -> ReducerRoom {
+        ReducerRoom { bins: plan.study.report.histograms.iter().map(|it| it.bins as u64).sum(), ..ReducerRoom::default() }
     }
 }
 

@@ -1,7 +1,7 @@
 //! The files of a map: its cells, the lines over it, and its picture; what they are called and how large they are.
 
 use super::super::naming::{is_named, numbered};
-use super::super::reducer::{Put, Results, Room};
+use super::super::reducer::{Put, ReducerResults, ReducerRoom};
 use super::Map;
 #[cfg(feature = "pictures")]
 use super::picture::picture;
@@ -58,7 +58,7 @@ pub fn is_file(name: &str) -> bool {
 }
 
 /// What the maps of a study take.
-pub fn room(study: &Study) -> Room {
+pub fn room(study: &Study) -> ReducerRoom {
     let report = &study.report;
     let columns = |spec: &MapSpec| if spec.value == Best::Share { 3 } else { 4 };
     let cells = || report.maps.iter().map(|spec| cells_of(study, spec));
@@ -66,18 +66,18 @@ pub fn room(study: &Study) -> Room {
         // The axes repeat themselves and take nearly nothing.
         (map_name(study, spec, &name), cells_of(study, spec).saturating_mul(2))
     });
-    Room {
+    ReducerRoom {
         cells: cells().fold(0, u64::saturating_add),
         tables: report.maps.iter().map(|spec| (cells_of(study, spec), columns(spec))).collect(),
         shown: cells().filter(|&cells| cells <= CSV_CELLS).sum(),
         files: files.collect(),
-        ..Room::default()
+        ..ReducerRoom::default()
     }
 }
 
 /// Writes the files of a map. The lines over it are found here, on several threads: they depend on the plan alone, so no checkpoint need
 /// keep them.
-pub fn write(map: &Map, results: &Results<'_>, put: &mut Put<'_>) -> Result<()> {
+pub fn write(map: &Map, results: &ReducerResults<'_>, put: &mut Put<'_>) -> Result<()> {
     let study = &results.plan.study;
     let spec = &study.report.maps[results.number];
     let name = &names(study)[results.number];

@@ -9,7 +9,7 @@ mod picture;
 pub use files::{CSV_CELLS, cells, contours, contours_name, names};
 
 use super::Answers;
-use super::reducer::{Needs, Put, Reducer, Results, Room};
+use super::reducer::{Put, Reducer, ReducerNeeds, ReducerResults, ReducerRoom};
 use crate::error::Result;
 use crate::plan::Plan;
 #[cfg(feature = "pictures")]
@@ -147,8 +147,8 @@ impl Reducer for Map {
         plan.study.report.maps.iter().map(|spec| Self::new(plan, spec)).collect()
     }
 
-    fn needs(report: &Report) -> Option<Needs> {
-        (!report.maps.is_empty()).then_some(Needs::Designs("maps in [report] ask for the best of every cell"))
+    fn needs(report: &Report) -> Option<ReducerNeeds> {
+        (!report.maps.is_empty()).then_some(ReducerNeeds::Designs("maps in [report] ask for the best of every cell"))
     }
 
     fn absorb(&mut self, block: &Block<'_>) {
@@ -246,7 +246,7 @@ impl Reducer for Map {
         files::is_file(name)
     }
 
-    fn write(&self, results: &Results<'_>, put: &mut Put<'_>) -> Result<()> {
+    fn write(&self, results: &ReducerResults<'_>, put: &mut Put<'_>) -> Result<()> {
         files::write(self, results, put)
     }
 
@@ -255,7 +255,7 @@ impl Reducer for Map {
         page::maps(folder, data)
     }
 
-    fn room(plan: &Plan) -> Room {
+    fn room(plan: &Plan) -> ReducerRoom {
         files::room(&plan.study)
     }
 }

@@ -1,13 +1,19 @@
 //! The device's side of a sweep: buffers, tiles in flight, and what comes back.
 
+use super::constants::{
+    APPENDED, DIGIT_VECTORS, FIRST_REPORTED, IS_UNSURE, LANE_BITS, MAY_BE_END, MAY_BE_FRONT, MAY_BE_IN_MAP, SCENARIO_PER_LANE,
+    SCENARIO_PER_ROW, SURE, SURVIVOR_HEAD, UNDECIDED,
+};
 use super::held::histogram_beyond_f32;
 use super::kernel::{self, Coordinate, ENTRIES, check_words, coordinates, survivor_words, text};
-use super::known::{self, Known};
-use super::layout::{Layout, Level, MOST_GROUPS, push_level, refuse};
+use super::known::{self, KnownUniform};
+use super::layout::{KernelLayout, Level, MOST_GROUPS, push_level, refuse};
+use crate::decision::Decision;
 use crate::error::Result;
-use crate::gpu::{Buffer, Device, Program, Wait};
+use crate::gpu::constants::{UNSURE, YES};
+use crate::gpu::{Buffer, Device, Program, WORKGROUP, Wait};
 use crate::plan::Plan;
-use crate::reduce::{Answers, MOST_OBJECTIVES, Needs, Reported};
+use crate::reduce::{Answers, MOST_OBJECTIVES, ReducerNeeds, Reported};
 use crate::study::{Best, Quantity};
 use crate::tape::RunningError;
 use bytemuck::{Pod, Zeroable};
@@ -24,8 +30,6 @@ const CAPACITY: u64 = 1 << 20;
 const MOST_DESIGNS: u64 = 1 << 31;
 /// Evaluations of a first dispatch.
 const FIRST_EVALUATIONS: u64 = 1 << 26;
-/// Counts before the histograms.
-const HEAD: usize = 3;
 
 /// The uniform `Tile` of the kernel.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -38,7 +42,7 @@ pub(super) struct Tile {
     index: [u32; 2],
     window: u32,
     unused: u32,
-    digits: [u32; 48],
+    digits: [u32; 4 * DIGIT_VECTORS as usize],
 }
 
 impl Tile {
@@ -96,16 +100,17 @@ impl Survivors {
     /// Number `at`.
     pub fn get(&self, at: usize) -> Survivor {
         let record = &self.records[at * self.words..(at + 1) * self.words];
-        let (lane, why) = (u64::from(record[1] & 0x00ff_ffff), record[1] >> 24);
-        let front = (why & 2 != 0).then(|| {
-            let mut keys = [0.0; MOST_OBJECTIVES];
-            keys.iter_mut().zip(&record[2..2 + self.objectives]).for_each(|(key, &bits)| *key = f32::from_bits(bits));
-            keys
+        let (lane, why) = (u64::from(record[1] & ((1 << LANE_BITS) - 1)), record[1] >> LANE_BITS);
+        let keys = &record[SURVIVOR_HEAD as usize..];
+        let front = (why & MAY_BE_FRONT != 0).then(|| {
+            let mut lower = [0.0; MOST_OBJECTIVES];
+            lower.iter_mut().zip(&keys[..self.objectives]).for_each(|(key, &bits)| *key = f32::from_bits(bits));
+            lower
         });
-        let maps = (why & 8 != 0)
-            .then(|| record[2 + self.objectives..].chunks(2).map(|it| [f32::from_bits(it[0]), f32::from_bits(it[1])]).collect());
+        let maps = (why & MAY_BE_IN_MAP != 0)
+            .then(|| keys[self.objectives..].chunks(2).map(|it| [f32::from_bits(it[0]), f32::from_bits(it[1])]).collect());
         let position = (self.first_row + u64::from(record[0])) * self.width + lane;
-        Survivor { position, unsure: why & 1 != 0, end: why & 4 != 0, front, maps }
+        Survivor { position, unsure: why & IS_UNSURE != 0, end: why & MAY_BE_END != 0, front, maps }
     }
 
     /// One after the other.
@@ -138,11 +143,11 @@ pub struct InFlight {
 /// One design as the device judged it, for comparison with f64.
 #[derive(Clone, Debug)]
 pub struct Checked {
-    /// 0 no, 1 unsure, 2 yes.
-    pub verdict: u32,
-    /// Worst value and promised error of each tracked quantity, outputs in SI.
+    /// Is it feasible?
+    pub verdict: Decision,
+    /// Worst value and error bound of each tracked quantity, outputs in SI.
     pub worst: Vec<RunningError>,
-    /// Value and promised error of each used output in one scenario, in SI.
+    /// Value and error bound of each used output in one scenario, in SI.
     pub asked: Vec<RunningError>,
     /// That scenario: slow, fast.
     pub scenario: (u64, u64),
@@ -153,7 +158,7 @@ pub struct Checked {
 struct Slot {
     tile: Buffer,
     known: Buffer,
-    beaters: Buffer,
+    dominator_table: Buffer,
     counts: Buffer,
     survivors: Buffer,
     landing: Buffer,
@@ -164,7 +169,7 @@ struct Slot {
 #[derive(Debug)]
 pub struct GpuEngine<'p> {
     plan: &'p Plan,
-    layout: Layout,
+    layout: KernelLayout,
     coordinates: Vec<Coordinate>,
     device: Device,
     program: Program,
@@ -190,8 +195,6 @@ pub struct Wrong {
     pub perturb: Vec<(usize, f64)>,
     /// Pieces of the kernel's text to be replaced.
     pub replace: Vec<(String, String)>,
-    /// Another text for the whole kernel.
-    pub text: Option<String>,
     /// Judge lanes in groups also where the study is small.
     pub grouped: bool,
     /// Room for survivors, if not the usual.
@@ -206,16 +209,16 @@ impl<'p> GpuEngine<'p> {
     /// [`Error::Gpu`](crate::error::Error::Gpu) if the device fails.
     pub fn new(plan: &'p Plan, ranges: &[(f64, f64)], device: &Device, limited_loops: bool, wrong: &Wrong) -> Result<Self> {
         supports_report(plan)?;
-        let layout = Layout::new(plan, limited_loops, wrong.grouped)?;
+        let layout = KernelLayout::new(plan, limited_loops, wrong.grouped)?;
         supports_histograms(plan, ranges)?;
-        let mut source = wrong.text.clone().unwrap_or_else(|| kernel_text(plan, &layout, ranges, &wrong.perturb));
+        let mut source = kernel_text(plan, &layout, ranges, &wrong.perturb);
         for (piece, other) in &wrong.replace {
             assert!(source.contains(piece), "the kernel has no {piece}");
             source = source.replace(piece, other);
         }
         let program = Program::new(device, &source, ENTRIES)?;
         program.require_structure("Tile", size_of::<Tile>(), &Tile::MEMBERS)?;
-        program.require_structure("Known", size_of::<Known>(), &Known::MEMBERS)?;
+        program.require_structure("KnownUniform", size_of::<KnownUniform>(), &KnownUniform::MEMBERS)?;
         let coordinates = coordinates(plan, &layout);
         let storage = wgpu::BufferUsages::STORAGE;
         let binding = device.limits.max_storage_buffer_binding_size.min(device.limits.max_buffer_size);
@@ -235,7 +238,7 @@ impl<'p> GpuEngine<'p> {
 
         let cells_of = |spec: &crate::study::MapSpec| plan.study.design[spec.x].count() * plan.study.design[spec.y].count();
         let counted = Reported::new(plan, ranges).count_words();
-        let count_words = (HEAD + counted.iter().sum::<usize>()) as u64;
+        let count_words = (FIRST_REPORTED as usize + counted.iter().sum::<usize>()) as u64;
         let value_cells: u64 = plan.study.report.maps.iter().filter(|it| it.value != Best::Share).map(cells_of).sum();
         if count_words.max(value_cells) * 4 > binding {
             return Err(device.error("the maps of this study are larger than a buffer of this device; use --engine cpu"));
@@ -252,8 +255,8 @@ impl<'p> GpuEngine<'p> {
         let list = known::known(plan, &coordinates, |_| false, &Answers::default()).1.len() as u64;
         let slots = (0..2).map(|_| {
             let tile = device.buffer("tile", size_of::<Tile>() as u64, wgpu::BufferUsages::UNIFORM);
-            let known = device.buffer("known", size_of::<Known>() as u64, wgpu::BufferUsages::UNIFORM);
-            let beaters = device.buffer("beaters", list * 4, storage);
+            let known = device.buffer("known", size_of::<KnownUniform>() as u64, wgpu::BufferUsages::UNIFORM);
+            let dominator_table = device.buffer("dominator_table", list * 4, storage);
             let counts = device.buffer("counts", count_words * 4, storage);
             let survivors = device.buffer("survivors", capacity * words as u64 * 4, storage);
             let landing = device.landing("landing", count_words * 4 + FIRST_TRIP.min(capacity) * survivor_words(plan) as u64 * 4);
@@ -266,10 +269,10 @@ impl<'p> GpuEngine<'p> {
                 ("row_table", &rows),
                 ("counts", &counts),
                 ("survivors", &survivors),
-                ("beaters", &beaters),
+                ("dominator_table", &dominator_table),
                 ("cells", &cells),
             ]);
-            Slot { tile, known, beaters, counts, survivors, landing, bound }
+            Slot { tile, known, dominator_table, counts, survivors, landing, bound }
         });
         let slots = slots.collect();
         device.check()?;
@@ -322,9 +325,9 @@ impl<'p> GpuEngine<'p> {
         let slot = self.next;
         self.next = (self.next + 1) % self.slots.len();
         let exact = |quantity| matches!(quantity, Quantity::Input(input) if kernel::is_exact(self.plan, &self.layout, input));
-        let (known, beaters) = known::known(self.plan, &self.coordinates, exact, answers);
+        let (known, dominator_table) = known::known(self.plan, &self.coordinates, exact, answers);
         self.device.write(&self.slots[slot].known, 0, &[known]);
-        self.device.write(&self.slots[slot].beaters, 0, &beaters);
+        self.device.write(&self.slots[slot].dominator_table, 0, &dominator_table);
         let (rows, groups) = self.place(slot, &range);
         let it = &self.slots[slot];
         let counts = self.count_words * 4;
@@ -341,7 +344,7 @@ impl<'p> GpuEngine<'p> {
     }
 
     fn first_stage(&self, encoder: &mut wgpu::CommandEncoder, slot: &Slot, rows: &Range<u64>) {
-        let groups = ((rows.end - rows.start) as u32).div_ceil(64);
+        let groups = ((rows.end - rows.start) as u32).div_ceil(WORKGROUP);
         self.program.dispatch(encoder, "prepare_rows", &slot.bound, [groups, self.layout.slow_scenarios.count as u32]);
         self.program.dispatch(encoder, "judge_rows", &slot.bound, [groups, 1]);
     }
@@ -394,7 +397,7 @@ impl<'p> GpuEngine<'p> {
         let words = survivor_words(self.plan);
         let landed: Vec<u32> = self.device.read(&slot.landing, (slot.landing.size() / 4) as usize, &tile.wait)?;
         let (counts, first_trip) = landed.split_at(self.count_words as usize);
-        let appended = counts[2] as usize;
+        let appended = counts[APPENDED as usize] as usize;
         if appended as u64 > slot.survivors.size() / (4 * words as u64) {
             return Ok(None);
         }
@@ -403,14 +406,14 @@ impl<'p> GpuEngine<'p> {
         } else {
             self.device.fetch(&slot.survivors, appended * words)?
         };
-        let mut rest = &counts[HEAD..];
+        let mut rest = &counts[FIRST_REPORTED as usize..];
         let mut take = |count: usize| {
             let (taken, left) = rest.split_at(count);
             rest = left;
             taken.to_vec()
         };
         let reported = self.counted.iter().map(|&words| take(words)).collect();
-        let counts = TileCounts { sure: counts[0].into(), unsure: counts[1].into(), reported };
+        let counts = TileCounts { sure: counts[SURE as usize].into(), unsure: counts[UNDECIDED as usize].into(), reported };
         let (width, objectives) = (self.plan.fast.count(), self.plan.study.objectives.len());
         Ok(Some((counts, Survivors { records, words, first_row: tile.rows.start, width, objectives })))
     }
@@ -424,7 +427,7 @@ impl<'p> GpuEngine<'p> {
         let mut rest = range.clone();
         let room = self.slots[0].survivors.size() / (4 * self.words as u64);
         while !rest.is_empty() {
-            let part = self.tile(&rest, room.min(MOST_GROUPS * 64).min(self.at_once()));
+            let part = self.tile(&rest, room.min(MOST_GROUPS * u64::from(WORKGROUP)).min(self.at_once()));
             let (rows, _) = self.place(0, &part);
             let slot = &self.slots[0];
             let designs = part.end - part.start;
@@ -432,7 +435,7 @@ impl<'p> GpuEngine<'p> {
                 self.first_stage(encoder, slot, &rows);
                 let lanes = designs / (rows.end - rows.start);
                 let groups = (rows.end - rows.start) * lanes.div_ceil(self.layout.cut.group);
-                self.program.dispatch(encoder, "check", &slot.bound, [groups.div_ceil(64) as u32, 1]);
+                self.program.dispatch(encoder, "check", &slot.bound, [groups.div_ceil(WORKGROUP.into()) as u32, 1]);
             });
             self.device.wait(&wait)?;
             let words = check_words(self.plan);
@@ -449,11 +452,16 @@ impl<'p> GpuEngine<'p> {
         let position = part.start + at;
         let (row, lane) = ((position / width - first_row) as u32, (position % width) as u32);
         let (slow, fast) = (self.layout.slow_scenarios.count as u32, self.layout.fast_scenarios.count as u32);
-        let scenario = row.wrapping_mul(7919).wrapping_add(lane.wrapping_mul(104_729)) % slow.wrapping_mul(fast);
+        let scenario = row.wrapping_mul(SCENARIO_PER_ROW).wrapping_add(lane.wrapping_mul(SCENARIO_PER_LANE)) % slow.wrapping_mul(fast);
         let number = |pair: &[u32]| RunningError { value: f32::from_bits(pair[0]), bound: f64::from(f32::from_bits(pair[1])) };
         let mut numbers = record[1..].chunks(2).map(number);
         let worst = numbers.by_ref().take(self.plan.tracked.len()).collect();
-        Checked { verdict: record[0], worst, asked: numbers.collect(), scenario: (u64::from(scenario / fast), u64::from(scenario % fast)) }
+        let verdict = match record[0] {
+            YES => Decision::Yes,
+            UNSURE => Decision::Unsure,
+            _ => Decision::No,
+        };
+        Checked { verdict, worst, asked: numbers.collect(), scenario: (u64::from(scenario / fast), u64::from(scenario % fast)) }
     }
 
     /// The used outputs, in the order of [`Checked::asked`].
@@ -476,12 +484,12 @@ pub fn supports(plan: &Plan, limited_loops: bool) -> Result<()> {
     let given = plan.study.report.histograms.iter().map(|it| it.range.unwrap_or((0.0, 1.0))).collect::<Vec<_>>();
     supports_report(plan)?;
     supports_histograms(plan, &given)?;
-    Layout::new(plan, limited_loops, false).map(|_| ())
+    KernelLayout::new(plan, limited_loops, false).map(|_| ())
 }
 
 /// Does the report ask for nothing but counts and candidates?
 fn supports_report(plan: &Plan) -> Result<()> {
-    let beyond = Reported::needs(&plan.study.report).into_iter().find_map(Needs::beyond_devices);
+    let beyond = Reported::needs(&plan.study.report).into_iter().find_map(ReducerNeeds::beyond_devices);
     beyond.map_or(Ok(()), |why| Err(refuse(why.to_owned())))
 }
 
@@ -500,9 +508,9 @@ pub fn supports_histograms(plan: &Plan, ranges: &[(f64, f64)]) -> Result<()> {
 pub fn kernel_of(plan: &Plan, ranges: &[(f64, f64)], perturb: &[(usize, f64)]) -> Result<String> {
     supports_report(plan)?;
     supports_histograms(plan, ranges)?;
-    Ok(kernel_text(plan, &Layout::new(plan, true, false)?, ranges, perturb))
+    Ok(kernel_text(plan, &KernelLayout::new(plan, true, false)?, ranges, perturb))
 }
 
-fn kernel_text(plan: &Plan, layout: &Layout, ranges: &[(f64, f64)], perturb: &[(usize, f64)]) -> String {
+fn kernel_text(plan: &Plan, layout: &KernelLayout, ranges: &[(f64, f64)], perturb: &[(usize, f64)]) -> String {
     kernel::histogram_constants(plan, ranges) + &text(plan, layout, perturb)
 }

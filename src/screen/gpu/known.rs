@@ -1,9 +1,9 @@
 //! What the device is told of the answers so far, so that it can leave out what cannot be part of them.
 
 use super::kernel::{Coordinate, bins, round_up, threshold, uses_table};
-use super::layout::{KILLERS, LIST, on_device, sign};
+use super::layout::{DOMINATORS, LIST, on_device, sign};
 use crate::plan::Plan;
-use crate::reduce::Answers;
+use crate::reduce::{Answers, MOST_OBJECTIVES};
 use crate::study::{Goal, Quantity};
 use bytemuck::{Pod, Zeroable};
 use std::mem::offset_of;
@@ -11,26 +11,26 @@ use std::mem::offset_of;
 /// The uniform `Known` of the kernel.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-pub struct Known {
-    killers: [[f32; 8]; KILLERS],
+pub struct KnownUniform {
+    dominators: [[f32; 8]; DOMINATORS],
     top: [f32; 4],
     top_index: [u32; 4],
-    extremes: [[f32; 4]; 6],
-    extreme_indices: [[u32; 4]; 6],
+    extremes: [[f32; 4]; MOST_OBJECTIVES],
+    extreme_indices: [[u32; 4]; MOST_OBJECTIVES],
     table: [f32; 4],
     last_place: [u32; 4],
 }
 
-impl Known {
+impl KnownUniform {
     /// Its members as the kernel must have them.
     pub(super) const MEMBERS: [(&'static str, usize); 7] = [
-        ("killers", offset_of!(Known, killers)),
-        ("top", offset_of!(Known, top)),
-        ("top_index", offset_of!(Known, top_index)),
-        ("extremes", offset_of!(Known, extremes)),
-        ("extreme_indices", offset_of!(Known, extreme_indices)),
-        ("table", offset_of!(Known, table)),
-        ("last_place", offset_of!(Known, last_place)),
+        ("dominators", offset_of!(KnownUniform, dominators)),
+        ("top", offset_of!(KnownUniform, top)),
+        ("top_index", offset_of!(KnownUniform, top_index)),
+        ("extremes", offset_of!(KnownUniform, extremes)),
+        ("extreme_indices", offset_of!(KnownUniform, extreme_indices)),
+        ("table", offset_of!(KnownUniform, table)),
+        ("last_place", offset_of!(KnownUniform, last_place)),
     ];
 }
 
@@ -61,11 +61,11 @@ fn end(plan: &Plan, exact: bool, quantity: Quantity, held: Option<(f64, u64)>, t
 }
 
 /// The uniform and the list or table that stand for the answers so far.
-pub fn known(plan: &Plan, coordinates: &[Coordinate], is_exact: impl Fn(Quantity) -> bool, answers: &Answers) -> (Known, Vec<f32>) {
+pub fn known(plan: &Plan, coordinates: &[Coordinate], is_exact: impl Fn(Quantity) -> bool, answers: &Answers) -> (KnownUniform, Vec<f32>) {
     let objectives = &plan.study.objectives;
     let dimensions = objectives.len();
-    let mut known = Known::zeroed();
-    known.killers = [[f32::INFINITY; 8]; KILLERS];
+    let mut known = KnownUniform::zeroed();
+    known.dominators = [[f32::INFINITY; 8]; DOMINATORS];
     // Sorted by the first coordinate, as the front is: the kernel relies on it where there are two.
     let points: Vec<Vec<f32>> = answers
         .front
@@ -74,8 +74,8 @@ pub fn known(plan: &Plan, coordinates: &[Coordinate], is_exact: impl Fn(Quantity
             key.iter().zip(objectives).zip(coordinates).map(|((&key, it), &coordinate)| threshold(plan, it, coordinate, key)).collect()
         })
         .collect();
-    for (killer, point) in known.killers.iter_mut().zip(chosen(&points, KILLERS)) {
-        killer[..dimensions].copy_from_slice(point);
+    for (dominator, point) in known.dominators.iter_mut().zip(chosen(&points, DOMINATORS)) {
+        dominator[..dimensions].copy_from_slice(point);
     }
     known.top = [f32::INFINITY, 0.0, 0.0, 0.0];
     if let (Some(top), Some((key, index))) = (plan.study.report.top, answers.top) {
@@ -95,10 +95,10 @@ pub fn known(plan: &Plan, coordinates: &[Coordinate], is_exact: impl Fn(Quantity
         *indices = [least_index[0], least_index[1], largest_index[0], largest_index[1]];
     }
     known.last_place[..2].copy_from_slice(&halves(answers.last_place.unwrap_or(u64::MAX)));
-    let beaters = if uses_table(coordinates) {
-        let (table, beaters) = table(&points, bins(coordinates) as usize, dimensions);
-        known.table = table;
-        beaters
+    let list = if uses_table(coordinates) {
+        let (place, cells) = table(&points, bins(coordinates) as usize, dimensions);
+        known.table = place;
+        cells
     } else {
         let mut list = vec![f32::INFINITY; LIST * dimensions.max(1)];
         for (to, point) in list.chunks_mut(dimensions.max(1)).zip(chosen(&points, LIST)) {
@@ -106,7 +106,7 @@ pub fn known(plan: &Plan, coordinates: &[Coordinate], is_exact: impl Fn(Quantity
         }
         list
     };
-    (known, beaters)
+    (known, list)
 }
 
 /// Points spread over the front: for each coordinate in turn those at even ranks of it, so that none lies far from one of them.

@@ -1,6 +1,7 @@
 //! How a study lies on the device: which values pass between the stages, where the levels of every axis stand, how the work is
 //! cut into invocations.
 
+use super::constants::LANE_BITS;
 use super::held::beyond_f32;
 use crate::error::{Error, Result};
 use crate::models::{Fields, INPUTS, Reads, Worse, input_to_si};
@@ -9,15 +10,15 @@ use crate::space::{Dimension, Product};
 use crate::study::{Axis, Goal, Levels, Quantity};
 use crate::tape::nearest_f32;
 
-/// Most loop turns of one invocation: some drivers end it after 65 535 without a word.
-pub const MOST_TURNS: u64 = 55_000;
+/// Most loop iterations of one invocation: some drivers end it after 65 535 without a word.
+pub const MOST_ITERATIONS: u64 = 55_000;
 /// Most workgroups of a dispatch along either side.
 pub const MOST_GROUPS: u64 = 65_535;
 /// Lanes of a block: their answers are the bits of one word.
 const BLOCK: u64 = 32;
 /// Lanes of one invocation where a design takes a single evaluation: what a row needs is then loaded rarely.
 const MANY_LANES: u64 = 256;
-/// Lanes that are judged together: where scenarios are many, what a row gives them is dear to load; where there is one, registers are.
+/// Lanes that are judged together: where scenarios are many, what a row gives them is expensive to load; where there is one, registers are.
 const GROUP: [u64; 2] = [4, 2];
 /// Evaluations of a small study.
 const SMALL: u64 = 20_000_000;
@@ -27,8 +28,8 @@ pub const WINDOW: u64 = 1 << 20;
 pub const LIST: usize = 64;
 /// Bins of the look-up table along its one or two coordinates.
 pub const BINS: [u64; 2] = [16_384, 256];
-/// Most killers that every design is compared with.
-pub const KILLERS: usize = 8;
+/// Most dominators that every design is compared with.
+pub const DOMINATORS: usize = 8;
 /// Entries of a uniform buffer that every device has.
 const UNIFORM_ENTRIES: usize = 4096;
 
@@ -137,7 +138,7 @@ pub fn refuse(why: String) -> Error {
 
 /// A study as a device sees it.
 #[derive(Clone, Debug)]
-pub struct Layout {
+pub struct KernelLayout {
     /// The names of the formula's values.
     pub fields: Fields,
     /// What passes from the first stage to the second.
@@ -166,7 +167,7 @@ pub struct Layout {
     pub cut: Cut,
 }
 
-impl Layout {
+impl KernelLayout {
     /// Lays out a study. `grouped`: lanes are judged in groups even where the study is small.
     ///
     /// # Errors
@@ -176,10 +177,10 @@ impl Layout {
         let formula = model.on_device()?.formula;
         let fields = formula.fields();
         let scenarios = [&plan.slow_scenarios, &plan.fast_scenarios].map(Product::count);
-        let turns = scenarios[0].saturating_mul(scenarios[1] + 1).saturating_mul(1 + fields.turns);
-        if turns > MOST_TURNS && (limited_loops || turns > u64::from(u32::MAX) / 4) {
+        let iterations = scenarios[0].saturating_mul(scenarios[1] + 1).saturating_mul(1 + fields.turns);
+        if iterations > MOST_ITERATIONS && (limited_loops || iterations > u64::from(u32::MAX) / 4) {
             return Err(refuse(format!(
-                "{turns} loop turns over its scenarios are more than the {MOST_TURNS} that this driver can be trusted with"
+                "{iterations} loop iterations over its scenarios are more than the {MOST_ITERATIONS} that this driver can be trusted with"
             )));
         }
         let set_by_axes = plan.space.designs.inputs() | plan.space.scenarios.inputs();
@@ -197,7 +198,7 @@ impl Layout {
         if scenarios[0] > MOST_GROUPS {
             return Err(refuse(format!("{} slow scenarios are more than {MOST_GROUPS}", scenarios[0])));
         }
-        if plan.fast.count() >= 1 << 24 {
+        if plan.fast.count() >= 1 << LANE_BITS {
             return Err(refuse(format!("a row of {} designs is too long", plan.fast.count())));
         }
         let used = plan.used_outputs();
@@ -288,9 +289,9 @@ impl Layout {
 }
 
 impl Cut {
-    /// Loop turns of an invocation: those that a group of lanes shares, and those of one lane by itself: inside the formula, and in the
+    /// Loop iterations of an invocation: those that a group of lanes shares, and those of one lane by itself: inside the formula, and in the
     /// closer look, where it meets a list, its neighbours, and its scenarios again unless it was kept. `own`: of the formula.
-    fn turns(plan: &Plan, own: u64, keeps: bool) -> (u64, u64) {
+    fn iterations(plan: &Plan, own: u64, keeps: bool) -> (u64, u64) {
         let shared = plan.slow_scenarios.count() * (plan.fast_scenarios.count() + 1) + 1;
         let own = plan.scenarios() * own;
         (shared, own + LIST as u64 + 40 + if keeps { 0 } else { shared + own })
@@ -299,26 +300,29 @@ impl Cut {
     fn new(plan: &Plan, own: u64, grouped: bool) -> Self {
         let lanes = plan.fast.count();
         let keeps = plan.scenarios() > 1;
-        let (turns, alone) = Self::turns(plan, own, keeps);
+        let (iterations, alone) = Self::iterations(plan, own, keeps);
         // The driver's compiler takes longer over a group than a small study takes altogether.
         let small = !grouped && plan.designs().saturating_mul(plan.scenarios()) < SMALL;
         let mut group = if small { 1 } else { GROUP[usize::from(!keeps)].min(lanes) };
-        while group > 1 && turns + group * alone > MOST_TURNS {
+        while group > 1 && iterations + group * alone > MOST_ITERATIONS {
             group /= 2;
         }
-        let most = (MOST_TURNS / (turns + group * alone)).max(1) * group;
+        let most = (MOST_ITERATIONS / (iterations + group * alone)).max(1) * group;
         let wanted = (MANY_LANES / plan.scenarios()).clamp(group, most);
         // Chunks of equal size, so that the last one is not nearly empty.
         let chunks = lanes.div_ceil(wanted.min(lanes).max(1));
         let lanes_each = lanes.div_ceil(chunks).next_multiple_of(group);
         let chunks = lanes.div_ceil(lanes_each);
         let rows = plan.slow.count().min(8).next_power_of_two();
-        let group_chunks = chunks.next_power_of_two().min(if champions(plan) { 256 / rows } else { 64 / rows });
-        // Champions stand in the workgroup's memory, of which every device has 16 KiB.
+        let group_chunks = chunks.next_power_of_two().min(if row_dominators(plan) { 256 / rows } else { 64 / rows });
+        // Row dominators stand in the workgroup's memory, of which every device has 16 KiB.
         let each = 4 * plan.objectives.len() as u64 * if keeps { group } else { 1 };
         let fits = (16_384 / (each * rows).max(1)).max(1);
-        let group_chunks =
-            if champions(plan) { group_chunks.min(fits.next_power_of_two() >> u64::from(!fits.is_power_of_two())) } else { group_chunks };
+        let group_chunks = if row_dominators(plan) {
+            group_chunks.min(fits.next_power_of_two() >> u64::from(!fits.is_power_of_two()))
+        } else {
+            group_chunks
+        };
         let group_rows = (64 / group_chunks).max(rows);
         let block = if keeps { group } else { lanes_each.min(BLOCK / group * group) };
         Self { lanes_each, block, group, keeps, group_rows, group_chunks }
@@ -336,7 +340,7 @@ impl Cut {
 }
 
 /// Do neighbours in a row share an objective that only the row decides, while another one differs?
-pub fn champions(plan: &Plan) -> bool {
+pub fn row_dominators(plan: &Plan) -> bool {
     let sources: Vec<Source> = plan.objectives.iter().map(|&position| plan.tracked[position].1).collect();
     plan.fast.count() > 1 && sources.iter().any(|it| it.is_row()) && sources.iter().any(|it| !it.is_row())
 }
@@ -463,7 +467,7 @@ mod tests {
     use crate::study::Study;
 
     #[test]
-    fn an_invocation_never_takes_more_turns_than_a_driver_allows() {
+    fn an_invocation_never_takes_more_iterations_than_a_driver_allows() {
         let study = |model: &str, axis: &str, scenarios: u64| {
             let text = format!(
                 "model = \"{model}\"\n[design]\n{axis}\n[operation]\ncases = [{}]\n[objectives]\n{axis_name} = \"min\"\n",
@@ -484,12 +488,12 @@ mod tests {
             ] {
                 let plan = study(model, axis, scenarios);
                 for grouped in [false, true] {
-                    let Ok(layout) = Layout::new(&plan, true, grouped) else { continue };
+                    let Ok(layout) = KernelLayout::new(&plan, true, grouped) else { continue };
                     let cut = layout.cut;
-                    let (shared, alone) = Cut::turns(&plan, layout.fields.turns, cut.keeps);
-                    let turns = cut.lanes_each.div_ceil(cut.group) * shared + cut.lanes_each * alone;
+                    let (shared, alone) = Cut::iterations(&plan, layout.fields.turns, cut.keeps);
+                    let iterations = cut.lanes_each.div_ceil(cut.group) * shared + cut.lanes_each * alone;
                     // What one lane takes may pass the target by its closer look.
-                    assert!(turns <= MOST_TURNS + 200, "{model}, {scenarios} scenarios: {cut:?} takes {turns} turns");
+                    assert!(iterations <= MOST_ITERATIONS + 200, "{model}, {scenarios} scenarios: {cut:?} takes {iterations} iterations");
                     accepted += 1;
                 }
             }

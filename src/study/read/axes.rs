@@ -2,15 +2,15 @@
 
 use super::super::axis::{Axis, Levels};
 use super::Reader;
-use super::table::{Entry, Node, TOP_LEVEL_REMEDY, Table, is_top_level, shortened};
+use super::table::{Entry, TOP_LEVEL_REMEDY, TomlNode, TomlTable, is_top_level, shortened};
 use super::value::{input_value, shown};
-use crate::likeness::closest;
+use crate::likeness::remedy;
 use std::collections::HashSet;
 use toml::de::DeValue;
 
 /// The tables that give inputs values.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Role {
+pub(super) enum AxisRole {
     /// What the engineer chooses.
     Design,
     /// What the drive must survive.
@@ -21,7 +21,7 @@ pub(super) enum Role {
     Fixed,
 }
 
-impl Role {
+impl AxisRole {
     /// Name of the table.
     pub(super) fn name(self) -> &'static str {
         match self {
@@ -34,11 +34,11 @@ impl Role {
 }
 
 /// A place in the file that gives an input values.
-pub(super) struct Claim {
+pub(super) struct AxisClaim {
     /// Number of the input.
     pub(super) input: usize,
     /// The table.
-    pub(super) role: Role,
+    pub(super) role: AxisRole,
     /// Byte in the study file.
     pub(super) at: usize,
     /// Is it an axis of this input alone?
@@ -49,7 +49,7 @@ pub(super) struct Claim {
 
 impl Reader<'_> {
     /// The axes of a table, in file order. Those with problems are left out.
-    pub(super) fn axes(&self, role: Role, table: &Table<'_>) -> Vec<Axis> {
+    pub(super) fn axes(&self, role: AxisRole, table: &TomlTable<'_>) -> Vec<Axis> {
         let axis = |entry: &Entry<'_>| {
             let joint = entry.key.starts_with("cases") && self.model.input(entry.key).is_none();
             if joint { self.joint(role, entry) } else { self.single(role, entry) }
@@ -63,7 +63,7 @@ impl Reader<'_> {
     }
 
     /// The value of every input: fixed, of the preset, or default.
-    pub(super) fn fixed(&self, table: Option<&Table<'_>>) -> Vec<f64> {
+    pub(super) fn fixed(&self, table: Option<&TomlTable<'_>>) -> Vec<f64> {
         let mut values = self.base.clone();
         for entry in table.iter().flat_map(|table| &table.entries).take_while(|_| !self.problems.is_full()) {
             let label = format!("fixed input \"{}\"", shortened(entry.key));
@@ -78,7 +78,7 @@ impl Reader<'_> {
             };
             let value = value.map_err(|error| self.problems.add(entry.node.at, format!("{label}: {error}"))).ok();
             let word = value.and_then(|value| input.word_for(value)).map(str::to_owned);
-            self.claims.borrow_mut().push(Claim { input: number, role: Role::Fixed, at: entry.key_at, single: false, word });
+            self.claims.borrow_mut().push(AxisClaim { input: number, role: AxisRole::Fixed, at: entry.key_at, single: false, word });
             values[number] = value.unwrap_or(values[number]);
         }
         values
@@ -102,16 +102,13 @@ impl Reader<'_> {
             );
         }
         let names: Vec<_> = self.model.inputs.iter().map(|input| input.name.as_str()).collect();
-        let remedy = match closest(name, &names) {
-            _ if is_top_level(name) => TOP_LEVEL_REMEDY.to_owned(),
-            Some(close) => format!("did you mean \"{close}\"?"),
-            None => format!("its inputs are {}", names.join(", ")),
-        };
+        let similar = || remedy(name, &names, || format!("its inputs are {}", names.join(", ")));
+        let remedy = if is_top_level(name) { TOP_LEVEL_REMEDY.to_owned() } else { similar() };
         format!("{} has no input \"{}\"; {remedy}", self.model.name, shortened(name))
     }
 
     /// An axis of one input.
-    fn single(&self, role: Role, entry: &Entry<'_>) -> Option<Axis> {
+    fn single(&self, role: AxisRole, entry: &Entry<'_>) -> Option<Axis> {
         let label = format!("axis \"{}\"", shortened(entry.key));
         let number = self.input(entry.key, entry.key_at, &label)?;
         let input = &self.model.inputs[number];
@@ -138,18 +135,18 @@ impl Reader<'_> {
             Some(Levels::List(values)) => values.iter().find_map(|&value| input.word_for(value)).map(str::to_owned),
             _ => None,
         };
-        self.claims.borrow_mut().push(Claim { input: number, role, at: entry.key_at, single: true, word });
+        self.claims.borrow_mut().push(AxisClaim { input: number, role, at: entry.key_at, single: true, word });
         Some(Axis::Single { input: number, levels: levels? })
     }
 
     /// A value of an input, with a report if it is none.
-    pub(super) fn input_value(&self, node: Node<'_>, number: usize, label: &str) -> Option<f64> {
+    pub(super) fn input_value(&self, node: TomlNode<'_>, number: usize, label: &str) -> Option<f64> {
         let value = input_value(node, &self.model.inputs[number]);
         value.map_err(|error| self.problems.add(node.at, format!("{label}: {error}"))).ok()
     }
 
     /// Levels as listed.
-    fn list(&self, node: Node<'_>, number: usize, label: &str) -> Option<Levels> {
+    fn list(&self, node: TomlNode<'_>, number: usize, label: &str) -> Option<Levels> {
         let nodes = node.list()?;
         if nodes.len() == 0 {
             self.problems.add(node.at, format!("{label}: the list is empty; give at least one value"));

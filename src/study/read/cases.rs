@@ -3,8 +3,8 @@
 use super::super::axis::Axis;
 use super::super::check::{MOST_ROWS, MOST_VALUES};
 use super::Reader;
-use super::axes::{Claim, Role};
-use super::table::{Entry, Lines, Node, Table, list, shortened};
+use super::axes::{AxisClaim, AxisRole};
+use super::table::{Entry, Lines, TomlNode, TomlTable, list, shortened};
 use super::value::input_text;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry as Row;
@@ -19,7 +19,7 @@ const MOST_CSV_BYTES: u64 = 1 << 26;
 
 impl Reader<'_> {
     /// A joint axis.
-    pub(super) fn joint(&self, role: Role, entry: &Entry<'_>) -> Option<Axis> {
+    pub(super) fn joint(&self, role: AxisRole, entry: &Entry<'_>) -> Option<Axis> {
         let label = format!("axis \"{}\"", shortened(entry.key));
         match entry.node.value {
             DeValue::Array(_) => self.rows(role, entry.node, &label),
@@ -41,7 +41,7 @@ impl Reader<'_> {
     }
 
     /// Rows as listed. The first row says which inputs there are.
-    fn rows(&self, role: Role, node: Node<'_>, label: &str) -> Option<Axis> {
+    fn rows(&self, role: AxisRole, node: TomlNode<'_>, label: &str) -> Option<Axis> {
         let problems = self.problems;
         let before = problems.count();
         let mut columns: Option<Vec<usize>> = None;
@@ -88,14 +88,14 @@ impl Reader<'_> {
     }
 
     /// The inputs that the first row names.
-    fn columns(&self, role: Role, table: &Table<'_>, label: &str) -> Vec<usize> {
+    fn columns(&self, role: AxisRole, table: &TomlTable<'_>, label: &str) -> Vec<usize> {
         if table.entries.is_empty() {
             self.problems.add(table.at, format!("{label}: the row names no input; write {{ {} }}", self.example_row()));
         }
         let mut inputs = Vec::new();
         for entry in table.entries.iter().take_while(|_| !self.problems.is_full()) {
             if let Some(input) = self.input(entry.key, entry.key_at, label) {
-                self.claims.borrow_mut().push(Claim { input, role, at: entry.key_at, single: false, word: None });
+                self.claims.borrow_mut().push(AxisClaim { input, role, at: entry.key_at, single: false, word: None });
                 inputs.push(input);
             }
         }
@@ -116,7 +116,7 @@ impl Reader<'_> {
     }
 
     /// Rows from a CSV file.
-    fn csv(&self, role: Role, table: &Table<'_>, label: &str) -> Option<Axis> {
+    fn csv(&self, role: AxisRole, table: &TomlTable<'_>, label: &str) -> Option<Axis> {
         let problems = self.problems;
         let known = table.check_keys(problems, label, &["csv"]);
         let Some(entry) = table.get("csv") else {
@@ -160,7 +160,7 @@ impl Reader<'_> {
     }
 
     /// The rows of a CSV text. Its first line names the inputs.
-    fn csv_rows(&self, role: Role, at: usize, name: &str, text: &str) -> Option<Axis> {
+    fn csv_rows(&self, role: AxisRole, at: usize, name: &str, text: &str) -> Option<Axis> {
         let lines = Lines::new(text);
         let before = self.problems.count();
         let problem = |line: usize, field: usize, message: String| self.problems.add_in(at, name, line, field, message);
@@ -218,7 +218,7 @@ impl Reader<'_> {
     }
 
     /// The inputs that a CSV header names; `None` for a column with a problem.
-    fn header(&self, role: Role, at: usize, record: &csv::StringRecord, problem: impl Fn(usize, String)) -> Vec<Option<usize>> {
+    fn header(&self, role: AxisRole, at: usize, record: &csv::StringRecord, problem: impl Fn(usize, String)) -> Vec<Option<usize>> {
         let mut inputs: Vec<Option<usize>> = Vec::new();
         for (index, name) in record.iter().enumerate().take_while(|_| !self.problems.is_full()) {
             let input = self.model.input(name);
@@ -229,7 +229,7 @@ impl Reader<'_> {
                 None if name.is_empty() => problem(index + 1, "the column has no name; name the input whose values it holds".to_owned()),
                 None => problem(index + 1, self.no_input(name)),
                 Some(_) if inputs.contains(&input) => problem(index + 1, format!("\"{name}\" has two columns; drop one")),
-                Some(input) => self.claims.borrow_mut().push(Claim { input, role, at, single: false, word: None }),
+                Some(input) => self.claims.borrow_mut().push(AxisClaim { input, role, at, single: false, word: None }),
             }
             inputs.push(input);
         }

@@ -3,7 +3,7 @@
 use super::super::axis::{Axis, Levels};
 use super::super::check::MOST_THRESHOLDS;
 use super::super::resolved::{Best, ContourSpec, Quantity, Thresholds};
-use super::table::{Entry, Node, Table, list};
+use super::table::{Entry, TomlNode, TomlTable, list};
 use super::value::{measured, shown, shown_in};
 use super::{Reader, text};
 use toml::de::DeValue;
@@ -83,7 +83,7 @@ impl Reader<'_> {
     }
 
     /// The quantity that the map shows, for lines that name none.
-    fn own_quantity(&self, node: Node<'_>, plane: &Plane<'_>) -> Option<Quantity> {
+    fn own_quantity(&self, node: TomlNode<'_>, plane: &Plane<'_>) -> Option<Quantity> {
         match plane.value? {
             Best::Value(quantity, _) => Some(quantity),
             Best::Share => {
@@ -95,7 +95,7 @@ impl Reader<'_> {
     }
 
     /// `{ of, at }`.
-    fn contours_of_table(&self, node: Node<'_>, table: &Table<'_>, plane: &Plane<'_>, asked: &mut Vec<ContourSpec>) {
+    fn contours_of_table(&self, node: TomlNode<'_>, table: &TomlTable<'_>, plane: &Plane<'_>, asked: &mut Vec<ContourSpec>) {
         table.check_keys(self.problems, LABEL, &["of", "at"]);
         let Some(of) = table.get("of") else {
             let example = format!("{{ of = \"{}\", at = [0.1] }}", self.some_output());
@@ -116,7 +116,7 @@ impl Reader<'_> {
     }
 
     /// Every change of a whole number.
-    fn add_changes(&self, node: Node<'_>, of: Quantity, asked: &mut Vec<ContourSpec>) {
+    fn add_changes(&self, node: TomlNode<'_>, of: Quantity, asked: &mut Vec<ContourSpec>) {
         let name = of.name(self.model);
         if !of.is_whole(self.model) {
             let values = if node.table().is_some() { format!("{{ of = \"{name}\", at = [0.1] }}") } else { "contours = [0.1]".to_owned() };
@@ -130,7 +130,7 @@ impl Reader<'_> {
     }
 
     /// One value of a quantity.
-    fn add_threshold(&self, node: Node<'_>, of: Quantity, asked: &mut Vec<ContourSpec>) {
+    fn add_threshold(&self, node: TomlNode<'_>, of: Quantity, asked: &mut Vec<ContourSpec>) {
         let (name, unit) = (of.name(self.model), self.unit(of));
         let value = match measured(node, unit) {
             Ok(value) => value,

@@ -33,13 +33,13 @@ use super::axis::{Axis, Method, Sample};
 use super::resolved::Study;
 use crate::error::Result;
 use crate::files::{STUDY_BYTES, read_bytes};
-use crate::likeness::closest;
+use crate::likeness::remedy;
 use crate::models::{Model, Models};
-use axes::{Claim, Role};
+use axes::{AxisClaim, AxisRole};
 use std::cell::{Cell, RefCell};
 use std::path::Path;
 use std::sync::Arc;
-use table::{Entry, Lines, Node, Problems, Table, list, shortened};
+use table::{Entry, Lines, Problems, TomlNode, TomlTable, list, shortened};
 use value::whole;
 
 /// Most levels of one axis given by a rule: up to here an index is an exact f64.
@@ -134,7 +134,7 @@ impl Study {
         let study = syntax::understandable(text, &problems).and_then(|text| {
             // The syntax has been checked on this very text, so that there is nothing left to recover from.
             let (tree, _) = toml::de::DeTable::parse_recoverable(&text);
-            read_study(models, &Table::new(tree.get_ref(), 0), &problems, folder)
+            read_study(models, &TomlTable::new(tree.get_ref(), 0), &problems, folder)
         });
         match (study, problems.into_sorted()) {
             (Some(study), problems) if problems.is_empty() => study.check().map(|()| study).map_err(|problem| {
@@ -163,18 +163,18 @@ struct Reader<'a> {
     /// Are the designs sampled?
     sampled: bool,
     /// Every place that gives an input values.
-    claims: RefCell<Vec<Claim>>,
+    claims: RefCell<Vec<AxisClaim>>,
     /// Is an input given values under a wrong name? Then nobody knows which inputs have none.
     misnamed: Cell<bool>,
 }
 
 /// Walks the whole file. `None` if a problem was reported that leaves no study.
-fn read_study(models: &Models, top: &Table<'_>, problems: &Problems<'_>, folder: &Path) -> Option<Study> {
+fn read_study(models: &Models, top: &TomlTable<'_>, problems: &Problems<'_>, folder: &Path) -> Option<Study> {
     read_study_of(read_model(models, top, problems), top, problems, folder)
 }
 
 /// The same for a model that has been found; `None` if that has a problem of its own.
-fn read_study_of(model: Option<Arc<Model>>, top: &Table<'_>, problems: &Problems<'_>, folder: &Path) -> Option<Study> {
+fn read_study_of(model: Option<Arc<Model>>, top: &TomlTable<'_>, problems: &Problems<'_>, folder: &Path) -> Option<Study> {
     check_top_level(top, model.as_deref(), problems);
     let title = top.get("title").and_then(|entry| text(entry.node, problems, "title"));
     let sample_table = section(top, "sample", problems);
@@ -190,8 +190,8 @@ fn read_study_of(model: Option<Arc<Model>>, top: &Table<'_>, problems: &Problems
         claims: RefCell::default(),
         misnamed: Cell::default(),
     };
-    let axes = |role: Role| section(top, role.name(), problems).map_or_else(Vec::new, |table| reader.axes(role, &table));
-    let (design, operation, uncertainty) = (axes(Role::Design), axes(Role::Operation), axes(Role::Uncertainty));
+    let axes = |role: AxisRole| section(top, role.name(), problems).map_or_else(Vec::new, |table| reader.axes(role, &table));
+    let (design, operation, uncertainty) = (axes(AxisRole::Design), axes(AxisRole::Operation), axes(AxisRole::Uncertainty));
     let fixed = reader.fixed(section(top, "fixed", problems).as_ref());
     reader.check_claims();
     reader.check_sizes(top, &design, &[&operation, &uncertainty]);
@@ -207,7 +207,7 @@ fn read_study_of(model: Option<Arc<Model>>, top: &Table<'_>, problems: &Problems
 }
 
 /// The model that the file names.
-fn read_model(models: &Models, top: &Table<'_>, problems: &Problems<'_>) -> Option<Arc<Model>> {
+fn read_model(models: &Models, top: &TomlTable<'_>, problems: &Problems<'_>) -> Option<Arc<Model>> {
     let names = || list(models.iter().map(|model| model.name.as_str()));
     let Some(entry) = top.get("model") else {
         problems.add_if_complete(0, format!("no model is named; write model = \"...\", models are: {}", names()));
@@ -222,14 +222,14 @@ fn read_model(models: &Models, top: &Table<'_>, problems: &Problems<'_>) -> Opti
 }
 
 /// The inputs of the model's preset that the file names, else the defaults.
-fn read_preset(top: &Table<'_>, model: &Model, problems: &Problems<'_>) -> Vec<f64> {
+fn read_preset(top: &TomlTable<'_>, model: &Model, problems: &Problems<'_>) -> Vec<f64> {
     let named = top.get("preset").and_then(|entry| Some((entry.node.at, text(entry.node, problems, "preset")?)));
     let found = named.map(|(at, name)| model.preset(&shortened(&name)).map_err(|error| problems.add(at, format!("preset: {error}"))));
     found.and_then(std::result::Result::ok).unwrap_or_else(|| model.defaults())
 }
 
 /// Reports keys at the top level that mean nothing.
-fn check_top_level(top: &Table<'_>, model: Option<&Model>, problems: &Problems<'_>) {
+fn check_top_level(top: &TomlTable<'_>, model: Option<&Model>, problems: &Problems<'_>) {
     for entry in top.unknown(TOP_LEVEL).take_while(|_| !problems.is_full()) {
         let key = entry.key;
         // The likely mistake: a value of the model written without a table.
@@ -242,11 +242,8 @@ fn check_top_level(top: &Table<'_>, model: Option<&Model>, problems: &Problems<'
                 None
             }
         });
-        let remedy = match (misplaced, closest(key, TOP_LEVEL)) {
-            (Some(remedy), _) => remedy.to_owned(),
-            (None, Some(close)) => format!("did you mean \"{close}\"?"),
-            (None, None) => format!("a study has {}", list(TOP_LEVEL)),
-        };
+        let similar = || remedy(key, TOP_LEVEL, || format!("a study has {}", list(TOP_LEVEL)));
+        let remedy = misplaced.map_or_else(similar, str::to_owned);
         problems.add(entry.key_at, format!("unknown key \"{}\"; {remedy}", shortened(key)));
         if entry.node.table().is_some() {
             problems.mark_incomplete();
@@ -255,7 +252,7 @@ fn check_top_level(top: &Table<'_>, model: Option<&Model>, problems: &Problems<'
 }
 
 /// The table of that name at the top level, if the file has one.
-fn section<'a>(top: &Table<'a>, name: &str, problems: &Problems<'_>) -> Option<Table<'a>> {
+fn section<'a>(top: &TomlTable<'a>, name: &str, problems: &Problems<'_>) -> Option<TomlTable<'a>> {
     let entry = top.get(name)?;
     let table = entry.node.table();
     if table.is_none() {
@@ -266,7 +263,7 @@ fn section<'a>(top: &Table<'a>, name: &str, problems: &Problems<'_>) -> Option<T
 }
 
 /// A text, with a report if it is something else.
-fn text(node: Node<'_>, problems: &Problems<'_>, what: &str) -> Option<String> {
+fn text(node: TomlNode<'_>, problems: &Problems<'_>, what: &str) -> Option<String> {
     let text = node.value.as_str().map(str::to_owned);
     if text.is_none() {
         problems.add(node.at, format!("{what}: found {}, wanted a text in quotes", node.found()));
@@ -286,7 +283,7 @@ fn choice<T: Copy>(entry: &Entry<'_>, problems: &Problems<'_>, what: &str, choic
 }
 
 /// The `[sample]` table.
-fn read_sample(table: &Table<'_>, problems: &Problems<'_>) -> Option<Sample> {
+fn read_sample(table: &TomlTable<'_>, problems: &Problems<'_>) -> Option<Sample> {
     let methods = [("sobol", Method::Sobol), ("latin-hypercube", Method::LatinHypercube), ("random", Method::Random)];
     table.check_keys(problems, "[sample]", &["method", "count", "seed"]);
     let needed = |key: &str, example: &str| {
@@ -304,9 +301,9 @@ fn read_sample(table: &Table<'_>, problems: &Problems<'_>) -> Option<Sample> {
 
 impl Reader<'_> {
     /// Can every design and every scenario have a number? Axes with problems are left out and can only make it better.
-    fn check_sizes(&self, top: &Table<'_>, design: &[Axis], scenario: &[&Vec<Axis>]) {
+    fn check_sizes(&self, top: &TomlTable<'_>, design: &[Axis], scenario: &[&Vec<Axis>]) {
         let at = |names: &[&str]| names.iter().find_map(|name| top.get(name)).map_or(0, |entry| entry.node.at);
-        let named = self.claims.borrow().iter().any(|claim| claim.role == Role::Design);
+        let named = self.claims.borrow().iter().any(|claim| claim.role == AxisRole::Design);
         let problems = self.problems;
         if design.is_empty() && !named && top.get("design").is_none_or(|entry| entry.node.table().is_some_and(|t| t.entries.is_empty())) {
             let example = self.model.inputs.first().map_or("", |input| &input.name);
@@ -333,7 +330,7 @@ impl Reader<'_> {
     }
 
     /// A study must ask for something.
-    fn check_purpose(&self, top: &Table<'_>, objectives: Option<&Table<'_>>, report: Option<&Table<'_>>) {
+    fn check_purpose(&self, top: &TomlTable<'_>, objectives: Option<&TomlTable<'_>>, report: Option<&TomlTable<'_>>) {
         let asks = |key: &&str| report.is_some_and(|table| table.get(key).is_some());
         let broken = top.get("objectives").is_some() && objectives.is_none() || top.get("report").is_some() && report.is_none();
         let empty = objectives.is_none_or(|table| table.entries.is_empty());

@@ -1,11 +1,11 @@
 //! Inputs and outputs that a study is about: constraints and objectives.
 
 use super::super::resolved::{Constraint, Goal, Objective, Quantity};
-use super::axes::Role;
-use super::table::{Entry, Table, shortened};
+use super::axes::AxisRole;
+use super::table::{Entry, TomlTable, shortened};
 use super::value::{measured, shown_in};
 use super::{Reader, choice};
-use crate::likeness::closest;
+use crate::likeness::remedy;
 use crate::units::Unit;
 use toml::de::DeValue;
 
@@ -31,10 +31,7 @@ impl Reader<'_> {
                 .map(|output| output.name.as_str())
                 .chain(self.model.inputs.iter().map(|input| input.name.as_str()))
                 .collect();
-            let remedy = match closest(name, &names) {
-                Some(close) => format!("did you mean \"{close}\"?"),
-                None => format!("beltspace models {} lists them", self.model.name),
-            };
+            let remedy = remedy(name, &names, || format!("beltspace models {} lists them", self.model.name));
             self.problems.add(at, format!("{label}: {} has no input or output \"{}\"; {remedy}", self.model.name, shortened(name)));
         }
         found
@@ -87,11 +84,11 @@ impl Reader<'_> {
 
     /// Is the input a design axis?
     pub(super) fn is_chosen(&self, number: usize) -> bool {
-        self.claims.borrow().iter().any(|claim| claim.input == number && claim.role == Role::Design)
+        self.claims.borrow().iter().any(|claim| claim.input == number && claim.role == AxisRole::Design)
     }
 
     /// The `[constraints]` table.
-    pub(super) fn constraints(&self, table: &Table<'_>, fixed: &[f64]) -> Vec<Constraint> {
+    pub(super) fn constraints(&self, table: &TomlTable<'_>, fixed: &[f64]) -> Vec<Constraint> {
         table.entries.iter().take_while(|_| !self.problems.is_full()).filter_map(|entry| self.constraint(entry, fixed)).collect()
     }
 
@@ -137,7 +134,7 @@ impl Reader<'_> {
     }
 
     /// The `[objectives]` table.
-    pub(super) fn objectives(&self, table: &Table<'_>, fixed: &[f64]) -> Vec<Objective> {
+    pub(super) fn objectives(&self, table: &TomlTable<'_>, fixed: &[f64]) -> Vec<Objective> {
         if let Some(extra) = table.entries.get(MOST_OBJECTIVES) {
             let number = table.entries.len();
             self.problems.add(

@@ -1,8 +1,8 @@
 //! Axes given by a rule: `{ from, to, count }`, `{ from, to, step }`, linear or logarithmic.
 
 use super::super::axis::Levels;
-use super::axes::Role;
-use super::table::Table;
+use super::axes::AxisRole;
+use super::table::TomlTable;
 use super::value::{checked, input_number, measured, shown, shown_in, whole};
 use super::{MOST_LEVELS, Reader, choice};
 use crate::models::Input;
@@ -15,13 +15,13 @@ const SLACK: f64 = 1e-12;
 
 /// The two ends, of which at least the product with any number of levels is finite.
 #[derive(Clone, Copy)]
-struct Ends {
+struct RangeEnds {
     from: f64,
     to: f64,
     log: bool,
 }
 
-impl Ends {
+impl RangeEnds {
     /// Distance from end to end: a difference, or decades.
     fn width(self) -> f64 {
         if self.log { libm::log10(self.to) - libm::log10(self.from) } else { self.to - self.from }
@@ -43,7 +43,7 @@ pub(in super::super) fn check_levels(levels: &Levels, input: &Input) -> Result<(
         if good { Ok(()) } else { Err(format!("{count} levels are out of range; there must be 1 to {MOST_LEVELS}")) }
     };
     let ends = |from, to, log| {
-        let ends = Ends { from: checked(from, input)?, to, log };
+        let ends = RangeEnds { from: checked(from, input)?, to, log };
         check_ends(ends, input).map(|()| ends)
     };
     match *levels {
@@ -86,7 +86,7 @@ fn within(levels: &Levels, input: &Input) -> Result<(), String> {
 
 impl Reader<'_> {
     /// The levels of a range. Reports what is wrong with it.
-    pub(super) fn range(&self, table: &Table<'_>, input: &Input, label: &str, role: Role) -> Option<Levels> {
+    pub(super) fn range(&self, table: &TomlTable<'_>, input: &Input, label: &str, role: AxisRole) -> Option<Levels> {
         let problems = self.problems;
         let known = table.check_keys(problems, label, &["from", "to", "count", "step", "spacing"]);
         let end = |key: &str| match table.get(key) {
@@ -121,7 +121,7 @@ impl Reader<'_> {
         if !known {
             return None;
         }
-        let ends = Ends { from: from?, to: to?, log: log? };
+        let ends = RangeEnds { from: from?, to: to?, log: log? };
         let levels = check_ends(ends, input).and_then(|()| match (count, step) {
             (Some(count), _) => count.map(|count| even(ends, count, input)).transpose(),
             (_, Some(step)) => step.map(|step| stepped(ends, step, input)).transpose(),
@@ -134,12 +134,12 @@ impl Reader<'_> {
     }
 
     /// A range with neither count nor step: for sampled designs only.
-    fn unruled(&self, Ends { from, to, log }: Ends, role: Role) -> Result<Levels, String> {
+    fn unruled(&self, RangeEnds { from, to, log }: RangeEnds, role: AxisRole) -> Result<Levels, String> {
         let example = format!("{{ from = {}, to = {}, count = 11 }}", shown(from), shown(to));
         match (role, self.sampled) {
-            (Role::Design, true) if from == to => Err(format!("from and to are both {}; write the value alone", shown(from))),
-            (Role::Design, true) => Ok(Levels::Continuous { from, to, log }),
-            (Role::Design, false) => {
+            (AxisRole::Design, true) if from == to => Err(format!("from and to are both {}; write the value alone", shown(from))),
+            (AxisRole::Design, true) => Ok(Levels::Continuous { from, to, log }),
+            (AxisRole::Design, false) => {
                 Err(format!("a range needs count or step, such as {example}; or sample the designs: add [sample] with method and count"))
             }
             _ => Err(format!("a range needs count or step, such as {example}; only [design] can be sampled")),
@@ -160,8 +160,8 @@ fn checked_step(step: f64, input: &Input) -> Result<f64, String> {
 }
 
 /// What holds for every range.
-fn check_ends(ends: Ends, input: &Input) -> Result<(), String> {
-    let Ends { from, to, log } = ends;
+fn check_ends(ends: RangeEnds, input: &Input) -> Result<(), String> {
+    let RangeEnds { from, to, log } = ends;
     if log && input.integer {
         return Err("logarithmic levels of a whole number are not whole; list them, such as [1, 10, 100]".to_owned());
     }
@@ -182,8 +182,8 @@ fn check_ends(ends: Ends, input: &Input) -> Result<(), String> {
 
 /// `count` levels from end to end.
 #[allow(clippy::cast_precision_loss, reason = "at most 2^53 levels")]
-fn even(ends: Ends, count: u64, input: &Input) -> Result<Levels, String> {
-    let Ends { from, to, log } = ends;
+fn even(ends: RangeEnds, count: u64, input: &Input) -> Result<Levels, String> {
+    let RangeEnds { from, to, log } = ends;
     let gaps = (count - 1) as f64;
     match (count, from == to) {
         (1, true) => return Ok(Levels::Even { from, to, count, log }),
@@ -216,15 +216,15 @@ fn even(ends: Ends, count: u64, input: &Input) -> Result<Levels, String> {
     clippy::cast_precision_loss,
     reason = "checked to be whole and below 2^53"
 )]
-fn stepped(ends: Ends, step: f64, input: &Input) -> Result<Levels, String> {
-    let Ends { from, to, log } = ends;
+fn stepped(ends: RangeEnds, step: f64, input: &Input) -> Result<Levels, String> {
+    let RangeEnds { from, to, log } = ends;
     let size = if log { format!("{} decades", shown(step)) } else { shown_in(step, input.unit) };
     if from > to {
         return Err(format!("from {} to {} runs downwards, which steps cannot; swap the ends or use count", shown(from), shown(to)));
     }
     // A guess by division, which may be off by one: the levels themselves decide.
     let limit = to + SLACK * to.abs();
-    let guess = (Ends { to: limit, ..ends }.width() / step).floor();
+    let guess = (RangeEnds { to: limit, ..ends }.width() / step).floor();
     if guess >= MOST_LEVELS as f64 {
         return Err(format!("the step {size} makes {:.1e} levels, at most {MOST_LEVELS} can be numbered; use a larger step", guess + 1.0));
     }

@@ -3,10 +3,10 @@
 use super::super::axis::Axis;
 use super::super::check::MOST_PICTURES;
 use super::super::resolved::{Best, Goal, HistogramSpec, MapSpec, Objective, Quantity, Report, SampleSpec, TopSpec};
-use super::axes::Role;
+use super::axes::AxisRole;
 use super::contours::Plane;
 use super::quantities::GOALS;
-use super::table::{Entry, Node, Table};
+use super::table::{Entry, TomlNode, TomlTable};
 use super::value::{shown_in, whole};
 use super::{Reader, choice, text};
 use crate::models::Worse;
@@ -27,15 +27,15 @@ pub(in super::super) const MOST_VARIANTS: u64 = 10_000;
 pub(in super::super) const MOST_CELLS: u64 = 1 << 26;
 
 /// What the parts of a report refer to.
-struct Known<'a> {
+struct ReportContext<'a> {
     /// The table of objectives: an objective with a problem is still one.
-    named: Option<&'a Table<'a>>,
+    named: Option<&'a TomlTable<'a>>,
     objectives: &'a [Objective],
     design: &'a [Axis],
     fixed: &'a [f64],
 }
 
-impl Known<'_> {
+impl ReportContext<'_> {
     /// The goal of the objective about this quantity.
     fn goal(&self, quantity: Quantity) -> Option<Goal> {
         self.objectives.iter().find(|objective| objective.quantity == quantity).map(|objective| objective.goal)
@@ -46,15 +46,15 @@ impl Reader<'_> {
     /// What else to report.
     pub(super) fn report(
         &self,
-        table: Option<&Table<'_>>,
-        named: Option<&Table<'_>>,
+        table: Option<&TomlTable<'_>>,
+        named: Option<&TomlTable<'_>>,
         objectives: &[Objective],
         design: &[Axis],
         fixed: &[f64],
     ) -> Report {
         let mut report = Report { front_budget: FRONT_BUDGET.0, ..Report::default() };
         let Some(table) = table else { return report };
-        let known = Known { named, objectives, design, fixed };
+        let known = ReportContext { named, objectives, design, fixed };
         table.check_keys(self.problems, "[report]", &["columns", "top", "histograms", "maps", "sample", "front_budget", "variants"]);
         if let Some(entry) = table.get("columns") {
             report.columns = self.columns_of_report(entry, &known);
@@ -112,7 +112,7 @@ impl Reader<'_> {
     }
 
     /// A node that must be a table.
-    fn table_of<'n>(&self, node: Node<'n>, label: &str, example: &str) -> Option<Table<'n>> {
+    fn table_of<'n>(&self, node: TomlNode<'n>, label: &str, example: &str) -> Option<TomlTable<'n>> {
         let table = node.table();
         if table.is_none() {
             self.problems.add(node.at, format!("{label}: found {}, wanted a table such as {example}", node.found()));
@@ -121,7 +121,7 @@ impl Reader<'_> {
     }
 
     /// A list of tables.
-    fn tables_of<'n>(&self, entry: Option<&Entry<'n>>, label: &str, example: &str) -> Vec<Table<'n>> {
+    fn tables_of<'n>(&self, entry: Option<&Entry<'n>>, label: &str, example: &str) -> Vec<TomlTable<'n>> {
         let Some(entry) = entry else { return Vec::new() };
         let Some(nodes) = entry.node.list() else {
             self.problems.add(entry.node.at, format!("{label}: found {}, wanted a list such as [{example}]", entry.node.found()));
@@ -138,7 +138,7 @@ impl Reader<'_> {
     }
 
     /// A key that must be there.
-    fn needed<'t, 'n>(&self, table: &'t Table<'n>, key: &str, label: &str, example: &str) -> Option<&'t Entry<'n>> {
+    fn needed<'t, 'n>(&self, table: &'t TomlTable<'n>, key: &str, label: &str, example: &str) -> Option<&'t Entry<'n>> {
         let entry = table.get(key);
         if entry.is_none() {
             self.problems.add(table.at, format!("{label}: \"{key}\" is missing; write {example}"));
@@ -147,12 +147,12 @@ impl Reader<'_> {
     }
 
     /// The numeric quantity that a text names.
-    fn named(&self, entry: &Entry<'_>, label: &str, known: &Known<'_>) -> Option<Quantity> {
+    fn named(&self, entry: &Entry<'_>, label: &str, known: &ReportContext<'_>) -> Option<Quantity> {
         let name = text(entry.node, self.problems, label)?;
         self.numeric(&name, entry.node.at, label, known.fixed)
     }
 
-    fn columns_of_report(&self, entry: &Entry<'_>, known: &Known<'_>) -> Vec<Quantity> {
+    fn columns_of_report(&self, entry: &Entry<'_>, known: &ReportContext<'_>) -> Vec<Quantity> {
         let mut columns = Vec::new();
         let Some(nodes) = entry.node.list() else {
             let found = entry.node.found();
@@ -180,7 +180,7 @@ impl Reader<'_> {
         outputs.iter().find(|output| output.name.contains("force")).or(outputs.first()).map_or("", |output| &output.name)
     }
 
-    fn top(&self, table: &Table<'_>, known: &Known<'_>) -> Option<TopSpec> {
+    fn top(&self, table: &TomlTable<'_>, known: &ReportContext<'_>) -> Option<TopSpec> {
         let good = table.check_keys(self.problems, "top", &["by", "count", "goal"]);
         let example = format!("top = {{ by = \"{}\", count = 20 }}", self.some_output());
         let by = self.needed(table, "by", "top", &example).and_then(|entry| self.named(entry, "top", known));
@@ -195,7 +195,7 @@ impl Reader<'_> {
         good.then_some(TopSpec { by, goal, count: usize::try_from(count?).ok()? })
     }
 
-    fn histogram(&self, table: &Table<'_>, known: &Known<'_>) -> Option<HistogramSpec> {
+    fn histogram(&self, table: &TomlTable<'_>, known: &ReportContext<'_>) -> Option<HistogramSpec> {
         let label = "histograms";
         let good = table.check_keys(self.problems, label, &["of", "bins", "from", "to"]);
         let example = format!("{{ of = \"{}\", bins = 50 }}", self.some_output());
@@ -228,7 +228,7 @@ impl Reader<'_> {
         Some(HistogramSpec { of, range, bins: bins.filter(|_| good)? })
     }
 
-    fn map(&self, table: &Table<'_>, known: &Known<'_>) -> Option<MapSpec> {
+    fn map(&self, table: &TomlTable<'_>, known: &ReportContext<'_>) -> Option<MapSpec> {
         let label = "maps";
         let problems = self.problems;
         let good = table.check_keys(problems, label, &["x", "y", "value", "best", "contours"]);
@@ -270,7 +270,7 @@ impl Reader<'_> {
             return None;
         };
         let claims = self.claims.borrow();
-        let chosen = claims.iter().find(|claim| claim.input == number && claim.role == Role::Design);
+        let chosen = claims.iter().find(|claim| claim.input == number && claim.role == AxisRole::Design);
         match chosen {
             None => {
                 let message = format!("{label}: \"{name}\" is no design axis; choose one of [design], or put it there");
@@ -288,7 +288,7 @@ impl Reader<'_> {
         }
     }
 
-    fn map_value(&self, table: &Table<'_>, known: &Known<'_>) -> Option<Best> {
+    fn map_value(&self, table: &TomlTable<'_>, known: &ReportContext<'_>) -> Option<Best> {
         let (problems, label) = (self.problems, "maps");
         let bests = [("min", Some(Goal::Min)), ("max", Some(Goal::Max)), ("share", None)];
         let best = match table.get("best") {

@@ -4,7 +4,7 @@
 //! one error is taken at a time: it is reported, its statement is blanked and the text is parsed again. An error that was
 //! not seen in the original text is an effect of blanking and ends the game.
 
-use super::table::{Lines, Node, Problems, Table, shortened};
+use super::table::{Lines, Problems, TomlNode, TomlTable, shortened};
 use std::borrow::Cow;
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};
@@ -47,7 +47,7 @@ pub(super) fn understandable<'t>(text: &'t str, problems: &Problems<'_>) -> Opti
         let at = blamed(error, &rest, &lines);
         let moved = at < start(error).min(rest.len());
         problems.add(at, if moved { UNCLOSED.to_owned() } else { explained(error, &rest) });
-        let broken = statement(&Table::new(tree.get_ref(), 0), &rest, &lines, at, start(error));
+        let broken = statement(&TomlTable::new(tree.get_ref(), 0), &rest, &lines, at, start(error));
         rest = blanked(&rest, broken);
     }
     None
@@ -90,7 +90,7 @@ fn is_header(line: &str) -> bool {
 
 /// The lines of the statement with the error: from its key to the place to blame; a table to its end if its header is
 /// wrong, for nobody knows where its keys belong.
-fn statement(top: &Table<'_>, text: &str, lines: &Lines<'_>, blame: usize, error: usize) -> Range<usize> {
+fn statement(top: &TomlTable<'_>, text: &str, lines: &Lines<'_>, blame: usize, error: usize) -> Range<usize> {
     let last = lines.index(blame.min(text.len()));
     let first = key_at(top, text, blame, error).map_or(last, |key| lines.index(key).min(last));
     let line = lines.line(first);
@@ -104,8 +104,8 @@ fn statement(top: &Table<'_>, text: &str, lines: &Lines<'_>, blame: usize, error
 }
 
 /// Where the key starts whose value holds the place to blame.
-fn key_at(table: &Table<'_>, text: &str, blame: usize, error: usize) -> Option<usize> {
-    let below = |node: Node<'_>| match node.value {
+fn key_at(table: &TomlTable<'_>, text: &str, blame: usize, error: usize) -> Option<usize> {
+    let below = |node: TomlNode<'_>| match node.value {
         DeValue::Table(_) => node.table().and_then(|table| key_at(&table, text, blame, error)),
         _ => None,
     };

@@ -1,7 +1,7 @@
 //! Tables of the file in file order, positions in characters, and the list of problems.
 
 use super::Problem;
-use crate::likeness::closest;
+use crate::likeness::remedy;
 use std::cell::{Cell, RefCell};
 use std::path::Path;
 use toml::Spanned;
@@ -157,25 +157,25 @@ impl<'t> Problems<'t> {
 
 /// A value and where it starts.
 #[derive(Clone, Copy)]
-pub(super) struct Node<'a> {
+pub(super) struct TomlNode<'a> {
     pub(super) value: &'a DeValue<'a>,
     pub(super) at: usize,
 }
 
-impl<'a> Node<'a> {
+impl<'a> TomlNode<'a> {
     /// The value of the tree.
     pub(super) fn new(value: &'a Spanned<DeValue<'a>>) -> Self {
         Self { value: value.get_ref(), at: value.span().start }
     }
 
     /// As a table.
-    pub(super) fn table(self) -> Option<Table<'a>> {
-        self.value.as_table().map(|table| Table::new(table, self.at))
+    pub(super) fn table(self) -> Option<TomlTable<'a>> {
+        self.value.as_table().map(|table| TomlTable::new(table, self.at))
     }
 
     /// As a list.
-    pub(super) fn list(self) -> Option<impl ExactSizeIterator<Item = Node<'a>> + Clone> {
-        self.value.as_array().map(|array| array.iter().map(Node::new))
+    pub(super) fn list(self) -> Option<impl ExactSizeIterator<Item = TomlNode<'a>> + Clone> {
+        self.value.as_array().map(|array| array.iter().map(TomlNode::new))
     }
 
     /// What it is, in words.
@@ -196,21 +196,21 @@ impl<'a> Node<'a> {
 pub(super) struct Entry<'a> {
     pub(super) key: &'a str,
     pub(super) key_at: usize,
-    pub(super) node: Node<'a>,
+    pub(super) node: TomlNode<'a>,
 }
 
 /// A table in file order.
-pub(super) struct Table<'a> {
+pub(super) struct TomlTable<'a> {
     pub(super) entries: Vec<Entry<'a>>,
     pub(super) at: usize,
 }
 
-impl<'a> Table<'a> {
+impl<'a> TomlTable<'a> {
     /// The table that starts at the byte `at`.
     pub(super) fn new(table: &'a DeTable<'a>, at: usize) -> Self {
         let entry = |(key, value): (&'a Spanned<_>, &'a Spanned<DeValue<'a>>)| {
             let name: &std::borrow::Cow<'a, str> = key.get_ref();
-            Entry { key: name.as_ref(), key_at: key.span().start, node: Node::new(value) }
+            Entry { key: name.as_ref(), key_at: key.span().start, node: TomlNode::new(value) }
         };
         let mut entries: Vec<_> = table.iter().map(entry).collect();
         entries.sort_by_key(|entry| entry.key_at);
@@ -230,12 +230,9 @@ impl<'a> Table<'a> {
     /// Reports keys that are none of these; says whether there was none.
     pub(super) fn check_keys(&self, problems: &Problems<'_>, label: &str, allowed: &[&str]) -> bool {
         for entry in self.unknown(allowed).take_while(|_| !problems.is_full()) {
-            let remedy = match closest(entry.key, allowed) {
-                _ if is_top_level(entry.key) => TOP_LEVEL_REMEDY.to_owned(),
-                Some(close) => format!("did you mean \"{close}\"?"),
-                None if allowed.len() == 1 => format!("allowed is {}", list(allowed)),
-                None => format!("allowed are {}", list(allowed)),
-            };
+            let is = if allowed.len() == 1 { "is" } else { "are" };
+            let similar = || remedy(entry.key, allowed, || format!("allowed {is} {}", list(allowed)));
+            let remedy = if is_top_level(entry.key) { TOP_LEVEL_REMEDY.to_owned() } else { similar() };
             problems.add(entry.key_at, format!("{label}: unknown key \"{}\"; {remedy}", shortened(entry.key)));
         }
         self.unknown(allowed).next().is_none()

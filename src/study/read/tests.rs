@@ -3,7 +3,7 @@
 use super::super::axis::{Axis, Levels};
 use super::super::resolved::Study;
 use super::syntax;
-use super::table::{Problems, Table};
+use super::table::{Problems, TomlTable};
 use super::{Problem, read_study_of};
 use crate::models::Model;
 use crate::models::tests::with_a_section;
@@ -15,7 +15,7 @@ pub(crate) fn study_of(model: &Arc<Model>, text: &str) -> Result<Study, Vec<Prob
     let problems = Problems::new(text, "study.toml");
     let study = syntax::understandable(text, &problems).and_then(|text| {
         let (tree, _) = toml::de::DeTable::parse_recoverable(&text);
-        read_study_of(Some(model.clone()), &Table::new(tree.get_ref(), 0), &problems, Path::new("tests"))
+        read_study_of(Some(model.clone()), &TomlTable::new(tree.get_ref(), 0), &problems, Path::new("tests"))
     });
     let problems = problems.into_sorted();
     if problems.is_empty() { Ok(study.expect("there is no problem")) } else { Err(problems) }

@@ -1,6 +1,6 @@
 //! Numbers, values with units and words.
 
-use super::table::{Entry, Node, Problems, shortened};
+use super::table::{Entry, Problems, TomlNode, shortened};
 use crate::models::Input;
 use crate::units::{Unit, parse_value};
 use toml::de::DeValue;
@@ -16,7 +16,7 @@ pub(super) fn shown_in(value: f64, unit: Unit) -> String {
 }
 
 /// The number, if the value is one: `None` if it is something else, an error if it is not finite.
-fn number(node: Node<'_>) -> Option<Result<f64, String>> {
+fn number(node: TomlNode<'_>) -> Option<Result<f64, String>> {
     let value = match node.value {
         DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str().parse().unwrap_or(f64::NAN),
         #[allow(clippy::cast_precision_loss, reason = "an integer that is no f64 is rounded, as it would be in a float")]
@@ -29,7 +29,7 @@ fn number(node: Node<'_>) -> Option<Result<f64, String>> {
 }
 
 /// A number as it is written.
-fn written(node: Node<'_>) -> String {
+fn written(node: TomlNode<'_>) -> String {
     match node.value {
         DeValue::Integer(integer) => shortened(&integer.to_string()),
         DeValue::Float(float) => shortened(float.as_str()),
@@ -38,7 +38,7 @@ fn written(node: Node<'_>) -> String {
 }
 
 /// A value in `unit`: a number, or a text with a unit. The error is what to say behind the name of the thing.
-pub(super) fn measured(node: Node<'_>, unit: Unit) -> Result<f64, String> {
+pub(super) fn measured(node: TomlNode<'_>, unit: Unit) -> Result<f64, String> {
     match node.value {
         DeValue::String(text) => text_measured(text, unit),
         _ => number(node).unwrap_or_else(|| Err(format!("found {}, wanted {}", node.found(), wanted(unit)))),
@@ -57,7 +57,7 @@ fn text_measured(text: &str, unit: Unit) -> Result<f64, String> {
 }
 
 /// A value that an input can take, its words included.
-pub(super) fn input_value(node: Node<'_>, input: &Input) -> Result<f64, String> {
+pub(super) fn input_value(node: TomlNode<'_>, input: &Input) -> Result<f64, String> {
     match node.value {
         DeValue::String(text) => input_text(text, input),
         _ if input.is_enumeration() => Err(no_word(&node.found(), input)),
@@ -75,7 +75,7 @@ pub(super) fn input_text(text: &str, input: &Input) -> Result<f64, String> {
 }
 
 /// A value that an input can take, its words not included.
-pub(super) fn input_number(node: Node<'_>, input: &Input) -> Result<f64, String> {
+pub(super) fn input_number(node: TomlNode<'_>, input: &Input) -> Result<f64, String> {
     let DeValue::String(text) = node.value else { return measured(node, input.unit).and_then(|value| checked(value, input)) };
     let word = text.trim();
     match input.value_of(word) {

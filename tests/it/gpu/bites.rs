@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// A comparison with a kernel that has another piece of text in place of one of its own.
 fn compared(model: &Arc<Model>, piece: &str, other: &str) -> Report {
-    let source = PointKernel::source(model, &[]).expect("it has a twin");
+    let source = PointKernel::source(model, &[]).expect("it is computed on a GPU");
     assert!(source.contains(piece), "the kernel of {} has no {piece}", model.name);
     let kernel = PointKernel::from_source(&device().device, model, &source.replace(piece, other)).expect("it compiles all the same");
     compare(&kernel, model, &[], &points_of_model(model, 20_000, 3)).expect("the device works")
@@ -65,13 +65,16 @@ fn every_output_that_is_perturbed_is_named() {
     for model in models::all().iter().filter(|model| model.shader.is_some()) {
         let points = points_of_model(model, 4000, 4);
         let clean = compare(&PointKernel::new(&device().device, model, &[]).expect("it compiles"), model, &[], &points).expect("it works");
-        // All at once: each must be noticed by itself. Whole numbers are promised exactly.
+        // All at once: each must be noticed by itself. Whole numbers have no error.
         let perturb: Vec<_> = clean.outputs.iter().enumerate().map(|(output, it)| (output, (4.0 * it.median_promise).max(1e-6))).collect();
         let kernel = PointKernel::new(&device().device, model, &perturb).expect("it compiles");
         let report = compare(&kernel, model, &[], &points).expect("it works");
         for it in &report.outputs {
             let example = it.example.as_deref().unwrap_or_else(|| panic!("{}: {} was not noticed", model.name, it.name));
-            assert!(example.starts_with(&it.name) && example.contains("the GPU gives") && example.contains("promised"), "{example}");
+            assert!(
+                example.starts_with(&it.name) && example.contains("the GPU gives") && example.contains("more than the error bound"),
+                "{example}"
+            );
         }
     }
 }
@@ -102,10 +105,10 @@ fn a_sweep_objects_to_dropped_candidates_wrong_counts_and_wrong_bounds() {
     let bins = refused("let middle = (number.value - low.value) * per_unit;", "let middle = (number.value - low.value) * per_unit + 0.01;");
     assert!(bins.contains("designs in a bin") || bins.contains("feasible"), "{bins}");
     let sure = refused(
-        "fn promised(number: Real, promise: f32) -> Real {",
-        "fn promised(number: Real, promise: f32) -> Real {\n    if promise > 0.0 { return Real(number.value, number.bound * 1e-4); }",
+        "fn bounded(number: Real, factor: f32) -> Real {",
+        "fn bounded(number: Real, factor: f32) -> Real {\n    if factor > 0.0 { return Real(number.value, number.bound * 1e-4); }",
     );
-    assert!(sure.contains("promised were at most") || sure.contains("the GPU is sure"), "{sure}");
+    assert!(sure.contains("more than the error bound") || sure.contains("the GPU is sure"), "{sure}");
     let front = refused("    return beaten;", "    return true;");
     assert!(front.contains("belongs to the front"), "{front}");
 }
@@ -128,6 +131,6 @@ fn a_perturbed_output_stops_the_sweep_by_name() {
         let output = study.plan.study.model.output(name).expect("it is an output");
         let on = wrong(Wrong { perturb: vec![(output, 3e-4)], ..Wrong::default() });
         let message = message(&on, name);
-        assert!(message.starts_with(&format!("{name} of design ")) && message.contains("promised were at most"), "{message}");
+        assert!(message.starts_with(&format!("{name} of design ")) && message.contains("more than the error bound"), "{message}");
     }
 }

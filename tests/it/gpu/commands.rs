@@ -116,7 +116,7 @@ fn a_perturbed_kernel_fails_by_name_and_leaves_no_result() {
     assert!(page.contains("the promise was broken") && error.contains("axial_force_N: the GPU gives"), "{page}{error}");
     let (code, out, error) = ask(folder.path(), "sweep small.toml --engine gpu --perturb axial_force_N=3e-5 --out wrong");
     assert_eq!((code, out.as_str()), (Some(1), ""));
-    for words in ["axial_force_N of design", "the GPU gives", "f64 gives", "promised were at most", "--resume --engine cpu"] {
+    for words in ["axial_force_N of design", "the GPU gives", "f64 gives", "more than the error bound", "--resume --engine cpu"] {
         assert!(error.contains(words), "{words}: {error}");
     }
     assert!(!folder.path().join("wrong/summary.json").exists());
@@ -158,7 +158,7 @@ fn without_a_driver_the_processor_does_the_work_and_asking_for_a_gpu_is_refused(
     assert_eq!(ask_without_driver(folder.path(), "sweep small.toml --out auto --quiet").0, Some(0));
 }
 
-/// What f32 does not hold is for f64: a device says so, and where none was asked for by name the processor does it.
+/// What f32 does not hold is for f64: a device says so, and where none was asked for by name the CPU does it.
 #[test]
 fn numbers_beyond_f32_are_left_to_the_processor() {
     let design = "model = \"metal-cvt\"\n[design]\nratio = { from = 0.5, to = 2, count = 50 }\n";

@@ -1,4 +1,4 @@
-//! The device against the processor: the same answers, however a sweep is cut, interrupted or handed over.
+//! The device against the CPU: the same answers, however a sweep is cut, interrupted or handed over.
 
 use super::{Prepared, SMALL, assert_same, device, larger, open, shipped, wrong};
 use beltspace::checkpoint::{Checkpoint, Saved};
@@ -17,7 +17,7 @@ fn small_studies_of_every_model_give_the_same_answers() {
     for text in SMALL {
         let study = Prepared::parse(text);
         let (state, record) = study.on(device()).expect("the device works");
-        assert_same(&state, &study.on_processor(), &study.plan.study.model.name);
+        assert_same(&state, &study.on_cpu(), &study.plan.study.model.name);
         assert_eq!(record.designs, study.plan.designs());
         assert_eq!(record.recheck.designs, study.plan.designs().min(100_000));
         assert!(record.unsure * 100 < record.designs, "{record:?}");
@@ -29,7 +29,7 @@ fn shipped_studies_give_the_same_answers_and_few_designs_are_unsure() {
     for path in shipped() {
         let study = Prepared::new(Study::read(&path).expect("the study is right").0);
         let (state, record) = study.on(device()).expect("the device works");
-        assert_same(&state, &study.on_processor(), &path.display().to_string());
+        assert_same(&state, &study.on_cpu(), &path.display().to_string());
         assert_eq!(record.designs, study.plan.designs());
         assert!(record.unsure * 100 < record.designs, "{}: {record:?}", path.display());
         assert!(record.recheck.designs >= 100_000.min(study.plan.designs()), "{record:?}");
@@ -38,7 +38,7 @@ fn shipped_studies_give_the_same_answers_and_few_designs_are_unsure() {
 
 #[test]
 fn walks_over_teeth_in_many_scenarios_stay_within_the_turns_of_a_driver() {
-    // 60 teeth, 160 scenarios: four lanes at once would take more turns than a driver that ends long loops allows.
+    // 60 teeth, 160 scenarios: four lanes at once would take more iterations than a driver that ends long loops allows.
     let text = r#"model = "timing-belt"
 [design]
 tight_tension_N = { from = 400, to = 500, count = 40 }
@@ -57,7 +57,7 @@ tight_tension_N = "min"
     let study = Prepared::parse(text);
     let on = wrong(Wrong { grouped: true, ..Wrong::default() });
     let (state, record) = study.on(&on).expect("the device works");
-    assert_same(&state, &study.on_processor(), "many turns");
+    assert_same(&state, &study.on_cpu(), "many iterations");
     assert!(record.unsure * 20 < record.designs, "{record:?}");
 }
 
@@ -67,7 +67,7 @@ fn a_tile_with_too_many_survivors_is_repeated_in_parts() {
     let on = wrong(Wrong { capacity: Some(600), ..Wrong::default() });
     let (state, record) = study.on(&on).expect("the device works");
     assert!(record.repeated > 0, "{record:?}");
-    assert_same(&state, &study.on_processor(), "in parts");
+    assert_same(&state, &study.on_cpu(), "in parts");
 }
 
 #[test]
@@ -88,7 +88,7 @@ maps = [{ x = "traction", y = "groove_angle_deg", value = "axial_force_N" }]
 "#;
     let study = Prepared::parse(text);
     let (state, _) = study.on(device()).expect("the device works");
-    assert_same(&state, &study.on_processor(), "a long axis");
+    assert_same(&state, &study.on_cpu(), "a long axis");
 }
 
 #[test]
@@ -112,10 +112,10 @@ maps = [
 "#;
     let study = Prepared::parse(text);
     let (state, _) = study.on(device()).expect("the device works");
-    assert_same(&state, &study.on_processor(), "maps over one value");
+    assert_same(&state, &study.on_cpu(), "maps over one value");
     assert_eq!(
         state.reported.maps[1].cell(0).map(|cell| cell.feasible),
-        study.on_processor().reported.maps[1].cell(0).map(|cell| cell.feasible),
+        study.on_cpu().reported.maps[1].cell(0).map(|cell| cell.feasible),
         "feasible designs of a cell"
     );
 }
@@ -139,14 +139,14 @@ histograms = [{ of = "torque_capacity_Nm", from = 0, to = 100, bins = 10 }]
 "#;
     let study = Prepared::parse(text);
     let (state, record) = study.on(device()).expect("the device works");
-    assert_same(&state, &study.on_processor(), "plateaus");
+    assert_same(&state, &study.on_cpu(), "plateaus");
     assert_eq!(record.unsure, 0, "a plateau is a sure answer: {record:?}");
 }
 
 #[test]
 fn shards_and_halves_go_together_whatever_ran_them() {
     let study = Prepared::parse(SMALL[0]);
-    let whole = study.on_processor();
+    let whole = study.on_cpu();
     let folder = tempfile::tempdir().expect("a folder can be made");
     let text = SMALL[0];
     let mut shards = Vec::new();
@@ -195,7 +195,7 @@ fn interrupted(text: &str, study: &Prepared, folder: &std::path::Path, end: impl
 fn a_lost_device_leaves_a_checkpoint_from_which_either_engine_goes_on() {
     let text = larger();
     let study = Prepared::parse(&text);
-    let whole = study.on_processor();
+    let whole = study.on_cpu();
     for on_device in [false, true] {
         let folder = tempfile::tempdir().expect("a folder can be made");
         let error = interrupted(&text, &study, folder.path(), |_, device| device.lose());
@@ -209,7 +209,7 @@ fn a_lost_device_leaves_a_checkpoint_from_which_either_engine_goes_on() {
             let swept = sweep_on_device(plan, tables, reduction, &options, Some(&mut checkpoint), &control, device());
             swept.expect("another device goes on").0.state
         } else {
-            sweep(plan, tables, reduction, &options, Some(&mut checkpoint), &control).expect("the processor goes on").state
+            sweep(plan, tables, reduction, &options, Some(&mut checkpoint), &control).expect("the CPU goes on").state
         };
         assert_same(&state, &whole, "resumed after a loss");
     }
@@ -225,11 +225,11 @@ fn a_stopped_run_goes_on_on_the_processor() {
     let claim = Claim::new(folder.path(), "a test").expect("nobody has it");
     let mut checkpoint = Checkpoint::open(&claim).expect("it was kept");
     let swept = sweep(&study.plan, &study.tables, &study.reduction, &Settings::default(), Some(&mut checkpoint), &Control::default());
-    assert_same(&swept.expect("the sweep ends").state, &study.on_processor(), "stopped and resumed");
+    assert_same(&swept.expect("the sweep ends").state, &study.on_cpu(), "stopped and resumed");
 }
 
 #[test]
-fn a_broken_promise_keeps_nothing_that_the_device_counted() {
+fn a_broken_error_bound_keeps_nothing_that_the_device_counted() {
     let text = larger();
     let study = Prepared::parse(&text);
     let folder = tempfile::tempdir().expect("a folder can be made");
@@ -247,7 +247,7 @@ fn a_broken_promise_keeps_nothing_that_the_device_counted() {
     let mut checkpoint = Checkpoint::open(&claim).expect("the folder is there");
     assert!(!checkpoint.saved().has_progress(), "what was counted is not kept");
     let swept = sweep(plan, tables, reduction, &options, Some(&mut checkpoint), &control);
-    assert_same(&swept.expect("the sweep ends").state, &study.on_processor(), "after a broken promise");
+    assert_same(&swept.expect("the sweep ends").state, &study.on_cpu(), "after a broken error bound");
 }
 
 #[test]
@@ -260,6 +260,6 @@ fn a_study_that_no_device_serves_is_refused_with_the_reason() {
     };
     assert!(supports(&Prepared::parse(&text(1000)).plan, true).is_ok());
     let refused = supports(&Prepared::parse(&text(30_000)).plan, true).expect_err("the loops are too long").to_string();
-    assert!(refused.contains("60000 loop turns") && refused.contains("--engine cpu"), "{refused}");
+    assert!(refused.contains("60000 loop iterations") && refused.contains("--engine cpu"), "{refused}");
     assert!(supports(&Prepared::parse(&text(30_000)).plan, false).is_ok(), "another driver can");
 }

@@ -25,7 +25,7 @@ fn hardware_gives_the_answers_of_f64() {
     let shipped = shipped().into_iter().map(|path| Prepared::new(Study::read(&path).expect("the study is right").0));
     for study in small.chain(shipped) {
         let (state, record) = study.on(&device).expect("the device works");
-        assert_same(&state, &study.on_processor(), &study.plan.study.title);
+        assert_same(&state, &study.on_cpu(), &study.plan.study.title);
         assert_eq!(record.designs, study.plan.designs());
     }
 }

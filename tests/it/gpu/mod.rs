@@ -1,10 +1,11 @@
-//! Screening on a graphics device. Where there is none, these tests fail: `tests/run` installs one that works in software.
+//! Screening on a GPU. Where there is none, these tests fail: `tests/run` installs one that works in software.
 
 mod accuracy;
 mod bites;
 mod commands;
 mod engines;
 mod hardware;
+mod predicted;
 
 use beltspace::gpu::{Adapter, adapters, self_test};
 use beltspace::plan::Plan;
@@ -66,7 +67,7 @@ impl Prepared {
         Ok((swept.state, record))
     }
 
-    fn on_processor(&self) -> State {
+    fn on_cpu(&self) -> State {
         let swept = sweep(&self.plan, &self.tables, &self.reduction, &Settings::default(), None, &Control::default());
         swept.expect("the sweep ends").state
     }

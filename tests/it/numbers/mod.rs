@@ -8,10 +8,12 @@ mod derivatives;
 mod intervals;
 mod precise;
 
+pub use boxes::run_over;
+
 use beltspace::models::{INPUTS, Model, OUTPUTS, evaluate};
 
 /// Inputs in SI units, as formulas take them.
-fn si(model: &Model, inputs: &[f64]) -> [f64; INPUTS] {
+pub fn si(model: &Model, inputs: &[f64]) -> [f64; INPUTS] {
     let mut si = [0.0; INPUTS];
     for ((si, input), &value) in si.iter_mut().zip(&model.inputs).zip(inputs) {
         *si = if input.word_for(value).is_some() { value } else { input.unit.to_si(value) };
@@ -27,7 +29,7 @@ fn outputs_si(model: &Model, si: &[f64; INPUTS]) -> [f64; OUTPUTS] {
 }
 
 /// Outputs in SI units where they have a meaning.
-fn meaningful_si(model: &Model, inputs: &[f64]) -> Vec<Option<f64>> {
+pub fn meaningful_si(model: &Model, inputs: &[f64]) -> Vec<Option<f64>> {
     let outputs = outputs_si(model, &si(model, inputs));
     let present = evaluate(model, inputs).outputs;
     present.iter().zip(outputs).map(|(present, value)| present.map(|_| value)).collect()

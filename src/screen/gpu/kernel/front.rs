@@ -24,47 +24,46 @@ impl Prelude<'_> {
         lines.extend(write);
         self.function("write_keys(at: u32, judged: Lane)", &lines);
 
-        // Killers and lists hold what a key must reach to be certainly no better; strictly so for a coordinate with bounds.
+        // Dominators and lists hold what a key must reach to be certainly no better; strictly so for a coordinate with bounds.
         let mixed = !self.coordinates.contains(&Coordinate::Plain);
         let compare = |of: &dyn Fn(usize) -> String| {
             let each: Vec<_> = (0..objectives.len()).map(|number| (of(number), format!("keys.k{number}.x"))).collect();
-            let behind: Vec<_> = each.iter().map(|(killer, key)| format!("{killer} <= {key}")).collect();
-            let apart: Vec<_> = each.iter().map(|(killer, key)| format!("{killer} < {key}")).collect();
+            let behind: Vec<_> = each.iter().map(|(dominator, key)| format!("{dominator} <= {key}")).collect();
+            let apart: Vec<_> = each.iter().map(|(dominator, key)| format!("{dominator} < {key}")).collect();
             if mixed { format!("({}) && ({})", behind.join(" && "), apart.join(" || ")) } else { behind.join(" && ") }
         };
         // A uniform is loaded anew wherever it is read: what every lane is compared with is loaded once per invocation.
         put!(self, "struct Horizon {{\n    top: f32,");
         for number in 0..objectives.len() {
             put!(self, "    extreme{number}: vec2<f32>,");
-            (0..KILLERS).for_each(|killer| put!(self, "    n{killer}_{number}: f32,"));
+            (0..DOMINATORS).for_each(|dominator| put!(self, "    n{dominator}_{number}: f32,"));
         }
         put!(self, "}}\n");
         let mut lines = vec!["var horizon: Horizon;".to_owned(), "horizon.top = known.top.x;".to_owned()];
         for number in 0..objectives.len() {
             lines.push(format!("horizon.extreme{number} = known.extremes[{number}].xy;"));
-            lines.extend(
-                (0..KILLERS)
-                    .map(|killer| format!("horizon.n{killer}_{number} = known.killers[{}][{}];", 2 * killer + number / 4, number % 4)),
-            );
+            lines.extend((0..DOMINATORS).map(|dominator| {
+                format!("horizon.n{dominator}_{number} = known.dominators[{}][{}];", 2 * dominator + number / 4, number % 4)
+            }));
         }
         lines.push("return horizon;".to_owned());
         self.function("horizon() -> Horizon", &lines);
-        let mut killers = vec!["var beaten = false;".to_owned()];
+        let mut dominators = vec!["var beaten = false;".to_owned()];
         if objectives.len() == 2 && !mixed {
-            // Along a curve the killers are sorted: the last one that is not beyond the first coordinate is the best.
-            killers = vec!["var least = infinity();".to_owned()];
-            for killer in 0..KILLERS {
-                killers.push(format!("least = select(least, horizon.n{killer}_1, horizon.n{killer}_0 <= keys.k0.x);"));
+            // Along a curve the dominators are sorted: the last one that is not beyond the first coordinate is the best.
+            dominators = vec!["var least = infinity();".to_owned()];
+            for dominator in 0..DOMINATORS {
+                dominators.push(format!("least = select(least, horizon.n{dominator}_1, horizon.n{dominator}_0 <= keys.k0.x);"));
             }
-            killers.push("let beaten = least <= keys.k1.x;".to_owned());
+            dominators.push("let beaten = least <= keys.k1.x;".to_owned());
         } else if !objectives.is_empty() {
-            for killer in 0..KILLERS {
-                let of = |number: usize| format!("horizon.n{killer}_{number}");
-                killers.push(format!("beaten = beaten || ({});", compare(&of)));
+            for dominator in 0..DOMINATORS {
+                let of = |number: usize| format!("horizon.n{dominator}_{number}");
+                dominators.push(format!("beaten = beaten || ({});", compare(&of)));
             }
         }
-        killers.push("return beaten;".to_owned());
-        self.function("beaten_by_killers(keys: Keys, horizon: Horizon) -> bool", &killers);
+        dominators.push("return beaten;".to_owned());
+        self.function("beaten_by_dominators(keys: Keys, horizon: Horizon) -> bool", &dominators);
 
         let table = if objectives.is_empty() {
             vec!["return false;".to_owned()]
@@ -76,9 +75,9 @@ impl Prelude<'_> {
             };
             let last = objectives.len() - 1;
             let at = if last == 1 { bin(0) } else { format!("{} * {bins}u + {}", bin(0), bin(1)) };
-            vec![format!("return beaters[{at}] < keys.k{last}.x;")]
+            vec![format!("return dominator_table[{at}] < keys.k{last}.x;")]
         } else {
-            let of = |number: usize| format!("beaters[i * {}u + {number}u]", objectives.len());
+            let of = |number: usize| format!("dominator_table[i * {}u + {number}u]", objectives.len());
             vec![
                 format!("for (var i = 0u; i < {LIST}u; i++) {{"),
                 format!("    if {} {{ return true; }}", compare(&of)),
@@ -90,7 +89,7 @@ impl Prelude<'_> {
 
         // Upper ends of the objectives that differ within a row.
         let differing: Vec<usize> = (0..objectives.len()).filter(|&at| !plan.tracked[plan.objectives[at]].1.is_row()).collect();
-        put!(self, "struct Champion {{");
+        put!(self, "struct RowDominator {{");
         differing.iter().for_each(|at| put!(self, "    u{at}: f32,"));
         if differing.is_empty() {
             put!(self, "    none: f32,");
@@ -99,20 +98,20 @@ impl Prelude<'_> {
         let parts = |part: &dyn Fn(usize) -> String, none: &str| {
             if differing.is_empty() { none.to_owned() } else { differing.iter().map(|&at| part(at)).collect::<Vec<_>>().join(", ") }
         };
-        let none = format!("return Champion({});", parts(&|_| "infinity()".to_owned(), "0.0"));
-        self.function("no_champion() -> Champion", &[none]);
-        let of = format!("return Champion({});", parts(&|at| format!("keys.k{at}.y"), "0.0"));
-        self.function("champion_of(keys: Keys) -> Champion", &[of]);
+        let none = format!("return RowDominator({});", parts(&|_| "infinity()".to_owned(), "0.0"));
+        self.function("no_row_dominator() -> RowDominator", &[none]);
+        let of = format!("return RowDominator({});", parts(&|at| format!("keys.k{at}.y"), "0.0"));
+        self.function("row_dominator_of(keys: Keys) -> RowDominator", &[of]);
         let all = |compare: &dyn Fn(usize) -> String, with: &str| differing.iter().map(|&at| compare(at)).collect::<Vec<_>>().join(with);
         let (worse, beats) = if differing.is_empty() {
             ("false".to_owned(), "false".to_owned())
         } else {
-            let as_good = all(&|at| format!("champion.u{at} <= keys.k{at}.x"), " && ");
-            let better = all(&|at| format!("champion.u{at} < keys.k{at}.x"), " || ");
-            (all(&|at| format!("other.u{at} <= champion.u{at}"), " && "), format!("({as_good}) && ({better})"))
+            let as_good = all(&|at| format!("row_dominator.u{at} <= keys.k{at}.x"), " && ");
+            let better = all(&|at| format!("row_dominator.u{at} < keys.k{at}.x"), " || ");
+            (all(&|at| format!("other.u{at} <= row_dominator.u{at}"), " && "), format!("({as_good}) && ({better})"))
         };
-        self.function("is_worse_champion(champion: Champion, other: Champion) -> bool", &[format!("return {worse};")]);
-        self.function("beats_in_the_row(champion: Champion, keys: Keys) -> bool", &[format!("return {beats};")]);
+        self.function("is_worse_row_dominator(row_dominator: RowDominator, other: RowDominator) -> bool", &[format!("return {worse};")]);
+        self.function("beats_in_the_row(row_dominator: RowDominator, keys: Keys) -> bool", &[format!("return {beats};")]);
     }
 
     /// The ends of a tracked value. An input that f32 tells apart is compared as f32 has it, on both sides.
@@ -183,7 +182,7 @@ impl Prelude<'_> {
         let front = if study.objectives.is_empty() {
             "false"
         } else {
-            "!beaten_by_killers(keys_of(lane), horizon) || may_be_extreme(lane, horizon)"
+            "!beaten_by_dominators(keys_of(lane), horizon) || may_be_extreme(lane, horizon)"
         };
         self.function("may_matter(lane: Lane, horizon: Horizon) -> bool", &[format!("return {front} || may_be_top(lane, horizon);")]);
     }

@@ -29,14 +29,14 @@ impl Prelude<'_> {
             ];
             for &number in conditions {
                 let question = if plan.study.model.conditions[number].strict { "above_zero" } else { "at_least_zero" };
-                let promise = literal(CONDITION_PROMISE as f32);
-                lines.push(format!("verdict = min(verdict, {question}(promised(margins[{number}], {promise})));"));
+                let factor = literal(CONDITION_PROMISE as f32);
+                lines.push(format!("verdict = min(verdict, {question}(bounded(margins[{number}], {factor})));"));
             }
             for (number, (constraint, source)) in plan.study.constraints.iter().zip(&plan.constraints).enumerate() {
                 if let Quantity::Output(output) = constraint.quantity
                     && source.is_row() == row
                 {
-                    lines.push(format!("verdict = min(verdict, keeps_{number}({}));", self.promised(output)));
+                    lines.push(format!("verdict = min(verdict, keeps_{number}({}));", self.bounded(output)));
                 }
             }
             for (at, (tracked, source)) in plan.tracked.iter().enumerate() {
@@ -44,7 +44,7 @@ impl Prelude<'_> {
                     && source.is_row() == row
                 {
                     let fold = if tracked.worse == Worse::Higher { "max" } else { "min" };
-                    lines.push(format!("let v{at} = {};", self.promised(output)));
+                    lines.push(format!("let v{at} = {};", self.bounded(output)));
                     lines.push(format!("verdict = min(verdict, select(UNSURE, YES, is_known(v{at})));"));
                     lines.push(format!(
                         "(*state).t{at} = Real({fold}((*state).t{at}.value, v{at}.value), max((*state).t{at}.bound, v{at}.bound));"
@@ -88,11 +88,11 @@ impl Prelude<'_> {
             lines.push(result);
             self.function(head, &lines);
         }
-        let look = all.iter().map(|it| format!("look_at(group.l{it}, horizon, i + {it}u, count, seen, champion);"));
+        let look = all.iter().map(|it| format!("look_at(group.l{it}, horizon, i + {it}u, count, seen, row_dominator);"));
         let keep = all.iter().map(|it| format!("(*kept)[i + {it}u] = group.l{it};"));
         let lines: Vec<_> = if self.layout.cut.keeps { look.chain(keep).collect() } else { look.collect() };
         self.function(
-            "look_at_group(group: Group, horizon: Horizon, i: u32, count: u32, seen: ptr<function, Seen>, champion: ptr<function, Champion>, kept: ptr<function, array<Lane, KEPT>>)",
+            "look_at_group(group: Group, horizon: Horizon, i: u32, count: u32, seen: ptr<function, Seen>, row_dominator: ptr<function, RowDominator>, kept: ptr<function, array<Lane, KEPT>>)",
             &lines,
         );
         let check = all.iter().map(|it| format!("check_lane(group.l{it}, row, state, first + {it}u, lanes);"));
@@ -134,9 +134,9 @@ impl Prelude<'_> {
         lines
     }
 
-    pub(super) fn promised(&self, output: usize) -> String {
-        let promise = self.plan.study.model.outputs[output].promise;
-        format!("promised(out.{}, {})", self.output(output), literal(promise as f32))
+    pub(super) fn bounded(&self, output: usize) -> String {
+        let factor = self.plan.study.model.outputs[output].promise;
+        format!("bounded(out.{}, {})", self.output(output), literal(factor as f32))
     }
 }
 

@@ -16,7 +16,9 @@ mod lanes;
 mod report;
 mod rows;
 
-use super::layout::{BINS, KILLERS, LIST, Layout, Values, champions, on_device, scenario_worst, sign};
+use super::constants::{FIRST_REPORTED, SURVIVOR_HEAD, sweep_constants};
+use super::layout::{BINS, DOMINATORS, KernelLayout, LIST, Values, on_device, row_dominators, scenario_worst, sign};
+use crate::gpu::constants::declare;
 use crate::gpu::{model_prelude, model_source, source, tables};
 use crate::models::{CONDITION_PROMISE, Worse};
 use crate::plan::{Plan, Source};
@@ -40,12 +42,12 @@ pub enum Coordinate {
 }
 
 /// Does f32 tell an input's values apart, so that they compare as in f64?
-pub fn is_exact(plan: &Plan, layout: &Layout, input: usize) -> bool {
+pub fn is_exact(plan: &Plan, layout: &KernelLayout, input: usize) -> bool {
     layout.exact >> input & 1 == 1 || plan.space.designs.inputs() >> input & 1 == 0
 }
 
 /// The kind of each objective's coordinate.
-pub fn coordinates(plan: &Plan, layout: &Layout) -> Vec<Coordinate> {
+pub fn coordinates(plan: &Plan, layout: &KernelLayout) -> Vec<Coordinate> {
     let kind = |objective: &Objective| match objective.quantity {
         _ if objective.resolution.is_some() => Coordinate::Stepped,
         Quantity::Input(input) if is_exact(plan, layout, input) => Coordinate::Exact,
@@ -67,7 +69,7 @@ pub fn bins(coordinates: &[Coordinate]) -> u64 {
 
 /// The words of a survivor: row, lane with the reason, a lower key per objective, a lower and an upper key per map of values.
 pub fn survivor_words(plan: &Plan) -> usize {
-    2 + plan.study.objectives.len() + 2 * value_maps(plan).count()
+    SURVIVOR_HEAD as usize + plan.study.objectives.len() + 2 * value_maps(plan).count()
 }
 
 /// The maps that show a value, with the position of what they show among the tracked quantities.
@@ -101,7 +103,7 @@ fn real(value: f64) -> String {
 }
 
 /// The text of the kernel. `perturb`: outputs that are to come out wrong by this part of their value, for testing.
-pub fn text(plan: &Plan, layout: &Layout, perturb: &[(usize, f64)]) -> String {
+pub fn text(plan: &Plan, layout: &KernelLayout, perturb: &[(usize, f64)]) -> String {
     let mut prelude = Prelude { plan, layout, text: String::new(), coordinates: coordinates(plan, layout) };
     prelude.constants();
     prelude.inputs();
@@ -114,13 +116,15 @@ pub fn text(plan: &Plan, layout: &Layout, perturb: &[(usize, f64)]) -> String {
     prelude.report();
     let asked: Vec<usize> = plan.row_conditions.iter().chain(&plan.lane_conditions).copied().collect();
     [
-        source::COMMON,
+        &source::common(),
+        &sweep_constants(),
         include_str!("../../../../shaders/common/wide.wgsl"),
         &model_prelude(&layout.fields, plan.study.model.conditions.len(), plan.used_outputs(), &asked),
         &passed_tables(layout),
         &model_source(&plan.study.model, plan.study.model.on_device().expect("a layout is for a device")),
         include_str!("../../../../shaders/sweep/tile.wgsl"),
         include_str!("../../../../shaders/sweep/shuffle.wgsl"),
+        include_str!("../../../../shaders/sweep/bins.wgsl"),
         &prelude.text,
         include_str!("../../../../shaders/sweep/prepare.wgsl"),
         include_str!("../../../../shaders/sweep/sweep.wgsl"),
@@ -130,7 +134,7 @@ pub fn text(plan: &Plan, layout: &Layout, perturb: &[(usize, f64)]) -> String {
 }
 
 /// The tables that pass between the stages.
-fn passed_tables(layout: &Layout) -> String {
+fn passed_tables(layout: &KernelLayout) -> String {
     tables(&layout.fields, |field, place| {
         let passed = layout.prepared.iter().find(|it| it.field == field)?;
         Some(format!("prepared_table[{place} + ({}u + at) * tile.rows]", passed.offset))
@@ -139,7 +143,7 @@ fn passed_tables(layout: &Layout) -> String {
 
 struct Prelude<'a> {
     plan: &'a Plan,
-    layout: &'a Layout,
+    layout: &'a KernelLayout,
     text: String,
     coordinates: Vec<Coordinate>,
 }
@@ -168,9 +172,9 @@ impl Prelude<'_> {
         let share_or_value = !plan.study.report.maps.is_empty();
         // Only the closer look knows the index of a design.
         let all = share_or_value || !plan.study.report.histograms.is_empty() || plan.study.report.sample.is_some();
-        let uses_champions = champions(plan);
+        let uses_row_dominators = row_dominators(plan);
         let each = if cut.keeps { cut.block } else { 1 };
-        let shared = if uses_champions { cut.group_rows * cut.group_chunks * each } else { 1 };
+        let shared = if uses_row_dominators { cut.group_rows * cut.group_chunks * each } else { 1 };
         for (name, value) in [
             ("SLOW_SCENARIOS", layout.slow_scenarios.count),
             ("FAST_SCENARIOS", layout.fast_scenarios.count),
@@ -182,17 +186,18 @@ impl Prelude<'_> {
             ("KEPT", if cut.keeps { cut.block } else { 1 }),
             ("GROUP_ROWS", cut.group_rows),
             ("GROUP_CHUNKS", cut.group_chunks),
-            ("CHAMPIONS", shared),
-            ("CHAMPIONS_EACH", each),
+            ("ROW_DOMINATORS", shared),
+            ("ROW_DOMINATORS_EACH", each),
             ("SURVIVOR_WORDS", survivor_words(plan) as u64),
             ("CHECK_WORDS", check_words(plan) as u64),
             ("WORST_WORDS", 2 * plan.tracked.len() as u64),
         ] {
-            put!(self, "const {name}: u32 = {value}u;");
+            declare(&mut self.text, name, u32::try_from(value).expect("the layout is cut to 32-bit numbers"));
         }
-        put!(self, "const KEEPS: bool = {};", cut.keeps);
-        put!(self, "const USES_CHAMPIONS: bool = {uses_champions};");
-        put!(self, "const LOOK_AT_ALL: bool = {all};\n");
+        for (name, value) in [("KEEPS", cut.keeps), ("USES_ROW_DOMINATORS", uses_row_dominators), ("LOOK_AT_ALL", all)] {
+            declare(&mut self.text, name, value);
+        }
+        self.text.push('\n');
         let space = if layout.steady_is_uniform() { "uniform" } else { "storage, read" };
         put!(self, "// Levels that never change: scenarios, then fast design axes.");
         put!(self, "@group(0) @binding(2) var<{space}> steady: array<vec4<f32>, {}>;\n", layout.steady.len().max(1));

@@ -7,23 +7,9 @@ impl Prelude<'_> {
     pub(super) fn report(&mut self) {
         let plan = self.plan;
         let report = &plan.study.report;
-        put!(
-            self,
-            "// The steps of a resolution that a value may be in.\nfn steps(low: f32, high: f32, resolution: f32) -> vec2<f32> {{\n    \
-             let first = low / resolution;\n    let last = high / resolution;\n    \
-             return vec2<f32>(floor(first - abs(first) * 1e-6), floor(last + abs(last) * 1e-6));\n}}\n\n\
-             // The bin of a value, -1 below the first and `bins` above the last; the bins of both ends of its bound.\n\
-             fn bins_of(number: Real, low: Real, per_unit: f32, bins: f32) -> vec2<f32> {{\n    \
-             let away = number.bound + low.bound + (abs(number.value) + abs(low.value)) * 2.0 * ROUNDING;\n    \
-             let middle = (number.value - low.value) * per_unit;\n    \
-             let slack = away * per_unit + abs(middle) * 1e-6 + 1e-30;\n    \
-             let bin = clamp(floor(vec2<f32>(middle - slack, middle + slack)), vec2<f32>(-1.0), vec2<f32>(bins));\n    \
-             let exact = number.bound == 0.0 && low.bound == 0.0 && number.value == low.value;\n    \
-             return select(bin, vec2<f32>(0.0), exact);\n}}\n"
-        );
         let mut lines = Vec::new();
         let mut add = Vec::new();
-        let mut offset = 3;
+        let mut offset = FIRST_REPORTED as usize;
         for (number, spec) in report.histograms.iter().enumerate() {
             let worse = crate::plan::worst_end(&plan.study, spec.of);
             let at = plan.position(spec.of, worse);
@@ -82,7 +68,7 @@ impl Prelude<'_> {
         self.function("write_worst(at: u32, judged: Lane)", &worst);
         let used = plan.used_outputs();
         let numbers: Vec<usize> = (0..plan.study.model.outputs.len()).filter(|output| used >> output & 1 == 1).collect();
-        let mut lines: Vec<_> = numbers.iter().map(|&output| format!("let o{output} = {};", self.promised(output))).collect();
+        let mut lines: Vec<_> = numbers.iter().map(|&output| format!("let o{output} = {};", self.bounded(output))).collect();
         lines.extend(pairs(numbers.iter().map(|output| format!("o{output}")).collect()));
         self.function("write_asked(at: u32, out: Outputs)", &lines);
     }

@@ -1,0 +1,125 @@
+//! The device against the recorded formula: the bounds that the list of operations gives hold for what the device computes, though the
+//! device never saw them.
+
+use super::{device, shipped};
+use crate::numbers::{meaningful_si, run_over, si};
+use crate::physics::{Region, draw};
+use crate::random::Random;
+use beltspace::gpu::PointKernel;
+use beltspace::models::{self, CONDITION_PROMISE, Model, Shader};
+use beltspace::plan::Plan;
+use beltspace::study::Study;
+use beltspace::tape::RunningError;
+use std::sync::Arc;
+
+const DESIGNS: usize = 20_000;
+
+/// What came of a comparison, over all outputs and conditions.
+#[derive(Default)]
+struct Compared {
+    values: usize,
+    /// Values of which the list can say nothing.
+    unbounded: usize,
+    /// Values farther from f64 than the bound.
+    broken: usize,
+    /// The first of these, in words.
+    example: Option<String>,
+}
+
+impl Compared {
+    fn take(&mut self, name: &str, found: f32, exact: f64, bound: f64, inputs: &[f64]) {
+        self.values += 1;
+        if bound.is_infinite() {
+            self.unbounded += 1;
+            return;
+        }
+        // f64 rounds too, though nine orders of magnitude less.
+        let error = (f64::from(found) - exact).abs() - 1e-13 * exact.abs();
+        if error.is_nan() || error > bound {
+            self.broken += 1;
+            self.example.get_or_insert_with(|| format!("{name} is {found:e}, in f64 {exact:e}, bound {bound:e}: {inputs:?}"));
+        }
+    }
+}
+
+/// Compares a device with f64: each value may be off by the bound of the list, times what decisions allow for, over `divisor`.
+fn compared(model: &Arc<Model>, designs: &[Vec<f64>], divisor: f64) -> Compared {
+    let kernel = PointKernel::new(&device().device, model, &[]).expect("the kernel compiles");
+    let points: Vec<_> = designs.iter().map(|inputs| si(model, inputs)).collect();
+    let found = kernel.evaluate(&points).expect("the device works");
+    let mut all = Compared::default();
+    for ((inputs, point), (outputs, margins)) in designs.iter().zip(&points).zip(&found) {
+        let (listed, listed_margins) = run_over(model, &point.iter().copied().map(RunningError::input).collect::<Vec<_>>());
+        for (number, exact) in meaningful_si(model, inputs).into_iter().enumerate() {
+            let output = &model.outputs[number];
+            if let Some(exact) = exact.filter(|it| it.is_finite()) {
+                all.take(&output.name, outputs[number].value, exact, listed[number].bound * output.promise / divisor, inputs);
+            }
+        }
+        let exact = model.kernel.conditions(&model.kernel.prepared(point), point);
+        for (number, condition) in model.conditions.iter().enumerate().filter(|(number, _)| exact[*number].is_finite()) {
+            let bound = listed_margins[number].bound * CONDITION_PROMISE / divisor;
+            all.take(&condition.reason, margins[number].value, exact[number], bound, inputs);
+        }
+    }
+    all
+}
+
+/// Is the model's shader written from its recorded formula? One that was written by hand computes in another order, and where it is not sure
+/// which branch to take it may take another one than the list.
+fn is_recorded(model: &Model) -> bool {
+    model.shader == Some(Shader::Recorded)
+}
+
+fn recorded() -> impl Iterator<Item = &'static Arc<Model>> {
+    models::all().iter().filter(|model| is_recorded(model))
+}
+
+/// Random designs of a model.
+fn random_designs(model: &Model, region: Region, seed: u64) -> Vec<Vec<f64>> {
+    let random = &mut Random::new(seed);
+    (0..DESIGNS).map(|_| draw(model, region, random)).collect()
+}
+
+#[test]
+fn what_a_device_computes_lies_within_the_bounds_of_the_recorded_formula() {
+    for model in recorded() {
+        for region in [Region::Usual, Region::Wide, Region::Edges] {
+            let found = compared(model, &random_designs(model, region, 31), 1.0);
+            assert_eq!((found.broken, found.example), (0, None), "{} {region:?}", model.name);
+            assert!(found.values > DESIGNS * model.outputs.len() / 4, "{} {region:?}: only {} values", model.name, found.values);
+            if region == Region::Usual {
+                let (none, all) = (found.unbounded, found.values);
+                assert!(none * 100 < all, "{}: {none} of {all} have no bound", model.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn what_a_device_computes_of_the_shipped_studies_lies_within_the_bounds_of_the_recorded_formula() {
+    let mut studies = 0;
+    for path in shipped() {
+        let (study, _) = Study::read(&path).expect("the study is right");
+        if !is_recorded(&study.model) {
+            continue;
+        }
+        studies += 1;
+        let plan = Plan::new(study);
+        let (model, random) = (&plan.study.model, &mut Random::new(32));
+        let any = |random: &mut Random, count: u64| ((random.unit() * count as f64) as u64).min(count - 1);
+        let designs: Vec<_> = (0..DESIGNS).map(|_| plan.space.inputs(any(random, plan.designs()), any(random, plan.scenarios()))).collect();
+        let found = compared(model, &designs, 1.0);
+        assert_eq!((found.broken, found.example), (0, None), "{}", path.display());
+        assert!(found.values > 10 * found.unbounded, "{}: {} of {} have no bound", path.display(), found.unbounded, found.values);
+    }
+    assert!(studies >= 3, "{studies}");
+}
+
+#[test]
+fn a_bound_a_thousand_times_too_small_is_noticed_on_a_device() {
+    for model in recorded() {
+        let found = compared(model, &random_designs(model, Region::Usual, 33), 1000.0);
+        assert!(found.broken > found.values / 10, "{}: only {} of {}", model.name, found.broken, found.values);
+    }
+}
