@@ -1,4 +1,4 @@
-//! The README tells the truth: what it shows is what the program says. Times are the only thing that may differ.
+//! The README shows what the program prints; only times may differ.
 
 use beltspace::models;
 use serde_json::Value;

@@ -131,7 +131,7 @@ fn wrong_requests_about_devices_exit_2_and_say_what_there_is() {
         ("verify metal-cvt --adapter abacus", "no adapter's name contains \"abacus\""),
         ("sweep small.toml --engine cpu --adapter llvm", "--adapter names a GPU, but --engine cpu was asked for"),
         ("sweep small.toml --perturb axial_force_N=1", "needs --engine gpu"),
-        ("sweep small.toml --engine gpu --perturb axial_force_N", "write OUTPUT=PART"),
+        ("sweep small.toml --engine gpu --perturb axial_force_N", "write OUTPUT=FRACTION"),
         ("sweep small.toml --engine gpu --perturb farce=1", "metal-cvt has no output \"farce\""),
         ("verify farce", "unknown model \"farce\""),
         ("verify metal-cvt --samples 0", "0 is not in 8..=100000000"),
@@ -158,7 +158,7 @@ fn without_a_driver_the_processor_does_the_work_and_asking_for_a_gpu_is_refused(
     assert_eq!(ask_without_driver(folder.path(), "sweep small.toml --out auto --quiet").0, Some(0));
 }
 
-/// What f32 does not hold is for f64: a device says so, and where none was asked for by name the processor does it.
+/// Values too large for f32 need f64: a device refuses them, and if none was asked for by name the CPU takes over.
 #[test]
 fn numbers_beyond_f32_are_left_to_the_processor() {
     let design = "model = \"metal-cvt\"\n[design]\nratio = { from = 0.5, to = 2, count = 50 }\n";
