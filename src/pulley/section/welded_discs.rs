@@ -38,7 +38,7 @@ pub(super) fn outline(d: &Dimensions) -> Result<Outline, Flaw> {
     Ok(Outline { parts: vec![disc, other] })
 }
 
-/// The other disc's twin of a point.
+/// The mirror image of a point on the other disc.
 fn mirrored(point: DVec2, thickness: f64) -> DVec2 {
     DVec2::new(2.0 * thickness - point.x, point.y)
 }
@@ -69,7 +69,7 @@ pub(super) fn mesh(d: &Dimensions, fineness: &Fineness) -> Result<Mesh, Flaw> {
         nodes.extend(own.iter().rev().skip(shared).map(|&point| mirrored(point, d.thickness)));
     }
     let node = |position: usize, depth: usize| first[position] + depth as u32;
-    // Depth in the other disc counts from its own back, too.
+    // In the other disc too, depth counts from its own back.
     let twin = |position: usize, depth: usize| {
         let last = 2 * across(position) - 1 - usize::from(position <= weld);
         first[position] + (last - depth) as u32
