@@ -1,4 +1,4 @@
-//! Every checker is shown a wrong answer and must object.
+//! Every check is given a wrong answer and must notice it.
 
 use super::{Prepared, SMALL, device, larger, wrong};
 use beltspace::error::Error;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// A comparison with a kernel that has another piece of text in place of one of its own.
 fn compared(model: &Arc<Model>, piece: &str, other: &str) -> Report {
-    let source = PointKernel::source(model, &[]).expect("it has a twin");
+    let source = PointKernel::source(model, &[]).expect("it has a GPU implementation");
     assert!(source.contains(piece), "the kernel of {} has no {piece}", model.name);
     let kernel = PointKernel::from_source(&device().device, model, &source.replace(piece, other)).expect("it compiles all the same");
     compare(&kernel, model, &[], &points_of_model(model, 20_000, 3)).expect("the device works")
@@ -65,7 +65,7 @@ fn every_output_that_is_perturbed_is_named() {
     for model in models::all().iter().filter(|model| model.shader.is_some()) {
         let points = points_of_model(model, 4000, 4);
         let clean = compare(&PointKernel::new(&device().device, model, &[]).expect("it compiles"), model, &[], &points).expect("it works");
-        // All at once: each must be noticed by itself. Whole numbers are promised exactly.
+        // All at once: each must be noticed by itself. The error bound of a whole number is 0.
         let perturb: Vec<_> = clean.outputs.iter().enumerate().map(|(output, it)| (output, (4.0 * it.median_promise).max(1e-6))).collect();
         let kernel = PointKernel::new(&device().device, model, &perturb).expect("it compiles");
         let report = compare(&kernel, model, &[], &points).expect("it works");

@@ -1,4 +1,4 @@
-//! The device against the processor: the same answers, however a sweep is cut, interrupted or handed over.
+//! The device compared with the CPU: the same answers, however a sweep is divided, interrupted or continued on the other engine.
 
 use super::{Prepared, SMALL, assert_same, device, larger, open, shipped, wrong};
 use beltspace::checkpoint::{Checkpoint, Saved};
@@ -38,7 +38,7 @@ fn shipped_studies_give_the_same_answers_and_few_designs_are_unsure() {
 
 #[test]
 fn walks_over_teeth_in_many_scenarios_stay_within_the_turns_of_a_driver() {
-    // 60 teeth, 160 scenarios: four lanes at once would take more turns than a driver that ends long loops allows.
+    // 60 teeth, 160 scenarios: four lanes at once would take more iterations than a driver that ends long loops allows.
     let text = r#"model = "timing-belt"
 [design]
 tight_tension_N = { from = 400, to = 500, count = 40 }
@@ -57,7 +57,7 @@ tight_tension_N = "min"
     let study = Prepared::parse(text);
     let on = wrong(Wrong { grouped: true, ..Wrong::default() });
     let (state, record) = study.on(&on).expect("the device works");
-    assert_same(&state, &study.on_processor(), "many turns");
+    assert_same(&state, &study.on_processor(), "many iterations");
     assert!(record.unsure * 20 < record.designs, "{record:?}");
 }
 
@@ -209,7 +209,7 @@ fn a_lost_device_leaves_a_checkpoint_from_which_either_engine_goes_on() {
             let swept = sweep_on_device(plan, tables, reduction, &options, Some(&mut checkpoint), &control, device());
             swept.expect("another device goes on").0.state
         } else {
-            sweep(plan, tables, reduction, &options, Some(&mut checkpoint), &control).expect("the processor goes on").state
+            sweep(plan, tables, reduction, &options, Some(&mut checkpoint), &control).expect("the CPU continues").state
         };
         assert_same(&state, &whole, "resumed after a loss");
     }
@@ -236,7 +236,7 @@ fn a_broken_promise_keeps_nothing_that_the_device_counted() {
     let claim = Claim::new(folder.path(), "a test").expect("nobody has it");
     let mut checkpoint =
         Checkpoint::create(&claim, &study.plan.study, &text, Shard::WHOLE, study.plan.designs()).expect("a folder can be made");
-    // Wrong in a way that shows only in the end.
+    // Wrong in a way that is noticed only at the end.
     let lost = Wrong { replace: vec![("    return beaten;".to_owned(), "    return true;".to_owned())], ..Wrong::default() };
     let (options, control) = (Settings::default(), Control::default());
     let Prepared { plan, tables, reduction } = &study;
@@ -247,7 +247,7 @@ fn a_broken_promise_keeps_nothing_that_the_device_counted() {
     let mut checkpoint = Checkpoint::open(&claim).expect("the folder is there");
     assert!(!checkpoint.saved().has_progress(), "what was counted is not kept");
     let swept = sweep(plan, tables, reduction, &options, Some(&mut checkpoint), &control);
-    assert_same(&swept.expect("the sweep ends").state, &study.on_processor(), "after a broken promise");
+    assert_same(&swept.expect("the sweep ends").state, &study.on_processor(), "after a broken error bound");
 }
 
 #[test]
