@@ -61,12 +61,12 @@ fn print(request: &cli::Verify, what: &str, device: &Trusted, report: &Report, s
 
 fn page(what: &str, device: &Trusted, report: &Report, swept: Option<&Recheck>) -> String {
     let mut grid = Grid::default();
-    grid.row(["", "values", "error median", "largest", "promise median", "99 %", "used"].map(bold));
+    grid.row(["", "values", "error median", "largest", "bound median", "99 %", "used"].map(bold));
     let row = |it: &Statistics| {
         let small = |value: f64| format!("{value:.1e}");
         let used =
             format!("{:.1} %{}", 100.0 * it.used, if it.broken > 0 { format!("  broken {} times", it.broken) } else { String::new() });
-        let numbers = [it.median_error, it.largest_error, it.median_promise, it.usual_promise].map(small);
+        let numbers = [it.median_error, it.largest_error, it.median_bound, it.usual_bound].map(small);
         [it.name.clone(), grouped(it.values - it.unbounded)].into_iter().chain(numbers).chain([used])
     };
     for it in &report.outputs {
@@ -84,9 +84,9 @@ fn page(what: &str, device: &Trusted, report: &Report, swept: Option<&Recheck>) 
     if let Some(swept) = swept {
         fact("tiles", format!("{} designs swept and judged again in f64: values, counts and survivors agree", grouped(swept.designs)));
     }
-    let kept = if report.require().is_ok() { "the promise was kept everywhere" } else { "the promise was broken" };
+    let kept = if report.require().is_ok() { "all error bounds hold" } else { "an error bound or a decision is wrong" };
     format!(
-        "{}: the GPU against f64; errors and promises relative to the value\n\n{}\n{}\n{}\n",
+        "{}: the GPU compared with f64; errors and error bounds relative to the value\n\n{}\n{}\n{}\n",
         bold(what),
         grid.indented(2),
         facts.indented(0),
@@ -99,7 +99,7 @@ fn describe(device: &Trusted, report: &Report, swept: Option<&Recheck>) -> Value
         json!({
             "name": it.name, "values": it.values, "unbounded": it.unbounded, "broken": it.broken, "example": it.example,
             "median_error": it.median_error, "largest_error": it.largest_error,
-            "median_promise": it.median_promise, "promise_of_99_percent": it.usual_promise, "share_of_promise": it.used,
+            "median_promise": it.median_bound, "promise_of_99_percent": it.usual_bound, "share_of_promise": it.used,
         })
     };
     json!({

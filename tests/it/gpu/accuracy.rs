@@ -36,7 +36,7 @@ fn no_error_of_any_output_exceeds_a_quarter_of_its_bound() {
             assert!(it.values > 10_000, "{}: only {} values of {}", model.name, it.values, it.name);
             // A quarter of the points lie on a boundary, where some things become infinite.
             assert!(it.unbounded * 20 < it.values, "{}: {} of {} have no bound", model.name, it.unbounded, it.name);
-            assert!(it.median_promise < 1e-4, "{}: the error bound of {} is {:e}", model.name, it.name, it.median_promise);
+            assert!(it.median_bound < 1e-4, "{}: the error bound of {} is {:e}", model.name, it.name, it.median_bound);
         }
         assert!(report.unsure * 10 < report.points, "{}: {} unsure of {}", model.name, report.unsure, report.points);
         assert!(report.unsure > 100, "{}: points on both sides of a boundary are unsure", model.name);

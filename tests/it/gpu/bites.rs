@@ -66,12 +66,15 @@ fn every_output_that_is_perturbed_is_named() {
         let points = points_of_model(model, 4000, 4);
         let clean = compare(&PointKernel::new(&device().device, model, &[]).expect("it compiles"), model, &[], &points).expect("it works");
         // All at once: each must be noticed by itself. The error bound of a whole number is 0.
-        let perturb: Vec<_> = clean.outputs.iter().enumerate().map(|(output, it)| (output, (4.0 * it.median_promise).max(1e-6))).collect();
+        let perturb: Vec<_> = clean.outputs.iter().enumerate().map(|(output, it)| (output, (4.0 * it.median_bound).max(1e-6))).collect();
         let kernel = PointKernel::new(&device().device, model, &perturb).expect("it compiles");
         let report = compare(&kernel, model, &[], &points).expect("it works");
         for it in &report.outputs {
             let example = it.example.as_deref().unwrap_or_else(|| panic!("{}: {} was not noticed", model.name, it.name));
-            assert!(example.starts_with(&it.name) && example.contains("the GPU gives") && example.contains("promised"), "{example}");
+            assert!(
+                example.starts_with(&it.name) && example.contains("the GPU gives") && example.contains("more than the error bound of"),
+                "{example}"
+            );
         }
     }
 }

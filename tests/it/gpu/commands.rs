@@ -96,11 +96,11 @@ fn the_kernel_can_be_read() {
 }
 
 #[test]
-fn verify_says_how_accurate_the_device_is_and_whether_the_promise_holds() {
+fn verify_says_how_accurate_the_device_is_and_whether_the_error_bounds_hold() {
     let folder = folder();
     let (code, page, error) = ask(folder.path(), "verify pulley-load --samples 20000");
     assert_eq!(code, Some(0), "{error}");
-    assert!(page.contains("resultant_force_N") && page.contains("the promise was kept everywhere"), "{page}");
+    assert!(page.contains("resultant_force_N") && page.contains("all error bounds hold"), "{page}");
     let (code, json, _) = ask(folder.path(), "verify small.toml --samples 20000 --seed 9 --json");
     let json: serde_json::Value = serde_json::from_str(&json).expect("it is JSON");
     assert_eq!((code, &json["kept"], &json["points"]), (Some(0), &true.into(), &20_000.into()));
@@ -113,7 +113,7 @@ fn a_perturbed_kernel_fails_by_name_and_leaves_no_result() {
     let folder = folder();
     let (code, page, error) = ask(folder.path(), "verify small.toml --samples 20000 --perturb axial_force_N=3e-5");
     assert_eq!(code, Some(1), "{error}");
-    assert!(page.contains("the promise was broken") && error.contains("axial_force_N: the GPU gives"), "{page}{error}");
+    assert!(page.contains("an error bound or a decision is wrong") && error.contains("axial_force_N: the GPU gives"), "{page}{error}");
     let (code, out, error) = ask(folder.path(), "sweep small.toml --engine gpu --perturb axial_force_N=3e-5 --out wrong");
     assert_eq!((code, out.as_str()), (Some(1), ""));
     for words in ["axial_force_N of design", "the GPU gives", "f64 gives", "promised were at most", "--resume --engine cpu"] {
