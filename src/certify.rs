@@ -141,7 +141,7 @@ pub fn rows(plan: &Plan, columns: &[Column], designs: &[u64], threads: usize, co
 /// Computes the rows of the front and compares each with the values of the sweep; sorted by the objectives, best first, then by index.
 ///
 /// # Errors
-/// [`Error::Certificate`] if the reference disagrees; [`Error::Stopped`] after `control.stop`.
+/// [`Error::Disagreement`] if the reference disagrees; [`Error::Stopped`] after `control.stop`.
 pub fn front(plan: &Plan, columns: &[Column], points: &Points, threads: usize, control: &Control) -> Result<Vec<Row>> {
     let mut rows = rows(plan, columns, &points.indices, threads, control)?;
     let objectives = &plan.study.objectives;
@@ -156,7 +156,7 @@ pub fn front(plan: &Plan, columns: &[Column], points: &Points, threads: usize, c
             let value = row.columns[column].value.unwrap_or(f64::NAN);
             if KeyRule::from(objective).key(value) != seen {
                 let name = objective.quantity.name(&plan.study.model);
-                return Err(Error::Certificate(format!(
+                return Err(Error::Disagreement(format!(
                     "{name} of design {}: the sweep found {seen}, the f64 reference gives {value}",
                     row.index
                 )));
@@ -176,12 +176,12 @@ pub fn front(plan: &Plan, columns: &[Column], points: &Points, threads: usize, c
 /// The reference must agree that a reported design is feasible.
 ///
 /// # Errors
-/// [`Error::Certificate`].
+/// [`Error::Disagreement`].
 pub fn check_feasible(row: &Row) -> Result<()> {
     if row.feasible {
         return Ok(());
     }
-    Err(Error::Certificate(format!("design {}: the sweep found it feasible, the f64 reference does not", row.index)))
+    Err(Error::Disagreement(format!("design {}: the sweep found it feasible, the f64 reference does not", row.index)))
 }
 
 /// The scalar f64 evaluation of designs over all scenarios. It keeps the prepared numbers of one row, which depend on slow inputs only.

@@ -123,7 +123,7 @@ pub enum Error {
     },
     /// A GPU broke an error bound or contradicts f64: nothing that it computed can be used.
     #[error("{0}")]
-    Promise(String),
+    ErrorBound(String),
     /// A result is complete, but the page that shows it could not be made.
     #[error("the result in {path} is complete, but its page could not be made ({why}); try: {again}")]
     Page {
@@ -136,7 +136,7 @@ pub enum Error {
     },
     /// Two computations of the same thing disagree. The program is wrong, and stops rather than report either.
     #[error("{0}; this is a bug in beltspace, please report it with the study")]
-    Certificate(String),
+    Disagreement(String),
     /// A checkpoint or shard that cannot be used.
     #[error("{path}: {problem}")]
     Checkpoint {
@@ -287,9 +287,9 @@ impl Error {
             | Self::FrontBudget { .. }
             | Self::FrontMemory { .. }
             | Self::Gpu { .. }
-            | Self::Promise(_)
+            | Self::ErrorBound(_)
             | Self::Page { .. }
-            | Self::Certificate(_)
+            | Self::Disagreement(_)
             | Self::Interrupted { .. }
             | Self::Busy { .. }
             | Self::Result { .. }

@@ -62,7 +62,7 @@ fn missing_and_doubled(shards: &[(PathBuf, Saved)], of: u64) -> Vec<String> {
 /// Merges the states of a complete set of shards.
 ///
 /// # Errors
-/// [`Error::NotMergeable`] if a shard has not finished; [`Error::Checkpoint`] if it does not fit the study; [`Error::Certificate`] if the
+/// [`Error::NotMergeable`] if a shard has not finished; [`Error::Checkpoint`] if it does not fit the study; [`Error::Disagreement`] if the
 /// shards together do not cover the study.
 pub fn merge(plan: &Plan, reduction: &Reduction, shards: Vec<(PathBuf, Saved)>) -> Result<State> {
     let mut reducers = reduction.start();
@@ -83,7 +83,7 @@ pub fn merge(plan: &Plan, reduction: &Reduction, shards: Vec<(PathBuf, Saved)>) 
         return Err(Error::NotMergeable { problems: unfinished, remedy: Some("finish with sweep --resume".to_owned()) });
     }
     if covered != plan.designs() {
-        return Err(Error::Certificate(format!("the shards cover {covered} of {} designs", plan.designs())));
+        return Err(Error::Disagreement(format!("the shards cover {covered} of {} designs", plan.designs())));
     }
     let state = reducers.state();
     crate::sweep::Settings::default().check_budget(plan, &state)?;

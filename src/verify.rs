@@ -57,10 +57,10 @@ impl Report {
     /// Do all error bounds hold, and was no sure decision wrong?
     ///
     /// # Errors
-    /// [`Error::Promise`] that names output, point, both values and the error bound.
+    /// [`Error::ErrorBound`] that names output, point, both values and the error bound.
     pub fn require(&self) -> Result<()> {
         let example = self.outputs.iter().chain(&self.conditions).find_map(|it| it.example.clone()).or_else(|| self.flip.clone());
-        example.map_or(Ok(()), |example| Err(Error::Promise(example)))
+        example.map_or(Ok(()), |example| Err(Error::ErrorBound(example)))
     }
 }
 

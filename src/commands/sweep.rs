@@ -144,8 +144,8 @@ fn name_the_way_back(error: Error, out: &Path, request: &cli::Sweep) -> Error {
             Error::FrontMemory { points, megabytes, example, resume }
         }
         Error::Io { path, source } if out.join(CHECKPOINT).exists() => Error::Interrupted { path, source, checkpoint, resume },
-        Error::Promise(problem) => {
-            Error::Promise(format!("{problem}; what the GPU counted is discarded, go on with: {resume} --engine cpu"))
+        Error::ErrorBound(problem) => {
+            Error::ErrorBound(format!("{problem}; what the GPU counted is discarded, go on with: {resume} --engine cpu"))
         }
         other => other,
     }

@@ -58,7 +58,7 @@ impl<'p> Certified<'p> {
     /// Certifies the state of a sweep; `control` shows the progress and can stop it.
     ///
     /// # Errors
-    /// [`Error::Certificate`] if the f64 reference disagrees with the sweep; [`Error::Stopped`] after `control.stop`.
+    /// [`Error::Disagreement`] if the f64 reference disagrees with the sweep; [`Error::Stopped`] after `control.stop`.
     pub fn certify(plan: &'p Plan, state: State, tally: Tally, threads: usize, control: &Control) -> Result<Self> {
         let columns = certify::columns(&plan.study);
         let designs = state.reported.designs();
@@ -72,7 +72,7 @@ impl<'p> Certified<'p> {
             rows.iter().try_for_each(certify::check_feasible)?;
             if let Some(all) = all.filter(|&all| all != rows.len() as u64) {
                 let (found, feasible) = (rows.len(), state.feasible);
-                return Err(Error::Certificate(format!(
+                return Err(Error::Disagreement(format!(
                     "the sweep kept {found} of the {feasible} feasible designs where it must keep {all}"
                 )));
             }
@@ -82,7 +82,7 @@ impl<'p> Certified<'p> {
         let feasible = variants.iter().filter(|row| row.feasible).count() as u64;
         if plan.study.report.variants && feasible != state.feasible {
             let seen = state.feasible;
-            return Err(Error::Certificate(format!("the sweep counted {seen} feasible designs, the f64 reference finds {feasible}")));
+            return Err(Error::Disagreement(format!("the sweep counted {seen} feasible designs, the f64 reference finds {feasible}")));
         }
         Ok(Self { plan, state, tally, columns, front, named, variants })
     }

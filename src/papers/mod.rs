@@ -168,7 +168,7 @@ pub struct Reproduction {
 /// Computes the figures, tables and comparisons of all papers: a few seconds, most of them for the pulleys' finite elements.
 ///
 /// # Errors
-/// [`Error::Certificate`] if a comparison gives no reason.
+/// [`Error::Disagreement`] if a comparison gives no reason.
 pub fn reproduce() -> Result<Reproduction> {
     let mut all = Reproduction { figures: Vec::new(), tables: Vec::new(), comparisons: Vec::new(), repairs: Vec::new(), lost: Vec::new() };
     for of_one in [cvt::reproduce(), timing::reproduce(), pulley::reproduce()] {
@@ -178,7 +178,7 @@ pub fn reproduce() -> Result<Reproduction> {
         all.repairs.extend(of_one.repairs);
         all.lost.extend(of_one.lost);
     }
-    check(&all.comparisons).map_err(Error::Certificate)?;
+    check(&all.comparisons).map_err(Error::Disagreement)?;
     Ok(all)
 }
 

@@ -78,7 +78,7 @@ pub fn record_of(why: String, settler: Settler) -> MethodRecord {
 /// the CPU takes over from a device that was not asked for by name.
 ///
 /// # Errors
-/// As [`sweep`](crate::sweep::sweep()); [`Error::Certificate`](crate::error::Error::Certificate) if the f64 reference disagrees with the
+/// As [`sweep`](crate::sweep::sweep()); [`Error::Disagreement`](crate::error::Error::Disagreement) if the f64 reference disagrees with the
 /// sweep.
 pub fn judge<'p>(
     plan: &'p Plan,

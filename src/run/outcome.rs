@@ -139,9 +139,9 @@ impl Study {
     /// cannot serve the study; [`Error::NoAdapter`](crate::error::Error::NoAdapter), [`Error::CpuOnly`](crate::error::Error::CpuOnly) and
     /// [`Error::NotOnDevice`](crate::error::Error::NotOnDevice) if the GPU that is asked for is not there or cannot serve it;
     /// [`Error::FrontBudget`](crate::error::Error::FrontBudget) and [`Error::FrontMemory`](crate::error::Error::FrontMemory) if the front
-    /// has too many points; [`Error::Gpu`](crate::error::Error::Gpu) and [`Error::Promise`](crate::error::Error::Promise) if a device fails
+    /// has too many points; [`Error::Gpu`](crate::error::Error::Gpu) and [`Error::ErrorBound`](crate::error::Error::ErrorBound) if a device fails
     /// or computes wrong values; [`Error::Stopped`](crate::error::Error::Stopped) after `control.stop` of the options;
-    /// [`Error::Certificate`](crate::error::Error::Certificate) if the reference disagrees with the sweep, a bug in beltspace.
+    /// [`Error::Disagreement`](crate::error::Error::Disagreement) if the reference disagrees with the sweep, a bug in beltspace.
     pub fn sweep(&self, options: Options) -> Result<Outcome> {
         let plan = Plan::new(self.clone());
         let Options { engine, judging, adapter, threads, front_bytes, control } = options;

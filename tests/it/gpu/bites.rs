@@ -19,7 +19,7 @@ fn compared(model: &Arc<Model>, piece: &str, other: &str) -> Report {
 
 fn assert_objects(report: &Report, what: &str) {
     let error = report.require().expect_err(what);
-    assert!(matches!(&error, Error::Promise(_)), "{what}: {error}");
+    assert!(matches!(&error, Error::ErrorBound(_)), "{what}: {error}");
 }
 
 #[test]
@@ -87,7 +87,7 @@ fn refused(piece: &str, other: &str) -> String {
 
 fn message(on: &OnDevice, what: &str) -> String {
     match Prepared::parse(&larger()).on(on) {
-        Err(Error::Promise(message)) => message,
+        Err(Error::ErrorBound(message)) => message,
         Err(other) => panic!("{what}: {other}"),
         Ok(_) => panic!("{what}: nobody objects"),
     }

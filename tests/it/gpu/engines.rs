@@ -242,7 +242,7 @@ fn a_broken_promise_keeps_nothing_that_the_device_counted() {
     let Prepared { plan, tables, reduction } = &study;
     let swept = sweep_on_device(plan, tables, reduction, &options, Some(&mut checkpoint), &control, &wrong(lost));
     let error = swept.map(|_| ()).expect_err("the front lacks designs");
-    assert!(matches!(error, Error::Promise(_)), "{error}");
+    assert!(matches!(error, Error::ErrorBound(_)), "{error}");
     drop(checkpoint);
     let mut checkpoint = Checkpoint::open(&claim).expect("the folder is there");
     assert!(!checkpoint.saved().has_progress(), "what was counted is not kept");
