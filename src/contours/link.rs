@@ -116,9 +116,9 @@ impl Grid<'_> {
 ///
 /// A corner without an answer removes its two edges; the other two edges may still give a piece.
 fn pieces(corners: [Option<bool>; 4], centre: impl FnOnce() -> bool) -> [Option<(usize, usize)>; 2] {
-    let turns = |edge: &usize, from: bool| corners[*edge] == Some(from) && corners[(edge + 1) % 4] == Some(!from);
-    let mut from = (0..4).filter(|edge| turns(edge, true));
-    let mut to = (0..4).filter(|edge| turns(edge, false));
+    let changes = |edge: &usize, from: bool| corners[*edge] == Some(from) && corners[(edge + 1) % 4] == Some(!from);
+    let mut from = (0..4).filter(|edge| changes(edge, true));
+    let mut to = (0..4).filter(|edge| changes(edge, false));
     match (from.next(), from.next(), to.next()) {
         (Some(first), Some(second), _) => {
             // A saddle. If the middle is true, it joins the true corners, and each piece goes around a false corner, which comes next.

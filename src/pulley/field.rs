@@ -190,8 +190,8 @@ fn von_mises([rr, zz, tt, rz, rt, zt]: [f64; 6]) -> f64 {
 
 /// An angle between 0 and 360 degrees, in degrees.
 pub fn degrees(angle: f64) -> f64 {
-    let turns = angle / (2.0 * PI);
-    360.0 * (turns - turns.floor())
+    let revolutions = angle / (2.0 * PI);
+    360.0 * (revolutions - revolutions.floor())
 }
 
 #[cfg(test)]

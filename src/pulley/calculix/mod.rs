@@ -84,9 +84,9 @@ pub fn export(job: &Job, directory: &Path) -> Result<(), Error> {
 
 const HOW_TO: &str = "\
 pulley.inp is a static analysis of a V-belt pulley for CalculiX (https://www.calculix.de), made by beltspace. Its first lines list
-every input and what the forces add up to. Units: N, mm, MPa, s, t.
+every input and the sums of the forces. Units: N, mm, MPa, s, t.
 
-Run it here, on two processors:
+Run it in this directory, on two CPUs:
 
     OMP_NUM_THREADS=2 ccx -i pulley
 

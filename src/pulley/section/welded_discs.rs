@@ -70,12 +70,12 @@ pub(super) fn mesh(d: &Dimensions, fineness: &Fineness) -> Result<Mesh, Flaw> {
     }
     let node = |position: usize, depth: usize| first[position] + depth as u32;
     // In the other disc too, depth counts from its own back.
-    let twin = |position: usize, depth: usize| {
+    let mirrored = |position: usize, depth: usize| {
         let last = 2 * across(position) - 1 - usize::from(position <= weld);
         first[position] + (last - depth) as u32
     };
     let mut elements = sheet::elements(count, through, node);
-    elements.extend(sheet::elements(count, through, twin).iter().map(flipped));
+    elements.extend(sheet::elements(count, through, mirrored).iter().map(flipped));
     let back = |piece, radius| if piece == hub && radius < d.bracket_radius { Face::Bracket } else { Face::Free };
     let front = |piece, _| if piece == hub { Face::Seat } else { Face::Free };
     let groove = |piece, radius: f64| {
@@ -87,7 +87,8 @@ pub(super) fn mesh(d: &Dimensions, fineness: &Fineness) -> Result<Mesh, Flaw> {
     };
     let mut surface = sheet::edges(&stations, Side::Left, through, node, back);
     surface.extend(sheet::edges(&stations, Side::Right, through, node, groove).into_iter().filter(|edge| !inside(edge)));
-    let others = [sheet::edges(&stations, Side::Left, through, twin, front), sheet::edges(&stations, Side::Right, through, twin, groove)];
+    let others =
+        [sheet::edges(&stations, Side::Left, through, mirrored, front), sheet::edges(&stations, Side::Right, through, mirrored, groove)];
     let reversed = |edge: Edge| Edge { nodes: [edge.nodes[2], edge.nodes[1], edge.nodes[0]], ..edge };
     surface.extend(others.into_iter().flatten().map(reversed).filter(|edge| !inside(edge)));
     let mean = stations.places.iter().position(|place| place.piece == flank && place.station.left.y + lift >= d.mean_radius - 1e-9);
@@ -96,12 +97,12 @@ pub(super) fn mesh(d: &Dimensions, fineness: &Fineness) -> Result<Mesh, Flaw> {
     let points = vec![
         point("Bl", node(at_bend, 0)),
         point("Br", node(at_bend, across(at_bend) - 1)),
-        point("Cl", twin(at_bend, across(at_bend) - 1)),
-        point("Cr", twin(at_bend, 0)),
+        point("Cl", mirrored(at_bend, across(at_bend) - 1)),
+        point("Cr", mirrored(at_bend, 0)),
         point("Dl", node(at_mean, 0)),
         point("Dr", node(at_mean, across(at_mean) - 1)),
-        point("El", twin(at_mean, across(at_mean) - 1)),
-        point("Er", twin(at_mean, 0)),
+        point("El", mirrored(at_mean, across(at_mean) - 1)),
+        point("Er", mirrored(at_mean, 0)),
     ];
     // The gap between the discs ends at the weld like a crack.
     let singular = vec![(DVec2::new(d.thickness, d.weld_radius), d.thickness)];
