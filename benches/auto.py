@@ -19,7 +19,7 @@ from datetime import date
 from pathlib import Path
 
 FACTOR, SECONDS = 1.5, 1.0
-# Seconds that judging every design of a study should take, about.
+# About how many seconds judging every design of a study should take.
 LEAST, MOST = 0.3, 6.0
 DESIGNS = (1e5, 1e9)
 # Of each model: evaluations per second of two cores, about; ranges of inputs (the last three words: whole numbers), what may be an objective, and bounds for constraints.
@@ -121,7 +121,7 @@ def a_study(draw, model, number):
 
 
 def is_too_long(program, study):
-    """Would every design take much longer than it should? What a design takes differs a hundredfold with what is asked for."""
+    """Would every design take much longer than it should? The time per design differs a hundredfold with the outputs that a study needs."""
     told = subprocess.run([program, "check", study], check=True, stdout=subprocess.PIPE, text=True).stdout
     designs = float(re.search(r"^designs +([\d ]+)$", told, re.M)[1].replace(" ", ""))
     rate = re.search(r"([\d.]+) ([kMG]?)designs/s", told)
@@ -179,13 +179,13 @@ def one(program, study, folder):
     every = timed(program, study, "exhaustive", outs["exhaustive"], 20 * MOST)
     if every is None:
         raise RuntimeError(f"{study}: every design takes more than {20 * MOST} s")
-    # Beyond, bounds are the slower ones, and by how much does not matter.
+    # Beyond this limit bounds are the slower ones, and it does not matter by how much.
     limit = FACTOR * every + SECONDS
     times = {"exhaustive": every, "bounds": timed(program, study, "bounds", outs["bounds"], limit)}
     times["auto"] = timed(program, study, "auto", outs["auto"], 4 * limit)
     if times["auto"] is None:
         raise RuntimeError(f"{study}: auto takes more than {4 * limit:.1f} s, every design {every:.1f} s")
-    # A machine that others use: where it is close, the better of several runs.
+    # The machine may be used by others: if it is close, take the best of several runs.
     for _ in range(5):
         faster = min(it for it in (times["exhaustive"], times["bounds"]) if it is not None)
         if is_within(1.1 * times["auto"], faster):

@@ -13,7 +13,7 @@ use pulleys::{COARSE, calculix, job, shown, solved};
 use std::path::PathBuf;
 use std::time::Instant;
 
-/// Milliseconds that harmonics take for the same pulley at the usual fineness, the best of several runs on one processor: mesh,
+/// Milliseconds that harmonics take for the same pulley at the usual fineness, the best of several runs on one core: mesh,
 /// answers to unit loads, load case.
 fn milliseconds_of_harmonics(job: &Job) -> f64 {
     let mut table = vec![0.0; LONGEST];
@@ -39,7 +39,7 @@ fn main() {
         ("pressed-cup-coarse", job(Kind::PressedCup, COARSE, 50)),
         ("pressed-cup-usual", job(Kind::PressedCup, Fineness::USUAL, Job::USUAL_SECTORS)),
         ("machined", job(Kind::Machined, sheet, 36)),
-        // More and thus shorter sectors, for the narrow stress beside the bolt heads at Br; fewer nodes in the section make room.
+        // More and so shorter sectors, for the narrow stress beside the bolt heads at Br; fewer nodes in the section make up for them.
         ("machined-90-sectors", job(Kind::Machined, Fineness { solid: 4.0, bend: 1.0, ..sheet }, 90)),
         ("welded-discs", job(Kind::WeldedDiscs, sheet, 60)),
         ("double-groove", job(Kind::DoubleGroove, Fineness { straight: 1.5, ..sheet }, 60)),

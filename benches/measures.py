@@ -1,4 +1,4 @@
-"""Measures beltspace beside the program an engineer would write, and prints one table; see benches/measures.
+"""Measures beltspace beside the program that an engineer would write, and prints one table; see benches/measures.
 
 Counts, fronts and values are compared, not only times: a disagreement ends the run with exit code 1.
 """
@@ -25,14 +25,14 @@ import pulley_measures  # noqa: E402
 import timing_measures  # noqa: E402
 
 STUDY = Path("studies/metal-grid.toml").read_text()
-# Designs per second of the device kernel's inner loop, if nothing but its arithmetic counted: about 130 operations on f32 a design
+# Designs per second of the device kernel's inner loop if only its arithmetic took time: about 130 operations on f32 per design
 # (10 for the values, the rest for bounds, decisions and 16 comparisons with the front), at 67e9 operations/s, which lavapipe was
 # measured to make on two cores. Bytes do not count: a row's 1100 designs share what is loaded.
 FLOOR = 67e9 / 130
 
 
 def sweep(program, levels, folder, engine="cpu"):
-    """Sweeps metal-grid with so many levels per axis on an engine, design by design; returns the result directory, the wall
+    """Sweeps metal-grid with this many levels per axis on an engine, design by design; returns the result directory, the wall
     time of the whole command and its peak memory in MB."""
     study = folder / f"metal-grid-{levels}.toml"
     study.write_text(STUDY.replace("count = 37", f"count = {levels}"))
@@ -73,7 +73,7 @@ def beside_numpy(program, levels, folder):
 
 
 def on_device(program, levels, folder, expected=None):
-    """The same sweep with --engine gpu; its files must be those of the processor, but for run.json."""
+    """The same sweep with --engine gpu; its files must be those of the CPU, except for run.json."""
     out, seconds, peak = sweep(program, levels, folder, "gpu")
     if expected is not None:
         for file in expected.iterdir():

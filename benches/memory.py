@@ -1,4 +1,4 @@
-"""What `check` says of memory beside the peak of whole runs; see benches/memory. It needs Python alone, and Linux."""
+"""Compares the memory that `check` estimates with the peak of whole runs; see benches/memory. Needs only Python, and Linux."""
 import argparse
 import csv
 import re
@@ -34,7 +34,7 @@ friction = { from = 0.05, to = 0.09, count = 4000 }
 [objectives]
 torque_capacity_Nm = "max"
 """
-# Two objectives that contradict each other in every case: all of them are on the front.
+# Two objectives that conflict in every case, so that all designs are on the front.
 CASES = """model = "metal-cvt"
 [design]
 cases = {{ csv = "cases-{n}.csv" }}
@@ -101,7 +101,7 @@ def studies(folder):
 
 
 def said(program, study):
-    """What `check` says in MB, and how large it expects the front."""
+    """The memory in MB and the size of the front that `check` estimates."""
     text = subprocess.run([program, "check", study], check=True, capture_output=True, text=True).stdout
     memory, front = re.search(r"^memory +about (\d+) MB(?:, with about ([\d ,]+) designs)?", text, re.M).groups()
     return int(memory), re.sub(r"\D", "", front or "0")

@@ -150,16 +150,16 @@ def _rows(mu, a, r1, r2, w1, w2, h, n, ceiling, coarse, start, cap, force, survi
 
 
 def _ceiling(points, bins):
-    """Largest capacity at a force below each of the bins. A point counts from the bin after its own, and a little less than it is: the
-    same design must not rule itself out where it comes out of another loop with another last bit."""
+    """Largest capacity at a force below each of the bins. A point counts from the bin after its own, and with a little less than its value:
+    a design must not rule itself out if another loop computes it with another last bit."""
     found = np.zeros(bins + 1)
     np.maximum.at(found, np.minimum((points[:, 1] * (bins / LIMIT)).astype(int) + 1, bins), -points[:, 0] * (1 - 1e-12))
     return np.maximum.accumulate(found)[:bins]
 
 
 def with_numba_filtered(ax):
-    """As `with_numba`, by someone who has 1e12 designs to go: nothing is stored but what a table of the best capacity per force lets
-    through, so that memory does not grow with the grid and moocore sees a small part of it."""
+    """As `with_numba`, but written for 1e12 designs: only designs that pass a table of the best capacity per force are stored, so that
+    memory does not grow with the grid and moocore gets only a small fraction of it."""
     mu, a, ratio, h, n = ax
     geo, none, nowhere = geometry(ratio), np.empty(0), np.empty((0, 0), dtype=np.int64)
     # A few levels of each axis, ends too, are designs of the grid: their front rules out most of the rest from the start.

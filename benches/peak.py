@@ -1,4 +1,4 @@
-"""Resident memory of processes, as the kernel keeps it."""
+"""Resident memory of processes, as the kernel reports it."""
 import math
 import subprocess
 import time

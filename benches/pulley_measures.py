@@ -1,4 +1,4 @@
-"""The pulley's measures: sections a second, load cases on a solved section, and one section beside CalculiX.
+"""Measurements of the pulley: sections per second, load cases on a solved section, and one section beside CalculiX.
 
 Stresses are compared, not only times: a disagreement beyond 3 % ends the run with exit code 1. benches/measures calls this; alone it
 is `python3 benches/pulley_measures.py target/release/beltspace [FILE.json]`.
@@ -36,7 +36,7 @@ yield_safety = {{ min = 0 }}
 [report]
 histograms = [{{ of = "max_stress_MPa", from = 0, to = 2000, bins = 20 }}]
 """
-# Seconds of a section on one core at 3 GHz if nothing but the arithmetic of its equations counted: 2400 rows, a reach of 30, 16
+# Seconds of a section on one core at 3 GHz if only the arithmetic of its equations took time: 2400 rows, a half bandwidth of 30, 16
 # harmonics (14 and two that fill the lanes), 2 (30^2/2 + 4 x 2 x 30) operations on f64 a row and harmonic, eight to a cycle (products and sums
 # in two vector units each). Bytes: the factors, 2400 x 36 x 4 x 8 = 2.8 MB, are written once and read once for four harmonics.
 FLOOR_SECTION = 2400 * 16 * 2 * (30**2 / 2 + 4 * 2 * 30) / 8 / 3e9
@@ -58,7 +58,7 @@ def sections(program, preset, thin, thick, count, folder):
 
 
 def loads(program, folder):
-    """Milliseconds that a load case adds on a core: many on the same sections, less few on them."""
+    """Milliseconds per additional load case on a core: the time of many load cases minus that of few, on the same sections."""
     few = sweep(program, "loads-few", LOADS.format(sections=20, directions=2), folder)
     many = sweep(program, "loads-many", LOADS.format(sections=20, directions=20), folder)
     cases = many[0]["designs"] - few[0]["designs"]

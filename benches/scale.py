@@ -1,4 +1,4 @@
-"""Time against the number of designs, beside the programs an engineer would write; see benches/scale.
+"""Time against the number of designs, beside the programs that an engineer would write; see benches/scale.
 
 Every run is a process of its own with a time limit. Counts, fronts and files are compared wherever two methods judge the same designs: a
 disagreement is shown, and ends the run with exit code 1.
@@ -46,7 +46,7 @@ BEFORE, AFTER = "<!-- results/bench/scale.md -->\n", "<!-- end of results/bench/
 
 
 def peer(name, levels, file):
-    """In a process of its own: one peer on one grid. Its clock starts when it is loaded and compiled."""
+    """Run in a separate process: one other program on one grid. Its clock starts when it is loaded and compiled."""
     PEERS[name](metal_grid.axes(6))
     axes = metal_grid.axes(levels)
     start = time.perf_counter()
@@ -93,14 +93,14 @@ def run_own(program, study, engine, method, out, limit):
 
 
 def differences(first, second):
-    """Names of the files in which two result directories differ, but for run.json, which says how and not what."""
+    """Names of the files in which two result directories differ, except for run.json, which describes the run and not the result."""
     names = sorted({file.name for folder in (first, second) for file in folder.iterdir()} - {"run.json"})
     read = [[(folder / name).read_bytes() if (folder / name).exists() else None for name in names] for folder in (first, second)]
     return [name for name, one, other in zip(names, *read) if one != other]
 
 
 def compare(designs, rows, fronts, folders, problems):
-    """What the methods found on one grid must be the same: peers' front values within 1e-9, our files to the byte."""
+    """All methods must have the same result on a grid: front values of other programs within 1e-9, our files to the byte."""
     done = {name: row for name, row in rows.items() if "seconds" in row}
     problems += [f"{designs} designs: {name} failed: {row['failed']}" for name, row in rows.items() if "failed" in row]
     found = {(row["feasible"], row["front"]) for row in done.values()}
@@ -122,7 +122,7 @@ def compare(designs, rows, fronts, folders, problems):
 
 
 def known_elsewhere(designs):
-    """Committed records of metal-grid with so many designs, judged one by one on a device."""
+    """Committed records of metal-grid with this many designs, judged one by one on a device."""
     for name in ("device-1e11.json", "gpu-h100.json"):
         file = Path("results/bench", name)
         if not file.exists():
@@ -135,7 +135,7 @@ def known_elsewhere(designs):
 
 
 def grid(program, levels, long, limit, folder, problems):
-    """metal-grid with so many levels by every method that can."""
+    """metal-grid with this many levels, by every method that can."""
     designs = 11 * levels**4
     study = folder / f"metal-grid-{levels}.toml"
     study.write_text(measures.STUDY.replace("count = 37", f"count = {levels}"))
@@ -212,7 +212,7 @@ def exponent(points):
 
 
 def fits(studies):
-    """Fitted exponents against designs: time per method, and what bounds did besides. `last` is that of the two largest sizes alone."""
+    """Fitted exponents against designs: time per method, and the work of bounds. `last` is the exponent of the two largest sizes alone."""
     found = {}
     for name in dict.fromkeys(name for study in studies for name in study["methods"]):
         done = [(study["designs"], study["methods"][name]) for study in studies if "seconds" in study["methods"].get(name, {})]
@@ -226,13 +226,13 @@ def fits(studies):
 
 
 def settled(rules):
-    """Shares of designs by the rule that settled them, of one part of a certificate, largest first."""
+    """Fractions of designs by the rule that settled them, in one section of a certificate, largest first."""
     shares = sorted(((count / rules["designs"], rule) for rule, count in rules.items() if rule.startswith(("in_", "judged_")) and count), reverse=True)
     return {rule: share for share, rule in shares}
 
 
 def aligned(rows):
-    """A Markdown table whose columns stand under each other as plain text too; the first column to the left."""
+    """A Markdown table whose columns are aligned as plain text too; the first column to the left."""
     widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
     lines = ["| " + " | ".join(cell.rjust(width) if at else cell.ljust(width) for at, (cell, width) in enumerate(zip(row, widths))) + " |" for row in rows]
     rule = "|" + "|".join("-" * (width + 1) + (":" if at else "-") for at, width in enumerate(widths)) + "|"
@@ -285,11 +285,11 @@ def words_of_rules(study):
 
 
 def left_out(record):
-    """Who did not run on the largest grids, why, and what its own rate says of them."""
+    """Which methods did not run on the largest grids, why, and how long they would take at their own rate."""
     lines, largest = [], record["grid"][-1]["designs"]
     for name, (usual, long, why) in LARGEST.items():
         done = [(study["designs"], study["methods"][name]) for study in record["grid"] if "seconds" in study["methods"].get(name, {})]
-        # Bounds have no rate to go by; where they were stopped, that is said by itself.
+        # Bounds have no rate for an estimate; where they were stopped, that is said separately.
         if not done or done[-1][0] == largest or name == "bounds":
             continue
         if any("stopped_after" in study["methods"].get(name, {}) for study in record["grid"]):
@@ -314,7 +314,7 @@ def cvt_page(record):
 
 
 def page(record):
-    """What is printed, and stands in results/bench/scale.md and in the README."""
+    """The text that is printed and written to results/bench/scale.md and the README."""
     lines = [f"{record['machine']}, {record['cores']} cores, {record['memory_GB']:.0f} GB, {record['date']}; {', '.join(record['versions'])}.", "",
              "`metal-grid`, finer and finer: wall time and designs per second, and the exponent of time against designs, fitted to all sizes "
              "and between the two largest:", ""]

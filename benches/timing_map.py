@@ -101,13 +101,13 @@ def solved_once(speeds, tensions):
     of_tight, of_slack = influence()
     counts = np.zeros((len(tensions), TEETH + 2), np.int64)
     for t in nb.prange(len(tensions)):
-        # What holds all teeth so far; the ends are never passed (and not infinite, which fastmath excludes).
+        # The least inward force of the teeth so far; the ends are never passed (and not infinite, which fastmath excludes).
         held = np.empty(TEETH + 2)
         held[0], held[TEETH + 1] = 1e300, -1e300
         for i in range(TEETH):
             held[i + 1] = min(held[i], of_tight[i] * tensions[t] + of_slack[i] * SLACK)
-        # The walk starts where that of the speed before ended, which is nearly always where this one ends too: five times as fast as
-        # from the first tooth. In any order of the speeds it is right, in theirs it is fast.
+        # The search starts where that of the previous speed ended, which is nearly always where this one ends too: five times as fast
+        # as from the first tooth. It is correct for any order of the speeds, and fast if they are sorted.
         i, same, upper, lower = 0, 0, held[0], held[1]
         for s in range(len(force)):
             if lower < force[s] <= upper:

@@ -1,4 +1,4 @@
-"""The timing belt's measures: the map of the boundary tooth beside numba, and a sweep in which the belt varies too.
+"""Measurements of the timing belt: the map of the boundary tooth beside numba, and a sweep in which the belt varies too.
 
 Counts are compared, not only times: a disagreement ends the run with exit code 1.
 """
@@ -36,7 +36,7 @@ incomplete_teeth = { max = 0 }
 [report]
 histograms = [{ of = "boundary_tooth", from = 0.5, to = 24.5, bins = 24 }]
 """
-# Seconds that a belt takes on one core if nothing but its arithmetic counted, at 3 GHz. The loads: 100 of them, 23 teeth at most, 6
+# Seconds of a belt on one core at 3 GHz if only its arithmetic took time. The loads: 100 of them, 23 teeth at most, 6
 # operations on f64 each (two products, a sum, a difference, a choice, a count), eight to a cycle in two vector units. The belt: 22
 # gaps and 23 teeth of about 14 dependent operations and two divisions, one after the other, and ten transcendental functions of
 # 20 ns. Bytes do not count: a belt's two tables of 23 numbers stay in the first-level cache.

@@ -1,7 +1,7 @@
-//! Certification: what is reported is computed again, design by design, by the scalar f64 reference.
+//! Certification: every reported design is computed again by the scalar f64 reference.
 //!
-//! The reference walks every scenario of a design to the end, so it also knows which scenario is the worst for each column. A
-//! design that it finds infeasible, or whose objectives differ from what the sweep saw, stops the program.
+//! The reference evaluates every scenario of a design, so it also finds the worst scenario for each column. If it finds a design
+//! infeasible, or its objectives differ from those of the sweep, the program stops.
 
 use crate::error::{Error, Result};
 use crate::models::{Latest, OUTPUTS, Status, Worse, judge, shown, to_si};
@@ -19,19 +19,18 @@ pub enum Role {
     Objective(usize),
     /// A constraint (its number).
     Constraint(usize),
-    /// Asked for by the report.
+    /// A column of the report.
     Report,
 }
 
 /// A column of the result tables: a quantity at its worst scenario.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
-    /// Name of the column: the quantity's, with `_constrained` added where an objective of the same quantity has another worst
-    /// end.
+    /// Name of the column: the quantity's, with `_constrained` added if an objective of the same quantity has the other worst end.
     pub name: String,
     /// The quantity.
     pub quantity: Quantity,
-    /// Why it is there; the first reason if there are several.
+    /// Why the column is there; the first reason if there are several.
     pub role: Role,
     /// What makes a scenario worse.
     worst: Worst,
@@ -44,7 +43,7 @@ enum Worst {
 }
 
 impl Worst {
-    /// How bad a value is: the scenario with the largest number is the worst.
+    /// How bad a value is: the scenario with the largest badness is the worst.
     fn badness(self, value: f64) -> f64 {
         match self {
             Self::End(Worse::Higher) => value,
@@ -77,7 +76,7 @@ pub fn columns(study: &Study) -> Vec<Column> {
         let held = columns.iter().find(|it| it.quantity == quantity);
         let name = quantity.name(model).to_owned();
         match held {
-            // A column for the report only repeats what is there; a constraint's worst scenario may be another one.
+            // A report column of a quantity that is there already is dropped. A constraint may have another worst scenario, so it is kept.
             Some(held) if role == Role::Report || held.worst.same(worst) => {}
             Some(_) => columns.push(Column { name: name + "_constrained", quantity, role, worst }),
             None => columns.push(Column { name, quantity, role, worst }),
@@ -87,34 +86,34 @@ pub fn columns(study: &Study) -> Vec<Column> {
 }
 
 /// Position of a quantity among the inputs that design axes set, in file order; `None` if it is not one of them. Such a quantity is the
-/// same in every scenario, and has its column among the design inputs, whatever else it is.
+/// same in every scenario, and its column is among the design inputs, even if it is also an objective or has a constraint.
 pub fn design_input(study: &Study, quantity: Quantity) -> Option<usize> {
     study.design.iter().flat_map(Axis::inputs).position(|&input| quantity == Quantity::Input(input))
 }
 
-/// A value and the scenario in which it is taken.
+/// A value and its scenario.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AtWorst {
     /// The value, in its unit; `None` if it has no meaning in any scenario.
     pub value: Option<f64>,
-    /// The scenario: the lowest index of equally bad ones.
+    /// The scenario; of equally bad ones that with the lowest index.
     pub scenario: u64,
 }
 
-/// A design with everything that the tables say of it.
+/// A design with all its values in the tables.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     /// Design index.
     pub index: u64,
-    /// Does it satisfy everything in every scenario?
+    /// Does it keep all constraints, with status ok, in every scenario?
     pub feasible: bool,
-    /// All inputs in their units; those of scenarios as in scenario 0.
+    /// All inputs in their units; those that differ between scenarios have their values of scenario 0.
     pub inputs: Vec<f64>,
     /// One entry per column.
     pub columns: Vec<AtWorst>,
 }
 
-/// Computes the rows of designs, in the order given, on several threads; seen and stopped by others.
+/// Computes the rows of designs, in the order given, on several threads. `control` shows the progress and can stop it.
 ///
 /// # Errors
 /// [`Error::Stopped`] after `control.stop`.
@@ -139,10 +138,10 @@ pub fn rows(plan: &Plan, columns: &[Column], designs: &[u64], threads: usize, co
     Ok(rows.into_iter().map(|(_, row)| row).collect())
 }
 
-/// Computes the rows of the front and checks each against what the sweep saw; sorted by the objectives, best first, then index.
+/// Computes the rows of the front and compares each with the values of the sweep; sorted by the objectives, best first, then by index.
 ///
 /// # Errors
-/// [`Error::Certificate`] if the reference disagrees; [`Error::Stopped`] after `control.stop`.
+/// [`Error::Disagreement`] if the reference disagrees; [`Error::Stopped`] after `control.stop`.
 pub fn front(plan: &Plan, columns: &[Column], points: &Points, threads: usize, control: &Control) -> Result<Vec<Row>> {
     let mut rows = rows(plan, columns, &points.indices, threads, control)?;
     let objectives = &plan.study.objectives;
@@ -157,8 +156,8 @@ pub fn front(plan: &Plan, columns: &[Column], points: &Points, threads: usize, c
             let value = row.columns[column].value.unwrap_or(f64::NAN);
             if KeyRule::from(objective).key(value) != seen {
                 let name = objective.quantity.name(&plan.study.model);
-                return Err(Error::Certificate(format!(
-                    "{name} of design {}: the sweep compared {seen}, the f64 reference gives {value}",
+                return Err(Error::Disagreement(format!(
+                    "{name} of design {}: the sweep found {seen}, the f64 reference gives {value}",
                     row.index
                 )));
             }
@@ -177,25 +176,25 @@ pub fn front(plan: &Plan, columns: &[Column], points: &Points, threads: usize, c
 /// The reference must agree that a reported design is feasible.
 ///
 /// # Errors
-/// [`Error::Certificate`].
+/// [`Error::Disagreement`].
 pub fn check_feasible(row: &Row) -> Result<()> {
     if row.feasible {
         return Ok(());
     }
-    Err(Error::Certificate(format!("design {}: the sweep found it feasible, the f64 reference does not", row.index)))
+    Err(Error::Disagreement(format!("design {}: the sweep found it feasible, the f64 reference does not", row.index)))
 }
 
-/// The scalar f64 evaluation of designs over all scenarios; keeps what the slow inputs of one row prepare.
+/// The scalar f64 evaluation of designs over all scenarios. It keeps the prepared numbers of one row, which depend on slow inputs only.
 struct Reference<'p> {
     plan: &'p Plan,
     columns: &'p [Column],
     wanted: u64,
     row: Option<u64>,
-    /// Of the first slow scenarios, as many as there is room for.
+    /// The prepared numbers of the first slow scenarios, as many as there is room for.
     prepared: Vec<Vec<f64>>,
-    /// Of another one.
+    /// The prepared numbers of another slow scenario.
     beyond: Vec<f64>,
-    /// Rows that differ in what their section does not read share what is prepared.
+    /// Rows that differ only in inputs that their section does not read share their prepared numbers.
     latest: Latest,
     stop: &'p AtomicBool,
 }
@@ -250,7 +249,7 @@ impl<'p> Reference<'p> {
                 };
                 feasible &= status == Status::Ok;
                 feasible &= plan.study.constraints.iter().all(|it| value(it.quantity).is_some_and(|value| it.holds(value)));
-                // A tracked quantity without a meaning in some scenario makes a design infeasible, as in the sweep.
+                // A tracked quantity without a value in some scenario makes a design infeasible, as in the sweep.
                 feasible &= plan.tracked.iter().all(|(it, _)| value(it.quantity).is_some());
                 let scenario = plan.slow_scenarios.source_index(q) + plan.fast_scenarios.source_index(t);
                 for (column, (badness, at)) in self.columns.iter().zip(&mut worst) {

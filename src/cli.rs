@@ -22,32 +22,32 @@ pub enum Command {
     Models(Models),
     /// Evaluate one design: every input, output and margin
     Eval(Eval),
-    /// Write one design for another program: a pulley as a model for CalculiX
+    /// Export one design to another program: a pulley as a model for CalculiX
     Export(Export),
-    /// Look at a study without running it: size, inert axes, memory, expected time
+    /// Check a study without running it: size, axes without effect, memory, expected time
     Check {
         /// Study file
         study: PathBuf,
     },
     /// Judge every design of a study and write the result directory
     Sweep(Sweep),
-    /// Put the shards of a study together: the same result as one run
+    /// Merge the shards of a study into the same result as that of one run
     Merge(Merge),
     /// Write the job scripts that run a study on a cluster with Slurm or PBS
     Slurm(Slurm),
-    /// Make the page that shows a result: one HTML file, opened by double click
+    /// Write the page that shows a result: one HTML file for any browser
     Report(Report),
-    /// Compare a GPU with f64: errors per output, wrong decisions, promise kept or not
+    /// Compare a GPU with f64: the error of each output, its error bound, wrong decisions
     #[cfg(feature = "gpu")]
     Verify(Verify),
-    /// List the GPUs of this machine, their limits, and whether their drivers can be trusted
+    /// List the GPUs of this machine, their limits, and the self-test of their drivers
     #[cfg(feature = "gpu")]
     Adapters {
         /// Print JSON
         #[arg(long)]
         json: bool,
     },
-    /// Compute the papers' tables and figures again, and say what agrees, what does not and why
+    /// Compute the papers' tables and figures again, and say what agrees or differs and why
     Reproduce(Reproduce),
     /// Print a completion script for a shell
     Completions {
@@ -72,10 +72,10 @@ pub struct Models {
 /// Options of `export`.
 #[derive(Debug, Args)]
 pub struct Export {
-    /// The model pulley, or a study of it
+    /// The model `pulley`, or a study of it
     #[arg(value_name = "MODEL|STUDY", required_unless_present = "compare")]
     pub target: Option<String>,
-    /// Directory of the model for CalculiX (pulley.inp, and README.txt on how to run it)
+    /// Directory for the CalculiX model (pulley.inp, and README.txt on how to run it)
     #[arg(long, value_name = "DIR")]
     pub calculix: PathBuf,
     /// Set an input; a unit may follow the number. May be repeated
@@ -93,7 +93,7 @@ pub struct Export {
     /// Elements around the axis
     #[arg(long, value_name = "N", default_value_t = 68, value_parser = clap::value_parser!(u16).range(8..=720))]
     pub sectors: u16,
-    /// After CalculiX has run in the directory: set its results beside the program's own
+    /// Once CalculiX has run in the directory: compare its results with those of beltspace
     #[arg(long, conflicts_with_all = ["target", "set", "preset", "design", "scenario"])]
     pub compare: bool,
 }
@@ -141,19 +141,19 @@ pub struct Sweep {
     /// How designs are judged; the result is the same
     #[arg(long, value_enum, default_value = "auto")]
     pub method: Judging,
-    /// GPU to use: a part of its name [default: the best, see `adapters`]
+    /// GPU to use, by any part of its name [default: the best, see `adapters`]
     #[arg(long, value_name = "NAME")]
     pub adapter: Option<String>,
     /// Worker threads [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
     pub threads: Option<u16>,
-    /// Go on from the checkpoint of an interrupted run (from the start if there is none)
+    /// Continue an interrupted run from its checkpoint (start anew if there is none)
     #[arg(long)]
     pub resume: bool,
-    /// Run only part K of N; `merge` puts the parts together
+    /// Sweep only shard K of N; `merge` combines the shards
     #[arg(long, value_name = "K/N")]
     pub shard: Option<Shard>,
-    /// Memory in megabytes that the front may take while it is looked for; it may be larger then than in the end
+    /// Most memory in megabytes for the front during the sweep; it may be larger then than at the end
     #[arg(long, value_name = "MB", default_value_t = beltspace::reduce::FRONT_BYTES >> 20, value_parser = clap::value_parser!(u64).range(1..=1 << 30))]
     pub front_memory: u64,
     /// Do not write report.html, the page that shows the result
@@ -162,17 +162,17 @@ pub struct Sweep {
     /// Print nothing but errors
     #[arg(long)]
     pub quiet: bool,
-    /// Replace a result or checkpoint of beltspace; files of others are never touched
+    /// Replace a result or checkpoint that beltspace wrote; other files are never touched
     #[arg(long, conflicts_with = "resume")]
     pub force: bool,
-    /// Designs between two looks at the clock; changes no result (for testing)
+    /// For testing: designs that are judged between two checks of the clock; changes no result
     #[arg(long, hide = true, default_value_t = 65_536, value_parser = clap::value_parser!(u64).range(1..))]
     pub tile: u64,
-    /// Write the GPU's kernel for this study as WGSL, and stop
+    /// Write the GPU kernel of this study as WGSL instead of sweeping
     #[arg(long, value_name = "FILE", conflicts_with_all = ["resume", "force", "shard", "out"])]
     pub emit_shader: Option<PathBuf>,
-    /// For testing: make the GPU's value of an output wrong by this part of it; the sweep must fail
-    #[arg(long, value_name = "OUTPUT=PART")]
+    /// For testing: change the GPU's value of an output by this fraction; the sweep must notice and fail
+    #[arg(long, value_name = "OUTPUT=FRACTION")]
     pub perturb: Vec<String>,
 }
 
@@ -181,16 +181,16 @@ pub struct Sweep {
 pub struct Report {
     /// Result directory
     pub dir: PathBuf,
-    /// The page [default: report.html in the directory]
+    /// Where to write the page [default: report.html in the directory]
     #[arg(long, value_name = "FILE.html")]
     pub out: Option<PathBuf>,
-    /// Replace a file that is no page of this program
+    /// Replace the file even if it is not a page of beltspace
     #[arg(long)]
     pub force: bool,
     /// Worker threads [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
     pub threads: Option<u16>,
-    /// Whole seconds that computing what the result's tables do not say may take
+    /// Time limit in whole seconds for computing the outputs that front.csv lacks
     #[arg(long, value_name = "SECONDS", default_value_t = 60, value_parser = clap::value_parser!(u32).range(0..=86_400))]
     pub patience: u32,
     /// Print nothing but errors
@@ -211,14 +211,14 @@ pub struct Verify {
     /// Seed of the random points
     #[arg(long, value_name = "S", default_value_t = 1)]
     pub seed: u64,
-    /// GPU to use: a part of its name [default: the best, see `adapters`]
+    /// GPU to use, by any part of its name [default: the best, see `adapters`]
     #[arg(long, value_name = "NAME")]
     pub adapter: Option<String>,
     /// Print JSON
     #[arg(long)]
     pub json: bool,
-    /// For testing: make the GPU's value of an output wrong by this part of it; the comparison must fail
-    #[arg(long, value_name = "OUTPUT=PART")]
+    /// For testing: change the GPU's value of an output by this fraction; the comparison must notice and fail
+    #[arg(long, value_name = "OUTPUT=FRACTION")]
     pub perturb: Vec<String>,
 }
 
@@ -247,12 +247,12 @@ pub struct Merge {
 
 /// Options of `slurm`.
 #[derive(Debug, Args)]
-#[command(after_help = "Submit with bash DIR/submit.sh, and after a failure again: finished shards cost nothing, the others go on. \
-    Every node must see the study, the program and both directories under the paths that they have here.")]
+#[command(after_help = "Submit with: bash DIR/submit.sh. After a failure submit again: finished shards are skipped, the others continue. \
+    The study, the program and both directories must have the same paths on every node as here.")]
 pub struct Slurm {
     /// Study file
     pub study: PathBuf,
-    /// Number of shards [default: one by bounds, else for ten minutes each]; fewer where one would take less than --shortest
+    /// Number of shards [default: one if bounds are used, else of ten minutes each]; fewer if one would take less than --shortest
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub shards: Option<u64>,
     /// Result directory [default: results/<study name>]
@@ -264,28 +264,28 @@ pub struct Slurm {
     /// Write for PBS (PBS Professional, OpenPBS) instead of Slurm
     #[arg(long)]
     pub pbs: bool,
-    /// Processors of a job
+    /// CPUs per job
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=4096))]
     pub cpus: u16,
-    /// Memory of a job in megabytes [default: by the study, at least 1000]
+    /// Memory per job in megabytes [default: estimated from the study, at least 1000]
     #[arg(long, value_name = "MB", value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
     pub memory: Option<u64>,
-    /// Time limit of a job [default: four times what it is expected to take, at least 00:10:00; by bounds at most 24:00:00]
+    /// Time limit per job [default: four times the expected time, at least 00:10:00; with bounds at most 24:00:00]
     #[arg(long, value_name = "HH:MM:SS")]
     pub time: Option<String>,
-    /// Any other option of the scheduler for the jobs, such as --option=--partition=long or --option="-q long". May be repeated
+    /// Any other option for the scheduler, such as --option=--partition=long or --option="-q long". May be repeated
     #[arg(long, value_name = "OPTION", allow_hyphen_values = true)]
     pub option: Vec<String>,
-    /// Seconds that a shard takes at least: fewer shards than asked for are written if need be; 0 writes what is asked for
+    /// Least time of a shard in seconds: if need be, fewer shards than asked for are written; 0 writes as many as asked for
     #[arg(long, value_name = "SECONDS", default_value_t = 60, value_parser = clap::value_parser!(u32).range(0..=86_400))]
     pub shortest: u32,
-    /// Most shards that the scheduler takes as one array [default: 1000, with --pbs 10000]
+    /// Most jobs that the scheduler accepts in one array [default: 1000, with --pbs 10000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub array_limit: Option<u64>,
-    /// The program as the nodes find it [default: the path of this one]
+    /// Path of beltspace on the nodes [default: the path of this program]
     #[arg(long, value_name = "PROGRAM")]
     pub program: Option<PathBuf>,
-    /// Replace scripts that are there, and a result when the shards are merged; shards are kept and go on
+    /// Replace existing scripts and, when the shards are merged, an existing result; shards are kept and continue
     #[arg(long)]
     pub force: bool,
     /// Print nothing but errors and warnings
@@ -299,13 +299,13 @@ pub struct Slurm {
 /// Options of `reproduce`.
 #[derive(Debug, Args)]
 pub struct Reproduce {
-    /// Directory of figures, tables and comparison
+    /// Directory for the figures, tables and the comparison
     #[arg(long, value_name = "DIR", default_value = "results/papers")]
     pub out: PathBuf,
-    /// Do not write report.html, the page with all of it
+    /// Do not write report.html, the page that shows all of them
     #[arg(long)]
     pub no_report: bool,
-    /// Replace files that are there
+    /// Replace existing files
     #[arg(long)]
     pub force: bool,
     /// Print nothing but errors

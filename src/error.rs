@@ -9,10 +9,10 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// The study file asks for something that cannot be.
+    /// The study file has mistakes.
     #[error(transparent)]
     Study(#[from] StudyErrors),
-    /// A request that cannot be met as it stands: a wrong value or combination of options, in words.
+    /// A wrong value or combination of options; the text says which and what to do.
     #[error("{0}")]
     Request(String),
     /// A model has no input of that name.
@@ -25,7 +25,7 @@ pub enum Error {
         /// The name that was probably meant.
         closest: Option<String>,
     },
-    /// Columns of inputs that do not go together.
+    /// Columns of inputs that do not fit together.
     #[error("{}", columns(name, *rows, *expected))]
     Columns {
         /// The input.
@@ -35,16 +35,16 @@ pub enum Error {
         /// Rows of the first column; as many as `rows` if the input has two columns.
         expected: usize,
     },
-    /// No adapter's name contains what was asked for, or there is no adapter at all.
+    /// No adapter has a name that contains what was asked for, or there is no adapter at all.
     #[error("{}", no_adapter(.name.as_deref(), there))]
     NoAdapter {
         /// What was asked for.
         name: Option<String>,
-        /// Names of the adapters that there are.
+        /// Names of the adapters of this machine.
         there: Vec<String>,
     },
     /// The model is computed in f64 on the CPU only.
-    #[error("{model} is computed in f64 on the processor only{}", after("; ", .remedy))]
+    #[error("{model} is computed in f64 on the CPU only{}", after("; ", .remedy))]
     CpuOnly {
         /// The model.
         model: String,
@@ -63,15 +63,15 @@ pub enum Error {
         /// Why not.
         why: String,
     },
-    /// Shards that do not make a whole.
+    /// Directories that are not all the shards of one study.
     #[error("cannot merge: {}{}", in_short(problems), after("; ", .remedy))]
     NotMergeable {
-        /// What is missing, doubled, unfinished or of another study, at least one.
+        /// Which shards are missing, there twice, unfinished or of another study; at least one.
         problems: Vec<String>,
         /// What to do about it.
         remedy: Option<String>,
     },
-    /// A directory holds something that a result would replace.
+    /// The result directory holds something that the result would replace.
     #[error("{path} {by}")]
     Occupied {
         /// The directory.
@@ -85,9 +85,9 @@ pub enum Error {
         /// What is kept, if there is a checkpoint.
         kept: Option<Kept>,
     },
-    /// More non-dominated designs than the study's budget.
+    /// The front has more designs than the study's `front_budget`.
     #[error(
-        "the Pareto front has {points} points, more than the {budget} of front_budget; give objectives a resolution, such as {example}, drop an objective, or raise front_budget in [report]{resume}"
+        "the Pareto front has {points} points, more than front_budget = {budget} allows; give objectives a resolution, such as {example}, drop an objective, or raise front_budget in [report]{resume}"
     )]
     FrontBudget {
         /// The points.
@@ -99,9 +99,9 @@ pub enum Error {
         /// How to go on without judging the designs again.
         resume: String,
     },
-    /// The designs that nothing beats so far take too much memory.
+    /// The front takes too much memory before the sweep has ended.
     #[error(
-        "the front so far has {points} points, more than {megabytes} MB hold; give objectives a resolution, such as {example}, or drop an objective{resume}"
+        "the front so far has {points} points, more than fit into {megabytes} MB; give objectives a resolution, such as {example}, or drop an objective{resume}"
     )]
     FrontMemory {
         /// The points.
@@ -113,7 +113,7 @@ pub enum Error {
         /// How to go on without judging the designs again.
         resume: String,
     },
-    /// A graphics device failed; the run's checkpoint is kept.
+    /// A GPU failed; the run's checkpoint is kept.
     #[error("{device}: {problem}")]
     Gpu {
         /// Name of the adapter.
@@ -121,9 +121,9 @@ pub enum Error {
         /// What went wrong.
         problem: String,
     },
-    /// What a device computed is farther from f64 than promised: nothing that it says can be used.
+    /// A GPU broke an error bound or contradicts f64: nothing that it computed can be used.
     #[error("{0}")]
-    Promise(String),
+    ErrorBound(String),
     /// A result is complete, but the page that shows it could not be made.
     #[error("the result in {path} is complete, but its page could not be made ({why}); try: {again}")]
     Page {
@@ -134,9 +134,9 @@ pub enum Error {
         /// The command that makes the page.
         again: String,
     },
-    /// What was computed twice does not agree: the program is wrong and says so rather than report it.
-    #[error("{0}; this is a fault of the program, please report it with the study")]
-    Certificate(String),
+    /// Two computations of the same thing disagree. The program is wrong, and stops rather than report either.
+    #[error("{0}; this is a bug in beltspace, please report it with the study")]
+    Disagreement(String),
     /// A checkpoint or shard that cannot be used.
     #[error("{path}: {problem}")]
     Checkpoint {
@@ -145,7 +145,7 @@ pub enum Error {
         /// What is wrong with it and what to do.
         problem: String,
     },
-    /// Reading or writing failed in a run whose checkpoint is kept.
+    /// Reading or writing failed; the run's checkpoint is kept.
     #[error("{path}: {source}; what is done is kept in {checkpoint}, go on with: {resume}")]
     Interrupted {
         /// Where.
@@ -157,7 +157,7 @@ pub enum Error {
         /// The command that resumes.
         resume: String,
     },
-    /// A file of a result directory says what no result does.
+    /// A file of a result directory has contents that beltspace does not write.
     #[error("{path}: {problem}")]
     Result {
         /// The file.
@@ -165,12 +165,12 @@ pub enum Error {
         /// What is wrong with it.
         problem: String,
     },
-    /// Another process is at work in a directory.
-    #[error("{path}: another beltspace is at work here ({holder}); wait for it, or use another directory")]
+    /// Another process is using the directory.
+    #[error("{path}: another beltspace is using this directory ({holder}); wait for it, or use another directory")]
     Busy {
         /// The directory.
         path: PathBuf,
-        /// Who it is, as far as that is known.
+        /// Which process it is, as far as that is known.
         holder: String,
     },
     /// Reading or writing failed.
@@ -183,7 +183,7 @@ pub enum Error {
     },
 }
 
-/// What is kept of a run that was stopped.
+/// The checkpoint of a run that was stopped.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Kept {
     /// Where the checkpoint is.
@@ -192,7 +192,7 @@ pub struct Kept {
     pub resume: String,
 }
 
-/// What is in the way in a result directory.
+/// What stands in the way of a new result.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Occupant {
@@ -245,14 +245,14 @@ fn way_back(kept: &Option<Kept>) -> String {
     kept.as_ref().map_or(String::new(), said)
 }
 
-/// The first of some words, and how many more there are.
+/// The first items of a list, and how many more there are.
 pub(crate) fn in_short(words: &[String]) -> String {
     const MOST: usize = 20;
     let more = if words.len() > MOST { format!("; and {} more", words.len() - MOST) } else { String::new() };
     words.iter().take(MOST).cloned().collect::<Vec<_>>().join("; ") + &more
 }
 
-/// What a file said, in a message: on one line, and no longer than a person reads.
+/// Text from a file, for a message: on one line and cut to a readable length.
 pub fn brief(text: &str) -> String {
     const MOST: usize = 500;
     let mut plain: String =
@@ -287,9 +287,9 @@ impl Error {
             | Self::FrontBudget { .. }
             | Self::FrontMemory { .. }
             | Self::Gpu { .. }
-            | Self::Promise(_)
+            | Self::ErrorBound(_)
             | Self::Page { .. }
-            | Self::Certificate(_)
+            | Self::Disagreement(_)
             | Self::Interrupted { .. }
             | Self::Busy { .. }
             | Self::Result { .. }

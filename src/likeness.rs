@@ -1,9 +1,9 @@
-//! "Did you mean": the one place that says which known name a wrong one was meant to be.
+//! "Did you mean": finds the known name that is most like a wrong one.
 
-/// The name most like `name`, if one is like enough to be what was meant.
+/// The name most like `name`, if one is like enough.
 pub fn closest<'n>(name: &str, names: &[&'n str]) -> Option<&'n str> {
     let name = name.to_lowercase();
-    // Nothing that long is a name; the distance takes quadratic time.
+    // No name is that long, and the distance takes quadratic time.
     if name.is_empty() || name.len() > 80 {
         return None;
     }

@@ -19,13 +19,13 @@ fn main() -> ExitCode {
     }
 }
 
-/// A layer of Mesa's Vulkan loader looks for a display and complains on standard error where there is none. What it is for, a
-/// choice among graphics cards, is made by this program itself.
+/// A layer of Mesa's Vulkan drivers looks for a display and complains on standard error if there is none. It chooses among graphics cards,
+/// which this program does itself, so it is switched off.
 #[cfg(target_os = "linux")]
 #[allow(unsafe_code, reason = "the only way to tell the loader")]
 fn keep_the_loader_quiet() {
     if std::env::var_os("XDG_RUNTIME_DIR").is_none() && std::env::var_os("NODEVICE_SELECT").is_none() {
-        // SAFETY: the program has one thread yet.
+        // SAFETY: the program still has only one thread.
         unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
     }
 }

@@ -1,7 +1,8 @@
-//! What a sweep takes before it is begun: memory at its peak, and the files that it will leave. For `check` and for the jobs of a cluster.
+//! Estimates the peak memory of a sweep and the sizes of its files before it begins. For `check` and for the jobs of a cluster.
 //!
-//! Three things follow each other, and the largest counts: the sweep, with the reducers' states; the tables, made in memory one after the
-//! other; the page. What each takes per cell, row and value was measured; `benches/memory` compares the sum with the peak of whole runs.
+//! A run has three phases, and the largest of them decides: the sweep, with the states of the reducers; the tables, made in memory one
+//! after the other; and the page. What each takes per cell, row and value was measured; `benches/memory` compares the estimate with the
+//! peaks of whole runs.
 
 use crate::certify;
 use crate::models::{Effort, to_si};
@@ -18,57 +19,57 @@ use std::time::{Duration, Instant};
 const PROGRAM: u64 = 9_700_000;
 /// A thread with its blocks.
 const THREAD: u64 = 350_000;
-/// A cell of a map: as the state keeps it; with the copy and the bytes that go to the checkpoint.
+/// Bytes of a cell of a map in the state, and with the copy and the serialised bytes while a checkpoint is saved.
 const CELL: u64 = 24;
 const CELL_SAVED: u64 = 70;
-/// A cell that a chunk has met, and how many a chunk may meet in its time.
+/// Bytes of a cell that a chunk has touched, and the most cells that a chunk may touch.
 const CELL_MET: u64 = 24;
 const MET: u64 = 1 << 20;
-/// A cell of a map's table for each of its columns, and while the table is written.
+/// Bytes of a cell in each column of a map's table, and while the table is written.
 const CELL_COLUMN: u64 = 16;
 const CELL_WRITTEN: u64 = 20;
-/// A value of a list of cases: as it is kept; while `study.json` is written.
+/// Bytes of a value in a list of cases, and while `study.json` is written.
 const CASE: u64 = 90;
 const CASE_DESCRIBED: u64 = 620;
-/// A row of a table of designs, and what it is asked about: what no design axis sets has two columns.
+/// Bytes of a row of a table of designs, of each of its columns (a quantity that no design axis sets has two), and of each input.
 const ROW: u64 = 250;
 const ROW_COLUMN: u64 = 140;
 const ROW_INPUT: u64 = 50;
-/// The page, a design on it, each output of such a design, and a row of the list of all designs.
+/// Bytes of the page, of a design on it, of each output of such a design, and of a row of the list of all designs.
 const PAGE: u64 = 700_000;
 const PAGE_ROW: u64 = 1_100;
 const PAGE_OUTPUT: u64 = 50;
 const PAGE_VARIANT: u64 = 1_400;
-/// An objective of a design that is a dot on the page: packed, and as text.
+/// Bytes of an objective of a design that is a dot on the page: packed, and as text.
 const DOT: u64 = 24;
-/// Indices that are kept of a design of a sample: twice as many as are wanted may wait.
+/// Indices kept per design of a sample: up to twice as many as are wanted may wait.
 const INDICES: u64 = 2;
-/// A point of the front while it is looked for: what is kept of it, in copies.
+/// Copies of a point of the front during the sweep.
 const POINT_COPIES: u64 = 6;
-/// Measured peaks scatter: rather too much is said than too little, by so much in the hundred.
+/// Measured peaks scatter, so the estimate is multiplied by this many per cent: rather too high than too low.
 const MARGIN: u64 = 112;
-/// The front of the whole, where only coarser grids were judged, may be larger than expected by so much in the hundred.
+/// If only coarser grids were judged, the front of the whole study may be larger than expected by one part in this many.
 const UNSEEN: u64 = 8;
-/// Designs that are asked what solving them takes.
+/// Designs for which the memory of solving them is asked.
 const ASKED: u64 = 48;
 
-/// How long the front is looked at, about.
+/// About how long fronts of coarser grids are computed.
 const LOOK: Duration = Duration::from_millis(600);
 
-/// What a run of a study takes.
+/// The memory that a run of a study needs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Needs {
-    /// Designs that the front is expected to have.
+    /// Expected number of designs on the front.
     pub front: u64,
     /// Bytes of memory at the peak of a whole run.
     pub run: u64,
     /// Bytes of memory at the peak of a shard, which leaves no tables.
     pub shard: u64,
-    /// Bytes of memory at the peak of putting shards together.
+    /// Bytes of memory at the peak of merging shards.
     pub merge: u64,
 }
 
-/// What the parts of a study come to.
+/// Sizes of the parts of a study.
 struct StudySizes {
     /// Cells of all maps, and bytes of the largest table of one.
     cells: u64,
@@ -81,7 +82,7 @@ struct StudySizes {
     /// Rows of tables of designs besides the front.
     rows: u64,
     variants: u64,
-    /// Designs of which only the index is kept while a sweep runs, and designs that are dots on a page.
+    /// Designs of which only the index is kept during a sweep, and designs that are dots on a page.
     indices: u64,
     dots: u64,
     /// Bytes of a row.
@@ -122,14 +123,14 @@ impl StudySizes {
 }
 
 impl Needs {
-    /// Of a study, on so many threads, with a page or without.
+    /// For a study, on this many threads, with a page or without.
     pub fn of(plan: &Plan, threads: usize, page: bool) -> Self {
         let expected = if plan.study.objectives.is_empty() { Expected::Known(0) } else { expected_front(plan, threads, Look::For(LOOK)) };
         let needs = Self::with_front(plan, threads, page, expected.at_most());
         Self { front: expected.designs(), ..needs }
     }
 
-    /// The same where the size of the front is known.
+    /// The same for a known size of the front.
     pub fn with_front(plan: &Plan, threads: usize, page: bool, front: u64) -> Self {
         let sizes = StudySizes::new(plan);
         let threads = threads.max(1) as u64;
@@ -169,23 +170,23 @@ impl Needs {
     }
 }
 
-/// Bytes that so many threads need to solve designs, for the most of some from all over the study.
+/// Bytes that this many threads need to solve designs: the most of some designs from all over the study.
 fn solving(plan: &Plan, threads: u64) -> u64 {
     let kernel = &plan.study.model.kernel;
     let asked = ASKED.min(plan.designs());
     let needs = (0..asked).map(|step| kernel.footprint(&to_si(&plan.study.model, &plan.space.inputs(plan.spread(step), 0))));
     let (prepared, scratch) = needs.fold((0, 0), |most, needs| (most.0.max(needs.prepared), most.1.max(needs.scratch)));
     let kept = prepared.saturating_mul(plan.kept_scenarios());
-    // Who certifies and who completes the page each has a whole table of its own, and one of them those of all scenarios.
+    // Certification and completing the page each have a table per thread, and one of the two has the tables of all scenarios.
     threads * (kept + 2 * 8 * kernel.prepared_len() as u64 + scratch) + kept
 }
 
-/// Designs that a front will have.
+/// The expected number of designs on the front.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Expected {
-    /// All designs were judged, or the number is a limit.
+    /// Exact, because all designs were judged, or an upper limit.
     Known(u64),
-    /// By the fronts of coarser grids.
+    /// A guess from the fronts of coarser grids.
     Guessed(u64),
 }
 
@@ -195,7 +196,7 @@ impl Expected {
         designs
     }
 
-    /// With what a guess may be short of.
+    /// The number, with a reserve if it is a guess.
     fn at_most(self) -> u64 {
         match self {
             Self::Known(designs) => designs,
@@ -204,21 +205,21 @@ impl Expected {
     }
 }
 
-/// How far a front is looked at.
+/// How long coarser grids are judged.
 #[derive(Clone, Copy, Debug)]
 enum Look {
-    /// About so long.
+    /// About this long.
     For(Duration),
-    /// On so many grids, whatever that takes.
+    /// This many grids, however long that takes.
     #[cfg_attr(not(test), allow(dead_code, reason = "a clock is no test"))]
     Grids(usize),
 }
 
-/// Designs that a front will have, by the fronts of coarser grids, each four times the last, as long as the time lasts: exact where one of
-/// them is the whole.
+/// The expected number of designs on the front, from the fronts of coarser grids, each four times as large as the one before, as many as
+/// the time allows. It is exact if one of them is the whole study.
 ///
-/// The front of a grid grows with a power of the grid's size, which the last two show. (That of designs at random would not do: where
-/// quantities rise or fall all along an axis, the front is at its ends.)
+/// The front of a grid grows with a power of the grid's size, which the last two grids show. (Random designs would not do: where quantities
+/// rise or fall all along an axis, the front is at the ends of the axis.)
 #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an estimate for people")]
 fn expected_front(plan: &Plan, threads: usize, look: Look) -> Expected {
     let time = if let Look::For(time) = look { time } else { LOOK };
@@ -232,7 +233,7 @@ fn expected_front(plan: &Plan, threads: usize, look: Look) -> Expected {
     let tables = Tables::new(plan);
     let reduction = Reduction::new(plan, &vec![(0.0, 1.0); plan.study.report.histograms.len()]);
     let start = Instant::now();
-    // None if it takes too long.
+    // `None` if it takes too long.
     let front_of = |pieces: &[Range<u64>], until: Option<Instant>| {
         let share = pieces.len().div_ceil(threads);
         let parts = on_threads(pieces.chunks(share), |pieces| {
@@ -251,7 +252,7 @@ fn expected_front(plan: &Plan, threads: usize, look: Look) -> Expected {
     };
     if matches!(look, Look::For(_)) && designs as f64 * plan.seconds_per_design() / (threads as f64) < time.as_secs_f64() {
         let pieces: Vec<_> = (0..designs).step_by(PIECE).map(|first| first..designs.min(first + PIECE as u64)).collect();
-        // Some more is given where the machine has other work too: the guess that comes instead is far less sure.
+        // Allow some more time, because the machine may have other work too, and without this grid the guess is far less certain.
         if let Some(front) = front_of(&pieces, Some(start + 3 * time)) {
             return Expected::Known(front);
         }
@@ -266,7 +267,7 @@ fn expected_front(plan: &Plan, threads: usize, look: Look) -> Expected {
         let mut positions: Vec<u64> = plan.space.designs.coarse(most).iter().map(|&design| plan.position_of(design)).collect();
         positions.sort_unstable();
         let pieces: Vec<_> = positions.chunk_by(|a, b| a + 1 == *b).map(|piece| piece[0]..piece[piece.len() - 1] + 1).collect();
-        // The first is small, and all that is known if it takes long.
+        // The first grid is small. If judging it takes long, it is all that is known.
         let until = matches!(look, Look::For(_)) && !fronts.is_empty();
         let Some(front) = front_of(&pieces, until.then(|| start + 2 * time)) else { break };
         if positions.len() as u64 == designs {
@@ -289,14 +290,14 @@ const LEAST_GRID: u64 = 256;
 /// Designs that are judged at a time where all of them are.
 const PIECE: usize = 1 << 12;
 
-/// Files larger than this are announced.
+/// `check` lists files larger than this.
 const LARGE: u64 = 100_000_000;
-/// Characters of a number in a table, with its comma, as they come out on the average of long tables.
+/// Characters of a number in a table with its comma, on average over long tables.
 const NUMBER: u64 = 19;
 /// Bytes of a value in Parquet.
 const PACKED: u64 = 8;
 
-/// Large files that a run will leave, with about how many bytes they will have.
+/// The large files that a run will write, with about how many bytes they will have.
 pub fn large_files(plan: &Plan, front: u64) -> Vec<(String, u64)> {
     let study = &plan.study;
     let inputs = |axes: &[Axis]| axes.iter().map(|axis| axis.inputs().len() as u64).sum::<u64>();
@@ -340,7 +341,7 @@ mod tests {
         // By coarser grids alone.
         let guessed = of(120, Look::Grids(2));
         assert!((large / 3..large * 3).contains(&guessed), "{guessed} for {large}");
-        // Memory is told for rather more than a guess, and for just what is known.
+        // The memory is estimated with a reserve for a guess, and without one for a known number.
         assert_eq!((Expected::Guessed(1000).at_most(), Expected::Known(1000).at_most()), (1080, 1000));
     }
 
@@ -355,7 +356,7 @@ mod tests {
         assert!(Needs::with_front(&plain, 1, false, 1_000_000).run > one.run + 300_000_000);
         let map = "[report]\nmaps = [{ x = \"groove_angle_deg\", y = \"band_thickness_mm\", best = \"share\" }]";
         let mapped = needs(&grid(3000, map), 1, false);
-        // The table of the map is made when shards are put together only.
+        // The table of the map is only made when shards are merged.
         assert!(mapped.run > mapped.shard && mapped.merge > mapped.shard && mapped.shard > 500_000_000, "{mapped:?}");
         let listed = needs(&grid(100, "[report]\nvariants = true"), 1, true);
         assert!(listed.run > needs(&plain, 1, true).run + 10_000_000);

@@ -1,4 +1,4 @@
-//! Shards of one study, put together.
+//! Merges the shards of a study.
 
 use crate::checkpoint::Saved;
 use crate::error::{Error, Result, in_short};
@@ -11,7 +11,7 @@ use std::path::PathBuf;
 /// Checks that these are all shards of one study, each once.
 ///
 /// # Errors
-/// [`Error::NotMergeable`] that names what is missing, doubled or foreign, all of it at once.
+/// [`Error::NotMergeable`] with all shards that are missing, there twice, or of another study.
 pub fn check_set(shards: &[(PathBuf, Saved)]) -> Result<()> {
     let Some((_, first)) = shards.first() else {
         return Err(Error::Request("there are no shards to merge".to_owned()));
@@ -39,7 +39,7 @@ fn missing_and_doubled(shards: &[(PathBuf, Saved)], of: u64) -> Vec<String> {
         places.entry(shard.shard().number).or_default().push(path.display().to_string());
     }
     let mut problems = Vec::new();
-    // Of as many as a number can say, most may be missing: gaps, not shards, are gone through.
+    // There may be up to 2^64 shards, most of them missing: iterate over the gaps, not over the shards.
     let mut gap = |first: u64, last: u64| match last.wrapping_sub(first) {
         _ if first > last => {}
         0 => problems.push((first, format!("shard {first}/{of} is missing"))),
@@ -62,7 +62,8 @@ fn missing_and_doubled(shards: &[(PathBuf, Saved)], of: u64) -> Vec<String> {
 /// Merges the states of a complete set of shards.
 ///
 /// # Errors
-/// [`Error::NotMergeable`] if a shard has not finished; [`Error::Checkpoint`] if it does not fit the study; [`Error::Certificate`] if the shards together do not cover the study.
+/// [`Error::NotMergeable`] if a shard has not finished; [`Error::Checkpoint`] if it does not fit the study; [`Error::Disagreement`] if the
+/// shards together do not cover the study.
 pub fn merge(plan: &Plan, reduction: &Reduction, shards: Vec<(PathBuf, Saved)>) -> Result<State> {
     let mut reducers = reduction.start();
     let mut unfinished = Vec::new();
@@ -72,7 +73,7 @@ pub fn merge(plan: &Plan, reduction: &Reduction, shards: Vec<(PathBuf, Saved)>) 
         let progress = checkpoint.take_progress(plan, reduction)?;
         let missing = progress.as_ref().map_or(range.end - range.start, |it| it.done.missing_from(range.clone()).count());
         if missing > 0 {
-            unfinished.push(format!("{} (shard {}) has {missing} designs to go", path.display(), checkpoint.shard()));
+            unfinished.push(format!("{} (shard {}) has {missing} designs left to judge", path.display(), checkpoint.shard()));
         } else if let Some(progress) = progress {
             covered += progress.done.count();
             reducers.merge(progress.state);
@@ -82,7 +83,7 @@ pub fn merge(plan: &Plan, reduction: &Reduction, shards: Vec<(PathBuf, Saved)>) 
         return Err(Error::NotMergeable { problems: unfinished, remedy: Some("finish with sweep --resume".to_owned()) });
     }
     if covered != plan.designs() {
-        return Err(Error::Certificate(format!("the shards cover {covered} of {} designs", plan.designs())));
+        return Err(Error::Disagreement(format!("the shards cover {covered} of {} designs", plan.designs())));
     }
     let state = reducers.state();
     crate::sweep::Settings::default().check_budget(plan, &state)?;

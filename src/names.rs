@@ -1,28 +1,28 @@
-//! What stands in a result directory: names of its files, and how a file says that this program wrote it.
+//! Names of the files of a result directory, and how to recognise that this program wrote a file.
 
 use crate::files::was_to_become;
 use crate::reduce::Reported;
 use crate::study::Study;
 
-/// The file whose presence makes a directory a result.
+/// The file that marks a directory as a finished result.
 pub const MARK: &str = "summary.json";
 /// Folder of the checkpoint within a result directory.
 pub const CHECKPOINT: &str = "checkpoint";
 /// The page that shows a result; like [`RUN`] it may differ from run to run.
 pub const PAGE: &str = "report.html";
-/// How the result came about.
+/// How the result was computed.
 pub const RUN: &str = "run.json";
-/// Pictures of the knee, for models that have such: each is `knee-<name>.svg`.
+/// Pictures of the knee, for models that have some: each is `knee-<name>.svg`.
 pub const KNEE_PICTURES: [&str; 4] = ["section", "deformed", "around", "surface"];
 
-/// Stands near the start of every page: what made it.
+/// Near the start of every page: the program that wrote it.
 pub const GENERATOR: &str = "name=\"generator\" content=\"beltspace\"";
 
 /// The files that any result may have, besides those of its reducers.
 const FIXED: [&str; 10] =
     ["front.csv", "front.parquet", "front.svg", "variants.csv", "scenarios.csv", "study.toml", "study.json", RUN, PAGE, MARK];
 
-/// Every file that the result of a study may have, its page included, as this build of the library writes them.
+/// Every file that the result of a study may have, with its page, as this build of the library writes them.
 pub fn result_files(study: &Study) -> Vec<String> {
     let mut names = vec!["study.toml".to_owned(), "study.json".to_owned(), "scenarios.csv".to_owned()];
     if !study.objectives.is_empty() {
@@ -40,14 +40,14 @@ pub fn result_files(study: &Study) -> Vec<String> {
     names
 }
 
-/// Does this build of the library write such a file? One without pictures has no page either.
+/// Does this build of the library write such a file? Without pictures there is no page either.
 fn is_written(name: &str) -> bool {
     (cfg!(feature = "pictures") || !(name.ends_with(".svg") || name == PAGE)) && (cfg!(feature = "parquet") || !name.ends_with(".parquet"))
 }
 
-/// Most designs on a page; of a larger front so many are taken, evenly along the table.
+/// Most designs on a page; of a larger front this many are shown, evenly along the table.
 pub const MOST_ON_PAGE: usize = 200_000;
-/// Most designs of a sample on a page: of more so many are taken, evenly along the table.
+/// Most designs of a sample on a page; of more this many are shown, evenly along the table.
 pub const MOST_DOTS: u64 = 20_000;
 
 /// File of a picture of the knee.
@@ -62,7 +62,7 @@ pub fn is_ours(name: &str) -> bool {
     knee || FIXED.contains(&name) || Reported::is_file(name)
 }
 
-/// Is this the name of such a file while it is being written, or of the checkpoint while it is made or removed?
+/// Is this the temporary name of such a file while it is written, or of the checkpoint while it is made or removed?
 pub fn is_remains(name: &str) -> bool {
     was_to_become(name).is_some_and(|it| is_ours(it) || it == CHECKPOINT)
 }

@@ -1,8 +1,8 @@
-//! How a study is swept: what is slow and what is fast, what is followed over the scenarios, and where each value comes from.
+//! The plan of a sweep: which axes are slow and which are fast, what is tracked over the scenarios, and where each value comes from.
 //!
-//! The formula itself is asked which inputs each of its parts depends on. Design axes that `prepare` reads are slow, the others
-//! fast; a *row* is one combination of the slow axes with all combinations of the fast ones. An output that no fast design axis
-//! touches is one number for the whole row, so it is evaluated once per row and scenario and never in the inner loop.
+//! The dependencies come from the recorded formula. Design axes that `prepare` reads are slow, the others fast; a *row* is one combination
+//! of the slow axes with all combinations of the fast ones. An output that depends on no fast design axis is one number for the whole row,
+//! so it is evaluated once per row and scenario and never in the inner loop.
 
 use crate::models::{Effort, Reach, Worse, input_to_si};
 use crate::space::{Product, Space};
@@ -10,31 +10,31 @@ pub use crate::study::worst_end;
 use crate::study::{Quantity, Study};
 use crate::tape::Known;
 
-/// Most combinations of the fast design axes that one row has, so that their values can be kept in a table.
+/// Most combinations of the fast design axes in a row, so that their values fit into a table.
 pub const FAST_DESIGNS: u64 = 1 << 15;
 
-/// Most bytes of prepared numbers that one thread keeps of a row.
+/// Most bytes of prepared numbers that a thread keeps for a row.
 const KEPT_BYTES: u64 = 256 << 20;
-/// Most slow scenarios of which it keeps them.
+/// Most slow scenarios for which it keeps them.
 const KEPT_SCENARIOS: u64 = 1 << 15;
 
-/// A quantity whose worst scenario is followed, with the end that is worst.
+/// A quantity whose worst scenario is tracked, with the end that is worst.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tracked {
-    /// What is followed.
+    /// The quantity.
     pub quantity: Quantity,
-    /// Which end of its scatter is the worst.
+    /// Which end of its range is the worst.
     pub worse: Worse,
 }
 
-/// Where a value of one row comes from.
+/// Where a value in a row comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
     /// An input that is the same for the whole row.
     RowInput(usize),
     /// An output that is the same for the whole row.
     RowOutput(usize),
-    /// An input that the fast design axes set; it does not change with the scenario.
+    /// An input that a fast design axis sets; it is the same in every scenario.
     LaneInput(usize),
     /// An output that differs within the row: its position among [`Plan::lane_outputs`].
     LaneOutput(usize),
@@ -47,7 +47,7 @@ impl Source {
     }
 }
 
-/// A study laid out for sweeping.
+/// A study with its plan for sweeping.
 #[derive(Debug)]
 pub struct Plan {
     /// The study.
@@ -62,7 +62,7 @@ pub struct Plan {
     pub slow_scenarios: Product,
     /// The other scenario axes.
     pub fast_scenarios: Product,
-    /// Quantities whose worst value is needed while sweeping, without duplicates.
+    /// Quantities whose worst value is needed during the sweep, without duplicates.
     pub tracked: Vec<(Tracked, Source)>,
     /// Positions of the objectives among `tracked`.
     pub objectives: Vec<usize>,
@@ -76,11 +76,11 @@ pub struct Plan {
     pub row_conditions: Vec<usize>,
     /// Conditions evaluated for every design and scenario.
     pub lane_conditions: Vec<usize>,
-    /// What depends on what.
+    /// Which inputs each output and condition depends on.
     pub reach: Reach,
 }
 
-/// The worst end under an objective, else under what the report asks of the quantity, else by nature.
+/// The worst end: that of the objective, else that of the report's use of the quantity, else that of the model.
 fn quantities_to_track(study: &Study) -> Vec<Tracked> {
     let mut tracked: Vec<Tracked> = Vec::new();
     let mut track = |quantity, worse| {
@@ -99,12 +99,12 @@ fn quantities_to_track(study: &Study) -> Vec<Tracked> {
 }
 
 impl Plan {
-    /// Lays out a study.
+    /// Plans a study.
     pub fn new(study: Study) -> Self {
         let space = Space::new(&study);
         let reach = study.model.kernel.reach(&knowns(&study, &space));
         let (slow, fast) = space.designs.split(reach.prepared);
-        // The values of the fast axes are tabulated: what would make the table too large is walked with the slow axes.
+        // The values of the fast axes are tabulated: axes that would make the table too large are treated like slow ones.
         let (outer, fast) = fast.narrow(FAST_DESIGNS);
         let slow = slow.with(&outer);
         let (slow_scenarios, fast_scenarios) = space.scenarios.split(reach.prepared);
@@ -136,7 +136,7 @@ impl Plan {
             tracked.iter().position(|(it, _)| *it == wanted).expect("every objective is tracked")
         });
         let objectives = objectives.collect();
-        // A quiet condition matters only where it takes away an output that is used.
+        // A quiet condition matters only if it invalidates an output that is used.
         let model = &study.model;
         let matters = |number: &usize| {
             let condition = &model.conditions[*number];
@@ -163,13 +163,13 @@ impl Plan {
         }
     }
 
-    /// Where the worst value of a quantity that the study follows is among [`Plan::tracked`].
+    /// Position among [`Plan::tracked`] of a quantity that the study tracks.
     ///
     /// # Panics
-    /// If it does not follow it.
+    /// If it is not tracked.
     pub fn position(&self, quantity: Quantity, worse: Worse) -> usize {
         let wanted = Tracked { quantity, worse };
-        self.tracked.iter().position(|(it, _)| *it == wanted).expect("the plan tracks what the report asks for")
+        self.tracked.iter().position(|(it, _)| *it == wanted).expect("the plan tracks what the report needs")
     }
 
     /// Outputs that the study asks for, as a bit set.
@@ -187,26 +187,26 @@ impl Plan {
         self.space.scenarios.count()
     }
 
-    /// How long a thread takes, by what the model says, over all scenarios: for the first stage of a row, and for the second of a design.
+    /// Seconds that a thread takes over all scenarios, by the model's own figures: for the first stage of a row and the second of a design.
     #[allow(clippy::cast_precision_loss, reason = "an estimate")]
     pub fn effort(&self) -> Effort {
         let Effort { prepare, finish } = self.study.model.effort;
         Effort { prepare: prepare * self.slow_scenarios.count() as f64, finish: finish * self.scenarios() as f64 }
     }
 
-    /// How long a thread takes for a design, by what the model says, where whole rows are judged.
+    /// Seconds that a thread takes per design, by the model's own figures, if whole rows are judged.
     #[allow(clippy::cast_precision_loss, reason = "an estimate")]
     pub fn seconds_per_design(&self) -> f64 {
         let Effort { prepare, finish } = self.effort();
         prepare / self.fast.count() as f64 + finish
     }
 
-    /// Does each shard judge the sample for itself? It does where the study leaves the range of a histogram to the sample.
+    /// Must each shard judge the sample itself? Yes, if the study leaves the range of a histogram to the sample.
     pub fn shards_sample(&self) -> bool {
         self.study.report.histograms.iter().any(|it| it.range.is_none())
     }
 
-    /// Slow scenarios, the first ones, whose prepared numbers a thread keeps for all designs of a row.
+    /// Number of slow scenarios, from the first, whose prepared numbers a thread keeps for all designs of a row.
     pub fn kept_scenarios(&self) -> u64 {
         let bytes = 8 * self.study.model.kernel.prepared_len().max(1) as u64;
         self.slow_scenarios.count().min(KEPT_SCENARIOS).min(KEPT_BYTES / bytes)
@@ -218,17 +218,17 @@ impl Plan {
         self.slow.source_index(position / fast) + self.fast.source_index(position % fast)
     }
 
-    /// The position of the sweep at which a design index is met.
+    /// The position of a design index in the sweep.
     pub fn position_of(&self, design: u64) -> u64 {
         self.slow.index_of(design) * self.fast.count() + self.fast.index_of(design)
     }
 
-    /// A position for every step, so that any number of steps is spread evenly over the study: multiples of the golden section.
+    /// A position for every step, spread evenly over the study after any number of steps: multiples of the golden section.
     pub fn spread(&self, step: u64) -> u64 {
         ((u128::from(self.designs()) * u128::from(step.wrapping_mul(0x9e37_79b9_7f4a_7c15))) >> 64) as u64
     }
 
-    /// Design axes, by position, that change nothing that the study asks for.
+    /// Positions of the design axes that affect nothing that the study asks for.
     pub fn inert_axes(&self) -> Vec<usize> {
         let study = &self.study;
         let asked = self.tracked.iter().map(|(it, _)| it.quantity);
@@ -247,7 +247,7 @@ impl Plan {
     }
 }
 
-/// What a study says of the inputs: fixed numbers, or ranges that an axis covers.
+/// The inputs of a study: fixed numbers, or ranges that an axis covers.
 pub(crate) fn knowns(study: &Study, space: &Space) -> Vec<Known> {
     let si = |input: usize, value: f64| input_to_si(&study.model.inputs[input], value);
     let mut inputs: Vec<Known> = study.fixed.iter().enumerate().map(|(input, &value)| Known::Fixed(si(input, value))).collect();

@@ -1,4 +1,4 @@
-//! Ranges of positions: what is still to be swept, what has been, and which part of it is a shard's.
+//! Ranges of positions: what is still to be swept, what has been swept, and what belongs to a shard.
 
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -18,14 +18,14 @@ impl Ranges {
         self.0.iter().map(|range| range.end - range.start).sum()
     }
 
-    /// Adds a range that none of its positions is in yet.
+    /// Adds a range, none of whose positions is in the set.
     pub fn add(&mut self, range: Range<u64>) {
         if range.is_empty() {
             return;
         }
         let at = self.0.partition_point(|it| it.start < range.start);
         self.0.insert(at, range);
-        // Neighbours that touch become one, so that a finished run is a single range.
+        // Adjacent ranges are joined, so that a finished run is a single range.
         self.0.dedup_by(|next, previous| {
             let touch = previous.end == next.start;
             if touch {
@@ -68,7 +68,7 @@ impl Ranges {
     }
 }
 
-/// One of several equal parts of a study, for running them on different machines.
+/// One of several equal parts of a study, which can run on different machines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shard {
     /// Number of the part, from 1.

@@ -4,7 +4,7 @@
 
 use std::f64::consts::PI;
 
-/// What a unit measures. Values convert between units of the same dimension only.
+/// What a unit measures. Values can be converted only between units of the same dimension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "the names say it")]
 pub enum Dimension {
@@ -80,7 +80,7 @@ impl Unit {
         value * self.divide / self.multiply
     }
 
-    /// The same conversions for any number type: a value in SI units is the one in this unit times the first, divided by the second.
+    /// The same conversion as two factors, for any number type: the SI value is the value times the first, divided by the second.
     pub fn factors(self) -> (f64, f64) {
         (self.multiply, self.divide)
     }
@@ -90,7 +90,7 @@ impl Unit {
         self.multiply == 1.0 && self.divide == 1.0
     }
 
-    /// How the unit is written at the end of a name: `N/mm` is `N_per_mm`; empty for plain numbers.
+    /// The unit as a suffix of a name: `N_per_mm` for `N/mm`; empty for plain numbers.
     pub fn suffix(self) -> String {
         self.symbol.replace('/', "_per_").replace('²', "2").replace('³', "3")
     }
@@ -212,7 +212,7 @@ units! {
     POUND_PER_INCH = "lbf/in", ForcePerLength, POUND_FORCE, INCH;
 }
 
-/// Why a text is no value in the wanted unit.
+/// Why a text is not a value in the wanted unit.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum UnitError {
     /// The text does not start with a number.

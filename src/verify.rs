@@ -1,6 +1,6 @@
-//! A model on a device, point by point against f64: how far off, how much of the promise is used, which decisions flip.
+//! Compares a model on a device with f64 at single points: the errors, how much of the error bounds they use, and wrong decisions.
 //!
-//! The points hold the ends of every range, both sides of every condition and constraint, and seeded random ones.
+//! The points are the ends of every range, both sides of every condition and constraint, and seeded random ones.
 
 use crate::decision::Decision;
 use crate::error::{Error, Result};
@@ -11,32 +11,32 @@ use crate::sample::mix;
 use crate::study::{Constraint, Quantity};
 use crate::tape::RunningError;
 
-/// What was found of one output or condition.
+/// The errors of one output or condition.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Statistics {
     /// Name of the output, or reason of the condition.
     pub name: String,
     /// Values compared.
     pub values: u64,
-    /// Values of which the device can say nothing: their bound is not finite.
+    /// Values about which the device says nothing, because their error bound is not finite.
     pub unbounded: u64,
-    /// Median error, relative to the value; like the next three not of points on a boundary.
+    /// Median error, relative to the value; like the next three it leaves out points on a boundary.
     pub median_error: f64,
     /// Largest error relative to the value.
     pub largest_error: f64,
-    /// Median promise relative to the value.
-    pub median_promise: f64,
-    /// 99 of 100 promises are at most this, relative to the value.
-    pub usual_promise: f64,
-    /// Largest share of its promise that an error took.
+    /// Median error bound relative to the value.
+    pub median_bound: f64,
+    /// 99 of 100 error bounds are at most this, relative to the value.
+    pub usual_bound: f64,
+    /// Largest error as a fraction of its error bound.
     pub used: f64,
-    /// Values farther off than promised.
+    /// Values with an error larger than their error bound.
     pub broken: u64,
     /// The first of these, in words.
     pub example: Option<String>,
 }
 
-/// What was found of a model.
+/// The comparison of a model.
 #[derive(Clone, Debug, Default)]
 pub struct Report {
     /// Points compared.
@@ -54,22 +54,22 @@ pub struct Report {
 }
 
 impl Report {
-    /// Were all promises kept and no sure decision wrong?
+    /// Do all error bounds hold, and was no sure decision wrong?
     ///
     /// # Errors
-    /// [`Error::Promise`] that names output, point, both values and the promise.
+    /// [`Error::ErrorBound`] that names output, point, both values and the error bound.
     pub fn require(&self) -> Result<()> {
         let example = self.outputs.iter().chain(&self.conditions).find_map(|it| it.example.clone()).or_else(|| self.flip.clone());
-        example.map_or(Ok(()), |example| Err(Error::Promise(example)))
+        example.map_or(Ok(()), |example| Err(Error::ErrorBound(example)))
     }
 }
 
-/// Points to compare at.
+/// Points at which to compare.
 #[derive(Clone, Debug, Default)]
 pub struct Points {
     /// One value per input of the model, in its unit.
     inputs: Vec<Vec<f64>>,
-    /// Does the point lie on a boundary? There values vanish, and an error relative to them says nothing.
+    /// Does the point lie on a boundary? There values vanish, and a relative error means nothing.
     on_boundary: Vec<bool>,
 }
 
@@ -118,7 +118,7 @@ fn usual(input: &Input, random: &mut Random) -> f64 {
     }
     let (low, high) = input.usual;
     if !input.words.is_empty() && (input.is_enumeration() || random.next().is_multiple_of(6)) {
-        // The only word needs no number drawn for it.
+        // If there is only one word, no random number is needed.
         let which = if input.words.len() > 1 { random.next() % input.words.len() as u64 } else { 0 };
         return input.words[which as usize].1;
     }
@@ -203,7 +203,7 @@ pub fn points_of_study(plan: &Plan, samples: usize, seed: u64) -> Points {
     points.truncate(samples)
 }
 
-/// Compares a device's kernel with f64 over these points; `constraints`: of a study, if it is one's.
+/// Compares a device's kernel with f64 at these points; `constraints` are those of a study, if it is the kernel of one.
 ///
 /// # Errors
 /// [`Error::Gpu`].
@@ -222,8 +222,8 @@ pub fn compare(kernel: &PointKernel, model: &Model, constraints: &[Constraint], 
         let point = || describe(model, inputs);
         for (number, output) in model.outputs.iter().enumerate() {
             if present >> number & 1 == 1 && exact[number].is_finite() {
-                let promised = RunningError { value: values[number].value, bound: values[number].bound * output.promise };
-                outputs[number].take(promised, exact[number], on_boundary, |found| {
+                let bounded = RunningError { value: values[number].value, bound: values[number].bound * output.promise };
+                outputs[number].take(bounded, exact[number], on_boundary, |found| {
                     let in_unit = |value: f64| output.unit.from_si(value);
                     (in_unit(found.0), in_unit(exact[number]), in_unit(found.1), point())
                 });
@@ -231,11 +231,11 @@ pub fn compare(kernel: &PointKernel, model: &Model, constraints: &[Constraint], 
         }
         let mut sure = Decision::Yes;
         for (number, condition) in model.conditions.iter().enumerate() {
-            let promised = RunningError { value: margins[number].value, bound: margins[number].bound * CONDITION_PROMISE };
+            let bounded = RunningError { value: margins[number].value, bound: margins[number].bound * CONDITION_PROMISE };
             conditions[number]
-                .take(promised, exact_margins[number], on_boundary, |found| (found.0, exact_margins[number], found.1, point()));
+                .take(bounded, exact_margins[number], on_boundary, |found| (found.0, exact_margins[number], found.1, point()));
             if !condition.quiet || takes_away(model, condition, constraints) {
-                sure = sure.and(holds(model, number, f64::from(promised.value), promised.bound));
+                sure = sure.and(holds(model, number, f64::from(bounded.value), bounded.bound));
             }
         }
         let mut ok = status == crate::models::Status::Ok;
@@ -262,13 +262,13 @@ pub fn compare(kernel: &PointKernel, model: &Model, constraints: &[Constraint], 
     Ok(report)
 }
 
-/// Does a condition that fails take away an output that is constrained?
+/// Does a condition, if it fails, invalidate an output that has a constraint?
 fn takes_away(model: &Model, condition: &Condition, constraints: &[Constraint]) -> bool {
     let constrained = |name: &String| constraints.iter().any(|it| model.output(name).map(Quantity::Output) == Some(it.quantity));
     condition.invalidates.iter().any(constrained)
 }
 
-/// A point in words: all inputs by name.
+/// A point as text: all inputs by name.
 fn describe(model: &Model, inputs: &[f64]) -> String {
     let each = model.inputs.iter().zip(inputs).map(|(input, &value)| match input.word_for(value) {
         Some(word) => format!("{} = \"{word}\"", input.name),
@@ -281,15 +281,15 @@ fn describe(model: &Model, inputs: &[f64]) -> String {
 struct Collector {
     statistics: Statistics,
     errors: Vec<f64>,
-    promises: Vec<f64>,
+    bounds: Vec<f64>,
 }
 
 impl Collector {
     fn new(name: &str) -> Self {
-        Self { statistics: Statistics { name: name.to_owned(), ..Statistics::default() }, errors: Vec::new(), promises: Vec::new() }
+        Self { statistics: Statistics { name: name.to_owned(), ..Statistics::default() }, errors: Vec::new(), bounds: Vec::new() }
     }
 
-    /// Takes a value; `describe` turns (found, promise) into (found, exact, promise) in the unit, and the point.
+    /// Takes a value; `describe` converts (found, bound) to (found, exact, bound) in the unit, and the point.
     fn take(&mut self, found: RunningError, exact: f64, on_boundary: bool, describe: impl FnOnce((f64, f64)) -> (f64, f64, f64, String)) {
         let it = &mut self.statistics;
         it.values += 1;
@@ -304,7 +304,7 @@ impl Collector {
             if it.example.is_none() {
                 let (gpu, f64s, bound, point) = describe((f64::from(found.value), found.bound));
                 it.example = Some(format!(
-                    "{}: the GPU gives {gpu}, f64 gives {f64s}; they differ by {:.3e}, more than the error bound {bound:.3e}, at {point}",
+                    "{}: the GPU gives {gpu}, f64 gives {f64s}; they differ by {:.3e}, more than the error bound of {bound:.3e}, at {point}",
                     it.name,
                     (gpu - f64s).abs()
                 ));
@@ -315,19 +315,19 @@ impl Collector {
         }
         if exact != 0.0 && !on_boundary {
             self.errors.push(error / exact.abs());
-            self.promises.push(found.bound / exact.abs());
+            self.bounds.push(found.bound / exact.abs());
         }
     }
 
     fn statistics(mut self) -> Statistics {
         self.errors.sort_by(f64::total_cmp);
-        self.promises.sort_by(f64::total_cmp);
+        self.bounds.sort_by(f64::total_cmp);
         let at = |sorted: &[f64], hundredth: usize| sorted.get((sorted.len().saturating_sub(1)) * hundredth / 100).copied().unwrap_or(0.0);
         Statistics {
             median_error: at(&self.errors, 50),
             largest_error: at(&self.errors, 100),
-            median_promise: at(&self.promises, 50),
-            usual_promise: at(&self.promises, 99),
+            median_bound: at(&self.bounds, 50),
+            usual_bound: at(&self.bounds, 99),
             ..self.statistics
         }
     }

@@ -1,4 +1,4 @@
-//! The manifest of a checkpoint, sealed by a checksum: only a folder that has one is taken for a checkpoint of this program.
+//! The manifest of a checkpoint, with a checksum: only a folder that has one is taken for a checkpoint of this program.
 
 use super::Switch;
 use crate::error::{Error, Result, brief};
@@ -13,15 +13,15 @@ use std::path::Path;
 
 /// Version of the checkpoint's layout; another one is refused.
 const VERSION: u32 = 2;
-/// Its file.
+/// Name of the manifest's file.
 pub(super) const MANIFEST: &str = "manifest.json";
 /// Most bytes of a manifest: it holds the study's text with all rows of its tables.
 const MOST_BYTES: u64 = 1 << 30;
 
-/// More saves than any run makes: their numbers go on.
+/// More saves than any run makes; a larger number in a manifest is refused, because saves are numbered on from it.
 const MOST_SAVES: u64 = 1 << 53;
 
-/// The manifest's file: a manifest that was tampered with would be believed as far as its JSON parses, so it is sealed.
+/// The contents of the manifest's file. Without the checksum a manifest that was changed would be believed as long as its JSON is valid.
 #[derive(Serialize, Deserialize)]
 struct Sealed {
     version: u32,
@@ -30,7 +30,7 @@ struct Sealed {
     manifest: Value,
 }
 
-/// What a checkpoint says of itself.
+/// The manifest: what a checkpoint says of itself.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Manifest<S = Study> {
     pub(super) program: String,
@@ -42,26 +42,26 @@ pub(super) struct Manifest<S = Study> {
     pub(super) shard: Shard,
     /// Finished positions, of `0..designs` in the sweep's order.
     pub(super) done: Ranges,
-    /// File with the state of the finished positions, and its CRC-32; none before the first save.
+    /// Name of the file with the state of the finished positions, and its CRC-32; `None` before the first save.
     pub(super) state: Option<(String, u32)>,
     pub(super) saves: u64,
-    /// The result that is being put in place of what was there, once it is written.
+    /// The finished result that is being put in place, once all of it is written.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) switch: Option<Switch>,
 }
 
-/// What stands where a checkpoint would be.
+/// What is found at the path of a checkpoint.
 #[derive(Debug)]
 pub enum Found {
     /// Nothing.
     Nothing,
     /// A checkpoint of this program, of this version or another.
     Checkpoint,
-    /// Something else, and why it is none.
+    /// Something else, and why it is not a checkpoint.
     Foreign(String),
 }
 
-/// Looks at what stands where a checkpoint would be.
+/// Finds out what is at the path of a checkpoint.
 pub fn found(folder: &Path) -> Found {
     let foreign = |why: String| Found::Foreign(why);
     if !is_there(folder) {
@@ -75,7 +75,7 @@ pub fn found(folder: &Path) -> Found {
     }
     match unseal(folder) {
         Ok(_) => Found::Checkpoint,
-        Err(why) => foreign(format!("its {MANIFEST} is none of this program: {}", brief(&why))),
+        Err(why) => foreign(format!("its {MANIFEST} was not written by this program: {}", brief(&why))),
     }
 }
 
@@ -98,7 +98,7 @@ fn refusal(folder: &Path, problem: String) -> Error {
 }
 
 impl Manifest<StoredStudy> {
-    /// Reads the manifest of a checkpoint folder as far as nobody needs the model for.
+    /// Reads the manifest of a checkpoint folder, except for what needs the model.
     fn read_stored(folder: &Path) -> Result<Self> {
         if !is_regular(&folder.join(MANIFEST)) {
             return Err(refusal(folder, "there is no checkpoint here".to_owned()));
@@ -111,7 +111,7 @@ impl Manifest<StoredStudy> {
         serde_json::from_value(manifest).map_err(|error| damaged(folder, &error.to_string()))
     }
 
-    /// The same with its study, whose model is one of these, once what it says of that is found to be so.
+    /// The same with its study, whose model is one of these; checks that the two agree.
     fn with_its_study(self, models: &Models) -> std::result::Result<Manifest, String> {
         let Self { program, study_hash, study, description, study_text, designs, shard, done, state, saves, switch } = self;
         let study = study.study(models)?;
@@ -126,7 +126,7 @@ impl Manifest {
         Manifest::<StoredStudy>::read_stored(folder)?.with_its_study(models).map_err(|why| damaged(folder, &why))
     }
 
-    /// The result that waits in a checkpoint folder, whatever model it is of: to put it in place nobody needs the model.
+    /// The finished result that waits in a checkpoint folder. It can be put in place without knowing the model.
     pub(super) fn switch(folder: &Path) -> Result<Option<Switch>> {
         let stored = Manifest::<StoredStudy>::read_stored(folder)?;
         let models = Models::new();
@@ -136,18 +136,18 @@ impl Manifest {
         }
     }
 
-    /// What it says of its study is so, and what is done lies within the shard, once.
+    /// Checks that the manifest agrees with its study, and that the finished ranges lie within the shard and do not overlap.
     fn check(&self) -> std::result::Result<(), String> {
         let study = &self.study;
         if self.description != study.describe() || self.study_hash != study.hash() {
-            return Err("it describes another study than it has".to_owned());
+            return Err("its description belongs to another study".to_owned());
         }
         let designs = Space::new(study).designs.count();
         if self.designs != designs {
             return Err(format!("its study has {designs} designs, not {}", self.designs));
         }
         if self.saves > MOST_SAVES {
-            return Err(format!("nobody saves {} times", self.saves));
+            return Err(format!("it counts {} saves, more than any run makes", self.saves));
         }
         let Shard { number, of } = self.shard;
         if number == 0 || number > of {
@@ -157,7 +157,10 @@ impl Manifest {
         let mut next = whole.start;
         for range in &self.done.0 {
             if range.start < next || range.start >= range.end || range.end > whole.end {
-                return Err(format!("{} to {} cannot be done of {} to {}", range.start, range.end, whole.start, whole.end));
+                return Err(format!(
+                    "the range {} to {} overlaps another one or is not within {} to {}",
+                    range.start, range.end, whole.start, whole.end
+                ));
             }
             next = range.end;
         }

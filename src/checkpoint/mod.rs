@@ -1,8 +1,8 @@
-//! What a killed run leaves behind: a manifest of finished ranges and the certified state that belongs to them.
+//! Checkpoints, from which a run that was killed can continue: a manifest of the finished ranges, and the state that belongs to them.
 //!
-//! A save writes the state under a new name and then replaces the manifest, which names the state and its checksum, in one
-//! step: at any moment the manifest on disk and the state it names belong together. So it is with the result: it is written into
-//! the checkpoint first, then the manifest says that it is whole, and from there on it is put in place, by this run or the next.
+//! A save writes the state under a new name and then replaces the manifest, which names the state and its checksum, in one step: at any
+//! moment the manifest on disk and the state that it names belong together. Likewise, a result is first written into the checkpoint, then
+//! the manifest says that it is complete, and only then is it put in place, by this run or the next.
 
 mod manifest;
 mod saved;
@@ -34,7 +34,7 @@ pub struct Checkpoint {
 }
 
 impl Checkpoint {
-    /// Starts a checkpoint in a result directory; what an earlier run kept there is dropped.
+    /// Starts a checkpoint in a result directory; the checkpoint of an earlier run is removed.
     ///
     /// # Errors
     /// [`Error::Io`]; [`Error::Request`] if something else has the checkpoint's name.
@@ -59,7 +59,7 @@ impl Checkpoint {
                 manifest.write(&folder)?;
                 remove_all_but(&folder, &[MANIFEST])?;
             }
-            // A folder without a manifest would be nobody's: it gets its name once it has one.
+            // A folder without a manifest would not be recognised, so it gets its name only when it has one.
             Found::Nothing => {
                 let new = beside(&folder);
                 fs::create_dir(&new).map_err(|source| directory.lost(source))?;
@@ -70,7 +70,7 @@ impl Checkpoint {
         Ok(Self { directory: directory.clone(), saved: Saved::new(folder, manifest) })
     }
 
-    /// Takes up the checkpoint of a result directory, of whatever study it is.
+    /// Opens the checkpoint of a result directory, of whatever study it is.
     ///
     /// # Errors
     /// [`Error::Checkpoint`] if there is none, it is damaged, or of another version.
@@ -86,13 +86,13 @@ impl Checkpoint {
         Ok(Self { directory: directory.clone(), saved: Saved::read_with(models, &directory.path().join(CHECKPOINT))? })
     }
 
-    /// Goes on with a checkpoint for this study and shard.
+    /// Continues a checkpoint for this study and shard.
     ///
     /// # Errors
     /// [`Error::Checkpoint`] if it is of another study or shard; [`Error::Io`].
     pub fn adopt(&mut self, study: &Study, text: &str, shard: Shard) -> Result<()> {
         self.saved.require(study, shard)?;
-        // The texts may differ in layout, the studies in what changes nothing of what is done.
+        // The texts may differ in layout, and the studies in what does not affect the finished designs.
         let folder = self.folder();
         let manifest = &mut self.saved.manifest;
         let same = manifest.study_text == text;
@@ -106,17 +106,17 @@ impl Checkpoint {
         self.directory.path().join(CHECKPOINT)
     }
 
-    /// The directory that it is in.
+    /// The directory of the checkpoint.
     pub fn directory(&self) -> &Claim {
         &self.directory
     }
 
-    /// What it held when it was opened, and what it is of.
+    /// Its contents when it was opened.
     pub fn saved(&self) -> &Saved {
         &self.saved
     }
 
-    /// What was finished before, once, if it can be of what this plan asks for.
+    /// Takes the work that was finished before, if it fits this plan.
     ///
     /// # Errors
     /// [`Error::Checkpoint`] if it cannot.
@@ -124,10 +124,10 @@ impl Checkpoint {
         self.saved.take_progress(plan, reduction)
     }
 
-    /// Keeps the state of the finished ranges.
+    /// Saves the state of the finished ranges.
     ///
     /// # Errors
-    /// [`Error::Io`]; what was kept before is then still whole.
+    /// [`Error::Io`]; the save before is then still complete.
     pub fn save(&mut self, done: &Ranges, state: &State) -> Result<()> {
         let folder = self.folder();
         if !is_regular(&folder.join(MANIFEST)) {
@@ -143,7 +143,7 @@ impl Checkpoint {
         old.map_or(Ok(()), |(old, _)| remove_if_there(&folder.join(old)))
     }
 
-    /// Writes a file of the result, beside what is there: [`Checkpoint::switch`] puts it in place.
+    /// Writes a file of the result into the checkpoint; [`Checkpoint::switch`] puts it in place.
     ///
     /// # Errors
     /// [`Error::Io`].
@@ -157,28 +157,28 @@ impl Checkpoint {
         replace_with(&folder.join(name), write)
     }
 
-    /// Puts the files that were staged, the last of them being the mark of a finished result, in place of those that are `replaced`, and
-    /// removes the checkpoint. Whatever happens meanwhile, what was there or the whole of what is new can be had: once the manifest says
-    /// that the files are complete, this run or the next one puts them in place.
+    /// Puts the staged files in place of those that are `replaced`, and removes the checkpoint; the last file is the mark of a finished
+    /// result. Whenever this is interrupted, either the old result or all of the new one is there: once the manifest says that the files
+    /// are complete, this run or the next one puts them in place.
     ///
     /// # Errors
-    /// [`Error::Io`]; [`Error::Request`] if something that is not among `replaced` has one of the names.
+    /// [`Error::Io`]; [`Error::Request`] if something that is not among `replaced` has the name of one of the files.
     pub fn switch(mut self, files: Vec<String>, replaced: Vec<String>) -> Result<()> {
         self.announce(files, replaced)?;
         finish_switch(&self.directory).map(|_| ())
     }
 
-    /// Says that the files that were staged are complete and are to be put in place.
+    /// Notes in the manifest that the staged files are complete and are to be put in place.
     pub(crate) fn announce(&mut self, files: Vec<String>, replaced: Vec<String>) -> Result<()> {
         self.saved.manifest.switch = Some(Switch { files, replaced });
         self.saved.manifest.write(&self.folder())
     }
 }
 
-/// The request cannot be met: the checkpoint's name is taken.
+/// The error for something else at the path of the checkpoint.
 pub(crate) fn foreign(folder: &Path, why: &str) -> Error {
     Error::Request(format!(
-        "{} would be the folder of the checkpoint, but it is not one of this program ({why}); move it away, or write to another --out",
+        "{} is where the checkpoint would be, but this program did not write it ({why}); move it away, or write to another --out",
         folder.display()
     ))
 }
@@ -189,7 +189,7 @@ fn is_state(name: &str) -> bool {
     number.is_some_and(|it| !it.is_empty() && it.bytes().all(|it| it.is_ascii_digit()))
 }
 
-/// Removes what a checkpoint leaves in its folder but for `kept`; anything else is not this program's and stays.
+/// Removes the files of a checkpoint from its folder, except for `kept`; any other file is not this program's and stays.
 fn remove_all_but(folder: &Path, kept: &[&str]) -> Result<()> {
     let entries = |folder: &Path| -> Result<Vec<String>> {
         let entries = fs::read_dir(folder).map_err(Error::io(folder))?;
@@ -197,7 +197,7 @@ fn remove_all_but(folder: &Path, kept: &[&str]) -> Result<()> {
     };
     for name in entries(folder)? {
         let path = folder.join(&name);
-        // Up to version 0.1 the lock was in here.
+        // Before version 0.1 the lock was in this folder.
         let is_own = |name: &str| name == MANIFEST || name == "lock" || is_state(name);
         let removable = is_own(&name) || was_to_become(&name).is_some_and(is_own) || name.strip_suffix(".writing").is_some_and(is_own);
         if removable && !kept.contains(&name.as_str()) && is_regular(&path) {
@@ -212,16 +212,15 @@ fn remove_all_but(folder: &Path, kept: &[&str]) -> Result<()> {
                 remove_if_there(&path)?;
             }
         }
-        // With anything else in it, it stays.
+        // If anything else is in it, the folder stays.
         let _ = fs::remove_dir(&result);
     }
     Ok(())
 }
 
-/// Removes a checkpoint: the run is complete and its result in place. What this program did not put there stays, and so does the
-/// folder then.
+/// Removes a checkpoint: the run is complete and its result in place. Files that this program did not put there stay, and the folder too.
 fn remove(folder: &Path) -> Result<()> {
-    // Under another name first: whenever this is interrupted, there is a checkpoint or there is none.
+    // Rename it first: whenever this is interrupted, there is either a whole checkpoint or none.
     let old = beside(folder);
     fs::rename(folder, &old).map_err(Error::io(folder))?;
     remove_all_but(&old, &[])?;
@@ -231,15 +230,15 @@ fn remove(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Removes what is left of a checkpoint that was being made or removed when its process was killed.
+/// Removes the remains of a checkpoint whose process was killed while it made or removed it.
 pub(crate) fn remove_remains(folder: &Path) -> Result<()> {
     remove_all_but(folder, &[])?;
-    // Not empty: there is something in it that is not this program's.
+    // Not empty: it has something that is not this program's.
     let _ = fs::remove_dir(folder);
     Ok(())
 }
 
-/// The name that a checkpoint's folder has while it is made or removed.
+/// The name of a checkpoint's folder while it is made or removed.
 fn beside(folder: &Path) -> PathBuf {
     folder.with_file_name(writing_name(&folder.file_name().unwrap_or_default().to_string_lossy(), std::process::id()))
 }

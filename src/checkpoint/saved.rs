@@ -1,4 +1,4 @@
-//! What a checkpoint holds, read without writing anything: a shard to be merged, or what a run goes on from.
+//! Reads a checkpoint without writing anything: a shard to be merged, or the start of a run that continues.
 
 use super::manifest::Manifest;
 use crate::error::{Error, Result};
@@ -13,15 +13,15 @@ use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// How often a checkpoint is read again that was replaced while it was read.
+/// How often a checkpoint is read again if it was replaced meanwhile.
 const ATTEMPTS: u32 = 20;
 
-/// What was finished before.
+/// The work that was finished before.
 #[derive(Debug)]
 pub struct Progress {
     /// Positions that were judged.
     pub done: Ranges,
-    /// What remains of them.
+    /// Their state.
     pub state: State,
 }
 
@@ -47,7 +47,7 @@ impl Saved {
     /// # Errors
     /// As [`Saved::read`].
     pub fn read_with(models: &Models, folder: &Path) -> Result<Self> {
-        // A run that is at work there replaces the manifest first and removes the state that it named then.
+        // A run that uses the checkpoint first replaces the manifest, and then removes the state that the old one named.
         let mut attempts = 0..ATTEMPTS;
         loop {
             let manifest = Manifest::read(folder, models)?;
@@ -63,12 +63,12 @@ impl Saved {
         }
     }
 
-    /// One that holds nothing yet.
+    /// A checkpoint without finished work.
     pub(super) fn new(folder: PathBuf, manifest: Manifest) -> Self {
         Self { folder, manifest, progress: None }
     }
 
-    /// Refuses a checkpoint of another study or shard, saying what changed.
+    /// Refuses a checkpoint of another study or shard, and says what changed.
     ///
     /// # Errors
     /// [`Error::Checkpoint`].
@@ -97,7 +97,7 @@ impl Saved {
         self.progress.as_ref().is_some_and(|progress| progress.done.missing_from(range).count() == 0)
     }
 
-    /// What was finished before, once, if it can be of what this plan asks for.
+    /// Takes the work that was finished before, if it fits this plan.
     ///
     /// # Errors
     /// [`Error::Checkpoint`] if it cannot.
@@ -116,7 +116,7 @@ impl Saved {
         fits.map(|()| Some(progress)).map_err(misfit)
     }
 
-    /// The study that it is of.
+    /// Its study.
     pub fn study(&self) -> &Study {
         &self.manifest.study
     }
@@ -131,12 +131,12 @@ impl Saved {
         &self.manifest.study_hash
     }
 
-    /// What its study asks for.
+    /// The description of that study.
     pub fn description(&self) -> &Value {
         &self.manifest.description
     }
 
-    /// The shard that it is of.
+    /// Its shard.
     pub fn shard(&self) -> Shard {
         self.manifest.shard
     }
@@ -147,7 +147,7 @@ impl Saved {
     }
 }
 
-/// A description but for the budget of the front: that changes nothing of what was judged before.
+/// A description without the budget of the front, which does not affect the finished designs.
 fn without_budget(description: &Value) -> Value {
     let mut description = description.clone();
     if let Some(object) = description.as_object_mut() {
@@ -156,27 +156,27 @@ fn without_budget(description: &Value) -> Value {
     description
 }
 
-/// What the manifest says is done, with the state that belongs to it.
+/// The finished ranges of the manifest, and the state that belongs to them.
 fn progress(folder: &Path, manifest: &Manifest) -> Result<Option<Progress>> {
     let Some((name, checksum)) = &manifest.state else { return Ok(None) };
     let refuse = |problem: &str| Error::Checkpoint { path: folder.to_owned(), problem: format!("{name} {problem}") };
     let again = "start again with --force";
-    // A name with a path in it would be read anywhere.
+    // A name with a path in it could be any file.
     if !super::is_state(name) {
-        return Err(refuse(&format!("is no name of a state; {again}")));
+        return Err(refuse(&format!("is not the name of a state; {again}")));
     }
     let path = folder.join(name);
     if !is_regular(&path) {
         return Err(refuse(&format!("is missing; {again}")));
     }
-    // A file that is not what the manifest names, however large, is not taken into memory.
+    // The checksum is verified without reading the file into memory, however large it is.
     if checksum_of(&path).map_err(Error::io(&path))? != *checksum {
         return Err(refuse(&format!("does not match its checksum; {again}")));
     }
     let bytes = fs::read(&path).map_err(Error::io(&path))?;
     let state = match postcard::take_from_bytes(&bytes) {
         Ok((state, [])) => state,
-        _ => return Err(refuse(&format!("is no state of a sweep; {again}"))),
+        _ => return Err(refuse(&format!("is not the state of a sweep; {again}"))),
     };
     Ok(Some(Progress { done: manifest.done.clone(), state }))
 }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::Path;
 
-/// Folder of the files that are to be put in place, in that of the checkpoint.
+/// Folder within that of the checkpoint for the files that are to be put in place.
 pub(super) const RESULT: &str = "result";
 
 /// A result whose files are complete and are being put in place.
@@ -16,23 +16,23 @@ pub(super) const RESULT: &str = "result";
 pub struct Switch {
     /// Names of its files, the mark of a finished result last.
     pub files: Vec<String>,
-    /// Names of the files that this program wrote before: they are replaced, or removed if the new result has none of that name.
+    /// Names of the files of the old result: they are replaced, or removed if the new result has no file of that name.
     pub replaced: Vec<String>,
 }
 
 impl Switch {
-    /// Only names that a result has, and the mark at the end.
+    /// The names must be those of a result's files, and the last one the mark.
     fn check(&self) -> std::result::Result<(), String> {
         match self.files.iter().chain(&self.replaced).find(|name| !is_ours(name)) {
-            Some(name) => Err(format!("no result has a file {name:?}")),
+            Some(name) => Err(format!("{name:?} is not a file of a result")),
             None if self.files.last().is_none_or(|it| it != MARK) => Err(format!("the last file is not {MARK}")),
             None => Ok(()),
         }
     }
 }
 
-/// Puts a finished result in place, if one is waiting, and removes its checkpoint; says whether there was one. This may have been
-/// interrupted at any point before.
+/// Puts a finished result in place, if one is waiting, and removes its checkpoint; returns whether there was one. An earlier attempt may
+/// have been interrupted at any point.
 ///
 /// # Errors
 /// [`Error::Io`]; [`Error::Checkpoint`] if files are missing that the manifest names.
@@ -43,11 +43,11 @@ pub fn finish_switch(directory: &Claim) -> Result<bool> {
     let Some(switch) = waiting else { return Ok(false) };
     switch.check().map_err(|problem| refuse(format!("the manifest is damaged ({problem}); remove the folder and start again")))?;
     let staged = folder.join(RESULT);
-    // The mark goes last: where it is gone from here, everything is in place.
+    // The mark is moved last: if it is no longer here, everything is in place.
     if is_regular(&staged.join(MARK)) {
         put_in_place(directory.path(), &staged, &switch).map_err(|error| match error {
             Stopped::Foreign(name) => Error::Request(format!(
-                "{} was not written by this program; move it away and go on with --resume",
+                "{} was not written by this program; move it away and continue with --resume",
                 directory.path().join(name).display()
             )),
             Stopped::Missing(name) => refuse(format!("its {name} is missing; start again with --force")),
@@ -81,7 +81,7 @@ fn put_in_place(out: &Path, staged: &Path, switch: &Switch) -> std::result::Resu
     if is_there(&out.join(mark)) && !is_own(mark) {
         return Err(Stopped::Foreign(mark.clone()));
     }
-    // From here until the new mark is there, this is no finished result.
+    // From here until the new mark is in place, this is not a finished result.
     remove_if_there(&out.join(mark))?;
     for name in others {
         let (from, to) = (staged.join(name), out.join(name));
@@ -91,7 +91,7 @@ fn put_in_place(out: &Path, staged: &Path, switch: &Switch) -> std::result::Resu
             }
             fs::rename(&from, &to).map_err(Error::io(&to))?;
         } else if !is_regular(&to) {
-            // It is neither waiting nor was it put in place before the interruption.
+            // It is neither waiting, nor was it put in place before the interruption.
             return Err(Stopped::Missing(name.clone()));
         }
     }

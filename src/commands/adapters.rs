@@ -1,4 +1,4 @@
-//! `beltspace adapters`: the GPUs of this machine, and whether their drivers can be trusted.
+//! `beltspace adapters`: the GPUs of this machine, and whether their drivers pass the self-test.
 
 use crate::terminal::{self, Grid, bold, grouped};
 use beltspace::error::Result;
@@ -12,8 +12,8 @@ pub fn run(json: bool) -> Result<()> {
     }
     if adapters.is_empty() {
         return terminal::print(
-            "no GPU driver was found: every command works on the processor\n\
-             In software, for trying things out: the Debian package mesa-vulkan-drivers (lavapipe).\n",
+            "no GPU driver was found: every command runs on the CPU\n\
+             A software driver, for trying things out: the Debian package mesa-vulkan-drivers (lavapipe).\n",
         );
     }
     let pages: Vec<_> = adapters.iter().map(page).collect();
@@ -52,18 +52,18 @@ fn page(adapter: &Adapter) -> String {
             let problems = report.problems();
             fact(
                 "self-test",
-                if problems.is_empty() {
-                    "passed: the driver can be trusted".to_owned()
-                } else {
-                    format!("failed: {}", problems.join("; "))
-                },
+                if problems.is_empty() { "passed: the driver can be used".to_owned() } else { format!("failed: {}", problems.join("; ")) },
             );
-            let turns = grouped(report.loop_turns.into());
-            let limited = if report.limited_loops() { ", without a word: kernels are kept shorter" } else { "" };
-            fact("  loops", if report.limited_loops() { format!("end after {turns} turns{limited}") } else { "no limit seen".to_owned() });
+            let iterations = grouped(report.loop_turns.into());
+            let loops = if report.limited_loops() {
+                format!("the driver ends them after {iterations} iterations without an error: kernels are kept shorter")
+            } else {
+                "no limit seen".to_owned()
+            };
+            fact("  loops", loops);
             fact("  lost appends", report.lost_appends.to_string());
             for measure in &report.measures {
-                fact(&format!("  {}", measure.name), format!("{:.2} ULP off at most, allowed are {:.1}", measure.ulp, measure.allowed));
+                fact(&format!("  {}", measure.name), format!("at most {:.2} ULP off, {:.1} are allowed", measure.ulp, measure.allowed));
             }
         }
     }

@@ -1,4 +1,4 @@
-//! `beltspace check`: a dry run.
+//! `beltspace check`: checks a study and estimates its run.
 
 use super::{read_study, threads};
 use crate::terminal::{self, Grid, bold, grouped, scaled, span};
@@ -33,12 +33,12 @@ pub fn run(path: &Path) -> Result<()> {
     let speed = Speed::measured(&plan, cores, TRIAL);
     #[allow(clippy::cast_precision_loss, reason = "an estimate for people")]
     let evaluations = designs as f64 * scenarios as f64;
-    // The sample behind what limits feasibility and a list of all designs are judged once more.
+    // The sample that shows what limits feasibility and a list of all designs are judged a second time.
     let listed = if study.report.variants { designs } else { 0 };
     let seconds = [designs, designs.min(model.sample), listed].iter().map(|&judged| speed.of(judged, cores)).sum();
     let method = match why_every_design(&plan, speed.of(designs, cores)) {
         Some(why) => format!("every design: {why}"),
-        None => format!("bounds, at most about {} unless they pay; then every design", span(PATIENCE * seconds)),
+        None => format!("bounds; if they are not faster, every design after at most about {}", span(PATIENCE * seconds)),
     };
     let mut facts = Grid::default();
     let mut fact = |what: &str, value: String| facts.row([bold(what), value]);
@@ -49,7 +49,7 @@ pub fn run(path: &Path) -> Result<()> {
     fact(
         "expected time",
         format!(
-            "about {} and what the front takes, on {cores} threads, {}designs/s ({})",
+            "about {} plus the time for the front, on {cores} threads, {}designs/s ({})",
             span(seconds),
             scaled(speed.of(1, cores).recip()),
             speed.how()
@@ -92,7 +92,7 @@ fn warnings(plan: &Plan, name: &impl Fn(&Axis) -> String) -> Vec<String> {
     for axis in plan.inert_axes() {
         let axis = &study.design[axis];
         warnings.push(format!(
-            "{} changes nothing that the study asks for: {} times the work for designs that tie",
+            "{} changes nothing that the study asks for: its {} levels only multiply the work and add equal designs",
             name(axis),
             grouped(axis.count())
         ));

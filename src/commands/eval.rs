@@ -1,4 +1,4 @@
-//! `beltspace eval`: one design, of a model or of a study.
+//! `beltspace eval`: evaluates one design of a model or of a study.
 
 use super::{find_model, read_study};
 use crate::cli;
@@ -25,7 +25,7 @@ pub fn run(request: &cli::Eval) -> Result<()> {
     }
     let model = find_model(&request.target)?;
     if request.design.is_some() {
-        return Err(Error::Request(format!("--design numbers the designs of a study, and {} is a model; use --set", model.name)));
+        return Err(Error::Request(format!("--design is for studies, and {} is a model; use --set", model.name)));
     }
     let inputs = inputs_of(&model, request.preset.as_deref(), &request.set)?;
     print_one(&model, &inputs, None, request)
@@ -70,16 +70,16 @@ fn parse_assignment(model: &Model, assignment: &str) -> std::result::Result<(usi
     }
     let words = input.words_listed().unwrap_or_default();
     if input.is_enumeration() {
-        return Err(format!("{name} = {text}: {name} takes words only; it is {words}"));
+        return Err(format!("{name} = {text}: {name} takes words only; write {words}"));
     }
     let or_word = if words.is_empty() { words } else { format!(", or {words}") };
     let value = parse_value(text, input.unit).map_err(|error| format!("{name}: {error}{or_word}"))?;
-    // The number that encodes a word is no value of its own.
+    // The number that stands for a word is not a value that a user may give.
     if input.accepts(value) && input.word_for(value).is_none() {
         return Ok((number, value));
     }
     let whole = if input.integer && value.fract() != 0.0 { "must be a whole number" } else { "is out of range" };
-    Err(format!("{name} = {text} {whole}; it is {}{or_word}", input.valid.in_words()))
+    Err(format!("{name} = {text} {whole}; it must be {}{or_word}", input.valid.in_words()))
 }
 
 /// Prints one design in one scenario.
@@ -119,7 +119,7 @@ fn print_one(model: &Model, inputs: &[f64], of_study: Option<(u64, u64)>, reques
     let why = match evaluation.status {
         Status::Ok => String::new(),
         Status::Failed(condition) => format!("  (unless: {})", model.conditions[condition].doc),
-        Status::Overflow => "  (a value is beyond what a number of 64 bits holds)".to_owned(),
+        Status::Overflow => "  (a value is too large for a 64-bit number)".to_owned(),
     };
     terminal::print(&format!(
         "{}\n{}\n{}\n{}\n{} {reason}{why}\n",
@@ -148,7 +148,7 @@ fn along_the_belt(model: &Model, inputs: &[f64], evaluation: &Evaluation, reques
     if model.profile.is_none() {
         let with: Vec<_> = models::all().iter().filter(|it| it.profile.is_some()).map(|it| it.name.as_str()).collect();
         return Err(Error::Request(format!(
-            "{} has no values along the belt for --profile and --plot; models that have: {}",
+            "{} has no values along the belt for --profile and --plot; models that have them: {}",
             model.name,
             with.join(", ")
         )));
@@ -178,7 +178,7 @@ fn along_the_belt(model: &Model, inputs: &[f64], evaluation: &Evaluation, reques
         }
         let position = Quantity::new(&columns[0].name, columns[0].unit.symbol);
         replace(path, pictures::curves(&model.summary, &position, &panels).as_bytes())?;
-        // A pulley is more than curves: the others stand beside the file, named after it.
+        // A pulley has more pictures than the curves: they are written beside the file, with names that begin like its own.
         for (name, text) in pulley::pictures(model, &model.summary, inputs) {
             replace(&beside(path, name), text.as_bytes())?;
         }
@@ -186,7 +186,7 @@ fn along_the_belt(model: &Model, inputs: &[f64], evaluation: &Evaluation, reques
     Ok(())
 }
 
-/// `--profile` and `--plot` replace what such a request wrote before, and nothing else.
+/// `--profile` and `--plot` replace files that such a request wrote before, and no others.
 fn refuse_foreign_files(model: &Model, request: &cli::Eval) -> Result<()> {
     if let Some(path) = &request.profile {
         let headers: Vec<String> = models::all()
@@ -223,7 +223,7 @@ pub(super) fn studied(path: &Path, design: Option<u64>) -> Result<(Plan, u64)> {
 
 fn of_study(request: &cli::Eval, path: &Path) -> Result<()> {
     if !request.set.is_empty() || request.preset.is_some() {
-        return Err(Error::Request("--set and --preset are for models; a study's designs are numbered: use --design N".to_owned()));
+        return Err(Error::Request("--set and --preset are for models; for a study use --design N".to_owned()));
     }
     let (plan, design) = studied(path, request.design)?;
     let model = &plan.study.model;
@@ -235,7 +235,7 @@ fn of_study(request: &cli::Eval, path: &Path) -> Result<()> {
         return print_one(model, &plan.space.inputs(design, scenario), Some((design, scenario)), request);
     }
     if request.profile.is_some() || request.plot.is_some() {
-        return Err(Error::Request(format!("values along the belt are of one scenario; add --scenario K, from 0 to {}", scenarios - 1)));
+        return Err(Error::Request(format!("--profile and --plot show one scenario; add --scenario K, from 0 to {}", scenarios - 1)));
     }
     print_worst(&plan, design, request.json)
 }
@@ -244,7 +244,7 @@ fn of_study(request: &cli::Eval, path: &Path) -> Result<()> {
 fn print_worst(plan: &Plan, design: u64, as_json: bool) -> Result<()> {
     let study = &plan.study;
     let model = &study.model;
-    // The study's own columns plus every output: ask for them as report columns.
+    // As if the study asked for every output as a report column.
     let mut everything = Study::clone(study);
     everything.report.columns = (0..model.outputs.len()).map(Which::Output).collect();
     let columns = certify::columns(&everything);
@@ -340,7 +340,7 @@ mod tests {
         let section = model.enumeration().expect("it has one");
         assert_eq!(parse_assignment(&model, "section = welded-discs"), Ok((section, 2.0)));
         for wrong in ["2", "cast", ""] {
-            let expected = format!("section = {wrong}: section takes words only; it is \"machined\", \"welded-discs\" or \"pressed-cup\"");
+            let expected = format!("section = {wrong}: section takes words only; write \"machined\", \"welded-discs\" or \"pressed-cup\"");
             assert_eq!(parse_assignment(&model, &format!("section={wrong}")), Err(expected));
         }
     }

@@ -1,4 +1,4 @@
-//! `beltspace export`: one design for another program.
+//! `beltspace export`: exports one design to another program.
 
 use super::eval::{inputs_of, studied};
 use super::find_model;
@@ -16,7 +16,10 @@ pub fn run(request: &cli::Export) -> Result<()> {
     }
     let (model, inputs) = design_of(request)?;
     let Some(design) = model.pulley_of(&inputs) else {
-        return Err(Error::Request(format!("{} has no finite elements to export; the model pulley has", model.name)));
+        return Err(Error::Request(format!(
+            "{} is not computed with finite elements, so there is nothing to export; the model pulley is",
+            model.name
+        )));
     };
     let evaluation = evaluate(&model, &inputs);
     if evaluation.status != Status::Ok {
@@ -30,7 +33,7 @@ pub fn run(request: &cli::Export) -> Result<()> {
     calculix::export(&job, &request.calculix).map_err(|error| failed(&error))?;
     let folder = request.calculix.display();
     if case.phase.is_none() {
-        terminal::remark("note", "bolt_angle_deg is \"worst\": the deck has its first bolt at 0 degrees");
+        terminal::remark("note", "bolt_angle_deg is \"worst\": the exported model has its first bolt at 0 degrees");
     }
     terminal::print(&format!(
         "{folder}/{name}.inp\n\nrun     cd {folder} && OMP_NUM_THREADS=2 ccx -i {name}\nthen    beltspace export --calculix {folder} --compare\n",
@@ -52,26 +55,24 @@ fn design_of(request: &cli::Export) -> Result<(Arc<Model>, Vec<f64>)> {
     let path = Path::new(target);
     if beltspace::models::find(target).is_none() && (path.extension().is_some_and(|it| it == "toml") || path.exists()) {
         if !request.set.is_empty() || request.preset.is_some() {
-            return Err(Error::Request("--set and --preset are for models; a study's designs are numbered: use --design N".to_owned()));
+            return Err(Error::Request("--set and --preset are for models; for a study use --design N".to_owned()));
         }
         let (plan, design) = studied(path, request.design)?;
         let scenarios = plan.scenarios();
-        let scenario = request
-            .scenario
-            .or((scenarios == 1).then_some(0))
-            .filter(|scenario| *scenario < scenarios)
-            .ok_or_else(|| Error::Request(format!("a deck is of one scenario; add --scenario K, from 0 to {}", scenarios - 1)))?;
+        let scenario = request.scenario.or((scenarios == 1).then_some(0)).filter(|scenario| *scenario < scenarios).ok_or_else(|| {
+            Error::Request(format!("a model for CalculiX is of one scenario; add --scenario K, from 0 to {}", scenarios - 1))
+        })?;
         return Ok((plan.study.model.clone(), plan.space.inputs(design, scenario)));
     }
     let model = find_model(target)?;
     if request.design.is_some() {
-        return Err(Error::Request(format!("--design numbers the designs of a study, and {} is a model; use --set", model.name)));
+        return Err(Error::Request(format!("--design is for studies, and {} is a model; use --set", model.name)));
     }
     let inputs = inputs_of(&model, request.preset.as_deref(), &request.set)?;
     Ok((model, inputs))
 }
 
-/// Prints what CalculiX found beside the harmonics.
+/// Prints the results of CalculiX beside those of beltspace.
 fn compare(folder: &Path) -> Result<()> {
     let rows = calculix::compare(folder).map_err(|error| failed(&error))?;
     let mut table = Grid::default();

@@ -1,4 +1,4 @@
-//! `beltspace merge`: shards into one result.
+//! `beltspace merge`: merges shards into one result.
 
 use super::sweep::files_of;
 use super::{report as page, threads};
@@ -23,8 +23,8 @@ pub fn run(request: &cli::Merge) -> Result<()> {
     let folders = request.shards.iter().map(|folder| checkpoint_in(folder)).collect::<Result<Vec<_>>>()?;
     refuse_twice(&request.shards, &folders)?;
     refuse_into_a_shard(&request.out, &folders)?;
-    // What is refused anyway is refused before shards are read. The directory is taken first: one that somebody else is at work in may look
-    // like anything.
+    // Refuse what can be refused before reading shards. Claim the directory first: while another process works in it, its contents mean
+    // nothing.
     let taken = directory::claim(&request.out, &terminal::command_line())?;
     Contents::of(&request.out)?.refuse_to_overwrite(&[], request.force, false)?;
     let mut shards = Vec::new();
@@ -34,7 +34,7 @@ pub fn run(request: &cli::Merge) -> Result<()> {
         shards.push((named.clone(), Saved::read(folder)?));
     }
     check_set(&shards)?;
-    // Whatever the order they are named in: the first shard's study file becomes the result's.
+    // In order of their numbers, however they were named: the first shard's study file becomes that of the result.
     shards.sort_by_key(|(_, shard)| shard.shard().number);
     let first = &shards.first().ok_or_else(|| Error::Request("name the directories of the shards".to_owned()))?.1;
     let text = first.study_text().to_owned();
@@ -48,7 +48,7 @@ pub fn run(request: &cli::Merge) -> Result<()> {
     let count = shards.len();
     let state = merge(&plan, &reduction, shards)?;
     drop(reading);
-    // What is merged is a run that has come to its end: whatever interrupts it now, `sweep --resume` goes on.
+    // The merged state is saved as that of a complete run: if this is interrupted from here on, `sweep --resume` finishes it.
     let mut checkpoint = Checkpoint::create(&taken.claim, &plan.study, &text, Shard::WHOLE, plan.designs())?;
     checkpoint.save(&Ranges::of(0..plan.designs()), &state)?;
     let outcome = Certified::certify(&plan, state, tally, threads, &Control::default())?;
@@ -84,12 +84,12 @@ fn checkpoint_in(folder: &Path) -> Result<PathBuf> {
     there.ok_or_else(|| Error::Request(format!("{}: there is no checkpoint here", folder.display())))
 }
 
-/// The result directory that a checkpoint is in: what a run at work there has locked.
+/// The result directory of a checkpoint, which a run that uses it has locked.
 fn directory_of<'a>(named: &'a Path, checkpoint: &'a Path) -> &'a Path {
     if named == checkpoint { checkpoint.parent().filter(|it| !it.as_os_str().is_empty()).unwrap_or(Path::new(".")) } else { named }
 }
 
-/// What is merged is kept.
+/// The shards are kept, so the result cannot take the place of one.
 fn refuse_into_a_shard(out: &Path, folders: &[PathBuf]) -> Result<()> {
     let real = |path: &Path| path.canonicalize().ok();
     let own = real(&out.join(CHECKPOINT));
@@ -99,7 +99,7 @@ fn refuse_into_a_shard(out: &Path, folders: &[PathBuf]) -> Result<()> {
     Ok(())
 }
 
-/// A directory named twice would look like one that another run is using.
+/// A directory named twice would look as if another run were using it.
 fn refuse_twice(named: &[PathBuf], folders: &[PathBuf]) -> Result<()> {
     let real: Vec<_> = folders.iter().map(|folder| folder.canonicalize().unwrap_or_else(|_| folder.clone())).collect();
     for (at, folder) in real.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! What each command does. A command reads its request, finds everything that is wrong with it, then works.
+//! The commands. Each checks its whole request first, and only then starts to work.
 
 #[cfg(feature = "gpu")]
 mod adapters;
@@ -58,7 +58,7 @@ fn find_model(name: &str) -> Result<Arc<Model>> {
     })
 }
 
-/// Reads a study file; one that is not there is a wrong request.
+/// Reads a study file; if there is none of this name, the request is wrong.
 fn read_study(path: &Path) -> Result<(Study, String)> {
     Study::read(path).map_err(|error| match error {
         Error::Io { path, source } => Error::Request(format!("cannot read study {}: {source}", path.display())),
@@ -66,17 +66,17 @@ fn read_study(path: &Path) -> Result<(Study, String)> {
     })
 }
 
-/// Number of threads asked for, or one per core, as far as they can be had: some machines let nobody start many.
+/// The number of threads asked for, or one per core; fewer if the system does not let so many be started.
 fn threads(asked: Option<u16>) -> usize {
     let wanted = asked.map_or_else(|| std::thread::available_parallelism().map_or(1, std::num::NonZero::get), usize::from);
     let had = to_be_had(wanted);
     if had < wanted {
-        terminal::remark("warning", &format!("{wanted} threads were wanted, and only {had} can be started here"));
+        terminal::remark("warning", &format!("{wanted} threads were asked for, but only {had} can be started here"));
     }
     had
 }
 
-/// Models that no shipped one is like.
+/// Models for tests of what no shipped model has.
 #[cfg(test)]
 mod unlike {
     use beltspace::models::{Input, Model, Preset, find};
@@ -84,13 +84,13 @@ mod unlike {
 
     const SECTIONS: &[(&str, f64)] = &[("machined", 1.0), ("welded-discs", 2.0), ("pressed-cup", 4.0)];
 
-    /// Computed on the processor only.
-    pub fn on_the_processor_only() -> Arc<Model> {
+    /// Computed on the CPU only.
+    pub fn cpu_only() -> Arc<Model> {
         let model = find("pulley-load").expect("it is a model");
-        Arc::new(Model { name: "no-twin".into(), shader: None, ..Model::clone(&model) })
+        Arc::new(Model { name: "cpu-only".into(), shader: None, ..Model::clone(&model) })
     }
 
-    /// With an input whose every value is a word, and one that is read for one of them only.
+    /// With an input that takes words only, and one that is read for some of these words only.
     pub fn with_a_section() -> Arc<Model> {
         let model = find("pulley-load").expect("it is a model");
         let section = Input::enumeration("section", "", SECTIONS, 4.0, "How the pulley is made.", "chosen");

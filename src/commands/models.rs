@@ -1,4 +1,4 @@
-//! `beltspace models`: what there is.
+//! `beltspace models`: lists the models, or describes one.
 
 use super::find_model;
 use crate::cli;
@@ -58,7 +58,7 @@ fn page(model: &Model) -> String {
     }
     let presets: Vec<_> = model.presets.iter().map(|it| it.name.as_str()).collect();
     let presets = if presets.is_empty() { String::new() } else { format!("presets: {}\n\n", presets.join(", ")) };
-    let where_run = if model.shader.is_none() { "\nComputed in f64 on the processor only." } else { "" };
+    let where_run = if model.shader.is_none() { "\nComputed in f64 on the CPU only." } else { "" };
     format!(
         "{}  {}\n\n{}{where_run}\n\n{}\n{}\n{}\n{presets}{} {}\n",
         bold(&model.name),
@@ -72,7 +72,7 @@ fn page(model: &Model) -> String {
     )
 }
 
-/// A table whose rows but the first are each followed by a sentence: beside the numbers it would not fit a terminal.
+/// A table with a sentence below each row but the first: beside the numbers the sentence would not fit a terminal.
 fn described(table: &Grid, sentences: impl Iterator<Item = String>) -> String {
     let text = table.indented(2);
     let mut lines = text.lines();
@@ -81,14 +81,14 @@ fn described(table: &Grid, sentences: impl Iterator<Item = String>) -> String {
     format!("{head}\n{}", rows.collect::<String>())
 }
 
-/// For which words of the model's enumeration an input is read, if not always.
+/// A sentence that says for which words of the model's enumeration an input is read, if not always.
 fn only_for(model: &Model, input: &Input) -> String {
     let Some(of) = model.enumeration().filter(|_| !input.only_for.is_empty()) else { return String::new() };
     let words: Vec<_> = input.only_for.iter().map(|word| format!("\"{word}\"")).collect();
     format!(" Read for {} = {} only.", model.inputs[of].name, words.join(" or "))
 }
 
-/// A model as JSON: everything of the table.
+/// A model as JSON, with everything of its tables.
 fn describe(model: &Model) -> Value {
     let range = |range: &Range| {
         json!({
@@ -100,7 +100,7 @@ fn describe(model: &Model) -> Value {
     };
     let defaults = model.spelled_out(&model.defaults());
     let inputs = model.inputs.iter().enumerate().map(|(at, input)| {
-        // A single word beside a range of numbers has a key of its own; of several, all are listed.
+        // A single word beside a range of numbers is `word`; several are listed in `words`.
         let word = if let [(word, _)] = &input.words[..] { Some(word) } else { None };
         let mut described = json!({
             "name": input.name, "symbol": input.symbol, "unit": input.unit.symbol,
@@ -152,7 +152,7 @@ fn describe(model: &Model) -> Value {
 
 #[cfg(test)]
 mod tests {
-    use super::super::unlike::{on_the_processor_only, with_a_section};
+    use super::super::unlike::{cpu_only, with_a_section};
     use super::*;
 
     #[test]
@@ -167,10 +167,10 @@ mod tests {
     }
 
     #[test]
-    fn a_model_of_the_processor_alone_says_so() {
-        let says = |model: &Model| page(model).contains("Computed in f64 on the processor only.");
-        assert!(says(&on_the_processor_only()) && !says(&with_a_section()));
-        assert_eq!((&describe(&on_the_processor_only())["gpu"], &describe(&with_a_section())["gpu"]), (&json!(false), &json!(true)));
+    fn a_model_for_the_cpu_only_says_so() {
+        let says = |model: &Model| page(model).contains("Computed in f64 on the CPU only.");
+        assert!(says(&cpu_only()) && !says(&with_a_section()));
+        assert_eq!((&describe(&cpu_only())["gpu"], &describe(&with_a_section())["gpu"]), (&json!(false), &json!(true)));
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! What the command line says to a device where the program is built without the feature `gpu`.
+//! `--perturb` and `--emit-shader` where the program is built without the feature `gpu`: both are refused.
 
 use beltspace::error::Result;
 use beltspace::models::Model;
@@ -6,12 +6,12 @@ use beltspace::plan::Plan;
 use beltspace::run::device::{Wrong, without_gpu};
 use std::path::Path;
 
-/// Refuses any word of `--perturb`.
+/// Refuses `--perturb`.
 pub fn wrong(_: &Model, words: &[String]) -> Result<Wrong> {
     if words.is_empty() { Ok(Wrong::default()) } else { without_gpu() }
 }
 
-/// Refuses: there is no kernel to write.
+/// Refuses `--emit-shader`.
 pub fn emit_shader(_: &Plan, _: &Wrong, _: usize, _: &Path) -> Result<()> {
     without_gpu()
 }

@@ -13,7 +13,7 @@ use beltspace::study::Study;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// What a sweep waits at least for the outputs that its tables do not have.
+/// Least time that a sweep allows for computing the outputs that its tables lack.
 const LEAST_PATIENCE: Duration = Duration::from_secs(3);
 
 pub fn run(request: &cli::Report) -> Result<()> {
@@ -32,7 +32,7 @@ pub fn run(request: &cli::Report) -> Result<()> {
         terminal::remark(
             "note",
             &format!(
-                "the page has of each design what front.csv has; every other output would take more than {} s: raise --patience",
+                "the page shows only the outputs of front.csv; computing the others takes more than {} s: raise --patience",
                 request.patience
             ),
         );
@@ -42,7 +42,7 @@ pub fn run(request: &cli::Report) -> Result<()> {
     terminal::print(&format!("{} ({size:.1} MB)\n", file.display()))
 }
 
-/// A page goes into an HTML file, and replaces nothing but a page.
+/// The page must be an HTML file, and replaces only another page.
 fn refuse_to_replace(file: &Path, force: bool) -> Result<()> {
     let refuse = |problem: &str| Err(Error::Request(format!("{}: {problem}", file.display())));
     let folder = file.parent().filter(|it| !it.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -65,7 +65,7 @@ fn refuse_to_replace(file: &Path, force: bool) -> Result<()> {
 pub fn beside(plan: &Plan, out: &Path, study: &Path, took: Duration, threads: usize, control: &Control) -> Result<PathBuf> {
     let file = out.join(PAGE);
     let page = make(plan, out, study, threads, LEAST_PATIENCE.max(took / 4), control);
-    // Whatever goes wrong here, the result is whole.
+    // If this fails, the result is complete all the same.
     let lost = |error: Error| {
         let again = format!("beltspace report {}", quoted(out));
         Error::Page { path: out.to_owned(), why: Box::new(error), again }
@@ -75,7 +75,7 @@ pub fn beside(plan: &Plan, out: &Path, study: &Path, took: Duration, threads: us
 }
 
 fn make(plan: &Plan, folder: &Path, study: &Path, threads: usize, patience: Duration, control: &Control) -> Result<Page> {
-    // The result's copy of the study stays what it is; it will not do where it names tables beside the original.
+    // Prefer the result's copy of the study, which never changes. It cannot be used if it names tables beside the original.
     let copy = folder.join("study.toml");
     let alone = Study::read(&copy).is_ok_and(|(copy, _)| copy.hash() == plan.study.hash());
     let study = if alone { &copy } else { study };

@@ -1,4 +1,4 @@
-//! `beltspace reproduce`: the papers' tables and figures.
+//! `beltspace reproduce`: computes the papers' tables and figures again.
 
 use crate::cli;
 use crate::terminal::{self, Grid, bold, dim};
@@ -29,14 +29,14 @@ pub fn run(request: &cli::Reproduce) -> Result<()> {
     terminal::print(&(shown(&all, out) + &page))
 }
 
-/// Files that are there stay unless they are of a reproduction and `--force` says otherwise.
+/// Existing files are only replaced if they are those of a reproduction and `--force` is given.
 fn refuse_to_overwrite(all: &Reproduction, out: &Path, force: bool) -> Result<()> {
     let own = Reproduction::is_in(out);
     let files = all.in_the_way(out);
     let link = files.iter().find(|name| !is_regular(&out.join(name)));
     let Some(first) = link.or(files.first()).filter(|_| !(own && force && link.is_none())) else { return Ok(()) };
     let more = if files.len() > 1 { format!(" and {} more", files.len() - 1) } else { String::new() };
-    let remedy = if own && link.is_none() { "replace them with --force" } else { "this program did not write them: move them away" };
+    let remedy = if own && link.is_none() { "replace them with --force" } else { "beltspace did not write them: move them away" };
     Err(Error::Request(format!("{} has files that would be replaced ({first}{more}); {remedy}, or write to another --out", out.display())))
 }
 

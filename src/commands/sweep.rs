@@ -1,4 +1,4 @@
-//! `beltspace sweep`: the main job.
+//! `beltspace sweep`: judges every design of a study and writes the result.
 
 use super::{engine, read_study, report as page, threads};
 use crate::cli;
@@ -32,7 +32,7 @@ pub fn run(request: &cli::Sweep) -> Result<()> {
     let on_a_device = device::is_expected(&plan, request.engine, request.adapter.as_deref());
     let speed = || if on_a_device { device::about(Speed::quick(&plan, threads)) } else { Speed::quick(&plan, threads) };
     let method = method::choose(&plan, request.method, request.engine, request.adapter.as_deref(), threads, speed)?;
-    // Free before anything is done, and held to the end.
+    // Claimed before anything is done, and held to the end.
     let taken = directory::claim(&out, &terminal::command_line())?;
     let contents = Contents::of(&out)?;
     if taken.completed && request.resume && contents.is_result_of(&plan.study) {
@@ -47,7 +47,7 @@ pub fn run(request: &cli::Sweep) -> Result<()> {
     stop_on_ctrl_c(&control);
     let mut checkpoint = if contents.is_unfinished() && request.resume {
         let mut checkpoint = Checkpoint::open(&taken.claim)?;
-        // Nothing has failed: the request and the checkpoint do not go together.
+        // This is no failure: the request and the checkpoint do not fit together.
         checkpoint.adopt(&plan.study, &text, shard).map_err(|error| Error::Request(error.to_string()))?;
         checkpoint
     } else {
@@ -92,22 +92,26 @@ pub fn default_out(study: &Path, shard: Option<Shard>) -> PathBuf {
     Path::new("results").join(format!("{stem}{suffix}"))
 }
 
-/// The files that the result of a sweep will have.
+/// The files that the result of a sweep has.
 pub fn files_of(plan: &Plan, no_page: bool) -> Vec<String> {
     let mut files = result_files(&plan.study);
     files.retain(|name| !no_page || name != PAGE);
     files
 }
 
-/// The result of a run that was killed while it put it in place is in place by now; only its page may be missing.
+/// A run was killed while it put its result in place; that has been completed. Only its page may be missing.
 fn finish_interrupted(plan: &Plan, request: &cli::Sweep, out: &Path, threads: usize) -> Result<()> {
     let page =
         if request.no_report { None } else { Some(page::beside(plan, out, &request.study, Duration::ZERO, threads, &Control::default())?) };
     let page = page.map_or(String::new(), |page| format!("page   {}\n", page.display()));
-    if request.quiet { Ok(()) } else { terminal::print(&format!("the interrupted run was complete\nresult {}\n{page}", out.display())) }
+    if request.quiet {
+        Ok(())
+    } else {
+        terminal::print(&format!("the interrupted run had finished, and its result is now in place\nresult {}\n{page}", out.display()))
+    }
 }
 
-/// The first Ctrl-C ends the sweep in good order, the second at once.
+/// The first Ctrl-C stops the sweep and saves its checkpoint, the second ends the program at once.
 fn stop_on_ctrl_c(control: &Arc<Control>) {
     let control = Arc::clone(control);
     let handler = move || {
@@ -116,7 +120,7 @@ fn stop_on_ctrl_c(control: &Arc<Control>) {
         }
     };
     if let Err(error) = ctrlc::set_handler(handler) {
-        terminal::remark("warning", &format!("Ctrl-C ends the run at once, and --resume goes on from its last save: {error}"));
+        terminal::remark("warning", &format!("Ctrl-C will end the run at once, and --resume will continue from its last save: {error}"));
     }
 }
 
@@ -140,7 +144,9 @@ fn name_the_way_back(error: Error, out: &Path, request: &cli::Sweep) -> Error {
             Error::FrontMemory { points, megabytes, example, resume }
         }
         Error::Io { path, source } if out.join(CHECKPOINT).exists() => Error::Interrupted { path, source, checkpoint, resume },
-        Error::Promise(problem) => Error::Promise(format!("{problem}; nothing that it counted is kept, go on with: {resume} --engine cpu")),
+        Error::ErrorBound(problem) => {
+            Error::ErrorBound(format!("{problem}; what the GPU counted is discarded, go on with: {resume} --engine cpu"))
+        }
         other => other,
     }
 }
@@ -151,7 +157,7 @@ fn finish_shard(plan: &Plan, out: &Path, shard: Shard, quiet: bool) -> Result<()
     }
     let range = shard.range(plan.designs());
     terminal::print(&format!(
-        "shard {shard} of \"{}\": {} designs, in {}\nput the shards together with: beltspace merge DIR... --out DIR\n",
+        "shard {shard} of \"{}\": {} designs, in {}\nmerge the shards with: beltspace merge DIR... --out DIR\n",
         terminal::told(&plan.study.title),
         terminal::grouped(range.end - range.start),
         out.display(),

@@ -1,4 +1,4 @@
-//! `beltspace verify`: the GPU against f64, on the machine at hand.
+//! `beltspace verify`: compares the GPU of this machine with f64.
 
 use super::{engine, find_model, read_study, threads};
 use crate::cli;
@@ -30,7 +30,7 @@ pub fn run(request: &cli::Verify) -> Result<()> {
         let tables = Tables::new(&plan);
         let ranges = Tally::new(&plan, &tables, threads(None)).histogram_ranges(&plan);
         let reduction = Reduction::new(&plan, &ranges);
-        // A kernel that breaks its promise point by point need not be swept to be refused.
+        // A kernel that breaks an error bound at single points is refused without a sweep.
         let swept = match report.require() {
             Ok(()) => Some(recheck_on_device(&plan, &tables, &reduction, threads(None), &device.on)?),
             Err(_) => None,
@@ -44,7 +44,7 @@ pub fn run(request: &cli::Verify) -> Result<()> {
 }
 
 fn open(request: &cli::Verify, model: &Model) -> Result<Trusted> {
-    device::needs_a_twin(model, "there is nothing on a GPU to compare with it")?;
+    device::refuse_cpu_only(model, "there is nothing on a GPU to compare with it")?;
     device::trusted(request.adapter.as_deref(), engine::wrong(model, &request.perturb)?)
 }
 
@@ -61,12 +61,12 @@ fn print(request: &cli::Verify, what: &str, device: &Trusted, report: &Report, s
 
 fn page(what: &str, device: &Trusted, report: &Report, swept: Option<&Recheck>) -> String {
     let mut grid = Grid::default();
-    grid.row(["", "values", "error median", "largest", "promise median", "99 %", "used"].map(bold));
+    grid.row(["", "values", "error median", "largest", "bound median", "99 %", "used"].map(bold));
     let row = |it: &Statistics| {
         let small = |value: f64| format!("{value:.1e}");
         let used =
             format!("{:.1} %{}", 100.0 * it.used, if it.broken > 0 { format!("  broken {} times", it.broken) } else { String::new() });
-        let numbers = [it.median_error, it.largest_error, it.median_promise, it.usual_promise].map(small);
+        let numbers = [it.median_error, it.largest_error, it.median_bound, it.usual_bound].map(small);
         [it.name.clone(), grouped(it.values - it.unbounded)].into_iter().chain(numbers).chain([used])
     };
     for it in &report.outputs {
@@ -84,9 +84,9 @@ fn page(what: &str, device: &Trusted, report: &Report, swept: Option<&Recheck>) 
     if let Some(swept) = swept {
         fact("tiles", format!("{} designs swept and judged again in f64: values, counts and survivors agree", grouped(swept.designs)));
     }
-    let kept = if report.require().is_ok() { "the promise was kept everywhere" } else { "the promise was broken" };
+    let kept = if report.require().is_ok() { "all error bounds hold" } else { "an error bound or a decision is wrong" };
     format!(
-        "{}: the GPU against f64; errors and promises relative to the value\n\n{}\n{}\n{}\n",
+        "{}: the GPU compared with f64; errors and error bounds relative to the value\n\n{}\n{}\n{}\n",
         bold(what),
         grid.indented(2),
         facts.indented(0),
@@ -99,7 +99,7 @@ fn describe(device: &Trusted, report: &Report, swept: Option<&Recheck>) -> Value
         json!({
             "name": it.name, "values": it.values, "unbounded": it.unbounded, "broken": it.broken, "example": it.example,
             "median_error": it.median_error, "largest_error": it.largest_error,
-            "median_promise": it.median_promise, "promise_of_99_percent": it.usual_promise, "share_of_promise": it.used,
+            "median_promise": it.median_bound, "promise_of_99_percent": it.usual_bound, "share_of_promise": it.used,
         })
     };
     json!({
@@ -113,14 +113,14 @@ fn describe(device: &Trusted, report: &Report, swept: Option<&Recheck>) -> Value
 
 #[cfg(test)]
 mod tests {
-    use super::super::unlike::on_the_processor_only;
+    use super::super::unlike::cpu_only;
     use super::*;
 
     #[test]
-    fn a_model_without_a_twin_cannot_be_verified() {
-        let request = cli::Verify { target: "no-twin".to_owned(), samples: 1, seed: 1, adapter: None, perturb: Vec::new(), json: false };
-        let refused = open(&request, &on_the_processor_only()).map(drop).expect_err("it has no twin");
+    fn a_model_without_a_gpu_implementation_cannot_be_verified() {
+        let request = cli::Verify { target: "cpu-only".to_owned(), samples: 1, seed: 1, adapter: None, perturb: Vec::new(), json: false };
+        let refused = open(&request, &cpu_only()).map(drop).expect_err("it has no GPU implementation");
         assert!(matches!(refused, Error::CpuOnly { .. }));
-        assert_eq!(refused.to_string(), "no-twin is computed in f64 on the processor only; there is nothing on a GPU to compare with it");
+        assert_eq!(refused.to_string(), "cpu-only is computed in f64 on the CPU only; there is nothing on a GPU to compare with it");
     }
 }

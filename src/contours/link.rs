@@ -1,4 +1,4 @@
-//! Crossed edges of a grid, linked to polylines by marching squares.
+//! Links the crossed edges of a grid to polylines, by marching squares.
 
 /// The axis that an edge runs along.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,7 +23,7 @@ pub(super) struct Edge {
 /// No vertex, or no successor.
 const NONE: usize = usize::MAX;
 
-/// The answers of all nodes, row by row.
+/// The answers at all nodes, row by row.
 pub(super) struct Grid<'a> {
     pub columns: usize,
     pub answers: &'a [Option<bool>],
@@ -38,7 +38,7 @@ impl Grid<'_> {
         self.answers[row * self.columns + column]
     }
 
-    /// The edges whose ends answer differently, by node, first along x.
+    /// The edges whose ends have different answers, by node, first along x.
     pub fn crossed(&self) -> Vec<Edge> {
         let mut edges = Vec::new();
         for row in 0..self.rows() {
@@ -56,9 +56,9 @@ impl Grid<'_> {
         edges
     }
 
-    /// Links edges, each of which holds a vertex, to lines: positions among `edges`, with the true side on the left. First the lines
-    /// with two ends, then the closed ones, each by the edge that it starts from; a closed one starts from its first edge and ends
-    /// there too. `centre` is the answer in the middle of the cell above and right of a node.
+    /// Links edges, each of which has a vertex, to lines: positions among `edges`, with the true side on the left. First come the lines
+    /// with two ends, then the closed ones, in the order of the edges that they start from; a closed line starts from its first edge and
+    /// ends there. `centre` is the answer in the middle of the cell above and to the right of a node.
     pub fn link(&self, edges: &[Edge], centre: impl Fn(usize, usize) -> bool) -> Vec<Vec<usize>> {
         let place = |column: usize, row: usize, along: Along| 2 * (row * self.columns + column) + usize::from(along == Along::Y);
         let mut vertex = vec![NONE; 2 * self.answers.len()];
@@ -71,7 +71,7 @@ impl Grid<'_> {
             let row = row - 1;
             for column in 1..self.columns {
                 let column = column - 1;
-                // Corners and edges in turn around the cell, edge k between the corners k and k + 1.
+                // Corners and edges in order around the cell, edge k between the corners k and k + 1.
                 let corners = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(right, up)| self.answer(column + right, row + up));
                 let around = [
                     place(column, row, Along::X),
@@ -111,17 +111,17 @@ impl Grid<'_> {
     }
 }
 
-/// The pieces of line within a cell, from edge to edge. Around the cell, a piece comes in where false turns into true and goes out
-/// where true turns into false, seen from the true side: that keeps it on the left.
+/// The pieces of line within a cell, from edge to edge. Going around the cell, a piece enters where false changes to true and leaves where
+/// true changes to false, so that the true side is on its left.
 ///
-/// A corner without an answer takes its two edges away; what the other two edges tell is still a piece.
+/// A corner without an answer removes its two edges; the other two edges may still give a piece.
 fn pieces(corners: [Option<bool>; 4], centre: impl FnOnce() -> bool) -> [Option<(usize, usize)>; 2] {
-    let turns = |edge: &usize, from: bool| corners[*edge] == Some(from) && corners[(edge + 1) % 4] == Some(!from);
-    let mut from = (0..4).filter(|edge| turns(edge, true));
-    let mut to = (0..4).filter(|edge| turns(edge, false));
+    let changes = |edge: &usize, from: bool| corners[*edge] == Some(from) && corners[(edge + 1) % 4] == Some(!from);
+    let mut from = (0..4).filter(|edge| changes(edge, true));
+    let mut to = (0..4).filter(|edge| changes(edge, false));
     match (from.next(), from.next(), to.next()) {
         (Some(first), Some(second), _) => {
-            // A saddle. A true middle joins the true corners: each piece goes around a false one, which comes next.
+            // A saddle. If the middle is true, it joins the true corners, and each piece goes around a false corner, which comes next.
             let step = if centre() { 1 } else { 3 };
             [Some((first, (first + step) % 4)), Some((second, (second + step) % 4))]
         }

@@ -1,10 +1,10 @@
-//! Contours of a map: the curves in the plane of its two axes along which "the worst value over all scenarios is at least the
-//! threshold" turns from true to false.
+//! Contours of a map: the curves in the plane of its two axes where "the worst value over all scenarios is at least the threshold"
+//! changes from true to false.
 //!
-//! The map's colours come from the sweep, level by level. A contour is finer than the levels: the model is asked in f64 on a grid
-//! of levels, every edge of that grid whose ends answer differently is bisected down to a billionth of the axis, and what
-//! was found is linked to polylines. Nothing but the plan goes in, so that the lines are the same whatever ran the
-//! study. Constraints are not asked: a line goes on where designs are infeasible, and ends where the quantity has no value.
+//! The map's colours come from the sweep, level by level. A contour is finer than the levels: the model is evaluated in f64 on a grid of
+//! levels, every edge of that grid whose ends have different answers is bisected down to a billionth of the axis, and the crossings are
+//! linked to polylines. They depend on the plan only, so they are the same on every engine. Constraints play no role: a line continues
+//! where designs are infeasible, and ends where the quantity has no value.
 
 mod link;
 mod side;
@@ -20,16 +20,16 @@ use crate::study::{Axis, Best, ContourSpec, MapSpec, Quantity, Study, Thresholds
 use link::Edge;
 use worst::Worst;
 
-/// Most levels along an axis whose edges are looked at.
+/// Most levels along an axis that become nodes of the grid.
 const FINEST: u64 = 256;
-/// Fewest of them, where there are so many, however many scenarios there are.
+/// Fewest nodes along an axis with that many levels, however many scenarios there are.
 const COARSEST: u64 = 24;
-/// Evaluations on the grid beyond which it is made coarser.
+/// Most evaluations on the grid; beyond that it is made coarser.
 const MOST_EVALUATIONS: u64 = 4_000_000;
 /// Most changes of a whole number that get a line.
 const MOST_CHANGES: usize = 1000;
 
-/// Where a contour crosses an edge of the grid: known to lie in a bracket along one axis, whose ends answer differently.
+/// Where a contour crosses an edge of the grid: in a bracket along one axis, whose ends have different answers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vertex {
     /// On the horizontal axis, in its unit.
@@ -54,7 +54,7 @@ pub struct Contour {
     pub lines: Vec<Vec<Vertex>>,
 }
 
-/// The contours that a map asks for, in file order and by threshold.
+/// The contours of a map, in file order and by threshold.
 pub fn contours(plan: &Plan, map: &MapSpec, threads: usize) -> Vec<Contour> {
     if map.contours.is_empty() {
         return Vec::new();
@@ -80,7 +80,7 @@ pub fn contours(plan: &Plan, map: &MapSpec, threads: usize) -> Vec<Contour> {
     found
 }
 
-/// The end that is worst: of the quantity that the map shows the one that it shows, so that the lines divide its colours.
+/// The end that is worst. For the map's own quantity it is the end that the map shows, so that the lines divide its colours.
 fn end(study: &Study, map: &MapSpec, of: Quantity) -> Worse {
     match map.value {
         Best::Value(shown, goal) if shown == of => goal.worse(),
@@ -88,7 +88,7 @@ fn end(study: &Study, map: &MapSpec, of: Quantity) -> Worse {
     }
 }
 
-/// Most nodes along an axis, so that the grid over all scenarios stays affordable.
+/// Most nodes along an axis, so that evaluating the grid in all scenarios does not take too long.
 fn most_nodes(counts: [u64; 2], scenarios: u64) -> u64 {
     let affordable = |most: &u64| {
         let nodes = counts.map(|count| count.min(*most));
@@ -107,17 +107,17 @@ fn thresholds(spec: &ContourSpec, values: impl Iterator<Item = f64>) -> Vec<f64>
                 Some((low.min(value), high.max(value)))
             });
             let Some((low, high)) = ends else { return Vec::new() };
-            // So many that nobody could tell them apart: every so many of them.
+            // Too many lines to tell apart: take every n-th.
             let step = ((high - low) / MOST_CHANGES as f64).ceil().max(1.0);
             std::iter::successors(Some(low + 1.0), |at| Some(at + step)).take_while(|at| *at <= high).take(MOST_CHANGES).collect()
         }
     }
 }
 
-/// The polylines along which an answer changes, in an order that depends on the answers only.
+/// The polylines along which the answer changes, in an order that depends on the answers only.
 ///
-/// `answers` are those of the nodes, row by row in `y`; `ask` gives the answer between them, `None` where there is none. A line ends
-/// at the edge of the grid and where there is no answer on one side of it; a place that no line leads to is a line of one vertex.
+/// `answers` are those at the nodes, row by row in `y`; `ask` gives the answer between them, or `None`. A line ends at the edge of the grid
+/// and where one of its sides has no answer; a crossing that no line reaches is a line of one vertex.
 pub fn trace<A>(x: &Side<'_>, y: &Side<'_>, answers: &[Option<bool>], ask: &A, threads: usize) -> Vec<Vec<Vertex>>
 where
     A: Fn(f64, f64) -> Option<bool> + Sync,
@@ -135,13 +135,13 @@ where
         }
     });
     let (edges, vertices): (Vec<_>, Vec<_>) = edges.into_iter().zip(vertices).filter_map(|(edge, vertex)| Some((edge, vertex?))).unzip();
-    // Without an answer in the middle of a saddle either choice is a possible course of the lines.
+    // Without an answer in the middle of a saddle, both courses of the lines are possible.
     let centre = |column: usize, row: usize| ask(x.centre(column)?, y.centre(row)?);
     let lines = grid.link(&edges, |column, row| centre(column, row).unwrap_or(false));
     lines.into_iter().map(|line| line.into_iter().map(|at| vertices[at]).collect()).collect()
 }
 
-/// Does the same to every item, on several threads; the results in the order of the items.
+/// Applies a function to every item, on several threads; the results are in the order of the items.
 fn in_parallel<T: Sync, R: Send>(items: &[T], threads: usize, work: impl Fn(&T) -> R + Sync) -> Vec<R> {
     let share = items.len().div_ceil(threads.max(1)).max(1);
     on_threads(items.chunks(share), |part| part.iter().map(&work).collect::<Vec<_>>()).into_iter().flatten().collect()

@@ -1,20 +1,20 @@
-//! One axis of the plane: the levels that are nodes of the grid, and what lies between two of them.
+//! One axis of the plane: the levels that are nodes of the grid, and bisection between them.
 
-/// Width of a bracket, as a share of the axis: half a billionth, so that one that is widened once still has a billionth.
+/// Width of a bracket relative to the axis: half a billionth, so that even a bracket that is widened once is no wider than a billionth.
 const FINENESS: f64 = 0.5e-9;
-/// How often a bracket is widened until its ends, as they are read back, answer differently.
+/// How often a bracket may be widened until its ends, as read back from a file, have different answers.
 const WIDENINGS: usize = 8;
 
 /// An axis with its levels, in rising or falling order.
 pub struct Side<'a> {
     level: &'a (dyn Fn(u64) -> f64 + Sync),
     nodes: Vec<u64>,
-    /// Does every value between two levels mean something?
+    /// Do values between two levels have a meaning?
     divisible: bool,
     finest: f64,
 }
 
-/// A stretch of an axis at whose ends the answers differ.
+/// A section of an axis whose ends have different answers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Bracket {
     /// Its middle.
@@ -62,8 +62,8 @@ impl<'a> Side<'a> {
         (last - first > 1).then(|| (self.level)(first + (last - first) / 2))
     }
 
-    /// Where the answer changes between a node and the next one, which answer differently: as narrow as it gets. `None` if an answer
-    /// is missing on the way: the two ends then lie on different sides of a gap, and no place in it is the contour's.
+    /// Bisects between a node and the next one, whose answers differ, to find where the answer changes. `None` if an answer is missing on
+    /// the way: then there is a gap between the two ends, and the contour has no place in it.
     pub(super) fn narrow(&self, node: usize, ask: impl Fn(f64) -> Option<bool>) -> Option<Bracket> {
         if self.divisible { self.bisect(self.at(node), self.at(node + 1), ask) } else { self.bisect_levels(node, ask) }
     }
@@ -77,7 +77,7 @@ impl<'a> Side<'a> {
             }
             *(if ask(between)? == first { &mut from } else { &mut to }) = between;
         }
-        // Middle and width are rounded, so that the ends computed from them can lie beside those that were asked.
+        // Middle and width are rounded, so the ends computed from them may differ from those that were evaluated.
         let mut found = Bracket { middle: middle(from, to), width: (to - from).abs() };
         for _ in 0..WIDENINGS {
             let ends = found.ends();
@@ -101,7 +101,7 @@ impl<'a> Side<'a> {
     }
 }
 
-/// The value half way between two.
+/// The value halfway between two.
 fn middle(from: f64, to: f64) -> f64 {
     from + 0.5 * (to - from)
 }

@@ -233,7 +233,7 @@ fn the_lines_of_what_a_map_shows_are_about_the_end_that_it_shows() {
         let map = &study.report.maps[0];
         [0, 1].map(|number| end(&study, map, map.contours[number].of))
     };
-    // Both margins are by nature worse when low; a map of the least slip margin shows its largest value over the scenarios.
+    // In the model both margins are worse when low; a map of the least slip margin shows its largest value over the scenarios.
     let slip = |best: &str| format!("value = \"slip_margin\", best = \"{best}\"");
     assert_eq!(ends(&slip("max"), ""), [Worse::Lower, Worse::Lower]);
     assert_eq!(ends(&slip("min"), ""), [Worse::Higher, Worse::Lower]);

@@ -1,26 +1,26 @@
-//! The worst value over all scenarios at any place of the plane, in f64.
+//! The worst value over all scenarios at any point of the plane, in f64.
 
 use crate::models::{Latest, OUTPUTS, Worse, judge, shown, to_si};
 use crate::plan::Plan;
 use crate::study::Quantity;
 use std::sync::{Mutex, PoisonError};
 
-/// The plane of two inputs; everything else is as the study has it.
+/// The plane of two inputs; all other inputs are those of the study.
 pub struct Worst<'p> {
     plan: &'p Plan,
     axes: [usize; 2],
     inputs: Vec<f64>,
-    /// What places before have prepared: one for each thread that has been here at the same time as others.
+    /// Prepared numbers of earlier points: one set for each thread that has evaluated at the same time as others.
     latest: Mutex<Vec<Latest>>,
 }
 
 impl<'p> Worst<'p> {
-    /// The plane of these two inputs, the only ones in which designs differ.
+    /// The plane of these two inputs, which are the only ones that designs vary.
     pub fn new(plan: &'p Plan, axes: [usize; 2]) -> Self {
         Self { plan, axes, inputs: plan.space.inputs(0, 0), latest: Mutex::default() }
     }
 
-    /// The worst values at a place, by the ends named; `None` where a quantity has no value in some scenario.
+    /// The worst values at a point, by the given ends; `None` if a quantity has no value in some scenario.
     pub fn at(&self, x: f64, y: f64, wanted: &[(Quantity, Worse)]) -> Vec<Option<f64>> {
         let plan = self.plan;
         let model = &plan.study.model;
@@ -39,7 +39,7 @@ impl<'p> Worst<'p> {
             for fast in 0..plan.fast_scenarios.count() {
                 plan.fast_scenarios.set(fast, &mut inputs);
                 let si = to_si(model, &inputs);
-                // What the slow scenario inputs prepare serves all fast ones.
+                // The prepared numbers of the slow scenario inputs serve all fast ones.
                 if fast == 0 {
                     latest.prepare(&si, outputs_wanted, &mut prepared);
                 }

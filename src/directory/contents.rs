@@ -1,4 +1,4 @@
-//! What is in a directory that a result is to be written to, and what of it this program wrote.
+//! The contents of a directory that a result is to be written to, and which of its files this program wrote.
 
 use crate::checkpoint::{Found, foreign, found};
 use crate::error::{Error, Occupant, Result};
@@ -8,20 +8,20 @@ use crate::study::Study;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// Most bytes of a summary, or of what tells how a run went.
+/// Most bytes of `summary.json` or `run.json`.
 const MOST_BYTES: u64 = 1 << 26;
 
-/// What was in a directory when it was looked at.
+/// The contents of a directory at one moment.
 #[derive(Debug)]
 pub struct Contents {
     path: PathBuf,
-    /// Hash of the study that a finished result is of.
+    /// Hash of the study of a finished result.
     finished: Option<String>,
     checkpoint: Found,
 }
 
 impl Contents {
-    /// Looks at a directory; one that does not exist has nothing in it.
+    /// Reads the contents of a directory; one that does not exist is empty.
     ///
     /// # Errors
     /// [`Error::Occupied`] if it is a file.
@@ -47,11 +47,11 @@ impl Contents {
         matches!(self.checkpoint, Found::Checkpoint)
     }
 
-    /// What is there stays unless it is this program's and the user says so; `files` are those that the result will have. A run that
-    /// goes on is one that is to replace a finished result beside its checkpoint.
+    /// Refuses to replace anything that this program did not write, or a result or checkpoint without `--force`. `files` are those of the
+    /// new result. A run that continues may replace a finished result beside its checkpoint.
     ///
     /// # Errors
-    /// [`Error::Occupied`] that names what is in the way.
+    /// [`Error::Occupied`] with what is in the way.
     pub fn refuse_to_overwrite(&self, files: &[String], force: bool, resume: bool) -> Result<()> {
         if let Found::Foreign(why) = &self.checkpoint {
             return Err(foreign(&self.path.join(CHECKPOINT), why));
@@ -66,10 +66,10 @@ impl Contents {
         self.refuse_foreign(files)
     }
 
-    /// Refuses to write files where something is that this program did not write.
+    /// Refuses to replace files that this program did not write.
     ///
     /// # Errors
-    /// [`Error::Occupied`] that names it.
+    /// [`Error::Occupied`] with their names.
     pub fn refuse_foreign(&self, files: &[String]) -> Result<()> {
         let own = self.own_files()?;
         let foreign = |name: &&String| {
@@ -99,7 +99,7 @@ impl Contents {
         for entry in self.path.read_dir().map_err(Error::io(&self.path))? {
             let entry = entry.map_err(Error::io(&self.path))?;
             let name = entry.file_name().to_string_lossy().into_owned();
-            // Older results do not list their files: of them every file counts that has a result's name.
+            // Older results do not list their files: then every file counts that has the name of a result's file.
             let listed = written.as_ref().is_none_or(|written| written.contains(&name) || name == RUN || name == MARK);
             let own = match name.as_str() {
                 PAGE => refuse_foreign(&entry.path(), MOVE, is_page).is_ok(),
@@ -114,7 +114,7 @@ impl Contents {
     }
 }
 
-/// The hash of the study of a finished result; `None` where there is no mark of one, or a file of the same name of some other program.
+/// The hash of the study of a finished result; `None` if there is no mark of one, or the file was written by another program.
 fn finished(path: &Path) -> Option<String> {
     let summary: Value = serde_json::from_slice(&read_at_most(&path.join(MARK), MOST_BYTES).ok()?).ok()?;
     let hash = summary["study_hash"].as_str().filter(|it| it.len() == 64 && it.bytes().all(|it| it.is_ascii_hexdigit()))?;
@@ -122,7 +122,7 @@ fn finished(path: &Path) -> Option<String> {
     complete.then(|| hash.to_owned())
 }
 
-/// The names of the files that the run of a result wrote, as it lists them.
+/// The names of a result's files, as its `run.json` lists them.
 fn files_written(path: &Path) -> Option<Vec<String>> {
     let run: Value = serde_json::from_slice(&read_at_most(&path.join(RUN), MOST_BYTES).ok()?).ok()?;
     let names = run["files"].as_array()?.iter().map(|it| it.as_str().map(str::to_owned));

@@ -1,7 +1,7 @@
-//! The result directory: one owner at a time, who finds it free before anything is done and holds it to the end, and who touches
-//! nothing in it that this program did not write.
+//! The result directory. One process at a time uses it: it claims the directory before anything is done, holds it to the end, and changes
+//! no file that this program did not write.
 //!
-//! A directory is this program's by the mark of a finished result or by a checkpoint with a sealed manifest.
+//! A directory is recognised as this program's by the mark of a finished result or by a checkpoint whose manifest has a valid checksum.
 
 mod contents;
 #[cfg(test)]
@@ -15,20 +15,21 @@ use crate::files::{Claim, is_regular, remove_if_there, was_to_become};
 use crate::names::{CHECKPOINT, is_remains};
 use std::path::Path;
 
-/// A result directory that was taken.
+/// A result directory that this process has claimed.
 #[derive(Debug)]
 pub struct Taken {
-    /// It is this process's alone as long as this lives.
+    /// Keeps other processes out as long as it lives.
     pub claim: Claim,
-    /// A run was killed while it put its result in place here; that has been done now.
+    /// A run had been killed while it put its result in place here; that has been completed now.
     pub completed: bool,
 }
 
-/// Takes a result directory for this process alone; it is made if it is not there. What a run that was killed had begun to put in place
-/// is put in place, and what it was writing is removed. `task` is what others are told who ask for the directory meanwhile.
+/// Claims a result directory for this process alone, and makes it if it is not there. If a run was killed while it put its result in
+/// place, that is completed, and the files that it was writing are removed. `task` is what others are told who want the directory
+/// meanwhile.
 ///
 /// # Errors
-/// [`Error::Busy`] if another process has it; [`Error::Request`] if it cannot be had.
+/// [`Error::Busy`] if another process uses it; [`Error::Request`] if it cannot be used.
 pub fn claim(path: &Path, task: &str) -> Result<Taken> {
     let claim = Claim::new(path, task)?;
     for entry in path.read_dir().map_err(Error::io(path))? {
@@ -46,7 +47,7 @@ pub fn claim(path: &Path, task: &str) -> Result<Taken> {
     }
     let completed = match found(&path.join(CHECKPOINT)) {
         Found::Checkpoint => match finish_switch(&claim) {
-            // Of another version, or damaged: whoever wants to use it says so.
+            // It is of another version or damaged. Whoever wants to use it reports that.
             Err(Error::Checkpoint { .. }) => false,
             completed => completed?,
         },

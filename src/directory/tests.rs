@@ -1,4 +1,4 @@
-//! What in a directory is this program's, and an interrupted switch from one result to the next.
+//! Which files of a directory are this program's, and interrupted switches from one result to the next.
 
 use super::{Contents, claim};
 use crate::checkpoint::Checkpoint;
@@ -45,7 +45,7 @@ fn a_directory_is_ours_by_its_mark_and_what_it_lists() {
         own_files(r#"{"files": ["front.csv", "notes.md", "../x", "run.json", "summary.json"]}"#, &summary()),
         ["front.csv", RUN, MARK]
     );
-    // Of other programs, and damaged.
+    // Files of other programs, and damaged ones.
     for mark in ["{}", "[]", "", r#"{"coverage": 1}"#, &summary().replace("study_hash", "hash"), &summary()[1..]] {
         assert!(own_files("{}", mark).is_empty(), "{mark}");
     }
@@ -82,7 +82,7 @@ fn what_is_in_the_way_is_named() {
     assert!(refused.contains("a link"), "{refused}");
 }
 
-/// A result is put in place file by file; whenever that is interrupted, the next owner finishes it.
+/// A result is put in place file by file; whenever that is interrupted, the next process completes it.
 #[test]
 fn an_interrupted_switch_is_finished_by_the_next_owner() {
     let old = [("study.toml", "old"), ("top.csv", "old"), ("front.csv", "old"), ("notes.md", "mine"), (RUN, "{}")];

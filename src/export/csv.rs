@@ -1,4 +1,4 @@
-//! CSV files: header with units, dot decimals, shortest numbers, empty for absent.
+//! CSV files: a header with units, decimal points, the shortest numbers, empty cells for absent values.
 
 use super::number::plain;
 use super::table::Table;
@@ -18,7 +18,7 @@ pub fn write(table: &Table) -> Vec<u8> {
     writer.into_inner().expect(IN_MEMORY)
 }
 
-/// Every scenario with its inputs. Rows are written as they are made: scenarios can be many.
+/// Every scenario with its inputs. Rows are written one by one, because there can be many scenarios.
 ///
 /// # Errors
 /// Those of `out`.

@@ -1,7 +1,7 @@
-//! The result directory: the same bytes whatever ran the study, but for `run.json`.
+//! The result directory. Except for `run.json` its files have the same bytes however the study was run.
 //!
-//! Without the feature `pictures` it has no pictures and no page, without `parquet` no tables in Parquet: `front.csv` says the same as
-//! `front.parquet`, and maps of any size are CSV. The files that are there have the same bytes.
+//! Without the feature `pictures` it has no pictures and no page, without `parquet` no tables in Parquet: `front.csv` has the same values
+//! as `front.parquet`, and maps of any size are CSV. All other files have the same bytes.
 
 pub(crate) mod csv;
 mod number;
@@ -35,14 +35,14 @@ use crate::screen::{Control, Tally};
 use std::io::Write;
 use std::sync::atomic::Ordering;
 
-/// A finished, certified sweep: everything that the result directory says.
+/// A finished, certified sweep: everything that the result directory contains.
 #[derive(Debug)]
 pub struct Certified<'p> {
-    /// The study, laid out.
+    /// The study and its plan.
     pub plan: &'p Plan,
-    /// What the sweep kept.
+    /// The state at the end of the sweep.
     pub state: State,
-    /// What limits feasibility.
+    /// What limits feasibility, counted over the sample.
     pub tally: Tally,
     /// Columns of the tables.
     pub columns: Vec<Column>,
@@ -55,10 +55,10 @@ pub struct Certified<'p> {
 }
 
 impl<'p> Certified<'p> {
-    /// Certifies what a sweep kept; seen and stopped by others.
+    /// Certifies the state of a sweep; `control` shows the progress and can stop it.
     ///
     /// # Errors
-    /// [`Error::Certificate`] if the f64 reference disagrees with the sweep; [`Error::Stopped`] after `control.stop`.
+    /// [`Error::Disagreement`] if the f64 reference disagrees with the sweep; [`Error::Stopped`] after `control.stop`.
     pub fn certify(plan: &'p Plan, state: State, tally: Tally, threads: usize, control: &Control) -> Result<Self> {
         let columns = certify::columns(&plan.study);
         let designs = state.reported.designs();
@@ -72,8 +72,8 @@ impl<'p> Certified<'p> {
             rows.iter().try_for_each(certify::check_feasible)?;
             if let Some(all) = all.filter(|&all| all != rows.len() as u64) {
                 let (found, feasible) = (rows.len(), state.feasible);
-                return Err(Error::Certificate(format!(
-                    "of {feasible} feasible designs the sweep named {found} where there must be {all}"
+                return Err(Error::Disagreement(format!(
+                    "the sweep kept {found} of the {feasible} feasible designs where it must keep {all}"
                 )));
             }
             named.push(rows);
@@ -82,18 +82,18 @@ impl<'p> Certified<'p> {
         let feasible = variants.iter().filter(|row| row.feasible).count() as u64;
         if plan.study.report.variants && feasible != state.feasible {
             let seen = state.feasible;
-            return Err(Error::Certificate(format!("the sweep counted {seen} feasible designs, the f64 reference finds {feasible}")));
+            return Err(Error::Disagreement(format!("the sweep counted {seen} feasible designs, the f64 reference finds {feasible}")));
         }
         Ok(Self { plan, state, tally, columns, front, named, variants })
     }
 
-    /// Designs that are reported and were certified, those of lists of all left out; one that stands in two lists counts twice.
+    /// Number of reported designs that were certified, without those of a list of all designs; one that is in two lists counts twice.
     pub fn certified(&self) -> usize {
         self.front.len() + self.named.iter().map(Vec::len).sum::<usize>()
     }
 
-    /// Makes the files of the result, one after the other in the order in which they are written, [`MARK`] last and `run.json` left to
-    /// the caller.
+    /// Makes the files of the result, one after the other in the order in which they are written, [`MARK`] last. `run.json` is left to the
+    /// caller.
     ///
     /// # Errors
     /// Those of `put`; [`Error::Io`] from the table writers.
@@ -126,13 +126,13 @@ impl<'p> Certified<'p> {
         put(MARK, json(&Summary::new(self).to_json()))
     }
 
-    /// Pictures of the knee, in its most stressed scenario, for models that have such.
+    /// Pictures of the knee in its most stressed scenario, for models that have some.
     #[cfg(feature = "pictures")]
     fn knee_pictures(&self) -> Vec<(&'static str, String)> {
         let plan = self.plan;
         let summary = Summary::new(self);
         let Some(row) = summary.knee.as_ref().map(|knee| &self.front[knee.row]) else { return Vec::new() };
-        // The largest stress is where the least margin against yield is, whichever of them the study reports.
+        // The scenario of the largest stress is that of the least yield safety; the study may report either.
         let stress = ["max_stress_MPa", "yield_safety", "fatigue_safety"];
         let worst = stress.iter().find_map(|name| self.columns.iter().position(|column| column.name == *name));
         let scenario = worst.map_or(0, |column| row.columns[column].scenario);
@@ -140,11 +140,11 @@ impl<'p> Certified<'p> {
         pulley::pictures(&plan.study.model, &title, &plan.space.inputs(row.index, scenario))
     }
 
-    /// Writes the result into the directory of a checkpoint, in place of a result that is there, and removes the checkpoint. At any moment
-    /// the directory holds the old result, or the checkpoint with all of the new one, or the new one.
+    /// Writes the result into the directory of a checkpoint, replaces an older result there, and removes the checkpoint. At any moment the
+    /// directory holds the old result, or the checkpoint with all of the new one, or the new one.
     ///
     /// # Errors
-    /// [`Error::Io`]; [`Error::Request`] where something that this program did not write has the name of a file.
+    /// [`Error::Io`]; [`Error::Request`] if something that this program did not write has the name of one of the files.
     pub fn write(&self, checkpoint: Checkpoint, text: &str, run: &RunRecord) -> Result<()> {
         let mut files: Vec<String> = Vec::new();
         self.make_files(text, run.threads, &mut |name, part| {
@@ -160,10 +160,10 @@ impl<'p> Certified<'p> {
     }
 }
 
-/// What a file of a result is made of.
+/// The contents of a file of a result.
 enum Part<'a> {
     Bytes(Vec<u8>),
-    /// The table of scenarios, which may be too large to be held.
+    /// The table of scenarios, which may be too large for the memory.
     Scenarios(&'a Plan),
 }
 

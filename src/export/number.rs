@@ -20,7 +20,7 @@ pub fn short(value: f64) -> String {
     plain(rounded)
 }
 
-/// A value of an input as a person writes it.
+/// A value of an input as people write it.
 pub fn written(input: &Input, value: f64) -> String {
     input.word_for(value).map_or_else(|| plain(value), str::to_owned)
 }

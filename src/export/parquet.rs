@@ -1,4 +1,4 @@
-//! Parquet files, without Arrow: one row group per 65 536 rows, snappy, no time stamps, so that equal tables are equal bytes.
+//! Parquet files, without Arrow: row groups of 65 536 rows, compressed with snappy, no time stamps, so that equal tables are equal bytes.
 
 use super::table::{Data, Table};
 use crate::error::{Error, Result};
@@ -24,7 +24,7 @@ pub fn write(table: &Table) -> Result<Vec<u8>> {
     let failed = |error: ParquetError| Error::Io { path: PathBuf::from("Parquet table"), source: std::io::Error::other(error) };
     let fields = table.columns.iter().map(|column| {
         let (physical, repetition, logical) = match column.data {
-            // A study may have more designs than a signed number counts.
+            // A study may have more designs than a signed number can count.
             Data::Whole(_) => (Physical::INT64, Repetition::OPTIONAL, Some(LogicalType::integer(64, false))),
             Data::Number(_) => (Physical::DOUBLE, Repetition::OPTIONAL, None),
             Data::Text(_) => (Physical::BYTE_ARRAY, Repetition::REQUIRED, Some(LogicalType::String)),
@@ -43,7 +43,7 @@ pub fn write(table: &Table) -> Result<Vec<u8>> {
         .set_created_by(concat!("beltspace ", env!("CARGO_PKG_VERSION")).to_owned())
         .set_compression(Compression::SNAPPY)
         .set_key_value_metadata(Some(metadata.collect()));
-    // Indices mostly count up: their differences take next to nothing, while as a dictionary every one of them is an entry.
+    // Indices mostly count up, so their differences take little room; a dictionary would have an entry for every one.
     for column in table.columns.iter().filter(|column| matches!(column.data, Data::Whole(_))) {
         let path = ColumnPath::from(column.name.as_str());
         properties = properties.set_column_dictionary_enabled(path.clone(), false).set_column_encoding(path, Encoding::DELTA_BINARY_PACKED);
@@ -87,7 +87,7 @@ fn write_group(
     Ok(())
 }
 
-/// Parquet's way to say which values of an optional column are there.
+/// Definition levels: which values of an optional column are present.
 fn levels<T>(values: &[Option<T>]) -> Vec<i16> {
     values.iter().map(|value| i16::from(value.is_some())).collect()
 }

@@ -1,4 +1,4 @@
-//! What people look at of one pulley: its section, deformed and stressed, the stresses around it and over its surface.
+//! The pictures of one pulley: its section, its deformation and stresses, the stresses around it and over its surface.
 
 use crate::models::{Design, Model, Status, evaluate};
 use crate::pictures::pulley;
@@ -12,7 +12,7 @@ use crate::pulley::turn::{Peak, Turn};
 /// Names of the pictures of a pulley, without `.svg`.
 pub use crate::names::KNEE_PICTURES as PICTURES;
 
-/// What such a picture shows, in a few words.
+/// A short caption for such a picture.
 pub fn caption(name: &str) -> &'static str {
     match name {
         "section" => "Section with its dimensions",
@@ -49,8 +49,8 @@ pub struct NodeStress {
     pub von_mises: f64,
 }
 
-/// The deformed section at the angle of its largest stress: the picture of [`pictures()`] and the values that it shows, node by node;
-/// `None` as there.
+/// The deformed section at the angle of its largest stress: the picture and the values that it shows, node by node; `None` where
+/// [`pictures()`] gives none.
 pub fn deformed(model: &Model, title: &str, inputs: &[f64]) -> Option<(String, Vec<NodeStress>)> {
     solve(model, inputs, |SolvedPulley { mesh, turn, field, .. }| {
         let nodes = mesh.nodes.iter().zip(&field.displacement).zip(&field.von_mises);
@@ -72,7 +72,7 @@ struct SolvedPulley<'t> {
     largest: Peak,
 }
 
-/// Solves a pulley and shows it to `look`; `None` if the model is another one or the status is not ok.
+/// Solves a pulley and calls `look` with it; `None` if the model is another one or the status is not ok.
 fn solve<T>(model: &Model, inputs: &[f64], look: impl FnOnce(&SolvedPulley<'_>) -> T) -> Option<T> {
     let design = model.pulley_of(inputs)?;
     let Design { kind, dimensions, poisson, fineness, case, .. } = design;

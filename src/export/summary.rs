@@ -1,4 +1,4 @@
-//! What a study found, in one page: `summary.json`, and `run.json` on how it was found.
+//! The outcome of a study in one page, `summary.json`, and how it was computed, `run.json`.
 
 use super::Certified;
 use crate::bounds::Certificate;
@@ -23,7 +23,7 @@ pub struct Summary<'a> {
     outcome: &'a Certified<'a>,
     /// Best of each objective on the front; `None` without a front.
     pub ideal: Option<Vec<f64>>,
-    /// Least distance to the ideal; of equals the lowest index.
+    /// The design at the least distance to the ideal; of equals the lowest index.
     pub knee: Option<Knee>,
 }
 
@@ -86,7 +86,7 @@ impl<'a> Summary<'a> {
         });
         let conditions = model.conditions.iter().zip(&tally.conditions).filter(|(condition, _)| !condition.quiet);
         let mut status: Map<_, Value> = conditions.map(|(condition, &count)| (condition.reason.to_owned(), count.into())).collect();
-        // Rare enough that most summaries do without.
+        // So rare that most summaries do not have it.
         if tally.overflow > 0 {
             status.insert(OVERFLOW.to_owned(), tally.overflow.into());
         }
@@ -137,10 +137,10 @@ impl Certified<'_> {
     }
 }
 
-/// How a result came about: the only file of a result that differs from run to run.
+/// How a result was computed: the only file of a result that differs from run to run.
 #[derive(Clone, Debug)]
 pub struct RunRecord {
-    /// What judged the designs.
+    /// The engine that judged the designs.
     pub engine: &'static str,
     /// Worker threads.
     pub threads: usize,
@@ -154,22 +154,22 @@ pub struct RunRecord {
     pub origin: String,
     /// Designs that the f64 reference certified.
     pub certified: usize,
-    /// What a device did in it, if there was one.
+    /// The work of a device, if one was used.
     pub device: Option<Value>,
     /// How designs were judged.
     pub method: MethodRecord,
 }
 
-/// How designs were judged, and why so.
+/// How designs were judged, and why.
 #[derive(Clone, Debug)]
 pub struct MethodRecord {
-    /// Its name on the command line, or both names where one was left for the other; of merged shards, each had its own.
+    /// Its name on the command line, or both names if bounds were given up; merged shards each had their own.
     pub name: &'static str,
     /// Why.
     pub why: String,
     /// Of bounds: what settled the designs.
     pub certificate: Option<Certificate>,
-    /// How bounds were left, if they were.
+    /// How bounds were given up, if they were.
     pub left: Option<Left>,
 }
 
@@ -180,7 +180,7 @@ impl RunRecord {
         self.designs as f64 / self.time.as_secs_f64().max(1e-9)
     }
 
-    /// As JSON, with the names of the files that belong to the result: what else lies beside them is not this program's.
+    /// As JSON, with the names of the files that belong to the result: no other file in the directory is this program's.
     pub fn to_json(&self, files: &[String]) -> Value {
         json!({
             "program": concat!("beltspace ", env!("CARGO_PKG_VERSION")),

@@ -1,20 +1,20 @@
-//! A table of results, before it becomes CSV or Parquet.
+//! A table of results, before it is written as CSV or Parquet.
 
 use super::number::plain;
 
 /// Values of one column.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Data {
-    /// Indices and counts; absent where there is nothing to point at.
+    /// Indices and counts; `None` if there is none.
     Whole(Vec<Option<u64>>),
-    /// Numbers; absent where they have no meaning.
+    /// Numbers; `None` where they have no meaning.
     Number(Vec<Option<f64>>),
     /// Words.
     Text(Vec<String>),
 }
 
 impl Data {
-    /// A cell as it is written: shortest numbers, nothing for what is absent.
+    /// A cell as it is written: the shortest number, nothing for an absent value.
     pub fn text(&self, row: usize) -> String {
         match self {
             Self::Whole(values) => values[row].map_or(String::new(), |value| value.to_string()),
@@ -24,15 +24,15 @@ impl Data {
     }
 }
 
-/// A column with what a reader of the file wants to know about it.
+/// A column and its description.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableColumn {
     /// Name, with the unit.
     pub name: String,
     /// Unit; empty for plain numbers.
     pub unit: String,
-    /// `design`, `objective`, `constraint`, `report`, `index`, ...; several, with commas between them, where a design input is also an
-    /// objective or bounded.
+    /// `design`, `objective`, `constraint`, `report`, `index`, ...; several, with commas between them, if a design input is also an
+    /// objective or has a constraint.
     pub role: String,
     /// `min` or `max` for an objective, the bounds in words for a constraint, else empty.
     pub direction: String,
@@ -43,7 +43,7 @@ pub struct TableColumn {
 }
 
 impl TableColumn {
-    /// A column that needs no more than a name and a sentence.
+    /// A column that needs only a name and a description.
     pub fn index(name: &str, description: &str, values: impl IntoIterator<Item = Option<u64>>) -> Self {
         Self::new(name, "index", description, Data::Whole(values.into_iter().collect()))
     }
@@ -78,8 +78,8 @@ impl Table {
         })
     }
 
-    /// The table as CSV, as it stands in a result directory: a header, dot decimals, the shortest numbers that read back as the same f64,
-    /// nothing for what is absent.
+    /// The table as CSV, as in a result directory: a header, decimal points, the shortest numbers that read back as the same f64, nothing
+    /// for absent values.
     pub fn csv(&self) -> Vec<u8> {
         super::csv_text(self)
     }
@@ -100,7 +100,7 @@ impl Table {
         }
     }
 
-    /// The index of the design in a row of a table of designs; `None` if there is no such row, or the table is another.
+    /// The index of the design in a row of a table of designs; `None` if there is no such row, or this is another kind of table.
     pub fn design(&self, row: usize) -> Option<u64> {
         match &self.column("design_index")?.data {
             Data::Whole(values) => values.get(row).copied().flatten(),

@@ -5,8 +5,8 @@ use super::{Certified, written};
 use crate::certify::{self, Role, Row};
 use crate::study::{Axis, Goal};
 
-/// Designs: index, design inputs, then every other column's worst value and its scenario. A design input that is also an objective or
-/// bounded stands once, in all its roles.
+/// A table of designs: index, design inputs, then the worst value of every other column and its scenario. A design input that is also an
+/// objective or has a constraint stands once, in all its roles.
 pub fn designs(outcome: &Certified<'_>, rows: &[Row]) -> Table {
     let study = &outcome.plan.study;
     let model = &study.model;

@@ -1,4 +1,4 @@
-//! A study whose axes are words: every file says them, and never the numbers that stand for them.
+//! A study with axes of words: every file has the words, and never the numbers that stand for them.
 
 use super::Certified;
 use crate::models::tests::with_a_section;

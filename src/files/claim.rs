@@ -1,4 +1,4 @@
-//! A directory that one process writes at a time. The lock lies beside it, so that it outlives what it protects:
+//! A directory that only one process writes to at a time. Its lock lies beside it, so that it remains if the directory is removed:
 //! `.NAME.beltspace-lock` for the directory `NAME`.
 
 use super::{Lock, Made, Taken, parent};
@@ -8,16 +8,16 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// How often a directory around the claimed one that vanished is made again.
+/// How often a parent directory is made again if it vanishes.
 const ATTEMPTS: u32 = 20;
 
-/// A directory that this process alone writes, as long as this or a copy of it lives.
+/// A directory that only this process writes to, as long as this or a copy of it lives.
 #[derive(Clone, Debug)]
 pub struct Claim {
     held: Arc<Held>,
 }
 
-/// What is held, and given back in this order: the directory if it is still empty, the lock, the directories around it.
+/// What is held. It is given up in this order: the directory if it is still empty, the lock, the parent directories.
 #[derive(Debug)]
 struct Held {
     path: PathBuf,
@@ -35,16 +35,16 @@ impl Drop for Held {
 }
 
 impl Claim {
-    /// Takes a directory, which is made if it is not there. `task` is what others are told who ask for it meanwhile.
+    /// Claims a directory, and makes it if it is not there. `task` is what others are told who want it meanwhile.
     ///
     /// # Errors
-    /// [`Error::Busy`] if another process has it; [`Error::Request`] if it cannot be had.
+    /// [`Error::Busy`] if another process uses it; [`Error::Request`] if it cannot be used.
     pub fn new(path: &Path, task: &str) -> Result<Self> {
         let mut around = Made::default();
         let mut attempts = 0..ATTEMPTS;
         let taken = loop {
             let lock = match place(path, &mut around) {
-                // Another process has just taken back what it had made.
+                // Another process has just removed the directories that it had made.
                 Err(Error::Io { source, .. }) if source.kind() == io::ErrorKind::NotFound && attempts.next().is_some() => continue,
                 place => place.map_err(|error| unusable(path, error))?,
             };
@@ -65,15 +65,15 @@ impl Claim {
         Ok(Self { held: Arc::new(held) })
     }
 
-    /// Where it is, as it was named.
+    /// Its path, as it was given.
     pub fn path(&self) -> &Path {
         &self.held.path
     }
 
-    /// The error of a directory that was there when it was taken and is not there any more.
+    /// The error for a directory that has vanished since it was claimed.
     pub(crate) fn lost(&self, source: io::Error) -> Error {
         let problem = if source.kind() == io::ErrorKind::NotFound {
-            "it was removed or moved away while this program was writing to it; start again".to_owned()
+            "it was removed or moved while this program was writing to it; start again".to_owned()
         } else {
             format!("it cannot be written to: {source}")
         };
@@ -81,15 +81,15 @@ impl Claim {
     }
 }
 
-/// A directory that is read and must not change meanwhile. Others may read it too.
+/// A directory that is being read and must not change meanwhile. Others may read it too.
 #[derive(Debug)]
 pub struct Reading {
     _lock: Option<Lock>,
 }
 
 impl Reading {
-    /// Keeps others from writing to a directory while it is read. Where no lock can be made because all around it is read-only, it can do
-    /// without one.
+    /// Keeps others from writing to a directory while it is read. If no lock can be made because the parent directory is read-only, it goes
+    /// on without one.
     ///
     /// # Errors
     /// [`Error::Busy`] if another process is writing to it.
@@ -102,7 +102,7 @@ impl Reading {
         })
     }
 
-    /// The same without writing anything, a lock included.
+    /// The same without writing anything, not even a lock.
     ///
     /// # Errors
     /// As [`Reading::new`].
@@ -111,7 +111,7 @@ impl Reading {
     }
 
     fn with(path: &Path, take: impl Fn(&Path) -> io::Result<Option<Taken>>) -> Result<Self> {
-        // Whoever reads a directory that does not exist is told so by who reads it.
+        // If the directory does not exist, reading it will say so.
         let Ok(real) = path.canonicalize() else { return Ok(Self { _lock: None }) };
         let Some(name) = real.file_name() else { return Ok(Self { _lock: None }) };
         let lock = lock_path(parent(&real), name);
@@ -123,7 +123,7 @@ impl Reading {
     }
 }
 
-/// The lock of a directory, whatever links lead to it; what is around it is made.
+/// The path of the lock of a directory, whatever links lead to it; its parent directories are made.
 fn place(path: &Path, around: &mut Made) -> Result<PathBuf> {
     let request = |problem: &str| Error::Request(format!("{} {problem}; name a directory with --out", path.display()));
     let real = if path.exists() {
@@ -135,7 +135,7 @@ fn place(path: &Path, around: &mut Made) -> Result<PathBuf> {
         if path.is_symlink() {
             return Err(request("is a link to nothing"));
         }
-        let name = path.file_name().ok_or_else(|| request("is no name of a directory"))?;
+        let name = path.file_name().ok_or_else(|| request("is not the name of a directory"))?;
         let folder = parent(path);
         around.make(folder).map_err(Error::io(folder))?;
         if !folder.is_dir() {
@@ -143,11 +143,11 @@ fn place(path: &Path, around: &mut Made) -> Result<PathBuf> {
         }
         folder.canonicalize().map_err(Error::io(folder))?.join(name)
     };
-    let name = real.file_name().ok_or_else(|| request("has no directory around it, where its lock would be"))?;
+    let name = real.file_name().ok_or_else(|| request("has no parent directory for its lock"))?;
     Ok(lock_path(parent(&real), name))
 }
 
-/// The lock of a directory of that name.
+/// Name of the lock of a directory of this name.
 fn lock_path(folder: &Path, name: &OsStr) -> PathBuf {
     let mut lock = OsString::from(".");
     lock.push(name);
@@ -155,7 +155,7 @@ fn lock_path(folder: &Path, name: &OsStr) -> PathBuf {
     folder.join(lock)
 }
 
-/// A directory that cannot be made is a wrong request.
+/// The error for a directory that cannot be made.
 fn unusable(path: &Path, error: Error) -> Error {
     match error {
         Error::Io { source, .. } => {
@@ -169,7 +169,7 @@ fn unlockable(path: &Path, lock: &Path, error: &io::Error) -> Error {
     let remedy = if error.kind() == io::ErrorKind::InvalidFilename {
         "choose a shorter name"
     } else {
-        "name a directory in one that you may write to"
+        "name a directory in a place where you may write"
     };
     Error::Request(format!("{} cannot be used: its lock {} cannot be taken ({error}); {remedy}", path.display(), lock.display()))
 }

@@ -1,19 +1,20 @@
-//! A lock beside what it protects: a file that is locked, says who holds it, and is gone when nobody needs it.
+//! A lock file beside what it protects: it is locked, says which process holds it, and is removed when no process needs it.
 //!
-//! A file that is removed while another process waits for it would be held twice: by who waited, and by who makes it anew. So it is
-//! removed only by who holds it alone, and whoever gets a lock asks whether the file is still the one of that name.
+//! If the file were removed while another process waits for it, two processes would hold the lock: the one that waited, and one that
+//! makes the file anew. So only a process that holds the lock alone removes it, and a process that gets a lock checks that the file still
+//! has its name.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// How often, and after which pauses, a lock is tried again before it counts as held.
+/// How often, and after which pause, a lock is tried again before it counts as held by another process.
 const ATTEMPTS: u32 = 20;
 const PAUSE: Duration = Duration::from_millis(10);
-/// Most files that are found gone, one after the other, before the file system counts as broken.
+/// How often in succession the file may be found removed before the file system counts as broken.
 const MOST_GONE: u32 = 10_000;
-/// What the first line of a lock begins with.
+/// Beginning of the first line of a lock.
 const MARK: &str = "beltspace";
 /// Most bytes of that line that are read.
 const LINE: u64 = 1000;
@@ -25,25 +26,25 @@ pub struct Lock {
     path: PathBuf,
 }
 
-/// What came of asking for a lock.
+/// The outcome of asking for a lock.
 #[derive(Debug)]
 pub enum Taken {
-    /// It is held.
+    /// This process holds it.
     Held(Lock),
-    /// Somebody else holds it: who, as far as that is known.
+    /// Another process holds it: which, as far as that is known.
     Busy(String),
 }
 
 impl Lock {
-    /// Takes the lock at `path` for this process alone. `task` is what others are told.
+    /// Takes the lock at `path` for this process alone. `task` is what others are told meanwhile.
     ///
     /// # Errors
-    /// Those of the file system; a file of that name that is no lock.
+    /// Those of the file system; a file of that name that is not a lock.
     pub fn alone(path: &Path, task: &str) -> io::Result<Taken> {
         Self::take(path, task, File::try_lock)
     }
 
-    /// Takes the lock at `path` together with others that only read what it protects.
+    /// Takes the lock at `path` together with other processes that only read what it protects.
     ///
     /// # Errors
     /// As [`Lock::alone`].
@@ -51,7 +52,7 @@ impl Lock {
         Self::take(path, task, File::try_lock_shared)
     }
 
-    /// Takes a lock that is there, together with others, without writing anything; `None` if there is none.
+    /// Takes an existing lock together with other readers, without writing anything; `None` if there is none.
     ///
     /// # Errors
     /// As [`Lock::alone`].
@@ -66,7 +67,7 @@ impl Lock {
 
     fn take(path: &Path, task: &str, lock: fn(&File) -> Result<(), TryLockError>) -> io::Result<Taken> {
         for _ in 0..MOST_GONE {
-            // A link would have this program write into the file that it points to.
+            // If this were a link, this program would write into the file that it points to.
             if fs::symlink_metadata(path).is_ok_and(|it| !it.is_file()) {
                 return Err(not_a_lock());
             }
@@ -80,7 +81,7 @@ impl Lock {
             if !try_for_a_while(&file, lock)? {
                 return Ok(Taken::Busy(holder(&file)));
             }
-            // Removed by who held it before: another file is the lock now, or will be.
+            // The holder before has removed it: another file is the lock now, or will be.
             if !is_at(&file, path) {
                 continue;
             }
@@ -90,14 +91,14 @@ impl Lock {
             }
             return Ok(Taken::Held(held));
         }
-        Err(io::Error::other("the lock is another file whenever it is looked at"))
+        Err(io::Error::other("the lock file is a different one each time it is checked"))
     }
 
-    /// Says who holds it.
+    /// Writes into the file which process holds it.
     fn say(&mut self, task: &str) -> io::Result<()> {
         #[cfg(feature = "cli")]
         let host = gethostname::gethostname();
-        // Who uses the library alone need not depend on how a system is asked for its name; many say it here.
+        // Most systems have the name here; asking the system for it would need another package.
         #[cfg(not(feature = "cli"))]
         let host = std::env::var_os("HOSTNAME").unwrap_or_else(|| "this machine".into());
         let line = format!("{MARK}: process {} on {}: {task}\n", std::process::id(), host.to_string_lossy());
@@ -109,16 +110,16 @@ impl Lock {
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // Others that read too still need it. Elsewhere a file that is open cannot be known by its name, and stays.
+        // Other readers still need it. On systems where an open file cannot be compared with its name, it stays.
         if cfg!(unix) && self.file.try_lock().is_ok() && is_at(&self.file, &self.path) {
-            // A lock that stays is no harm.
+            // A lock file that stays does no harm.
             let _ = fs::remove_file(&self.path);
         }
     }
 }
 
-/// Opens a lock, which is made if there is none; says whether it can be written to. What a run of another user left when it was killed
-/// can still be locked.
+/// Opens a lock file, and makes it if there is none; returns whether it can be written to. The file that a killed run of another user
+/// left can be locked without being written to.
 fn open(path: &Path) -> io::Result<(File, bool)> {
     match File::options().read(true).write(true).create(true).truncate(false).open(path) {
         Err(error) if error.kind() == io::ErrorKind::PermissionDenied => File::open(path).map(|file| (file, false)).map_err(|_| error),
@@ -127,11 +128,11 @@ fn open(path: &Path) -> io::Result<(File, bool)> {
 }
 
 fn not_a_lock() -> io::Error {
-    io::Error::other("this is no lock of beltspace; move it away")
+    io::Error::other("this is not a lock of beltspace; move it away")
 }
 
 fn try_for_a_while(file: &File, lock: fn(&File) -> Result<(), TryLockError>) -> io::Result<bool> {
-    // A program that another process is just starting shares its files, and so a lock that was let go, until it runs.
+    // A process that is just starting another program still shares its files, and so a released lock, for a moment.
     let mut attempts = 0..ATTEMPTS;
     loop {
         match lock(file) {
@@ -143,8 +144,8 @@ fn try_for_a_while(file: &File, lock: fn(&File) -> Result<(), TryLockError>) -> 
     }
 }
 
-/// Is this open file still the one of that name? It is opened again rather than asked for by its name: file systems over a network
-/// look at the server only then.
+/// Does this open file still have this name? The name is opened again rather than queried, because network file systems ask the server
+/// only then.
 #[cfg(unix)]
 fn is_at(file: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
@@ -155,7 +156,7 @@ fn is_at(file: &File, path: &Path) -> bool {
     }
 }
 
-/// Nobody removes it here.
+/// On this system the file is never removed.
 #[cfg(not(unix))]
 fn is_at(_: &File, _: &Path) -> bool {
     true
@@ -165,7 +166,7 @@ fn is_at(_: &File, _: &Path) -> bool {
 fn first_line(file: &File) -> String {
     let mut file = file;
     let mut bytes = Vec::new();
-    // Where locks keep others from reading, nobody is told who it is.
+    // On systems where a lock keeps others from reading, the process cannot be named.
     let read = file.seek(io::SeekFrom::Start(0)).and_then(|_| file.take(LINE).read_to_end(&mut bytes));
     let text = if read.is_ok() { String::from_utf8_lossy(&bytes).into_owned() } else { String::new() };
     text.lines().next().unwrap_or_default().to_owned()
@@ -175,15 +176,15 @@ fn is_a_lock(file: &File) -> io::Result<bool> {
     Ok(file.metadata()?.len() == 0 || first_line(file).starts_with(MARK) || cfg!(not(unix)))
 }
 
-/// Who holds a lock, and for how long: `process 12 on host for 3 s: beltspace sweep study.toml`.
+/// Which process holds a lock, and for how long: `process 12 on host, for 3 s: beltspace sweep study.toml`.
 fn holder(file: &File) -> String {
     let line = first_line(file);
     let since = file.metadata().and_then(|it| it.modified()).ok().and_then(|it| it.elapsed().ok());
     let Some((who, what)) = line.strip_prefix(MARK).and_then(|it| it.strip_prefix(": ")).and_then(|it| it.split_once(": ")) else {
-        return "which one is not known".to_owned();
+        return "it is not known which".to_owned();
     };
     let since = since.map_or(String::new(), |it| format!(", for {}", for_people(it)));
-    // The file may have been written by anybody.
+    // Any program may have written the file.
     let plain =
         |text: &str| text.chars().flat_map(|c| if c.is_control() { c.escape_default().collect() } else { vec![c] }).collect::<String>();
     format!("{}{since}: {}", plain(who), plain(what))
@@ -256,7 +257,7 @@ mod tests {
         fs::write(&note, "groceries").expect("it can be written");
         std::os::unix::fs::symlink(&target, &link).expect("links can be made");
         for path in [&note, &link] {
-            assert!(Lock::alone(path, "turn").expect_err("it is no lock").to_string().contains("no lock of beltspace"));
+            assert!(Lock::alone(path, "turn").expect_err("it is no lock").to_string().contains("not a lock of beltspace"));
         }
         assert_eq!(fs::read(&note).expect("it is there"), b"groceries");
         assert!(!target.exists());

@@ -1,5 +1,5 @@
-//! Writing to the disk so that nothing is lost: a file is the old one or the new one, whole, and what this program did not write it
-//! leaves alone. Reading from it so that nothing is taken in that cannot be what is expected.
+//! Writes files so that nothing is lost: there is always the whole old file or the whole new one, and files that this program did not
+//! write are left alone. Reads files only if they can be what is expected.
 
 mod claim;
 mod lock;
@@ -15,12 +15,12 @@ use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use tempfile::{Builder, NamedTempFile};
 
-/// End of the name of a file that is being written.
+/// Extension of a file that is being written.
 const WRITING: &str = ".writing";
-/// Bytes of a file that say what wrote it.
+/// How many bytes at the beginning of a file are read to find out what wrote it.
 const HEAD: u64 = 4096;
 
-/// Writes a file so that it is either the old one or the new one, whole, whatever happens meanwhile and whoever writes it too.
+/// Writes a file so that at any moment there is either the whole old one or the whole new one, even if others write it too.
 ///
 /// # Errors
 /// [`Error::Io`]; the old file is then untouched.
@@ -28,13 +28,13 @@ pub fn replace(path: &Path, bytes: &[u8]) -> Result<()> {
     replace_with(path, |file| file.write_all(bytes))
 }
 
-/// The same for what `write` writes.
+/// The same with the bytes that `write` writes.
 ///
 /// # Errors
 /// [`Error::Io`]; the old file is then untouched.
 pub fn replace_with(path: &Path, write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<()> {
-    let name = path.file_name().ok_or_else(|| Error::Request(format!("{}: this is no name of a file", path.display())))?;
-    // What goes wrong leaves nothing behind: a temporary file that is dropped is gone.
+    let name = path.file_name().ok_or_else(|| Error::Request(format!("{}: this is not the name of a file", path.display())))?;
+    // A failure leaves nothing behind: the temporary file is removed when it is dropped.
     let done = || -> std::io::Result<()> {
         let mut file = temporary(parent(path), &name.to_string_lossy())?;
         let mut out = std::io::BufWriter::new(file.as_file_mut());
@@ -48,44 +48,44 @@ pub fn replace_with(path: &Path, write: impl FnOnce(&mut dyn Write) -> std::io::
     done().map_err(Error::io(path))
 }
 
-/// A new file beside the one of that name, under a name that nobody else takes.
+/// A new temporary file beside the one of that name, with a unique name.
 fn temporary(folder: &Path, name: &str) -> std::io::Result<NamedTempFile> {
     let prefix = format!(".{name}.");
     let mut builder = Builder::new();
     builder.prefix(&prefix).suffix(WRITING);
-    // As readable as any other new file; by default only its owner could read it.
+    // With the permissions of any other new file; by default only its owner could read it.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     builder.tempfile_in(folder)
 }
 
-/// A name for what is to become `name`, by a number that nobody else uses.
+/// A unique temporary name for what will become `name`.
 pub fn writing_name(name: &str, number: u32) -> String {
     format!(".{name}.{:06}{WRITING}", number % 1_000_000)
 }
 
-/// The name of the file that one of this name was to become; `None` if it is no file that was being written.
+/// The final name of a file with this temporary name; `None` if it is not a temporary name.
 pub fn was_to_become(name: &str) -> Option<&str> {
     let (stem, random) = name.strip_prefix('.')?.strip_suffix(WRITING)?.rsplit_once('.')?;
     (random.len() == 6 && random.bytes().all(|it| it.is_ascii_alphanumeric())).then_some(stem)
 }
 
-/// The directory that a path is in.
+/// The parent directory of a path.
 pub fn parent(path: &Path) -> &Path {
     path.parent().filter(|it| !it.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Is there a regular file of that name, and no link to one?
+/// Is this a regular file, and not a link to one?
 pub fn is_regular(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok_and(|it| it.is_file())
 }
 
-/// Is there anything of that name, were it a link to nothing?
+/// Does anything have this name, even a broken link?
 pub fn is_there(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok()
 }
 
-/// Removes a file that may be gone already.
+/// Removes a file, unless it is gone already.
 ///
 /// # Errors
 /// [`Error::Io`].
@@ -99,7 +99,7 @@ pub fn remove_if_there(path: &Path) -> Result<()> {
 /// Reads a regular file of at most `most` bytes.
 ///
 /// # Errors
-/// A sentence on why not.
+/// Why not, in words.
 pub fn read_at_most(path: &Path, most: u64) -> std::result::Result<Vec<u8>, String> {
     if !is_regular(path) {
         return Err("it is not a regular file".to_owned());
@@ -117,11 +117,11 @@ pub fn read_at_most(path: &Path, most: u64) -> std::result::Result<Vec<u8>, Stri
     }
 }
 
-/// What a user may do about a file that is in the way.
+/// What a user can do about a file that is in the way.
 pub const MOVE: &str = "move it away, or name another";
 
-/// Refuses to replace what this program did not write: `is_own` is asked about the beginning of a file that is there. An empty file
-/// has nothing to lose. `remedy` is what the user may do instead.
+/// Refuses to replace what this program did not write: `is_own` decides from the beginning of the file. An empty file may be replaced.
+/// `remedy` is what the user can do instead.
 ///
 /// # Errors
 /// [`Error::Request`] that names the file.
@@ -144,21 +144,21 @@ pub fn refuse_foreign(path: &Path, remedy: &str, is_own: impl Fn(&str) -> bool) 
     refuse(&format!("a file is there that this program did not write; {remedy}"))
 }
 
-/// Directories that were made for something, to be taken back if nothing came of it.
+/// Directories that were made for a purpose, to be removed if they are still empty in the end.
 #[derive(Debug, Default)]
 pub struct Made(Vec<PathBuf>);
 
 impl Made {
-    /// Makes a directory with all around it.
+    /// Makes a directory and its parents.
     ///
     /// # Errors
-    /// Those of the file system; what was made before stays in `self`.
+    /// Those of the file system; directories made before stay in `self`.
     pub fn make(&mut self, folder: &Path) -> std::io::Result<()> {
         let missing: Vec<_> = folder.ancestors().take_while(|it| !it.as_os_str().is_empty() && !it.exists()).collect();
         for folder in missing.into_iter().rev() {
             match fs::create_dir(folder) {
                 Ok(()) => self.0.push(folder.to_owned()),
-                // Somebody else was faster.
+                // Another process was faster.
                 Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists && folder.is_dir() => {}
                 Err(error) => return Err(error),
             }
@@ -169,7 +169,7 @@ impl Made {
     /// Removes those that are still empty.
     pub fn take_back(&mut self) {
         for folder in self.0.drain(..).rev() {
-            // What is in use by now is not empty, and stays.
+            // Those that are in use by now are not empty and stay.
             let _ = fs::remove_dir(folder);
         }
     }

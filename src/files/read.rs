@@ -1,28 +1,28 @@
-//! Reading what others may have changed: no more than is expected of it, nothing but files, and errors that name the file.
+//! Reads files that others may have changed: no more than the expected size, no pipes or devices, and errors that name the file.
 
 use crate::error::{Error, Result};
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
 
-/// Most bytes of a study file: parsed, a text takes a hundred times as much.
+/// Most bytes of a study file: when parsed, a text takes a hundred times as much memory.
 pub const STUDY_BYTES: u64 = 4 << 20;
 /// Most bytes of a JSON file of a result, of a table of bins, cells or vertices, and of a picture.
 pub const RESULT_BYTES: u64 = 64 << 20;
 /// Most bytes of a row of a table of designs.
 pub const ROW_BYTES: u64 = 1 << 20;
 
-/// Opens a file to read it: one that lies on a disk, or one that the shell handed over. A pipe with a name could be waited at for ever,
-/// and a device gives bytes for ever.
+/// Opens a file for reading: a regular file, or one that the shell passes. A named pipe could be waited for endlessly, and a device could
+/// give endless bytes.
 ///
 /// # Errors
-/// Those of the file system; one that says what it is if it is no file.
+/// Those of the file system; one that says what it is if it is not a file.
 pub fn open(path: &Path) -> io::Result<File> {
     let metadata = fs::metadata(path)?;
     if metadata.is_dir() {
         return Err(io::ErrorKind::IsADirectory.into());
     }
-    // `<(...)` and `-`, as shells write them.
+    // As shells pass `<(...)` and standard input.
     let handed_over = ["/dev/fd", "/dev/stdin", "/proc/self/fd"].iter().any(|it| path.starts_with(it));
     if !metadata.is_file() && !handed_over {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is a pipe or a device; name a file"));
@@ -30,7 +30,7 @@ pub fn open(path: &Path) -> io::Result<File> {
     File::open(path)
 }
 
-/// The bytes of a file that has at most `most`; `remedy` is what to do about one that has more.
+/// The bytes of a file of at most `most` bytes; `remedy` is what to do about a larger one.
 ///
 /// # Errors
 /// [`Error::Io`] that names the file.
@@ -53,7 +53,7 @@ pub fn read_text(path: &Path, most: u64, remedy: &str) -> Result<String> {
     String::from_utf8(read_bytes(path, most, remedy)?).map_err(not_text)
 }
 
-/// Reads on as long as no line is longer than `most` bytes: a table may be larger than the memory, a row of it may not.
+/// Reads as long as no line is longer than `most` bytes: a table may be larger than the memory, but a row must not be.
 #[derive(Debug)]
 pub struct ShortLines<R> {
     inner: R,

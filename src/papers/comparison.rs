@@ -1,15 +1,15 @@
-//! What a paper prints beside what comes out, with the reason.
+//! Compares what a paper prints with what is computed, and gives the reason.
 
 use super::{Paper, numbers, words};
 use crate::export::Table;
 use crate::pictures::number::significant;
 
-/// How a comparison came out. Nobody writes it down: it follows from the two numbers.
+/// The verdict of a comparison. It is computed from the two numbers, never written by hand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// Within half a unit of the last printed digit, inside the printed range, or as the statement says.
     Agrees,
-    /// Agrees because an input that the paper does not print was chosen so.
+    /// Agrees because an input that the paper does not print was chosen to make it agree.
     Fitted,
     /// Does not agree.
     Differs,
@@ -42,7 +42,7 @@ pub struct Printed {
 }
 
 impl Printed {
-    /// A number as printed; it stands for everything that rounds to it.
+    /// A number as printed; it agrees with every number that rounds to it.
     ///
     /// # Panics
     /// If the text is no number.
@@ -52,7 +52,7 @@ impl Printed {
         Self::rounded(text, unit)
     }
 
-    /// A number as printed whose last digits are zeros of rounding: `unit` is the place that it was rounded to.
+    /// A number as printed that was rounded to multiples of `unit`.
     ///
     /// # Panics
     /// If the text is no number.
@@ -69,7 +69,7 @@ impl Printed {
     }
 }
 
-/// One row: what a paper says, what comes out, and why they agree or do not.
+/// One row: what a paper prints, what is computed, and why they agree or differ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     /// The paper.
@@ -82,13 +82,13 @@ pub struct Comparison {
     pub unit: &'static str,
     /// As the paper prints it; `-` if it does not.
     pub printed: String,
-    /// What comes out, in as many digits as a reader wants.
+    /// The computed value, in as many digits as a reader wants.
     pub computed: String,
     /// The same in full, if it is a number.
     pub value: Option<f64>,
     /// Computed over printed, in per cent, or distance to the printed range; `-` if there is none.
     pub difference: String,
-    /// How it came out.
+    /// The verdict.
     pub verdict: Verdict,
     /// Why: never empty.
     pub reason: String,
@@ -138,7 +138,7 @@ impl Rows {
         );
     }
 
-    /// The same, where an input was chosen to make it so.
+    /// The same, if an input was chosen to make it agree.
     pub fn fitted(&mut self, at: &'static str, what: &str, unit: &'static str, printed: &Printed, value: f64, reason: impl Into<String>) {
         self.number(at, what, unit, printed, value, reason);
         self.soften(Verdict::Fitted);
@@ -150,14 +150,14 @@ impl Rows {
         self.soften(Verdict::Input);
     }
 
-    /// Another word for agreement in the last row.
+    /// Changes the word for agreement of the last row.
     fn soften(&mut self, verdict: Verdict) {
         if let Some(row) = self.rows.last_mut().filter(|row| row.verdict == Verdict::Agrees) {
             row.verdict = verdict;
         }
     }
 
-    /// A statement beside what was found; `holds` is computed, not judged.
+    /// A statement of the paper beside what was found; `holds` is computed, not judged by hand.
     pub fn statement(&mut self, at: &'static str, what: &str, printed: &str, computed: String, holds: bool, reason: impl Into<String>) {
         let verdict = if holds { Verdict::Agrees } else { Verdict::Differs };
         self.push(ComparisonRow { at, what, unit: "", printed, computed, value: None, difference: "-".to_owned(), verdict }, reason.into());
@@ -170,7 +170,7 @@ impl Rows {
         self.push(row, reason.into());
     }
 
-    /// Something found that is no number and that the paper does not print.
+    /// Something found that is not a number and that the paper does not print.
     pub fn remark(&mut self, at: &'static str, what: &str, computed: String, reason: impl Into<String>) {
         let row = ComparisonRow {
             at,
@@ -217,7 +217,7 @@ pub(super) fn percent(share: f64) -> String {
 
 /// The same with so many significant digits.
 pub(super) fn percent_to(share: f64, count: usize) -> String {
-    // What rounding leaves is no difference.
+    // A remainder of rounding is no difference.
     if share.abs() < 1e-10 {
         return "0 %".to_owned();
     }

@@ -1,9 +1,9 @@
-//! The three papers that the models come from, computed again: every table and every figure that can be, and number by number
-//! what agrees, what does not, and why.
+//! The three papers that the models come from, computed again: their tables and figures, as far as possible, and for each number whether it
+//! agrees and why.
 //!
-//! [`reproduce()`] evaluates the [`models`](crate::models) with the papers' data; nothing is fitted to agree, and what had to be chosen
-//! or calibrated because a paper does not print it is said to be. Where a model has no answer, because the printed numbers lie beyond
-//! what it allows, the printed equation itself is evaluated. A [`Comparison`] without a reason is refused.
+//! [`reproduce()`] evaluates the [`models`](crate::models) with the papers' data. Nothing is fitted to agree; values that had to be chosen
+//! or calibrated because a paper does not print them are marked as such. If a model has no answer because the printed numbers are out of
+//! its range, the printed equation itself is evaluated. A [`Comparison`] without a reason is refused.
 
 mod comparison;
 mod cvt;
@@ -84,7 +84,7 @@ pub struct Figure {
     pub id: &'static str,
     /// What it shows.
     pub title: String,
-    /// What to see in it, and what is not the paper's.
+    /// What it shows, and what in it is not from the paper.
     pub caption: String,
     /// The paper.
     pub group: Paper,
@@ -113,7 +113,7 @@ pub struct PaperTable {
     pub id: &'static str,
     /// What it holds.
     pub title: String,
-    /// What to see in it, and what is not the paper's.
+    /// What it shows, and what in it is not from the paper.
     pub caption: String,
     /// The paper.
     pub group: Paper,
@@ -139,7 +139,7 @@ pub struct Lost {
     pub why: &'static str,
 }
 
-/// An equation or number that is read otherwise than printed.
+/// An equation or number that is read differently than printed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Repair {
     /// The paper.
@@ -159,7 +159,7 @@ pub struct Reproduction {
     pub tables: Vec<PaperTable>,
     /// Every number and statement that can be compared, paper by paper.
     pub comparisons: Vec<Comparison>,
-    /// What is read otherwise than printed.
+    /// What is read differently than printed.
     pub repairs: Vec<Repair>,
     /// What cannot be computed again.
     pub lost: Vec<Lost>,
@@ -168,7 +168,7 @@ pub struct Reproduction {
 /// Computes the figures, tables and comparisons of all papers: a few seconds, most of them for the pulleys' finite elements.
 ///
 /// # Errors
-/// [`Error::Certificate`] if a comparison gives no reason.
+/// [`Error::Disagreement`] if a comparison gives no reason.
 pub fn reproduce() -> Result<Reproduction> {
     let mut all = Reproduction { figures: Vec::new(), tables: Vec::new(), comparisons: Vec::new(), repairs: Vec::new(), lost: Vec::new() };
     for of_one in [cvt::reproduce(), timing::reproduce(), pulley::reproduce()] {
@@ -178,12 +178,12 @@ pub fn reproduce() -> Result<Reproduction> {
         all.repairs.extend(of_one.repairs);
         all.lost.extend(of_one.lost);
     }
-    check(&all.comparisons).map_err(Error::Certificate)?;
+    check(&all.comparisons).map_err(Error::Disagreement)?;
     Ok(all)
 }
 
 impl Reproduction {
-    /// Number of comparisons that came out so.
+    /// Number of comparisons with this verdict.
     pub fn count(&self, verdict: Verdict) -> usize {
         self.comparisons.iter().filter(|row| row.verdict == verdict).count()
     }
@@ -229,7 +229,7 @@ impl Reproduction {
         read_at_most(&folder.join(MARK), MOST_BYTES).is_ok_and(|bytes| bytes.starts_with(&header))
     }
 
-    /// Writes all files into a directory that this process holds. Each is either whole or not there, and [`MARK`] comes last.
+    /// Writes all files into a directory that this process has claimed. Each is either complete or not there, and [`MARK`] comes last.
     ///
     /// # Errors
     /// [`Error::Io`].

@@ -11,7 +11,7 @@ pub(super) const TICK_TEXT: i32 = 12;
 /// Least space between labels side by side, in units of paper.
 const LABEL_GAP: i32 = 12 * UNIT;
 
-/// How long tick labels may get before a power of ten moves into the axis label.
+/// How long tick labels may become before a power of ten moves into the axis label.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Numbers {
     /// Up to 999 999 and down to 0.001.
@@ -34,9 +34,8 @@ impl Numbers {
     }
 }
 
-/// A linear axis with ticks of our own choice. plotters finds key points itself, but with a
-/// tolerance that is absolute, so not for quantities around 1e-12, and without regard for the
-/// width of their labels.
+/// A linear axis with its own choice of ticks. plotters can choose them too, but with an absolute tolerance, which fails for quantities
+/// around 1e-12, and without regard for the width of their labels.
 #[derive(Debug, Clone)]
 pub(super) struct Axis {
     low: f64,
@@ -59,8 +58,7 @@ impl Tick {
 }
 
 impl Axis {
-    /// Horizontal numeric axis on `room` units of paper; labels may stick out by `overhang` at
-    /// either end, others are left away.
+    /// Horizontal numeric axis on `room` units of paper; labels that would stick out by more than `overhang` at either end are left out.
     pub(super) fn horizontal((low, high): (f64, f64), room: i32, overhang: i32, numbers: Numbers) -> Self {
         let most = (room / (20 * UNIT)).clamp(2, 12);
         let exponent = numbers.exponent(low.abs().max(high.abs()));
@@ -98,7 +96,7 @@ impl Axis {
         Self { low, high, ticks, exponent: 0 }
     }
 
-    /// Leaves away the ticks outside a part of the range.
+    /// Drops the ticks outside a section of the range.
     pub(super) fn within(mut self, low: f64, high: f64) -> Self {
         let slack = 1e-9 * (high - low);
         self.ticks.retain(|tick| low - slack <= tick.at && tick.at <= high + slack);
@@ -131,7 +129,7 @@ impl Axis {
             _ => (1, power + 1),
         };
         let step = f64::from(mantissa) * number::power_of_ten(power);
-        // A tick that rounding has pushed just outside the range still belongs to it.
+        // A tick that is just outside the range because of rounding still belongs to it.
         let first = (low / step - 1e-9).ceil() as i64;
         let last = (high / step + 1e-9).floor() as i64;
         let tick = |k: i64| {
@@ -142,7 +140,7 @@ impl Axis {
         Self { low, high, ticks, exponent }
     }
 
-    /// Whether the labels stand clear of each other on `room` units of paper.
+    /// Are the labels far enough from each other on `room` units of paper?
     pub(super) fn is_clear(&self, room: i32) -> bool {
         match self.ticks.as_slice() {
             [a, b, ..] => {
@@ -176,7 +174,7 @@ impl Ranged for Axis {
 
     fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
         match hint.weight() {
-            // plotters asks twice; grid lines between the ticks would be clutter.
+            // plotters asks a second time for grid lines between the ticks, which would be clutter.
             KeyPointWeight::Any => Vec::new(),
             KeyPointWeight::Bold => self.ticks().map(|(at, _)| at).collect(),
         }

@@ -15,7 +15,7 @@ use std::fmt::Write;
 const BAR_WIDTH: i32 = 18 * UNIT;
 /// Space between map and colour bar.
 const BAR_GAP: i32 = 24 * UNIT;
-/// Along a coarser axis contours would be lines between a handful of places.
+/// Least number of levels per axis for contours: with fewer, they would be lines between a handful of points.
 const FEWEST_FOR_CONTOURS: usize = 8;
 
 /// The colour scale.
@@ -49,7 +49,7 @@ impl Bar {
         cells.chunks(columns).rev().flatten().map(index).collect()
     }
 
-    /// Contour lines at the ticks, where the map has a use for them.
+    /// Contour lines at the ticks, if the map is fine enough for them.
     pub fn lines(&self, cells: &[Option<f64>], columns: usize, rows: usize) -> Option<Vec<Contour>> {
         let inside = |level: &f64| self.low < *level && *level < self.high;
         let levels: Vec<f64> = self.axis.ticks().map(|(at, _)| at).filter(inside).collect();
@@ -59,7 +59,7 @@ impl Bar {
         let lines = contours(cells, columns, &levels)?;
         let contour = |(pieces, level): (_, &f64)| Contour {
             pieces,
-            // Light on the dark lower half of the colours and the other way round.
+            // Light lines on the dark lower half of the colours, dark lines on the upper half.
             colour: match *level < 0.5 * (self.low + self.high) {
                 true => WHITE,
                 false => INK,

@@ -1,4 +1,4 @@
-//! Colours that print and that colour-blind readers tell apart.
+//! Colours that can be printed and that colour-blind readers can distinguish.
 
 use plotters::style::RGBColor;
 
@@ -17,13 +17,12 @@ pub(super) const HATCH: RGBColor = RGBColor(170, 170, 170);
 pub(super) const BLUE: RGBColor = RGBColor(0, 114, 178);
 /// The main colour, lighter.
 pub(super) const LIGHT_BLUE: RGBColor = RGBColor(158, 202, 225);
-/// Data behind the data: darker than the grid, lighter than everything else.
+/// Data in the background: darker than the grid, lighter than everything else.
 pub(super) const SAMPLE: RGBColor = RGBColor(190, 190, 190);
-/// What stands out from the data.
+/// Highlighted data.
 pub(super) const VERMILION: RGBColor = RGBColor(213, 94, 0);
 
-/// Lines that stand together: the palette of Okabe and Ito without its yellow, which vanishes on
-/// white.
+/// Colours of several lines: the palette of Okabe and Ito without its yellow, which is invisible on white.
 pub(super) const LINES: [RGBColor; 7] =
     [BLUE, VERMILION, RGBColor(0, 158, 115), RGBColor(204, 121, 167), RGBColor(0, 0, 0), RGBColor(230, 159, 0), RGBColor(86, 180, 233)];
 
@@ -48,8 +47,8 @@ const ANCHORS: [RGBColor; 16] = [
     RGBColor(253, 231, 37),
 ];
 
-/// Steps of the colour map. With "absent" 128 palette entries: seven bits a cell bound the file
-/// of a map whose cells are pure noise, and the eye sees no steps yet.
+/// Steps of the colour map: with "absent" 128 palette entries, seven bits per cell. This limits the file of a map of pure noise, and the
+/// steps are still invisible.
 pub(super) const STEPS: usize = 127;
 
 /// Colour of one step, 0 (lowest value) to `STEPS - 1` (highest).

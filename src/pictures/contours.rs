@@ -1,14 +1,14 @@
 //! Lines of equal value over a map, by marching squares.
 
-/// Cells along an axis that are looked at; of a finer map every second, third, ... cell.
+/// Most cells along an axis that are used; of a finer map every second, third, ... cell.
 const FINEST: usize = 240;
-/// A map that would need more line pieces is noise, and its lines would only hide it.
+/// Most line pieces: a map that would need more is noise, and lines would only hide it.
 const MOST_PIECES: usize = 8_000;
 
 /// A straight piece of a contour, in cells: the middle of the first cell is at (0.5, 0.5).
 pub(super) type Piece = [(f64, f64); 2];
 
-/// The pieces of every level, in the order of `levels`; `None` where they would be too many.
+/// The pieces of every level, in the order of `levels`; `None` if there would be too many.
 ///
 /// `cells` are `[y][x]` with `columns` cells in a row. No line comes near an absent cell.
 pub(super) fn contours(cells: &[Option<f64>], columns: usize, levels: &[f64]) -> Option<Vec<Vec<Piece>>> {
@@ -42,7 +42,7 @@ pub(super) fn contours(cells: &[Option<f64>], columns: usize, levels: &[f64]) ->
     Some(lines)
 }
 
-/// Adds the pieces of one level inside one square, its corners in turn around it.
+/// Adds the pieces of one level inside one square; its corners are given in order around it.
 fn cross(corners: [(f64, f64, f64); 4], level: f64, line: &mut Vec<Piece>) {
     let edges = (0..4).map(|i| (corners[i], corners[(i + 1) % 4]));
     let crossed: Vec<(f64, f64)> = edges
@@ -58,7 +58,7 @@ fn cross(corners: [(f64, f64, f64); 4], level: f64, line: &mut Vec<Piece>) {
         [p, q, r, s] => {
             let middle = corners.iter().map(|c| c.0 / 4.0).sum::<f64>();
             let first_apart = (middle >= level) != (corners[0].0 >= level);
-            // p lies next to corner 0 on the way out of it, s on the way back.
+            // p lies next to corner 0 on the edge that leaves it, s on the edge that returns to it.
             line.extend(match first_apart {
                 true => [[s, p], [q, r]],
                 false => [[p, q], [r, s]],
@@ -68,7 +68,7 @@ fn cross(corners: [(f64, f64, f64); 4], level: f64, line: &mut Vec<Piece>) {
     }
 }
 
-/// Cells looked at along an axis of `count`, first and last included.
+/// The cells used along an axis of `count`, first and last included.
 fn places(count: usize) -> Vec<usize> {
     let stride = count.div_ceil(FINEST).max(1);
     let mut places: Vec<usize> = (0..count).step_by(stride).collect();

@@ -14,12 +14,10 @@ use std::fmt::Write;
 
 const GAP: i32 = 18 * UNIT;
 
-/// Draws curves over the abscissa `x` in panels below each other, one for each pair of an ordinate
-/// and its series.
+/// Draws curves over the abscissa `x` in panels below each other, one panel for each ordinate with its series.
 ///
-/// A label has one colour and one dash throughout the picture and stands once in the legend;
-/// points are joined in the order given. A panel without values stays empty; without any value at
-/// all the picture says so.
+/// A label has the same colour and dash throughout the picture and is in the legend once; points are joined in the given order. A panel
+/// without values stays empty; without any value at all the picture says so.
 pub fn curves(title: &str, x: &Quantity, panels: &[(Quantity, Vec<Series>)]) -> String {
     let all = panels.iter().flat_map(|(_, series)| series);
     let abscissae = all.clone().flat_map(|s| points(s).map(|(x, _)| x));
@@ -83,7 +81,7 @@ impl<'a> CurveRow<'a> {
         Self { series, axis, label }
     }
 
-    /// Draws the panel; the lines come back as SVG elements to insert.
+    /// Draws the panel; returns the lines as SVG elements to insert.
     fn draw(&self, area: &Area<'_>, panel: &PanelPlan<'_>, labels: &[&str]) -> Drawn<String> {
         let context = panel.draw(area)?;
         let (mut empty, mut lines) = (true, String::new());
@@ -141,7 +139,7 @@ fn legend(labels: &[&str]) -> Vec<(Mark, String)> {
     named.map(entry).collect()
 }
 
-/// Colour and dash of a label. Colours come first; when they are used up, the dash tells.
+/// Colour and dash of a label. The dash changes when the colours are used up.
 fn look(labels: &[&str], label: &str) -> (RGBColor, Dash) {
     let place = labels.iter().position(|l| *l == label).unwrap_or(0);
     let dash = match place / LINES.len() % 3 {

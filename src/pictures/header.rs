@@ -1,4 +1,4 @@
-//! The head of a picture: its title and, below, a legend that can cover no data.
+//! The head of a picture: its title and, below it, the legend, which so cannot cover data.
 
 use super::colours::{ABSENT, GREY, HATCH, INK};
 use super::sheet::{Area, Dash, Drawn, Sheet, UNIT, WIDTH};
@@ -12,7 +12,7 @@ const LEGEND_TEXT: i32 = 13;
 const LEGEND_ROW: i32 = 21 * UNIT;
 const MARK_WIDTH: i32 = 30 * UNIT;
 
-/// What stands at every point of a [`Line`](super::Line).
+/// The mark at every point of a [`Line`](super::Line).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Marker {
     /// Nothing.
@@ -23,14 +23,14 @@ pub enum Marker {
     Filled,
 }
 
-/// What stands in front of a legend entry.
+/// The mark in front of a legend entry.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Mark {
     Dot(RGBColor),
     Line(RGBColor, Dash),
     /// A line with a mark on it.
     Styled(RGBColor, Option<Dash>, Marker),
-    /// A dot, filled or not, that stands out from a line of its colour.
+    /// A dot, filled or not, that is distinct from a line of its colour.
     Ring(RGBColor, bool),
     Diamond(RGBColor),
     Plus(RGBColor),
@@ -143,7 +143,7 @@ impl Mark {
                 }
             }
             Mark::Diamond(colour) => {
-                // White around it keeps it apart from the dots below.
+                // A white rim separates it from the dots below.
                 for (reach, colour) in [(9 * UNIT, WHITE), (7 * UNIT, colour)] {
                     let tips = [(0, -reach), (reach, 0), (0, reach), (-reach, 0)];
                     let tips = tips.map(|(dx, dy)| (x + dx, y + dy));

@@ -16,11 +16,10 @@ use std::fmt::Write;
 const HEIGHT: i32 = 520 * UNIT;
 /// Draws a map: one coloured cell for each pair of levels, in one embedded PNG image.
 ///
-/// `x` and `y` are the axes with their level values, which may be irregular: an axis counts levels
-/// and its ticks show their values. `cells` are the values, `[y][x]`, `None` where there is no
-/// feasible design, shown hatched. Over them stand the lines of `details`; without any, maps that are
-/// fine and smooth enough carry contour lines at the ticks of the colour bar. No cells at all: the
-/// picture says that no design is feasible.
+/// `x` and `y` are the axes with their level values, which may be irregular: an axis counts levels, and its ticks show their values.
+/// `cells` are the values, `[y][x]`, `None` where there is no feasible design, which is hatched. Over them the lines of `details` are
+/// drawn; without any, maps that are fine and smooth enough get contour lines at the ticks of the colour bar. Without any cell the picture
+/// says that no design is feasible.
 pub fn heatmap(
     title: &str,
     x: (&Quantity, &[f64]),
@@ -100,7 +99,7 @@ fn legend(cells: &[Option<f64>], value: &Quantity, contours: bool) -> Vec<(Mark,
     legend
 }
 
-/// Where panel and colour bar stand.
+/// The positions of panel and colour bar.
 struct HeatmapLayout {
     frame: Frame,
     x: Axis,
@@ -146,8 +145,8 @@ impl HeatmapLayout {
     }
 }
 
-/// Rising lines over a frame: what stays visible where cells are absent, also in print. Lines
-/// rather than a pattern, which would need a name that is unique in the page around the picture.
+/// Hatching over a frame, visible where cells are absent, also in print. It is drawn with lines rather than an SVG pattern, which would
+/// need a name that is unique in the page around the picture.
 fn hatching(frame: Frame) -> String {
     let mut path = String::new();
     for start in (-frame.height..frame.width).step_by((7 * UNIT) as usize) {

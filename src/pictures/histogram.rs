@@ -13,16 +13,15 @@ use plotters::style::text_anchor::{HPos, VPos};
 
 /// Height of the panel, in units of paper.
 const HEIGHT: i32 = 380 * UNIT;
-/// Gap between the bins and the bar for what lies outside, and the width of that bar, as shares of
-/// the range of the bins.
+/// Gap between the bins and the bar for designs outside, and the width of that bar, as fractions of the range of the bins.
 const GAP: f64 = 0.03;
 const FLANK: f64 = 0.045;
 
 /// Draws a histogram of `counts.len()` bins of equal width over `from` to `to`, in the unit of
 /// `quantity`, and a lighter bar at either end for the designs `below` and `above` that range.
 ///
-/// A bar at the end that would dwarf the bins is cut; the legend gives its count. Nothing counted
-/// at all: the picture says that no design is feasible.
+/// A bar at the end that would dwarf the bins is cut off; the legend gives its count. If nothing is counted at all, the picture says that
+/// no design is feasible.
 pub fn histogram(title: &str, quantity: &Quantity, from: f64, to: f64, counts: &[u64], below: u64, above: u64) -> String {
     let total = counts.iter().chain([&below, &above]);
     let total = total.fold(0, |sum: u64, &c| sum.saturating_add(c));
@@ -105,13 +104,13 @@ impl Bars<'_> {
             let shown = (count as f64).min(self.top());
             let (left, right) = (place(start, shown), place(start + flank, 0.0));
             if count > 0 {
-                // Even a single design shows.
+                // Even a single design is visible.
                 let top = left.1.min(right.1 - UNIT);
                 let corners = [(left.0, top), right];
                 area.draw(&Rectangle::new(corners, LIGHT_BLUE.filled()))?;
             }
             if count as f64 > self.top() {
-                // Two white slashes: the bar goes on.
+                // Two white slashes: the bar is cut off.
                 let stroke = WHITE.stroke_width(3 * UNIT as u32);
                 for down in [18 * UNIT, 26 * UNIT] {
                     let y = left.1 + down;
@@ -132,7 +131,7 @@ impl Bars<'_> {
             return Ok(());
         }
         if place(edge(1), 0.0).0 - place(edge(0), 0.0).0 <= 5 * UNIT {
-            // Narrow bars merge into one shape, or every one would have blurred edges.
+            // Narrow bars are drawn as one shape; otherwise each would have blurred edges.
             let tops = self.counts.iter().enumerate();
             let tops = tops.flat_map(|(i, &c)| [(edge(i), c as f64), (edge(i + 1), c as f64)]);
             let shape = std::iter::once((self.from, 0.0)).chain(tops);

@@ -1,4 +1,4 @@
-//! Axes of maps: they count cells and say the value of the level of some of them.
+//! Axes of maps: they count cells and label some of them with the value of their level.
 
 use super::axis::Axis;
 use super::number;
@@ -6,7 +6,7 @@ use super::sheet::UNIT;
 
 /// Horizontal axis over as many cells as there are levels, on `room` units of paper.
 pub(super) fn across(levels: &[f64], room: i32) -> Axis {
-    // Labels only fit every few cells; how many depends on which ones are shown.
+    // Only every n-th label fits; n depends on which ones are shown.
     let least = fitting_stride(levels, room, 24 * UNIT);
     let fits = |stride: &usize| every(levels, *stride).is_clear(room);
     let stride = (least..=levels.len()).find(fits).unwrap_or(levels.len());
@@ -54,17 +54,17 @@ fn every(levels: &[f64], stride: usize) -> Axis {
     Axis::with_ticks((0.0, levels.len() as f64), ticks)
 }
 
-/// Of the strides from `least` to three times that, the one with the shortest labels: every fifth
-/// cell of 18, 18.2, ... reads 18, 19, 20.
+/// Of the strides from `least` to three times that, the one with the shortest labels: every fifth cell of 18, 18.2, ... is labelled 18,
+/// 19, 20.
 fn nicest_stride(levels: &[f64], least: usize) -> usize {
     let least = least.max(1);
-    // Strides past the last cell would leave one label only.
+    // Strides beyond the last cell would leave a single label.
     let most = (3 * least).min(levels.len().saturating_sub(1)).max(least);
     let cost = |stride: usize| {
         let axis = every(levels, stride);
-        // Zeros at the end are no burden: 1 200 reads more easily than 1 176.
+        // Zeros at the end do not count: 1 200 is easier to read than 1 176.
         let length: usize = axis.ticks().map(|(_, label)| label.trim_end_matches(['0', '\u{a0}', ' ']).chars().count()).sum();
-        // Tenths of a character on average; half a character buys a stride twice as wide.
+        // Tenths of a character on average; a stride twice as wide is worth half a character.
         length * 10 / axis.ticks().count().max(1) + stride * 5 / least
     };
     (least..=most).min_by_key(|&s| cost(s)).unwrap_or(least)

@@ -1,4 +1,4 @@
-//! The picture of lines and marks in one pair of axes, each line with a look of its own: what a printed figure needs.
+//! The picture of lines and marks in one pair of axes, each line with its own style, as printed figures need it.
 
 use super::Quantity;
 use super::axis::{Axis, Numbers};
@@ -21,13 +21,13 @@ const GUIDE_ROW: i32 = 17 * UNIT;
 /// How the points of a [`Line`] are joined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stroke {
-    /// Without a gap.
+    /// By a solid line.
     Solid,
-    /// In strokes.
+    /// By a dashed line.
     Dashed,
-    /// In dots.
+    /// By a dotted line.
     Dotted,
-    /// Not at all: its marks stand alone.
+    /// Not at all: only marks are drawn.
     None,
 }
 
@@ -40,22 +40,22 @@ pub struct Line {
     pub x: Vec<f64>,
     /// Ordinates, as many as `x`.
     pub y: Vec<f64>,
-    /// Number of the colour: lines that belong together share one.
+    /// Number of the colour: lines that belong together have the same.
     pub colour: usize,
     /// How its points are joined.
     pub stroke: Stroke,
-    /// What stands at its points.
+    /// The marks at its points.
     pub marker: Marker,
 }
 
-/// A straight line across the panel, with words at it.
+/// A straight line across the panel, with a label.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Guide {
     /// Where it crosses its axis.
     pub at: f64,
-    /// Does it stand at an abscissa, rather than lie at an ordinate?
+    /// Is it vertical, at an abscissa, rather than horizontal, at an ordinate?
     pub upright: bool,
-    /// What it means.
+    /// Its label.
     pub words: String,
     /// Number of the colour, as of [`Line::colour`]; `None`: the colour of text.
     pub colour: Option<usize>,
@@ -64,7 +64,7 @@ pub struct Guide {
 /// An axis of [`lines()`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scale {
-    /// What is on it.
+    /// Its quantity.
     pub quantity: Quantity,
     /// Its ends; without them they are those of the data.
     pub range: Option<(f64, f64)>,
@@ -157,7 +157,7 @@ fn strokes(
     elements
 }
 
-/// The words at the guides: at upright ones below each other from the top, so that neighbours do not meet.
+/// The labels of the guides: at vertical ones below each other from the top, so that neighbours do not overlap.
 fn words(area: &Area<'_>, frame: Frame, guides: &[Guide], across: impl Fn(&Guide) -> i32) -> Drawn {
     let mut row = 0;
     for guide in guides {
@@ -167,7 +167,7 @@ fn words(area: &Area<'_>, frame: Frame, guides: &[Guide], across: impl Fn(&Guide
             let beside = at + 6 * UNIT + width <= frame.right();
             let (side, x) = if beside { (HPos::Left, at + 6 * UNIT) } else { (HPos::Right, at - 6 * UNIT) };
             let y = frame.top + 8 * UNIT + row * GUIDE_ROW;
-            // A ground of their own, where they lie over other guides.
+            // With a background of their own, because they may lie over other guides.
             let left = if beside { x } else { x - width };
             let ground = [(left - 3 * UNIT, y - UNIT), (left + width + 3 * UNIT, y + GUIDE_TEXT * UNIT + 3 * UNIT)];
             area.draw(&Rectangle::new(ground, WHITE.filled()))?;

@@ -1,14 +1,13 @@
 //! Pictures: plain data in, the text of one self-contained SVG file out.
 //!
-//! [`front`] draws a Pareto front, [`histogram()`] a histogram, [`heatmap()`] a map over two axes,
-//! [`curves()`] profiles over a common abscissa and [`lines()`] a figure as papers print it; [`pulley`] has those of pulleys. None of them reads or writes a file, and the same
-//! input always gives the same bytes: no clock, no random names, no hash-map order, and no
-//! transcendental function from the system in a position or a tick.
+//! [`front`] draws a Pareto front, [`histogram()`] a histogram, [`heatmap()`] a map over two axes, [`curves()`] profiles over a common
+//! abscissa and [`lines()`] a figure as papers print it; [`pulley`] draws pulleys. None of them reads or writes a file, and the same input
+//! always gives the same bytes: no clock, no random names, no hash-map order, and no transcendental function of the system in a position
+//! or a tick.
 //!
-//! A picture is 900 px wide on a white ground, uses colours that colour-blind readers can tell
-//! apart, and loads nothing from elsewhere, so it reads alike as a file in a browser and inside a
-//! page. Input without any data gives a picture that says so; values that are not finite are left
-//! out.
+//! A picture is 900 px wide on a white background, uses colours that colour-blind readers can distinguish, and loads nothing from
+//! elsewhere, so it looks the same as a file in a browser and inside a page. Input without any data gives a picture that says so; values
+//! that are not finite are left out.
 
 mod axis;
 mod colour_bar;
@@ -78,14 +77,14 @@ pub struct Series {
     pub y: Vec<f64>,
 }
 
-/// What is drawn of a map besides its cells.
+/// Details of a map besides its cells.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct MapDetails {
     /// Are all values whole numbers? Then those of the colour bar are too.
     pub whole: bool,
-    /// The texts of the levels of the two axes, where some are no numbers.
+    /// The texts of the levels of the two axes, if some are words.
     pub words: [Option<Vec<String>>; 2],
-    /// Lines over the map, in place of those that [`heatmap()`] would draw by itself.
+    /// Lines over the map, which replace those that [`heatmap()`] would draw by itself.
     pub contours: Option<Vec<Contours>>,
 }
 
@@ -94,7 +93,7 @@ pub struct MapDetails {
 pub struct Contours {
     /// The quantity, which need not be the map's.
     pub quantity: Quantity,
-    /// Are these all the whole numbers that it rises to?
+    /// Are these lines all steps of a whole-number quantity?
     pub every_change: bool,
     /// One entry per value.
     pub curves: Vec<Curve>,
@@ -137,7 +136,7 @@ impl Quantity {
         }
     }
 
-    /// The unit as one writes it: `N/mm`, `mm²`.
+    /// The unit as it is usually written: `N/mm`, `mm²`.
     fn plain_unit(&self) -> String {
         words::clean(&self.unit).replace("_per_", "/").replace("m2", "m²").replace("m3", "m³")
     }
@@ -156,8 +155,7 @@ impl Quantity {
 }
 
 impl Goal {
-    /// Words for an axis label; the arrow points along the axis towards better values, also on a
-    /// vertical axis, whose label is turned to read upwards.
+    /// Words for an axis label; the arrow points along the axis towards better values, also on a vertical axis, whose label reads upwards.
     fn words(self) -> &'static str {
         match self {
             Goal::Min => "← lower is better",
@@ -165,7 +163,7 @@ impl Goal {
         }
     }
 
-    /// Orders the better of two values first.
+    /// Orders values, better ones first.
     fn better_first(self, a: f64, b: f64) -> std::cmp::Ordering {
         match self {
             Goal::Min => a.total_cmp(&b),

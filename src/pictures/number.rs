@@ -1,7 +1,7 @@
 //! Numbers as text: tick labels, counts and level values.
 //!
-//! Powers of ten come from Rust's own decimal formatting and parsing, which is exact and the same
-//! on every platform; the system's `log10` and `pow` are not.
+//! Powers of ten come from Rust's own decimal formatting and parsing, which is exact and the same on every platform; the system's `log10`
+//! and `pow` are not.
 
 /// Mantissa (1 <= |m| < 10, or 0) and exponent of a finite number.
 pub(super) fn scientific(value: f64) -> (f64, i32) {
@@ -55,13 +55,13 @@ pub(crate) fn significant(value: f64, digits: usize) -> String {
     decimal(digits, exponent - decimals)
 }
 
-/// Labels for neighbouring values: four significant digits, or as many as keep them apart.
+/// Labels for neighbouring values: four significant digits, or as many as make them different.
 pub(super) fn levels(values: &[f64]) -> Vec<String> {
     let labels = |digits| -> Vec<String> { values.iter().map(|&v| significant(v, digits)).collect() };
     let apart = |labels: &Vec<String>| labels.windows(2).all(|pair| pair[0] != pair[1]);
     let found = (4..=12).map(labels).find(apart);
     let mut labels = found.unwrap_or_else(|| labels(4));
-    // Few decimals read better if all labels have them; many, as of a logarithmic axis, do not.
+    // Labels with few decimals are easier to read if all have the same number; with many decimals, as on a logarithmic axis, they are not.
     let decimals = |label: &String| label.split_once('.').map_or(0, |(_, d)| d.len());
     let most = labels.iter().map(decimals).max().unwrap_or(0);
     if (1..=3).contains(&most) && labels.iter().all(|label| !label.contains('×')) {

@@ -1,4 +1,4 @@
-//! Given lines over a map: on its cells, readable on every colour, each named where there is room.
+//! Lines over a map: visible on every colour, each with a label if there is room.
 
 use super::colours::INK;
 use super::header::Mark;
@@ -10,25 +10,25 @@ use plotters::style::text_anchor::{HPos, VPos};
 use std::fmt::Write;
 
 const LINE_WIDTH: i32 = 14;
-/// White below a line: on the dark colours it is what one sees.
+/// White below a line, which is what is visible on dark colours.
 const HALO_WIDTH: i32 = 36;
 const LABEL_TEXT: i32 = 11;
 const LABEL_HEIGHT: i32 = 14 * UNIT;
-/// Side of the blocks in which room is looked for.
+/// Side of the blocks in which room for labels is searched.
 const BLOCK: i32 = 4 * UNIT;
-/// Distance of two places along a line where its label may stand.
+/// Distance of two places along a line that are tried for its label.
 const STEP: f64 = 60.0;
-/// Thresholds that the legend lists.
+/// Most thresholds that the legend lists.
 const MOST_LISTED: usize = 6;
 
 type Point = (i32, i32);
 
-/// How the lines of the quantities are told apart.
+/// Dashes that distinguish the lines of the quantities.
 fn dash(number: usize) -> Dash {
     [Dash::Solid, Dash::Dashed, Dash::Dotted][number % 3]
 }
 
-/// What the legend says of the lines: one entry per quantity.
+/// The legend of the lines: one entry per quantity.
 pub(super) fn legend(contours: &[Contours]) -> Vec<(Mark, String)> {
     let entry = |(at, it): (usize, &Contours)| {
         let (name, unit) = (it.quantity.plain_name(), it.quantity.plain_unit());
@@ -87,8 +87,8 @@ pub(super) fn draw(sheet: &mut Sheet, contours: &[Contours], (x, y): (&[f64], &[
     });
 }
 
-/// Where a value stands on an axis that counts levels, the first level in the middle of the first cell: between two levels in
-/// proportion.
+/// The position of a value on an axis that counts levels, with the first level in the middle of the first cell: interpolated between two
+/// levels.
 fn position(levels: &[f64], value: f64) -> f64 {
     let [first, .., last] = levels else { return 0.5 };
     let falling = first > last;
@@ -109,7 +109,7 @@ impl OverlayLine {
     fn path(&self) -> String {
         let mut path = String::new();
         let mut last = self.points[0];
-        // A line of one vertex is a dot: a stroke of no length with round ends.
+        // A line of one vertex is a dot: a line of zero length with round ends.
         write!(path, "M{} {}l0 0", last.0, last.1).expect("writing into a string does not fail");
         for &point in &self.points[1..] {
             if point != last {
@@ -120,7 +120,7 @@ impl OverlayLine {
         path
     }
 
-    /// Places along the line, at most so far apart.
+    /// Places along the line, at most this far apart.
     fn places(&self, apart: f64) -> Vec<Point> {
         let mut places = vec![self.points[0]];
         for pair in self.points.windows(2) {
@@ -147,7 +147,7 @@ fn label_width(label: &str) -> i32 {
     text_width(label, LABEL_TEXT) + 6 * UNIT
 }
 
-/// The labels that have room, each on its line, as near to its middle as possible: a label touches no other label and no other line.
+/// The labels for which there is room, each on its line, as near to its middle as possible: a label touches no other label or line.
 fn labels(lines: &[OverlayLine], frame: Frame) -> Vec<(Point, String)> {
     let mut room = OverlayRoom::new(frame);
     for (owner, line) in lines.iter().enumerate() {
@@ -157,7 +157,7 @@ fn labels(lines: &[OverlayLine], frame: Frame) -> Vec<(Point, String)> {
     for (owner, line) in lines.iter().enumerate() {
         let Some(label) = &line.label else { continue };
         let (width, places) = (label_width(label), line.places(STEP));
-        // A line that would vanish behind its label has none.
+        // A line that its label would hide has no label.
         if line.length() < f64::from(2 * width) {
             continue;
         }

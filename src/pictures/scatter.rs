@@ -8,8 +8,8 @@ use super::sheet::Sheet;
 use super::thinning::{DRAWN_AT_MOST, thinned};
 use super::{Goal, Objective, number};
 
-/// Draws a Pareto front: for two objectives one scatter with the staircase that bounds what is
-/// feasible, for more of them a scatter of every pair.
+/// Draws a Pareto front: for two objectives one scatter plot with the staircase that bounds what is feasible, for more of them a scatter
+/// plot of every pair.
 ///
 /// `points` are the designs of the front, `[point][objective]`, in the units of the objectives;
 /// `knee` is the index of one of them and `ideal` the best value of each objective; both are
@@ -75,7 +75,7 @@ pub fn front_over(
     sheet.finish()
 }
 
-/// As many of these as are drawn, evenly along the list.
+/// The designs that are drawn, evenly along the list.
 fn evenly(points: Vec<&[f64]>) -> Vec<&[f64]> {
     let drawn = points.len().min(DRAWN_AT_MOST);
     (0..drawn).map(|k| points[k * points.len() / drawn]).collect()
@@ -185,7 +185,7 @@ mod tests {
         let over = |sample: &[Vec<f64>]| front_over("", &objectives(3), &points(20, 3), None, None, sample);
         let svg = over(&sample);
         assert_svg(&svg);
-        // Dots that fall on one another are drawn once.
+        // Dots in the same place are drawn once.
         assert!(dot_count(&svg) > 10_000 && svg.contains("sample of 7 001 feasible designs, 5 000 drawn"));
         let first = |colour: &str| svg.find(colour).unwrap_or_else(|| panic!("{colour} is not drawn"));
         assert!(svg.rfind("stroke=\"#BEBEBE\"") < svg.rfind("stroke=\"#0072B2\"") && first("#BEBEBE") > 0);

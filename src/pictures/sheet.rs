@@ -1,9 +1,8 @@
-//! The sheet of paper a picture is drawn on.
+//! The sheet of paper that a picture is drawn on.
 //!
-//! plotters places everything on whole pixels, which makes smooth curves look like stairs. So a
-//! sheet is drawn in tenths of a pixel ([`UNIT`]) and shown at a tenth of that size by its view
-//! box. plotters writes each layer; what it has no element for (thousands of dots in one path, an
-//! image that is not smoothed) goes between layers as SVG text.
+//! plotters places everything on whole pixels, which makes smooth curves look like stairs. So a sheet is drawn in tenths of a pixel
+//! ([`UNIT`]) and shown at a tenth of that size by its view box. plotters writes each layer; what it cannot draw (thousands of dots in
+//! one path, an image without smoothing) is inserted between layers as SVG text.
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -62,7 +61,7 @@ impl Sheet {
         let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
         let drawn = layer(&area).expect("writing into a string does not fail");
         drop(area);
-        // Each layer comes as a document; only what is inside joins the picture.
+        // Each layer is a document of its own; only its contents become part of the picture.
         let inside = text
             .split_once(">\n")
             .and_then(|(_, rest)| rest.strip_suffix("</svg>\n"))
@@ -89,7 +88,7 @@ impl Sheet {
     }
 }
 
-/// How a line is broken.
+/// Solid or dashed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Dash {
     Solid,
@@ -125,8 +124,8 @@ pub(super) fn stroked(path: &str, colour: RGBColor, width: i32, dash: Dash) -> S
 pub(super) mod tests {
     use super::*;
 
-    /// Objects unless the text is one well-formed, self-contained SVG document, as far as a
-    /// reader of a few lines can tell: tags closed in order, no stray markup, no unknown entity.
+    /// Panics unless the text is a well-formed, self-contained SVG document, as far as a few lines can check: tags closed in order, no
+    /// stray markup, no unknown entity.
     pub fn assert_svg(svg: &str) {
         let mut open = Vec::new();
         let mut rest = svg;

@@ -1,4 +1,4 @@
-//! The boundary of what a front of two objectives reaches.
+//! The boundary of the values that a front of two objectives reaches.
 
 use super::Goal;
 

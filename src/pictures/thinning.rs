@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-/// Points drawn at most. More could not be told apart and would only swell the file.
+/// Most points that are drawn. More could not be distinguished and would only enlarge the file.
 pub(super) const DRAWN_AT_MOST: usize = 5_000;
 
 /// Indices of the points to draw, ascending: all of them, or [`DRAWN_AT_MOST`] that contain the

@@ -36,8 +36,8 @@ pub(super) fn line_height(size: i32) -> i32 {
     size * UNIT * 13 / 10
 }
 
-/// Estimated width of a text of a size in pixels, in units of paper. Rather too wide: which
-/// sans-serif font the reader has is unknown, DejaVu Sans is one of the widest.
+/// Estimated width of a text of a size in pixels, in units of paper. Rather too wide: the reader's sans-serif font is unknown, and DejaVu
+/// Sans is one of the widest.
 pub(super) fn text_width(text: &str, size: i32) -> i32 {
     let thousandths: i32 = text.chars().map(character_width).sum();
     thousandths * size * UNIT / 1000
@@ -55,7 +55,7 @@ fn character_width(c: char) -> i32 {
     }
 }
 
-/// One line of text that XML can hold: control characters and line breaks become spaces.
+/// One line of text that XML allows: control characters and line breaks become spaces.
 pub(super) fn clean(text: &str) -> String {
     let printable = |c: char| match c {
         '\u{fffe}' | '\u{ffff}' => ' ',

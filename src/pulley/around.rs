@@ -1,4 +1,4 @@
-//! Stresses of the check points around the circumference, with what stands where: the wrap and the bolts.
+//! Stresses of the check points around the circumference, with the positions of the wrap and the bolts.
 
 use super::field::degrees;
 use super::response::CHECK_POINTS;

@@ -1,7 +1,7 @@
 //! Symmetric banded equations for several harmonics at once: Cholesky factors and solutions, a harmonic per lane.
 //!
 //! Every lane does the same operations in the same order on every machine (no contraction, no reordering), so a solution has the
-//! same bits whatever instructions the processor has.
+//! same bits whatever instructions the CPU has.
 
 #![allow(clippy::needless_range_loop, reason = "loops over lanes, of constant length, are what the compiler makes vectors of")]
 
@@ -11,7 +11,7 @@ pub const WIDTH: usize = 4;
 /// One number of each harmonic.
 pub type Wide = [f64; WIDTH];
 
-/// Columns that are eliminated together: what they do to the rest is done in one pass.
+/// Columns that are eliminated together: their effect on the rest is applied in one pass.
 const PANEL: usize = 4;
 
 /// Symmetric banded matrices `K0 + k K1 + k^2 K2`, of which the diagonal and the band below it are kept, column by column.
@@ -26,14 +26,14 @@ pub struct Matrices {
 }
 
 impl Matrices {
-    /// Zero matrices of `size` rows and `half` diagonals below the main one, in the place of `entries`, which do not matter.
+    /// Zero matrices of `size` rows and `half` diagonals below the main one; they reuse the memory of `entries`.
     pub fn reusing(mut entries: Vec<[f64; 3]>, size: usize, half: usize) -> Self {
         entries.clear();
         entries.resize(size * (half + 1), [0.0; 3]);
         Self { size, half, entries, reach: (1..=size).collect() }
     }
 
-    /// Gives the entries away, for other matrices.
+    /// Returns the entries, so that other matrices can reuse their memory.
     pub fn take_entries(&mut self) -> Vec<[f64; 3]> {
         std::mem::take(&mut self.entries)
     }
@@ -50,7 +50,7 @@ impl Matrices {
         self.size.next_multiple_of(PANEL)
     }
 
-    /// Of each panel, how many rows after it its elimination reaches: what a column reaches, those after it may fill.
+    /// For each panel, how many rows after it its elimination affects; later columns may fill what an earlier one affects.
     fn reached(&self) -> Vec<usize> {
         let mut last = 0;
         let panel = |first: usize| {
@@ -62,7 +62,7 @@ impl Matrices {
     }
 }
 
-/// Room for the factors of four harmonics, kept from one solution to the next.
+/// Memory for the factors of four harmonics, reused from one solution to the next.
 #[derive(Clone, Debug, Default)]
 pub struct Factors {
     entries: Vec<Wide>,
@@ -75,7 +75,7 @@ impl Factors {
     pub fn solve(&mut self, matrices: &Matrices, orders: [usize; WIDTH], sides: &mut [Wide], count: usize) {
         assert_eq!(sides.len(), matrices.rows() * count, "one number per row and right side");
         let stride = matrices.half + PANEL;
-        // What a larger matrix has left is written over.
+        // Whatever a larger matrix has left is overwritten.
         self.entries.resize(self.entries.len().max(matrices.rows() * stride), [0.0; WIDTH]);
         let order = orders.map(|order| order as f64);
         let (shape, reached) = ((matrices.size, matrices.half), matrices.reached());
@@ -124,7 +124,7 @@ fn solve<const COUNT: usize>(
     let stride = half + PANEL;
     let rows = sides.len();
     let mut built = 0;
-    // Nothing happens to right sides that are zero so far.
+    // Right sides that are still zero need no work.
     let mut loaded = [false; COUNT];
     for first in (0..rows).step_by(PANEL) {
         let reach = reached[first / PANEL];
@@ -173,7 +173,7 @@ fn solve<const COUNT: usize>(
                 loaded[side] |= value[0] != 0.0 || value[1] != 0.0 || value[2] != 0.0 || value[3] != 0.0;
             }
         }
-        // Two columns in one pass: what is loaded of the panel serves both.
+        // Two columns in one pass share what is loaded of the panel.
         for next in (0..reach - reach % 2).step_by(2) {
             let length = reach - next;
             let (column, after) = rest[next * stride..].split_at_mut(stride);

@@ -1,4 +1,4 @@
-//! Eight points of the surface at all angles of the turn: sums of harmonics, and what is largest of them.
+//! Eight points of the surface at all angles of the revolution: sums of harmonics, and the largest values.
 
 #![allow(clippy::needless_range_loop, reason = "loops over lanes, of constant length, are what the compiler makes vectors of")]
 

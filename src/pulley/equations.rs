@@ -12,9 +12,9 @@ struct EquationRoom {
     entries: Vec<[f64; 3]>,
 }
 
-/// Room that nobody uses: one for each thread that has solved sections at the same time as others. Threads come and go with the parts of a
-/// run, and what an allocator keeps of each would add up. It is room only: what a section before has left in it is written over before
-/// it is read, so that no answer depends on what was solved earlier.
+/// Unused memory: one block for each thread that has solved sections at the same time as others. Threads come and go during a run, and what
+/// an allocator keeps for each would add up. It is memory only: whatever an earlier section has left in it is overwritten before it is
+/// read, so no answer depends on what was solved earlier.
 static ROOMS: Mutex<Vec<EquationRoom>> = Mutex::new(Vec::new());
 
 /// The equations of a section, for an elastic modulus of 1 MPa. Harmonics without enough fixed to stop rigid motions have no solution.
@@ -28,7 +28,8 @@ pub struct Equations {
 }
 
 impl Equations {
-    /// Of a mesh; `fixed` tells of every node which of its displacements along r, z and the circumference are zero in all harmonics.
+    /// The equations of a mesh; `fixed` says for every node which of its displacements along r, z and the circumference are zero in all
+    /// harmonics.
     pub fn new(mesh: &Mesh, poisson: f64, fixed: Vec<[bool; 3]>) -> Self {
         let EquationRoom { factors, entries } = ROOMS.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default();
         Self { matrices: stiffness(mesh, poisson, &fixed, entries), factors, fixed, values: Vec::new(), sides: 0 }
@@ -101,7 +102,7 @@ fn places(fixed: &[[bool; 3]]) -> impl Iterator<Item = usize> + '_ {
 
 /// The matrices of a section's stiffness, for a modulus of 1 MPa; what is fixed has the identity's rows.
 ///
-/// `entries` is room for them, whose numbers do not matter.
+/// `entries` is memory for them; its contents do not matter.
 pub fn stiffness(mesh: &Mesh, poisson: f64, fixed: &[[bool; 3]], entries: Vec<[f64; 3]>) -> Matrices {
     let held = fixed.as_flattened();
     let mut matrices = Matrices::reusing(entries, 3 * mesh.nodes.len(), 3 * mesh.reach() + 2);

@@ -1,8 +1,8 @@
 //! The whole section at one angle: displacements and von Mises stresses of all nodes, for pictures.
 //!
-//! [`super::response`] keeps no more than the surface. Here the displacements of all nodes under unit loads are kept, and a load case
-//! puts them together at one angle as [`super::turn`] does with stresses. At the surface the stresses are those that
-//! are reported; inside they follow from the strains at the points of integration, extended to the nodes and averaged.
+//! [`super::response`] keeps only the surface. Here the displacements of all nodes under unit loads are kept, and a load case combines them
+//! at one angle as [`super::turn`] does with stresses. On the surface the stresses are those that are reported; inside they are computed
+//! from the strains at the points of integration, extended to the nodes and averaged.
 
 use super::element::{Lame, samples, shares_at_nodes};
 use super::mesh::{Face, Mesh};
@@ -161,8 +161,8 @@ impl Answers {
         sums.into_iter().map(|(sum, count)| von_mises(sum.map(|it| it / count))).collect()
     }
 
-    /// Puts the stresses that are reported in their places. On the face that is fixed and under the bolt heads the recovery does not
-    /// hold; where edges meet in a corner, the larger of their stresses counts.
+    /// Inserts the stresses that are reported. On the fixed face and under the bolt heads the recovery is not valid; where edges meet in a
+    /// corner, the larger of their stresses counts.
     fn recover_surface(&self, mesh: &Mesh, turn: &Turn<'_>, (theta, phase): (f64, f64), von_mises: &mut [f64]) {
         let view = turn.view();
         let mut recovered = vec![None; von_mises.len()];
@@ -190,8 +190,8 @@ fn von_mises([rr, zz, tt, rz, rt, zt]: [f64; 6]) -> f64 {
 
 /// An angle between 0 and 360 degrees, in degrees.
 pub fn degrees(angle: f64) -> f64 {
-    let turns = angle / (2.0 * PI);
-    360.0 * (turns - turns.floor())
+    let revolutions = angle / (2.0 * PI);
+    360.0 * (revolutions - revolutions.floor())
 }
 
 #[cfg(test)]

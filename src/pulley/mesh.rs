@@ -34,7 +34,7 @@ impl Element {
     }
 }
 
-/// What a piece of the section's surface is.
+/// The kind of a piece of the section's surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Face {
     /// Nothing touches it.
@@ -78,8 +78,8 @@ pub struct Mesh {
     pub points: Vec<CheckPoint>,
     /// The node whose displacement is the rim's.
     pub rim: u32,
-    /// Places beside which stress grows without limit as the mesh gets finer, other than the hub's edges: (z, r) and the distance
-    /// within which it does not count as the largest, mm.
+    /// Places beside which stress grows without limit as the mesh becomes finer, other than the hub's edges: (z, r), and the distance
+    /// within which stress does not count as the largest, mm.
     pub singular: Vec<(DVec2, f64)>,
 }
 

@@ -17,7 +17,7 @@ pub fn renumbered(mesh: Mesh) -> Mesh {
         list.sort_unstable();
         list.dedup();
     }
-    // Ends of the section are good places to start from; which is best depends on its branches.
+    // Ends of the section are good places to start; which is best depends on its branches.
     let ends: [fn(DVec2) -> f64; 4] = [|at| at.y, |at| -at.y, |at| at.x - 2.0 * at.y, |at| -at.x - 2.0 * at.y];
     let used = || (0..count as u32).filter(|&node| !neighbours[node as usize].is_empty());
     let start = |far: fn(DVec2) -> f64| used().min_by(|&a, &b| far(mesh.nodes[a as usize]).total_cmp(&far(mesh.nodes[b as usize])));

@@ -1,9 +1,9 @@
-//! A section's answer to unit loads, harmonic by harmonic: what a load case needs and nothing that depends on it.
+//! A section's answer to unit loads, harmonic by harmonic: everything that load cases share.
 //!
-//! The answers to the belt's normal load, its two frictions, the bolt heads and the spin are independent of tension, power, wrap,
-//! friction and phase, so one factored section serves any number of load cases. What is kept are the [recovered](super::recovery) stresses
-//! on the surface, and the rim's displacement, which is kept like the stresses of one more point. They are laid out in one flat table, [`View`], for an
-//! elastic modulus of 1 MPa: stresses do not depend on it, and displacements are divided by it.
+//! The answers to the belt's normal load, its two frictions, the bolt heads and the spin are independent of tension, power, wrap, friction
+//! and phase, so one factored section serves any number of load cases. The table keeps the [recovered](super::recovery) stresses on the
+//! surface, and the rim's displacement like the stresses of one more point. It is a flat table, [`View`], for an elastic modulus of 1 MPa:
+//! stresses do not depend on it, and displacements are divided by it.
 
 use super::band::WIDTH;
 use super::element::samples;
@@ -20,7 +20,7 @@ use std::f64::consts::PI;
 pub const BELT: usize = 3;
 /// Numbers that points are padded to a multiple of.
 pub const CHUNK: usize = 8;
-/// Points kept once more after the others, so that they stand together: the check points and the rim.
+/// Points that are stored a second time after the others, so that they are together: the check points and the rim.
 pub const NAMED: usize = 2 * CHUNK;
 /// The rim among the named points: its displacements along r, z and the circumference stand in place of stresses.
 pub const RIM: usize = CHECK_POINTS.len();

@@ -1,4 +1,4 @@
-//! Cubic splines over the harmonics: what is smooth in k need not be solved for every k.
+//! Cubic splines over the harmonics: values that are smooth in k need not be solved for every k.
 
 /// Fills the rows of `table` (one block of numbers per harmonic `0..orders`) that were not solved by a not-a-knot cubic spline through
 /// those that were. `solved` is ascending, starts with 0 and ends with `orders - 1`.

@@ -1,4 +1,4 @@
-//! The surface of a section as lines, with arc lengths: what is unrolled in pictures.
+//! The surface of a section as lines with arc lengths, for the pictures of the unrolled surface.
 
 use super::mesh::{Edge, Mesh};
 use super::response::points_of_edges;

@@ -1,9 +1,9 @@
-//! A load case over one turn: stresses of every surface point at every angle, the largest of them, and the fatigue of what turns
-//! through them.
+//! A load case over one revolution: the stresses of every surface point at every angle, the largest of them, and the fatigue of the
+//! rotating pulley.
 //!
-//! The belt stands still and the pulley turns: what a point of the surface sees over one turn is what stands around the
-//! circumference. Stresses are sums of harmonics; at 96 angles they are added up with the symmetries of cosine and sine (a quarter
-//! turn gives the other three), and near the largest value anew at finer angles.
+//! The loads stand still and the pulley rotates: over one revolution a point of the surface goes through the stresses around the
+//! circumference. Stresses are sums of harmonics; they are added up at 96 angles by the symmetries of cosine and sine (a quarter of the
+//! angles gives the other three), and near the largest value again at finer angles.
 
 #![allow(clippy::needless_range_loop, reason = "loops over lanes, of constant length, are what the compiler makes vectors of")]
 
@@ -154,7 +154,7 @@ impl<'t> Turn<'t> {
         synthesise(&room.terms, self.view.bolts(), &self.quarter, &mut room.held);
     }
 
-    /// Everything that a load case tells of the section. `own` are surface points that the engineer asks for.
+    /// All results of a load case. `own` are surface points that the user asks for.
     pub fn summary(&self, fatigue: Option<Strength>, own: [Option<usize>; 2]) -> Summary {
         let view = &self.view;
         let mut room = TurnRoom::default();
@@ -168,7 +168,7 @@ impl<'t> Turn<'t> {
             }
             self.fill(chunk, &mut room);
             let limits = limits(&room.belt, &room.held);
-            // Von Mises stress is a norm: belt and hold together are no larger than their sum.
+            // The von Mises stress is a norm: that of belt and clamp together is no larger than the sum of both.
             let most = |lane: usize| limits.belt[lane] + limits.held[lane];
             if (0..CHUNK).any(|lane| counted[lane] != 0.0 && most(lane) >= largest.stress) {
                 for &shift in &phases {
@@ -341,7 +341,7 @@ pub fn angle(step: usize) -> f64 {
 /// Yield and fatigue strength, MPa.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Strength {
-    /// Amplitude that is endured for ever without mean stress.
+    /// Endurance limit: amplitude that is endured without limit at zero mean stress.
     pub endurance: f64,
     /// Tensile strength.
     pub tensile: f64,
@@ -367,7 +367,7 @@ pub struct Fatigue {
     pub used: f64,
 }
 
-/// What a load case tells of a section.
+/// The results of a load case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Summary {
     /// The largest stress outside the excluded radius.

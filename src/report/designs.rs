@@ -1,5 +1,5 @@
-//! Tables of designs of a result, which must be as this program writes them: their columns, and of every row the design, its inputs and
-//! that there are numbers where numbers belong.
+//! Reads a result's tables of designs and checks that they are as this program writes them: the columns, and in every row the design, its
+//! inputs and that numbers are numbers.
 
 use super::packed::{Packed, packed};
 use super::reading::{changed, table_reader, unreadable};
@@ -23,7 +23,7 @@ pub fn inputs(study: &Study) -> impl Iterator<Item = (&Axis, usize, usize)> {
     study.design.iter().flat_map(|axis| axis.inputs().iter().enumerate().map(move |(column, &input)| (axis, column, input)))
 }
 
-/// A design by its number, written as this program writes it.
+/// The index of a design, if it is written as this program writes it.
 pub fn design_of(text: &str, plan: &Plan) -> Option<u64> {
     text.parse().ok().filter(|&it: &u64| it < plan.designs() && it.to_string() == text)
 }
@@ -47,10 +47,10 @@ pub fn check_header(file: &Path, found: &csv::StringRecord, expected: &[String])
     Err(changed(file, &format!("its columns are not those of the study: {differs}")))
 }
 
-/// The design of a row, whose inputs are those that the study gives it, and whose values and scenarios are such.
+/// The design of a row. Its inputs must be those of the study, its values numbers, its scenarios scenarios of the study.
 pub fn check_row(file: &Path, row: &csv::StringRecord, plan: &Plan, header: &[String]) -> Result<u64> {
     let study = &plan.study;
-    let design = design_of(&row[0], plan).ok_or_else(|| changed(file, "a design_index is not one of the study"))?;
+    let design = design_of(&row[0], plan).ok_or_else(|| changed(file, "it has a design_index that the study does not have"))?;
     let own = plan.space.inputs(design, 0);
     let shown = |text: &str| text.chars().take(60).flat_map(char::escape_debug).collect::<String>();
     let mut at = 1;
@@ -66,7 +66,7 @@ pub fn check_row(file: &Path, row: &csv::StringRecord, plan: &Plan, header: &[St
     while at + 1 < header.len() {
         let (name, value, scenario) = (&header[at], &row[at], &row[at + 1]);
         if !value.is_empty() && !value.parse().is_ok_and(f64::is_finite) {
-            return Err(changed(file, &format!("{name} of design {design} is no number")));
+            return Err(changed(file, &format!("{name} of design {design} is not a number")));
         }
         let known = scenario.parse().is_ok_and(|it: u64| it < plan.scenarios() && it.to_string() == scenario);
         if !(known || (value.is_empty() && scenario.is_empty())) {
@@ -80,7 +80,7 @@ pub fn check_row(file: &Path, row: &csv::StringRecord, plan: &Plan, header: &[St
     Ok(design)
 }
 
-/// A list of at most so many designs as text, with the units of its columns; of all designs, it says which are feasible.
+/// A list of designs as text, with the units of its columns; a list of all designs also says which are feasible.
 pub fn list(file: &Path, plan: &Plan, most: u64, all: bool) -> Result<Value> {
     let study = &plan.study;
     let model = &study.model;
@@ -140,13 +140,13 @@ pub fn dots(file: &Path, plan: &Plan, all: u64) -> Result<Value> {
             shown += 1;
             for (values, &at) in values.iter_mut().zip(&places) {
                 let value = row[at].parse().ok().filter(|it: &f64| it.is_finite());
-                values.push(value.ok_or_else(|| changed(file, &format!("{} of design {design} is no number", columns[at])))?);
+                values.push(value.ok_or_else(|| changed(file, &format!("{} of design {design} is not a number", columns[at])))?);
             }
         }
         seen += 1;
     }
     if seen != all {
-        return Err(changed(file, &format!("it has {seen} designs, and of the feasible ones there must be {all}")));
+        return Err(changed(file, &format!("it has {seen} designs instead of {all}")));
     }
     let parts = values.into_iter().map(|values| Packed::F64(values).bytes());
     Ok(json!({ "names": names, "rows": shown, "of": all, "packed": packed(parts) }))

@@ -1,4 +1,4 @@
-//! The designs that a page shows: the result's front table as it was written, completed with every other output of the model.
+//! The designs that a page shows: the result's front table, completed with every other output of the model.
 
 use super::designs::{check_header, check_row, header, inputs};
 use super::packed::{Packed, packed};
@@ -18,19 +18,19 @@ use std::sync::atomic::Ordering;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
-/// Most scenarios whose inputs a page tells.
+/// Most scenarios whose inputs a page lists.
 const MOST_SCENARIOS: usize = 20_000;
 /// Stands for a scenario where the value is absent.
 const NOWHERE: u32 = u32::MAX;
 
-/// What is shown of the front.
+/// The part of the front that is shown.
 pub struct Front {
     /// Their indices.
     pub designs: Vec<u64>,
     /// Position in `json["columns"]` of what each of the study's objectives and constraints is about.
     pub objectives: Vec<usize>,
     pub constraints: Vec<usize>,
-    /// Every scenario that is somewhere the worst, as far as a page tells them.
+    /// Every scenario that is the worst of some value, unless there are too many for the page.
     pub scenarios: BTreeSet<u64>,
     /// For the page.
     pub json: Value,
@@ -48,10 +48,10 @@ struct Shown {
     scenarios: Option<Vec<u32>>,
 }
 
-/// Reads the front table of a result, which has `all` designs, and completes it, as long as `patience` lasts.
+/// Reads the front table of a result, which has `all` designs, and completes it, if that takes no longer than `patience`.
 ///
 /// # Errors
-/// As [`super::of_result`], where the table is missing or says other than the study.
+/// As [`super::of_result`], if the table is missing or contradicts the study.
 pub fn read(file: &Path, all: usize, plan: &Plan, threads: usize, patience: Duration, control: &Control) -> Result<Front> {
     let study = &plan.study;
     let columns = certify::columns(study);
@@ -90,7 +90,7 @@ pub fn read(file: &Path, all: usize, plan: &Plan, threads: usize, patience: Dura
         let number = |text: &str| if text.is_empty() { Some(f64::NAN) } else { text.parse().ok() };
         let values: Option<Vec<f64>> = rows.iter().map(|row| number(&row[cell])).collect();
         let scenarios: Vec<u32> = rows.iter().map(|row| row[cell + 1].parse().unwrap_or(NOWHERE)).collect();
-        let values = values.ok_or_else(|| changed(file, &format!("{} has something that is no number", column.name)))?;
+        let values = values.ok_or_else(|| changed(file, &format!("{} has a value that is not a number", column.name)))?;
         shown.push(Shown::of(study, column, Packed::F64(values), scenarios));
     }
     let complete = complete(plan, &columns, &designs, threads, patience, control);
@@ -106,7 +106,7 @@ pub fn read(file: &Path, all: usize, plan: &Plan, threads: usize, patience: Dura
     }
     let position = |quantity| columns.iter().position(|it| it.quantity == quantity).map(|at| place[at]);
     let of_constraint = |number: usize| {
-        // The column of the constraint's own worst scenario, where the objective has another.
+        // If the objective has another worst scenario, the constraint has a column of its own.
         let own = columns.iter().position(|it| it.role == Role::Constraint(number)).map(|at| place[at]);
         own.or_else(|| position(study.constraints[number].quantity))
     };
@@ -134,7 +134,7 @@ fn scenario_number(scenario: u64) -> u32 {
     u32::try_from(scenario).unwrap_or(NOWHERE)
 }
 
-/// The rows of the front table that a page takes, as text, with their designs: `taken` of `all`, evenly.
+/// The rows of the front table that a page shows, as text, with their designs: `taken` of `all`, evenly spread.
 fn rows_of(file: &Path, plan: &Plan, columns: &[Column], all: usize, taken: usize) -> Result<(Vec<csv::StringRecord>, Vec<u64>)> {
     let mut reader = table_reader(file)?;
     let expected = header(&plan.study, columns);
@@ -233,7 +233,7 @@ fn complete(
     let mut everything = plan.study.clone();
     everything.report.columns.extend((0..everything.model.outputs.len()).map(Quantity::Output));
     let all = certify::columns(&everything);
-    // What the model takes on the slow side; hopeless work is not even begun.
+    // A high estimate of the time, by the model's own figures: if it is hopeless, the work is not begun.
     #[allow(clippy::cast_precision_loss, reason = "an estimate")]
     let expected = plan.seconds_per_design() * designs.len() as f64 / threads.max(1) as f64;
     if expected > 10.0 * patience.as_secs_f64() {
@@ -244,7 +244,7 @@ fn complete(
     let own = &own;
     let look = move || {
         let start = Instant::now();
-        // Ends with the work, when the patience does, or when everything is to stop.
+        // Ends when the work is done, when `patience` is over, or when everything is to stop.
         while waiting.recv_timeout(Duration::from_millis(20)) == Err(RecvTimeoutError::Timeout) {
             if start.elapsed() > patience || control.stop.load(Ordering::Relaxed) {
                 own.stop.store(true, Ordering::Relaxed);
@@ -255,7 +255,7 @@ fn complete(
     let rows = with_beside(look, |is_watched| {
         // It goes when the work ends, also in a panic.
         let _finished = finished;
-        // Without somebody who looks at the clock it might take for ever.
+        // Without a thread that watches the clock it might take for ever.
         if !is_watched {
             return None;
         }
@@ -264,7 +264,7 @@ fn complete(
     Some((all[columns.len()..].to_vec(), rows?))
 }
 
-/// What the table says and what the study gives must be the same numbers.
+/// The values in the table must be those that the study gives.
 fn check(file: &Path, shown: &[Shown], place: &[usize], certified: &[Row], columns: usize) -> Result<()> {
     for (at, row) in certified.iter().enumerate() {
         for (column, &place) in row.columns[..columns].iter().zip(place) {

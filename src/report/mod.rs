@@ -1,7 +1,7 @@
 //! `report.html`: one page that shows a result, opens by double click, and needs no network.
 //!
-//! The page is assembled from the files of a result directory and from what the study says of them; what it shows of a design is
-//! what `front.csv` says of it, checked against the study, and every other output at its worst scenario.
+//! The page is assembled from the files of a result directory and the study. Of each design it shows the values in `front.csv`, checked
+//! against the study, and every other output at its worst scenario.
 
 pub(crate) mod designs;
 mod front;
@@ -27,7 +27,7 @@ use serde_json::{Map, Value, json};
 use std::path::Path;
 use std::time::Duration;
 
-/// What a page is made from, and how.
+/// From what a page is made, and how.
 #[derive(Clone, Copy, Debug)]
 pub struct Request<'a> {
     /// The result directory.
@@ -38,7 +38,7 @@ pub struct Request<'a> {
     pub evaluate: &'a str,
     /// Worker threads.
     pub threads: usize,
-    /// How long the outputs that the result's tables do not have may take; after it the page does without them.
+    /// Time limit for computing the outputs that the result's tables lack; beyond it the page does without them.
     pub patience: Duration,
 }
 
@@ -62,23 +62,23 @@ pub struct Page {
 pub fn study_of(folder: &Path) -> Result<Study> {
     if !folder.join(MARK).exists() {
         let hint = match () {
-            () if !folder.is_dir() => "is no directory; name the one that `beltspace sweep` wrote".to_owned(),
+            () if !folder.is_dir() => "is not a directory; name the one that `beltspace sweep` wrote".to_owned(),
             () if [folder.join(CHECKPOINT).as_path(), folder].iter().any(|it| matches!(found(it), Found::Checkpoint)) => {
                 "holds an unfinished sweep or a shard; go on with `beltspace sweep --resume`, or put the shards together with \
                  `beltspace merge`"
                     .to_owned()
             }
-            () => format!("is no finished result: it has no {MARK}; name the directory that `beltspace sweep` wrote"),
+            () => format!("is not a finished result: it has no {MARK}; name the directory that `beltspace sweep` wrote"),
         };
         return Err(Error::Request(format!("{} {hint}", folder.display())));
     }
     let (described, summary) = (json_of(folder, STUDY)?, json_of(folder, MARK)?);
     let study = Study::from_description(&described)
-        .map_err(|problem| changed(&folder.join(STUDY), &format!("not a study that this version describes: {problem}")))?;
+        .map_err(|problem| changed(&folder.join(STUDY), &format!("this version does not understand its study: {problem}")))?;
     if summary["study_hash"] != study.hash().as_str() {
-        return Err(changed(&folder.join(MARK), "it is the summary of another study than study.json"));
+        return Err(changed(&folder.join(MARK), "it belongs to another study than study.json"));
     }
-    // The text may name tables that are elsewhere; then it cannot be read from here.
+    // The text may name tables that are elsewhere; then it cannot be read here.
     let (file, text) = (folder.join("study.toml"), text_of(folder, "study.toml")?);
     match Study::parse_in(&text, "study.toml", folder) {
         Ok(written) if written.hash() == study.hash() => {}
@@ -91,7 +91,7 @@ pub fn study_of(folder: &Path) -> Result<Study> {
 /// The page of a result.
 ///
 /// # Errors
-/// [`Error::Request`] where a file is missing or says other than the study; [`Error::Io`] where one cannot be read.
+/// [`Error::Request`] if a file is missing or contradicts the study; [`Error::Io`] if one cannot be read.
 pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
     let Request { folder, plan, evaluate, threads, patience } = *request;
     let study = &plan.study;
@@ -150,7 +150,7 @@ pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
     Ok(Page { html: page::page(&study.title, &data), designs: rows("rows"), of: rows("of"), complete: data["front"]["complete"] != false })
 }
 
-/// The row of the knee is known by its design.
+/// The row of the knee, found by its design.
 fn with_knee(front: &front::Front, summary: &Value) -> Value {
     let knee = summary["knee"]["design_index"].as_u64();
     let mut json = front.json.clone();
@@ -159,7 +159,7 @@ fn with_knee(front: &front::Front, summary: &Value) -> Value {
     json
 }
 
-/// Every input with its part in the study; the value of those that no axis sets.
+/// Every input with its role in the study, and its value if no axis sets it.
 fn inputs(study: &Study) -> Vec<Value> {
     let model = &study.model;
     let sets = |axes: &[Axis], input: usize| axes.iter().any(|axis| axis.inputs().contains(&input));
@@ -183,7 +183,7 @@ fn inputs(study: &Study) -> Vec<Value> {
     model.inputs.iter().enumerate().map(described).collect()
 }
 
-/// What an axis gives an input, in words: its ends, or the words.
+/// The values that an axis gives an input, as text: its ends, or its words.
 fn over(study: &Study, input: usize) -> String {
     let axes = study.design.iter().chain(&study.operation).chain(&study.uncertainty);
     let found = axes.filter_map(|axis| Some((axis, axis.inputs().iter().position(|&it| it == input)?))).next();
@@ -198,7 +198,7 @@ fn over(study: &Study, input: usize) -> String {
     if least == largest { written(table, least) } else { format!("{} to {}", written(table, least), written(table, largest)) }
 }
 
-/// What the inputs are in some scenarios.
+/// The inputs of some scenarios.
 fn scenario_inputs<'s>(plan: &Plan, numbers: impl IntoIterator<Item = &'s u64>) -> Value {
     let study = &plan.study;
     let inputs: Vec<usize> = study.operation.iter().chain(&study.uncertainty).flat_map(Axis::inputs).copied().collect();

@@ -9,10 +9,10 @@ use std::io::Write;
 /// One column.
 pub enum Packed {
     F64(Vec<f64>),
-    /// What is shown to six digits only.
+    /// Values that are shown to six digits only.
     F32(Vec<f32>),
     U32(Vec<u32>),
-    /// Design indices, which a page keeps to the last digit.
+    /// Design indices, which a page shows to the last digit.
     U64(Vec<u64>),
 }
 

@@ -6,7 +6,7 @@ const TEMPLATE: &str = include_str!("page/page.html");
 const STYLE: &str = include_str!("page/style.css");
 /// D3 (<https://d3js.org>, licence in `page/vendor`): scales, axes, brushes and colours.
 const D3: &str = include_str!("page/vendor/d3.min.js");
-/// In the order in which they build on each other.
+/// In the order of their dependencies.
 const SCRIPTS: &[&str] = &[
     include_str!("page/base.js"),
     include_str!("page/decode.js"),
@@ -34,9 +34,9 @@ const SCRIPTS: &[&str] = &[
     include_str!("page/start.js"),
 ];
 
-/// The page of some data: one file that needs no other and no network.
+/// The page that shows some data: one file that needs no other file and no network.
 pub fn page(title: &str, data: &Value) -> String {
-    // Nothing in the data may end the element that holds it.
+    // The data must not contain the end tag of the element that holds it.
     let data = data.to_string().replace('<', "\\u003c");
     let parts = [
         ("TITLE", escaped(title)),

@@ -1,4 +1,4 @@
-//! The page of the papers computed again: figures and comparisons in place of a front.
+//! The page of the papers computed again: figures and comparisons instead of a front.
 
 use super::page::page;
 use crate::papers::{Paper, PaperTable, Reproduction};
@@ -34,7 +34,7 @@ pub fn of_papers(reproduction: &Reproduction) -> String {
         "tables": reproduction.tables.iter().map(table).collect::<Vec<_>>(),
         "lists": [
             {
-                "title": "Read otherwise than printed",
+                "title": "Read differently than printed",
                 "items": reproduction.repairs.iter().map(|it| item(it.group, it.at, it.words)).collect::<Vec<_>>(),
             },
             {

@@ -1,7 +1,7 @@
-//! Pictures of a result, which a page takes in as they lie there: only what this program draws with passes. What a browser would run,
-//! fetch or link to is not among it.
+//! Checks the pictures of a result before a page takes them in: only elements and attributes that this program uses are allowed. Nothing
+//! that a browser would run, fetch or link to is among them.
 
-/// Elements, attributes that any of them may have, and the text that may stand within one of them.
+/// The elements, and the attributes that any of them may have.
 const ELEMENTS: [&str; 9] = ["svg", "rect", "circle", "line", "polyline", "polygon", "path", "image", "text"];
 const ATTRIBUTES: [&str; 41] = [
     "xmlns",
@@ -49,13 +49,13 @@ const ATTRIBUTES: [&str; 41] = [
 const NAMESPACE: &str = "http://www.w3.org/2000/svg";
 const RASTER: &str = "data:image/png;base64,";
 const STYLE: &str = "image-rendering:pixelated";
-/// Entities that stand for a character.
+/// Entities for characters.
 const ENTITIES: [&str; 5] = ["amp;", "lt;", "gt;", "quot;", "apos;"];
 
 /// Is this a picture that this program may have drawn?
 ///
 /// # Errors
-/// The first thing that none of its pictures has.
+/// The first thing that none of its pictures contains.
 pub fn check(svg: &str) -> Result<(), String> {
     let mut open: Vec<&str> = Vec::new();
     let mut rest = svg.trim();
@@ -76,20 +76,20 @@ pub fn check(svg: &str) -> Result<(), String> {
             let (inside, closed) = inside.strip_suffix('/').map_or((inside, false), |it| (it, true));
             let name = check_element(inside)?;
             if (name == "svg") != open.is_empty() {
-                return Err("there is another <svg> than the outermost element".to_owned());
+                return Err("an <svg> is inside of another element".to_owned());
             }
             if !closed {
                 open.push(name);
             }
         }
         if open.is_empty() {
-            return if rest.is_empty() { Ok(()) } else { Err("there is something behind </svg>".to_owned()) };
+            return if rest.is_empty() { Ok(()) } else { Err("there is something after </svg>".to_owned()) };
         }
     }
     Err(format!("<{}> is not closed", open.last().unwrap_or(&"svg")))
 }
 
-/// The name of an element without its brackets, whose attributes are as they may be.
+/// The name of an element from its tag without brackets; checks its attributes.
 fn check_element(inside: &str) -> Result<&str, String> {
     let (name, mut rest) = inside.split_at(inside.find(char::is_whitespace).unwrap_or(inside.len()));
     if !ELEMENTS.contains(&name) {
@@ -119,7 +119,7 @@ fn check_value(attribute: &str, value: &str) -> Result<(), ()> {
         "xmlns" => value == NAMESPACE,
         "style" => value == STYLE,
         "href" => value.strip_prefix(RASTER).is_some_and(base64),
-        // Neither an address nor a reference to anything.
+        // No addresses, and no references to anything.
         _ => !value.contains([':', '\\', '#', '&']) && !value.contains("url") || is_colour(value),
     };
     if good { Ok(()) } else { Err(()) }
@@ -129,7 +129,7 @@ fn is_colour(value: &str) -> bool {
     value.strip_prefix('#').is_some_and(|it| !it.is_empty() && it.len() <= 8 && it.bytes().all(|byte| byte.is_ascii_hexdigit()))
 }
 
-/// Text stands in text elements only; the characters that mean something to a browser are written as entities.
+/// Text may stand in text elements only; characters with a meaning in XML must be written as entities.
 fn check_text(text: &str, within_text: bool) -> Result<(), String> {
     let known = |entity: &str| ENTITIES.iter().any(|it| entity.starts_with(it)) || entity.starts_with('#');
     if !within_text && !text.trim().is_empty() {

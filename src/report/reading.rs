@@ -9,7 +9,7 @@ use serde_json::Value;
 use std::fs::File;
 use std::path::Path;
 
-/// The files of a result, and what is known of it.
+/// The files of a result, and what is known about it.
 #[derive(Clone, Copy, Debug)]
 pub struct Folder<'a> {
     /// The result directory.
@@ -20,10 +20,10 @@ pub struct Folder<'a> {
     pub feasible: u64,
 }
 
-/// A picture as this program draws them.
+/// Reads a picture, which must be one that this program could have drawn.
 pub fn picture_of(file: &Path) -> Result<String> {
     let svg = read_text(file, RESULT_BYTES, TOO_LARGE).map_err(|error| missing(file, error))?;
-    picture::check(&svg).map_err(|problem| changed(file, &format!("no picture of this program: {problem}")))?;
+    picture::check(&svg).map_err(|problem| changed(file, &format!("not a picture of this program: {problem}")))?;
     Ok(svg)
 }
 
@@ -33,7 +33,7 @@ pub fn table_reader(file: &Path) -> Result<csv::Reader<ShortLines<File>>> {
     Ok(csv::ReaderBuilder::new().quoting(false).from_reader(ShortLines::new(opened, ROW_BYTES)))
 }
 
-/// The error for a table that the reader of tables refuses.
+/// The error for a file that the CSV reader refuses.
 pub fn unreadable(file: &Path, error: csv::Error) -> Error {
     match error.into_kind() {
         csv::ErrorKind::Io(source) => unreadable_file(file, source),
@@ -41,7 +41,7 @@ pub fn unreadable(file: &Path, error: csv::Error) -> Error {
             let line = pos.map_or(String::new(), |pos| format!("line {}: ", pos.line()));
             changed(file, &format!("{line}{len} cells where there should be {expected_len}"))
         }
-        csv::ErrorKind::Utf8 { .. } => changed(file, "it is no text"),
+        csv::ErrorKind::Utf8 { .. } => changed(file, "it is not text"),
         _ => changed(file, "it cannot be read as a table"),
     }
 }
@@ -53,13 +53,13 @@ pub fn text_of(folder: &Path, name: &str) -> Result<String> {
     read_text(&path, most, TOO_LARGE).map_err(|error| missing(&path, error))
 }
 
-/// The description of the study, and its most bytes: it has every row of the tables that the study names.
+/// The description of the study, and its largest size: it has every row of the tables that the study names.
 pub const STUDY: &str = "study.json";
 const STUDY_JSON_BYTES: u64 = 4 * RESULT_BYTES;
-/// What to do about a file of a result that is too large to be one.
-const TOO_LARGE: &str = "no result has such a file: sweep the study again";
+/// The remedy for a file that is too large to be that of a result.
+const TOO_LARGE: &str = "beltspace writes no file that large: sweep the study again";
 
-/// The error for a file that cannot be had.
+/// The error for a file that cannot be read.
 pub fn missing(file: &Path, error: Error) -> Error {
     match error {
         Error::Io { source, .. } => unreadable_file(file, source),
@@ -67,7 +67,7 @@ pub fn missing(file: &Path, error: Error) -> Error {
     }
 }
 
-/// A file that is not there is as good as one that was changed.
+/// A missing file is treated like one that was changed.
 fn unreadable_file(file: &Path, source: std::io::Error) -> Error {
     if source.kind() == std::io::ErrorKind::NotFound {
         return Error::Request(format!("{} is missing from the result: sweep the study again", file.display()));
@@ -77,10 +77,10 @@ fn unreadable_file(file: &Path, source: std::io::Error) -> Error {
 
 /// A file of the result as JSON.
 pub fn json_of(folder: &Path, name: &str) -> Result<Value> {
-    serde_json::from_str(&text_of(folder, name)?).map_err(|error| changed(&folder.join(name), &format!("it is no JSON: {error}")))
+    serde_json::from_str(&text_of(folder, name)?).map_err(|error| changed(&folder.join(name), &format!("it is not JSON: {error}")))
 }
 
-/// A file of a result that this version would not have written.
+/// The error for a file that this version would not have written.
 pub fn changed(file: &Path, problem: &str) -> Error {
     Error::Request(format!(
         "{}: {}; the file was changed or comes from another version of the program: sweep the study again",

@@ -1,13 +1,13 @@
-//! `summary.json` and `run.json` of a result, which a page shows: they must have the parts that this program writes.
+//! Checks `summary.json` and `run.json` of a result before a page shows them: they must have the parts that this program writes.
 
 use crate::plan::Plan;
 use crate::study::{Quantity, Study};
 use serde_json::{Map, Value};
 
-/// Is this the summary of a result of this plan? Its numbers of designs are asked elsewhere.
+/// Is this the summary of a result of this plan? Its numbers of designs are checked elsewhere.
 ///
 /// # Errors
-/// The part that is not.
+/// The part that is not as this program writes it.
 pub fn check(summary: &Value, plan: &Plan) -> Result<(), String> {
     let study = &plan.study;
     let names: Vec<&str> = study.objectives.iter().map(|it| it.quantity.name(&study.model)).collect();
@@ -31,12 +31,12 @@ pub fn check(summary: &Value, plan: &Plan) -> Result<(), String> {
         ("tally", is_tally(&summary["tally"], study)),
     ];
     match parts.into_iter().find(|(_, good)| !good) {
-        Some((part, _)) => Err(format!("its \"{part}\" is not of the study")),
+        Some((part, _)) => Err(format!("its \"{part}\" does not belong to the study")),
         None => Ok(()),
     }
 }
 
-/// Counts over the sample, with every constraint.
+/// Are these counts over the sample, with every constraint?
 fn is_tally(tally: &Value, study: &Study) -> bool {
     let Some(sampled) = tally["sampled"].as_u64() else { return false };
     let count = |it: &Value| it.as_u64().is_some_and(|it| it <= sampled);
@@ -51,7 +51,7 @@ fn is_tally(tally: &Value, study: &Study) -> bool {
         && constraints.iter().zip(&expected).all(of_study)
 }
 
-/// Does this tell how a run went? A page does without what does not.
+/// Does this describe a run? Otherwise the page leaves it out.
 pub fn is_run(run: &Value) -> bool {
     let text = ["program", "engine", "method", "origin", "platform"].iter().all(|key| run[key].is_string());
     let counts = ["threads", "designs", "scenarios", "certified_designs"].iter().all(|key| run[key].is_u64());

@@ -1,4 +1,4 @@
-//! The choice of a device, and what must be known of it before it is trusted.
+//! The choice of a GPU, which must pass a self-test before it is used.
 
 use super::Engine;
 use crate::error::{Error, Result};
@@ -15,8 +15,8 @@ use serde_json::Value;
 /// Evaluations below which starting a device costs more than it saves.
 const WORTH_A_DEVICE: f64 = 2e8;
 
-/// So many times as fast as the processor a device is taken to be before anybody has tried: enough not to bound boxes for longer than it
-/// would take.
+/// How many times as fast as the CPU a device is taken to be before it has been measured: enough that bounds are not kept longer than the
+/// device would take.
 const GAIN: f64 = 20.0;
 
 /// A device that has passed its self-test.
@@ -26,7 +26,7 @@ pub struct Trusted {
     pub adapter: Adapter,
     /// What the self-test found.
     pub report: self_test::SelfTest,
-    /// As the sweep takes it.
+    /// The device, for the sweep.
     pub on: OnDevice,
 }
 
@@ -48,9 +48,9 @@ impl Trusted {
     }
 }
 
-/// The device to sweep a study on; `None` for the processor.
+/// The device to sweep a study on; `None` for the CPU.
 ///
-/// `remark` is told why a device that nobody asked for is not taken.
+/// If a device was not asked for by name and cannot be used, `remark` is told why.
 ///
 /// # Errors
 /// [`Error::Request`] if the request contradicts itself; [`Error::NoAdapter`]; [`Error::CpuOnly`] and [`Error::NotOnDevice`] if a device
@@ -61,7 +61,7 @@ pub fn choose(plan: &Plan, engine: Engine, adapter: Option<&str>, wrong: Wrong, 
     }
     let insists = engine == Engine::Gpu || (engine == Engine::Auto && adapter.is_some());
     if insists {
-        needs_a_twin(&plan.study.model, "use --engine cpu, or leave --engine and --adapter out")?;
+        refuse_cpu_only(&plan.study.model, "use --engine cpu, or leave --engine and --adapter out")?;
     }
     match engine {
         Engine::Cpu if adapter.is_some() => Err(Error::Request("--adapter names a GPU, but --engine cpu was asked for".to_owned())),
@@ -71,7 +71,8 @@ pub fn choose(plan: &Plan, engine: Engine, adapter: Option<&str>, wrong: Wrong, 
     }
 }
 
-/// The same, tried out on the study where nobody insists on it: what a driver refuses is a remark then. `asked` is what the user said.
+/// The same, but a device that was not asked for by name must first set up the study's kernel: if its driver refuses, that is a remark.
+/// `asked` is what the user said.
 ///
 /// # Errors
 /// As [`choose`].
@@ -87,31 +88,31 @@ pub fn choose_tried(
     if let (Engine::Auto, Some(chosen)) = (asked, &device)
         && let Err(error) = try_out(plan, chosen)
     {
-        remark(&format!("{error}; the processor judges the designs"));
+        remark(&format!("{error}; the CPU judges the designs"));
         return Ok(None);
     }
     Ok(device)
 }
 
-/// A wrong request of a model that is computed on the processor only, and what to do about it.
+/// Refuses a model that is computed on the CPU only; `remedy` says what to do about it.
 ///
 /// # Errors
-/// [`Error::CpuOnly`] if the model is such.
-pub fn needs_a_twin(model: &Model, remedy: &str) -> Result<()> {
+/// [`Error::CpuOnly`].
+pub fn refuse_cpu_only(model: &Model, remedy: &str) -> Result<()> {
     match model.on_device() {
         Ok(_) => Ok(()),
         Err(_) => Err(Error::CpuOnly { model: model.name.to_owned(), remedy: Some(remedy.to_owned()) }),
     }
 }
 
-/// Will `--engine auto` take a device, as far as that can be told without starting one?
+/// Is `--engine auto` likely to take a device? Answered without starting one.
 pub fn is_expected(plan: &Plan, engine: Engine, adapter: Option<&str>) -> bool {
     engine == Engine::Auto && adapter.is_none() && is_worth_a_device(plan) && gpu::adapters().iter().any(Adapter::is_hardware)
 }
 
-/// About how fast a device judges designs, by how fast the processor does.
-pub fn about(processor: Speed) -> Speed {
-    Speed { seconds: processor.seconds / GAIN, measured: false }
+/// An estimate of how fast a device judges designs, from how fast the CPU does.
+pub fn about(cpu: Speed) -> Speed {
+    Speed { seconds: cpu.seconds / GAIN, measured: false }
 }
 
 #[allow(clippy::cast_precision_loss, reason = "an estimate")]
@@ -128,19 +129,19 @@ fn automatic(plan: &Plan, wrong: Wrong, remark: &mut dyn FnMut(&str)) -> Option<
     match test(adapter, wrong).and_then(|device| serving(plan, device)) {
         Ok(trusted) => Some(trusted),
         Err(error) => {
-            remark(&format!("{error}; the processor judges the designs"));
+            remark(&format!("{error}; the CPU judges the designs"));
             None
         }
     }
 }
 
-/// A device, if it can serve the study.
+/// Opens a device, if it can serve the study.
 fn serving(plan: &Plan, device: Trusted) -> Result<Trusted> {
     supports(plan, device.on.limited_loops)?;
     Ok(device)
 }
 
-/// Makes the study's kernel and buffers on a device, as the sweep will: what a driver refuses shows here.
+/// Makes the study's kernel and buffers on a device, as the sweep will, to find out whether its driver accepts them.
 ///
 /// # Errors
 /// [`Error::Gpu`] if the device fails, [`Error::NotOnDevice`] if it cannot serve the study.

@@ -1,4 +1,4 @@
-//! A study swept and certified, by what was chosen for it.
+//! Sweeps and certifies a study with the chosen engine and method.
 
 use super::Engine;
 use super::device::{Trusted, supports_histograms, sweep_on_device};
@@ -17,15 +17,15 @@ use std::time::Duration;
 #[derive(Debug)]
 pub enum How<'a> {
     /// The CPU, in f64.
-    Processor,
-    /// A device; where it was not asked for by name, the processor does what it cannot serve.
+    Cpu,
+    /// A device. `true`: it was not asked for by name, so the CPU takes over if it cannot serve the study.
     Device(&'a OnDevice, bool),
-    /// Bounds; with a rule, as long as they pay.
+    /// Bounds; with a rule that says when to give them up.
     Bounds(Option<Rule<'a>>),
 }
 
 impl<'a> How<'a> {
-    /// By the method chosen, on the device chosen, if any; `asked` and `adapter` are what the user said.
+    /// With the chosen method and device, if any; `asked` and `adapter` are what the user said.
     pub fn new(method: &Chosen, device: Option<&'a Trusted>, asked: Engine, adapter: Option<&str>) -> Self {
         match device {
             _ if method.bounds => {
@@ -33,21 +33,21 @@ impl<'a> How<'a> {
                 Self::Bounds(method.leaves.map(|speed| Rule { speed, device, leaving: Leaving::WhereTheyDoNotPay }))
             }
             Some(device) => Self::Device(device.on(), asked == Engine::Auto && adapter.is_none()),
-            None => Self::Processor,
+            None => Self::Cpu,
         }
     }
 }
 
-/// What came of it.
+/// A study that has been judged.
 #[derive(Debug)]
 pub struct Judged<'p> {
     /// How long it took to judge the designs.
     pub time: Duration,
-    /// Designs judged, without what a checkpoint brought.
+    /// Designs judged by this run; those of its checkpoint do not count.
     pub designs: u64,
-    /// What is reported; of a shard nothing.
+    /// What is reported; `None` for a shard.
     pub certified: Option<Certified<'p>>,
-    /// What a device did, if one judged designs.
+    /// The work of a device, if one judged designs.
     pub did: Option<DeviceRecord>,
     /// What settled the designs.
     pub settler: Settler,
@@ -61,11 +61,12 @@ pub fn record_of(why: String, settler: Settler) -> MethodRecord {
         Settler::Bounds(certificate) => record("bounds", Some(certificate), None, why),
         Settler::Both(left) => {
             let (spent, share, judging) = (left.promise.spent, 100.0 * left.promise.settled, left.promise.judging);
-            let promised = if left.promise.bounds.is_finite() { span(left.promise.bounds) } else { "no end".to_owned() };
+            let expected =
+                if left.promise.bounds.is_finite() { format!("another {}", span(left.promise.bounds)) } else { "no end".to_owned() };
             let why = format!(
-                "{why}; bounds had settled {} % of their work after {} and promised {promised} more, judging the rest one by one {}",
-                short((share * 10.0).round() / 10.0),
+                "{why}; after {} bounds had done {} % of their work and expected {expected}, judging the rest one by one takes {}",
                 span(spent),
+                short((share * 10.0).round() / 10.0),
                 span(judging),
             );
             record("bounds, then exhaustive", None, Some(left), why)
@@ -73,12 +74,12 @@ pub fn record_of(why: String, settler: Settler) -> MethodRecord {
     }
 }
 
-/// Sweeps the study and, if it is `whole`, certifies what is to be reported; of a shard, the checkpoint is the result. `remark` is told what
-/// the CPU does in place of a device that nobody asked for.
+/// Sweeps the study and, if it is `whole`, certifies what is to be reported; the result of a shard is its checkpoint. `remark` is told when
+/// the CPU takes over from a device that was not asked for by name.
 ///
 /// # Errors
-/// As [`sweep`](crate::sweep::sweep()) and its like; [`Error::Certificate`](crate::error::Error::Certificate) if the f64 reference disagrees
-/// with the sweep.
+/// As [`sweep`](crate::sweep::sweep()); [`Error::Disagreement`](crate::error::Error::Disagreement) if the f64 reference disagrees with the
+/// sweep.
 pub fn judge<'p>(
     plan: &'p Plan,
     settings: &Settings,
@@ -89,7 +90,7 @@ pub fn judge<'p>(
     remark: &mut dyn FnMut(&str),
 ) -> Result<Judged<'p>> {
     let tables = Tables::new(plan);
-    // Of a slow model the sample is a large part of the work, or all of it: a shard does without where it can.
+    // With a slow model the sample can be most of the work: a shard skips it unless it needs it.
     let sampled = whole || plan.shards_sample();
     let tally = if sampled { Tally::watched(plan, &tables, settings.threads, control)? } else { Tally::empty(plan) };
     let reduction = Reduction::new(plan, &tally.histogram_ranges(plan));
@@ -97,15 +98,15 @@ pub fn judge<'p>(
         How::Device(_, true) => match supports_histograms(plan, &reduction.histogram_ranges()) {
             Ok(()) => how,
             Err(error) => {
-                remark(&format!("{error}; the processor judges the designs"));
-                How::Processor
+                remark(&format!("{error}; the CPU judges the designs"));
+                How::Cpu
             }
         },
         how => how,
     };
     let (mut did, mut settler) = (None, Settler::EveryDesign);
     let Swept { state, designs, time } = match how {
-        How::Processor => sweep(plan, &tables, &reduction, settings, checkpoint, control)?,
+        How::Cpu => sweep(plan, &tables, &reduction, settings, checkpoint, control)?,
         How::Device(on, _) => {
             let (swept, record) = sweep_on_device(plan, &tables, &reduction, settings, checkpoint, control, on)?;
             did = Some(record);

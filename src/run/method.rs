@@ -6,28 +6,28 @@ use crate::error::{Error, Result};
 use crate::plan::Plan;
 use crate::sweep::costs::{Speed, span, why_every_design};
 
-/// How designs are judged, and why.
+/// The chosen method, and why it was chosen.
 #[derive(Clone, Debug)]
 pub struct Chosen {
-    /// By bounds, rather than every design one by one?
+    /// Judge boxes of designs by bounds, rather than every design one by one?
     pub bounds: bool,
-    /// Where nobody asked for bounds: how fast designs are judged, so that bounds are left where they do not pay.
+    /// If bounds were not asked for: how fast single designs are judged, so that bounds are given up if they are slower.
     pub leaves: Option<Speed>,
-    /// Why so, in words.
+    /// The reason, for people.
     pub why: String,
 }
 
 impl Chosen {
-    /// What a device is chosen for: where bounds are left, one goes on, if it is expected to.
+    /// The engine to choose a device for. Bounds that are given up can be followed by a device, if one is likely to be taken.
     pub fn engine(&self, asked: Engine, on_a_device: bool) -> Engine {
         if self.bounds && (self.leaves.is_none() || !on_a_device) { Engine::Cpu } else { asked }
     }
 }
 
-/// Chooses; what was asked for and cannot be is a wrong request. `speed` tells how fast so many threads judge designs.
+/// Chooses the method. `speed` measures how fast this many threads judge designs.
 ///
 /// # Errors
-/// [`Error::Request`].
+/// [`Error::Request`] if the method that was asked for cannot be used.
 pub fn choose(
     plan: &Plan,
     method: Judging,
@@ -42,7 +42,7 @@ pub fn choose(
         Judging::Exhaustive => exhaustive("asked for".to_owned()),
         Judging::Bounds if wants_a_gpu => {
             let what = adapter.map_or("--engine gpu".to_owned(), |name| format!("--adapter {name}"));
-            Err(Error::Request(format!("--method bounds judges on the processor, but {what} was asked for; leave one of them out")))
+            Err(Error::Request(format!("--method bounds judges on the CPU, but {what} was asked for; leave one of them out")))
         }
         Judging::Bounds => match refusal(plan) {
             Some(why) => {
@@ -50,7 +50,7 @@ pub fn choose(
             }
             None => Ok(Chosen { bounds: true, leaves: None, why: "asked for".to_owned() }),
         },
-        Judging::Auto if wants_a_gpu => exhaustive("a GPU was asked for, and bounds are found on the processor".to_owned()),
+        Judging::Auto if wants_a_gpu => exhaustive("a GPU was asked for, and bounds are computed on the CPU".to_owned()),
         Judging::Auto => {
             let speed = speed();
             let seconds = speed.of(plan.designs(), threads);

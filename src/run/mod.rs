@@ -1,7 +1,7 @@
-//! A study from beginning to end: what judges its designs is chosen, they are swept, and what is reported is certified.
+//! A study from beginning to end: chooses engine and method, sweeps the designs, certifies what is reported.
 //!
-//! This is the door to the library: [`Study::sweep`](crate::study::Study::sweep) with [`Options`] gives an [`Outcome`], all in memory;
-//! [`Stored`] is what a result directory says. The command line does the same in steps, with a checkpoint in between.
+//! [`Study::sweep`](crate::study::Study::sweep) with [`Options`] gives an [`Outcome`] in memory; [`Stored`] reads one back from a result
+//! directory. The command line does the same in steps, with a checkpoint in between.
 
 #[doc(hidden)]
 #[cfg_attr(not(feature = "gpu"), path = "no_device.rs")]

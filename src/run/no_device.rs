@@ -1,5 +1,4 @@
-//! The choice of a device where the crate is built without the feature `gpu`: the CPU does, and who asks for a GPU
-//! is told so.
+//! The choice of a device where the crate is built without the feature `gpu`: always the CPU. Asking for a GPU is an error.
 
 use super::Engine;
 use crate::checkpoint::Checkpoint;
@@ -11,7 +10,7 @@ use crate::sweep::costs::Speed;
 use crate::sweep::{Control, DeviceRecord, OnDevice, Settings, Swept};
 use serde_json::Value;
 
-/// The answer to whoever asks for a device.
+/// The error for a request that needs a device.
 ///
 /// # Errors
 /// Always.
@@ -24,7 +23,7 @@ pub fn without_gpu<T>() -> Result<T> {
 pub enum Trusted {}
 
 impl Trusted {
-    /// As the sweep takes it.
+    /// The device, for the sweep.
     pub fn on(&self) -> &OnDevice {
         match *self {}
     }
@@ -35,7 +34,7 @@ impl Trusted {
     }
 }
 
-/// What is to be wrong with a device's kernel: nothing.
+/// Deliberate errors in a device's kernel: none.
 #[derive(Debug, Default)]
 pub struct Wrong(());
 
@@ -47,7 +46,7 @@ pub fn choose(_: &Plan, engine: Engine, adapter: Option<&str>, _: Wrong, _: &mut
     if engine == Engine::Gpu || adapter.is_some() { without_gpu() } else { Ok(None) }
 }
 
-/// The same, tried out.
+/// The same, tried on the study.
 ///
 /// # Errors
 /// [`Error::Request`] if one is asked for.
@@ -67,7 +66,7 @@ pub fn is_expected(_: &Plan, _: Engine, _: Option<&str>) -> bool {
     false
 }
 
-/// About how fast a device judges designs, by how fast the CPU does.
+/// An estimate of how fast a device judges designs, from how fast the CPU does.
 pub fn about(cpu: Speed) -> Speed {
     cpu
 }
@@ -83,7 +82,7 @@ pub fn supports_histograms(_: &Plan, _: &[(f64, f64)]) -> Result<()> {
 /// Sweeps on a device.
 ///
 /// # Errors
-/// None: there is no device to call it with.
+/// None: it cannot be called, for there is no device.
 pub fn sweep_on_device(
     _: &Plan,
     _: &Tables,

@@ -10,12 +10,12 @@ use std::sync::Arc;
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[non_exhaustive]
 pub enum Engine {
-    /// A GPU where there is one and the study is large enough for it, else the processor
+    /// A GPU if there is one and the study is large enough for it, else the CPU
     #[default]
     Auto,
-    /// A GPU, or a driver that does its work in software; f64 decides what it cannot
+    /// A GPU, or a software driver; what it cannot decide the CPU decides in f64
     Gpu,
-    /// The processor, in f64
+    /// The CPU, in f64
     Cpu,
 }
 
@@ -24,12 +24,12 @@ pub enum Engine {
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[non_exhaustive]
 pub enum Judging {
-    /// Bounds where they can serve the study and judging every design would take a second or more, left where they do not pay
+    /// Bounds if the study allows them and judging every design would take a second or more; given up if they are slower
     #[default]
     Auto,
     /// Every design, one by one
     Exhaustive,
-    /// Boxes of designs by bounds of the formula: the same result, with a certificate of what settled each design
+    /// Whole boxes of designs, by bounds of the formulas; run.json then says which rules settled how many designs
     Bounds,
 }
 
@@ -47,13 +47,13 @@ pub struct Options {
     pub engine: Engine,
     /// How they are judged.
     pub judging: Judging,
-    /// The GPU to use: a part of its name, in any case. `None`: the best.
+    /// The GPU to use, by any part of its name in upper or lower case. `None`: the best.
     pub adapter: Option<String>,
     /// Worker threads, at least 1. By default one per core.
     pub threads: usize,
-    /// Bytes that the front may take while it is looked for. By default 4 GiB.
+    /// Most bytes for the front during the sweep. By default 4 GiB.
     pub front_bytes: u64,
-    /// Shows how far the sweep is, and stops it.
+    /// Shows the progress of the sweep, and stops it.
     pub control: Arc<Control>,
 }
 
@@ -77,31 +77,31 @@ impl Options {
         Self { engine, ..self }
     }
 
-    /// The same with another way to judge.
+    /// The same with another method.
     #[must_use]
     pub fn judging(self, judging: Judging) -> Self {
         Self { judging, ..self }
     }
 
-    /// The same on the GPU whose name contains this, in any case.
+    /// The same on the GPU whose name contains this, in upper or lower case.
     #[must_use]
     pub fn adapter(self, name: impl Into<String>) -> Self {
         Self { adapter: Some(name.into()), ..self }
     }
 
-    /// The same with so many threads, at least 1.
+    /// The same with this many threads, at least 1.
     #[must_use]
     pub fn threads(self, threads: usize) -> Self {
         Self { threads: threads.max(1), ..self }
     }
 
-    /// The same with so many bytes for the front while it is looked for.
+    /// The same with this many bytes for the front during the sweep.
     #[must_use]
     pub fn front_bytes(self, front_bytes: u64) -> Self {
         Self { front_bytes, ..self }
     }
 
-    /// The same, seen and stopped by whoever holds the control too.
+    /// The same with a control, through which its other holders follow and stop the sweep.
     #[must_use]
     pub fn control(self, control: Arc<Control>) -> Self {
         Self { control, ..self }

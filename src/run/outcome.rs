@@ -1,4 +1,4 @@
-//! What a study comes to, as values in memory.
+//! The outcome of a study, as values in memory.
 
 use super::device::{self, Wrong};
 use super::judge::{How, Judged, judge, record_of};
@@ -16,10 +16,10 @@ use crate::sweep::costs::Speed;
 use std::ops::Range;
 use std::time::Duration;
 
-/// What a study comes to. Everything but [`Outcome::course`] is the same on every engine, by every method, on any number of threads.
+/// The outcome of a study. Everything but [`Outcome::course`] is the same on every engine, by every method, on any number of threads.
 ///
-/// Values in tables are in the unit that their column names; of a quantity that differs between scenarios they are the worst, with the
-/// scenario in a column of its own.
+/// Values in tables are in the unit that the column's name ends in. Of a quantity that differs between scenarios the table has the worst
+/// value, and the scenario in a column of its own.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Outcome {
@@ -27,7 +27,7 @@ pub struct Outcome {
     pub study: Study,
     /// How many designs there are, and how many of them are feasible.
     pub counts: Counts,
-    /// The exact Pareto front, one row per design, the best by the first objective first. Without objectives it has no rows.
+    /// The exact Pareto front, one row per design, sorted by the first objective, best first. Without objectives it has no rows.
     pub front: Table,
     /// The best designs by one quantity, best first, if the study asks for them.
     pub top: Option<Table>,
@@ -35,13 +35,13 @@ pub struct Outcome {
     pub sample: Option<Table>,
     /// Every design, feasible or not, if the study asks for it.
     pub variants: Option<Table>,
-    /// The bins of each histogram, with the name of its file but for the extension, in the order of the study.
+    /// The bins of each histogram with the name of its file without extension, in the order of the study.
     pub histograms: Vec<(String, Table)>,
-    /// The cells of each map likewise, row by row.
+    /// The cells of each map, row by row, named likewise.
     pub maps: Vec<(String, Table)>,
-    /// The vertices of the lines over maps likewise, of those maps that have such.
+    /// The vertices of the contours of each map that has some, named likewise.
     pub contours: Vec<(String, Table)>,
-    /// What stands out.
+    /// Highlights.
     pub summary: Highlights,
     /// How the designs were judged.
     pub course: Course,
@@ -53,7 +53,7 @@ pub struct Outcome {
 pub struct Counts {
     /// Designs of the study.
     pub designs: u64,
-    /// Scenarios that each was judged in.
+    /// Scenarios in which each was judged.
     pub scenarios: u64,
     /// Designs that keep all constraints in all scenarios.
     pub feasible: u64,
@@ -61,23 +61,23 @@ pub struct Counts {
     pub front: u64,
 }
 
-/// What stands out of a study's designs.
+/// Highlights of a study's designs.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Highlights {
-    /// The best of each objective on the front, each by another design as a rule; empty without a front.
+    /// The best value of each objective on the front, as a rule of a different design each; empty without a front.
     pub ideal: Vec<Named>,
-    /// The design of the front nearest to the ideal, objectives scaled to [0, 1] over the front: its row in [`Outcome::front`].
+    /// Row in [`Outcome::front`] of the design nearest to the ideal, with objectives scaled to [0, 1] over the front.
     pub knee: Option<Knee>,
     /// Per objective, the least and largest worst value over all feasible designs; empty if none is feasible.
     pub spreads: Vec<Spread>,
     /// Designs of a fixed sample.
     pub sampled: u64,
-    /// Of these, feasible ones.
+    /// Feasible designs of the sample.
     pub feasible_of_sample: u64,
-    /// What the others of the sample fail at; one design may fail at several.
+    /// What the other designs of the sample fail at; one design may fail at several things.
     pub limits: Vec<Limit>,
-    /// What a person should know of the study as a whole.
+    /// Remarks on the study as a whole.
     pub notes: Vec<String>,
 }
 
@@ -90,15 +90,15 @@ pub struct Named {
     pub value: f64,
 }
 
-/// How far an objective spreads over the feasible designs.
+/// The range of an objective over the feasible designs.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Spread {
     /// Name of the objective.
     pub name: String,
-    /// Its least worst value, in its unit, and the design.
+    /// The least of its worst values, in its unit, and the design.
     pub least: Extreme,
-    /// Its largest.
+    /// The largest of its worst values.
     pub largest: Extreme,
 }
 
@@ -110,37 +110,38 @@ pub struct Limit {
     pub what: String,
     /// Designs of the sample that fail at it in some scenario.
     pub designs: u64,
-    /// Of a constraint: those that fail at nothing else.
+    /// For a constraint: those of them that fail at nothing else.
     pub only: Option<u64>,
 }
 
-/// How designs were judged: the only part of an outcome that differs from run to run.
+/// How the designs were judged: the only part of an outcome that differs from run to run.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Course {
-    /// What judged them: [`Engine::Cpu`] or [`Engine::Gpu`].
+    /// The engine: [`Engine::Cpu`] or [`Engine::Gpu`].
     pub engine: Engine,
-    /// `exhaustive`, `bounds`, or both where one was left for the other.
+    /// `exhaustive`, `bounds`, or both if bounds were given up.
     pub method: &'static str,
-    /// Why so.
+    /// Why this method.
     pub why: String,
     /// How long it took.
     pub time: Duration,
-    /// Why a device was not taken, and the like.
+    /// Remarks on the run, such as why a device was not taken.
     pub remarks: Vec<String>,
 }
 
 impl Study {
-    /// Judges every design of the study in every scenario, keeps what the study asks for, and computes what it reports once more with the
-    /// scalar f64 reference. Nothing is written.
+    /// Judges every design of the study in every scenario, keeps what the study asks for, and computes what is reported once more with the
+    /// scalar f64 reference. No file is written.
     ///
     /// # Errors
-    /// [`Error::Request`](crate::error::Error::Request) if engine, adapter and method of the options do not go together, or the method cannot
-    /// serve the study; [`Error::NoAdapter`](crate::error::Error::NoAdapter), [`Error::CpuOnly`](crate::error::Error::CpuOnly) and
-    /// [`Error::NotOnDevice`](crate::error::Error::NotOnDevice) if the GPU that is asked for is not there or cannot serve it; [`Error::FrontBudget`](crate::error::Error::FrontBudget) and [`Error::FrontMemory`](crate::error::Error::FrontMemory) if the
-    /// front has too many points; [`Error::Gpu`](crate::error::Error::Gpu) and [`Error::Promise`](crate::error::Error::Promise) if a device
-    /// fails or computes wrong; [`Error::Stopped`](crate::error::Error::Stopped) after `control.stop` of the options;
-    /// [`Error::Certificate`](crate::error::Error::Certificate) if the reference disagrees with the sweep, a fault of the program.
+    /// [`Error::Request`](crate::error::Error::Request) if engine, adapter and method of the options do not go together, or the method
+    /// cannot serve the study; [`Error::NoAdapter`](crate::error::Error::NoAdapter), [`Error::CpuOnly`](crate::error::Error::CpuOnly) and
+    /// [`Error::NotOnDevice`](crate::error::Error::NotOnDevice) if the GPU that is asked for is not there or cannot serve it;
+    /// [`Error::FrontBudget`](crate::error::Error::FrontBudget) and [`Error::FrontMemory`](crate::error::Error::FrontMemory) if the front
+    /// has too many points; [`Error::Gpu`](crate::error::Error::Gpu) and [`Error::ErrorBound`](crate::error::Error::ErrorBound) if a device fails
+    /// or computes wrong values; [`Error::Stopped`](crate::error::Error::Stopped) after `control.stop` of the options;
+    /// [`Error::Disagreement`](crate::error::Error::Disagreement) if the reference disagrees with the sweep, a bug in beltspace.
     pub fn sweep(&self, options: Options) -> Result<Outcome> {
         let plan = Plan::new(self.clone());
         let Options { engine, judging, adapter, threads, front_bytes, control } = options;

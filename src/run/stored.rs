@@ -1,4 +1,4 @@
-//! What a result directory says, as values in memory.
+//! A result directory, read into memory.
 
 use crate::error::{Error, Result};
 use crate::export::{Data, Table, TableColumn};
@@ -8,7 +8,7 @@ use crate::study::Study;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// A result directory, read.
+/// A result directory, read into memory.
 ///
 /// ```no_run
 /// let stored = beltspace::Stored::read("results/metal-cvt".as_ref())?;
@@ -27,16 +27,16 @@ pub struct Stored {
     pub designs: u64,
     /// Designs that keep all constraints in all scenarios.
     pub feasible: u64,
-    /// The Pareto front; no rows if the study has no objectives. Unit, role and description of columns that are no quantity of the model
-    /// are empty.
+    /// The Pareto front; no rows if the study has no objectives. Columns that are not a quantity of the model have no unit, role or
+    /// description.
     pub front: Table,
-    /// `summary.json` as it stands: one JSON object.
+    /// `summary.json` unchanged: one JSON object.
     pub summary: String,
 }
 
-const REMEDY: &str = "no result of beltspace has so large a file";
+const REMEDY: &str = "beltspace writes no file that large";
 
-/// Why a file cannot be what `beltspace sweep` wrote.
+/// The error for a file that differs from what `beltspace sweep` writes.
 fn changed(path: PathBuf, problem: String) -> Error {
     Error::Result { path, problem }
 }
@@ -45,8 +45,8 @@ impl Stored {
     /// Reads the directory that a sweep has written.
     ///
     /// # Errors
-    /// [`Error::Io`] if a file is missing or cannot be read, [`Error::Result`] if one says what no result does, or another thing than the
-    /// others.
+    /// [`Error::Io`] if a file is missing or cannot be read, [`Error::Result`] if one has contents that beltspace does not write or that
+    /// contradict the other files.
     pub fn read(folder: &Path) -> Result<Self> {
         let json = |name: &str| -> Result<Value> {
             let path = folder.join(name);
@@ -57,19 +57,19 @@ impl Stored {
         let study = Study::from_description(&described).map_err(|problem| changed(folder.join("study.json"), problem))?;
         let of_summary = |problem: &str| changed(folder.join(MARK), problem.to_owned());
         if summary["study_hash"] != study.hash().as_str() {
-            return Err(of_summary("it is the summary of another study than study.json"));
+            return Err(of_summary("it belongs to another study than study.json"));
         }
         let count = |name: &str| summary[name].as_u64().ok_or_else(|| of_summary(&format!("there is no number \"{name}\"")));
         let front = if study.objectives.is_empty() { Table { columns: Vec::new() } } else { table(&folder.join("front.csv"), &study)? };
         let (designs, feasible) = (count("designs")?, count("feasible")?);
         if front.rows() as u64 != count("front")? {
-            return Err(changed(folder.join("front.csv"), "it has not as many rows as summary.json says".to_owned()));
+            return Err(changed(folder.join("front.csv"), "its number of rows is not that of summary.json".to_owned()));
         }
         Ok(Self { designs, feasible, front, study, summary: text })
     }
 }
 
-/// A table of designs, each column of the kind that its name says.
+/// A table of designs; the name of a column says what kind it is.
 fn table(path: &Path, study: &Study) -> Result<Table> {
     let wrong = |error: csv::Error| changed(path.to_owned(), error.to_string());
     let mut reader = csv::Reader::from_reader(open(path).map_err(Error::io(path))?);
@@ -94,7 +94,7 @@ fn as_numbers(column: &mut TableColumn) {
     }
 }
 
-/// An empty column of that name.
+/// An empty column with this name.
 fn column(name: &str, study: &Study) -> TableColumn {
     let model = &study.model;
     if name == "design_index" || name.ends_with("_scenario") {

@@ -30,7 +30,7 @@ pub enum Levels {
         /// Steps in the decimal logarithm.
         log: bool,
     },
-    /// Any value of a range; for sampled designs only. Counts as its two ends where levels are asked for.
+    /// Any value of a range; for sampled designs only. Its levels, where needed, are its two ends.
     Continuous {
         /// One end.
         from: f64,

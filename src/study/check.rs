@@ -1,7 +1,7 @@
-//! What holds for every study, whether it was read from a text, a result's description or a checkpoint.
+//! Checks of every study, whether it was read from a text, a result's description or a checkpoint.
 //!
-//! The reader of study files says what is wrong line by line; here the same is asked of the numbers that came out, so that a study
-//! from a file that somebody changed cannot ask for what no study file could.
+//! The reader of study files reports mistakes line by line. Here the resulting numbers are checked once more, so that a study from a
+//! file that somebody changed cannot ask for anything that a study file could not.
 
 use super::axis::{Axis, Levels, Sample};
 use super::read::{
@@ -28,8 +28,8 @@ fn require(good: bool, problem: impl FnOnce() -> String) -> Checked {
 }
 
 impl Study {
-    /// Could a study file ask for this? Every number of an input or output is one of the model, every value one that its input takes,
-    /// designs and scenarios can be numbered, and what is reported fits into memory.
+    /// Could a study file ask for this? The model has every input and output, inputs accept their values, designs and scenarios can be
+    /// numbered, and what is reported fits into memory.
     ///
     /// # Errors
     /// The first thing that is wrong.
@@ -54,7 +54,7 @@ impl Study {
             check_bounds(it).map_err(|problem| format!("constraint \"{name}\": {problem}"))?;
         }
         require(self.objectives.len() <= MOST_OBJECTIVES, || {
-            format!("the study has {} objectives, at most {MOST_OBJECTIVES} can be weighed", self.objectives.len())
+            format!("the study has {} objectives, at most {MOST_OBJECTIVES} are possible", self.objectives.len())
         })?;
         seen.clear();
         for it in &self.objectives {
@@ -62,7 +62,7 @@ impl Study {
             let name = it.quantity.name(model);
             require(seen.insert(it.quantity), || format!("\"{name}\" is an objective twice"))?;
             require(it.resolution.is_none_or(|it| it > 0.0 && it.is_finite()), || {
-                format!("objective \"{name}\": its resolution is no width")
+                format!("objective \"{name}\": its resolution must be greater than 0")
             })?;
         }
         self.check_report(&self.report)
@@ -181,20 +181,18 @@ impl Study {
         Ok(cells)
     }
 
-    /// Lines need a plane: two axes of numbers in order, and nothing else that varies from design to design.
+    /// Contours need a plane: two axes of numbers in order, and no other design axis.
     fn check_contours(&self, map: &MapSpec, contours: &ContourSpec) -> Checked {
         self.check_quantity(contours.of)?;
         let varies = |(at, axis): (usize, &Axis)| ![map.x, map.y].contains(&at) && axis.count() > 1;
-        require(!self.design.iter().enumerate().any(varies), || "lines need a map of everything that is chosen".to_owned())?;
+        require(!self.design.iter().enumerate().any(varies), || "the map's axes must be the only design axes".to_owned())?;
         for axis in [map.x, map.y].map(|axis| &self.design[axis]) {
             self.check_quantity(Quantity::Input(axis.inputs()[0]))?;
             let Axis::Single { levels: Levels::List(values), .. } = axis else { continue };
-            require(values.is_sorted() || values.iter().rev().is_sorted(), || "the levels of an axis go up and down".to_owned())?;
+            require(values.is_sorted() || values.iter().rev().is_sorted(), || "the levels of an axis are not in order".to_owned())?;
         }
         match &contours.at {
-            Thresholds::Changes => {
-                require(contours.of.is_whole(&self.model), || "there are no changes of what is no whole number".to_owned())
-            }
+            Thresholds::Changes => require(contours.of.is_whole(&self.model), || "only a whole number has changes".to_owned()),
             Thresholds::At(values) => {
                 require((1..=MOST_THRESHOLDS).contains(&values.len()), || format!("there must be 1 to {MOST_THRESHOLDS} values"))?;
                 require(values.iter().all(|it| it.is_finite()), || "a value is not finite".to_owned())
@@ -203,7 +201,7 @@ impl Study {
     }
 }
 
-/// An axis of inputs that no other one sets, with values that they take.
+/// An axis must set inputs that no other axis sets, to values that they accept.
 fn check_axis(model: &Model, axis: &Axis, taken: &mut HashSet<usize>) -> Checked {
     for &input in axis.inputs() {
         require(input < model.inputs.len(), || format!("{} has no input number {input}", model.name))?;
@@ -239,7 +237,7 @@ fn check_axis(model: &Model, axis: &Axis, taken: &mut HashSet<usize>) -> Checked
     problem.map_or(Ok(()), |problem| Err(format!("axis \"{}\": {problem}", model.inputs[first].name)))
 }
 
-/// Bounds that some value keeps.
+/// The bounds must allow some value.
 fn check_bounds(constraint: &Constraint) -> Checked {
     let Constraint { low, high, .. } = *constraint;
     require(low.is_some() || high.is_some(), || "there are no bounds".to_owned())?;

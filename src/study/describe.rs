@@ -45,7 +45,7 @@ impl Study {
                     Best::Share => (None, "share"),
                 };
                 let mut described = json!({ "x": axis_name(map.x), "y": axis_name(map.y), "value": value, "best": best });
-                // A map without lines reads as it did before there were any, and so its study keeps its hash.
+                    // Without contours a map is described as before there were any, so that hashes of older studies stay the same.
                 if !map.contours.is_empty() {
                     described["contours"] = map.contours.iter().map(|it| contours_of(model, it)).collect();
                 }
@@ -53,7 +53,7 @@ impl Study {
             }).collect::<Vec<_>>(),
             "front_budget": report.front_budget,
         });
-        // As with lines: what is not asked for leaves the hash alone.
+        // Likewise: the hash changes only if this is used.
         if let Some(sample) = report.sample {
             described["feasible_sample"] = json!({ "count": sample.count, "seed": sample.seed });
         }
@@ -73,7 +73,7 @@ impl Study {
     }
 }
 
-/// Most entries of a list that are told to differ.
+/// Most differing entries of a list that are reported.
 const MOST_DIFFERENCES: usize = 10;
 
 /// A part in which two descriptions differ.
@@ -104,7 +104,7 @@ pub fn differences(was: &Value, is: &Value) -> Vec<String> {
     changed
 }
 
-/// A value as a person writes it: a number, or the input's word.
+/// A value as people write it: a number, or the input's word.
 pub fn value_of(model: &Model, input: usize, value: f64) -> Value {
     model.inputs[input].word_for(value).map_or_else(|| number(value), Value::from)
 }

@@ -1,4 +1,4 @@
-//! A study back from what [`Study::describe`] says of it: a result directory is enough, wherever its study file and tables lie.
+//! Restores a study from [`Study::describe`], so that a result directory is enough even without the study file and its tables.
 
 use super::{
     Axis, Best, Constraint, ContourSpec, Goal, HistogramSpec, Levels, MapSpec, Objective, Quantity, Report, SampleSpec, Study, Thresholds,
@@ -11,7 +11,7 @@ use serde_json::Value;
 type Found<T> = Result<T, String>;
 
 impl Study {
-    /// The study that a description, such as a result's `study.json`, is of: its own description is the same again.
+    /// Restores the study of a description, such as a result's `study.json`. Described again it gives the same description.
     ///
     /// # Errors
     /// The first thing that is missing, or is not what a description has there.
@@ -55,7 +55,7 @@ impl Study {
         let report = report_of(&study, described)?;
         let study = Self { report, ..study };
         study.check()?;
-        // What this version would describe otherwise was not written by it.
+        // If this version would describe it otherwise, another version has written it.
         match super::differences(described, &study.describe()).first() {
             None => Ok(study),
             Some(difference) => Err(difference.clone()),

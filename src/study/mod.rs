@@ -1,8 +1,8 @@
 //! A study: one request, read from a file, checked as a whole and resolved to numbers.
 //!
-//! What comes out of [`Study::read`] can be swept: every name is a number of an input or output, every value is in the unit of
-//! its name, every range is expanded to a rule for its levels. The resolved study is also what a checkpoint keeps, so that
-//! shards can be merged without the file they came from.
+//! The result of [`Study::read`] can be swept: every name has become the number of an input or output, every value is in the unit of its
+//! name, every range has become a rule for its levels. A checkpoint keeps this resolved study, so that shards can be merged without the
+//! file they came from.
 
 mod axis;
 mod check;

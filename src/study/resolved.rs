@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize, Serializer};
 use serde_json::Value;
 use std::sync::Arc;
 
-/// An input or output that a constraint, objective, column or picture is about.
+/// An input or output that a constraint, objective, column or picture uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Quantity {
@@ -25,7 +25,7 @@ impl Quantity {
         }
     }
 
-    /// Which end is worse where nobody says so. For an input it hardly matters; the larger one is taken.
+    /// Which end is worse unless an objective or the report says otherwise. For an input it hardly matters; it is the larger one.
     pub fn worse(self, model: &Model) -> Worse {
         match self {
             Self::Input(_) => Worse::Higher,
@@ -53,7 +53,7 @@ pub enum Goal {
 }
 
 impl Goal {
-    /// The scatter's worse end under this goal.
+    /// The worse end of the range of values under this goal.
     pub fn worse(self) -> Worse {
         match self {
             Self::Min => Worse::Higher,
@@ -62,7 +62,7 @@ impl Goal {
     }
 }
 
-/// An objective: what is to be small or large in its worst scenario.
+/// An objective: a quantity that should be small or large in its worst scenario.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Objective {
     /// What.
@@ -117,13 +117,13 @@ pub struct TopSpec {
 pub struct HistogramSpec {
     /// Of which quantity.
     pub of: Quantity,
-    /// Ends of the first and last bin; `None`: from the fixed sample.
+    /// Ends of the first and last bin; `None`: taken from the fixed sample.
     pub range: Option<(f64, f64)>,
     /// Number of bins, at least 1.
     pub bins: usize,
 }
 
-/// What the designs of a map's cell are condensed to.
+/// What a cell of a map shows of its designs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Best {
@@ -138,11 +138,11 @@ pub enum Best {
 pub struct SampleSpec {
     /// How many designs, at least 1; all feasible ones if there are fewer.
     pub count: usize,
-    /// What shuffles the order that they are taken from.
+    /// Seed of the random order from which the first ones are taken.
     pub seed: u64,
 }
 
-/// The values of a quantity whose lines a map shows.
+/// The values at which a map has contours of a quantity.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Thresholds {
@@ -152,7 +152,7 @@ pub enum Thresholds {
     Changes,
 }
 
-/// Lines over a map: where the worst value of a quantity over all scenarios begins to be at least a threshold.
+/// Contours of a map: where the worst value of a quantity over all scenarios reaches a threshold.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContourSpec {
     /// Of which quantity.
@@ -170,7 +170,7 @@ pub struct MapSpec {
     pub y: usize,
     /// What is shown.
     pub value: Best,
-    /// Lines over it, each quantity once, in file order. Only where `x` and `y` alone have more than one level.
+    /// Its contours, each quantity once, in file order. Only if `x` and `y` are the only design axes with more than one level.
     #[serde(default)]
     pub contours: Vec<ContourSpec>,
 }
@@ -197,7 +197,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// Quantities whose worst values a sweep must follow for what is reported, with the end that is worst.
+    /// Quantities whose worst values the sweep must track for the report, with the end that is worst.
     pub(crate) fn followed(&self, study: &Study) -> Vec<(Quantity, Worse)> {
         let top = self.top.iter().map(|top| (top.by, top.goal.worse()));
         let histograms = self.histograms.iter().map(|it| (it.of, worst_end(study, it.of)));
@@ -208,19 +208,19 @@ impl Report {
         top.chain(histograms).chain(maps).collect()
     }
 
-    /// Positions of the design axes over which something is shown.
+    /// Positions of the design axes over which a map is shown.
     pub(crate) fn axes(&self) -> Vec<usize> {
         self.maps.iter().flat_map(|map| [map.x, map.y]).collect()
     }
 }
 
-/// The end of a quantity's scatter that its worst value is: by its objective if it has one, else by nature.
+/// Which end of a quantity's range is the worst: that of its objective if it has one, else that of the model.
 pub fn worst_end(study: &Study, quantity: Quantity) -> Worse {
     let goal = study.objectives.iter().find(|objective| objective.quantity == quantity).map(|objective| objective.goal);
     goal.map_or(quantity.worse(&study.model), Goal::worse)
 }
 
-/// A request: which designs to judge, over which scenarios, by what.
+/// A study: which designs to judge, in which scenarios, by which constraints and objectives.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Study {
     /// The model; stored by its name.
@@ -236,7 +236,7 @@ pub struct Study {
     pub operation: Vec<Axis>,
     /// Uncertainty axes in file order.
     pub uncertainty: Vec<Axis>,
-    /// A value for every input, in its unit: what `[fixed]` says, else the default. Unused where an axis sets the input.
+    /// A value for every input, in its unit: that of `[fixed]`, else the default. Unused if an axis sets the input.
     pub fixed: Vec<f64>,
     /// Constraints in file order.
     pub constraints: Vec<Constraint>,
@@ -246,7 +246,8 @@ pub struct Study {
     pub report: Report,
 }
 
-/// A study as it stands in a file that may have been changed: it is none before its model has been found and it has been checked.
+/// A study as deserialised from a file that may have been changed. It becomes a [`Study`] when its model has been found and it has been
+/// checked.
 #[derive(Deserialize)]
 pub(crate) struct StoredStudy {
     model: String,
@@ -277,7 +278,7 @@ impl StoredStudy {
 }
 
 impl Study {
-    /// A study from what serialising it gave, whose model is one of these.
+    /// Deserialises a study whose model is one of these.
     ///
     /// # Errors
     /// The first thing that is missing or cannot be.
@@ -286,7 +287,7 @@ impl Study {
         serde_json::from_value::<StoredStudy>(stored).map_err(|error| error.to_string())?.study(models)
     }
 
-    /// What the model has to say of this study as a whole.
+    /// The model's remarks on this study as a whole.
     pub fn remarks(&self) -> Vec<String> {
         let set_by_axes =
             |input: &usize| self.design.iter().chain(&self.operation).chain(&self.uncertainty).any(|axis| axis.inputs().contains(input));

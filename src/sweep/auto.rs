@@ -132,7 +132,7 @@ fn judge_rest(job: SweepJob<'_>, mut work: SweepWork<'_>, device: Option<&OnDevi
 /// What bounds had found, if it was all that the result names, must be what is named in the end.
 fn agree(found: &State, judged: &State) -> Result<()> {
     if !found.names_all_of(judged) {
-        return Err(Error::Certificate("designs judged one by one are better than what bounds found".to_owned()));
+        return Err(Error::Disagreement("designs judged one by one are better than what bounds found".to_owned()));
     }
     Ok(())
 }

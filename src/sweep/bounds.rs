@@ -31,7 +31,7 @@ const COMPARED_TIME: f64 = 2.0;
 /// Sweeps a plan by bounds. With a checkpoint, starts from what it holds, however that was made.
 ///
 /// # Errors
-/// As [`sweep`](super::sweep); [`Error::NotByBounds`] if bounds cannot serve the study; [`Error::Certificate`] if designs judged one by one do
+/// As [`sweep`](super::sweep); [`Error::NotByBounds`] if bounds cannot serve the study; [`Error::Disagreement`] if designs judged one by one do
 /// not agree with what the bounds say, or the rules do not add up to all designs.
 pub fn sweep_by_bounds(
     plan: &Plan,
@@ -234,7 +234,7 @@ fn hand_over(plan: &Plan, range: Range<u64>, feasible: u64, time: Duration, work
 /// Every design must have been settled by one rule: once for the count, and once in each search.
 fn adds_up(certificate: &Certificate, counted: u64, searched: u64) -> Result<()> {
     let differs = |what: &str, settled: u64, all: u64| {
-        Error::Certificate(format!("bounds settled {settled} designs for the {what}, but there are {all}"))
+        Error::Disagreement(format!("bounds settled {settled} designs for the {what}, but there are {all}"))
     };
     if certificate.count.designs() != counted {
         return Err(differs("count", certificate.count.designs(), counted));
@@ -266,14 +266,14 @@ fn compare(job: SweepJob<'_>, layout: &BoundedStudy, whole: &Range<u64>, state: 
         }
         if known.feasible - before != counted {
             let judged = known.feasible - before;
-            return Err(Error::Certificate(format!(
+            return Err(Error::Disagreement(format!(
                 "at positions {range:?} bounds counted {counted} feasible designs, one by one they are {judged}"
             )));
         }
         compared += length;
     }
     if !state.names_all_of(&known.state()) {
-        return Err(Error::Certificate("designs judged one by one are better than what bounds found".to_owned()));
+        return Err(Error::Disagreement("designs judged one by one are better than what bounds found".to_owned()));
     }
     Ok(compared)
 }

@@ -71,7 +71,7 @@ pub struct DeviceRecord {
 ///
 /// # Errors
 /// As [`sweep`](super::sweep); [`Error::Gpu`] if the device fails, the checkpoint then holding what was done before;
-/// [`Error::Promise`] if f64 says that the device broke an error bound; [`Error::Request`] if it cannot serve the study.
+/// [`Error::ErrorBound`] if f64 disagrees with what the device promises; [`Error::Request`] if it cannot serve the study.
 pub fn sweep_on_device(
     plan: &Plan,
     tables: &Tables,
@@ -118,7 +118,7 @@ pub(super) fn go_on(
     let outcome = run.whole_run(&mut work, &whole, control);
     let record = std::mem::take(&mut run.record);
     let state = match &outcome {
-        Err(Error::Promise(_)) => {
+        Err(Error::ErrorBound(_)) => {
             work.done = before.0;
             before.1
         }
@@ -315,7 +315,7 @@ impl Run<'_, '_> {
         let mut positions = positions.to_vec();
         positions.sort_unstable();
         let design = positions.iter().find(infeasible).map_or(0, |&position| self.plan.design_at(position));
-        Error::Promise(format!("design {design}: the GPU is sure that it is feasible, f64 is sure that it is not"))
+        Error::ErrorBound(format!("design {design}: the GPU is sure that it is feasible, f64 is sure that it is not"))
     }
 
     /// The answers so far, or the hints where they say more.

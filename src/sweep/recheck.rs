@@ -107,7 +107,7 @@ impl Recheckable {
     /// Compares tiles of a range.
     ///
     /// # Errors
-    /// [`Error::Promise`] that names output, design, both values and the error bound, or the count that differs.
+    /// [`Error::ErrorBound`] that names output, design, both values and the promise, or the count that differs.
     pub fn new(
         plan: &Plan,
         tables: &Tables,
@@ -141,15 +141,16 @@ impl Recheckable {
     /// Nothing that f64 keeps of the compared tiles may be missing in the end.
     ///
     /// # Errors
-    /// [`Error::Promise`] that names a design that is.
+    /// [`Error::ErrorBound`] that names a design that is.
     pub fn require_in(&mut self, reduction: &Reduction, end: &State) -> Result<()> {
         let mut both = reduction.restore(end.clone());
         for state in std::mem::take(&mut self.states) {
             both.merge(State { feasible: 0, ..state });
         }
         let both = both.state();
-        let lost =
-            |what: &str, index: u64| Err(Error::Promise(format!("design {index} belongs to the {what}, but the GPU did not hand it over")));
+        let lost = |what: &str, index: u64| {
+            Err(Error::ErrorBound(format!("design {index} belongs to the {what}, but the GPU did not hand it over")))
+        };
         let held: HashSet<u64> = end.front.indices.iter().copied().collect();
         if let Some(&index) = both.front.indices.iter().find(|index| !held.contains(index)) {
             return lost("front", index);
@@ -235,7 +236,7 @@ fn compare(
         }
         if (checked.verdict == Decision::Yes) != feasible && checked.verdict != Decision::Unsure {
             let (gpu, f64s) = if feasible { ("infeasible", "feasible") } else { ("feasible", "infeasible") };
-            return Err(Error::Promise(format!("design {design}: the GPU is sure that it is {gpu}, f64 finds it {f64s}")));
+            return Err(Error::ErrorBound(format!("design {design}: the GPU is sure that it is {gpu}, f64 finds it {f64s}")));
         }
     }
     Ok((report, reducers.state()))
@@ -248,8 +249,8 @@ fn broken_bound(plan: &Plan, quantity: Quantity, design: u64, (found, bound): (f
         Quantity::Input(_) => value,
     };
     let (found, exact, bound) = (in_unit(found), in_unit(exact), in_unit(bound));
-    Error::Promise(format!(
-        "{} of design {design} {place}: the GPU gives {found}, f64 gives {exact}; they differ by {:.3e}, more than the error bound {bound:.3e}",
+    Error::ErrorBound(format!(
+        "{} of design {design} {place}: the GPU gives {found}, f64 gives {exact}; they differ by {:.3e}, more than the error bound of {bound:.3e}",
         quantity.name(&plan.study.model),
         (found - exact).abs(),
     ))
@@ -283,13 +284,13 @@ fn require_counts(
         let mut unsure: Vec<u64> = survivors.iter().filter(|it| it.unsure).map(|it| it.position).collect();
         unsure.sort_unstable();
         if unsure.len() as u64 != counts.unsure {
-            return Err(Error::Promise(format!("the GPU counted {} unsure designs and handed over {}", counts.unsure, unsure.len())));
+            return Err(Error::ErrorBound(format!("the GPU counted {} unsure designs and handed over {}", counts.unsure, unsure.len())));
         }
         host.screen_some(&unsure, |block| reduction.absorb(&mut reducers, block));
     }
     let found = reducers.state();
     let differ = |what: &str, gpu: u64, f64s: u64| {
-        Err(Error::Promise(format!(
+        Err(Error::ErrorBound(format!(
             "of designs {} to {} in the sweep's order the GPU counts {gpu} {what}, f64 counts {f64s}",
             range.start,
             range.end - 1

@@ -1,4 +1,4 @@
-//! What people see: text on standard output, progress and errors on standard error.
+//! Output for people: text on standard output, progress and errors on standard error.
 
 pub mod progress;
 pub mod report;
@@ -10,7 +10,7 @@ use console::Style;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
 
-/// Prints to standard output. A reader that has gone away is no error.
+/// Prints to standard output. It is no error if the reader has closed it.
 pub fn print(text: &str) -> Result<()> {
     let mut out = std::io::stdout().lock();
     match out.write_all(harmless(text, true).as_bytes()).and_then(|()| out.flush()) {
@@ -22,7 +22,7 @@ pub fn print(text: &str) -> Result<()> {
 /// Prints an error to standard error.
 pub fn report_error(error: &Error) {
     let style = Style::new().for_stderr().red().bold();
-    // Nothing is left to do if even this cannot be written.
+    // If even this cannot be written, nothing is left to do.
     let _ = writeln!(std::io::stderr(), "{} {}", style.apply_to("error:"), harmless(&error.to_string(), false));
 }
 
@@ -32,12 +32,12 @@ pub fn remark(kind: &str, text: &str) {
     let _ = writeln!(std::io::stderr(), "{} {}", style.apply_to(format!("{kind}:")), harmless(text, false));
 }
 
-/// Text that somebody wrote into a file, such as a title, on one line: what a terminal would obey is shown escaped.
+/// Text from a file, such as a title, on one line, with the characters that control a terminal escaped.
 pub fn told(text: &str) -> String {
     harmless(text, false).replace('\n', "\\n").replace('\t', "\\t")
 }
 
-/// Text with what a terminal would obey shown escaped, but for line ends, tabs and, if asked for, this program's own bold and colours.
+/// Text with the characters that control a terminal escaped, except line ends, tabs and, if asked for, this program's bold and colours.
 fn harmless(text: &str, styled: bool) -> String {
     let mut shown = String::with_capacity(text.len());
     let mut rest = text;
@@ -47,7 +47,7 @@ fn harmless(text: &str, styled: bool) -> String {
         match next {
             _ if style > 0 => shown.push_str(head),
             '\n' | '\t' => shown.push(next),
-            // Of the other characters these turn the text around or end the line.
+            // Besides control characters, these change the direction of the text or end the line.
             '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => shown.extend(next.escape_unicode()),
             next if next.is_control() => shown.extend(next.escape_default()),
             next => shown.push(next),
@@ -57,29 +57,29 @@ fn harmless(text: &str, styled: bool) -> String {
     shown
 }
 
-/// Bytes of the sequence for bold, colour or the like that a text begins with; 0 if it begins otherwise.
+/// Length in bytes of the escape sequence for bold, colour or the like that a text begins with; 0 if there is none.
 fn style_at(text: &str) -> usize {
     let Some(code) = text.strip_prefix("\u{1b}[") else { return 0 };
     let digits = code.bytes().take_while(|byte| byte.is_ascii_digit() || *byte == b';').count();
     if code[digits..].starts_with('m') { 2 + digits + 1 } else { 0 }
 }
 
-/// Bold, where standard output is a terminal.
+/// Bold, if standard output is a terminal.
 pub fn bold(text: &str) -> String {
     Style::new().bold().apply_to(text).to_string()
 }
 
-/// Dim, where standard output is a terminal.
+/// Dim, if standard output is a terminal.
 pub fn dim(text: &str) -> String {
     Style::new().dim().apply_to(text).to_string()
 }
 
-/// Columns of standard output if it is a terminal.
+/// Width of standard output in characters, if it is a terminal.
 pub fn width() -> Option<usize> {
     std::io::stdout().is_terminal().then(|| usize::from(console::Term::stdout().size().1))
 }
 
-/// A large number with thin groups of three: 20 615 771.
+/// A large number in groups of three digits: 20 615 771.
 pub fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::new();
@@ -110,7 +110,7 @@ pub fn scaled(value: f64) -> String {
 /// A path as a shell reads it back as one word.
 pub fn quoted(path: &Path) -> String {
     let mut text = path.display().to_string();
-    // What begins with a dash would be read as an option.
+    // A name that begins with a dash would be read as an option.
     if text.starts_with('-') {
         text.insert_str(0, "./");
     }
@@ -137,7 +137,7 @@ pub fn command_line() -> String {
     if line.chars().count() > MOST { line.chars().take(MOST).chain(" ...".chars()).collect() } else { line }
 }
 
-/// Text in columns, each as wide as its widest cell; the last one runs free.
+/// Text in columns, each as wide as its widest cell; the last one is not padded.
 #[derive(Debug, Default)]
 pub struct Grid {
     rows: Vec<Vec<String>>,
@@ -149,7 +149,7 @@ impl Grid {
         self.rows.push(cells.into_iter().collect());
     }
 
-    /// The rows as lines, indented. In a column of numbers they stand at the right.
+    /// The rows as indented lines. Numbers are aligned to the right.
     pub fn indented(&self, indent: usize) -> String {
         let is_number = |cell: &str| cell.replace(' ', "").parse::<f64>().is_ok();
         let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
@@ -222,7 +222,7 @@ mod tests {
             told("\u{1b}[31mred\u{7}\0x\r\ny\tz \u{202e}\u{9b}K grün"),
             "\\u{1b}[31mred\\u{7}\\u{0}x\\r\\ny\\tz \\u{202e}\\u{9b}K grün"
         );
-        // Own bold passes, a sequence that moves or asks does not, nor one that ends too soon.
+        // The program's own bold passes; sequences that move the cursor or query the terminal do not, nor one that is cut off.
         assert_eq!(harmless("\u{1b}[1mTitle\u{1b}[0m\n\u{1b}[2J\u{1b}[", true), "\u{1b}[1mTitle\u{1b}[0m\n\\u{1b}[2J\\u{1b}[");
         assert_eq!(harmless("\u{1b}[1m", false), "\\u{1b}[1m");
     }

@@ -1,4 +1,4 @@
-//! The progress bar of a sweep, on standard error where that is a terminal.
+//! The progress bar of a sweep, on standard error if that is a terminal.
 
 use super::{scaled, span};
 use beltspace::sweep::Control;
@@ -10,27 +10,27 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// A bar that follows a sweep from a thread of its own.
+/// A bar that shows the progress of a sweep, drawn by a thread of its own.
 pub struct Bar {
     finished: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Bar {
-    /// Starts a bar over so many designs; nothing is shown when quiet or when standard error is no terminal.
+    /// Starts a bar for this many designs; shows nothing when quiet or if standard error is no terminal.
     pub fn start(control: &Arc<Control>, designs: Range<u64>, quiet: bool) -> Self {
         let finished = Arc::new(AtomicBool::new(false));
         let total = designs.end - designs.start;
         let shown = !quiet && std::io::stderr().is_terminal();
         let start = || {
             let (control, finished) = (Arc::clone(control), Arc::clone(&finished));
-            // Without a thread there is no bar, which is no reason to fail.
+            // If the thread cannot be started there is no bar, which is no reason to fail.
             std::thread::Builder::new().spawn(move || follow(&control, total, &finished)).ok()
         };
         Self { thread: if shown { start() } else { None }, finished }
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub fn finish(mut self) {
         self.finished.store(true, Ordering::Relaxed);
         if let Some(thread) = self.thread.take() {
@@ -47,14 +47,14 @@ fn follow(control: &Control, total: u64, finished: &AtomicBool) {
     bar.set_style(style.progress_chars("█▉▊▋▌▍▎▏ "));
     let start = Instant::now();
     let mut last = 0;
-    // Since when designs have been judged, and how many a checkpoint had brought before: neither counts for the speed.
+    // When judging began, and how many designs came from a checkpoint: the speed counts neither the time before nor these designs.
     let mut begun: Option<(Instant, u64)> = None;
     while !finished.load(Ordering::Relaxed) {
         let done = control.done.load(Ordering::Relaxed).min(total);
         if done != last && begun.is_none() {
             begun = Some((Instant::now(), done));
         }
-        // Where bounds are left, what counts is what is kept of them.
+        // If bounds are given up, the designs that they settled count as brought.
         if done < last {
             begun = Some((Instant::now(), done));
         }
@@ -67,12 +67,12 @@ fn follow(control: &Control, total: u64, finished: &AtomicBool) {
     bar.finish_and_clear();
 }
 
-/// What stands beside the bar: `rest` from the designs done to all of them, `rate` in designs per second.
+/// The text beside the bar: `rate` is in designs per second.
 #[allow(clippy::cast_precision_loss, reason = "times for people")]
 fn message(control: &Control, rest: Range<u64>, rate: f64, elapsed: Duration) -> String {
     let percent = |part: &AtomicU64, of: &AtomicU64| 100 * part.load(Ordering::Relaxed) / of.load(Ordering::Relaxed).max(1);
     if control.stop.load(Ordering::Relaxed) {
-        "stopping, keeping what is done ...".to_owned()
+        "stopping, saving the checkpoint ...".to_owned()
     } else if rest.is_empty() {
         format!("certifying what is reported, {} % ...", percent(&control.certified, &control.reported))
     } else if let Some(what) = control.settled_for() {
@@ -80,7 +80,7 @@ fn message(control: &Control, rest: Range<u64>, rate: f64, elapsed: Duration) ->
     } else if rate > 0.0 {
         format!("{}designs/s, {} left", scaled(rate), span((rest.end - rest.start) as f64 / rate))
     } else {
-        format!("looking at a sample, {} % ...", percent(&control.sampled, &control.sample))
+        format!("judging a sample, {} % ...", percent(&control.sampled, &control.sample))
     }
 }
 
@@ -94,7 +94,7 @@ mod tests {
         let at = |done: u64, rate: f64| message(&control, done..1_000_000, rate, Duration::from_millis(16_900));
         control.sample.store(65_536, Ordering::Relaxed);
         control.sampled.store(16_384, Ordering::Relaxed);
-        assert_eq!(at(0, 0.0), "looking at a sample, 25 % ...");
+        assert_eq!(at(0, 0.0), "judging a sample, 25 % ...");
         assert_eq!(at(400_000, 20_000.0), "20.0 kdesigns/s, 30.0 s left");
         *control.settling.lock().expect("nobody holds it") = Some("front, 1 of 11".to_owned());
         assert_eq!(at(400_000, 20_000.0), "settled: front, 1 of 11, 16.9 s");
@@ -103,6 +103,6 @@ mod tests {
         control.certified.store(2, Ordering::Relaxed);
         assert_eq!(at(1_000_000, 20_000.0), "certifying what is reported, 25 % ...");
         control.stop.store(true, Ordering::Relaxed);
-        assert_eq!(at(400_000, 20_000.0), "stopping, keeping what is done ...");
+        assert_eq!(at(400_000, 20_000.0), "stopping, saving the checkpoint ...");
     }
 }

@@ -1,4 +1,4 @@
-//! The summary of a sweep: what a person wants to know first.
+//! The summary of a sweep on the terminal.
 
 use super::{Grid, bold, dim, grouped, scaled, short, span, width};
 use beltspace::certify::Row;
@@ -36,12 +36,12 @@ pub fn summary(outcome: &Certified<'_>, record: &RunRecord, out: &Path, page: Op
     fact("feasible", format!("{} ({} %)", grouped(feasible), short((share * 100.0).round() / 100.0)));
     if let Some(certificate) = &record.method.certificate {
         let [boxes, evaluations] = [certificate.boxes(), certificate.evaluations()].map(grouped);
-        fact("bounds", format!("{boxes} boxes and {evaluations} evaluations settled every design; which rule how many is in run.json"));
+        fact("bounds", format!("{boxes} boxes and {evaluations} evaluations settled every design; run.json counts them by rule"));
     }
     if let Some(left) = &record.method.left {
         let (counted, judged) = (grouped(left.counted), grouped(left.judged));
         let spent = span(left.promise.spent);
-        fact("bounds", format!("left after {spent} ({}), with {counted} designs counted; {judged} were judged one by one", left.at));
+        fact("bounds", format!("given up after {spent} ({}), with {counted} designs settled; {judged} were judged one by one", left.at));
     }
     if let Some(device) = &record.device {
         let count = |name: &str| grouped(device[name].as_u64().unwrap_or(0));
@@ -50,7 +50,7 @@ pub fn summary(outcome: &Certified<'_>, record: &RunRecord, out: &Path, page: Op
         fact(
             "GPU",
             format!(
-                "{name}: {} designs left to f64, {} of them undecided; {compared} compared with f64",
+                "{name}: {} designs left to f64, {} of them unsure; {compared} compared with f64",
                 count("survivors"),
                 count("unsure_designs")
             ),
@@ -169,7 +169,7 @@ fn plot(outcome: &Certified<'_>) -> String {
     if low >= high {
         return String::new();
     }
-    // A dot matrix has two dots per character across.
+    // The characters are dot matrices, two dots wide.
     let dots = u32::try_from(2 * (columns - 12)).unwrap_or(120);
     let shape = Shape::Points(&points);
     let mut chart = Chart::new(dots, 48, low, high);

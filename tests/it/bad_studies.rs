@@ -1,4 +1,4 @@
-//! Study files: broken ones are refused with every problem at its place, good ones mean what they say.
+//! Study files: broken ones are refused with every problem and its position, good ones are understood correctly.
 
 use beltspace::study::{
     Axis, Best, Constraint, Goal, HistogramSpec, Levels, MapSpec, Method, Objective, Quantity, Report, Sample, Study, TopSpec,
@@ -138,7 +138,7 @@ fn all_problems_of_a_file_are_reported_in_file_order() {
         "6:18: axis \"band_count\": 6.5 is not a whole number",
         "6:26: axis \"band_count\": 7 is listed twice",
         "9:9: axis \"ratio\": a range needs count or step",
-        "10:12: there is no value behind",
+        "10:12: there is no value after",
         "12:19: axis \"friction\": -1 is out of range",
         "12:23: axis \"friction\": nan cannot be used",
         "14:1: \"traction\" is already set in [design], line 7",
@@ -197,10 +197,10 @@ fn problems_of_a_csv_file_name_its_line_and_field() {
         let fits = found.len() == expected.len() && found.iter().zip(*expected).all(|(found, expected)| reads_as(found, expected));
         assert!(fits, "{csv:?}: {errors}");
     }
-    // Named from where the user is, as the study is.
+    // The path is relative to the user's folder, as that of the study.
     let errors = Study::parse_in(&text, "studies/study.toml", folder.path()).unwrap_err();
     assert_eq!(Path::new(&errors.problems[0].file), Path::new("studies/belts.csv"));
-    // A hopeless file is not reported line by line.
+    // A file without any valid line is not reported line by line.
     std::fs::write(folder.path().join("belts.csv"), format!("ratio\n{}", "x\n".repeat(1000))).unwrap();
     assert!(Study::parse_in(&text, "study.toml", folder.path()).unwrap_err().problems.len() < 30);
 }
@@ -243,7 +243,7 @@ fn tokens(text: &str) -> Vec<String> {
     tokens
 }
 
-/// What is put in: things with a meaning at the wrong place, and things with none.
+/// What is inserted: tokens with a meaning at the wrong place, and tokens without a meaning.
 const SALT: &[&str] = &[
     "[",
     "]",
@@ -491,7 +491,7 @@ fn every_form_of_an_axis_is_understood() {
     assert_eq!(levels("band_width_mm", "{ from = \"1 cm\", to = \"2 cm\", step = \"5 mm\" }"), step(10.0, 5.0, 3, false));
     assert_eq!(levels("band_width_mm", "{ from = 0.1, to = 100, step = 1, spacing = \"log\" }"), step(0.1, 1.0, 4, true));
     assert_eq!(levels("band_width_mm", "{ from = 1, to = 9.99, step = 0.5, spacing = \"log\" }"), step(1.0, 0.5, 2, true));
-    // Steps neither lose their last level to rounding nor gain one.
+    // Rounding neither drops the last level of a step axis nor adds one.
     for count in 2..400_u32 {
         for width in [0.1, 0.05, 0.005, 1.0 / 3.0] {
             let to = 0.1 + f64::from(count - 1) * width;

@@ -1,4 +1,4 @@
-//! The pulley as a three-dimensional model for CalculiX: its loads, and its solution against the harmonics.
+//! The pulley as a three-dimensional model for CalculiX: its loads, and its solution compared with the harmonics.
 
 use crate::pulleys::{COARSE, calculix, job, shown, solved};
 use beltspace::pulley::calculix::{Comparison, Forces, Job, Results, Sweep, closed_form, compare, export, write_deck};
@@ -110,7 +110,7 @@ fn a_wrong_sign_of_a_load_shows_in_the_sums() {
     let slight = ROUND * expected.moment.z;
     let right = total(&job.case);
     assert!(right.force.distance(expected.force) < 0.01 && near(right.moment.z, expected.moment.z, slight), "{right:?} {expected:?}");
-    // Friction towards the slack end: the torque turns round.
+    // Friction towards the slack end: the torque changes its sign.
     let slack = total(&Case { around: -job.case.around, ..job.case });
     assert!(near(slack.moment.z, -expected.moment.z, slight), "{slack:?}");
     // Friction outwards along the flank: a quarter of the pull is missing.
@@ -220,7 +220,7 @@ fn sectors_share_their_planes_and_the_last_closes_on_the_first() {
             let [a, b, c] = [0, 1, 2].map(|place| positions[nodes[place]]);
             let up = positions[nodes[element.corners()]] - a;
             assert!((b - a).cross(c - a).dot(up) > 0.0, "inside out");
-            // The middle of a side between the planes stands on the circle, half-way.
+            // The middle of a side between the planes is on the circle, halfway.
             let (end, middle) = (positions[nodes[element.corners()]], positions[nodes[4 * element.corners()]]);
             assert!((middle.truncate().length() - a.truncate().length()).abs() < 1e-9);
             assert!((middle.distance(a) - middle.distance(end)).abs() < 1e-9);

@@ -1,8 +1,8 @@
-//! How much of a test a model can afford: thousands of evaluations of a formula, a few of a solver.
+//! How many evaluations a test may make of a model: thousands of a formula, a few of a solver.
 
 use beltspace::models::{self, Model};
 
-/// Seconds that the repeated evaluations of one test may take, by what the model says of itself.
+/// Seconds that the repeated evaluations of one test may take, by the model's own figures.
 const SECONDS: f64 = 0.2;
 
 /// As many evaluations as wanted, or as many as there is time for.

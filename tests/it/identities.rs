@@ -1,4 +1,4 @@
-//! What must hold between the outputs of the V-belt models whatever the inputs, and the numbers of the papers' tables.
+//! Identities between the outputs of the V-belt models for any inputs, and the numbers of the papers' tables.
 
 use crate::random::Random;
 use beltspace::models::{
@@ -117,7 +117,7 @@ fn at_the_slip_limit_the_driven_axial_force_is_the_clamping_formula_used_in_prac
         close(limit.get("driven_axial_force_N"), clamping, 1e-12, &limit);
         close(limit.get("active_arc_deg"), limit.get("driven_wrap_deg"), 1e-14, &limit);
         assert_eq!(limit.get("slip_margin"), 0.0, "{limit:?}");
-        // Away from the limit the self-locked part of the arc needs more.
+        // Away from the limit the self-locked arc needs more.
         let away = design.with(&[("traction", 0.8 * limit.get("traction_limit"))]);
         let clamping = away.get("belt_force_N") * away.half_groove().cos() / (2.0 * away.get("friction"));
         assert!(away.get("driven_axial_force_N") > clamping * (1.0 + 1e-6), "{away:?}");

@@ -1,24 +1,24 @@
-//! Tests of the crate as its users see it, in one binary.
+//! Tests of the crate through its interfaces, in one binary.
 
-/// Broken study files: each with the message it must give.
+/// Broken study files, each with the message that it must give.
 mod bad_studies;
-/// Sweeps by bounds against sweeps design by design.
+/// Sweeps by bounds compared with sweeps design by design.
 mod bounds;
-/// A browser to look at pages with.
+/// A browser for looking at pages.
 mod browser;
-/// The pulley as a model for CalculiX, and its solution against the harmonics.
+/// The pulley as a model for CalculiX, and its solution compared with the harmonics.
 mod calculix;
 /// The binary: exit codes, messages, files, interrupted runs.
 mod command_line;
-/// How much of a test a model can afford.
+/// How many evaluations a test may make of a model.
 mod effort;
 /// Screening on a graphics device.
 mod gpu;
 /// Identities of the V-belt variator, and the tables of its paper.
 mod identities;
-/// What is read, mangled: no panic, no hang, no more memory than there is.
+/// Mangled files: reading them must not panic, hang or take all memory.
 mod mutations;
-/// The models over every number type: f32 with bounds, intervals, dependence, columns.
+/// The models over every number type: f32 with error bounds, intervals, dependencies, columns.
 mod numbers;
 /// A model made at run time.
 mod own_model;
@@ -36,7 +36,7 @@ mod pulley_fe;
 mod pulleys;
 /// A random number generator for seeded tests.
 mod random;
-/// The README, held against what the program says.
+/// The README, compared with what the program prints.
 mod readme;
 /// The page of a result, in a browser.
 mod report_page;
@@ -48,5 +48,5 @@ mod shader_constants;
 mod shaders;
 /// The timing belt: figures, closed forms, similarity.
 mod timing_mesh;
-/// The tutorials of `docs/`, run and held against what the program says.
+/// The tutorials of `docs/`, run and compared with what the program prints.
 mod tutorial;

@@ -1,4 +1,4 @@
-//! A model made at run time serves wherever one of the program's own does: studies, sweeps, checkpoints, hashes.
+//! A model made at run time works wherever a built-in one does: studies, sweeps, checkpoints, hashes.
 
 use beltspace::checkpoint::{Checkpoint, Saved};
 use beltspace::files::Claim;
@@ -16,7 +16,7 @@ use beltspace::tiles::Shard;
 use beltspace::units::{DEGREE, NEWTON, NONE};
 use std::sync::Arc;
 
-/// Eytelwein: the tight tension that a flat belt can have, and what is left of it over the wanted one.
+/// Eytelwein: the largest tight tension of a flat belt, and its margin over the wanted one.
 struct FlatBelt;
 
 /// Numbers of the inputs.
@@ -137,7 +137,7 @@ fn a_model_made_at_run_time_is_swept_kept_and_taken_up_again() {
     assert!(saved.is_finished() && *saved.study() == study);
     let later = Models::new().with(flat_belt("2")).expect("it is right");
     let refused = Saved::read_with(&later, &at).expect_err("its formula is another one").to_string();
-    assert!(refused.contains("it describes another study than it has"), "{refused}");
+    assert!(refused.contains("its description belongs to another study"), "{refused}");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! The papers, computed again: what is committed is what comes out, and what comes out is what it should be.
+//! The papers, computed again: the committed files are what is computed, and the computed values are right.
 
 use beltspace::papers::{Comparison, Paper, Reproduction, Verdict, reproduce};
 use std::collections::BTreeSet;
@@ -191,7 +191,7 @@ fn files_that_are_there_stay_unless_forced() {
     for option in ["--quiet", "--force"] {
         let (code, _, error) = run(&[option]);
         assert_eq!(code, Some(2));
-        assert!(error.contains("cvt-fig-1.svg") && error.contains("did not write them: move them away"), "{error}");
+        assert!(error.contains("cvt-fig-1.svg") && error.contains("beltspace did not write them: move them away"), "{error}");
         assert_eq!(fs::read_to_string(out.join("cvt-fig-1.svg")).expect("it is there"), "mine");
     }
     // With a comparison beside it, it is the figure of an older reproduction.

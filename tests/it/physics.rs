@@ -1,4 +1,4 @@
-//! The models against their second implementation, and against the numbers that the papers print.
+//! The models compared with their second implementation and with the numbers that the papers print.
 
 use crate::effort::is_slow;
 use crate::random::Random;

@@ -65,7 +65,7 @@ impl Pulley {
         (force, torque)
     }
 
-    /// What the two strands pull with, less what only bends the moving belt.
+    /// The pull of the two strands, without the tension that only bends the moving belt.
     fn strands(&self) -> [f64; 2] {
         let wrap = self.get("wrap_angle_deg").to_radians();
         let slack = self.get("slack_tension_N") - self.get("centrifugal_tension_N");

@@ -123,7 +123,7 @@ fn pulley_friction_around_the_circumference_alone_is_the_heavier_case() {
 
 const NO_CLAMP: (&str, f64) = ("clamp_force_N", 0.0);
 const NO_SPIN: (&str, f64) = ("density_kg_per_m3", 0.0);
-/// A belt of next to no tension.
+/// A belt with almost no tension.
 const NO_BELT: [(&str, f64); 3] = [("power_kW", 0.0), ("slack_tension_N", 1e-9), ("belt_mass_kg_per_m", 1e-15)];
 
 #[test]

@@ -30,11 +30,11 @@ pub fn calculix() -> PathBuf {
     found.expect("ccx is on PATH (Debian package calculix-ccx)")
 }
 
-/// Exports, solves and compares; also the seconds that CalculiX took, and those of its processors.
+/// Exports, solves and compares; also returns the seconds that CalculiX took, and its CPU seconds.
 pub fn solved(program: &Path, job: &Job, directory: &Path) -> (Vec<Comparison>, [f64; 2]) {
     export(job, directory).expect("the deck is written");
     let start = Instant::now();
-    // The shell says what its children used of the processors, last.
+    // The last lines are the shell's, with the CPU time of its children.
     let mut run = Command::new("sh");
     run.args(["-c", "\"$0\" -i pulley || exit 1; times"]).arg(program).current_dir(directory).env("OMP_NUM_THREADS", "2");
     let run = run.output().expect("the shell runs");

@@ -63,7 +63,7 @@ fn card_differs(browser: &mut Browser, table: &BTreeMap<String, String>) -> Opti
     })
 }
 
-/// Drags over a part of a cell of the matrix; parts of its width and height.
+/// Drags over an area of a cell of the matrix, given in fractions of its width and height.
 fn brush(browser: &mut Browser, x: &str, y: &str, from: [f64; 2], to: [f64; 2]) {
     let [left, top, width, height] = browser.rectangle(&format!(".cell[data-x={x:?}][data-y={y:?}] .overlay"));
     let place = |part: [f64; 2]| [left + part[0] * width, top + part[1] * height];
@@ -166,7 +166,7 @@ fn axes_are_brushed_turned_and_moved_and_a_point_is_reached_with_the_keyboard() 
     assert!(expected > 0 && expected < front.len(), "{expected} of {}", front.len());
     assert_eq!(browser.number("beltspace.selected().length"), expected as f64);
     browser.picture("rubber-cvt-parallel");
-    // Turned over and moved with its buttons: the first axis becomes the second.
+    // Reversed and moved with its buttons: the first axis becomes the second.
     let second = browser.text("beltspace.state.parallel[1]");
     browser.click_on(&format!("[data-focus=\"right {name}\"]"));
     browser.wait(&format!("beltspace.state.parallel.slice(0, 2).join() === {:?}", format!("{second},{name}")));

@@ -1,6 +1,6 @@
-//! The shaders of the models as they are written from the formulas: `shaders/models` holds what the program makes.
+//! The shaders of the models: `shaders/models` must have what the program generates from the formulas.
 //!
-//! `shaders/write` writes them anew.
+//! `shaders/write` writes them again.
 
 use beltspace::gpu::PointKernel;
 use beltspace::models::{self, Model, Shader};

@@ -1,4 +1,4 @@
-//! What the paper's figures and closed forms say of the timing belt.
+//! The timing belt compared with the paper's figures and closed forms.
 
 use crate::physics::{Region, draw};
 use crate::random::Random;

@@ -79,7 +79,7 @@ fn says(shown: &[&str], printed: &[&str]) -> bool {
     }
 }
 
-/// Runs a command and holds what it prints against what is shown.
+/// Runs a command and compares what it prints with what is shown.
 fn run(command: &str, shown: &[&str], folder: &Path) -> Result<(), String> {
     let arguments = command.strip_prefix("beltspace ").ok_or_else(|| format!("not a command of beltspace: {command}"))?;
     if arguments.contains(['|', '>', '<', '&', ';', '"', '\'', '\\', '$']) {

@@ -26,12 +26,12 @@ use std::time::Duration;
 
 /// How long the speed is measured.
 const TRIAL: Duration = Duration::from_secs(1);
-/// Least megabytes that jobs ask for: shards, and the merge.
+/// Least memory in megabytes that jobs ask for: a shard, and the merge.
 const LEAST_MEMORY: [u64; 2] = [1000, 2000];
-/// Seconds that the merge is expected to take at least: it writes the result, its pictures and its page.
+/// Least time in seconds that the merge is expected to take: it writes the result, its pictures and its page.
 const LEAST_MERGE: f64 = 300.0;
 
-/// Who runs the jobs.
+/// The scheduler that runs the jobs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scheduler {
     Slurm,
@@ -46,7 +46,7 @@ impl Scheduler {
         }
     }
 
-    /// Most jobs of an array that it takes where its administrators have changed nothing.
+    /// Most jobs that it accepts in one array, unless its administrators have changed that.
     fn usual_limit(self) -> u64 {
         match self {
             Self::Slurm => 1000,
@@ -71,7 +71,7 @@ pub fn run(request: &cli::Slurm) -> Result<()> {
     let jobs = absolute(&request.jobs.clone().unwrap_or_else(|| jobs_beside(&out)))?;
     let program = program(request.program.as_deref())?;
     let own = checked_options(&file, &request.sweep)?;
-    // What every shard would refuse is refused before anything is written.
+    // Refuse what every shard would refuse, before anything is written.
     let mut speed = None;
     let mut measure = || *speed.get_or_insert_with(|| Speed::measured(&plan, 1, TRIAL));
     let method = method::choose(&plan, own.method, own.engine, own.adapter.as_deref(), request.cpus.into(), &mut measure)?;
@@ -81,7 +81,7 @@ pub fn run(request: &cli::Slurm) -> Result<()> {
     let work = work(&plan, speed.seconds, request.cpus);
     let wish = Wish { bounds: method.bounds, shards: request.shards, shortest: request.shortest, limit: request.array_limit };
     let shards = sizing::shards(&work, &wish, scheduler)?;
-    // Who is at work there is named: what the directory has meanwhile tells nothing.
+    // If another process is using it, name that process: the contents of the directory mean nothing meanwhile.
     let reading = Reading::without_trace(&out)?;
     Contents::of(&out)?.refuse_to_overwrite(&files_of(&plan, own.no_report), request.force, false)?;
     drop(reading);
@@ -112,7 +112,7 @@ pub fn run(request: &cli::Slurm) -> Result<()> {
     };
     let _claim = Claim::new(&jobs, &terminal::command_line())?;
     refuse_to_replace(&jobs, request.force)?;
-    // What fails in between leaves nothing to submit.
+    // Without the old submit.sh, a failure from here on leaves nothing to submit.
     let submit = jobs.join(SUBMIT);
     if submit.exists() {
         std::fs::remove_file(&submit).map_err(Error::io(&submit))?;
@@ -124,11 +124,11 @@ pub fn run(request: &cli::Slurm) -> Result<()> {
     }
     remark(&plan, &work, request, shards);
     if !request.quiet && method.bounds && own.method == Judging::Auto {
-        let what = "bounds settle boxes of designs at once, and a shard may be done in seconds; where they do not pay they are left";
+        let what = "bounds settle boxes of designs at once and may take only seconds; if they turn out slower, they are given up";
         let then = if shards == 1 {
-            "one job is written, and one beltspace sweep here may do; --shards N splits it all the same"
+            "one job is written, and `beltspace sweep` on this machine may be enough; --shards N splits the study all the same"
         } else {
-            "every shard looks for the front anew; without --shards one job is written"
+            "every shard searches for the whole front; without --shards one job is written"
         };
         terminal::remark("note", &format!("{what}: {then}; -- --method exhaustive judges every design"));
     }
@@ -137,7 +137,7 @@ pub fn run(request: &cli::Slurm) -> Result<()> {
 
 fn summary(plan: &Plan, work: &Work, (bounds, how): (bool, &str), scripts: &scripts::Plan, out: &Path, jobs: &Path) -> String {
     let (shards, cpus) = (scripts.shards, scripts.cpus);
-    let on = if cpus == 1 { "1 processor".to_owned() } else { format!("{cpus} processors") };
+    let on = if cpus == 1 { "1 CPU".to_owned() } else { format!("{cpus} CPUs") };
     let each = if shards == 1 { "" } else { " each" };
     let mut facts = Grid::default();
     let mut fact = |what: &str, value: String| facts.row([bold(what), value]);
@@ -157,28 +157,30 @@ fn summary(plan: &Plan, work: &Work, (bounds, how): (bool, &str), scripts: &scri
     format!("{}\n\n{}\nsubmit with: bash {}\n", bold(&terminal::told(&plan.study.title)), facts.indented(0), quoted(&jobs.join(SUBMIT)))
 }
 
-/// Says what is other than the user may expect.
+/// Remarks on what the user may not expect.
 fn remark(plan: &Plan, work: &Work, request: &cli::Slurm, shards: u64) {
     if let Some(asked) = request.shards.filter(|&asked| asked > shards) {
         let (short, long) = (span(work.of_own(asked)), span(work.of_own(shards)));
         let (them, word) = (grouped(asked), if shards == 1 { "shard" } else { "shards" });
         terminal::remark(
             "warning",
-            &format!("{them} shards would take about {short} each; {shards} {word} of about {long} written (--shortest 0 keeps {them})"),
+            &format!(
+                "{them} shards would take about {short} each; {shards} {word} of about {long} written instead (--shortest 0 keeps {them})"
+            ),
         );
     } else if !request.quiet && work.of_all() < f64::from(request.shortest) {
         let whole = span(work.of_all());
-        terminal::remark("note", &format!("a single job would take about {whole}; beltspace sweep does it here, without a cluster"));
+        terminal::remark("note", &format!("a single job would take about {whole}: `beltspace sweep` on this machine is enough"));
     }
     if shards > 1 && work.sample > 0 {
         let open: Vec<_> = plan.study.report.histograms.iter().filter(|it| it.range.is_none()).collect();
         let names: Vec<_> = open.iter().map(|it| it.of.name(&plan.study.model)).collect();
-        // Of a fast model nobody notices.
+        // With a fast model this takes no noticeable time.
         if work.of_shard(shards) > 1.1 * work.of_own(shards) {
             terminal::remark(
                 "warning",
                 &format!(
-                    "histograms without from and to ({}): every shard judges {} designs more to find them, about {}; give both",
+                    "histograms without from and to ({}): to find these, every shard judges {} more designs, which takes about {}; give both",
                     names.join(", "),
                     grouped(work.sample),
                     span(work.of_shard(shards) - work.of_own(shards))
@@ -195,7 +197,7 @@ fn work(plan: &Plan, seconds: f64, cpus: u16) -> Work {
     Work { designs, seconds, sample: if plan.shards_sample() { sample } else { 0 }, again: sample + listed, cpus }
 }
 
-/// The options for the sweep, read as the shards will read them: what is wrong is said now and not by every job.
+/// The options for the sweep, parsed as the shards will parse them, so that a mistake is reported now and not by every job.
 fn checked_options(study: &Path, options: &[String]) -> Result<cli::Sweep> {
     let mut words: Vec<OsString> = ["beltspace", "sweep"].map(OsString::from).to_vec();
     words.push(study.into());
@@ -204,7 +206,7 @@ fn checked_options(study: &Path, options: &[String]) -> Result<cli::Sweep> {
     let wrong = |why: &str| {
         let why = why.strip_prefix("error: ").unwrap_or(why);
         Error::Request(format!(
-            "options for the sweep: {why}; behind -- stand options of sweep, but not STUDY, --shard, --out, --resume, --force, --quiet, --threads"
+            "options for the sweep: {why}; after -- give options of `beltspace sweep` except STUDY, --shard, --out, --resume, --force, --quiet, --threads"
         ))
     };
     match Cli::try_parse_from(words) {
@@ -214,21 +216,21 @@ fn checked_options(study: &Path, options: &[String]) -> Result<cli::Sweep> {
     }
 }
 
-/// An option of the scheduler: a line of a script.
+/// An option for the scheduler, which becomes a line of a script.
 fn one_line(option: &str) -> Result<String> {
     if !option.starts_with('-') || option.chars().any(char::is_control) {
         return Err(Error::Request(format!(
-            "--option {option:?}: an option of the scheduler is one line that begins with a dash, such as --option=--partition=long"
+            "--option {option:?}: an option for the scheduler is one line that begins with a dash, such as --option=--partition=long"
         )));
     }
     Ok(option.to_owned())
 }
 
-/// The path of the program itself; a name without directory is left for the nodes to find.
+/// The path of beltspace on the nodes. A name without a directory is kept, for the nodes to find in their PATH.
 fn program(asked: Option<&Path>) -> Result<PathBuf> {
     match asked {
         None => std::env::current_exe()
-            .map_err(|error| Error::Request(format!("cannot find the path of this program ({error}); name it with --program"))),
+            .map_err(|error| Error::Request(format!("cannot find the path of this program ({error}); give it with --program"))),
         Some(name) if name.components().count() == 1 => Ok(name.to_owned()),
         Some(path) => absolute(path),
     }
@@ -253,7 +255,7 @@ fn jobs_beside(out: &Path) -> PathBuf {
     name.into()
 }
 
-/// The study's name in characters that every scheduler takes.
+/// The study's name in characters that every scheduler accepts.
 fn job_name(study: &Path) -> String {
     let stem = study.file_stem().unwrap_or_default().to_string_lossy();
     let plain: String = stem.chars().map(|it| if it.is_ascii_alphanumeric() { it } else { '-' }).collect();
@@ -261,7 +263,7 @@ fn job_name(study: &Path) -> String {
     if begins { plain } else { format!("s{plain}") }
 }
 
-/// Scripts stay unless `--force` says otherwise.
+/// Existing scripts are only replaced with `--force`.
 fn refuse_to_replace(jobs: &Path, force: bool) -> Result<()> {
     if jobs.exists() && !jobs.is_dir() {
         return Err(Error::Request(format!("{} is a file; name a directory with --jobs", jobs.display())));
@@ -279,7 +281,7 @@ fn refuse_to_replace(jobs: &Path, force: bool) -> Result<()> {
     }
 }
 
-/// Shards of the same number but of another study would make every job fail.
+/// Existing shards of another study would make every job fail.
 fn refuse_foreign_shards(plan: &Plan, jobs: &Path, shards: u64) -> Result<()> {
     for number in 1..=shards {
         let folder = jobs.join(scripts::folder(&number.to_string(), shards));
@@ -296,7 +298,7 @@ fn refuse_foreign_shards(plan: &Plan, jobs: &Path, shards: u64) -> Result<()> {
                 folder.display()
             )));
         }
-        // One speaks for all: they were written together.
+        // One is enough: they were written together.
         return Ok(());
     }
     Ok(())
@@ -307,7 +309,7 @@ fn make_executable(path: &Path) -> Result<()> {
     use std::os::unix::fs::PermissionsExt;
     let metadata = std::fs::metadata(path).map_err(Error::io(path))?;
     let mode = metadata.permissions().mode();
-    // Whoever may read it may run it.
+    // Executable for everybody who may read it.
     let permissions = std::fs::Permissions::from_mode(mode | (mode & 0o444) >> 2);
     std::fs::set_permissions(path, permissions).map_err(Error::io(path))
 }

@@ -1,15 +1,15 @@
-//! The scripts themselves. What is different between the schedulers stands side by side.
+//! The scripts. The lines that differ between the schedulers stand side by side.
 
 use super::Scheduler;
 use std::fmt::Write as _;
 
-/// What the scripts are made of. Paths and words are as a shell reads them.
+/// The contents of the scripts. Paths and words are quoted for a shell.
 #[derive(Debug)]
 pub struct Plan {
     pub scheduler: Scheduler,
     /// Title of the study.
     pub title: String,
-    /// The study file's name without its end.
+    /// Name of the study file without its extension.
     pub name: String,
     pub program: String,
     pub study: String,
@@ -17,36 +17,36 @@ pub struct Plan {
     pub jobs: String,
     pub shards: u64,
     pub cpus: u16,
-    /// Megabytes of the jobs of the shards, and of the one that puts them together.
+    /// Memory in megabytes of a shard's job, and of the merge.
     pub memory: [u64; 2],
-    /// Their time limits.
+    /// Time limits of both.
     pub time: [String; 2],
     /// Options of the scheduler that the user asks for.
     pub options: Vec<String>,
     /// Options of the sweep that the user asks for.
     pub sweep: Vec<String>,
-    /// Is the result to have a page?
+    /// Should the result have a page?
     pub page: bool,
 }
 
 /// Name of the job script of all shards.
 pub const SHARDS: &str = "shards.sh";
-/// Name of the job script that puts them together.
+/// Name of the job script that merges them.
 pub const MERGE: &str = "merge.sh";
 /// Name of the script that submits both.
 pub const SUBMIT: &str = "submit.sh";
 
-/// What the second line of each script begins with, which tells it from the scripts of others.
+/// Beginning of the second line of each script, by which beltspace recognises its own scripts.
 pub const FIRST_LINES: [(&str, &str); 3] =
     [(SHARDS, "# Judges a shard of \""), (MERGE, "# Puts the shards of \""), (SUBMIT, "# Submits the shards of \"")];
 
-/// Folder of a shard, in that of the jobs. It has the number of shards in its name, so that another division begins anew.
+/// Folder of a shard, in that of the jobs. The number of shards is part of its name, so that another number begins anew.
 pub fn folder(number: &str, shards: u64) -> String {
     format!("shard-{number}-of-{shards}")
 }
 
 impl Plan {
-    /// Every script by its name, that to submit last.
+    /// Every script with its name, the one to submit last.
     pub fn scripts(&self) -> [(&'static str, String); 3] {
         [(SHARDS, self.shards()), (MERGE, self.merge()), (SUBMIT, self.submit())]
     }
@@ -57,7 +57,7 @@ impl Plan {
             Scheduler::Slurm => "SLURM_ARRAY_TASK_ID",
             Scheduler::Pbs => "PBS_ARRAY_INDEX",
         };
-        // Of one shard PBS makes no array, and gives it no number.
+        // PBS makes no array of a single job, and gives it no number.
         let number = if *shards == 1 { "-1" } else { ":?is not set: submit with submit.sh, or set it to the number of a shard" };
         let mut script = self.head(
             &format!(
@@ -100,12 +100,12 @@ impl Plan {
         let (array, merge) = match self.scheduler {
             Scheduler::Slurm => (
                 format!("sbatch --parsable {SHARDS}"),
-                // A merge that can never run is not left waiting.
+                // If a shard fails, the merge is cancelled rather than left waiting.
                 format!("sbatch --parsable --dependency=\"afterok:$array\" --kill-on-invalid-dep=yes {MERGE}"),
             ),
             Scheduler::Pbs => (format!("qsub {SHARDS}"), format!("qsub -W depend=\"afterok:$array\" {MERGE}")),
         };
-        // Of several clusters Slurm says which, behind the number.
+        // With several clusters Slurm prints the cluster's name after the number.
         let number = |name: &str| match self.scheduler {
             Scheduler::Slurm => format!("{name}=${{{name}%%;*}}\n"),
             Scheduler::Pbs => String::new(),
@@ -121,7 +121,7 @@ impl Plan {
         )
     }
 
-    /// What a job script begins with: what it is and what it asks the scheduler for. `which` job: 0, a shard; 1, the merge.
+    /// The head of a job script: a comment on what it does, and the options for the scheduler. `which` job: 0, a shard; 1, the merge.
     fn head(&self, what: &str, which: usize) -> String {
         let kind = ["shards", "merge"][which];
         let (cpus, memory, time) = (self.cpus, self.memory[which], &self.time[which]);
@@ -145,7 +145,7 @@ impl Plan {
                 ]);
             }
             Scheduler::Pbs => {
-                // Some versions take names of at most 15 characters.
+                // Some versions accept names of at most 15 characters.
                 let short: String = self.name.chars().take(14 - kind.len()).collect();
                 lines.push(format!("-N {short}-{kind}"));
                 if which == 0 && self.shards > 1 {
@@ -174,7 +174,7 @@ impl Plan {
         text
     }
 
-    /// The processors that the job was given, where the scheduler says so.
+    /// The number of CPUs that the job was given, if the scheduler says so.
     fn threads(&self) -> String {
         let variable = match self.scheduler {
             Scheduler::Slurm => "SLURM_CPUS_PER_TASK",

@@ -1,29 +1,29 @@
-//! How many shards, and what each of them may take.
+//! The number of shards, and the time limit of each.
 
 use super::Scheduler;
 use beltspace::error::{Error, Result};
 
-/// Seconds that a shard takes where nobody says how many there are: long beside what a job costs, short beside a queue's limits.
+/// Seconds that a shard should take if their number is not given: long against the overhead of a job, short against the limits of a queue.
 const GOAL: f64 = 600.0;
-/// Least time limit in seconds: nodes differ, and a short job waits no longer for asking for this.
+/// Least time limit in seconds: nodes differ in speed, and asking for this little does not make a job wait longer.
 const LEAST_LIMIT: f64 = 600.0;
-/// The time limit is so many times what is expected, and a whole number of steps.
+/// The time limit is the expected time times this factor, rounded up to whole steps.
 const CAUTION: f64 = 4.0;
 const LIMIT_STEP: u64 = 300;
-/// Most that is asked for where bounds are taken.
+/// Largest time limit if bounds are used.
 const LONGEST_OF_BOUNDS: f64 = 86_400.0;
 
-/// What there is to do.
+/// The work of a study.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Work {
     pub designs: u64,
-    /// Seconds that a processor takes for a design.
+    /// Seconds per design on one CPU.
     pub seconds: f64,
-    /// Designs that every shard judges beside its own.
+    /// Designs that every shard judges in addition to its own.
     pub sample: u64,
-    /// Designs that are judged again when the shards are put together.
+    /// Designs that are judged again when the shards are merged.
     pub again: u64,
-    /// Processors of a job.
+    /// CPUs per job.
     pub cpus: u16,
 }
 
@@ -33,43 +33,43 @@ impl Work {
         designs.div_ceil(self.cpus.into()) as f64 * self.seconds
     }
 
-    /// Seconds that a job would take for all of it.
+    /// Seconds that a single job would take for the whole study.
     pub fn of_all(&self) -> f64 {
         self.judging(self.designs)
     }
 
-    /// Seconds that one of so many shards takes for designs of its own.
+    /// Seconds that one of this many shards takes for its own designs.
     pub fn of_own(&self, shards: u64) -> f64 {
         self.judging(self.designs.div_ceil(shards))
     }
 
-    /// Seconds that one of so many shards takes.
+    /// Seconds that one of this many shards takes.
     pub fn of_shard(&self, shards: u64) -> f64 {
         self.of_own(shards) + self.judging(self.sample)
     }
 
-    /// Seconds that putting the shards together takes, without the front.
+    /// Seconds that merging the shards takes, without the front.
     pub fn of_merge(&self) -> f64 {
         self.judging(self.again)
     }
 }
 
-/// What the user said about the number of shards.
+/// What the user wants of the number of shards.
 #[derive(Clone, Copy, Debug)]
 pub struct Wish {
-    /// Shards take bounds: each would begin to bound the whole front anew, so one does where nobody says how many.
+    /// Do shards use bounds? Each would search for the whole front, so there is only one unless the number is given.
     pub bounds: bool,
     pub shards: Option<u64>,
-    /// Least seconds of a shard.
+    /// Least time of a shard in seconds.
     pub shortest: u32,
-    /// Most shards of one array.
+    /// Most jobs of one array.
     pub limit: Option<u64>,
 }
 
 /// The number of shards.
 ///
 /// # Errors
-/// [`Error::Request`] for more shards than there are designs or the scheduler takes.
+/// [`Error::Request`] for more shards than there are designs or than the scheduler accepts.
 pub fn shards(work: &Work, wish: &Wish, scheduler: Scheduler) -> Result<u64> {
     let limit = wish.limit.unwrap_or(scheduler.usual_limit());
     let Some(asked) = wish.shards else {
@@ -81,13 +81,13 @@ pub fn shards(work: &Work, wish: &Wish, scheduler: Scheduler) -> Result<u64> {
             "--shards {asked}: the study has {designs} {word}, and a shard needs one; ask for at most {designs}"
         )));
     }
-    // Of what is short and not wanted so, at least one remains.
+    // However short the whole takes, one shard remains.
     let worth = if wish.shortest == 0 { asked } else { (work.of_all() / f64::from(wish.shortest)).floor() as u64 };
     let shards = asked.min(worth.max(1));
     if shards > limit {
         let name = scheduler.name();
         return Err(Error::Request(format!(
-            "--shards {asked}: {name} usually takes {limit} jobs as one array ({}); ask for at most {limit}, or say with --array-limit that \
+            "--shards {asked}: {name} usually accepts {limit} jobs in one array ({}); ask for at most {limit}, or say with --array-limit that \
              yours takes more",
             scheduler.where_the_limit_is()
         )));
@@ -95,19 +95,19 @@ pub fn shards(work: &Work, wish: &Wish, scheduler: Scheduler) -> Result<u64> {
     Ok(shards)
 }
 
-/// A time limit in seconds for what is expected to take so long.
+/// The time limit in seconds for a job that is expected to take this long.
 pub fn limit(expected: f64) -> u64 {
-    // Beyond the range of numbers the cast stays at its end.
+    // The cast saturates.
     ((CAUTION * expected).max(LEAST_LIMIT).ceil() as u64).div_ceil(LIMIT_STEP).saturating_mul(LIMIT_STEP)
 }
 
-/// A time limit in seconds for bounds, of whose time nothing is known but that judging every design usually takes longer, whether
-/// they are for a shard or for all.
+/// The time limit in seconds for a job that uses bounds. All that is known of its time is that judging every design usually takes longer,
+/// whether the job is a shard or the whole study.
 pub fn limit_of_bounds(exhaustive: f64) -> u64 {
     limit(exhaustive.min(LONGEST_OF_BOUNDS / CAUTION))
 }
 
-/// A time limit as both schedulers read it.
+/// A time limit as both schedulers write it.
 pub fn clock(seconds: u64) -> String {
     format!("{:02}:{:02}:{:02}", seconds / 3600, seconds / 60 % 60, seconds % 60)
 }
@@ -115,7 +115,7 @@ pub fn clock(seconds: u64) -> String {
 /// A time limit that the user wrote.
 ///
 /// # Errors
-/// [`Error::Request`] if it is none.
+/// [`Error::Request`] if it is not a time.
 pub fn read_clock(text: &str) -> Result<String> {
     let refuse = || Error::Request(format!("--time {text}: a time limit is HH:MM:SS, such as 02:30:00; hours may be more than 24"));
     let parts: Vec<u64> = text
@@ -143,11 +143,11 @@ mod tests {
     #[test]
     fn a_shard_takes_about_ten_minutes() {
         let free = Wish { bounds: false, shards: None, shortest: 60, limit: None };
-        // 2500 s on four processors.
+        // 2500 s on four CPUs.
         assert_eq!(shards_of(&WORK, &free).ok(), Some(5));
         assert_eq!(shards_of(&Work { cpus: 1, ..WORK }, &free).ok(), Some(17));
         assert_eq!(shards_of(&Work { seconds: 1e-6, ..WORK }, &free).ok(), Some(1));
-        // No more than an array takes, and no more than there are designs.
+        // No more than an array accepts, and no more than there are designs.
         assert_eq!(shards_of(&Work { seconds: 1e9, ..WORK }, &free).ok(), Some(1000));
         assert_eq!(shards_of(&Work { seconds: 1e9, designs: 3, ..WORK }, &free).ok(), Some(3));
         assert_eq!(shards(&Work { seconds: 1e9, ..WORK }, &free, Scheduler::Pbs).ok(), Some(10_000));
@@ -176,7 +176,7 @@ mod tests {
         assert_eq!(refusal(5001, None), "--shards 5001: the study has 5000 designs, and a shard needs one; ask for at most 5000");
         assert_eq!(
             refusal(1001, None),
-            "--shards 1001: Slurm usually takes 1000 jobs as one array (MaxArraySize of scontrol show config, less one); ask for at most \
+            "--shards 1001: Slurm usually accepts 1000 jobs in one array (MaxArraySize of scontrol show config, less one); ask for at most \
              1000, or say with --array-limit that yours takes more"
         );
         assert!(refusal(11, Some(10)).contains("ask for at most 10"));
@@ -188,7 +188,7 @@ mod tests {
     fn what_every_shard_judges_beside_its_own_counts() {
         let slow = Work { designs: 3000, seconds: 1.0, sample: 3000, again: 3000, cpus: 2 };
         assert_eq!([slow.of_all(), slow.of_own(10), slow.of_shard(10), slow.of_merge()], [1500.0, 150.0, 1650.0, 1500.0]);
-        // Designs are not divided: seven on two processors take as long as eight.
+        // Designs are not divided: seven on two CPUs take as long as eight.
         assert_eq!(Work { designs: 7, sample: 0, ..slow }.of_shard(1), 4.0);
     }
 

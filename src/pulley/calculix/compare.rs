@@ -1,4 +1,4 @@
-//! Results of CalculiX beside those of the harmonics.
+//! Compares the results of CalculiX with those of the harmonics.
 
 use super::forces::{Wrench, closed_form};
 use super::recovery::Surface;
@@ -13,14 +13,14 @@ use crate::pulley::turn::{Case, Turn};
 use glam::DVec3;
 use std::path::Path;
 
-/// A quantity by both ways.
+/// A quantity computed in both ways.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     /// What it is.
     pub quantity: String,
     /// Its unit.
     pub unit: &'static str,
-    /// By harmonics, on the section mesh that studies use. Of a reaction: what the loads add up to in closed form, reversed.
+    /// By harmonics, on the section mesh that studies use. For a reaction: the sum of the loads in closed form, reversed.
     pub harmonic: f64,
     /// By harmonics up to the 60th, on the section mesh that was swept.
     pub same_section: f64,
@@ -43,7 +43,7 @@ impl Comparison {
 /// Most bytes of a deck and of its results.
 const MOST_BYTES: u64 = 512 << 20;
 
-/// What both ways tell of a pulley.
+/// The results of both ways for a pulley.
 struct SolverAnswers {
     rim_displacement: f64,
     volume: f64,
@@ -56,7 +56,7 @@ struct SolverAnswers {
 /// Reads `pulley.inp` and `pulley.dat` in a directory and compares.
 ///
 /// # Errors
-/// A file that cannot be read or is not finished.
+/// A file that cannot be read or is incomplete.
 pub fn compare(directory: &Path) -> Result<Vec<Comparison>, Error> {
     let read = |extension: &str| {
         let path = directory.join(NAME).with_extension(extension);
@@ -67,7 +67,7 @@ pub fn compare(directory: &Path) -> Result<Vec<Comparison>, Error> {
     let results = Results::new(&read("dat")?)?;
     let mesh = section::mesh(job.kind, &job.dimensions, &job.fineness).map_err(Error::Flaw)?;
     let sweep = Sweep::new(&mesh, job.sectors);
-    // A node takes a line: what has more nodes than the deck has bytes is not even laid out.
+    // Every node takes a line: a mesh with more nodes than the deck has bytes is refused before it is built.
     let positions = if sweep.nodes() <= deck.len() { sweep.positions(&mesh) } else { Vec::new() };
     if !has_nodes(&deck, &positions) {
         let what =
@@ -141,7 +141,7 @@ fn calculix(mesh: &Mesh, job: &Job, sweep: &Sweep, results: &Results) -> Result<
     let surface = Surface::new(mesh, job, sweep, results)?;
     let peaks = surface.peaks();
     let excluded = job.dimensions.excluded_radius(job.kind);
-    // As for the harmonics: not beside bracket and bolt heads, nor beside other places where stress is singular.
+    // As with the harmonics: not beside bracket and bolt heads, nor beside other places where stress is singular.
     let counts = |node: u32| {
         let at = mesh.nodes[node as usize];
         at.y >= excluded && !mesh.singular.iter().any(|(place, distance)| at.distance(*place) <= distance * (1.0 + 1e-9))

@@ -8,7 +8,7 @@ use glam::DVec3;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-/// Numbers that fit on a line of a set.
+/// Numbers per line of a set.
 const PER_LINE: usize = 16;
 
 /// Writes a static analysis of a meshed section under the loads of a job.
@@ -43,7 +43,7 @@ pub fn write_deck(out: &mut impl Write, mesh: &Mesh, job: &Job) -> io::Result<()
     writeln!(out, "*NODE FILE\nU\n*END STEP")
 }
 
-/// What stands at the top: what it is, all inputs, what the forces add up to.
+/// The first lines: what the deck is, all inputs, the sum of the forces.
 fn comments(out: &mut impl Write, job: &Job, forces: &Forces, positions: &[DVec3]) -> io::Result<()> {
     writeln!(out, "** V-belt pulley, section type {}, swept around its axis: static analysis by CalculiX", job.kind.name())?;
     writeln!(out, "** written by beltspace {}", env!("CARGO_PKG_VERSION"))?;

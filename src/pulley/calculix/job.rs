@@ -1,4 +1,4 @@
-//! What a deck was made from, which its first lines say.
+//! The job that a deck was made from, as its first lines state it.
 
 use super::Error;
 use crate::pulley::section::{Dimensions, Fineness, Kind};
@@ -38,7 +38,7 @@ impl Job {
         if self.density > 0.0 { self.case.spin / self.density } else { 0.0 }
     }
 
-    /// Everything by name, as the deck's first lines list it.
+    /// All values by name, as the deck's first lines list them.
     pub fn entries(&self) -> Vec<(String, f64)> {
         let (case, mesh) = (&self.case, &self.fineness);
         let loads = [
@@ -68,7 +68,7 @@ impl Job {
     /// Reads the first lines of a deck.
     ///
     /// # Errors
-    /// An input that is missing, is no number, or is none that an export writes.
+    /// An input that is missing, is not a number, or has a value that no export writes.
     pub fn from_deck(deck: &str) -> Result<Self, Error> {
         let lines = deck.lines().take_while(|line| line.starts_with("**"));
         let pairs = lines.filter_map(|line| line.trim_start_matches('*').split_once('='));
@@ -77,7 +77,7 @@ impl Job {
             let missing = || Error::Unreadable { what: format!("the deck's first lines do not say {name}") };
             values.get(name).and_then(|value| value.parse().ok()).ok_or_else(missing)
         };
-        // Somebody may have changed it: what no export writes may take all memory, or for ever.
+        // The file may have been changed: values that no export writes could take all memory, or endless time.
         let within = |name: &str, (least, most): (f64, f64)| -> Result<f64, Error> {
             let value = get(name)?;
             let what = || format!("the deck's first lines say {name} = {value:e}, and it is {least} to {most}; export the pulley again");

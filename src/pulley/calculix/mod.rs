@@ -1,7 +1,7 @@
-//! The pulley as a three-dimensional model for CalculiX, and its results held against the harmonics.
+//! The pulley as a three-dimensional model for CalculiX, and the comparison of its results with the harmonics.
 //!
 //! [`export`] writes the deck of a [`Job`]: the same section, swept around the axis, under the same loads. After `ccx` has solved it,
-//! [`compare()`] reads the displacements and sets stresses, rim displacement, volume and reactions beside those of the harmonics.
+//! [`compare()`] reads the displacements and compares stresses, rim displacement, volume and reactions with those of the harmonics.
 
 mod compare;
 mod deck;
@@ -48,7 +48,7 @@ pub enum Error {
         /// Which, and what to do.
         what: String,
     },
-    /// A file that does not hold what it should.
+    /// A file without the expected contents.
     #[error("{what}")]
     Unreadable {
         /// What is wrong.
@@ -84,9 +84,9 @@ pub fn export(job: &Job, directory: &Path) -> Result<(), Error> {
 
 const HOW_TO: &str = "\
 pulley.inp is a static analysis of a V-belt pulley for CalculiX (https://www.calculix.de), made by beltspace. Its first lines list
-every input and what the forces add up to. Units: N, mm, MPa, s, t.
+every input and the sums of the forces. Units: N, mm, MPa, s, t.
 
-Run it here, on two processors:
+Run it in this directory, on two CPUs:
 
     OMP_NUM_THREADS=2 ccx -i pulley
 

@@ -9,10 +9,10 @@ pub fn turned(point: DVec2, theta: f64) -> DVec3 {
     DVec3::new(point.y * libm::cos(theta), point.y * libm::sin(theta), point.x)
 }
 
-/// Which node of the section stands where in the three-dimensional model, around the whole turn.
+/// Where each node of the section is in the three-dimensional model, around the whole circumference.
 ///
-/// Sectors are bounded by full planes, which hold every node of the section; half-way between stand the corners of its elements
-/// only. The last sector closes on the first plane.
+/// Sectors are bounded by full planes, which have every node of the section; halfway between two of them there are only the corners of its
+/// elements. The last sector closes on the first plane.
 #[derive(Clone, Debug)]
 pub struct Sweep {
     sectors: usize,

@@ -1,4 +1,4 @@
-//! The four types of section: dimensions, what makes them impossible, and their meshes.
+//! The four types of section: dimensions, the ways in which they can be impossible, and their meshes.
 //!
 //! Source: K.-S. Lee et al., whose figures of the types are lost; the profiles are parametric replacements with the dimensions that
 //! `beltspace models pulley` lists. Lengths are in mm, angles in rad, points are (z, r) with z = 0 at the bracket face.
@@ -47,7 +47,7 @@ impl Kind {
 
 macro_rules! dimensions {
     ($($(#[$doc:meta])* $field:ident),* $(,)?) => {
-        /// Dimensions of a section: numbers, or what stands for them. Each type reads those that [`Dimensions::of_kind`] leaves.
+        /// Dimensions of a section: numbers, or placeholders for them. Each type reads those that [`Dimensions::of_kind`] keeps.
         #[derive(Clone, Copy, Debug, Default, PartialEq)]
         pub struct Dimensions<T = f64> {
             $($(#[$doc])* pub $field: T),*
@@ -62,7 +62,7 @@ macro_rules! dimensions {
 
         impl Dimensions {
 
-            /// Dimensions from what `value` says of each name.
+            /// Dimensions from the values that `value` gives for each name.
             ///
             /// # Errors
             /// The first that `value` returns.
@@ -135,8 +135,8 @@ dimensions! {
 }
 
 impl<T: Copy> Dimensions<T> {
-    /// The dimensions that a type reads, with `none` in place of the others. What makes a section of a type and solves it is given no
-    /// others, so this is the one place that says what the type depends on.
+    /// The dimensions that a type reads, with `none` in place of the others. The code that makes and solves a section gets no others, so
+    /// this is the only place that defines on what a type depends.
     #[must_use]
     pub fn of_kind(self, kind: Kind, none: T) -> Self {
         let of_sheet =
@@ -175,7 +175,7 @@ impl<R: Real> Dimensions<R> {
         self.contact_height / self.half_angle.cos()
     }
 
-    /// Outermost edge of what holds the hub: of the bracket or of the bolt heads, mm from the axis.
+    /// Outer edge of the bracket or of the bolt heads, whichever is larger, mm from the axis.
     pub fn held_radius(&self) -> R {
         self.bracket_radius.max(self.head_edge())
     }
@@ -339,7 +339,7 @@ pub enum Flaw {
 }
 
 impl Flaw {
-    /// How far the section is from being possible: a negative number, the larger in magnitude the worse, mm.
+    /// How far the section is from being possible: a negative number, mm; the larger in magnitude, the worse.
     pub fn margin(&self) -> f64 {
         let margin = match self {
             Self::Bend { inside, .. } => *inside,
@@ -415,7 +415,7 @@ impl std::fmt::Display for Flaw {
     }
 }
 
-/// How fine a section is meshed and how many harmonics are kept.
+/// How finely a section is meshed, and how many harmonics are kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fineness {
     /// Elements through a sheet.
@@ -455,7 +455,7 @@ pub fn mesh(kind: Kind, dimensions: &Dimensions, fineness: &Fineness) -> Result<
     }
 }
 
-/// The outline of a section, or why there is none: all that can be wrong with a section shows here.
+/// The outline of a section, or why there is none: every flaw of a section is found here.
 ///
 /// # Errors
 /// A [`Flaw`]: the first that is found.

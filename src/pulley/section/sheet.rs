@@ -5,7 +5,7 @@ use super::{Fineness, Flaw};
 use crate::pulley::mesh::{Edge, Element, Face};
 use glam::DVec2;
 
-/// Most points of the surface that a section may have: what is kept of a section is a table of this length.
+/// Most points of the surface that a section may have: the length of the table that is kept of a section.
 pub const SURFACE_POINTS: usize = 1024;
 
 /// A place across the sheet where nodes stand.

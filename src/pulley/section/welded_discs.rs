@@ -38,7 +38,7 @@ pub(super) fn outline(d: &Dimensions) -> Result<Outline, Flaw> {
     Ok(Outline { parts: vec![disc, other] })
 }
 
-/// The other disc's twin of a point.
+/// The mirror image of a point on the other disc.
 fn mirrored(point: DVec2, thickness: f64) -> DVec2 {
     DVec2::new(2.0 * thickness - point.x, point.y)
 }
@@ -69,13 +69,13 @@ pub(super) fn mesh(d: &Dimensions, fineness: &Fineness) -> Result<Mesh, Flaw> {
         nodes.extend(own.iter().rev().skip(shared).map(|&point| mirrored(point, d.thickness)));
     }
     let node = |position: usize, depth: usize| first[position] + depth as u32;
-    // Depth in the other disc counts from its own back, too.
-    let twin = |position: usize, depth: usize| {
+    // In the other disc too, depth counts from its own back.
+    let mirrored = |position: usize, depth: usize| {
         let last = 2 * across(position) - 1 - usize::from(position <= weld);
         first[position] + (last - depth) as u32
     };
     let mut elements = sheet::elements(count, through, node);
-    elements.extend(sheet::elements(count, through, twin).iter().map(flipped));
+    elements.extend(sheet::elements(count, through, mirrored).iter().map(flipped));
     let back = |piece, radius| if piece == hub && radius < d.bracket_radius { Face::Bracket } else { Face::Free };
     let front = |piece, _| if piece == hub { Face::Seat } else { Face::Free };
     let groove = |piece, radius: f64| {
@@ -87,7 +87,8 @@ pub(super) fn mesh(d: &Dimensions, fineness: &Fineness) -> Result<Mesh, Flaw> {
     };
     let mut surface = sheet::edges(&stations, Side::Left, through, node, back);
     surface.extend(sheet::edges(&stations, Side::Right, through, node, groove).into_iter().filter(|edge| !inside(edge)));
-    let others = [sheet::edges(&stations, Side::Left, through, twin, front), sheet::edges(&stations, Side::Right, through, twin, groove)];
+    let others =
+        [sheet::edges(&stations, Side::Left, through, mirrored, front), sheet::edges(&stations, Side::Right, through, mirrored, groove)];
     let reversed = |edge: Edge| Edge { nodes: [edge.nodes[2], edge.nodes[1], edge.nodes[0]], ..edge };
     surface.extend(others.into_iter().flatten().map(reversed).filter(|edge| !inside(edge)));
     let mean = stations.places.iter().position(|place| place.piece == flank && place.station.left.y + lift >= d.mean_radius - 1e-9);
@@ -96,12 +97,12 @@ pub(super) fn mesh(d: &Dimensions, fineness: &Fineness) -> Result<Mesh, Flaw> {
     let points = vec![
         point("Bl", node(at_bend, 0)),
         point("Br", node(at_bend, across(at_bend) - 1)),
-        point("Cl", twin(at_bend, across(at_bend) - 1)),
-        point("Cr", twin(at_bend, 0)),
+        point("Cl", mirrored(at_bend, across(at_bend) - 1)),
+        point("Cr", mirrored(at_bend, 0)),
         point("Dl", node(at_mean, 0)),
         point("Dr", node(at_mean, across(at_mean) - 1)),
-        point("El", twin(at_mean, across(at_mean) - 1)),
-        point("Er", twin(at_mean, 0)),
+        point("El", mirrored(at_mean, across(at_mean) - 1)),
+        point("Er", mirrored(at_mean, 0)),
     ];
     // The gap between the discs ends at the weld like a crack.
     let singular = vec![(DVec2::new(d.thickness, d.weld_radius), d.thickness)];

@@ -1,5 +1,5 @@
-// The state as the part of the address after "#": what is on the page can be kept as a bookmark or sent along.
-//   c=columns of the matrix   pc=axes in order   inv=axes turned over   col=colour column
+// The state of the page, written after "#" in the address, so that a view can be bookmarked or sent to somebody.
+//   c=columns of the matrix   pc=axes in order   inv=reversed axes      col=colour column
 //   b=axis:low..high,...      r=x*y:low..high*low..high,...             d=open design   t=light|dark
 {
   const encode = (name) => encodeURIComponent(name).replace(/\*/g, "%2A");
@@ -25,7 +25,7 @@
     const hash = parts.length ? `#${parts.join("&")}` : "";
     if (hash === location.hash || hash === written) return;
     written = hash;
-    // Some browsers refuse to change the address of a local file: then the state is just not kept.
+    // Some browsers refuse to change the address of a local file: then the state is not kept.
     try {
       history.replaceState(null, "", hash || location.pathname + location.search);
     } catch {
@@ -47,7 +47,7 @@
     }
   };
 
-  // Whatever the page does not know, such as a column of another study, is left out.
+  // Whatever the page does not know, such as a column of another study, is ignored.
   page.readAddress = () => {
     const { state, front } = page;
     const given = new Map(location.hash.slice(1).split("&").map((part) => [part.slice(0, part.indexOf("=")), part.slice(part.indexOf("=") + 1)]));
@@ -83,7 +83,7 @@
   };
 
   page.startAddress = () => {
-    // Once things rest: browsers allow only so many changes of the address in a while.
+    // After a pause: browsers limit how often the address may change.
     let waiting = 0;
     const write = () => {
       clearTimeout(waiting);

@@ -1,4 +1,4 @@
-// The bar that stays in sight: how many designs are selected, by which ranges, and what colours the points.
+// The bar that stays visible: how many designs are selected, by which ranges, and which column colours the points.
 {
   const chip = (text, remove) =>
     page.element("span", { class: "chip" }, text, page.element("button", { type: "button", class: "no-print", "aria-label": `Remove the selection ${text}`, title: "Remove", click: remove }, "×"));

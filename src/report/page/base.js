@@ -1,11 +1,11 @@
 "use strict";
-// The namespace that all scripts of the page share, and what each of them needs: events, numbers as text, elements.
+// The namespace that all scripts of the page share, with what each of them needs: events, numbers as text, elements.
 
 const page = {
   data: null, // the parsed JSON
   front: null, // decoded columns, see decode.js
   timings: {}, // ms from the start of navigation
-  // selection: brushes changed; columns: axes chosen, moved or turned over; current: the point under the pointer
+  // selection: brushes changed; columns: axes chosen, moved or reversed; current: the point under the pointer
   events: d3.dispatch("selection", "columns", "colour", "current", "card", "theme", "layout"),
 };
 
@@ -65,7 +65,7 @@ page.byId = (id) => document.getElementById(id);
 // Long names may break after an underscore.
 page.breakable = (name) => name.split(/(?<=_)/).flatMap((part) => [part, document.createElement("wbr")]).slice(0, -1);
 
-// Work that many events ask for is done once, before the next frame.
+// Work that is requested by many events is done once, before the next frame.
 {
   const waiting = new Map();
   page.schedule = (name, work) => {

@@ -1,8 +1,8 @@
-// The card of one design: what it is, what it does in its worst case, how far it is from its limits and from the best.
+// The card of one design: its inputs, its outputs in the worst case, and its distances from the limits and from the best values.
 {
   let opener = null; // where the focus goes back to
 
-  // Rows that the arrow keys walk: those selected, or the whole front.
+  // Rows that the arrow keys step through: those selected, or the whole front.
   const step = (by) => {
     const { card } = page.state;
     const rows = page.mask.length;
@@ -39,7 +39,7 @@
     const fixed = (data.inputs || []).filter((input) => input.role === "fixed").map((input) => line(input.name, valueCell(input.name, page.full(input.value), page.short(input.value), typeof input.value === "number" ? input.unit : ""), input.doc));
     const ranged = (data.inputs || []).filter((input) => input.role === "operation" || input.role === "uncertainty").map((input) => line(input.name, page.element("td", { class: "number" }, input.over || rangeInScenarios(input.name), input.unit ? page.element("span", { class: "unit" }, ` ${input.unit}`) : null), input.doc));
     const group = (title, lines) => (lines.length ? [page.element("h4", {}, title), table("values", lines)] : []);
-    return section("Inputs", group("chosen", chosen), group("what it must survive, in every scenario", ranged), group("fixed", fixed));
+    return section("Inputs", group("chosen", chosen), group("varied over the scenarios", ranged), group("fixed", fixed));
   };
 
   const rangeInScenarios = (name) => {
@@ -52,7 +52,7 @@
     return low === high ? page.short(low) : `${page.short(low)} to ${page.short(high)}`;
   };
 
-  // A share of 0 to 1 as a bar; the length says it, the text beside it too.
+  // A share of 0 to 1 as a bar, with the number beside it.
   const bar = (share, kind, text) => {
     const fill = page.element("span", { class: `fill ${kind}` });
     fill.style.width = `${(100 * Math.max(0, Math.min(1, share))).toFixed(1)}%`;
@@ -97,7 +97,7 @@
         );
       }),
     );
-    return lines.length ? section("Margins, of the largest on the front", table("bars", lines)) : null;
+    return lines.length ? section("Margins, relative to the largest on the front", table("bars", lines)) : null;
   };
 
   const rowOfExtreme = (column, end) => column.values.indexOf(column[end]);
@@ -109,8 +109,8 @@
     const lines = columns.map(line);
     const numbers = [...new Set(columns.filter((column) => column.scenarios).map((column) => column.scenarios[row]))].filter((number) => number !== page.noScenario).sort((a, b) => a - b);
     const described = numbers.filter((number) => scenarioText(number)).map((number) => page.element("tr", {}, page.element("th", { scope: "row" }, `#${number}`), page.element("td", {}, scenarioText(number))));
-    const note = front.complete === false ? page.element("p", { class: "notice" }, "The further outputs were not computed for this many designs; the command below gives them.") : null;
-    return section("Outputs at their worst scenario", table("values", lines), note, described.length ? [page.element("h4", {}, "the scenarios named"), table("scenarios", described)] : null);
+    const note = front.complete === false ? page.element("p", { class: "notice" }, "The other outputs were not computed, because the front has so many designs; the command below prints them.") : null;
+    return section("Outputs at their worst scenario", table("values", lines), note, described.length ? [page.element("h4", {}, "these scenarios"), table("scenarios", described)] : null);
   };
 
   const command = (label, text, id) => {
@@ -121,7 +121,7 @@
     return page.element("div", { class: "command" }, page.element("div", { class: "muted" }, label), page.element("code", { id, "data-testid": id, tabindex: 0 }, text), page.element("button", { type: "button", class: "no-print", "aria-label": `Copy: ${label}`, click: copy }, "Copy"), said);
   };
 
-  // Local files may lack the clipboard; the old way still works in a click.
+  // In local files there may be no clipboard interface; the old way still works in a click.
   const copyText = async (text) => {
     try {
       await navigator.clipboard.writeText(text);
@@ -140,13 +140,13 @@
   const commands = (row) => {
     const { data, front } = page;
     if (!data.evaluate) return null;
-    // The last one: a folder may be called so.
+    // The last one, because a folder may contain the same text.
     const at = data.evaluate.lastIndexOf("{design}");
     const whole = data.evaluate.slice(0, at) + page.full(page.designOf(row)) + data.evaluate.slice(at + "{design}".length);
     const column = front.objectives.map((objective) => objective.column).find((one) => one.scenarios && one.scenarios[row] !== page.noScenario);
     const parts = [command("every output of this design, in f64", whole, "evaluate")];
     if (column) parts.push(command(`in the worst scenario of ${column.name}`, `${whole} --scenario ${column.scenarios[row]}`, "evaluate-scenario"));
-    return section("Evaluate again", page.element("p", { class: "hint" }, "From the folder in which this page was made."), parts);
+    return section("Evaluate again", page.element("p", { class: "hint" }, "Run it in the folder in which this page was made."), parts);
   };
 
   const build = (row) => {
@@ -162,12 +162,12 @@
     return [page.element("div", { class: "card-head" }, page.element("div", {}, title, place), buttons), objectives(row), margins(row), inputs(row), outputs(row), commands(row)].filter(Boolean);
   };
 
-  // The card takes room from the plots where the window is wide.
+  // In a wide window the card takes room from the plots.
   const layoutIfNarrower = (width) => {
     if (page.byId("main").clientWidth !== width) page.events.call("layout");
   };
 
-  // A cell of the matrix may have been drawn anew in the meantime; its successor is meant.
+  // A cell of the matrix may have been redrawn in the meantime; then take the new one.
   const returnFocus = () => {
     if (!opener) return;
     const { x, y } = opener.dataset;

@@ -1,4 +1,4 @@
-// Which columns the two plots show, and ranges typed in numbers: everything a brush does, from the keyboard.
+// Chooses the columns of the two plots, and ranges as numbers: everything that a brush can do, from the keyboard.
 {
   const MOST = 8; // columns of the matrix, 28 cells
 
@@ -12,7 +12,7 @@
     } else page.byId("columns").focus();
   };
 
-  // A new column goes to its place in the order of the columns, so that the matrix reads the same every time.
+  // A new column goes to its place in the order of the columns, so that the matrix always has the same order.
   const choose = (which, name, on) => {
     const { state, front } = page;
     const names = state[which].filter((other) => other !== name);

@@ -1,7 +1,7 @@
 // The colour of every point, by the chosen column, and its colour bar.
 {
   const STEPS = 256;
-  // Viridis without the end that vanishes on the background.
+  // Viridis without the end that is invisible on the background.
   const rampOf = () => (page.dark() ? (t) => d3.interpolateViridis(0.22 + 0.78 * t) : (t) => d3.interpolateViridis(0.9 * t));
 
   page.ramp = rampOf;
@@ -14,7 +14,7 @@
     return (value) => (span > 0 ? (value - column.low) / span : 0.5);
   };
 
-  // Pixels of all rows, made anew when the column or the theme changes.
+  // Pixel colours of all rows, computed again when the column or the theme changes.
   let cache = { key: null, pixels: null };
   page.colours = () => {
     const { front, state } = page;
@@ -52,7 +52,7 @@
       const scale = d3.scaleLinear([low, high], [0, width]);
       const svg = d3.create("svg").attr("width", width).attr("height", 20).attr("aria-hidden", "true");
       svg.append("g").attr("class", "tick-axis").call(d3.axisBottom(scale).ticks(4).tickSizeOuter(0).tickSize(4).tickFormat(page.tick(scale, 4)));
-      // Numbers at the ends stay within the bar: cut, they would read as others.
+      // Numbers at the ends stay within the bar: cut off, they would look like other numbers.
       const anchor = (value) => (scale(value) < 26 ? "start" : scale(value) > width - 26 ? "end" : "middle");
       svg.selectAll(".tick text").attr("text-anchor", anchor);
       bar.append(svg.node());
@@ -60,7 +60,7 @@
     return bar;
   };
 
-  // Ticks of large numbers as 20 k would hide digits; d3's own format with a plain space for thousands.
+  // "20 k" for a large number would hide digits: use d3's own format with a space for thousands.
   page.tick = (scale, count) => {
     const format = scale.tickFormat(count);
     const [a, b] = scale.domain();

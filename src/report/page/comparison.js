@@ -1,4 +1,4 @@
-// Printed against computed numbers, paper by paper, each with its reason; what was read otherwise, and what is lost.
+// Printed and computed numbers, paper by paper, each with its reason; what was read differently, and what is missing.
 {
   const comparison = (rows) => {
     const section = page.byId("comparison");

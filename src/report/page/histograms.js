@@ -16,7 +16,7 @@
     svg.append("g").attr("class", "tick-axis").attr("transform", `translate(${MARGIN.left},0)`).call(d3.axisLeft(y).ticks(4).tickSizeOuter(0).tickSize(4).tickFormat((value) => (Number.isInteger(value) ? page.count(value) : "")));
     svg.append("text").attr("class", "axis-title").attr("x", (MARGIN.left + WIDTH - MARGIN.right) / 2).attr("y", HEIGHT - 8).attr("text-anchor", "middle").text(page.withUnit(of, unit));
     svg.append("text").attr("class", "axis-title").attr("transform", `translate(13,${(HEIGHT - MARGIN.bottom + MARGIN.top) / 2})rotate(-90)`).attr("text-anchor", "middle").text("feasible designs");
-    // Hits are taken over the full height, so that a low bar is no harder to reach.
+    // The pointer is tested over the full height, so that a low bar is as easy to hit.
     const hit = (event) => {
       const value = x.invert(d3.pointer(event, svg.node())[0]);
       const i = from.findIndex((low, k) => value >= low && value <= to[k]);

@@ -1,5 +1,5 @@
-// The lines of the parallel coordinates, in slices of a few milliseconds, so that a hundred thousand of them never
-// hold up a brush: the first slice is a sample of all rows, for they are taken in a shuffled order.
+// The lines of the parallel coordinates, drawn in slices of a few milliseconds, so that a hundred thousand of them never
+// delay a brush. Rows are taken in a shuffled order, so the first slice is a sample of all of them.
 {
   const SLICE = 12; // ms of a frame
   const CHUNK = 200; // lines between two looks at the clock
@@ -67,8 +67,8 @@
       else plot.pixels.set(plot.base);
       done = 0;
     };
-    // All lines lie, faint, under a selection. They are drawn once a layout; until they are complete the selected ones
-    // are drawn over them anew in each slice, a sample of them at first.
+    // All lines are drawn, faint, below those of a selection, once per layout. Until they are complete, each slice draws
+    // the selected ones over them again, at first a sample of them.
     const drawUnder = (over) => {
       while (plot.baseDone < order.length && !over()) {
         const to = Math.min(order.length, plot.baseDone + CHUNK);

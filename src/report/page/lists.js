@@ -1,6 +1,6 @@
-// Tables that the result has as files, as they are written there: the best designs, all designs, the papers' tables.
+// Tables of the result's files, unchanged: the best designs, all designs, the papers' tables.
 {
-  // More rows than a reader scrolls through are left to the file.
+  // More rows than a reader would scroll through are only in the file.
   const MOST = 1000;
 
   const shorten = (text) => (text !== "" && Number.isFinite(Number(text)) ? page.short(Number(text)) : text);
@@ -18,8 +18,8 @@
   page.startLists = () => {
     const { top, variants, tables } = page.data;
     const found = [];
-    if (top && top.rows.length) found.push(block("top", "Best single designs", `The first of all feasible designs in ${top.by || "one quantity"}, on the front or not: top.csv.`, top));
-    if (variants && variants.rows.length) found.push(block("variants", "Every design", "Feasible or not, each value at its worst scenario: variants.csv.", variants));
+    if (top && top.rows.length) found.push(block("top", "Best single designs", `The best of all feasible designs by ${top.by || "one quantity"}, on the front or not. File: top.csv.`, top));
+    if (variants && variants.rows.length) found.push(block("variants", "Every design", "Feasible or not, each value at its worst scenario. File: variants.csv.", variants));
     page.byId("tally").after(...found);
     page.byId("study").before(...(tables || []).map((table) => block(`table-${table.id}`, `${table.group}: ${table.title}`, `${table.caption} (${table.csv})`, table)));
   };

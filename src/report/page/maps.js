@@ -5,7 +5,7 @@
   const NO_DESIGN = 2n ** 64n - 1n;
   const MARGIN = { left: 74, right: 30, top: 10, bottom: 50 };
 
-  // Cells meet half-way between their values, on a log axis half-way of the logs; words are one step apart.
+  // The border of two cells is halfway between their values, on a log axis halfway between the logs; words are one step apart.
   const edgesOf = (values, log) => {
     if (typeof values[0] === "string") return d3.range(values.length + 1).map((i) => i - 0.5);
     const f = log ? Math.log : (v) => v;
@@ -77,7 +77,7 @@
       stroke.style.background = contourColours[i % contourColours.length];
       const at = map.contours.filter((contour) => contour.of === kind).map((contour) => page.short(contour.at));
       const nowhere = map.contours.filter((contour) => contour.of === kind && !contour.lines.length).map((contour) => page.short(contour.at));
-      const lost = nowhere.length ? ` (nowhere: ${nowhere.join(", ")})` : "";
+      const lost = nowhere.length ? ` (not reached: ${nowhere.join(", ")})` : "";
       return page.element("span", { class: "word" }, stroke, `${kind} at ${at.length > 8 ? `${at.slice(0, 3).join(", ")} … ${at[at.length - 1]}` : at.join(", ")}${lost}`);
     });
   };

@@ -14,7 +14,7 @@
     return Math.max(96, Math.min(across === 2 ? 330 : 264, room));
   };
 
-  // Values to whole device pixels of a cell; -1 for an absent value.
+  // Converts values to whole device pixels of a cell; -1 for an absent value.
   const pixelsOf = (column, flip, values = column.values) => {
     const [low, high] = page.wideDomain(column);
     const extent = Math.round(size * ratio);
@@ -26,7 +26,7 @@
     return pixels;
   };
 
-  // Where the sample of feasible designs lies in a cell of two objectives.
+  // The pixels of the sample of feasible designs in a cell of two objectives.
   const sampleOf = (x, y) => {
     const [across, up] = [x, y].map((column) => page.sample && page.sample.byName.get(column.name));
     return across && up ? { xs: pixelsOf(x, false, across.values), ys: pixelsOf(y, true, up.values) } : null;
@@ -51,7 +51,7 @@
     box.replaceChildren();
     nameSample();
     if (names.length < 2) {
-      hint.textContent = names.length ? "Drag to select a range of values. Click the nearest design to open its card." : "";
+      hint.textContent = names.length ? "Drag to select a range of values. Click near a design to open its card." : "";
       return page.drawStrip(box, front.byName.get(names[0]));
     }
     hint.textContent = "Drag in a cell to select; several selections combine. Click a point to open its card. With the keyboard: arrows go from point to point, Enter opens.";
@@ -89,7 +89,7 @@
     stage.style.width = `${total.width}px`;
     stage.style.height = `${total.height}px`;
     box.append(stage, readout);
-    // The upper right of the triangle is free: the colour bar and the values of the current point go there.
+    // The upper right of the triangle is free for the colour bar and the values of the current point.
     const free = across === 1 ? 300 : Math.min(420, width - LEFT - size - GAP - 16);
     readout.style.width = `${free}px`;
     if (across > 1) readout.style.maxHeight = `${size + (across > 2 ? 0 : -4)}px`;
@@ -102,7 +102,7 @@
 
   const label = (column) => page.withUnit(column.name, column.unit) + (column.goal ? ` (${column.goal})` : "");
 
-  // Ticks of words are their names, as many as there are.
+  // On an axis of words every word has a tick.
   page.axisOf = (orient, column, scale, count) => {
     const axis = orient(scale).tickSizeOuter(0).tickSize(4).tickPadding(4);
     if (column.words) return axis.tickValues(d3.range(column.words.length)).tickFormat((i) => column.words[i]);
@@ -142,7 +142,7 @@
     listen(cell, group);
   };
 
-  // The ideal point (best of each objective, reached by no one design) and the knee.
+  // The ideal point (the best value of each objective, which no single design reaches) and the knee.
   const addMarks = (cell) => {
     const { front } = page;
     const ideal = front.ideal || {};
@@ -150,7 +150,7 @@
     const [ix, iy] = [clip(cell.xScale, ideal[cell.x.name]), clip(cell.yScale, ideal[cell.y.name])];
     if (Number.isFinite(ix) && Number.isFinite(iy)) {
       const mark = cell.marks.append("path").attr("class", "ideal").attr("d", `M${ix - 6},${iy}h12M${ix},${iy - 6}v12`);
-      mark.append("title").text("ideal: the best of both, reached by no one design");
+      mark.append("title").text("ideal: the best value of both, which no single design reaches");
     }
     if (front.knee !== null && front.knee !== undefined) {
       const [x, y] = [clip(cell.xScale, cell.x.values[front.knee]), clip(cell.yScale, cell.y.values[front.knee])];
@@ -170,7 +170,7 @@
       const touch = event.changedTouches ? event.changedTouches[0] : event;
       return d3.pointer(touch, group.node());
     };
-    // Of points that lie on one another the knee is meant, where it is among them.
+    // Of points in the same place, the knee is taken if it is one of them.
     const near = ([x, y], reach) => {
       const row = page.nearest(cell.xs, cell.ys, page.mask, x * ratio, y * ratio, reach * ratio);
       const { knee } = page.front;
@@ -184,7 +184,7 @@
       if (!event.sourceEvent) return;
       const moved = Math.hypot(at(event.sourceEvent)[0] - from[0], at(event.sourceEvent)[1] - from[1]);
       if (event.type === "end" && moved < 3) {
-        // A click: the card of the point there, or, on empty ground, the brush goes.
+        // A click opens the card of the point there; on an empty place it removes the brush.
         const row = near(from, 9);
         if (row < 0 && !event.selection) return page.brushCell(cell.x.name, cell.y.name, null);
         syncBrushes();
@@ -210,7 +210,7 @@
     });
   };
 
-  // Brushes follow the state where it was changed elsewhere: address, clear button, ranges typed in.
+  // Brushes follow the state when it was changed elsewhere: by the address, the clear button or typed ranges.
   const syncBrushes = () => {
     for (const cell of cells) {
       const wanted = page.state.cells.get(`${cell.x.name}*${cell.y.name}`);
@@ -227,7 +227,7 @@
     }
   };
 
-  // The unselected points of all rows are drawn once a layout; a brush then only adds the selected ones.
+  // The unselected points of all rows are drawn once per layout; a brush then only adds the selected ones.
   const draw = (all) => {
     if (!cells.length) return;
     const start = performance.now();

@@ -1,4 +1,4 @@
-// The head of the page: what was asked, what came out, how long it took; and the study itself at its end.
+// The head of the page: the study, its outcome, how long it took; and at the end the text of the study.
 {
   const fact = (label, value, testid, title) =>
     value === null || value === undefined || value === "" ? null : page.element("div", { class: "fact", "data-testid": testid, title }, page.element("dt", {}, label), page.element("dd", {}, value));
@@ -8,7 +8,7 @@
     return parts.join(", ");
   };
 
-  // The ideal and the knee beside each other, one line for each objective.
+  // The ideal and the knee side by side, one line for each objective.
   const objectives = () => {
     const { front } = page;
     const ideal = front.ideal || {};
@@ -26,7 +26,7 @@
       );
     };
     const head = ["objective", "unit", "goal", "ideal", front.knee === null ? null : "knee"].filter(Boolean);
-    const title = { ideal: "the best value of each objective, reached by no one design", knee: "the design nearest to the ideal, by the share of each objective's range" };
+    const title = { ideal: "the best value of each objective; no single design reaches all of them", knee: "the design nearest to the ideal, with each objective scaled to its range on the front" };
     return page.element(
       "table",
       { class: "objectives", "data-testid": "objectives" },
@@ -45,7 +45,7 @@
       facts.push(fact("scenarios each", page.count(study.scenarios), "scenarios"));
       facts.push(fact("feasible in all", `${page.count(study.feasible)} (${page.percent(study.feasible, study.designs)})`, "feasible"));
     }
-    if (front) facts.push(fact(front.of > front.rows ? `of ${page.count(front.of)} on the Pareto front, evenly taken` : "on the Pareto front", page.count(front.rows), "front-size"));
+    if (front) facts.push(fact(front.of > front.rows ? `shown, of ${page.count(front.of)} on the Pareto front` : "on the Pareto front", page.count(front.rows), "front-size"));
     if (run) facts.push(fact("computed in", runText(run), "run", `${run.platform || ""} ${run.origin || ""}`.trim()));
     facts.push(fact("program", data.program, "program"));
     const knee = front && front.rows && front.knee !== null && front.knee !== undefined;

@@ -11,7 +11,7 @@
     return d3.scaleLinear(page.domain(column), range);
   };
 
-  // What is the same for every design on the front is no axis, and is said instead.
+  // A column that is the same for every design on the front has no axis; its value is written above.
   const showConstant = () => {
     const { front } = page;
     const same = front.shown.filter((column) => column.role === "design" && column.low === column.high && !page.state.parallel.includes(column.name));
@@ -56,7 +56,7 @@
   const addAxis = (axis) => {
     const { column, scale } = axis;
     const group = svg.append("g").attr("class", "axis").attr("data-name", column.name).attr("transform", `translate(${axis.x},0)`);
-    // The words of the first axis stand to its right: there is no room before it.
+    // The words of the first axis are to its right: there is no room to its left.
     const side = column.words && page.state.parallel[0] === column.name ? d3.axisRight : d3.axisLeft;
     const ticks = group.append("g").attr("class", "tick-axis halo").call(page.axisOf(side, column, scale, 6));
     if (column.words) page.shortenWords(ticks, 11);
@@ -100,7 +100,7 @@
       "div",
       { class: "axis-buttons no-print" },
       button("left", "Move to the left:", "‹", place === 0, () => page.moveAxis(column.name, place - 1)),
-      button("invert", "Turn over:", "⇅", false, () => page.invertAxis(column.name), String(inverted)),
+      button("invert", "Reverse:", "⇅", false, () => page.invertAxis(column.name), String(inverted)),
       button("right", "Move to the right:", "›", place === state.parallel.length - 1, () => page.moveAxis(column.name, place + 1)),
     );
     const head = page.element("div", { class: "axis-head", "data-axis": column.name }, title, sub, buttons);
@@ -110,7 +110,7 @@
     return head;
   };
 
-  // A title pulled sideways takes its axis along; it comes to rest where it was let go.
+  // Dragging a title moves its axis to where it is dropped.
   const dragBy = (title, head, axis, step) => {
     title.addEventListener("pointerdown", (down) => {
       if (down.button) return;

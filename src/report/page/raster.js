@@ -1,7 +1,7 @@
 // Points and lines drawn into the pixels of an ImageData. Without a GPU this is many times faster than canvas paths,
-// and it costs the same in every browser.
+// and as fast in every browser.
 {
-  // A disc as offsets with their cover of 0 to 256, the fully covered ones first.
+  // A disc as offsets with their coverage of 0 to 256, the fully covered ones first.
   page.disc = (radius) => {
     // Many points: two by two pixels, without mixing.
     if (radius < 1) return [[0, 0], [1, 0], [0, 1], [1, 1]].map(([dx, dy]) => ({ dx, dy, cover: 256 }));
@@ -15,7 +15,7 @@
     return spots;
   };
 
-  // Red and blue, then green, are mixed at once: two multiplications a pixel.
+  // Red and blue are mixed together, then green: two multiplications per pixel.
   const mix = (under, over, cover) => {
     const rest = 256 - cover;
     const rb = (((under & 0xff00ff) * rest + (over & 0xff00ff) * cover) >>> 8) & 0xff00ff;
@@ -23,7 +23,7 @@
     return (0xff000000 | rb | g) >>> 0;
   };
 
-  // The same for discs of whole pixels only: each point is looked at once, which counts from ten thousand points on.
+  // The same for discs of whole pixels only: each point is read once, which matters above ten thousand points.
   const drawSolid = (target, width, height, xs, ys, mask, wanted, colourOf, disc) => {
     const single = typeof colourOf === "number";
     const offsets = disc.map(({ dx, dy }) => dy * width + dx);
@@ -57,7 +57,7 @@
     }
   };
 
-  // One straight line with smooth edges (Wu): along the longer direction, two pixels a step share the cover.
+  // One straight line with smooth edges (Wu): along the longer direction, two pixels per step share the coverage.
   const drawLine = (target, width, height, x0, y0, x1, y1, colour, cover) => {
     const steep = Math.abs(y1 - y0) > Math.abs(x1 - x0);
     if (steep) [x0, y0, x1, y1] = [y0, x0, y1, x1];

@@ -1,6 +1,6 @@
 // Beside the matrix: the colour bar and the values of the point under the pointer; and small help for axes of words.
 {
-  // Words that are too long for their share of the axis are tilted.
+  // Words that are too long for their place on the axis are tilted.
   page.tiltWords = (axis, room) => {
     const longest = Math.max(...axis.selectAll("text").nodes().map((node) => node.textContent.length));
     if (longest * 6 < room) return;

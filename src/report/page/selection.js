@@ -1,5 +1,5 @@
-// The one state of the page: which columns are shown, what is brushed, the colour column, the current point.
-// Every view changes it through these functions and draws what it says.
+// The state of the page: which columns are shown, what is brushed, the colour column, the current point.
+// Every view changes it through these functions only, and draws it.
 {
   const state = {
     matrix: [], // names of the scatter matrix' columns
@@ -22,7 +22,7 @@
     const objectives = [...new Set(front.objectives.map((objective) => objective.column.name))];
     state.matrix = objectives.slice(0, 6);
     const inputs = front.shown.filter((column) => column.role === "design");
-    // Inputs that never change on the front say nothing as an axis; they stay in the chooser.
+    // Inputs that are constant on the front make useless axes; they are only in the chooser.
     const varied = inputs.filter((column) => !(column.low === column.high) || front.rows < 2);
     const judged = front.shown.filter((column) => ["objective", "constraint", "report"].includes(column.role));
     state.parallel = [...new Set([...names(varied), ...names(judged)])].slice(0, 14);
@@ -80,7 +80,7 @@
     return rows;
   };
 
-  // A brush that is not shown any more would select unseen: it goes with its axis or cell.
+  // A brush that is no longer shown would select invisibly: it is removed with its axis or cell.
   page.chooseColumns = (which, names) => {
     state[which] = names;
     const gone = (name) => !state.parallel.includes(name);
@@ -134,7 +134,7 @@
     return row;
   };
 
-  // Ends of a brush are rounded to a tenth of a pixel, so that the address holds short numbers and selects the same.
+  // Ends of a brush are rounded to a tenth of a pixel, so that the address has short numbers that select the same.
   page.roundRange = (a, b, pixels, domain) => {
     const step = 10 ** Math.floor(Math.log10(Math.abs(domain[1] - domain[0]) / pixels / 2));
     const round = (value) => Number((Math.round(value / step) * step).toPrecision(12));

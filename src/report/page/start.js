@@ -1,4 +1,4 @@
-// Puts the page together: first what can be brushed, then, after the first frame, the rest.
+// Builds the page: first the plots that can be brushed, then, after the first frame, the rest.
 {
   const afterFrame = () => new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
 
@@ -45,7 +45,7 @@
 
   const columns = () => Object.fromEntries((page.front ? page.front.columns : []).map((column) => [column.name, column.values]));
 
-  // What the page does, for scripts and tests: the same functions that brushes, buttons and keys call.
+  // The page for scripts and tests: the same functions that brushes, buttons and keys call.
   window.beltspace = {
     get data() {
       return page.data;

@@ -97,7 +97,7 @@
     body.addEventListener("pointerleave", () => page.setCurrent(null));
     body.addEventListener("focusin", (event) => page.setCurrent(rowAt(event)));
     update();
-    // Not on every move of a brush: once it rests.
+    // Not on every move of a brush, but after a pause.
     let waiting = 0;
     const later = () => {
       clearTimeout(waiting);

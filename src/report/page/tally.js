@@ -1,6 +1,6 @@
-// What limits feasibility, and where nothing is feasible, that first.
+// What limits feasibility; if nothing is feasible, this comes first on the page.
 {
-  // Every reason a design of the sample failed: a state of the model or a constraint, the most frequent first.
+  // Every reason for which a design of the sample failed: a status of the model or a constraint, the most frequent first.
   const reasons = (tally) => {
     const states = Object.entries(tally.status || {}).map(([reason, failed]) => ({ text: reason, failed, only: 0, constraint: false }));
     const bounds = (tally.constraints || []).map(({ of, bounds, violated, only }) => ({ text: `${of} ${bounds}`, of, bounds, failed: violated, only, constraint: true }));
@@ -29,21 +29,21 @@
     section.append(
       page.element("h2", { id: "tally-title" }, "What limits feasibility"),
       page.element("p", { class: "hint" }, `Of ${page.data.study && page.data.study.designs === sampled ? "all" : "a fixed sample of"} ${page.count(sampled)} designs, ${page.count(tally.feasible)} (${page.percent(tally.feasible, sampled)}) are feasible. One design may fail for several reasons; “alone” counts those that fail this constraint and nothing else.`),
-      shown.length ? table : page.element("p", {}, "None fails."),
-      never.length ? page.element("p", { class: "hint" }, `Never: ${never.join(", ")}.`) : "",
+      shown.length ? table : page.element("p", {}, "No design fails."),
+      never.length ? page.element("p", { class: "hint" }, `No design fails: ${never.join(", ")}.`) : "",
     );
   };
 
   const sentences = (tally) => {
     const all = reasons(tally).filter((reason) => reason.failed > 0);
     const [first] = all;
-    if (!first) return ["No design of the sample fails by itself: the study asks for combinations that no design holds in all scenarios."];
+    if (!first) return ["No single constraint or status excludes every design of the sample, but together they do: no design keeps all of them in all scenarios."];
     const count = `${page.count(first.failed)} of ${page.count(tally.sampled)} sampled designs (${page.percent(first.failed, tally.sampled)})`;
-    const said = [first.constraint ? `The most frequent reason: ${count} break the constraint “${first.text}”.` : `The most frequent reason: for ${count} the model says “${first.text}”.`];
+    const said = [first.constraint ? `The most frequent reason: ${count} violate the constraint “${first.text}”.` : `The most frequent reason: ${count} have the status “${first.text}”.`];
     const alone = all.filter((reason) => reason.only > 0).sort((a, b) => b.only - a.only);
-    if (alone.length) said.push(`What to relax: ${alone.map((reason) => `“${reason.text}”, which alone holds back ${page.count(reason.only)} (${page.percent(reason.only, tally.sampled)})`).join("; ")}. Those designs keep everything else.`);
-    else if (first.constraint) said.push("No constraint alone holds a design back: relaxing one is not enough. Relax several, widen the ranges of the design inputs, or ask for fewer operating points.");
-    if (!first.constraint) said.push("That is no constraint to relax: widen or move the ranges of the design inputs, or ask for less in [operation] and [uncertainty].");
+    if (alone.length) said.push(`What to relax: ${alone.map((reason) => `“${reason.text}”, which alone excludes ${page.count(reason.only)} designs (${page.percent(reason.only, tally.sampled)})`).join("; ")}. These designs keep all other constraints.`);
+    else if (first.constraint) said.push("No design is excluded by one constraint alone, so relaxing one is not enough. Relax several, widen the ranges of the design inputs, or ask for fewer operating points.");
+    if (!first.constraint) said.push("This is not a constraint that could be relaxed: widen or move the ranges of the design inputs, or ask for less in [operation] and [uncertainty].");
     return said;
   };
 
@@ -55,7 +55,7 @@
     if (!none) return;
     const lead = page.byId("lead");
     lead.hidden = false;
-    lead.append(page.element("h2", {}, "No design is feasible: what limits it"), ...(tally ? sentences(tally) : ["The result has no tally of the reasons."]).map((text) => page.element("p", {}, text)));
+    lead.append(page.element("h2", {}, "No design is feasible: what limits it"), ...(tally ? sentences(tally) : ["The result does not say why."]).map((text) => page.element("p", {}, text)));
     if (tally) lead.after(page.byId("tally"));
   };
 }

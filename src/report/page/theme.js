@@ -1,4 +1,4 @@
-// Light and dark, the width to lay out for, and printing: always light, at the width of a sheet.
+// Light and dark theme, the width of the layout, and printing: always light, at the width of a sheet.
 {
   const SHEET = 680; // px of a printed line on A4 and letter paper
   const system = window.matchMedia("(prefers-color-scheme: dark)");

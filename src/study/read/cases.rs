@@ -35,12 +35,12 @@ impl Reader<'_> {
         }
     }
 
-    /// What a row may look like.
+    /// An example of a row.
     fn example_row(&self) -> String {
         list(self.model.inputs.iter().take(2).map(|input| format!("{} = ...", input.name)))
     }
 
-    /// Rows as listed. The first row says which inputs there are.
+    /// Rows as listed. The first row decides which inputs there are.
     fn rows(&self, role: AxisRole, node: TomlNode<'_>, label: &str) -> Option<Axis> {
         let problems = self.problems;
         let before = problems.count();
@@ -70,7 +70,7 @@ impl Reader<'_> {
             }
             let missing: Vec<_> =
                 inputs.iter().map(|&input| self.model.inputs[input].name.as_str()).filter(|name| table.get(name).is_none()).collect();
-            // A wrong name is likely the one that is missing.
+            // A wrong name is probably the missing one misspelt.
             if !missing.is_empty() && table.entries.iter().all(|entry| self.model.input(entry.key).is_some()) {
                 problems.add(table.at, format!("{label}: this row lacks {}; give every row the same inputs", list(missing)));
             }
@@ -102,7 +102,7 @@ impl Reader<'_> {
         inputs
     }
 
-    /// Remembers which inputs take a word in this row.
+    /// Notes which inputs take a word in this row.
     fn mark_words(&self, inputs: &[usize], row: &[f64]) {
         for (&number, &value) in inputs.iter().zip(row) {
             if let Some(word) = self.model.inputs[number].word_for(value) {
@@ -140,7 +140,7 @@ impl Reader<'_> {
     fn csv_text(&self, name: &str) -> Result<String, String> {
         let path = self.folder.join(name);
         let name = shortened(name);
-        let unreadable = |error: std::io::Error| format!("cannot read \"{name}\": {error}; paths count from the folder of the study");
+        let unreadable = |error: std::io::Error| format!("cannot read \"{name}\": {error}; paths are relative to the folder of the study");
         let file = std::fs::metadata(&path).map_err(unreadable)?;
         if !file.is_file() {
             return Err(format!("\"{name}\" is not a file; name a CSV file"));
@@ -149,7 +149,7 @@ impl Reader<'_> {
         if file.len() > MOST_CSV_BYTES {
             return large(file.len());
         }
-        // It may grow while it is read.
+        // The file may grow while it is read.
         let mut bytes = Vec::new();
         File::open(&path).and_then(|file| file.take(MOST_CSV_BYTES + 1).read_to_end(&mut bytes)).map_err(unreadable)?;
         if bytes.len() as u64 > MOST_CSV_BYTES {
@@ -237,7 +237,7 @@ impl Reader<'_> {
     }
 }
 
-/// The line of an earlier row with the same values. Rows with problems, marked by NaN, equal nothing.
+/// The line of an earlier row with the same values. Rows with problems, marked by NaN, equal no other row.
 fn duplicate(known: &mut HashMap<Vec<u64>, usize>, row: &[f64], line: usize) -> Option<usize> {
     if row.is_empty() || row.iter().any(|value| value.is_nan()) {
         return None;
@@ -251,7 +251,7 @@ fn duplicate(known: &mut HashMap<Vec<u64>, usize>, row: &[f64], line: usize) -> 
     }
 }
 
-/// Line number of a record, which starts behind blank lines that the reader has skipped.
+/// Line number of a record, which starts after blank lines that the reader has skipped.
 fn record_line(lines: &Lines<'_>, text: &str, record: &csv::StringRecord) -> usize {
     let start = record.position().map_or(0, |position| usize::try_from(position.byte()).unwrap_or(0)).min(text.len());
     let blank = text.as_bytes()[start..].iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).count();

@@ -1,4 +1,4 @@
-//! The `contours` of a map: at which values of which quantities lines are drawn.
+//! The `contours` of a map: the quantities and values at which lines are drawn.
 
 use super::super::axis::{Axis, Levels};
 use super::super::check::MOST_THRESHOLDS;
@@ -10,7 +10,7 @@ use toml::de::DeValue;
 
 const LABEL: &str = "contours";
 
-/// What the lines of a map are about.
+/// What the reader of contours must know of the map.
 pub(super) struct Plane<'a> {
     /// The design axes.
     pub(super) design: &'a [Axis],
@@ -25,7 +25,7 @@ pub(super) struct Plane<'a> {
 }
 
 impl Reader<'_> {
-    /// The lines that a map asks for; none of them if something is wrong.
+    /// The contours of a map; none if something is wrong.
     pub(super) fn contours(&self, entry: &Entry<'_>, plane: &Plane<'_>) -> Vec<ContourSpec> {
         let before = self.problems.count();
         self.check_plane(entry, plane);
@@ -53,7 +53,7 @@ impl Reader<'_> {
         format!("[0.1] or [{{ of = \"{}\", at = [0.1] }}]", self.some_output())
     }
 
-    /// Lines need a plane: two axes of numbers in order, and nothing else that varies from design to design.
+    /// Contours need a plane: two axes of numbers in order, and no other design axis.
     fn check_plane(&self, entry: &Entry<'_>, plane: &Plane<'_>) {
         let model = &self.model;
         let others = plane.design.iter().enumerate().filter(|(at, axis)| ![plane.x, plane.y].contains(at) && axis.count() > 1);
@@ -63,8 +63,8 @@ impl Reader<'_> {
             self.problems.add(
                 entry.key_at,
                 format!(
-                    "{LABEL}: lines need a map of everything that is chosen, but there is also {names} in [design]; \
-                     give it one value, move it to [operation] or [uncertainty], or drop contours"
+                    "{LABEL}: the map's axes must be the only design axes, but [design] also has {names}; \
+                     give each a single value, move it to [operation] or [uncertainty], or drop contours"
                 ),
             );
         }
@@ -74,7 +74,7 @@ impl Reader<'_> {
             let message = if let Some(word) = values.iter().find_map(|&value| input.word_for(value)) {
                 format!("\"{}\" takes \"{word}\", and nothing lies between a word and a number; give it numbers only", input.name)
             } else if !values.is_sorted() && !values.iter().rev().is_sorted() {
-                format!("the levels of \"{}\" go up and down, and so would the lines; list them in order", input.name)
+                format!("the levels of \"{}\" are not in order; list them in rising or falling order", input.name)
             } else {
                 continue;
             };
@@ -82,13 +82,13 @@ impl Reader<'_> {
         }
     }
 
-    /// The quantity that the map shows, for lines that name none.
+    /// The quantity that the map shows, for contours that name none.
     fn own_quantity(&self, node: TomlNode<'_>, plane: &Plane<'_>) -> Option<Quantity> {
         match plane.value? {
             Best::Value(quantity, _) => Some(quantity),
             Best::Share => {
                 let example = format!("[{{ of = \"{}\", at = [0.1] }}]", self.some_output());
-                self.problems.add(node.at, format!("{LABEL}: the map shows a share, which has no lines; name a quantity: {example}"));
+                self.problems.add(node.at, format!("{LABEL}: the map shows a share, which has no contours; name a quantity: {example}"));
                 None
             }
         }
@@ -115,13 +115,13 @@ impl Reader<'_> {
         values.take_while(|_| !self.problems.is_full()).for_each(|value| self.add_threshold(value, of, asked));
     }
 
-    /// Every change of a whole number.
+    /// `true`: every change of a whole number.
     fn add_changes(&self, node: TomlNode<'_>, of: Quantity, asked: &mut Vec<ContourSpec>) {
         let name = of.name(self.model);
         if !of.is_whole(self.model) {
             let values = if node.table().is_some() { format!("{{ of = \"{name}\", at = [0.1] }}") } else { "contours = [0.1]".to_owned() };
             self.problems
-                .add(node.at, format!("{LABEL}: {name} is no whole number, so it has no steps to draw; give values, such as {values}"));
+                .add(node.at, format!("{LABEL}: {name} is not a whole number, so it has no steps to draw; give values, such as {values}"));
         } else if asked.iter().any(|it| it.of == of) {
             self.problems.add(node.at, format!("{LABEL}: {name} is listed twice, with every change and otherwise; drop one"));
         } else {

@@ -1,8 +1,8 @@
-//! Reads a study file: one walk over its spanned tree that reports everything wrong at once, with line and column.
+//! Reads a study file: one walk over its syntax tree reports all mistakes at once, with line and column.
 //!
 //! | file            | reads                                              |
 //! |-----------------|----------------------------------------------------|
-//! | `syntax.rs`     | TOML, with the statements it does not understand   |
+//! | `syntax.rs`     | TOML and its syntax errors                         |
 //! | `table.rs`      | tables, positions, problems                        |
 //! | `value.rs`      | numbers, units, words                              |
 //! | `axes.rs`       | `[design]`, `[operation]`, `[uncertainty]`, `[fixed]` |
@@ -10,7 +10,7 @@
 //! | `cases.rs`      | joint axes, from rows or a CSV file                |
 //! | `quantities.rs` | `[constraints]`, `[objectives]`                    |
 //! | `report.rs`     | `[report]`                                         |
-//! | `contours.rs`   | the lines over its maps                            |
+//! | `contours.rs`   | the contours of its maps                           |
 
 mod axes;
 mod cases;
@@ -46,11 +46,11 @@ use value::whole;
 pub(super) const MOST_LEVELS: u64 = 1 << 53;
 /// Most scenarios of a study.
 pub(super) const MOST_SCENARIOS: u64 = 1 << 32;
-/// What a study file may hold.
+/// Keys and tables at the top level of a study file.
 const TOP_LEVEL: &[&str] =
     &["model", "preset", "title", "design", "operation", "uncertainty", "fixed", "constraints", "objectives", "report", "sample"];
 
-/// One thing wrong with a study.
+/// One mistake in a study.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
     /// The file: the study's, or that of a CSV file it names.
@@ -69,7 +69,7 @@ impl std::fmt::Display for Problem {
     }
 }
 
-/// Everything wrong with a study, in file order. Shown as one line per problem.
+/// All mistakes in a study, in file order. Shown as one line per problem.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StudyErrors {
     /// The problems, at least one.
@@ -94,8 +94,8 @@ impl Study {
     /// Reads and checks a study file; returns the study and its text.
     ///
     /// # Errors
-    /// [`Error::Io`](crate::error::Error::Io) if the file cannot be read, [`Error::Study`](crate::error::Error::Study) with everything that
-    /// is wrong with what it says.
+    /// [`Error::Io`](crate::error::Error::Io) if the file cannot be read, [`Error::Study`](crate::error::Error::Study) with all mistakes
+    /// in it.
     pub fn read(path: &Path) -> Result<(Self, String)> {
         let bytes = read_bytes(path, STUDY_BYTES, "long lists of values go into a CSV file")?;
         let file = path.display().to_string();
@@ -138,12 +138,12 @@ impl Study {
         });
         match (study, problems.into_sorted()) {
             (Some(study), problems) if problems.is_empty() => study.check().map(|()| study).map_err(|problem| {
-                let message = format!("this study cannot be: {problem}");
+                let message = format!("this study is impossible: {problem}");
                 StudyErrors { problems: vec![Problem { file: file.to_owned(), line: 1, column: 1, message }] }
             }),
             (_, mut problems) => {
                 if problems.is_empty() {
-                    // Not reachable as long as every `None` comes with a problem; better said than panicked about.
+                    // Unreachable as long as every `None` comes with a problem; a message is better than a panic.
                     let message = "the study cannot be understood".to_owned();
                     problems.push(Problem { file: file.to_owned(), line: 1, column: 1, message });
                 }
@@ -153,7 +153,7 @@ impl Study {
     }
 }
 
-/// What every part of the reader needs.
+/// State shared by all parts of the reader.
 struct Reader<'a> {
     model: &'a Arc<Model>,
     problems: &'a Problems<'a>,
@@ -164,7 +164,7 @@ struct Reader<'a> {
     sampled: bool,
     /// Every place that gives an input values.
     claims: RefCell<Vec<AxisClaim>>,
-    /// Is an input given values under a wrong name? Then nobody knows which inputs have none.
+    /// Is an input given values under a wrong name? Then it is unknown which inputs have none.
     misnamed: Cell<bool>,
 }
 
@@ -228,11 +228,11 @@ fn read_preset(top: &TomlTable<'_>, model: &Model, problems: &Problems<'_>) -> V
     found.and_then(std::result::Result::ok).unwrap_or_else(|| model.defaults())
 }
 
-/// Reports keys at the top level that mean nothing.
+/// Reports unknown keys at the top level.
 fn check_top_level(top: &TomlTable<'_>, model: Option<&Model>, problems: &Problems<'_>) {
     for entry in top.unknown(TOP_LEVEL).take_while(|_| !problems.is_full()) {
         let key = entry.key;
-        // The likely mistake: a value of the model written without a table.
+        // A likely mistake: a value of the model written outside of a table.
         let misplaced = model.and_then(|model| {
             if model.input(key).is_some() {
                 Some("it is an input, put it into [design], [operation], [uncertainty] or [fixed]")
@@ -300,7 +300,7 @@ fn read_sample(table: &TomlTable<'_>, problems: &Problems<'_>) -> Option<Sample>
 }
 
 impl Reader<'_> {
-    /// Can every design and every scenario have a number? Axes with problems are left out and can only make it better.
+    /// Can every design and every scenario have a number? Axes with problems are left out, so the counts may be too small.
     fn check_sizes(&self, top: &TomlTable<'_>, design: &[Axis], scenario: &[&Vec<Axis>]) {
         let at = |names: &[&str]| names.iter().find_map(|name| top.get(name)).map_or(0, |entry| entry.node.at);
         let named = self.claims.borrow().iter().any(|claim| claim.role == AxisRole::Design);
@@ -329,7 +329,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A study must ask for something.
+    /// A study must have an objective or a report.
     fn check_purpose(&self, top: &TomlTable<'_>, objectives: Option<&TomlTable<'_>>, report: Option<&TomlTable<'_>>) {
         let asks = |key: &&str| report.is_some_and(|table| table.get(key).is_some());
         let broken = top.get("objectives").is_some() && objectives.is_none() || top.get("report").is_some() && report.is_none();

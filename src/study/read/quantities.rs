@@ -140,7 +140,7 @@ impl Reader<'_> {
             self.problems.add(
                 extra.key_at,
                 format!(
-                    "the study has {number} objectives, at most {MOST_OBJECTIVES} can be weighed; \
+                    "the study has {number} objectives, at most {MOST_OBJECTIVES} are possible; \
                      make the others constraints or columns of [report]"
                 ),
             );
@@ -181,7 +181,7 @@ impl Reader<'_> {
                 let value = self.quantity_value(entry, quantity, &label)?;
                 if value <= 0.0 {
                     let value = shown_in(value, self.unit(quantity));
-                    problems.add(entry.node.at, format!("{label}: the resolution {value} is no width; it must be greater than 0"));
+                    problems.add(entry.node.at, format!("{label}: the resolution {value} cannot be used; it must be greater than 0"));
                     return None;
                 }
                 Some(value)

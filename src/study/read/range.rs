@@ -10,10 +10,10 @@ use crate::units::NONE;
 
 /// Neighbouring levels closer than this, relative to the larger end, would round to the same number.
 const LEAST_STEP: f64 = 4.0 * f64::EPSILON;
-/// What a range may end beyond `to`, relatively: 0.1 + 2 * 0.1 is a little more than 0.3.
+/// How far the last level may exceed `to`, relative: 0.1 + 2 * 0.1 is a little more than 0.3.
 const SLACK: f64 = 1e-12;
 
-/// The two ends, of which at least the product with any number of levels is finite.
+/// The two ends. Their distance times any number of levels is finite.
 #[derive(Clone, Copy)]
 struct RangeEnds {
     from: f64,
@@ -22,18 +22,18 @@ struct RangeEnds {
 }
 
 impl RangeEnds {
-    /// Distance from end to end: a difference, or decades.
+    /// Distance of the ends: their difference, or decades on a logarithmic axis.
     fn width(self) -> f64 {
         if self.log { libm::log10(self.to) - libm::log10(self.from) } else { self.to - self.from }
     }
 
-    /// Least distance at which levels differ, in the same measure.
+    /// Least distance at which two levels are different numbers, in the same measure.
     fn least_step(self) -> f64 {
         if self.log { LEAST_STEP } else { LEAST_STEP * self.from.abs().max(self.to.abs()) }
     }
 }
 
-/// Levels that come from elsewhere than a study's text must be such as a text gives.
+/// Checks levels that do not come from a study's text: they must be such as a text could give.
 pub(in super::super) fn check_levels(levels: &Levels, input: &Input) -> Result<(), String> {
     if !matches!(levels, Levels::List(_)) && input.is_enumeration() {
         return Err(format!("{} takes words only, and a range has none", input.name));
@@ -75,7 +75,7 @@ pub(in super::super) fn check_levels(levels: &Levels, input: &Input) -> Result<(
     }
 }
 
-/// The ends are in range, but a step may go beyond by its rounding.
+/// The ends are in range, but the last level may exceed them by rounding.
 fn within(levels: &Levels, input: &Input) -> Result<(), String> {
     let (low, high) = levels.ends();
     match [low, high].into_iter().find(|&level| !input.accepts(level)) {
@@ -95,7 +95,7 @@ impl Reader<'_> {
                 value.map_err(|error| problems.add(entry.node.at, format!("{label}: {error}"))).ok()
             }
             None => {
-                // An unknown key is likely this one, and has been reported.
+                // An unknown key, which has been reported, is probably this one misspelt.
                 if known {
                     problems.add(
                         table.at,
@@ -147,11 +147,11 @@ impl Reader<'_> {
     }
 }
 
-/// A step must lead somewhere, and an integer input to whole numbers.
+/// A step must be greater than 0, and a whole number for an integer input.
 fn checked_step(step: f64, input: &Input) -> Result<f64, String> {
     if step <= 0.0 {
         let remedy = "step must be greater than 0; to run downwards use count";
-        return Err(format!("the step {} leads nowhere; {remedy}", shown(step)));
+        return Err(format!("the step {} cannot be used; {remedy}", shown(step)));
     }
     if input.integer && step.fract() != 0.0 {
         return Err(format!("the step {} is not a whole number, but {} takes whole numbers only; use step = 1", shown(step), input.name));
@@ -159,7 +159,7 @@ fn checked_step(step: f64, input: &Input) -> Result<f64, String> {
     Ok(step)
 }
 
-/// What holds for every range.
+/// Checks what every range must fulfil.
 fn check_ends(ends: RangeEnds, input: &Input) -> Result<(), String> {
     let RangeEnds { from, to, log } = ends;
     if log && input.integer {
@@ -222,7 +222,7 @@ fn stepped(ends: RangeEnds, step: f64, input: &Input) -> Result<Levels, String> 
     if from > to {
         return Err(format!("from {} to {} runs downwards, which steps cannot; swap the ends or use count", shown(from), shown(to)));
     }
-    // A guess by division, which may be off by one: the levels themselves decide.
+    // The division may be off by one: the levels themselves decide.
     let limit = to + SLACK * to.abs();
     let guess = (RangeEnds { to: limit, ..ends }.width() / step).floor();
     if guess >= MOST_LEVELS as f64 {

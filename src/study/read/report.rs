@@ -12,9 +12,9 @@ use super::{Reader, choice, text};
 use crate::models::Worse;
 use toml::de::DeValue;
 
-/// Points that a front may have unless the study says otherwise, and at most.
+/// Default of `front_budget`, and its largest value.
 pub(in super::super) const FRONT_BUDGET: (u64, u64) = (1_000_000, 1_000_000_000);
-/// Bins of a histogram unless the study says otherwise, and at most.
+/// Default of `bins` of a histogram, and its largest value.
 pub(in super::super) const BINS: (usize, u64) = (50, 100_000);
 /// Most designs of the top list.
 pub(in super::super) const MOST_TOP: u64 = 1_000_000;
@@ -26,9 +26,9 @@ pub(in super::super) const MOST_VARIANTS: u64 = 10_000;
 /// Most cells of a map.
 pub(in super::super) const MOST_CELLS: u64 = 1 << 26;
 
-/// What the parts of a report refer to.
+/// What the keys of `[report]` refer to.
 struct ReportContext<'a> {
-    /// The table of objectives: an objective with a problem is still one.
+    /// The table `[objectives]`, which also has the objectives with problems.
     named: Option<&'a TomlTable<'a>>,
     objectives: &'a [Objective],
     design: &'a [Axis],
@@ -36,7 +36,7 @@ struct ReportContext<'a> {
 }
 
 impl ReportContext<'_> {
-    /// The goal of the objective about this quantity.
+    /// The goal of the objective for this quantity.
     fn goal(&self, quantity: Quantity) -> Option<Goal> {
         self.objectives.iter().find(|objective| objective.quantity == quantity).map(|objective| objective.goal)
     }
@@ -174,7 +174,7 @@ impl Reader<'_> {
         columns
     }
 
-    /// An output for examples, one that a study is likely about.
+    /// An output for examples in messages, one that studies often use.
     pub(super) fn some_output(&self) -> &str {
         let outputs = &self.model.outputs;
         outputs.iter().find(|output| output.name.contains("force")).or(outputs.first()).map_or("", |output| &output.name)
@@ -280,7 +280,8 @@ impl Reader<'_> {
                 None
             }
             Some(claim) if !claim.single => {
-                let message = format!("{label}: \"{name}\" belongs to a joint axis, which has no direction; choose an axis of one input");
+                let message =
+                    format!("{label}: \"{name}\" belongs to a joint axis, which cannot be an axis of a map; choose an axis of one input");
                 self.problems.add(at, message);
                 None
             }

@@ -1,8 +1,8 @@
-//! TOML syntax: says in plain words what is wrong, and goes on with the rest of the file.
+//! TOML syntax: explains in plain words what is wrong, and continues with the rest of the file.
 //!
-//! The parser recovers from an error as well as it can, but an unclosed bracket makes it see errors all over the rest. So
-//! one error is taken at a time: it is reported, its statement is blanked and the text is parsed again. An error that was
-//! not seen in the original text is an effect of blanking and ends the game.
+//! The parser recovers from an error as well as it can, but after an unclosed bracket it sees errors everywhere. So only the first error
+//! is reported, its statement is replaced by blanks, and the text is parsed again. An error that the original text did not have is caused
+//! by the blanks and ends the search.
 
 use super::table::{Lines, Problems, TomlNode, TomlTable, shortened};
 use std::borrow::Cow;
@@ -11,12 +11,12 @@ use toml::de::{DeTable, DeValue};
 
 /// Most syntax errors that are reported.
 const MOST_ERRORS: usize = 25;
-/// Bytes of a text beyond which the first error is the only one that is told: something as large as a table of values that is no TOML
-/// may have an error for every byte, and each takes memory and time.
+/// Of a text with more bytes only the first error is reported: a large file that is no TOML, such as a table of values, may have an error
+/// for every byte, and each takes memory and time.
 const LARGE: usize = 1 << 16;
 
-/// Reports the syntax errors of a text. Returns the text without the statements that have some, every other byte at its
-/// place, or `None` if the rest makes no sense either.
+/// Reports the syntax errors of a text. Returns the text with the wrong statements replaced by blanks, so that every other byte keeps its
+/// place, or `None` if the rest cannot be parsed either.
 pub(super) fn understandable<'t>(text: &'t str, problems: &Problems<'_>) -> Option<Cow<'t, str>> {
     if text.len() > LARGE {
         return match DeTable::parse(text) {
@@ -53,7 +53,7 @@ pub(super) fn understandable<'t>(text: &'t str, problems: &Problems<'_>) -> Opti
     None
 }
 
-/// What is wrong where something is left open.
+/// The message for a bracket that is not closed.
 const UNCLOSED: &str = "a comma or a closing bracket is missing; write [1, 2] or { from = 1, to = 2 }";
 
 /// Where the error starts; the end of the text if the parser does not say.
@@ -61,7 +61,7 @@ fn start(error: &toml::de::Error) -> usize {
     error.span().map_or(usize::MAX, |span| span.start)
 }
 
-/// The place to blame: where a line cannot go on what the line before left open, that one's end.
+/// The place of the mistake. If a line cannot continue something that the line before left open, that is the end of the line before.
 fn blamed(error: &toml::de::Error, text: &str, lines: &Lines<'_>) -> usize {
     let at = start(error).min(text.len());
     let line = lines.range(lines.index(at));
@@ -75,7 +75,7 @@ fn blamed(error: &toml::de::Error, text: &str, lines: &Lines<'_>) -> usize {
     if suspicious && before > 0 && unclosed(text, lines, before) { before } else { at }
 }
 
-/// Does the text up to here leave a bracket open? Asks the parser: without what follows, that is its complaint.
+/// Does the text up to here leave a bracket open? The parser says so if it gets only this text.
 fn unclosed(text: &str, lines: &Lines<'_>, end: usize) -> bool {
     let header = (0..=lines.index(end)).rev().map(|index| lines.range(index).start).find(|&start| is_header(&text[start..]));
     let (_, errors) = DeTable::parse_recoverable(&text[header.unwrap_or(0)..end]);
@@ -88,8 +88,8 @@ fn is_header(line: &str) -> bool {
     line.trim_start().starts_with('[') && name.starts_with(|c: char| c.is_ascii_alphabetic()) && !line.trim_start().starts_with("[ ")
 }
 
-/// The lines of the statement with the error: from its key to the place to blame; a table to its end if its header is
-/// wrong, for nobody knows where its keys belong.
+/// The lines of the statement with the error: from its key to the place of the mistake; if the header of a table is wrong, the whole table,
+/// since nobody knows where its keys belong.
 fn statement(top: &TomlTable<'_>, text: &str, lines: &Lines<'_>, blame: usize, error: usize) -> Range<usize> {
     let last = lines.index(blame.min(text.len()));
     let first = key_at(top, text, blame, error).map_or(last, |key| lines.index(key).min(last));
@@ -103,13 +103,13 @@ fn statement(top: &TomlTable<'_>, text: &str, lines: &Lines<'_>, blame: usize, e
     lines.range(first).start..lines.range(last.max(first)).end
 }
 
-/// Where the key starts whose value holds the place to blame.
+/// Where the key starts whose value contains the place of the mistake.
 fn key_at(table: &TomlTable<'_>, text: &str, blame: usize, error: usize) -> Option<usize> {
     let below = |node: TomlNode<'_>| match node.value {
         DeValue::Table(_) => node.table().and_then(|table| key_at(&table, text, blame, error)),
         _ => None,
     };
-    // Tables with headers are not statements but hold some.
+    // A table with a header is not a statement, but contains some.
     let has_header = |at: usize| is_header(text.get(at..).unwrap_or(""));
     table.entries.iter().rev().find_map(|entry| match entry.node.value {
         DeValue::Table(_) if has_header(entry.node.at) || entry.node.at == entry.key_at => below(entry.node),
@@ -124,7 +124,7 @@ fn blanked(text: &str, range: Range<usize>) -> String {
     text[..range.start].chars().chain(spaces).chain(text[range.end..].chars()).collect()
 }
 
-/// The parser's complaint in words for people who do not know the grammar.
+/// The parser's message in words for people who do not know the grammar.
 fn explained(error: &toml::de::Error, text: &str) -> String {
     let message = error.message();
     let at = error.span().and_then(|span| text.get(span)).unwrap_or("").trim();
@@ -160,17 +160,17 @@ fn explained(error: &toml::de::Error, text: &str) -> String {
     } else if is("missing escaped value") || is("invalid escape") {
         "a backslash in a text starts a code; write two of them, or put the text in single quotes".to_owned()
     } else if is("unexpected key or value") {
-        "the line goes on behind its value; start a new line, and write decimals with a point".to_owned()
+        "there is more text after the value; start a new line, and write decimals with a point".to_owned()
     } else {
         format!("this is not TOML: {}", shortened(message))
     }
 }
 
-/// The remedy for a value that is none: a number with a unit or a word needs quotes, two numbers need a comma.
+/// The message for something that is no value: a number with a unit or a word needs quotes, two numbers need a comma.
 fn unquoted(text: &str, key_follows: bool) -> String {
     let second = text.split_whitespace().nth(1).unwrap_or("");
     if text.is_empty() {
-        "there is no value behind \"=\"; write one".to_owned()
+        "there is no value after \"=\"; write one".to_owned()
     } else if key_follows || second.starts_with(|c: char| c.is_ascii_digit()) {
         "a comma is missing between two values; write [1, 2] or { from = 1, to = 2 }".to_owned()
     } else {

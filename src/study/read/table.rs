@@ -45,23 +45,23 @@ impl<'t> Lines<'t> {
         &self.text[self.range(index)]
     }
 
-    /// The byte `at`, or what stands for it where there is nothing to be seen.
+    /// The byte `at`, or the last visible character if it lies beyond.
     fn visible(&self, at: usize) -> usize {
         at.min(self.end).max(self.starts[0])
     }
 
-    /// Line and column of the byte `at`, from 1, the column in characters. What lies behind the last visible character
-    /// of the text is placed there: an editor has no place beyond.
+    /// Line and column of the byte `at`, from 1, the column in characters. A byte after the last visible character of the text gets the
+    /// place of that character, because an editor has no place beyond it.
     pub(super) fn position(&self, at: usize) -> (usize, usize) {
         let at = self.visible(at);
         let index = self.index(at);
         let before = &self.text.as_bytes()[self.starts[index]..at];
-        // Bytes that go on with a character are not counted, so that `at` need not be a boundary.
+        // Continuation bytes of a character are not counted, so `at` need not be a character boundary.
         (index + 1, 1 + before.iter().filter(|&&byte| byte & 0xC0 != 0x80).count())
     }
 }
 
-/// Most problems that are told of one study: nobody mends more at a time, and to find each takes a look at its line.
+/// Most problems that are reported of one study: nobody corrects more at a time, and finding the line of each takes time.
 const MOST_PROBLEMS: usize = 100;
 /// Most characters of a message.
 const MOST_CHARACTERS: usize = 2000;
@@ -72,12 +72,12 @@ pub(super) struct Problems<'t> {
     file: &'t str,
     found: RefCell<Vec<(usize, Problem)>>,
     incomplete: Cell<bool>,
-    /// Was anything left out or unread because of so many?
+    /// Was anything left out or unread because there are too many?
     more: Cell<bool>,
 }
 
 impl<'t> Problems<'t> {
-    /// None yet in this text.
+    /// An empty list for this text.
     pub(super) fn new(text: &'t str, file: &'t str) -> Self {
         Self { lines: Lines::new(text), file, found: RefCell::default(), incomplete: Cell::new(false), more: Cell::new(false) }
     }
@@ -91,7 +91,7 @@ impl<'t> Problems<'t> {
         self.push(at, self.file.to_owned(), line, column, message.as_ref());
     }
 
-    /// Adds a problem that consists in something not being there: it may stand in a part that was not understood.
+    /// Adds a problem about something that is missing, unless a part of the file was not understood, which may contain it.
     pub(super) fn add_if_complete(&self, at: usize, message: impl AsRef<str>) {
         if !self.incomplete.get() {
             self.add(at, message);
@@ -109,7 +109,7 @@ impl<'t> Problems<'t> {
     }
 
     fn push(&self, at: usize, file: String, line: usize, column: usize, message: &str) {
-        // One problem is one line, whatever the file puts into a quoted text.
+        // One problem is one line, even if a quoted text of the file has several.
         let plain = message.chars().flat_map(|c| if c.is_control() { c.escape_default().collect::<Vec<_>>() } else { vec![c] });
         let mut message: String = plain.take(MOST_CHARACTERS + 1).collect();
         if let Some((end, _)) = message.char_indices().nth(MOST_CHARACTERS) {
@@ -118,21 +118,21 @@ impl<'t> Problems<'t> {
         self.found.borrow_mut().push((at, Problem { file, line, column, message }));
     }
 
-    /// Are there as many as are told? Whoever asks has more to read, which then need not be read.
+    /// Are there as many as are reported? Then the rest need not be read.
     pub(super) fn is_full(&self) -> bool {
         let full = self.found.borrow().len() >= MOST_PROBLEMS;
         self.more.set(full || self.more.get());
         full
     }
 
-    /// Parts of the file are not understood.
+    /// Notes that parts of the file were not understood.
     pub(super) fn mark_incomplete(&self) {
         self.incomplete.set(true);
     }
 
     /// Line number of a byte, for messages that point elsewhere.
     pub(super) fn line_number(&self, at: usize) -> usize {
-        // Asked for every row: the column would take a look at the whole line.
+        // Called for every row: finding the column too would read the whole line.
         self.lines.index(self.lines.visible(at)) + 1
     }
 
@@ -148,7 +148,7 @@ impl<'t> Problems<'t> {
         let mut problems: Vec<_> = found.into_iter().map(|(_, problem)| problem).collect();
         problems.dedup();
         if let Some(last) = problems.last().filter(|_| self.more.get()) {
-            let message = format!("there may be more problems than these {}; mend them first", problems.len());
+            let message = format!("there may be more problems than these {}; correct them first", problems.len());
             problems.push(Problem { message, ..last.clone() });
         }
         problems
@@ -163,7 +163,7 @@ pub(super) struct TomlNode<'a> {
 }
 
 impl<'a> TomlNode<'a> {
-    /// The value of the tree.
+    /// The value in the syntax tree.
     pub(super) fn new(value: &'a Spanned<DeValue<'a>>) -> Self {
         Self { value: value.get_ref(), at: value.span().start }
     }
@@ -239,15 +239,15 @@ impl<'a> TomlTable<'a> {
     }
 }
 
-/// Does the key belong in front of all tables?
+/// Does the key belong above all tables?
 pub(super) fn is_top_level(key: &str) -> bool {
     ["model", "title"].contains(&key)
 }
 
-/// What to do about such a key in a table.
-pub(super) const TOP_LEVEL_REMEDY: &str = "it belongs in front of the first table";
+/// What to do about such a key if it stands in a table.
+pub(super) const TOP_LEVEL_REMEDY: &str = "it belongs above the first table";
 
-/// Names one after the other.
+/// Names, separated by commas.
 pub(super) fn list<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> String {
     names.into_iter().map(|name| name.as_ref().to_owned()).collect::<Vec<_>>().join(", ")
 }

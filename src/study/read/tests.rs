@@ -1,4 +1,4 @@
-//! What no shipped model shows: an input whose every value is a word.
+//! What no shipped model has: an input that takes words only.
 
 use super::super::axis::{Axis, Levels};
 use super::super::resolved::Study;

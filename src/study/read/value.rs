@@ -37,7 +37,7 @@ fn written(node: TomlNode<'_>) -> String {
     }
 }
 
-/// A value in `unit`: a number, or a text with a unit. The error is what to say behind the name of the thing.
+/// A value in `unit`: a number, or a text with a unit. The error follows the name of the thing in a message.
 pub(super) fn measured(node: TomlNode<'_>, unit: Unit) -> Result<f64, String> {
     match node.value {
         DeValue::String(text) => text_measured(text, unit),
@@ -84,12 +84,12 @@ pub(super) fn input_number(node: TomlNode<'_>, input: &Input) -> Result<f64, Str
     }
 }
 
-/// What was found instead of one of the words of an input that takes nothing else.
+/// The message for a value of an input that takes words only, if it is none of them.
 fn no_word(found: &str, input: &Input) -> String {
     format!("found {found}, but {} takes words only; write {}", input.name, input.words_listed().unwrap_or_default())
 }
 
-/// The complaint with the words that would also be right.
+/// The message, with the words that would also be right.
 fn or_word(error: String, input: &Input) -> String {
     match input.words_listed() {
         Some(words) => format!("{error}; or write {words}"),

@@ -1,4 +1,4 @@
-//! The comparisons of these tests object to what is wrong.
+//! The comparisons of these tests notice wrong results.
 
 use super::ways::{difference, unaccounted, whole};
 use crate::pipeline::parse;

@@ -1,4 +1,4 @@
-//! Bounds that are left: whenever that is, the result is that of every design.
+//! Bounds that are given up: whenever that happens, the result is the same as if every design were judged.
 
 use super::ways::{by_bounds, difference, one_by_one};
 use crate::pipeline::parse;
@@ -16,7 +16,7 @@ use beltspace::tiles::Shard;
 use std::path::Path;
 use std::sync::atomic::Ordering;
 
-/// Bounds cut many boxes of it, for front, best and extremes as well as for the count.
+/// A study for which bounds split many boxes, for front, best list and extremes as well as for the count.
 const STUDY: &str = r#"model = "pulley-load"
 [design]
 mean_radius_mm   = { from = 40, to = 80, count = 43 }
@@ -36,10 +36,10 @@ mean_radius_mm = "min"
 top = { by = "resultant_force_N", count = 5 }
 "#;
 
-/// Shares of all that bounds are to settle at which they are left: at once, in the search for the front, for an extreme, in the count.
+/// Fractions of the bounds' work after which they are given up: at once, in the search for the front, for an extreme, in the count.
 const SHARES: [f64; 5] = [0.0, 0.1, 0.6, 0.87, 0.93];
 
-/// As if a thread took so many seconds for each design.
+/// As if a thread took this many seconds for each design.
 fn taking(seconds: f64) -> Rule<'static> {
     Rule { speed: Speed { seconds, measured: true }, device: None, leaving: Leaving::WhereTheyDoNotPay }
 }
@@ -123,7 +123,7 @@ fn shards_that_leave_bounds_merge_to_the_same() {
     let pipeline = Pipeline::new(&plan, STUDY);
     let folder = tempfile::tempdir().expect("a folder can be made");
     let mut lefts = 0;
-    // Half of the shards go on with what was judged before.
+    // Half of the shards continue from earlier checkpoints.
     let state = pipeline.sharded_by(&mut Random::new(3), folder.path(), |random, options, checkpoint| {
         let left = leaving(&pipeline, random.pick(&SHARES), options, Some(checkpoint)).expect("the sweep ends").1;
         lefts += u32::from(left.is_some());
@@ -140,7 +140,7 @@ fn a_run_that_left_bounds_is_resumed_by_any_method() {
     let folder = tempfile::tempdir().expect("a folder can be made");
     for (number, method) in ["bounds", "every design", "auto"].into_iter().enumerate() {
         let (claim, mut checkpoint) = begun(&pipeline, Shard::WHOLE, &folder.path().join(number.to_string()));
-        // Stopped from outside in the count: what is kept of it is a part.
+        // Stopped from outside during the count: only some of it is kept.
         let stopped = Control::default();
         let result = std::thread::scope(|scope| {
             scope.spawn(|| {
@@ -152,7 +152,7 @@ fn a_run_that_left_bounds_is_resumed_by_any_method() {
             let options = Settings { threads: 1, ..Settings::default() };
             auto(&pipeline, &options, Some(&mut checkpoint), &stopped, &taking(1e3))
         });
-        // It may have ended before it heard of it.
+        // It may have ended before it noticed.
         assert!(matches!(result, Err(Error::Stopped { .. }) | Ok(Auto { settler: Settler::Bounds(_), .. })), "{result:?}");
         drop(checkpoint);
         let mut checkpoint = Checkpoint::open(&claim).expect("what was done is kept");
@@ -167,7 +167,7 @@ fn a_run_that_left_bounds_is_resumed_by_any_method() {
     }
 }
 
-/// Bounds settle next to nothing of it in a minute, where every design is judged in a second.
+/// A study of which bounds settle almost nothing in a minute, while every design can be judged in a second.
 const SLOW: &str = r#"model = "timing-belt"
 preset = "ohc-driven"
 [design]
@@ -192,7 +192,7 @@ fn a_study_that_bounds_cannot_settle_is_judged() {
     let plan = Plan::new(parse(SLOW));
     let pipeline = Pipeline::new(&plan, SLOW);
     let options = Settings { threads: 2, ..Settings::default() };
-    // As if judging it took a second and a bit: less, and bounds were not begun.
+    // As if judging it took a little more than a second: with less, bounds would not be tried.
     let swept_as_if = |seconds: f64| {
         let rule = taking(2.0 * seconds / plan.designs() as f64);
         auto(&pipeline, &options, None, &Control::default(), &rule).expect("the sweep ends")
@@ -200,7 +200,7 @@ fn a_study_that_bounds_cannot_settle_is_judged() {
     let Auto { swept, settler, .. } = swept_as_if(1.1);
     assert!(matches!(&settler, Settler::Both(left) if left.promise.bounds > left.promise.judging), "{settler:?}");
     assert_eq!(difference(&reference(&pipeline), &swept.state), None);
-    // Of so short a study every design is judged at once.
+    // Every design of such a short study is judged at once.
     let Auto { settler, .. } = swept_as_if(0.9);
     assert!(matches!(settler, Settler::EveryDesign), "{settler:?}");
 }

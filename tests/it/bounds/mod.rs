@@ -1,4 +1,4 @@
-//! Sweeps by bounds: whatever the study, the same as looking at every design.
+//! Sweeps by bounds give the same result as judging every design, for any study.
 
 mod bites;
 mod left;
@@ -63,7 +63,7 @@ fn bounds_find_what_looking_at_every_design_finds() {
     }
 }
 
-/// What went wrong, whether it was told or a panic.
+/// What went wrong: the error or the panic.
 fn guarded(check: impl FnOnce() -> Result<(), String>) -> Result<(), String> {
     catch_unwind(AssertUnwindSafe(check)).unwrap_or_else(|panic| {
         let text = panic.downcast_ref::<String>().cloned().or_else(|| panic.downcast_ref::<&str>().map(|it| (*it).to_owned()));
@@ -112,7 +112,7 @@ fn plain_difference(pipeline: &Pipeline<'_>) -> Result<Option<(State, Certificat
     ways::difference(&reference, &found).map_or(Ok(Some((reference, certificate))), Err)
 }
 
-/// Checks one study in every way that must not matter.
+/// Checks one study in every way that must not affect the result.
 fn check(seed: u64, draft: &Draft, text: &str, coverage: &mut Coverage) -> Result<(), String> {
     let study = parse(text);
     draft.check_axes(&study);
@@ -132,7 +132,7 @@ fn check(seed: u64, draft: &Draft, text: &str, coverage: &mut Coverage) -> Resul
     let threads = random.whole(2, 3);
     let (state, _) = ways::whole(&pipeline, threads)?;
     differs("several threads", &state)?;
-    // Folders and checkpoints are written through to the disk, which is what takes time.
+    // Folders and checkpoints are synced to the disk, which takes most of the time.
     if full() || seed.is_multiple_of(3) {
         differs("shards", &ways::sharded(&pipeline, random, folder.path()))?;
         let (state, stops) = ways::stopped(&pipeline, random, text, usual, &folder.path().join("stopped"))?;

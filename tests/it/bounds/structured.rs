@@ -1,4 +1,4 @@
-//! Studies of a shape that bounds are made for, larger than the random ones.
+//! Studies that suit bounds, larger than the random ones.
 
 use super::{guarded, plain_difference};
 use crate::pipeline::runs::{Pipeline, differing_file};
@@ -13,7 +13,7 @@ fn shipped(name: &str) -> String {
     std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// A study with other words in place of some of its own, without what asks for every design.
+/// A study with some text replaced, and without what needs every design.
 fn changed(study: &str, edits: &[(&str, &str)]) -> String {
     let text = edits.iter().fold(study.to_owned(), |text, (from, to)| {
         assert!(text.contains(from), "the study has no {from}");
@@ -52,7 +52,7 @@ fn compare(text: &str, least: u64) -> Certificate {
     certificate.expect("it was made")
 }
 
-/// Of a study of many designs, bounds look at few.
+/// Bounds evaluate only few designs of a large study.
 fn pays(certificate: &Certificate, designs: u64) {
     let looks = certificate.boxes() + certificate.evaluations();
     assert!(looks < designs, "{looks} looks at {designs} designs");
@@ -110,7 +110,7 @@ fn the_camshaft_drive_of_twenty_teeth() {
     compare(&changed(&grid, edits), 500);
 }
 
-/// Studies that once gave something else, cut down to what it took.
+/// Studies that once gave a wrong result, reduced to what the failure needed.
 const FOUND: [(&str, &str); 2] = [
     (
         "a chain began at a number of one axis that nothing else reads, and so was in no table",

@@ -1,4 +1,4 @@
-//! A study swept by bounds in every way that must not matter, against the sweep design by design.
+//! A study swept by bounds in every way that must not affect the result, compared with the sweep design by design.
 
 use crate::pipeline::runs::{Pipeline, options};
 use crate::random::Random;
@@ -96,13 +96,13 @@ pub fn sharded(pipeline: &Pipeline<'_>, random: &mut Random, folder: &Path) -> S
         let range = shard.range(pipeline.plan.designs());
         let problem = unaccounted(pipeline.plan, &certificate, swept.designs, range.end - range.start);
         assert_eq!(problem, None, "shard {shard}");
-        // What stands in a shard is of that shard, as it is design by design.
+        // A shard reports only its own designs, as when it is judged design by design.
         let foreign = swept.state.front.indices.iter().find(|&&design| !range.contains(&pipeline.plan.position_of(design)));
         assert_eq!(foreign, None, "shard {shard}");
     })
 }
 
-/// A run that is stopped again and again and goes on by the other method each time; with how often it was stopped.
+/// A run that is stopped again and again and continues with the other method each time; returns how often it was stopped.
 pub fn stopped(pipeline: &Pipeline<'_>, random: &mut Random, text: &str, usual: Duration, folder: &Path) -> Result<(State, u32), String> {
     let plan = pipeline.plan;
     let claim = Claim::new(folder, "a test").expect("nobody has it");

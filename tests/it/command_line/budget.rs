@@ -1,4 +1,4 @@
-//! The budget of a front is judged on the finished whole; on the way only memory counts.
+//! `front_budget` limits the final front only; during the sweep only the memory is limited.
 
 use super::{ask, changed, files, folder_with, json_of, same_result, write};
 use std::path::Path;
@@ -44,10 +44,10 @@ fn a_front_beyond_the_budget_is_kept_and_a_larger_budget_goes_on() {
         let line = format!("sweep s.toml --out {out} {option}");
         if option.is_empty() {
             let err = ask(folder.path(), &line).refusal(1);
-            assert!(err.contains("the Pareto front has 600 points, more than the 500 of front_budget"), "{err}");
+            assert!(err.contains("the Pareto front has 600 points, more than front_budget = 500 allows"), "{err}");
             assert!(err.contains("with a larger front_budget go on with: beltspace sweep s.toml --out out --resume"), "{err}");
         } else {
-            // The whole in one shard: what it comes to is known when it is merged.
+            // The whole study in one shard: the size of its front is known when it is merged.
             ask(folder.path(), &line).refusal(1);
         }
     }
@@ -70,7 +70,7 @@ fn a_front_that_outgrows_its_memory_says_so_and_can_go_on() {
     let lines: String = (0..30_000).map(|i| format!("{},{}\n", i + 10, i + 10)).collect();
     write(folder.path(), "cases.csv", &format!("torque_Nm,strength_MPa\n{lines}"));
     let err = ask(folder.path(), "sweep s.toml --out out --front-memory 1 --engine cpu --threads 1").refusal(1);
-    assert!(err.contains("points, more than 1 MB hold") && err.contains("--resume --front-memory 2"), "{err}");
+    assert!(err.contains("points, more than fit into 1 MB") && err.contains("--resume --front-memory 2"), "{err}");
     assert!(!err.contains("front_budget"), "{err}");
     let done = json_of(&folder.path().join("out/checkpoint/manifest.json"))["manifest"]["done"][0]["end"].as_u64();
     assert!(done > Some(0), "what was judged is kept");

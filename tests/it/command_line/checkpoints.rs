@@ -87,7 +87,7 @@ fn a_damaged_manifest_is_refused() {
         write(&checkpoint, "manifest.json", text);
         for (line, code) in [(RESUME, 2), ("merge half --out whole", 1)] {
             let err = ask(folder.path(), line).refusal(code);
-            let told = if line == RESUME { "its manifest.json is none of this program" } else { "the manifest is damaged" };
+            let told = if line == RESUME { "its manifest.json was not written by this program" } else { "the manifest is damaged" };
             assert!(err.contains(told) && err.contains("half"), "{line}: {err}");
         }
     }
@@ -98,7 +98,7 @@ fn a_damaged_manifest_is_refused() {
     }
 }
 
-/// A wrong digit keeps the file readable, but designs would be counted twice, left out or judged by another study without a word.
+/// With a wrong digit the file is still readable, but designs would silently be counted twice, left out or judged by another study.
 #[test]
 fn a_manifest_with_a_wrong_digit_never_leads_to_a_wrong_result() {
     let (folder, _) = half();
@@ -211,11 +211,11 @@ fn an_unfinished_shard_is_refused_until_it_is_finished() {
     child.kill().expect("it is still running");
     child.wait().expect("it can be waited for");
     let err = ask(folder.path(), "merge s --out whole").refusal(2);
-    assert!(err.contains("s (shard 1/1) has") && err.contains("designs to go") && err.contains("--resume"), "{err}");
+    assert!(err.contains("s (shard 1/1) has") && err.contains("designs left to judge") && err.contains("--resume"), "{err}");
     assert!(!folder.path().join("whole").exists());
 }
 
-/// Shards may be as many as a number can say; what is missing is told in a few words.
+/// The number of shards may be as large as a number can be; the message about missing ones is short all the same.
 #[test]
 fn a_set_that_lacks_most_of_its_shards_is_refused_in_a_few_words() {
     let folder = folder_with(

@@ -1,4 +1,4 @@
-//! Lines over maps: every vertex held against the model in every scenario.
+//! Contours of maps: every vertex is compared with the model in every scenario.
 
 use super::{Csv, Files, ask, changed, files, folder_with, same_result};
 use beltspace::models::{Worse, evaluate};
@@ -195,7 +195,7 @@ fn lines_end_where_their_quantity_has_no_value() {
     assert!(stress.len() > 9);
     let largest = stress.iter().map(|row| traction(row)).fold(0.0, f64::max);
     assert!(largest < 0.79, "{largest}: it ends before the edge of the map");
-    // Constraints are not asked.
+    // Constraints play no role.
     assert!(rows(slip, "traction", "0.5").iter().any(|row| value("slip_margin", row) < Some(0.0)));
 }
 
@@ -242,7 +242,7 @@ fn a_map_with_lines_is_the_same_however_it_is_made() {
     assert!(picture.contains("slip margin = 0, 0.1, 0.2") && picture.contains("stress margin = 0, 0.05"), "the legend names the lines");
     assert!(!text("map-feasible_share-2.svg").contains("axial force"), "only the map that asked for lines has them");
 
-    // Another study into the same place: what the first one wrote goes.
+    // Another study writes into the same directory: the files of the first one are removed.
     let none = changed(PULLEY, &["{ of = \"friction_margin\", at = [0] }, 1500"].map(|it| (it, "1e9")));
     super::write(folder.path(), "none.toml", &none);
     run("sweep none.toml --out one --force");

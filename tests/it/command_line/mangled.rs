@@ -1,4 +1,5 @@
-//! Files that somebody changed, by accident or on purpose, and things that are no files: refused by name, soon, and in few words.
+//! Files that were changed by accident or on purpose, and things that are not files, are refused quickly, with a short message that names
+//! them.
 
 use super::report::{columns_of, data_of};
 use super::{Answer, SMALL, ask, changed, folder_with, json_of, program, read, write};
@@ -59,7 +60,7 @@ fn errors_of_a_study_are_few_and_short_whatever_it_says() {
     };
     let bad = "\"x\", ".repeat(100_000);
     let said = check("torque_Nm = [50, 150]", &format!("torque_Nm = [{bad}]"));
-    assert!(said.contains("there may be more problems than these 100; mend them first"), "{said}");
+    assert!(said.contains("there may be more problems than these 100; correct them first"), "{said}");
     let digits = "9".repeat(400);
     for (from, to) in [
         ("friction  = [0.065, 0.095]", format!("friction = [{digits}]")),
@@ -89,7 +90,7 @@ fn errors_of_a_study_are_few_and_short_whatever_it_says() {
     assert!(said.contains("there are 102; at most 100 fit on a page"), "{said}");
 }
 
-/// Neither a title nor a name brings a terminal to do anything.
+/// Neither a title nor a name can send control sequences to a terminal.
 #[test]
 fn what_a_terminal_would_obey_is_shown_instead() {
     let title = r#"title = "\u001b[31mred\u0007\u0000x\n\rline2\u202e""#;
@@ -103,7 +104,7 @@ fn what_a_terminal_would_obey_is_shown_instead() {
     assert!(harmless(&said), "{said:?}");
 }
 
-/// Of every row its line is known: to look for that in the whole line each time would take minutes.
+/// Every problem has its line number; finding it by reading the whole file for each row would take minutes.
 #[test]
 fn a_long_line_is_read_soon() {
     let cases: String = (1..=120_000).map(|torque| format!("{{ torque_Nm = {torque} }},")).collect();
@@ -141,7 +142,7 @@ fn cells_that_no_result_has_are_refused() {
     let said = spoil("front.csv", "band_count", "+9");
     assert!(said.contains("band_count of design") && said.contains("is +9, and the study gives"), "{said}");
     for to in ["inf", "nan", "1e999", "1 "] {
-        assert!(spoil("front.csv", "axial_force_N", to).contains("is no number"));
+        assert!(spoil("front.csv", "axial_force_N", to).contains("is not a number"));
     }
     spoil("top.csv", "design_index", "99999999");
     spoil("top.csv", "band_count", "8.5");
@@ -187,7 +188,7 @@ fn a_forged_description_is_held_to_what_a_study_file_is() {
         *described.pointer_mut(path).unwrap_or_else(|| panic!("there is no {path}")) = to;
         write(folder.path(), "r/study.json", &described.to_string());
         let said = refused_soon(folder.path(), "report r");
-        assert!(said.contains("r/study.json: not a study that this version describes: "), "{said}");
+        assert!(said.contains("r/study.json: this version does not understand its study: "), "{said}");
         said
     };
     let two_to_the_53 = serde_json::json!(1u64 << 53);
@@ -299,7 +300,7 @@ fn a_picture_with_more_than_a_picture_is_refused() {
     ] {
         write(folder.path(), "r/knee-section.svg", &format!("{open}{inside}</svg>\n"));
         let said = ask(folder.path(), "report r").refusal(2);
-        assert!(said.contains("r/knee-section.svg: no picture of this program: ") && said.contains(told), "{said}");
+        assert!(said.contains("r/knee-section.svg: not a picture of this program: ") && said.contains(told), "{said}");
     }
     write(folder.path(), "r/knee-section.svg", &format!("{open}<rect x=\"1\" fill=\"#0072B2\"/></svg>\n"));
     ask(folder.path(), "report r").text();

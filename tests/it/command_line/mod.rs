@@ -4,15 +4,15 @@
 mod budget;
 /// Checkpoints and shards that must not be used.
 mod checkpoints;
-/// Lines over maps, held against the models.
+/// Contours of maps, compared with the models.
 mod contours;
-/// What was changed, and what is no file.
+/// Files that were changed, and things that are not files.
 mod mangled;
 /// Judging every design, or bounding boxes of them.
 mod method;
 /// `models` and `eval`.
 mod models_and_eval;
-/// Who a directory belongs to, and what in it is whose.
+/// Which process uses a directory, and which files in it are beltspace's.
 mod ownership;
 /// Interrupted, divided and resumed runs.
 mod recovery;
@@ -20,12 +20,12 @@ mod recovery;
 mod report;
 /// A sample of the feasible designs.
 mod sample;
-/// Scripts for a cluster, run by programs that stand in for its scheduler.
+/// Scripts for a cluster, run by programs that imitate its scheduler.
 #[cfg(unix)]
 mod slurm;
 /// `check`, `sweep` and the result directory.
 mod sweep;
-/// Requests that cannot be met.
+/// Wrong requests.
 mod wrong_requests;
 
 use std::collections::BTreeMap;
@@ -84,7 +84,7 @@ fn large() -> String {
     larger(41)
 }
 
-/// A study with other words in place of some of its own, all of which must be there.
+/// A study with some texts replaced, all of which must be there.
 fn changed(study: &str, edits: &[(&str, &str)]) -> String {
     edits.iter().fold(study.to_owned(), |text, (from, to)| {
         assert!(text.contains(from), "the study has no {from}");
@@ -121,7 +121,7 @@ impl Answer {
         serde_json::from_str(&self.text()).expect("--json prints JSON")
     }
 
-    /// What a command complained of that must have failed with `code` and printed no result.
+    /// The message of a command that must have failed with `code` and printed no result.
     #[track_caller]
     fn refusal(self, code: i32) -> String {
         assert_eq!((self.code, self.out.as_str()), (Some(code), ""), "{}", self.err);
@@ -178,7 +178,7 @@ fn files(folder: &Path) -> Files {
     entries.map(read).collect()
 }
 
-/// Are these the same result? `run.json` says how it came about and the page shows that; they may differ, but must be there.
+/// Are these the same result? `run.json` and the page, which describe the run, may differ, but must be there.
 fn same_result(a: &Files, b: &Files) -> Result<(), String> {
     let mut problems = Vec::new();
     for name in a.keys().chain(b.keys().filter(|name| !a.contains_key(*name))) {
@@ -196,19 +196,19 @@ fn same_result(a: &Files, b: &Files) -> Result<(), String> {
     }
     for (files, which) in [(a, "first"), (b, "second")] {
         if !files.contains_key("summary.json") || !files.contains_key("run.json") {
-            problems.push(format!("the {which} is no finished result"));
+            problems.push(format!("the {which} is not a finished result"));
         }
     }
     if problems.is_empty() { Ok(()) } else { Err(problems.join("; ")) }
 }
 
-/// What one undisturbed run of [`SMALL`] writes.
+/// The files of one undisturbed run of [`SMALL`].
 fn small_result() -> &'static Files {
     static FILES: OnceLock<Files> = OnceLock::new();
     FILES.get_or_init(|| plain_run(SMALL))
 }
 
-/// What one undisturbed run of [`large`] writes.
+/// The files of one undisturbed run of [`large`].
 fn large_result() -> &'static Files {
     static FILES: OnceLock<Files> = OnceLock::new();
     FILES.get_or_init(|| plain_run(&large()))
@@ -271,7 +271,7 @@ fn the_comparison_of_results_sees_a_changed_byte_and_a_missing_file() {
     assert_eq!(spoilt(|files| drop(files.remove("front.parquet"))), "front.parquet is only in the first");
     assert_eq!(spoilt(|files| drop(files.insert(".x.writing".to_owned(), Some(Vec::new())))), ".x.writing is only in the second");
     assert_eq!(spoilt(|files| drop(files.insert("checkpoint".to_owned(), None))), "checkpoint is a folder");
-    assert!(spoilt(|files| drop(files.remove("run.json"))).ends_with("the second is no finished result"));
+    assert!(spoilt(|files| drop(files.remove("run.json"))).ends_with("the second is not a finished result"));
     let mut other = good.clone();
     other.insert("run.json".to_owned(), Some(b"other".to_vec()));
     assert_eq!(same_result(good, &other), Ok(()), "run.json may differ");

@@ -1,4 +1,4 @@
-//! `models` and `eval`: what there is, and one design at a time.
+//! `models` and `eval`: the list of models, and single designs.
 
 use super::{Csv, SMALL, ask, ask_words, folder_with, json_of, read, write};
 use serde_json::{Value, json};
@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use tempfile::tempdir;
 
-/// Name, inputs with their defaults, outputs: what the interface promises.
+/// Name, inputs with their defaults, outputs: a part of the public interface.
 const MODELS: [(&str, &str, &str); 5] = [
     (
         "rubber-cvt",
@@ -168,7 +168,7 @@ fn outputs_without_a_meaning_are_absent() {
     assert_eq!(lifted["status"], "belt lifts");
     let kept = ["belt_speed_m_per_s", "tight_tension_N", "effective_tension_N", "centrifugal_tension_N", "torque_Nm"];
     assert_eq!(keys(&lifted["outputs"]), kept);
-    // An impossible section leaves what the belt alone gives, and a sentence that says what is wrong.
+    // With an impossible section only the belt's outputs have values, and a note says what is wrong.
     let bent = ask(here(), "eval pulley --set fold_radius_mm=1.8 --json");
     assert!(bent.err.contains("the inside radius of bend D would be 0 mm"), "{}", bent.err);
     let bent = bent.json();
@@ -191,7 +191,7 @@ fn values_may_be_set_in_other_units_and_words() {
     assert_eq!(set["outputs"]["slip_margin"], 0);
     let table = ask(here(), "eval rubber-cvt --set traction=limit").text();
     assert!(table.lines().any(|line| line.split_whitespace().take(2).eq(["traction", "limit"])), "{table}");
-    // Beyond what the source covers the program computes, and says so.
+    // Outside of the range that the source covers the program computes, with a note.
     let far = ask(here(), "eval rubber-cvt --set friction=0.9");
     assert!(far.err.contains("friction = 0.9 lies outside 0.3 to 0.5"), "{}", far.err);
     assert_eq!(far.code, Some(0));
@@ -203,14 +203,14 @@ fn all_wrong_settings_are_named_at_once() {
         ["eval", "metal-cvt", "--set", "ratio=-1", "--set", "grove_angle_deg=3", "--set", "band_count=2.5", "--set", "torque_Nm=3 lbf"];
     let err = ask_words(here(), &[&words[..], &["--set", "slip_margin=1", "--set", "x", "--set", "traction=-1"]].concat()).refusal(2);
     for expected in [
-        "ratio = -1 is out of range; it is greater than 0",
+        "ratio = -1 is out of range; it must be greater than 0",
         "grove_angle_deg is no input of metal-cvt; did you mean groove_angle_deg?",
         "band_count = 2.5 must be a whole number",
         "torque_Nm: \"lbf\" measures a force, but a torque is wanted",
         "slip_margin is an output of metal-cvt",
         "--set \"x\": write NAME=VALUE",
         // The number that stands for the word inside the program means nothing outside.
-        "traction = -1 is out of range; it is at least 0 and less than 1, or \"limit\"",
+        "traction = -1 is out of range; it must be at least 0 and less than 1, or \"limit\"",
     ] {
         assert!(err.contains(expected), "{expected} is missing in\n{err}");
     }
@@ -260,7 +260,7 @@ fn values_along_the_belt_rise_from_slack_to_tight() {
     assert!(nests(&svg) && svg.contains("tension"), "{}", &svg[..svg.len().min(400)]);
     for model in ["metal-cvt", "rubber-cvt"] {
         let err = ask(folder.path(), &format!("eval {model} --profile none.csv")).refusal(2);
-        assert!(err.contains("models that have: timing-belt, pulley-load"), "{err}");
+        assert!(err.contains("models that have them: timing-belt, pulley-load"), "{err}");
     }
     let err = ask(folder.path(), "eval pulley-load --set slack_tension_N=20 --plot none.svg").refusal(2);
     assert!(err.contains("belt lifts") && !folder.path().join("none.svg").exists(), "{err}");

@@ -1,4 +1,4 @@
-//! Who a directory belongs to, and what in it is whose: one owner at a time, and nothing of anybody else is touched.
+//! One process at a time uses a directory, and no file that beltspace did not write is touched.
 
 use super::{Answer, SMALL, ask, ask_words, files, folder_with, json_of, larger, program, read, same_result, small_result, write};
 use crate::random::Random;
@@ -9,7 +9,7 @@ use std::time::Duration;
 
 /// Studies that end in a moment and whose results have different fronts.
 const RACERS: u32 = 6;
-/// Processes that are let loose on one directory in a round.
+/// Processes that compete for one directory in a round.
 const CROWD: usize = 14;
 
 /// Everything below a folder: links as what they point to, folders as nothing, files as what is in them.
@@ -52,14 +52,14 @@ fn a_folder_named_checkpoint_that_is_not_ours_is_never_touched() {
     for out in ["project", "linked", "dangling", "web"] {
         for option in ["", "--force", "--resume", "--shard 1/2", "--shard 1/2 --force"] {
             let err = ask(folder.path(), &format!("sweep small.toml --out {out} {option}")).refusal(2);
-            let told = format!("{out}/checkpoint would be the folder of the checkpoint, but it is not one of this program");
+            let told = format!("{out}/checkpoint is where the checkpoint would be, but this program did not write it");
             assert!(err.contains(&told) && err.contains("move it away"), "{out} {option}: {err}");
         }
         assert_eq!(tree(folder.path()), before, "{out}");
     }
     ask(folder.path(), "sweep small.toml --shard 1/1 --out shard").text();
     let err = ask(folder.path(), "merge shard --out project --force").refusal(2);
-    assert!(err.contains("project/checkpoint would be"), "{err}");
+    assert!(err.contains("project/checkpoint is where the checkpoint would be"), "{err}");
 }
 
 #[cfg(unix)]
@@ -79,7 +79,7 @@ fn files_of_others_are_never_replaced_not_even_by_force() {
         assert!(err.contains("did not write") && err.contains(names), "{option}: {err}");
         assert_eq!(tree(folder.path()), before, "{option}");
     }
-    // Into a result of ours a file of somebody else's may have come since.
+    // A file of another program may have been put into a result since.
     let plain = super::changed(SMALL, &[("top = { by = \"axial_force_N\", count = 20 }\n", "")]);
     write(folder.path(), "plain.toml", &plain);
     ask(folder.path(), "sweep plain.toml --out result").text();
@@ -126,7 +126,7 @@ fn a_reproduction_replaces_nothing_but_a_reproduction() {
     let folder = folder_with("README.md", "mine");
     for force in ["", "--force"] {
         let err = ask(folder.path(), &format!("reproduce --out . --quiet --no-report {force}")).refusal(2);
-        assert!(err.contains(". has files that would be replaced (README.md); this program did not write them"), "{err}");
+        assert!(err.contains(". has files that would be replaced (README.md); beltspace did not write them"), "{err}");
     }
     assert_eq!(tree(folder.path()), BTreeMap::from([("README.md".to_owned(), "mine".to_owned())]));
 }
@@ -153,7 +153,7 @@ fn a_bad_place_for_a_result_is_named_with_what_to_do() {
     let cases = [
         ("small.toml/out", "the directory small.toml/out cannot be made: not a directory"),
         ("/proc/nothing/out", "the directory /proc/nothing/out cannot be made: "),
-        ("/", "/ has no directory around it"),
+        ("/", "/ has no parent directory for its lock"),
         (long.as_str(), "(File name too long"),
     ];
     for (out, told) in cases.into_iter().filter(|_| cfg!(target_os = "linux")) {
@@ -174,7 +174,7 @@ fn a_directory_that_disappears_during_a_run_is_told() {
     }
     std::fs::rename(&out, folder.path().join("moved")).expect("it can be moved");
     let err = Answer::from(child.wait_with_output().expect("the output can be read")).refusal(1);
-    assert!(err.contains("results/large: it was removed or moved away while this program was writing to it"), "{err}");
+    assert!(err.contains("results/large: it was removed or moved while this program was writing to it"), "{err}");
     assert!(!out.exists() && folder.path().join("moved/checkpoint/manifest.json").exists(), "what was moved is whole");
 }
 
@@ -186,12 +186,12 @@ fn locks_are_gone_when_nobody_holds_them() {
         ask(folder.path(), line).text();
         assert!(tree(folder.path()).keys().all(|name| !name.contains("lock")), "{line}");
     }
-    // A refusal takes back what was made for it.
+    // A refusal removes the directories that were made for it.
     ask(folder.path(), "sweep small.toml --out c/d --perturb axial_force_N=1 --engine cpu").refusal(2);
     assert!(!folder.path().join("c").exists());
 }
 
-/// Whoever begins without `--force` replaces nothing, however shortly before it another run has finished.
+/// A run without `--force` replaces nothing, even if another run has finished just before it.
 #[test]
 fn a_result_that_was_finished_meanwhile_is_not_replaced_without_force() {
     let folder = folder_with("one.toml", SMALL);
@@ -210,7 +210,11 @@ fn a_result_that_was_finished_meanwhile_is_not_replaced_without_force() {
         let (won, lost, name) = if one.code == Some(0) { (one, two, "Small") } else { (two, one, "Two") };
         assert_eq!((won.code, title), (Some(0), name.into()), "round {round}: {}", won.err);
         assert_ne!(lost.code, Some(0), "round {round}: both have finished");
-        assert!(lost.err.contains("is at work here") || lost.err.contains("holds a finished result"), "round {round}: {}", lost.err);
+        assert!(
+            lost.err.contains("is using this directory") || lost.err.contains("holds a finished result"),
+            "round {round}: {}",
+            lost.err
+        );
         first += u32::from(name == "Small");
         second += u32::from(name == "Two");
     }
@@ -257,11 +261,11 @@ fn a_crowd_on_one_directory_leaves_one_whole_result() {
         let mut finished = 0;
         for (line, child) in crowd {
             let answer = Answer::from(child.wait_with_output().expect("the output can be read"));
-            // What may be told: somebody is at work, or what was there when it was one's turn.
+            // Possible messages: another process is using the directory, or what was there when this process got it.
             let told = [
-                (1, "another beltspace is at work here"),
+                (1, "another beltspace is using this directory"),
                 (2, "holds a finished result; replace it with --force"),
-                (2, "is no directory; name the one that"),
+                (2, "is not a directory; name the one that"),
             ];
             let how = match answer.code {
                 Some(0) => "done",
@@ -278,7 +282,7 @@ fn a_crowd_on_one_directory_leaves_one_whole_result() {
     assert!(seen.len() >= 2, "nobody was in anybody's way: {seen:?}");
 }
 
-/// What is in the result directory belongs together.
+/// All files of the result directory belong to the same result.
 fn whole_result_of_one_study(folder: &Path, round: usize) {
     let out = folder.join("out");
     let summary = json_of(&out.join("summary.json"));

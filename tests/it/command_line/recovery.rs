@@ -1,4 +1,4 @@
-//! Runs that are divided, interrupted and taken up again: always the same result.
+//! Runs that are divided, interrupted and resumed always give the same result.
 
 use super::{
     Files, SMALL, ask, ask_words, files, folder_with, json_of, large, large_result, larger, plain_run, program, same_result, small_result,
@@ -32,9 +32,9 @@ fn wait_until(child: &mut Child, is_so: impl Fn() -> bool) -> bool {
     panic!("nothing happened for {PATIENCE:?}");
 }
 
-/// SIGKILL, or its like.
+/// SIGKILL, or the equivalent of the system.
 fn kill(child: &mut Child) {
-    // A process that has just ended cannot be killed, which is as good.
+    // It is no error if the process has just ended.
     let _ = child.kill();
     child.wait().expect("the process can be waited for");
 }
@@ -44,7 +44,7 @@ fn is_writing(name: &str) -> bool {
     name.starts_with('.') && name.ends_with(".writing")
 }
 
-/// What a run that was killed may leave in its result directory: whole files, the mark of a finished result last.
+/// What a killed run may leave in its result directory: complete files, the mark of a finished result last.
 fn assert_nothing_is_half_written(out: &Path, plain: &Files) {
     let Ok(entries) = out.read_dir() else { return };
     let left: Files = if entries.count() > 0 { files(out) } else { return };
@@ -125,7 +125,7 @@ fn a_run_killed_again_and_again_ends_with_the_same_result() {
     let folder = folder_with("large.toml", &large());
     let out = folder.path().join("out");
     let plain = large_result();
-    // Machines differ in speed: a run's life is a share of what a whole one takes here and now.
+    // Machines differ in speed: a run is killed after a fraction of the time that a whole one takes here and now.
     let begun = Instant::now();
     plain_run(&large());
     let whole = begun.elapsed().as_millis() as usize;
@@ -134,7 +134,7 @@ fn a_run_killed_again_and_again_ends_with_the_same_result() {
     let cut_short = loop {
         let (threads, tile) = (1 + kills % 2, [65_536, 1000, 4096][kills % 3]);
         let mut child = start(folder.path(), &format!("sweep large.toml --out out --resume --threads {threads} --tile {tile}"));
-        // The first one hardly starts, every other one may save nothing; later ones live longer, so that this ends.
+        // The first run hardly starts, every other one may save nothing; later ones live longer, so that the loop ends.
         let patience = match kills {
             0 => random.whole(0, whole / 20),
             odd if odd % 2 == 1 => random.whole(whole / 6, whole / 5) + whole / 20 * kills,
@@ -161,7 +161,7 @@ fn a_run_killed_again_and_again_ends_with_the_same_result() {
     assert_eq!(run["origin"], "resumed from a checkpoint");
     assert!(run["designs"].as_u64() < json_of(&out.join("summary.json"))["designs"].as_u64(), "it began anew: {run}");
     let (mut expected, mut result) = (plain.clone(), files(&out));
-    // A kill after the mark of a finished result leaves one all the same, with the checkpoint still or without the page yet.
+    // A kill after the mark was written leaves a finished result, perhaps still with the checkpoint, or without the page.
     if cut_short {
         result.retain(|name, _| name != "checkpoint" && !is_writing(name));
         if !result.contains_key("report.html") {
@@ -299,7 +299,7 @@ fn two_runs_cannot_share_a_folder() {
         "report out",
     ] {
         let err = ask_words(folder.path(), &line.split_whitespace().collect::<Vec<_>>()).refusal(1);
-        assert!(err.contains("another beltspace is at work here") && err.contains(&who), "{line}: {err}");
+        assert!(err.contains("another beltspace is using this directory") && err.contains(&who), "{line}: {err}");
         assert!(err.contains("beltspace sweep large.toml --out out --threads 1); wait for it"), "{line}: {err}");
     }
     assert!(child.try_wait().expect("it can be asked").is_none(), "the first run must go on");
@@ -307,12 +307,12 @@ fn two_runs_cannot_share_a_folder() {
     kill(&mut child);
     let unfinished = ask(folder.path(), "sweep large.toml --out out").refusal(2);
     assert!(unfinished.contains("out holds an unfinished run"), "{unfinished}");
-    // The folder of a process that is gone is free.
+    // A directory is free when its process is gone.
     let err = ask(folder.path(), "merge out --out whole").refusal(2);
-    assert!(err.contains("designs to go"), "{err}");
+    assert!(err.contains("designs left to judge"), "{err}");
 }
 
-/// Where threads cannot be started, as where processes or memory are limited, those that can do the work.
+/// If not all threads can be started, because processes or memory are limited, the others do the work.
 #[cfg(target_os = "linux")]
 #[test]
 fn threads_that_cannot_be_had_are_done_without() {
@@ -325,7 +325,7 @@ fn threads_that_cannot_be_had_are_done_without() {
     };
     let answer = limited("small.toml --out out");
     assert_eq!(answer.code, Some(0), "{}", answer.err);
-    assert!(answer.err.contains("warning: 64 threads were wanted, and only ") && !answer.err.contains("panicked"), "{}", answer.err);
+    assert!(answer.err.contains("warning: 64 threads were asked for, but only ") && !answer.err.contains("panicked"), "{}", answer.err);
     let out = folder.path().join("out");
     let threads = json_of(&out.join("run.json"))["threads"].as_u64();
     assert!(threads.is_some_and(|it| (1..20).contains(&it)), "{threads:?}");

@@ -1,4 +1,4 @@
-//! `report.html`: written by `sweep` and `merge`, made again by `report`, and true to the result's files.
+//! `report.html`: written by `sweep` and `merge`, written again by `report`, and consistent with the result's files.
 
 use super::{SMALL, ask, changed, folder_with, read, write};
 use base64::Engine;
@@ -79,7 +79,7 @@ fn a_sweep_writes_a_page_that_says_what_the_tables_say() {
             assert_eq!(value.to_bits(), written.to_bits(), "{name} of row {row}");
         }
     }
-    // Every other output is what `eval` finds to be its worst.
+    // Every other output has the worst value that `eval` finds.
     let at = rows.len() / 2;
     let single = ask(folder.path(), &format!("eval small.toml --design {} --json", &rows[at][0])).json();
     let mut further = 0;
@@ -164,11 +164,11 @@ fn what_is_no_result_or_was_changed_is_refused_by_name() {
     std::fs::create_dir(folder.path().join("empty")).expect("a folder can be made");
     let said = ask(folder.path(), "report empty").refusal(2);
     assert!(
-        said.contains("empty is no finished result: it has no summary.json; name the directory that `beltspace sweep` wrote"),
+        said.contains("empty is not a finished result: it has no summary.json; name the directory that `beltspace sweep` wrote"),
         "{said}"
     );
     let said = ask(folder.path(), "report nowhere").refusal(2);
-    assert!(said.contains("nowhere is no directory"), "{said}");
+    assert!(said.contains("nowhere is not a directory"), "{said}");
 
     ask(folder.path(), "sweep small.toml --out r --no-report").text();
     let front = folder.path().join("r/front.csv");
@@ -191,7 +191,7 @@ fn what_is_no_result_or_was_changed_is_refused_by_name() {
     let study = read(&folder.path().join("r/study.json"));
     write(folder.path(), "r/study.json", &study.replace("\"count\": 13", "\"count\": 14"));
     let said = ask(folder.path(), "report r").refusal(2);
-    assert!(said.contains("summary.json: it is the summary of another study"), "{said}");
+    assert!(said.contains("summary.json: it belongs to another study"), "{said}");
     assert!(!folder.path().join("r/report.html").exists(), "nothing half-written");
 }
 
@@ -267,7 +267,7 @@ fn a_page_replaces_nothing_but_a_page_and_leaves_nothing_behind() {
     assert_eq!(read(&folder.path().join("mine.html")), "<p>mine</p>");
     ask(folder.path(), "report r --out mine.html --force").text();
     ask(folder.path(), "report r --out mine.html").text();
-    // A write that fails takes what it had begun along.
+    // A failed write leaves no temporary file behind.
     std::fs::create_dir(folder.path().join("full")).expect("a folder can be made");
     std::os::unix::fs::symlink("/dev/full", folder.path().join("full/late.html")).expect("links can be made");
     let said = ask(folder.path(), "report r --out full/late.html").refusal(2);

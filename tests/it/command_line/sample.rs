@@ -1,4 +1,4 @@
-//! A sample of the feasible designs: its files, its place behind the front, and what was changed in them.
+//! A sample of the feasible designs: its files, its dots behind the front, and changed files.
 
 use super::report::data_of;
 use super::{SMALL, ask, changed, folder_with, read, write};

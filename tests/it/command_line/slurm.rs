@@ -1,4 +1,4 @@
-//! `slurm`: the scripts that it writes, run in order by a stand-in for the scheduler. With a real Slurm see `real`.
+//! `slurm`: the scripts that it writes, run in order by an imitation of the scheduler. For a real Slurm see `real`.
 
 /// A real Slurm.
 mod real;
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use tempfile::TempDir;
 
-/// Writes down its words and runs the script at once: as an array if it is one, and not if what it depends on has failed.
+/// Records its arguments and runs the script at once: as an array if it is one, and not at all if a job that it depends on has failed.
 const SCHEDULER: &str = r#"#!/bin/bash
 set -eu
 printf '%s\n' "$*" >> "$FAKE/asked"
@@ -47,7 +47,7 @@ echo "$state" > "$FAKE/jobs/$job"
 echo "$number"
 "#;
 
-/// A folder with programs that stand in for those of a scheduler.
+/// A folder with programs that imitate those of a scheduler.
 struct Cluster(TempDir);
 
 impl Cluster {
@@ -61,7 +61,7 @@ impl Cluster {
         Self(folder)
     }
 
-    /// Runs a script of that name, with the stand-ins in front of what is installed.
+    /// Runs a script of that name, with the imitations first in the PATH.
     fn bash(&self, script: &Path) -> Answer {
         let path = std::env::var_os("PATH").unwrap_or_default();
         let path = [self.0.path().to_owned()].into_iter().chain(std::env::split_paths(&path));
@@ -181,9 +181,7 @@ fn the_scripts_ask_for_what_the_user_asks_for() {
     let place = Place::new(SMALL);
     let line = "--shards 4 --shortest 0 --cpus 8 --memory 3000 --time 2:00:00 --option=--partition=long --program beltspace";
     let printed = place.ask(&format!("{line} -- --engine gpu --adapter a'b --no-report")).text();
-    for fact in
-        ["shards    4, about ", " each on 8 processors, measured over a moment", "8 processors, 3000 MB, at most 02:00:00 each; the merge"]
-    {
+    for fact in ["shards    4, about ", " each on 8 CPUs, measured over a moment", "8 CPUs, 3000 MB, at most 02:00:00 each; the merge"] {
         assert!(printed.contains(fact), "{fact}: {printed}");
     }
     let head = "#SBATCH --nodes=1\n#SBATCH --ntasks=1\n#SBATCH --cpus-per-task=8\n#SBATCH --mem=3000M\n#SBATCH --time=02:00:00\n";
@@ -238,7 +236,8 @@ fn a_shard_takes_minutes_and_not_seconds() {
     let place = Place::new(SMALL);
     let answer = place.ask("");
     assert!(
-        answer.err.starts_with("note: a single job would take about ") && answer.err.contains("beltspace sweep does it here"),
+        answer.err.starts_with("note: a single job would take about ")
+            && answer.err.contains("`beltspace sweep` on this machine is enough"),
         "{}",
         answer.err
     );
@@ -246,19 +245,19 @@ fn a_shard_takes_minutes_and_not_seconds() {
     let answer = place.ask("--shards 40 --force");
     let (short, long) = answer.err.split_once(" each; 1 shard of about ").unwrap_or_else(|| panic!("{}", answer.err));
     assert!(
-        short.starts_with("warning: 40 shards would take about ") && long.ends_with(" written (--shortest 0 keeps 40)\n"),
+        short.starts_with("warning: 40 shards would take about ") && long.ends_with(" written instead (--shortest 0 keeps 40)\n"),
         "{}",
         answer.err
     );
     assert!(place.script("shards.sh").contains("#SBATCH --array=1-1\n"));
-    // Bounds are done sooner than judging every design, and every shard would begin them anew.
+    // Bounds are faster than judging every design, and every shard would repeat their search.
     let fine = include_str!("../../../studies/metal-grid.toml").replace("count = 37", "count = 560");
     let place = Place::new(&fine);
     let answer = place.ask("");
     assert!(answer.err.starts_with("note: bounds settle boxes of designs at once") && answer.err.contains("one job is written"));
     assert!(answer.text().contains("\nshards    1, by bounds; every design would take about "));
     let answer = place.ask("--force --shards 3");
-    assert!(answer.err.contains("every shard looks for the front anew"), "{}", answer.err);
+    assert!(answer.err.contains("every shard searches for the whole front"), "{}", answer.err);
     assert!(answer.text().contains("\nshards    3, by bounds; every design would take about "));
     let answer = place.ask("--force -- --method exhaustive");
     assert!(!answer.err.contains("bounds") && !answer.text().contains("bounds"));
@@ -276,7 +275,7 @@ fn what_cannot_be_is_refused_and_writes_nothing() {
     let folder = folder_with("small.toml", SMALL);
     write(folder.path(), "endless.toml", &endless());
     write(folder.path(), "file", "");
-    let dear = "options for the sweep: ";
+    let refused = "options for the sweep: ";
     for (line, message) in [
         ("missing.toml", "cannot read study missing.toml: "),
         (
@@ -285,25 +284,25 @@ fn what_cannot_be_is_refused_and_writes_nothing() {
         ),
         (
             "endless.toml --shards 1001",
-            "--shards 1001: Slurm usually takes 1000 jobs as one array (MaxArraySize of scontrol show config, less one); ask for",
+            "--shards 1001: Slurm usually accepts 1000 jobs in one array (MaxArraySize of scontrol show config, less one); ask for",
         ),
         (
             "endless.toml --shards 10001 --pbs",
-            "PBS usually takes 10000 jobs as one array (max_array_size of qstat -Bf); ask for at most 10000, or say",
+            "PBS usually accepts 10000 jobs in one array (max_array_size of qstat -Bf); ask for at most 10000, or say",
         ),
         ("small.toml --time 90", "--time 90: a time limit is HH:MM:SS, such as 02:30:00"),
-        ("small.toml --option long", "--option \"long\": an option of the scheduler is one line that begins with a dash"),
+        ("small.toml --option long", "--option \"long\": an option for the scheduler is one line that begins with a dash"),
         ("small.toml --out file", "/file is a file; name a directory with --out"),
         ("small.toml --jobs file", "/file is a file; name a directory with --jobs"),
-        ("small.toml -- --threads 4", dear),
-        ("small.toml -- --force", dear),
+        ("small.toml -- --threads 4", refused),
+        ("small.toml -- --force", refused),
         (
             "small.toml -- --engine abacus",
-            "options for the sweep: invalid value 'abacus' for '--engine <ENGINE>'; behind -- stand options of sweep",
+            "options for the sweep: invalid value 'abacus' for '--engine <ENGINE>'; after -- give options of `beltspace sweep`",
         ),
-        ("small.toml -- other.toml", dear),
-        ("small.toml -- --help", dear),
-        ("small.toml -- --method bounds --engine gpu", "--method bounds judges on the processor, but --engine gpu was asked for"),
+        ("small.toml -- other.toml", refused),
+        ("small.toml -- --help", refused),
+        ("small.toml -- --method bounds --engine gpu", "--method bounds judges on the CPU, but --engine gpu was asked for"),
     ] {
         let err = ask(folder.path(), &format!("slurm {line}")).refusal(2);
         assert!(err.contains(message), "{line}: {err}");
@@ -324,7 +323,7 @@ fn scripts_results_and_shards_of_another_study_stay() {
     cluster.bash(&folder.path().join("results/small-jobs/submit.sh")).text();
     let err = ask("slurm small.toml --jobs other").refusal(2);
     assert!(err.contains("results/small holds a finished result; replace it with --force, or write to another --out"), "{err}");
-    // Shards of the same study are kept, those of another are not gone on with.
+    // Shards of the same study are kept; those of another study are not continued.
     let state = |number: u32| json_of(&folder.path().join(format!("results/small-jobs/shard-{number}-of-2/checkpoint/manifest.json")));
     let before = state(1);
     ask("slurm small.toml --shards 2 --shortest 0 --force --cpus 2").text();

@@ -70,14 +70,14 @@ fn a_result_has_all_its_files_and_columns() {
     let said = |key: &str| about.iter().find(|it| it.key == key).and_then(|it| it.value.clone()).expect("it is described");
     assert_eq!([said("band_count.role"), said("band_count.direction")], ["design, objective", "min"]);
 
-    // Objectives as "less is better"; best first, then index, and nobody beaten.
+    // Objectives as "less is better": sorted, best first, then by index, and no design is dominated.
     let index = front.numbers("design_index");
     let minus: Vec<_> = front.numbers("stress_margin").iter().map(|it| -it).collect();
     let (force, bands) = (front.numbers("axial_force_N"), front.numbers("band_count"));
     let points: Vec<_> = (0..index.len()).map(|row| [force[row], minus[row], bands[row], index[row]]).collect();
     assert!(points.windows(2).all(|pair| pair[0] < pair[1]), "the front is not in order");
     let beats = |a: &[f64; 4], b: &[f64; 4]| a[..3] != b[..3] && a[..3].iter().zip(&b[..3]).all(|(a, b)| a <= b);
-    assert!(!points.iter().any(|a| points.iter().any(|b| beats(a, b))), "a design of the front is beaten by another");
+    assert!(!points.iter().any(|a| points.iter().any(|b| beats(a, b))), "a design of the front is dominated by another");
 
     let top = Csv::read(&out.join("top.csv"));
     assert!(top.rows.len() == 20 && top.numbers("axial_force_N").is_sorted());
@@ -211,7 +211,7 @@ fn one_objective_has_one_best_design_and_a_resolution_thins_a_front() {
     let (front, top) = (Csv::read(&folder.path().join("single/front.csv")), Csv::read(&folder.path().join("single/top.csv")));
     assert_eq!(front.rows.len(), 1);
     assert_eq!(front.column("axial_force_N")[0], top.column("axial_force_N")[0]);
-    // Bands change the stress but not the force: many designs tie, and the lowest index stands for them.
+    // Bands change the stress but not the force: many designs are equal, and the one with the lowest index represents them.
     let ties = top.column("axial_force_N").iter().filter(|force| **force == front.column("axial_force_N")[0]).count();
     assert!(ties > 1, "there is nothing to break");
     assert_eq!(front.column("design_index")[0], top.column("design_index")[0]);
@@ -224,7 +224,7 @@ fn one_objective_has_one_best_design_and_a_resolution_thins_a_front() {
     let steps: Vec<_> = coarse.numbers("axial_force_N").iter().map(|force| (force / 1000.0).floor()).collect();
     let (margin, bands) = (coarse.numbers("stress_margin"), coarse.numbers("band_count"));
     let beats = |a: usize, b: usize| a != b && steps[a] <= steps[b] && margin[a] >= margin[b] && bands[a] <= bands[b];
-    assert!((0..steps.len()).all(|a| (0..steps.len()).all(|b| !beats(a, b))), "a design is beaten at this resolution");
+    assert!((0..steps.len()).all(|a| (0..steps.len()).all(|b| !beats(a, b))), "a design is dominated at this resolution");
 }
 
 #[test]
@@ -333,7 +333,7 @@ fn the_starter_of_every_model_has_a_front_worth_reading() {
     }
 }
 
-/// A value beyond what f64 holds is a status of its own: it is in no file, and no design with it is feasible.
+/// A value too large for f64 has a status of its own: it is in no file, and no design with it is feasible.
 #[test]
 fn a_value_that_overflows_is_a_status() {
     let study = "model = \"metal-cvt\"\n[design]\nelastic_modulus_MPa = [1e5, 1e290, 1e302, 1e305, 1.5e308]\n\

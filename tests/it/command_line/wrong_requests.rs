@@ -1,10 +1,10 @@
-//! Requests that cannot be met, and what every command says of itself.
+//! Wrong requests, and the help of every command.
 
 use super::{SMALL, ask, ask_words, folder_with, program, write};
 use std::io::Read;
 use std::process::Stdio;
 
-/// A command line, words in quotes being one, and what the message must say.
+/// A command line (quoted words are one argument), and what the message must contain.
 const WRONG: &[(&str, &str)] = &[
     ("", "Usage: beltspace <COMMAND>"),
     ("swep small.toml", "unrecognized subcommand 'swep'"),
@@ -17,7 +17,7 @@ const WRONG: &[(&str, &str)] = &[
     ("eval", "<MODEL|STUDY>"),
     ("eval steel-cvt", "unknown model \"steel-cvt\""),
     ("eval none.toml --design 0", "cannot read study none.toml"),
-    ("eval metal-cvt --design 3", "--design numbers the designs of a study, and metal-cvt is a model; use --set"),
+    ("eval metal-cvt --design 3", "--design is for studies, and metal-cvt is a model; use --set"),
     ("eval metal-cvt --design -3", "unexpected argument '-3'"),
     ("eval metal-cvt --scenario 3", "--design <N>"),
     ("eval metal-cvt --set", "a value is required for '--set <NAME=VALUE>'"),
@@ -31,16 +31,16 @@ const WRONG: &[(&str, &str)] = &[
     ("eval metal-cvt --set axial_force_N=3", "axial_force_N is an output of metal-cvt"),
     ("eval metal-cvt --set 'band_width_mm=3 furlong'", "unknown unit \"furlong\"; a length may be given in"),
     ("eval metal-cvt --set 'band_width_mm=3 kg/m'", "\"kg/m\" measures a mass per length, but a length is wanted"),
-    ("eval metal-cvt --set friction=-0.1", "friction = -0.1 is out of range; it is greater than 0"),
-    ("eval metal-cvt --set groove_angle_deg=180", "it is greater than 0 and less than 180"),
-    ("eval metal-cvt --set traction=1", "it is at least 0 and less than 1, or \"limit\""),
+    ("eval metal-cvt --set friction=-0.1", "friction = -0.1 is out of range; it must be greater than 0"),
+    ("eval metal-cvt --set groove_angle_deg=180", "it must be greater than 0 and less than 180"),
+    ("eval metal-cvt --set traction=1", "it must be at least 0 and less than 1, or \"limit\""),
     ("eval metal-cvt --set band_count=9.5", "band_count = 9.5 must be a whole number"),
     ("eval metal-cvt --set ratio=limit", "ratio: \"limit\" is not a number"),
     ("eval metal-cvt --preset sport", "metal-cvt has no preset \"sport\"; it has none"),
     ("eval metal-cvt --plot belt.svg", "metal-cvt has no values along the belt"),
     ("eval pulley --preset sport", "presets are: machined, welded-discs, double-groove, pressed-cup"),
     ("eval pulley --set section=4", "section takes words only"),
-    ("eval pulley --set section=cup", "it is \"machined\", \"welded-discs\", \"double-groove\" or \"pressed-cup\""),
+    ("eval pulley --set section=cup", "write \"machined\", \"welded-discs\", \"double-groove\" or \"pressed-cup\""),
     ("eval pulley --set fold_radius_mm=1.8 --plot none.svg", "the inside radius of bend D would be 0 mm"),
     ("eval small.toml", "which design? use --design N, from 0 to 12284"),
     ("eval small.toml --set friction=0.1", "--set and --preset are for models"),
@@ -52,7 +52,10 @@ const WRONG: &[(&str, &str)] = &[
     ("eval small.toml --design 0 --plot belt.svg", "add --scenario K, from 0 to 11"),
     ("eval small.toml --design 0 --scenario 0 --plot belt.svg", "metal-cvt has no values along the belt"),
     ("export pulley", "--calculix <DIR>"),
-    ("export metal-cvt --calculix deck", "metal-cvt has no finite elements to export; the model pulley has"),
+    (
+        "export metal-cvt --calculix deck",
+        "metal-cvt is not computed with finite elements, so there is nothing to export; the model pulley is",
+    ),
     ("export pulley --calculix deck --set fold_radius_mm=1.8", "there is nothing to export: the status is \"no section\""),
     ("export pulley.toml --calculix deck", "which design? use --design N, from 0 to "),
     ("check", "<STUDY>"),
@@ -86,10 +89,10 @@ const WRONG: &[(&str, &str)] = &[
     ("merge begun --out whole", "shard 2/2 is missing"),
     ("merge nowhere --out whole", "nowhere: there is no checkpoint here"),
     ("merge done --out whole", "done: there is no checkpoint here"),
-    ("sweep pulley.toml --engine gpu", "pulley is computed in f64 on the processor only; use --engine cpu"),
-    ("sweep pulley.toml --adapter llvmpipe", "pulley is computed in f64 on the processor only; use --engine cpu"),
+    ("sweep pulley.toml --engine gpu", "pulley is computed in f64 on the CPU only; use --engine cpu"),
+    ("sweep pulley.toml --adapter llvmpipe", "pulley is computed in f64 on the CPU only; use --engine cpu"),
     ("sweep pulley.toml --emit-shader pulley.wgsl", "it has no shader to write; leave --emit-shader out"),
-    ("verify pulley", "pulley is computed in f64 on the processor only; there is nothing on a GPU to compare with it"),
+    ("verify pulley", "pulley is computed in f64 on the CPU only; there is nothing on a GPU to compare with it"),
     ("verify pulley.toml", "there is nothing on a GPU to compare with it"),
     ("completions", "<SHELL>"),
     ("completions cmd", "invalid value 'cmd' for '<SHELL>'"),
@@ -118,7 +121,7 @@ fn every_wrong_request_exits_2_and_says_what_is_wrong() {
         if answer.code != Some(2) || !answer.err.contains(expected) || !answer.out.is_empty() {
             wrong += &format!("beltspace {line}\n  must say: {expected}\n  exit {:?}: {}{}\n", answer.code, answer.err, answer.out);
         }
-        // No Rust inside out: people read this.
+        // No Rust internals: people read this.
         let inside = ["panicked", "Error {", "Err(", "Some(", "unwrap"];
         if inside.iter().any(|word| answer.err.contains(word)) {
             wrong += &format!("beltspace {line}\n  shows its inside: {}\n", answer.err);
@@ -134,7 +137,7 @@ fn a_reader_that_goes_away_is_no_failure() {
     let folder = folder_with("small.toml", SMALL);
     for line in ["models metal-cvt", "models --json", "--help", "completions bash", "check small.toml", "sweep small.toml --out out"] {
         let mut child = program(folder.path(), &words(line)).spawn().expect("the program starts");
-        // Nobody reads at all.
+        // The output is never read.
         drop(child.stdout.take());
         let status = child.wait().expect("it can be waited for");
         let mut err = String::new();

@@ -1,4 +1,4 @@
-//! Error bounds: kept with a factor of four to spare, small enough to be of use, and their checkers not blind.
+//! The error bounds: at least four times as large as the errors, small enough to be of use, and checks that notice violations.
 
 use super::{device, shipped};
 use crate::physics::{Region, draw};
@@ -10,7 +10,7 @@ use beltspace::study::Study;
 use beltspace::verify::{Report, compare, points_of_model, points_of_study};
 use std::sync::Arc;
 
-/// What an error may take of its bound: a quarter.
+/// The largest fraction of its bound that an error may reach.
 const SPARE: f64 = 0.25;
 
 fn kernel(model: &Arc<Model>) -> PointKernel {
@@ -27,7 +27,7 @@ fn assert_kept(report: &Report, what: &str) {
 }
 
 #[test]
-fn every_output_of_every_model_keeps_its_error_bound_four_times_over() {
+fn no_error_of_any_output_exceeds_a_quarter_of_its_bound() {
     for model in models::all().iter().filter(|model| model.shader.is_some()) {
         let kernel = kernel(model);
         let report = compare(&kernel, model, &[], &points_of_model(model, 150_000, 1)).expect("the device works");
@@ -36,7 +36,7 @@ fn every_output_of_every_model_keeps_its_error_bound_four_times_over() {
             assert!(it.values > 10_000, "{}: only {} values of {}", model.name, it.values, it.name);
             // A quarter of the points lie on a boundary, where some things become infinite.
             assert!(it.unbounded * 20 < it.values, "{}: {} of {} have no bound", model.name, it.unbounded, it.name);
-            assert!(it.median_promise < 1e-4, "{}: {} has a bound of {:e}", model.name, it.name, it.median_promise);
+            assert!(it.median_bound < 1e-4, "{}: the error bound of {} is {:e}", model.name, it.name, it.median_bound);
         }
         assert!(report.unsure * 10 < report.points, "{}: {} unsure of {}", model.name, report.unsure, report.points);
         assert!(report.unsure > 100, "{}: points on both sides of a boundary are unsure", model.name);
@@ -70,7 +70,7 @@ fn with(text: &str, piece: &str, other: &str) -> String {
 }
 
 #[test]
-fn a_device_that_flushes_reciprocals_keeps_its_error_bounds() {
+fn a_device_that_flushes_reciprocals_keeps_the_error_bounds() {
     // As some hardware divides: by a product with the reciprocal, which is flushed to zero for divisors above 2^126. No model comes
     // near the other end, 2^-126, for which src/tape/error_bound.rs has a test.
     let flushed = "let inverse = 1.0 / b.value;\n    let quotient = a.value * select(inverse, 0.0, abs(inverse) < FLUSH);";

@@ -1,4 +1,4 @@
-//! Every checker is shown a wrong answer and must object.
+//! Every check is given a wrong answer and must notice it.
 
 use super::{Prepared, SMALL, device, larger, wrong};
 use beltspace::error::Error;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// A comparison with a kernel that has another piece of text in place of one of its own.
 fn compared(model: &Arc<Model>, piece: &str, other: &str) -> Report {
-    let source = PointKernel::source(model, &[]).expect("it is computed on a GPU");
+    let source = PointKernel::source(model, &[]).expect("it has a GPU implementation");
     assert!(source.contains(piece), "the kernel of {} has no {piece}", model.name);
     let kernel = PointKernel::from_source(&device().device, model, &source.replace(piece, other)).expect("it compiles all the same");
     compare(&kernel, model, &[], &points_of_model(model, 20_000, 3)).expect("the device works")
@@ -19,7 +19,7 @@ fn compared(model: &Arc<Model>, piece: &str, other: &str) -> Report {
 
 fn assert_objects(report: &Report, what: &str) {
     let error = report.require().expect_err(what);
-    assert!(matches!(&error, Error::Promise(_)), "{what}: {error}");
+    assert!(matches!(&error, Error::ErrorBound(_)), "{what}: {error}");
 }
 
 #[test]
@@ -65,14 +65,14 @@ fn every_output_that_is_perturbed_is_named() {
     for model in models::all().iter().filter(|model| model.shader.is_some()) {
         let points = points_of_model(model, 4000, 4);
         let clean = compare(&PointKernel::new(&device().device, model, &[]).expect("it compiles"), model, &[], &points).expect("it works");
-        // All at once: each must be noticed by itself. Whole numbers have no error.
-        let perturb: Vec<_> = clean.outputs.iter().enumerate().map(|(output, it)| (output, (4.0 * it.median_promise).max(1e-6))).collect();
+        // All at once: each must be noticed by itself. The error bound of a whole number is 0.
+        let perturb: Vec<_> = clean.outputs.iter().enumerate().map(|(output, it)| (output, (4.0 * it.median_bound).max(1e-6))).collect();
         let kernel = PointKernel::new(&device().device, model, &perturb).expect("it compiles");
         let report = compare(&kernel, model, &[], &points).expect("it works");
         for it in &report.outputs {
             let example = it.example.as_deref().unwrap_or_else(|| panic!("{}: {} was not noticed", model.name, it.name));
             assert!(
-                example.starts_with(&it.name) && example.contains("the GPU gives") && example.contains("more than the error bound"),
+                example.starts_with(&it.name) && example.contains("the GPU gives") && example.contains("more than the error bound of"),
                 "{example}"
             );
         }
@@ -87,7 +87,7 @@ fn refused(piece: &str, other: &str) -> String {
 
 fn message(on: &OnDevice, what: &str) -> String {
     match Prepared::parse(&larger()).on(on) {
-        Err(Error::Promise(message)) => message,
+        Err(Error::ErrorBound(message)) => message,
         Err(other) => panic!("{what}: {other}"),
         Ok(_) => panic!("{what}: nobody objects"),
     }

@@ -96,11 +96,11 @@ fn the_kernel_can_be_read() {
 }
 
 #[test]
-fn verify_says_how_accurate_the_device_is_and_whether_the_promise_holds() {
+fn verify_says_how_accurate_the_device_is_and_whether_the_error_bounds_hold() {
     let folder = folder();
     let (code, page, error) = ask(folder.path(), "verify pulley-load --samples 20000");
     assert_eq!(code, Some(0), "{error}");
-    assert!(page.contains("resultant_force_N") && page.contains("the promise was kept everywhere"), "{page}");
+    assert!(page.contains("resultant_force_N") && page.contains("all error bounds hold"), "{page}");
     let (code, json, _) = ask(folder.path(), "verify small.toml --samples 20000 --seed 9 --json");
     let json: serde_json::Value = serde_json::from_str(&json).expect("it is JSON");
     assert_eq!((code, &json["kept"], &json["points"]), (Some(0), &true.into(), &20_000.into()));
@@ -113,7 +113,7 @@ fn a_perturbed_kernel_fails_by_name_and_leaves_no_result() {
     let folder = folder();
     let (code, page, error) = ask(folder.path(), "verify small.toml --samples 20000 --perturb axial_force_N=3e-5");
     assert_eq!(code, Some(1), "{error}");
-    assert!(page.contains("the promise was broken") && error.contains("axial_force_N: the GPU gives"), "{page}{error}");
+    assert!(page.contains("an error bound or a decision is wrong") && error.contains("axial_force_N: the GPU gives"), "{page}{error}");
     let (code, out, error) = ask(folder.path(), "sweep small.toml --engine gpu --perturb axial_force_N=3e-5 --out wrong");
     assert_eq!((code, out.as_str()), (Some(1), ""));
     for words in ["axial_force_N of design", "the GPU gives", "f64 gives", "more than the error bound", "--resume --engine cpu"] {
@@ -131,7 +131,7 @@ fn wrong_requests_about_devices_exit_2_and_say_what_there_is() {
         ("verify metal-cvt --adapter abacus", "no adapter's name contains \"abacus\""),
         ("sweep small.toml --engine cpu --adapter llvm", "--adapter names a GPU, but --engine cpu was asked for"),
         ("sweep small.toml --perturb axial_force_N=1", "needs --engine gpu"),
-        ("sweep small.toml --engine gpu --perturb axial_force_N", "write OUTPUT=PART"),
+        ("sweep small.toml --engine gpu --perturb axial_force_N", "write OUTPUT=FRACTION"),
         ("sweep small.toml --engine gpu --perturb farce=1", "metal-cvt has no output \"farce\""),
         ("verify farce", "unknown model \"farce\""),
         ("verify metal-cvt --samples 0", "0 is not in 8..=100000000"),
@@ -158,7 +158,7 @@ fn without_a_driver_the_processor_does_the_work_and_asking_for_a_gpu_is_refused(
     assert_eq!(ask_without_driver(folder.path(), "sweep small.toml --out auto --quiet").0, Some(0));
 }
 
-/// What f32 does not hold is for f64: a device says so, and where none was asked for by name the CPU does it.
+/// Values too large for f32 need f64: a device refuses them, and if none was asked for by name the CPU takes over.
 #[test]
 fn numbers_beyond_f32_are_left_to_the_processor() {
     let design = "model = \"metal-cvt\"\n[design]\nratio = { from = 0.5, to = 2, count = 50 }\n";

@@ -1,4 +1,4 @@
-//! The device against the CPU: the same answers, however a sweep is cut, interrupted or handed over.
+//! The device compared with the CPU: the same answers, however a sweep is divided, interrupted or continued on the other engine.
 
 use super::{Prepared, SMALL, assert_same, device, larger, open, shipped, wrong};
 use beltspace::checkpoint::{Checkpoint, Saved};
@@ -209,7 +209,7 @@ fn a_lost_device_leaves_a_checkpoint_from_which_either_engine_goes_on() {
             let swept = sweep_on_device(plan, tables, reduction, &options, Some(&mut checkpoint), &control, device());
             swept.expect("another device goes on").0.state
         } else {
-            sweep(plan, tables, reduction, &options, Some(&mut checkpoint), &control).expect("the CPU goes on").state
+            sweep(plan, tables, reduction, &options, Some(&mut checkpoint), &control).expect("the CPU continues").state
         };
         assert_same(&state, &whole, "resumed after a loss");
     }
@@ -236,13 +236,13 @@ fn a_broken_error_bound_keeps_nothing_that_the_device_counted() {
     let claim = Claim::new(folder.path(), "a test").expect("nobody has it");
     let mut checkpoint =
         Checkpoint::create(&claim, &study.plan.study, &text, Shard::WHOLE, study.plan.designs()).expect("a folder can be made");
-    // Wrong in a way that shows only in the end.
+    // Wrong in a way that is noticed only at the end.
     let lost = Wrong { replace: vec![("    return beaten;".to_owned(), "    return true;".to_owned())], ..Wrong::default() };
     let (options, control) = (Settings::default(), Control::default());
     let Prepared { plan, tables, reduction } = &study;
     let swept = sweep_on_device(plan, tables, reduction, &options, Some(&mut checkpoint), &control, &wrong(lost));
     let error = swept.map(|_| ()).expect_err("the front lacks designs");
-    assert!(matches!(error, Error::Promise(_)), "{error}");
+    assert!(matches!(error, Error::ErrorBound(_)), "{error}");
     drop(checkpoint);
     let mut checkpoint = Checkpoint::open(&claim).expect("the folder is there");
     assert!(!checkpoint.saved().has_progress(), "what was counted is not kept");

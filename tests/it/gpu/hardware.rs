@@ -1,5 +1,5 @@
-//! A GPU in hardware: what the other tests ask of whatever device there is, asked of one that is no program. Where there is none these
-//! tests fail; a software device never stands in for it.
+//! A GPU in hardware: the tests of the other files, run on hardware. Without such a GPU these tests fail; a software device never takes its
+//! place.
 
 use super::{Prepared, SMALL, assert_same, opened, shipped};
 use beltspace::gpu::{Adapter, PointKernel, adapters};

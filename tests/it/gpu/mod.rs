@@ -1,4 +1,4 @@
-//! Screening on a GPU. Where there is none, these tests fail: `tests/run` installs one that works in software.
+//! Screening on a GPU. Without any device these tests fail: `tests/run` installs a software one.
 
 mod accuracy;
 mod bites;
@@ -36,12 +36,12 @@ fn opened(adapter: &Adapter) -> OnDevice {
     OnDevice { limited_loops: report.limited_loops(), device, wrong: Wrong::default() }
 }
 
-/// The device, with something wrong about the kernel.
+/// The device, with an error in the kernel.
 pub fn wrong(wrong: Wrong) -> OnDevice {
     OnDevice { wrong, ..device().clone() }
 }
 
-/// A study laid out, with what its sweeps need.
+/// A study with its plan and what its sweeps need.
 pub struct Prepared {
     pub plan: Plan,
     pub tables: Tables,

@@ -1,4 +1,4 @@
-//! What is mangled: studies, tables, result directories and checkpoints, each case known by its kind, a seed and a number.
+//! The cases: studies, tables, result directories and checkpoints are mangled; a case is identified by its kind, a seed and a number.
 
 use super::{mutate, readers};
 use crate::random::Random;
@@ -126,7 +126,7 @@ pub fn run(kind: &str, random: &mut Random, number: u64, base: &Path) -> bool {
     }
 }
 
-/// What a reader must not do: the harness has to notice.
+/// What a reader must not do, to test that the harness notices it.
 fn bite(number: u64) {
     match number {
         1 => panic!("a reader panics"),

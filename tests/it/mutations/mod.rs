@@ -1,5 +1,4 @@
-//! Whatever is read may have been mangled: no study text, table, result directory or checkpoint makes the program panic, hang or take all
-//! memory.
+//! No mangled study text, table, result directory or checkpoint makes the program panic, hang or take all memory.
 //!
 //! Cases are run in a child process, which is this test binary once more, with a limit to its memory; it says which case it is at, so
 //! that one that ends it is known. `BELTSPACE_MUTATIONS` is the number of cases of each kind, `BELTSPACE_MUTATION_SEED` where they come
@@ -74,7 +73,7 @@ fn worker() {
     let number = |text: &str| text.parse::<u64>().expect("it is a number");
     let say = |what: String| {
         let mut out = std::io::stdout().lock();
-        // Whoever does not listen any more has seen enough.
+        // If the parent has closed the pipe, it has seen enough.
         let _ = writeln!(out, "\n@{what}").and_then(|()| out.flush());
     };
     std::panic::set_hook(Box::new(|_| {}));

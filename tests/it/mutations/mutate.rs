@@ -1,4 +1,4 @@
-//! Mangling: of bytes, of tables, and of JSON with its parts where they belong.
+//! Mangles bytes, tables, and JSON whose structure stays valid.
 
 use crate::random::Random;
 use serde_json::{Map, Value, json};
@@ -82,7 +82,7 @@ pub fn bytes(random: &mut Random, whole: &[u8], other: &[u8]) -> Vec<u8> {
             }
             _ => number(random, &mut bytes),
         }
-        // Mangled again and again a file would be nothing but large.
+        // Repeated insertions would only make the file large.
         bytes.truncate(1 << 21);
     }
     bytes

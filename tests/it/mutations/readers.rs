@@ -1,5 +1,5 @@
-//! What the program does with what it reads, as far as it goes: each function takes something that may have been mangled, and has to come
-//! to an end without a panic; it says whether it was understood. The fuzz targets call the same functions.
+//! The readers under test: each function takes something that may have been mangled, must end without a panic, and returns whether it was
+//! understood. The fuzz targets call the same functions.
 
 use beltspace::checkpoint::{Checkpoint, Saved};
 use beltspace::directory::{self, Contents};

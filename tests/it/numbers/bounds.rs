@@ -1,4 +1,4 @@
-//! The recorded formula in f32 with error bounds, against f64.
+//! The recorded formula in f32 with error bounds, compared with f64.
 
 use super::boxes::run_over;
 use super::{meaningful_si, si};
@@ -11,12 +11,12 @@ use std::sync::Arc;
 
 const DESIGNS: usize = 20_000;
 
-/// The models that are computed on a device too.
+/// The models with a GPU implementation.
 fn on_a_device() -> impl Iterator<Item = &'static Arc<Model>> {
     models::all().iter().filter(|model| model.shader.is_some())
 }
 
-/// What f32 arithmetic says of a design: is its status ok, and each output with its error bound in SI units.
+/// A design in f32 arithmetic: is its status ok, and each output with its error bound in SI units.
 fn decided(model: &Model, inputs: &[f64]) -> (Decision, Vec<RunningError>) {
     let (outputs, margins) = run_over(model, &si(model, inputs).map(RunningError::input));
     let decision = |number: usize| {

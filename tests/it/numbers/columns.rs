@@ -1,4 +1,4 @@
-//! Eight designs at a time must round like one at a time.
+//! Eight designs at a time must give the same bits as one at a time.
 
 use super::si;
 use crate::effort::evaluations;
@@ -59,7 +59,7 @@ fn differing(model: &Model, count: usize, scratch: &mut Scratch, random: &mut Ra
 
 #[test]
 fn a_batch_has_the_same_bits_as_its_designs_alone() {
-    // What one batch leaves behind must not show in the next, be it of another model.
+    // A batch must not affect the next one, even one of another model.
     let mut scratch = Scratch::default();
     let random = &mut Random::new(51);
     let counts: Vec<usize> = (0..40).flat_map(|_| 1..=17).collect();

@@ -1,4 +1,4 @@
-//! What depends on what, as the formula itself says, against trying it out.
+//! The dependencies of the recorded formula, compared with trying changes of the inputs.
 
 use super::si;
 use crate::effort::is_slow;
@@ -33,7 +33,7 @@ impl Parts {
     }
 }
 
-/// Inputs that change something that the reach does not say, and the pairs of input and output that were seen to change.
+/// Inputs that change something although the dependencies do not say so, and the pairs of input and output that were seen to change.
 fn missed(
     model: &Model,
     reach: &Reach,
@@ -57,7 +57,7 @@ fn missed(
     changed.map(|condition| format!("{}: {by} changes the condition \"{}\"", model.name, model.conditions[condition].reason))
 }
 
-/// Tries changes of single inputs; `varied` says which inputs the reach is told to vary.
+/// Tries changes of single inputs; `varied` are the inputs that vary when the dependencies are determined.
 fn try_changes(
     model: &Model,
     seed: u64,
@@ -122,7 +122,7 @@ fn nudged(model: &Model, input: usize, value: f64) -> f64 {
     }
 }
 
-/// The reach where the inputs that `varied` names take every value and the others those of `si`.
+/// The dependencies if the inputs in `varied` take every value and the others those of `si`.
 fn reach_of(model: &Model, si: &[f64; INPUTS], varied: impl Fn(usize) -> bool) -> Reach {
     let mut inputs: Vec<Known> = si[..model.inputs.len()].iter().map(|&value| Known::Fixed(value)).collect();
     for (input, table) in model.inputs.iter().enumerate().filter(|(input, _)| varied(*input)) {

@@ -1,5 +1,5 @@
-//! The formulas over intervals: no design of a box leaves what the box gives, neither in f64 nor exactly, and f64 is no farther from
-//! the exact values than it says.
+//! The formulas over intervals: the values of every design of a box are within those of the box, in f64 and exactly, and f64 is within its
+//! error bound of the exact values.
 
 use super::boxes::{Sides, a_box, around, everything, formulas, inner, on_a_boundary, over, run_over, sample};
 use super::precise::Precise;

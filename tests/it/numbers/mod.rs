@@ -1,4 +1,4 @@
-//! Every model over every number type: f32 with its error bound, intervals, derivatives, dependence, and eight designs at a time.
+//! Every model over every number type: f32 with its error bound, intervals, derivatives, dependencies, and eight designs at a time.
 
 mod bounds;
 mod boxes;

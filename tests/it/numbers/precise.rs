@@ -1,4 +1,4 @@
-//! Twice the digits of f64, slowly: what the f64 values are compared with.
+//! Arithmetic with twice the digits of f64, slow, as a reference for the f64 values.
 //!
 //! Sums of two f64 with the usual error-free additions and products (Dekker, Knuth): about 31 digits. Constants are the f64 numbers that
 //! the formula names.

@@ -1,4 +1,4 @@
-//! What a result directory must say, by brute force.
+//! What a result directory must contain, by brute force.
 
 use super::answer::{Answer, Cell, Table, whole};
 use super::naive::{Evaluated, Failures, front, key, worst_end};

@@ -1,4 +1,4 @@
-//! Random small studies, answered by brute force and by the pipeline, which must agree to the last bit however it is run.
+//! Random small studies, judged by brute force and by the pipeline in many ways, which must all agree to the last bit.
 
 mod answer;
 mod expected;
@@ -21,7 +21,7 @@ use runs::{Pipeline, differing_file, options};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// How many studies had what, so that the loop cannot come to test nothing.
+/// How many studies had each feature, so that the loop cannot end up testing nothing.
 pub type Coverage = BTreeMap<String, usize>;
 
 /// Is this the full stage of the continuous integration?
@@ -33,7 +33,7 @@ fn studies() -> u64 {
     if full() { 200 } else { 40 }
 }
 
-/// Do two states say the same? Of the best K one may still hold more than the other.
+/// Are two states equivalent? One may still have more designs in its list of the best K than the other.
 fn same(a: &State, b: &State) -> bool {
     let best = |state: &State| state.reported.top.first().map(Top::indices);
     let rest = |state: &State| State { reported: Reported { top: Vec::new(), ..state.reported.clone() }, ..state.clone() };
@@ -83,7 +83,7 @@ fn check(seed: u64, text: &mut String, coverage: &mut Coverage) {
     cover(&draft, &plan, &evaluated, &expected, coverage);
 }
 
-/// Runs a study in every way that must not matter and compares each with brute force.
+/// Runs a study in every way that must not affect the result and compares each with brute force.
 fn check_all_ways(seed: u64, text: &str, study: Study, evaluated: &Evaluated) -> (Plan, Expected) {
     let expected = Expected::new(&study, evaluated);
     let plan = Plan::new(study);
@@ -115,7 +115,7 @@ fn check_all_ways(seed: u64, text: &str, study: Study, evaluated: &Evaluated) ->
     let written_too = random.below(ways.len());
     for (number, (way, state)) in ways.into_iter().enumerate() {
         assert!(same(&state, &reference_state), "seed {seed}: something else is kept with {way}");
-        // The files are a function of the state; writing them through to the disk is what takes time.
+        // The files are a function of the state; syncing them to the disk takes most of the time.
         if !full() && number != written_too {
             continue;
         }
@@ -389,7 +389,7 @@ fn a_sample_with_a_design_that_is_not_feasible_or_one_too_few_is_not_written() {
     let certified = |state: State| pipeline.certified(state).map(drop).map_err(|error| error.to_string());
     assert_eq!((check(&good), certified(good.clone())), (Ok(()), Ok(())));
     let lost = certified(forged(&kept[1..])).expect_err("one is missing");
-    assert!(lost.contains("the sweep named 19 where there must be 20"), "{lost}");
+    assert!(lost.contains("the sweep kept 19 of the"), "{lost}");
     let wrong = certified(forged(&[&[infeasible], &kept[1..]].concat())).expect_err("one is not feasible");
     assert!(wrong.contains("the f64 reference does not"), "{wrong}");
     for beyond in [forged(&[plan.designs()]), forged(&[0; 41])] {

@@ -117,7 +117,7 @@ pub fn satisfied(constraint: &Constraint, value: f64) -> bool {
     low && high
 }
 
-/// The worst end of a quantity: as its objective says, else as it is by nature.
+/// The worst end of a quantity: that of its objective, else that of the model.
 pub fn worst_end(study: &Study, quantity: Quantity) -> Worse {
     for objective in &study.objectives {
         if objective.quantity == quantity {
@@ -200,10 +200,10 @@ pub fn key(study: &Study, evaluated: &Evaluated, design: u64) -> Vec<f64> {
 /// The front by comparing all pairs: positions among `keys`, which are in the order of the design index.
 pub fn front(keys: &[Vec<f64>]) -> Vec<usize> {
     let no_worse = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| a <= b);
-    let beaten = |this: usize| {
+    let dominated = |this: usize| {
         keys.iter()
             .enumerate()
             .any(|(other, key)| other != this && no_worse(key, &keys[this]) && (!no_worse(&keys[this], key) || other < this))
     };
-    (0..keys.len()).filter(|&this| !beaten(this)).collect()
+    (0..keys.len()).filter(|&this| !dominated(this)).collect()
 }

@@ -1,10 +1,10 @@
-//! Random axes as a study file writes them, with the values that the format promises.
+//! Random axes as a study file writes them, with the values that they mean.
 
 use crate::random::Random;
 use beltspace::models::Model;
 use std::sync::Arc;
 
-/// An axis as it is written, with the values that the file format promises for it.
+/// An axis as it is written, with the values that it means.
 pub struct AxisDraft {
     pub key: String,
     pub text: String,

@@ -49,7 +49,7 @@ impl Draft {
 
     fn drawn(seed: u64, for_bounds: bool) -> Self {
         let random = &mut Random::new(seed);
-        // What a short loop must not miss goes by the seed, everything else by chance.
+        // Features that a short loop must not miss depend on the seed; everything else is random.
         let turn = seed as usize;
         // A solver is too slow for studies of this size: it has one of its own.
         let models: Vec<_> = models::all().iter().filter(|model| !is_slow(model)).collect();

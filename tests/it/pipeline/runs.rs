@@ -1,4 +1,4 @@
-//! The pipeline, run in every way that must not matter.
+//! The pipeline, run in every way that must not affect the result.
 
 use crate::random::Random;
 use beltspace::checkpoint::{Checkpoint, Saved};
@@ -59,7 +59,7 @@ impl<'p> Pipeline<'p> {
         })
     }
 
-    /// Several shards, each with a checkpoint, some of them resumed from a part of their own, merged in a random order.
+    /// Several shards, each with a checkpoint, some of them resumed halfway, merged in a random order.
     pub fn sharded_by(&self, random: &mut Random, folder: &Path, mut judge: impl FnMut(&mut Random, &Settings, &mut Checkpoint)) -> State {
         let of = random.whole(2, 5) as u64;
         let mut folders = Vec::new();

@@ -14,7 +14,7 @@ use tempfile::TempDir;
 /// Longest time that anything here may take before the test gives up.
 const PATIENCE: Duration = Duration::from_secs(180);
 
-/// A Slurm of one node with two processors, and what it needs: munge, ports, folders.
+/// A Slurm cluster of one node with two CPUs, and what it needs: munge, ports, folders.
 struct Slurm {
     folder: TempDir,
     daemons: Vec<Child>,
