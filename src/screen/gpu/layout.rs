@@ -176,7 +176,7 @@ impl Layout {
         let formula = model.on_device()?.formula;
         let fields = formula.fields();
         let scenarios = [&plan.slow_scenarios, &plan.fast_scenarios].map(Product::count);
-        let turns = scenarios[0].saturating_mul(scenarios[1] + 1).saturating_mul(1 + fields.turns);
+        let turns = scenarios[0].saturating_mul(scenarios[1] + 1).saturating_mul(1 + fields.iterations);
         if turns > MOST_TURNS && (limited_loops || turns > u64::from(u32::MAX) / 4) {
             return Err(refuse(format!(
                 "{turns} loop turns over its scenarios are more than the {MOST_TURNS} that this driver can be trusted with"
@@ -267,7 +267,7 @@ impl Layout {
             possible: is_possible(plan),
             exact,
             represented,
-            cut: Cut::new(plan, fields.turns, grouped),
+            cut: Cut::new(plan, fields.iterations, grouped),
         })
     }
 
@@ -486,7 +486,7 @@ mod tests {
                 for grouped in [false, true] {
                     let Ok(layout) = Layout::new(&plan, true, grouped) else { continue };
                     let cut = layout.cut;
-                    let (shared, alone) = Cut::turns(&plan, layout.fields.turns, cut.keeps);
+                    let (shared, alone) = Cut::turns(&plan, layout.fields.iterations, cut.keeps);
                     let turns = cut.lanes_each.div_ceil(cut.group) * shared + cut.lanes_each * alone;
                     // What one lane takes may pass the target by its closer look.
                     assert!(turns <= MOST_TURNS + 200, "{model}, {scenarios} scenarios: {cut:?} takes {turns} turns");

@@ -20,22 +20,22 @@ pub fn formulas() -> impl Iterator<Item = &'static Arc<Model>> {
     models::all().iter().filter(|model| model.kernel.formula().is_some())
 }
 
-/// A model's formula from its inputs to outputs and conditions, recorded once for each number of turns that its whole numbers allow.
-fn list(model: &Model, turns: Vec<usize>) -> &'static List {
+/// A model's formula from its inputs to outputs and conditions, recorded once for each number of iterations that its whole numbers allow.
+fn list(model: &Model, iterations: Vec<usize>) -> &'static List {
     static LISTS: Mutex<BTreeMap<(String, Vec<usize>), &'static List>> = Mutex::new(BTreeMap::new());
     let mut lists = LISTS.lock().unwrap_or_else(PoisonError::into_inner);
-    lists.entry((model.name.to_owned(), turns.clone())).or_insert_with(|| {
+    lists.entry((model.name.to_owned(), iterations.clone())).or_insert_with(|| {
         let formula = model.kernel.formula().expect("it is a formula");
-        let known = |(input, &turns): (&Input, &usize)| if input.integer { Known::Within(0.0, turns as f64) } else { Known::ANY };
-        let known: Vec<Known> = model.inputs.iter().zip(&turns).map(known).collect();
+        let known = |(input, &iterations): (&Input, &usize)| if input.integer { Known::Within(0.0, iterations as f64) } else { Known::ANY };
+        let known: Vec<Known> = model.inputs.iter().zip(&iterations).map(known).collect();
         Box::leak(Box::new(formula.whole(&known, u64::MAX, u64::MAX).list(u64::MAX, u64::MAX)))
     })
 }
 
 /// Outputs and conditions over inputs of any number type, by the recorded formula.
 pub fn run_over<R: Real<Shared = R>>(model: &Model, inputs: &[R]) -> (Vec<R>, Vec<R>) {
-    let turns = model.inputs.iter().zip(inputs).map(|(input, value)| if input.integer { value.turns(60) } else { 0 }).collect();
-    let mut outputs = list(model, turns).run(inputs);
+    let iterations = model.inputs.iter().zip(inputs).map(|(input, value)| if input.integer { value.iterations(60) } else { 0 }).collect();
+    let mut outputs = list(model, iterations).run(inputs);
     let conditions = outputs.split_off(outputs.len() - CONDITIONS);
     (outputs, conditions)
 }
