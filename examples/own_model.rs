@@ -15,7 +15,7 @@ impl Formula for FlatBelt {
         inputs: &["slack_tension", "friction", "wrap", "belt_speed", "belt_mass"],
         prepared: &["grip"],
         tables: &[],
-        turns: 0,
+        iterations: 0,
         outputs: &["tight_tension", "effective_tension"],
     };
 

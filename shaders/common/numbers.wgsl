@@ -81,6 +81,16 @@ fn half(a: Real) -> Real {
     return scaled_(a, 0.5);
 }
 
+// A number, or nothing that is known of it.
+fn if_known(known: bool, number: Real) -> Real {
+    return Real(number.value, select(infinity(), number.bound, known));
+}
+
+// A whole number from 0 on as an index.
+fn whole(a: Real) -> u32 {
+    return u32(a.value + 0.5);
+}
+
 // Whole numbers that f32 holds exactly.
 fn plus_whole(a: Real, b: Real) -> Real {
     return Real(a.value + b.value, a.bound + b.bound);

@@ -214,7 +214,7 @@ impl<'t> NodeColumns<'t> {
                     *it = self.slots[node as usize];
                 }
             }
-            Operation::Input(_) | Operation::Constant(_) | Operation::Argument(_) => {}
+            Operation::Input(_) | Operation::Constant(_) | Operation::Argument(_) | Operation::Rolled(_) => {}
         }
     }
 

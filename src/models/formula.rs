@@ -2,7 +2,7 @@
 
 use super::description::Model;
 use crate::real::{LANES, Lanes, Real};
-use crate::tape::{Fields, Known, List, Operation, Recordable, Recording, Second, Trace, Whole};
+use crate::tape::{Fields, First, Known, List, Loops, Operation, Recordable, Recording, Second, Trace, Whole};
 
 /// Most inputs that a model may have.
 pub const INPUTS: usize = 64;
@@ -167,18 +167,32 @@ impl<F: Formula + Send + Sync> Recordable for F {
         Whole { recording, prepared: prepared.to_vec(), outputs: outputs.to_vec(), conditions: conditions.to_vec() }
     }
 
-    fn second(&self, known: &[Known], wanted: u64, conditions: u64) -> Second {
-        let passed = vec![Known::ANY; F::FIELDS.prepared_len()];
-        let mut count = 0;
-        let (recording, nodes) = Recording::of(&[known, &passed].concat(), |named| {
-            let (inputs, prepared) = named.split_at(known.len());
-            let [outputs, margins] = finish::<F>(prepared, &padded(inputs), wanted, conditions);
-            count = outputs.len();
-            [outputs, margins].concat()
+    fn stages(&self, wanted: u64, conditions: u64) -> (First, Second) {
+        let known = vec![Known::ANY; F::FIELDS.inputs.len()];
+        let (recording, prepared) = Recording::recorded(Loops::Once, &known, |named| {
+            let mut prepared = Trace::to_pass_on(&F::FIELDS);
+            F::prepare(&padded(named), wanted, &mut prepared);
+            F::FIELDS.places().map(|(first, _)| prepared[first].as_written()).collect()
         });
-        let (outputs, conditions) = nodes.split_at(count);
-        Second { recording, outputs: outputs.to_vec(), conditions: conditions.to_vec() }
+        (First { recording, prepared }, second::<F>(Loops::Once, &known, wanted, conditions))
     }
+
+    fn second(&self, known: &[Known], wanted: u64, conditions: u64) -> Second {
+        second::<F>(Loops::EveryIteration, known, wanted, conditions)
+    }
+}
+
+fn second<F: Formula>(loops: Loops, known: &[Known], wanted: u64, conditions: u64) -> Second {
+    let passed = vec![Known::ANY; F::FIELDS.prepared_len()];
+    let mut count = 0;
+    let (recording, nodes) = Recording::recorded(loops, &[known, &passed].concat(), |named| {
+        let (inputs, prepared) = named.split_at(known.len());
+        let [outputs, margins] = finish::<F>(prepared, &padded(inputs), wanted, conditions);
+        count = outputs.len();
+        [outputs, margins].concat()
+    });
+    let (outputs, conditions) = nodes.split_at(count);
+    Second { recording, outputs: outputs.to_vec(), conditions: conditions.to_vec() }
 }
 
 /// Inputs of a formula that is recorded, as an array of the length that formulas take.

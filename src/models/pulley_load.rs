@@ -237,7 +237,7 @@ impl Formula for PulleyLoad {
         inputs: Inputs::<usize>::NAMES,
         prepared: Prepared::<usize>::NAMES,
         tables: &[],
-        turns: 0,
+        iterations: 0,
         outputs: Result::<usize>::NAMES,
     };
 

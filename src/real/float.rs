@@ -19,8 +19,17 @@ macro_rules! float {
             }
             #[inline(always)]
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number, and the cast saturates")]
-            fn turns(self, most: usize) -> usize {
+            fn iterations(self, most: usize) -> usize {
                 ((self + 0.5) as usize).min(most)
+            }
+            #[inline(always)]
+            fn put_last(table: &mut [Self], end: Self, number: Self) {
+                let end = end.iterations(table.len() - 1);
+                table[end] = number;
+            }
+            #[inline(always)]
+            fn passed_at(table: &[Self], index: Self, _last: Self) -> Self {
+                table[index.iterations(table.len() - 1)]
             }
             #[inline(always)]
             fn is_zero(self) -> bool {

@@ -76,12 +76,20 @@ impl Real for Lanes {
         self + other
     }
     #[inline(always)]
-    fn turns(self, most: usize) -> usize {
-        let mut turns = 0;
+    fn iterations(self, most: usize) -> usize {
+        let mut iterations = 0;
         for lane in self.0 {
-            turns = turns.max(lane.turns(most));
+            iterations = iterations.max(lane.iterations(most));
         }
-        turns
+        iterations
+    }
+    #[inline(always)]
+    fn passed_at(table: &[f64], index: Self, last: Self) -> Self {
+        let mut chosen = index;
+        for lane in 0..LANES {
+            chosen.0[lane] = f64::passed_at(table, index.0[lane], last.0[lane]);
+        }
+        chosen
     }
     #[inline(always)]
     fn is_zero(self) -> bool {

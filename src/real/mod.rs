@@ -8,9 +8,11 @@
 mod float;
 pub mod functions;
 mod lanes;
+mod loops;
 
 pub use functions::FUNCTION_ULP;
 pub use lanes::{LANES, Lanes};
+pub use loops::{Loop, Place};
 
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -56,9 +58,66 @@ pub trait Real:
     }
     /// The sum of two whole numbers that are small enough for every instance to hold exactly.
     fn plus_whole(self, other: Self) -> Self;
-    /// A whole number as the turns of a loop: the largest value that it may have, at most `most`. Turns beyond the value itself must
-    /// change nothing.
-    fn turns(self, most: usize) -> usize;
+    /// A whole number as the iterations of a loop: the largest value that it may have, at most `most`. Iterations beyond the value
+    /// itself must change nothing.
+    fn iterations(self, most: usize) -> usize;
+    /// A loop: `body` takes a place and the state, and returns the next state; what the last iteration returned is the result. What
+    /// the body writes into a table goes there by [`Real::put`].
+    #[inline(always)]
+    fn fold<const S: usize>(over: Loop<Self>, state: [Self; S], body: impl FnMut(Place, [Self; S]) -> [Self; S]) -> [Self; S] {
+        over.run(state, body)
+    }
+    /// The number of a place.
+    #[inline(always)]
+    #[allow(clippy::cast_precision_loss, reason = "tables are short")]
+    fn number(place: Place) -> Self {
+        Self::constant(place.known() as f64)
+    }
+    /// At least zero at a place that is not before `end`, a whole number, and below zero before it: half a place away from either, so
+    /// that rounding cannot matter.
+    #[inline(always)]
+    #[allow(clippy::cast_precision_loss, reason = "tables are short")]
+    fn beyond(place: Place, end: Self) -> Self {
+        Self::constant(place.known() as f64 + 0.5) - end
+    }
+    /// Room for numbers that a loop writes and another reads, under a name.
+    #[inline(always)]
+    fn table<const N: usize>(_name: &'static str, fill: Self) -> [Self; N] {
+        [fill; N]
+    }
+    /// Writes a number into a table.
+    #[inline(always)]
+    fn put(table: &mut [Self], place: Place, number: Self) {
+        table[place.known()] = number;
+    }
+    /// Writes the last number of a table, behind `end` others (a whole number); what stands beyond it is never read.
+    #[inline(always)]
+    fn put_last(table: &mut [Self], end: Self, number: Self) {
+        let most = end.iterations(table.len() - 1);
+        for (at, held) in table.iter_mut().enumerate().take(most + 1) {
+            *held = Self::select(Self::beyond(Place::at(at), end), number, *held);
+        }
+    }
+    /// Reads a number of a table.
+    #[inline(always)]
+    fn get(table: &[Self], place: Place) -> Self {
+        table[place.known()]
+    }
+    /// Reads a number of a table that a first stage passed on.
+    #[inline(always)]
+    fn passed(table: &[Self::Shared], place: Place) -> Self {
+        Self::shared(table[place.known()])
+    }
+    /// Reads the number of a passed table at `index`, a whole number from 0 to `last`.
+    #[inline(always)]
+    fn passed_at(table: &[Self::Shared], index: Self, last: Self) -> Self {
+        chosen_at(table, index, last)
+    }
+    /// What a device leaves to f64, since it takes nested loops or the like: anywhere else, what `compute` gives.
+    #[inline(always)]
+    fn left_to_f64<const N: usize>(compute: impl FnOnce() -> [Self; N]) -> [Self; N] {
+        compute()
+    }
     /// Is it surely zero, in every lane? What has settled may end a loop, and a switch that is off may save what hangs on it; that the
     /// answer may also be no must change nothing but the time.
     fn is_zero(self) -> bool;
@@ -89,6 +148,18 @@ pub trait Real:
     fn named(self, _name: &'static str, _equation: &'static str) -> Self {
         self
     }
+}
+
+/// The number of a table at a whole number that need not be the same for all designs, by one selection after the other.
+#[inline(always)]
+pub(crate) fn chosen_at<R: Real>(table: &[R::Shared], index: R, last: R) -> R {
+    let end = last.iterations(table.len() - 1);
+    let mut chosen = R::shared(table[0]);
+    for (at, &number) in table.iter().enumerate().take(end + 1).skip(1) {
+        // Half a place away from either neighbour, so that rounding cannot matter.
+        chosen = R::select(index - R::constant(at as f64 - 0.5), R::shared(number), chosen);
+    }
+    chosen
 }
 
 /// Newton steps kept inside a shrinking bracket: the scalar definition of [`Real::monotone_root`], shared by every instance

@@ -155,8 +155,8 @@ impl<T: Real<Shared = T>, const N: usize> Real for Dual<T, N> {
         Self { value: self.value.plus_whole(other.value), ..self + other }
     }
     #[inline(always)]
-    fn turns(self, most: usize) -> usize {
-        self.value.turns(most)
+    fn iterations(self, most: usize) -> usize {
+        self.value.iterations(most)
     }
     /// Only where nothing changes it either.
     #[inline(always)]

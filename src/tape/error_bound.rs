@@ -124,8 +124,8 @@ impl Real for RunningError {
     fn plus_whole(self, other: Self) -> Self {
         Self { value: self.value + other.value, bound: self.bound + other.bound }
     }
-    fn turns(self, most: usize) -> usize {
-        (f64::from(self.value) + self.bound).turns(most)
+    fn iterations(self, most: usize) -> usize {
+        (f64::from(self.value) + self.bound).iterations(most)
     }
     fn scaled(self, power: i16) -> Self {
         let factor = f32::powi(2.0, power.into());

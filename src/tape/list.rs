@@ -1,6 +1,6 @@
 //! A recorded formula cut down to what is asked for, run over any number type.
 
-use super::{Binary, Node, Operation, Recording, Root};
+use super::{Binary, ListLoop, Node, Operation, Recording, Rolled, Root, Table};
 use crate::real::Real;
 use std::cell::RefCell;
 
@@ -14,7 +14,11 @@ pub struct List {
     pub operations: Vec<Operation>,
     /// The roots among them.
     pub roots: Vec<ListRoot>,
-    /// Of every operation: is it part of a root's function, so that it has a value only while the root is sought?
+    /// The loops that are recorded once, and the tables that they write.
+    pub loops: Vec<ListLoop>,
+    /// By number.
+    pub tables: Vec<Table>,
+    /// Of every operation: is it part of a root's function or a loop's body, so that it has a value only while these run?
     pub inner: Vec<bool>,
     /// Of every operation: what the formula calls it.
     pub names: Vec<Option<Name>>,
@@ -31,24 +35,41 @@ pub struct ListRoot {
     pub inner: Vec<Node>,
 }
 
+/// In the sets of roots and loops that an operation depends on: where the loops begin.
+const LOOPS: u8 = 32;
+
+/// Which operations these results need.
+fn needed(recording: &Recording, asked: &[Option<Node>]) -> Vec<bool> {
+    let mut needed = vec![false; recording.operations.len()];
+    let mut open: Vec<Node> = asked.iter().flatten().copied().collect();
+    while let Some(node) = open.pop() {
+        if std::mem::replace(&mut needed[node as usize], true) {
+            continue;
+        }
+        match recording.operations[node as usize] {
+            Operation::Root(number) => {
+                let root = recording.roots[number as usize];
+                root.reads(|node| open.push(node));
+                open.push(root.argument);
+            }
+            operation => operation.operands(|node| open.push(node)),
+        }
+        if let Operation::Rolled(rolled) = recording.operations[node as usize] {
+            rolled.of_loop(&recording.loops, |node| open.push(node));
+        }
+    }
+    needed
+}
+
 impl List {
     /// Keeps what these results need.
     pub fn cut(recording: &Recording, asked: &[Option<Node>]) -> Self {
-        let Recording { operations, roots, .. } = recording;
-        let mut needed = vec![false; operations.len()];
-        asked.iter().flatten().for_each(|&node| needed[node as usize] = true);
-        for node in (0..operations.len()).rev() {
-            if needed[node] {
-                if let Operation::Root(number) = operations[node] {
-                    let Root { bracket, start, argument, value, slope } = roots[number as usize];
-                    [bracket.0, bracket.1, start, argument, value, slope].iter().for_each(|&node| needed[node as usize] = true);
-                }
-                operations[node].operands(|operand| needed[operand as usize] = true);
-            }
-        }
+        let Recording { operations, roots, loops, tables, .. } = recording;
+        let needed = needed(recording, asked);
         let mut place = vec![Node::MAX; operations.len()];
         let mut list = Self { roots: roots.iter().map(|root| ListRoot { root: *root, inner: Vec::new() }).collect(), ..Self::default() };
-        // Of every operation: the roots whose argument it depends on.
+        list.tables.clone_from(tables);
+        // Of every operation: the roots whose argument it depends on, then the loops whose place or state it does.
         let mut arguments: Vec<u64> = Vec::new();
         for (node, &operation) in operations.iter().enumerate().filter(|(node, _)| needed[*node]) {
             let new = list.operations.len() as Node;
@@ -58,11 +79,13 @@ impl List {
                 Operation::Unary(kind, a) => Operation::Unary(kind, at(a)),
                 Operation::Binary(kind, a, b) => Operation::Binary(kind, at(a), at(b)),
                 Operation::Select(margin, a, b) => Operation::Select(at(margin), at(a), at(b)),
+                Operation::Rolled(rolled) => Operation::Rolled(rolled.map(at)),
                 other => other,
             };
             let mut within = 0;
             match operation {
                 Operation::Argument(root) => within = 1 << root,
+                Operation::Rolled(rolled) if rolled.inside().is_some() => within = 1 << (LOOPS + rolled.inside().unwrap_or_default()),
                 Operation::Root(number) => {
                     let root = &mut list.roots[number as usize];
                     let Root { bracket, start, argument, value, slope } = root.root;
@@ -82,6 +105,16 @@ impl List {
             arguments.push(within);
         }
         list.inner = arguments.iter().map(|&within| within != 0).collect();
+        let loops = loops.iter().zip(0..).map(|(it, number)| {
+            let inner =
+                (0..arguments.len()).filter(|&node| arguments[node] >> (LOOPS + number) & 1 == 1).map(|node| node as Node).collect();
+            let used = (0..it.state.len() as u8).map(|at| {
+                let of_state = [Rolled::State(number, at), Rolled::Folded(number, at)].map(Operation::Rolled);
+                it.until_zero == Some(at) || list.operations.iter().any(|operation| of_state.contains(operation))
+            });
+            ListLoop { recorded: it.map(|node| place[node as usize]), used: used.collect(), inner }
+        });
+        list.loops = loops.collect();
         list.results = asked.iter().map(|node| node.map(|node| place[node as usize])).collect();
         list
     }
@@ -139,7 +172,7 @@ impl List {
     #[inline]
     pub fn compute<R: Real>(&self, node: Node, slots: &mut [R]) {
         let value = match self.operations[node as usize] {
-            Operation::Input(_) | Operation::Argument(_) => return,
+            Operation::Input(_) | Operation::Argument(_) | Operation::Rolled(_) => return,
             Operation::Constant(bits) => R::constant(f64::from_bits(bits)),
             Operation::Root(number) => self.root(number, slots),
             Operation::Unary(operation, a) => operation.of(slots[a as usize]),

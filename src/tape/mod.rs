@@ -10,6 +10,7 @@ pub(crate) mod error_bound;
 mod interval;
 mod list;
 mod record;
+mod rolled;
 mod stages;
 #[cfg(test)]
 mod tests;
@@ -19,8 +20,9 @@ pub use dual::Dual;
 pub use error_bound::{RunningError, nearest_f32};
 pub use interval::{EVERYTHING, Interval};
 pub use list::{List, ListRoot};
-pub use record::{Known, Recording, Trace};
-pub use stages::{Fields, Recordable, Second, Whole};
+pub use record::{Known, Loops, Recording, Trace};
+pub use rolled::{ListLoop, Rolled, RolledLoop, Store, Table};
+pub use stages::{Fields, First, Recordable, Second, Whole};
 
 use crate::real::Real;
 
@@ -44,6 +46,8 @@ pub enum Operation {
     Binary(Binary, Node, Node),
     /// Margin, at least zero, below zero.
     Select(Node, Node, Node),
+    /// What only a list has whose loops are recorded once.
+    Rolled(Rolled),
 }
 
 /// Operations on one number.
@@ -124,6 +128,7 @@ impl Operation {
                 each(a);
                 each(b);
             }
+            Self::Rolled(rolled) => rolled.operands(each),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Recording: a formula runs on names of numbers, and every operation that it asks for is written down.
 
-use super::{Binary, Node, Operation, Root, Unary};
-use crate::real::{Real, bracketed_newton};
+use super::{Binary, Fields, Node, Operation, Rolled, RolledLoop, Root, Store, Table, Unary};
+use crate::real::{Loop, Place, Real, bracketed_newton, chosen_at};
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -20,6 +20,15 @@ impl Known {
     pub const ANY: Self = Self::Within(f64::NEG_INFINITY, f64::INFINITY);
 }
 
+/// How loops are recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Loops {
+    /// Every iteration for itself, to be run in boxes and with derivatives.
+    EveryIteration,
+    /// Once, unless the number of iterations is known: for a device.
+    Once,
+}
+
 /// A recorded formula.
 #[derive(Clone, Debug, Default)]
 pub struct Recording {
@@ -27,6 +36,12 @@ pub struct Recording {
     pub operations: Vec<Operation>,
     /// The roots among them.
     pub roots: Vec<Root>,
+    /// The loops that are recorded once; none where every iteration is.
+    pub loops: Vec<RolledLoop>,
+    /// The tables that these write.
+    pub tables: Vec<Table>,
+    /// Are loops recorded once?
+    rolls: bool,
     known: HashMap<Operation, Node>,
     /// Ends of inputs that vary, and of their negatives.
     ranges: HashMap<Node, (f64, f64)>,
@@ -49,7 +64,13 @@ fn with<T>(act: impl FnOnce(&mut Recording) -> T) -> T {
 impl Recording {
     /// Records a formula; returns what it returned, as nodes of the list.
     pub fn of(inputs: &[Known], formula: impl FnOnce(&[Trace]) -> Vec<Trace>) -> (Self, Vec<Node>) {
-        with(|recorder| *recorder = Self::default());
+        Self::recorded(Loops::EveryIteration, inputs, formula)
+    }
+
+    /// The same with the loops recorded one way or the other.
+    pub fn recorded(loops: Loops, inputs: &[Known], formula: impl FnOnce(&[Trace]) -> Vec<Trace>) -> (Self, Vec<Node>) {
+        let rolls = loops == Loops::Once;
+        with(|recorder| *recorder = Self { rolls, ..Self::default() });
         let named: Vec<Trace> = inputs
             .iter()
             .enumerate()
@@ -64,6 +85,23 @@ impl Recording {
             .collect();
         let results = formula(&named).into_iter().map(|trace| trace.0).collect();
         (with(std::mem::take), results)
+    }
+
+    /// Number of the table that this stands for.
+    fn table(&self, node: Node) -> Option<u8> {
+        match self.operations[node as usize] {
+            Operation::Rolled(Rolled::Table(table, _)) => Some(table),
+            _ => None,
+        }
+    }
+
+    /// What a table is read as: the version last written, or, of what the first stage passed on, its first number.
+    fn readable(&self, first: Node) -> Option<Node> {
+        match self.operations[first as usize] {
+            Operation::Rolled(Rolled::Table(table, _)) => Some(self.tables[usize::from(table)].version),
+            Operation::Input(_) if self.rolls => Some(first),
+            _ => None,
+        }
     }
 
     /// Writes an operation down, unless it stands there already.
@@ -100,7 +138,32 @@ fn power_of_two(value: f64) -> Option<i16> {
     (value > 0.0 && value.to_bits() << 12 == 0 && power.abs() <= 126).then_some(power)
 }
 
+/// A new table, where loops are recorded once.
+fn new_table(name: &'static str, length: usize, fill: Trace) -> Option<Trace> {
+    with(|recorder| {
+        recorder.rolls.then(|| {
+            let table = u8::try_from(recorder.tables.len()).expect("a formula has few tables");
+            // Two tables that begin alike are two: their numbers differ.
+            let version = recorder.push(Operation::Rolled(Rolled::Table(table, fill.0)));
+            recorder.tables.push(Table { name, length, version });
+            Trace(version)
+        })
+    })
+}
+
 impl Trace {
+    /// Room for what a first stage passes on: numbers, then tables.
+    pub(crate) fn to_pass_on(fields: &Fields) -> Vec<Self> {
+        let zero = Self::constant(0.0);
+        let tables = fields.tables.iter().flat_map(|&(_, length)| vec![new_table("", length, zero).unwrap_or(zero); length]);
+        vec![zero; fields.prepared.len()].into_iter().chain(tables).collect()
+    }
+
+    /// The table as it was last written, if this stands for one.
+    pub(crate) fn as_written(self) -> Self {
+        with(|recorder| recorder.table(self.0).map_or(self, |table| Self(recorder.tables[usize::from(table)].version)))
+    }
+
     fn known(self) -> Option<f64> {
         with(|recorder| recorder.constant_at(self.0))
     }
@@ -205,14 +268,85 @@ impl Real for Trace {
     fn plus_whole(self, other: Self) -> Self {
         self.binary(Binary::PlusWhole, other)
     }
-    fn turns(self, most: usize) -> usize {
-        with(|recorder| recorder.ends(self.0)).map_or(most, |(_, highest)| highest.turns(most))
+    fn iterations(self, most: usize) -> usize {
+        with(|recorder| recorder.ends(self.0)).map_or(most, |(_, highest)| highest.iterations(most))
     }
     fn named(self, name: &'static str, equation: &'static str) -> Self {
         with(|recorder| {
             recorder.names.entry(self.0).or_insert((name, equation));
         });
         self
+    }
+    fn fold<const S: usize>(over: Loop<Self>, state: [Self; S], body: impl FnMut(Place, [Self; S]) -> [Self; S]) -> [Self; S] {
+        if with(|recorder| recorder.rolls) && over.end.known().is_none() { rolled(over, state, body) } else { over.run(state, body) }
+    }
+    fn number(place: Place) -> Self {
+        let offset = Self::constant(place.number.into());
+        match place.of {
+            None => offset,
+            Some(number) => {
+                let index = Self(with(|recorder| recorder.push(Operation::Rolled(Rolled::Index(number)))));
+                if place.number == 0 { index } else { index.plus_whole(offset) }
+            }
+        }
+    }
+    fn beyond(place: Place, end: Self) -> Self {
+        let inside = |number: u8| place.number <= 0 && with(|recorder| recorder.loops[usize::from(number)].end == end.0);
+        match place.of {
+            Some(number) if inside(number) => Self::constant(-0.5),
+            Some(_) => Self::number(Place { number: 0, ..place }).plus_whole(Self::constant(f64::from(place.number) + 0.5)) - end,
+            None => Self::constant(f64::from(place.number) + 0.5) - end,
+        }
+    }
+    fn table<const N: usize>(name: &'static str, fill: Self) -> [Self; N] {
+        [new_table(name, N, fill).unwrap_or(fill); N]
+    }
+    fn put(table: &mut [Self], place: Place, number: Self) {
+        let written = with(|recorder| {
+            let table = recorder.table(table[0].0)?;
+            let of = place.of.expect("a table of a recorded formula is written in its loops");
+            recorder.loops[usize::from(of)].stores.push(Store { table, place, number: number.0 });
+            Some(())
+        });
+        if written.is_none() {
+            table[place.known()] = number;
+        }
+    }
+    fn put_last(table: &mut [Self], end: Self, number: Self) {
+        let written = with(|recorder| {
+            let written = usize::from(recorder.table(table[0].0)?);
+            let before = recorder.tables[written].version;
+            recorder.tables[written].version = recorder.push(Operation::Rolled(Rolled::PutLast(before, end.0, number.0)));
+            Some(())
+        });
+        if written.is_none() {
+            let most = end.iterations(table.len() - 1);
+            for (at, held) in table.iter_mut().enumerate().take(most + 1) {
+                *held = Self::select(Self::beyond(Place::at(at), end), number, *held);
+            }
+        }
+    }
+    fn get(table: &[Self], place: Place) -> Self {
+        let get =
+            |recorder: &mut Recording| recorder.readable(table[0].0).map(|it| recorder.push(Operation::Rolled(Rolled::Get(it, place))));
+        match place.of {
+            Some(_) => Self(with(get).expect("a recorded loop reads tables")),
+            None => table[place.known()],
+        }
+    }
+    fn passed(table: &[Self], place: Place) -> Self {
+        Self::get(table, place)
+    }
+    fn passed_at(table: &[Self], index: Self, last: Self) -> Self {
+        let found = with(|recorder| {
+            let table = recorder.readable(table[0].0)?;
+            Some(Self(recorder.push(Operation::Rolled(Rolled::GetAt(table, index.0)))))
+        });
+        found.unwrap_or_else(|| chosen_at(table, index, last))
+    }
+    fn left_to_f64<const N: usize>(compute: impl FnOnce() -> [Self; N]) -> [Self; N] {
+        let unknown = with(|recorder| recorder.rolls.then(|| recorder.push(Operation::Rolled(Rolled::Unknown))));
+        unknown.map_or_else(compute, |unknown| [Self(unknown); N])
     }
     fn is_zero(self) -> bool {
         self.known() == Some(0.0)
@@ -244,6 +378,32 @@ impl Real for Trace {
     }
 }
 
+/// A loop recorded once: its body sees the place and the state as numbers that nobody else has.
+fn rolled<const S: usize>(over: Loop<Trace>, state: [Trace; S], mut body: impl FnMut(Place, [Trace; S]) -> [Trace; S]) -> [Trace; S] {
+    let (number, begin) = with(|recorder| {
+        let number = u8::try_from(recorder.loops.len()).expect("a formula has few loops");
+        let begin = state.map(|it| (it.0, it.0)).to_vec();
+        let until_zero = over.until_zero.map(|at| at as u8);
+        let Loop { first, end, most, backwards, names, .. } = over;
+        recorder.loops.push(RolledLoop { first, end: end.0, most, backwards, until_zero, state: begin, names, stores: Vec::new() });
+        let begin: [Trace; S] = std::array::from_fn(|at| Trace(recorder.push(Operation::Rolled(Rolled::State(number, at as u8)))));
+        (number, begin)
+    });
+    let next = body(Place { number: 0, of: Some(number) }, begin);
+    with(|recorder| {
+        let recorded = &mut recorder.loops[usize::from(number)];
+        recorded.state.iter_mut().zip(next).for_each(|(of, next)| of.1 = next.0);
+        let mut written: Vec<u8> = recorded.stores.iter().map(|store| store.table).collect();
+        written.sort_unstable();
+        written.dedup();
+        for table in written {
+            let before = recorder.tables[usize::from(table)].version;
+            recorder.tables[usize::from(table)].version = recorder.push(Operation::Rolled(Rolled::Written(number, table, before)));
+        }
+        std::array::from_fn(|at| Trace(recorder.push(Operation::Rolled(Rolled::Folded(number, at as u8)))))
+    })
+}
+
 impl Recording {
     /// The root of a function of its argument alone.
     fn constant_root(&self, argument: Node, value: Node, slope: Node, bracket: (f64, f64), start: f64) -> Option<f64> {
@@ -253,7 +413,7 @@ impl Recording {
         for node in (0..self.operations.len()).rev().filter(|&node| node as Node != argument) {
             if needed[node] {
                 match self.operations[node] {
-                    Operation::Input(_) | Operation::Root(_) | Operation::Argument(_) => return None,
+                    Operation::Input(_) | Operation::Root(_) | Operation::Argument(_) | Operation::Rolled(_) => return None,
                     operation => operation.operands(|operand| needed[operand as usize] = true),
                 }
             }
@@ -266,7 +426,7 @@ impl Recording {
                     Operation::Unary(operation, a) => operation.of(slots[a as usize]),
                     Operation::Binary(operation, a, b) => operation.of(slots[a as usize], slots[b as usize]),
                     Operation::Select(margin, a, b) => f64::select(slots[margin as usize], slots[a as usize], slots[b as usize]),
-                    Operation::Input(_) | Operation::Argument(_) | Operation::Root(_) => x,
+                    Operation::Input(_) | Operation::Argument(_) | Operation::Root(_) | Operation::Rolled(_) => x,
                 };
             }
             (slots[value as usize], slots[slope as usize])

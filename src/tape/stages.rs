@@ -11,8 +11,8 @@ pub struct Fields {
     pub prepared: &'static [&'static str],
     /// Of the tables that it passes on after them, with their lengths.
     pub tables: &'static [(&'static str, usize)],
-    /// Most loop turns that the shader's second stage and conditions take together, for drivers that end long loops.
-    pub turns: u64,
+    /// Most loop iterations that the shader's second stage and conditions take together, for drivers that end long loops.
+    pub iterations: u64,
     /// Of the outputs; there may be more than the model lists.
     pub outputs: &'static [&'static str],
 }
@@ -41,6 +41,8 @@ pub trait Recordable: Send + Sync {
     fn whole(&self, known: &[Known], wanted: u64, conditions: u64) -> Whole;
     /// Its second stage.
     fn second(&self, known: &[Known], wanted: u64, conditions: u64) -> Second;
+    /// Both stages as a device runs them: nothing known of the inputs, and loops recorded once.
+    fn stages(&self, wanted: u64, conditions: u64) -> (First, Second);
 }
 
 /// A formula from its inputs to its results.
@@ -54,6 +56,15 @@ pub struct Whole {
     pub outputs: Vec<Node>,
     /// The conditions' margins; those that were not asked for may be anything.
     pub conditions: Vec<Node>,
+}
+
+/// A formula's first stage.
+#[derive(Clone, Debug)]
+pub struct First {
+    /// All operations.
+    pub recording: Recording,
+    /// What it passes on: a number or a table for each of [`Fields::places`].
+    pub prepared: Vec<Node>,
 }
 
 /// A formula's second stage, from the inputs and what the first stage passes on to the results. The inputs of the list are the

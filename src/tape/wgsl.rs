@@ -4,7 +4,10 @@
 //! What the formula names, and what is read more than once, stands in a line of its own. A root is found in plain f32, and its bound
 //! comes from one evaluation of its function there.
 
-use super::{Binary, Fields, Known, List, ListRoot, Node, Operation, Recordable, Root, Second, Unary, Whole, nearest_f32};
+use super::{
+    Binary, Fields, First, List, ListLoop, ListRoot, Node, Operation, Recordable, Rolled, Root, Second, Table, Unary, nearest_f32,
+};
+use crate::real::Place;
 
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
@@ -70,38 +73,45 @@ enum Kind {
 }
 
 /// The text of a model's formula with so many conditions; `equations` has where each output comes from, as far as that is known.
-///
-/// # Panics
-/// If the formula passes tables between its stages: such a text is written by hand.
 pub fn text(formula: &dyn Recordable, conditions: usize, equations: &[&str]) -> String {
     let fields = formula.fields();
-    assert!(fields.tables.is_empty(), "a formula with tables is written by hand");
-    let inputs = vec![Known::ANY; fields.inputs.len()];
-    let whole = formula.whole(&inputs, u64::MAX, u64::MAX);
-    let second = formula.second(&inputs, u64::MAX, u64::MAX);
-    first_stage(&fields, &whole) + &second_stage(&fields, &second, conditions, equations)
+    let (first, second) = formula.stages(u64::MAX, u64::MAX);
+    first_stage(&fields, &first) + &second_stage(&fields, &second, conditions, equations)
 }
 
-fn first_stage(fields: &Fields, whole: &Whole) -> String {
-    let asked: Vec<_> = whole.prepared.iter().copied().map(Some).collect();
-    let list = List::cut(&whole.recording, &asked);
-    let leaf = |input: usize| format!("i.{}", fields.inputs[input]);
+fn first_stage(fields: &Fields, first: &First) -> String {
+    let asked: Vec<_> = first.prepared.iter().copied().map(Some).collect();
+    let list = List::cut(&first.recording, &asked);
+    let leaf = |input: usize, _: &str| format!("i.{}", fields.inputs[input]);
     let results: Vec<Line> = fields.prepared.iter().map(|field| Line { to: format!("p.{field}"), name: field, equation: "" }).collect();
-    let mut writer = Writer::new("prepare", &list, &leaf, &results);
+    let mut writer = Writer::new("prepare", fields, &list, &leaf, &results);
+    for (&result, (table, _)) in list.results[results.len()..].iter().flatten().zip(fields.tables) {
+        writer.tables.insert(list.table(result), table);
+    }
     writer.function("prepare(i: Inputs) -> Prepared", "var p: Prepared;", &results, "return p;");
     writer.text()
 }
 
 fn second_stage(fields: &Fields, second: &Second, conditions: usize, equations: &[&str]) -> String {
     let inputs = fields.inputs.len();
-    let leaf = |input: usize| match input.checked_sub(inputs) {
-        Some(passed) => format!("p.{}", fields.prepared[passed]),
+    let fields_passed: Vec<(usize, usize)> = fields.places().collect();
+    // A number of a table by what is to be added to its first place.
+    let leaf = |input: usize, index: &str| match input.checked_sub(inputs) {
         None => format!("i.{}", fields.inputs[input]),
+        Some(passed) => match fields.prepared.get(passed) {
+            Some(field) => format!("p.{field}"),
+            None => {
+                let in_table = |(_, (first, length)): &(usize, &(usize, usize))| (*first..first + length).contains(&passed);
+                let (field, (first, _)) = fields_passed.iter().enumerate().find(in_table).expect("it is in a table");
+                let index = if index.is_empty() { format!("{}u", passed - first) } else { index.to_owned() };
+                format!("{}(p, {index})", fields.tables[field - fields.prepared.len()].0)
+            }
+        },
     };
     let cut = |nodes: &[Node]| List::cut(&second.recording, &nodes.iter().copied().map(Some).collect::<Vec<_>>());
     let lines: Vec<Line> = (0..conditions).map(|number| Line { to: format!("margins[{number}]"), name: "", equation: "" }).collect();
     let list = cut(&second.conditions[..conditions]);
-    let mut conditions = Writer::new("conditions", &list, &leaf, &lines);
+    let mut conditions = Writer::new("conditions", fields, &list, &leaf, &lines);
     let margins = "var margins: array<Real, CONDITIONS>;";
     conditions.function("conditions(p: Prepared, i: Inputs) -> array<Real, CONDITIONS>", margins, &lines, "return margins;");
     let line = |(number, field): (usize, &&'static str)| Line {
@@ -111,7 +121,7 @@ fn second_stage(fields: &Fields, second: &Second, conditions: usize, equations: 
     };
     let lines: Vec<Line> = fields.outputs.iter().enumerate().map(line).collect();
     let list = cut(&second.outputs);
-    let mut finish = Writer::new("finish", &list, &leaf, &lines);
+    let mut finish = Writer::new("finish", fields, &list, &leaf, &lines);
     finish.function("finish(p: Prepared, i: Inputs) -> Outputs", "var out: Outputs;", &lines, "return out;");
     conditions.text() + &finish.text()
 }
@@ -130,7 +140,12 @@ struct Writer<'a> {
     /// The function that is written.
     stage: &'static str,
     list: &'a List,
-    leaf: &'a dyn Fn(usize) -> String,
+    /// What an input is called; of one in a table, given the index.
+    leaf: &'a dyn Fn(usize, &str) -> String,
+    /// Tables that are passed on to the second stage; others are variables of the function.
+    tables: HashMap<usize, &'static str>,
+    /// Loops that are written already.
+    written: HashSet<u8>,
     /// How often each number is read.
     reads: Vec<u32>,
     /// What each number that is kept is called.
@@ -144,21 +159,43 @@ struct Writer<'a> {
 }
 
 impl<'a> Writer<'a> {
-    fn new(stage: &'static str, list: &'a List, leaf: &'a dyn Fn(usize) -> String, results: &[Line<'_>]) -> Self {
+    fn new(stage: &'static str, fields: &Fields, list: &'a List, leaf: &'a dyn Fn(usize, &str) -> String, results: &[Line<'_>]) -> Self {
         let mut reads = vec![0; list.operations.len()];
         let mut read = |node: Node| reads[node as usize] += 1;
         list.results.iter().flatten().for_each(|&node| read(node));
+        for it in &list.loops {
+            let stored = it.recorded.stores.iter().map(|store| store.number);
+            let next = it.recorded.state.iter().zip(&it.used).filter(|(_, used)| **used).map(|(state, _)| state.1);
+            stored.chain(next).filter(|&node| node != Node::MAX).for_each(&mut read);
+            // What is the same in every iteration is computed before them.
+            for &node in &it.inner {
+                list.operations[node as usize].operands(|operand| {
+                    if !list.inner[operand as usize] {
+                        read(operand);
+                        read(operand);
+                    }
+                });
+            }
+        }
         for operation in &list.operations {
             match *operation {
                 Operation::Root(number) => list.roots[number as usize].root.reads(&mut read),
                 operation => operation.operands(&mut read),
             }
         }
-        let taken = TAKEN.iter().map(|&name| name.to_owned()).collect();
-        let (roots, text) = Default::default();
-        let mut writer = Self { stage, list, leaf, reads, names: HashMap::new(), given: HashMap::new(), taken, roots, text };
+        let tables = fields.tables.iter().map(|&(table, _)| table).chain(list.tables.iter().map(|table| table.name));
+        let taken = TAKEN.iter().copied().chain(tables).map(str::to_owned).collect();
+        let (roots, text, tables, written, names, given) = Default::default();
+        let mut writer = Self { stage, list, leaf, tables, written, reads, names, given, taken, roots, text };
         for (node, name) in list.names.iter().enumerate() {
             if let Some((name, _)) = name {
+                writer.call(node as Node, name);
+            }
+        }
+        for (node, operation) in list.operations.iter().enumerate() {
+            if let Operation::Rolled(Rolled::State(number, at)) = *operation
+                && let Some(name) = list.loops[number as usize].recorded.names.get(at as usize)
+            {
                 writer.call(node as Node, name);
             }
         }
@@ -195,7 +232,8 @@ impl<'a> Writer<'a> {
     fn is_kept(&self, node: Node) -> bool {
         match self.list.operations[node as usize] {
             Operation::Input(_) | Operation::Constant(_) | Operation::Argument(_) => false,
-            Operation::Root(_) => true,
+            Operation::Rolled(Rolled::Index(_) | Rolled::Unknown) => false,
+            Operation::Root(_) | Operation::Rolled(_) => true,
             _ => self.reads[node as usize] > 1 || self.names.contains_key(&node),
         }
     }
@@ -212,7 +250,8 @@ impl<'a> Writer<'a> {
     /// How a number is computed.
     fn expression(&mut self, node: Node, kind: Kind) -> String {
         match self.list.operations[node as usize] {
-            Operation::Input(input) => (self.leaf)(input.into()),
+            Operation::Input(input) => (self.leaf)(input.into(), ""),
+            Operation::Rolled(rolled) => self.rolled(rolled),
             Operation::Constant(bits) => constant(f64::from_bits(bits), kind),
             Operation::Argument(_) => "x".to_owned(),
             Operation::Root(number) => self.root(node, number, kind),
@@ -252,11 +291,162 @@ impl<'a> Writer<'a> {
     fn lines(&mut self, nodes: &[Node], kind: Kind, indent: &str) -> String {
         let mut text = String::new();
         for &node in nodes {
+            if let Operation::Rolled(rolled) = self.list.operations[node as usize]
+                && let Some(statement) = self.statement(rolled, node, indent)
+            {
+                text.push_str(&statement);
+                continue;
+            }
             let expression = self.expression(node, kind);
             let name = self.name(node);
             let equation = self.list.names[node as usize].map_or("", |(_, equation)| equation);
             put(&mut text, indent, &format!("let {name} = {expression};"), equation);
         }
+        text
+    }
+
+    /// What an operation of a loop or table is, as a number.
+    fn rolled(&mut self, rolled: Rolled) -> String {
+        match rolled {
+            Rolled::Index(number) => format!("constant(f32(place_{number}))"),
+            Rolled::State(number, at) | Rolled::Folded(number, at) => self.state(number, at),
+            Rolled::Unknown => "Real(0.0, infinity())".to_owned(),
+            Rolled::Get(table, place) => self.entry(table, &index(place)),
+            Rolled::GetAt(table, at) => {
+                let at = self.operand(at, Kind::Bounded);
+                let entry = self.entry(table, &format!("whole({at})"));
+                format!("if_known({at}.bound == 0.0, {entry})")
+            }
+            Rolled::Table(..) | Rolled::Written(..) | Rolled::PutLast(..) => unreachable!("a table is no number"),
+        }
+    }
+
+    /// A number of a table.
+    fn entry(&mut self, table: Node, index: &str) -> String {
+        match self.list.operations[table as usize] {
+            Operation::Input(input) => (self.leaf)(input.into(), index),
+            _ => format!("{}[{index}]", self.list.tables[self.list.table(table)].name),
+        }
+    }
+
+    /// Writes a number of a table.
+    fn put(&self, table: usize, index: &str, number: &str) -> String {
+        match self.tables.get(&table) {
+            Some(name) => format!("set_{name}({index}, {number});"),
+            _ => format!("{}[{index}] = {number};", self.list.tables[table].name),
+        }
+    }
+
+    /// The variable that holds a number of a loop's state.
+    fn state(&mut self, number: u8, at: u8) -> String {
+        let state = Operation::Rolled(Rolled::State(number, at));
+        match self.list.operations.iter().position(|operation| *operation == state) {
+            Some(node) => {
+                self.call(node as Node, &format!("state_{number}_{at}"));
+                self.names[&(node as Node)].clone()
+            }
+            // It does not matter for the next iteration.
+            None => self.list.loops[number as usize]
+                .recorded
+                .names
+                .get(usize::from(at))
+                .map_or_else(|| format!("state_{number}_{at}"), |name| format!("{name}_{number}")),
+        }
+    }
+
+    /// The lines of what is no number, or of a number that a loop leaves; `None` for what is a line like any other.
+    fn statement(&mut self, rolled: Rolled, node: Node, indent: &str) -> Option<String> {
+        let mut text = String::new();
+        match rolled {
+            // It is a variable of its loop.
+            Rolled::State(..) => {}
+            Rolled::Table(table, fill) => {
+                let table = usize::from(table);
+                if !self.tables.contains_key(&table) {
+                    let Table { name, length, .. } = self.list.tables[table];
+                    put(&mut text, indent, &format!("var {name}: array<Real, {length}>;"), "");
+                    if self.list.operations[fill as usize] != Operation::Constant(0) {
+                        let fill = self.operand(fill, Kind::Bounded);
+                        put(&mut text, indent, &format!("for (var at = 0; at < {length}; at++) {{ {name}[at] = {fill}; }}"), "");
+                    }
+                }
+            }
+            Rolled::PutLast(table, end, number) => {
+                let [end, number] = [end, number].map(|node| self.operand(node, Kind::Bounded));
+                put(&mut text, indent, &self.put(self.list.table(table), &format!("whole({end})"), &number), "");
+            }
+            Rolled::Written(number, ..) => text = self.loop_once(number, indent),
+            Rolled::Folded(number, at) => {
+                text = self.loop_once(number, indent);
+                let state = self.state(number, at);
+                let name = self.name(node);
+                put(&mut text, indent, &format!("let {name} = if_known(whole_{number}, {state});"), "");
+            }
+            _ => return None,
+        }
+        Some(text)
+    }
+
+    /// A loop, where it is first needed.
+    fn loop_once(&mut self, number: u8, indent: &str) -> String {
+        let list = self.list;
+        let ListLoop { recorded, used, inner } = &list.loops[number as usize];
+        let mut text = String::new();
+        if !self.written.insert(number) {
+            return text;
+        }
+        let end = self.operand(recorded.end, Kind::Bounded);
+        put(&mut text, indent, &format!("let end_{number} = min(whole({end}), {}u);", recorded.most), "");
+        let states: Vec<usize> = (0..used.len()).filter(|&at| used[at]).collect();
+        for &at in &states {
+            let begin = self.operand(recorded.state[at].0, Kind::Bounded);
+            put(&mut text, indent, &format!("var {} = {begin};", self.state(number, at as u8)), "");
+        }
+        let first = recorded.first;
+        if recorded.backwards {
+            put(&mut text, indent, &format!("var left_{number} = end_{number};"), "");
+            put(&mut text, indent, &format!("for (; left_{number} > {first}u; left_{number}--) {{"), "");
+            put(&mut text, indent, &format!("    let place_{number} = left_{number} - 1u;"), "");
+        } else {
+            put(&mut text, indent, &format!("var place_{number} = {first}u;"), "");
+            put(&mut text, indent, &format!("for (; place_{number} < end_{number}; place_{number}++) {{"), "");
+        }
+        let deeper = format!("{indent}    ");
+        // What the next iteration begins with is computed before any of it is assigned.
+        let is_state = |node: Node| matches!(list.operations[node as usize], Operation::Rolled(Rolled::State(..)));
+        let mut next: Vec<(String, String)> = Vec::new();
+        let kept: Vec<Node> = inner.iter().copied().filter(|&node| self.is_kept(node)).collect();
+        text.push_str(&self.lines(&kept, Kind::Bounded, &deeper));
+        for store in recorded.stores.iter().filter(|store| store.number != Node::MAX) {
+            let number = self.operand(store.number, Kind::Bounded);
+            put(&mut text, &deeper, &self.put(store.table.into(), &index(store.place), &number), "");
+        }
+        for &at in &states {
+            let node = recorded.state[at].1;
+            let (name, value) = (self.state(number, at as u8), self.operand(node, Kind::Bounded));
+            if states.len() > 1 && (is_state(node) || !self.is_kept(node)) && name != value {
+                put(&mut text, &deeper, &format!("let next_{number}_{at} = {value};"), "");
+                next.push((name, format!("next_{number}_{at}")));
+            } else if name != value {
+                next.push((name, value));
+            }
+        }
+        for (name, value) in next {
+            put(&mut text, &deeper, &format!("{name} = {value};"), "");
+        }
+        let mut ended = if recorded.backwards { format!("left_{number} <= {first}u") } else { format!("place_{number} >= end_{number}") };
+        if let Some(at) = recorded.until_zero {
+            let state = self.state(number, at);
+            put(&mut text, &deeper, &format!("if is_zero({state}) {{ break; }}"), "");
+            ended = format!("({ended}) | is_zero({state})");
+        }
+        put(&mut text, indent, "}", "");
+        let leaves = |operation: &Operation| matches!(*operation, Operation::Rolled(Rolled::Folded(of, _)) if of == number);
+        if !list.operations.iter().any(leaves) {
+            return text;
+        }
+        put(&mut text, indent, "// A driver that ends long loops must not make a part of the iterations look like all of them.", "");
+        put(&mut text, indent, &format!("let whole_{number} = {ended};"), "");
         text
     }
 
@@ -302,6 +492,8 @@ impl<'a> Writer<'a> {
             stage: self.stage,
             list,
             leaf: self.leaf,
+            tables: HashMap::new(),
+            written: HashSet::new(),
             reads: self.reads.clone(),
             names: self.names.clone(),
             given: HashMap::new(),
@@ -313,7 +505,7 @@ impl<'a> Writer<'a> {
         for (at, &node) in outside.iter().enumerate() {
             let mut own = match (list.operations[node as usize], self.names.get(&node)) {
                 (_, Some(name)) => name.clone(),
-                (Operation::Input(input), _) => (self.leaf)(input.into()).rsplit('.').next().unwrap_or_default().to_owned(),
+                (Operation::Input(input), _) => (self.leaf)(input.into(), "").rsplit('.').next().unwrap_or_default().to_owned(),
                 _ => format!("given_{at}"),
             };
             if !self.names.contains_key(&node) {
@@ -351,6 +543,16 @@ impl<'a> Writer<'a> {
 
     fn text(self) -> String {
         self.roots + &self.text
+    }
+}
+
+/// The index of a place in a table.
+fn index(place: Place) -> String {
+    match (place.of, place.number) {
+        (None, number) => format!("{number}u"),
+        (Some(of), 0) => format!("place_{of}"),
+        (Some(of), number) if number < 0 => format!("place_{of} - {}u", -number),
+        (Some(of), number) => format!("place_{of} + {number}u"),
     }
 }
 

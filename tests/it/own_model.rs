@@ -30,7 +30,7 @@ impl Formula for FlatBelt {
         inputs: &["slack_tension", "friction", "wrap", "wanted_tension"],
         prepared: &["grip"],
         tables: &[],
-        turns: 0,
+        iterations: 0,
         outputs: &["tight_tension", "slip_reserve"],
     };
 

@@ -213,7 +213,7 @@ pub(super) struct Cvt<B>(pub B);
 
 impl<B: Belt> Formula for Cvt<B> {
     const FIELDS: Fields =
-        Fields { inputs: B::INPUT_NAMES, prepared: Prepared::<usize>::NAMES, tables: &[], turns: 0, outputs: Result::<usize>::NAMES };
+        Fields { inputs: B::INPUT_NAMES, prepared: Prepared::<usize>::NAMES, tables: &[], iterations: 0, outputs: Result::<usize>::NAMES };
 
     fn prepare<R: Real>(inputs: &[R; INPUTS], _wanted: u64, prepared: &mut [R]) {
         prepare(&B::drive(inputs)).write(prepared);

@@ -2,7 +2,7 @@
 
 use super::super::formula::{Columns, INPUTS};
 use super::{Inputs, OUT, Prepared, TEETH, inward};
-use crate::real::{LANES, Lanes, Real};
+use crate::real::{LANES, Lanes, Place, Real};
 
 /// Number of the condition on the tensions.
 const EFFECTIVE: usize = 0;
@@ -32,11 +32,11 @@ pub fn teeth_at_one_load(prepared: &[f64], inputs: &[Lanes; INPUTS], columns: &C
     }
     let i = Inputs::read(&shared);
     let p = Prepared::<f64>::shared(prepared);
-    let teeth = i.teeth_in_mesh.turns(TEETH);
+    let teeth = i.teeth_in_mesh.iterations(TEETH);
     let mut held = [0.0; TEETH];
     let mut least = f64::INFINITY;
     for (tooth, held) in held[..teeth].iter_mut().enumerate() {
-        let force = inward(&i, prepared, tooth);
+        let force = inward(&i, prepared, Place::at(tooth));
         if !force.is_finite() {
             return false;
         }

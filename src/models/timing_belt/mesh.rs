@@ -16,7 +16,10 @@
 //! with `s = k + e (1 - lambda(i-1))`, has only positive terms and keeps every digit where their difference would lose two.
 
 use super::{Inputs, TEETH};
-use crate::real::Real;
+use crate::real::{Loop, Place, Real};
+
+/// Gaps between teeth, with those before the first tooth and after the last.
+const PLACES: usize = TEETH + 1;
 
 /// More than any centrifugal force, for teeth that the pulley does not have.
 const NEVER_LIFTS: f64 = 1e30;
@@ -40,6 +43,9 @@ pub struct Rows<R> {
     pub lifted_out: R,
     /// cos(phi - theta) - cos(phi + theta), as a product.
     pub lifted_apart: R,
+    /// Stretch of a pitch without friction, and what a lifted tooth gives, in units of what it takes in; the latter is hardly more than 1.
+    stretch_per_in: R,
+    out_per_in: R,
     /// What makes a tooth's load of H: cos alpha where it meshes, g where it is lifted.
     pub flank: R,
     pub lifted_flank: R,
@@ -68,6 +74,9 @@ impl<R: Real> Linear<R> {
     fn plus(self, other: Self) -> Self {
         Self::new(self.tight + other.tight, self.slack + other.slack)
     }
+    fn named(self, tight: &'static str, slack: &'static str) -> Self {
+        Self::new(self.tight.named(tight, ""), self.slack.named(slack, ""))
+    }
     fn select(margin: R, at_least_zero: Self, below_zero: Self) -> Self {
         Self::new(R::select(margin, at_least_zero.tight, below_zero.tight), R::select(margin, at_least_zero.slack, below_zero.slack))
     }
@@ -81,41 +90,41 @@ pub type Boundary<R> = [Linear<R>; 5];
 impl<R: Real> Rows<R> {
     pub fn new(i: &Inputs<R>) -> Self {
         let [one, two] = [1.0, 2.0].map(R::constant);
-        let lift = lift_angle(i);
+        let lift = lift_angle(i).named("lift", "");
         // (1 - e)/mu is 2 beta in the limit mu -> 0, which the least friction that can be told from it gives exactly.
-        let around = (two * i.friction * i.land_half_angle).max(R::constant(1e-30));
-        let lost = -(-around).exp_m1();
-        let land = two * i.land_half_angle * i.tip_radius;
-        let meshed = i.space_half_angle.cos();
-        let rigidity = i.cord_modulus * i.cord_area * i.tooth_compliance * meshed;
+        let around = (two * i.friction * i.land_half_angle).max(R::constant(1e-30)).named("around", "");
+        let lost = (-(-around).exp_m1()).named("lost", "");
+        let land = (two * i.land_half_angle * i.tip_radius).named("land", "");
+        let meshed = i.space_half_angle.cos().named("meshed", "");
+        let rigidity = (i.cord_modulus * i.cord_area * i.tooth_compliance * meshed).named("rigidity", "");
         let (sine, cosine) = (i.pressure_angle.sin(), i.pressure_angle.cos());
         let rotated = i.pressure_angle + lift;
+        let free_stretch = ((land + i.tooth_length) / rigidity).named("free_stretch", "(13)");
+        let lifted_in = ((i.space_half_angle + lift).cos() / meshed).named("lifted_in", "");
+        let lifted_apart = (two * i.space_half_angle.sin() * lift.sin() / meshed).named("lifted_apart", "");
         Self {
             teeth: i.teeth_in_mesh,
-            land_ratio: one - lost,
+            land_ratio: (one - lost).named("land_ratio", ""),
             lost,
-            stretch: (land * (lost / around) + i.tooth_length) / rigidity,
-            free_stretch: (land + i.tooth_length) / rigidity,
-            tight: i.tight_span_angle.cos() / meshed,
-            slack: i.slack_span_angle.cos() / meshed,
-            lifted_in: (i.space_half_angle + lift).cos() / meshed,
-            lifted_out: (i.space_half_angle - lift).cos() / meshed,
-            lifted_apart: two * i.space_half_angle.sin() * lift.sin() / meshed,
-            flank: cosine / meshed,
-            lifted_flank: (rotated.cos() + i.friction * rotated.sin()) / meshed,
-            inwards: (i.space_half_angle + i.land_half_angle).sin(),
-            load_inwards: i.friction * cosine - sine,
+            stretch: ((land * (lost / around) + i.tooth_length) / rigidity).named("stretch", "(5), (7)"),
+            free_stretch,
+            tight: (i.tight_span_angle.cos() / meshed).named("tight_cosine", ""),
+            slack: (i.slack_span_angle.cos() / meshed).named("slack_cosine", ""),
+            lifted_in,
+            lifted_out: ((i.space_half_angle - lift).cos() / meshed).named("lifted_out", ""),
+            lifted_apart,
+            stretch_per_in: (free_stretch / lifted_in).named("stretch_per_in", ""),
+            out_per_in: (one + lifted_apart / lifted_in).named("out_per_in", ""),
+            flank: (cosine / meshed).named("flank", ""),
+            lifted_flank: ((rotated.cos() + i.friction * rotated.sin()) / meshed).named("lifted_flank", ""),
+            inwards: (i.space_half_angle + i.land_half_angle).sin().named("inwards", ""),
+            load_inwards: (i.friction * cosine - sine).named("load_inwards", ""),
         }
     }
 
     /// At least zero from tooth `tooth` on, below zero before: half a tooth away from either, so that rounding cannot matter.
     fn reaches_last(&self, tooth: usize) -> R {
         R::constant(tooth as f64 + 0.5) - self.teeth
-    }
-
-    /// What tooth `tooth` takes in of the tension before it, if it meshes.
-    fn taken_in(&self, tooth: usize) -> R {
-        if tooth == 1 { self.tight } else { self.land_ratio }
     }
 }
 
@@ -124,169 +133,257 @@ pub fn lift_angle<R: Real>(i: &Inputs<R>) -> R {
     R::select(i.lift_angle, i.lift_angle, i.space_half_angle)
 }
 
-/// Elimination from the tight side over meshing teeth.
+/// Elimination from the tight side over meshing teeth. Tables stand at gap + 1, so that there is a place before the first gap.
 pub struct Elimination<R> {
-    gaps: usize,
-    /// `T(i) = after[i] T(i+1) + tight[i] T_t`; at 0 it is T_t itself.
-    after: [R; TEETH + 1],
-    tight: [R; TEETH + 1],
+    /// `T(i) = after[i] T(i+1) + tight[i] T_t`; at gap 0 it is T_t itself.
+    after: [R; PLACES],
+    tight: [R; PLACES],
     /// 1 - after.
-    short: [R; TEETH + 1],
-    /// The last row of the complete mesh, whose tooth leaves into the slack span.
-    after_last: [R; TEETH + 1],
+    short: [R; PLACES],
+    /// `T(1) + .. + T(i) = meshed_own[i] T(i+1) + meshed_tight[i] T_t`.
+    meshed_own: [R; PLACES],
+    meshed_tight: [R; PLACES],
 }
 
 impl<R: Real> Elimination<R> {
     pub fn new(rows: &Rows<R>) -> Self {
-        let zero = R::constant(0.0);
-        let gaps = rows.teeth.turns(TEETH).max(2) - 1;
-        let (mut after, mut tight, mut after_last) = ([zero; TEETH + 1], [zero; TEETH + 1], [zero; TEETH + 1]);
-        let mut short = [R::constant(1.0); TEETH + 1];
-        let one = R::constant(1.0);
-        tight[0] = one;
-        for gap in 1..=gaps {
-            let beyond = rows.stretch + rows.land_ratio * short[gap - 1];
-            let pivot = one + beyond;
-            after[gap] = one / pivot;
-            short[gap] = beyond / pivot;
-            tight[gap] = rows.taken_in(gap) * tight[gap - 1] * after[gap];
-            after_last[gap] = rows.slack * after[gap];
-        }
-        Self { gaps, after, tight, short, after_last }
-    }
-
-    /// Tensions of the complete mesh, T(1)..T(N) at their numbers; T_t at 0, T_s from N + 1 on.
-    fn complete(&self, rows: &Rows<R>) -> [Linear<R>; TEETH + 1] {
         let [zero, one] = [0.0, 1.0].map(R::constant);
-        let slack = Linear::new(zero, one);
-        let mut tension = [slack; TEETH + 1];
-        tension[0] = Linear::new(one, zero);
-        for gap in (1..=self.gaps).rev() {
-            let behind = tension[(gap + 1).min(TEETH)];
-            let inner = Linear::new(self.after[gap] * behind.tight + self.tight[gap], self.after[gap] * behind.slack);
-            // Gap number `teeth - 1` is the last; those beyond it, which only a range of teeth has, are overwritten there.
-            let last = Linear::new(self.tight[gap], self.after_last[gap]);
-            let is_inner = Linear::select(rows.reaches_last(gap + 1), last, inner);
-            tension[gap] = Linear::select(rows.reaches_last(gap), slack, is_inner);
-        }
-        tension
+        let [mut after, mut meshed_own, mut meshed_tight] = ["after", "meshed_own", "meshed_tight"].map(|name| R::table(name, zero));
+        let [mut tight, mut short] = ["tight", "short"].map(|name| R::table(name, one));
+        let gaps = Loop::to(rows.teeth, TEETH).from(1).named(&["tight_before", "short_before", "own", "of_tight"]);
+        R::fold(
+            gaps,
+            [one, one, zero, zero],
+            #[inline(always)]
+            |gap, [tight_before, short_before, own, of_tight]| {
+                let beyond = rows.stretch + rows.land_ratio * short_before;
+                let pivot = one + beyond;
+                let ratio = one / pivot;
+                let taken_in = R::select(R::constant(1.5) - R::number(gap), rows.tight, rows.land_ratio);
+                let tight_here = taken_in * tight_before * ratio;
+                let short_here = beyond / pivot;
+                let with_last = own + one;
+                let (own, of_tight) = (with_last * ratio, with_last * tight_here + of_tight);
+                R::put(&mut after, gap.next(), ratio);
+                R::put(&mut tight, gap.next(), tight_here);
+                R::put(&mut short, gap.next(), short_here);
+                R::put(&mut meshed_own, gap.next(), own);
+                R::put(&mut meshed_tight, gap.next(), of_tight);
+                [tight_here, short_here, own, of_tight]
+            },
+        );
+        Self { after, tight, short, meshed_own, meshed_tight }
     }
 }
 
-/// The complete mesh: load of every tooth and what presses it inwards, (8) and the free body of a pitch.
+/// A tooth of the complete mesh: the tension before it and that leaving it, its load and what presses it inwards, (8) and the free body
+/// of a pitch.
+pub struct Tooth<R> {
+    before: Linear<R>,
+    pub leaving: Linear<R>,
+    /// What the tight tension makes of H, the force on the tooth.
+    by_tight: R,
+    pub load: Linear<R>,
+    pub inward: Linear<R>,
+}
+
+impl<R: Real> Tooth<R> {
+    /// The tooth at `at`, from 0, given what is known of the one behind it: the tension that leaves this one, and H there, as far as
+    /// the tight tension makes it.
+    #[inline(always)]
+    fn new(rows: &Rows<R>, e: &Elimination<R>, at: Place, leaving: Linear<R>, behind: R) -> Self {
+        let [zero, one] = [0.0, 1.0].map(R::constant);
+        let slack = Linear::new(zero, one);
+        let is_last = R::beyond(at.next(), rows.teeth).named("is_last", "");
+        let is_beyond = R::beyond(at, rows.teeth);
+        let after_first = (R::number(at) - R::constant(0.5)).named("after_first", "");
+        let [after, tight] = [&e.after, &e.tight].map(|table| R::get(table, at.next()));
+        let leaving = Linear::select(is_last, slack, leaving);
+        let inner = Linear::new(after * leaving.tight + tight, after * leaving.slack);
+        let inner = Linear::select(is_beyond, slack, Linear::select(is_last, Linear::new(tight, rows.slack * after), inner));
+        let before = Linear::select(after_first, inner, Linear::new(one, zero));
+        // Of the tight tension, from the slack side on: H(i) = H(i+1) + k T(i). Of the slack tension, H(i) = -T(i) (1 - e lambda(i-1)).
+        let land = R::select(after_first, rows.land_ratio, one);
+        let last = R::select(after_first, rows.land_ratio, rows.tight) * before.tight;
+        let by_tight = R::select(is_last, last, behind + rows.stretch * leaving.tight).named("force", "");
+        let short = R::select(after_first, rows.lost * after + R::get(&e.short, at.next()), one);
+        let out = R::select(is_last, rows.slack, one);
+        let load = Linear::new(by_tight, -(out * leaving.slack * short)).over(rows.flank).named("load_tight", "load_slack");
+        let pressed = before.scaled(land).plus(leaving).scaled(rows.inwards).plus(load.scaled(rows.load_inwards));
+        let inward = Linear::select(is_beyond, Linear::new(R::constant(NEVER_LIFTS), zero), pressed);
+        Self { before, leaving, by_tight, load, inward }
+    }
+}
+
+/// The complete mesh, at tooth - 1.
 pub struct Complete<R> {
-    pub teeth: usize,
-    /// At tooth - 1.
     pub tension: [Linear<R>; TEETH],
     pub load: [Linear<R>; TEETH],
     pub inward: [Linear<R>; TEETH],
 }
 
-/// Solves the complete mesh.
-#[inline(never)]
-pub fn complete<R: Real>(rows: &Rows<R>, elimination: &Elimination<R>) -> Complete<R> {
-    let [zero, one] = [0.0, 1.0].map(R::constant);
-    let tensions = elimination.complete(rows);
-    let none = Linear::new(zero, zero);
-    let (mut tension, mut load, mut inward) = ([none; TEETH], [none; TEETH], [none; TEETH]);
-    let teeth = elimination.gaps + 1;
-    let never = Linear::new(R::constant(NEVER_LIFTS), zero);
-    // H of the tooth behind, as far as the tight side makes it.
-    let mut behind = zero;
-    for tooth in (1..=teeth).rev() {
-        let at = tooth - 1;
-        let before = tensions[at];
-        let leaving = Linear::select(rows.reaches_last(tooth), Linear::new(zero, one), tensions[tooth]);
-        // Of the tight tension, from the slack side on: H(i) = H(i+1) + k T(i). Of the slack tension, H(i) = -T(i) (1 - e lambda(i-1)).
-        let land = if tooth == 1 { one } else { rows.land_ratio };
-        let last = rows.taken_in(tooth) * before.tight;
-        let by_tight = R::select(rows.reaches_last(tooth), last, behind + rows.stretch * leaving.tight);
-        let short = if tooth == 1 { one } else { rows.lost * elimination.after[at] + elimination.short[at] };
-        let out = R::select(rows.reaches_last(tooth), rows.slack, one);
-        behind = by_tight;
-        load[at] = Linear::new(by_tight, -(out * leaving.slack * short)).over(rows.flank);
-        tension[at] = leaving;
-        let pressed = before.scaled(land).plus(leaving).scaled(rows.inwards).plus(load[at].scaled(rows.load_inwards));
-        inward[at] = Linear::select(rows.reaches_last(at), never, pressed);
-    }
-    Complete { teeth, tension, load, inward }
+/// Solves the complete mesh of one design.
+pub fn complete(rows: &Rows<f64>, e: &Elimination<f64>) -> Complete<f64> {
+    let none = Linear::new(0.0, 0.0);
+    let mut complete = Complete { tension: [none; TEETH], load: [none; TEETH], inward: [none; TEETH] };
+    f64::fold(Loop::to(rows.teeth, TEETH).backwards(), [0.0, 1.0, 0.0], |at, [tight, slack, behind]| {
+        let tooth = Tooth::new(rows, e, at, Linear::new(tight, slack), behind);
+        complete.tension[at.known()] = tooth.leaving;
+        complete.load[at.known()] = tooth.load;
+        complete.inward[at.known()] = tooth.inward;
+        [tooth.before.tight, tooth.before.slack, tooth.by_tight]
+    });
+    complete
 }
 
-/// The incomplete mesh for every boundary: at j - 1 for j = 1 ..= N + 2, the last of which is the complete mesh.
-#[inline(never)]
-pub fn boundaries<R: Real>(rows: &Rows<R>, e: &Elimination<R>, complete: &Complete<R>) -> [Boundary<R>; TEETH + 1] {
-    let [zero, one] = [0.0, 1.0].map(R::constant);
-    let none = Linear::new(zero, zero);
-    let (gaps, teeth) = (e.gaps, e.gaps + 1);
-    let tight_itself = Linear::new(one, zero);
-    let slack_itself = Linear::new(zero, one);
+/// The elimination from the slack side over lifted teeth, of T(i-1) and of T_s.
+#[derive(Clone, Copy)]
+struct Lifted<R> {
+    /// T(i) = rho T(i-1) + sigma T_s with short = 1 - rho.
+    sigma: R,
+    short: R,
+    /// The last gap's tension T(N).
+    last: Linear<R>,
+    /// The sum of the tensions from T(i) on.
+    sum: Linear<R>,
+}
 
-    // From the slack side, of T(i-1) and of T_s: T(i) = rho T(i-1) + sigma T_s with short = 1 - rho; the last gap's tension T(N); the
-    // sum of the tensions from T(i) on.
-    let (mut rho, mut sigma, mut short) = ([zero; TEETH + 1], [one; TEETH + 1], [one; TEETH + 1]);
-    let (mut last, mut sum) = ([tight_itself; TEETH + 1], [none; TEETH + 1]);
-    // In units of what a lifted tooth takes in; what it gives is hardly more.
-    let (free_stretch, lifted_out) = (rows.free_stretch / rows.lifted_in, one + rows.lifted_apart / rows.lifted_in);
-    for gap in (1..=gaps).rev() {
-        let short_of = free_stretch + lifted_out * short[gap];
+impl<R: Real> Lifted<R> {
+    /// Behind the last tooth.
+    fn last() -> Self {
+        let [zero, one] = [0.0, 1.0].map(R::constant);
+        Self { sigma: one, short: one, last: Linear::new(one, zero), sum: Linear::new(zero, zero) }
+    }
+
+    /// Before the tooth at `at`, from what is behind it.
+    #[inline(always)]
+    fn before(self, rows: &Rows<R>, at: Place) -> Self {
+        let [zero, one] = [0.0, 1.0].map(R::constant);
+        let is_last = R::beyond(at.next(), rows.teeth).named("is_last", "");
+        let after_first = (R::number(at) - R::constant(0.5)).named("after_first", "");
+        let short_of = rows.stretch_per_in + rows.out_per_in * self.short;
         let pivot = one + short_of;
-        let beyond = rows.reaches_last(gap);
-        let at = gap - 1;
-        let own = if gap == 1 { rows.tight / rows.lifted_in / pivot } else { one / pivot };
-        rho[at] = R::select(beyond, zero, own);
-        short[at] = R::select(beyond, one, short_of / pivot);
-        sigma[at] = R::select(beyond, one, lifted_out * sigma[gap] / pivot);
-        let chained = |of: Linear<R>| Linear::new(of.tight * rho[at], of.slack + of.tight * sigma[at]);
-        let summed = Linear::new(one + sum[gap].tight, sum[gap].slack);
-        last[at] = Linear::select(beyond, tight_itself, chained(last[gap]));
-        sum[at] = Linear::select(beyond, none, chained(summed));
-    }
-
-    let mut boundaries = [[none; 5]; TEETH + 1];
-    // The sum T(1) + .. + T(j-2), of T* and of T_t.
-    let (mut meshed_own, mut meshed_tight) = (zero, zero);
-    for j in 1..=teeth {
-        // At j - 1: what the elimination from the slack side says of T(j).
-        let (sigma, last, sum) = (sigma[j - 1], last[j - 1], sum[j - 1]);
-        let star = if j == 1 {
-            tight_itself
-        } else {
-            let taken_in = rows.taken_in(j - 1);
-            // k' + (1 - e lambda) + (in - out rho); no tooth before the first hands on.
-            let meshed = rows.lost + rows.land_ratio * e.short[j - 2];
-            let pivot = rows.free_stretch + meshed + rows.lifted_out * short[j - 1] - rows.lifted_apart;
-            Linear::new(taken_in * e.tight[j - 2], rows.lifted_out * sigma).over(pivot)
-        };
-        let of_star = |own: R, slack: R| star.scaled(own).plus(slack_itself.scaled(slack));
-        // H(N+1) = cos(phi + theta) T(N) - cos(phi - theta) T_s, H(j) as the sum from there, H(j-1), H(1).
-        let force_last = of_star(rows.lifted_in * last.tight, rows.lifted_in * (last.slack - lifted_out));
-        let force_own = of_star(rows.lifted_in * last.tight + rows.free_stretch * sum.tight, -(rows.lifted_out * sigma));
-        let own = force_own.over(rows.lifted_flank);
-        let (first, before) = if j == 1 {
-            (own, own)
-        } else {
-            if j > 2 {
-                let with_last = meshed_own + one;
-                (meshed_own, meshed_tight) = (with_last * e.after[j - 2], with_last * e.tight[j - 2] + meshed_tight);
-            }
-            let force_before = force_own.plus(star.scaled(rows.free_stretch));
-            let meshed = star.scaled(meshed_own).plus(tight_itself.scaled(meshed_tight));
-            (force_before.plus(meshed.scaled(rows.stretch)).over(rows.flank), force_before.over(rows.flank))
-        };
-        boundaries[j - 1] = [star, first, own, before, force_last.over(rows.lifted_flank)];
-    }
-    // Without a boundary: the complete mesh; T* has no meaning there.
-    let (first, mut last) = (complete.load[0], complete.load[0]);
-    for j in 2..=teeth + 1 {
-        // Beyond the last tooth, its load stays the last.
-        last = if j == 2 { last } else { Linear::select(rows.reaches_last(j - 2), last, complete.load[j - 2]) };
-        let of_complete = [none, first, first, last, last];
-        let is_none = rows.reaches_last(j - 1);
-        for (value, complete) in boundaries[j - 1].iter_mut().zip(of_complete) {
-            *value = Linear::select(is_none, complete, *value);
+        let rho = R::select(after_first, one, rows.tight / rows.lifted_in) / pivot;
+        let sigma = rows.out_per_in * self.sigma / pivot;
+        let chained = |of: Linear<R>| Linear::new(of.tight * rho, of.slack + of.tight * sigma);
+        let last = chained(self.last);
+        let sum = chained(Linear::new(one + self.sum.tight, self.sum.slack));
+        Self {
+            sigma: R::select(is_last, one, sigma),
+            short: R::select(is_last, one, short_of / pivot),
+            last: Linear::select(is_last, Linear::new(one, zero), last),
+            sum: Linear::select(is_last, Linear::new(zero, zero), sum),
         }
     }
-    boundaries
+}
+
+/// The incomplete mesh if the tooth at `at` is the first lifted one.
+#[inline(always)]
+fn boundary<R: Real>(rows: &Rows<R>, e: &Elimination<R>, at: Place, behind: &Lifted<R>) -> Boundary<R> {
+    let [zero, one] = [0.0, 1.0].map(R::constant);
+    let after_first = (R::number(at) - R::constant(0.5)).named("after_first", "");
+    // What the elimination from the tight side says of the tooth before.
+    let [tight, short, meshed_own, meshed_tight] = [&e.tight, &e.short, &e.meshed_own, &e.meshed_tight].map(|table| R::get(table, at));
+    let taken_in = R::select(R::number(at) - R::constant(1.5), rows.land_ratio, rows.tight);
+    // k' + (1 - e lambda) + (in - out rho); no tooth before the first hands on.
+    let meshed = rows.lost + rows.land_ratio * short;
+    let pivot = rows.free_stretch + meshed + rows.lifted_out * behind.short - rows.lifted_apart;
+    let star = Linear::new(taken_in * tight, rows.lifted_out * behind.sigma).over(pivot);
+    let star = Linear::select(after_first, star, Linear::new(one, zero)).named("t_star_tight", "t_star_slack");
+    let of_star = |own: R, slack: R| Linear::new(star.tight * own, star.slack * own + slack);
+    // H(N+1) = cos(phi + theta) T(N) - cos(phi - theta) T_s, H(j) as the sum from there, H(j-1), H(1).
+    let force_last = of_star(rows.lifted_in * behind.last.tight, rows.lifted_in * (behind.last.slack - rows.out_per_in));
+    let own_in = rows.lifted_in * behind.last.tight + rows.free_stretch * behind.sum.tight;
+    let force_own = of_star(own_in, -(rows.lifted_out * behind.sigma));
+    let own = force_own.over(rows.lifted_flank);
+    let force_before = force_own.plus(star.scaled(rows.free_stretch));
+    let meshed = Linear::new(star.tight * meshed_own + meshed_tight, star.slack * meshed_own);
+    let first = Linear::select(after_first, force_before.plus(meshed.scaled(rows.stretch)).over(rows.flank), own);
+    let before = Linear::select(after_first, force_before.over(rows.flank), own);
+    [star, first, own, before, force_last.over(rows.lifted_flank)]
+}
+
+/// What is found for every tooth, each as what the tight and the slack tension make of it.
+pub struct Found<'a, R> {
+    /// What presses a tooth of the complete mesh inwards, at tooth - 1.
+    pub inward: [&'a mut [R]; 2],
+    /// The incomplete mesh for every boundary: at j - 1 for j = 1 ..= N + 2, the last of which is the complete mesh.
+    pub boundaries: Option<[[&'a mut [R]; 2]; 5]>,
+}
+
+/// Goes from the last tooth to the first over what [`Elimination`] made of them; returns the first tooth's load in the complete mesh.
+pub fn back<R: Real>(rows: &Rows<R>, e: &Elimination<R>, found: &mut Found<'_, R>) -> Linear<R> {
+    let [zero, one] = [0.0, 1.0].map(R::constant);
+    let Lifted { sigma, short, last, sum } = Lifted::last();
+    // Tension and force behind, load of this tooth, load of the last, and what is lifted behind.
+    let begin = [zero, one, zero, zero, zero, zero, zero, sigma, short, last.tight, last.slack, sum.tight, sum.slack];
+    let teeth = Loop::to(rows.teeth, TEETH).backwards().named(&[
+        "tension_tight",
+        "tension_slack",
+        "behind",
+        "first_load_tight",
+        "first_load_slack",
+        "last_load_tight",
+        "last_load_slack",
+        "sigma",
+        "short_behind",
+        "last_in_tight",
+        "last_in_slack",
+        "sum_tight",
+        "sum_slack",
+    ]);
+    let end = R::fold(
+        teeth,
+        begin,
+        #[inline(always)]
+        |at, state| {
+            let [tight, slack, behind, _, _, last_tight, last_slack, sigma, short, last_in_tight, last_in_slack, sum_tight, sum_slack] =
+                state;
+            let tooth = Tooth::new(rows, e, at, Linear::new(tight, slack), behind);
+            put(&mut found.inward, at, tooth.inward);
+            let is_last = R::beyond(at.next(), rows.teeth);
+            let last = Linear::select(is_last, tooth.load, Linear::new(last_tight, last_slack));
+            let mut lifted =
+                Lifted { sigma, short, last: Linear::new(last_in_tight, last_in_slack), sum: Linear::new(sum_tight, sum_slack) };
+            if let Some(boundaries) = &mut found.boundaries {
+                lifted = lifted.before(rows, at);
+                for (table, number) in boundaries.iter_mut().zip(boundary(rows, e, at, &lifted)) {
+                    put(table, at, number);
+                }
+            }
+            let Tooth { before, by_tight, load, .. } = tooth;
+            let Lifted { sigma, short, last: last_in, sum } = lifted;
+            [
+                before.tight,
+                before.slack,
+                by_tight,
+                load.tight,
+                load.slack,
+                last.tight,
+                last.slack,
+                sigma,
+                short,
+                last_in.tight,
+                last_in.slack,
+                sum.tight,
+                sum.slack,
+            ]
+        },
+    );
+    let (load, last) = (Linear::new(end[3], end[4]), Linear::new(end[5], end[6]));
+    if let Some(boundaries) = &mut found.boundaries {
+        // Without a boundary: the complete mesh; T* has no meaning there.
+        for (table, number) in boundaries.iter_mut().zip([Linear::new(zero, zero), load, load, last, last]) {
+            R::put_last(table[0], rows.teeth, number.tight);
+            R::put_last(table[1], rows.teeth, number.slack);
+        }
+    }
+    load
+}
+
+fn put<R: Real>(tables: &mut [&mut [R]; 2], at: Place, number: Linear<R>) {
+    R::put(tables[0], at, number.tight);
+    R::put(tables[1], at, number.slack);
 }
 
 /// Tensions and loads of every tooth with the boundary at `j`, solved for these very tensions: T(i) leaving tooth i and Q(i), at
@@ -303,7 +400,7 @@ pub struct Solved<R> {
 #[inline(never)]
 pub fn solve<R: Real>(rows: &Rows<R>, tight: R, slack: R, j: R, option: R, centrifugal: R) -> Solved<R> {
     let [zero, one] = [0.0, 1.0].map(R::constant);
-    let teeth = rows.teeth.turns(TEETH).max(2);
+    let teeth = rows.teeth.iterations(TEETH).max(2);
     // Without a lifted tooth the mesh is the plain complete one.
     let option = R::select(j - rows.teeth - R::constant(0.5), zero, option);
     let is_lifted = |tooth: usize| R::constant(tooth as f64 + 0.5) - j;

@@ -25,7 +25,7 @@
 //! - Step (4) calls j the boundary, Fig. 9 tooth 15 = j - 1.
 
 use super::formula::{CONDITIONS, Columns, Formula, INPUTS, OUTPUTS, bits, record};
-use crate::real::{Lanes, Real};
+use crate::real::{Lanes, Loop, Place, Real};
 use crate::tape::Fields;
 
 mod block;
@@ -94,15 +94,6 @@ const FIRST: usize = 1;
 const OWN: usize = 2;
 const BEFORE: usize = 3;
 const LAST: usize = 4;
-const PARTS: usize = 5;
-/// Outputs that need each.
-const NEEDED_BY: [u64; PARTS] = [
-    bits(&[OUT.boundary_tension]),
-    bits(&[OUT.peak_tooth_load]),
-    bits(&[OUT.peak_tooth_load]),
-    bits(&[OUT.least_tooth_load]),
-    bits(&[OUT.least_tooth_load]),
-];
 
 const TOOTH: u64 = bits(&[OUT.boundary_tooth, OUT.boundary_position, OUT.incomplete_teeth]);
 const LIFT: u64 = bits(&[OUT.lift_speed]);
@@ -118,7 +109,7 @@ impl Formula for TimingBelt {
         prepared: Prepared::<usize>::NAMES,
         tables: TABLES,
         // Conditions, lift speed and boundary each walk over the teeth.
-        turns: 3 * TEETH as u64,
+        iterations: 3 * TEETH as u64,
         outputs: Result::<usize>::NAMES,
     };
 
@@ -126,29 +117,25 @@ impl Formula for TimingBelt {
         let i = Inputs::read(inputs);
         let rows = mesh::Rows::new(&i);
         let elimination = mesh::Elimination::new(&rows);
-        let complete = mesh::complete(&rows, &elimination);
+        let (numbers, tables) = prepared.split_at_mut(NUMBERS);
+        let (inward, boundaries) = tables.split_at_mut(2 * TEETH);
+        let mut found = mesh::Found {
+            inward: in_two(inward),
+            boundaries: (wanted & INCOMPLETE != 0).then(|| {
+                let mut parts = boundaries.chunks_mut(2 * BOUNDARIES);
+                std::array::from_fn(|_| in_two(parts.next().expect("there are as many tables")))
+            }),
+        };
+        let first = mesh::back(&rows, &elimination, &mut found);
         Prepared {
             teeth: i.teeth_in_mesh,
             mass_radius: i.pitch_mass * i.tip_radius,
             // Loads fall towards the slack side: the first tooth's is the largest.
-            peak_complete_tight: complete.load[0].tight,
-            peak_complete_slack: complete.load[0].slack,
+            peak_complete_tight: first.tight,
+            peak_complete_slack: first.slack,
             lift_margin: R::select(i.lift_angle, i.space_half_angle - i.lift_angle, R::constant(1.0)),
         }
-        .write(prepared);
-        for tooth in 0..complete.teeth {
-            prepared[INWARD + tooth] = complete.inward[tooth].tight;
-            prepared[INWARD + TEETH + tooth] = complete.inward[tooth].slack;
-        }
-        if wanted & INCOMPLETE != 0 {
-            let boundaries = mesh::boundaries(&rows, &elimination, &complete);
-            for (at, boundary) in boundaries[..=complete.teeth].iter().enumerate() {
-                for (number, value) in boundary.iter().enumerate() {
-                    prepared[MESH + 2 * number * BOUNDARIES + at] = value.tight;
-                    prepared[MESH + (2 * number + 1) * BOUNDARIES + at] = value.slack;
-                }
-            }
-        }
+        .write(numbers);
     }
 
     #[inline(always)]
@@ -186,61 +173,60 @@ impl Formula for TimingBelt {
         if wanted & (TOOTH | INCOMPLETE) == 0 {
             return;
         }
-        if wanted & INCOMPLETE == 0 && wanted & bits(&[OUT.boundary_position]) == 0 {
-            let boundary_tooth = walk(&p, &i, prepared, force);
-            out[OUT.boundary_tooth] = boundary_tooth;
-            out[OUT.incomplete_teeth] = p.teeth.plus_whole(one).plus_whole(-boundary_tooth);
+        let last = p.teeth.plus_whole(one);
+        let boundary_tooth;
+        if wanted & bits(&[OUT.boundary_position]) == 0 {
+            boundary_tooth = walk(&p, &i, prepared, force);
+        } else {
+            // The same walk, with the margins of the tooth at which it ended and of the one before.
+            let begin = [R::select(p.teeth, one, zero), one, zero, one];
+            let [meshes, counted, before, at] = R::fold(
+                teeth_until_one_lifts(&p).named(&["meshes", "counted", "before", "at"]),
+                begin,
+                #[inline(always)]
+                |tooth, [meshes, counted, before, at]| {
+                    let open = meshes - half;
+                    let margin = inward(&i, prepared, tooth) - force;
+                    let meshes = R::select(margin, meshes, zero);
+                    [meshes, counted.plus_whole(meshes), R::select(open, at, before), R::select(open, margin, at)]
+                },
+            );
+            boundary_tooth = counted.min(last).named("boundary_tooth", "");
+            let inside = boundary_tooth - one + before / (before - at);
+            let lifted = R::select(boundary_tooth - (one + half), inside, one);
+            out[OUT.boundary_position] = R::select(meshes - half, boundary_tooth, lifted);
+        }
+        out[OUT.boundary_tooth] = boundary_tooth;
+        out[OUT.incomplete_teeth] = last.plus_whole(-boundary_tooth);
+        if wanted & INCOMPLETE == 0 {
             return;
         }
-        // The same walk with everything that is found on the way: 1 as long as every tooth so far is pressed inwards, counted.
-        let (mut meshes, mut boundary_tooth) = (R::select(p.teeth, one, zero), one);
-        // Margins of the tooth at which the walk ended and of the one before it.
-        let (mut before, mut at) = (zero, one);
-        let mut picked = [[zero; 2]; PARTS];
-        let mut part = 0;
-        while part < PARTS {
-            if wanted & NEEDED_BY[part] != 0 {
-                picked[part] = boundary_entry::<R>(prepared, part, 0);
-            }
-            part += 1;
+        let at = boundary_tooth.plus_whole(-one).named("at_boundary", "");
+        if wanted & bits(&[OUT.boundary_tension]) != 0 {
+            out[OUT.boundary_tension] = load_at(&p, &i, prepared, STAR, at);
         }
-        let teeth = p.teeth.turns(TEETH);
-        let mut tooth = 0;
-        while tooth < teeth {
-            let margin = inward(&i, prepared, tooth) - force;
-            let open = meshes - half;
-            before = R::select(open, at, before);
-            at = R::select(open, margin, at);
-            meshes = R::select(margin, meshes, zero);
-            boundary_tooth = boundary_tooth.plus_whole(meshes);
-            tooth += 1;
-            let still_open = meshes - half;
-            let mut part = 0;
-            while part < PARTS {
-                if wanted & NEEDED_BY[part] != 0 {
-                    let next = boundary_entry::<R>(prepared, part, tooth);
-                    picked[part][0] = R::select(still_open, next[0], picked[part][0]);
-                    picked[part][1] = R::select(still_open, next[1], picked[part][1]);
-                }
-                part += 1;
-            }
+        if wanted & bits(&[OUT.peak_tooth_load]) != 0 {
+            out[OUT.peak_tooth_load] = load_at(&p, &i, prepared, FIRST, at).max(load_at(&p, &i, prepared, OWN, at));
         }
-        boundary_tooth = boundary_tooth.min(p.teeth.plus_whole(one));
-        out[OUT.boundary_tooth] = boundary_tooth;
-        out[OUT.incomplete_teeth] = p.teeth.plus_whole(one).plus_whole(-boundary_tooth);
-        let inside = boundary_tooth - one + before / (before - at);
-        let lifted = R::select(boundary_tooth - (one + half), inside, one);
-        out[OUT.boundary_position] = R::select(meshes - half, boundary_tooth, lifted);
-        if wanted & INCOMPLETE != 0 {
-            let load = |part: usize| i.tight_tension * picked[part][0] + i.slack_tension * picked[part][1];
-            out[OUT.boundary_tension] = load(STAR);
-            out[OUT.peak_tooth_load] = load(FIRST).max(load(OWN));
-            out[OUT.least_tooth_load] = load(BEFORE).min(load(LAST));
-            if !i.centrifugal_land_friction.is_zero() {
-                with_land_friction(&i, boundary_tooth, out);
-            }
+        if wanted & bits(&[OUT.least_tooth_load]) != 0 {
+            out[OUT.least_tooth_load] = load_at(&p, &i, prepared, BEFORE, at).min(load_at(&p, &i, prepared, LAST, at));
+        }
+        if !i.centrifugal_land_friction.is_zero() {
+            with_land_friction(&i, boundary_tooth, out);
         }
     }
+}
+
+/// Two tables of the same length that stand one behind the other.
+fn in_two<R>(tables: &mut [R]) -> [&mut [R]; 2] {
+    let (tight, slack) = tables.split_at_mut(tables.len() / 2);
+    [tight, slack]
+}
+
+/// The loop of a walk whose state begins with 1 as long as every tooth is pressed inwards.
+#[inline(always)]
+fn teeth_until_one_lifts<R: Real>(p: &Prepared<R>) -> Loop<R> {
+    Loop::to(p.teeth, TEETH).until_zero(0)
 }
 
 /// The first lifted tooth: going from the tight side, 1 as long as every tooth so far is pressed inwards, counted.
@@ -248,44 +234,47 @@ impl Formula for TimingBelt {
 fn walk<R: Real>(p: &Prepared<R>, i: &Inputs<R>, prepared: &[R::Shared], force: R) -> R {
     let (zero, one) = (R::constant(0.0), R::constant(1.0));
     // There are teeth to walk over; asking makes the result depend on their number, which a loop alone does not.
-    let (mut meshes, mut boundary_tooth) = (R::select(p.teeth, one, zero), one);
-    let teeth = p.teeth.turns(TEETH);
-    let mut tooth = 0;
-    while tooth < teeth {
-        meshes = R::select(inward(i, prepared, tooth) - force, meshes, zero);
-        // Once a tooth has lifted the count stands.
-        if meshes.is_zero() {
-            break;
-        }
-        boundary_tooth = boundary_tooth.plus_whole(meshes);
-        tooth += 1;
-    }
+    let begin = [R::select(p.teeth, one, zero), one];
+    // Once a tooth has lifted the count stands.
+    let [_, counted] = R::fold(
+        teeth_until_one_lifts(p).named(&["meshes", "counted"]),
+        begin,
+        #[inline(always)]
+        |tooth, [meshes, counted]| {
+            let meshes = R::select(inward(i, prepared, tooth) - force, meshes, zero);
+            [meshes, counted.plus_whole(meshes)]
+        },
+    );
     // Where others have more teeth, the walk goes on over some that never lift.
-    boundary_tooth.min(p.teeth.plus_whole(one))
+    counted.min(p.teeth.plus_whole(one))
 }
 
-/// What both tensions do to a part of boundary number `at` + 1.
+/// The load with this number in [`mesh::Boundary`], with the boundary tooth at `at`, from 0.
 #[inline(always)]
-fn boundary_entry<R: Real>(prepared: &[R::Shared], part: usize, at: usize) -> [R; 2] {
-    let place = MESH + 2 * part * BOUNDARIES + at;
-    [R::shared(prepared[place]), R::shared(prepared[place + BOUNDARIES])]
+fn load_at<R: Real>(p: &Prepared<R>, i: &Inputs<R>, prepared: &[R::Shared], part: usize, at: R) -> R {
+    let table = MESH + 2 * part * BOUNDARIES;
+    let tight = R::passed_at(&prepared[table..table + BOUNDARIES], at, p.teeth);
+    let slack = R::passed_at(&prepared[table + BOUNDARIES..table + 2 * BOUNDARIES], at, p.teeth);
+    i.tight_tension * tight + i.slack_tension * slack
 }
 
 /// What presses a tooth (from 0) inwards with the complete mesh.
 #[inline(always)]
-fn inward<R: Real>(i: &Inputs<R>, prepared: &[R::Shared], tooth: usize) -> R {
-    i.tight_tension * R::shared(prepared[INWARD + tooth]) + i.slack_tension * R::shared(prepared[INWARD + TEETH + tooth])
+fn inward<R: Real>(i: &Inputs<R>, prepared: &[R::Shared], tooth: Place) -> R {
+    let tight = R::passed(&prepared[INWARD..INWARD + TEETH], tooth);
+    let slack = R::passed(&prepared[INWARD + TEETH..INWARD + 2 * TEETH], tooth);
+    i.tight_tension * tight + i.slack_tension * slack
 }
 
 #[inline(always)]
 fn least_inward<R: Real>(p: &Prepared<R>, i: &Inputs<R>, prepared: &[R::Shared]) -> R {
-    let mut least = R::select(p.teeth, inward(i, prepared, 0), R::constant(0.0));
-    let teeth = p.teeth.turns(TEETH);
-    let mut tooth = 1;
-    while tooth < teeth {
-        least = least.min(inward(i, prepared, tooth));
-        tooth += 1;
-    }
+    let first = R::select(p.teeth, inward(i, prepared, Place::at(0)), R::constant(0.0));
+    let [least] = R::fold(
+        Loop::to(p.teeth, TEETH).from(1).named(&["least"]),
+        [first],
+        #[inline(always)]
+        |tooth, [least]| [least.min(inward(i, prepared, tooth))],
+    );
     least
 }
 
@@ -297,20 +286,23 @@ fn centrifugal_tension<R: Real>(i: &Inputs<R>) -> R {
 /// The incomplete mesh with the option, for which no table serves: every pair is solved for itself.
 #[inline(never)]
 fn with_land_friction<R: Real>(i: &Inputs<R>, boundary_tooth: R, out: &mut [R; OUTPUTS]) {
-    let rows = mesh::Rows::new(i);
     let option = i.centrifugal_land_friction;
-    let solved = mesh::solve(&rows, i.tight_tension, i.slack_tension, boundary_tooth, option, centrifugal_tension(i));
-    let (mut peak, mut least) = (solved.load[0], solved.load[0]);
-    for tooth in 1..i.teeth_in_mesh.turns(TEETH) {
-        let there = R::constant(tooth as f64 + 0.5) - i.teeth_in_mesh;
-        peak = R::select(there, peak, peak.max(solved.load[tooth]));
-        least = R::select(there, least, least.min(solved.load[tooth]));
-    }
+    let [star, peak, least] = R::left_to_f64(|| {
+        let rows = mesh::Rows::new(i);
+        let solved = mesh::solve(&rows, i.tight_tension, i.slack_tension, boundary_tooth, option, centrifugal_tension(i));
+        let (mut peak, mut least) = (solved.load[0], solved.load[0]);
+        for tooth in 1..i.teeth_in_mesh.iterations(TEETH) {
+            let there = R::constant(tooth as f64 + 0.5) - i.teeth_in_mesh;
+            peak = R::select(there, peak, peak.max(solved.load[tooth]));
+            least = R::select(there, least, least.min(solved.load[tooth]));
+        }
+        [solved.star, peak, least]
+    });
     // The switch may be off for some of the designs that are computed together.
     let on = option - R::constant(0.5);
-    out[OUT.boundary_tension] = R::select(on, solved.star, out[OUT.boundary_tension]);
-    out[OUT.peak_tooth_load] = R::select(on, peak, out[OUT.peak_tooth_load]);
-    out[OUT.least_tooth_load] = R::select(on, least, out[OUT.least_tooth_load]);
+    for (output, number) in [(OUT.boundary_tension, star), (OUT.peak_tooth_load, peak), (OUT.least_tooth_load, least)] {
+        out[output] = R::select(on, number, out[output]);
+    }
 }
 
 #[cfg(test)]

@@ -3,7 +3,8 @@
 use super::super::description::{Model, Profile, ProfileColumn};
 use super::super::formula::{Formula, INPUTS, OUTPUTS};
 use super::super::to_si;
-use super::{Inputs, OUT, TimingBelt, centrifugal_tension, mesh};
+use super::{Inputs, OUT, TEETH, TimingBelt, centrifugal_tension, mesh};
+use crate::real::Real;
 use crate::units::{NEWTON, NONE};
 
 /// A row per tooth, from the tight side. `inputs` are in their units and must have status ok.
@@ -40,6 +41,6 @@ pub fn profile(model: &Model, inputs: &[f64]) -> Profile {
             ProfileColumn::new("margin_N", NEWTON),
             ProfileColumn::new("lifted", NONE).hidden(),
         ],
-        rows: (0..complete.teeth).map(row).collect(),
+        rows: (0..i.teeth_in_mesh.iterations(TEETH)).map(row).collect(),
     }
 }

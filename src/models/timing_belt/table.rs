@@ -221,7 +221,7 @@ pub fn model() -> Model {
         remarks: Some(Arc::new(remarks)),
         effort: Effort { prepare: 1e-6, finish: 1e-8 },
         sample: SAMPLE,
-        shader: Some(Shader::ByHand(include_str!("../../../shaders/models/timing-belt.wgsl"))),
+        shader: Some(Shader::Recorded),
     }
 }
 

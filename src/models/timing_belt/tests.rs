@@ -26,12 +26,14 @@ fn every_boundary_of_the_tables_is_that_of_the_direct_solve() {
             let i = Inputs::read(&si);
             let rows = mesh::Rows::new(&i);
             let elimination = mesh::Elimination::new(&rows);
-            let complete = mesh::complete(&rows, &elimination);
-            let boundaries = mesh::boundaries(&rows, &elimination, &complete);
+            let mut inward = [0.0; 2 * TEETH];
+            let mut tables = [[0.0; 2 * BOUNDARIES]; 5];
+            let mut found = mesh::Found { inward: in_two(&mut inward), boundaries: Some(tables.each_mut().map(|table| in_two(table))) };
+            mesh::back(&rows, &elimination, &mut found);
             for j in 1..=teeth as usize + 1 {
                 for (tight, slack) in [(1.0, 0.0), (1.0, 0.4), (0.0, 1.0)] {
                     let solved = mesh::solve(&rows, tight, slack, j as f64, 0.0, 0.0);
-                    let table = boundaries[j - 1].map(|it| it.tight * tight + it.slack * slack);
+                    let table = tables.map(|it| it[j - 1] * tight + it[BOUNDARIES + j - 1] * slack);
                     let lifts = j <= teeth as usize;
                     let at = |tooth: usize| solved.load[tooth - 1];
                     let last = teeth as usize;

@@ -177,7 +177,7 @@ impl KernelLayout {
         let formula = model.on_device()?.formula;
         let fields = formula.fields();
         let scenarios = [&plan.slow_scenarios, &plan.fast_scenarios].map(Product::count);
-        let iterations = scenarios[0].saturating_mul(scenarios[1] + 1).saturating_mul(1 + fields.turns);
+        let iterations = scenarios[0].saturating_mul(scenarios[1] + 1).saturating_mul(1 + fields.iterations);
         if iterations > MOST_ITERATIONS && (limited_loops || iterations > u64::from(u32::MAX) / 4) {
             return Err(refuse(format!(
                 "{iterations} loop iterations over its scenarios are more than the {MOST_ITERATIONS} that this driver can be trusted with"
@@ -268,7 +268,7 @@ impl KernelLayout {
             possible: is_possible(plan),
             exact,
             represented,
-            cut: Cut::new(plan, fields.turns, grouped),
+            cut: Cut::new(plan, fields.iterations, grouped),
         })
     }
 
@@ -490,7 +490,7 @@ mod tests {
                 for grouped in [false, true] {
                     let Ok(layout) = KernelLayout::new(&plan, true, grouped) else { continue };
                     let cut = layout.cut;
-                    let (shared, alone) = Cut::iterations(&plan, layout.fields.turns, cut.keeps);
+                    let (shared, alone) = Cut::iterations(&plan, layout.fields.iterations, cut.keeps);
                     let iterations = cut.lanes_each.div_ceil(cut.group) * shared + cut.lanes_each * alone;
                     // What one lane takes may pass the target by its closer look.
                     assert!(iterations <= MOST_ITERATIONS + 200, "{model}, {scenarios} scenarios: {cut:?} takes {iterations} iterations");

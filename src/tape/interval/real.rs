@@ -15,8 +15,8 @@ impl Real for Interval {
         Self::known(self.low + other.low, self.high + other.high, self.error + other.error)
     }
     #[inline(always)]
-    fn turns(self, most: usize) -> usize {
-        self.high.turns(most)
+    fn iterations(self, most: usize) -> usize {
+        self.high.iterations(most)
     }
     #[inline(always)]
     fn is_zero(self) -> bool {

@@ -34,7 +34,7 @@ fn list(model: &Model, iterations: Vec<usize>) -> &'static List {
 
 /// Outputs and conditions over inputs of any number type, by the recorded formula.
 pub fn run_over<R: Real<Shared = R>>(model: &Model, inputs: &[R]) -> (Vec<R>, Vec<R>) {
-    let iterations = model.inputs.iter().zip(inputs).map(|(input, value)| if input.integer { value.turns(60) } else { 0 }).collect();
+    let iterations = model.inputs.iter().zip(inputs).map(|(input, value)| if input.integer { value.iterations(60) } else { 0 }).collect();
     let mut outputs = list(model, iterations).run(inputs);
     let conditions = outputs.split_off(outputs.len() - CONDITIONS);
     (outputs, conditions)

@@ -130,8 +130,8 @@ impl Real for Precise {
     fn plus_whole(self, other: Self) -> Self {
         self + other
     }
-    fn turns(self, most: usize) -> usize {
-        self.high.turns(most)
+    fn iterations(self, most: usize) -> usize {
+        self.high.iterations(most)
     }
     fn is_zero(self) -> bool {
         self.high == 0.0

@@ -4,11 +4,16 @@
 
 use beltspace::gpu::PointKernel;
 use beltspace::models::{self, Model, Shader};
-use beltspace::tape::{Binary, Known, List, Node, Operation, Recording, Root, Unary, wgsl};
+use beltspace::real::Place;
+use beltspace::tape::{Binary, List, Node, Operation, Recording, Rolled, RolledLoop, Root, Store, Unary, wgsl};
+use loops::{Held, Whole};
 use std::collections::BTreeMap;
+use std::panic::AssertUnwindSafe;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use wgpu::naga;
+
+mod loops;
 
 /// Where a model's shader stands.
 fn path(model: &Model) -> PathBuf {
@@ -54,6 +59,15 @@ struct Reader<'a> {
     calls: usize,
     /// What is wrong with a root.
     problem: Option<String>,
+    /// The names of the tables, by number, and what each was last written as.
+    tables: Vec<String>,
+    versions: Vec<Node>,
+    /// Of every loop: the numbers of its state that are in use.
+    states: Vec<Vec<u8>>,
+    /// The loop that is being read, and where its counter begins.
+    open: Option<(u8, Whole)>,
+    /// What ends it where it is zero.
+    left_at_zero: Option<Node>,
 }
 
 /// The function that is being read, with the values of its arguments.
@@ -66,11 +80,17 @@ struct Body<'a> {
     argument: Option<Node>,
     /// Expressions that were read: each stands for one number, however often it is used.
     known: BTreeMap<usize, Value>,
+    /// What its variables hold.
+    held: BTreeMap<usize, Held>,
+    /// What it has assigned to the fields of its result.
+    results: BTreeMap<String, Node>,
 }
 
 #[derive(Clone, Debug)]
 enum Value {
     Number(Node),
+    /// A whole number that is none of the formula's.
+    Whole(Whole),
     /// A structure that a function was given, by the argument's name.
     Given(String),
 }
@@ -138,14 +158,18 @@ impl Reader<'_> {
                     let operation = (self.leaf)(&structure, &field);
                     self.push(operation)
                 }
-                number @ Value::Number(_) => {
+                number => {
                     assert_eq!(index, 0, "nobody reads a bound");
                     number
                 }
             },
-            // The place of a search.
+            // The place of a search; other variables were read where the text does.
             Expression::Load { .. } => Value::Number(body.argument.expect("only a search has variables")),
-            Expression::Compose { components, .. } => self.push(constant(Self::literal(body, components[0]))),
+            Expression::Compose { components, .. } => match body.function.expressions[components[1]] {
+                // The bound is infinite.
+                Expression::CallResult(_) => self.push(Operation::Rolled(Rolled::Unknown)),
+                _ => self.push(constant(Self::literal(body, components[0]))),
+            },
             Expression::Literal(naga::Literal::F32(value)) => self.push(constant(value)),
             Expression::CallResult(_) => self.called(body, expression),
             Expression::Unary { op: naga::UnaryOperator::Negate, expr } => match body.function.expressions[expr] {
@@ -215,7 +239,30 @@ impl Reader<'_> {
             return match inner {
                 // The place that a search ended at.
                 naga::Expression::CallResult(_) => Value::Number(body.argument.expect("only a root has one")),
+                naga::Expression::As { expr, .. } => match self.whole(body, expr) {
+                    Whole::Place(Place { number: 0, of: Some(of) }) => self.push(Operation::Rolled(Rolled::Index(of))),
+                    other => panic!("{other:?} is no place of a loop"),
+                },
                 _ => self.push(constant(Self::literal(body, arguments[0]))),
+            };
+        }
+        if name == "if_known" {
+            return self.if_known(body, arguments[0], arguments[1]);
+        }
+        if self.tables.contains(&name) {
+            let first = (self.leaf)("p", &name);
+            let at = self.whole(body, arguments[1]);
+            return match (at, first) {
+                (Whole::Literal(at), Operation::Input(first)) => self.push(Operation::Input(first + at as u16)),
+                (Whole::Place(place), _) => {
+                    let table = self.operations.push(first);
+                    self.push(Operation::Rolled(Rolled::Get(table, place)))
+                }
+                (Whole::Of(index), _) => {
+                    let table = self.operations.push(first);
+                    self.push(Operation::Rolled(Rolled::GetAt(table, index)))
+                }
+                other => panic!("{other:?}"),
             };
         }
         let unary = [
@@ -276,7 +323,8 @@ impl Reader<'_> {
             let function = &module.functions[handle];
             let mut calls = BTreeMap::new();
             gather(&function.body, &mut calls);
-            let mut body = Body { function, arguments: given.clone(), calls, argument: Some(argument), known: BTreeMap::new() };
+            let (known, held, results) = Default::default();
+            let mut body = Body { function, arguments: given.clone(), calls, argument: Some(argument), known, held, results };
             let of = body.calls.values().find(|(it, _)| module.functions[*it].name.as_deref() == Some(call)).expect("it is called").clone();
             of.1.iter().skip(usize::from(call != "begin_search")).map(|&it| reader.number(&mut body, it)).collect()
         };
@@ -307,27 +355,30 @@ impl Reader<'_> {
         let given = function.arguments.iter().map(|it| Value::Given(it.name.clone().expect("arguments have names"))).collect();
         let mut calls = BTreeMap::new();
         gather(&function.body, &mut calls);
-        let mut body = Body { function, arguments: given, calls, argument: None, known: BTreeMap::new() };
-        let mut stores = BTreeMap::new();
-        for statement in &function.body {
-            let naga::Statement::Store { pointer, value } = *statement else { continue };
-            let naga::Expression::AccessIndex { base, index } = function.expressions[pointer] else { panic!("no field") };
-            let naga::Expression::LocalVariable(variable) = function.expressions[base] else { panic!("no variable") };
-            let field = match &module.types[function.local_variables[variable].ty].inner {
-                naga::TypeInner::Struct { members, .. } => members[index as usize].name.clone().expect("fields have names"),
-                _ => index.to_string(),
-            };
-            let node = self.number(&mut body, value);
-            stores.insert(field, node);
-        }
-        stores
+        let (known, held, results) = Default::default();
+        let mut body = Body { function, arguments: given, calls, argument: None, known, held, results };
+        self.begin(&mut body);
+        self.block(&mut body, &function.body);
+        body.results
     }
 }
 
-/// The operations of a list, with constants as f32 has them, and where its results are.
-fn rounded(list: &List) -> (Recording, Vec<Node>, Vec<Root>) {
+/// A list as its text can tell it: constants as f32 has them, roots and loops that are in use, and where the results are.
+struct Expected {
+    recording: Recording,
+    results: Vec<Node>,
+    roots: Vec<Root>,
+    loops: Vec<RolledLoop>,
+    /// By table: what it was made as, if that is filled with zeros.
+    tables: Vec<Node>,
+    /// Of every loop: the numbers of its state that are in use.
+    states: Vec<Vec<u8>>,
+}
+
+fn rounded(list: &List) -> Expected {
     let mut recording = Recording::default();
     let mut place: Vec<Node> = Vec::new();
+    let mut tables = vec![Node::MAX; list.tables.len()];
     for &operation in &list.operations {
         let at = |node: Node| place[node as usize];
         let operation = match operation {
@@ -335,9 +386,15 @@ fn rounded(list: &List) -> (Recording, Vec<Node>, Vec<Root>) {
             Operation::Unary(of, a) => Operation::Unary(of, at(a)),
             Operation::Binary(of, a, b) => Operation::Binary(of, at(a), at(b)),
             Operation::Select(margin, a, b) => Operation::Select(at(margin), at(a), at(b)),
+            Operation::Rolled(rolled) => Operation::Rolled(rolled.map(at)),
             other => other,
         };
         place.push(recording.push(operation));
+        if let Operation::Rolled(Rolled::Table(table, fill)) = operation
+            && recording.operations[fill as usize] == Operation::Constant(0)
+        {
+            tables[usize::from(table)] = place[place.len() - 1];
+        }
     }
     let at = |node: Node| place[node as usize];
     let root = |Root { bracket, start, argument, value, slope }| Root {
@@ -349,24 +406,48 @@ fn rounded(list: &List) -> (Recording, Vec<Node>, Vec<Root>) {
     };
     let used = |number: &usize| list.operations.contains(&Operation::Root(*number as u8));
     let roots = (0..list.roots.len()).filter(used).map(|number| root(list.roots[number].root)).collect();
-    (recording, list.results.iter().flatten().map(|&node| at(node)).collect(), roots)
+    let in_use = |used: &[bool]| (0..used.len()).filter(|&at| used[at]).collect::<Vec<_>>();
+    let one = |it: &beltspace::tape::ListLoop| RolledLoop {
+        end: at(it.recorded.end),
+        state: in_use(&it.used).into_iter().map(|number| it.recorded.state[number]).map(|(begin, next)| (at(begin), at(next))).collect(),
+        names: &[],
+        stores: it.recorded.stores.iter().map(|store| Store { number: at(store.number), ..*store }).collect(),
+        ..it.recorded.clone()
+    };
+    let states = list.loops.iter().map(|it| in_use(&it.used).into_iter().map(|number| number as u8).collect()).collect();
+    let results = list.results.iter().flatten().map(|&node| at(node)).collect();
+    let loops = list.loops.iter().map(one).collect();
+    Expected { recording, results, roots, loops, tables, states }
 }
 
-/// Reads a stage back, and says what differs.
-fn difference(source: &str, function: &str, list: &List, fields: &[String], leaf: &dyn Fn(&str, &str) -> Operation) -> Option<String> {
+/// Reads a stage back, and says what differs. `fields` are the names of its results, then those of its tables by number.
+fn difference(
+    source: &str,
+    function: &str,
+    list: &List,
+    fields: &[String],
+    tables: &[String],
+    leaf: &dyn Fn(&str, &str) -> Operation,
+) -> Option<String> {
     let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|error| panic!("{}", error.emit_to_string(source)));
-    let (mut recording, expected, roots) = rounded(list);
+    let Expected { mut recording, results: expected, roots, loops, tables: versions, states } = rounded(list);
     let before = recording.operations.len();
-    let mut reader = Reader { module: &module, operations: &mut recording, leaf, calls: 0, problem: None };
+    let (open, left_at_zero, problem) = Default::default();
+    let (calls, tables) = (0, tables.to_vec());
+    let operations = &mut recording;
+    let mut reader = Reader { module: &module, operations, leaf, calls, problem, tables, versions, states, open, left_at_zero };
     let found = reader.results(function);
-    let calls = reader.calls;
+    let (calls, versions) = (reader.calls, reader.versions.clone());
     if reader.problem.is_some() {
         return reader.problem;
     }
     if recording.operations.len() != before {
         return Some(format!("it asks for {:?} and more", recording.operations[before]));
     }
-    let is_call = |operation: &&Operation| !matches!(operation, Operation::Input(_) | Operation::Constant(_) | Operation::Argument(_));
+    let is_call = |operation: &&Operation| {
+        use Operation::{Argument, Constant, Input, Rolled};
+        !matches!(operation, Input(_) | Constant(_) | Argument(_) | Rolled(_))
+    };
     let asked = list.operations.iter().filter(is_call).count();
     if calls != asked {
         return Some(format!("{calls} calls for {asked} operations"));
@@ -376,10 +457,16 @@ fn difference(source: &str, function: &str, list: &List, fields: &[String], leaf
             return Some(format!("{field} is another number"));
         }
     }
+    if found.len() != fields.len() {
+        return Some(format!("{} results for {}", found.len(), fields.len()));
+    }
+    if let Some(table) = expected[fields.len()..].iter().find(|it| !versions.contains(it)) {
+        return Some(format!("no table is {:?}", recording.operations[*table as usize]));
+    }
     if recording.roots != roots {
         return Some(format!("it looks for {:?}, not for {roots:?}", recording.roots));
     }
-    (found.len() != expected.len()).then(|| format!("{} results for {}", found.len(), expected.len()))
+    (recording.loops != loops).then(|| format!("its loops are {:?}, not {loops:?}", recording.loops))
 }
 
 /// What differs between a model's shader, with a piece of its text replaced, and the recorded formula.
@@ -389,25 +476,39 @@ fn differences(model: &Model, piece: &str, other: &str) -> Vec<String> {
     let source = source.replacen(piece, other, 1);
     let formula = model.kernel.formula().expect("it is a formula");
     let names = formula.fields();
-    let known = vec![Known::ANY; model.inputs.len()];
-    let number = |list: &[&str], field: &str| list.iter().position(|it| *it == field).expect("it is a field") as u16;
-    let leaf = |structure: &str, field: &str| match structure {
-        "i" => Operation::Input(number(names.inputs, field)),
-        _ => Operation::Input(names.inputs.len() as u16 + number(names.prepared, field)),
+    let inputs = names.inputs.len();
+    let number = |list: &[&str], field: &str| list.iter().position(|it| *it == field);
+    let leaf = |structure: &str, field: &str| {
+        let at = match structure {
+            "i" => number(names.inputs, field),
+            _ => number(names.prepared, field).map(|at| inputs + at).or_else(|| {
+                let table = names.tables.iter().position(|(table, _)| *table == field)?;
+                names.places().nth(names.prepared.len() + table).map(|(first, _)| inputs + first)
+            }),
+        };
+        Operation::Input(at.expect("it is a field") as u16)
     };
-    let whole = formula.whole(&known, u64::MAX, u64::MAX);
-    let second = formula.second(&known, u64::MAX, u64::MAX);
+    let (first, second) = formula.stages(u64::MAX, u64::MAX);
     let of = |recording: &Recording, nodes: &[Node]| List::cut(recording, &nodes.iter().copied().map(Some).collect::<Vec<_>>());
     let texts = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
     let numbers: Vec<String> = (0..model.conditions.len()).map(|it| it.to_string()).collect();
     [
-        ("prepare", of(&whole.recording, &whole.prepared), texts(names.prepared)),
+        ("prepare", of(&first.recording, &first.prepared), texts(names.prepared)),
         ("conditions", of(&second.recording, &second.conditions[..model.conditions.len()]), numbers),
         ("finish", of(&second.recording, &second.outputs), texts(names.outputs)),
     ]
     .into_iter()
     .filter_map(|(function, list, fields)| {
-        difference(&source, function, &list, &fields, &leaf).map(|what| format!("{}: {function}: {what}", model.name))
+        // Tables of the first stage that are passed on have the names of the fields; the second stage reads these.
+        let mut tables: Vec<String> = list.tables.iter().map(|table| table.name.to_owned()).collect();
+        let passed = names.tables.iter().map(|&(table, _)| table.to_owned());
+        if function == "prepare" {
+            let results = list.results[names.prepared.len()..].iter().flatten();
+            results.zip(passed).for_each(|(&result, table)| tables[list.table(result)] = table);
+        } else {
+            tables.extend(passed);
+        }
+        difference(&source, function, &list, &fields, &tables, &leaf).map(|what| format!("{}: {function}: {what}", model.name))
     })
     .collect()
 }
@@ -416,6 +517,29 @@ fn differences(model: &Model, piece: &str, other: &str) -> Vec<String> {
 fn a_shader_has_exactly_the_operations_of_the_formula() {
     for model in recorded() {
         assert_eq!(differences(model, "", ""), Vec::<String>::new());
+    }
+}
+
+#[test]
+fn another_loop_in_a_shader_is_noticed() {
+    let belt = models::find("timing-belt").expect("it is a model");
+    for (piece, other) in [
+        ("var place_0 = 1u;", "var place_0 = 2u;"),
+        ("left_1 > 0u", "left_1 > 1u"),
+        ("min(whole(i.teeth_in_mesh), 60u)", "min(whole(i.teeth_in_mesh), 59u)"),
+        ("tight[place_0 + 1u]", "tight[place_0]"),
+        ("set_star_slack(place_1, t_star_slack)", "set_star_slack(place_1, t_star_tight)"),
+        ("set_star_tight(whole(i.teeth_in_mesh)", "set_star_slack(whole(i.teeth_in_mesh)"),
+        ("tight_before = ", "short_before = "),
+        ("inward_slack(p, place_0)", "inward_tight(p, place_0)"),
+        ("star_tight(p, whole(", "star_slack(p, whole("),
+        ("if is_zero(meshes)", "if is_zero(counted)"),
+        ("least = min_(least, ", "least = max_(least, "),
+    ] {
+        assert!(PointKernel::source(&belt, &[]).expect("it has a kernel").contains(piece), "{piece}");
+        // What is no loop of a formula at all is refused where it is read.
+        let noticed = std::panic::catch_unwind(AssertUnwindSafe(|| !differences(&belt, piece, other).is_empty()));
+        assert!(noticed.unwrap_or(true), "{piece} -> {other}");
     }
 }
 
