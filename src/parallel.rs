@@ -1,4 +1,4 @@
-//! Work on several threads, or on as many as there are to be had: where processes are limited, the caller does the rest.
+//! Work on several threads. Where the system grants fewer than were asked for, the caller does the rest of the work itself.
 
 use std::sync::{Mutex, PoisonError};
 use std::thread::{Builder, Scope, ScopedJoinHandle};
@@ -45,7 +45,7 @@ fn start<'scope, R: Send + 'scope>(
     Builder::new().spawn_scoped(scope, work).ok()
 }
 
-/// How many of so many threads can be had here and now, the caller's being one of them.
+/// How many threads can be had now, of the number asked for; the caller's own counts as one.
 pub fn to_be_had(threads: usize) -> usize {
     let all_tried = Mutex::new(());
     let held = all_tried.lock().unwrap_or_else(PoisonError::into_inner);

@@ -127,7 +127,7 @@ impl BoundedStudy {
         Some(total)
     }
 
-    /// Where a range that starts at a position and has about so many designs should end, so that it consists of few boxes.
+    /// The end of a range that starts at `range.start`, has about `about` designs and consists of few boxes.
     pub fn round(&self, range: &Range<u64>, about: u64) -> u64 {
         let step = self.axes.steps.iter().copied().filter(|&step| step <= about.max(1)).max().unwrap_or(1);
         let end = range.start.saturating_add(about.max(1)) / step * step;

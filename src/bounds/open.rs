@@ -22,7 +22,7 @@ pub struct Bounded {
 pub struct Open {
     /// Its place among all requirements.
     pub requirement: usize,
-    /// Boxes of scenarios; their spans of design axes mean nothing.
+    /// Boxes of scenarios; their spans of design axes are not read.
     pub cover: Arc<[Spans]>,
 }
 

@@ -64,7 +64,7 @@ impl Pairing {
         matches!(self.roles[role], PairRole::Both(_))
     }
 
-    /// A box in about so many parts that can be counted apart at no greater cost.
+    /// Splits a box into about that many parts which cost no more when they are counted apart.
     pub fn parts(&self, spans: &Spans, count: usize) -> Vec<Spans> {
         let Some(&axis) = self.outer.iter().max_by_key(|&&axis| spans[axis].count()) else { return vec![*spans] };
         let Span { low, high } = spans[axis];

@@ -91,7 +91,7 @@ pub struct Pairs<'t> {
 }
 
 impl<'t> Pairs<'t> {
-    /// A counter for a tape; what it says after `stop` was set means nothing.
+    /// A counter for a tape. Once `stop` is set its results are incomplete and must be dropped.
     pub fn new(tape: &'t Tape, axes: &'t Axes, stop: &'t AtomicBool) -> Self {
         Self { tape, axes, columns: NodeColumns::new(tape, axes), members: Vec::new(), evaluated: 0, stop }
     }

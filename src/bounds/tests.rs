@@ -64,7 +64,7 @@ fn worst(plan: &Plan, design: u64, output: usize, higher_is_worse: bool) -> f64 
     each.fold(f64::NEG_INFINITY, |worst, value| worst.max(if higher_is_worse { value } else { -value }))
 }
 
-/// How many worst values leave bounds that were moved inwards by this share of their size.
+/// How many worst values leave bounds that were moved inwards by this fraction of their size.
 fn outside(inwards: f64) -> (u32, u32) {
     let (mut looked, mut out) = (0, 0);
     for plan in plans() {

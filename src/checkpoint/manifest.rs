@@ -5,15 +5,15 @@ use crate::error::{Error, Result, brief};
 use crate::files::{is_regular, is_there, read_at_most, replace};
 use crate::models::Models;
 use crate::space::Space;
-use crate::study::{StoredStudy, Study};
+use crate::study::Study;
 use crate::tiles::{Ranges, Shard};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::path::Path;
 
 /// Version of the checkpoint's layout; another one is refused.
-const VERSION: u32 = 2;
-/// Name of the manifest's file.
+const VERSION: u32 = 3;
+/// Its file.
 pub(super) const MANIFEST: &str = "manifest.json";
 /// Most bytes of a manifest: it holds the study's text with all rows of its tables.
 const MOST_BYTES: u64 = 1 << 30;
@@ -30,11 +30,12 @@ struct Sealed {
     manifest: Value,
 }
 
-/// The manifest: what a checkpoint says of itself.
+/// What a checkpoint says of itself. `S`: its study, or nothing as long as the description has not been read.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Manifest<S = Study> {
     pub(super) program: String,
     pub(super) study_hash: String,
+    #[serde(skip)]
     pub(super) study: S,
     pub(super) description: Value,
     pub(super) study_text: String,
@@ -97,8 +98,8 @@ fn refusal(folder: &Path, problem: String) -> Error {
     Error::Checkpoint { path: folder.to_owned(), problem }
 }
 
-impl Manifest<StoredStudy> {
-    /// Reads the manifest of a checkpoint folder, except for what needs the model.
+impl Manifest<()> {
+    /// Reads the manifest of a checkpoint folder as far as nobody needs the model for.
     fn read_stored(folder: &Path) -> Result<Self> {
         if !is_regular(&folder.join(MANIFEST)) {
             return Err(refusal(folder, "there is no checkpoint here".to_owned()));
@@ -113,8 +114,8 @@ impl Manifest<StoredStudy> {
 
     /// The same with its study, whose model is one of these; checks that the two agree.
     fn with_its_study(self, models: &Models) -> std::result::Result<Manifest, String> {
-        let Self { program, study_hash, study, description, study_text, designs, shard, done, state, saves, switch } = self;
-        let study = study.study(models)?;
+        let Self { program, study_hash, study: (), description, study_text, designs, shard, done, state, saves, switch } = self;
+        let study = Study::from_description_with(models, &description)?;
         let manifest = Manifest { program, study_hash, study, description, study_text, designs, shard, done, state, saves, switch };
         manifest.check().map(|()| manifest)
     }
@@ -123,14 +124,14 @@ impl Manifest<StoredStudy> {
 impl Manifest {
     /// Reads the manifest of a checkpoint folder, of a study of one of these models.
     pub(super) fn read(folder: &Path, models: &Models) -> Result<Self> {
-        Manifest::<StoredStudy>::read_stored(folder)?.with_its_study(models).map_err(|why| damaged(folder, &why))
+        Manifest::<()>::read_stored(folder)?.with_its_study(models).map_err(|why| damaged(folder, &why))
     }
 
     /// The finished result that waits in a checkpoint folder. It can be put in place without knowing the model.
     pub(super) fn switch(folder: &Path) -> Result<Option<Switch>> {
-        let stored = Manifest::<StoredStudy>::read_stored(folder)?;
+        let stored = Manifest::<()>::read_stored(folder)?;
         let models = Models::new();
-        match models.find(stored.study.model()) {
+        match stored.description["model"].as_str().and_then(|name| models.find(name)) {
             Some(_) => stored.with_its_study(&models).map(|it| it.switch).map_err(|why| damaged(folder, &why)),
             None => Ok(stored.switch),
         }
@@ -139,8 +140,8 @@ impl Manifest {
     /// Checks that the manifest agrees with its study, and that the finished ranges lie within the shard and do not overlap.
     fn check(&self) -> std::result::Result<(), String> {
         let study = &self.study;
-        if self.description != study.describe() || self.study_hash != study.hash() {
-            return Err("its description belongs to another study".to_owned());
+        if self.study_hash != study.hash() {
+            return Err("it has the hash of another study".to_owned());
         }
         let designs = Space::new(study).designs.count();
         if self.designs != designs {

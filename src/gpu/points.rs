@@ -33,7 +33,7 @@ pub struct PointKernel {
 pub type Found = ([RunningError; OUTPUTS], [RunningError; CONDITIONS]);
 
 impl PointKernel {
-    /// The kernel's text. `perturb`: outputs that are to come out wrong by this part of their value, for testing.
+    /// The kernel's text. `perturb`: outputs that are to come out wrong by this fraction of their value, for testing.
     ///
     /// # Errors
     /// [`Error::Request`](crate::error::Error::Request) if the model is computed on the CPU only.

@@ -67,7 +67,7 @@ impl<'p> CpuEngine<'p> {
         8 * plan.study.model.kernel.prepared_len() as u64 * (plan.kept_scenarios() + 1)
     }
 
-    /// An engine that keeps the prepared numbers of so many slow scenarios.
+    /// An engine that keeps the prepared numbers of that many slow scenarios.
     fn with_room(plan: &'p Plan, tables: &'p Tables, room: u64) -> Self {
         let columns = plan.lane_outputs.len() + plan.lane_conditions.len();
         let first = plan.space.inputs(0, 0);

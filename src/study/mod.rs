@@ -17,7 +17,6 @@ pub use describe::{differences, number, value_of};
 #[cfg(test)]
 pub(crate) use read::tests::study_of;
 pub use read::{Problem, StudyErrors};
-pub(crate) use resolved::StoredStudy;
 #[doc(hidden)]
 pub use resolved::worst_end;
 pub use resolved::{

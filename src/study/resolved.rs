@@ -1,9 +1,8 @@
 //! The resolved study.
 
 use super::axis::{Axis, Sample};
-use crate::models::{Model, Models, Worse};
-use serde::{Deserialize, Serialize, Serializer};
-use serde_json::Value;
+use crate::models::{Model, Worse};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// An input or output that a constraint, objective, column or picture uses.
@@ -220,11 +219,10 @@ pub fn worst_end(study: &Study, quantity: Quantity) -> Worse {
     goal.map_or(quantity.worse(&study.model), Goal::worse)
 }
 
-/// A study: which designs to judge, in which scenarios, by which constraints and objectives.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+/// A request: which designs to judge, over which scenarios, by what.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Study {
-    /// The model; stored by its name.
-    #[serde(serialize_with = "name_of")]
+    /// The model.
     pub model: Arc<Model>,
     /// Title for people.
     pub title: String,
@@ -246,56 +244,12 @@ pub struct Study {
     pub report: Report,
 }
 
-/// A study as deserialised from a file that may have been changed. It becomes a [`Study`] when its model has been found and it has been
-/// checked.
-#[derive(Deserialize)]
-pub(crate) struct StoredStudy {
-    model: String,
-    title: String,
-    design: Vec<Axis>,
-    sample: Option<Sample>,
-    operation: Vec<Axis>,
-    uncertainty: Vec<Axis>,
-    fixed: Vec<f64>,
-    constraints: Vec<Constraint>,
-    objectives: Vec<Objective>,
-    report: Report,
-}
-
-impl StoredStudy {
-    /// Name of its model.
-    pub(crate) fn model(&self) -> &str {
-        &self.model
-    }
-
-    /// The study, whose model is one of these.
-    pub(crate) fn study(self, models: &Models) -> Result<Study, String> {
-        let Self { model, title, design, sample, operation, uncertainty, fixed, constraints, objectives, report } = self;
-        let model = models.find(&model).ok_or_else(|| format!("unknown model \"{model}\""))?;
-        let study = Study { model, title, design, sample, operation, uncertainty, fixed, constraints, objectives, report };
-        study.check().map(|()| study)
-    }
-}
-
 impl Study {
-    /// Deserialises a study whose model is one of these.
-    ///
-    /// # Errors
-    /// The first thing that is missing or cannot be.
-    #[doc(hidden)]
-    pub fn from_stored(models: &Models, stored: Value) -> Result<Self, String> {
-        serde_json::from_value::<StoredStudy>(stored).map_err(|error| error.to_string())?.study(models)
-    }
-
-    /// The model's remarks on this study as a whole.
+    /// What the model has to say of this study as a whole.
     pub fn remarks(&self) -> Vec<String> {
         let set_by_axes =
             |input: &usize| self.design.iter().chain(&self.operation).chain(&self.uncertainty).any(|axis| axis.inputs().contains(input));
         let fixed: Vec<_> = (0..self.fixed.len()).map(|input| (!set_by_axes(&input)).then_some(self.fixed[input])).collect();
         self.model.remarks.as_ref().map_or_else(Vec::new, |remarks| remarks(&fixed))
     }
-}
-
-fn name_of<S: Serializer>(model: &Arc<Model>, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_str(&model.name)
 }

@@ -19,12 +19,12 @@ const LARGEST: u64 = 1 << 16;
 const BRIEFLY: Duration = Duration::from_millis(100);
 /// Seconds that judging every design may take before bounds are thought of.
 const SHORT: f64 = 1.0;
-/// Bounds may take this share of the time that judging every design would take before they must promise anything: what is lost where they
+/// Bounds may take this fraction of the time that judging every design would take before they must promise anything: what is lost where they
 /// are left.
 pub const PATIENCE: f64 = 0.25;
 /// A count keeps what it has counted, and is judged by its own pace after this share.
 const COUNT_PATIENCE: f64 = 0.1;
-/// Up to this share of that time the better of two paces counts, of late and on the whole: designs are settled in bursts. Then it is that of
+/// Up to this fraction of that time the better of two paces counts, of late and on the whole: designs are settled in bursts. Then it is that of
 /// late, which shows where nothing moves any more.
 const BURSTS: f64 = 0.4;
 /// The pace of late is that of the last half of the time.
@@ -68,7 +68,7 @@ impl Speed {
         if told.of(plan.designs(), threads) < BRIEFLY.as_secs_f64() { told } else { Self::measured(plan, threads, BRIEFLY) }
     }
 
-    /// Seconds that so many threads take for so many designs.
+    /// Seconds that `threads` threads take for `designs` designs.
     pub fn of(&self, designs: u64, threads: usize) -> f64 {
         self.seconds * designs as f64 / threads.max(1) as f64
     }

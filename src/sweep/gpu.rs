@@ -333,7 +333,7 @@ impl Run<'_, '_> {
     }
 }
 
-/// Does `each` share of so many things, in threads of their own if there are several shares; the results in order.
+/// Splits `0..count` into shares of at least `least` and calls `each` on every share, each on a thread of its own; results in order.
 fn in_shares<T: Send>(count: usize, least: usize, threads: usize, each: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
     let shares = (count / least.max(1)).clamp(1, threads);
     let part = |number: usize| count * number / shares..count * (number + 1) / shares;

@@ -1,4 +1,4 @@
-//! The sweep: ranges of designs handed to threads, their results merged and kept.
+//! The sweep: ranges of designs go to threads, whose results are merged and kept.
 //!
 //! On the CPU a thread takes a chunk of positions, screens it with reducers of its own (which may drop what the front known so far beats)
 //! and hands the result over as a whole. What is merged is therefore always complete for the ranges that the checkpoint names,
@@ -117,16 +117,16 @@ const FIRST_CHUNK: u64 = 4096;
 /// How long a tile should take: how often a slow study shows that it moves.
 const TILE_TIME: Duration = Duration::from_millis(100);
 
-/// A chunk that takes so many times as long as was planned for is handed over as far as it is.
+/// A chunk that takes this many times as long as planned is handed over unfinished.
 const PATIENCE: f64 = 2.0;
 
 /// Least time of a chunk and between two saves.
 const LEAST_CHUNK: Duration = Duration::from_millis(50);
 
-/// Most blocks of the head start, and the share of all designs that it may not exceed.
+/// Most blocks of the head start. It also takes at most one in `HEAD_START_SHARE` of all designs.
 const HEAD_START: u64 = 256;
 const HEAD_START_SHARE: u64 = 64;
-/// Seconds that it may take, by what the model says.
+/// Most seconds of the head start, estimated from the cost that the model states.
 const HEAD_START_TIME: f64 = 0.3;
 
 /// What is swept, how, and who may stop it.

@@ -9,7 +9,7 @@ use crate::models::tests::watched;
 use crate::study::study_of;
 use std::sync::Arc;
 
-/// A study of so many designs.
+/// A study with that many designs.
 fn study(designs: u64) -> String {
     format!(
         "[design]\npower_kW = {{ from = 1, to = 4, count = {designs} }}\n[constraints]\nfriction_margin = {{ min = 0.7 }}\n\

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// A range that is counted takes this share of the time that judging every design would take, at most.
+/// A range that is counted takes at most this fraction of the time that judging every design would take.
 const CHUNK: f64 = 0.05;
 /// How often the watch is looked at where nobody reports progress.
 pub const OFTEN: Duration = Duration::from_millis(10);
@@ -19,7 +19,7 @@ const SELDOM: Duration = Duration::from_millis(1);
 pub enum Leaving {
     /// When judging the rest one by one promises to be faster.
     WhereTheyDoNotPay,
-    /// When they have settled so large a share of all that they are to settle, whatever that took; for testing.
+    /// When they have settled this fraction of their work, whatever time that took; for testing.
     After(f64),
 }
 
@@ -54,7 +54,7 @@ impl<'w> Teller<'w> {
         Self { watch, untold: Cell::new(0), told: Cell::new(Instant::now()) }
     }
 
-    /// Takes in that so many designs were settled.
+    /// Counts designs that were settled.
     pub fn settle(&self, designs: u64) {
         self.untold.set(self.untold.get() + designs);
         let is_at_once = matches!(self.watch.leaving, Some(Leaving::After(_)));
@@ -130,7 +130,7 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// Takes in that so many designs were settled, in one pass.
+    /// Counts designs that were settled in one pass.
     pub fn settle(&self, designs: u64) {
         let more = |bits: u64| Some((f64::from_bits(bits) + designs as f64).to_bits());
         // It never refuses.

@@ -26,7 +26,7 @@ const DOMINATORS: usize = 8;
 /// Least number of waiting designs before they are merged.
 const WAITING: usize = 2048;
 
-/// How many points a front of so many objectives may have to take so many bytes.
+/// The most points of a front with that many objectives which fit into that many bytes.
 pub fn most_points(objectives: usize, bytes: u64) -> u64 {
     bytes / (COPIES * 8 * (objectives as u64 + 1))
 }

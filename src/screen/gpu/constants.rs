@@ -36,6 +36,6 @@ shared_constants! {
     const DIGIT_VECTORS: u32 = 12;
     /// Vectors of four coordinates of the designs that every other is compared with, two vectors each.
     const DOMINATOR_VECTORS: u32 = 2 * DOMINATORS as u32;
-    /// Most objectives: so many pairs of extremes are known.
+    /// Pairs of extremes, one for each of the most objectives that a study may have.
     const EXTREMES: u32 = MOST_OBJECTIVES as u32;
 }

@@ -188,10 +188,10 @@ pub struct GpuEngine<'p> {
     most_rows: u64,
 }
 
-/// What makes an engine another one than the study asks for; for testing.
+/// Faults put into a kernel on purpose: `--perturb` and the tests show that they are noticed.
 #[derive(Clone, Debug, Default)]
 pub struct Wrong {
-    /// Outputs that come out wrong by this part of their value.
+    /// Outputs that come out wrong by this fraction of their value.
     pub perturb: Vec<(usize, f64)>,
     /// Pieces of the kernel's text to be replaced.
     pub replace: Vec<(String, String)>,

@@ -6,7 +6,7 @@ use crate::plan::Plan;
 use crate::space::{Dimension, Product};
 use crate::study::{Axis, Levels, Quantity};
 
-/// Random numbers are multiples of this part of their range.
+/// Random numbers are multiples of this fraction of their range.
 const FINEST: f64 = 1.0 / (1u64 << 53) as f64;
 
 /// Is a number zero or among the normal numbers of f32? Devices take what is smaller for zero, and what is larger for infinity.

@@ -333,7 +333,7 @@ impl Cut {
         MOST_GROUPS * self.lanes_each * self.group_chunks
     }
 
-    /// Workgroups over so many rows and lanes.
+    /// Workgroups that cover `rows` rows and `lanes` lanes.
     pub fn groups(self, rows: u64, lanes: u64) -> [u32; 2] {
         [rows.div_ceil(self.group_rows), lanes.div_ceil(self.lanes_each * self.group_chunks)].map(|groups| groups as u32)
     }

@@ -271,11 +271,12 @@ fn a_checkpoint_that_does_not_fit_its_study_is_refused() {
     }
     std::fs::write(&state, &good).expect("it can be written");
     for (path, to) in [
-        ("/manifest/study/design/0/single/levels/even/count", serde_json::json!(u64::MAX)),
-        ("/manifest/study/design/0/single/input", serde_json::json!(1000)),
-        ("/manifest/study/objectives/0/quantity/output", serde_json::json!(1000)),
-        ("/manifest/study/fixed", serde_json::json!([])),
-        ("/manifest/study/report/maps/0/x", serde_json::json!(1000)),
+        ("/manifest/description/design/0/count", serde_json::json!(u64::MAX)),
+        ("/manifest/description/design/0/input", serde_json::json!(1000)),
+        ("/manifest/description/objectives/0/of", serde_json::json!("no_output")),
+        ("/manifest/description/fixed", serde_json::json!([])),
+        ("/manifest/description/maps/0/x", serde_json::json!("no_axis")),
+        ("/manifest/study_hash", serde_json::json!("0")),
         ("/manifest/designs", serde_json::json!(7)),
         ("/manifest/saves", serde_json::json!(u64::MAX)),
     ] {

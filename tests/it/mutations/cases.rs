@@ -2,7 +2,7 @@
 
 use super::{mutate, readers};
 use crate::random::Random;
-use beltspace::models::{self, Models};
+use beltspace::models;
 use beltspace::reduce::State;
 use beltspace::space::Space;
 use beltspace::study::Study;
@@ -206,9 +206,9 @@ fn checkpoint(random: &mut Random, folder: &Path) {
         0 => mutate::json(random, manifest),
         1 => mutate::json(random, &mut manifest["done"]),
         2..=4 => {
-            mutate::json(random, &mut manifest["study"]);
-            if let Ok(study) = Study::from_stored(&Models::new(), manifest["study"].clone()) {
-                (manifest["description"], manifest["study_hash"]) = (study.describe(), study.hash().into());
+            mutate::json(random, &mut manifest["description"]);
+            if let Ok(study) = Study::from_description(&manifest["description"]) {
+                manifest["study_hash"] = study.hash().into();
                 manifest["designs"] = Space::new(&study).designs.count().into();
             }
         }

@@ -102,7 +102,7 @@ fn real(value: f64) -> String {
     format!("Real({}, {})", literal(value), literal(bound))
 }
 
-/// The text of the kernel. `perturb`: outputs that are to come out wrong by this part of their value, for testing.
+/// The text of the kernel. `perturb`: outputs that are to come out wrong by this fraction of their value, for testing.
 pub fn text(plan: &Plan, layout: &KernelLayout, perturb: &[(usize, f64)]) -> String {
     let mut prelude = Prelude { plan, layout, text: String::new(), coordinates: coordinates(plan, layout) };
     prelude.constants();
