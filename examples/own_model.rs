@@ -1,7 +1,7 @@
 //! A model of one's own, a flat belt after Eytelwein: written once, swept on the CPU, in boxes by bounds and, where there is one, on a GPU.
 //! Run with `cargo run --example own_model`.
 
-use beltspace::models::{CONDITIONS, Condition, Effort, Fields, Formula, INPUTS, Input, Model, Models, OUTPUTS, Output, Shader, Worse};
+use beltspace::models::{Condition, Effort, Fields, Formula, Input, Model, Models, Output, Set, Shader, Worse};
 use beltspace::real::Real;
 use beltspace::units::{DEGREE, KILOGRAM_PER_METRE, METRE_PER_SECOND, NEWTON, NONE};
 use beltspace::{Engine, Judging, Options, Study};
@@ -16,26 +16,25 @@ impl Formula for FlatBelt {
         prepared: &["grip"],
         tables: &[],
         turns: 0,
+        conditions: 1,
         outputs: &["tight_tension", "effective_tension"],
     };
 
     // What is expensive, and depends on few inputs: exp(mu theta).
-    fn prepare<R: Real>(inputs: &[R; INPUTS], _wanted: u64, prepared: &mut [R]) {
-        let [_, friction, wrap, ..] = *inputs;
+    fn prepare<R: Real>(inputs: &[R], _wanted: Set, prepared: &mut [R]) {
+        let [friction, wrap] = [inputs[1], inputs[2]];
         prepared[0] = ((friction * wrap).exp_m1() + R::constant(1.0)).named("grip", "Eytelwein");
     }
 
     // Above zero where the formula has a meaning: the belt stays on the pulley.
-    fn conditions<R: Real>(_prepared: &[R::Shared], inputs: &[R; INPUTS], _wanted: u64) -> [R; CONDITIONS] {
-        let [slack, _, _, speed, mass, ..] = *inputs;
-        let mut margins = [R::constant(1.0); CONDITIONS];
+    fn conditions<R: Real>(_prepared: &[R::Shared], inputs: &[R], _wanted: Set, margins: &mut [R]) {
+        let [slack, speed, mass] = [0, 3, 4].map(|input| inputs[input]);
         margins[0] = slack - mass * speed.squared();
-        margins
     }
 
     // The inner loop, in SI units.
-    fn finish<R: Real>(prepared: &[R::Shared], inputs: &[R; INPUTS], _wanted: u64, outputs: &mut [R; OUTPUTS]) {
-        let [slack, _, _, speed, mass, ..] = *inputs;
+    fn finish<R: Real>(prepared: &[R::Shared], inputs: &[R], _wanted: Set, outputs: &mut [R]) {
+        let [slack, speed, mass] = [0, 3, 4].map(|input| inputs[input]);
         let centrifugal = (mass * speed.squared()).named("centrifugal", "");
         let tight = (slack - centrifugal) * R::shared(prepared[0]) + centrifugal;
         outputs[0] = tight;

@@ -18,9 +18,9 @@
 //!   exactly only then (the paper's "radial" taken literally is 0.67 % off in its example).
 
 use super::description::{Condition, Effort, Input, Model, Output, Profile, ProfileColumn, Range, SAMPLE, Shader, Worse};
-use super::formula::{CONDITIONS, Formula, INPUTS, OUTPUTS, bits, record};
+use super::formula::{Formula, record};
 use crate::real::Real;
-use crate::tape::Fields;
+use crate::tape::{Fields, Set};
 use crate::units::{
     self, DEGREE, KILOGRAM_PER_METRE, KILOWATT, METRE_PER_SECOND, MILLIMETRE, NEWTON, NEWTON_METRE, NEWTON_PER_MILLIMETRE, NONE,
 };
@@ -238,10 +238,11 @@ impl Formula for PulleyLoad {
         prepared: Prepared::<usize>::NAMES,
         tables: &[],
         turns: 0,
+        conditions: 2,
         outputs: Result::<usize>::NAMES,
     };
 
-    fn prepare<R: Real>(inputs: &[R; INPUTS], _wanted: u64, prepared: &mut [R]) {
+    fn prepare<R: Real>(inputs: &[R], _wanted: Set, prepared: &mut [R]) {
         let [one, two] = [1.0, 2.0].map(R::constant);
         let i = Inputs::read(inputs);
         let belt_speed = i.mean_radius * i.speed;
@@ -279,24 +280,23 @@ impl Formula for PulleyLoad {
     }
 
     #[inline(always)]
-    fn conditions<R: Real>(prepared: &[R::Shared], _inputs: &[R; INPUTS], _wanted: u64) -> [R; CONDITIONS] {
+    fn conditions<R: Real>(prepared: &[R::Shared], _inputs: &[R], _wanted: Set, margins: &mut [R]) {
         let p = Prepared::<R>::shared(prepared);
-        let mut margins = [R::constant(1.0); CONDITIONS];
         margins[0] = p.lift_margin;
         margins[1] = p.balance_margin;
-        margins
     }
 
     #[inline(always)]
-    fn finish<R: Real>(prepared: &[R::Shared], inputs: &[R; INPUTS], wanted: u64, out: &mut [R; OUTPUTS]) {
+    fn finish<R: Real>(prepared: &[R::Shared], inputs: &[R], wanted: Set, out: &mut [R]) {
+        let out = &mut out[..Result::<usize>::NAMES.len()];
         let p = Prepared::<R>::shared(prepared);
         let i = Inputs::read(inputs);
-        const MARGIN: u64 = bits(&[OUT.friction_margin]);
-        const FLANK: u64 = bits(&[OUT.slack_end_flank_force, OUT.tight_end_flank_force]);
-        if wanted & MARGIN != 0 {
+        const MARGIN: Set = Set::of(&[OUT.friction_margin]);
+        const FLANK: Set = Set::of(&[OUT.slack_end_flank_force, OUT.tight_end_flank_force]);
+        if wanted.meets(MARGIN) {
             out[OUT.friction_margin] = R::constant(1.0) - p.friction_used / i.friction_limit;
         }
-        if wanted & FLANK != 0 {
+        if wanted.meets(FLANK) {
             let flank_per_line = p.flank_per_line / i.groove_count;
             out[OUT.slack_end_flank_force] = p.slack_end_line_force * flank_per_line;
             out[OUT.tight_end_flank_force] = p.tight_end_line_force * flank_per_line;
@@ -328,9 +328,9 @@ pub(super) struct WrapLoad<R> {
 }
 
 /// The belt's load, for inputs that begin with those of this model.
-pub(super) fn wrap_load<R: Real<Shared = R>>(si: &[R; INPUTS]) -> WrapLoad<R> {
+pub(super) fn wrap_load<R: Real<Shared = R>>(si: &[R]) -> WrapLoad<R> {
     let mut prepared = [R::constant(0.0); Prepared::<usize>::NAMES.len()];
-    PulleyLoad::prepare(si, u64::MAX, &mut prepared);
+    PulleyLoad::prepare(si, Set::ALL, &mut prepared);
     let p = Prepared::<R>::shared(&prepared);
     WrapLoad {
         margins: [p.lift_margin, p.balance_margin],
@@ -341,19 +341,16 @@ pub(super) fn wrap_load<R: Real<Shared = R>>(si: &[R; INPUTS]) -> WrapLoad<R> {
 }
 
 /// All outputs of this model, for inputs and outputs that begin with its own.
-pub(super) fn finish_all<R: Real<Shared = R>>(si: &[R; INPUTS], outputs: &mut [R; OUTPUTS]) {
+pub(super) fn finish_all<R: Real<Shared = R>>(si: &[R], outputs: &mut [R]) {
     let mut prepared = [R::constant(0.0); Prepared::<usize>::NAMES.len()];
-    PulleyLoad::prepare(si, u64::MAX, &mut prepared);
-    PulleyLoad::finish(&prepared, si, u64::MAX, outputs);
+    PulleyLoad::prepare(si, Set::ALL, &mut prepared);
+    PulleyLoad::finish(&prepared, si, Set::ALL, outputs);
 }
 
 /// Tension, line force and flank force over the wrap, (14), (9), (10): from the slack end (0) to the tight end, a row a degree
 /// or a little closer. `inputs` are in their units and must have status ok.
 fn profile(model: &Model, inputs: &[f64]) -> Profile {
-    let mut si = [0.0; INPUTS];
-    for ((si, &value), input) in si.iter_mut().zip(inputs).zip(&model.inputs) {
-        *si = input.unit.to_si(value);
-    }
+    let si: Vec<f64> = inputs.iter().zip(&model.inputs).map(|(&value, input)| input.unit.to_si(value)).collect();
     let i = Inputs::read(&si);
     let p = Prepared::<f64>::shared(&model.kernel.prepared(&si));
     let steps = inputs[Inputs::NUMBER.wrap_angle].ceil();

@@ -2,7 +2,7 @@
 
 use super::cvt::{Belt, Cvt, Drive, condition_table, groove_angle, output_table, ratio, torque, traction};
 use super::description::{Condition, Effort, Input, Model, Output, SAMPLE, Shader};
-use super::formula::{INPUTS, record};
+use super::formula::record;
 use crate::real::Real;
 use crate::units::{MEGAPASCAL, MILLIMETRE, NONE};
 use std::sync::Arc;
@@ -73,7 +73,7 @@ impl Belt for RubberBelt {
     const INPUT_NAMES: &'static [&'static str] = Inputs::<usize>::NAMES;
 
     #[inline(always)]
-    fn drive<R: Real>(inputs: &[R; INPUTS]) -> Drive<R> {
+    fn drive<R: Real>(inputs: &[R]) -> Drive<R> {
         let i = Inputs::read(inputs);
         Drive {
             friction: i.friction,

@@ -25,6 +25,11 @@ impl Quantity {
         }
     }
 
+    /// Its number, if it is an output.
+    pub fn output(self) -> Option<usize> {
+        if let Self::Output(output) = self { Some(output) } else { None }
+    }
+
     /// Which end is worse where nobody says so. For an input it hardly matters; the larger one is taken.
     pub fn worse(self, model: &Model) -> Worse {
         match self {

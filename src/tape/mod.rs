@@ -10,6 +10,7 @@ mod error_bound;
 mod interval;
 mod list;
 mod record;
+mod set;
 mod stages;
 #[cfg(test)]
 mod tests;
@@ -20,6 +21,7 @@ pub use error_bound::{RunningError, nearest_f32};
 pub use interval::{EVERYTHING, Interval};
 pub use list::{List, ListRoot};
 pub use record::{Known, Recording, Trace};
+pub use set::Set;
 pub use stages::{Fields, Recordable, Second, Whole};
 
 use crate::real::Real;

@@ -4,7 +4,7 @@
 //! What the formula names, and what is read more than once, stands in a line of its own. A root is found in plain f32, and its bound
 //! comes from one evaluation of its function there.
 
-use super::{Binary, Fields, Known, List, ListRoot, Node, Operation, Recordable, Root, Second, Unary, Whole, nearest_f32};
+use super::{Binary, Fields, Known, List, ListRoot, Node, Operation, Recordable, Root, Second, Set, Unary, Whole, nearest_f32};
 
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
@@ -77,8 +77,8 @@ pub fn text(formula: &dyn Recordable, conditions: usize, equations: &[&str]) -> 
     let fields = formula.fields();
     assert!(fields.tables.is_empty(), "a formula with tables is written by hand");
     let inputs = vec![Known::ANY; fields.inputs.len()];
-    let whole = formula.whole(&inputs, u64::MAX, u64::MAX);
-    let second = formula.second(&inputs, u64::MAX, u64::MAX);
+    let whole = formula.whole(&inputs, Set::ALL, Set::ALL);
+    let second = formula.second(&inputs, Set::ALL, Set::ALL);
     first_stage(&fields, &whole) + &second_stage(&fields, &second, conditions, equations)
 }
 

@@ -2,9 +2,7 @@
 
 use beltspace::checkpoint::{Checkpoint, Saved};
 use beltspace::files::Claim;
-use beltspace::models::{
-    CONDITIONS, Condition, Effort, Fields, Formula, INPUTS, Input, Model, Models, OUTPUTS, Output, Preset, Shader, Status, Worse, evaluate,
-};
+use beltspace::models::{Condition, Effort, Fields, Formula, Input, Model, Models, Output, Preset, Set, Shader, Status, Worse, evaluate};
 use beltspace::names::CHECKPOINT;
 use beltspace::plan::Plan;
 use beltspace::real::Real;
@@ -31,20 +29,19 @@ impl Formula for FlatBelt {
         prepared: &["grip"],
         tables: &[],
         turns: 0,
+        conditions: 1,
         outputs: &["tight_tension", "slip_reserve"],
     };
 
-    fn prepare<R: Real>(inputs: &[R; INPUTS], _wanted: u64, prepared: &mut [R]) {
+    fn prepare<R: Real>(inputs: &[R], _wanted: Set, prepared: &mut [R]) {
         prepared[0] = (inputs[FRICTION] * inputs[WRAP]).exp_m1() + R::constant(1.0);
     }
 
-    fn conditions<R: Real>(_prepared: &[R::Shared], inputs: &[R; INPUTS], _wanted: u64) -> [R; CONDITIONS] {
-        let mut margins = [R::constant(1.0); CONDITIONS];
+    fn conditions<R: Real>(_prepared: &[R::Shared], inputs: &[R], _wanted: Set, margins: &mut [R]) {
         margins[0] = inputs[SLACK];
-        margins
     }
 
-    fn finish<R: Real>(prepared: &[R::Shared], inputs: &[R; INPUTS], _wanted: u64, outputs: &mut [R; OUTPUTS]) {
+    fn finish<R: Real>(prepared: &[R::Shared], inputs: &[R], _wanted: Set, outputs: &mut [R]) {
         outputs[0] = inputs[SLACK] * R::shared(prepared[0]);
         outputs[1] = R::constant(1.0) - inputs[WANTED] / outputs[0];
     }

@@ -3,7 +3,7 @@
 //! `shaders/write` writes them anew.
 
 use beltspace::gpu::PointKernel;
-use beltspace::models::{self, Model, Shader};
+use beltspace::models::{self, Model, Set, Shader};
 use beltspace::tape::{Binary, Known, List, Node, Operation, Recording, Root, Unary, wgsl};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -395,8 +395,8 @@ fn differences(model: &Model, piece: &str, other: &str) -> Vec<String> {
         "i" => Operation::Input(number(names.inputs, field)),
         _ => Operation::Input(names.inputs.len() as u16 + number(names.prepared, field)),
     };
-    let whole = formula.whole(&known, u64::MAX, u64::MAX);
-    let second = formula.second(&known, u64::MAX, u64::MAX);
+    let whole = formula.whole(&known, Set::ALL, Set::ALL);
+    let second = formula.second(&known, Set::ALL, Set::ALL);
     let of = |recording: &Recording, nodes: &[Node]| List::cut(recording, &nodes.iter().copied().map(Some).collect::<Vec<_>>());
     let texts = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
     let numbers: Vec<String> = (0..model.conditions.len()).map(|it| it.to_string()).collect();

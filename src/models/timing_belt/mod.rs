@@ -24,9 +24,9 @@
 //! - (20): specific weight is used as density; omega is printed in rpm; "f = 2.55 m/N" is micrometres per newton.
 //! - Step (4) calls j the boundary, Fig. 9 tooth 15 = j - 1.
 
-use super::formula::{CONDITIONS, Columns, Formula, INPUTS, OUTPUTS, bits, record};
+use super::formula::{Columns, Formula, record};
 use crate::real::{Lanes, Real};
-use crate::tape::Fields;
+use crate::tape::{Fields, Set};
 
 mod block;
 mod mesh;
@@ -96,17 +96,17 @@ const BEFORE: usize = 3;
 const LAST: usize = 4;
 const PARTS: usize = 5;
 /// Outputs that need each.
-const NEEDED_BY: [u64; PARTS] = [
-    bits(&[OUT.boundary_tension]),
-    bits(&[OUT.peak_tooth_load]),
-    bits(&[OUT.peak_tooth_load]),
-    bits(&[OUT.least_tooth_load]),
-    bits(&[OUT.least_tooth_load]),
+const NEEDED_BY: [Set; PARTS] = [
+    Set::of(&[OUT.boundary_tension]),
+    Set::of(&[OUT.peak_tooth_load]),
+    Set::of(&[OUT.peak_tooth_load]),
+    Set::of(&[OUT.least_tooth_load]),
+    Set::of(&[OUT.least_tooth_load]),
 ];
 
-const TOOTH: u64 = bits(&[OUT.boundary_tooth, OUT.boundary_position, OUT.incomplete_teeth]);
-const LIFT: u64 = bits(&[OUT.lift_speed]);
-const INCOMPLETE: u64 = bits(&[OUT.boundary_tension, OUT.peak_tooth_load, OUT.least_tooth_load]);
+const TOOTH: Set = Set::of(&[OUT.boundary_tooth, OUT.boundary_position, OUT.incomplete_teeth]);
+const LIFT: Set = Set::of(&[OUT.lift_speed]);
+const INCOMPLETE: Set = Set::of(&[OUT.boundary_tension, OUT.peak_tooth_load, OUT.least_tooth_load]);
 /// Number of the condition that a tooth lifts.
 const LIFTS: usize = 2;
 
@@ -119,10 +119,11 @@ impl Formula for TimingBelt {
         tables: TABLES,
         // Conditions, lift speed and boundary each walk over the teeth.
         turns: 3 * TEETH as u64,
+        conditions: LIFTS + 1,
         outputs: Result::<usize>::NAMES,
     };
 
-    fn prepare<R: Real>(inputs: &[R; INPUTS], wanted: u64, prepared: &mut [R]) {
+    fn prepare<R: Real>(inputs: &[R], wanted: Set, prepared: &mut [R]) {
         let i = Inputs::read(inputs);
         let rows = mesh::Rows::new(&i);
         let elimination = mesh::Elimination::new(&rows);
@@ -140,7 +141,7 @@ impl Formula for TimingBelt {
             prepared[INWARD + tooth] = complete.inward[tooth].tight;
             prepared[INWARD + TEETH + tooth] = complete.inward[tooth].slack;
         }
-        if wanted & INCOMPLETE != 0 {
+        if wanted.meets(INCOMPLETE) {
             let boundaries = mesh::boundaries(&rows, &elimination, &complete);
             for (at, boundary) in boundaries[..=complete.teeth].iter().enumerate() {
                 for (number, value) in boundary.iter().enumerate() {
@@ -152,41 +153,40 @@ impl Formula for TimingBelt {
     }
 
     #[inline(always)]
-    fn conditions<R: Real>(prepared: &[R::Shared], inputs: &[R; INPUTS], wanted: u64) -> [R; CONDITIONS] {
+    fn conditions<R: Real>(prepared: &[R::Shared], inputs: &[R], wanted: Set, margins: &mut [R]) {
         let p = Prepared::<R>::shared(prepared);
         let i = Inputs::read(inputs);
-        let mut margins = [R::constant(1.0); CONDITIONS];
         margins[0] = i.tight_tension - i.slack_tension;
         margins[1] = p.lift_margin;
-        if wanted & bits(&[LIFTS]) != 0 {
+        if wanted.contains(LIFTS) {
             margins[LIFTS] = p.mass_radius * i.pulley_speed.squared() - least_inward(&p, &i, prepared);
         }
-        margins
     }
 
     #[inline(always)]
-    fn finish_block(prepared: &[f64], inputs: &[Lanes; INPUTS], columns: &Columns<'_>, results: &mut [Vec<f64>]) -> bool {
+    fn finish_block(prepared: &[f64], inputs: &[Lanes], columns: &Columns<'_>, results: &mut [Vec<f64>]) -> bool {
         block::teeth_at_one_load(prepared, inputs, columns, results)
     }
 
     #[inline(always)]
-    fn finish<R: Real>(prepared: &[R::Shared], inputs: &[R; INPUTS], wanted: u64, out: &mut [R; OUTPUTS]) {
+    fn finish<R: Real>(prepared: &[R::Shared], inputs: &[R], wanted: Set, out: &mut [R]) {
+        let out = &mut out[..Result::<usize>::NAMES.len()];
         let (zero, half, one) = (R::constant(0.0), R::constant(0.5), R::constant(1.0));
         let p = Prepared::<R>::shared(prepared);
         let i = Inputs::read(inputs);
         let force = p.mass_radius * i.pulley_speed.squared(); // m r omega^2
         out[OUT.centrifugal_force] = force;
         out[OUT.effective_tension] = i.tight_tension - i.slack_tension;
-        if wanted & bits(&[OUT.peak_tooth_load_complete]) != 0 {
+        if wanted.contains(OUT.peak_tooth_load_complete) {
             out[OUT.peak_tooth_load_complete] = i.tight_tension * p.peak_complete_tight + i.slack_tension * p.peak_complete_slack;
         }
-        if wanted & LIFT != 0 {
+        if wanted.meets(LIFT) {
             out[OUT.lift_speed] = (least_inward(&p, &i, prepared).max(zero) / p.mass_radius).sqrt();
         }
-        if wanted & (TOOTH | INCOMPLETE) == 0 {
+        if !wanted.meets(TOOTH | INCOMPLETE) {
             return;
         }
-        if wanted & INCOMPLETE == 0 && wanted & bits(&[OUT.boundary_position]) == 0 {
+        if !wanted.meets(INCOMPLETE) && !wanted.contains(OUT.boundary_position) {
             let boundary_tooth = walk(&p, &i, prepared, force);
             out[OUT.boundary_tooth] = boundary_tooth;
             out[OUT.incomplete_teeth] = p.teeth.plus_whole(one).plus_whole(-boundary_tooth);
@@ -199,7 +199,7 @@ impl Formula for TimingBelt {
         let mut picked = [[zero; 2]; PARTS];
         let mut part = 0;
         while part < PARTS {
-            if wanted & NEEDED_BY[part] != 0 {
+            if wanted.meets(NEEDED_BY[part]) {
                 picked[part] = boundary_entry::<R>(prepared, part, 0);
             }
             part += 1;
@@ -217,7 +217,7 @@ impl Formula for TimingBelt {
             let still_open = meshes - half;
             let mut part = 0;
             while part < PARTS {
-                if wanted & NEEDED_BY[part] != 0 {
+                if wanted.meets(NEEDED_BY[part]) {
                     let next = boundary_entry::<R>(prepared, part, tooth);
                     picked[part][0] = R::select(still_open, next[0], picked[part][0]);
                     picked[part][1] = R::select(still_open, next[1], picked[part][1]);
@@ -231,7 +231,7 @@ impl Formula for TimingBelt {
         let inside = boundary_tooth - one + before / (before - at);
         let lifted = R::select(boundary_tooth - (one + half), inside, one);
         out[OUT.boundary_position] = R::select(meshes - half, boundary_tooth, lifted);
-        if wanted & INCOMPLETE != 0 {
+        if wanted.meets(INCOMPLETE) {
             let load = |part: usize| i.tight_tension * picked[part][0] + i.slack_tension * picked[part][1];
             out[OUT.boundary_tension] = load(STAR);
             out[OUT.peak_tooth_load] = load(FIRST).max(load(OWN));
@@ -296,7 +296,7 @@ fn centrifugal_tension<R: Real>(i: &Inputs<R>) -> R {
 
 /// The incomplete mesh with the option, for which no table serves: every pair is solved for itself.
 #[inline(never)]
-fn with_land_friction<R: Real>(i: &Inputs<R>, boundary_tooth: R, out: &mut [R; OUTPUTS]) {
+fn with_land_friction<R: Real>(i: &Inputs<R>, boundary_tooth: R, out: &mut [R]) {
     let rows = mesh::Rows::new(i);
     let option = i.centrifugal_land_friction;
     let solved = mesh::solve(&rows, i.tight_tension, i.slack_tension, boundary_tooth, option, centrifugal_tension(i));
