@@ -1,6 +1,7 @@
 //! One design in one scenario, evaluated for a person or a table: outputs in their units, absent where they have no meaning.
 
-use super::description::{Input, Model};
+use super::description::Input;
+use super::model::Model;
 use crate::decision::Decision;
 use crate::tape::Set;
 

@@ -1,6 +1,6 @@
 //! The two stages of a formula, and the same formula behind a table of functions for every number type.
 
-use super::description::Model;
+use super::model::Model;
 use crate::real::{LANES, Lanes, Real};
 use crate::tape::{Fields, Known, List, Operation, Recordable, Recording, Second, Set, Trace, Whole};
 
@@ -320,17 +320,32 @@ fn finish_columns<F: Formula>(prepared: &[f64], columns: &Columns<'_>, scratch: 
     }
 }
 
-/// A struct of values of one type with named fields, read from and numbered like an array: the names of a model's inputs and
-/// of what `prepare` passes on.
+/// A struct of values of one type with named fields, read from and written to a slice in the order of its fields: the inputs of a
+/// model, what its first stage passes on, its outputs.
+///
+/// ```
+/// beltspace::record! {
+///     /// What the band is given.
+///     Inputs { pull, friction, wrap }
+/// }
+/// assert_eq!(Inputs::NAMES, ["pull", "friction", "wrap"]);
+/// assert_eq!(Inputs::NUMBER.wrap, 2);
+/// let i = Inputs::read(&[100.0, 0.3, 4.7]);
+/// assert_eq!(i.friction, 0.3);
+/// ```
+///
+/// `read` and `write` work on the numbers that a stage is given, `shared` reads what the first stage passed on
+/// ([`Real::Shared`](crate::real::Real::Shared)). A visibility may stand before the name.
+#[macro_export]
 macro_rules! record {
-    ($(#[$doc:meta])* $name:ident { $($field:ident),* $(,)? }) => {
+    ($(#[$doc:meta])* $visible:vis $name:ident { $($field:ident),* $(,)? }) => {
         $(#[$doc])*
         #[derive(Clone, Copy, Debug)]
-        pub(super) struct $name<T> { $(pub $field: T),* }
+        $visible struct $name<T> { $(pub $field: T),* }
 
+        #[allow(dead_code, reason = "some records are only read, some only written")]
         impl $name<usize> {
             /// The name of every field.
-            #[allow(dead_code, reason = "some records are private to the Rust code")]
             pub const NAMES: &'static [&'static str] = &[$(stringify!($field)),*];
 
             /// The position of every field.
@@ -344,6 +359,7 @@ macro_rules! record {
 
         #[allow(dead_code, reason = "some records are only read, some only written")]
         impl<T: Copy> $name<T> {
+            /// Reads the first numbers of a slice.
             #[inline(always)]
             pub fn read(values: &[T]) -> Self {
                 // Checked once: no field is checked again.
@@ -351,6 +367,7 @@ macro_rules! record {
                 Self { $($field: values[$name::<usize>::NUMBER.$field]),* }
             }
 
+            /// Writes the first numbers of a slice.
             #[inline(always)]
             pub fn write(self, values: &mut [T]) {
                 let values = &mut values[..$name::<usize>::NAMES.len()];
@@ -359,7 +376,7 @@ macro_rules! record {
         }
 
         #[allow(dead_code, reason = "inputs and outputs are not passed between the stages")]
-        impl<R: crate::real::Real> $name<R> {
+        impl<R: $crate::real::Real> $name<R> {
             /// Reads what the first stage passed on.
             #[inline(always)]
             pub fn shared(values: &[R::Shared]) -> Self {
@@ -369,4 +386,4 @@ macro_rules! record {
         }
     };
 }
-pub(super) use record;
+pub(crate) use record;

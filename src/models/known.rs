@@ -1,7 +1,8 @@
 //! Which model a name means, and what a model must be so that everything else can rely on it.
 
-use super::description::{Input, Model};
+use super::description::Input;
 use super::formula::Sizes;
+use super::model::Model;
 use crate::error::{Error, Result};
 use crate::tape::Set;
 use std::collections::HashSet;

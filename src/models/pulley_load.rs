@@ -17,8 +17,9 @@
 //! - The second friction component acts along the flank, inwards and towards the groove's mid-plane: the loads balance
 //!   exactly only then (the paper's "radial" taken literally is 0.67 % off in its example).
 
-use super::description::{Condition, Effort, Input, Model, Output, Profile, ProfileColumn, Range, SAMPLE, Shader, Worse};
+use super::description::{Condition, Effort, Input, Output, Profile, ProfileColumn, Range, SAMPLE, Worse};
 use super::formula::{Formula, record};
+use super::model::{Model, Shader};
 use crate::real::Real;
 use crate::tape::{Fields, Set};
 use crate::units::{
@@ -27,7 +28,7 @@ use crate::units::{
 
 record! {
     /// Inputs in the order of the table, in SI units.
-    Inputs {
+    pub(super) Inputs {
         power, speed, slack_tension, wrap_angle, mean_radius, groove_angle, groove_count, belt_mass, friction_limit,
         friction_direction,
     }
@@ -35,7 +36,7 @@ record! {
 
 record! {
     /// What needs transcendental functions; the last two are condition margins.
-    Prepared {
+    pub(super) Prepared {
         belt_speed, effective_tension, centrifugal_tension, effective_friction, friction_used, torque, resultant_force,
         slack_end_line_force, tight_end_line_force, flank_per_line, lift_margin, balance_margin,
     }
@@ -43,7 +44,7 @@ record! {
 
 record! {
     /// Outputs in the order of the table.
-    Result {
+    pub(super) Result {
         belt_speed, tight_tension, effective_tension, centrifugal_tension, effective_friction, friction_used, friction_margin,
         torque, resultant_force, slack_end_line_force, tight_end_line_force, slack_end_flank_force, tight_end_flank_force,
     }
@@ -233,14 +234,7 @@ pub fn model() -> Model {
 pub(super) struct PulleyLoad;
 
 impl Formula for PulleyLoad {
-    const FIELDS: Fields = Fields {
-        inputs: Inputs::<usize>::NAMES,
-        prepared: Prepared::<usize>::NAMES,
-        tables: &[],
-        turns: 0,
-        conditions: 2,
-        outputs: Result::<usize>::NAMES,
-    };
+    const FIELDS: Fields = Fields::new(Inputs::<usize>::NAMES, Prepared::<usize>::NAMES, Result::<usize>::NAMES, 2);
 
     fn prepare<R: Real>(inputs: &[R], _wanted: Set, prepared: &mut [R]) {
         let [one, two] = [1.0, 2.0].map(R::constant);

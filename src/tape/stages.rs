@@ -4,6 +4,7 @@ use super::{Known, List, Node, Recording, Set};
 
 /// The names of a formula's values, in the order of its arrays.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Fields {
     /// Of the inputs.
     pub inputs: &'static [&'static str],
@@ -20,6 +21,16 @@ pub struct Fields {
 }
 
 impl Fields {
+    /// Of a formula without tables.
+    pub const fn new(
+        inputs: &'static [&'static str],
+        prepared: &'static [&'static str],
+        outputs: &'static [&'static str],
+        conditions: usize,
+    ) -> Self {
+        Self { inputs, prepared, tables: &[], turns: 0, conditions, outputs }
+    }
+
     /// How many numbers the first stage passes on.
     pub fn prepared_len(&self) -> usize {
         self.tables.iter().fold(self.prepared.len(), |sum, (_, length)| sum + length)

@@ -43,7 +43,7 @@ pub const LIMIT: f64 = -1.0;
 
 record! {
     /// Inputs of either belt, in SI units; `sections` counts the load-carrying sections: 1 rubber belt, or 2 packs of n bands.
-    Drive {
+    pub(super) Drive {
         friction, groove_angle, ratio, belt_length, centre_distance, width, thickness, sections, elastic_modulus, strength,
         traction, torque,
     }
@@ -51,7 +51,7 @@ record! {
 
 record! {
     /// What depends on friction, groove angle, ratio, belt length, centre distance and traction only.
-    Prepared {
+    pub(super) Prepared {
         driver_radius, driven_radius, driver_wrap, driven_wrap, effective_friction, traction_limit, driver_traction_limit,
         slip_margin, active_arc, driver_axial_coefficient, driven_axial_coefficient, traction, curvature, smaller_radius,
         free_ratio, printed_pull, entry_compression, length_margin, root_margin, overlap_margin, wedge_margin,
@@ -60,7 +60,7 @@ record! {
 
 record! {
     /// Outputs of either belt; the last two are the metal belt's.
-    Result {
+    pub(super) Result {
         driver_radius, driven_radius, driver_wrap, driven_wrap, effective_friction, traction_limit, driver_traction_limit,
         slip_margin, active_arc, driver_axial_coefficient, driven_axial_coefficient, belt_force, tight_force, slack_force,
         driver_axial_force, driven_axial_force, axial_force, tensile_stress, bending_stress, max_stress, stress_margin,
@@ -213,14 +213,7 @@ pub(super) trait Belt {
 pub(super) struct Cvt<B>(pub B);
 
 impl<B: Belt> Formula for Cvt<B> {
-    const FIELDS: Fields = Fields {
-        inputs: B::INPUT_NAMES,
-        prepared: Prepared::<usize>::NAMES,
-        tables: &[],
-        turns: 0,
-        conditions: CONDITIONS,
-        outputs: Result::<usize>::NAMES,
-    };
+    const FIELDS: Fields = Fields::new(B::INPUT_NAMES, Prepared::<usize>::NAMES, Result::<usize>::NAMES, CONDITIONS);
 
     fn prepare<R: Real>(inputs: &[R], _wanted: Set, prepared: &mut [R]) {
         prepare(&B::drive(inputs)).write(prepared);

@@ -18,8 +18,8 @@ pub use design::Design;
 pub use profile::CHECK_POINT_STRESSES;
 pub use table::model;
 
-use super::description::Model;
 use super::formula::{Columns, Footprint, Kernel, Reach, Scratch, Sizes};
+use super::model::Model;
 use super::pulley_load;
 use crate::pulley::response::{self, CHECK_POINTS, LONGEST, View};
 use crate::pulley::section::{self, Flaw, Kind};

@@ -1,8 +1,9 @@
 //! What the pulley model says of itself.
 
-use super::super::description::{Condition, Effort, Input, Model, Output, Preset, Range, Worse};
+use super::super::description::{Condition, Effort, Input, Output, Preset, Range, Worse};
 use super::super::evaluation::to_si;
 use super::super::formula::record;
+use super::super::model::Model;
 use super::super::pulley_load;
 use super::{Design, Pulley, notes, profile, read_by};
 use crate::pulley::section::Kind;
@@ -12,7 +13,7 @@ use std::sync::Arc;
 
 record! {
     /// Inputs in the order of the table, in SI units.
-    Inputs {
+    pub(super) Inputs {
         power, speed, slack_tension, wrap_angle, mean_radius, groove_angle, groove_count, belt_mass, friction_limit,
         friction_direction,
         section, accuracy,
@@ -28,7 +29,7 @@ record! {
 
 record! {
     /// Outputs in the order of the table.
-    Result {
+    pub(super) Result {
         belt_speed, tight_tension, effective_tension, centrifugal_tension, effective_friction, friction_used, friction_margin,
         torque, resultant_force, slack_end_line_force, tight_end_line_force, slack_end_flank_force, tight_end_flank_force,
         max_stress, max_stress_r, max_stress_z, max_stress_theta,

@@ -45,7 +45,7 @@ const SPACE: f64 = -1.0;
 
 record! {
     /// Inputs in the order of the table, in SI units.
-    Inputs {
+    pub(super) Inputs {
         pulley_speed, tight_tension, slack_tension, teeth_in_mesh, friction, tooth_compliance, cord_modulus, cord_area, tip_radius,
         land_half_angle, space_half_angle, tooth_length, pressure_angle, tight_span_angle, slack_span_angle, pitch_mass, lift_angle,
         pitch, centrifugal_land_friction,
@@ -54,12 +54,12 @@ record! {
 
 record! {
     /// What depends on the belt and its pulley alone, besides the tables below.
-    Prepared { teeth, mass_radius, peak_complete_tight, peak_complete_slack, lift_margin }
+    pub(super) Prepared { teeth, mass_radius, peak_complete_tight, peak_complete_slack, lift_margin }
 }
 
 record! {
     /// Outputs in the order of the table.
-    Result {
+    pub(super) Result {
         centrifugal_force, boundary_tooth, boundary_position, incomplete_teeth, lift_speed, boundary_tension, peak_tooth_load,
         peak_tooth_load_complete, least_tooth_load, effective_tension,
     }

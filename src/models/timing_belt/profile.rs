@@ -1,6 +1,7 @@
 //! Tension, load and margin of every tooth: what a person looks at.
 
-use super::super::description::{Model, Profile, ProfileColumn};
+use super::super::description::{Profile, ProfileColumn};
+use super::super::model::Model;
 use super::super::to_si;
 use super::{Inputs, OUT, centrifugal_tension, mesh};
 use crate::tape::Set;
