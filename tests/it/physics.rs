@@ -2,7 +2,7 @@
 
 use crate::effort::is_slow;
 use crate::random::Random;
-use crate::second::{GOLDEN, Golden, Values, metal_cvt, pulley_load, rubber_cvt, timing_belt};
+use crate::second::{GOLDEN, Golden, SECOND, Values, timing_belt};
 use beltspace::models::{self, Evaluation, Input, Model, Set, Status, evaluate, find};
 use beltspace::tape::Known;
 use std::collections::BTreeMap;
@@ -16,14 +16,19 @@ fn by_name(model: &Model, inputs: &[f64]) -> BTreeMap<String, f64> {
 }
 
 fn second(model: &Model, inputs: &[f64]) -> (&'static str, Values) {
-    let inputs = by_name(model, inputs);
-    match model.name.as_str() {
-        "rubber-cvt" => rubber_cvt(&inputs),
-        "metal-cvt" => metal_cvt(&inputs),
-        "pulley-load" => pulley_load(&inputs),
-        "timing-belt" => timing_belt::timing_belt(&inputs),
-        other => panic!("{other} has no second implementation"),
-    }
+    let (_, implementation) = SECOND.iter().find(|(name, _)| *name == model.name).expect("a formula has a second implementation");
+    implementation(&by_name(model, inputs))
+}
+
+/// Does the status change where one input does by so little?
+fn changes_nearby(model: &Model, inputs: &[f64], by: f64) -> bool {
+    let status = second(model, inputs).0;
+    let changes = |(input, factor): (usize, f64)| {
+        let mut other = inputs.to_vec();
+        other[input] *= factor;
+        second(model, &other).0 != status
+    };
+    (0..inputs.len()).flat_map(|input| [(input, 1.0 - by), (input, 1.0 + by)]).any(changes)
 }
 
 /// Smallest relative distance of these inputs to a point where the status changes.
@@ -39,6 +44,9 @@ fn distance_to_boundary(model: &Model, inputs: &[f64]) -> f64 {
         return of_teeth
             .chain([of_lift, relative(get("tight_tension_N") - get("slack_tension_N"), get("tight_tension_N"))])
             .fold(1.0, f64::min);
+    }
+    if model.name != "pulley-load" && model.input("ratio").is_none() {
+        return if changes_nearby(model, inputs, 1e-8) { 0.0 } else { 1.0 };
     }
     let half_groove = (get("groove_angle_deg") / 2.0).to_radians();
     let values = second(model, inputs).1;
