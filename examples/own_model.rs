@@ -1,101 +1,81 @@
-//! A model of one's own, a flat belt after Eytelwein: written once, swept on the CPU, in boxes by bounds and, where there is one, on a GPU.
+//! A model of one's own, a band brake after Eytelwein: written once, swept on the CPU, in boxes by bounds and, where there is one, on a GPU.
 //! Run with `cargo run --example own_model`.
 
-use beltspace::models::{CONDITIONS, Condition, Effort, Fields, Formula, INPUTS, Input, Model, Models, OUTPUTS, Output, Shader, Worse};
+use beltspace::models::{Condition, Fields, Formula, Input, Model, Models, Output, Set, Worse};
 use beltspace::real::Real;
-use beltspace::units::{DEGREE, KILOGRAM_PER_METRE, METRE_PER_SECOND, NEWTON, NONE};
-use beltspace::{Engine, Judging, Options, Study};
+use beltspace::units::{DEGREE, MILLIMETRE, NEWTON, NEWTON_METRE, NONE};
+use beltspace::{Engine, Judging, Options, Study, record};
+use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// Tight tension of a flat belt that just does not slip, and the power that it carries.
-struct FlatBelt;
+record!(Inputs { pull, friction, wrap, drum_diameter });
+record!(Prepared { grip });
+record!(Outputs { tight_tension, torque });
 
-impl Formula for FlatBelt {
-    const FIELDS: Fields = Fields {
-        inputs: &["slack_tension", "friction", "wrap", "belt_speed", "belt_mass"],
-        prepared: &["grip"],
-        tables: &[],
-        iterations: 0,
-        outputs: &["tight_tension", "effective_tension"],
-    };
+/// A band around a drum that turns towards the end at which a lever pulls.
+struct BandBrake;
 
-    // What is expensive, and depends on few inputs: exp(mu theta).
-    fn prepare<R: Real>(inputs: &[R; INPUTS], _wanted: u64, prepared: &mut [R]) {
-        let [_, friction, wrap, ..] = *inputs;
-        prepared[0] = ((friction * wrap).exp_m1() + R::constant(1.0)).named("grip", "Eytelwein");
+impl Formula for BandBrake {
+    const FIELDS: Fields = Fields::new(Inputs::NAMES, Prepared::NAMES, Outputs::NAMES, 1);
+
+    // What is expensive, and depends on few inputs: exp(mu theta) - 1.
+    fn prepare<R: Real>(inputs: &[R], _wanted: Set, prepared: &mut [R]) {
+        let i = Inputs::read(inputs);
+        Prepared { grip: (i.friction * i.wrap).exp_m1() }.write(prepared);
     }
 
-    // Above zero where the formula has a meaning: the belt stays on the pulley.
-    fn conditions<R: Real>(_prepared: &[R::Shared], inputs: &[R; INPUTS], _wanted: u64) -> [R; CONDITIONS] {
-        let [slack, _, _, speed, mass, ..] = *inputs;
-        let mut margins = [R::constant(1.0); CONDITIONS];
-        margins[0] = slack - mass * speed.squared();
-        margins
+    // Above zero where the formula has a meaning: the band does not overlap itself.
+    fn conditions<R: Real>(_prepared: &[R::Shared], inputs: &[R], _wanted: Set, margins: &mut [R]) {
+        margins[0] = R::constant(2.0 * PI) - Inputs::read(inputs).wrap;
     }
 
     // The inner loop, in SI units.
-    fn finish<R: Real>(prepared: &[R::Shared], inputs: &[R; INPUTS], _wanted: u64, outputs: &mut [R; OUTPUTS]) {
-        let [slack, _, _, speed, mass, ..] = *inputs;
-        let centrifugal = (mass * speed.squared()).named("centrifugal", "");
-        let tight = (slack - centrifugal) * R::shared(prepared[0]) + centrifugal;
-        outputs[0] = tight;
-        outputs[1] = tight - slack;
+    fn finish<R: Real>(prepared: &[R::Shared], inputs: &[R], _wanted: Set, outputs: &mut [R]) {
+        let (i, p) = (Inputs::read(inputs), Prepared::<R>::shared(prepared));
+        let friction_force = i.pull * p.grip;
+        Outputs { tight_tension: i.pull + friction_force, torque: friction_force * i.drum_diameter / R::constant(2.0) }.write(outputs);
     }
 }
 
-fn flat_belt() -> Model {
-    Model {
-        name: "flat-belt".into(),
-        version: "1".into(),
-        summary: "Flat belt after Eytelwein: tensions at the limit of slip".into(),
-        source: "Eytelwein's equation with centrifugal tension".into(),
-        limits: "No bending, no creep.".into(),
-        inputs: vec![
-            Input::new("slack_tension_N", "F2", NEWTON, 100.0, (10.0, 1000.0), "Tension of the slack side.", "chosen"),
+/// The model.
+pub fn band_brake() -> Model {
+    Model::new("band-brake", BandBrake)
+        .version("1")
+        .inputs([
+            Input::new("pull_N", "F2", NEWTON, 100.0, (10.0, 1000.0), "Pull of the lever.", "chosen"),
             Input::new("friction", "mu", NONE, 0.3, (0.1, 0.6), "Coefficient of friction.", "chosen"),
-            Input::new("wrap_deg", "theta", DEGREE, 180.0, (90.0, 270.0), "Angle of wrap.", "chosen"),
-            Input::new("belt_speed_m_per_s", "v", METRE_PER_SECOND, 10.0, (1.0, 60.0), "Speed of the belt.", "chosen"),
-            Input::new("belt_mass_kg_per_m", "m", KILOGRAM_PER_METRE, 0.1, (0.01, 1.0), "Mass of the belt per length.", "chosen"),
-        ],
-        outputs: vec![
-            Output::new("tight_tension_N", "F1", NEWTON, Worse::Higher, "Eytelwein", "Tension of the tight side.").promising(4.5),
-            Output::new("effective_tension_N", "Fu", NEWTON, Worse::Lower, "F1 - F2", "What the belt can pull.").promising(4.5),
-        ],
-        conditions: vec![Condition::new("belt lifts", true, &["tight_tension_N", "effective_tension_N"], "The belt stays on the pulley.")],
-        presets: Vec::new(),
-        starter: String::new(),
-        kernel: Arc::new(FlatBelt),
-        effort: Effort { prepare: 1e-7, finish: 2e-9 },
-        sample: 65_536,
-        shader: Some(Shader::Recorded),
-        remarks: None,
-        notes: None,
-        profile: None,
-        pulley: None,
-    }
+            Input::new("wrap_deg", "theta", DEGREE, 270.0, (180.0, 330.0), "Angle of wrap.", "chosen"),
+            Input::new("drum_diameter_mm", "D", MILLIMETRE, 250.0, (100.0, 500.0), "Diameter of the drum.", "chosen"),
+        ])
+        .outputs([
+            Output::new("tight_tension_N", "F1", NEWTON, Worse::Higher, "Eytelwein", "Tension of the end that is held."),
+            Output::new("torque_Nm", "M", NEWTON_METRE, Worse::Lower, "(F1 - F2) D / 2", "Torque of the brake."),
+        ])
+        .conditions([Condition::new("band overlaps", true, &["tight_tension_N", "torque_Nm"], "The band goes around less than once.")])
 }
 
-const STUDY: &str = r#"
-model = "flat-belt"
+/// A study of it.
+pub const STUDY: &str = r#"
+model = "band-brake"
 [design]
-slack_tension_N = { from = 20, to = 400, count = 381 }
-wrap_deg = { from = 120, to = 220, count = 101 }
+pull_N = { from = 20, to = 400, count = 381 }
+wrap_deg = { from = 200, to = 320, count = 121 }
 [operation]
-belt_speed_m_per_s = [5, 20, 40]
+drum_diameter_mm = [200, 250]
 [uncertainty]
 friction = [0.25, 0.3, 0.35]
 [constraints]
-effective_tension_N = { min = 120 }
+torque_Nm = { min = 30 }
 [objectives]
-slack_tension_N = "min"
+pull_N = "min"
 wrap_deg = "min"
 tight_tension_N = "min"
 "#;
 
 /// Prints it.
 pub fn main() -> beltspace::Result<()> {
-    let models = Models::new().with(Arc::new(flat_belt()))?;
-    let study = Study::parse_with(&models, STUDY, "flat-belt.toml", ".".as_ref())?;
+    let models = Models::new().with(Arc::new(band_brake()))?;
+    let study = Study::parse_with(&models, STUDY, "band-brake.toml", ".".as_ref())?;
     let options = Options::default().engine(Engine::Cpu);
     let every = study.sweep(options.clone().judging(Judging::Exhaustive))?;
     println!("{} of {} designs are feasible, {} are on the front", every.counts.feasible, every.counts.designs, every.counts.front);

@@ -4,7 +4,7 @@
 //! infeasible, or its objectives differ from those of the sweep, the program stops.
 
 use crate::error::{Error, Result};
-use crate::models::{Latest, OUTPUTS, Status, Worse, judge, shown, to_si};
+use crate::models::{Latest, Set, Sizes, Status, Worse, fill_si, judge, shown};
 use crate::parallel::on_threads;
 use crate::plan::{Plan, worst_end};
 use crate::reduce::{KeyRule, Points};
@@ -188,7 +188,7 @@ pub fn check_feasible(row: &Row) -> Result<()> {
 struct Reference<'p> {
     plan: &'p Plan,
     columns: &'p [Column],
-    wanted: u64,
+    wanted: Set,
     row: Option<u64>,
     /// The prepared numbers of the first slow scenarios, as many as there is room for.
     prepared: Vec<Vec<f64>>,
@@ -203,10 +203,7 @@ impl<'p> Reference<'p> {
     fn new(plan: &'p Plan, columns: &'p [Column], stop: &'p AtomicBool) -> Self {
         let tracked = plan.tracked.iter().map(|(it, _)| it.quantity);
         let asked = columns.iter().map(|it| it.quantity).chain(plan.study.constraints.iter().map(|it| it.quantity)).chain(tracked);
-        let wanted = asked.fold(0, |set, quantity| match quantity {
-            Quantity::Output(output) => set | 1 << output,
-            Quantity::Input(_) => set,
-        });
+        let wanted = asked.filter_map(Quantity::output).collect();
         Self { plan, columns, wanted, row: None, prepared: Vec::new(), beyond: Vec::new(), latest: Latest::new(&plan.study.model), stop }
     }
 
@@ -222,6 +219,8 @@ impl<'p> Reference<'p> {
             self.row = Some(row);
             self.prepared.clear();
         }
+        let Sizes { outputs, conditions, .. } = model.kernel.sizes();
+        let [mut si, mut outputs, mut margins] = [inputs.len(), outputs, conditions].map(|length| vec![0.0; length]);
         let mut feasible = true;
         let mut worst = vec![(f64::NEG_INFINITY, AtWorst { value: None, scenario: 0 }); self.columns.len()];
         for q in 0..plan.slow_scenarios.count() {
@@ -231,7 +230,7 @@ impl<'p> Reference<'p> {
                     return None;
                 }
                 plan.fast_scenarios.set(t, &mut inputs);
-                let si = to_si(model, &inputs);
+                fill_si(model, &inputs, &mut si);
                 let kept = q < plan.kept_scenarios();
                 if t == 0 && (!kept || self.prepared.len() as u64 == q) {
                     let mut prepared = std::mem::take(&mut self.beyond);
@@ -240,9 +239,9 @@ impl<'p> Reference<'p> {
                     if kept { self.prepared.push(prepared) } else { self.beyond = prepared }
                 }
                 let prepared = if kept { &self.prepared[q as usize] } else { &self.beyond };
-                let mut outputs = [0.0; OUTPUTS];
                 model.kernel.finish(prepared, &si, self.wanted, &mut outputs);
-                let (status, present) = judge(model, &model.kernel.conditions(prepared, &si));
+                model.kernel.conditions(prepared, &si, &mut margins);
+                let (status, present) = judge(model, &margins);
                 let value = |quantity| match quantity {
                     Quantity::Input(input) => Some(inputs[input]),
                     Quantity::Output(output) => shown(model, &outputs, present, output),

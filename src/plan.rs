@@ -8,7 +8,7 @@ use crate::models::{Effort, Reach, Worse, input_to_si};
 use crate::space::{Product, Space};
 pub use crate::study::worst_end;
 use crate::study::{Quantity, Study};
-use crate::tape::Known;
+use crate::tape::{Known, Set};
 
 /// Most combinations of the fast design axes in a row, so that their values fit into a table.
 pub const FAST_DESIGNS: u64 = 1 << 15;
@@ -68,8 +68,8 @@ pub struct Plan {
     pub objectives: Vec<usize>,
     /// Source of each constraint.
     pub constraints: Vec<Source>,
-    /// Outputs evaluated once per row and scenario, as a bit set.
-    pub row_outputs: u64,
+    /// Outputs evaluated once per row and scenario.
+    pub row_outputs: Set,
     /// Outputs evaluated for every design and scenario.
     pub lane_outputs: Vec<usize>,
     /// Conditions that are the same for the whole row.
@@ -109,16 +109,16 @@ impl Plan {
         let slow = slow.with(&outer);
         let (slow_scenarios, fast_scenarios) = space.scenarios.split(reach.prepared);
         let lane_inputs = fast.inputs();
-        let mut row_outputs = 0u64;
+        let mut row_outputs = Set::EMPTY;
         let mut lane_outputs = Vec::new();
-        let mut used_outputs = 0u64;
+        let mut used_outputs = Set::EMPTY;
         let mut source = |quantity| match quantity {
-            Quantity::Input(input) if lane_inputs >> input & 1 == 1 => Source::LaneInput(input),
+            Quantity::Input(input) if lane_inputs.contains(input) => Source::LaneInput(input),
             Quantity::Input(input) => Source::RowInput(input),
             Quantity::Output(output) => {
-                used_outputs |= 1 << output;
-                if reach.outputs[output] & lane_inputs == 0 {
-                    row_outputs |= 1 << output;
+                used_outputs.insert(output);
+                if !reach.outputs[output].meets(lane_inputs) {
+                    row_outputs.insert(output);
                     Source::RowOutput(output)
                 } else {
                     let position = lane_outputs.iter().position(|&it| it == output).unwrap_or_else(|| {
@@ -141,10 +141,10 @@ impl Plan {
         let matters = |number: &usize| {
             let condition = &model.conditions[*number];
             !condition.quiet
-                || condition.invalidates.iter().filter_map(|name| model.output(name)).any(|output| used_outputs >> output & 1 == 1)
+                || condition.invalidates.iter().filter_map(|name| model.output(name)).any(|output| used_outputs.contains(output))
         };
         let (row_conditions, lane_conditions) =
-            (0..model.conditions.len()).filter(matters).partition(|&number| reach.conditions[number] & lane_inputs == 0);
+            (0..model.conditions.len()).filter(matters).partition(|&number| !reach.conditions[number].meets(lane_inputs));
         Self {
             slow,
             fast,
@@ -172,9 +172,9 @@ impl Plan {
         self.tracked.iter().position(|(it, _)| *it == wanted).expect("the plan tracks what the report needs")
     }
 
-    /// Outputs that the study asks for, as a bit set.
-    pub fn used_outputs(&self) -> u64 {
-        self.lane_outputs.iter().fold(self.row_outputs, |set, output| set | 1 << output)
+    /// Outputs that the study asks for.
+    pub fn used_outputs(&self) -> Set {
+        self.row_outputs | Set::of(&self.lane_outputs)
     }
 
     /// Number of designs.
@@ -233,16 +233,14 @@ impl Plan {
         let study = &self.study;
         let asked = self.tracked.iter().map(|(it, _)| it.quantity);
         let asked = asked.chain(study.constraints.iter().map(|it| it.quantity)).chain(study.report.columns.iter().copied());
-        let quantities = asked.fold(0, |set, quantity| {
-            set | match quantity {
-                Quantity::Input(input) => 1 << input,
-                Quantity::Output(output) => self.reach.outputs[output],
-            }
+        let quantities = asked.map(|quantity| match quantity {
+            Quantity::Input(input) => Set::one(input),
+            Quantity::Output(output) => self.reach.outputs[output],
         });
-        let conditions = self.row_conditions.iter().chain(&self.lane_conditions);
-        let mattering = conditions.fold(quantities, |set, &condition| set | self.reach.conditions[condition]);
+        let conditions = self.row_conditions.iter().chain(&self.lane_conditions).map(|&condition| self.reach.conditions[condition]);
+        let mattering: Set = quantities.chain(conditions).collect();
         let shown = study.report.axes();
-        let inert = |axis: &usize| study.design[*axis].inputs().iter().all(|&input| mattering >> input & 1 == 0);
+        let inert = |axis: &usize| study.design[*axis].inputs().iter().all(|&input| !mattering.contains(input));
         (0..study.design.len()).filter(inert).filter(|axis| !shown.contains(axis)).collect()
     }
 }

@@ -6,6 +6,7 @@
 
 use crate::sample::Sampler;
 use crate::study::{Axis, Study};
+use crate::tape::Set;
 use std::sync::Arc;
 
 /// One independent direction of a space.
@@ -89,9 +90,9 @@ impl Product {
         Some(Self { places, count })
     }
 
-    /// Splits off the dimensions that set any of `inputs` (a bit set): (those, the others), each in unchanged order.
-    pub fn split(&self, inputs: u64) -> (Self, Self) {
-        let sets = |place: &Place| place.dimension.inputs().iter().any(|&input| inputs >> input & 1 == 1);
+    /// Splits off the dimensions that set any of `inputs`: (those, the others), each in unchanged order.
+    pub fn split(&self, inputs: Set) -> (Self, Self) {
+        let sets = |place: &Place| place.dimension.inputs().iter().any(|&input| inputs.contains(input));
         let (with, without): (Vec<_>, Vec<_>) = self.places.iter().cloned().partition(sets);
         (Self::of(with), Self::of(without))
     }
@@ -126,9 +127,9 @@ impl Product {
         self.count
     }
 
-    /// The inputs that it sets, as a bit set.
-    pub fn inputs(&self) -> u64 {
-        self.places.iter().flat_map(|place| place.dimension.inputs()).fold(0, |set, &input| set | 1 << input)
+    /// The inputs that it sets.
+    pub fn inputs(&self) -> Set {
+        self.places.iter().flat_map(|place| place.dimension.inputs()).collect()
     }
 
     /// At most `most` combinations on a coarser grid, in order: of every dimension so large a share of the levels, evenly spread with both ends

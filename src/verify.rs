@@ -5,7 +5,7 @@
 use crate::decision::Decision;
 use crate::error::{Error, Result};
 use crate::gpu::PointKernel;
-use crate::models::{CONDITION_PROMISE, Condition, INPUTS, Input, Model, OUTPUTS, evaluate, holds, judge, to_si};
+use crate::models::{CONDITION_PROMISE, Condition, Input, Model, Set, evaluate, holds, judge, to_si};
 use crate::plan::Plan;
 use crate::sample::mix;
 use crate::study::{Constraint, Quantity};
@@ -208,20 +208,19 @@ pub fn points_of_study(plan: &Plan, samples: usize, seed: u64) -> Points {
 /// # Errors
 /// [`Error::Gpu`].
 pub fn compare(kernel: &PointKernel, model: &Model, constraints: &[Constraint], points: &Points) -> Result<Report> {
-    let si: Vec<[f64; INPUTS]> = points.inputs.iter().map(|inputs| to_si(model, inputs)).collect();
+    let si: Vec<Vec<f64>> = points.inputs.iter().map(|inputs| to_si(model, inputs)).collect();
     let found = kernel.evaluate(&si)?;
     let mut outputs: Vec<Collector> = model.outputs.iter().map(|it| Collector::new(&it.name)).collect();
     let mut conditions: Vec<Collector> = model.conditions.iter().map(|it| Collector::new(&it.reason)).collect();
     let mut report = Report { points: points.len() as u64, ..Report::default() };
     for (((inputs, &on_boundary), si), (values, margins)) in points.inputs.iter().zip(&points.on_boundary).zip(&si).zip(&found) {
         let prepared = model.kernel.prepared(si);
-        let exact_margins = model.kernel.conditions(&prepared, si);
-        let mut exact = [0.0; OUTPUTS];
-        model.kernel.finish(&prepared, si, u64::MAX, &mut exact);
+        let exact_margins = model.kernel.margins(&prepared, si);
+        let exact = model.kernel.outputs(&prepared, si, Set::ALL);
         let (status, present) = judge(model, &exact_margins);
         let point = || describe(model, inputs);
         for (number, output) in model.outputs.iter().enumerate() {
-            if present >> number & 1 == 1 && exact[number].is_finite() {
+            if present.contains(number) && exact[number].is_finite() {
                 let bounded = RunningError { value: values[number].value, bound: values[number].bound * output.promise };
                 outputs[number].take(bounded, exact[number], on_boundary, |found| {
                     let in_unit = |value: f64| output.unit.from_si(value);
@@ -242,7 +241,7 @@ pub fn compare(kernel: &PointKernel, model: &Model, constraints: &[Constraint], 
         for constraint in constraints {
             let Quantity::Output(output) = constraint.quantity else { continue };
             let unit = model.outputs[output].unit;
-            ok &= present >> output & 1 == 1 && constraint.holds(unit.from_si(exact[output]));
+            ok &= present.contains(output) && constraint.holds(unit.from_si(exact[output]));
             let (value, bound) = (f64::from(values[output].value), values[output].bound * model.outputs[output].promise);
             let sides = [constraint.low.map(|low| (low, 1.0)), constraint.high.map(|high| (high, -1.0))];
             for ((limit, strict), side) in sides.into_iter().flatten() {

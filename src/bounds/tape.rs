@@ -1,7 +1,7 @@
 //! The formula of a study as a list of operations: cut down to what the study asks for, with what each of them depends on.
 
 use super::axes::Axes;
-use crate::models::{INPUTS, input_to_si};
+use crate::models::{Set, input_to_si};
 use crate::plan::Plan;
 use crate::study::{Goal, Quantity};
 use crate::tape::{Binary, Known, List, Node, Operation, Recording, Unary};
@@ -14,7 +14,7 @@ pub struct Tape {
     /// Of every operation: the axes that it depends on, as a bit set.
     pub axes: Vec<u64>,
     /// The axis that sets an input, and the input's column there.
-    pub input_axes: [Option<(u8, u8)>; INPUTS],
+    pub input_axes: Vec<Option<(u8, u8)>>,
     /// Node of every output that the study asks for.
     pub outputs: Vec<Option<Node>>,
     /// Node of every condition's margin that matters.
@@ -38,7 +38,7 @@ impl Tape {
         let model = &plan.study.model;
         let mut known: Vec<Known> =
             model.inputs.iter().zip(&plan.study.fixed).map(|(input, &value)| Known::Fixed(input_to_si(input, value))).collect();
-        let mut input_axes = [None; INPUTS];
+        let mut input_axes = vec![None; model.inputs.len()];
         for (number, axis) in axes.all.iter().enumerate() {
             for (column, &input) in axis.inputs.iter().enumerate() {
                 let values = &axis.si[column];
@@ -48,7 +48,7 @@ impl Tape {
             }
         }
         let wanted = plan.used_outputs();
-        let mattering = plan.row_conditions.iter().chain(&plan.lane_conditions).fold(0u64, |set, &number| set | 1 << number);
+        let mattering: Set = plan.row_conditions.iter().chain(&plan.lane_conditions).collect();
         let mut whole = model.kernel.formula()?.whole(&known, wanted, mattering);
         let merits: Vec<(Merit, Node)> = merits_of(plan)
             .into_iter()

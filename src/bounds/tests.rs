@@ -5,7 +5,7 @@ use super::bounder::Wanted;
 use super::columns::{CHUNK, NodeColumns};
 use super::open::over;
 use super::*;
-use crate::models::{OUTPUTS, find, to_si};
+use crate::models::{Set, find, to_si};
 use crate::sample::mix;
 use crate::study::study_of;
 
@@ -53,8 +53,7 @@ fn a_box(layout: &BoundedStudy, seed: u64) -> Spans {
 fn by_formula(plan: &Plan, design: u64, scenario: u64, output: usize) -> f64 {
     let model = &plan.study.model;
     let si = to_si(model, &plan.space.inputs(design, scenario));
-    let mut outputs = [0.0; OUTPUTS];
-    model.kernel.finish(&model.kernel.prepared(&si), &si, 1 << output, &mut outputs);
+    let outputs = model.kernel.outputs(&model.kernel.prepared(&si), &si, Set::one(output));
     model.outputs[output].unit.from_si(outputs[output])
 }
 
@@ -113,7 +112,7 @@ fn columns_have_the_bits_of_the_formula() {
             }
             let varying: Vec<usize> = (0..layout.axes.designs).filter(|&axis| !spans[axis].is_single()).collect();
             let size = layout.axes.count(&spans);
-            for output in (0..OUTPUTS).filter(|output| plan.used_outputs() >> output & 1 == 1) {
+            for output in plan.used_outputs().iter() {
                 let node = layout.tape.outputs[output].expect("the plan asks for it");
                 let needed = layout.tape.list.needed_by(&[node]);
                 columns.enter(&needed, &at, &varying);

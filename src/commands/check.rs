@@ -4,6 +4,7 @@ use super::{read_study, threads};
 use crate::terminal::{self, Grid, bold, grouped, scaled, span};
 use beltspace::error::Result;
 use beltspace::memory::{Needs, large_files};
+use beltspace::models::Set;
 use beltspace::plan::Plan;
 use beltspace::study::Axis;
 use beltspace::sweep::costs::{PATIENCE, Speed, why_every_design};
@@ -98,14 +99,14 @@ fn warnings(plan: &Plan, name: &impl Fn(&Axis) -> String) -> Vec<String> {
         ));
     }
     let roles = study.design.iter().chain(&study.operation).chain(&study.uncertainty);
-    let mut set = 0u64;
+    let mut set = Set::EMPTY;
     for axis in roles {
         for (column, &input) in axis.inputs().iter().enumerate() {
-            set |= 1 << input;
+            set.insert(input);
             unusual(plan, input, axis.ends(column), &mut warnings);
         }
     }
-    for (input, &value) in study.fixed.iter().enumerate().filter(|(input, _)| set >> input & 1 == 0) {
+    for (input, &value) in study.fixed.iter().enumerate().filter(|&(input, _)| !set.contains(input)) {
         unusual(plan, input, (value, value), &mut warnings);
     }
     if study.constraints.is_empty() {

@@ -87,7 +87,9 @@ mod unlike {
     /// Computed on the CPU only.
     pub fn cpu_only() -> Arc<Model> {
         let model = find("pulley-load").expect("it is a model");
-        Arc::new(Model { name: "cpu-only".into(), shader: None, ..Model::clone(&model) })
+        let mut other = Model::clone(&model);
+        (other.name, other.shader) = ("cpu-only".into(), None);
+        Arc::new(other)
     }
 
     /// With an input that takes words only, and one that is read for some of these words only.
@@ -98,6 +100,8 @@ mod unlike {
         let mass = mass.read_only_for(&["machined", "welded-discs"]);
         let inputs: Vec<Input> = model.inputs.iter().cloned().chain([section, mass]).collect();
         let presets = vec![Preset::new("welded", &[("section", 2.0)])];
-        Arc::new(Model { name: "sections".into(), inputs, presets, ..Model::clone(&model) })
+        let mut other = Model::clone(&model);
+        (other.name, other.inputs, other.presets) = ("sections".into(), inputs, presets);
+        Arc::new(other)
     }
 }

@@ -1,6 +1,6 @@
 //! The worst value over all scenarios at any point of the plane, in f64.
 
-use crate::models::{Latest, OUTPUTS, Worse, judge, shown, to_si};
+use crate::models::{Latest, Set, Worse, judge, shown, to_si};
 use crate::plan::Plan;
 use crate::study::Quantity;
 use std::sync::{Mutex, PoisonError};
@@ -24,10 +24,7 @@ impl<'p> Worst<'p> {
     pub fn at(&self, x: f64, y: f64, wanted: &[(Quantity, Worse)]) -> Vec<Option<f64>> {
         let plan = self.plan;
         let model = &plan.study.model;
-        let outputs_wanted = wanted.iter().fold(0, |set, (quantity, _)| match quantity {
-            Quantity::Output(output) => set | 1 << output,
-            Quantity::Input(_) => set,
-        });
+        let outputs_wanted: Set = wanted.iter().filter_map(|(quantity, _)| quantity.output()).collect();
         let mut inputs = self.inputs.clone();
         (inputs[self.axes[0]], inputs[self.axes[1]]) = (x, y);
         let mut worst: Vec<Option<f64>> = Vec::new();
@@ -43,9 +40,8 @@ impl<'p> Worst<'p> {
                 if fast == 0 {
                     latest.prepare(&si, outputs_wanted, &mut prepared);
                 }
-                let mut outputs = [0.0; OUTPUTS];
-                model.kernel.finish(&prepared, &si, outputs_wanted, &mut outputs);
-                let (_, present) = judge(model, &model.kernel.conditions(&prepared, &si));
+                let outputs = model.kernel.outputs(&prepared, &si, outputs_wanted);
+                let (_, present) = judge(model, &model.kernel.margins(&prepared, &si));
                 let value = |quantity| match quantity {
                     Quantity::Input(input) => Some(inputs[input]),
                     Quantity::Output(output) => shown(model, &outputs, present, output),

@@ -1,10 +1,10 @@
 //! A model evaluated point by point on a device: every output and condition margin with its bound.
 
 use super::constants::declare;
-use super::source::common;
+use super::source::{common, margins_len};
 use super::{Device, Program, WORKGROUP, model_prelude, model_source, tables};
 use crate::error::Result;
-use crate::models::{CONDITIONS, Fields, INPUTS, Model, OUTPUTS};
+use crate::models::{Fields, Model, Set};
 use crate::tape::{RunningError, nearest_f32};
 use std::fmt::Write;
 use std::sync::Arc;
@@ -29,8 +29,8 @@ pub struct PointKernel {
     program: Program,
 }
 
-/// What a device finds for one point, in SI units.
-pub type Found = ([RunningError; OUTPUTS], [RunningError; CONDITIONS]);
+/// What a device finds for one point, in SI units: outputs and margins.
+pub type Found = (Vec<RunningError>, Vec<RunningError>);
 
 impl PointKernel {
     /// The kernel's text. `perturb`: outputs that are to come out wrong by this fraction of their value, for testing.
@@ -41,7 +41,7 @@ impl PointKernel {
         let on_device = model.on_device()?;
         let fields = on_device.formula.fields();
         let all: Vec<usize> = (0..model.conditions.len()).collect();
-        let mut text = model_prelude(&fields, all.len(), u64::MAX, &all);
+        let mut text = model_prelude(&fields, all.len(), Set::ALL, &all);
         let places: Vec<usize> = fields.places().map(|(first, _)| first).collect();
         text.push_str(&tables(&fields, |field, place| Some(format!("scratch[{place} + {}u + at]", places[field] - fields.prepared.len()))));
         let (begin, hold) = if fields.tables.is_empty() { ("", "") } else { ("table_place = place;", "(*held).place = place;") };
@@ -89,7 +89,7 @@ impl PointKernel {
     ///
     /// # Errors
     /// [`Error::Gpu`](crate::error::Error::Gpu).
-    pub fn evaluate(&self, points: &[[f64; INPUTS]]) -> Result<Vec<Found>> {
+    pub fn evaluate(&self, points: &[Vec<f64>]) -> Result<Vec<Found>> {
         let mut found = Vec::with_capacity(points.len());
         // Tables of many points at once would fill a device.
         let batch = (BATCH_TABLES / self.table_numbers.max(1)).clamp(1, BATCH);
@@ -99,10 +99,10 @@ impl PointKernel {
         Ok(found)
     }
 
-    fn batch(&self, points: &[[f64; INPUTS]]) -> Result<Vec<Found>> {
-        let (inputs, outputs) = (self.model.inputs.len(), self.model.outputs.len());
-        let given: Vec<[f32; 2]> = points.iter().flat_map(|point| point[..inputs].iter().map(|&value| nearest_f32(value).into())).collect();
-        let width = outputs + CONDITIONS;
+    fn batch(&self, points: &[Vec<f64>]) -> Result<Vec<Found>> {
+        let (outputs, conditions) = (self.model.outputs.len(), self.model.conditions.len());
+        let given: Vec<[f32; 2]> = points.iter().flat_map(|point| point.iter().map(|&value| nearest_f32(value).into())).collect();
+        let width = outputs + margins_len(conditions);
         let device = &self.device;
         let results = device.buffer("found", (points.len() * width * 8) as u64, wgpu::BufferUsages::STORAGE);
         let given = device.storage("given", &given);
@@ -113,15 +113,7 @@ impl PointKernel {
         device.submit(|encoder| self.program.dispatch(encoder, "evaluate", &bound, [groups, 1]));
         let values: Vec<[f32; 2]> = device.fetch(&results, points.len() * width)?;
         let number = |[value, bound]: [f32; 2]| RunningError { value, bound: f64::from(bound) };
-        Ok(values
-            .chunks(width)
-            .map(|row| {
-                let none = RunningError { value: 0.0, bound: 0.0 };
-                let (mut out, mut margins) = ([none; OUTPUTS], [none; CONDITIONS]);
-                out.iter_mut().zip(&row[..outputs]).for_each(|(to, from)| *to = number(*from));
-                margins.iter_mut().zip(&row[outputs..]).for_each(|(to, from)| *to = number(*from));
-                (out, margins)
-            })
-            .collect())
+        let numbers = |row: &[[f32; 2]]| row.iter().copied().map(number).collect();
+        Ok(values.chunks(width).map(|row| (numbers(&row[..outputs]), numbers(&row[outputs..outputs + conditions]))).collect())
     }
 }

@@ -1,7 +1,7 @@
 //! The texts of the shaders, and the declarations that follow from a model's Rust records.
 
 use super::constants::common_constants;
-use crate::models::{CONDITIONS, Device, Fields, Model, Shader};
+use crate::models::{Device, Fields, Model, Set, Shader};
 use crate::tape::wgsl;
 use std::fmt::Write;
 
@@ -34,13 +34,18 @@ fn structure(text: &mut String, name: &str, fields: &[&str]) {
     write!(text, "struct {name} {{\n{members}}}\n\n").expect("a text takes everything");
 }
 
-/// The declarations that a model's text relies on: its records as the Rust code has them, and which of its outputs (a bit set) and
+/// How long the array of a model's margins is in a shader, where none may be empty.
+pub fn margins_len(conditions: usize) -> usize {
+    conditions.max(1)
+}
+
+/// The declarations that a model's text relies on: its records as the Rust code has them, and which of its outputs and
 /// its `count` conditions are asked for. What the first stage does with its tables, and how the second reads them, [`tables`] says.
-pub fn model_prelude(fields: &Fields, count: usize, wanted: u64, conditions: &[usize]) -> String {
+pub fn model_prelude(fields: &Fields, count: usize, wanted: Set, conditions: &[usize]) -> String {
     let Fields { inputs, prepared, tables, outputs, .. } = fields;
-    let mut text = format!("const CONDITIONS: u32 = {CONDITIONS}u;\n");
+    let mut text = format!("const CONDITIONS: u32 = {}u;\n", margins_len(count));
     for (number, field) in outputs.iter().enumerate() {
-        writeln!(text, "const WANTS_{field}: bool = {};", wanted >> number & 1 == 1).expect("a text takes everything");
+        writeln!(text, "const WANTS_{field}: bool = {};", wanted.contains(number)).expect("a text takes everything");
     }
     for number in 0..count {
         writeln!(text, "const ASKS_CONDITION_{number}: bool = {};", conditions.contains(&number)).expect("a text takes everything");

@@ -1,12 +1,6 @@
-//! What a model says of itself: the table behind `beltspace models`, the study file, the result columns and the docs.
+//! What a model's tables are made of: inputs, outputs, conditions, presets, profiles.
 
-use super::evaluation::Evaluation;
-use super::formula::Kernel;
-use super::pulley::Design;
-use crate::error::{Error, Result};
-use crate::tape::Recordable;
 use crate::units::Unit;
-use std::sync::Arc;
 
 /// Numbers that an input may take.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,6 +58,7 @@ impl Range {
 
 /// One input of a model. Its name carries the unit.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Input {
     /// Name in study files, on the command line and in results, such as `groove_angle_deg`.
     pub name: String,
@@ -94,7 +89,7 @@ pub struct Input {
 }
 
 impl Input {
-    /// An input that takes any number greater than zero; other ranges are set in place.
+    /// An input that takes any number greater than zero; another range is set by [`Input::valid`].
     pub fn new(
         name: impl Into<String>,
         symbol: impl Into<String>,
@@ -132,6 +127,18 @@ impl Input {
     ) -> Self {
         let input = Self::new(name, symbol, crate::units::NONE, default, (default, default), doc, source);
         Self { valid: Range::NONE, ..input }.with_words(words)
+    }
+
+    /// The same input, which takes the numbers of this range.
+    #[must_use]
+    pub fn valid(self, valid: Range) -> Self {
+        Self { valid, ..self }
+    }
+
+    /// The same input, which takes whole numbers only.
+    #[must_use]
+    pub fn whole(self) -> Self {
+        Self { integer: true, ..self }
     }
 
     /// The same input, which takes these words too, each for the number that encodes it.
@@ -210,6 +217,7 @@ pub enum Worse {
 
 /// One output of a model. Its name carries the unit.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Output {
     /// Name in study files and results.
     pub name: String,
@@ -274,6 +282,7 @@ pub const CONDITION_PROMISE: f64 = 4.5;
 
 /// A condition under which the formula, or a part of it, has a meaning: a signed margin that must not be negative.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Condition {
     /// The status of a design that fails it, such as `slip`.
     pub reason: String,
@@ -302,6 +311,7 @@ impl Condition {
 
 /// A named set of inputs that differ from the defaults.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Preset {
     /// Name on the command line and in study files.
     pub name: String,
@@ -356,167 +366,4 @@ pub struct Profile {
     pub columns: Vec<ProfileColumn>,
     /// One row per position, values in the columns' units.
     pub rows: Vec<Vec<f64>>,
-}
-
-/// Sentences on a study, from the values of the inputs that no axis sets.
-pub type Remarks = Arc<dyn Fn(&[Option<f64>]) -> Vec<String> + Send + Sync>;
-/// Sentences on one evaluation of the model, from its inputs in their units.
-pub type Notes = Arc<dyn Fn(&Model, &[f64], &Evaluation) -> Vec<String> + Send + Sync>;
-/// Values along the belt of the model, from inputs in their units.
-pub type AlongTheBelt = Arc<dyn Fn(&Model, &[f64]) -> Profile + Send + Sync>;
-/// The pulley behind inputs of the model in their units.
-pub type PulleyOf = Arc<dyn Fn(&Model, &[f64]) -> Design + Send + Sync>;
-
-/// Where a model's text in WGSL comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shader {
-    /// It is written from the recorded formula.
-    Recorded,
-    /// It was written by hand, for a formula whose recorded loops would be too long.
-    ByHand(&'static str),
-}
-
-/// A model's formula on a device.
-#[derive(Clone, Copy)]
-pub struct Device<'a> {
-    /// The formula.
-    pub formula: &'a dyn Recordable,
-    /// Where its text comes from.
-    pub shader: Shader,
-}
-
-/// A model: everything that the rest of the program knows about it.
-///
-/// It is plain data with a formula, so one may be made at run time as well as be one of [`all`](super::all). It is passed about as
-/// `Arc<Model>`; to change one, clone what it points to. Two are equal if their tables are and they share one formula.
-#[derive(Clone)]
-pub struct Model {
-    /// Name in study files and on the command line.
-    pub name: String,
-    /// What tells this model from an earlier one of its name; empty for those that come with the program. Where it is not empty it is
-    /// part of a study's hash, so that results of two versions are never put together.
-    pub version: String,
-    /// One line on what it computes.
-    pub summary: String,
-    /// Where the formula comes from.
-    pub source: String,
-    /// What the model does not cover, in plain sentences.
-    pub limits: String,
-    /// Its inputs; the position is the input's number.
-    pub inputs: Vec<Input>,
-    /// Its outputs; the position is the output's number.
-    pub outputs: Vec<Output>,
-    /// Its conditions, the first failing one being the status.
-    pub conditions: Vec<Condition>,
-    /// Named sets of inputs that differ from the defaults.
-    pub presets: Vec<Preset>,
-    /// A study to start from, in the study file's language.
-    pub starter: String,
-    /// The formula in f64.
-    pub kernel: Arc<dyn Kernel>,
-    /// How long it takes.
-    pub effort: Effort,
-    /// Most designs of which it is counted why they are not feasible: [`SAMPLE`], or fewer of a slow model. Part of every result.
-    pub sample: u64,
-    /// The formula on a device; `None`: it is computed in f64 on the processor only.
-    pub shader: Option<Shader>,
-    /// What a person should know of a whole study's answer, given the values of the inputs that no axis sets.
-    pub remarks: Option<Remarks>,
-    /// What a person should know of one evaluation besides its numbers.
-    pub notes: Option<Notes>,
-    /// Values along the belt, where the model has such.
-    pub profile: Option<AlongTheBelt>,
-    /// The pulley that its inputs describe, where designs are solved by finite elements: there are pictures of such.
-    pub pulley: Option<PulleyOf>,
-}
-
-impl Model {
-    /// Number of the input of that name.
-    pub fn input(&self, name: &str) -> Option<usize> {
-        self.inputs.iter().position(|input| input.name == name)
-    }
-
-    /// Number of the output of that name.
-    pub fn output(&self, name: &str) -> Option<usize> {
-        self.outputs.iter().position(|output| output.name == name)
-    }
-
-    /// Its formula on a device.
-    ///
-    /// # Errors
-    /// [`Error::CpuOnly`] if the model is computed on the processor only.
-    pub fn on_device(&self) -> Result<Device<'_>> {
-        let device = self.shader.and_then(|shader| Some(Device { formula: self.kernel.formula()?, shader }));
-        device.ok_or_else(|| Error::CpuOnly { model: self.name.clone(), remedy: None })
-    }
-
-    /// The defaults of all inputs, in their units.
-    pub fn defaults(&self) -> Vec<f64> {
-        self.inputs.iter().map(|input| input.default).collect()
-    }
-
-    /// The defaults with what a preset changes.
-    ///
-    /// # Errors
-    /// A sentence that lists the presets, if there is none of that name.
-    pub fn preset(&self, name: &str) -> std::result::Result<Vec<f64>, String> {
-        let Some(preset) = self.presets.iter().find(|it| it.name == name) else {
-            let names: Vec<_> = self.presets.iter().map(|it| it.name.as_str()).collect();
-            let known = if names.is_empty() { "it has none".to_owned() } else { format!("presets are: {}", names.join(", ")) };
-            return Err(format!("{} has no preset \"{name}\"; {known}", self.name));
-        };
-        let mut inputs = self.defaults();
-        for (input, value) in &preset.changes {
-            inputs[self.input(input).expect("a preset names inputs of its model")] = *value;
-        }
-        Ok(inputs)
-    }
-
-    /// What a person should know of one evaluation besides its numbers, for inputs in their units.
-    pub fn notes_on(&self, inputs: &[f64], evaluation: &Evaluation) -> Vec<String> {
-        self.notes.as_ref().map_or_else(Vec::new, |notes| notes(self, inputs, evaluation))
-    }
-
-    /// Values along the belt for inputs in their units, whose status must be ok; `None` if the model has no such values.
-    pub fn along_the_belt(&self, inputs: &[f64]) -> Option<Profile> {
-        self.profile.as_ref().map(|profile| profile(self, inputs))
-    }
-
-    /// Section, loads and strength behind inputs in their units; `None` if the model has no pulley that is solved by finite elements.
-    pub fn pulley_of(&self, inputs: &[f64]) -> Option<Design> {
-        self.pulley.as_ref().map(|pulley| pulley(self, inputs))
-    }
-
-    /// The first input whose every value is a word; [`Input::only_for`] names its words.
-    pub fn enumeration(&self) -> Option<usize> {
-        self.inputs.iter().position(Input::is_enumeration)
-    }
-
-    /// The same inputs with a value in place of every word that stands for another input's.
-    pub fn spelled_out(&self, inputs: &[f64]) -> Vec<f64> {
-        let value = |(input, &value): (&Input, &f64)| match input.follows.as_ref().filter(|_| input.word_for(value).is_some()) {
-            Some(other) => inputs[self.input(other).expect("an input follows one of its model")],
-            None => value,
-        };
-        self.inputs.iter().zip(inputs).map(value).collect()
-    }
-}
-
-impl std::fmt::Debug for Model {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_tuple("Model").field(&self.name).finish()
-    }
-}
-
-impl PartialEq for Model {
-    fn eq(&self, other: &Self) -> bool {
-        fn texts(model: &Model) -> [&String; 6] {
-            let Model { name, version, summary, source, limits, starter, .. } = model;
-            [name, version, summary, source, limits, starter]
-        }
-        Arc::ptr_eq(&self.kernel, &other.kernel)
-            && texts(self) == texts(other)
-            && (&self.inputs, &self.outputs, &self.conditions) == (&other.inputs, &other.outputs, &other.conditions)
-            && (&self.presets, self.effort, self.sample) == (&other.presets, other.effort, other.sample)
-    }
 }

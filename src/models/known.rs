@@ -1,8 +1,10 @@
 //! Which model a name means, and what a model must be so that everything else can rely on it.
 
-use super::description::{Input, Model};
-use super::formula::{CONDITIONS, INPUTS, OUTPUTS};
+use super::description::Input;
+use super::formula::Sizes;
+use super::model::Model;
 use crate::error::{Error, Result};
+use crate::tape::Set;
 use std::collections::HashSet;
 use std::sync::Arc;
 
@@ -63,13 +65,8 @@ impl Model {
         if self.name.is_empty() || !self.name.bytes().all(|it| it.is_ascii_alphanumeric() || it == b'-' || it == b'_') {
             return Some("its name has other characters than letters, digits, - and _".to_owned());
         }
-        let sizes = [
-            ("inputs", self.inputs.len(), INPUTS),
-            ("outputs", self.outputs.len(), OUTPUTS),
-            ("conditions", self.conditions.len(), CONDITIONS),
-        ];
-        if let Some((what, count, most)) = sizes.into_iter().find(|(_, count, most)| count > most) {
-            return Some(format!("it has {count} {what}, at most {most} are possible"));
+        if let Some(flaw) = self.flaw_of_sizes() {
+            return Some(flaw);
         }
         let mut seen = HashSet::new();
         let of_inputs = self.inputs.iter().map(|it| (&it.name, it.unit));
@@ -92,6 +89,27 @@ impl Model {
                 let (reason, name) = names.find(|(_, name)| self.output(name).is_none())?;
                 Some(format!("the condition \"{reason}\" takes away {name}, which is no output"))
             })
+    }
+
+    fn flaw_of_sizes(&self) -> Option<String> {
+        let Sizes { inputs, outputs, conditions, .. } = self.kernel.sizes();
+        let fields = self.kernel.formula().map_or(0, |formula| formula.fields().places().count());
+        let limited = [
+            ("inputs and outputs", self.inputs.len() + outputs.max(self.outputs.len())),
+            ("conditions", self.conditions.len()),
+            ("fields that its first stage passes on", fields),
+        ];
+        if let Some((what, count)) = limited.into_iter().find(|(_, count)| *count > Set::SIZE) {
+            return Some(format!("it has {count} {what}, at most {} are possible", Set::SIZE));
+        }
+        // Two models may share a formula that gives more than one of them lists.
+        let tables = [
+            ("inputs", self.inputs.len(), inputs..=inputs),
+            ("outputs", self.outputs.len(), 0..=outputs),
+            ("conditions", self.conditions.len(), 0..=conditions),
+        ];
+        let (what, listed, possible) = tables.into_iter().find(|(_, listed, possible)| !possible.contains(listed))?;
+        Some(format!("it lists {listed} {what}, and its formula has {}", possible.end()))
     }
 
     fn flaw_of_input(&self, input: &Input) -> Option<String> {
@@ -157,7 +175,7 @@ mod tests {
     fn tables_that_do_not_fit_each_other_are_refused_with_the_reason() {
         type Change = fn(&mut Model);
         let told = |change: Change| other(change).check().expect_err("it is wrong").to_string();
-        let cases: [(Change, &str); 9] = [
+        let cases: [(Change, &str); 12] = [
             (|it| it.inputs[0].name = "power".into(), "power is in kW, so its name must end in _kW"),
             (|it| it.inputs[1].name = it.inputs[0].name.clone(), "power_kW stands twice"),
             (|it| it.inputs[0].default = -1.0, "the default of power_kW must be at least 0"),
@@ -168,13 +186,19 @@ mod tests {
             ),
             (|it| it.presets = vec![Preset::new("all", &[("force_N", 1.0)])], "the preset \"all\" sets force_N, which is no input"),
             (
-                |it| it.conditions.push(Condition::new("odd", true, &["force_N"], "It is even.")),
+                |it| it.conditions[1] = Condition::new("odd", true, &["force_N"], "It is even."),
                 "the condition \"odd\" takes away force_N, which is no output",
             ),
             (
-                |it| it.outputs.extend((0..OUTPUTS).map(|n| Output::new(format!("f{n}_N"), "", NEWTON, Worse::Higher, "", ""))),
-                "it has 61 outputs, at most 48 are possible",
+                |it| it.outputs.extend((0..Set::SIZE).map(|n| Output::new(format!("f{n}_N"), "", NEWTON, Worse::Higher, "", ""))),
+                "it has 279 inputs and outputs, at most 256 are possible",
             ),
+            (
+                |it| it.outputs.push(Output::new("force_N", "", NEWTON, Worse::Higher, "", "")),
+                "it lists 14 outputs, and its formula has 13",
+            ),
+            (|it| it.conditions.extend(it.conditions.clone()), "it lists 4 conditions, and its formula has 2"),
+            (|it| drop(it.inputs.pop()), "it lists 9 inputs, and its formula has 10"),
             (|it| it.outputs[4].name = "a b".into(), "\"a b\" is no name: letters, digits and _ make one, a letter first"),
         ];
         for (change, problem) in cases {

@@ -1,24 +1,25 @@
 //! What a first stage passed on, kept for the next design: memory that whoever evaluates owns, so that a formula needs none.
 
-use super::description::Model;
 use super::evaluation::{Evaluation, evaluated, to_si};
-use super::formula::{INPUTS, Kernel};
+use super::formula::Kernel;
+use super::model::Model;
+use crate::tape::Set;
 use std::sync::Arc;
 
 /// What decides what a first stage passes on.
 #[derive(Clone, Debug)]
 struct Key {
-    /// Inputs that it reads: bit `i` for input number `i`.
-    reads: u64,
-    inputs: [f64; INPUTS],
-    wanted: u64,
+    /// Inputs that it reads.
+    reads: Set,
+    inputs: Vec<f64>,
+    wanted: Set,
 }
 
 impl Key {
     /// Is what this one gave also what these inputs give?
-    fn serves(&self, inputs: &[f64; INPUTS], wanted: u64) -> bool {
+    fn serves(&self, inputs: &[f64], wanted: Set) -> bool {
         let same = |input: usize| self.inputs[input].to_bits() == inputs[input].to_bits();
-        self.wanted == wanted && (0..INPUTS).all(|input| self.reads >> input & 1 == 0 || same(input))
+        self.wanted == wanted && (0..inputs.len()).all(|input| !self.reads.contains(input) || same(input))
     }
 }
 
@@ -39,17 +40,17 @@ impl Latest {
 
     /// As [`Kernel::prepare`], to the same bits: inputs in SI units, and room for [`Kernel::prepared_len`] numbers. Those beyond
     /// [`Kernel::prepared_used`] are left as they are where nothing had to be prepared.
-    pub fn prepare(&mut self, inputs: &[f64; INPUTS], wanted: u64, prepared: &mut [f64]) {
+    pub fn prepare(&mut self, inputs: &[f64], wanted: Set, prepared: &mut [f64]) {
         if self.key.as_ref().is_some_and(|key| key.serves(inputs, wanted)) {
             prepared[..self.prepared.len()].copy_from_slice(&self.prepared);
             return;
         }
         self.kernel.prepare(inputs, wanted, prepared);
         let reads = self.kernel.prepared_reads(inputs);
-        if reads != u64::MAX {
+        if reads != Set::ALL {
             self.prepared.clear();
             self.prepared.extend(&prepared[..self.kernel.prepared_used(prepared)]);
-            self.key = Some(Key { reads, inputs: *inputs, wanted });
+            self.key = Some(Key { reads, inputs: inputs.to_vec(), wanted });
         }
     }
 }
@@ -76,10 +77,10 @@ impl Evaluator {
     }
 
     /// Evaluates a design in f64: one value per input of the model, in its unit. An overflow of an output that is not among those
-    /// `asked` for (bit `i` for output number `i`) leaves the status as it is.
-    pub fn evaluate(&mut self, inputs: &[f64], asked: u64) -> Evaluation {
+    /// `asked` for leaves the status as it is.
+    pub fn evaluate(&mut self, inputs: &[f64], asked: Set) -> Evaluation {
         let si = to_si(&self.model, inputs);
-        self.latest.prepare(&si, u64::MAX, &mut self.prepared);
+        self.latest.prepare(&si, Set::ALL, &mut self.prepared);
         evaluated(&self.model, &si, &self.prepared, asked)
     }
 }
@@ -100,10 +101,10 @@ mod tests {
         let set = |inputs: &mut Vec<f64>, name: &str, value: f64| inputs[model.input(name).expect("it is an input")] = value;
         // A load, an input that the type does not read, one that it reads, and back.
         for (name, value) in [("power_kW", 2.0), ("weld_diameter_mm", 70.0), ("thickness_mm", 1.9), ("thickness_mm", 1.8)] {
-            let before = evaluator.latest.key.as_ref().map(|key| key.inputs);
+            let before = evaluator.latest.key.as_ref().map(|key| key.inputs.clone());
             set(&mut inputs, name, value);
-            assert_eq!(evaluator.evaluate(&inputs, u64::MAX), evaluate(&model, &inputs), "{name} = {value}");
-            let kept = evaluator.latest.key.as_ref().map(|key| key.inputs) == before;
+            assert_eq!(evaluator.evaluate(&inputs, Set::ALL), evaluate(&model, &inputs), "{name} = {value}");
+            let kept = evaluator.latest.key.as_ref().map(|key| key.inputs.clone()) == before;
             assert_eq!(kept, name == "weld_diameter_mm", "{name} = {value}");
         }
     }
@@ -113,7 +114,7 @@ mod tests {
         let (model, kernel) = watched(Duration::ZERO, 0);
         let mut evaluator = Evaluator::new(&model);
         for _ in 0..3 {
-            assert_eq!(evaluator.evaluate(&model.defaults(), u64::MAX), evaluate(&model, &model.defaults()));
+            assert_eq!(evaluator.evaluate(&model.defaults(), Set::ALL), evaluate(&model, &model.defaults()));
         }
         assert_eq!(kernel.prepared.load(Ordering::Relaxed), 6);
         assert!(evaluator.latest.prepared.is_empty());

@@ -1,15 +1,16 @@
 //! Metal push-belt variator. The formula is [`super::cvt`]'s, with two packs of n bands of width b and thickness h.
 
 use super::cvt::{Belt, Cvt, Drive, LIMIT, condition_table, groove_angle, output_table, ratio, torque, traction};
-use super::description::{Effort, Input, Model, SAMPLE, Shader};
-use super::formula::{INPUTS, record};
+use super::description::{Effort, Input, SAMPLE};
+use super::formula::record;
+use super::model::{Model, Shader};
 use crate::real::Real;
 use crate::units::{MEGAPASCAL, MILLIMETRE, NONE};
 use std::sync::Arc;
 
 record! {
     /// Inputs in the order of the table.
-    Inputs {
+    pub(super) Inputs {
         friction, groove_angle, ratio, belt_length, centre_distance, band_width, band_thickness, band_count, elastic_modulus,
         strength, traction, torque,
     }
@@ -74,7 +75,7 @@ impl Belt for MetalBelt {
     const INPUT_NAMES: &'static [&'static str] = Inputs::<usize>::NAMES;
 
     #[inline(always)]
-    fn drive<R: Real>(inputs: &[R; INPUTS]) -> Drive<R> {
+    fn drive<R: Real>(inputs: &[R]) -> Drive<R> {
         let i = Inputs::read(inputs);
         Drive {
             friction: i.friction,

@@ -14,24 +14,23 @@ mod known;
 mod latest;
 mod many;
 mod metal_cvt;
+mod model;
 mod pulley;
 mod pulley_load;
 mod rubber_cvt;
 mod timing_belt;
 
 pub(crate) use crate::real::LANES;
-pub use crate::tape::{Fields, Recordable};
+pub use crate::tape::{Fields, Recordable, Set};
 pub use cvt::{optimum_thickness, printed_torque_coefficient, torque_coefficient, traction_limit, wedge_factor};
-pub use description::{
-    AlongTheBelt, CONDITION_PROMISE, Condition, Device, Effort, Input, Model, Notes, Output, Preset, Profile, ProfileColumn, PulleyOf,
-    Range, Remarks, SAMPLE, Shader, Worse,
-};
+pub use description::{CONDITION_PROMISE, Condition, Effort, Input, Output, Preset, Profile, ProfileColumn, Range, SAMPLE, Worse};
 pub use evaluation::{Evaluation, OVERFLOW, Status, evaluate, evaluate_asked};
-pub(crate) use evaluation::{holds, input_to_si, judge, shown, to_si};
-pub use formula::{CONDITIONS, Columns, Footprint, Formula, INPUTS, Kernel, OUTPUTS, Reach, Reads, Scratch};
+pub(crate) use evaluation::{fill_si, holds, input_to_si, judge, shown, to_si};
+pub use formula::{Columns, Footprint, Formula, Kernel, Reach, Reads, Scratch, Sizes};
 pub use known::Models;
 pub use latest::{Evaluator, Latest};
 pub use many::{Evaluations, evaluate_many};
+pub use model::{AlongTheBelt, Device, Model, Notes, PulleyOf, Remarks, Shader};
 pub use pulley::{CHECK_POINT_STRESSES, Design};
 use std::sync::{Arc, LazyLock};
 

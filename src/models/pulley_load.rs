@@ -17,17 +17,18 @@
 //! - The second friction component acts along the flank, inwards and towards the groove's mid-plane: the loads balance
 //!   exactly only then (the paper's "radial" taken literally is 0.67 % off in its example).
 
-use super::description::{Condition, Effort, Input, Model, Output, Profile, ProfileColumn, Range, SAMPLE, Shader, Worse};
-use super::formula::{CONDITIONS, Formula, INPUTS, OUTPUTS, bits, record};
+use super::description::{Condition, Effort, Input, Output, Profile, ProfileColumn, Range, SAMPLE, Worse};
+use super::formula::{Formula, record};
+use super::model::{Model, Shader};
 use crate::real::Real;
-use crate::tape::Fields;
+use crate::tape::{Fields, Set};
 use crate::units::{
     self, DEGREE, KILOGRAM_PER_METRE, KILOWATT, METRE_PER_SECOND, MILLIMETRE, NEWTON, NEWTON_METRE, NEWTON_PER_MILLIMETRE, NONE,
 };
 
 record! {
     /// Inputs in the order of the table, in SI units.
-    Inputs {
+    pub(super) Inputs {
         power, speed, slack_tension, wrap_angle, mean_radius, groove_angle, groove_count, belt_mass, friction_limit,
         friction_direction,
     }
@@ -35,7 +36,7 @@ record! {
 
 record! {
     /// What needs transcendental functions; the last two are condition margins.
-    Prepared {
+    pub(super) Prepared {
         belt_speed, effective_tension, centrifugal_tension, effective_friction, friction_used, torque, resultant_force,
         slack_end_line_force, tight_end_line_force, flank_per_line, lift_margin, balance_margin,
     }
@@ -43,7 +44,7 @@ record! {
 
 record! {
     /// Outputs in the order of the table.
-    Result {
+    pub(super) Result {
         belt_speed, tight_tension, effective_tension, centrifugal_tension, effective_friction, friction_used, friction_margin,
         torque, resultant_force, slack_end_line_force, tight_end_line_force, slack_end_flank_force, tight_end_flank_force,
     }
@@ -233,15 +234,9 @@ pub fn model() -> Model {
 pub(super) struct PulleyLoad;
 
 impl Formula for PulleyLoad {
-    const FIELDS: Fields = Fields {
-        inputs: Inputs::<usize>::NAMES,
-        prepared: Prepared::<usize>::NAMES,
-        tables: &[],
-        iterations: 0,
-        outputs: Result::<usize>::NAMES,
-    };
+    const FIELDS: Fields = Fields::new(Inputs::<usize>::NAMES, Prepared::<usize>::NAMES, Result::<usize>::NAMES, 2);
 
-    fn prepare<R: Real>(inputs: &[R; INPUTS], _wanted: u64, prepared: &mut [R]) {
+    fn prepare<R: Real>(inputs: &[R], _wanted: Set, prepared: &mut [R]) {
         let [one, two] = [1.0, 2.0].map(R::constant);
         let i = Inputs::read(inputs);
         let belt_speed = i.mean_radius * i.speed;
@@ -279,24 +274,23 @@ impl Formula for PulleyLoad {
     }
 
     #[inline(always)]
-    fn conditions<R: Real>(prepared: &[R::Shared], _inputs: &[R; INPUTS], _wanted: u64) -> [R; CONDITIONS] {
+    fn conditions<R: Real>(prepared: &[R::Shared], _inputs: &[R], _wanted: Set, margins: &mut [R]) {
         let p = Prepared::<R>::shared(prepared);
-        let mut margins = [R::constant(1.0); CONDITIONS];
         margins[0] = p.lift_margin;
         margins[1] = p.balance_margin;
-        margins
     }
 
     #[inline(always)]
-    fn finish<R: Real>(prepared: &[R::Shared], inputs: &[R; INPUTS], wanted: u64, out: &mut [R; OUTPUTS]) {
+    fn finish<R: Real>(prepared: &[R::Shared], inputs: &[R], wanted: Set, out: &mut [R]) {
+        let out = &mut out[..Result::<usize>::NAMES.len()];
         let p = Prepared::<R>::shared(prepared);
         let i = Inputs::read(inputs);
-        const MARGIN: u64 = bits(&[OUT.friction_margin]);
-        const FLANK: u64 = bits(&[OUT.slack_end_flank_force, OUT.tight_end_flank_force]);
-        if wanted & MARGIN != 0 {
+        const MARGIN: Set = Set::of(&[OUT.friction_margin]);
+        const FLANK: Set = Set::of(&[OUT.slack_end_flank_force, OUT.tight_end_flank_force]);
+        if wanted.meets(MARGIN) {
             out[OUT.friction_margin] = R::constant(1.0) - p.friction_used / i.friction_limit;
         }
-        if wanted & FLANK != 0 {
+        if wanted.meets(FLANK) {
             let flank_per_line = p.flank_per_line / i.groove_count;
             out[OUT.slack_end_flank_force] = p.slack_end_line_force * flank_per_line;
             out[OUT.tight_end_flank_force] = p.tight_end_line_force * flank_per_line;
@@ -328,9 +322,9 @@ pub(super) struct WrapLoad<R> {
 }
 
 /// The belt's load, for inputs that begin with those of this model.
-pub(super) fn wrap_load<R: Real<Shared = R>>(si: &[R; INPUTS]) -> WrapLoad<R> {
+pub(super) fn wrap_load<R: Real<Shared = R>>(si: &[R]) -> WrapLoad<R> {
     let mut prepared = [R::constant(0.0); Prepared::<usize>::NAMES.len()];
-    PulleyLoad::prepare(si, u64::MAX, &mut prepared);
+    PulleyLoad::prepare(si, Set::ALL, &mut prepared);
     let p = Prepared::<R>::shared(&prepared);
     WrapLoad {
         margins: [p.lift_margin, p.balance_margin],
@@ -341,19 +335,16 @@ pub(super) fn wrap_load<R: Real<Shared = R>>(si: &[R; INPUTS]) -> WrapLoad<R> {
 }
 
 /// All outputs of this model, for inputs and outputs that begin with its own.
-pub(super) fn finish_all<R: Real<Shared = R>>(si: &[R; INPUTS], outputs: &mut [R; OUTPUTS]) {
+pub(super) fn finish_all<R: Real<Shared = R>>(si: &[R], outputs: &mut [R]) {
     let mut prepared = [R::constant(0.0); Prepared::<usize>::NAMES.len()];
-    PulleyLoad::prepare(si, u64::MAX, &mut prepared);
-    PulleyLoad::finish(&prepared, si, u64::MAX, outputs);
+    PulleyLoad::prepare(si, Set::ALL, &mut prepared);
+    PulleyLoad::finish(&prepared, si, Set::ALL, outputs);
 }
 
 /// Tension, line force and flank force over the wrap, (14), (9), (10): from the slack end (0) to the tight end, a row a degree
 /// or a little closer. `inputs` are in their units and must have status ok.
 fn profile(model: &Model, inputs: &[f64]) -> Profile {
-    let mut si = [0.0; INPUTS];
-    for ((si, &value), input) in si.iter_mut().zip(inputs).zip(&model.inputs) {
-        *si = input.unit.to_si(value);
-    }
+    let si: Vec<f64> = inputs.iter().zip(&model.inputs).map(|(&value, input)| input.unit.to_si(value)).collect();
     let i = Inputs::read(&si);
     let p = Prepared::<f64>::shared(&model.kernel.prepared(&si));
     let steps = inputs[Inputs::NUMBER.wrap_angle].ceil();

@@ -1,15 +1,16 @@
 //! Rubber V-belt variator. The formula is [`super::cvt`]'s, with one belt section of width b and thickness h.
 
 use super::cvt::{Belt, Cvt, Drive, condition_table, groove_angle, output_table, ratio, torque, traction};
-use super::description::{Condition, Effort, Input, Model, Output, SAMPLE, Shader};
-use super::formula::{INPUTS, record};
+use super::description::{Condition, Effort, Input, Output, SAMPLE};
+use super::formula::record;
+use super::model::{Model, Shader};
 use crate::real::Real;
 use crate::units::{MEGAPASCAL, MILLIMETRE, NONE};
 use std::sync::Arc;
 
 record! {
     /// Inputs in the order of the table.
-    Inputs {
+    pub(super) Inputs {
         friction, groove_angle, ratio, belt_length, centre_distance, belt_width, belt_thickness, elastic_modulus, strength,
         traction, torque,
     }
@@ -73,7 +74,7 @@ impl Belt for RubberBelt {
     const INPUT_NAMES: &'static [&'static str] = Inputs::<usize>::NAMES;
 
     #[inline(always)]
-    fn drive<R: Real>(inputs: &[R; INPUTS]) -> Drive<R> {
+    fn drive<R: Real>(inputs: &[R]) -> Drive<R> {
         let i = Inputs::read(inputs);
         Drive {
             friction: i.friction,

@@ -39,21 +39,22 @@ impl Watched {
 }
 
 impl Kernel for Watched {
-    fn prepared_len(&self) -> usize {
-        self.inner.prepared_len() + self.idle
+    fn sizes(&self) -> Sizes {
+        let sizes = self.inner.sizes();
+        Sizes { prepared: sizes.prepared + self.idle, ..sizes }
     }
 
-    fn prepare(&self, inputs: &[f64; INPUTS], wanted: u64, prepared: &mut [f64]) {
+    fn prepare(&self, inputs: &[f64], wanted: Set, prepared: &mut [f64]) {
         std::thread::sleep(self.pause);
         self.inner.prepare(inputs, wanted, prepared);
         self.count(&self.prepared);
     }
 
-    fn conditions(&self, prepared: &[f64], inputs: &[f64; INPUTS]) -> [f64; CONDITIONS] {
-        self.inner.conditions(prepared, inputs)
+    fn conditions(&self, prepared: &[f64], inputs: &[f64], margins: &mut [f64]) {
+        self.inner.conditions(prepared, inputs, margins);
     }
 
-    fn finish(&self, prepared: &[f64], inputs: &[f64; INPUTS], wanted: u64, outputs: &mut [f64; OUTPUTS]) {
+    fn finish(&self, prepared: &[f64], inputs: &[f64], wanted: Set, outputs: &mut [f64]) {
         self.inner.finish(prepared, inputs, wanted, outputs);
     }
 
@@ -61,7 +62,7 @@ impl Kernel for Watched {
         &self,
         model: &Model,
         prepared: &[f64],
-        inputs: &[f64; INPUTS],
+        inputs: &[f64],
         columns: &Columns<'_>,
         scratch: &mut Scratch,
         results: &mut [Vec<f64>],
@@ -156,7 +157,6 @@ fn names_are_unique_and_carry_their_unit() {
             let suffix = unit.suffix();
             assert!(suffix.is_empty() || name.ends_with(&format!("_{suffix}")), "{}: {name} in {suffix}", model.name);
         }
-        assert!(model.inputs.len() <= INPUTS && model.outputs.len() <= OUTPUTS && model.conditions.len() <= CONDITIONS);
     }
 }
 

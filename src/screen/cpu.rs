@@ -7,7 +7,7 @@ use super::Block;
 use super::columns::{self, any, keep_finite, keep_margin, keep_within, lower, raise};
 use super::tables::{BLOCK, FastBlock, Setting, Tables, setting};
 use crate::decision::Decision;
-use crate::models::{self, CONDITIONS, Columns, INPUTS, Latest, OUTPUTS, Scratch, Worse};
+use crate::models::{self, Columns, Latest, Scratch, Set, Sizes, Worse};
 use crate::plan::{Plan, Source};
 use crate::space::Product;
 use std::ops::Range;
@@ -22,7 +22,7 @@ pub struct CpuEngine<'p> {
     first: Vec<f64>,
     /// Inputs of the current row and scenario, in their units and in SI.
     pub(super) own: Vec<f64>,
-    si: [f64; INPUTS],
+    si: Vec<f64>,
     /// The current row, its prepared table and what is the same for all its designs.
     pub(super) row: Option<u64>,
     row_feasible: bool,
@@ -34,7 +34,7 @@ pub struct CpuEngine<'p> {
     kept: u64,
     width: usize,
     /// Outputs that the study asks for.
-    wanted: u64,
+    wanted: Set,
     /// Kernel results: lane outputs, then lane condition margins.
     pub(super) results: Vec<Vec<f64>>,
     /// The block being judged: which designs are still in, and the worst values so far.
@@ -42,6 +42,9 @@ pub struct CpuEngine<'p> {
     values: Vec<Vec<f64>>,
     row_index: u64,
     scratch: Scratch,
+    /// Condition margins and row outputs (SI) of the current row and scenario.
+    pub(super) row_margins: Vec<f64>,
+    pub(super) row_outputs: Vec<f64>,
     /// Rows and scenarios that differ in what the first stage does not read for them share what it passed on.
     latest: Latest,
     /// Set to end the work as soon as may be.
@@ -71,13 +74,13 @@ impl<'p> CpuEngine<'p> {
     fn with_room(plan: &'p Plan, tables: &'p Tables, room: u64) -> Self {
         let columns = plan.lane_outputs.len() + plan.lane_conditions.len();
         let first = plan.space.inputs(0, 0);
-        let width = plan.study.model.kernel.prepared_len();
+        let Sizes { prepared: width, outputs, conditions, .. } = plan.study.model.kernel.sizes();
         Self {
             plan,
             tables,
             own: first.clone(),
             first,
-            si: [0.0; INPUTS],
+            si: vec![0.0; plan.study.model.inputs.len()],
             row: None,
             row_feasible: false,
             row_worst: vec![0.0; plan.tracked.len()],
@@ -90,7 +93,9 @@ impl<'p> CpuEngine<'p> {
             alive: Vec::new(),
             values: vec![vec![0.0; BLOCK]; plan.tracked.len()],
             row_index: 0,
-            scratch: Scratch::default(),
+            scratch: Scratch::new(&plan.study.model),
+            row_margins: vec![0.0; conditions],
+            row_outputs: vec![0.0; outputs],
             latest: Latest::new(&plan.study.model),
             stop: None,
             chosen: Vec::new(),
@@ -243,11 +248,11 @@ impl<'p> CpuEngine<'p> {
         let before = self.own.clone();
         self.own.copy_from_slice(&self.first);
         self.plan.slow.set(row, &mut self.own);
-        self.si = crate::models::to_si(&self.plan.study.model, &self.own);
+        models::fill_si(&self.plan.study.model, &self.own, &mut self.si);
         self.row_index = self.plan.slow.source_index(row);
         // The outer of the axes that the first stage does not read is walked with the slow ones: rows along it share what is prepared.
         let read = self.plan.reach.prepared & self.plan.slow.inputs();
-        if (0..self.own.len()).any(|input| read >> input & 1 == 1 && self.own[input] != before[input]) {
+        if (0..self.own.len()).any(|input| read.contains(input) && self.own[input] != before[input]) {
             self.kept = 0;
         }
     }
@@ -255,11 +260,11 @@ impl<'p> CpuEngine<'p> {
     /// Conditions, constraints and worst values of a row in the current scenario; false if the whole row is out.
     fn judge_row_scenario(&mut self, prepared: Range<usize>) -> bool {
         let plan = self.plan;
-        let (margins, outputs) = self.row_values(prepared);
-        if !plan.row_conditions.iter().all(|&number| holds(plan, number, margins[number])) {
+        self.row_values(prepared);
+        if !plan.row_conditions.iter().all(|&number| holds(plan, number, self.row_margins[number])) {
             return false;
         }
-        let value = |source| row_value(plan, source, &self.own, &outputs);
+        let value = |source| row_value(plan, source, &self.own, &self.row_outputs);
         let constraints = plan.study.constraints.iter().zip(&plan.constraints);
         if !constraints.filter(|(_, source)| source.is_row()).all(|(constraint, &source)| {
             let value = value(source);
@@ -279,15 +284,14 @@ impl<'p> CpuEngine<'p> {
         true
     }
 
-    /// Condition margins and row outputs (SI) in the current scenario.
-    pub(super) fn row_values(&self, prepared: Range<usize>) -> ([f64; CONDITIONS], [f64; OUTPUTS]) {
+    /// Computes condition margins and row outputs in the current scenario.
+    pub(super) fn row_values(&mut self, prepared: Range<usize>) {
         let kernel = &self.plan.study.model.kernel;
         let prepared = &self.prepared[prepared];
-        let mut outputs = [0.0; OUTPUTS];
-        if self.plan.row_outputs != 0 {
-            kernel.finish(prepared, &self.si, self.plan.row_outputs, &mut outputs);
+        if !self.plan.row_outputs.is_empty() {
+            kernel.finish(prepared, &self.si, self.plan.row_outputs, &mut self.row_outputs);
         }
-        (kernel.conditions(prepared, &self.si), outputs)
+        kernel.conditions(prepared, &self.si, &mut self.row_margins);
     }
 
     /// Judges one block of the current row over all scenarios; false if it was stopped before it had.
@@ -427,7 +431,7 @@ pub(super) fn holds(plan: &Plan, condition: usize, margin: f64) -> bool {
 }
 
 /// A value that is the same for the whole row, in its unit.
-pub(super) fn row_value(plan: &Plan, source: Source, own: &[f64], outputs: &[f64; OUTPUTS]) -> f64 {
+pub(super) fn row_value(plan: &Plan, source: Source, own: &[f64], outputs: &[f64]) -> f64 {
     match source {
         Source::RowInput(input) => own[input],
         Source::RowOutput(output) => plan.study.model.outputs[output].unit.from_si(outputs[output]),

@@ -52,10 +52,10 @@ impl Tables {
     /// About how many bytes the tables of a plan take.
     pub fn bytes(plan: &Plan) -> u64 {
         let settings = |product: &Product| {
-            let one = size_of::<Setting>() + product.inputs().count_ones() as usize * size_of::<(usize, f64, f64)>();
+            let one = size_of::<Setting>() + product.inputs().len() * size_of::<(usize, f64, f64)>();
             if product.count() <= TABLE { product.count() * one as u64 } else { 0 }
         };
-        let numbers = 1 + 2 * u64::from(plan.fast.inputs().count_ones());
+        let numbers = 1 + 2 * plan.fast.inputs().len() as u64;
         let blocks = if plan.fast.count() <= FAST_DESIGNS { plan.fast.count() * 8 * numbers } else { 0 };
         settings(&plan.slow_scenarios) + settings(&plan.fast_scenarios) + blocks
     }
@@ -67,7 +67,7 @@ impl FastBlock {
         let model = &plan.study.model;
         let set = plan.fast.inputs();
         let mut columns: Inputs =
-            (0..model.inputs.len()).filter(|input| set >> input & 1 == 1).map(|input| (input, Vec::with_capacity(BLOCK))).collect();
+            (0..model.inputs.len()).filter(|&input| set.contains(input)).map(|input| (input, Vec::with_capacity(BLOCK))).collect();
         let mut inputs = vec![0.0; model.inputs.len()];
         let mut offsets = Vec::with_capacity(BLOCK);
         for design in designs {
@@ -122,6 +122,6 @@ pub(super) fn setting(plan: &Plan, product: &Product, index: u64) -> Setting {
     let mut inputs = plan.study.fixed.clone();
     product.set(index, &mut inputs);
     let set = product.inputs();
-    let each = (0..model.inputs.len()).filter(|input| set >> input & 1 == 1);
+    let each = (0..model.inputs.len()).filter(|&input| set.contains(input));
     each.map(|input| (input, inputs[input], models::input_to_si(&model.inputs[input], inputs[input]))).collect()
 }

@@ -8,7 +8,7 @@ use super::Control;
 use super::cpu::{CpuEngine, holds, row_value};
 use super::tables::{BLOCK, FastBlock, Tables};
 use crate::error::{Error, Result};
-use crate::models::{CONDITIONS, INPUTS, OUTPUTS};
+use crate::models::Set;
 use crate::parallel::on_threads;
 use crate::plan::{Plan, Source, Tracked, worst_end};
 use crate::sample::mix;
@@ -34,16 +34,20 @@ pub struct Tally {
     pub ranges: Vec<Option<(f64, f64)>>,
 }
 
-/// What a design fails at: a bit for each condition of the model, then one for each constraint, of which there is at most one for
-/// every input and output.
-type Failures = u128;
+/// What a design fails at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Failures {
+    /// Conditions of the model.
+    conditions: Set,
+    /// Constraints of the study: at most one for every input and output of the model, which all fit.
+    constraints: Set,
+    /// A value that the study asks for is beyond what f64 holds.
+    overflow: bool,
+}
 
-/// Bit of the first constraint.
-const FIRST_CONSTRAINT: usize = CONDITIONS;
-/// Bit of a value that the study asks for and that is beyond what f64 holds.
-const OVERFLOW: usize = Failures::BITS as usize - 1;
-
-const _: () = assert!(CONDITIONS + INPUTS + OUTPUTS <= OVERFLOW);
+impl Failures {
+    const NONE: Self = Self { conditions: Set::EMPTY, constraints: Set::EMPTY, overflow: false };
+}
 
 impl Tally {
     /// Counts the sample of a plan.
@@ -125,14 +129,14 @@ impl Tally {
 
     fn count_design(&mut self, failures: Failures) {
         self.sampled += 1;
-        self.feasible += u64::from(failures == 0);
-        self.overflow += u64::from(failures >> OVERFLOW & 1 == 1);
+        self.feasible += u64::from(failures == Failures::NONE);
+        self.overflow += u64::from(failures.overflow);
         for (number, count) in self.conditions.iter_mut().enumerate() {
-            *count += u64::from(failures >> number & 1 == 1);
+            *count += u64::from(failures.conditions.contains(number));
         }
         for (number, (count, only)) in self.constraints.iter_mut().zip(&mut self.only).enumerate() {
-            *count += u64::from(failures >> (FIRST_CONSTRAINT + number) & 1 == 1);
-            *only += u64::from(failures == 1 << (FIRST_CONSTRAINT + number));
+            *count += u64::from(failures.constraints.contains(number));
+            *only += u64::from(failures == Failures { constraints: Set::one(number), ..Failures::NONE });
         }
     }
 }
@@ -178,7 +182,7 @@ impl<'p> Counter<'p> {
     fn count_block(&mut self, row: u64, designs: &[u64]) -> bool {
         let plan = self.plan;
         let fast = FastBlock::new(plan, designs.iter().copied());
-        let mut failures: Vec<Failures> = vec![0; designs.len()];
+        let mut failures = vec![Failures::NONE; designs.len()];
         self.engine.set_row(row);
         for q in 0..plan.slow_scenarios.count() {
             let prepared = self.engine.prepare(q);
@@ -187,18 +191,17 @@ impl<'p> Counter<'p> {
                     return false;
                 }
                 self.engine.set_fast_scenario(t);
-                let (margins, outputs) = self.engine.row_values(prepared.clone());
-                let failed = plan.row_conditions.iter().filter(|&&number| !holds(plan, number, margins[number]));
-                let row_failures = failed.fold(0, |set: Failures, &number| set | 1 << number);
+                self.engine.row_values(prepared.clone());
+                let failed = plan.row_conditions.iter().filter(|&&number| !holds(plan, number, self.engine.row_margins[number]));
+                let of_row = failed.min();
                 self.engine.evaluate(prepared.clone(), &fast);
                 for (lane, failures) in failures.iter_mut().enumerate() {
                     let lane_margins = plan.lane_conditions.iter().zip(&self.engine.results[plan.lane_outputs.len()..]);
                     let failed = lane_margins.filter(|&(&number, margins)| !holds(plan, number, margins[lane]));
-                    let conditions = failed.fold(row_failures, |set, (&number, _)| set | 1 << number);
                     // The first condition that fails is the status; what comes after it may have lost its meaning.
-                    *failures |= conditions & conditions.wrapping_neg();
-                    if conditions == 0 {
-                        *failures |= self.violated(lane, &fast, &outputs);
+                    match failed.map(|(number, _)| number).chain(of_row).min() {
+                        Some(&first) => failures.conditions.insert(first),
+                        None => self.violated(lane, &fast, failures),
                     }
                 }
             }
@@ -206,26 +209,27 @@ impl<'p> Counter<'p> {
         for &failures in &failures {
             self.tally.count_design(failures);
         }
-        if failures.contains(&0) {
+        if failures.contains(&Failures::NONE) {
             return self.stretch_ranges(row, &fast, &failures);
         }
         true
     }
 
-    /// Constraints that a design violates in the current scenario, and whether a value is beyond what f64 holds.
-    fn violated(&self, lane: usize, fast: &FastBlock, outputs: &[f64; OUTPUTS]) -> Failures {
+    /// Adds the constraints that a design violates in the current scenario, and whether a value is beyond what f64 holds.
+    fn violated(&self, lane: usize, fast: &FastBlock, failures: &mut Failures) {
         let value = |source| match source {
             Source::LaneInput(input) => fast.own(input)[lane],
             Source::LaneOutput(position) => self.engine.results[position][lane],
-            Source::RowInput(_) | Source::RowOutput(_) => row_value(self.plan, source, &self.engine.own, outputs),
+            Source::RowInput(_) | Source::RowOutput(_) => row_value(self.plan, source, &self.engine.own, &self.engine.row_outputs),
         };
-        let constraints = self.plan.study.constraints.iter().zip(&self.plan.constraints).enumerate();
-        let violated = constraints.fold(0, |set, (number, (constraint, &source))| match value(source) {
-            value if !value.is_finite() => set | 1 << OVERFLOW,
-            value => set | Failures::from(!constraint.holds(value)) << (FIRST_CONSTRAINT + number),
-        });
-        let tracked = self.plan.tracked.iter().any(|&(_, source)| !value(source).is_finite());
-        violated | Failures::from(tracked) << OVERFLOW
+        for (number, (constraint, &source)) in self.plan.study.constraints.iter().zip(&self.plan.constraints).enumerate() {
+            match value(source) {
+                value if !value.is_finite() => failures.overflow = true,
+                value if !constraint.holds(value) => failures.constraints.insert(number),
+                _ => {}
+            }
+        }
+        failures.overflow |= self.plan.tracked.iter().any(|&(_, source)| !value(source).is_finite());
     }
 
     /// Takes the worst values of the block's feasible designs into account; false if it was stopped.
@@ -236,7 +240,7 @@ impl<'p> Counter<'p> {
         let entered = self.engine.enter_row(row);
         entered
             && self.engine.screen_block(fast, &mut |block| {
-                for lane in (0..block.count()).filter(|&lane| failures[lane] == 0) {
+                for lane in (0..block.count()).filter(|&lane| failures[lane] == Failures::NONE) {
                     for (range, values) in ranges.iter_mut().zip(block.values) {
                         let value = values[lane];
                         let (low, high) = range.unwrap_or((value, value));

@@ -1,8 +1,8 @@
 //! A study: one request, read from a file, checked as a whole and resolved to numbers.
 //!
-//! The result of [`Study::read`] can be swept: every name has become the number of an input or output, every value is in the unit of its
-//! name, every range has become a rule for its levels. A checkpoint keeps this resolved study, so that shards can be merged without the
-//! file they came from.
+//! What comes out of [`Study::read`] can be swept: every name is a number of an input or output, every value is in the unit of its
+//! name, every range is expanded to a rule for its levels. A result and a checkpoint keep its description ([`Study::describe`]), from
+//! which it is read back: shards are merged without the file that they came from.
 
 mod axis;
 mod check;

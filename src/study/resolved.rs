@@ -24,6 +24,11 @@ impl Quantity {
         }
     }
 
+    /// Its number, if it is an output.
+    pub fn output(self) -> Option<usize> {
+        if let Self::Output(output) = self { Some(output) } else { None }
+    }
+
     /// Which end is worse unless an objective or the report says otherwise. For an input it hardly matters; it is the larger one.
     pub fn worse(self, model: &Model) -> Worse {
         match self {

@@ -5,6 +5,7 @@ use super::{Control, Settings, SweepJob, SweepWork, Swept, head_start, look_arou
 use crate::checkpoint::{Checkpoint, Progress};
 use crate::error::{Error, Result};
 use crate::gpu::Device;
+use crate::models::Set;
 use crate::parallel::on_threads;
 use crate::plan::Plan;
 use crate::reduce::{Answers, MOST_OBJECTIVES, Points, Reducers, Reduction, State};
@@ -412,12 +413,12 @@ impl BestCells {
 /// The index that a design shares with those that agree with it on the axes of a map and on all that the shown value depends on.
 fn known_equal(plan: &Plan, spec: &MapSpec, tracked: usize, design: u64) -> u64 {
     let depends = match plan.tracked[tracked].0.quantity {
-        Quantity::Input(input) => 1 << input,
+        Quantity::Input(input) => Set::one(input),
         Quantity::Output(output) => plan.reach.outputs[output],
     };
     let dimensions = plan.space.designs.dimensions().enumerate();
     let matters =
-        |number: usize, inputs: &[usize]| number == spec.x || number == spec.y || inputs.iter().any(|&input| depends >> input & 1 == 1);
+        |number: usize, inputs: &[usize]| number == spec.x || number == spec.y || inputs.iter().any(|&input| depends.contains(input));
     let mattering = dimensions.filter(|(number, (dimension, _))| matters(*number, dimension.inputs()));
     mattering.map(|(number, (_, stride))| plan.space.designs.digit(number, design) * stride).sum()
 }

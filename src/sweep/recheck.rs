@@ -214,11 +214,10 @@ fn compare(
         let inputs = plan.space.inputs(design, scenario);
         let si = to_si(model, &inputs);
         let prepared = model.kernel.prepared(&si);
-        let (_, present) = judge(model, &model.kernel.conditions(&prepared, &si));
-        let mut outputs = [0.0; crate::models::OUTPUTS];
-        model.kernel.finish(&prepared, &si, used.iter().fold(0, |set, output| set | 1 << output), &mut outputs);
+        let (_, present) = judge(model, &model.kernel.margins(&prepared, &si));
+        let outputs = model.kernel.outputs(&prepared, &si, used.iter().collect());
         for (number, &output) in used.iter().enumerate() {
-            if checked.asked.is_empty() || present >> output & 1 == 0 || !outputs[output].is_finite() {
+            if checked.asked.is_empty() || !present.contains(output) || !outputs[output].is_finite() {
                 continue;
             }
             let slot = plan.tracked.len() + number;

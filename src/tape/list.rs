@@ -3,6 +3,7 @@
 use super::{Binary, ListLoop, Node, Operation, Recording, Rolled, Root, Table};
 use crate::real::Real;
 use std::cell::RefCell;
+use std::ops::BitOrAssign;
 
 /// What a number is called, and the equation that it comes from.
 pub type Name = (&'static str, &'static str);
@@ -120,10 +121,10 @@ impl List {
     }
 
     /// Of every operation: the union of the sets that the inputs which it depends on have. Who depends on nothing has the empty set.
-    pub fn dependencies(&self, of_input: impl Fn(u16) -> u64) -> Vec<u64> {
-        let mut sets: Vec<u64> = Vec::with_capacity(self.operations.len());
+    pub fn dependencies<S: Copy + Default + BitOrAssign>(&self, of_input: impl Fn(u16) -> S) -> Vec<S> {
+        let mut sets: Vec<S> = Vec::with_capacity(self.operations.len());
         for &operation in &self.operations {
-            let mut set = 0;
+            let mut set = S::default();
             match operation {
                 Operation::Input(input) => set = of_input(input),
                 Operation::Root(number) => self.roots[number as usize].root.reads(|node| set |= sets[node as usize]),

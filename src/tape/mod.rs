@@ -11,6 +11,7 @@ mod interval;
 mod list;
 mod record;
 mod rolled;
+mod set;
 mod stages;
 #[cfg(test)]
 mod tests;
@@ -22,6 +23,7 @@ pub use interval::{EVERYTHING, Interval};
 pub use list::{List, ListRoot};
 pub use record::{Known, Loops, Recording, Trace};
 pub use rolled::{ListLoop, Rolled, RolledLoop, Store, Table};
+pub use set::Set;
 pub use stages::{Fields, First, Recordable, Second, Whole};
 
 use crate::real::Real;

@@ -1,9 +1,10 @@
 //! A model's formula recorded: as a whole, and as the two stages that a sweep runs it in.
 
-use super::{Known, List, Node, Recording};
+use super::{Known, List, Node, Recording, Set};
 
 /// The names of a formula's values, in the order of its arrays.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Fields {
     /// Of the inputs.
     pub inputs: &'static [&'static str],
@@ -13,11 +14,23 @@ pub struct Fields {
     pub tables: &'static [(&'static str, usize)],
     /// Most loop iterations that the shader's second stage and conditions take together, for drivers that end long loops.
     pub iterations: u64,
+    /// How many conditions it has; there may be more than the model lists.
+    pub conditions: usize,
     /// Of the outputs; there may be more than the model lists.
     pub outputs: &'static [&'static str],
 }
 
 impl Fields {
+    /// Of a formula without tables.
+    pub const fn new(
+        inputs: &'static [&'static str],
+        prepared: &'static [&'static str],
+        outputs: &'static [&'static str],
+        conditions: usize,
+    ) -> Self {
+        Self { inputs, prepared, tables: &[], iterations: 0, conditions, outputs }
+    }
+
     /// How many numbers the first stage passes on.
     pub fn prepared_len(&self) -> usize {
         self.tables.iter().fold(self.prepared.len(), |sum, (_, length)| sum + length)
@@ -37,12 +50,12 @@ impl Fields {
 pub trait Recordable: Send + Sync {
     /// The names of the formula's values.
     fn fields(&self) -> Fields;
-    /// The whole formula, given what is known of its inputs, for the outputs and conditions of these bit sets.
-    fn whole(&self, known: &[Known], wanted: u64, conditions: u64) -> Whole;
+    /// The whole formula, given what is known of its inputs, for the outputs and conditions of these sets.
+    fn whole(&self, known: &[Known], wanted: Set, conditions: Set) -> Whole;
     /// Its second stage.
-    fn second(&self, known: &[Known], wanted: u64, conditions: u64) -> Second;
+    fn second(&self, known: &[Known], wanted: Set, conditions: Set) -> Second;
     /// Both stages as a device runs them: nothing known of the inputs, and loops recorded once.
-    fn stages(&self, wanted: u64, conditions: u64) -> (First, Second);
+    fn stages(&self, wanted: Set, conditions: Set) -> (First, Second);
 }
 
 /// A formula from its inputs to its results.
@@ -80,27 +93,27 @@ pub struct Second {
 }
 
 impl Whole {
-    /// Outputs, then conditions, as far as they are in these bit sets.
-    pub fn asked(&self, wanted: u64, conditions: u64) -> Vec<Option<Node>> {
+    /// Outputs, then conditions, as far as they are in these sets.
+    pub fn asked(&self, wanted: Set, conditions: Set) -> Vec<Option<Node>> {
         asked(&self.outputs, wanted, &self.conditions, conditions)
     }
 
     /// What these need.
-    pub fn list(&self, wanted: u64, conditions: u64) -> List {
+    pub fn list(&self, wanted: Set, conditions: Set) -> List {
         List::cut(&self.recording, &self.asked(wanted, conditions))
     }
 }
 
 impl Second {
-    /// Outputs, then conditions, as far as they are in these bit sets.
-    pub fn list(&self, wanted: u64, conditions: u64) -> List {
+    /// Outputs, then conditions, as far as they are in these sets.
+    pub fn list(&self, wanted: Set, conditions: Set) -> List {
         List::cut(&self.recording, &asked(&self.outputs, wanted, &self.conditions, conditions))
     }
 }
 
-fn asked(outputs: &[Node], wanted: u64, margins: &[Node], conditions: u64) -> Vec<Option<Node>> {
-    let of = |nodes: &[Node], set: u64| -> Vec<Option<Node>> {
-        nodes.iter().enumerate().map(|(number, &node)| (set >> number & 1 == 1).then_some(node)).collect()
+fn asked(outputs: &[Node], wanted: Set, margins: &[Node], conditions: Set) -> Vec<Option<Node>> {
+    let of = |nodes: &[Node], set: Set| -> Vec<Option<Node>> {
+        nodes.iter().enumerate().map(|(number, &node)| set.contains(number).then_some(node)).collect()
     };
     [of(outputs, wanted), of(margins, conditions)].concat()
 }

@@ -5,7 +5,7 @@
 //! comes from one evaluation of its function there.
 
 use super::{
-    Binary, Fields, First, List, ListLoop, ListRoot, Node, Operation, Recordable, Rolled, Root, Second, Table, Unary, nearest_f32,
+    Binary, Fields, First, List, ListLoop, ListRoot, Node, Operation, Recordable, Rolled, Root, Second, Set, Table, Unary, nearest_f32,
 };
 use crate::real::Place;
 
@@ -75,7 +75,7 @@ enum Kind {
 /// The text of a model's formula with so many conditions; `equations` has where each output comes from, as far as that is known.
 pub fn text(formula: &dyn Recordable, conditions: usize, equations: &[&str]) -> String {
     let fields = formula.fields();
-    let (first, second) = formula.stages(u64::MAX, u64::MAX);
+    let (first, second) = formula.stages(Set::ALL, Set::ALL);
     first_stage(&fields, &first) + &second_stage(&fields, &second, conditions, equations)
 }
 

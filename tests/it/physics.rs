@@ -2,8 +2,8 @@
 
 use crate::effort::is_slow;
 use crate::random::Random;
-use crate::second::{GOLDEN, Golden, Values, metal_cvt, pulley_load, rubber_cvt, timing_belt};
-use beltspace::models::{self, Evaluation, INPUTS, Input, Model, OUTPUTS, Status, evaluate, find};
+use crate::second::{GOLDEN, Golden, SECOND, Values, timing_belt};
+use beltspace::models::{self, Evaluation, Input, Model, Set, Status, evaluate, find};
 use beltspace::tape::Known;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -16,14 +16,19 @@ fn by_name(model: &Model, inputs: &[f64]) -> BTreeMap<String, f64> {
 }
 
 fn second(model: &Model, inputs: &[f64]) -> (&'static str, Values) {
-    let inputs = by_name(model, inputs);
-    match model.name.as_str() {
-        "rubber-cvt" => rubber_cvt(&inputs),
-        "metal-cvt" => metal_cvt(&inputs),
-        "pulley-load" => pulley_load(&inputs),
-        "timing-belt" => timing_belt::timing_belt(&inputs),
-        other => panic!("{other} has no second implementation"),
-    }
+    let (_, implementation) = SECOND.iter().find(|(name, _)| *name == model.name).expect("a formula has a second implementation");
+    implementation(&by_name(model, inputs))
+}
+
+/// Does the status change where one input does by so little?
+fn changes_nearby(model: &Model, inputs: &[f64], by: f64) -> bool {
+    let status = second(model, inputs).0;
+    let changes = |(input, factor): (usize, f64)| {
+        let mut other = inputs.to_vec();
+        other[input] *= factor;
+        second(model, &other).0 != status
+    };
+    (0..inputs.len()).flat_map(|input| [(input, 1.0 - by), (input, 1.0 + by)]).any(changes)
 }
 
 /// Smallest relative distance of these inputs to a point where the status changes.
@@ -39,6 +44,9 @@ fn distance_to_boundary(model: &Model, inputs: &[f64]) -> f64 {
         return of_teeth
             .chain([of_lift, relative(get("tight_tension_N") - get("slack_tension_N"), get("tight_tension_N"))])
             .fold(1.0, f64::min);
+    }
+    if model.name != "pulley-load" && model.input("ratio").is_none() {
+        return if changes_nearby(model, inputs, 1e-8) { 0.0 } else { 1.0 };
     }
     let half_groove = (get("groove_angle_deg") / 2.0).to_radians();
     let values = second(model, inputs).1;
@@ -129,7 +137,7 @@ pub fn draw(model: &Model, region: Region, random: &mut Random) -> Vec<f64> {
 }
 
 /// Inputs that what is prepared depends on, as far as the model can say without their values.
-pub fn slow_inputs(model: &Model) -> u64 {
+pub fn slow_inputs(model: &Model) -> Set {
     let least = |table: &Input| table.words.iter().fold(0.0, |least: f64, (_, word)| word.min(least));
     let inputs: Vec<Known> = model.inputs.iter().map(|table| Known::Within(least(table), 1e9)).collect();
     model.kernel.reach(&inputs).prepared
@@ -147,7 +155,7 @@ fn near_a_preset(model: &Model, region: Region, random: &mut Random) -> Vec<f64>
     let slow = slow_inputs(model);
     let part = if region == Region::Wide { 0.05 } else { 0.005 };
     for (number, (value, input)) in inputs.iter_mut().zip(&model.inputs).enumerate() {
-        let of_section = slow >> number & 1 == 1;
+        let of_section = slow.contains(number);
         if input.is_enumeration() || (of_section && input.integer) {
             continue;
         }
@@ -304,16 +312,14 @@ fn the_belt_loads_of_a_pulley_are_those_of_pulley_load() {
         let region = random.pick(&[Region::Usual, Region::Wide, Region::Edges]);
         let (own, other) = both(&draw(&load, region, random));
         // The loads alone ask for no elements; a few are evaluated in full.
-        let wanted = (1 << count) - 1;
+        let wanted: Set = (0..count).collect();
         let [expected, found] = [(&load, &own), (&pulley, &other)].map(|(model, inputs)| {
-            let (mut si, mut outputs) = ([0.0; INPUTS], [0.0; OUTPUTS]);
-            for ((si, input), &value) in si.iter_mut().zip(&model.inputs).zip(inputs) {
-                *si = if input.word_for(value).is_some() { value } else { input.unit.to_si(value) };
-            }
+            let si = |(input, &value): (&Input, &f64)| if input.word_for(value).is_some() { value } else { input.unit.to_si(value) };
+            let si: Vec<f64> = model.inputs.iter().zip(inputs).map(si).collect();
             let mut prepared = vec![0.0; model.kernel.prepared_len()];
             model.kernel.prepare(&si, wanted, &mut prepared);
-            model.kernel.finish(&prepared, &si, wanted, &mut outputs);
-            let margins = model.kernel.conditions(&prepared, &si);
+            let outputs = model.kernel.outputs(&prepared, &si, wanted);
+            let margins = model.kernel.margins(&prepared, &si);
             (outputs[..count].iter().map(|value| value.to_bits()).collect::<Vec<_>>(), [margins[0], margins[1]].map(f64::to_bits))
         });
         assert_eq!(expected, found, "{own:?}");

@@ -10,6 +10,13 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 pub type Values = BTreeMap<&'static str, f64>;
 
+/// A second implementation: from inputs in their units to the status and the outputs that have a meaning.
+pub type Second = fn(&BTreeMap<String, f64>) -> (&'static str, Values);
+
+/// The second implementation of every model that is a formula.
+pub const SECOND: &[(&str, Second)] =
+    &[("rubber-cvt", rubber_cvt), ("metal-cvt", metal_cvt), ("pulley-load", pulley_load), ("timing-belt", timing_belt::timing_belt)];
+
 /// A number printed in the papers or worked out by hand from them.
 pub struct Golden {
     pub what: &'static str,
@@ -86,13 +93,13 @@ pub const GOLDEN: &[(&str, Golden)] = &[
 ];
 
 /// V-belt CVT with a rubber belt. Absent `traction` means "limit".
-pub fn rubber_cvt(inputs: &BTreeMap<String, f64>) -> (&'static str, Values) {
+fn rubber_cvt(inputs: &BTreeMap<String, f64>) -> (&'static str, Values) {
     let belt = Belt { width: value(inputs, "belt_width_mm"), thickness: value(inputs, "belt_thickness_mm"), metal: false };
     cvt(inputs, &belt)
 }
 
 /// V-belt CVT with a metal push belt. Absent `traction` means "limit".
-pub fn metal_cvt(inputs: &BTreeMap<String, f64>) -> (&'static str, Values) {
+fn metal_cvt(inputs: &BTreeMap<String, f64>) -> (&'static str, Values) {
     let belt = Belt {
         // Two packs of n bands side by side: as wide as 2 n bands for stress purposes.
         width: 2.0 * value(inputs, "band_count") * value(inputs, "band_width_mm"),
@@ -329,7 +336,7 @@ fn cvt(inputs: &BTreeMap<String, f64>, belt: &Belt) -> (&'static str, Values) {
 }
 
 /// Loads of a V-belt on a pulley.
-pub fn pulley_load(inputs: &BTreeMap<String, f64>) -> (&'static str, Values) {
+fn pulley_load(inputs: &BTreeMap<String, f64>) -> (&'static str, Values) {
     let get = |name: &str| value(inputs, name);
     let radius = get("mean_radius_mm");
     let angular = get("speed_rpm") * 2.0 * PI / 60.0;

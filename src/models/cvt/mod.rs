@@ -29,9 +29,9 @@
 //! - The paper's "safety factor 2" is `sigma_y = 2 sigma_t`; with `sigma_b = sigma_t` at the optimum thickness the combined
 //!   stress is exactly `sigma_y`.
 
-use super::formula::{CONDITIONS, Formula, INPUTS, OUTPUTS, bits, record};
+use super::formula::{Formula, record};
 use crate::real::Real;
-use crate::tape::Fields;
+use crate::tape::{Fields, Set};
 use std::f64::consts::PI;
 
 mod table;
@@ -43,7 +43,7 @@ pub const LIMIT: f64 = -1.0;
 
 record! {
     /// Inputs of either belt, in SI units; `sections` counts the load-carrying sections: 1 rubber belt, or 2 packs of n bands.
-    Drive {
+    pub(super) Drive {
         friction, groove_angle, ratio, belt_length, centre_distance, width, thickness, sections, elastic_modulus, strength,
         traction, torque,
     }
@@ -51,7 +51,7 @@ record! {
 
 record! {
     /// What depends on friction, groove angle, ratio, belt length, centre distance and traction only.
-    Prepared {
+    pub(super) Prepared {
         driver_radius, driven_radius, driver_wrap, driven_wrap, effective_friction, traction_limit, driver_traction_limit,
         slip_margin, active_arc, driver_axial_coefficient, driven_axial_coefficient, traction, curvature, smaller_radius,
         free_ratio, printed_pull, entry_compression, length_margin, root_margin, overlap_margin, wedge_margin,
@@ -60,7 +60,7 @@ record! {
 
 record! {
     /// Outputs of either belt; the last two are the metal belt's.
-    Result {
+    pub(super) Result {
         driver_radius, driven_radius, driver_wrap, driven_wrap, effective_friction, traction_limit, driver_traction_limit,
         slip_margin, active_arc, driver_axial_coefficient, driven_axial_coefficient, belt_force, tight_force, slack_force,
         driver_axial_force, driven_axial_force, axial_force, tensile_stress, bending_stress, max_stress, stress_margin,
@@ -70,6 +70,9 @@ record! {
 }
 
 const OUT: Result<usize> = Result::NUMBER;
+
+/// How many conditions [`condition_table`] lists.
+const CONDITIONS: usize = 7;
 
 /// Axial force of one pulley per unit of belt force and wrap angle, (1) and (6): radial friction only, self-locked arc, each
 /// sheave pressed by half of the belt's radial load. `sine` and `cosine` are those of half the groove angle.
@@ -186,18 +189,16 @@ fn prepare<R: Real>(belt: &Drive<R>) -> Prepared<R> {
 
 /// Margins of [`condition_table`].
 #[inline(always)]
-fn conditions<R: Real>(prepared: &Prepared<R>, belt: &Drive<R>) -> [R; CONDITIONS] {
-    let one = R::constant(1.0);
-    let mut margins = [one; CONDITIONS];
+fn conditions<R: Real>(prepared: &Prepared<R>, belt: &Drive<R>, margins: &mut [R]) {
+    let margins = &mut margins[..CONDITIONS];
     margins[0] = prepared.length_margin;
     margins[1] = prepared.root_margin;
     margins[2] = prepared.overlap_margin;
     margins[3] = prepared.wedge_margin;
     margins[4] = R::select(belt.traction, prepared.traction_limit - prepared.traction, R::constant(0.0));
     // Without traction only a torque of zero can be carried.
-    margins[5] = R::select(-belt.torque, one, prepared.traction);
+    margins[5] = R::select(-belt.torque, R::constant(1.0), prepared.traction);
     margins[6] = prepared.traction;
-    margins
 }
 
 /// A belt: where its inputs stand in the common formula.
@@ -205,31 +206,30 @@ pub(super) trait Belt {
     /// Names of its inputs.
     const INPUT_NAMES: &'static [&'static str];
     /// The drive that these inputs describe.
-    fn drive<R: Real>(inputs: &[R; INPUTS]) -> Drive<R>;
+    fn drive<R: Real>(inputs: &[R]) -> Drive<R>;
 }
 
 /// The formula of a belt.
 pub(super) struct Cvt<B>(pub B);
 
 impl<B: Belt> Formula for Cvt<B> {
-    const FIELDS: Fields =
-        Fields { inputs: B::INPUT_NAMES, prepared: Prepared::<usize>::NAMES, tables: &[], iterations: 0, outputs: Result::<usize>::NAMES };
+    const FIELDS: Fields = Fields::new(B::INPUT_NAMES, Prepared::<usize>::NAMES, Result::<usize>::NAMES, CONDITIONS);
 
-    fn prepare<R: Real>(inputs: &[R; INPUTS], _wanted: u64, prepared: &mut [R]) {
+    fn prepare<R: Real>(inputs: &[R], _wanted: Set, prepared: &mut [R]) {
         prepare(&B::drive(inputs)).write(prepared);
     }
     #[inline(always)]
-    fn conditions<R: Real>(prepared: &[R::Shared], inputs: &[R; INPUTS], _wanted: u64) -> [R; CONDITIONS] {
-        conditions(&Prepared::shared(prepared), &B::drive(inputs))
+    fn conditions<R: Real>(prepared: &[R::Shared], inputs: &[R], _wanted: Set, margins: &mut [R]) {
+        conditions(&Prepared::shared(prepared), &B::drive(inputs), margins);
     }
     #[inline(always)]
-    fn finish<R: Real>(prepared: &[R::Shared], inputs: &[R; INPUTS], wanted: u64, outputs: &mut [R; OUTPUTS]) {
+    fn finish<R: Real>(prepared: &[R::Shared], inputs: &[R], wanted: Set, outputs: &mut [R]) {
         finish(&Prepared::shared(prepared), &B::drive(inputs), wanted, outputs);
     }
 }
 
 /// Outputs that are read straight from [`Prepared`].
-const FROM_PREPARED: u64 = bits(&[
+const FROM_PREPARED: Set = Set::of(&[
     OUT.driver_radius,
     OUT.driven_radius,
     OUT.driver_wrap,
@@ -243,7 +243,7 @@ const FROM_PREPARED: u64 = bits(&[
     OUT.driven_axial_coefficient,
     OUT.entry_compression,
 ]);
-const FROM_TORQUE: u64 = bits(&[
+const FROM_TORQUE: Set = Set::of(&[
     OUT.belt_force,
     OUT.tight_force,
     OUT.slack_force,
@@ -254,14 +254,15 @@ const FROM_TORQUE: u64 = bits(&[
     OUT.max_stress,
     OUT.stress_margin,
 ]);
-const CAPACITY: u64 = bits(&[OUT.torque_capacity, OUT.capacity_axial_force]);
-const AT_OPTIMUM: u64 = bits(&[OUT.optimum_thickness, OUT.torque_coefficient, OUT.printed_torque_coefficient]);
+const CAPACITY: Set = Set::of(&[OUT.torque_capacity, OUT.capacity_axial_force]);
+const AT_OPTIMUM: Set = Set::of(&[OUT.optimum_thickness, OUT.torque_coefficient, OUT.printed_torque_coefficient]);
 
 /// Second stage for either belt.
 #[inline(always)]
-fn finish<R: Real>(p: &Prepared<R>, belt: &Drive<R>, wanted: u64, out: &mut [R; OUTPUTS]) {
+fn finish<R: Real>(p: &Prepared<R>, belt: &Drive<R>, wanted: Set, out: &mut [R]) {
+    let out = &mut out[..Result::<usize>::NAMES.len()];
     let [one, two] = [1.0, 2.0].map(R::constant);
-    if wanted & FROM_PREPARED != 0 {
+    if wanted.meets(FROM_PREPARED) {
         out[OUT.driver_radius] = p.driver_radius;
         out[OUT.driven_radius] = p.driven_radius;
         out[OUT.driver_wrap] = p.driver_wrap;
@@ -279,7 +280,7 @@ fn finish<R: Real>(p: &Prepared<R>, belt: &Drive<R>, wanted: u64, out: &mut [R; 
     let area = (width * belt.thickness).named("area", "");
     let bending_stress = belt.elastic_modulus * belt.thickness / two * p.curvature; // (18)
     out[OUT.bending_stress] = bending_stress;
-    if wanted & FROM_TORQUE != 0 {
+    if wanted.meets(FROM_TORQUE) {
         let belt_force = belt.torque / p.driver_radius; // (3), (14)
         // F1 + F2 = P/lambda; with lambda = 0 it is 0 for P = 0 and has no meaning otherwise (condition "no traction").
         let force_sum = (belt_force / R::select(-p.traction, one, p.traction)).named("force_sum", "F1 + F2");
@@ -298,7 +299,7 @@ fn finish<R: Real>(p: &Prepared<R>, belt: &Drive<R>, wanted: u64, out: &mut [R; 
         out[OUT.max_stress] = max_stress;
         out[OUT.stress_margin] = one - max_stress / belt.strength;
     }
-    if wanted & CAPACITY != 0 {
+    if wanted.meets(CAPACITY) {
         // A belt that bending alone overstrains carries nothing: capacity 0, not an error.
         let tight_capacity = ((belt.strength - bending_stress).max(R::constant(0.0)) * area).named("tight_capacity", "");
         let per_tight = (two / (one + p.traction)).named("per_tight", "");
@@ -306,7 +307,7 @@ fn finish<R: Real>(p: &Prepared<R>, belt: &Drive<R>, wanted: u64, out: &mut [R; 
         out[OUT.torque_capacity] = tight_capacity * (per_tight * p.traction * p.driver_radius);
         out[OUT.capacity_axial_force] = tight_capacity * axial_per_tight;
     }
-    if wanted & AT_OPTIMUM != 0 {
+    if wanted.meets(AT_OPTIMUM) {
         let Drive { strength, elastic_modulus, .. } = *belt;
         out[OUT.optimum_thickness] = optimum_thickness(strength, elastic_modulus, p.smaller_radius, p.free_ratio);
         out[OUT.torque_coefficient] = torque_coefficient(p.traction, strength, elastic_modulus, p.free_ratio, width);

@@ -4,7 +4,6 @@
 //! computes the stresses of the [`Pressing`] besides. So what depends on what need not be listed: it is read off the groups.
 
 use super::table::{ANGLE_WORST, FINE, Inputs, POINT_NONE};
-use crate::models::formula::INPUTS;
 use crate::models::pulley_load;
 use crate::pulley::loads::clamp_pressure;
 use crate::pulley::section::{Dimensions, Fineness, Kind};
@@ -48,7 +47,7 @@ pub(super) struct Body<R> {
 
 impl<R: Real> Body<R> {
     /// Of inputs in SI units whose section is of this type.
-    pub fn new(si: &[R; INPUTS], kind: Kind) -> Self {
+    pub fn new(si: &[R], kind: Kind) -> Self {
         let i = Inputs::read(si);
         let dimensions = dimensions(si).of_kind(kind, R::constant(0.0));
         Self { section: i.section, accuracy: i.accuracy, dimensions, poisson: i.poisson_ratio }
@@ -126,7 +125,7 @@ pub(super) struct Loading<R> {
 
 impl<R: Real<Shared = R>> Loading<R> {
     /// Of inputs in SI units whose section is of this type.
-    pub fn new(si: &[R; INPUTS], kind: Kind) -> Self {
+    pub fn new(si: &[R], kind: Kind) -> Self {
         let (i, load, dimensions) = (Inputs::read(si), pulley_load::wrap_load(si), dimensions(si));
         let (sine, cosine) = (i.friction_direction.sin(), i.friction_direction.cos());
         let tensile = from_si(MEGAPASCAL, i.tensile_strength);
@@ -175,7 +174,7 @@ impl Loading<f64> {
 
 impl Design {
     /// Reads inputs in SI units.
-    pub(crate) fn new(si: &[f64; INPUTS]) -> Self {
+    pub(crate) fn new(si: &[f64]) -> Self {
         let kind = kind(si);
         let (body, loading) = (Body::new(si, kind), Loading::new(si, kind));
         Self {
@@ -210,12 +209,12 @@ pub(super) fn kind_of(section: f64) -> Kind {
 }
 
 /// Type of the section.
-pub(crate) fn kind(si: &[f64; INPUTS]) -> Kind {
+pub(crate) fn kind(si: &[f64]) -> Kind {
     kind_of(Inputs::read(si).section)
 }
 
 /// Dimensions in mm and rad.
-pub(crate) fn dimensions<R: Real>(si: &[R; INPUTS]) -> Dimensions<R> {
+pub(crate) fn dimensions<R: Real>(si: &[R]) -> Dimensions<R> {
     let i = Inputs::read(si);
     let mm = |value| from_si(MILLIMETRE, value);
     let radius = |diameter| R::constant(0.5) * mm(diameter);

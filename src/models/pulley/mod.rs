@@ -18,14 +18,14 @@ pub use design::Design;
 pub use profile::CHECK_POINT_STRESSES;
 pub use table::model;
 
-use super::description::Model;
-use super::formula::{CONDITIONS, Columns, Footprint, INPUTS, Kernel, OUTPUTS, Reach, Scratch};
+use super::formula::{Columns, Footprint, Kernel, Reach, Scratch, Sizes};
+use super::model::Model;
 use super::pulley_load;
 use crate::pulley::response::{self, CHECK_POINTS, LONGEST, View};
 use crate::pulley::section::{self, Flaw, Kind};
 use crate::pulley::turn::{Case, Peak, Summary, Turn};
 use crate::real::Real;
-use crate::tape::{Known, List, Recording, Trace};
+use crate::tape::{Known, List, Recording, Set, Trace};
 use crate::units::{CUBIC_MILLIMETRE, MEGAPASCAL, MILLIMETRE};
 use design::{Body, Loading};
 use table::{FINITE_ELEMENTS, Inputs, OUT, Result};
@@ -44,6 +44,7 @@ const SEAT: usize = 4;
 const BOTH_SIDES: usize = 5;
 const WITH_F: usize = 6;
 const OWN: [usize; 2] = [7, 8];
+const CONDITIONS: usize = 9;
 
 /// The condition that a flaw fails.
 fn condition_of(flaw: &Flaw) -> usize {
@@ -60,7 +61,7 @@ fn answers(prepared: &[f64]) -> Option<View<'_>> {
 }
 
 /// First stage, for all that it is told: what its answers depend on is what a [`Body`] has.
-fn solve(body: &Body<f64>, wanted: u64, prepared: &mut [f64]) {
+fn solve(body: &Body<f64>, wanted: Set, prepared: &mut [f64]) {
     let (kind, dimensions, fineness) = (body.kind(), &body.dimensions, body.fineness());
     prepared[..HEAD].fill(0.0);
     // Loads and flaws need no elements; volume and mass need no solution.
@@ -71,7 +72,7 @@ fn solve(body: &Body<f64>, wanted: u64, prepared: &mut [f64]) {
     if let Err(flaw) = section::checked_outline(kind, dimensions) {
         return refused(flaw, prepared);
     }
-    if wanted & (FINITE_ELEMENTS | 1 << OUT.volume | 1 << OUT.mass) == 0 {
+    if !wanted.meets(FINITE_ELEMENTS | Set::of(&[OUT.volume, OUT.mass])) {
         return;
     }
     match section::mesh(kind, dimensions, &fineness) {
@@ -79,7 +80,7 @@ fn solve(body: &Body<f64>, wanted: u64, prepared: &mut [f64]) {
         Ok(mesh) if response::folds_over(&mesh) => refused(Flaw::Mesh { reason: "its elements fold over" }, prepared),
         Ok(mesh) => {
             prepared[3] = response::volume(&mesh);
-            if wanted & FINITE_ELEMENTS != 0 {
+            if wanted.meets(FINITE_ELEMENTS) {
                 response::respond(&mesh, kind, dimensions, body.poisson, &fineness, &mut prepared[HEAD..]);
                 prepared[2] = 1.0;
             }
@@ -88,7 +89,7 @@ fn solve(body: &Body<f64>, wanted: u64, prepared: &mut [f64]) {
 }
 
 /// Margins of all conditions; `flaw` is that of a condition that a flaw of the section fails.
-fn margins<R: Real>(belt: [R; 2], inputs: &[R; INPUTS], flaw: impl Fn(usize) -> R) -> [R; CONDITIONS] {
+fn margins<R: Real>(belt: [R; 2], inputs: &[R], flaw: impl Fn(usize) -> R) -> [R; CONDITIONS] {
     let [yes, no] = [1.0, -1.0].map(R::constant);
     let i = Inputs::read(inputs);
     let mut margins = [yes; CONDITIONS];
@@ -107,11 +108,12 @@ fn margins<R: Real>(belt: [R; 2], inputs: &[R; INPUTS], flaw: impl Fn(usize) -> 
 }
 
 impl Kernel for Pulley {
-    fn prepared_len(&self) -> usize {
-        HEAD + LONGEST
+    fn sizes(&self) -> Sizes {
+        let [inputs, outputs] = [Inputs::<usize>::NAMES, Result::<usize>::NAMES].map(<[_]>::len);
+        Sizes { inputs, prepared: HEAD + LONGEST, outputs, conditions: CONDITIONS }
     }
 
-    fn prepare(&self, inputs: &[f64; INPUTS], wanted: u64, prepared: &mut [f64]) {
+    fn prepare(&self, inputs: &[f64], wanted: Set, prepared: &mut [f64]) {
         solve(&Body::new(inputs, design::kind(inputs)), wanted, prepared);
     }
 
@@ -119,11 +121,11 @@ impl Kernel for Pulley {
         HEAD + answers(prepared).map_or(0, |view| view.length())
     }
 
-    fn prepared_reads(&self, inputs: &[f64; INPUTS]) -> u64 {
+    fn prepared_reads(&self, inputs: &[f64]) -> Set {
         read_by(design::kind(inputs))
     }
 
-    fn footprint(&self, inputs: &[f64; INPUTS]) -> Footprint {
+    fn footprint(&self, inputs: &[f64]) -> Footprint {
         let body = Body::new(inputs, design::kind(inputs));
         let Ok(mesh) = section::mesh(body.kind(), &body.dimensions, &body.fineness()) else { return Footprint::default() };
         let (table, scratch) = response::bytes(&mesh, &body.dimensions, &body.fineness());
@@ -131,12 +133,12 @@ impl Kernel for Pulley {
         Footprint { prepared: 8 * HEAD as u64 + table, scratch: scratch + scratch / 10 + table }
     }
 
-    fn conditions(&self, prepared: &[f64], inputs: &[f64; INPUTS]) -> [f64; CONDITIONS] {
+    fn conditions(&self, prepared: &[f64], inputs: &[f64], room: &mut [f64]) {
         let flaw = |condition| if prepared[0] as usize == condition { prepared[1] } else { 1.0 };
-        margins(pulley_load::wrap_load(inputs).margins, inputs, flaw)
+        room.copy_from_slice(&margins(pulley_load::wrap_load(inputs).margins, inputs, flaw));
     }
 
-    fn finish(&self, prepared: &[f64], inputs: &[f64; INPUTS], wanted: u64, outputs: &mut [f64; OUTPUTS]) {
+    fn finish(&self, prepared: &[f64], inputs: &[f64], wanted: Set, outputs: &mut [f64]) {
         self.finish_after(prepared, inputs, wanted, outputs, &mut None);
     }
 
@@ -144,27 +146,27 @@ impl Kernel for Pulley {
         &self,
         model: &Model,
         prepared: &[f64],
-        inputs: &[f64; INPUTS],
+        inputs: &[f64],
         columns: &Columns<'_>,
         _scratch: &mut Scratch,
         results: &mut [Vec<f64>],
     ) {
-        let mut inputs = *inputs;
-        let mut outputs = [0.0; OUTPUTS];
+        let mut inputs = inputs.to_vec();
+        let mut outputs = [0.0; Result::<usize>::NAMES.len()];
         let mut last = None;
-        let wanted = columns.outputs.iter().fold(0, |set, output| set | 1 << output);
+        let wanted = Set::of(columns.outputs);
         for design in 0..columns.count {
             for (input, column) in columns.varying {
                 inputs[*input] = column[design];
             }
-            if wanted != 0 {
+            if !wanted.is_empty() {
                 self.finish_after(prepared, &inputs, wanted, &mut outputs, &mut last);
             }
             for (&output, result) in columns.outputs.iter().zip(&mut *results) {
                 result[design] = model.outputs[output].unit.from_si(outputs[output]);
             }
             if !columns.conditions.is_empty() {
-                let margins = self.conditions(prepared, &inputs);
+                let margins = self.margins(prepared, &inputs);
                 for (&condition, result) in columns.conditions.iter().zip(&mut results[columns.outputs.len()..]) {
                     result[design] = margins[condition];
                 }
@@ -173,7 +175,8 @@ impl Kernel for Pulley {
     }
 
     fn reach(&self, inputs: &[Known]) -> Reach {
-        let mut all = Reach { prepared: 0, outputs: [0; OUTPUTS], conditions: [0; CONDITIONS] };
+        let Sizes { outputs, conditions, .. } = self.sizes();
+        let mut all = Reach { prepared: Set::EMPTY, outputs: vec![Set::EMPTY; outputs], conditions: vec![Set::EMPTY; conditions] };
         let section = if let Known::Fixed(section) = inputs[Inputs::NUMBER.section] { Some(section) } else { None };
         for kind in Kind::ALL.into_iter().filter(|kind| section.is_none_or(|section| design::kind_of(section) == *kind)) {
             let of_kind = reach_of(inputs, kind);
@@ -187,35 +190,31 @@ impl Kernel for Pulley {
 
 /// What depends on what for a type of section: the very code of both stages, recorded with a number in place of what is solved.
 fn reach_of(inputs: &[Known], kind: Kind) -> Reach {
-    let mut numbers = 0;
     let (recording, nodes) = Recording::of(&[inputs, &[Known::ANY]].concat(), |named| {
-        let (unknown, mut inputs) = (named[inputs.len()], [Trace::constant(0.0); INPUTS]);
-        inputs[..named.len() - 1].copy_from_slice(&named[..named.len() - 1]);
-        let (body, loading) = (union(unknown, Body::new(&inputs, kind).numbers()), Loading::new(&inputs, kind));
-        let mut outputs = [Trace::constant(0.0); OUTPUTS];
-        pulley_load::finish_all(&inputs, &mut outputs);
+        let (inputs, unknown) = (&named[..inputs.len()], named[inputs.len()]);
+        let (body, loading) = (union(unknown, Body::new(inputs, kind).numbers()), Loading::new(inputs, kind));
+        let mut outputs = [Trace::constant(0.0); Result::<usize>::NAMES.len()];
+        pulley_load::finish_all(inputs, &mut outputs);
         let mut out = Result::read(&outputs);
         write(&mut out, &Answered::depending(unknown, body, &loading), &loading);
         out.write(&mut outputs);
-        let margins = margins(loading.margins, &inputs, |_| body);
-        numbers = margins.len();
+        let margins = margins(loading.margins, inputs, |_| body);
         [body].into_iter().chain(outputs).chain(margins).collect()
     });
     let list = List::cut(&recording, &nodes.into_iter().map(Some).collect::<Vec<_>>());
     // What is solved depends on nothing else.
-    let sets = list.dependencies(|input| if usize::from(input) < inputs.len() { 1 << input } else { 0 });
+    let sets = list.dependencies(|input| if usize::from(input) < inputs.len() { Set::one(input.into()) } else { Set::EMPTY });
     let mut of = list.results.iter().flatten().map(|&node| sets[node as usize]);
-    let mut next = || of.next().expect("there is a node for every result");
-    let mut reach = Reach { prepared: next(), outputs: [0; OUTPUTS], conditions: [0; CONDITIONS] };
-    reach.outputs.iter_mut().for_each(|set| *set = next());
-    reach.conditions.iter_mut().take(numbers).for_each(|set| *set = next());
+    let prepared = of.next().expect("there is a node for every result");
+    let outputs = of.by_ref().take(Result::<usize>::NAMES.len()).collect();
+    let mut reach = Reach { prepared, outputs, conditions: of.collect() };
     // A section that cannot be leaves all but the belt's outputs empty.
-    reach.outputs[OUT.max_stress..].iter_mut().for_each(|set| *set |= reach.prepared);
+    reach.outputs[OUT.max_stress..].iter_mut().for_each(|set| *set |= prepared);
     reach
 }
 
-/// Inputs that the first stage reads for a type of section: bit `i` for input number `i`.
-fn read_by(kind: Kind) -> u64 {
+/// Inputs that the first stage reads for a type of section.
+fn read_by(kind: Kind) -> Set {
     reach_of(&vec![Known::ANY; Inputs::<usize>::NAMES.len()], kind).prepared
 }
 
@@ -226,14 +225,7 @@ fn union(unknown: Trace, numbers: impl IntoIterator<Item = Trace>) -> Trace {
 
 impl Pulley {
     /// Second stage; `last` is the load case before and what came of it, which is used again if nothing of it has changed.
-    fn finish_after(
-        &self,
-        prepared: &[f64],
-        inputs: &[f64; INPUTS],
-        wanted: u64,
-        outputs: &mut [f64; OUTPUTS],
-        last: &mut Option<(Case, Asked, Summary)>,
-    ) {
+    fn finish_after(&self, prepared: &[f64], inputs: &[f64], wanted: Set, outputs: &mut [f64], last: &mut Option<(Case, Asked, Summary)>) {
         // What this design does not have must not be left from the one before.
         outputs.fill(0.0);
         pulley_load::finish_all(inputs, outputs);
@@ -242,10 +234,10 @@ impl Pulley {
             return;
         }
         let mut answered = Answered { volume: prepared[3], ..Answered::default() };
-        if wanted & FINITE_ELEMENTS != 0
+        if wanted.meets(FINITE_ELEMENTS)
             && let Some(view) = answers(prepared)
         {
-            let fatigue = wanted & (1 << OUT.fatigue_safety | 1 << OUT.fatigue_amplitude | 1 << OUT.fatigue_mean) != 0;
+            let fatigue = wanted.meets(Set::of(&[OUT.fatigue_safety, OUT.fatigue_amplitude, OUT.fatigue_mean]));
             let asked = Asked {
                 strength: fatigue.then_some(loading.strength()),
                 own: loading.own_points().map(|point| point.map(|point| nearest(&view, point))),

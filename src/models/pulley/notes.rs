@@ -1,7 +1,7 @@
 //! What a person should know of a pulley besides its numbers.
 
-use super::super::description::Model;
 use super::super::evaluation::{Evaluation, Status, to_si};
+use super::super::model::Model;
 use super::table::OUT;
 use super::{Design, design};
 use crate::pulley::section::{self, Dimensions, Kind};

@@ -1,7 +1,8 @@
 //! Stress of every check point around the circumference.
 
-use super::super::description::{Model, Profile, ProfileColumn};
+use super::super::description::{Profile, ProfileColumn};
 use super::super::evaluation::to_si;
+use super::super::model::Model;
 use super::{Design, answers};
 use crate::pulley::response::CHECK_POINTS;
 use crate::pulley::turn::Turn;

@@ -1,17 +1,19 @@
 //! What the pulley model says of itself.
 
-use super::super::description::{Condition, Effort, Input, Model, Output, Preset, Range, Worse};
+use super::super::description::{Condition, Effort, Input, Output, Preset, Range, Worse};
 use super::super::evaluation::to_si;
-use super::super::formula::{bits, record};
+use super::super::formula::record;
+use super::super::model::Model;
 use super::super::pulley_load;
 use super::{Design, Pulley, notes, profile, read_by};
 use crate::pulley::section::Kind;
+use crate::tape::Set;
 use crate::units::{CUBIC_MILLIMETRE, DEGREE, GRAM, KILOGRAM_PER_CUBIC_METRE, MEGAPASCAL, MILLIMETRE, NEWTON, NEWTON_METRE, NONE};
 use std::sync::Arc;
 
 record! {
     /// Inputs in the order of the table, in SI units.
-    Inputs {
+    pub(super) Inputs {
         power, speed, slack_tension, wrap_angle, mean_radius, groove_angle, groove_count, belt_mass, friction_limit,
         friction_direction,
         section, accuracy,
@@ -27,7 +29,7 @@ record! {
 
 record! {
     /// Outputs in the order of the table.
-    Result {
+    pub(super) Result {
         belt_speed, tight_tension, effective_tension, centrifugal_tension, effective_friction, friction_used, friction_margin,
         torque, resultant_force, slack_end_line_force, tight_end_line_force, slack_end_flank_force, tight_end_flank_force,
         max_stress, max_stress_r, max_stress_z, max_stress_theta,
@@ -39,15 +41,12 @@ record! {
 pub(super) const OUT: Result<usize> = Result::NUMBER;
 
 /// Outputs that the finite elements give.
-pub(super) const FINITE_ELEMENTS: u64 = {
-    let mut set = 0;
-    let mut output = OUT.max_stress;
-    while output <= OUT.rim_displacement {
-        set |= 1 << output;
-        output += 1;
-    }
-    set | bits(&[OUT.yield_safety, OUT.fatigue_safety, OUT.fatigue_amplitude, OUT.fatigue_mean])
-};
+pub(super) const FINITE_ELEMENTS: Set = Set::between(OUT.max_stress, OUT.rim_displacement).with(Set::of(&[
+    OUT.yield_safety,
+    OUT.fatigue_safety,
+    OUT.fatigue_amplitude,
+    OUT.fatigue_mean,
+]));
 
 /// The word "worst" of the angle of the first bolt.
 pub(super) const ANGLE_WORST: f64 = -1.0;
@@ -269,7 +268,7 @@ fn inputs(belt: Vec<Input>) -> Vec<Input> {
     ];
     let mut inputs = [belt, own].concat();
     for (number, input) in inputs.iter_mut().enumerate() {
-        let readers: Vec<_> = Kind::ALL.into_iter().filter(|&kind| read_by(kind) >> number & 1 == 1).map(Kind::name).collect();
+        let readers: Vec<_> = Kind::ALL.into_iter().filter(|&kind| read_by(kind).contains(number)).map(Kind::name).collect();
         if (1..Kind::ALL.len()).contains(&readers.len()) {
             *input = input.clone().read_only_for(&readers);
         }

@@ -61,12 +61,10 @@ fn impossible_sections_and_loads_have_a_status_and_never_a_number() {
 fn a_load_case_on_a_solved_section_is_the_same_as_one_of_its_own() {
     let si = |changes: &[(&str, f64)]| super::super::evaluation::to_si(&pulley(), &with(changes));
     let prepared = pulley().kernel.prepared(&si(&[]));
-    let mut shared = [0.0; OUTPUTS];
     let changes: &[(&str, f64)] =
         &[("power_kW", 2.0), ("wrap_angle_deg", 150.0), ("friction_direction_deg", 0.0), ("clamp_force_N", 5000.0)];
-    pulley().kernel.finish(&prepared, &si(changes), u64::MAX, &mut shared);
-    let mut own = [0.0; OUTPUTS];
-    pulley().kernel.finish(&pulley().kernel.prepared(&si(changes)), &si(changes), u64::MAX, &mut own);
+    let shared = pulley().kernel.outputs(&prepared, &si(changes), Set::ALL);
+    let own = pulley().kernel.outputs(&pulley().kernel.prepared(&si(changes)), &si(changes), Set::ALL);
     assert_eq!(shared, own);
 }
 

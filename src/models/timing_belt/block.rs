@@ -1,6 +1,6 @@
 //! Many speeds at one pair of tensions, where only the boundary tooth is asked for: the rows of a map.
 
-use super::super::formula::{Columns, INPUTS};
+use super::super::formula::Columns;
 use super::{Inputs, OUT, Prepared, TEETH, inward};
 use crate::real::{LANES, Lanes, Place, Real};
 
@@ -11,13 +11,13 @@ const EFFECTIVE: usize = 0;
 /// of the first ones: the boundary tooth counts how many of these least values a design's centrifugal force does not exceed. The same
 /// comparisons as in the walk over the teeth, a quarter of the work.
 #[inline(always)]
-pub fn teeth_at_one_load(prepared: &[f64], inputs: &[Lanes; INPUTS], columns: &Columns<'_>, results: &mut [Vec<f64>]) -> bool {
+pub fn teeth_at_one_load(prepared: &[f64], inputs: &[Lanes], columns: &Columns<'_>, results: &mut [Vec<f64>]) -> bool {
     let number = Inputs::NUMBER;
     let asks_teeth = columns.outputs.iter().all(|&output| output == OUT.boundary_tooth || output == OUT.incomplete_teeth);
     if !asks_teeth || columns.outputs.is_empty() || columns.conditions.iter().any(|&condition| condition != EFFECTIVE) {
         return false;
     }
-    let mut shared = inputs.map(|lanes| lanes.0[0]);
+    let mut shared: [f64; Inputs::<usize>::NAMES.len()] = std::array::from_fn(|input| inputs[input].0[0]);
     let padded = columns.count.next_multiple_of(LANES);
     let mut speeds = None;
     for (input, column) in columns.varying {

@@ -24,9 +24,9 @@
 //! - (20): specific weight is used as density; omega is printed in rpm; "f = 2.55 m/N" is micrometres per newton.
 //! - Step (4) calls j the boundary, Fig. 9 tooth 15 = j - 1.
 
-use super::formula::{CONDITIONS, Columns, Formula, INPUTS, OUTPUTS, bits, record};
+use super::formula::{Columns, Formula, record};
 use crate::real::{Lanes, Loop, Place, Real};
-use crate::tape::Fields;
+use crate::tape::{Fields, Set};
 
 mod block;
 mod mesh;
@@ -45,7 +45,7 @@ const SPACE: f64 = -1.0;
 
 record! {
     /// Inputs in the order of the table, in SI units.
-    Inputs {
+    pub(super) Inputs {
         pulley_speed, tight_tension, slack_tension, teeth_in_mesh, friction, tooth_compliance, cord_modulus, cord_area, tip_radius,
         land_half_angle, space_half_angle, tooth_length, pressure_angle, tight_span_angle, slack_span_angle, pitch_mass, lift_angle,
         pitch, centrifugal_land_friction,
@@ -54,12 +54,12 @@ record! {
 
 record! {
     /// What depends on the belt and its pulley alone, besides the tables below.
-    Prepared { teeth, mass_radius, peak_complete_tight, peak_complete_slack, lift_margin }
+    pub(super) Prepared { teeth, mass_radius, peak_complete_tight, peak_complete_slack, lift_margin }
 }
 
 record! {
     /// Outputs in the order of the table.
-    Result {
+    pub(super) Result {
         centrifugal_force, boundary_tooth, boundary_position, incomplete_teeth, lift_speed, boundary_tension, peak_tooth_load,
         peak_tooth_load_complete, least_tooth_load, effective_tension,
     }
@@ -95,9 +95,9 @@ const OWN: usize = 2;
 const BEFORE: usize = 3;
 const LAST: usize = 4;
 
-const TOOTH: u64 = bits(&[OUT.boundary_tooth, OUT.boundary_position, OUT.incomplete_teeth]);
-const LIFT: u64 = bits(&[OUT.lift_speed]);
-const INCOMPLETE: u64 = bits(&[OUT.boundary_tension, OUT.peak_tooth_load, OUT.least_tooth_load]);
+const TOOTH: Set = Set::of(&[OUT.boundary_tooth, OUT.boundary_position, OUT.incomplete_teeth]);
+const LIFT: Set = Set::of(&[OUT.lift_speed]);
+const INCOMPLETE: Set = Set::of(&[OUT.boundary_tension, OUT.peak_tooth_load, OUT.least_tooth_load]);
 /// Number of the condition that a tooth lifts.
 const LIFTS: usize = 2;
 
@@ -110,10 +110,11 @@ impl Formula for TimingBelt {
         tables: TABLES,
         // Conditions, lift speed and boundary each walk over the teeth.
         iterations: 3 * TEETH as u64,
+        conditions: LIFTS + 1,
         outputs: Result::<usize>::NAMES,
     };
 
-    fn prepare<R: Real>(inputs: &[R; INPUTS], wanted: u64, prepared: &mut [R]) {
+    fn prepare<R: Real>(inputs: &[R], wanted: Set, prepared: &mut [R]) {
         let i = Inputs::read(inputs);
         let rows = mesh::Rows::new(&i);
         let elimination = mesh::Elimination::new(&rows);
@@ -121,7 +122,7 @@ impl Formula for TimingBelt {
         let (inward, boundaries) = tables.split_at_mut(2 * TEETH);
         let mut found = mesh::Found {
             inward: in_two(inward),
-            boundaries: (wanted & INCOMPLETE != 0).then(|| {
+            boundaries: (wanted.meets(INCOMPLETE)).then(|| {
                 let mut parts = boundaries.chunks_mut(2 * BOUNDARIES);
                 std::array::from_fn(|_| in_two(parts.next().expect("there are as many tables")))
             }),
@@ -139,43 +140,42 @@ impl Formula for TimingBelt {
     }
 
     #[inline(always)]
-    fn conditions<R: Real>(prepared: &[R::Shared], inputs: &[R; INPUTS], wanted: u64) -> [R; CONDITIONS] {
+    fn conditions<R: Real>(prepared: &[R::Shared], inputs: &[R], wanted: Set, margins: &mut [R]) {
         let p = Prepared::<R>::shared(prepared);
         let i = Inputs::read(inputs);
-        let mut margins = [R::constant(1.0); CONDITIONS];
         margins[0] = i.tight_tension - i.slack_tension;
         margins[1] = p.lift_margin;
-        if wanted & bits(&[LIFTS]) != 0 {
+        if wanted.contains(LIFTS) {
             margins[LIFTS] = p.mass_radius * i.pulley_speed.squared() - least_inward(&p, &i, prepared);
         }
-        margins
     }
 
     #[inline(always)]
-    fn finish_block(prepared: &[f64], inputs: &[Lanes; INPUTS], columns: &Columns<'_>, results: &mut [Vec<f64>]) -> bool {
+    fn finish_block(prepared: &[f64], inputs: &[Lanes], columns: &Columns<'_>, results: &mut [Vec<f64>]) -> bool {
         block::teeth_at_one_load(prepared, inputs, columns, results)
     }
 
     #[inline(always)]
-    fn finish<R: Real>(prepared: &[R::Shared], inputs: &[R; INPUTS], wanted: u64, out: &mut [R; OUTPUTS]) {
+    fn finish<R: Real>(prepared: &[R::Shared], inputs: &[R], wanted: Set, out: &mut [R]) {
+        let out = &mut out[..Result::<usize>::NAMES.len()];
         let (zero, half, one) = (R::constant(0.0), R::constant(0.5), R::constant(1.0));
         let p = Prepared::<R>::shared(prepared);
         let i = Inputs::read(inputs);
         let force = p.mass_radius * i.pulley_speed.squared(); // m r omega^2
         out[OUT.centrifugal_force] = force;
         out[OUT.effective_tension] = i.tight_tension - i.slack_tension;
-        if wanted & bits(&[OUT.peak_tooth_load_complete]) != 0 {
+        if wanted.contains(OUT.peak_tooth_load_complete) {
             out[OUT.peak_tooth_load_complete] = i.tight_tension * p.peak_complete_tight + i.slack_tension * p.peak_complete_slack;
         }
-        if wanted & LIFT != 0 {
+        if wanted.meets(LIFT) {
             out[OUT.lift_speed] = (least_inward(&p, &i, prepared).max(zero) / p.mass_radius).sqrt();
         }
-        if wanted & (TOOTH | INCOMPLETE) == 0 {
+        if !wanted.meets(TOOTH | INCOMPLETE) {
             return;
         }
         let last = p.teeth.plus_whole(one);
         let boundary_tooth;
-        if wanted & bits(&[OUT.boundary_position]) == 0 {
+        if !wanted.contains(OUT.boundary_position) {
             boundary_tooth = walk(&p, &i, prepared, force);
         } else {
             // The same walk, with the margins of the tooth at which it ended and of the one before.
@@ -198,17 +198,17 @@ impl Formula for TimingBelt {
         }
         out[OUT.boundary_tooth] = boundary_tooth;
         out[OUT.incomplete_teeth] = last.plus_whole(-boundary_tooth);
-        if wanted & INCOMPLETE == 0 {
+        if !wanted.meets(INCOMPLETE) {
             return;
         }
         let at = boundary_tooth.plus_whole(-one).named("at_boundary", "");
-        if wanted & bits(&[OUT.boundary_tension]) != 0 {
+        if wanted.contains(OUT.boundary_tension) {
             out[OUT.boundary_tension] = load_at(&p, &i, prepared, STAR, at);
         }
-        if wanted & bits(&[OUT.peak_tooth_load]) != 0 {
+        if wanted.contains(OUT.peak_tooth_load) {
             out[OUT.peak_tooth_load] = load_at(&p, &i, prepared, FIRST, at).max(load_at(&p, &i, prepared, OWN, at));
         }
-        if wanted & bits(&[OUT.least_tooth_load]) != 0 {
+        if wanted.contains(OUT.least_tooth_load) {
             out[OUT.least_tooth_load] = load_at(&p, &i, prepared, BEFORE, at).min(load_at(&p, &i, prepared, LAST, at));
         }
         if !i.centrifugal_land_friction.is_zero() {
@@ -285,7 +285,7 @@ fn centrifugal_tension<R: Real>(i: &Inputs<R>) -> R {
 
 /// The incomplete mesh with the option, for which no table serves: every pair is solved for itself.
 #[inline(never)]
-fn with_land_friction<R: Real>(i: &Inputs<R>, boundary_tooth: R, out: &mut [R; OUTPUTS]) {
+fn with_land_friction<R: Real>(i: &Inputs<R>, boundary_tooth: R, out: &mut [R]) {
     let option = i.centrifugal_land_friction;
     let [star, peak, least] = R::left_to_f64(|| {
         let rows = mesh::Rows::new(i);

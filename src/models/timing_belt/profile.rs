@@ -1,18 +1,18 @@
 //! Tension, load and margin of every tooth: what a person looks at.
 
-use super::super::description::{Model, Profile, ProfileColumn};
-use super::super::formula::{Formula, INPUTS, OUTPUTS};
+use super::super::description::{Profile, ProfileColumn};
+use super::super::model::Model;
 use super::super::to_si;
-use super::{Inputs, OUT, TEETH, TimingBelt, centrifugal_tension, mesh};
+use super::{Inputs, OUT, TEETH, centrifugal_tension, mesh};
 use crate::real::Real;
+use crate::tape::Set;
 use crate::units::{NEWTON, NONE};
 
 /// A row per tooth, from the tight side. `inputs` are in their units and must have status ok.
 pub fn profile(model: &Model, inputs: &[f64]) -> Profile {
-    let si: [f64; INPUTS] = to_si(model, inputs);
+    let si = to_si(model, inputs);
     let i = Inputs::read(&si);
-    let mut outputs = [0.0; OUTPUTS];
-    TimingBelt::finish::<f64>(&model.kernel.prepared(&si), &si, u64::MAX, &mut outputs);
+    let outputs = model.kernel.outputs(&model.kernel.prepared(&si), &si, Set::ALL);
     let j = outputs[OUT.boundary_tooth];
     let rows = mesh::Rows::new(&i);
     let complete = mesh::complete(&rows, &mesh::Elimination::new(&rows));

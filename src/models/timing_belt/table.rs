@@ -1,8 +1,9 @@
 //! The tables of the timing belt: inputs, outputs, conditions, presets.
 
-use super::super::description::{Condition, Effort, Input, Model, Output, Preset, Range, SAMPLE, Shader, Worse};
+use super::super::description::{Condition, Effort, Input, Output, Preset, Range, SAMPLE, Worse};
 use super::super::evaluation::{Evaluation, Status};
-use super::{INPUTS, Inputs, OUT, SPACE, TimingBelt, profile};
+use super::super::model::{Model, Shader};
+use super::{Inputs, OUT, SPACE, TimingBelt, profile};
 use crate::units::{DEGREE, GIGAPASCAL, GRAM, MICROMETRE_PER_NEWTON, MILLIMETRE, NEWTON, NONE, RPM, SQUARE_MILLIMETRE, Unit};
 use Worse::{Higher, Lower};
 use std::sync::Arc;
@@ -243,7 +244,7 @@ fn notes(model: &Model, inputs: &[f64], evaluation: &Evaluation) -> Vec<String> 
             "a tooth load is negative ({least:.3} N): that tooth is held by its other flank, which the model does not cover"
         ));
     }
-    let si: [f64; INPUTS] = super::super::to_si(model, inputs);
+    let si = super::super::to_si(model, inputs);
     let i = Inputs::read(&si);
     let wrap = i.teeth_in_mesh * (2.0 * (i.land_half_angle + i.space_half_angle)).to_degrees();
     if wrap > 360.0 {

@@ -10,7 +10,7 @@ fn timing_belt() -> Arc<Model> {
 }
 
 /// Inputs in SI units: the default belt with these changes.
-fn belt(changes: &[(usize, f64)]) -> [f64; INPUTS] {
+fn belt(changes: &[(usize, f64)]) -> Vec<f64> {
     let mut inputs = timing_belt().defaults();
     changes.iter().for_each(|&(input, value)| inputs[input] = value);
     to_si(&timing_belt(), &inputs)
@@ -80,9 +80,7 @@ fn with_the_option_off_the_direct_solve_needs_no_second_round() {
     assert!(solve(1.0).star > solve(0.0).star + 1.0, "the option changes the tensions");
     let outputs = |on: f64| {
         let si = belt(&[(Inputs::NUMBER.centrifugal_land_friction, on)]);
-        let mut out = [0.0; OUTPUTS];
-        TimingBelt::finish::<f64>(&timing_belt().kernel.prepared(&si), &si, u64::MAX, &mut out);
-        out
+        timing_belt().kernel.outputs(&timing_belt().kernel.prepared(&si), &si, Set::ALL)
     };
     let (on, off) = (outputs(1.0), outputs(0.0));
     assert_eq!(on[OUT.boundary_tension].to_bits(), solve(1.0).star.to_bits());
@@ -93,10 +91,10 @@ fn with_the_option_off_the_direct_solve_needs_no_second_round() {
 fn a_block_at_one_pair_of_tensions_has_the_bits_of_its_designs() {
     let number = Inputs::NUMBER;
     let outputs = [OUT.incomplete_teeth, OUT.boundary_tooth];
-    let shorter = |varying: &[(usize, Vec<f64>)], count: usize, prepared: &[f64], si: &[f64; INPUTS]| {
+    let shorter = |varying: &[(usize, Vec<f64>)], count: usize, prepared: &[f64], si: &[f64]| {
         let columns = Columns { count, varying, outputs: &outputs, conditions: &[0] };
         let mut results = vec![vec![f64::NAN; count.next_multiple_of(8)]; 3];
-        let lanes = si.map(Lanes::splat);
+        let lanes: Vec<_> = si.iter().copied().map(Lanes::splat).collect();
         (block::teeth_at_one_load(prepared, &lanes, &columns, &mut results), results)
     };
     for (teeth, slack, count) in [(23.0, 0.0, 100), (60.0, 40.0, 33), (4.0, 100.0, 8)] {
@@ -109,11 +107,11 @@ fn a_block_at_one_pair_of_tensions_has_the_bits_of_its_designs() {
         assert!(taken);
         let mut seen = std::collections::BTreeSet::new();
         for lane in 0..count {
-            let mut design = si;
+            let mut design = si.clone();
             (design[number.pulley_speed], design[number.tight_tension]) = (speeds[lane], 250.0);
-            let mut out = [0.0; OUTPUTS];
-            TimingBelt::finish::<f64>(&prepared, &design, u64::MAX, &mut out);
-            let expected = [out[OUT.incomplete_teeth], out[OUT.boundary_tooth], TimingBelt::conditions::<f64>(&prepared, &design, 1)[0]];
+            let kernel = &timing_belt().kernel;
+            let out = kernel.outputs(&prepared, &design, Set::ALL);
+            let expected = [out[OUT.incomplete_teeth], out[OUT.boundary_tooth], kernel.margins(&prepared, &design)[0]];
             let found: Vec<_> = results.iter().map(|column| column[lane].to_bits()).collect();
             assert_eq!(found, expected.map(f64::to_bits), "{teeth} teeth, lane {lane}");
             seen.insert(expected[1].to_bits());
@@ -125,6 +123,7 @@ fn a_block_at_one_pair_of_tensions_has_the_bits_of_its_designs() {
         assert!(!shorter(&other, count, &prepared, &si).0);
         // So is anything else that is asked for.
         let columns = Columns { count, varying: &varying, outputs: &[OUT.boundary_position], conditions: &[] };
-        assert!(!block::teeth_at_one_load(&prepared, &si.map(Lanes::splat), &columns, &mut [vec![0.0; padded]]));
+        let lanes: Vec<_> = si.iter().copied().map(Lanes::splat).collect();
+        assert!(!block::teeth_at_one_load(&prepared, &lanes, &columns, &mut [vec![0.0; padded]]));
     }
 }

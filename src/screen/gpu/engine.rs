@@ -466,8 +466,7 @@ impl<'p> GpuEngine<'p> {
 
     /// The used outputs, in the order of [`Checked::asked`].
     pub fn used_outputs(&self) -> Vec<usize> {
-        let used = self.plan.used_outputs();
-        (0..self.plan.study.model.outputs.len()).filter(|output| used >> output & 1 == 1).collect()
+        self.plan.used_outputs().iter().collect()
     }
 
     /// The device.

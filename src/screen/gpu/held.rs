@@ -66,7 +66,7 @@ fn values(dimension: &Dimension, column: usize) -> Vec<f64> {
 fn fixed(plan: &Plan) -> Option<String> {
     let set = plan.space.designs.inputs() | plan.space.scenarios.inputs();
     let inputs = plan.study.model.inputs.iter().zip(&plan.study.fixed).enumerate();
-    let mut others = inputs.filter(|(input, _)| set >> input & 1 == 0);
+    let mut others = inputs.filter(|&(input, _)| !set.contains(input));
     others.find_map(|(_, (table, &value))| {
         let wrong = !holds(value) || !holds(input_to_si(table, value));
         wrong.then(|| told(&table.name, &format!("the value {value:e} {}", table.unit.symbol)))

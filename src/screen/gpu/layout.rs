@@ -4,7 +4,7 @@
 use super::constants::LANE_BITS;
 use super::held::beyond_f32;
 use crate::error::{Error, Result};
-use crate::models::{Fields, INPUTS, Reads, Worse, input_to_si};
+use crate::models::{Fields, Reads, Set, Worse, input_to_si};
 use crate::plan::{Plan, Source, knowns};
 use crate::space::{Dimension, Product};
 use crate::study::{Axis, Goal, Levels, Quantity};
@@ -119,10 +119,10 @@ pub struct Passed {
     pub length: usize,
 }
 
-/// The fields of a bit set, one after the other.
-fn passed(fields: &Fields, read: u64) -> Vec<Passed> {
+/// These fields, one after the other.
+fn passed(fields: &Fields, read: Set) -> Vec<Passed> {
     let mut next = 0;
-    let fields = fields.places().enumerate().filter(|(field, _)| read >> field & 1 == 1);
+    let fields = fields.places().enumerate().filter(|&(field, _)| read.contains(field));
     fields
         .map(|(field, (_, length))| {
             next += length;
@@ -160,9 +160,9 @@ pub struct KernelLayout {
     /// Can any design satisfy the constraints on inputs that are no design axes?
     pub possible: bool,
     /// Inputs whose values, rounded to f32, still differ wherever they differ in f64: as objectives they compare exactly.
-    pub exact: u64,
+    pub exact: Set,
     /// Inputs that f32 holds exactly.
-    pub represented: u64,
+    pub represented: Set,
     /// The cut.
     pub cut: Cut,
 }
@@ -188,7 +188,7 @@ impl KernelLayout {
             .inputs
             .iter()
             .enumerate()
-            .find(|(input, it)| it.processor_only && (set_by_axes >> input & 1 == 1 || plan.study.fixed[*input] != it.default));
+            .find(|(input, it)| it.processor_only && (set_by_axes.contains(*input) || plan.study.fixed[*input] != it.default));
         if let Some((_, input)) = processor_only {
             return Err(refuse(format!("the shader knows {} = {} only", input.name, input.default)));
         }
@@ -203,19 +203,21 @@ impl KernelLayout {
         }
         let used = plan.used_outputs();
         let reads = Reads::of(formula, &knowns(&plan.study, &plan.space), used);
-        let set = |inputs: u64, input: usize| inputs >> input & 1 == 1;
 
         let mut steady = Vec::new();
         let slow_scenarios = scenario_table(plan, &plan.slow_scenarios, &mut steady);
         let fast_scenarios = scenario_table(plan, &plan.fast_scenarios, &mut steady);
-        let mut exact = 0;
-        let mut represented = 0;
+        let (mut exact, mut represented) = (Set::EMPTY, Set::EMPTY);
         for product in [&plan.slow, &plan.fast] {
             for (dimension, _) in product.dimensions() {
                 for (column, &input) in dimension.inputs().iter().enumerate() {
                     let (holds, differs) = in_f32(dimension, column);
-                    represented |= u64::from(holds) << input;
-                    exact |= u64::from(differs) << input;
+                    if holds {
+                        represented.insert(input);
+                    }
+                    if differs {
+                        exact.insert(input);
+                    }
                 }
             }
         }
@@ -225,7 +227,7 @@ impl KernelLayout {
         for (dimension, stride) in plan.fast.dimensions() {
             lane_stride /= dimension.count();
             let inputs = dimension.inputs().to_vec();
-            let linear = (inputs.len() == 1 && !set(asked, inputs[0])).then(|| linear(plan, dimension, inputs[0])).flatten();
+            let linear = (inputs.len() == 1 && !asked.contains(inputs[0])).then(|| linear(plan, dimension, inputs[0])).flatten();
             let values = linear.unwrap_or_else(|| {
                 let offset = steady.len() as u32;
                 (0..dimension.count()).for_each(|level| push_level(plan, dimension, level, &mut steady));
@@ -258,7 +260,7 @@ impl KernelLayout {
         Ok(Self {
             fields,
             prepared: passed(&fields, reads.prepared),
-            row_inputs: (0..model.inputs.len()).filter(|&input| set(reads.inputs & slow_inputs, input)).collect(),
+            row_inputs: (reads.inputs & slow_inputs).iter().collect(),
             slow,
             fast,
             slow_scenarios,
@@ -345,13 +347,14 @@ pub fn row_dominators(plan: &Plan) -> bool {
     plan.fast.count() > 1 && sources.iter().any(|it| it.is_row()) && sources.iter().any(|it| !it.is_row())
 }
 
-/// Inputs that are tracked or constrained themselves, as a bit set.
-fn asked_inputs(plan: &Plan) -> u64 {
+/// Inputs that are tracked or constrained themselves.
+fn asked_inputs(plan: &Plan) -> Set {
     let asked = plan.tracked.iter().map(|(it, _)| it.quantity).chain(plan.study.constraints.iter().map(|it| it.quantity));
-    asked.fold(0, |set, quantity| match quantity {
-        Quantity::Input(input) => set | 1 << input,
-        Quantity::Output(_) => set,
-    })
+    let inputs = asked.filter_map(|quantity| match quantity {
+        Quantity::Input(input) => Some(input),
+        Quantity::Output(_) => None,
+    });
+    inputs.collect()
 }
 
 /// The entry of one input's value.
@@ -375,8 +378,7 @@ fn constraints_on(plan: &Plan, input: usize) -> impl Iterator<Item = &crate::stu
 
 fn scenario_table(plan: &Plan, product: &Product, steady: &mut Vec<Level>) -> ScenarioTable {
     let offset = steady.len() as u32;
-    let set = product.inputs();
-    let inputs: Vec<usize> = (0..INPUTS).filter(|input| set >> input & 1 == 1).collect();
+    let inputs: Vec<usize> = product.inputs().iter().collect();
     let mut values = plan.study.fixed.clone();
     for scenario in 0..product.count() {
         product.set(scenario, &mut values);
@@ -433,7 +435,7 @@ fn is_possible(plan: &Plan) -> bool {
     });
     let scenario_inputs = plan.space.scenarios.inputs();
     let fixed = (0..plan.study.model.inputs.len())
-        .filter(|input| (design | scenario_inputs) >> input & 1 == 0)
+        .filter(|&input| !(design | scenario_inputs).contains(input))
         .all(|input| holds(input, plan.study.fixed[input]));
     scenario && fixed
 }

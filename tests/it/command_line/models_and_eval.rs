@@ -1,12 +1,14 @@
 //! `models` and `eval`: the list of models, and single designs.
 
 use super::{Csv, SMALL, ask, ask_words, folder_with, json_of, read, write};
+use beltspace::models::{self, Input, Model};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 use tempfile::tempdir;
 
-/// Name, inputs with their defaults, outputs: a part of the public interface.
+/// Name, inputs with their defaults, outputs: what the interface promises of these models.
 const MODELS: [(&str, &str, &str); 5] = [
     (
         "rubber-cvt",
@@ -72,6 +74,27 @@ const METAL_OUTPUTS: &str = "driver_radius_mm driven_radius_mm driver_wrap_deg d
 /// Outputs that the defaults do not ask for.
 const NOT_ASKED: [&str; 2] = ["stress_P1_MPa", "stress_P2_MPa"];
 
+/// Name, inputs with their defaults, outputs of every model: what is promised, or else what the library says.
+fn all_models() -> Vec<(&'static str, Value, Vec<&'static str>)> {
+    let of = |model: &'static Arc<Model>| match MODELS.into_iter().find(|(name, ..)| *name == model.name) {
+        Some((name, inputs, outputs)) => {
+            (name, serde_json::from_str(inputs).expect("the table is JSON"), outputs.split_whitespace().collect())
+        }
+        None => {
+            let default = |it: &Input| it.word_for(it.default).map_or_else(|| shortest(it.default), |word| json!(word));
+            let inputs = model.inputs.iter().map(|it| (it.name.clone(), default(it))).collect::<serde_json::Map<_, _>>();
+            (model.name.as_str(), Value::Object(inputs), model.outputs.iter().map(|it| it.name.as_str()).collect())
+        }
+    };
+    assert!(MODELS.iter().all(|(name, ..)| models::find(name).is_some()), "a model is gone");
+    models::all().iter().map(of).collect()
+}
+
+/// A number as JSON has it: a whole one without a point.
+fn shortest(value: f64) -> Value {
+    serde_json::from_str(&value.to_string()).expect("it is a number")
+}
+
 fn here() -> &'static Path {
     Path::new(".")
 }
@@ -84,17 +107,17 @@ fn keys(object: &Value) -> Vec<&str> {
 fn models_are_listed_and_described_in_full() {
     let list = ask(here(), "models").text();
     let all = ask(here(), "models --json").json();
-    assert_eq!(all.as_array().map(Vec::len), Some(MODELS.len()));
-    for (at, (model, inputs, outputs)) in MODELS.into_iter().enumerate() {
+    assert_eq!(all.as_array().map(Vec::len), Some(models::all().len()));
+    for (at, (model, inputs, outputs)) in all_models().into_iter().enumerate() {
         assert!(list.contains(model), "{list}");
         let described = ask(here(), &format!("models {model} --json")).json();
         assert_eq!(described, all[at]);
         assert_eq!(described["name"], model);
-        let defaults: BTreeMap<String, Value> = serde_json::from_str(inputs).expect("the table is JSON");
+        let defaults: BTreeMap<String, Value> = serde_json::from_value(inputs).expect("it is an object");
         let of_input = |input: &Value| (input["name"].as_str().expect("a name").to_owned(), input["default"].clone());
         assert_eq!(described["inputs"].as_array().expect("inputs").iter().map(of_input).collect::<BTreeMap<_, _>>(), defaults);
         let names: Vec<_> = described["outputs"].as_array().expect("outputs").iter().map(|it| it["name"].as_str().expect("name")).collect();
-        assert_eq!(names, outputs.split_whitespace().collect::<Vec<_>>());
+        assert_eq!(names, outputs);
         let page = ask(here(), &format!("models {model}")).text();
         for name in defaults.keys().map(String::as_str).chain(names) {
             assert!(page.contains(name), "{name} is missing in\n{page}");
@@ -118,7 +141,7 @@ fn models_are_listed_and_described_in_full() {
 
 #[test]
 fn the_starter_study_of_every_model_passes_check() {
-    for (model, ..) in MODELS {
+    for model in models::all().iter().map(|model| model.name.as_str()) {
         let study = ask(here(), &format!("models {model} --study")).text();
         let folder = folder_with("my.toml", &study);
         let text = ask(folder.path(), "check my.toml").text();
@@ -129,13 +152,13 @@ fn the_starter_study_of_every_model_passes_check() {
 
 #[test]
 fn a_design_of_defaults_has_every_output() {
-    for (model, inputs, outputs) in MODELS {
+    for (model, inputs, outputs) in all_models() {
         let object = ask(here(), &format!("eval {model} --json")).json();
         assert_eq!(keys(&object), ["model", "inputs", "outputs", "status"]);
         assert_eq!((&object["model"], &object["status"]), (&json!(model), &json!("ok")));
-        assert_eq!(object["inputs"], serde_json::from_str::<Value>(inputs).expect("the table is JSON"));
+        assert_eq!(object["inputs"], inputs);
         let asked = |name: &&str| !NOT_ASKED.contains(name);
-        assert_eq!(keys(&object["outputs"]), outputs.split_whitespace().filter(asked).collect::<Vec<_>>());
+        assert_eq!(keys(&object["outputs"]), outputs.into_iter().filter(asked).collect::<Vec<_>>());
         assert!(object["outputs"].as_object().expect("an object").values().all(Value::is_number));
         let table = ask(here(), &format!("eval {model}")).text();
         assert!(keys(&object["outputs"]).into_iter().all(|name| table.contains(name)), "{table}");

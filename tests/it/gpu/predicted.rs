@@ -56,7 +56,8 @@ fn compared(model: &Arc<Model>, designs: &[Vec<f64>], divisor: f64) -> Compared 
                 all.take(&output.name, outputs[number].value, exact, listed[number].bound * output.promise / divisor, inputs);
             }
         }
-        let exact = model.kernel.conditions(&model.kernel.prepared(point), point);
+        let mut exact = vec![0.0; model.kernel.sizes().conditions];
+        model.kernel.conditions(&model.kernel.prepared(point), point, &mut exact);
         for (number, condition) in model.conditions.iter().enumerate().filter(|(number, _)| exact[*number].is_finite()) {
             let bound = listed_margins[number].bound * CONDITION_PROMISE / divisor;
             all.take(&condition.reason, margins[number].value, exact[number], bound, inputs);

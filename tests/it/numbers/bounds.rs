@@ -18,7 +18,7 @@ fn on_a_device() -> impl Iterator<Item = &'static Arc<Model>> {
 
 /// A design in f32 arithmetic: is its status ok, and each output with its error bound in SI units.
 fn decided(model: &Model, inputs: &[f64]) -> (Decision, Vec<RunningError>) {
-    let (outputs, margins) = run_over(model, &si(model, inputs).map(RunningError::input));
+    let (outputs, margins) = run_over(model, &si(model, inputs).into_iter().map(RunningError::input).collect::<Vec<_>>());
     let decision = |number: usize| {
         let RunningError { value, bound } = margins[number];
         let value = f64::from(value);

@@ -4,7 +4,7 @@ use super::bounds::onto_a_boundary;
 use super::si;
 use crate::physics::{Region, draw};
 use crate::random::Random;
-use beltspace::models::{self, CONDITIONS, INPUTS, Input, Model};
+use beltspace::models::{self, Input, Model, Set};
 use beltspace::real::Real;
 use beltspace::tape::Interval;
 use beltspace::tape::{Known, List};
@@ -28,7 +28,7 @@ fn list(model: &Model, iterations: Vec<usize>) -> &'static List {
         let formula = model.kernel.formula().expect("it is a formula");
         let known = |(input, &most): (&Input, &usize)| if input.integer { Known::Within(0.0, most as f64) } else { Known::ANY };
         let known: Vec<Known> = model.inputs.iter().zip(&iterations).map(known).collect();
-        Box::leak(Box::new(formula.whole(&known, u64::MAX, u64::MAX).list(u64::MAX, u64::MAX)))
+        Box::leak(Box::new(formula.whole(&known, Set::ALL, Set::ALL).list(Set::ALL, Set::ALL)))
     })
 }
 
@@ -36,7 +36,7 @@ fn list(model: &Model, iterations: Vec<usize>) -> &'static List {
 pub fn run_over<R: Real<Shared = R>>(model: &Model, inputs: &[R]) -> (Vec<R>, Vec<R>) {
     let iterations = model.inputs.iter().zip(inputs).map(|(input, value)| if input.integer { value.iterations(60) } else { 0 }).collect();
     let mut outputs = list(model, iterations).run(inputs);
-    let conditions = outputs.split_off(outputs.len() - CONDITIONS);
+    let conditions = outputs.split_off(outputs.len() - model.kernel.sizes().conditions);
     (outputs, conditions)
 }
 
@@ -93,10 +93,10 @@ pub fn on_a_boundary(model: &Model, width: f64, random: &mut Random) -> Sides {
 }
 
 /// The box in SI units.
-pub fn over(model: &Model, sides: &Sides) -> [Interval; INPUTS] {
+pub fn over(model: &Model, sides: &Sides) -> Vec<Interval> {
     let ends = |end: fn(&(f64, f64)) -> f64| si(model, &sides.iter().map(end).collect::<Vec<_>>());
     let (low, high) = (ends(|side| side.0), ends(|side| side.1));
-    std::array::from_fn(|input| Interval::new(low[input], high[input]))
+    low.into_iter().zip(high).map(|(low, high)| Interval::new(low, high)).collect()
 }
 
 /// A design of the box: on one of its corners, inside, or on a face.

@@ -4,13 +4,13 @@ use super::si;
 use crate::effort::evaluations;
 use crate::physics::{Region, draw, slow_inputs};
 use crate::random::Random;
-use beltspace::models::{self, Columns, Model, OUTPUTS, Scratch};
+use beltspace::models::{self, Columns, Model, Scratch, Set};
 use beltspace::real::LANES;
 
 /// Inputs that may differ between designs that share what is prepared.
 fn fast_inputs(model: &Model) -> Vec<usize> {
     let slow = slow_inputs(model);
-    (0..model.inputs.len()).filter(|input| slow >> input & 1 == 0).collect()
+    (0..model.inputs.len()).filter(|&input| !slow.contains(input)).collect()
 }
 
 /// The first value of a batch that differs from the scalar one, with every scalar value changed by `spoil`.
@@ -24,7 +24,7 @@ fn differing(model: &Model, count: usize, scratch: &mut Scratch, random: &mut Ra
     let designs: Vec<_> = (0..count)
         .map(|_| {
             let other = si(model, &draw(model, region, random));
-            let mut design = shared;
+            let mut design = shared.clone();
             fast.iter().for_each(|&input| design[input] = other[input]);
             design
         })
@@ -40,11 +40,10 @@ fn differing(model: &Model, count: usize, scratch: &mut Scratch, random: &mut Ra
     let mut results = vec![vec![f64::NAN; padded]; outputs.len() + conditions.len()];
     let columns = Columns { count, varying: &varying, outputs: &outputs, conditions: &conditions };
     model.kernel.finish_columns(model, &prepared, &shared, &columns, scratch, &mut results);
-    let wanted = outputs.iter().fold(0, |set, output| set | 1 << output);
+    let wanted = Set::of(&outputs);
     for (lane, design) in designs.iter().enumerate() {
-        let mut scalar = [0.0; OUTPUTS];
-        model.kernel.finish(&prepared, design, wanted, &mut scalar);
-        let margins = model.kernel.conditions(&prepared, design);
+        let scalar = model.kernel.outputs(&prepared, design, wanted);
+        let margins = model.kernel.margins(&prepared, design);
         let of_outputs = outputs.iter().map(|&output| (&model.outputs[output].name, model.outputs[output].unit.from_si(scalar[output])));
         let of_conditions = conditions.iter().map(|&condition| (&model.conditions[condition].reason, margins[condition]));
         for ((name, expected), found) in of_outputs.chain(of_conditions).zip(&results) {
@@ -59,16 +58,16 @@ fn differing(model: &Model, count: usize, scratch: &mut Scratch, random: &mut Ra
 
 #[test]
 fn a_batch_has_the_same_bits_as_its_designs_alone() {
-    // A batch must not affect the next one, even one of another model.
-    let mut scratch = Scratch::default();
+    // What one batch leaves behind must not show in the next.
+    let mut scratches: Vec<_> = models::all().iter().map(|model| Scratch::new(model)).collect();
     let random = &mut Random::new(51);
     let counts: Vec<usize> = (0..40).flat_map(|_| 1..=17).collect();
     for (done, &count) in counts.iter().enumerate() {
-        for model in models::all() {
+        for (model, scratch) in models::all().iter().zip(&mut scratches) {
             // Of a slow model some batches, of all lengths.
             let every = counts.len() as u64 / evaluations(model, counts.len() as u64);
             if (done as u64).is_multiple_of(every) {
-                assert_eq!(differing(model, count, &mut scratch, random, |value| value), None);
+                assert_eq!(differing(model, count, scratch, random, |value| value), None);
             }
         }
     }
@@ -79,7 +78,7 @@ fn a_last_bit_is_noticed_in_a_batch() {
     let random = &mut Random::new(52);
     for model in models::all() {
         let tried = evaluations(model, 50);
-        let noticed = (0..tried).filter(|_| differing(model, 9, &mut Scratch::default(), random, f64::next_up).is_some()).count();
+        let noticed = (0..tried).filter(|_| differing(model, 9, &mut Scratch::new(model), random, f64::next_up).is_some()).count();
         assert!(noticed as u64 * 5 > tried * 4, "{}: {noticed} of {tried}", model.name);
     }
 }

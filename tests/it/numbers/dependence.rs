@@ -4,7 +4,7 @@ use super::si;
 use crate::effort::is_slow;
 use crate::physics::{Region, draw};
 use crate::random::Random;
-use beltspace::models::{self, CONDITIONS, INPUTS, Model, OUTPUTS, Reach, find};
+use beltspace::models::{self, Model, Reach, Set, find};
 use beltspace::tape::Known;
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -12,23 +12,23 @@ use std::sync::Arc;
 /// Everything that a formula computes of a design, by its bits.
 struct Parts {
     prepared: Vec<u64>,
-    outputs: [u64; OUTPUTS],
-    conditions: [u64; CONDITIONS],
+    outputs: Vec<u64>,
+    conditions: Vec<u64>,
 }
 
 impl Parts {
-    fn new(model: &Model, si: &[f64; INPUTS]) -> Self {
-        Self::wanted(model, si, u64::MAX)
+    fn new(model: &Model, si: &[f64]) -> Self {
+        Self::wanted(model, si, Set::ALL)
     }
 
-    fn wanted(model: &Model, si: &[f64; INPUTS], wanted: u64) -> Self {
-        let (mut prepared, mut outputs) = (vec![0.0; model.kernel.prepared_len()], [0.0; OUTPUTS]);
+    fn wanted(model: &Model, si: &[f64], wanted: Set) -> Self {
+        let mut prepared = vec![0.0; model.kernel.prepared_len()];
         model.kernel.prepare(si, wanted, &mut prepared);
-        model.kernel.finish(&prepared, si, wanted, &mut outputs);
+        let bits = |numbers: Vec<f64>| numbers.into_iter().map(f64::to_bits).collect();
         Self {
-            outputs: outputs.map(f64::to_bits),
-            conditions: model.kernel.conditions(&prepared, si).map(f64::to_bits),
-            prepared: prepared.into_iter().map(f64::to_bits).collect(),
+            outputs: bits(model.kernel.outputs(&prepared, si, wanted)),
+            conditions: bits(model.kernel.margins(&prepared, si)),
+            prepared: bits(prepared),
         }
     }
 }
@@ -42,7 +42,7 @@ fn missed(
     after: &Parts,
     seen: &mut BTreeSet<(usize, usize)>,
 ) -> Option<String> {
-    let names = |set: u64| set >> input & 1 == 1;
+    let names = |set: Set| set.contains(input);
     let by = &model.inputs[input].name;
     if before.prepared != after.prepared && !names(reach.prepared) {
         return Some(format!("{}: {by} changes what is prepared", model.name));
@@ -62,7 +62,7 @@ fn try_changes(
     model: &Model,
     seed: u64,
     varied: impl Fn(usize, &mut Random) -> bool,
-    spoil: u64,
+    spoil: Set,
 ) -> (Option<String>, BTreeSet<(usize, usize)>, Vec<Reach>) {
     let random = &mut Random::new(seed);
     let mut seen = BTreeSet::new();
@@ -82,8 +82,8 @@ fn try_changes(
             }
         }
         let mut reach = model.kernel.reach(&inputs);
-        reach.outputs.iter_mut().for_each(|set| *set &= !spoil);
-        let mut design = ends[0];
+        reach.outputs.iter_mut().for_each(|set| *set = *set - spoil);
+        let mut design = ends[0].clone();
         let mut before = Parts::new(model, &design);
         for _ in 0..4 * free.len() {
             let input = random.pick(&free);
@@ -122,9 +122,9 @@ fn nudged(model: &Model, input: usize, value: f64) -> f64 {
     }
 }
 
-/// The dependencies if the inputs in `varied` take every value and the others those of `si`.
-fn reach_of(model: &Model, si: &[f64; INPUTS], varied: impl Fn(usize) -> bool) -> Reach {
-    let mut inputs: Vec<Known> = si[..model.inputs.len()].iter().map(|&value| Known::Fixed(value)).collect();
+/// The reach where the inputs that `varied` names take every value and the others those of `si`.
+fn reach_of(model: &Model, si: &[f64], varied: impl Fn(usize) -> bool) -> Reach {
+    let mut inputs: Vec<Known> = si.iter().map(|&value| Known::Fixed(value)).collect();
     for (input, table) in model.inputs.iter().enumerate().filter(|(input, _)| varied(*input)) {
         let least = table.words.iter().fold(0.0, |least, (_, word)| word.min(least));
         inputs[input] = Known::Within(least, 1e9);
@@ -134,7 +134,7 @@ fn reach_of(model: &Model, si: &[f64; INPUTS], varied: impl Fn(usize) -> bool) -
 
 /// Changes every input of a preset but the one that says which section it is. Of `wanted` outputs: how many pairs of input and
 /// output are named that were not seen to change, how many in all, and which inputs were seen to change anything.
-fn changed_one_by_one(model: &Model, preset: &str, wanted: u64) -> (Vec<String>, usize, BTreeSet<usize>) {
+fn changed_one_by_one(model: &Model, preset: &str, wanted: Set) -> (Vec<String>, usize, BTreeSet<usize>) {
     let section = model.enumeration().expect("it has presets for the words of an enumeration");
     let mut inputs = model.preset(preset).expect("it is a preset");
     // What is read in one case only is read.
@@ -154,7 +154,11 @@ fn changed_one_by_one(model: &Model, preset: &str, wanted: u64) -> (Vec<String>,
         for (what, reach) in [("its section fixed", &of_section), ("all inputs vary", &every), ("it alone varies", &alone)] {
             assert_eq!(missed(model, reach, input, &before, &after, &mut seen), None, "{preset}, {what}");
         }
-        let silent = Reach { prepared: 0, outputs: [0; OUTPUTS], conditions: [0; CONDITIONS] };
+        let silent = Reach {
+            prepared: Set::EMPTY,
+            outputs: vec![Set::EMPTY; before.outputs.len()],
+            conditions: vec![Set::EMPTY; before.conditions.len()],
+        };
         if missed(model, &silent, input, &before, &after, &mut BTreeSet::new()).is_some() {
             changing.insert(input);
         }
@@ -165,9 +169,9 @@ fn changed_one_by_one(model: &Model, preset: &str, wanted: u64) -> (Vec<String>,
     let absent: BTreeSet<_> =
         (0..model.conditions.len()).filter(fails).flat_map(|number| &model.conditions[number].invalidates).map(String::as_str).collect();
     let counts = |name: &str| !jumps(name) && !absent.contains(name);
-    let outputs = (0..model.outputs.len()).filter(|&number| wanted >> number & 1 == 1 && counts(&model.outputs[number].name));
+    let outputs = (0..model.outputs.len()).filter(|&number| wanted.contains(number) && counts(&model.outputs[number].name));
     let pairs = outputs.flat_map(|number| (0..model.inputs.len()).map(move |input| (input, number)));
-    let named: Vec<_> = pairs.filter(|(input, number)| of_section.outputs[*number] >> input & 1 == 1).collect();
+    let named: Vec<_> = pairs.filter(|(input, number)| of_section.outputs[*number].contains(*input)).collect();
     let idle = named.iter().filter(|pair| !seen.contains(pair));
     let idle = idle.map(|&(input, number)| format!("{} -> {}", model.inputs[input].name, model.outputs[number].name)).collect();
     (idle, named.len(), changing)
@@ -185,7 +189,7 @@ fn what_an_input_of_a_slow_model_changes_is_named_for_every_section_and_little_e
             let cheap = ["volume_mm3", "mass_g", "excluded_radius_mm", "clamp_pressure_MPa"];
             let loads = model.output("max_stress_MPa").expect("it is an output");
             let wanted = |number: &usize| solved || *number < loads || cheap.contains(&model.outputs[*number].name.as_str());
-            let wanted = (0..model.outputs.len()).filter(wanted).fold(0, |set, number| set | 1 << number);
+            let wanted = (0..model.outputs.len()).filter(wanted).collect();
             let (idle, named, seen) = changed_one_by_one(model, preset, wanted);
             eprintln!("{preset}: {named} pairs are named, these {} were not seen to change: {idle:?}", idle.len());
             assert!(idle.len() * 10 < named || !solved, "{preset}: {named}, {idle:?}");
@@ -216,10 +220,10 @@ fn the_section_changes_all_but_the_loads() {
 #[test]
 fn what_an_input_changes_is_always_named() {
     for model in walked() {
-        assert_eq!(try_changes(model, 31, |_, _| true, 0).0, None, "all inputs vary");
-        assert_eq!(try_changes(model, 32, |_, random| random.chance(0.5), 0).0, None, "half of the inputs vary");
+        assert_eq!(try_changes(model, 31, |_, _| true, Set::EMPTY).0, None, "all inputs vary");
+        assert_eq!(try_changes(model, 32, |_, random| random.chance(0.5), Set::EMPTY).0, None, "half of the inputs vary");
         for input in 0..model.inputs.len() {
-            assert_eq!(try_changes(model, 33, |it, _| it == input, 0).0, None, "only {} varies", model.inputs[input].name);
+            assert_eq!(try_changes(model, 33, |it, _| it == input, Set::EMPTY).0, None, "only {} varies", model.inputs[input].name);
         }
     }
 }
@@ -227,12 +231,12 @@ fn what_an_input_changes_is_always_named() {
 #[test]
 fn little_is_named_that_nothing_changes() {
     for model in walked() {
-        let (_, seen, reaches) = try_changes(model, 34, |_, _| true, 0);
+        let (_, seen, reaches) = try_changes(model, 34, |_, _| true, Set::EMPTY);
         let mut idle = Vec::new();
         let mut named = 0;
         for (number, output) in model.outputs.iter().enumerate() {
             for (input, table) in model.inputs.iter().enumerate() {
-                if reaches.iter().any(|reach| reach.outputs[number] >> input & 1 == 1) {
+                if reaches.iter().any(|reach| reach.outputs[number].contains(input)) {
                     named += 1;
                     if !seen.contains(&(input, number)) {
                         idle.push(format!("{} -> {}", table.name, output.name));
@@ -249,7 +253,7 @@ fn little_is_named_that_nothing_changes() {
 fn an_input_that_is_not_named_is_noticed() {
     for model in walked() {
         for input in 0..model.inputs.len() {
-            let problem = try_changes(model, 35, |_, _| true, 1 << input).0;
+            let problem = try_changes(model, 35, |_, _| true, Set::one(input)).0;
             assert!(problem.is_some(), "{}: nobody misses {}", model.name, model.inputs[input].name);
         }
     }
@@ -262,10 +266,10 @@ fn a_traction_that_is_a_number_keeps_friction_out_of_the_torque_coefficient() {
         let [friction, traction] = ["friction", "traction"].map(|name| model.input(name).expect("it is an input"));
         let coefficient = model.output("torque_coefficient_N_per_mm").expect("it is an output");
         let names_friction = |given: Known| {
-            let mut inputs = si(&model, &model.defaults()).map(Known::Fixed);
+            let mut inputs: Vec<_> = si(&model, &model.defaults()).into_iter().map(Known::Fixed).collect();
             inputs[friction] = Known::Within(0.05, 0.5);
             inputs[traction] = given;
-            model.kernel.reach(&inputs).outputs[coefficient] >> friction & 1 == 1
+            model.kernel.reach(&inputs).outputs[coefficient].contains(friction)
         };
         assert!(!names_friction(Known::Fixed(0.4)), "{name}");
         assert!(!names_friction(Known::Within(0.1, 0.5)), "{name}: all values are numbers");

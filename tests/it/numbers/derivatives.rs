@@ -4,7 +4,7 @@ use super::boxes::{Sides, a_box, around, formulas, over, run_over, sample};
 use super::{meaningful_si, si};
 use crate::physics::{Region, draw};
 use crate::random::Random;
-use beltspace::models::{INPUTS, Model};
+use beltspace::models::Model;
 use beltspace::real::Real;
 use beltspace::tape::{Dual, Interval};
 
@@ -13,9 +13,9 @@ const DIRECTIONS: usize = 20;
 type Slopes = (Vec<Dual<Interval, DIRECTIONS>>, Vec<Dual<Interval, DIRECTIONS>>);
 
 /// Values and slopes with every input's own direction.
-fn derived<T: Real<Shared = T>>(model: &Model, inputs: [T; INPUTS]) -> (Vec<Dual<T, DIRECTIONS>>, Vec<Dual<T, DIRECTIONS>>) {
+fn derived<T: Real<Shared = T>>(model: &Model, inputs: Vec<T>) -> (Vec<Dual<T, DIRECTIONS>>, Vec<Dual<T, DIRECTIONS>>) {
     assert!(model.inputs.len() <= DIRECTIONS);
-    run_over(model, &std::array::from_fn::<_, INPUTS, _>(|input| Dual::variable(inputs[input], input)))
+    run_over(model, &inputs.into_iter().enumerate().map(|(input, value)| Dual::variable(value, input)).collect::<Vec<_>>())
 }
 
 /// Is the status surely ok all over the box?

@@ -6,7 +6,7 @@ use super::precise::Precise;
 use super::{meaningful_si, outputs_si, si};
 use crate::physics::{Region, draw};
 use crate::random::Random;
-use beltspace::models::{Model, OUTPUTS, Status, evaluate};
+use beltspace::models::{Model, Set, Status, evaluate};
 use beltspace::tape::{EVERYTHING, Interval};
 
 const REGIONS: [Region; 3] = [Region::Usual, Region::Wide, Region::Edges];
@@ -22,7 +22,7 @@ fn holds(interval: Interval, value: f64) -> bool {
 /// The first output or margin of a design that f64 computes outside.
 fn outside(model: &Model, inputs: &[f64], intervals: &Both) -> Option<String> {
     let si = si(model, inputs);
-    let margins = model.kernel.conditions(&model.kernel.prepared(&si), &si);
+    let margins = model.kernel.margins(&model.kernel.prepared(&si), &si);
     let outputs = outputs_si(model, &si);
     let outputs = model.outputs.iter().map(|output| &output.name).zip(&intervals.0).zip(outputs);
     let margins = model.conditions.iter().map(|condition| &condition.reason).zip(&intervals.1).zip(margins);
@@ -126,7 +126,7 @@ impl Errors {
         for _ in 0..4 {
             let inputs = sample(model, sides, random);
             let si = si(model, &inputs);
-            let precise = run_over(model, &si.map(Precise::from));
+            let precise = run_over(model, &si.iter().copied().map(Precise::from).collect::<Vec<_>>());
             let reference = run_over(model, &si);
             let mut all: Vec<_> = (0..model.outputs.len()).map(|at| (outputs[at], reference.0[at], precise.0[at])).collect();
             let meaningful = meaningful_si(model, &inputs);
@@ -211,9 +211,8 @@ fn the_recorded_formula_gives_the_bits_of_the_formula() {
             for _ in 0..300 {
                 let inputs = si(model, &draw(model, region, random));
                 let prepared = model.kernel.prepared(&inputs);
-                let mut outputs = [0.0; OUTPUTS];
-                model.kernel.finish(&prepared, &inputs, u64::MAX, &mut outputs);
-                let margins = model.kernel.conditions(&prepared, &inputs);
+                let outputs = model.kernel.outputs(&prepared, &inputs, Set::ALL);
+                let margins = model.kernel.margins(&prepared, &inputs);
                 let (found, found_margins) = run_over(model, &inputs);
                 for (number, (found, expected)) in found.iter().zip(outputs).chain(found_margins.iter().zip(margins)).enumerate() {
                     let same = found.to_bits() == expected.to_bits() || (found.is_nan() && expected.is_nan());

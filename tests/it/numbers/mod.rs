@@ -10,22 +10,17 @@ mod precise;
 
 pub use boxes::run_over;
 
-use beltspace::models::{INPUTS, Model, OUTPUTS, evaluate};
+use beltspace::models::{Input, Model, Set, evaluate};
 
 /// Inputs in SI units, as formulas take them.
-pub fn si(model: &Model, inputs: &[f64]) -> [f64; INPUTS] {
-    let mut si = [0.0; INPUTS];
-    for ((si, input), &value) in si.iter_mut().zip(&model.inputs).zip(inputs) {
-        *si = if input.word_for(value).is_some() { value } else { input.unit.to_si(value) };
-    }
-    si
+pub fn si(model: &Model, inputs: &[f64]) -> Vec<f64> {
+    let si = |(input, &value): (&Input, &f64)| if input.word_for(value).is_some() { value } else { input.unit.to_si(value) };
+    model.inputs.iter().zip(inputs).map(si).collect()
 }
 
 /// All outputs in SI units, those without a meaning included.
-fn outputs_si(model: &Model, si: &[f64; INPUTS]) -> [f64; OUTPUTS] {
-    let mut outputs = [0.0; OUTPUTS];
-    model.kernel.finish(&model.kernel.prepared(si), si, u64::MAX, &mut outputs);
-    outputs
+fn outputs_si(model: &Model, si: &[f64]) -> Vec<f64> {
+    model.kernel.outputs(&model.kernel.prepared(si), si, Set::ALL)
 }
 
 /// Outputs in SI units where they have a meaning.

@@ -3,7 +3,7 @@
 //! `shaders/write` writes them again.
 
 use beltspace::gpu::PointKernel;
-use beltspace::models::{self, Model, Shader};
+use beltspace::models::{self, Model, Set, Shader};
 use beltspace::real::Place;
 use beltspace::tape::{Binary, List, Node, Operation, Recording, Rolled, RolledLoop, Root, Store, Unary, wgsl};
 use loops::{Held, Whole};
@@ -488,7 +488,7 @@ fn differences(model: &Model, piece: &str, other: &str) -> Vec<String> {
         };
         Operation::Input(at.expect("it is a field") as u16)
     };
-    let (first, second) = formula.stages(u64::MAX, u64::MAX);
+    let (first, second) = formula.stages(Set::ALL, Set::ALL);
     let of = |recording: &Recording, nodes: &[Node]| List::cut(recording, &nodes.iter().copied().map(Some).collect::<Vec<_>>());
     let texts = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
     let numbers: Vec<String> = (0..model.conditions.len()).map(|it| it.to_string()).collect();

@@ -43,7 +43,7 @@ pub enum Coordinate {
 
 /// Does f32 tell an input's values apart, so that they compare as in f64?
 pub fn is_exact(plan: &Plan, layout: &KernelLayout, input: usize) -> bool {
-    layout.exact >> input & 1 == 1 || plan.space.designs.inputs() >> input & 1 == 0
+    layout.exact.contains(input) || !plan.space.designs.inputs().contains(input)
 }
 
 /// The kind of each objective's coordinate.
@@ -82,7 +82,7 @@ pub fn value_maps(plan: &Plan) -> impl Iterator<Item = (&MapSpec, usize, Goal)> 
 
 /// The words of a check record: verdict, then value and bound per tracked quantity, then per used output.
 pub fn check_words(plan: &Plan) -> usize {
-    1 + 2 * plan.tracked.len() + 2 * plan.used_outputs().count_ones() as usize
+    1 + 2 * plan.tracked.len() + 2 * plan.used_outputs().len()
 }
 
 /// A number of the kernel's text that reads back as the same f32.

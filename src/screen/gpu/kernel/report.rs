@@ -66,8 +66,7 @@ impl Prelude<'_> {
         };
         let worst = pairs((0..plan.tracked.len()).map(|at| format!("judged.t{at}")).collect());
         self.function("write_worst(at: u32, judged: Lane)", &worst);
-        let used = plan.used_outputs();
-        let numbers: Vec<usize> = (0..plan.study.model.outputs.len()).filter(|output| used >> output & 1 == 1).collect();
+        let numbers: Vec<usize> = plan.used_outputs().iter().collect();
         let mut lines: Vec<_> = numbers.iter().map(|&output| format!("let o{output} = {};", self.bounded(output))).collect();
         lines.extend(pairs(numbers.iter().map(|output| format!("o{output}")).collect()));
         self.function("write_asked(at: u32, out: Outputs)", &lines);

@@ -187,6 +187,6 @@ impl Prelude<'_> {
 
     /// An input's value in its unit, with the bound of its rounding.
     pub(super) fn own_value(&self, input: usize, entry: &str) -> String {
-        if self.layout.represented >> input & 1 == 1 { format!("constant({entry})") } else { format!("near({entry})") }
+        if self.layout.represented.contains(input) { format!("constant({entry})") } else { format!("near({entry})") }
     }
 }

@@ -1,0 +1,263 @@
+//! A model: its tables, its formula, and what the rest of the program knows of it besides.
+
+use super::description::{Condition, Effort, Input, Output, Preset, Profile, SAMPLE};
+use super::evaluation::Evaluation;
+use super::formula::Kernel;
+use super::pulley::Design;
+use crate::error::{Error, Result};
+use crate::tape::Recordable;
+use std::sync::Arc;
+
+/// Sentences on a study, from the values of the inputs that no axis sets.
+pub type Remarks = Arc<dyn Fn(&[Option<f64>]) -> Vec<String> + Send + Sync>;
+/// Sentences on one evaluation of the model, from its inputs in their units.
+pub type Notes = Arc<dyn Fn(&Model, &[f64], &Evaluation) -> Vec<String> + Send + Sync>;
+/// Values along the belt of the model, from inputs in their units.
+pub type AlongTheBelt = Arc<dyn Fn(&Model, &[f64]) -> Profile + Send + Sync>;
+/// The pulley behind inputs of the model in their units.
+pub type PulleyOf = Arc<dyn Fn(&Model, &[f64]) -> Design + Send + Sync>;
+
+/// Where a model's text in WGSL comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shader {
+    /// It is written from the recorded formula.
+    Recorded,
+    /// It was written by hand, for a formula whose recorded loops would be too long.
+    ByHand(&'static str),
+}
+
+/// A model's formula on a device.
+#[derive(Clone, Copy)]
+pub struct Device<'a> {
+    /// The formula.
+    pub formula: &'a dyn Recordable,
+    /// Where its text comes from.
+    pub shader: Shader,
+}
+
+/// A model: everything that the rest of the program knows about it.
+///
+/// It is plain data with a formula, so one may be made at run time ([`Model::new`]) as well as be one of [`all`](super::all). It is
+/// passed about as `Arc<Model>`; to change one, clone what it points to. Two are equal if their tables are and they share one formula.
+#[derive(Clone)]
+#[non_exhaustive]
+pub struct Model {
+    /// Name in study files and on the command line.
+    pub name: String,
+    /// What tells this model from an earlier one of its name; empty for those that come with the program. Where it is not empty it is
+    /// part of a study's hash, so that results of two versions are never put together.
+    pub version: String,
+    /// One line on what it computes.
+    pub summary: String,
+    /// Where the formula comes from.
+    pub source: String,
+    /// What the model does not cover, in plain sentences.
+    pub limits: String,
+    /// Its inputs; the position is the input's number.
+    pub inputs: Vec<Input>,
+    /// Its outputs; the position is the output's number.
+    pub outputs: Vec<Output>,
+    /// Its conditions, the first failing one being the status.
+    pub conditions: Vec<Condition>,
+    /// Named sets of inputs that differ from the defaults.
+    pub presets: Vec<Preset>,
+    /// A study to start from, in the study file's language.
+    pub starter: String,
+    /// The formula in f64.
+    pub kernel: Arc<dyn Kernel>,
+    /// How long it takes.
+    pub effort: Effort,
+    /// Most designs of which it is counted why they are not feasible: [`SAMPLE`], or fewer of a slow model. Part of every result.
+    pub sample: u64,
+    /// The formula on a device; `None`: it is computed in f64 on the processor only.
+    pub shader: Option<Shader>,
+    /// What a person should know of a whole study's answer, given the values of the inputs that no axis sets.
+    pub remarks: Option<Remarks>,
+    /// What a person should know of one evaluation besides its numbers.
+    pub notes: Option<Notes>,
+    /// Values along the belt, where the model has such.
+    pub profile: Option<AlongTheBelt>,
+    /// The pulley that its inputs describe, where designs are solved by finite elements: there are pictures of such.
+    pub pulley: Option<PulleyOf>,
+}
+
+impl Model {
+    /// Number of the input of that name.
+    pub fn input(&self, name: &str) -> Option<usize> {
+        self.inputs.iter().position(|input| input.name == name)
+    }
+
+    /// Number of the output of that name.
+    pub fn output(&self, name: &str) -> Option<usize> {
+        self.outputs.iter().position(|output| output.name == name)
+    }
+
+    /// Its formula on a device.
+    ///
+    /// # Errors
+    /// [`Error::CpuOnly`] if the model is computed on the processor only.
+    pub fn on_device(&self) -> Result<Device<'_>> {
+        let device = self.shader.and_then(|shader| Some(Device { formula: self.kernel.formula()?, shader }));
+        device.ok_or_else(|| Error::CpuOnly { model: self.name.clone(), remedy: None })
+    }
+
+    /// The defaults of all inputs, in their units.
+    pub fn defaults(&self) -> Vec<f64> {
+        self.inputs.iter().map(|input| input.default).collect()
+    }
+
+    /// The defaults with what a preset changes.
+    ///
+    /// # Errors
+    /// A sentence that lists the presets, if there is none of that name.
+    pub fn preset(&self, name: &str) -> std::result::Result<Vec<f64>, String> {
+        let Some(preset) = self.presets.iter().find(|it| it.name == name) else {
+            let names: Vec<_> = self.presets.iter().map(|it| it.name.as_str()).collect();
+            let known = if names.is_empty() { "it has none".to_owned() } else { format!("presets are: {}", names.join(", ")) };
+            return Err(format!("{} has no preset \"{name}\"; {known}", self.name));
+        };
+        let mut inputs = self.defaults();
+        for (input, value) in &preset.changes {
+            inputs[self.input(input).expect("a preset names inputs of its model")] = *value;
+        }
+        Ok(inputs)
+    }
+
+    /// What a person should know of one evaluation besides its numbers, for inputs in their units.
+    pub fn notes_on(&self, inputs: &[f64], evaluation: &Evaluation) -> Vec<String> {
+        self.notes.as_ref().map_or_else(Vec::new, |notes| notes(self, inputs, evaluation))
+    }
+
+    /// Values along the belt for inputs in their units, whose status must be ok; `None` if the model has no such values.
+    pub fn along_the_belt(&self, inputs: &[f64]) -> Option<Profile> {
+        self.profile.as_ref().map(|profile| profile(self, inputs))
+    }
+
+    /// Section, loads and strength behind inputs in their units; `None` if the model has no pulley that is solved by finite elements.
+    pub fn pulley_of(&self, inputs: &[f64]) -> Option<Design> {
+        self.pulley.as_ref().map(|pulley| pulley(self, inputs))
+    }
+
+    /// The first input whose every value is a word; [`Input::only_for`] names its words.
+    pub fn enumeration(&self) -> Option<usize> {
+        self.inputs.iter().position(Input::is_enumeration)
+    }
+
+    /// The same inputs with a value in place of every word that stands for another input's.
+    pub fn spelled_out(&self, inputs: &[f64]) -> Vec<f64> {
+        let value = |(input, &value): (&Input, &f64)| match input.follows.as_ref().filter(|_| input.word_for(value).is_some()) {
+            Some(other) => inputs[self.input(other).expect("an input follows one of its model")],
+            None => value,
+        };
+        self.inputs.iter().zip(inputs).map(value).collect()
+    }
+}
+
+/// Making a model: [`Model::new`], then what it is given besides. Whatever is left out is empty, and [`Models::with`](super::Models::with)
+/// says what does not fit.
+impl Model {
+    /// A model of this name that computes this.
+    ///
+    /// One that can be recorded also runs on a device; how long it takes is set with [`Model::effort`].
+    pub fn new(name: impl Into<String>, kernel: impl Kernel + 'static) -> Self {
+        Self {
+            name: name.into(),
+            version: String::new(),
+            summary: String::new(),
+            source: String::new(),
+            limits: String::new(),
+            inputs: Vec::new(),
+            outputs: Vec::new(),
+            conditions: Vec::new(),
+            presets: Vec::new(),
+            starter: String::new(),
+            effort: Effort { prepare: 1e-6, finish: 1e-8 },
+            sample: SAMPLE,
+            shader: kernel.formula().map(|_| Shader::Recorded),
+            kernel: Arc::new(kernel),
+            remarks: None,
+            notes: None,
+            profile: None,
+            pulley: None,
+        }
+    }
+
+    /// The same model in this version: part of the hash of its studies, so that results of two versions are never put together.
+    #[must_use]
+    pub fn version(self, version: impl Into<String>) -> Self {
+        Self { version: version.into(), ..self }
+    }
+
+    /// The same model with one line on what it computes.
+    #[must_use]
+    pub fn summary(self, summary: impl Into<String>) -> Self {
+        Self { summary: summary.into(), ..self }
+    }
+
+    /// The same model with where its formula comes from.
+    #[must_use]
+    pub fn source(self, source: impl Into<String>) -> Self {
+        Self { source: source.into(), ..self }
+    }
+
+    /// The same model with what it does not cover, in plain sentences.
+    #[must_use]
+    pub fn limits(self, limits: impl Into<String>) -> Self {
+        Self { limits: limits.into(), ..self }
+    }
+
+    /// The same model with these inputs, in the order in which its formula reads them.
+    #[must_use]
+    pub fn inputs(self, inputs: impl IntoIterator<Item = Input>) -> Self {
+        Self { inputs: inputs.into_iter().collect(), ..self }
+    }
+
+    /// The same model with these outputs, in the order in which its formula writes them.
+    #[must_use]
+    pub fn outputs(self, outputs: impl IntoIterator<Item = Output>) -> Self {
+        Self { outputs: outputs.into_iter().collect(), ..self }
+    }
+
+    /// The same model with these conditions, in the order of their margins; the first one that fails is the status.
+    #[must_use]
+    pub fn conditions(self, conditions: impl IntoIterator<Item = Condition>) -> Self {
+        Self { conditions: conditions.into_iter().collect(), ..self }
+    }
+
+    /// The same model with these named sets of inputs.
+    #[must_use]
+    pub fn presets(self, presets: impl IntoIterator<Item = Preset>) -> Self {
+        Self { presets: presets.into_iter().collect(), ..self }
+    }
+
+    /// The same model with a study to start from.
+    #[must_use]
+    pub fn starter(self, study: impl Into<String>) -> Self {
+        Self { starter: study.into(), ..self }
+    }
+
+    /// The same model, which takes about so long.
+    #[must_use]
+    pub fn effort(self, effort: Effort) -> Self {
+        Self { effort, ..self }
+    }
+}
+
+impl std::fmt::Debug for Model {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_tuple("Model").field(&self.name).finish()
+    }
+}
+
+impl PartialEq for Model {
+    fn eq(&self, other: &Self) -> bool {
+        fn texts(model: &Model) -> [&String; 6] {
+            let Model { name, version, summary, source, limits, starter, .. } = model;
+            [name, version, summary, source, limits, starter]
+        }
+        Arc::ptr_eq(&self.kernel, &other.kernel)
+            && texts(self) == texts(other)
+            && (&self.inputs, &self.outputs, &self.conditions) == (&other.inputs, &other.outputs, &other.conditions)
+            && (&self.presets, self.effort, self.sample) == (&other.presets, other.effort, other.sample)
+    }
+}
