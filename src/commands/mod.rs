@@ -86,22 +86,20 @@ mod unlike {
 
     /// Computed on the CPU only.
     pub fn cpu_only() -> Arc<Model> {
-        let model = find("pulley-load").expect("it is a model");
-        let mut other = Model::clone(&model);
-        (other.name, other.shader) = ("cpu-only".into(), None);
-        Arc::new(other)
+        let mut model = Model::clone(&find("pulley-load").expect("it is a model"));
+        (model.name, model.shader) = ("cpu-only".into(), None);
+        Arc::new(model)
     }
 
     /// With an input that takes words only, and one that is read for some of these words only.
     pub fn with_a_section() -> Arc<Model> {
-        let model = find("pulley-load").expect("it is a model");
+        let mut model = Model::clone(&find("pulley-load").expect("it is a model"));
         let section = Input::enumeration("section", "", SECTIONS, 4.0, "How the pulley is made.", "chosen");
         let mass = Input::new("disc_mass_g", "", beltspace::units::GRAM, 10.0, (1.0, 100.0), "Mass of a disc.", "chosen");
         let mass = mass.read_only_for(&["machined", "welded-discs"]);
-        let inputs: Vec<Input> = model.inputs.iter().cloned().chain([section, mass]).collect();
-        let presets = vec![Preset::new("welded", &[("section", 2.0)])];
-        let mut other = Model::clone(&model);
-        (other.name, other.inputs, other.presets) = ("sections".into(), inputs, presets);
-        Arc::new(other)
+        model.name = "sections".into();
+        model.inputs.extend([section, mass]);
+        model.presets = vec![Preset::new("welded", &[("section", 2.0)])];
+        Arc::new(model)
     }
 }

@@ -349,7 +349,7 @@ fn finish_columns<F: Formula>(prepared: &[f64], columns: &Columns<'_>, scratch: 
 /// ```
 ///
 /// `read` and `write` work on the numbers that a stage is given, `shared` reads what the first stage passed on
-/// ([`Real::Shared`](crate::real::Real::Shared)). A visibility may stand before the name.
+/// ([`Real::Shared`]). A visibility may stand before the name.
 #[macro_export]
 macro_rules! record {
     ($(#[$doc:meta])* $visible:vis $name:ident { $($field:ident),* $(,)? }) => {

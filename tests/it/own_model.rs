@@ -1,5 +1,6 @@
 //! A model made at run time works wherever a built-in one does: studies, sweeps, checkpoints, hashes.
 
+#[allow(dead_code, reason = "tests/library.rs runs its main")]
 #[path = "../../examples/own_model.rs"]
 #[allow(dead_code, reason = "its main is for those who run it")]
 mod example;
