@@ -9,6 +9,7 @@
 mod cvt;
 mod description;
 mod evaluation;
+mod flat_belt;
 mod formula;
 mod known;
 mod latest;
@@ -40,7 +41,7 @@ macro_rules! models {
         static MODELS: LazyLock<Vec<Arc<Model>>> = LazyLock::new(|| vec![$(Arc::new($module::model())),*]);
     };
 }
-models![rubber_cvt, metal_cvt, timing_belt, pulley_load, pulley];
+models![rubber_cvt, metal_cvt, timing_belt, pulley_load, pulley, flat_belt];
 
 /// The models that come with the program, in the order in which `beltspace models` lists them.
 pub fn all() -> &'static [Arc<Model>] {

@@ -14,8 +14,13 @@ pub type Values = BTreeMap<&'static str, f64>;
 pub type Second = fn(&BTreeMap<String, f64>) -> (&'static str, Values);
 
 /// The second implementation of every model that is a formula.
-pub const SECOND: &[(&str, Second)] =
-    &[("rubber-cvt", rubber_cvt), ("metal-cvt", metal_cvt), ("pulley-load", pulley_load), ("timing-belt", timing_belt::timing_belt)];
+pub const SECOND: &[(&str, Second)] = &[
+    ("rubber-cvt", rubber_cvt),
+    ("metal-cvt", metal_cvt),
+    ("pulley-load", pulley_load),
+    ("timing-belt", timing_belt::timing_belt),
+    ("flat-belt", flat_belt),
+];
 
 /// A number printed in the papers or worked out by hand from them.
 pub struct Golden {
@@ -56,6 +61,25 @@ const TABLE_1_RUBBER_LARGER_RADIUS: &[(&str, f64)] =
 const TABLE_1_RUBBER_OWN_RADII: &[(&str, f64)] = &[("ratio", 2.0), ("traction", 0.984_54)];
 const EQUATION_26: &[(&str, f64)] = &[("belt_length_mm", 613.238_885_981), ("centre_distance_mm", 165.247_773_579)];
 
+/// Shigley, example 17-1, in the model's units: 15 hp with service factor 1.25 and design factor 1.1, 1750 rpm, pulleys of 6 and 18 in
+/// 96 in apart, belt 6 by 0.13 in of 0.042 lbf/in^3, friction 0.8, 100 lbf/in times 0.70. Not here: the torque, 742.8 lbf in, of which
+/// the book prints 742 and goes on with that, so that its slack tension of 172.6 lbf is 0.2 more than 172.40.
+const EXAMPLE_17_1: &[(&str, f64)] = &[
+    ("power_kW", 15.380_059_851_384_32),
+    ("driver_speed_rpm", 1750.0),
+    ("driver_diameter_mm", 152.4),
+    ("driven_diameter_mm", 457.2),
+    ("centre_distance_mm", 2438.4),
+    ("belt_width_mm", 152.4),
+    ("belt_thickness_mm", 3.302),
+    ("belt_density_kg_per_m3", 1_162.555_997_828_531),
+    ("friction", 0.8),
+    ("tension_per_width_N_per_mm", 12.258_878_467_253_35),
+];
+const RADIAN_IN_DEGREES: f64 = 180.0 / PI;
+const POUND_IN_NEWTONS: f64 = 4.448_221_615_260_5;
+const FOOT_PER_MINUTE: f64 = 0.3048 / 60.0;
+
 /// Not here, because no input produces them: C_M = 107.06, 112.9 and 114.1 of CVT (28) take
 /// x = 1.36, a traction of 0.581 that slips at the 180 degrees of wrap they are computed with.
 #[rustfmt::skip]
@@ -90,6 +114,12 @@ pub const GOLDEN: &[(&str, Golden)] = &[
     ("pulley-load", golden("flank force at the slack end", &[], "slack_end_flank_force_N_per_mm", 15.4418, 5e-5, "PUL (10), Table 1; R_b, beta, w chosen")),
     ("pulley-load", golden("resultant", &[], "resultant_force_N", 1035.131, 5e-4, "PUL (9)-(16), Table 1; R_b, beta, w chosen")),
     ("pulley-load", golden("torque", &[], "torque_Nm", 9.549_30, 5e-6, "PUL (2), Table 1; R_b, beta, w chosen")),
+    ("flat-belt", golden("wrap 3.0165 rad", EXAMPLE_17_1, "driver_wrap_deg", 3.0165 * RADIAN_IN_DEGREES, 5e-5 * RADIAN_IN_DEGREES, "Shigley, example 17-1")),
+    ("flat-belt", golden("speed 2749 ft/min", EXAMPLE_17_1, "belt_speed_m_per_s", 2749.0 * FOOT_PER_MINUTE, 0.5 * FOOT_PER_MINUTE, "Shigley, example 17-1")),
+    ("flat-belt", golden("F_c 25.6 lbf", EXAMPLE_17_1, "centrifugal_tension_N", 25.6 * POUND_IN_NEWTONS, 0.05 * POUND_IN_NEWTONS, "Shigley, example 17-1")),
+    ("flat-belt", golden("(F1)a 420 lbf", EXAMPLE_17_1, "tight_tension_N", 420.0 * POUND_IN_NEWTONS, 0.5 * POUND_IN_NEWTONS, "Shigley, example 17-1")),
+    ("flat-belt", golden("F_i 270.6 lbf", EXAMPLE_17_1, "initial_tension_N", 270.6 * POUND_IN_NEWTONS, 0.05 * POUND_IN_NEWTONS, "Shigley, example 17-1")),
+    ("flat-belt", golden("f' 0.328", EXAMPLE_17_1, "friction_used", 0.328, 5e-4, "Shigley, example 17-1")),
 ];
 
 /// V-belt CVT with a rubber belt. Absent `traction` means "limit".
@@ -404,5 +434,69 @@ fn pulley_load(inputs: &BTreeMap<String, f64>) -> (&'static str, Values) {
     out.insert("friction_margin", (available - used) / available);
     out.insert("slack_end_flank_force_N_per_mm", slack_normal);
     out.insert("tight_end_flank_force_N_per_mm", flank(tight_line).0);
+    ("ok", out)
+}
+
+/// Integral of dT/T from 1 to a ratio of at least 1, without a logarithm and without loss where the ratio is near 1: `gained` is what
+/// it is above 1.
+fn exponent_of(gained: f64) -> f64 {
+    let (mut exponent, mut done) = (0.0, 0.0);
+    while done < gained {
+        let next = gained.min(done + 0.02 * (1.0 + done));
+        exponent += integrate(done, next, 1, |more| 1.0 / (1.0 + more));
+        done = next;
+    }
+    exponent
+}
+
+/// Flat belt over two pulleys.
+fn flat_belt(inputs: &BTreeMap<String, f64>) -> (&'static str, Values) {
+    let get = |name: &str| value(inputs, name);
+    let angular = get("driver_speed_rpm") * 2.0 * PI / 60.0;
+    let [driver, driven] = ["driver_diameter_mm", "driven_diameter_mm"].map(|name| 0.5 * get(name));
+    let centre = get("centre_distance_mm");
+    let (width, thickness) = (get("belt_width_mm"), get("belt_thickness_mm"));
+    let torque = 1e6 * get("power_kW") / angular; // N mm
+    let pull = torque / driver;
+    let speed = angular * driver / 1000.0;
+    let centrifugal = get("belt_density_kg_per_m3") * width * thickness * 1e-6 * speed * speed;
+    let tight = get("tension_per_width_N_per_mm") * width;
+    let slack = tight - pull;
+    let mut out = Values::from([
+        ("belt_speed_m_per_s", speed),
+        ("torque_Nm", torque / 1000.0),
+        ("effective_tension_N", pull),
+        ("centrifugal_tension_N", centrifugal),
+        ("tight_tension_N", tight),
+        ("slack_tension_N", slack),
+        ("initial_tension_N", 0.5 * (tight + slack) - centrifugal),
+        ("belt_stress_MPa", tight / (width * thickness)),
+    ]);
+    let lifts = slack - centrifugal <= 0.0;
+    if centre - driver - driven <= 0.0 {
+        return ("pulleys overlap", out);
+    }
+    // The straight strands touch both pulleys: their inclination is the angle whose tangent the right triangle has.
+    let rise = driven - driver;
+    let free = ((centre - rise) * (centre + rise)).sqrt();
+    let lean = rise.atan2(free);
+    let wraps = [PI - 2.0 * lean, PI + 2.0 * lean];
+    out.insert("driver_wrap_deg", wraps[0].to_degrees());
+    out.insert("driven_wrap_deg", wraps[1].to_degrees());
+    out.insert("belt_length_mm", 2.0 * free + wraps[0] * driver + wraps[1] * driven);
+    // At slip the tension over the centrifugal one falls along the smaller wrap as dT/da = -f T says: the pull is the sum of what
+    // friction takes.
+    let (friction, wrap) = (get("friction"), wraps[0].min(wraps[1]));
+    let share = integrate(0.0, wrap, panels_for(friction * wrap), |angle| friction * (-friction * angle).exp());
+    let capacity = (tight - centrifugal) * share;
+    out.insert("power_capacity_kW", capacity.max(0.0) * speed / 1000.0);
+    if lifts {
+        return ("slack side lifts", out);
+    }
+    out.insert("friction_used", exponent_of(pull / (slack - centrifugal)) / wrap);
+    out.insert("slip_margin", (capacity - pull) / capacity);
+    // Both strands as vectors.
+    let (along, across) = ((tight + slack - 2.0 * centrifugal) * lean.cos(), pull * lean.sin());
+    out.insert("shaft_load_N", along.hypot(across));
     ("ok", out)
 }
