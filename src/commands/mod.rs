@@ -87,7 +87,7 @@ mod unlike {
     /// Computed on the CPU only.
     pub fn cpu_only() -> Arc<Model> {
         let mut model = Model::clone(&find("pulley-load").expect("it is a model"));
-        (model.name, model.shader) = ("cpu-only".into(), None);
+        (model.name, model.on_gpu) = ("cpu-only".into(), false);
         Arc::new(model)
     }
 

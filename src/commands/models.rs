@@ -58,7 +58,7 @@ fn page(model: &Model) -> String {
     }
     let presets: Vec<_> = model.presets.iter().map(|it| it.name.as_str()).collect();
     let presets = if presets.is_empty() { String::new() } else { format!("presets: {}\n\n", presets.join(", ")) };
-    let where_run = if model.shader.is_none() { "\nComputed in f64 on the CPU only." } else { "" };
+    let where_run = if !model.on_gpu { "\nComputed in f64 on the CPU only." } else { "" };
     format!(
         "{}  {}\n\n{}{where_run}\n\n{}\n{}\n{}\n{presets}{} {}\n",
         bold(&model.name),
@@ -144,7 +144,7 @@ fn describe(model: &Model) -> Value {
         .collect();
     json!({
         "name": model.name, "summary": model.summary, "source": model.source, "limits": model.limits,
-        "gpu": model.shader.is_some(),
+        "gpu": model.on_gpu,
         "inputs": inputs.collect::<Vec<_>>(), "outputs": outputs.collect::<Vec<_>>(),
         "statuses": conditions.collect::<Vec<_>>(), "presets": presets,
     })

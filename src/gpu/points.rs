@@ -38,8 +38,8 @@ impl PointKernel {
     /// # Errors
     /// [`Error::Request`](crate::error::Error::Request) if the model is computed on the CPU only.
     pub fn source(model: &Model, perturb: &[(usize, f64)]) -> Result<String> {
-        let on_device = model.on_device()?;
-        let fields = on_device.formula.fields();
+        let formula = model.on_device()?;
+        let fields = formula.fields();
         let all: Vec<usize> = (0..model.conditions.len()).collect();
         let mut text = model_prelude(&fields, all.len(), Set::ALL, &all);
         let places: Vec<usize> = fields.places().map(|(first, _)| first).collect();
@@ -63,7 +63,7 @@ impl PointKernel {
             line(format_args!("    found[at + {number}u] = Real(out.{field}.value * {factor:?}, out.{field}.bound);"));
         }
         line(format_args!("}}\n"));
-        Ok([&common(), &text, &model_source(model, on_device), include_str!("../../shaders/evaluate.wgsl")].join("\n"))
+        Ok([&common(), &text, &model_source(model, formula), include_str!("../../shaders/evaluate.wgsl")].join("\n"))
     }
 
     /// Compiles the kernel of a model.
@@ -80,7 +80,7 @@ impl PointKernel {
     /// # Errors
     /// As [`PointKernel::new`].
     pub fn from_source(device: &Device, model: &Arc<Model>, source: &str) -> Result<Self> {
-        let table_numbers = table_numbers(&model.on_device()?.formula.fields());
+        let table_numbers = table_numbers(&model.on_device()?.fields());
         let program = Program::new(device, source, &["evaluate"])?;
         Ok(Self { model: model.clone(), table_numbers, device: device.clone(), program })
     }

@@ -1,8 +1,8 @@
 //! The texts of the shaders, and the declarations that follow from a model's Rust records.
 
 use super::constants::common_constants;
-use crate::models::{Device, Fields, Model, Set, Shader};
-use crate::tape::wgsl;
+use crate::models::{Fields, Model, Set};
+use crate::tape::{Recordable, wgsl};
 use std::fmt::Write;
 
 /// Numbers, own functions and decisions, for every kernel.
@@ -16,16 +16,10 @@ pub fn common() -> String {
     .join("\n")
 }
 
-/// The text of a model: written from its recorded formula, or its own file.
-pub fn model_source(model: &Model, device: Device<'_>) -> String {
-    match device.shader {
-        Shader::Recorded => wgsl::text(
-            device.formula,
-            model.conditions.len(),
-            &model.outputs.iter().map(|output| output.source.as_str()).collect::<Vec<_>>(),
-        ),
-        Shader::ByHand(text) => text.to_owned(),
-    }
+/// The text of a model, written from its recorded formula.
+pub fn model_source(model: &Model, formula: &dyn Recordable) -> String {
+    let equations: Vec<_> = model.outputs.iter().map(|output| output.source.as_str()).collect();
+    wgsl::text(formula, model.conditions.len(), &equations)
 }
 
 /// A structure of `Real`s.

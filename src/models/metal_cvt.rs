@@ -3,7 +3,7 @@
 use super::cvt::{Belt, Cvt, Drive, LIMIT, condition_table, groove_angle, output_table, ratio, torque, traction};
 use super::description::{Effort, Input, SAMPLE};
 use super::formula::record;
-use super::model::{Model, Shader};
+use super::model::Model;
 use crate::real::Real;
 use crate::units::{MEGAPASCAL, MILLIMETRE, NONE};
 use std::sync::Arc;
@@ -65,7 +65,7 @@ pub fn model() -> Model {
         remarks: None,
         effort: Effort { prepare: 5e-7, finish: 3e-9 },
         sample: SAMPLE,
-        shader: Some(Shader::Recorded),
+        on_gpu: true,
     }
 }
 

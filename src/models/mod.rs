@@ -31,7 +31,7 @@ pub use formula::{Columns, Footprint, Formula, Kernel, Reach, Reads, Scratch, Si
 pub use known::Models;
 pub use latest::{Evaluator, Latest};
 pub use many::{Evaluations, evaluate_many};
-pub use model::{AlongTheBelt, Device, Model, Notes, PulleyOf, Remarks, Shader};
+pub use model::{AlongTheBelt, Model, Notes, PulleyOf, Remarks};
 pub use pulley::{CHECK_POINT_STRESSES, Design};
 use std::sync::{Arc, LazyLock};
 

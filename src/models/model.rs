@@ -17,24 +17,6 @@ pub type AlongTheBelt = Arc<dyn Fn(&Model, &[f64]) -> Profile + Send + Sync>;
 /// The pulley behind inputs of the model in their units.
 pub type PulleyOf = Arc<dyn Fn(&Model, &[f64]) -> Design + Send + Sync>;
 
-/// Where a model's text in WGSL comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shader {
-    /// It is written from the recorded formula.
-    Recorded,
-    /// It was written by hand, for a formula whose recorded loops would be too long.
-    ByHand(&'static str),
-}
-
-/// A model's formula on a device.
-#[derive(Clone, Copy)]
-pub struct Device<'a> {
-    /// The formula.
-    pub formula: &'a dyn Recordable,
-    /// Where its text comes from.
-    pub shader: Shader,
-}
-
 /// A model: everything that the rest of the program knows about it.
 ///
 /// It is plain data with a formula, so one may be made at run time ([`Model::new`]) as well as be one of [`all`](super::all). It is
@@ -69,8 +51,8 @@ pub struct Model {
     pub effort: Effort,
     /// Most designs of which it is counted why they are not feasible: [`SAMPLE`], or fewer of a slow model. Part of every result.
     pub sample: u64,
-    /// The formula on a device; `None`: it is computed in f64 on the processor only.
-    pub shader: Option<Shader>,
+    /// May it be computed on a GPU? Its shader is written from the recorded formula; without one it is computed on the CPU only.
+    pub on_gpu: bool,
     /// What a person should know of a whole study's answer, given the values of the inputs that no axis sets.
     pub remarks: Option<Remarks>,
     /// What a person should know of one evaluation besides its numbers.
@@ -92,13 +74,13 @@ impl Model {
         self.outputs.iter().position(|output| output.name == name)
     }
 
-    /// Its formula on a device.
+    /// Its formula as it is written for a GPU.
     ///
     /// # Errors
-    /// [`Error::CpuOnly`] if the model is computed on the processor only.
-    pub fn on_device(&self) -> Result<Device<'_>> {
-        let device = self.shader.and_then(|shader| Some(Device { formula: self.kernel.formula()?, shader }));
-        device.ok_or_else(|| Error::CpuOnly { model: self.name.clone(), remedy: None })
+    /// [`Error::CpuOnly`] if the model is computed on the CPU only.
+    pub fn on_device(&self) -> Result<&dyn Recordable> {
+        let formula = self.kernel.formula().filter(|_| self.on_gpu);
+        formula.ok_or_else(|| Error::CpuOnly { model: self.name.clone(), remedy: None })
     }
 
     /// The defaults of all inputs, in their units.
@@ -173,7 +155,7 @@ impl Model {
             starter: String::new(),
             effort: Effort { prepare: 1e-6, finish: 1e-8 },
             sample: SAMPLE,
-            shader: kernel.formula().map(|_| Shader::Recorded),
+            on_gpu: kernel.formula().is_some(),
             kernel: Arc::new(kernel),
             remarks: None,
             notes: None,

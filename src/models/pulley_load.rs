@@ -19,7 +19,7 @@
 
 use super::description::{Condition, Effort, Input, Output, Profile, ProfileColumn, Range, SAMPLE, Worse};
 use super::formula::{Formula, record};
-use super::model::{Model, Shader};
+use super::model::Model;
 use crate::real::Real;
 use crate::tape::{Fields, Set};
 use crate::units::{
@@ -227,7 +227,7 @@ pub fn model() -> Model {
         remarks: None,
         effort: Effort { prepare: 2e-7, finish: 2e-9 },
         sample: SAMPLE,
-        shader: Some(Shader::Recorded),
+        on_gpu: true,
     }
 }
 

@@ -83,7 +83,7 @@ pub(crate) fn watched(pause: Duration, idle: usize) -> (Arc<Model>, Arc<Watched>
     let kernel = Watched { inner: model.kernel.clone(), pause, idle, prepared, blocks, threads: Mutex::default(), stop: OnceLock::new() };
     let kernel = Arc::new(kernel);
     let effort = Effort { prepare: pause.as_secs_f64(), finish: 1e-8 };
-    (Arc::new(Model { kernel: kernel.clone(), effort, sample: 50, shader: None, ..Model::clone(&model) }), kernel)
+    (Arc::new(Model { kernel: kernel.clone(), effort, sample: 50, on_gpu: false, ..Model::clone(&model) }), kernel)
 }
 
 /// Words of an enumeration, for tests where no model needs them.

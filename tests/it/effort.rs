@@ -19,7 +19,7 @@ pub fn is_slow(model: &Model) -> bool {
 #[test]
 fn formulas_are_tried_as_often_as_wanted_and_solvers_less() {
     for model in models::all() {
-        assert_eq!(is_slow(model), model.shader.is_none(), "{}", model.name);
+        assert_eq!(is_slow(model), !model.on_gpu, "{}", model.name);
         assert!(evaluations(model, 20_000) == 20_000 || is_slow(model), "{}", model.name);
         assert!(evaluations(model, 10) == 10, "{}: too slow for any test", model.name);
     }

@@ -459,7 +459,7 @@ pub fn model() -> Model {
         ],
         starter: include_str!("../../../studies/pulley-thickness.toml").into(),
         kernel: Arc::new(Pulley),
-        shader: None,
+        on_gpu: false,
         effort: Effort { prepare: 8e-3, finish: 7e-4 },
         // The sample costs as much as the sweep of so many designs.
         sample: 4096,

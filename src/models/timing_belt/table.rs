@@ -2,7 +2,7 @@
 
 use super::super::description::{Condition, Effort, Input, Output, Preset, Range, SAMPLE, Worse};
 use super::super::evaluation::{Evaluation, Status};
-use super::super::model::{Model, Shader};
+use super::super::model::Model;
 use super::{Inputs, OUT, SPACE, TimingBelt, profile};
 use crate::units::{DEGREE, GIGAPASCAL, GRAM, MICROMETRE_PER_NEWTON, MILLIMETRE, NEWTON, NONE, RPM, SQUARE_MILLIMETRE, Unit};
 use Worse::{Higher, Lower};
@@ -222,7 +222,7 @@ pub fn model() -> Model {
         remarks: Some(Arc::new(remarks)),
         effort: Effort { prepare: 1e-6, finish: 1e-8 },
         sample: SAMPLE,
-        shader: Some(Shader::Recorded),
+        on_gpu: true,
     }
 }
 

@@ -174,7 +174,7 @@ impl KernelLayout {
     /// [`Error::NotOnDevice`] if it cannot be screened on a device, and why.
     pub fn new(plan: &Plan, limited_loops: bool, grouped: bool) -> Result<Self> {
         let model = &plan.study.model;
-        let formula = model.on_device()?.formula;
+        let formula = model.on_device()?;
         let fields = formula.fields();
         let scenarios = [&plan.slow_scenarios, &plan.fast_scenarios].map(Product::count);
         let iterations = scenarios[0].saturating_mul(scenarios[1] + 1).saturating_mul(1 + fields.iterations);

@@ -28,7 +28,7 @@ fn assert_kept(report: &Report, what: &str) {
 
 #[test]
 fn no_error_of_any_output_exceeds_a_quarter_of_its_bound() {
-    for model in models::all().iter().filter(|model| model.shader.is_some()) {
+    for model in models::all().iter().filter(|model| model.on_gpu) {
         let kernel = kernel(model);
         let report = compare(&kernel, model, &[], &points_of_model(model, 150_000, 1)).expect("the device works");
         assert_kept(&report, &model.name);
@@ -74,7 +74,7 @@ fn a_device_that_flushes_reciprocals_keeps_the_error_bounds() {
     // As some hardware divides: by a product with the reciprocal, which is flushed to zero for divisors above 2^126. No model comes
     // near the other end, 2^-126, for which src/tape/error_bound.rs has a test.
     let flushed = "let inverse = 1.0 / b.value;\n    let quotient = a.value * select(inverse, 0.0, abs(inverse) < FLUSH);";
-    for model in models::all().iter().filter(|model| model.shader.is_some()) {
+    for model in models::all().iter().filter(|model| model.on_gpu) {
         let source = with(&PointKernel::source(model, &[]).expect("it has a kernel"), "let quotient = a.value / b.value;", flushed);
         let compared = |source: &str| {
             let kernel = PointKernel::from_source(&device().device, model, source).expect("the kernel compiles");

@@ -52,7 +52,7 @@ fn a_wrong_constant_in_a_shader_is_noticed() {
 
 #[test]
 fn a_shrunken_error_bound_is_noticed() {
-    for model in models::all().iter().filter(|model| model.shader.is_some()) {
+    for model in models::all().iter().filter(|model| model.on_gpu) {
         let report = compared(model, "inherited + (abs(value) * relative + FLUSH)", "0.02 * (inherited + abs(value) * relative)");
         assert_objects(&report, &model.name);
         let broken = report.outputs.iter().filter(|it| it.broken > 0).count();
@@ -62,7 +62,7 @@ fn a_shrunken_error_bound_is_noticed() {
 
 #[test]
 fn every_output_that_is_perturbed_is_named() {
-    for model in models::all().iter().filter(|model| model.shader.is_some()) {
+    for model in models::all().iter().filter(|model| model.on_gpu) {
         let points = points_of_model(model, 4000, 4);
         let clean = compare(&PointKernel::new(&device().device, model, &[]).expect("it compiles"), model, &[], &points).expect("it works");
         // All at once: each must be noticed by itself. The error bound of a whole number is 0.

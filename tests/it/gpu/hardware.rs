@@ -34,7 +34,7 @@ fn hardware_gives_the_answers_of_f64() {
 #[ignore = "needs a GPU in hardware: cargo test --test it -- --ignored gpu::hardware"]
 fn hardware_keeps_the_error_bounds_of_every_model() {
     let device = hardware();
-    for model in models::all().iter().filter(|model| model.shader.is_some()) {
+    for model in models::all().iter().filter(|model| model.on_gpu) {
         let kernel = PointKernel::new(&device.device, model, &[]).expect("the kernel compiles");
         let report = compare(&kernel, model, &[], &points_of_model(model, 150_000, 1)).expect("the device works");
         report.require().unwrap_or_else(|error| panic!("{}: {error}", model.name));

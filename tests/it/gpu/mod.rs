@@ -96,7 +96,7 @@ fn shipped() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("studies");
     let mut paths: Vec<_> = std::fs::read_dir(folder).expect("studies are shipped").map(|it| it.expect("it is listed").path()).collect();
     paths.retain(|path| path.extension().is_some_and(|it| it == "toml"));
-    paths.retain(|path| Study::read(path).expect("a shipped study is right").0.model.shader.is_some());
+    paths.retain(|path| Study::read(path).expect("a shipped study is right").0.model.on_gpu);
     paths.sort();
     assert!(paths.len() >= 4);
     paths

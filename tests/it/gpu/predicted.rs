@@ -6,7 +6,7 @@ use crate::numbers::{meaningful_si, run_over, si};
 use crate::physics::{Region, draw};
 use crate::random::Random;
 use beltspace::gpu::PointKernel;
-use beltspace::models::{self, CONDITION_PROMISE, Model, Shader};
+use beltspace::models::{self, CONDITION_PROMISE, Model};
 use beltspace::plan::Plan;
 use beltspace::study::Study;
 use beltspace::tape::RunningError;
@@ -74,7 +74,7 @@ fn compared(model: &Arc<Model>, designs: &[Vec<f64>], divisor: f64) -> Compared 
 }
 
 fn recorded() -> impl Iterator<Item = &'static Arc<Model>> {
-    models::all().iter().filter(|model| model.shader == Some(Shader::Recorded))
+    models::all().iter().filter(|model| model.on_device().is_ok())
 }
 
 /// Random designs of a model.
@@ -104,7 +104,7 @@ fn what_a_device_computes_of_the_shipped_studies_lies_within_the_bounds_of_the_r
     let mut studies = 0;
     for path in shipped() {
         let (study, _) = Study::read(&path).expect("the study is right");
-        if study.model.shader != Some(Shader::Recorded) {
+        if study.model.on_device().is_err() {
             continue;
         }
         studies += 1;

@@ -13,7 +13,7 @@ const DESIGNS: usize = 20_000;
 
 /// The models with a GPU implementation.
 fn on_a_device() -> impl Iterator<Item = &'static Arc<Model>> {
-    models::all().iter().filter(|model| model.shader.is_some())
+    models::all().iter().filter(|model| model.on_gpu)
 }
 
 /// A design in f32 arithmetic: is its status ok, and each output with its error bound in SI units.

@@ -124,7 +124,7 @@ fn check_all_ways(seed: u64, text: &str, study: Study, evaluated: &Evaluated) ->
             panic!("seed {seed}: {name} differs with {way}");
         }
     }
-    if plan.study.model.shader.is_some() {
+    if plan.study.model.on_gpu {
         let (state, files) = pipeline.on_device(seed.is_multiple_of(2), &folder.path().join("device"));
         assert_eq!(state.feasible, reference_state.feasible, "seed {seed}: on the device");
         if let Some(name) = differing_file(&reference, &files) {

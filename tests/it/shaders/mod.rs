@@ -3,7 +3,7 @@
 //! `shaders/write` writes them again.
 
 use beltspace::gpu::PointKernel;
-use beltspace::models::{self, Model, Set, Shader};
+use beltspace::models::{self, Model, Set};
 use beltspace::real::Place;
 use beltspace::tape::{Binary, List, Node, Operation, Recording, Rolled, RolledLoop, Root, Store, Unary, wgsl};
 use loops::{Held, Whole};
@@ -29,7 +29,7 @@ fn expected(model: &Model) -> String {
 }
 
 fn recorded() -> impl Iterator<Item = &'static Arc<Model>> {
-    models::all().iter().filter(|model| model.shader == Some(Shader::Recorded))
+    models::all().iter().filter(|model| model.on_gpu)
 }
 
 #[test]
