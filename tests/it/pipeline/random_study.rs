@@ -53,11 +53,12 @@ impl Draft {
         let turn = seed as usize;
         // A solver is too slow for studies of this size: it has one of its own.
         let models: Vec<_> = models::all().iter().filter(|model| !is_slow(model)).collect();
-        let model = models[turn % models.len()];
+        // A large one now and then, of a model of which enough designs are feasible: only those give the front a head start.
+        let large = turn % 20 == 7;
+        let of_large = models.iter().position(|model| model.name == "pulley-load").expect("it is a formula");
+        let model = models[if large { of_large } else { turn % models.len() }];
         let mut generator = Generator { random, model: model.clone(), joint_designs: !for_bounds };
         let sampled = turn.is_multiple_of(4) && !for_bounds;
-        // A large one now and then: only those give the front a head start. No number of models divides the period, so each has its turn.
-        let large = turn % 19 == 13;
         let designs = match turn % 6 {
             0 if for_bounds => generator.random.log_between(3e4, 2e5),
             _ if for_bounds => generator.random.log_between(1.0, 3e4),
