@@ -4,7 +4,7 @@
 //! of the slow axes with all combinations of the fast ones. An output that depends on no fast design axis is one number for the whole row,
 //! so it is evaluated once per row and scenario and never in the inner loop.
 
-use crate::models::{Effort, Reach, Worse, input_to_si};
+use crate::models::{Dependencies, Effort, Worse, input_to_si};
 use crate::space::{Product, Space};
 pub use crate::study::worst_end;
 use crate::study::{Quantity, Study};
@@ -77,7 +77,7 @@ pub struct Plan {
     /// Conditions evaluated for every design and scenario.
     pub lane_conditions: Vec<usize>,
     /// Which inputs each output and condition depends on.
-    pub reach: Reach,
+    pub dependencies: Dependencies,
 }
 
 /// The worst end: that of the objective, else that of the report's use of the quantity, else that of the model.
@@ -102,12 +102,12 @@ impl Plan {
     /// Plans a study.
     pub fn new(study: Study) -> Self {
         let space = Space::new(&study);
-        let reach = study.model.kernel.reach(&knowns(&study, &space));
-        let (slow, fast) = space.designs.split(reach.prepared);
+        let dependencies = study.model.kernel.dependencies(&knowns(&study, &space));
+        let (slow, fast) = space.designs.split(dependencies.prepared);
         // The values of the fast axes are tabulated: axes that would make the table too large are treated like slow ones.
         let (outer, fast) = fast.narrow(FAST_DESIGNS);
         let slow = slow.with(&outer);
-        let (slow_scenarios, fast_scenarios) = space.scenarios.split(reach.prepared);
+        let (slow_scenarios, fast_scenarios) = space.scenarios.split(dependencies.prepared);
         let lane_inputs = fast.inputs();
         let mut row_outputs = Set::EMPTY;
         let mut lane_outputs = Vec::new();
@@ -117,7 +117,7 @@ impl Plan {
             Quantity::Input(input) => Source::RowInput(input),
             Quantity::Output(output) => {
                 used_outputs.insert(output);
-                if !reach.outputs[output].meets(lane_inputs) {
+                if !dependencies.outputs[output].meets(lane_inputs) {
                     row_outputs.insert(output);
                     Source::RowOutput(output)
                 } else {
@@ -144,7 +144,7 @@ impl Plan {
                 || condition.invalidates.iter().filter_map(|name| model.output(name)).any(|output| used_outputs.contains(output))
         };
         let (row_conditions, lane_conditions) =
-            (0..model.conditions.len()).filter(matters).partition(|&number| !reach.conditions[number].meets(lane_inputs));
+            (0..model.conditions.len()).filter(matters).partition(|&number| !dependencies.conditions[number].meets(lane_inputs));
         Self {
             slow,
             fast,
@@ -157,7 +157,7 @@ impl Plan {
             lane_outputs,
             row_conditions,
             lane_conditions,
-            reach,
+            dependencies,
             space,
             study,
         }
@@ -235,9 +235,9 @@ impl Plan {
         let asked = asked.chain(study.constraints.iter().map(|it| it.quantity)).chain(study.report.columns.iter().copied());
         let quantities = asked.map(|quantity| match quantity {
             Quantity::Input(input) => Set::one(input),
-            Quantity::Output(output) => self.reach.outputs[output],
+            Quantity::Output(output) => self.dependencies.outputs[output],
         });
-        let conditions = self.row_conditions.iter().chain(&self.lane_conditions).map(|&condition| self.reach.conditions[condition]);
+        let conditions = self.row_conditions.iter().chain(&self.lane_conditions).map(|&condition| self.dependencies.conditions[condition]);
         let mattering: Set = quantities.chain(conditions).collect();
         let shown = study.report.axes();
         let inert = |axis: &usize| study.design[*axis].inputs().iter().all(|&input| !mattering.contains(input));

@@ -5,7 +5,7 @@
 use crate::decision::Decision;
 use crate::error::{Error, Result};
 use crate::gpu::PointKernel;
-use crate::models::{CONDITION_PROMISE, Condition, Input, Model, Set, evaluate, holds, judge, to_si};
+use crate::models::{CONDITION_BOUND_FACTOR, Condition, Input, Model, Set, evaluate, holds, judge, to_si};
 use crate::plan::Plan;
 use crate::sample::mix;
 use crate::study::{Constraint, Quantity};
@@ -113,7 +113,7 @@ impl Random {
 
 /// A value of an input's usual range: an end of it, the default, or anything between, evenly or in the logarithm.
 fn usual(input: &Input, random: &mut Random) -> f64 {
-    if input.processor_only {
+    if input.cpu_only {
         return input.default;
     }
     let (low, high) = input.usual;
@@ -221,7 +221,7 @@ pub fn compare(kernel: &PointKernel, model: &Model, constraints: &[Constraint], 
         let point = || describe(model, inputs);
         for (number, output) in model.outputs.iter().enumerate() {
             if present.contains(number) && exact[number].is_finite() {
-                let bounded = RunningError { value: values[number].value, bound: values[number].bound * output.promise };
+                let bounded = RunningError { value: values[number].value, bound: values[number].bound * output.bound_factor };
                 outputs[number].take(bounded, exact[number], on_boundary, |found| {
                     let in_unit = |value: f64| output.unit.from_si(value);
                     (in_unit(found.0), in_unit(exact[number]), in_unit(found.1), point())
@@ -230,7 +230,7 @@ pub fn compare(kernel: &PointKernel, model: &Model, constraints: &[Constraint], 
         }
         let mut sure = Decision::Yes;
         for (number, condition) in model.conditions.iter().enumerate() {
-            let bounded = RunningError { value: margins[number].value, bound: margins[number].bound * CONDITION_PROMISE };
+            let bounded = RunningError { value: margins[number].value, bound: margins[number].bound * CONDITION_BOUND_FACTOR };
             conditions[number]
                 .take(bounded, exact_margins[number], on_boundary, |found| (found.0, exact_margins[number], found.1, point()));
             if !condition.quiet || takes_away(model, condition, constraints) {
@@ -242,7 +242,7 @@ pub fn compare(kernel: &PointKernel, model: &Model, constraints: &[Constraint], 
             let Quantity::Output(output) = constraint.quantity else { continue };
             let unit = model.outputs[output].unit;
             ok &= present.contains(output) && constraint.holds(unit.from_si(exact[output]));
-            let (value, bound) = (f64::from(values[output].value), values[output].bound * model.outputs[output].promise);
+            let (value, bound) = (f64::from(values[output].value), values[output].bound * model.outputs[output].bound_factor);
             let sides = [constraint.low.map(|low| (low, 1.0)), constraint.high.map(|high| (high, -1.0))];
             for ((limit, strict), side) in sides.into_iter().flatten() {
                 let margin = side * (value - unit.to_si(limit));

@@ -4,7 +4,7 @@
 // The answers (NO, UNSURE and YES of src/gpu/constants.rs) are ordered so that "both must hold" is `min`: a sure no wins over an unsure,
 // an unsure over a yes.
 
-// A number with its running error bound times a factor; see `promise` in src/models.
+// A number with its running error bound times a factor; see `bound_factor` in src/models.
 fn bounded(number: Real, factor: f32) -> Real {
     return Real(number.value, number.bound * factor);
 }

@@ -9,14 +9,16 @@ fn prepare(i: Inputs) -> Prepared {
     let rigidity = mul(mul(mul(i.cord_modulus, i.cord_area), i.tooth_compliance), meshed);
     let n43 = cos_(i.pressure_angle);
     let n44 = add(i.pressure_angle, lift);
+    let free_stretch = div(add(land, i.tooth_length), rigidity); // (13)
+    let lifted_in = div(cos_(add(i.space_half_angle, lift)), meshed);
+    let lifted_apart = div(mul(twice(sin_(i.space_half_angle)), sin_(lift)), meshed);
     let land_ratio = sub(constant(1.0), lost);
     let stretch = div(add(mul(land, div(lost, around)), i.tooth_length), rigidity); // (5), (7)
-    let free_stretch = div(add(land, i.tooth_length), rigidity); // (13)
     let tight_cosine = div(cos_(i.tight_span_angle), meshed);
     let slack_cosine = div(cos_(i.slack_span_angle), meshed);
-    let lifted_in = div(cos_(add(i.space_half_angle, lift)), meshed);
     let lifted_out = div(cos_(sub(i.space_half_angle, lift)), meshed);
-    let lifted_apart = div(mul(twice(sin_(i.space_half_angle)), sin_(lift)), meshed);
+    let stretch_per_in = div(free_stretch, lifted_in);
+    let out_per_in = add(constant(1.0), div(lifted_apart, lifted_in));
     let flank = div(n43, meshed);
     let lifted_flank = div(add(cos_(n44), mul(i.friction, sin_(n44))), meshed);
     let inwards = sin_(add(i.space_half_angle, i.land_half_angle));
@@ -35,29 +37,27 @@ fn prepare(i: Inputs) -> Prepared {
     var of_tight = constant(0.0);
     var place_0 = 1u;
     for (; place_0 < end_0; place_0++) {
-        let n87 = add(stretch, mul(land_ratio, short_before));
-        let n88 = add(constant(1.0), n87);
-        let n89 = div(constant(1.0), n88);
-        let n95 = mul(
+        let n90 = add(stretch, mul(land_ratio, short_before));
+        let n91 = add(constant(1.0), n90);
+        let n92 = div(constant(1.0), n91);
+        let n98 = mul(
             mul(select_(sub(constant(1.5), constant(f32(place_0))), tight_cosine, land_ratio), tight_before),
-            n89,
+            n92,
         );
-        let n96 = div(n87, n88);
-        let n97 = add(own, constant(1.0));
-        let n98 = mul(n97, n89);
-        let n100 = add(mul(n97, n95), of_tight);
-        after[place_0 + 1u] = n89;
-        tight[place_0 + 1u] = n95;
-        short[place_0 + 1u] = n96;
-        meshed_own[place_0 + 1u] = n98;
-        meshed_tight[place_0 + 1u] = n100;
-        tight_before = n95;
-        short_before = n96;
-        own = n98;
-        of_tight = n100;
+        let n99 = div(n90, n91);
+        let n100 = add(own, constant(1.0));
+        let n101 = mul(n100, n92);
+        let n103 = add(mul(n100, n98), of_tight);
+        after[place_0 + 1u] = n92;
+        tight[place_0 + 1u] = n98;
+        short[place_0 + 1u] = n99;
+        meshed_own[place_0 + 1u] = n101;
+        meshed_tight[place_0 + 1u] = n103;
+        tight_before = n98;
+        short_before = n99;
+        own = n101;
+        of_tight = n103;
     }
-    let n161 = div(free_stretch, lifted_in);
-    let n163 = add(constant(1.0), div(lifted_apart, lifted_in));
     let n167 = div(tight_cosine, lifted_in);
     let end_1 = min(whole(i.teeth_in_mesh), 60u);
     var tension_tight = constant(0.0);
@@ -77,33 +77,33 @@ fn prepare(i: Inputs) -> Prepared {
         let place_1 = left_1 - 1u;
         let is_last = sub(plus_whole(constant(f32(place_1)), constant(1.5)), i.teeth_in_mesh);
         let after_first = sub(constant(f32(place_1)), constant(0.5));
-        let n121 = after[place_1 + 1u];
-        let n122 = tight[place_1 + 1u];
-        let n123 = select_(is_last, constant(0.0), tension_tight);
-        let n124 = select_(is_last, constant(1.0), tension_slack);
-        let n131 = select_(after_first, select_(is_last, n122, add(mul(n121, n123), n122)), constant(1.0));
-        let n132 = select_(after_first, select_(is_last, mul(slack_cosine, n121), mul(n121, n124)), constant(0.0));
-        let n133 = select_(after_first, land_ratio, constant(1.0));
+        let n124 = after[place_1 + 1u];
+        let n125 = tight[place_1 + 1u];
+        let n126 = select_(is_last, constant(0.0), tension_tight);
+        let n127 = select_(is_last, constant(1.0), tension_slack);
+        let n134 = select_(after_first, select_(is_last, n125, add(mul(n124, n126), n125)), constant(1.0));
+        let n135 = select_(after_first, select_(is_last, mul(slack_cosine, n124), mul(n124, n127)), constant(0.0));
+        let n136 = select_(after_first, land_ratio, constant(1.0));
         let force = select_(
             is_last,
-            mul(select_(after_first, land_ratio, tight_cosine), n131),
-            add(behind, mul(stretch, n123)),
+            mul(select_(after_first, land_ratio, tight_cosine), n134),
+            add(behind, mul(stretch, n126)),
         );
-        let n140 = short[place_1 + 1u];
+        let n143 = short[place_1 + 1u];
         let load_tight = div(force, flank);
         let load_slack = div(
             neg(
                 mul(
-                    mul(select_(is_last, slack_cosine, constant(1.0)), n124),
-                    select_(after_first, add(mul(lost, n121), n140), constant(1.0)),
+                    mul(select_(is_last, slack_cosine, constant(1.0)), n127),
+                    select_(after_first, add(mul(lost, n124), n143), constant(1.0)),
                 ),
             ),
             flank,
         );
-        let n165 = add(n161, mul(n163, short_behind));
+        let n165 = add(stretch_per_in, mul(out_per_in, short_behind));
         let n166 = add(constant(1.0), n165);
         let n169 = div(select_(after_first, constant(1.0), n167), n166);
-        let n171 = div(mul(n163, sigma), n166);
+        let n171 = div(mul(out_per_in, sigma), n166);
         let n177 = select_(is_last, constant(1.0), n171);
         let n179 = select_(is_last, constant(1.0), div(n165, n166));
         let n180 = select_(is_last, constant(1.0), mul(last_in_tight, n169));
@@ -129,8 +129,8 @@ fn prepare(i: Inputs) -> Prepared {
         let n214 = div(n212, lifted_flank);
         let n217 = add(n210, mul(t_star_tight, free_stretch));
         let n218 = add(n212, mul(t_star_slack, free_stretch));
-        set_inward_tight(place_1, add(mul(add(mul(n131, n133), n123), inwards), mul(load_tight, load_inwards)));
-        set_inward_slack(place_1, add(mul(add(mul(n132, n133), n124), inwards), mul(load_slack, load_inwards)));
+        set_inward_tight(place_1, add(mul(add(mul(n134, n136), n126), inwards), mul(load_tight, load_inwards)));
+        set_inward_slack(place_1, add(mul(add(mul(n135, n136), n127), inwards), mul(load_slack, load_inwards)));
         set_star_tight(place_1, t_star_tight);
         set_star_slack(place_1, t_star_slack);
         set_first_tight(
@@ -146,11 +146,14 @@ fn prepare(i: Inputs) -> Prepared {
         set_before_tight(place_1, select_(after_first, div(n217, flank), n213));
         set_before_slack(place_1, select_(after_first, div(n218, flank), n214));
         set_last_tight(place_1, div(mul(t_star_tight, n201), lifted_flank));
-        set_last_slack(place_1, div(add(mul(t_star_slack, n201), mul(lifted_in, sub(n181, n163))), lifted_flank));
+        set_last_slack(
+            place_1,
+            div(add(mul(t_star_slack, n201), mul(lifted_in, sub(n181, out_per_in))), lifted_flank),
+        );
         let next_1_5 = select_(is_last, load_tight, last_load_tight);
         let next_1_6 = select_(is_last, load_slack, last_load_slack);
-        tension_tight = n131;
-        tension_slack = n132;
+        tension_tight = n134;
+        tension_slack = n135;
         behind = force;
         first_load_tight_1 = load_tight;
         first_load_slack_1 = load_slack;
@@ -188,21 +191,21 @@ fn prepare(i: Inputs) -> Prepared {
 }
 
 fn conditions(p: Prepared, i: Inputs) -> array<Real, CONDITIONS> {
-    let end_2 = min(whole(p.teeth), 60u);
+    let end_0 = min(whole(p.teeth), 60u);
     var least = select_(
         p.teeth,
         add(mul(i.tight_tension, inward_tight(p, 0u)), mul(i.slack_tension, inward_slack(p, 0u))),
         constant(0.0),
     );
-    var place_2 = 1u;
-    for (; place_2 < end_2; place_2++) {
-        let n17 = inward_tight(p, place_2);
-        let n18 = inward_slack(p, place_2);
+    var place_0 = 1u;
+    for (; place_0 < end_0; place_0++) {
+        let n17 = inward_tight(p, place_0);
+        let n18 = inward_slack(p, place_0);
         least = min_(least, add(mul(i.tight_tension, n17), mul(i.slack_tension, n18)));
     }
     // A driver that ends long loops must not make a part of the iterations look like all of them.
-    let whole_2 = place_2 >= end_2;
-    let n23 = if_known(whole_2, least);
+    let whole_0 = place_0 >= end_0;
+    let n23 = if_known(whole_0, least);
     var margins: array<Real, CONDITIONS>;
     margins[0] = sub(i.tight_tension, i.slack_tension);
     margins[1] = p.lift_margin;
@@ -250,7 +253,7 @@ fn finish(p: Prepared, i: Inputs) -> Outputs {
         if is_zero(meshes) { break; }
     }
     // A driver that ends long loops must not make a part of the iterations look like all of them.
-    let whole_1 = place_1 >= end_1 || is_zero(meshes);
+    let whole_1 = (place_1 >= end_1) | is_zero(meshes);
     let n61 = if_known(whole_1, meshes);
     let n62 = if_known(whole_1, counted);
     let n63 = if_known(whole_1, before);

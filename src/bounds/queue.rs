@@ -16,7 +16,8 @@ pub struct Waiting {
     pub open: Vec<Open>,
     /// Per target: the scenarios in which it may be worst.
     pub covers: Vec<Arc<[Spans]>>,
-    /// How many times as large as what it mostly must be the product of both objectives may be; infinite where nobody knows.
+    /// The largest product of both objectives that its designs may have, over the least with which one fits between the front's points in
+    /// the middle of its range; infinite if unknown.
     pub surplus: f64,
 }
 

@@ -19,6 +19,8 @@ pub struct Device {
     queue: wgpu::Queue,
     /// The first thing that went wrong, from callbacks that may come at any time.
     failure: Arc<Mutex<Option<String>>>,
+    /// Held by who submits or waits: wgpu panics where one thread finds a submission finished while another looks for it.
+    one_at_a_time: Arc<Mutex<()>>,
     /// Of the adapter.
     pub name: String,
     /// Limits that it was opened with: all that the adapter has.
@@ -61,7 +63,7 @@ impl Device {
         }));
         let on_loss = keep(&failure);
         device.set_device_lost_callback(move |reason, message| on_loss(format!("it was lost ({reason:?}): {message}")));
-        Ok(Self { device, queue, failure, name: adapter.name.clone(), limits })
+        Ok(Self { device, queue, failure, one_at_a_time: Arc::default(), name: adapter.name.clone(), limits })
     }
 
     /// An error of this device.
@@ -133,6 +135,7 @@ impl Device {
     pub(crate) fn submit(&self, record: impl FnOnce(&mut wgpu::CommandEncoder)) -> Wait {
         let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         record(&mut encoder);
+        let _one = self.one_at_a_time.lock().unwrap_or_else(PoisonError::into_inner);
         Wait(self.queue.submit([encoder.finish()]))
     }
 
@@ -144,7 +147,9 @@ impl Device {
         let start = Instant::now();
         loop {
             let poll = wgpu::PollType::Wait { submission_index: Some(submission.0.clone()), timeout: Some(Duration::from_secs(1)) };
+            let one = self.one_at_a_time.lock().unwrap_or_else(PoisonError::into_inner);
             let done = self.device.poll(poll);
+            drop(one);
             self.check()?;
             match done {
                 Ok(_) => return Ok(()),
@@ -178,6 +183,7 @@ impl Device {
                 None if start.elapsed() > PATIENCE => return Err(self.error("its results do not arrive")),
                 None => {}
             }
+            let _one = self.one_at_a_time.lock().unwrap_or_else(PoisonError::into_inner);
             self.device.poll(wgpu::PollType::Poll).map_err(|error| self.error(error.to_string()))?;
             self.check()?;
         }

@@ -80,8 +80,8 @@ pub struct Input {
     pub only_for: Vec<String>,
     /// The input whose value its words stand for, if it is that simple: single designs show that value instead of the word.
     pub follows: Option<String>,
-    /// Does the twin know the default only? Then a study that sets it otherwise is for the processor.
-    pub processor_only: bool,
+    /// Is any other value than the default computed on the CPU only?
+    pub cpu_only: bool,
     /// What it is, in a sentence.
     pub doc: String,
     /// Where the default and the usual range come from.
@@ -110,7 +110,7 @@ impl Input {
             words: Vec::new(),
             only_for: Vec::new(),
             follows: None,
-            processor_only: false,
+            cpu_only: false,
             doc: doc.into(),
             source: source.into(),
         }
@@ -232,13 +232,13 @@ pub struct Output {
     /// The equation it comes from.
     pub source: String,
     /// How far f32 may be from f64, in units of its running error bound: at least four times the worst that was seen.
-    pub promise: f64,
+    pub bound_factor: f64,
     /// Are all its values whole numbers?
     pub integer: bool,
 }
 
 impl Output {
-    /// An output that is promised to its running error bound; a larger promise is set with [`Output::promising`].
+    /// An output whose error bound is the running one; a multiple of it is set with [`Output::with_bound_factor`].
     pub fn new(
         name: impl Into<String>,
         symbol: impl Into<String>,
@@ -248,13 +248,13 @@ impl Output {
         doc: impl Into<String>,
     ) -> Self {
         let [name, symbol, source, doc] = [name.into(), symbol.into(), source.into(), doc.into()];
-        Self { name, symbol, unit, worse, doc, source, promise: 1.0, integer: false }
+        Self { name, symbol, unit, worse, doc, source, bound_factor: 1.0, integer: false }
     }
 
-    /// The same output with another promise: where few roundings add up, some value comes close to the bound itself.
+    /// The same output with a multiple of the running error bound: where few roundings add up, some value comes close to the bound itself.
     #[must_use]
-    pub fn promising(self, promise: f64) -> Self {
-        Self { promise, ..self }
+    pub fn with_bound_factor(self, bound_factor: f64) -> Self {
+        Self { bound_factor, ..self }
     }
 
     /// The same output, whose values are whole numbers: a map of it has lines where it changes.
@@ -277,8 +277,8 @@ pub struct Effort {
 /// Most designs of which it is counted why they are not feasible, where a model has no reason for fewer.
 pub const SAMPLE: u64 = 65_536;
 
-/// What the margin of a condition is promised to, in units of its running error bound; some are single differences of inputs.
-pub const CONDITION_PROMISE: f64 = 4.5;
+/// The error bound of a condition's margin, in units of the running one; some are single differences of inputs.
+pub const CONDITION_BOUND_FACTOR: f64 = 4.5;
 
 /// A condition under which the formula, or a part of it, has a meaning: a signed margin that must not be negative.
 #[derive(Clone, Debug, PartialEq, Eq)]

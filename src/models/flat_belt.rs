@@ -190,7 +190,7 @@ pub fn model() -> Model {
                 Output::new("shaft_load_N", "", NEWTON, Higher, "resultant", "Force of the belt on either shaft while it runs."),
                 Output::new("belt_stress_MPa", "", MEGAPASCAL, Higher, "F1 / (b t)", "Tensile stress of the tight side."),
             ]
-            .map(|output| output.promising(SIMPLE)),
+            .map(|output| output.with_bound_factor(SIMPLE)),
         )
         .conditions([
             Condition::new(

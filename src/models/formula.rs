@@ -6,7 +6,7 @@ use crate::tape::{Fields, First, Known, List, Loops, Operation, Recordable, Reco
 
 /// A model's formula in two stages, over any [`Real`]. All values are in SI units.
 ///
-/// `prepare` holds what is dear (geometry, transcendental functions, solves) and should read as few inputs as the physics
+/// `prepare` holds what is expensive (geometry, transcendental functions, solves) and should read as few inputs as the physics
 /// allows: a sweep runs it once for every combination of the inputs that it reads. `finish` is the inner loop. What passes
 /// between them is [`Fields::prepared_len`] numbers. All slices are as long as [`Formula::FIELDS`] says, or longer; what is beyond
 /// belongs to others.
@@ -29,7 +29,7 @@ pub trait Formula {
 
 /// Which inputs each part of a formula depends on.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Reach {
+pub struct Dependencies {
     /// What the first stage reads and passes on.
     pub prepared: Set,
     /// Each output.
@@ -145,7 +145,7 @@ pub trait Kernel: Send + Sync {
         results: &mut [Vec<f64>],
     );
     /// What depends on what, given what is known of the inputs.
-    fn reach(&self, inputs: &[Known]) -> Reach;
+    fn dependencies(&self, inputs: &[Known]) -> Dependencies;
     /// The formula to be recorded; `None` if it is none over any number type.
     fn formula(&self) -> Option<&dyn Recordable> {
         None
@@ -220,7 +220,7 @@ fn finish<F: Formula>(prepared: &[Trace], inputs: &[Trace], wanted: Set, conditi
     [outputs, margins]
 }
 
-impl Reach {
+impl Dependencies {
     /// Of a formula that can be recorded.
     pub fn of(formula: &dyn Recordable, inputs: &[Known]) -> Self {
         let whole = formula.whole(inputs, Set::ALL, Set::ALL);
@@ -294,8 +294,8 @@ impl<F: Formula + Send + Sync> Kernel for F {
         }
     }
 
-    fn reach(&self, inputs: &[Known]) -> Reach {
-        Reach::of(self, inputs)
+    fn dependencies(&self, inputs: &[Known]) -> Dependencies {
+        Dependencies::of(self, inputs)
     }
 
     fn formula(&self) -> Option<&dyn Recordable> {

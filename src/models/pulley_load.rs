@@ -132,20 +132,29 @@ pub fn model() -> Model {
                     DEGREE,
                     45.0,
                     (0.0, 45.0),
-                    "Direction of friction from around the circumference (0) towards along the flank; the paper's is 45.",
+                    "Direction of friction, from around the circumference (0) to along the flank (90); the paper's is 45.",
                     "paper, (16)",
                 )
             },
         ],
         outputs: vec![
-            Output::new("belt_speed_m_per_s", "v", METRE_PER_SECOND, Higher, "(2)", "Speed of the belt.").promising(SIMPLE),
-            Output::new("tight_tension_N", "T_t", NEWTON, Higher, "(2), (15)", "Tension of the tight side.").promising(SIMPLE),
-            Output::new("effective_tension_N", "T_e", NEWTON, Higher, "T_t - T_s", "Tension that transmits the power.").promising(SIMPLE),
-            Output::new("centrifugal_tension_N", "T_c", NEWTON, Higher, "w v^2", "Tension that bends the moving belt and presses nothing.")
-                .promising(SIMPLE),
-            Output::new("effective_friction", "mu'", NONE, Higher, "(13)", "Friction of the wedge that the load needs.").promising(SIMPLE),
+            Output::new("belt_speed_m_per_s", "v", METRE_PER_SECOND, Higher, "(2)", "Speed of the belt.").with_bound_factor(SIMPLE),
+            Output::new("tight_tension_N", "T_t", NEWTON, Higher, "(2), (15)", "Tension of the tight side.").with_bound_factor(SIMPLE),
+            Output::new("effective_tension_N", "T_e", NEWTON, Higher, "T_t - T_s", "Tension that transmits the power.")
+                .with_bound_factor(SIMPLE),
+            Output::new(
+                "centrifugal_tension_N",
+                "T_c",
+                NEWTON,
+                Higher,
+                "w v^2",
+                "Tension that makes the moving belt follow its curve and does not press on the pulley.",
+            )
+            .with_bound_factor(SIMPLE),
+            Output::new("effective_friction", "mu'", NONE, Higher, "(13)", "Friction in the wedge that the load needs.")
+                .with_bound_factor(SIMPLE),
             Output::new("friction_used", "mu", NONE, Higher, "(12)", "Total coefficient of friction that the load needs.")
-                .promising(SIMPLE),
+                .with_bound_factor(SIMPLE),
             Output::new(
                 "friction_margin",
                 "",
@@ -154,10 +163,10 @@ pub fn model() -> Model {
                 "1 - friction_used/friction_limit",
                 "Distance to the available friction, relative.",
             )
-            .promising(SIMPLE),
-            Output::new("torque_Nm", "", NEWTON_METRE, Higher, "(T_t - T_s) R_b", "Torque on the pulley.").promising(SIMPLE),
+            .with_bound_factor(SIMPLE),
+            Output::new("torque_Nm", "", NEWTON_METRE, Higher, "(T_t - T_s) R_b", "Torque on the pulley.").with_bound_factor(SIMPLE),
             Output::new("resultant_force_N", "", NEWTON, Higher, "vectors T_t - T_c, T_s - T_c", "Force of the belt on the shaft.")
-                .promising(SIMPLE),
+                .with_bound_factor(SIMPLE),
             Output::new(
                 "slack_end_line_force_N_per_mm",
                 "Q(0)",
@@ -166,7 +175,7 @@ pub fn model() -> Model {
                 "(9)",
                 "Radial load per length at the slack end.",
             )
-            .promising(SIMPLE),
+            .with_bound_factor(SIMPLE),
             Output::new(
                 "tight_end_line_force_N_per_mm",
                 "Q(theta_w)",
@@ -175,7 +184,7 @@ pub fn model() -> Model {
                 "(9)",
                 "Radial load per length at the tight end.",
             )
-            .promising(SIMPLE),
+            .with_bound_factor(SIMPLE),
             Output::new(
                 "slack_end_flank_force_N_per_mm",
                 "R(0)",
@@ -184,7 +193,7 @@ pub fn model() -> Model {
                 "(10)",
                 "Normal force per flank and length at the slack end.",
             )
-            .promising(SIMPLE),
+            .with_bound_factor(SIMPLE),
             Output::new(
                 "tight_end_flank_force_N_per_mm",
                 "R(theta_w)",
@@ -193,7 +202,7 @@ pub fn model() -> Model {
                 "(10)",
                 "Normal force per flank and length at the tight end.",
             )
-            .promising(SIMPLE),
+            .with_bound_factor(SIMPLE),
         ],
         conditions: vec![
             Condition::new(
@@ -209,7 +218,7 @@ pub fn model() -> Model {
                     "slack_end_flank_force_N_per_mm",
                     "tight_end_flank_force_N_per_mm",
                 ],
-                "The slack tension exceeds the centrifugal tension: otherwise the belt lifts off.",
+                "The slack tension exceeds the centrifugal tension; otherwise the belt lifts off.",
             ),
             Condition::new(
                 "no friction balances the load",

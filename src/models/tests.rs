@@ -10,7 +10,7 @@ use std::sync::{Mutex, OnceLock};
 use std::thread::ThreadId;
 use std::time::Duration;
 
-/// The formula of `pulley-load` as a slow model without a twin would compute it, watched.
+/// The formula of `pulley-load` as a slow model without a GPU implementation would compute it, watched.
 pub(crate) struct Watched {
     inner: Arc<dyn Kernel>,
     /// How long the first stage sleeps.
@@ -71,8 +71,8 @@ impl Kernel for Watched {
         self.count(&self.blocks);
     }
 
-    fn reach(&self, inputs: &[Known]) -> Reach {
-        self.inner.reach(inputs)
+    fn dependencies(&self, inputs: &[Known]) -> Dependencies {
+        self.inner.dependencies(inputs)
     }
 }
 

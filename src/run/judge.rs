@@ -60,9 +60,9 @@ pub fn record_of(why: String, settler: Settler) -> MethodRecord {
         Settler::EveryDesign => record("exhaustive", None, None, why),
         Settler::Bounds(certificate) => record("bounds", Some(certificate), None, why),
         Settler::Both(left) => {
-            let (spent, share, judging) = (left.promise.spent, 100.0 * left.promise.settled, left.promise.judging);
+            let (spent, share, judging) = (left.forecast.spent, 100.0 * left.forecast.settled, left.forecast.judging);
             let expected =
-                if left.promise.bounds.is_finite() { format!("another {}", span(left.promise.bounds)) } else { "no end".to_owned() };
+                if left.forecast.bounds.is_finite() { format!("another {}", span(left.forecast.bounds)) } else { "no end".to_owned() };
             let why = format!(
                 "{why}; after {} bounds had done {} % of their work and expected {expected}, judging the rest one by one takes {}",
                 span(spent),

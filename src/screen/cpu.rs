@@ -251,7 +251,7 @@ impl<'p> CpuEngine<'p> {
         models::fill_si(&self.plan.study.model, &self.own, &mut self.si);
         self.row_index = self.plan.slow.source_index(row);
         // The outer of the axes that the first stage does not read is walked with the slow ones: rows along it share what is prepared.
-        let read = self.plan.reach.prepared & self.plan.slow.inputs();
+        let read = self.plan.dependencies.prepared & self.plan.slow.inputs();
         if (0..self.own.len()).any(|input| read.contains(input) && self.own[input] != before[input]) {
             self.kept = 0;
         }

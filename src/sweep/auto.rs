@@ -4,7 +4,7 @@
 //! that of every design judged one by one.
 
 use super::bounds::{Settling, settle};
-use super::costs::{Promise, Speed, why_every_design};
+use super::costs::{Forecast, Speed, why_every_design};
 #[cfg(feature = "gpu")]
 use super::gpu::go_on;
 #[cfg(not(feature = "gpu"))]
@@ -47,8 +47,8 @@ pub enum Settler {
 pub struct Left {
     /// What they were at.
     pub at: String,
-    /// What they promised then.
-    pub promise: Promise,
+    /// What was forecast then.
+    pub forecast: Forecast,
     /// Designs that they had counted; these are not judged again.
     pub counted: u64,
     /// Designs that were judged one by one afterwards.
@@ -58,7 +58,7 @@ pub struct Left {
 impl Left {
     /// As it stands in `run.json`.
     pub fn to_json(&self) -> Value {
-        let Promise { spent, settled, bounds, judging } = self.promise;
+        let Forecast { spent, settled, bounds, judging } = self.forecast;
         json!({
             "at": self.at, "seconds": spent, "settled_share": settled, "designs_counted": self.counted, "designs_judged": self.judged,
             // There is no number for what would never end.
@@ -114,7 +114,7 @@ pub fn sweep_auto(
     if let Some(found) = &remains.found {
         agree(found, &state)?;
     }
-    let left = Left { at: remains.at, promise: remains.promise, counted: remains.counted, judged };
+    let left = Left { at: remains.at, forecast: remains.forecast, counted: remains.counted, judged };
     Ok(done(state, Settler::Both(left), device))
 }
 

@@ -3,7 +3,7 @@
 //! A range counts as done when it is counted; the search comes first and covers all of it, so that whatever a checkpoint holds is as
 //! complete as that of a sweep design by design, and either may go on with the other's.
 
-use super::costs::Promise;
+use super::costs::Forecast;
 use super::watch::{Leaving, OFTEN, Teller, Watch};
 use super::{Control, Settings, SweepJob, SweepWork, Swept};
 use crate::bounds::{BoundedStudy, Certificate, SearchJob, Settled, Worker, in_words, refusal};
@@ -61,7 +61,7 @@ pub(super) enum Settling {
 
 /// What bounds leave behind.
 pub(super) struct Remains {
-    pub promise: Promise,
+    pub forecast: Forecast,
     /// What they were at.
     pub at: String,
     /// Designs that they counted.
@@ -125,8 +125,8 @@ fn settle_watched(
     let left = || watch.left().filter(|_| !control.stop.load(Ordering::Relaxed));
     let at = || control.settled_for().unwrap_or_default();
     if !searched {
-        let promise = left().ok_or_else(stopped)?;
-        return Ok(Settling::Left(Remains { promise, at: at(), counted: 0, found: None }));
+        let forecast = left().ok_or_else(stopped)?;
+        return Ok(Settling::Left(Remains { forecast, at: at(), counted: 0, found: None }));
     }
     // What was searched is final.
     options.check_budget(plan, &state)?;
@@ -144,9 +144,9 @@ fn settle_watched(
     work.save(&state)?;
     let counted = designs - work.todo.count();
     if counted < designs || control.stop.load(Ordering::Relaxed) {
-        let promise = left().ok_or_else(stopped)?;
+        let forecast = left().ok_or_else(stopped)?;
         adds_up(&certificate, counted, whole.end - whole.start)?;
-        return Ok(Settling::Left(Remains { promise, at: at(), counted, found: Some(state) }));
+        return Ok(Settling::Left(Remains { forecast, at: at(), counted, found: Some(state) }));
     }
     adds_up(&certificate, designs, whole.end - whole.start)?;
     certificate.compared = compare(job, layout, whole, &state)?;

@@ -19,7 +19,7 @@ const LARGEST: u64 = 1 << 16;
 const BRIEFLY: Duration = Duration::from_millis(100);
 /// Seconds that judging every design may take before bounds are thought of.
 const SHORT: f64 = 1.0;
-/// Bounds may take this fraction of the time that judging every design would take before they must promise anything: what is lost where they
+/// Bounds may take this fraction of the time that judging every design would take before a forecast decides about them: what is lost where they
 /// are left.
 pub const PATIENCE: f64 = 0.25;
 /// A count keeps what it has counted, and is judged by its own pace after this share.
@@ -29,7 +29,7 @@ const COUNT_PATIENCE: f64 = 0.1;
 const BURSTS: f64 = 0.4;
 /// The pace of late is that of the last half of the time.
 const RECENT: f64 = 0.5;
-/// Bounds that promise to end within so many times the time of judging every design stay: leaving them would take as long.
+/// Bounds that are expected to end within so many times the time of judging every design stay: leaving them would take as long.
 const TOLERANCE: f64 = 1.25;
 /// Seconds between two notes of the pace grow by this much.
 const SPACING: f64 = 1.05;
@@ -125,9 +125,9 @@ pub fn why_every_design(plan: &Plan, seconds: f64) -> Option<String> {
     }
 }
 
-/// What bounds promise, and judging one by one.
+/// How long bounds are expected to take, and judging one by one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Promise {
+pub struct Forecast {
     /// Seconds that bounds have taken.
     pub spent: f64,
     /// Share of what they are to settle that they had settled.
@@ -161,8 +161,8 @@ impl Pace {
     }
 }
 
-impl Promise {
-    /// Should bounds be left? They have taken so many seconds before what the promise is about; judging every design takes `whole`.
+impl Forecast {
+    /// Should bounds be left? They have taken so many seconds before what the forecast covers; judging every design takes `whole`.
     pub(super) fn is_poor(&self, whole: f64, counting_since: Option<f64>) -> bool {
         let patience = counting_since.map_or(PATIENCE * whole, |since| since + COUNT_PATIENCE * whole);
         self.spent > patience && self.bounds > self.judging && self.spent + self.bounds > TOLERANCE * whole
@@ -229,16 +229,16 @@ mod tests {
     }
 
     #[test]
-    fn bounds_are_left_where_they_promise_less_than_judging() {
-        let is_poor = |spent, bounds, judging| Promise { spent, settled: 0.1, bounds, judging }.is_poor(100.0, None);
+    fn bounds_are_left_where_judging_is_expected_to_be_faster() {
+        let is_poor = |spent, bounds, judging| Forecast { spent, settled: 0.1, bounds, judging }.is_poor(100.0, None);
         // Before a quarter of the time nobody asks.
         assert!(!is_poor(24.0, f64::INFINITY, 100.0) && is_poor(26.0, f64::INFINITY, 100.0));
         assert!(!is_poor(26.0, 98.0, 100.0) && is_poor(26.0, 101.0, 100.0));
         // A study of a day is not left because a minute settled nothing.
-        let day = Promise { spent: 60.0, settled: 0.0, bounds: f64::INFINITY, judging: 86_400.0 };
+        let day = Forecast { spent: 60.0, settled: 0.0, bounds: f64::INFINITY, judging: 86_400.0 };
         assert!(!day.is_poor(86_400.0, None));
         // A count is asked sooner, and what it has done counts: little is won by leaving it near the end.
-        let counting = |spent, bounds, judging| Promise { spent, settled: 0.9, bounds, judging }.is_poor(100.0, Some(5.0));
+        let counting = |spent, bounds, judging| Forecast { spent, settled: 0.9, bounds, judging }.is_poor(100.0, Some(5.0));
         assert!(!counting(14.0, 300.0, 100.0) && counting(16.0, 300.0, 100.0));
         assert!(!counting(60.0, 55.0, 50.0) && counting(60.0, 70.0, 50.0) && !counting(90.0, 300.0, 301.0));
     }

@@ -72,7 +72,7 @@ pub struct DeviceRecord {
 ///
 /// # Errors
 /// As [`sweep`](super::sweep); [`Error::Gpu`] if the device fails, the checkpoint then holding what was done before;
-/// [`Error::ErrorBound`] if f64 disagrees with what the device promises; [`Error::Request`] if it cannot serve the study.
+/// [`Error::ErrorBound`] if f64 finds a value outside a device's error bound; [`Error::Request`] if it cannot serve the study.
 pub fn sweep_on_device(
     plan: &Plan,
     tables: &Tables,
@@ -414,7 +414,7 @@ impl BestCells {
 fn known_equal(plan: &Plan, spec: &MapSpec, tracked: usize, design: u64) -> u64 {
     let depends = match plan.tracked[tracked].0.quantity {
         Quantity::Input(input) => Set::one(input),
-        Quantity::Output(output) => plan.reach.outputs[output],
+        Quantity::Output(output) => plan.dependencies.outputs[output],
     };
     let dimensions = plan.space.designs.dimensions().enumerate();
     let matters =

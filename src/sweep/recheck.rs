@@ -107,7 +107,7 @@ impl Recheckable {
     /// Compares tiles of a range.
     ///
     /// # Errors
-    /// [`Error::ErrorBound`] that names output, design, both values and the promise, or the count that differs.
+    /// [`Error::ErrorBound`] that names output, design, both values and the error bound, or the count that differs.
     pub fn new(
         plan: &Plan,
         tables: &Tables,

@@ -1,7 +1,7 @@
 //! Watches bounds at work: do they settle designs faster than judging each would?
 
 use super::Control;
-use super::costs::{Pace, Promise};
+use super::costs::{Forecast, Pace};
 use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -17,7 +17,7 @@ const SELDOM: Duration = Duration::from_millis(1);
 /// When bounds are left.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Leaving {
-    /// When judging the rest one by one promises to be faster.
+    /// When judging the rest one by one is expected to be faster.
     WhereTheyDoNotPay,
     /// When they have settled this fraction of their work, whatever time that took; for testing.
     After(f64),
@@ -38,7 +38,7 @@ pub struct Watch<'a> {
     settled: AtomicU64,
     stop: AtomicBool,
     pace: Mutex<(Pace, Option<Counting>)>,
-    left: Mutex<Option<Promise>>,
+    left: Mutex<Option<Forecast>>,
 }
 
 /// Tells a watch what one thread settles, not more often than it is worth.
@@ -107,8 +107,8 @@ impl<'a> Watch<'a> {
         self.leaving.is_some()
     }
 
-    /// The promise at which bounds were left.
-    pub fn left(&self) -> Option<Promise> {
+    /// The forecast at which bounds were left.
+    pub fn left(&self) -> Option<Forecast> {
         *self.left.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -167,14 +167,14 @@ impl<'a> Watch<'a> {
         let whole = self.seconds * self.count as f64;
         let judged = if counting.is_some() { own } else { 0.0 };
         let judging = self.seconds * (self.count as f64 - judged);
-        let promise = Promise { spent, settled: settled / all, bounds: pace.rest(time, own, rest, whole), judging };
+        let forecast = Forecast { spent, settled: settled / all, bounds: pace.rest(time, own, rest, whole), judging };
         let leaves = rest > 0.0
             && match leaving {
-                Leaving::WhereTheyDoNotPay => promise.is_poor(whole, counting.map(|it| it.since)),
-                Leaving::After(share) => promise.settled >= share,
+                Leaving::WhereTheyDoNotPay => forecast.is_poor(whole, counting.map(|it| it.since)),
+                Leaving::After(share) => forecast.settled >= share,
             };
         if leaves && !self.stop.swap(true, Ordering::Relaxed) {
-            *self.left.lock().unwrap_or_else(PoisonError::into_inner) = Some(promise);
+            *self.left.lock().unwrap_or_else(PoisonError::into_inner) = Some(forecast);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! An f32 value together with a bound on its distance from the exact result.
 //!
 //! The bound follows what WGSL permits a GPU to do, not what one GPU does: sums and products rounded once (contraction into a
-//! fused multiply-add only rounds less), division and square root several ULP, but no promise for divisors beyond 2^126 or
+//! fused multiply-add only rounds less), division and square root several ULP, but no accuracy at all for divisors beyond 2^126 or
 //! below 2^-126, subnormal numbers flushed to zero, inputs rounded to f32. Transcendental functions are allowed
 //! [`FUNCTION_ULP`] ULP of their own error.
 //! Bounds are carried in f64, where their own rounding is nine orders of magnitude below what they measure.
@@ -104,8 +104,8 @@ impl Div for RunningError {
         let size = f64::from(other.value).abs();
         let divisor = size - other.bound;
         let quotient = (f64::from(self.value) / f64::from(other.value)).abs();
-        let promised = divisor >= FLUSH && size <= LARGEST_DIVISOR;
-        let inherited = if promised { (self.bound + quotient * other.bound) / divisor } else { f64::INFINITY };
+        let is_accurate = divisor >= FLUSH && size <= LARGEST_DIVISOR;
+        let inherited = if is_accurate { (self.bound + quotient * other.bound) / divisor } else { f64::INFINITY };
         Self::rounded(self.value / other.value, inherited, DIVISION)
     }
 }

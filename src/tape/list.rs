@@ -1,6 +1,6 @@
 //! A recorded formula cut down to what is asked for, run over any number type.
 
-use super::{Binary, ListLoop, Node, Operation, Recording, Rolled, Root, Table};
+use super::{Binary, ListLoop, Node, Operation, Recording, Rolled, RolledLoop, Root, Table};
 use crate::real::Real;
 use std::cell::RefCell;
 use std::ops::BitOrAssign;
@@ -67,6 +67,12 @@ impl List {
     pub fn cut(recording: &Recording, asked: &[Option<Node>]) -> Self {
         let Recording { operations, roots, loops, tables, .. } = recording;
         let needed = needed(recording, asked);
+        let in_use = |loop_number: u8| {
+            let is_of = |operation: &Operation| matches!(operation, Operation::Rolled(rolled) if rolled.any_loop() == Some(loop_number));
+            operations.iter().zip(&needed).any(|(operation, needed)| *needed && is_of(operation))
+        };
+        let loops: Vec<(u8, &RolledLoop)> = (0..).zip(loops).filter(|(number, _)| in_use(*number)).collect();
+        let new_number = |old: u8| loops.iter().position(|(number, _)| *number == old).map_or(u8::MAX, |new| new as u8);
         let mut place = vec![Node::MAX; operations.len()];
         let mut list = Self { roots: roots.iter().map(|root| ListRoot { root: *root, inner: Vec::new() }).collect(), ..Self::default() };
         list.tables.clone_from(tables);
@@ -80,7 +86,7 @@ impl List {
                 Operation::Unary(kind, a) => Operation::Unary(kind, at(a)),
                 Operation::Binary(kind, a, b) => Operation::Binary(kind, at(a), at(b)),
                 Operation::Select(margin, a, b) => Operation::Select(at(margin), at(a), at(b)),
-                Operation::Rolled(rolled) => Operation::Rolled(rolled.map(at)),
+                Operation::Rolled(rolled) => Operation::Rolled(rolled.map(at).renumbered(new_number)),
                 other => other,
             };
             let mut within = 0;
@@ -106,16 +112,16 @@ impl List {
             arguments.push(within);
         }
         list.inner = arguments.iter().map(|&within| within != 0).collect();
-        let loops = loops.iter().zip(0..).map(|(it, number)| {
+        let kept = loops.iter().zip(0..).map(|((_, it), number)| {
             let inner =
                 (0..arguments.len()).filter(|&node| arguments[node] >> (LOOPS + number) & 1 == 1).map(|node| node as Node).collect();
             let used = (0..it.state.len() as u8).map(|at| {
                 let of_state = [Rolled::State(number, at), Rolled::Folded(number, at)].map(Operation::Rolled);
                 it.until_zero == Some(at) || list.operations.iter().any(|operation| of_state.contains(operation))
             });
-            ListLoop { recorded: it.map(|node| place[node as usize]), used: used.collect(), inner }
+            ListLoop { recorded: it.map(|node| place[node as usize], new_number), used: used.collect(), inner }
         });
-        list.loops = loops.collect();
+        list.loops = kept.collect();
         list.results = asked.iter().map(|node| node.map(|node| place[node as usize])).collect();
         list
     }

@@ -107,6 +107,27 @@ impl Rolled {
         }
     }
 
+    /// The same with other numbers for the loops.
+    #[must_use]
+    pub(super) fn renumbered(self, number: impl Fn(u8) -> u8) -> Self {
+        match self {
+            Self::Index(of) => Self::Index(number(of)),
+            Self::State(of, at) => Self::State(number(of), at),
+            Self::Folded(of, at) => Self::Folded(number(of), at),
+            Self::Written(of, table, before) => Self::Written(number(of), table, before),
+            Self::Get(table, place) => Self::Get(table, Place { of: place.of.map(number), ..place }),
+            Self::Table(..) | Self::PutLast(..) | Self::GetAt(..) | Self::Unknown => self,
+        }
+    }
+
+    /// The loop that it has to do with.
+    pub(super) fn any_loop(self) -> Option<u8> {
+        match self {
+            Self::Folded(of, _) | Self::Written(of, ..) => Some(of),
+            _ => self.inside(),
+        }
+    }
+
     /// The loop whose body it belongs to.
     pub fn inside(self) -> Option<u8> {
         match self {
@@ -136,11 +157,12 @@ impl Rolled {
 
 impl RolledLoop {
     /// The same with other nodes; numbers of the state and tables that nobody needs keep theirs.
-    pub(super) fn map(&self, at: impl Fn(Node) -> Node) -> Self {
+    pub(super) fn map(&self, at: impl Fn(Node) -> Node, number: impl Fn(u8) -> u8) -> Self {
+        let place = |place: Place| Place { of: place.of.map(&number), ..place };
         Self {
             end: at(self.end),
             state: self.state.iter().map(|&(begin, next)| (at(begin), at(next))).collect(),
-            stores: self.stores.iter().map(|store| Store { number: at(store.number), ..*store }).collect(),
+            stores: self.stores.iter().map(|store| Store { number: at(store.number), place: place(store.place), ..*store }).collect(),
             ..self.clone()
         }
     }

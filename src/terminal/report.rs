@@ -40,7 +40,7 @@ pub fn summary(outcome: &Certified<'_>, record: &RunRecord, out: &Path, page: Op
     }
     if let Some(left) = &record.method.left {
         let (counted, judged) = (grouped(left.counted), grouped(left.judged));
-        let spent = span(left.promise.spent);
+        let spent = span(left.forecast.spent);
         fact("bounds", format!("given up after {spent} ({}), with {counted} designs settled; {judged} were judged one by one", left.at));
     }
     if let Some(device) = &record.device {

@@ -2,7 +2,6 @@
 
 #[allow(dead_code, reason = "tests/library.rs runs its main")]
 #[path = "../../examples/own_model.rs"]
-#[allow(dead_code, reason = "its main is for those who run it")]
 mod example;
 
 use beltspace::checkpoint::{Checkpoint, Saved};
@@ -33,7 +32,7 @@ fn a_model_made_at_run_time_is_swept_kept_and_taken_up_again() {
     assert!((evaluation.outputs[0].expect("it has a value") - expected).abs() < 1e-9);
 
     let unknown = Study::parse_in(STUDY, "study.toml", ".".as_ref()).expect_err("the program does not know it").to_string();
-    assert!(unknown.contains("there is no model \"band-brake\""), "{unknown}");
+    assert!(unknown.contains("unknown model \"band-brake\""), "{unknown}");
     let study = Study::parse_with(&models, STUDY, "study.toml", ".".as_ref()).expect("it is right");
     assert_eq!(Study::from_description_with(&models, &study.describe()).expect("it comes back"), study);
     assert!(Study::from_description(&study.describe()).is_err());

@@ -140,7 +140,7 @@ pub fn draw(model: &Model, region: Region, random: &mut Random) -> Vec<f64> {
 pub fn slow_inputs(model: &Model) -> Set {
     let least = |table: &Input| table.words.iter().fold(0.0, |least: f64, (_, word)| word.min(least));
     let inputs: Vec<Known> = model.inputs.iter().map(|table| Known::Within(least(table), 1e9)).collect();
-    model.kernel.reach(&inputs).prepared
+    model.kernel.dependencies(&inputs).prepared
 }
 
 /// Presets whose first stage takes no longer than the model says. A solid section takes a hundred times as long: it is tried where

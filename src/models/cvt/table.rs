@@ -42,12 +42,12 @@ pub(in crate::models) fn groove_angle(default: f64, usual: (f64, f64), source: &
 
 /// Ratio of either belt.
 pub(in crate::models) fn ratio(usual: (f64, f64), source: &str) -> Input {
-    Input::new("ratio", "R", NONE, 1.0, usual, "Driven over driver radius; above 1 the driver runs on its small radius.", source)
+    Input::new("ratio", "R", NONE, 1.0, usual, "Driven radius over driver radius; above 1 the driver runs on its small radius.", source)
 }
 
 /// Traction of either belt; `default` may be [`LIMIT`].
 pub(in crate::models) fn traction(default: f64, source: &str) -> Input {
-    let doc = "Belt force difference over sum, (F1 - F2)/(F1 + F2), that the axial force is set for; \"limit\": the traction limit of the design.";
+    let doc = "Difference of the belt forces over their sum, (F1 - F2)/(F1 + F2), for which the axial force is set; \"limit\": the traction limit of the design.";
     Input {
         valid: Range::from_until(0.0, 1.0),
         ..Input::new("traction", "lambda", NONE, default, (0.05, 0.95), doc, source).with_words(&[("limit", LIMIT)])
@@ -64,7 +64,7 @@ pub(in crate::models) fn torque(default: f64, usual: (f64, f64)) -> Input {
 pub(in crate::models) fn condition_table() -> Vec<Condition> {
     vec![
         Condition::new("belt too short", true, NEEDS_GEOMETRY, "The belt is longer than twice the centre distance."),
-        Condition::new("no geometry", true, NEEDS_GEOMETRY, "Pulleys of this ratio exist whose belt has this length."),
+        Condition::new("no geometry", true, NEEDS_GEOMETRY, "A belt of this length fits around pulleys of this ratio."),
         Condition::new("pulleys overlap", true, NEEDS_GEOMETRY, "The radii add up to less than the centre distance."),
         Condition::new(
             "friction beyond the wedge",
@@ -77,7 +77,7 @@ pub(in crate::models) fn condition_table() -> Vec<Condition> {
                 "axial_force_N",
                 "capacity_axial_force_N",
             ],
-            "friction * tan(groove_angle/2) is below 1: beyond, the wedge would need no axial force.",
+            "friction * tan(groove_angle/2) is less than 1: otherwise the wedge would need no axial force.",
         ),
         Condition::new(
             "slip",
@@ -101,7 +101,7 @@ pub(in crate::models) fn condition_table() -> Vec<Condition> {
                 "printed_torque_coefficient_N_per_mm",
                 "entry_compression",
             ],
-            "The traction is at most the traction limit of the driven pulley: beyond, the belt slips as a whole.",
+            "The traction is at most the traction limit of the driven pulley: above it the whole belt slips.",
         ),
         Condition::new(
             "no traction",
@@ -116,7 +116,7 @@ pub(in crate::models) fn condition_table() -> Vec<Condition> {
                 "max_stress_MPa",
                 "stress_margin",
             ],
-            "A torque needs a traction above 0.",
+            "The traction is greater than 0, or there is no torque.",
         ),
         Condition::new("no entry compression", true, &["entry_compression"], "Without traction there is no compression to compare with.")
             .quiet(),
@@ -134,50 +134,52 @@ pub(in crate::models) fn output_table() -> Vec<Output> {
         Output::new("driver_wrap_deg", "theta_driver", DEGREE, Lower, "open belt", "Wrap angle on the driver pulley."),
         Output::new("driven_wrap_deg", "theta_driven", DEGREE, Lower, "open belt", "Wrap angle on the driven pulley."),
         Output::new("effective_friction", "mu_e", NONE, Lower, "mu/sin(a/2)", "Friction of the wedge against sliding along the belt.")
-            .promising(2.0),
+            .with_bound_factor(2.0),
         Output::new("traction_limit", "lambda_max", NONE, Lower, "(12), (13)", "Traction at which the belt slips on the driven pulley."),
         Output::new("driver_traction_limit", "", NONE, Lower, "(12), (13)", "Traction at which the belt would slip on the driver pulley."),
         Output::new("slip_margin", "", NONE, Lower, "1 - lambda/lambda_max", "Distance to gross slip, relative; 0 at the limit.")
-            .promising(2.0),
-        Output::new("active_arc_deg", "theta_a", DEGREE, Higher, "(12)", "Part of the driven wrap over which the belt force changes.")
-            .promising(4.5),
+            .with_bound_factor(2.0),
+        Output::new("active_arc_deg", "theta_a", DEGREE, Higher, "(12)", "Angle of the driven wrap over which the belt force changes.")
+            .with_bound_factor(4.5),
         Output::new(
             "driver_axial_coefficient",
             "S~_driver",
             NONE,
             Higher,
             "(4), (15)",
-            "Axial force of the driver per sum of belt forces.",
+            "Axial force of the driver over the sum of the belt forces.",
         )
-        .promising(2.0),
+        .with_bound_factor(2.0),
         Output::new(
             "driven_axial_coefficient",
             "S~_driven",
             NONE,
             Higher,
             "(5), (16)",
-            "Axial force of the driven pulley per sum of belt forces.",
+            "Axial force of the driven pulley over the sum of the belt forces.",
         )
-        .promising(2.0),
+        .with_bound_factor(2.0),
         Output::new("belt_force_N", "P", NEWTON, Higher, "(3), (14)", "Force that the belt transmits, F1 - F2."),
         Output::new("tight_force_N", "F1", NEWTON, Higher, "P(1+lambda)/(2 lambda)", "Belt force on the tight side."),
-        Output::new("slack_force_N", "F2", NEWTON, Lower, "P(1-lambda)/(2 lambda)", "Belt force on the slack side.").promising(4.5),
-        Output::new("driver_axial_force_N", "S_driver", NEWTON, Higher, "(1), (6)", "Axial force that the driver needs.").promising(2.0),
+        Output::new("slack_force_N", "F2", NEWTON, Lower, "P(1-lambda)/(2 lambda)", "Belt force on the slack side.").with_bound_factor(4.5),
+        Output::new("driver_axial_force_N", "S_driver", NEWTON, Higher, "(1), (6)", "Axial force that the driver needs.")
+            .with_bound_factor(2.0),
         Output::new("driven_axial_force_N", "S_driven", NEWTON, Higher, "(2), (11)", "Axial force that the driven pulley needs.")
-            .promising(2.0),
+            .with_bound_factor(2.0),
         Output::new("axial_force_N", "S", NEWTON, Higher, "larger of S_driver, S_driven", "The larger of the two axial forces.")
-            .promising(2.0),
+            .with_bound_factor(2.0),
         Output::new("tensile_stress_MPa", "sigma_t", MEGAPASCAL, Higher, "(17), (22)", "Tensile stress of the tight side."),
         Output::new("bending_stress_MPa", "sigma_b", MEGAPASCAL, Higher, "(18)", "Bending stress on the smaller pulley."),
         Output::new("max_stress_MPa", "sigma_max", MEGAPASCAL, Higher, "sigma_t + sigma_b", "Largest stress in the belt."),
-        Output::new("stress_margin", "", NONE, Lower, "1 - sigma_max/sigma_y", "Distance to the strength, relative.").promising(2.0),
+        Output::new("stress_margin", "", NONE, Lower, "1 - sigma_max/sigma_y", "Distance to the strength, relative.")
+            .with_bound_factor(2.0),
         Output::new(
             "optimum_thickness_mm",
             "h*",
             MILLIMETRE,
             Lower,
             "(19), (26)",
-            "Thickness of the largest torque capacity; the stress there is the strength, half of it bending (the paper's safety factor 2).",
+            "Thickness with the largest torque capacity; there bending takes half of the strength (the paper's safety factor 2).",
         ),
         Output::new(
             "torque_coefficient_N_per_mm",
@@ -185,7 +187,7 @@ pub(in crate::models) fn output_table() -> Vec<Output> {
             NEWTON_PER_MILLIMETRE,
             Lower,
             "(20), (21), (27)",
-            "Torque capacity at the optimum thickness per product of smaller and driver radius.",
+            "Torque capacity at the optimum thickness over the product of the smaller and the driver radius.",
         ),
         Output::new(
             "torque_capacity_Nm",
@@ -209,16 +211,16 @@ pub(in crate::models) fn output_table() -> Vec<Output> {
             NEWTON_PER_MILLIMETRE,
             Lower,
             "(28)",
-            "The metal belt's constant as printed: overstated wherever the entry compression is negative.",
+            "The metal belt's constant as printed: too large if the entry compression is negative.",
         )
-        .promising(2.0),
+        .with_bound_factor(2.0),
         Output::new(
             "entry_compression",
             "P1/P2",
             NONE,
             Lower,
             "1 - (x-1)(e-1)",
-            "Block compression at the entry that (28) implies: negative is not physical, 0 only at the slip limit.",
+            "Block compression at the entry that (28) implies: a negative value is not physical; 0 only at the slip limit.",
         ),
     ]
 }

@@ -18,7 +18,7 @@ pub use design::Design;
 pub use profile::CHECK_POINT_STRESSES;
 pub use table::model;
 
-use super::formula::{Columns, Footprint, Kernel, Reach, Scratch, Sizes};
+use super::formula::{Columns, Dependencies, Footprint, Kernel, Scratch, Sizes};
 use super::model::Model;
 use super::pulley_load;
 use crate::pulley::response::{self, CHECK_POINTS, LONGEST, View};
@@ -174,12 +174,12 @@ impl Kernel for Pulley {
         }
     }
 
-    fn reach(&self, inputs: &[Known]) -> Reach {
+    fn dependencies(&self, inputs: &[Known]) -> Dependencies {
         let Sizes { outputs, conditions, .. } = self.sizes();
-        let mut all = Reach { prepared: Set::EMPTY, outputs: vec![Set::EMPTY; outputs], conditions: vec![Set::EMPTY; conditions] };
+        let mut all = Dependencies { prepared: Set::EMPTY, outputs: vec![Set::EMPTY; outputs], conditions: vec![Set::EMPTY; conditions] };
         let section = if let Known::Fixed(section) = inputs[Inputs::NUMBER.section] { Some(section) } else { None };
         for kind in Kind::ALL.into_iter().filter(|kind| section.is_none_or(|section| design::kind_of(section) == *kind)) {
-            let of_kind = reach_of(inputs, kind);
+            let of_kind = dependencies_of(inputs, kind);
             all.prepared |= of_kind.prepared;
             all.outputs.iter_mut().zip(of_kind.outputs).for_each(|(set, of)| *set |= of);
             all.conditions.iter_mut().zip(of_kind.conditions).for_each(|(set, of)| *set |= of);
@@ -189,7 +189,7 @@ impl Kernel for Pulley {
 }
 
 /// What depends on what for a type of section: the very code of both stages, recorded with a number in place of what is solved.
-fn reach_of(inputs: &[Known], kind: Kind) -> Reach {
+fn dependencies_of(inputs: &[Known], kind: Kind) -> Dependencies {
     let (recording, nodes) = Recording::of(&[inputs, &[Known::ANY]].concat(), |named| {
         let (inputs, unknown) = (&named[..inputs.len()], named[inputs.len()]);
         let (body, loading) = (union(unknown, Body::new(inputs, kind).numbers()), Loading::new(inputs, kind));
@@ -207,15 +207,15 @@ fn reach_of(inputs: &[Known], kind: Kind) -> Reach {
     let mut of = list.results.iter().flatten().map(|&node| sets[node as usize]);
     let prepared = of.next().expect("there is a node for every result");
     let outputs = of.by_ref().take(Result::<usize>::NAMES.len()).collect();
-    let mut reach = Reach { prepared, outputs, conditions: of.collect() };
+    let mut all = Dependencies { prepared, outputs, conditions: of.collect() };
     // A section that cannot be leaves all but the belt's outputs empty.
-    reach.outputs[OUT.max_stress..].iter_mut().for_each(|set| *set |= prepared);
-    reach
+    all.outputs[OUT.max_stress..].iter_mut().for_each(|set| *set |= prepared);
+    all
 }
 
 /// Inputs that the first stage reads for a type of section.
 fn read_by(kind: Kind) -> Set {
-    reach_of(&vec![Known::ANY; Inputs::<usize>::NAMES.len()], kind).prepared
+    dependencies_of(&vec![Known::ANY; Inputs::<usize>::NAMES.len()], kind).prepared
 }
 
 /// Something that depends on all of these and of which nothing else is known.

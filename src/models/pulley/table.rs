@@ -87,7 +87,7 @@ fn place_r(name: &str, symbol: &str) -> Input {
             symbol,
             POINT_NONE,
             (0.0, 500.0),
-            "Distance from the axis of a place whose stress is asked for (the nearest point of the surface).",
+            "Distance from the axis of a place whose stress you want (taken at the nearest point of the surface).",
             CUSTOM,
         )
         .with_words(&[("none", POINT_NONE)])
@@ -116,7 +116,7 @@ fn inputs(belt: Vec<Input>) -> Vec<Input> {
             "",
             &[("usual", 2.0), ("fine", FINE)],
             2.0,
-            "Mesh and harmonics for 2 % (usual) or 0.5 % (fine) of the stress away from bracket and bolts.",
+            "Mesh and harmonics for an error of 2 % (usual) or 0.5 % (fine) of the stress away from bracket and bolts.",
             "convergence study in results/pulley",
         ),
         length(
@@ -137,7 +137,7 @@ fn inputs(belt: Vec<Input>) -> Vec<Input> {
             TYPE_4,
         ),
         length("wall_diameter_mm", "", 78.0, (30.0, 400.0), "Where the cup's wall would meet the radial wall, unrounded.", TYPE_4),
-        length("wall_offset_mm", "", 10.0, (2.0, 40.0), "Of the back of the radial wall from the bracket face.", TYPE_4),
+        length("wall_offset_mm", "", 10.0, (2.0, 40.0), "Distance of the back of the radial wall from the bracket face.", TYPE_4),
         length("hub_bend_radius_mm", "R_B", 5.0, (1.0, 12.0), "Bend radius B between hub and wall, on the back.", TYPE_4),
         length("web_bend_radius_mm", "R_C", 3.0, (1.0, 12.0), "Bend radius C between cup and radial wall, on the back.", TYPE_4),
         length(
@@ -161,17 +161,17 @@ fn inputs(belt: Vec<Input>) -> Vec<Input> {
             "",
             66.0,
             (30.0, 300.0),
-            "Diameter out to which the two discs are welded.",
+            "Diameter up to which the two discs are welded.",
             "chosen for type 2; not printed",
         ),
         length("wall_thickness_mm", "", 6.0, (2.0, 20.0), "Thickness of the cup's wall.", TYPE_1),
-        length("rim_thickness_mm", "", 5.0, (2.0, 20.0), "From the groove's floor in to the rim's underside.", TYPE_1),
+        length("rim_thickness_mm", "", 5.0, (2.0, 20.0), "Distance from the groove's floor inwards to the rim's underside.", TYPE_1),
         length("lip_thickness_mm", "", 4.0, (1.5, 15.0), "Thickness of the groove's sides at the rim's edge.", TYPE_1),
         length("fillet_radius_mm", "", 1.5, (0.5, 6.0), "Radius of the fillets of inner corners.", "sharp ones are singular"),
-        length("groove_offset_mm", "", 16.0, (5.0, 60.0), "Of the groove's mid-plane from the bracket face.", TYPE_1),
+        length("groove_offset_mm", "", 16.0, (5.0, 60.0), "Distance of the groove's mid-plane from the bracket face.", TYPE_1),
         length("groove_width_mm", "", 13.0, (8.0, 32.0), "Width of the groove at its top.", TYPE_4),
-        length("groove_height_mm", "", 5.0, (2.0, 12.0), "From the mean radius out to the groove's top.", TYPE_4),
-        length("floor_depth_mm", "", 7.0, (3.0, 20.0), "From the mean radius in to the groove's floor.", TYPE_4),
+        length("groove_height_mm", "", 5.0, (2.0, 12.0), "Distance from the mean radius outwards to the groove's top.", TYPE_4),
+        length("floor_depth_mm", "", 7.0, (3.0, 20.0), "Distance from the mean radius inwards to the groove's floor.", TYPE_4),
         length(
             "floor_bend_radius_mm",
             "R_E, R_F",
@@ -182,7 +182,7 @@ fn inputs(belt: Vec<Input>) -> Vec<Input> {
         ),
         Input {
             valid: Range::NOT_NEGATIVE,
-            ..length("rim_height_mm", "", 1.5, (0.0, 6.0), "From the groove's top out to the rim's edge.", TYPE_4)
+            ..length("rim_height_mm", "", 1.5, (0.0, 6.0), "Distance from the groove's top outwards to the rim's edge.", TYPE_4)
         },
         length(
             "contact_height_mm",
@@ -209,7 +209,7 @@ fn inputs(belt: Vec<Input>) -> Vec<Input> {
                 DEGREE,
                 44.0,
                 (0.0, 360.0),
-                "Angle of the first bolt from the belt's slack end; \"worst\" takes the largest stress over all.",
+                "Angle of the first bolt from the belt's slack end; \"worst\": the angle with the largest stress.",
                 "middle of the wrap",
             )
             .with_words(&[("worst", ANGLE_WORST)])
@@ -256,7 +256,7 @@ fn inputs(belt: Vec<Input>) -> Vec<Input> {
                 "S_e",
                 FROM_TENSILE,
                 (50.0, 600.0),
-                "Amplitude endured without mean stress; \"from-tensile\" is 0.33 times the tensile strength.",
+                "Amplitude that is endured at zero mean stress; \"from-tensile\": 0.33 times the tensile strength.",
                 "chosen; not printed",
             )
             .with_words(&[("from-tensile", FROM_TENSILE)])
@@ -294,7 +294,7 @@ fn outputs(belt: Vec<Output>) -> Vec<Output> {
         fe("max_stress_r_mm", MILLIMETRE, Higher, "Its distance from the axis."),
         fe("max_stress_z_mm", MILLIMETRE, Higher, "Its distance from the bracket face."),
         fe("max_stress_theta_deg", DEGREE, Higher, "Its angle from the belt's slack end towards the tight end."),
-        at("stress_Bl_MPa", "Largest von Mises stress over the turn at bend B, left (back) side."),
+        at("stress_Bl_MPa", "Largest von Mises stress over one revolution at bend B, left (back) side."),
         at("stress_Br_MPa", "The same at bend B, right (front) side; machined: at the fillet between hub plate and wall."),
         at("stress_Cl_MPa", "At bend C, left side; machined: at the fillet between wall and web."),
         at("stress_Cr_MPa", "At bend C, right side."),
@@ -306,25 +306,37 @@ fn outputs(belt: Vec<Output>) -> Vec<Output> {
         at("stress_Fr_MPa", "At bend F, back side."),
         at("stress_P1_MPa", "At the surface point nearest to point_1_r_mm, point_1_z_mm."),
         at("stress_P2_MPa", "At the surface point nearest to point_2_r_mm, point_2_z_mm."),
-        fe("rim_displacement_mm", MILLIMETRE, Higher, "Largest displacement of the rim's edge over the turn."),
+        fe("rim_displacement_mm", MILLIMETRE, Higher, "Largest displacement of the rim's edge over one revolution."),
         Output::new("volume_mm3", "V", CUBIC_MILLIMETRE, Higher, "section", "Volume of the pulley without bolt holes."),
         Output::new("mass_g", "m", GRAM, Higher, "density V", "Mass of the pulley without bolt holes."),
         Output::new("yield_safety", "", NONE, Lower, "S_y/max_stress", "Yield strength over the largest stress."),
-        Output::new("fatigue_safety", "", NONE, Lower, "Goodman: 1/(S_a/S_e + S_m/S_u)", "Least safety against fatigue over one turn."),
+        Output::new(
+            "fatigue_safety",
+            "",
+            NONE,
+            Lower,
+            "Goodman: 1/(S_a/S_e + S_m/S_u)",
+            "Least safety against fatigue over one revolution.",
+        ),
         fe(
             "fatigue_amplitude_MPa",
             MEGAPASCAL,
             Higher,
-            "Amplitude at the point that tires first: largest von Mises stress of half the difference between two angles.",
+            "Amplitude at the point of least fatigue safety: largest von Mises stress of half the difference between two angles.",
         ),
-        fe("fatigue_mean_MPa", MEGAPASCAL, Higher, "Signed von Mises stress midway between them, clamp and spin included."),
+        fe(
+            "fatigue_mean_MPa",
+            MEGAPASCAL,
+            Higher,
+            "Mean stress there: signed von Mises stress midway between these angles, clamp and spin included.",
+        ),
         Output::new(
             "excluded_radius_mm",
             "",
             MILLIMETRE,
             Higher,
             "edges of bracket and bolt heads",
-            "Stress inside this radius is left out of the largest: beside the edges of bracket and bolt heads it has no limit.",
+            "Stress inside this radius does not count as the largest: beside the edges of bracket and bolt heads it has no limit.",
         ),
         Output::new("clamp_pressure_MPa", "p", MEGAPASCAL, Higher, "F/(pi/4 (D_o^2 - D_i^2))", "Pressure under the bolt heads."),
     ];
@@ -361,7 +373,7 @@ fn conditions() -> Vec<Condition> {
                 "slack_end_flank_force_N_per_mm",
                 "tight_end_flank_force_N_per_mm"
             ),
-            "The slack tension exceeds the centrifugal tension: otherwise the belt lifts off.",
+            "The slack tension exceeds the centrifugal tension; otherwise the belt lifts off.",
         ),
         Condition::new(
             "no friction balances the load",
@@ -373,14 +385,14 @@ fn conditions() -> Vec<Condition> {
             "no section",
             false,
             stresses_and!(),
-            "The dimensions make a section: every bend has an inside radius, bends leave room for each other, nothing crosses itself, and the type has that many grooves.",
+            "The dimensions make a section: every bend has an inside radius, bends do not overlap, the outline does not cross itself, and the type has this number of grooves.",
         ),
         Condition::new("contact band off the flank", false, stresses_and!(), "The belt touches the straight part of the flanks only."),
         Condition::new(
             "no seat for bolts and bracket",
             false,
             stresses_and!(),
-            "Bolt heads and bracket lie on the flat hub, heads do not meet, holes lie inside the bracket and heads outside the bore.",
+            "Bolt heads and bracket are on the flat hub, heads do not touch each other, holes are inside the bracket and heads outside the bore.",
         ),
         without(
             "one side",

@@ -32,6 +32,9 @@ const OF_THE_MESH: &[&str] = &[
     "least_tooth_load_N",
 ];
 
+/// Of counted teeth: zero where every tooth surely meshes or lifts, and else, at one tooth for each that may do either, four times that.
+const COUNTED: f64 = 4.5;
+
 /// The model.
 pub fn model() -> Model {
     Model {
@@ -76,7 +79,7 @@ pub fn model() -> Model {
                 MICROMETRE_PER_NEWTON,
                 2.55,
                 (1.5, 8.0),
-                "Deflection of a tooth per load.",
+                "Deflection of a tooth per force.",
                 "paper: 0.025 mm/kgf",
             ),
             Input::new("cord_modulus_GPa", "E", GIGAPASCAL, 78.4, (60.0, 90.0), "Modulus of elasticity of the cord.", PAPER),
@@ -86,7 +89,7 @@ pub fn model() -> Model {
                 SQUARE_MILLIMETRE,
                 21.5,
                 (4.7, 40.0),
-                "Mean section of the belt.",
+                "Mean cross-section of the belt.",
                 "chosen: 12.7 mm x 1.69 mm",
             ),
             Input::new("tip_radius_mm", "r", MILLIMETRE, 66.32, (10.0, 150.0), "Tip radius of the pulley.", TRAPEZOID),
@@ -119,7 +122,7 @@ pub fn model() -> Model {
                     SPACE,
                     (0.0, 12.0),
                     30.0,
-                    "Angle that lifted teeth are rotated by, at most the tooth space; \"space\": all of it.",
+                    "Angle by which lifted teeth are rotated, at most half the angle of the tooth space; \"space\": that much.",
                     PAPER,
                 )
                 .with_words(&[("space", SPACE)])
@@ -135,7 +138,7 @@ pub fn model() -> Model {
             ),
             Input {
                 integer: true,
-                processor_only: true,
+                cpu_only: true,
                 valid: Range { low: 0.0, high: 1.0, includes_low: true, includes_high: true },
                 ..Input::new(
                     "centrifugal_land_friction",
@@ -143,13 +146,13 @@ pub fn model() -> Model {
                     NONE,
                     0.0,
                     (0.0, 1.0),
-                    "1: in the incomplete mesh the centrifugal force relieves the lands of friction; 0: it does not.",
+                    "1: in the incomplete mesh the centrifugal force reduces the friction on the lands; 0: it does not.",
                     "paper, step (5), not printed there",
                 )
             },
         ],
         outputs: vec![
-            output("centrifugal_force_N", "F", NEWTON, Higher, "m r omega^2", "Centrifugal force on one pitch.").promising(SIMPLE),
+            output("centrifugal_force_N", "F", NEWTON, Higher, "m r omega^2", "Centrifugal force on one pitch.").with_bound_factor(SIMPLE),
             output(
                 "boundary_tooth",
                 "j",
@@ -158,27 +161,24 @@ pub fn model() -> Model {
                 "steps (3), (4)",
                 "First tooth from the tight side that lifts; teeth_in_mesh + 1 if none does.",
             )
-            .whole(),
+            .whole()
+            .with_bound_factor(COUNTED),
             output(
                 "boundary_position",
                 "",
                 NONE,
                 Lower,
                 "steps (3), (4), interpolated",
-                "Where between two teeth the radial balance changes sign; 1 if the first tooth lifts.",
-            ),
-            output("incomplete_teeth", "", NONE, Higher, "N + 2 - j", "Teeth from the first lifted one to the slack side.").whole(),
-            output(
-                "lift_speed_rpm",
-                "",
-                RPM,
-                Lower,
-                "inward force = m r omega^2",
-                "Speed at which the first tooth of all lifts; 0: at rest.",
-            ),
+                "Position between two teeth at which the radial balance changes its sign; 1 if the first tooth lifts.",
+            )
+            .with_bound_factor(2.5),
+            output("incomplete_teeth", "", NONE, Higher, "N + 2 - j", "Number of teeth from the first lifted one to the slack side.")
+                .whole()
+                .with_bound_factor(COUNTED),
+            output("lift_speed_rpm", "", RPM, Lower, "inward force = m r omega^2", "Lowest speed at which a tooth lifts; 0: even at rest."),
             output("boundary_tension_N", "T*", NEWTON, Higher, "(19)", "Tension between the last meshing and the first lifted tooth.")
-                .promising(2.0),
-            output("peak_tooth_load_N", "", NEWTON, Higher, "(8), (14)", "Largest tooth load of the mesh as it is."),
+                .with_bound_factor(2.0),
+            output("peak_tooth_load_N", "", NEWTON, Higher, "(8), (14)", "Largest tooth load of the actual mesh."),
             output("peak_tooth_load_complete_N", "", NEWTON, Higher, "(8)", "Largest tooth load if every tooth meshed."),
             output(
                 "least_tooth_load_N",
@@ -186,9 +186,9 @@ pub fn model() -> Model {
                 NEWTON,
                 Lower,
                 "(8), (14)",
-                "Least tooth load of the mesh as it is; where negative, a tooth is held by its other flank, which the model does not cover.",
+                "Least tooth load of the actual mesh; if negative, a tooth is held by its other flank, which the model does not cover.",
             ),
-            output("effective_tension_N", "P", NEWTON, Lower, "T_t - T_s", "Tension that the pulley transmits.").promising(SIMPLE),
+            output("effective_tension_N", "P", NEWTON, Lower, "T_t - T_s", "Tension that the pulley transmits.").with_bound_factor(SIMPLE),
         ],
         conditions: vec![
             Condition::new("no effective tension", true, OF_THE_MESH, "The tight side is tighter than the slack side."),

@@ -184,12 +184,12 @@ impl KernelLayout {
             )));
         }
         let set_by_axes = plan.space.designs.inputs() | plan.space.scenarios.inputs();
-        let processor_only = model
+        let cpu_only = model
             .inputs
             .iter()
             .enumerate()
-            .find(|(input, it)| it.processor_only && (set_by_axes.contains(*input) || plan.study.fixed[*input] != it.default));
-        if let Some((_, input)) = processor_only {
+            .find(|(input, it)| it.cpu_only && (set_by_axes.contains(*input) || plan.study.fixed[*input] != it.default));
+        if let Some((_, input)) = cpu_only {
             return Err(refuse(format!("the shader knows {} = {} only", input.name, input.default)));
         }
         if let Some(why) = beyond_f32(plan) {

@@ -103,7 +103,7 @@ fn whenever_bounds_are_left_the_files_are_the_same() {
                 (plan.designs(), plan.designs()),
                 "no design is judged twice: {left:?}"
             );
-            assert!(left.promise.settled >= share && left.promise.settled < 1.0, "{left:?}");
+            assert!(left.forecast.settled >= share && left.forecast.settled < 1.0, "{left:?}");
             if threads == 1 {
                 let found = pipeline.write(swept.state, 1, &folder.path().join(format!("found-{number}")));
                 assert_eq!(differing_file(&files, &found), None, "{left:?}");
@@ -198,7 +198,7 @@ fn a_study_that_bounds_cannot_settle_is_judged() {
         auto(&pipeline, &options, None, &Control::default(), &rule).expect("the sweep ends")
     };
     let Auto { swept, settler, .. } = swept_as_if(1.1);
-    assert!(matches!(&settler, Settler::Both(left) if left.promise.bounds > left.promise.judging), "{settler:?}");
+    assert!(matches!(&settler, Settler::Both(left) if left.forecast.bounds > left.forecast.judging), "{settler:?}");
     assert_eq!(difference(&reference(&pipeline), &swept.state), None);
     // Every design of such a short study is judged at once.
     let Auto { settler, .. } = swept_as_if(0.9);

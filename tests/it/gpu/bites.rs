@@ -36,14 +36,10 @@ fn a_wrong_constant_in_a_shader_is_noticed() {
         ),
         (metal, "0.166666672 + r * (0.0416666679", "0.166666672 + r * (0.0426666679"),
         (pulley, "mul(twice(slack_pressing), tight_pressing)", "mul(slack_pressing, tight_pressing)"),
-        (timing, "sub(mul(i.friction, cosine), sine)", "sub(mul(i.friction, cosine), mul(sine, constant(1.0001)))"),
-        (timing, "before = Linear(tight_gap, mul(rows.slack, after_gap));", "before = Linear(tight_gap, after_gap);"),
-        (
-            timing,
-            "set_boundary(rows.teeth, nothing, load, load, last, last);",
-            "set_boundary(rows.teeth, nothing, load, load, load, load);",
-        ),
-        (timing, "meshing += 1u;", "meshing += 2u;"),
+        (timing, "sin_(i.pressure_angle)", "mul(sin_(i.pressure_angle), constant(1.0001))"),
+        (timing, "mul(slack_cosine, ", "mul(constant(1.0), "),
+        (timing, "if_known(whole_1, last_load_tight)", "if_known(whole_1, first_load_tight_1)"),
+        (timing, "plus_whole(counted, ", "plus_whole(plus_whole(counted, constant(1.0)), "),
         (pulley, "x - n * 1.5703125", "x - n * 1.5704125"),
     ] {
         assert_objects(&compared(model, piece, other), other);

@@ -6,7 +6,7 @@ use crate::numbers::{meaningful_si, run_over, si};
 use crate::physics::{Region, draw};
 use crate::random::Random;
 use beltspace::gpu::PointKernel;
-use beltspace::models::{self, CONDITION_PROMISE, Model};
+use beltspace::models::{self, CONDITION_BOUND_FACTOR, Model};
 use beltspace::plan::Plan;
 use beltspace::study::Study;
 use beltspace::tape::RunningError;
@@ -60,13 +60,13 @@ fn compared(model: &Arc<Model>, designs: &[Vec<f64>], divisor: f64) -> Compared 
         for (number, exact) in meaningful_si(model, inputs).into_iter().enumerate() {
             let output = &model.outputs[number];
             if let Some(exact) = exact.filter(|it| it.is_finite()) {
-                all.take(&output.name, outputs[number], exact, listed[number].bound * output.promise / divisor, inputs);
+                all.take(&output.name, outputs[number], exact, listed[number].bound * output.bound_factor / divisor, inputs);
             }
         }
         let mut exact = vec![0.0; model.kernel.sizes().conditions];
         model.kernel.conditions(&model.kernel.prepared(point), point, &mut exact);
         for (number, condition) in model.conditions.iter().enumerate().filter(|(number, _)| exact[*number].is_finite()) {
-            let bound = listed_margins[number].bound * CONDITION_PROMISE / divisor;
+            let bound = listed_margins[number].bound * CONDITION_BOUND_FACTOR / divisor;
             all.take(&condition.reason, margins[number], exact[number], bound, inputs);
         }
     }

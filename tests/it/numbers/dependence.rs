@@ -4,7 +4,7 @@ use super::si;
 use crate::effort::is_slow;
 use crate::physics::{Region, draw};
 use crate::random::Random;
-use beltspace::models::{self, Model, Reach, Set, find};
+use beltspace::models::{self, Dependencies, Model, Set, find};
 use beltspace::tape::Known;
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -36,7 +36,7 @@ impl Parts {
 /// Inputs that change something although the dependencies do not say so, and the pairs of input and output that were seen to change.
 fn missed(
     model: &Model,
-    reach: &Reach,
+    dependencies: &Dependencies,
     input: usize,
     before: &Parts,
     after: &Parts,
@@ -44,16 +44,17 @@ fn missed(
 ) -> Option<String> {
     let names = |set: Set| set.contains(input);
     let by = &model.inputs[input].name;
-    if before.prepared != after.prepared && !names(reach.prepared) {
+    if before.prepared != after.prepared && !names(dependencies.prepared) {
         return Some(format!("{}: {by} changes what is prepared", model.name));
     }
     for (number, output) in model.outputs.iter().enumerate().filter(|(number, _)| before.outputs[*number] != after.outputs[*number]) {
         seen.insert((input, number));
-        if !names(reach.outputs[number]) {
+        if !names(dependencies.outputs[number]) {
             return Some(format!("{}: {by} changes {}", model.name, output.name));
         }
     }
-    let changed = (0..model.conditions.len()).find(|&it| before.conditions[it] != after.conditions[it] && !names(reach.conditions[it]));
+    let changed =
+        (0..model.conditions.len()).find(|&it| before.conditions[it] != after.conditions[it] && !names(dependencies.conditions[it]));
     changed.map(|condition| format!("{}: {by} changes the condition \"{}\"", model.name, model.conditions[condition].reason))
 }
 
@@ -63,10 +64,10 @@ fn try_changes(
     seed: u64,
     varied: impl Fn(usize, &mut Random) -> bool,
     spoil: Set,
-) -> (Option<String>, BTreeSet<(usize, usize)>, Vec<Reach>) {
+) -> (Option<String>, BTreeSet<(usize, usize)>, Vec<Dependencies>) {
     let random = &mut Random::new(seed);
     let mut seen = BTreeSet::new();
-    let mut reaches = Vec::new();
+    let mut all_dependencies = Vec::new();
     for _ in 0..400 {
         // Two designs span the ranges that the inputs vary over.
         let region = random.pick(&[Region::Usual, Region::Usual, Region::Edges]);
@@ -81,8 +82,8 @@ fn try_changes(
                 free.push(input);
             }
         }
-        let mut reach = model.kernel.reach(&inputs);
-        reach.outputs.iter_mut().for_each(|set| *set = *set - spoil);
+        let mut dependencies = model.kernel.dependencies(&inputs);
+        dependencies.outputs.iter_mut().for_each(|set| *set = *set - spoil);
         let mut design = ends[0].clone();
         let mut before = Parts::new(model, &design);
         for _ in 0..4 * free.len() {
@@ -94,14 +95,14 @@ fn try_changes(
                 choice => ends[choice % 2][input],
             };
             let after = Parts::new(model, &design);
-            if let Some(problem) = missed(model, &reach, input, &before, &after, &mut seen) {
-                return (Some(problem), seen, reaches);
+            if let Some(problem) = missed(model, &dependencies, input, &before, &after, &mut seen) {
+                return (Some(problem), seen, all_dependencies);
             }
             before = after;
         }
-        reaches.push(reach);
+        all_dependencies.push(dependencies);
     }
-    (None, seen, reaches)
+    (None, seen, all_dependencies)
 }
 
 /// Models that are quick enough for a walk of many steps; of the others each input is changed once, around each of their presets.
@@ -122,14 +123,14 @@ fn nudged(model: &Model, input: usize, value: f64) -> f64 {
     }
 }
 
-/// The reach where the inputs that `varied` names take every value and the others those of `si`.
-fn reach_of(model: &Model, si: &[f64], varied: impl Fn(usize) -> bool) -> Reach {
+/// The dependencies where the inputs that `varied` names take every value and the others those of `si`.
+fn dependencies_of(model: &Model, si: &[f64], varied: impl Fn(usize) -> bool) -> Dependencies {
     let mut inputs: Vec<Known> = si.iter().map(|&value| Known::Fixed(value)).collect();
     for (input, table) in model.inputs.iter().enumerate().filter(|(input, _)| varied(*input)) {
         let least = table.words.iter().fold(0.0, |least, (_, word)| word.min(least));
         inputs[input] = Known::Within(least, 1e9);
     }
-    model.kernel.reach(&inputs)
+    model.kernel.dependencies(&inputs)
 }
 
 /// Changes every input of a preset but the one that says which section it is. Of `wanted` outputs: how many pairs of input and
@@ -143,18 +144,18 @@ fn changed_one_by_one(model: &Model, preset: &str, wanted: Set) -> (Vec<String>,
     }
     let base = si(model, &inputs);
     let before = Parts::wanted(model, &base, wanted);
-    let of_section = reach_of(model, &base, |input| input != section);
-    let every = reach_of(model, &base, |_| true);
+    let of_section = dependencies_of(model, &base, |input| input != section);
+    let every = dependencies_of(model, &base, |_| true);
     let (mut seen, mut changing) = (BTreeSet::new(), BTreeSet::new());
     for input in (0..model.inputs.len()).filter(|input| *input != section) {
         let mut other = inputs.clone();
         other[input] = nudged(model, input, inputs[input]);
         let after = Parts::wanted(model, &si(model, &other), wanted);
-        let alone = reach_of(model, &base, |it| it == input);
-        for (what, reach) in [("its section fixed", &of_section), ("all inputs vary", &every), ("it alone varies", &alone)] {
-            assert_eq!(missed(model, reach, input, &before, &after, &mut seen), None, "{preset}, {what}");
+        let alone = dependencies_of(model, &base, |it| it == input);
+        for (what, dependencies) in [("its section fixed", &of_section), ("all inputs vary", &every), ("it alone varies", &alone)] {
+            assert_eq!(missed(model, dependencies, input, &before, &after, &mut seen), None, "{preset}, {what}");
         }
-        let silent = Reach {
+        let silent = Dependencies {
             prepared: Set::EMPTY,
             outputs: vec![Set::EMPTY; before.outputs.len()],
             conditions: vec![Set::EMPTY; before.conditions.len()],
@@ -204,7 +205,7 @@ fn the_section_changes_all_but_the_loads() {
     for model in models::all().iter().filter(|model| is_slow(model)) {
         let section = model.enumeration().expect("it has sections");
         let before = Parts::new(model, &si(model, &model.defaults()));
-        let every = reach_of(model, &si(model, &model.defaults()), |input| input == section);
+        let every = dependencies_of(model, &si(model, &model.defaults()), |input| input == section);
         let mut seen = BTreeSet::new();
         // With the dimensions of another section these fail or stand, and either shows.
         for (_, word) in model.inputs[section].words.iter().filter(|(name, _)| *name != "machined") {
@@ -231,12 +232,12 @@ fn what_an_input_changes_is_always_named() {
 #[test]
 fn little_is_named_that_nothing_changes() {
     for model in walked() {
-        let (_, seen, reaches) = try_changes(model, 34, |_, _| true, Set::EMPTY);
+        let (_, seen, all_dependencies) = try_changes(model, 34, |_, _| true, Set::EMPTY);
         let mut idle = Vec::new();
         let mut named = 0;
         for (number, output) in model.outputs.iter().enumerate() {
             for (input, table) in model.inputs.iter().enumerate() {
-                if reaches.iter().any(|reach| reach.outputs[number].contains(input)) {
+                if all_dependencies.iter().any(|dependencies| dependencies.outputs[number].contains(input)) {
                     named += 1;
                     if !seen.contains(&(input, number)) {
                         idle.push(format!("{} -> {}", table.name, output.name));
@@ -269,7 +270,7 @@ fn a_traction_that_is_a_number_keeps_friction_out_of_the_torque_coefficient() {
             let mut inputs: Vec<_> = si(&model, &model.defaults()).into_iter().map(Known::Fixed).collect();
             inputs[friction] = Known::Within(0.05, 0.5);
             inputs[traction] = given;
-            model.kernel.reach(&inputs).outputs[coefficient].contains(friction)
+            model.kernel.dependencies(&inputs).outputs[coefficient].contains(friction)
         };
         assert!(!names_friction(Known::Fixed(0.4)), "{name}");
         assert!(!names_friction(Known::Within(0.1, 0.5)), "{name}: all values are numbers");

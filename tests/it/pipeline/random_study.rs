@@ -68,7 +68,7 @@ impl Draft {
         let most = if for_bounds { MOST_BY_THE_SWEEP } else { MOST_EVALUATIONS };
         let scenarios = generator.random.log_between(1.0, 40.0).min(most as f64 / designs).max(1.0);
         // What a shader does not know would keep the study from the device.
-        let mut free: Vec<usize> = (0..model.inputs.len()).filter(|&input| for_bounds || !model.inputs[input].processor_only).collect();
+        let mut free: Vec<usize> = (0..model.inputs.len()).filter(|&input| for_bounds || !model.inputs[input].cpu_only).collect();
         generator.random.shuffle(&mut free);
         let design = generator.axes(0, &mut free, if for_bounds { 5 } else { 4 }, designs, sampled);
         let operation = generator.axes(1, &mut free, 2, scenarios.sqrt(), false);

@@ -24,6 +24,10 @@ pub enum Held {
     Whole(Whole),
     /// A table: its number.
     Table(u8),
+    /// A number of a loop's state at the beginning of an iteration.
+    State(u8, u8),
+    /// One that the loop has left.
+    Left(u8, u8),
 }
 
 /// A loop while its body is read.
@@ -81,6 +85,8 @@ impl Reader<'_> {
         let value = match (held, index) {
             (Some(Held::Number(node)), None) => Value::Number(node),
             (Some(Held::Whole(whole)), None) => Value::Whole(whole),
+            (Some(Held::State(of, state)), None) => self.push(Operation::Rolled(Rolled::State(of, state))),
+            (Some(Held::Left(of, state)), None) => self.push(Operation::Rolled(Rolled::Folded(of, state))),
             (Some(Held::Table(table)), Some(index)) => {
                 let Whole::Place(place) = self.whole(body, index) else { panic!("no place") };
                 let version = self.versions[usize::from(table)];
@@ -205,8 +211,7 @@ impl Reader<'_> {
         assert_eq!(numbers.len(), states.len(), "loop {number}");
         let mut begin = std::collections::BTreeMap::new();
         for (&variable, &state) in states.iter().zip(&numbers) {
-            let node = self.operations.push(Operation::Rolled(Rolled::State(number, state)));
-            let before = body.held.insert(variable.index(), Held::Number(node));
+            let before = body.held.insert(variable.index(), Held::State(number, state));
             let Some(Held::Number(before)) = before else { panic!("{before:?}") };
             begin.insert(state, before);
         }
@@ -229,8 +234,7 @@ impl Reader<'_> {
         for (&variable, &number_of) in states.iter().zip(&numbers) {
             let Some(Held::Number(next)) = body.held.get(&variable.index()).cloned() else { panic!("no number") };
             state.push((begin[&number_of], next));
-            let left = self.operations.push(Operation::Rolled(Rolled::Folded(number, number_of)));
-            body.held.insert(variable.index(), Held::Number(left));
+            body.held.insert(variable.index(), Held::Left(number, number_of));
         }
         let until_zero = self.left_at_zero.take().map(|node| state.iter().position(|(_, next)| *next == node).expect("it is of the state"));
         let recorded = &mut self.operations.loops[usize::from(number)];

@@ -29,7 +29,7 @@ impl Prelude<'_> {
             ];
             for &number in conditions {
                 let question = if plan.study.model.conditions[number].strict { "above_zero" } else { "at_least_zero" };
-                let factor = literal(CONDITION_PROMISE as f32);
+                let factor = literal(CONDITION_BOUND_FACTOR as f32);
                 lines.push(format!("verdict = min(verdict, {question}(bounded(margins[{number}], {factor})));"));
             }
             for (number, (constraint, source)) in plan.study.constraints.iter().zip(&plan.constraints).enumerate() {
@@ -135,7 +135,7 @@ impl Prelude<'_> {
     }
 
     pub(super) fn bounded(&self, output: usize) -> String {
-        let factor = self.plan.study.model.outputs[output].promise;
+        let factor = self.plan.study.model.outputs[output].bound_factor;
         format!("bounded(out.{}, {})", self.output(output), literal(factor as f32))
     }
 }

@@ -20,7 +20,7 @@ use super::constants::{FIRST_REPORTED, SURVIVOR_HEAD, sweep_constants};
 use super::layout::{BINS, DOMINATORS, KernelLayout, LIST, Values, on_device, row_dominators, scenario_worst, sign};
 use crate::gpu::constants::declare;
 use crate::gpu::{model_prelude, model_source, source, tables};
-use crate::models::{CONDITION_PROMISE, Worse};
+use crate::models::{CONDITION_BOUND_FACTOR, Worse};
 use crate::plan::{Plan, Source};
 use crate::reduce::Shuffle;
 use crate::study::{Best, Constraint, Goal, MapSpec, Objective, Quantity};
