@@ -70,6 +70,8 @@ friction = { from = 0.05, to = 0.09, count = 100 }
 [report]
 variants = true
 """
+# Seconds that a short run takes.
+SHORT = 3
 # Left out by --short.
 SLOW = {"pulley-design", "map of shares, 8192 x 8192", "scenarios, 2e7", "cases, 800000"}
 
@@ -108,7 +110,16 @@ def said(program, study):
 
 
 def peak(program, study, folder):
-    """The largest resident memory of a sweep in MB."""
+    """The largest resident memory of a sweep in MB, of three runs where one is short: the last moments of a run may be missed between
+    two looks at it."""
+    start = time.monotonic()
+    most = peak_of_one(program, study, folder)
+    if time.monotonic() - start > SHORT:
+        return most
+    return max(most, *(peak_of_one(program, study, folder) for _ in range(2)))
+
+
+def peak_of_one(program, study, folder):
     process = subprocess.Popen([program, "sweep", study, "--out", folder / "out", "--force", "--quiet"])
     most = 0
     while process.poll() is None:

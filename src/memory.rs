@@ -29,15 +29,15 @@ const MET: u64 = 1 << 20;
 const CELL_COLUMN: u64 = 16;
 const CELL_WRITTEN: u64 = 20;
 /// Bytes of a value in a list of cases, and while `study.json` is written.
-const CASE: u64 = 90;
-const CASE_DESCRIBED: u64 = 620;
+const CASE: u64 = 30;
+const CASE_DESCRIBED: u64 = 680;
 /// Bytes of a row of a table of designs, of each of its columns (a quantity that no design axis sets has two), and of each input.
 const ROW: u64 = 250;
 const ROW_COLUMN: u64 = 140;
 const ROW_INPUT: u64 = 50;
 /// Bytes of the page, of a design on it, of each output of such a design, and of a row of the list of all designs.
 const PAGE: u64 = 700_000;
-const PAGE_ROW: u64 = 1_100;
+const PAGE_ROW: u64 = 1_050;
 const PAGE_OUTPUT: u64 = 50;
 const PAGE_VARIANT: u64 = 1_400;
 /// Bytes of an objective of a design that is a dot on the page: packed, and as text.
