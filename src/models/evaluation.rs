@@ -2,22 +2,9 @@
 
 use super::description::Input;
 use super::model::Model;
+use super::status::{Evaluation, OVERFLOW, Status};
 use crate::decision::Decision;
 use crate::tape::Set;
-
-/// What became of an evaluation: ok, or the first condition that failed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Status {
-    /// The formula has a meaning.
-    Ok,
-    /// Number of the condition that failed.
-    Failed(usize),
-    /// A value is beyond what f64 holds, and absent.
-    Overflow,
-}
-
-/// The reason of [`Status::Overflow`].
-pub const OVERFLOW: &str = "overflow";
 
 impl Status {
     /// `ok` or the reason.
@@ -28,15 +15,6 @@ impl Status {
             Self::Overflow => OVERFLOW,
         }
     }
-}
-
-/// Status and outputs of one design in one scenario.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Evaluation {
-    /// Ok, or why not.
-    pub status: Status,
-    /// One value per output of the model, in the output's unit; `None` where it has no meaning.
-    pub outputs: Vec<Option<f64>>,
 }
 
 /// An input's value in SI units; a word's number stays what it is.

@@ -1,6 +1,6 @@
 //! The two stages of a formula, and the same formula behind a table of functions for every number type.
 
-use super::model::Model;
+use super::description::Output;
 use crate::real::{LANES, Lanes, Real};
 use crate::tape::{Fields, First, Known, List, Loops, Operation, Recordable, Recording, Second, Set, Trace, Whole};
 
@@ -68,10 +68,10 @@ pub struct Scratch {
 }
 
 impl Scratch {
-    /// Room for designs of this model.
-    pub fn new(model: &Model) -> Self {
-        let Sizes { outputs, conditions, .. } = model.kernel.sizes();
-        let [inputs, outputs, margins] = [model.inputs.len(), outputs, conditions].map(|length| vec![Lanes::splat(0.0); length]);
+    /// Room for designs of a model with this formula.
+    pub fn new(kernel: &dyn Kernel) -> Self {
+        let Sizes { inputs, outputs, conditions, .. } = kernel.sizes();
+        let [inputs, outputs, margins] = [inputs, outputs, conditions].map(|length| vec![Lanes::splat(0.0); length]);
         Self { inputs, outputs, margins }
     }
 }
@@ -134,10 +134,10 @@ pub trait Kernel: Send + Sync {
     }
     /// Second stage for many designs at once: same bits as [`Kernel::finish`].
     ///
-    /// `results` has one column per asked output (in the output's unit), then one per asked condition (the margin).
+    /// `outputs` are those of the model. `results` has one column per asked output (in the output's unit), then one per asked condition (the margin).
     fn finish_columns(
         &self,
-        model: &Model,
+        outputs: &[Output],
         prepared: &[f64],
         inputs: &[f64],
         columns: &Columns<'_>,
@@ -275,7 +275,7 @@ impl<F: Formula + Send + Sync> Kernel for F {
 
     fn finish_columns(
         &self,
-        model: &Model,
+        outputs: &[Output],
         prepared: &[f64],
         inputs: &[f64],
         columns: &Columns<'_>,
@@ -287,7 +287,7 @@ impl<F: Formula + Send + Sync> Kernel for F {
         }
         finish_columns::<F>(prepared, columns, scratch, results);
         for (&output, result) in columns.outputs.iter().zip(results) {
-            let unit = model.outputs[output].unit;
+            let unit = outputs[output].unit;
             if !unit.is_si() {
                 result[..columns.count].iter_mut().for_each(|value| *value = unit.from_si(*value));
             }

@@ -1,8 +1,9 @@
 //! What a first stage passed on, kept for the next design: memory that whoever evaluates owns, so that a formula needs none.
 
-use super::evaluation::{Evaluation, evaluated, to_si};
+use super::evaluation::{evaluated, to_si};
 use super::formula::Kernel;
 use super::model::Model;
+use super::status::Evaluation;
 use crate::tape::Set;
 use std::sync::Arc;
 

@@ -5,6 +5,9 @@
 //! Its shader is written from the recorded formula ([`tape`](crate::tape)). Adding a model is one file here, one line in the list
 //! below, a study and one golden case; every generic test loops over the list. A model that is no such formula, such as a solver in
 //! f64, implements [`Kernel`] itself and is computed on the CPU only.
+//!
+//! Each file here uses those before it only: `description`, `status`, `formula`, `model`, `known`, `evaluation`, `latest`, `many`, then the
+//! models.
 
 mod cvt;
 mod description;
@@ -19,20 +22,23 @@ mod model;
 mod pulley;
 mod pulley_load;
 mod rubber_cvt;
+mod status;
 mod timing_belt;
 
+pub use crate::pulley::Design;
 pub(crate) use crate::real::LANES;
 pub use crate::tape::{Fields, Recordable, Set};
 pub use cvt::{optimum_thickness, printed_torque_coefficient, torque_coefficient, traction_limit, wedge_factor};
 pub use description::{CONDITION_BOUND_FACTOR, Condition, Effort, Input, Output, Preset, Profile, ProfileColumn, Range, SAMPLE, Worse};
-pub use evaluation::{Evaluation, OVERFLOW, Status, evaluate, evaluate_asked};
+pub use evaluation::{evaluate, evaluate_asked};
 pub(crate) use evaluation::{fill_si, holds, input_to_si, judge, shown, to_si};
 pub use formula::{Columns, Dependencies, Footprint, Formula, Kernel, Reads, Scratch, Sizes};
 pub use known::Models;
 pub use latest::{Evaluator, Latest};
 pub use many::{Evaluations, evaluate_many};
 pub use model::{AlongTheBelt, Model, Notes, PulleyOf, Remarks};
-pub use pulley::{CHECK_POINT_STRESSES, Design};
+pub use pulley::CHECK_POINT_STRESSES;
+pub use status::{Evaluation, OVERFLOW, Status};
 use std::sync::{Arc, LazyLock};
 
 /// The models that come with the program: each is a module with its tables in `model()`.

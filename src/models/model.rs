@@ -1,10 +1,10 @@
 //! A model: its tables, its formula, and what the rest of the program knows of it besides.
 
 use super::description::{Condition, Effort, Input, Output, Preset, Profile, SAMPLE};
-use super::evaluation::Evaluation;
 use super::formula::Kernel;
-use super::pulley::Design;
+use super::status::Evaluation;
 use crate::error::{Error, Result};
+use crate::pulley::Design;
 use crate::tape::Recordable;
 use std::sync::Arc;
 

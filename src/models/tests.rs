@@ -60,14 +60,14 @@ impl Kernel for Watched {
 
     fn finish_columns(
         &self,
-        model: &Model,
+        outputs: &[Output],
         prepared: &[f64],
         inputs: &[f64],
         columns: &Columns<'_>,
         scratch: &mut Scratch,
         results: &mut [Vec<f64>],
     ) {
-        self.inner.finish_columns(model, prepared, inputs, columns, scratch, results);
+        self.inner.finish_columns(outputs, prepared, inputs, columns, scratch, results);
         self.count(&self.blocks);
     }
 

@@ -11,6 +11,7 @@ pub mod around;
 pub mod band;
 pub mod calculix;
 mod chunk;
+mod design;
 pub mod element;
 pub mod equations;
 pub mod field;
@@ -27,3 +28,5 @@ pub mod surface;
 #[cfg(test)]
 mod tests;
 pub mod turn;
+
+pub use design::Design;

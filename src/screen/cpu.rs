@@ -93,7 +93,7 @@ impl<'p> CpuEngine<'p> {
             alive: Vec::new(),
             values: vec![vec![0.0; BLOCK]; plan.tracked.len()],
             row_index: 0,
-            scratch: Scratch::new(&plan.study.model),
+            scratch: Scratch::new(&*plan.study.model.kernel),
             row_margins: vec![0.0; conditions],
             row_outputs: vec![0.0; outputs],
             latest: Latest::new(&plan.study.model),
@@ -336,7 +336,14 @@ impl<'p> CpuEngine<'p> {
         let plan = self.plan;
         let prepared = &self.prepared[prepared];
         let columns = Columns { count: fast.count, varying: &fast.si, outputs: &plan.lane_outputs, conditions: &plan.lane_conditions };
-        plan.study.model.kernel.finish_columns(&plan.study.model, prepared, &self.si, &columns, &mut self.scratch, &mut self.results);
+        plan.study.model.kernel.finish_columns(
+            &plan.study.model.outputs,
+            prepared,
+            &self.si,
+            &columns,
+            &mut self.scratch,
+            &mut self.results,
+        );
     }
 
     fn judge_block_scenario(&mut self, first: bool) {

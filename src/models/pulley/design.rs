@@ -3,36 +3,14 @@
 //! All of it is arithmetic over any number type, in groups by who is told of it: the first stage is told of the [`Body`] only, what
 //! computes the stresses of the [`Pressing`] besides. So what depends on what need not be listed: it is read off the groups.
 
-use super::table::{ANGLE_WORST, FINE, Inputs, POINT_NONE};
+use super::fields::{ANGLE_WORST, FINE, Inputs, POINT_NONE};
 use crate::models::pulley_load;
+use crate::pulley::Design;
 use crate::pulley::loads::clamp_pressure;
 use crate::pulley::section::{Dimensions, Fineness, Kind};
 use crate::pulley::turn::{Case, Strength};
 use crate::real::Real;
 use crate::units::{MEGAPASCAL, MILLIMETRE, NEWTON_PER_MILLIMETRE, Unit};
-
-/// A pulley: its section and how it is loaded and how strong it is, in mm, N, MPa and rad.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Design {
-    /// Type of the section.
-    pub kind: Kind,
-    /// Its dimensions.
-    pub dimensions: Dimensions,
-    /// Poisson's ratio.
-    pub poisson: f64,
-    /// How fine it is meshed.
-    pub fineness: Fineness,
-    /// Its loads.
-    pub case: Case,
-    /// Yield strength, MPa.
-    pub yield_strength: f64,
-    /// Strength against fatigue.
-    pub strength: Strength,
-    /// Density, kg/m^3.
-    pub density: f64,
-    /// Places (z, r) whose stress is asked for, mm.
-    pub own_points: [Option<(f64, f64)>; 2],
-}
 
 /// All that the first stage is told: the section and how fine it is solved. Dimensions that the type does not read are zero.
 #[derive(Clone, Copy, Debug)]

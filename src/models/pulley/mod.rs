@@ -8,19 +8,20 @@
 //! constants; the source names fatigue as future work.
 
 mod design;
+mod fields;
 mod notes;
 mod profile;
 mod table;
 #[cfg(test)]
 mod tests;
 
-pub use design::Design;
 pub use profile::CHECK_POINT_STRESSES;
 pub use table::model;
 
+use super::description::Output;
 use super::formula::{Columns, Dependencies, Footprint, Kernel, Scratch, Sizes};
-use super::model::Model;
 use super::pulley_load;
+use crate::pulley::Design;
 use crate::pulley::response::{self, CHECK_POINTS, LONGEST, View};
 use crate::pulley::section::{self, Flaw, Kind};
 use crate::pulley::turn::{Case, Peak, Summary, Turn};
@@ -28,7 +29,7 @@ use crate::real::Real;
 use crate::tape::{Known, List, Recording, Set, Trace};
 use crate::units::{CUBIC_MILLIMETRE, MEGAPASCAL, MILLIMETRE};
 use design::{Body, Loading};
-use table::{FINITE_ELEMENTS, Inputs, OUT, Result};
+use fields::{FINITE_ELEMENTS, Inputs, OUT, Result};
 
 /// The finite elements of a pulley.
 pub(super) struct Pulley;
@@ -144,7 +145,7 @@ impl Kernel for Pulley {
 
     fn finish_columns(
         &self,
-        model: &Model,
+        outputs: &[Output],
         prepared: &[f64],
         inputs: &[f64],
         columns: &Columns<'_>,
@@ -152,7 +153,7 @@ impl Kernel for Pulley {
         results: &mut [Vec<f64>],
     ) {
         let mut inputs = inputs.to_vec();
-        let mut outputs = [0.0; Result::<usize>::NAMES.len()];
+        let mut found = [0.0; Result::<usize>::NAMES.len()];
         let mut last = None;
         let wanted = Set::of(columns.outputs);
         for design in 0..columns.count {
@@ -160,10 +161,10 @@ impl Kernel for Pulley {
                 inputs[*input] = column[design];
             }
             if !wanted.is_empty() {
-                self.finish_after(prepared, &inputs, wanted, &mut outputs, &mut last);
+                self.finish_after(prepared, &inputs, wanted, &mut found, &mut last);
             }
             for (&output, result) in columns.outputs.iter().zip(&mut *results) {
-                result[design] = model.outputs[output].unit.from_si(outputs[output]);
+                result[design] = outputs[output].unit.from_si(found[output]);
             }
             if !columns.conditions.is_empty() {
                 let margins = self.margins(prepared, &inputs);

@@ -1,8 +1,9 @@
 //! What a person should know of a pulley besides its numbers.
 
-use super::super::evaluation::{Evaluation, Status, to_si};
+use super::super::evaluation::to_si;
 use super::super::model::Model;
-use super::table::OUT;
+use super::super::status::{Evaluation, Status};
+use super::fields::OUT;
 use super::{Design, design};
 use crate::pulley::section::{self, Dimensions, Kind};
 
@@ -23,7 +24,7 @@ pub(super) fn notes(model: &Model, inputs: &[f64], evaluation: &Evaluation) -> V
     if overhang > 0.0 {
         notes.push(format!("the bolt heads overhang the bracket by {} mm: the hub bends there", rounded(overhang)));
     }
-    let gamma = si[super::table::Inputs::NUMBER.friction_direction].to_degrees();
+    let gamma = si[super::fields::Inputs::NUMBER.friction_direction].to_degrees();
     if gamma > 0.0 {
         notes.push(format!(
             "friction at {} degrees from the circumference: at 0, which is customary for V-belts, the stress is higher",

@@ -1,8 +1,9 @@
 //! Checks of the pulley model against the reference table and against hand calculations.
 
-use super::super::evaluation::{Status, evaluate};
+use super::super::evaluation::evaluate;
+use super::super::status::Status;
 use super::*;
-use crate::models::find;
+use crate::models::{Model, find};
 use std::sync::Arc;
 
 /// The model.
@@ -24,7 +25,7 @@ fn output(inputs: &[f64], name: &str) -> Option<f64> {
 
 #[test]
 fn a_tightening_torque_gives_the_clamp_force() {
-    let inputs = with(&[("clamp_force_N", table::TORQUE)]);
+    let inputs = with(&[("clamp_force_N", fields::TORQUE)]);
     let si = super::super::evaluation::to_si(&pulley(), &inputs);
     // Physics, 3.1: M6, 10 N m, friction 0.15, washer 12/6.6.
     let force = design::clamp_force(&Inputs::read(&si));
@@ -70,7 +71,7 @@ fn a_load_case_on_a_solved_section_is_the_same_as_one_of_its_own() {
 
 #[test]
 fn the_worst_angle_of_the_bolts_is_no_better_than_any() {
-    let worst = output(&with(&[("bolt_angle_deg", table::ANGLE_WORST)]), "stress_Br_MPa").unwrap();
+    let worst = output(&with(&[("bolt_angle_deg", fields::ANGLE_WORST)]), "stress_Br_MPa").unwrap();
     let any = |angle: f64| output(&with(&[("bolt_angle_deg", angle)]), "stress_Br_MPa").unwrap();
     let largest = (0..12).map(|it| any(7.5 * f64::from(it))).fold(0.0, f64::max);
     assert!(worst >= largest - 1e-3 * largest && worst <= 1.01 * largest, "{worst} {largest}");

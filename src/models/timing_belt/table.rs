@@ -1,8 +1,8 @@
 //! The tables of the timing belt: inputs, outputs, conditions, presets.
 
 use super::super::description::{Condition, Effort, Input, Output, Preset, Range, SAMPLE, Worse};
-use super::super::evaluation::{Evaluation, Status};
 use super::super::model::Model;
+use super::super::status::{Evaluation, Status};
 use super::{Inputs, OUT, SPACE, TimingBelt, profile};
 use crate::units::{DEGREE, GIGAPASCAL, GRAM, MICROMETRE_PER_NEWTON, MILLIMETRE, NEWTON, NONE, RPM, SQUARE_MILLIMETRE, Unit};
 use Worse::{Higher, Lower};

@@ -39,7 +39,7 @@ fn differing(model: &Model, count: usize, scratch: &mut Scratch, random: &mut Ra
     let prepared = model.kernel.prepared(&shared);
     let mut results = vec![vec![f64::NAN; padded]; outputs.len() + conditions.len()];
     let columns = Columns { count, varying: &varying, outputs: &outputs, conditions: &conditions };
-    model.kernel.finish_columns(model, &prepared, &shared, &columns, scratch, &mut results);
+    model.kernel.finish_columns(&model.outputs, &prepared, &shared, &columns, scratch, &mut results);
     let wanted = Set::of(&outputs);
     for (lane, design) in designs.iter().enumerate() {
         let scalar = model.kernel.outputs(&prepared, design, wanted);
@@ -59,7 +59,7 @@ fn differing(model: &Model, count: usize, scratch: &mut Scratch, random: &mut Ra
 #[test]
 fn a_batch_has_the_same_bits_as_its_designs_alone() {
     // What one batch leaves behind must not show in the next.
-    let mut scratches: Vec<_> = models::all().iter().map(|model| Scratch::new(model)).collect();
+    let mut scratches: Vec<_> = models::all().iter().map(|model| Scratch::new(&*model.kernel)).collect();
     let random = &mut Random::new(51);
     let counts: Vec<usize> = (0..40).flat_map(|_| 1..=17).collect();
     for (done, &count) in counts.iter().enumerate() {
@@ -78,7 +78,7 @@ fn a_last_bit_is_noticed_in_a_batch() {
     let random = &mut Random::new(52);
     for model in models::all() {
         let tried = evaluations(model, 50);
-        let noticed = (0..tried).filter(|_| differing(model, 9, &mut Scratch::new(model), random, f64::next_up).is_some()).count();
+        let noticed = (0..tried).filter(|_| differing(model, 9, &mut Scratch::new(&*model.kernel), random, f64::next_up).is_some()).count();
         assert!(noticed as u64 * 5 > tried * 4, "{}: {noticed} of {tried}", model.name);
     }
 }
