@@ -4,10 +4,10 @@
 //! infeasible, or its objectives differ from those of the sweep, the program stops.
 
 use crate::error::{Error, Result};
+use crate::keys::{KeyRule, Points};
 use crate::models::{Latest, Set, Sizes, Status, Worse, fill_si, judge, shown};
 use crate::parallel::on_threads;
 use crate::plan::{Plan, worst_end};
-use crate::reduce::{KeyRule, Points};
 use crate::screen::Control;
 use crate::study::{Axis, Constraint, Quantity, Study};
 use std::sync::atomic::{AtomicBool, Ordering};

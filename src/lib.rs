@@ -81,6 +81,8 @@ pub mod files;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 #[doc(hidden)]
+pub mod keys;
+#[doc(hidden)]
 pub mod likeness;
 #[doc(hidden)]
 pub mod memory;
@@ -101,12 +103,16 @@ pub mod pictures;
 pub mod plan;
 #[doc(hidden)]
 pub mod pulley;
+#[cfg(feature = "pictures")]
+mod reading;
 pub mod real;
 #[doc(hidden)]
 pub mod reduce;
 #[cfg(feature = "pictures")]
 #[doc(hidden)]
 pub mod report;
+#[doc(hidden)]
+pub mod result_files;
 pub mod run;
 mod sample;
 #[doc(hidden)]
@@ -116,6 +122,8 @@ pub mod space;
 pub mod study;
 #[doc(hidden)]
 pub mod sweep;
+#[doc(hidden)]
+pub mod table;
 pub mod tape;
 #[doc(hidden)]
 pub mod tiles;
@@ -125,6 +133,6 @@ pub mod units;
 pub mod verify;
 
 pub use error::{Error, Result};
-pub use export::{Data, Table, TableColumn};
 pub use run::{Control, Engine, Judging, Options, Outcome, Stored};
 pub use study::Study;
+pub use table::{Data, Table, TableColumn};

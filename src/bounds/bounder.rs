@@ -6,7 +6,7 @@
 
 use super::axes::{AXES, Axes, BoxAxis, Span, Spans};
 use super::requirement::NumberSource;
-use super::tape::Tape;
+use super::study_tape::StudyTape;
 use crate::real::Real;
 use crate::tape::{Dual, EVERYTHING, Interval};
 use crate::tape::{Node, Operation};
@@ -61,7 +61,7 @@ impl<const N: usize> Sloped for Runner<'_, Dual<Interval, N>> {
 /// Runs the tape over boxes with one number type. What depends on one axis alone is kept by span.
 #[derive(Debug)]
 struct Runner<'t, R> {
-    tape: &'t Tape,
+    tape: &'t StudyTape,
     axes: &'t Axes,
     alone: Vec<Vec<Node>>,
     /// Of these: what others read or the study asks for, and its values by span.
@@ -76,7 +76,7 @@ struct Runner<'t, R> {
 }
 
 impl<'t, R: Boxed> Runner<'t, R> {
-    fn new(tape: &'t Tape, axes: &'t Axes) -> Self {
+    fn new(tape: &'t StudyTape, axes: &'t Axes) -> Self {
         let mut slots = vec![R::constant(0.0); tape.list.operations.len()];
         for node in (0..tape.list.operations.len()).filter(|&node| !tape.list.inner[node] && tape.axes[node] == 0) {
             tape.list.compute(node as Node, &mut slots);
@@ -163,7 +163,7 @@ pub struct AskedNumber {
 
 impl AskedNumber {
     /// A number of a tape.
-    pub fn new(tape: &Tape, source: NumberSource, higher_is_worse: bool) -> Self {
+    pub fn new(tape: &StudyTape, source: NumberSource, higher_is_worse: bool) -> Self {
         let needed = if let NumberSource::Node(node, _) = source { tape.list.needed_by(&[node]) } else { Vec::new() };
         // What is needed may depend on an axis that the result does not: a selection with equal branches.
         let axis_set = needed.iter().fold(source.axes(tape), |set, &node| set | tape.axes[node as usize]);
@@ -253,7 +253,7 @@ const RECENT: usize = 8;
 
 impl<'t> Bounder<'t> {
     /// A bounder for a tape.
-    pub fn new(tape: &'t Tape, axes: &'t Axes) -> Self {
+    pub fn new(tape: &'t StudyTape, axes: &'t Axes) -> Self {
         let slopes: Box<dyn Sloped + 't> = match axes.all.len() {
             0..=3 => Box::new(Runner::<Dual<Interval, 3>>::new(tape, axes)),
             4 | 5 => Box::new(Runner::<Dual<Interval, 5>>::new(tape, axes)),

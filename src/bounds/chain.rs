@@ -4,9 +4,9 @@
 //! way, then for fixed others the output in f64 rises or falls with v, rounding and all: sums, differences, products, quotients, roots,
 //! minima and maxima that IEEE 754 rounds never swap the order of two numbers. No derivative and no margin for errors is needed.
 
-use super::columns::NodeColumns;
+use super::box_columns::BoxColumns;
 use super::requirement::NumberSource;
-use super::tape::Tape;
+use super::study_tape::StudyTape;
 use crate::tape::{Binary, Node, Operation, Unary};
 
 /// One operation on the way.
@@ -41,7 +41,7 @@ const MOST: usize = 4096;
 
 impl Chain {
     /// All chains to an output whose start and others both depend on some of the `varying` axes.
-    pub fn all(tape: &Tape, source: NumberSource, varying: u64) -> Vec<Self> {
+    pub fn all(tape: &StudyTape, source: NumberSource, varying: u64) -> Vec<Self> {
         let mut found = Vec::new();
         let mut looked = 0;
         if let NumberSource::Node(node, _) = source {
@@ -92,7 +92,7 @@ impl Chain {
     }
 
     /// The others of one design of the box that columns were computed for.
-    pub fn others_at<'a>(&'a self, columns: &'a NodeColumns<'_>, lane: usize) -> impl Iterator<Item = f64> + 'a {
+    pub fn others_at<'a>(&'a self, columns: &'a BoxColumns<'_>, lane: usize) -> impl Iterator<Item = f64> + 'a {
         self.others.iter().map(move |&other| columns.value(other).at(lane))
     }
 }
@@ -108,7 +108,7 @@ fn apply(step: Step, value: f64, others: &[f64]) -> f64 {
 
 /// Walks from an output to what it is made of. Whatever is on the way is a start; the path holds the steps from the output down.
 fn follow(
-    tape: &Tape,
+    tape: &StudyTape,
     node: Node,
     varying: u64,
     path: &mut Vec<(Step, Option<Node>)>,

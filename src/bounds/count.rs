@@ -6,12 +6,13 @@
 
 use super::axes::{AXES, Axes, Span, Spans};
 use super::bounder::Bounder;
-use super::columns::{CHUNK, NodeColumns};
+use super::box_columns::BoxColumns;
 use super::open::{Bounded, Decided, Open, decide, each_scenario, over, scenarios};
 use super::pairing::Pairing;
 use super::pairs::{Instance, Pairs};
 use super::requirement::NumberSource;
-use super::tape::Tape;
+use super::study_tape::StudyTape;
+use crate::tape::CHUNK;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A box is evaluated where that takes about as many operations as a few more bounds.
@@ -76,11 +77,11 @@ impl Settled {
 /// Counts boxes; one per thread.
 #[derive(Debug)]
 pub struct BoxCounter<'t> {
-    tape: &'t Tape,
+    tape: &'t StudyTape,
     axes: &'t Axes,
     requirements: &'t [Bounded],
     bounder: Bounder<'t>,
-    columns: NodeColumns<'t>,
+    columns: BoxColumns<'t>,
     pairs: Pairs<'t>,
     stop: &'t AtomicBool,
     /// How designs were settled.
@@ -107,13 +108,13 @@ enum Inside {
 
 impl<'t> BoxCounter<'t> {
     /// A counter for a tape.
-    pub fn new(tape: &'t Tape, axes: &'t Axes, requirements: &'t [Bounded], stop: &'t AtomicBool) -> Self {
+    pub fn new(tape: &'t StudyTape, axes: &'t Axes, requirements: &'t [Bounded], stop: &'t AtomicBool) -> Self {
         Self {
             tape,
             axes,
             requirements,
             bounder: Bounder::new(tape, axes),
-            columns: NodeColumns::new(tape, axes),
+            columns: BoxColumns::new(tape, axes),
             pairs: Pairs::new(tape, axes, stop),
             stop,
             settled: Settled::default(),

@@ -6,8 +6,8 @@
 
 mod axes;
 mod bounder;
+mod box_columns;
 mod chain;
-mod columns;
 mod count;
 mod open;
 mod pairing;
@@ -17,7 +17,7 @@ mod requirement;
 mod search;
 mod sorted;
 mod staircase;
-mod tape;
+mod study_tape;
 #[cfg(test)]
 mod tests;
 
@@ -39,7 +39,7 @@ use search::{BoxSearch, ObjectiveProduct, QuotientLimit, Target};
 use serde_json::{Value, json};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
-use tape::{Merit, Tape};
+use study_tape::{Merit, StudyTape};
 
 /// Why bounds cannot serve a study: something that asks about every design; `None` if they can.
 pub fn refusal(plan: &Plan) -> Option<String> {
@@ -84,7 +84,7 @@ pub struct SearchJob<'a> {
 #[derive(Debug)]
 pub struct BoundedStudy {
     axes: Axes,
-    tape: Tape,
+    tape: StudyTape,
     requirements: Vec<Bounded>,
     /// Points of a front at which a search gives up.
     pub most_points: u64,
@@ -97,7 +97,7 @@ impl BoundedStudy {
             return None;
         }
         let axes = Axes::new(plan)?;
-        let tape = Tape::new(plan, &axes)?;
+        let tape = StudyTape::new(plan, &axes)?;
         let bounded = |requirement: requirement::Requirement| {
             let asked = AskedNumber::new(&tape, requirement.source, matches!(requirement.test, Test::High(..)));
             Bounded { requirement, asked }

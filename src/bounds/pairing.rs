@@ -3,7 +3,7 @@
 use super::axes::{AXES, Axes, Span, Spans};
 use super::chain::Chain;
 use super::requirement::NumberSource;
-use super::tape::Tape;
+use super::study_tape::StudyTape;
 use crate::tape::Node;
 
 /// Most members of the first group's list: they are held in memory.
@@ -45,7 +45,7 @@ fn list(set: u64) -> Vec<usize> {
 
 impl Pairing {
     /// The cheapest way to see the numbers asked for as made of two groups of the axes that vary in a box.
-    pub fn find(tape: &Tape, axes: &Axes, spans: &Spans, sources: &[NumberSource]) -> Option<Self> {
+    pub fn find(tape: &StudyTape, axes: &Axes, spans: &Spans, sources: &[NumberSource]) -> Option<Self> {
         let varying = (0..axes.designs).filter(|&axis| !spans[axis].is_single()).fold(0u64, |set, axis| set | 1 << axis);
         let widest = sources.iter().max_by_key(|source| (source.axes(tape) & varying).count_ones())?;
         let mut best: Option<Self> = None;
@@ -80,7 +80,7 @@ impl Pairing {
     }
 
     /// The groups that one chain suggests.
-    fn about(tape: &Tape, spans: &Spans, sources: &[NumberSource], varying: u64, chain: &Chain) -> Option<Self> {
+    fn about(tape: &StudyTape, spans: &Spans, sources: &[NumberSource], varying: u64, chain: &Chain) -> Option<Self> {
         let (start, others) = (tape.axes[chain.channel as usize] & varying, chain.other_axes & varying);
         let mut outer = start & others;
         let (first, second) = (start & !outer, others & !outer);

@@ -5,12 +5,13 @@
 //! group's list are on its good side. That is exact in f64, because a chain never swaps the order of two numbers.
 
 use super::axes::{Axes, Span, Spans};
+use super::box_columns::BoxColumns;
 use super::chain::Chain;
-use super::columns::{CHUNK, NodeColumns};
 use super::pairing::{PairRole, Pairing};
 use super::requirement::{NumberSource, Requirement};
 use super::sorted::Buckets;
-use super::tape::Tape;
+use super::study_tape::StudyTape;
+use crate::tape::CHUNK;
 use crate::tape::Node;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -80,9 +81,9 @@ struct Channel {
 /// Counts boxes by pairs; one per thread, with room that is used again.
 #[derive(Debug)]
 pub struct Pairs<'t> {
-    tape: &'t Tape,
+    tape: &'t StudyTape,
     axes: &'t Axes,
-    columns: NodeColumns<'t>,
+    columns: BoxColumns<'t>,
     /// Members of the first group that are not out by themselves.
     members: Vec<u32>,
     /// Evaluations so far, of members of either group.
@@ -92,8 +93,8 @@ pub struct Pairs<'t> {
 
 impl<'t> Pairs<'t> {
     /// A counter for a tape. Once `stop` is set its results are incomplete and must be dropped.
-    pub fn new(tape: &'t Tape, axes: &'t Axes, stop: &'t AtomicBool) -> Self {
-        Self { tape, axes, columns: NodeColumns::new(tape, axes), members: Vec::new(), evaluated: 0, stop }
+    pub fn new(tape: &'t StudyTape, axes: &'t Axes, stop: &'t AtomicBool) -> Self {
+        Self { tape, axes, columns: BoxColumns::new(tape, axes), members: Vec::new(), evaluated: 0, stop }
     }
 
     /// How many designs of a box satisfy all instances; looks for the `best` value of the number in role `goal` on the way, if asked to.

@@ -1,7 +1,7 @@
 //! What a feasible design satisfies in every scenario, one bound at a time.
 
 use super::axes::Axes;
-use super::tape::Tape;
+use super::study_tape::StudyTape;
 use crate::models::Model;
 use crate::plan::Plan;
 use crate::study::Quantity;
@@ -46,7 +46,7 @@ pub enum NumberSource {
 
 impl NumberSource {
     /// A quantity of a plan.
-    pub fn of(quantity: Quantity, plan: &Plan, tape: &Tape) -> Self {
+    pub fn of(quantity: Quantity, plan: &Plan, tape: &StudyTape) -> Self {
         match quantity {
             Quantity::Input(input) => match tape.input_axes[input] {
                 Some((axis, column)) => Self::Axis(axis as usize, column as usize),
@@ -60,7 +60,7 @@ impl NumberSource {
     }
 
     /// The axes that it depends on.
-    pub fn axes(self, tape: &Tape) -> u64 {
+    pub fn axes(self, tape: &StudyTape) -> u64 {
         match self {
             Self::Known(_) => 0,
             Self::Axis(axis, _) => 1 << axis,
@@ -100,7 +100,7 @@ impl Requirement {
 }
 
 /// All that a feasible design of a plan satisfies.
-pub fn requirements(plan: &Plan, tape: &Tape, axes: &Axes) -> Vec<Requirement> {
+pub fn requirements(plan: &Plan, tape: &StudyTape, axes: &Axes) -> Vec<Requirement> {
     let model: &Model = &plan.study.model;
     let mut all = Vec::new();
     let needed = |source: NumberSource| match source {

@@ -4,7 +4,7 @@
 //! near. If the product of both objectives (of their values or inverses, larger where better) has a bound, the corner is cut off: a
 //! design that no point beats is better than a notch of the staircase in both objectives, so its product is larger than the notch's.
 
-use crate::reduce::Points;
+use crate::keys::Points;
 
 /// How much of a product rounding may hide, relatively: that of both objectives and of the product.
 const HIDDEN: f64 = 256.0 * f64::EPSILON;

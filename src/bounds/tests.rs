@@ -2,12 +2,13 @@
 
 use super::axes::{AXES, Span};
 use super::bounder::Wanted;
-use super::columns::{CHUNK, NodeColumns};
+use super::box_columns::BoxColumns;
 use super::open::over;
 use super::*;
 use crate::models::{Set, find, to_si};
 use crate::sample::mix;
 use crate::study::study_of;
+use crate::tape::CHUNK;
 
 /// Studies with scenarios, words, kinks and axes of all kinds.
 const STUDIES: &[(&str, &str)] = &[
@@ -102,7 +103,7 @@ fn the_worst_of_a_design_never_leaves_the_bounds_of_its_box() {
 fn columns_have_the_bits_of_the_formula() {
     for plan in plans() {
         let layout = BoundedStudy::new(&plan).expect("bounds serve it");
-        let mut columns = NodeColumns::new(&layout.tape, &layout.axes);
+        let mut columns = BoxColumns::new(&layout.tape, &layout.axes);
         for seed in 0..60 {
             let spans = a_box(&layout, seed);
             let scenario = mix(seed) % plan.scenarios();

@@ -3,7 +3,8 @@
 use super::manifest::Manifest;
 use crate::error::{Error, Result};
 use crate::files::{Claim, is_regular, is_there, remove_if_there};
-use crate::names::{CHECKPOINT, MARK, is_ours};
+use crate::names::{CHECKPOINT, MARK};
+use crate::result_files::is_ours;
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::Path;

@@ -3,7 +3,8 @@
 use crate::checkpoint::{Found, foreign, found};
 use crate::error::{Error, Occupant, Result};
 use crate::files::{MOVE, is_regular, is_there, read_at_most, refuse_foreign};
-use crate::names::{CHECKPOINT, MARK, PAGE, RUN, is_ours, is_page};
+use crate::names::{CHECKPOINT, MARK, PAGE, RUN, is_page};
+use crate::result_files::is_ours;
 use crate::study::Study;
 use serde_json::Value;
 use std::path::{Path, PathBuf};

@@ -12,7 +12,8 @@ pub use contents::Contents;
 use crate::checkpoint::{Found, finish_switch, found, remove_remains};
 use crate::error::{Error, Result};
 use crate::files::{Claim, is_regular, remove_if_there, was_to_become};
-use crate::names::{CHECKPOINT, is_remains};
+use crate::names::CHECKPOINT;
+use crate::result_files::is_remains;
 use std::path::Path;
 
 /// A result directory that this process has claimed.

@@ -2,7 +2,8 @@
 
 use super::{Contents, claim};
 use crate::checkpoint::Checkpoint;
-use crate::names::{MARK, RUN, is_ours, result_files};
+use crate::names::{MARK, RUN};
+use crate::result_files::{is_ours, result_files};
 use crate::study::Study;
 use crate::tiles::Shard;
 use std::collections::BTreeMap;

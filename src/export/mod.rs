@@ -3,24 +3,16 @@
 //! Without the feature `pictures` it has no pictures and no page, without `parquet` no tables in Parquet: `front.csv` has the same values
 //! as `front.parquet`, and maps of any size are CSV. All other files have the same bytes.
 
-pub(crate) mod csv;
-mod number;
-#[cfg(feature = "parquet")]
-pub(crate) mod parquet;
 #[cfg(feature = "pictures")]
 mod pictures;
 #[cfg(feature = "pictures")]
 pub mod pulley;
 mod summary;
-pub(crate) mod table;
 pub(crate) mod tables;
 #[cfg(test)]
 mod tests;
 
-pub use csv::write as csv_text;
-pub use number::{plain, short, written};
 pub use summary::{Knee, MethodRecord, RunRecord, Summary};
-pub use table::{Data, Table, TableColumn};
 
 use crate::certify::{self, Column, Row};
 use crate::checkpoint::Checkpoint;
@@ -32,6 +24,9 @@ use crate::names::{MARK, RUN};
 use crate::plan::Plan;
 use crate::reduce::State;
 use crate::screen::{Control, Tally};
+#[cfg(feature = "parquet")]
+use crate::table::parquet;
+use crate::table::{Table, csv};
 use std::io::Write;
 use std::sync::atomic::Ordering;
 

@@ -1,9 +1,10 @@
 //! The tables of designs of a result.
 
-use super::table::{Data, Table, TableColumn};
-use super::{Certified, written};
+use super::Certified;
 use crate::certify::{self, Role, Row};
 use crate::study::{Axis, Goal};
+use crate::table::written;
+use crate::table::{Data, Table, TableColumn};
 
 /// A table of designs: index, design inputs, then the worst value of every other column and its scenario. A design input that is also an
 /// objective or has a constraint stands once, in all its roles.

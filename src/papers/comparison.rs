@@ -1,8 +1,8 @@
 //! Compares what a paper prints with what is computed, and gives the reason.
 
 use super::{Paper, numbers, words};
-use crate::export::Table;
 use crate::pictures::number::significant;
+use crate::table::Table;
 
 /// The verdict of a comparison. It is computed from the two numbers, never written by hand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -17,8 +17,8 @@ pub use comparison::{Comparison, Printed, Verdict, check};
 use evaluated::Inputs;
 
 use crate::error::{Error, Result};
-use crate::export::{Data, Table, TableColumn, csv_text};
 use crate::files::{Claim, is_there, read_at_most, replace};
+use crate::table::{Data, Table, TableColumn, csv_text};
 use std::path::Path;
 
 /// Name of the page that a reproduction is read from.

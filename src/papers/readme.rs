@@ -2,7 +2,7 @@
 
 use super::comparison::digits;
 use super::{Comparison, Lost, Paper, Repair, Reproduction};
-use crate::export::{Data, Table};
+use crate::table::{Data, Table};
 
 const INTRODUCTION: &str = "\
 Written by `beltspace reproduce`; a test writes it again and compares every byte. All numbers come from the models, evaluated with the

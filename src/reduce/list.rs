@@ -3,12 +3,12 @@
 use super::reducer::{Put, Reducer, ReducerNeeds, ReducerResults, ReducerRoom};
 use super::{Answers, FeasibleSample, Histogram, Map, Top};
 use crate::error::Result;
-use crate::export::table::Table;
 use crate::plan::Plan;
 #[cfg(feature = "pictures")]
-use crate::report::reading::Folder;
+use crate::reading::Folder;
 use crate::screen::Block;
 use crate::study::{Report, Study};
+use crate::table::Table;
 use serde::{Deserialize, Serialize};
 #[cfg(feature = "pictures")]
 use serde_json::Value;

@@ -11,12 +11,12 @@
 
 use super::Answers;
 use crate::error::Result;
-use crate::export::table::Table;
 use crate::plan::Plan;
 #[cfg(feature = "pictures")]
-use crate::report::reading::Folder;
+use crate::reading::Folder;
 use crate::screen::Block;
 use crate::study::{Report, Study};
+use crate::table::Table;
 #[cfg(feature = "pictures")]
 use serde_json::{Map, Value};
 

@@ -7,16 +7,16 @@
 use super::Answers;
 use super::reducer::{Put, Reducer, ReducerNeeds, ReducerResults, ReducerRoom};
 use crate::error::Result;
-use crate::export::csv;
-#[cfg(feature = "parquet")]
-use crate::export::parquet;
 use crate::names::MOST_DOTS;
 use crate::plan::Plan;
 #[cfg(feature = "pictures")]
-use crate::report::{designs, reading::Folder};
+use crate::reading::{Folder, designs};
 use crate::sample::mix;
 use crate::screen::Block;
 use crate::study::{Report, Study};
+use crate::table::csv;
+#[cfg(feature = "parquet")]
+use crate::table::parquet;
 use multiversion::multiversion;
 use serde::{Deserialize, Serialize};
 #[cfg(feature = "pictures")]

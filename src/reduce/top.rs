@@ -3,12 +3,12 @@
 use super::Answers;
 use super::reducer::{Put, Reducer, ReducerNeeds, ReducerResults, ReducerRoom};
 use crate::error::Result;
-use crate::export::csv;
 use crate::plan::Plan;
 #[cfg(feature = "pictures")]
-use crate::report::{designs, reading::Folder};
+use crate::reading::{Folder, designs};
 use crate::screen::Block;
 use crate::study::{Goal, Report, Study};
+use crate::table::csv;
 use serde::{Deserialize, Serialize};
 #[cfg(feature = "pictures")]
 use serde_json::{Map, Value, json};

@@ -1,16 +1,16 @@
 //! The designs that a page shows: the result's front table, completed with every other output of the model.
 
-use super::designs::{check_header, check_row, header, inputs};
-use super::packed::{Packed, packed};
-use super::reading::{changed, table_reader, unreadable};
 use crate::certify::{self, Column, Role, Row};
 use crate::error::Result;
-use crate::export::written;
 use crate::names::MOST_ON_PAGE;
 use crate::parallel::with_beside;
 use crate::plan::Plan;
+use crate::reading::designs::{check_header, check_row, header, inputs};
+use crate::reading::packed::{Packed, packed};
+use crate::reading::{changed, table_reader, unreadable};
 use crate::screen::Control;
 use crate::study::{Axis, Goal, Quantity, Study};
+use crate::table::written;
 use serde_json::{Value, json};
 use std::collections::{BTreeSet, HashSet};
 use std::path::Path;

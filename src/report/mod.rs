@@ -3,26 +3,23 @@
 //! The page is assembled from the files of a result directory and the study. Of each design it shows the values in `front.csv`, checked
 //! against the study, and every other output at its worst scenario.
 
-pub(crate) mod designs;
 mod front;
-pub(crate) mod packed;
 mod page;
 mod papers;
-mod picture;
-pub(crate) mod reading;
 mod summary;
 
 pub use papers::of_papers;
 
 use crate::checkpoint::{Found, found};
 use crate::error::{Error, Result};
-use crate::export::{pulley, written};
+use crate::export::pulley;
 use crate::names::{CHECKPOINT, MARK, RUN};
 use crate::plan::Plan;
+use crate::reading::{Folder, STUDY, changed, json_of, picture_of, text_of};
 use crate::reduce::Reported;
 use crate::screen::Control;
 use crate::study::{Axis, Study, number, value_of};
-use reading::{Folder, STUDY, changed, json_of, picture_of, text_of};
+use crate::table::written;
 use serde_json::{Map, Value, json};
 use std::path::Path;
 use std::time::Duration;
@@ -233,5 +230,5 @@ fn figures(folder: &Path) -> Result<Vec<Value>> {
 
 /// Every design, feasible or not, if the study lists them.
 fn variants(folder: &Path, plan: &Plan) -> Result<Option<Value>> {
-    plan.study.report.variants.then(|| designs::list(&folder.join("variants.csv"), plan, plan.designs(), true)).transpose()
+    plan.study.report.variants.then(|| crate::reading::designs::list(&folder.join("variants.csv"), plan, plan.designs(), true)).transpose()
 }

@@ -5,12 +5,13 @@ use super::device::{Trusted, supports_histograms, sweep_on_device};
 use super::method::Chosen;
 use crate::checkpoint::Checkpoint;
 use crate::error::Result;
-use crate::export::{Certified, MethodRecord, short};
+use crate::export::{Certified, MethodRecord};
 use crate::plan::Plan;
 use crate::reduce::Reduction;
 use crate::screen::{Control, Tables, Tally};
 use crate::sweep::costs::span;
 use crate::sweep::{DeviceRecord, Leaving, OnDevice, Rule, Settings, Settler, Swept, sweep, sweep_auto, sweep_by_bounds};
+use crate::table::short;
 use std::time::Duration;
 
 /// What judges the designs.

@@ -5,7 +5,7 @@ use super::judge::{How, Judged, judge, record_of};
 use super::{Engine, Options, method};
 use crate::contours::contours as lines_over;
 use crate::error::Result;
-use crate::export::{Certified, Knee, Summary, Table, tables};
+use crate::export::{Certified, Knee, Summary, tables};
 use crate::models::OVERFLOW;
 use crate::parallel::to_be_had;
 use crate::plan::Plan;
@@ -13,6 +13,7 @@ use crate::reduce::{Extreme, Histogram, histogram, map};
 use crate::study::Study;
 use crate::sweep::Settings;
 use crate::sweep::costs::Speed;
+use crate::table::Table;
 use std::ops::Range;
 use std::time::Duration;
 

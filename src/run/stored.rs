@@ -1,10 +1,10 @@
 //! A result directory, read into memory.
 
 use crate::error::{Error, Result};
-use crate::export::{Data, Table, TableColumn};
 use crate::files::{RESULT_BYTES, open, read_text};
 use crate::names::MARK;
 use crate::study::Study;
+use crate::table::{Data, Table, TableColumn};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 

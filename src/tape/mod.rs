@@ -3,8 +3,10 @@
 //!
 //! [`Recording`] makes the list. Constants are folded with the functions of f64 and equal operations stand once, so that f64 gives the
 //! same bits as the formula. [`List`] is what remains of it when some results are asked for: it runs over any number type (f32 with
-//! error bounds in [`RunningError`], boxes in [`Interval`], derivatives in [`Dual`]), tells which inputs a result depends on, and [`wgsl`] writes the shader from it.
+//! error bounds in [`RunningError`], boxes in [`Interval`], derivatives in [`Dual`]), tells which inputs a result depends on, is computed for many designs at a time ([`NodeColumns`]),
+//! and [`wgsl`] writes the shader from it.
 
+mod columns;
 mod dual;
 pub(crate) mod error_bound;
 mod interval;
@@ -17,6 +19,7 @@ mod stages;
 mod tests;
 pub mod wgsl;
 
+pub use columns::{CHUNK, ColumnValue, NodeColumns};
 pub use dual::Dual;
 pub use error_bound::{RunningError, nearest_f32};
 pub use interval::{EVERYTHING, Interval};

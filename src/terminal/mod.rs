@@ -4,8 +4,8 @@ pub mod progress;
 pub mod report;
 
 use beltspace::error::{Error, Result};
-pub use beltspace::export::short;
 pub use beltspace::sweep::costs::span;
+pub use beltspace::table::short;
 use console::Style;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;

@@ -2,8 +2,8 @@
 
 use super::super::{Figure, Inputs, Paper, numbers};
 use super::{PaperCurve, metal, rubber};
-use crate::export::Table;
 use crate::pictures::{Guide, Line, Marker, Quantity, Scale, Stroke, lines};
+use crate::table::Table;
 
 /// Every figure of the paper that has something to compute.
 pub(super) fn all() -> Vec<Figure> {

@@ -2,8 +2,8 @@
 
 use super::super::{Paper, PaperTable, numbers, words};
 use super::{driver_force, free_radius, metal, rubber};
-use crate::export::Table;
 use crate::models::{optimum_thickness, printed_torque_coefficient, torque_coefficient};
+use crate::table::Table;
 use std::f64::consts::PI;
 
 /// Radii as Table 1 prints them for both belts, mm: r0 and r1.

@@ -2,9 +2,9 @@
 
 use super::super::{Figure, Inputs, Paper, numbers};
 use super::Stressed;
-use crate::export::Table;
 use crate::export::pulley::NodeStress;
 use crate::pictures::{Quantity, Series, curves};
+use crate::table::Table;
 
 /// Tension, line force and flank force over the wrap.
 pub(super) fn loads() -> Figure {

@@ -2,7 +2,7 @@
 
 use super::super::{Inputs, Paper, PaperTable, numbers, words};
 use super::example;
-use crate::export::Table;
+use crate::table::Table;
 
 /// The paper's coefficient of friction: a half of the square of the total one, because it acts both along the flank and around.
 pub(super) fn friction_each_way(belt: &Inputs) -> f64 {

@@ -2,9 +2,9 @@
 
 use super::super::{Figure, Inputs, Paper, PaperTable, numbers, words};
 use super::example;
-use crate::export::{Data, Table, TableColumn};
 use crate::models::CHECK_POINT_STRESSES;
 use crate::pictures::{Guide, Line, Marker, Quantity, Scale, Stroke, lines};
+use crate::table::{Data, Table, TableColumn};
 
 /// The paper's direction of friction, deg from the circumference, and the customary one.
 pub(super) const DIRECTIONS: [f64; 2] = [45.0, 0.0];

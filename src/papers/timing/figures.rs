@@ -2,8 +2,8 @@
 
 use super::super::{Figure, Paper, numbers, words};
 use super::{TimingMesh, driven, driver_at_rest};
-use crate::export::{Data, Table, TableColumn};
 use crate::pictures::{Guide, Line, Marker, Quantity, Scale, Stroke, lines};
+use crate::table::{Data, Table, TableColumn};
 
 /// Every figure of the paper that has something to compute.
 pub(super) fn all() -> Vec<Figure> {

@@ -6,9 +6,8 @@
 //! order of arrival: it is the set of designs that no other one beats, and "beats" is a strict order.
 
 mod filter;
-mod keys;
 
-pub use keys::{KeyRule, Points};
+pub use crate::keys::{KeyRule, Points};
 
 use super::dominance::{Dominance, beats};
 use crate::screen::Block;

@@ -6,13 +6,13 @@ mod page;
 use super::naming::{is_named, numbered};
 use super::reducer::{Put, Reducer, ReducerNeeds, ReducerResults, ReducerRoom};
 use crate::error::Result;
-use crate::export::csv;
-use crate::export::table::{Data, Table, TableColumn};
 use crate::plan::{Plan, worst_end};
 #[cfg(feature = "pictures")]
-use crate::report::reading::Folder;
+use crate::reading::Folder;
 use crate::screen::Block;
 use crate::study::{Report, Study};
+use crate::table::csv;
+use crate::table::{Data, Table, TableColumn};
 use serde::{Deserialize, Serialize};
 #[cfg(feature = "pictures")]
 use serde_json::{Map, Value};

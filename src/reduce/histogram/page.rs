@@ -3,7 +3,7 @@
 use super::{Histogram, names};
 use crate::error::Result;
 use crate::pictures::{self, Quantity};
-use crate::report::reading::{Folder, changed, owned, rows_of};
+use crate::reading::{Folder, changed, owned, rows_of};
 use crate::study::{HistogramSpec, Study};
 use serde_json::{Map, Value, json};
 

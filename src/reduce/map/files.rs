@@ -5,20 +5,19 @@ use super::super::reducer::{Put, ReducerResults, ReducerRoom};
 use super::Map;
 #[cfg(feature = "pictures")]
 use super::picture::picture;
+use super::shown::{SHARE, has_words, value_of};
 use crate::contours::{Along, Contour, contours as lines_over};
 use crate::error::Result;
-use crate::export::csv;
-#[cfg(feature = "parquet")]
-use crate::export::parquet;
-use crate::export::table::{Data, Table, TableColumn};
-use crate::export::written;
 use crate::plan::Plan;
-use crate::study::{Axis, Best, Levels, MapSpec, Study};
+use crate::study::{Best, MapSpec, Study};
+use crate::table::csv;
+#[cfg(feature = "parquet")]
+use crate::table::parquet;
+use crate::table::written;
+use crate::table::{Data, Table, TableColumn};
 
 /// Maps of more cells are written as Parquet rather than CSV, where the library is built with it.
 pub const CSV_CELLS: u64 = 100_000;
-/// Name of a map of feasible shares, in place of a quantity's.
-const SHARE: &str = "feasible_share";
 
 /// Names of the tables of a study's maps, without their extension.
 pub fn names(study: &Study) -> Vec<String> {
@@ -103,22 +102,6 @@ fn bytes_of(file: &str, table: &Table) -> Result<Vec<u8>> {
 #[allow(clippy::unnecessary_wraps, reason = "as with Parquet, which may fail")]
 fn bytes_of(_: &str, table: &Table) -> Result<Vec<u8>> {
     Ok(csv::write(table))
-}
-
-/// What a map shows: name and unit.
-pub fn value_of<'s>(study: &'s Study, spec: &MapSpec) -> (&'s str, &'static str) {
-    match spec.value {
-        Best::Value(quantity, _) => (quantity.name(&study.model), quantity.unit(&study.model)),
-        Best::Share => (SHARE, ""),
-    }
-}
-
-/// Is a level of this axis of one input a word?
-pub fn has_words(study: &Study, axis: &Axis) -> bool {
-    let input = &study.model.inputs[axis.inputs()[0]];
-    // Levels given by a rule are numbers.
-    let listed = !matches!(axis, Axis::Single { levels: Levels::Even { .. } | Levels::Step { .. } | Levels::Continuous { .. }, .. });
-    listed && (0..axis.count()).any(|level| input.word_for(axis.value(0, level)).is_some())
 }
 
 /// Cells of a map, row by row: x, y, value and the best design; absent where no design is feasible.

@@ -5,6 +5,7 @@ mod files;
 mod page;
 #[cfg(feature = "pictures")]
 mod picture;
+mod shown;
 
 pub use files::{CSV_CELLS, cells, contours, contours_name, names};
 
@@ -13,7 +14,7 @@ use super::reducer::{Put, Reducer, ReducerNeeds, ReducerResults, ReducerRoom};
 use crate::error::Result;
 use crate::plan::Plan;
 #[cfg(feature = "pictures")]
-use crate::report::reading::Folder;
+use crate::reading::Folder;
 use crate::screen::Block;
 use crate::space::Product;
 use crate::study::{Best, Goal, MapSpec, Report, Study};

@@ -1,13 +1,14 @@
 //! Maps on the page, from their files.
 
-use super::files::{CSV_CELLS, contours_name, names, value_of as map_value};
+use super::files::{CSV_CELLS, contours_name, names};
+use super::shown::value_of as map_value;
 use crate::error::Result;
-use crate::export::written;
 use crate::plan::Plan;
-use crate::report::designs::design_of;
-use crate::report::packed::{Packed, packed};
-use crate::report::reading::{Folder, changed, number, owned, picture_of, rows_of};
+use crate::reading::designs::design_of;
+use crate::reading::packed::{Packed, packed};
+use crate::reading::{Folder, changed, number, owned, picture_of, rows_of};
 use crate::study::{Axis, Best, Goal, Levels, MapSpec, Study, Thresholds, value_of};
+use crate::table::written;
 use serde_json::{Map, Value, json};
 use std::path::Path;
 

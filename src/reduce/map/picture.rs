@@ -1,12 +1,12 @@
 //! The picture of a map.
 
 use super::Map;
-use super::files::{has_words, value_of};
+use super::shown::{has_words, value_of};
 use crate::contours::{Contour, Vertex};
-use crate::export::table::{Data, Table};
-use crate::export::written;
 use crate::pictures::{self, Contours, Curve, MapDetails, Quantity};
 use crate::study::{Best, ContourSpec, MapSpec, Study, Thresholds};
+use crate::table::written;
+use crate::table::{Data, Table};
 
 /// A map, from its table, with the lines that it asks for.
 pub fn picture(study: &Study, spec: &MapSpec, map: &Map, table: &Table, contours: &[Contour]) -> String {

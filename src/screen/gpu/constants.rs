@@ -1,8 +1,10 @@
 //! Constants of the sweep that its kernel and the host both know.
 
-use super::layout::DOMINATORS;
 use crate::gpu::shared_constants;
 use crate::reduce::MOST_OBJECTIVES;
+
+/// Most dominators that every design is compared with.
+pub const DOMINATORS: usize = 8;
 
 shared_constants! {
     /// What `shaders/sweep` relies on.

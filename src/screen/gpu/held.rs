@@ -1,6 +1,5 @@
 //! What f32 does not hold: a study with such numbers is not for a device.
 
-use super::layout::on_device;
 use crate::models::input_to_si;
 use crate::plan::Plan;
 use crate::space::{Dimension, Product};
@@ -12,6 +11,14 @@ const FINEST: f64 = 1.0 / (1u64 << 53) as f64;
 /// Is a number zero or among the normal numbers of f32? Devices take what is smaller for zero, and what is larger for infinity.
 fn holds(value: f64) -> bool {
     value == 0.0 || (f64::from(f32::MIN_POSITIVE)..=f64::from(f32::MAX)).contains(&value.abs())
+}
+
+/// A quantity's value as the device has it: outputs in SI, inputs in their unit.
+pub fn on_device(plan: &Plan, quantity: Quantity, value: f64) -> f64 {
+    match quantity {
+        Quantity::Output(output) => plan.study.model.outputs[output].unit.to_si(value),
+        Quantity::Input(_) => value,
+    }
 }
 
 /// The first number of a study that f32 does not hold, in a sentence.

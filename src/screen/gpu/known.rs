@@ -1,7 +1,9 @@
 //! What the device is told of the answers so far, so that it can leave out what cannot be part of them.
 
+use super::constants::DOMINATORS;
+use super::held::on_device;
 use super::kernel::{Coordinate, bins, round_up, threshold, uses_table};
-use super::layout::{DOMINATORS, LIST, on_device, sign};
+use super::layout::{LIST, sign};
 use crate::plan::Plan;
 use crate::reduce::{Answers, MOST_OBJECTIVES};
 use crate::study::{Goal, Quantity};

@@ -28,8 +28,6 @@ pub const WINDOW: u64 = 1 << 20;
 pub const LIST: usize = 64;
 /// Bins of the look-up table along its one or two coordinates.
 pub const BINS: [u64; 2] = [16_384, 256];
-/// Most dominators that every design is compared with.
-pub const DOMINATORS: usize = 8;
 /// Entries of a uniform buffer that every device has.
 const UNIFORM_ENTRIES: usize = 4096;
 
@@ -448,14 +446,6 @@ pub fn scenario_worst(plan: &Plan, input: usize, worse: Worse) -> f64 {
     });
     let (low, high) = ends.unwrap_or((plan.study.fixed[input], plan.study.fixed[input]));
     if worse == Worse::Higher { high } else { low }
-}
-
-/// A quantity's value as the device has it: outputs in SI, inputs in their unit.
-pub fn on_device(plan: &Plan, quantity: Quantity, value: f64) -> f64 {
-    match quantity {
-        Quantity::Output(output) => plan.study.model.outputs[output].unit.to_si(value),
-        Quantity::Input(_) => value,
-    }
 }
 
 /// +1 where less is better.

@@ -12,5 +12,5 @@ mod layout;
 
 pub use crate::reduce::Answers;
 pub use engine::{Checked, GpuEngine, InFlight, Survivor, Survivors, TileCounts, Wrong, kernel_of, supports, supports_histograms};
+pub(crate) use held::on_device;
 pub(crate) use kernel::value_maps;
-pub(crate) use layout::on_device;

@@ -2,7 +2,7 @@
 
 use super::{Csv, Files, ask, changed, files, folder_with, same_result};
 use beltspace::models::{Worse, evaluate};
-use beltspace::names::is_ours;
+use beltspace::result_files::is_ours;
 use beltspace::study::{Quantity, Study};
 use std::path::Path;
 

@@ -16,8 +16,10 @@ mod lanes;
 mod report;
 mod rows;
 
+use super::constants::DOMINATORS;
 use super::constants::{FIRST_REPORTED, SURVIVOR_HEAD, sweep_constants};
-use super::layout::{BINS, DOMINATORS, KernelLayout, LIST, Values, on_device, row_dominators, scenario_worst, sign};
+use super::held::on_device;
+use super::layout::{BINS, KernelLayout, LIST, Values, row_dominators, scenario_worst, sign};
 use crate::gpu::constants::declare;
 use crate::gpu::{model_prelude, model_source, source, tables};
 use crate::models::{CONDITION_BOUND_FACTOR, Worse};

@@ -1,7 +1,7 @@
 //! CSV files: a header with units, decimal points, the shortest numbers, empty cells for absent values.
 
+use super::Table;
 use super::number::plain;
-use super::table::Table;
 use crate::plan::Plan;
 use csv::Writer;
 use std::io::{self, Write};

@@ -34,7 +34,7 @@ impl KeyRule {
     }
 
     /// The keys of a column of values, but for the sign of zero: the values themselves where they serve, else in `scratch`.
-    pub(super) fn keys<'a>(self, values: &'a [f64], scratch: &'a mut Vec<f64>) -> &'a [f64] {
+    pub(crate) fn keys<'a>(self, values: &'a [f64], scratch: &'a mut Vec<f64>) -> &'a [f64] {
         if self.resolution.is_none() && self.goal == Goal::Min {
             return values;
         }
@@ -74,12 +74,12 @@ impl Points {
         self.indices.is_empty()
     }
 
-    pub(super) fn key(&self, point: usize, dimensions: usize) -> &[f64] {
+    pub(crate) fn key(&self, point: usize, dimensions: usize) -> &[f64] {
         &self.keys[point * dimensions..][..dimensions]
     }
 
     /// Number of leading points whose first coordinate is at most `first`; the points must be sorted by it.
-    pub(super) fn not_beyond(&self, first: f64, dimensions: usize) -> usize {
+    pub(crate) fn not_beyond(&self, first: f64, dimensions: usize) -> usize {
         let (mut low, mut high) = (0, self.len());
         while low < high {
             let middle = (low + high) / 2;
@@ -88,7 +88,7 @@ impl Points {
         low
     }
 
-    pub(super) fn push(&mut self, key: impl IntoIterator<Item = f64>, index: u64) {
+    pub(crate) fn push(&mut self, key: impl IntoIterator<Item = f64>, index: u64) {
         self.keys.extend(key);
         self.indices.push(index);
     }

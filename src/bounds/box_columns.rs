@@ -4,38 +4,13 @@
 //! common is one number; the rest are columns, a chunk of designs at a time.
 
 use super::axes::{AXES, Axes, Spans};
-use super::tape::Tape;
-use crate::real::Real;
-use crate::tape::{Binary, Node, Operation, Unary};
-use multiversion::multiversion;
-
-/// Most designs in a chunk: a column fits the first-level cache.
-pub const CHUNK: usize = 1024;
-
-/// A number of the formula over a chunk of designs.
-#[derive(Clone, Copy, Debug)]
-pub enum Value<'a> {
-    /// The same for all.
-    One(f64),
-    /// One per design.
-    Each(&'a [f64]),
-}
-
-impl Value<'_> {
-    /// The number of one design.
-    #[inline(always)]
-    pub fn at(self, lane: usize) -> f64 {
-        match self {
-            Self::One(value) => value,
-            Self::Each(values) => values[lane],
-        }
-    }
-}
+use super::study_tape::StudyTape;
+use crate::tape::{ColumnValue, Node, NodeColumns, Operation};
 
 /// Evaluates a tape over designs; one per thread.
 #[derive(Debug)]
-pub struct NodeColumns<'t> {
-    tape: &'t Tape,
+pub struct BoxColumns<'t> {
+    tape: &'t StudyTape,
     axes: &'t Axes,
     /// Per axis: the operations that depend on it alone, operands first.
     alone: Vec<Vec<Node>>,
@@ -47,28 +22,25 @@ pub struct NodeColumns<'t> {
     tables: Vec<Vec<Vec<f64>>>,
     /// Per axis: which levels are in the tables.
     known: Vec<Vec<bool>>,
-    /// Numbers that are the same for all designs of the box; also room for one design.
-    slots: Vec<f64>,
-    columns: Vec<Vec<f64>>,
+    numbers: NodeColumns,
     /// The box being evaluated: its varying axes, outermost first, as a list and as a bit set.
     varying: Vec<usize>,
     varying_set: u64,
     spans: Spans,
-    count: usize,
 }
 
-impl<'t> NodeColumns<'t> {
+impl<'t> BoxColumns<'t> {
     /// An evaluator of a tape.
-    pub fn new(tape: &'t Tape, axes: &'t Axes) -> Self {
+    pub fn new(tape: &'t StudyTape, axes: &'t Axes) -> Self {
         let count = tape.list.operations.len();
         let (alone, kept) = (tape.alone(axes.all.len()), tape.kept(axes.all.len()));
         let mut place = vec![0; count];
         for nodes in &kept {
             nodes.iter().enumerate().for_each(|(at, &node)| place[node as usize] = at as u32);
         }
-        let mut slots = vec![0.0; count];
+        let mut numbers = NodeColumns::new(&tape.list);
         for node in (0..count).filter(|&node| tape.axes[node] == 0 && !tape.list.inner[node]) {
-            tape.list.compute(node as Node, &mut slots);
+            tape.list.compute(node as Node, &mut numbers.slots);
         }
         Self {
             tape,
@@ -78,12 +50,10 @@ impl<'t> NodeColumns<'t> {
             alone,
             kept,
             place,
-            slots,
-            columns: vec![Vec::new(); count],
+            numbers,
             varying: Vec::new(),
             varying_set: 0,
             spans: axes.whole(),
-            count: 0,
         }
     }
 
@@ -101,7 +71,7 @@ impl<'t> NodeColumns<'t> {
                 if self.varying_set >> axis & 1 == 0 {
                     let level = spans[axis].low as usize;
                     for (at, &node) in self.kept[axis].iter().enumerate() {
-                        self.slots[node as usize] = self.tables[axis][at][level];
+                        self.numbers.slots[node as usize] = self.tables[axis][at][level];
                     }
                 }
             }
@@ -109,7 +79,7 @@ impl<'t> NodeColumns<'t> {
         for &node in needed {
             let depends = self.tape.axes[node as usize];
             if depends & self.varying_set == 0 && depends.count_ones() > 1 {
-                self.tape.list.compute(node, &mut self.slots);
+                self.tape.list.compute(node, &mut self.numbers.slots);
             }
         }
     }
@@ -129,38 +99,42 @@ impl<'t> NodeColumns<'t> {
             for &node in &self.alone[axis] {
                 if let Operation::Input(input) = self.tape.list.operations[node as usize] {
                     let column = self.tape.input_axes[input as usize].map_or(0, |(_, column)| column);
-                    self.slots[node as usize] = self.axes.all[axis].si[column as usize][level];
+                    self.numbers.slots[node as usize] = self.axes.all[axis].si[column as usize][level];
                 } else {
-                    self.tape.list.compute(node, &mut self.slots);
+                    self.tape.list.compute(node, &mut self.numbers.slots);
                 }
             }
             for (at, &node) in self.kept[axis].iter().enumerate() {
-                self.tables[axis][at][level] = self.slots[node as usize];
+                self.tables[axis][at][level] = self.numbers.slots[node as usize];
             }
         }
     }
 
-    /// Computes designs `first..first + count` of the box, at most [`CHUNK`] of them.
+    /// Computes designs `first..first + count` of the box, at most [`CHUNK`](crate::tape::CHUNK) of them.
     pub fn chunk(&mut self, needed: &[Node], first: u64, count: usize) {
-        self.count = count;
+        let mut numbers = std::mem::take(&mut self.numbers);
+        numbers.begin(count);
         for &node in needed {
             let depends = self.tape.axes[node as usize];
             if depends & self.varying_set == 0 {
                 continue;
             }
-            let mut column = std::mem::take(&mut self.columns[node as usize]);
-            column.resize(CHUNK, 0.0);
             if depends.is_power_of_two() {
                 // Those that only others of the same axis read are in no table.
                 let axis = depends.trailing_zeros() as usize;
                 if self.kept[axis].get(self.place[node as usize] as usize) == Some(&node) {
-                    self.gather(axis, node, first, &mut column[..count]);
+                    numbers.fill(node, |column| self.gather(axis, node, first, column));
                 }
             } else {
-                self.compute(node, &mut column[..count]);
+                numbers.compute(&self.tape.list, node, |node| self.varies(node));
             }
-            self.columns[node as usize] = column;
         }
+        self.numbers = numbers;
+    }
+
+    /// Has an operation a number per design of the box?
+    fn varies(&self, node: Node) -> bool {
+        self.tape.axes[node as usize] & self.varying_set != 0
     }
 
     /// Spreads the values by level over the designs of a chunk.
@@ -192,46 +166,9 @@ impl<'t> NodeColumns<'t> {
         }
     }
 
-    fn compute(&mut self, node: Node, column: &mut [f64]) {
-        let count = column.len();
-        match self.tape.list.operations[node as usize] {
-            Operation::Unary(operation, a) => unary(operation, self.of(a, count), column),
-            Operation::Binary(operation, a, b) => binary(operation, self.of(a, count), self.of(b, count), column),
-            Operation::Select(margin, a, b) => {
-                let (margin, a, b) = (self.of(margin, count), self.of(a, count), self.of(b, count));
-                for (lane, it) in column.iter_mut().enumerate() {
-                    *it = f64::select(margin.at(lane), a.at(lane), b.at(lane));
-                }
-            }
-            Operation::Root(number) => {
-                let mut reads = Vec::new();
-                self.tape.list.outside(number, |node| reads.push(node));
-                for (lane, it) in column.iter_mut().enumerate() {
-                    for &read in &reads {
-                        self.slots[read as usize] = self.value(read).at(lane);
-                    }
-                    self.tape.list.compute(node, &mut self.slots);
-                    *it = self.slots[node as usize];
-                }
-            }
-            Operation::Input(_) | Operation::Constant(_) | Operation::Argument(_) | Operation::Rolled(_) => {}
-        }
-    }
-
-    fn of(&self, node: Node, count: usize) -> Value<'_> {
-        match self.value(node) {
-            Value::Each(values) => Value::Each(&values[..count]),
-            one => one,
-        }
-    }
-
     /// A number of the last chunk.
-    pub fn value(&self, node: Node) -> Value<'_> {
-        if self.tape.axes[node as usize] & self.varying_set == 0 {
-            Value::One(self.slots[node as usize])
-        } else {
-            Value::Each(&self.columns[node as usize][..self.count])
-        }
+    pub fn value(&self, node: Node) -> ColumnValue<'_> {
+        self.numbers.value(node, |node| self.varies(node))
     }
 
     /// The level of one design of the box along every axis.
@@ -245,43 +182,4 @@ impl<'t> NodeColumns<'t> {
         }
         levels
     }
-}
-
-fn unary(operation: Unary, a: Value<'_>, column: &mut [f64]) {
-    let Value::Each(a) = a else { return column.fill(operation.of(a.at(0))) };
-    match operation {
-        Unary::Neg => negated(a, column),
-        Unary::Sqrt => roots(a, column),
-        _ => column.iter_mut().zip(a).for_each(|(it, &a)| *it = operation.of(a)),
-    }
-}
-
-#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-fn negated(a: &[f64], column: &mut [f64]) {
-    column.iter_mut().zip(a).for_each(|(it, &a)| *it = -a);
-}
-
-#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-fn roots(a: &[f64], column: &mut [f64]) {
-    column.iter_mut().zip(a).for_each(|(it, &a)| *it = a.sqrt());
-}
-
-#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-fn binary(operation: Binary, a: Value<'_>, b: Value<'_>, column: &mut [f64]) {
-    // Written out, so that every combination becomes one loop of vector instructions.
-    macro_rules! each {
-        ($($kind:ident),*) => {
-            match (operation, a, b) {
-                $(
-                    (Binary::$kind, Value::Each(a), Value::Each(b)) => {
-                        column.iter_mut().zip(a).zip(b).for_each(|((it, &a), &b)| *it = Binary::$kind.of(a, b));
-                    }
-                    (Binary::$kind, Value::Each(a), Value::One(b)) => column.iter_mut().zip(a).for_each(|(it, &a)| *it = Binary::$kind.of(a, b)),
-                    (Binary::$kind, Value::One(a), Value::Each(b)) => column.iter_mut().zip(b).for_each(|(it, &b)| *it = Binary::$kind.of(a, b)),
-                )*
-                (_, Value::One(a), Value::One(b)) => column.fill(operation.of(a, b)),
-            }
-        };
-    }
-    each!(Add, Sub, Mul, Div, Min, Max, PlusWhole);
 }

@@ -1,6 +1,12 @@
 //! A table of results, before it is written as CSV or Parquet.
 
-use super::number::plain;
+pub(crate) mod csv;
+mod number;
+#[cfg(feature = "parquet")]
+pub(crate) mod parquet;
+
+pub use csv::write as csv_text;
+pub use number::{plain, short, written};
 
 /// Values of one column.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,7 +87,7 @@ impl Table {
     /// The table as CSV, as in a result directory: a header, decimal points, the shortest numbers that read back as the same f64, nothing
     /// for absent values.
     pub fn csv(&self) -> Vec<u8> {
-        super::csv_text(self)
+        csv::write(self)
     }
 
     /// The column of that name.

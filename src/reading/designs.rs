@@ -2,13 +2,13 @@
 //! inputs and that numbers are numbers.
 
 use super::packed::{Packed, packed};
-use super::reading::{changed, table_reader, unreadable};
+use super::{changed, table_reader, unreadable};
 use crate::certify::{self, Column};
 use crate::error::Result;
-use crate::export::written;
 use crate::names::MOST_DOTS;
 use crate::plan::Plan;
 use crate::study::{Axis, Study};
+use crate::table::written;
 use serde_json::{Value, json};
 use std::collections::HashSet;
 use std::path::Path;

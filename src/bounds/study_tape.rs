@@ -8,7 +8,7 @@ use crate::tape::{Binary, Known, List, Node, Operation, Recording, Unary};
 
 /// The recorded formula of a study.
 #[derive(Debug)]
-pub struct Tape {
+pub struct StudyTape {
     /// The operations.
     pub list: List,
     /// Of every operation: the axes that it depends on, as a bit set.
@@ -32,7 +32,7 @@ pub struct Merit {
     pub second: (usize, bool),
 }
 
-impl Tape {
+impl StudyTape {
     /// Records the formula of a plan; `None` if its model is no formula over any number type.
     pub fn new(plan: &Plan, axes: &Axes) -> Option<Self> {
         let model = &plan.study.model;

@@ -1,10 +1,13 @@
 //! Reads the files of a result, which may have been changed since they were written.
 
-use super::designs::check_header;
-use super::picture;
+pub mod designs;
+pub mod packed;
+mod picture;
+
 use crate::error::{Error, Result, brief};
 use crate::files::{RESULT_BYTES, ROW_BYTES, ShortLines, open, read_text};
 use crate::plan::Plan;
+use designs::check_header;
 use serde_json::Value;
 use std::fs::File;
 use std::path::Path;

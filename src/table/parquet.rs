@@ -1,6 +1,6 @@
 //! Parquet files, without Arrow: row groups of 65 536 rows, compressed with snappy, no time stamps, so that equal tables are equal bytes.
 
-use super::table::{Data, Table};
+use super::{Data, Table};
 use crate::error::{Error, Result};
 use parquet::basic::{Compression, Encoding, LogicalType, Repetition, Type as Physical};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
@@ -94,7 +94,7 @@ fn levels<T>(values: &[Option<T>]) -> Vec<i16> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::table::TableColumn;
+    use super::super::TableColumn;
     use super::*;
     use parquet::file::reader::{FileReader, SerializedFileReader};
     use parquet::record::RowAccessor;

@@ -1,0 +1,135 @@
+//! A list in f64 over many designs at once, operation by operation: the same bits as the formula itself.
+
+use super::{Binary, List, Node, Operation, Unary};
+use crate::real::Real;
+use multiversion::multiversion;
+
+/// Most designs in a chunk: a column fits the first-level cache.
+pub const CHUNK: usize = 1024;
+
+/// A number of the formula over a chunk of designs.
+#[derive(Clone, Copy, Debug)]
+pub enum ColumnValue<'a> {
+    /// The same for all.
+    One(f64),
+    /// One per design.
+    Each(&'a [f64]),
+}
+
+impl ColumnValue<'_> {
+    /// The number of one design.
+    #[inline(always)]
+    pub fn at(self, lane: usize) -> f64 {
+        match self {
+            Self::One(value) => value,
+            Self::Each(values) => values[lane],
+        }
+    }
+}
+
+/// What the operations of a list are over a chunk of designs; one per thread.
+///
+/// Which operations have a number per design and which one that all share is the caller's business: `each` answers it.
+#[derive(Debug, Default)]
+pub struct NodeColumns {
+    /// Of every operation: the number that all designs share; also room for one design.
+    pub slots: Vec<f64>,
+    columns: Vec<Vec<f64>>,
+    count: usize,
+}
+
+impl NodeColumns {
+    /// Room for a list.
+    pub fn new(list: &List) -> Self {
+        let operations = list.operations.len();
+        Self { slots: vec![0.0; operations], columns: vec![Vec::new(); operations], count: 0 }
+    }
+
+    /// Begins a chunk of that many designs, at most [`CHUNK`].
+    pub fn begin(&mut self, count: usize) {
+        self.count = count;
+    }
+
+    /// A number of the chunk.
+    #[inline]
+    pub fn value(&self, node: Node, each: impl Fn(Node) -> bool) -> ColumnValue<'_> {
+        if each(node) { ColumnValue::Each(&self.columns[node as usize][..self.count]) } else { ColumnValue::One(self.slots[node as usize]) }
+    }
+
+    /// Fills the column of an operation by what the caller knows of it, such as the values of an input.
+    pub fn fill(&mut self, node: Node, fill: impl FnOnce(&mut [f64])) {
+        let column = &mut self.columns[node as usize];
+        column.resize(CHUNK, 0.0);
+        fill(&mut column[..self.count]);
+    }
+
+    /// Computes the column of an operation from its operands; what inputs are is the caller's business.
+    pub fn compute(&mut self, list: &List, node: Node, each: impl Fn(Node) -> bool) {
+        let mut column = std::mem::take(&mut self.columns[node as usize]);
+        column.resize(CHUNK, 0.0);
+        let room = &mut column[..self.count];
+        let of = |node| self.value(node, &each);
+        match list.operations[node as usize] {
+            Operation::Unary(operation, a) => unary(operation, of(a), room),
+            Operation::Binary(operation, a, b) => binary(operation, of(a), of(b), room),
+            Operation::Select(margin, a, b) => {
+                let (margin, a, b) = (of(margin), of(a), of(b));
+                for (lane, it) in room.iter_mut().enumerate() {
+                    *it = f64::select(margin.at(lane), a.at(lane), b.at(lane));
+                }
+            }
+            Operation::Root(number) => {
+                let mut reads = Vec::new();
+                list.outside(number, |node| reads.push(node));
+                for (lane, it) in room.iter_mut().enumerate() {
+                    for &read in &reads {
+                        self.slots[read as usize] = self.value(read, &each).at(lane);
+                    }
+                    list.compute(node, &mut self.slots);
+                    *it = self.slots[node as usize];
+                }
+            }
+            Operation::Input(_) | Operation::Constant(_) | Operation::Argument(_) | Operation::Rolled(_) => {}
+        }
+        self.columns[node as usize] = column;
+    }
+}
+
+fn unary(operation: Unary, a: ColumnValue<'_>, column: &mut [f64]) {
+    let ColumnValue::Each(a) = a else { return column.fill(operation.of(a.at(0))) };
+    match operation {
+        Unary::Neg => negated(a, column),
+        Unary::Sqrt => roots(a, column),
+        _ => column.iter_mut().zip(a).for_each(|(it, &a)| *it = operation.of(a)),
+    }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+fn negated(a: &[f64], column: &mut [f64]) {
+    column.iter_mut().zip(a).for_each(|(it, &a)| *it = -a);
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+fn roots(a: &[f64], column: &mut [f64]) {
+    column.iter_mut().zip(a).for_each(|(it, &a)| *it = a.sqrt());
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+fn binary(operation: Binary, a: ColumnValue<'_>, b: ColumnValue<'_>, column: &mut [f64]) {
+    // Written out, so that every combination becomes one loop of vector instructions.
+    macro_rules! each {
+        ($($kind:ident),*) => {
+            match (operation, a, b) {
+                $(
+                    (Binary::$kind, ColumnValue::Each(a), ColumnValue::Each(b)) => {
+                        column.iter_mut().zip(a).zip(b).for_each(|((it, &a), &b)| *it = Binary::$kind.of(a, b));
+                    }
+                    (Binary::$kind, ColumnValue::Each(a), ColumnValue::One(b)) => column.iter_mut().zip(a).for_each(|(it, &a)| *it = Binary::$kind.of(a, b)),
+                    (Binary::$kind, ColumnValue::One(a), ColumnValue::Each(b)) => column.iter_mut().zip(b).for_each(|(it, &b)| *it = Binary::$kind.of(a, b)),
+                )*
+                (_, ColumnValue::One(a), ColumnValue::One(b)) => column.fill(operation.of(a, b)),
+            }
+        };
+    }
+    each!(Add, Sub, Mul, Div, Min, Max, PlusWhole);
+}
