@@ -7,7 +7,7 @@ mod pulleys;
 
 use beltspace::pulley::calculix::{Job, Sweep};
 use beltspace::pulley::response::{LONGEST, View, respond};
-use beltspace::pulley::section::{Fineness, Kind, mesh};
+use beltspace::pulley::section::{Fineness, SectionKind, mesh};
 use beltspace::pulley::turn::Turn;
 use pulleys::{COARSE, calculix, job, shown, solved};
 use std::path::PathBuf;
@@ -36,14 +36,14 @@ fn main() {
     let program = calculix();
     let sheet = Fineness { through: 2, straight: 1.0, bend: 0.4, held: 0.7, solid: 1.6, harmonics: 24, every: true };
     let models = [
-        ("pressed-cup-coarse", job(Kind::PressedCup, COARSE, 50)),
-        ("pressed-cup-usual", job(Kind::PressedCup, Fineness::USUAL, Job::USUAL_SECTORS)),
-        ("machined", job(Kind::Machined, sheet, 36)),
+        ("pressed-cup-coarse", job(SectionKind::PressedCup, COARSE, 50)),
+        ("pressed-cup-usual", job(SectionKind::PressedCup, Fineness::USUAL, Job::USUAL_SECTORS)),
+        ("machined", job(SectionKind::Machined, sheet, 36)),
         // More and so shorter sectors, for the narrow stress beside the bolt heads at Br; fewer nodes in the section make up for them.
-        ("machined-90-sectors", job(Kind::Machined, Fineness { solid: 4.0, bend: 1.0, ..sheet }, 90)),
-        ("welded-discs", job(Kind::WeldedDiscs, sheet, 60)),
-        ("double-groove", job(Kind::DoubleGroove, Fineness { straight: 1.5, ..sheet }, 60)),
-        ("pressed-cup", job(Kind::PressedCup, sheet, 68)),
+        ("machined-90-sectors", job(SectionKind::Machined, Fineness { solid: 4.0, bend: 1.0, ..sheet }, 90)),
+        ("welded-discs", job(SectionKind::WeldedDiscs, sheet, 60)),
+        ("double-groove", job(SectionKind::DoubleGroove, Fineness { straight: 1.5, ..sheet }, 60)),
+        ("pressed-cup", job(SectionKind::PressedCup, sheet, 68)),
     ];
     for (name, job) in models.into_iter().filter(|(name, _)| only.as_ref().is_none_or(|only| only == name)) {
         let mesh = mesh(job.kind, &job.dimensions, &job.fineness).expect("the section is possible");

@@ -19,27 +19,27 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// List the models, or one model's inputs, outputs, units, ranges and sources
-    Models(Models),
+    Models(ModelsArgs),
     /// Evaluate one design: every input, output and margin
-    Eval(Eval),
+    Eval(EvalArgs),
     /// Export one design to another program: a pulley as a model for CalculiX
-    Export(Export),
+    Export(ExportArgs),
     /// Check a study without running it: size, axes without effect, memory, expected time
     Check {
         /// Study file
         study: PathBuf,
     },
     /// Judge every design of a study and write the result directory
-    Sweep(Sweep),
+    Sweep(SweepArgs),
     /// Merge the shards of a study into the same result as that of one run
-    Merge(Merge),
+    Merge(MergeArgs),
     /// Write the job scripts that run a study on a cluster with Slurm or PBS
-    Slurm(Slurm),
+    Slurm(SlurmArgs),
     /// Write the page that shows a result: one HTML file for any browser
-    Report(Report),
+    Report(ReportArgs),
     /// Compare a GPU with f64: the error of each output, its error bound, wrong decisions
     #[cfg(feature = "gpu")]
-    Verify(Verify),
+    Verify(VerifyArgs),
     /// List the GPUs of this machine, their limits, and the self-test of their drivers
     #[cfg(feature = "gpu")]
     Adapters {
@@ -48,7 +48,7 @@ pub enum Command {
         json: bool,
     },
     /// Compute the papers' tables and figures again, and say what agrees or differs and why
-    Reproduce(Reproduce),
+    Reproduce(ReproduceArgs),
     /// Print a completion script for a shell
     Completions {
         /// Shell
@@ -58,7 +58,7 @@ pub enum Command {
 
 /// Options of `models`.
 #[derive(Debug, Args)]
-pub struct Models {
+pub struct ModelsArgs {
     /// Name of a model; without it, all are listed
     pub name: Option<String>,
     /// Print JSON
@@ -71,7 +71,7 @@ pub struct Models {
 
 /// Options of `export`.
 #[derive(Debug, Args)]
-pub struct Export {
+pub struct ExportArgs {
     /// The model `pulley`, or a study of it
     #[arg(value_name = "MODEL|STUDY", required_unless_present = "compare")]
     pub target: Option<String>,
@@ -100,7 +100,7 @@ pub struct Export {
 
 /// Options of `eval`.
 #[derive(Debug, Args)]
-pub struct Eval {
+pub struct EvalArgs {
     /// Name of a model, or a study file
     #[arg(value_name = "MODEL|STUDY")]
     pub target: String,
@@ -129,7 +129,7 @@ pub struct Eval {
 
 /// Options of `sweep`.
 #[derive(Debug, Args)]
-pub struct Sweep {
+pub struct SweepArgs {
     /// Study file
     pub study: PathBuf,
     /// Result directory [default: results/<study name>]
@@ -178,7 +178,7 @@ pub struct Sweep {
 
 /// Options of `report`.
 #[derive(Debug, Args)]
-pub struct Report {
+pub struct ReportArgs {
     /// Result directory
     pub dir: PathBuf,
     /// Where to write the page [default: report.html in the directory]
@@ -201,7 +201,7 @@ pub struct Report {
 /// Options of `verify`.
 #[cfg(feature = "gpu")]
 #[derive(Debug, Args)]
-pub struct Verify {
+pub struct VerifyArgs {
     /// Study file, or name of a model
     #[arg(value_name = "STUDY|MODEL")]
     pub target: String,
@@ -224,7 +224,7 @@ pub struct Verify {
 
 /// Options of `merge`.
 #[derive(Debug, Args)]
-pub struct Merge {
+pub struct MergeArgs {
     /// Directories of all shards of one study
     #[arg(required = true, value_name = "DIR")]
     pub shards: Vec<PathBuf>,
@@ -249,7 +249,7 @@ pub struct Merge {
 #[derive(Debug, Args)]
 #[command(after_help = "Submit with: bash DIR/submit.sh. After a failure submit again: finished shards are skipped, the others continue. \
     The study, the program and both directories must have the same paths on every node as here.")]
-pub struct Slurm {
+pub struct SlurmArgs {
     /// Study file
     pub study: PathBuf,
     /// Number of shards [default: one if bounds are used, else of ten minutes each]; fewer if one would take less than --shortest
@@ -298,7 +298,7 @@ pub struct Slurm {
 
 /// Options of `reproduce`.
 #[derive(Debug, Args)]
-pub struct Reproduce {
+pub struct ReproduceArgs {
     /// Directory for the figures, tables and the comparison
     #[arg(long, value_name = "DIR", default_value = "results/papers")]
     pub out: PathBuf,

@@ -11,14 +11,14 @@ use std::sync::Arc;
 
 /// One independent direction of a space.
 #[derive(Debug)]
-pub enum Dimension {
+pub enum SpaceDimension {
     /// An axis of the study.
     Axis(Axis),
     /// Sampled designs: all design axes at once.
     Sampled(Sampler),
 }
 
-impl Dimension {
+impl SpaceDimension {
     /// Number of levels, rows or samples.
     pub fn count(&self) -> u64 {
         match self {
@@ -54,8 +54,8 @@ impl Dimension {
 
 /// A dimension with its place in a product and in the study's order.
 #[derive(Clone, Debug)]
-struct Place {
-    dimension: Arc<Dimension>,
+struct PlacedDimension {
+    dimension: Arc<SpaceDimension>,
     count: u64,
     /// Distance of two neighbours within this product.
     stride: u64,
@@ -63,7 +63,7 @@ struct Place {
     source_stride: u64,
 }
 
-impl Place {
+impl PlacedDimension {
     fn digit(&self, index: u64) -> u64 {
         index / self.stride % self.count
     }
@@ -72,18 +72,18 @@ impl Place {
 /// All combinations of some dimensions; the last dimension varies fastest.
 #[derive(Clone, Debug)]
 pub struct Product {
-    places: Vec<Place>,
+    places: Vec<PlacedDimension>,
     count: u64,
 }
 
 impl Product {
     /// The product of whole dimensions in the study's order; `None` if there are more combinations than a u64 numbers.
-    fn new(dimensions: impl DoubleEndedIterator<Item = Dimension>) -> Option<Self> {
+    fn new(dimensions: impl DoubleEndedIterator<Item = SpaceDimension>) -> Option<Self> {
         let mut count = 1u64;
         let mut places = Vec::new();
         for dimension in dimensions.rev() {
             let own = dimension.count();
-            places.push(Place { dimension: Arc::new(dimension), count: own, stride: count, source_stride: count });
+            places.push(PlacedDimension { dimension: Arc::new(dimension), count: own, stride: count, source_stride: count });
             count = count.checked_mul(own)?;
         }
         places.reverse();
@@ -92,7 +92,7 @@ impl Product {
 
     /// Splits off the dimensions that set any of `inputs`: (those, the others), each in unchanged order.
     pub fn split(&self, inputs: Set) -> (Self, Self) {
-        let sets = |place: &Place| place.dimension.inputs().iter().any(|&input| inputs.contains(input));
+        let sets = |place: &PlacedDimension| place.dimension.inputs().iter().any(|&input| inputs.contains(input));
         let (with, without): (Vec<_>, Vec<_>) = self.places.iter().cloned().partition(sets);
         (Self::of(with), Self::of(without))
     }
@@ -113,7 +113,7 @@ impl Product {
         Self::of(self.places.iter().chain(&inner.places).cloned().collect())
     }
 
-    fn of(mut places: Vec<Place>) -> Self {
+    fn of(mut places: Vec<PlacedDimension>) -> Self {
         let mut count = 1;
         for place in places.iter_mut().rev() {
             place.stride = count;
@@ -180,7 +180,7 @@ impl Product {
     }
 
     /// Its dimensions, outermost first, each with the distance of two neighbours in the study's index.
-    pub(crate) fn dimensions(&self) -> impl ExactSizeIterator<Item = (&Dimension, u64)> {
+    pub(crate) fn dimensions(&self) -> impl ExactSizeIterator<Item = (&SpaceDimension, u64)> {
         self.places.iter().map(|place| (&*place.dimension, place.source_stride))
     }
 
@@ -220,10 +220,10 @@ impl Space {
     pub fn new(study: &Study) -> Self {
         let numbered = "the size of the space is checked when the study is read";
         let designs = match study.sample {
-            Some(sample) => Product::new(std::iter::once(Dimension::Sampled(Sampler::new(sample, &study.design)))),
-            None => Product::new(study.design.iter().cloned().map(Dimension::Axis)),
+            Some(sample) => Product::new(std::iter::once(SpaceDimension::Sampled(Sampler::new(sample, &study.design)))),
+            None => Product::new(study.design.iter().cloned().map(SpaceDimension::Axis)),
         };
-        let scenarios = Product::new(study.operation.iter().chain(&study.uncertainty).cloned().map(Dimension::Axis));
+        let scenarios = Product::new(study.operation.iter().chain(&study.uncertainty).cloned().map(SpaceDimension::Axis));
         Self { designs: designs.expect(numbered), scenarios: scenarios.expect(numbered), fixed: study.fixed.clone() }
     }
 
@@ -244,7 +244,7 @@ mod tests {
 
     #[test]
     fn a_coarser_grid_of_very_many_axes_is_no_larger() {
-        let axis = |input| Dimension::Axis(Axis::Single { input, levels: Levels::List(vec![0.0, 1.0]) });
+        let axis = |input| SpaceDimension::Axis(Axis::Single { input, levels: Levels::List(vec![0.0, 1.0]) });
         let designs = Product::new((0..60).map(axis)).expect("2^60 fit");
         let coarse = designs.coarse(1000);
         assert_eq!(coarse.len(), 512);

@@ -38,7 +38,7 @@ pub struct Statistics {
 
 /// The comparison of a model.
 #[derive(Clone, Debug, Default)]
-pub struct Report {
+pub struct VerifyReport {
     /// Points compared.
     pub points: u64,
     /// Points whose status, or whose keeping of the constraints, the device was not sure of.
@@ -53,7 +53,7 @@ pub struct Report {
     pub conditions: Vec<Statistics>,
 }
 
-impl Report {
+impl VerifyReport {
     /// Do all error bounds hold, and was no sure decision wrong?
     ///
     /// # Errors
@@ -66,20 +66,20 @@ impl Report {
 
 /// Points at which to compare.
 #[derive(Clone, Debug, Default)]
-pub struct Points {
+pub struct VerifyPoints {
     /// One value per input of the model, in its unit.
     inputs: Vec<Vec<f64>>,
     /// Does the point lie on a boundary? There values vanish, and a relative error means nothing.
     on_boundary: Vec<bool>,
 }
 
-impl From<Vec<Vec<f64>>> for Points {
+impl From<Vec<Vec<f64>>> for VerifyPoints {
     fn from(inputs: Vec<Vec<f64>>) -> Self {
         Self { on_boundary: vec![false; inputs.len()], inputs }
     }
 }
 
-impl Points {
+impl VerifyPoints {
     fn push(&mut self, inputs: Vec<f64>, on_boundary: bool) {
         self.inputs.push(inputs);
         self.on_boundary.push(on_boundary);
@@ -133,10 +133,10 @@ fn usual(input: &Input, random: &mut Random) -> f64 {
 }
 
 /// Points of a model: over its usual ranges, every second pair on the two sides of where a status changes.
-pub fn points_of_model(model: &Model, samples: usize, seed: u64) -> Points {
+pub fn points_of_model(model: &Model, samples: usize, seed: u64) -> VerifyPoints {
     let mut random = Random(mix(seed));
     let status = |inputs: &[f64]| evaluate(model, inputs).status;
-    let mut points = Points::default();
+    let mut points = VerifyPoints::default();
     while points.len() < samples {
         let here: Vec<f64> = model.inputs.iter().map(|input| usual(input, &mut random)).collect();
         points.push(here.clone(), false);
@@ -168,7 +168,7 @@ fn sides(model: &Model, here: &[f64], there: &[f64], input: usize, same: impl Fn
 }
 
 /// Points of a study: corners of its space, random designs in random scenarios, and both sides of its constraints between them.
-pub fn points_of_study(plan: &Plan, samples: usize, seed: u64) -> Points {
+pub fn points_of_study(plan: &Plan, samples: usize, seed: u64) -> VerifyPoints {
     let mut random = Random(mix(seed));
     let model = &plan.study.model;
     let kept = |inputs: &[f64]| {
@@ -181,7 +181,7 @@ pub fn points_of_study(plan: &Plan, samples: usize, seed: u64) -> Points {
     };
     let (designs, scenarios) = (plan.designs(), plan.scenarios());
     let any = |random: &mut Random| plan.space.inputs(random.next() % designs, random.next() % scenarios);
-    let mut points = Points::default();
+    let mut points = VerifyPoints::default();
     for (design, scenario) in [(0, 0), (designs - 1, 0), (0, scenarios - 1), (designs - 1, scenarios - 1)] {
         points.push(plan.space.inputs(design, scenario), false);
     }
@@ -207,12 +207,12 @@ pub fn points_of_study(plan: &Plan, samples: usize, seed: u64) -> Points {
 ///
 /// # Errors
 /// [`Error::Gpu`].
-pub fn compare(kernel: &PointKernel, model: &Model, constraints: &[Constraint], points: &Points) -> Result<Report> {
+pub fn compare(kernel: &PointKernel, model: &Model, constraints: &[Constraint], points: &VerifyPoints) -> Result<VerifyReport> {
     let si: Vec<Vec<f64>> = points.inputs.iter().map(|inputs| to_si(model, inputs)).collect();
     let found = kernel.evaluate(&si)?;
     let mut outputs: Vec<Collector> = model.outputs.iter().map(|it| Collector::new(&it.name)).collect();
     let mut conditions: Vec<Collector> = model.conditions.iter().map(|it| Collector::new(&it.reason)).collect();
-    let mut report = Report { points: points.len() as u64, ..Report::default() };
+    let mut report = VerifyReport { points: points.len() as u64, ..VerifyReport::default() };
     for (((inputs, &on_boundary), si), (values, margins)) in points.inputs.iter().zip(&points.on_boundary).zip(&si).zip(&found) {
         let prepared = model.kernel.prepared(si);
         let exact_margins = model.kernel.margins(&prepared, si);

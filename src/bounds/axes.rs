@@ -3,7 +3,7 @@
 
 use crate::models::input_to_si;
 use crate::plan::Plan;
-use crate::space::Dimension;
+use crate::space::SpaceDimension;
 use std::ops::Range;
 
 /// Most axes of designs and scenarios together.
@@ -231,7 +231,7 @@ impl Axes {
     }
 }
 
-fn axis(plan: &Plan, dimension: &Dimension, stride: u64) -> BoxAxis {
+fn axis(plan: &Plan, dimension: &SpaceDimension, stride: u64) -> BoxAxis {
     let inputs = dimension.inputs().to_vec();
     let own: Vec<Vec<f64>> =
         (0..inputs.len()).map(|column| (0..dimension.count()).map(|level| dimension.value(column, level)).collect()).collect();

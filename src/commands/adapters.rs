@@ -1,6 +1,6 @@
 //! `beltspace adapters`: the GPUs of this machine, and whether their drivers pass the self-test.
 
-use crate::terminal::{self, Grid, bold, grouped};
+use crate::terminal::{self, TextGrid, bold, grouped};
 use beltspace::error::Result;
 use beltspace::gpu::{self, Adapter, self_test};
 use serde_json::{Value, json};
@@ -38,7 +38,7 @@ fn describe(adapter: &Adapter) -> Value {
 }
 
 fn page(adapter: &Adapter) -> String {
-    let mut facts = Grid::default();
+    let mut facts = TextGrid::default();
     let mut fact = |what: &str, value: String| facts.row([what.to_owned(), value]);
     fact("kind", adapter.kind.name().to_owned());
     fact("driver", format!("{}, {}", adapter.backend, adapter.driver));

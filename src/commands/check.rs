@@ -1,7 +1,7 @@
 //! `beltspace check`: checks a study and estimates its run.
 
 use super::{read_study, threads};
-use crate::terminal::{self, Grid, bold, grouped, scaled, span};
+use crate::terminal::{self, TextGrid, bold, grouped, scaled, span};
 use beltspace::error::Result;
 use beltspace::memory::{Needs, large_files};
 use beltspace::models::Set;
@@ -22,7 +22,7 @@ pub fn run(path: &Path) -> Result<()> {
     let (designs, scenarios) = (plan.designs(), plan.scenarios());
     let name = |axis: &Axis| axis.inputs().iter().map(|&input| model.inputs[input].name.as_str()).collect::<Vec<_>>().join(" + ");
 
-    let mut axes = Grid::default();
+    let mut axes = TextGrid::default();
     for (role, list) in [("design", &study.design), ("operation", &study.operation), ("uncertainty", &study.uncertainty)] {
         for axis in list {
             let ends: Vec<_> = axis.inputs().iter().enumerate().map(|(column, &input)| ends(&plan, axis, column, input)).collect();
@@ -41,7 +41,7 @@ pub fn run(path: &Path) -> Result<()> {
         Some(why) => format!("every design: {why}"),
         None => format!("bounds; if they are not faster, every design after at most about {}", span(PATIENCE * seconds)),
     };
-    let mut facts = Grid::default();
+    let mut facts = TextGrid::default();
     let mut fact = |what: &str, value: String| facts.row([bold(what), value]);
     fact("model", format!("{}: {}", model.name, model.summary));
     fact("designs", grouped(designs));

@@ -2,7 +2,7 @@
 
 use super::{find_model, read_study};
 use crate::cli;
-use crate::terminal::{self, Grid, bold, dim, short};
+use crate::terminal::{self, TextGrid, bold, dim, short};
 use beltspace::certify;
 use beltspace::error::{Error, Result};
 use beltspace::export::pulley;
@@ -10,16 +10,16 @@ use beltspace::files::{MOVE, refuse_foreign, replace};
 use beltspace::likeness::closest;
 use beltspace::models::{self, Evaluation, Evaluator, Model, Profile, Status, evaluate};
 use beltspace::names::is_picture;
-use beltspace::pictures::{self, Quantity, Series};
+use beltspace::pictures::{self, PlotQuantity, Series};
 use beltspace::plan::Plan;
 use beltspace::screen::Control;
-use beltspace::study::{Quantity as Which, Study, number, value_of};
+use beltspace::study::{Quantity, Study, number, value_of};
 use beltspace::table::{Data, Table, TableColumn, csv_text};
 use beltspace::units::parse_value;
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 
-pub fn run(request: &cli::Eval) -> Result<()> {
+pub fn run(request: &cli::EvalArgs) -> Result<()> {
     let path = Path::new(&request.target);
     if beltspace::models::find(&request.target).is_none() && (path.extension().is_some_and(|it| it == "toml") || path.exists()) {
         return of_study(request, path);
@@ -84,7 +84,7 @@ fn parse_assignment(model: &Model, assignment: &str) -> std::result::Result<(usi
 }
 
 /// Prints one design in one scenario.
-fn print_one(model: &Model, inputs: &[f64], of_study: Option<(u64, u64)>, request: &cli::Eval) -> Result<()> {
+fn print_one(model: &Model, inputs: &[f64], of_study: Option<(u64, u64)>, request: &cli::EvalArgs) -> Result<()> {
     let evaluation = evaluate(model, inputs);
     let spelled_out = model.spelled_out(inputs);
     let inputs = &spelled_out;
@@ -108,12 +108,12 @@ fn print_one(model: &Model, inputs: &[f64], of_study: Option<(u64, u64)>, reques
         }
         return terminal::print(&format!("{object:#}\n"));
     }
-    let mut table = Grid::default();
+    let mut table = TextGrid::default();
     for (input, &value) in model.inputs.iter().zip(inputs) {
         let text = input.word_for(value).map_or_else(|| short(value), str::to_owned);
         table.row([input.name.to_owned(), text, dim(&input.doc)]);
     }
-    let mut results = Grid::default();
+    let mut results = TextGrid::default();
     for (output, value) in model.outputs.iter().zip(&evaluation.outputs) {
         results.row([output.name.to_owned(), value.map_or("-".to_owned(), short), dim(&output.doc)]);
     }
@@ -142,7 +142,7 @@ fn named_outputs(model: &Model, evaluation: &Evaluation) -> Map<String, Value> {
 }
 
 /// Writes `--profile` and `--plot`.
-fn along_the_belt(model: &Model, inputs: &[f64], evaluation: &Evaluation, request: &cli::Eval) -> Result<()> {
+fn along_the_belt(model: &Model, inputs: &[f64], evaluation: &Evaluation, request: &cli::EvalArgs) -> Result<()> {
     if request.profile.is_none() && request.plot.is_none() {
         return Ok(());
     }
@@ -168,16 +168,16 @@ fn along_the_belt(model: &Model, inputs: &[f64], evaluation: &Evaluation, reques
         replace(path, &csv_text(&Table { columns: columns.collect() }))?;
     }
     if let Some(path) = &request.plot {
-        let mut panels: Vec<(Quantity, Vec<Series>)> = Vec::new();
+        let mut panels: Vec<(PlotQuantity, Vec<Series>)> = Vec::new();
         for (at, it) in columns.iter().enumerate().skip(1) {
             let Some(drawn) = &it.drawn else { continue };
             let series = Series { label: it.label.clone(), x: column(0), y: column(at) };
             match panels.iter_mut().find(|(quantity, _)| quantity.name == *drawn) {
                 Some((_, beside)) => beside.push(series),
-                None => panels.push((Quantity::new(drawn, it.unit.symbol), vec![series])),
+                None => panels.push((PlotQuantity::new(drawn, it.unit.symbol), vec![series])),
             }
         }
-        let position = Quantity::new(&columns[0].name, columns[0].unit.symbol);
+        let position = PlotQuantity::new(&columns[0].name, columns[0].unit.symbol);
         replace(path, pictures::curves(&model.summary, &position, &panels).as_bytes())?;
         // A pulley has more pictures than the curves: they are written beside the file, with names that begin like its own.
         for (name, text) in pulley::pictures(model, &model.summary, inputs) {
@@ -188,7 +188,7 @@ fn along_the_belt(model: &Model, inputs: &[f64], evaluation: &Evaluation, reques
 }
 
 /// `--profile` and `--plot` replace files that such a request wrote before, and no others.
-fn refuse_foreign_files(model: &Model, request: &cli::Eval) -> Result<()> {
+fn refuse_foreign_files(model: &Model, request: &cli::EvalArgs) -> Result<()> {
     if let Some(path) = &request.profile {
         let headers: Vec<String> = models::all()
             .iter()
@@ -222,7 +222,7 @@ pub(super) fn studied(path: &Path, design: Option<u64>) -> Result<(Plan, u64)> {
     Ok((plan, design))
 }
 
-fn of_study(request: &cli::Eval, path: &Path) -> Result<()> {
+fn of_study(request: &cli::EvalArgs, path: &Path) -> Result<()> {
     if !request.set.is_empty() || request.preset.is_some() {
         return Err(Error::Request("--set and --preset are for models; for a study use --design N".to_owned()));
     }
@@ -247,7 +247,7 @@ fn print_worst(plan: &Plan, design: u64, as_json: bool) -> Result<()> {
     let model = &study.model;
     // As if the study asked for every output as a report column.
     let mut everything = Study::clone(study);
-    everything.report.columns = (0..model.outputs.len()).map(Which::Output).collect();
+    everything.report.columns = (0..model.outputs.len()).map(Quantity::Output).collect();
     let columns = certify::columns(&everything);
     let row = certify::rows(plan, &columns, &[design], 1, &Control::default())?.remove(0);
     let mut evaluator = Evaluator::new(model);
@@ -258,7 +258,7 @@ fn print_worst(plan: &Plan, design: u64, as_json: bool) -> Result<()> {
 
     let varied: Vec<usize> = study.operation.iter().chain(&study.uncertainty).flat_map(|axis| axis.inputs()).copied().collect();
     let inputs = (0..model.inputs.len()).filter(|input| !varied.contains(input));
-    let at_worst = |quantity: Which, suffix: &str| {
+    let at_worst = |quantity: Quantity, suffix: &str| {
         let name = format!("{}{suffix}", quantity.name(model));
         columns.iter().position(|column| column.name == name).map(|at| row.columns[at])
     };
@@ -288,19 +288,19 @@ fn print_worst(plan: &Plan, design: u64, as_json: bool) -> Result<()> {
         });
         return terminal::print(&format!("{object:#}\n"));
     }
-    let mut table = Grid::default();
+    let mut table = TextGrid::default();
     for input in inputs {
         let value = row.inputs[input];
         let text = model.inputs[input].word_for(value).map_or_else(|| short(value), str::to_owned);
         table.row([model.inputs[input].name.to_owned(), text, dim(&model.inputs[input].doc)]);
     }
-    let mut results = Grid::default();
+    let mut results = TextGrid::default();
     results.row(["", "worst", "in scenario", ""].map(str::to_owned));
     for (column, at) in columns.iter().zip(&row.columns) {
         let value = at.value.map_or("-".to_owned(), short);
         results.row([column.name.clone(), value, at.scenario.to_string(), dim(column.quantity.doc(model))]);
     }
-    let mut margins = Grid::default();
+    let mut margins = TextGrid::default();
     for (constraint, worst) in constraints {
         let value = worst.and_then(|it| it.value);
         let verdict = match value {

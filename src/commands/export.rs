@@ -3,14 +3,14 @@
 use super::eval::{inputs_of, studied};
 use super::find_model;
 use crate::cli;
-use crate::terminal::{self, Grid, bold, short};
+use crate::terminal::{self, TextGrid, bold, short};
 use beltspace::error::{Error, Result};
 use beltspace::models::{Design, Model, Status, evaluate};
-use beltspace::pulley::calculix::{self, Comparison, Job};
+use beltspace::pulley::calculix::{self, ComparedQuantity, Job};
 use std::path::Path;
 use std::sync::Arc;
 
-pub fn run(request: &cli::Export) -> Result<()> {
+pub fn run(request: &cli::ExportArgs) -> Result<()> {
     if request.compare {
         return compare(&request.calculix);
     }
@@ -45,12 +45,12 @@ fn before(mark: &str, words: &str) -> String {
     if words.is_empty() { String::new() } else { format!("{mark}{words}") }
 }
 
-fn failed(error: &calculix::Error) -> Error {
+fn failed(error: &calculix::CalculixError) -> Error {
     Error::Request(error.to_string())
 }
 
 /// Model and inputs that a request names: a model with its settings, or a design of a study.
-fn design_of(request: &cli::Export) -> Result<(Arc<Model>, Vec<f64>)> {
+fn design_of(request: &cli::ExportArgs) -> Result<(Arc<Model>, Vec<f64>)> {
     let target = request.target.as_deref().ok_or_else(|| Error::Request("which design? name the model pulley or a study".to_owned()))?;
     let path = Path::new(target);
     if beltspace::models::find(target).is_none() && (path.extension().is_some_and(|it| it == "toml") || path.exists()) {
@@ -75,10 +75,10 @@ fn design_of(request: &cli::Export) -> Result<(Arc<Model>, Vec<f64>)> {
 /// Prints the results of CalculiX beside those of beltspace.
 fn compare(folder: &Path) -> Result<()> {
     let rows = calculix::compare(folder).map_err(|error| failed(&error))?;
-    let mut table = Grid::default();
+    let mut table = TextGrid::default();
     table.row(["", "unit", "beltspace", "calculix", "difference %"].map(str::to_owned));
     for row in &rows {
-        let Comparison { quantity, unit, harmonic, calculix, .. } = row;
+        let ComparedQuantity { quantity, unit, harmonic, calculix, .. } = row;
         table.row([quantity.clone(), (*unit).to_owned(), short(*harmonic), short(*calculix), format!("{:.2}", row.difference())]);
     }
     terminal::print(&format!("{}\n{}", bold("comparison"), table.indented(2)))

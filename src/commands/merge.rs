@@ -18,7 +18,7 @@ use beltspace::tiles::{Ranges, Shard};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-pub fn run(request: &cli::Merge) -> Result<()> {
+pub fn run(request: &cli::MergeArgs) -> Result<()> {
     let start = Instant::now();
     let folders = request.shards.iter().map(|folder| checkpoint_in(folder)).collect::<Result<Vec<_>>>()?;
     refuse_twice(&request.shards, &folders)?;

@@ -2,13 +2,13 @@
 
 use super::find_model;
 use crate::cli;
-use crate::terminal::{self, Grid, bold, dim};
+use crate::terminal::{self, TextGrid, bold, dim};
 use beltspace::error::Result;
 use beltspace::models::{self, Input, Model, Range, Worse};
 use beltspace::study::{number, value_of};
 use serde_json::{Map, Value, json};
 
-pub fn run(request: &cli::Models) -> Result<()> {
+pub fn run(request: &cli::ModelsArgs) -> Result<()> {
     let model = request.name.as_deref().map(find_model).transpose()?;
     let text = match (model, request.json) {
         (Some(model), _) if request.study => model.starter.to_owned(),
@@ -21,7 +21,7 @@ pub fn run(request: &cli::Models) -> Result<()> {
 }
 
 fn list() -> String {
-    let mut grid = Grid::default();
+    let mut grid = TextGrid::default();
     for model in models::all() {
         grid.row([bold(&model.name), model.summary.to_owned()]);
     }
@@ -32,7 +32,7 @@ fn list() -> String {
 }
 
 fn page(model: &Model) -> String {
-    let mut inputs = Grid::default();
+    let mut inputs = TextGrid::default();
     inputs.row(["input", "default", "usual", "valid"].map(bold));
     for input in &model.inputs {
         let (low, high) = input.usual;
@@ -45,13 +45,13 @@ fn page(model: &Model) -> String {
         inputs.row([input.name.to_owned(), default, usual, input.valid_in_words()]);
     }
     let inputs = described(&inputs, model.inputs.iter().map(|input| format!("{} [{}]{}", input.doc, input.source, only_for(model, input))));
-    let mut outputs = Grid::default();
+    let mut outputs = TextGrid::default();
     outputs.row(["output", "symbol", "equation"].map(bold));
     for output in &model.outputs {
         outputs.row([&output.name, &output.symbol, &output.source].map(String::clone));
     }
     let outputs = described(&outputs, model.outputs.iter().map(|output| output.doc.to_owned()));
-    let mut statuses = Grid::default();
+    let mut statuses = TextGrid::default();
     statuses.row([bold("status"), String::new()]);
     for condition in model.conditions.iter().filter(|condition| !condition.quiet) {
         statuses.row([condition.reason.to_owned(), format!("unless: {}", condition.doc)]);
@@ -73,7 +73,7 @@ fn page(model: &Model) -> String {
 }
 
 /// A table with a sentence below each row but the first: beside the numbers the sentence would not fit a terminal.
-fn described(table: &Grid, sentences: impl Iterator<Item = String>) -> String {
+fn described(table: &TextGrid, sentences: impl Iterator<Item = String>) -> String {
     let text = table.indented(2);
     let mut lines = text.lines();
     let head = lines.next().unwrap_or_default();

@@ -16,7 +16,7 @@ use std::time::Duration;
 /// Least time that a sweep allows for computing the outputs that its tables lack.
 const LEAST_PATIENCE: Duration = Duration::from_secs(3);
 
-pub fn run(request: &cli::Report) -> Result<()> {
+pub fn run(request: &cli::ReportArgs) -> Result<()> {
     let folder = &request.dir;
     let _reading = Reading::new(folder, &terminal::command_line())?;
     let plan = Plan::new(study_of(folder)?);

@@ -1,7 +1,7 @@
 //! `beltspace reproduce`: computes the papers' tables and figures again.
 
 use crate::cli;
-use crate::terminal::{self, Grid, bold, dim};
+use crate::terminal::{self, TextGrid, bold, dim};
 use beltspace::error::{Error, Result};
 use beltspace::files::{Claim, MOVE, is_regular, refuse_foreign, replace};
 use beltspace::names::{PAGE as HTML, is_page};
@@ -9,7 +9,7 @@ use beltspace::papers::{PAGE, Paper, Reproduction, reproduce};
 use beltspace::report::of_papers;
 use std::path::Path;
 
-pub fn run(request: &cli::Reproduce) -> Result<()> {
+pub fn run(request: &cli::ReproduceArgs) -> Result<()> {
     let out = &request.out;
     let directory = Claim::new(out, &terminal::command_line())?;
     let all = reproduce()?;
@@ -44,7 +44,7 @@ fn refuse_to_overwrite(all: &Reproduction, out: &Path, force: bool) -> Result<()
 fn shown(all: &Reproduction, out: &Path) -> String {
     let mut text = String::new();
     for paper in Paper::ALL {
-        let mut grid = Grid::default();
+        let mut grid = TextGrid::default();
         for row in all.comparisons.iter().filter(|row| row.group == paper) {
             let with_unit = |number: &str| if row.unit.is_empty() { number.to_owned() } else { format!("{number} {}", row.unit) };
             grid.row([

@@ -20,7 +20,7 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-pub fn run(request: &cli::Sweep) -> Result<()> {
+pub fn run(request: &cli::SweepArgs) -> Result<()> {
     let (study, text) = read_study(&request.study)?;
     let shard = request.shard.unwrap_or(Shard::WHOLE);
     let out = request.out.clone().unwrap_or_else(|| default_out(&request.study, request.shard));
@@ -101,7 +101,7 @@ pub fn files_of(plan: &Plan, no_page: bool) -> Vec<String> {
 }
 
 /// A run was killed while it put its result in place; that has been completed. Only its page may be missing.
-fn finish_interrupted(plan: &Plan, request: &cli::Sweep, out: &Path, threads: usize) -> Result<()> {
+fn finish_interrupted(plan: &Plan, request: &cli::SweepArgs, out: &Path, threads: usize) -> Result<()> {
     let page =
         if request.no_report { None } else { Some(page::beside(plan, out, &request.study, Duration::ZERO, threads, &Control::default())?) };
     let page = page.map_or(String::new(), |page| format!("page   {}\n", page.display()));
@@ -125,7 +125,7 @@ fn stop_on_ctrl_c(control: &Arc<Control>) {
     }
 }
 
-fn name_the_way_back(error: Error, out: &Path, request: &cli::Sweep) -> Error {
+fn name_the_way_back(error: Error, out: &Path, request: &cli::SweepArgs) -> Error {
     let shard = request.shard.map_or(String::new(), |shard| format!(" --shard {shard}"));
     let [study, folder] = [&request.study, out].map(terminal::quoted);
     let resume = format!("beltspace sweep {study} --out {folder}{shard} --resume");

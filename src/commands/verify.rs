@@ -2,7 +2,7 @@
 
 use super::{engine, find_model, read_study, threads};
 use crate::cli;
-use crate::terminal::{self, Grid, bold, grouped};
+use crate::terminal::{self, TextGrid, bold, grouped};
 use beltspace::error::{Error, Result};
 use beltspace::gpu::PointKernel;
 use beltspace::models::Model;
@@ -12,12 +12,12 @@ use beltspace::run::device::{self, Trusted};
 use beltspace::screen::{Tables, Tally};
 use beltspace::study::Constraint;
 use beltspace::sweep::{Recheck, recheck_on_device};
-use beltspace::verify::{Points, Report, Statistics, compare, points_of_model, points_of_study};
+use beltspace::verify::{Statistics, VerifyPoints, VerifyReport, compare, points_of_model, points_of_study};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Arc;
 
-pub fn run(request: &cli::Verify) -> Result<()> {
+pub fn run(request: &cli::VerifyArgs) -> Result<()> {
     let path = Path::new(&request.target);
     let samples = usize::try_from(request.samples).map_err(|_| Error::Request("--samples: too many for this machine".to_owned()))?;
     if beltspace::models::find(&request.target).is_none() && (path.extension().is_some_and(|it| it == "toml") || path.exists()) {
@@ -43,24 +43,24 @@ pub fn run(request: &cli::Verify) -> Result<()> {
     print(request, &model.name, &device, &report, None)
 }
 
-fn open(request: &cli::Verify, model: &Model) -> Result<Trusted> {
+fn open(request: &cli::VerifyArgs, model: &Model) -> Result<Trusted> {
     device::refuse_cpu_only(model, "there is nothing on a GPU to compare with it")?;
     device::trusted(request.adapter.as_deref(), engine::wrong(model, &request.perturb)?)
 }
 
-fn of_points(device: &Trusted, model: &Arc<Model>, constraints: &[Constraint], points: &Points) -> Result<Report> {
+fn of_points(device: &Trusted, model: &Arc<Model>, constraints: &[Constraint], points: &VerifyPoints) -> Result<VerifyReport> {
     let kernel = PointKernel::new(&device.on.device, model, &device.on.wrong.perturb)?;
     compare(&kernel, model, constraints, points)
 }
 
-fn print(request: &cli::Verify, what: &str, device: &Trusted, report: &Report, swept: Option<&Recheck>) -> Result<()> {
+fn print(request: &cli::VerifyArgs, what: &str, device: &Trusted, report: &VerifyReport, swept: Option<&Recheck>) -> Result<()> {
     let text = if request.json { format!("{:#}\n", describe(device, report, swept)) } else { page(what, device, report, swept) };
     terminal::print(&text)?;
     report.require()
 }
 
-fn page(what: &str, device: &Trusted, report: &Report, swept: Option<&Recheck>) -> String {
-    let mut grid = Grid::default();
+fn page(what: &str, device: &Trusted, report: &VerifyReport, swept: Option<&Recheck>) -> String {
+    let mut grid = TextGrid::default();
     grid.row(["", "values", "error median", "largest", "bound median", "99 %", "used"].map(bold));
     let row = |it: &Statistics| {
         let small = |value: f64| format!("{value:.1e}");
@@ -75,7 +75,7 @@ fn page(what: &str, device: &Trusted, report: &Report, swept: Option<&Recheck>) 
     for it in &report.conditions {
         grid.row(row(&Statistics { name: format!("status: {}", it.name), ..it.clone() }));
     }
-    let mut facts = Grid::default();
+    let mut facts = TextGrid::default();
     let mut fact = |what: &str, value: String| facts.row([bold(what), value]);
     fact("adapter", device.adapter.in_words());
     fact("points", grouped(report.points));
@@ -94,7 +94,7 @@ fn page(what: &str, device: &Trusted, report: &Report, swept: Option<&Recheck>) 
     )
 }
 
-fn describe(device: &Trusted, report: &Report, swept: Option<&Recheck>) -> Value {
+fn describe(device: &Trusted, report: &VerifyReport, swept: Option<&Recheck>) -> Value {
     let statistics = |it: &Statistics| {
         json!({
             "name": it.name, "values": it.values, "unbounded": it.unbounded, "broken": it.broken, "example": it.example,
@@ -118,7 +118,8 @@ mod tests {
 
     #[test]
     fn a_model_without_a_gpu_implementation_cannot_be_verified() {
-        let request = cli::Verify { target: "cpu-only".to_owned(), samples: 1, seed: 1, adapter: None, perturb: Vec::new(), json: false };
+        let request =
+            cli::VerifyArgs { target: "cpu-only".to_owned(), samples: 1, seed: 1, adapter: None, perturb: Vec::new(), json: false };
         let refused = open(&request, &cpu_only()).map(drop).expect_err("it has no GPU implementation");
         assert!(matches!(refused, Error::CpuOnly { .. }));
         assert_eq!(refused.to_string(), "cpu-only is computed in f64 on the CPU only; there is nothing on a GPU to compare with it");

@@ -11,14 +11,14 @@ mod side;
 mod worst;
 
 pub use link::Along;
-pub use side::Side;
+pub use side::GridAxis;
 
 use crate::models::Worse;
 use crate::parallel::on_threads;
 use crate::plan::{Plan, worst_end};
 use crate::study::{Axis, Best, ContourSpec, MapSpec, Quantity, Study, Thresholds};
 use link::Edge;
-use worst::Worst;
+use worst::WorstOnPlane;
 
 /// Most levels along an axis that become nodes of the grid.
 const FINEST: u64 = 256;
@@ -64,9 +64,9 @@ pub fn contours(plan: &Plan, map: &MapSpec, threads: usize) -> Vec<Contour> {
     let levels = axes.map(|axis| move |level: u64| axis.value(0, level));
     let most = most_nodes(axes.map(Axis::count), plan.scenarios());
     let divisible = |axis: usize| !study.model.inputs[axes[axis].inputs()[0]].integer;
-    let [x, y] = [0, 1].map(|axis| Side::new(axes[axis].count(), most, &levels[axis], divisible(axis)));
+    let [x, y] = [0, 1].map(|axis| GridAxis::new(axes[axis].count(), most, &levels[axis], divisible(axis)));
     let wanted: Vec<_> = map.contours.iter().map(|it| (it.of, end(study, map, it.of))).collect();
-    let worst = Worst::new(plan, axes.map(|axis| axis.inputs()[0]));
+    let worst = WorstOnPlane::new(plan, axes.map(|axis| axis.inputs()[0]));
     let nodes: Vec<usize> = (0..x.nodes() * y.nodes()).collect();
     let values = in_parallel(&nodes, threads, |&node| worst.at(x.at(node % x.nodes()), y.at(node / x.nodes()), &wanted));
     let mut found = Vec::new();
@@ -118,7 +118,7 @@ fn thresholds(spec: &ContourSpec, values: impl Iterator<Item = f64>) -> Vec<f64>
 ///
 /// `answers` are those at the nodes, row by row in `y`; `ask` gives the answer between them, or `None`. A line ends at the edge of the grid
 /// and where one of its sides has no answer; a crossing that no line reaches is a line of one vertex.
-pub fn trace<A>(x: &Side<'_>, y: &Side<'_>, answers: &[Option<bool>], ask: &A, threads: usize) -> Vec<Vec<Vertex>>
+pub fn trace<A>(x: &GridAxis<'_>, y: &GridAxis<'_>, answers: &[Option<bool>], ask: &A, threads: usize) -> Vec<Vec<Vertex>>
 where
     A: Fn(f64, f64) -> Option<bool> + Sync,
 {

@@ -6,7 +6,7 @@ const FINENESS: f64 = 0.5e-9;
 const WIDENINGS: usize = 8;
 
 /// An axis with its levels, in rising or falling order.
-pub struct Side<'a> {
+pub struct GridAxis<'a> {
     level: &'a (dyn Fn(u64) -> f64 + Sync),
     nodes: Vec<u64>,
     /// Do values between two levels have a meaning?
@@ -30,7 +30,7 @@ impl Bracket {
     }
 }
 
-impl<'a> Side<'a> {
+impl<'a> GridAxis<'a> {
     /// An axis of `count` levels, of which at most `most` become nodes: evenly chosen, the first and the last among them.
     pub fn new(count: u64, most: u64, level: &'a (dyn Fn(u64) -> f64 + Sync), divisible: bool) -> Self {
         let nodes = count.min(most.max(2));

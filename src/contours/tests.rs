@@ -16,12 +16,12 @@ impl Square {
     /// The lines of a predicate, the same for any number of threads.
     fn lines(&self, ask: impl Fn(f64, f64) -> Option<bool> + Sync) -> Vec<Vec<Vertex>> {
         let level = self.level();
-        let side = || Side::new(self.count, 256, &level, true);
+        let side = || GridAxis::new(self.count, 256, &level, true);
         lines(&side(), &side(), ask)
     }
 }
 
-fn lines(x: &Side<'_>, y: &Side<'_>, ask: impl Fn(f64, f64) -> Option<bool> + Sync) -> Vec<Vec<Vertex>> {
+fn lines(x: &GridAxis<'_>, y: &GridAxis<'_>, ask: impl Fn(f64, f64) -> Option<bool> + Sync) -> Vec<Vec<Vertex>> {
     let answers: Vec<_> = (0..x.nodes() * y.nodes()).map(|node| ask(x.at(node % x.nodes()), y.at(node / x.nodes()))).collect();
     let found = trace(x, y, &answers, &ask, 1);
     assert_eq!(found, trace(x, y, &answers, &ask, 5), "the lines depend on the threads");
@@ -133,7 +133,7 @@ fn lines_end_where_there_is_no_answer() {
 #[test]
 fn on_an_axis_of_one_level_a_line_is_one_vertex() {
     let level = UNIT_SQUARE.level();
-    let (wide, one) = (Side::new(21, 256, &level, true), Side::new(1, 256, &|_| 3.0, true));
+    let (wide, one) = (GridAxis::new(21, 256, &level, true), GridAxis::new(1, 256, &|_| 3.0, true));
     let found = lines(&wide, &one, |x, y| Some(x * x >= y - 2.5));
     assert_eq!(found.iter().map(Vec::len).collect::<Vec<_>>(), [1, 1]);
     assert!((found[1][0].x - 0.5_f64.sqrt()).abs() < 4e-9 && found[1][0].y == 3.0 && found[1][0].along == Along::X);
@@ -147,9 +147,9 @@ fn whole_numbers_are_not_divided() {
     let count = |level: u64| 10.0 + 2.0 * level as f64;
     // All levels are nodes, then every fifth one or so: the bracket is the distance of two levels all the same.
     for most in [256, 24] {
-        let whole = Side::new(101, most, &count, false);
+        let whole = GridAxis::new(101, most, &count, false);
         let asked = std::sync::Mutex::new(Vec::new());
-        let found = lines(&whole, &Side::new(1, 2, &|_| 0.0, true), |x, _| {
+        let found = lines(&whole, &GridAxis::new(1, 2, &|_| 0.0, true), |x, _| {
             asked.lock().expect("nobody panics").push(x);
             Some(x >= 87.5)
         });
@@ -166,7 +166,7 @@ fn brackets_stay_brackets_at_the_limit_of_f64() {
     for edge in [1e6 + 3e-8, 1e6 + 1.6e-7, 1e6 + 2.9999e-7] {
         let falling = |level: u64| narrow(3 - level);
         for level in [&narrow as &(dyn Fn(u64) -> f64 + Sync), &falling] {
-            let found = lines(&Side::new(4, 256, level, true), &Side::new(1, 2, &|_| 0.0, true), |x, _| Some(x >= edge));
+            let found = lines(&GridAxis::new(4, 256, level, true), &GridAxis::new(1, 2, &|_| 0.0, true), |x, _| Some(x >= edge));
             assert_eq!(found.len(), 1, "{edge}");
             assert!(found[0][0].bracket <= 4e-10 && (found[0][0].x - edge).abs() <= 3e-10, "{:?}", found[0][0]);
         }
@@ -174,7 +174,7 @@ fn brackets_stay_brackets_at_the_limit_of_f64() {
     // Many places, so that middles round both ways.
     for place in 0..2000 {
         let edge = 0.1 + 0.0007 * f64::from(place);
-        let found = lines(&Side::new(3, 256, &|level| level as f64, true), &Side::new(1, 2, &|_| 0.0, true), |x, _| Some(x > edge));
+        let found = lines(&GridAxis::new(3, 256, &|level| level as f64, true), &GridAxis::new(1, 2, &|_| 0.0, true), |x, _| Some(x > edge));
         assert_eq!(found.len(), 1, "{edge}");
     }
 }
@@ -183,7 +183,7 @@ fn brackets_stay_brackets_at_the_limit_of_f64() {
 fn nodes_are_levels_evenly_chosen_with_both_ends() {
     let level = |level: u64| level as f64;
     for (count, most, expected) in [(5, 256, 5), (256, 256, 256), (257, 256, 256), (1000, 24, 24), (1 << 40, 256, 256)] {
-        let side = Side::new(count, most, &level, true);
+        let side = GridAxis::new(count, most, &level, true);
         assert_eq!(side.nodes(), expected);
         assert_eq!((side.at(0), side.at(expected - 1)), (0.0, (count - 1) as f64));
         let steps: Vec<f64> = (1..expected).map(|node| side.at(node) - side.at(node - 1)).collect();

@@ -5,8 +5,8 @@ use crate::plan::Plan;
 use crate::study::Quantity;
 use std::sync::{Mutex, PoisonError};
 
-/// The plane of two inputs; all other inputs are those of the study.
-pub struct Worst<'p> {
+/// The worst value over the plane of two inputs; all other inputs are those of the study.
+pub struct WorstOnPlane<'p> {
     plan: &'p Plan,
     axes: [usize; 2],
     inputs: Vec<f64>,
@@ -14,7 +14,7 @@ pub struct Worst<'p> {
     latest: Mutex<Vec<Latest>>,
 }
 
-impl<'p> Worst<'p> {
+impl<'p> WorstOnPlane<'p> {
     /// The plane of these two inputs, which are the only ones that designs vary.
     pub fn new(plan: &'p Plan, axes: [usize; 2]) -> Self {
         Self { plan, axes, inputs: plan.space.inputs(0, 0), latest: Mutex::default() }

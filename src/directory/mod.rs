@@ -18,7 +18,7 @@ use std::path::Path;
 
 /// A result directory that this process has claimed.
 #[derive(Debug)]
-pub struct Taken {
+pub struct ClaimedDirectory {
     /// Keeps other processes out as long as it lives.
     pub claim: Claim,
     /// A run had been killed while it put its result in place here; that has been completed now.
@@ -31,7 +31,7 @@ pub struct Taken {
 ///
 /// # Errors
 /// [`Error::Busy`] if another process uses it; [`Error::Request`] if it cannot be used.
-pub fn claim(path: &Path, task: &str) -> Result<Taken> {
+pub fn claim(path: &Path, task: &str) -> Result<ClaimedDirectory> {
     let claim = Claim::new(path, task)?;
     for entry in path.read_dir().map_err(Error::io(path))? {
         let entry = entry.map_err(Error::io(path))?;
@@ -54,5 +54,5 @@ pub fn claim(path: &Path, task: &str) -> Result<Taken> {
         },
         Found::Nothing | Found::Foreign(_) => false,
     };
-    Ok(Taken { claim, completed })
+    Ok(ClaimedDirectory { claim, completed })
 }

@@ -1,11 +1,11 @@
 //! The pictures of a result.
 
 use super::{Certified, Summary};
-use crate::pictures::{self, Quantity};
-use crate::study::{Goal, Study};
+use crate::pictures::{self, PlotQuantity};
+use crate::study::{Goal, Quantity, Study};
 
-fn quantity(study: &Study, of: crate::study::Quantity) -> Quantity {
-    Quantity::new(of.name(&study.model), of.unit(&study.model))
+fn quantity(study: &Study, of: Quantity) -> PlotQuantity {
+    PlotQuantity::new(of.name(&study.model), of.unit(&study.model))
 }
 
 /// The front over its objectives, with ideal and knee.
@@ -14,9 +14,9 @@ pub fn front(outcome: &Certified<'_>) -> String {
     let objectives: Vec<_> = study
         .objectives
         .iter()
-        .map(|objective| pictures::Objective {
+        .map(|objective| pictures::PlotObjective {
             quantity: quantity(study, objective.quantity),
-            goal: if objective.goal == Goal::Min { pictures::Goal::Min } else { pictures::Goal::Max },
+            goal: if objective.goal == Goal::Min { pictures::PlotGoal::Min } else { pictures::PlotGoal::Max },
         })
         .collect();
     let summary = Summary::new(outcome);

@@ -3,7 +3,7 @@
 use crate::models::{Design, Model, Status, evaluate};
 use crate::pictures::pulley;
 use crate::pulley::around::Around;
-use crate::pulley::field::{Answers, Field};
+use crate::pulley::field::{Field, UnitDisplacements};
 use crate::pulley::mesh::Mesh;
 use crate::pulley::response::{LONGEST, View, respond};
 use crate::pulley::section::mesh;
@@ -84,6 +84,6 @@ fn solve<T>(model: &Model, inputs: &[f64], look: impl FnOnce(&SolvedPulley<'_>) 
     respond(&mesh, kind, &dimensions, poisson, &fineness, &mut table);
     let turn = Turn::new(View::new(&table), case);
     let largest = turn.summary(None, [None; 2]).largest;
-    let field = Answers::new(&mesh, &dimensions, poisson, &fineness).field(&mesh, &turn, largest.theta, largest.phase);
+    let field = UnitDisplacements::new(&mesh, &dimensions, poisson, &fineness).field(&mesh, &turn, largest.theta, largest.phase);
     Some(look(&SolvedPulley { design, mesh, turn, field, largest }))
 }

@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 
 /// What an adapter is, best first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
+pub enum AdapterKind {
     /// A graphics card with memory of its own.
     Discrete,
     /// A GPU that shares the memory of the machine.
@@ -18,7 +18,7 @@ pub enum Kind {
     Software,
 }
 
-impl Kind {
+impl AdapterKind {
     /// In a word.
     pub fn name(self) -> &'static str {
         match self {
@@ -38,7 +38,7 @@ pub struct Adapter {
     /// Its name, such as `llvmpipe (LLVM 15.0.6, 256 bits)`.
     pub name: String,
     /// What it is.
-    pub kind: Kind,
+    pub kind: AdapterKind,
     /// Its driver and the driver's version.
     pub driver: String,
     /// The interface it is reached by: `Vulkan`, `Metal`, `Dx12`.
@@ -49,11 +49,11 @@ impl Adapter {
     fn new(adapter: wgpu::Adapter) -> Self {
         let info = adapter.get_info();
         let kind = match info.device_type {
-            wgpu::DeviceType::DiscreteGpu => Kind::Discrete,
-            wgpu::DeviceType::IntegratedGpu => Kind::Integrated,
-            wgpu::DeviceType::VirtualGpu => Kind::Virtual,
-            wgpu::DeviceType::Other => Kind::Other,
-            wgpu::DeviceType::Cpu => Kind::Software,
+            wgpu::DeviceType::DiscreteGpu => AdapterKind::Discrete,
+            wgpu::DeviceType::IntegratedGpu => AdapterKind::Integrated,
+            wgpu::DeviceType::VirtualGpu => AdapterKind::Virtual,
+            wgpu::DeviceType::Other => AdapterKind::Other,
+            wgpu::DeviceType::Cpu => AdapterKind::Software,
         };
         let driver = format!("{} {}", info.driver, info.driver_info).trim().to_owned();
         Self { name: info.name, kind, driver, backend: format!("{:?}", info.backend), adapter }
@@ -61,7 +61,7 @@ impl Adapter {
 
     /// Is this kind of hardware likely to be faster than the CPU?
     pub fn is_hardware(&self) -> bool {
-        matches!(self.kind, Kind::Discrete | Kind::Integrated | Kind::Virtual)
+        matches!(self.kind, AdapterKind::Discrete | AdapterKind::Integrated | AdapterKind::Virtual)
     }
 
     /// The limits that matter here, by name.

@@ -14,7 +14,7 @@ pub(crate) mod program;
 pub mod self_test;
 pub(crate) mod source;
 
-pub use adapter::{Adapter, Kind, adapters, choose};
+pub use adapter::{Adapter, AdapterKind, adapters, choose};
 pub(crate) use constants::{WORKGROUP, shared_constants};
 #[doc(hidden)]
 pub use device::Device;

@@ -30,7 +30,7 @@ pub struct PointKernel {
 }
 
 /// What a device finds for one point, in SI units: outputs and margins.
-pub type Found = (Vec<RunningError>, Vec<RunningError>);
+pub type PointValues = (Vec<RunningError>, Vec<RunningError>);
 
 impl PointKernel {
     /// The kernel's text. `perturb`: outputs that are to come out wrong by this fraction of their value, for testing.
@@ -89,7 +89,7 @@ impl PointKernel {
     ///
     /// # Errors
     /// [`Error::Gpu`](crate::error::Error::Gpu).
-    pub fn evaluate(&self, points: &[Vec<f64>]) -> Result<Vec<Found>> {
+    pub fn evaluate(&self, points: &[Vec<f64>]) -> Result<Vec<PointValues>> {
         let mut found = Vec::with_capacity(points.len());
         // Tables of many points at once would fill a device.
         let batch = (BATCH_TABLES / self.table_numbers.max(1)).clamp(1, BATCH);
@@ -99,7 +99,7 @@ impl PointKernel {
         Ok(found)
     }
 
-    fn batch(&self, points: &[Vec<f64>]) -> Result<Vec<Found>> {
+    fn batch(&self, points: &[Vec<f64>]) -> Result<Vec<PointValues>> {
         let (outputs, conditions) = (self.model.outputs.len(), self.model.conditions.len());
         let given: Vec<[f32; 2]> = points.iter().flat_map(|point| point.iter().map(|&value| nearest_f32(value).into())).collect();
         let width = outputs + margins_len(conditions);

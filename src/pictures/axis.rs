@@ -37,7 +37,7 @@ impl Numbers {
 /// A linear axis with its own choice of ticks. plotters can choose them too, but with an absolute tolerance, which fails for quantities
 /// around 1e-12, and without regard for the width of their labels.
 #[derive(Debug, Clone)]
-pub(super) struct Axis {
+pub(super) struct PlotAxis {
     low: f64,
     high: f64,
     ticks: Vec<Tick>,
@@ -57,7 +57,7 @@ impl Tick {
     }
 }
 
-impl Axis {
+impl PlotAxis {
     /// Horizontal numeric axis on `room` units of paper; labels that would stick out by more than `overhang` at either end are left out.
     pub(super) fn horizontal((low, high): (f64, f64), room: i32, overhang: i32, numbers: Numbers) -> Self {
         let most = (room / (20 * UNIT)).clamp(2, 12);
@@ -163,7 +163,7 @@ impl Axis {
     }
 }
 
-impl Ranged for Axis {
+impl Ranged for PlotAxis {
     type FormatOption = NoDefaultFormatting;
     type ValueType = f64;
 
@@ -185,7 +185,7 @@ impl Ranged for Axis {
     }
 }
 
-impl ValueFormatter<f64> for Axis {
+impl ValueFormatter<f64> for PlotAxis {
     fn format_ext(&self, value: &f64) -> String {
         let tick = self.ticks.iter().find(|tick| tick.at == *value);
         tick.map(|tick| tick.label.clone()).unwrap_or_default()
@@ -196,13 +196,13 @@ impl ValueFormatter<f64> for Axis {
 mod tests {
     use super::*;
 
-    fn labels(axis: &Axis) -> Vec<&str> {
+    fn labels(axis: &PlotAxis) -> Vec<&str> {
         axis.ticks().map(|(_, label)| label).collect()
     }
 
     #[test]
     fn ticks_are_round_numbers_in_plain_digits() {
-        let axis = |range| Axis::vertical(range, 250 * UNIT, Numbers::Long);
+        let axis = |range| PlotAxis::vertical(range, 250 * UNIT, Numbers::Long);
         assert_eq!(labels(&axis((0.0, 1.2))), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0", "1.2"]);
         assert_eq!(labels(&axis((-25.0, 60.0))), ["−20", "0", "20", "40", "60"]);
         let tiny = axis((1e-12, 3e-12));
@@ -215,7 +215,7 @@ mod tests {
     fn horizontal_labels_never_touch() {
         for room in [60, 140, 400, 800].map(|pixels| pixels * UNIT) {
             for range in [(0.0, 1.0), (20_000.0, 50_000.0), (1e6, 1e6 + 1.0), (-3e-7, 3e-7)] {
-                let axis = Axis::horizontal(range, room, 0, Numbers::Long);
+                let axis = PlotAxis::horizontal(range, room, 0, Numbers::Long);
                 assert!(axis.is_clear(room), "{axis:?}");
                 let ends = axis.ticks().filter(|(_, label)| !label.is_empty());
                 assert!(ends.count() <= 13);
@@ -226,7 +226,7 @@ mod tests {
     #[test]
     fn counts_have_no_fractions() {
         for high in [1.0, 2.0, 3.0, 7.0, 1e9] {
-            let axis = Axis::counts(high * 1.04, 380 * UNIT);
+            let axis = PlotAxis::counts(high * 1.04, 380 * UNIT);
             assert!(labels(&axis).iter().all(|l| high > 1e3 || !l.contains('.')), "{axis:?}");
             assert!(axis.ticks().count() >= 2);
         }

@@ -1,9 +1,9 @@
 //! The colours of a map: the bar that explains them, and the lines along its ticks.
 
-use super::Quantity;
-use super::axis::{Axis, Numbers, TICK_TEXT};
+use super::PlotQuantity;
+use super::axis::{Numbers, PlotAxis, TICK_TEXT};
 use super::colours::{GREY, INK, STEPS, step_of};
-use super::contours::{Piece, contours};
+use super::contours::{Segment, contours};
 use super::panel::{LABEL_TEXT, axis_label};
 use super::raster::{NOTHING, image, index_of_step};
 use super::sheet::{Area, Dash, Drawn, Frame, UNIT, stroked};
@@ -19,17 +19,17 @@ const BAR_GAP: i32 = 24 * UNIT;
 const FEWEST_FOR_CONTOURS: usize = 8;
 
 /// The colour scale.
-pub(super) struct Bar {
+pub(super) struct ColourBar {
     low: f64,
     high: f64,
-    axis: Axis,
+    axis: PlotAxis,
     label: Vec<String>,
 }
 
-impl Bar {
+impl ColourBar {
     /// Scale from the lowest to the highest value, to stand `height` units of paper tall; with whole numbers only.
-    pub fn new((low, high): (f64, f64), value: &Quantity, height: i32, whole: bool) -> Self {
-        let axis = if whole { Axis::whole((low, high), height) } else { Axis::vertical((low, high), height, Numbers::Long) };
+    pub fn new((low, high): (f64, f64), value: &PlotQuantity, height: i32, whole: bool) -> Self {
+        let axis = if whole { PlotAxis::whole((low, high), height) } else { PlotAxis::vertical((low, high), height, Numbers::Long) };
         let label = axis_label(value, &axis, height);
         Self { low, high, axis, label }
     }
@@ -50,14 +50,14 @@ impl Bar {
     }
 
     /// Contour lines at the ticks, if the map is fine enough for them.
-    pub fn lines(&self, cells: &[Option<f64>], columns: usize, rows: usize) -> Option<Vec<Contour>> {
+    pub fn lines(&self, cells: &[Option<f64>], columns: usize, rows: usize) -> Option<Vec<ContourLine>> {
         let inside = |level: &f64| self.low < *level && *level < self.high;
         let levels: Vec<f64> = self.axis.ticks().map(|(at, _)| at).filter(inside).collect();
         if columns.min(rows) < FEWEST_FOR_CONTOURS {
             return None;
         }
         let lines = contours(cells, columns, &levels)?;
-        let contour = |(pieces, level): (_, &f64)| Contour {
+        let contour = |(pieces, level): (_, &f64)| ContourLine {
             pieces,
             // Light lines on the dark lower half of the colours, dark lines on the upper half.
             colour: match *level < 0.5 * (self.low + self.high) {
@@ -65,7 +65,7 @@ impl Bar {
                 false => INK,
             },
         };
-        let lines: Vec<Contour> = lines.into_iter().zip(&levels).map(contour).collect();
+        let lines: Vec<ContourLine> = lines.into_iter().zip(&levels).map(contour).collect();
         lines.iter().any(|l| !l.pieces.is_empty()).then_some(lines)
     }
 
@@ -94,12 +94,12 @@ impl Bar {
 }
 
 /// The line of one value through a map.
-pub(super) struct Contour {
-    pieces: Vec<Piece>,
+pub(super) struct ContourLine {
+    pieces: Vec<Segment>,
     colour: RGBColor,
 }
 
-impl Contour {
+impl ContourLine {
     /// The line as an SVG element over a map in `frame`.
     pub fn path(&self, frame: Frame, columns: usize, rows: usize) -> String {
         let across = |x: f64| (x / columns as f64 * f64::from(frame.width)).round() as i32;

@@ -6,12 +6,12 @@ const FINEST: usize = 240;
 const MOST_PIECES: usize = 8_000;
 
 /// A straight piece of a contour, in cells: the middle of the first cell is at (0.5, 0.5).
-pub(super) type Piece = [(f64, f64); 2];
+pub(super) type Segment = [(f64, f64); 2];
 
 /// The pieces of every level, in the order of `levels`; `None` if there would be too many.
 ///
 /// `cells` are `[y][x]` with `columns` cells in a row. No line comes near an absent cell.
-pub(super) fn contours(cells: &[Option<f64>], columns: usize, levels: &[f64]) -> Option<Vec<Vec<Piece>>> {
+pub(super) fn contours(cells: &[Option<f64>], columns: usize, levels: &[f64]) -> Option<Vec<Vec<Segment>>> {
     let rows = cells.len() / columns.max(1);
     let (across, up) = (places(columns), places(rows));
     let mut lines = vec![Vec::new(); levels.len()];
@@ -43,7 +43,7 @@ pub(super) fn contours(cells: &[Option<f64>], columns: usize, levels: &[f64]) ->
 }
 
 /// Adds the pieces of one level inside one square; its corners are given in order around it.
-fn cross(corners: [(f64, f64, f64); 4], level: f64, line: &mut Vec<Piece>) {
+fn cross(corners: [(f64, f64, f64); 4], level: f64, line: &mut Vec<Segment>) {
     let edges = (0..4).map(|i| (corners[i], corners[(i + 1) % 4]));
     let crossed: Vec<(f64, f64)> = edges
         .filter(|(a, b)| (a.0 >= level) != (b.0 >= level))
@@ -103,7 +103,7 @@ mod tests {
         };
         // The middle is high: the low corners are cut off.
         let cut = |high: f64, level: f64| contours(&cells(high), 2, &[level]).expect("few")[0].clone();
-        let near = |piece: &Piece, corner: (f64, f64)| {
+        let near = |piece: &Segment, corner: (f64, f64)| {
             let reach = |p: &(f64, f64)| (p.0 - corner.0).abs() + (p.1 - corner.1).abs() < 0.5;
             piece.iter().all(reach)
         };

@@ -1,13 +1,13 @@
 //! The picture of curves over a common abscissa.
 
-use super::axis::{Axis, Numbers};
+use super::axis::{Numbers, PlotAxis};
 use super::colours::{GREY, LINES};
 use super::header::{Header, Mark, sentence};
 use super::panel::{PanelPlan, axis_label, x_labels_height, y_labels_width};
 use super::range::bounds;
 use super::sheet::{Area, Dash, Drawn, Frame, Sheet, UNIT, WIDTH, stroked};
 use super::words::{clean, text};
-use super::{Quantity, Series};
+use super::{PlotQuantity, Series};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 use std::fmt::Write;
@@ -18,7 +18,7 @@ const GAP: i32 = 18 * UNIT;
 ///
 /// A label has the same colour and dash throughout the picture and is in the legend once; points are joined in the given order. A panel
 /// without values stays empty; without any value at all the picture says so.
-pub fn curves(title: &str, x: &Quantity, panels: &[(Quantity, Vec<Series>)]) -> String {
+pub fn curves(title: &str, x: &PlotQuantity, panels: &[(PlotQuantity, Vec<Series>)]) -> String {
     let all = panels.iter().flat_map(|(_, series)| series);
     let abscissae = all.clone().flat_map(|s| points(s).map(|(x, _)| x));
     let Some(range) = bounds(abscissae, 0.0) else {
@@ -36,7 +36,7 @@ pub fn curves(title: &str, x: &Quantity, panels: &[(Quantity, Vec<Series>)]) -> 
     let widths = rows.iter().map(|row| y_labels_width(tick_room, &row.label));
     let left = 12 * UNIT + widths.max().unwrap_or(0);
     let width = WIDTH - left - 30 * UNIT;
-    let x_axis = Axis::horizontal(range, width, 25 * UNIT, Numbers::Long);
+    let x_axis = PlotAxis::horizontal(range, width, 25 * UNIT, Numbers::Long);
     let x_label = axis_label(x, &x_axis, width);
     let top = header.height();
     let bottom = top + rows.len() as i32 * (height + GAP) - GAP;
@@ -66,16 +66,16 @@ pub fn curves(title: &str, x: &Quantity, panels: &[(Quantity, Vec<Series>)]) -> 
 /// One panel.
 struct CurveRow<'a> {
     series: &'a [Series],
-    axis: Axis,
+    axis: PlotAxis,
     label: Vec<String>,
 }
 
 impl<'a> CurveRow<'a> {
-    fn new((quantity, series): &'a (Quantity, Vec<Series>), height: i32) -> Self {
+    fn new((quantity, series): &'a (PlotQuantity, Vec<Series>), height: i32) -> Self {
         let ordinates = series.iter().flat_map(|s| points(s).map(|(_, y)| y));
         let axis = match bounds(ordinates, 0.06) {
-            Some(range) => Axis::vertical(range, height, Numbers::Long),
-            None => Axis::with_ticks((0.0, 1.0), std::iter::empty()),
+            Some(range) => PlotAxis::vertical(range, height, Numbers::Long),
+            None => PlotAxis::with_ticks((0.0, 1.0), std::iter::empty()),
         };
         let label = axis_label(quantity, &axis, height);
         Self { series, axis, label }
@@ -160,8 +160,8 @@ mod tests {
     }
 
     fn draw(panels: &[Vec<Series>]) -> String {
-        let angle = Quantity::new("wrap_angle_deg", "deg");
-        let panel = |s: &Vec<Series>| (Quantity::new("tension_N", "N"), s.clone());
+        let angle = PlotQuantity::new("wrap_angle_deg", "deg");
+        let panel = |s: &Vec<Series>| (PlotQuantity::new("tension_N", "N"), s.clone());
         let panels: Vec<_> = panels.iter().map(panel).collect();
         let svg = curves("T & T", &angle, &panels);
         assert_svg(&svg);

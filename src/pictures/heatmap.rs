@@ -1,14 +1,14 @@
 //! The picture of a map over two axes.
 
-use super::axis::Axis;
-use super::colour_bar::Bar;
+use super::axis::PlotAxis;
+use super::colour_bar::ColourBar;
 use super::colours::{ABSENT, HATCH, INK};
 use super::header::{Header, Mark, sentence};
 use super::panel::{PanelPlan, axis_label, x_labels_height, y_labels_width};
 use super::range::bounds;
 use super::raster::image;
 use super::sheet::{Area, Dash, Drawn, Frame, Sheet, UNIT, WIDTH, stroked};
-use super::{MapDetails, Quantity, levels, number, overlay};
+use super::{MapDetails, PlotQuantity, levels, number, overlay};
 use plotters::prelude::*;
 use std::fmt::Write;
 
@@ -22,9 +22,9 @@ const HEIGHT: i32 = 520 * UNIT;
 /// says that no design is feasible.
 pub fn heatmap(
     title: &str,
-    x: (&Quantity, &[f64]),
-    y: (&Quantity, &[f64]),
-    value: &Quantity,
+    x: (&PlotQuantity, &[f64]),
+    y: (&PlotQuantity, &[f64]),
+    value: &PlotQuantity,
     cells: &[Option<f64>],
     details: &MapDetails,
 ) -> String {
@@ -35,7 +35,7 @@ pub fn heatmap(
     // Cells that are missing or not finite are absent like the others.
     let cell = |i: usize| cells.get(i).copied().flatten().filter(|v| v.is_finite());
     let cells: Vec<Option<f64>> = (0..columns * rows).map(cell).collect();
-    let bar = bounds(cells.iter().flatten().copied(), 0.0).map(|range| Bar::new(range, value, HEIGHT, details.whole));
+    let bar = bounds(cells.iter().flatten().copied(), 0.0).map(|range| ColourBar::new(range, value, HEIGHT, details.whole));
     let automatic = bar.as_ref().filter(|_| details.contours.is_none());
     let lines = automatic.and_then(|bar| bar.lines(&cells, columns, rows));
     let given = details.contours.as_deref().unwrap_or_default();
@@ -68,7 +68,7 @@ pub fn heatmap(
     sheet.finish()
 }
 
-fn legend(cells: &[Option<f64>], value: &Quantity, contours: bool) -> Vec<(Mark, String)> {
+fn legend(cells: &[Option<f64>], value: &PlotQuantity, contours: bool) -> Vec<(Mark, String)> {
     let mut legend = Vec::new();
     let found = cells.iter().flatten();
     let extremes = found.fold(None, |seen: Option<(f64, f64)>, &v| {
@@ -102,24 +102,24 @@ fn legend(cells: &[Option<f64>], value: &Quantity, contours: bool) -> Vec<(Mark,
 /// The positions of panel and colour bar.
 struct HeatmapLayout {
     frame: Frame,
-    x: Axis,
-    y: Axis,
+    x: PlotAxis,
+    y: PlotAxis,
     x_label: Vec<String>,
     y_label: Vec<String>,
 }
 
 impl HeatmapLayout {
     fn new(
-        x: (&Quantity, &[f64]),
-        y: (&Quantity, &[f64]),
+        x: (&PlotQuantity, &[f64]),
+        y: (&PlotQuantity, &[f64]),
         [x_words, y_words]: &[Option<Vec<String>>; 2],
-        bar: Option<&Bar>,
+        bar: Option<&ColourBar>,
         top: i32,
     ) -> Self {
         let y_axis = y_words.as_ref().map_or_else(|| levels::upwards(y.1, HEIGHT), |words| levels::words_upwards(words, HEIGHT));
         let y_label = axis_label(y.0, &y_axis, HEIGHT);
         let left = 12 * UNIT + y_labels_width(y_axis.label_width(), &y_label);
-        let right = 20 * UNIT + bar.map_or(0, Bar::room);
+        let right = 20 * UNIT + bar.map_or(0, ColourBar::room);
         let width = WIDTH - left - right;
         let x_axis = x_words.as_ref().map_or_else(|| levels::across(x.1, width), |words| levels::words_across(words, width));
         let x_label = axis_label(x.0, &x_axis, width);
@@ -168,8 +168,8 @@ mod tests {
 
     fn draw(x: &[f64], y: &[f64], cells: &[Option<f64>]) -> String {
         let [across, up] = ["ratio", "band_thickness_mm"];
-        let [across, up] = [Quantity::new(across, ""), Quantity::new(up, "mm")];
-        let value = Quantity::new("axial_force_N", "N");
+        let [across, up] = [PlotQuantity::new(across, ""), PlotQuantity::new(up, "mm")];
+        let value = PlotQuantity::new("axial_force_N", "N");
         let picture = || heatmap("\"map\" <1>", (&across, x), (&up, y), &value, cells, &MapDetails::default());
         let svg = picture();
         assert_eq!(svg, picture());
@@ -229,7 +229,7 @@ mod tests {
 
     #[test]
     fn endless_names_give_a_picture() {
-        let long = Quantity::new("word_".repeat(200), "x".repeat(200));
+        let long = PlotQuantity::new("word_".repeat(200), "x".repeat(200));
         let map = heatmap("", (&long, &[1.0]), (&long, &[2.0]), &long, &[Some(1e-9)], &MapDetails::default());
         assert_svg(&map);
     }
@@ -252,7 +252,7 @@ mod tests {
 
     #[test]
     fn levels_that_are_words_stand_at_the_axes_as_such() {
-        let [x, y, value] = ["section", "ratio", "force"].map(|name| Quantity::new(name, ""));
+        let [x, y, value] = ["section", "ratio", "force"].map(|name| PlotQuantity::new(name, ""));
         let words = |words: &[&str]| Some(words.iter().map(|word| (*word).to_owned()).collect());
         let details = MapDetails { words: [words(&["machined", "pressed-cup"]), words(&["limit", "0.5"])], ..MapDetails::default() };
         let svg = heatmap("", (&x, &[1.0, 4.0]), (&y, &[-1.0, 0.5]), &value, &[Some(1.0); 4], &details);
@@ -269,8 +269,8 @@ mod tests {
         let cells: Vec<_> = (0..400).map(|i| Some(f64::from(i % 20))).collect();
         let line = |at: f64| Curve { at, lines: vec![vec![(at, 0.0), (at, 19.0)]] };
         let drawn = |quantity: &str, every_change: bool, curves: Vec<Curve>| {
-            let contours = vec![Contours { quantity: Quantity::new(quantity, "N"), every_change, curves }];
-            let [x, y, value] = ["ratio", "torque", "tooth"].map(|name| Quantity::new(name, ""));
+            let contours = vec![Contours { quantity: PlotQuantity::new(quantity, "N"), every_change, curves }];
+            let [x, y, value] = ["ratio", "torque", "tooth"].map(|name| PlotQuantity::new(name, ""));
             let details = MapDetails { whole: true, contours: Some(contours), ..MapDetails::default() };
             let svg = heatmap("", (&x, &levels), (&y, &levels), &value, &cells, &details);
             assert_svg(&svg);
@@ -289,10 +289,10 @@ mod tests {
     #[test]
     fn the_colour_bar_of_whole_numbers_has_whole_ticks() {
         let ticks = |cells: &[Option<f64>], whole: bool| {
-            let [x, y] = ["ratio", "torque"].map(|name| Quantity::new(name, ""));
+            let [x, y] = ["ratio", "torque"].map(|name| PlotQuantity::new(name, ""));
             let levels: Vec<f64> = (0..cells.len()).map(|i| i as f64).collect();
             let details = MapDetails { whole, ..MapDetails::default() };
-            heatmap("", (&x, &levels), (&y, &[1.0]), &Quantity::new("tooth", ""), cells, &details)
+            heatmap("", (&x, &levels), (&y, &[1.0]), &PlotQuantity::new("tooth", ""), cells, &details)
         };
         let cells = [Some(3.0), Some(4.0), Some(5.0)];
         assert!(ticks(&cells, false).contains("\n3.4\n") && !ticks(&cells, true).contains("\n3.4\n"));
@@ -311,7 +311,7 @@ mod tests {
             Some((state >> 40) as f64)
         };
         let cells: Vec<_> = std::iter::repeat_with(noise).take(4_000_000).collect();
-        let [x, y, value] = ["ratio", "torque", "force"].map(|name| Quantity::new(name, ""));
+        let [x, y, value] = ["ratio", "torque", "force"].map(|name| PlotQuantity::new(name, ""));
         let svg = heatmap("", (&x, &levels), (&y, &levels), &value, &cells, &MapDetails::default());
         assert!(svg.len() < 5_000_000, "{} bytes", svg.len());
     }

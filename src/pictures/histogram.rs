@@ -1,13 +1,13 @@
 //! The picture of a histogram.
 
-use super::axis::{Axis, Numbers};
+use super::axis::{Numbers, PlotAxis};
 use super::colours::{BLUE, INK, LIGHT_BLUE};
 use super::header::{Header, Mark, sentence};
 use super::panel::{LABEL_TEXT, Panel, PanelPlan, axis_label, x_labels_height, y_labels_width};
 use super::range::bounds;
 use super::sheet::{Area, Drawn, Frame, Sheet, UNIT, WIDTH};
 use super::words::text;
-use super::{Quantity, number};
+use super::{PlotQuantity, number};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 
@@ -22,7 +22,7 @@ const FLANK: f64 = 0.045;
 ///
 /// A bar at the end that would dwarf the bins is cut off; the legend gives its count. If nothing is counted at all, the picture says that
 /// no design is feasible.
-pub fn histogram(title: &str, quantity: &Quantity, from: f64, to: f64, counts: &[u64], below: u64, above: u64) -> String {
+pub fn histogram(title: &str, quantity: &PlotQuantity, from: f64, to: f64, counts: &[u64], below: u64, above: u64) -> String {
     let total = counts.iter().chain([&below, &above]);
     let total = total.fold(0, |sum: u64, &c| sum.saturating_add(c));
     let Some((from, to)) = bounds([from, to].into_iter(), 0.0).filter(|_| total > 0) else {
@@ -30,12 +30,12 @@ pub fn histogram(title: &str, quantity: &Quantity, from: f64, to: f64, counts: &
     };
     let bars = Bars { from, to, counts, below, above };
     let header = Header::new(title, bars.legend(quantity, total));
-    let designs = Quantity::new("designs", "");
-    let y = Axis::counts(bars.top() * 1.04, HEIGHT);
+    let designs = PlotQuantity::new("designs", "");
+    let y = PlotAxis::counts(bars.top() * 1.04, HEIGHT);
     let y_label = axis_label(&designs, &y, HEIGHT);
     let left = 12 * UNIT + y_labels_width(y.label_width(), &y_label);
     let width = WIDTH - left - 30 * UNIT;
-    let x = Axis::horizontal(bars.range(), width, 20 * UNIT, Numbers::Long).within(from, to);
+    let x = PlotAxis::horizontal(bars.range(), width, 20 * UNIT, Numbers::Long).within(from, to);
     let x_label = axis_label(quantity, &x, width * 3 / 4);
     let frame = Frame { left, top: header.height(), width, height: HEIGHT };
     let mut sheet = Sheet::new(frame.bottom() + x_labels_height(&x_label) + 14 * UNIT);
@@ -57,7 +57,7 @@ struct Bars<'a> {
 }
 
 impl Bars<'_> {
-    fn legend(&self, quantity: &Quantity, total: u64) -> Vec<(Mark, String)> {
+    fn legend(&self, quantity: &PlotQuantity, total: u64) -> Vec<(Mark, String)> {
         let inside = self.counts.iter().fold(0, |sum: u64, &c| sum.saturating_add(c));
         let unit = match quantity.unit.is_empty() {
             true => String::new(),
@@ -154,7 +154,7 @@ mod tests {
     use super::*;
 
     fn draw(range: (f64, f64), counts: &[u64], below: u64, above: u64) -> String {
-        let force = Quantity::new("axial_force_N", "N");
+        let force = PlotQuantity::new("axial_force_N", "N");
         let picture = || histogram("a < b", &force, range.0, range.1, counts, below, above);
         let svg = picture();
         assert_svg(&svg);

@@ -1,11 +1,11 @@
 //! Axes of maps: they count cells and label some of them with the value of their level.
 
-use super::axis::Axis;
+use super::axis::PlotAxis;
 use super::number;
 use super::sheet::UNIT;
 
 /// Horizontal axis over as many cells as there are levels, on `room` units of paper.
-pub(super) fn across(levels: &[f64], room: i32) -> Axis {
+pub(super) fn across(levels: &[f64], room: i32) -> PlotAxis {
     // Only every n-th label fits; n depends on which ones are shown.
     let least = fitting_stride(levels, room, 24 * UNIT);
     let fits = |stride: &usize| every(levels, *stride).is_clear(room);
@@ -18,26 +18,26 @@ pub(super) fn across(levels: &[f64], room: i32) -> Axis {
 }
 
 /// Vertical axis over as many cells as there are levels, on `room` units of paper.
-pub(super) fn upwards(levels: &[f64], room: i32) -> Axis {
+pub(super) fn upwards(levels: &[f64], room: i32) -> PlotAxis {
     let least = fitting_stride(levels, room, 26 * UNIT);
     every(levels, nicest_stride(levels, least))
 }
 
 /// Horizontal axis over cells whose levels have these texts.
-pub(super) fn words_across(words: &[String], room: i32) -> Axis {
+pub(super) fn words_across(words: &[String], room: i32) -> PlotAxis {
     let clear = (1..=words.len()).map(|stride| every_word(words, stride)).find(|axis| axis.is_clear(room));
     clear.unwrap_or_else(|| every_word(words, words.len()))
 }
 
 /// Vertical axis over cells whose levels have these texts.
-pub(super) fn words_upwards(words: &[String], room: i32) -> Axis {
+pub(super) fn words_upwards(words: &[String], room: i32) -> PlotAxis {
     every_word(words, (words.len() * (26 * UNIT) as usize).div_ceil(room.max(1) as usize))
 }
 
 /// The axis with a text in the middle of every `stride`-th cell.
-fn every_word(words: &[String], stride: usize) -> Axis {
+fn every_word(words: &[String], stride: usize) -> PlotAxis {
     let ticks = words.iter().enumerate().step_by(stride.max(1)).map(|(i, word)| (i as f64 + 0.5, word.clone()));
-    Axis::with_ticks((0.0, words.len() as f64), ticks)
+    PlotAxis::with_ticks((0.0, words.len() as f64), ticks)
 }
 
 /// Least number of cells from one label to the next if labels need `spacing`.
@@ -46,12 +46,12 @@ fn fitting_stride(levels: &[f64], room: i32, spacing: i32) -> usize {
 }
 
 /// The axis with a label in the middle of every `stride`-th cell.
-fn every(levels: &[f64], stride: usize) -> Axis {
+fn every(levels: &[f64], stride: usize) -> PlotAxis {
     let stride = stride.max(1);
     let chosen: Vec<f64> = levels.iter().copied().step_by(stride).collect();
     let places = (0..levels.len()).step_by(stride).map(|i| i as f64 + 0.5);
     let ticks = places.zip(number::levels(&chosen));
-    Axis::with_ticks((0.0, levels.len() as f64), ticks)
+    PlotAxis::with_ticks((0.0, levels.len() as f64), ticks)
 }
 
 /// Of the strides from `least` to three times that, the one with the shortest labels: every fifth cell of 18, 18.2, ... is labelled 18,
@@ -74,7 +74,7 @@ fn nicest_stride(levels: &[f64], least: usize) -> usize {
 mod tests {
     use super::*;
 
-    fn labels(axis: &Axis) -> Vec<&str> {
+    fn labels(axis: &PlotAxis) -> Vec<&str> {
         axis.ticks().map(|(_, label)| label).collect()
     }
 

@@ -1,7 +1,7 @@
 //! The picture of lines and marks in one pair of axes, each line with its own style, as printed figures need it.
 
-use super::Quantity;
-use super::axis::{Axis, Numbers};
+use super::PlotQuantity;
+use super::axis::{Numbers, PlotAxis};
 use super::colours::LINES;
 pub use super::header::Marker;
 use super::header::{Header, Mark, sentence};
@@ -65,7 +65,7 @@ pub struct Guide {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scale {
     /// Its quantity.
-    pub quantity: Quantity,
+    pub quantity: PlotQuantity,
     /// Its ends; without them they are those of the data.
     pub range: Option<(f64, f64)>,
 }
@@ -79,11 +79,11 @@ pub fn lines(title: &str, x: &Scale, y: &Scale, lines: &[Line], guides: &[Guide]
     };
     let entry = |line: &Line| (Mark::Styled(colour(line.colour), dash(line.stroke), line.marker), clean(&line.label));
     let header = Header::new(title, lines.iter().map(entry).filter(|(_, label)| !label.is_empty()).collect());
-    let y_axis = Axis::vertical(y_range, HEIGHT, Numbers::Long);
+    let y_axis = PlotAxis::vertical(y_range, HEIGHT, Numbers::Long);
     let y_label = axis_label(&y.quantity, &y_axis, HEIGHT);
     let left = 12 * UNIT + y_labels_width(y_axis.label_width(), &y_label);
     let frame = Frame { left, top: header.height(), width: WIDTH - left - 30 * UNIT, height: HEIGHT };
-    let x_axis = Axis::horizontal(x_range, frame.width, 25 * UNIT, Numbers::Long);
+    let x_axis = PlotAxis::horizontal(x_range, frame.width, 25 * UNIT, Numbers::Long);
     let x_label = axis_label(&x.quantity, &x_axis, frame.width);
     let mut sheet = Sheet::new(frame.bottom() + x_labels_height(&x_label) + 14 * UNIT);
     let panel = PanelPlan {
@@ -209,7 +209,7 @@ mod tests {
     }
 
     fn scale(name: &str, range: Option<(f64, f64)>) -> Scale {
-        Scale { quantity: Quantity::new(name, "N"), range }
+        Scale { quantity: PlotQuantity::new(name, "N"), range }
     }
 
     #[test]

@@ -41,7 +41,7 @@ pub use scatter::{front, front_over};
 
 /// One quantity on an axis.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Quantity {
+pub struct PlotQuantity {
     /// Name as in study files, with its unit as suffix: `axial_force_N`.
     pub name: String,
     /// Unit as in the suffix (`N_per_mm`) or written out (`N/mm`); empty for dimensionless ones.
@@ -50,7 +50,7 @@ pub struct Quantity {
 
 /// Which values of an objective are better.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Goal {
+pub enum PlotGoal {
     /// Lower is better.
     Min,
     /// Higher is better.
@@ -59,11 +59,11 @@ pub enum Goal {
 
 /// A quantity to be optimised.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Objective {
+pub struct PlotObjective {
     /// What is optimised.
-    pub quantity: Quantity,
+    pub quantity: PlotQuantity,
     /// In which direction.
-    pub goal: Goal,
+    pub goal: PlotGoal,
 }
 
 /// One line in a panel of [`curves()`].
@@ -92,7 +92,7 @@ pub struct MapDetails {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contours {
     /// The quantity, which need not be the map's.
-    pub quantity: Quantity,
+    pub quantity: PlotQuantity,
     /// Are these lines all steps of a whole-number quantity?
     pub every_change: bool,
     /// One entry per value.
@@ -108,7 +108,7 @@ pub struct Curve {
     pub lines: Vec<Vec<(f64, f64)>>,
 }
 
-impl Quantity {
+impl PlotQuantity {
     /// A quantity from its name and unit (empty if dimensionless).
     pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
         Self { name: name.into(), unit: unit.into() }
@@ -154,20 +154,20 @@ impl Quantity {
     }
 }
 
-impl Goal {
+impl PlotGoal {
     /// Words for an axis label; the arrow points along the axis towards better values, also on a vertical axis, whose label reads upwards.
     fn words(self) -> &'static str {
         match self {
-            Goal::Min => "← lower is better",
-            Goal::Max => "higher is better →",
+            PlotGoal::Min => "← lower is better",
+            PlotGoal::Max => "higher is better →",
         }
     }
 
     /// Orders values, better ones first.
     fn better_first(self, a: f64, b: f64) -> std::cmp::Ordering {
         match self {
-            Goal::Min => a.total_cmp(&b),
-            Goal::Max => b.total_cmp(&a),
+            PlotGoal::Min => a.total_cmp(&b),
+            PlotGoal::Max => b.total_cmp(&a),
         }
     }
 }
@@ -194,15 +194,15 @@ mod tests {
             ("N", "N", "N [N]"),
             ("", "", ""),
         ] {
-            assert_eq!(Quantity::new(name, unit).label(), label);
+            assert_eq!(PlotQuantity::new(name, unit).label(), label);
         }
     }
 
     #[test]
     fn powers_of_ten_stand_in_front_of_the_unit() {
-        let force = Quantity::new("axial_force_N", "N");
+        let force = PlotQuantity::new("axial_force_N", "N");
         assert_eq!(force.label_in_powers_of_ten(6), "axial force [10⁶\u{a0}N]");
-        let share = Quantity::new("share", "");
+        let share = PlotQuantity::new("share", "");
         assert_eq!(share.label_in_powers_of_ten(-12), "share [10⁻¹²]");
     }
 }

@@ -2,7 +2,7 @@
 
 use super::colours::INK;
 use super::header::Mark;
-use super::sheet::{Dash, Drawn, Frame, Sheet, UNIT, stroked};
+use super::sheet::{Dash, Drawn, Frame, Point, Sheet, UNIT, stroked};
 use super::words::{text, text_width};
 use super::{Contours, number};
 use plotters::prelude::*;
@@ -20,8 +20,6 @@ const BLOCK: i32 = 4 * UNIT;
 const STEP: f64 = 60.0;
 /// Most thresholds that the legend lists.
 const MOST_LISTED: usize = 6;
-
-type Point = (i32, i32);
 
 /// Dashes that distinguish the lines of the quantities.
 fn dash(number: usize) -> Dash {

@@ -1,7 +1,7 @@
 //! A panel: grid, frame, ticks and axis labels around a rectangle in which data are drawn.
 
-use super::Quantity;
-use super::axis::{Axis, TICK_TEXT};
+use super::PlotQuantity;
+use super::axis::{PlotAxis, TICK_TEXT};
 use super::colours::{GREY, GRID, INK};
 use super::sheet::{Area, Drawn, Frame, UNIT};
 use super::words::{centred_lines, line_height, text, upward_lines, wrap};
@@ -13,13 +13,13 @@ use plotters::style::text_anchor::{HPos, VPos};
 pub(super) const LABEL_TEXT: i32 = 13;
 const TICK: i32 = 4 * UNIT;
 
-pub(super) type Panel<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<Axis, Axis>>;
+pub(super) type Panel<'a> = ChartContext<'a, SVGBackend<'a>, Cartesian2d<PlotAxis, PlotAxis>>;
 
 /// A frame with two axes, before it is drawn.
 pub(super) struct PanelPlan<'a> {
     pub frame: Frame,
-    pub x: &'a Axis,
-    pub y: &'a Axis,
+    pub x: &'a PlotAxis,
+    pub y: &'a PlotAxis,
     /// Lines of text below the horizontal axis; `None`: no tick labels either.
     pub x_label: Option<&'a [String]>,
     /// Lines of text left of the vertical axis; `None`: no tick labels either.
@@ -87,7 +87,7 @@ pub(super) fn y_labels_width(ticks: i32, lines: &[String]) -> i32 {
 
 /// The label of an axis in as many lines as it needs for the length of the axis, but at most four:
 /// an endless name must not push the data off the paper.
-pub(super) fn axis_label(quantity: &Quantity, axis: &Axis, room: i32) -> Vec<String> {
+pub(super) fn axis_label(quantity: &PlotQuantity, axis: &PlotAxis, room: i32) -> Vec<String> {
     let label = quantity.label_in_powers_of_ten(axis.exponent);
     let mut lines = wrap(&label, LABEL_TEXT, room);
     lines.truncate(4);

@@ -2,11 +2,11 @@
 
 use super::colours::{BLUE, INK, SAMPLE, VERMILION};
 use super::header::{Header, Mark, sentence};
-use super::scatter_front::Front;
-use super::scatter_grid::{Grid, dots};
+use super::scatter_front::DrawnFront;
+use super::scatter_grid::{ScatterGrid, dots};
 use super::sheet::Sheet;
 use super::thinning::{DRAWN_AT_MOST, thinned};
-use super::{Goal, Objective, number};
+use super::{PlotGoal, PlotObjective, number};
 
 /// Draws a Pareto front: for two objectives one scatter plot with the staircase that bounds what is feasible, for more of them a scatter
 /// plot of every pair.
@@ -16,7 +16,7 @@ use super::{Goal, Objective, number};
 /// marked and named. Of more than 5000 points an even selection is drawn, with all extremes and
 /// the knee, and the picture says so. No points: the picture says that no design is feasible. One
 /// objective has a best value rather than a front; the picture states it.
-pub fn front(title: &str, objectives: &[Objective], points: &[Vec<f64>], knee: Option<usize>, ideal: Option<&[f64]>) -> String {
+pub fn front(title: &str, objectives: &[PlotObjective], points: &[Vec<f64>], knee: Option<usize>, ideal: Option<&[f64]>) -> String {
     front_over(title, objectives, points, knee, ideal, &[])
 }
 
@@ -24,7 +24,7 @@ pub fn front(title: &str, objectives: &[Objective], points: &[Vec<f64>], knee: O
 /// selection is drawn, and the picture says so.
 pub fn front_over(
     title: &str,
-    objectives: &[Objective],
+    objectives: &[PlotObjective],
     points: &[Vec<f64>],
     knee: Option<usize>,
     ideal: Option<&[f64]>,
@@ -41,7 +41,7 @@ pub fn front_over(
     }
     let knee = knee.and_then(|k| usable.binary_search(&k).ok());
     let drawn = thinned(&rows, knee);
-    let front = Front {
+    let front = DrawnFront {
         objectives,
         points: drawn.iter().map(|&i| rows[i]).collect(),
         knee: knee.map(|k| rows[k]),
@@ -49,7 +49,7 @@ pub fn front_over(
         sample: evenly(sample.iter().map(Vec::as_slice).filter(|p| complete(p)).collect()),
     };
     let header = Header::new(title, front.legend(rows.len(), sample.len()));
-    let grid = Grid::new(&front, header.height());
+    let grid = ScatterGrid::new(&front, header.height());
     let mut sheet = Sheet::new(grid.bottom);
     let pairs = sheet.draw(|area| {
         header.draw(area)?;
@@ -82,11 +82,11 @@ fn evenly(points: Vec<&[f64]>) -> Vec<&[f64]> {
 }
 
 /// One objective: the sentence that states its best value.
-fn best_value(objective: &Objective, rows: &[&[f64]]) -> String {
+fn best_value(objective: &PlotObjective, rows: &[&[f64]]) -> String {
     let values = rows.iter().map(|row| row[0]);
     let (best, word) = match objective.goal {
-        Goal::Min => (values.fold(f64::INFINITY, f64::min), "lowest"),
-        Goal::Max => (values.fold(f64::NEG_INFINITY, f64::max), "highest"),
+        PlotGoal::Min => (values.fold(f64::INFINITY, f64::min), "lowest"),
+        PlotGoal::Max => (values.fold(f64::NEG_INFINITY, f64::max), "highest"),
     };
     let label = objective.quantity.label();
     format!("{word} {label}: {}", number::significant(best, 6))
@@ -94,14 +94,14 @@ fn best_value(objective: &Objective, rows: &[&[f64]]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Quantity;
+    use super::super::PlotQuantity;
     use super::super::sheet::tests::assert_svg;
     use super::*;
 
-    const ALL_GOALS: [Goal; 6] = [Goal::Min, Goal::Max, Goal::Max, Goal::Min, Goal::Max, Goal::Min];
+    const ALL_GOALS: [PlotGoal; 6] = [PlotGoal::Min, PlotGoal::Max, PlotGoal::Max, PlotGoal::Min, PlotGoal::Max, PlotGoal::Min];
 
-    fn objectives(count: usize) -> Vec<Objective> {
-        let objective = |goal| Objective { quantity: Quantity::new("axial_force_N", "N"), goal };
+    fn objectives(count: usize) -> Vec<PlotObjective> {
+        let objective = |goal| PlotObjective { quantity: PlotQuantity::new("axial_force_N", "N"), goal };
         ALL_GOALS[..count].iter().copied().map(objective).collect()
     }
 
@@ -150,11 +150,11 @@ mod tests {
     #[test]
     fn endless_names_and_many_objectives_give_a_picture() {
         let mut wide = objectives(6);
-        wide[1].quantity = Quantity::new("word_".repeat(200), "x".repeat(200));
+        wide[1].quantity = PlotQuantity::new("word_".repeat(200), "x".repeat(200));
         let offset: Vec<Vec<f64>> = (0..9).map(|i| vec![1e6 + 0.01 * f64::from(i); 6]).collect();
         let svg = front(&"title ".repeat(100), &wide, &offset, None, None);
         assert_svg(&svg);
-        let many: Vec<Objective> = (0..9).flat_map(|_| objectives(6)).collect();
+        let many: Vec<PlotObjective> = (0..9).flat_map(|_| objectives(6)).collect();
         assert_svg(&front("", &many, &points(3, 54), None, None));
     }
 

@@ -1,23 +1,23 @@
 //! A Pareto front as it is drawn: its points, their ranges and labels.
 
-use super::axis::Axis;
+use super::axis::PlotAxis;
 use super::colours::{BLUE, INK, SAMPLE, VERMILION};
 use super::header::Mark;
 use super::panel::axis_label;
 use super::range::bounds;
 use super::staircase::staircase;
-use super::{Objective, number};
+use super::{PlotObjective, number};
 
 /// What is drawn, thinned already.
-pub(super) struct Front<'a> {
-    pub objectives: &'a [Objective],
+pub(super) struct DrawnFront<'a> {
+    pub objectives: &'a [PlotObjective],
     pub points: Vec<&'a [f64]>,
     pub knee: Option<&'a [f64]>,
     pub ideal: Option<&'a [f64]>,
     pub sample: Vec<&'a [f64]>,
 }
 
-impl Front<'_> {
+impl DrawnFront<'_> {
     /// Marks and words of the legend: `total` designs on the front, `sampled` ones in the sample.
     pub fn legend(&self, total: usize, sampled: usize) -> Vec<(Mark, String)> {
         let designs = if total == 1 { "design" } else { "designs" };
@@ -80,8 +80,8 @@ impl Front<'_> {
     }
 
     /// Lines of text for the axis of an objective.
-    pub fn label(&self, objective: usize, axis: &Axis, room: i32) -> Vec<String> {
-        let Objective { quantity, goal } = &self.objectives[objective];
+    pub fn label(&self, objective: usize, axis: &PlotAxis, room: i32) -> Vec<String> {
+        let PlotObjective { quantity, goal } = &self.objectives[objective];
         let mut lines = axis_label(quantity, axis, room);
         lines.push(goal.words().to_owned());
         lines

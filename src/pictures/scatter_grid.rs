@@ -1,28 +1,26 @@
 //! The panels of a Pareto front and what lies in them.
 
-use super::axis::{Axis, Numbers};
+use super::axis::{Numbers, PlotAxis};
 use super::colours::LIGHT_BLUE;
 use super::panel::{PanelPlan, x_labels_height, y_labels_width};
-use super::scatter_front::Front;
-use super::sheet::{Area, Dash, Drawn, Frame, UNIT, WIDTH, stroked};
+use super::scatter_front::DrawnFront;
+use super::sheet::{Area, Dash, Drawn, Frame, Point, UNIT, WIDTH, stroked};
 use plotters::prelude::*;
 use std::fmt::Write;
 
-type Place = (i32, i32);
-
 /// Where the data of one pair of objectives lie on the paper.
 pub(super) struct Pair {
-    pub dots: Vec<Place>,
-    pub sample: Vec<Place>,
-    pub knee: Option<Place>,
-    pub ideal: Option<Place>,
+    pub dots: Vec<Point>,
+    pub sample: Vec<Point>,
+    pub knee: Option<Point>,
+    pub ideal: Option<Point>,
 }
 
 /// The panels of a front: objective `j` across and `i` up for all `j < i`.
-pub(super) struct Grid {
+pub(super) struct ScatterGrid {
     /// One per objective; the first has no vertical axis, the last no horizontal one.
-    across: Vec<Axis>,
-    up: Vec<Axis>,
+    across: Vec<PlotAxis>,
+    up: Vec<PlotAxis>,
     /// Room that the tick labels of the vertical axes take.
     tick_room: i32,
     panel: Frame,
@@ -31,8 +29,8 @@ pub(super) struct Grid {
     pub bottom: i32,
 }
 
-impl Grid {
-    pub fn new(front: &Front<'_>, top: i32) -> Self {
+impl ScatterGrid {
+    pub fn new(front: &DrawnFront<'_>, top: i32) -> Self {
         let columns = front.objectives.len() as i32 - 1;
         let gap = if columns > 3 { 16 * UNIT } else { 24 * UNIT };
         // In a column, labels may meet those of the next column half way.
@@ -49,21 +47,21 @@ impl Grid {
             4 => 170 * UNIT,
             _ => 150 * UNIT,
         };
-        let up: Vec<Axis> = all.clone().map(|i| Axis::vertical(front.bounds(i), height, numbers)).collect();
+        let up: Vec<PlotAxis> = all.clone().map(|i| PlotAxis::vertical(front.bounds(i), height, numbers)).collect();
         let labels = |i: usize| front.label(i, &up[i], height);
-        let tick_room = up[1..].iter().map(Axis::label_width).max().unwrap_or(0);
+        let tick_room = up[1..].iter().map(PlotAxis::label_width).max().unwrap_or(0);
         let widths = (1..up.len()).map(|i| y_labels_width(tick_room, &labels(i)));
         let left = 12 * UNIT + widths.max().unwrap_or(0);
         let width = (WIDTH - left - 24 * UNIT - gap * (columns - 1)) / columns;
         let width = width.max(10 * UNIT);
-        let across: Vec<Axis> = all.map(|j| Axis::horizontal(front.bounds(j), width, overhang, numbers)).collect();
+        let across: Vec<PlotAxis> = all.map(|j| PlotAxis::horizontal(front.bounds(j), width, overhang, numbers)).collect();
         let below = (0..across.len() - 1).map(|j| x_labels_height(&front.label(j, &across[j], width))).max();
         let bottom = top + columns * height + (columns - 1) * gap + below.unwrap_or(0);
         let panel = Frame { left, top, width, height };
         Self { across, up, tick_room, panel, gap, bottom: bottom + 14 * UNIT }
     }
 
-    pub fn draw(&self, area: &Area<'_>, front: &Front<'_>) -> Drawn<Vec<Pair>> {
+    pub fn draw(&self, area: &Area<'_>, front: &DrawnFront<'_>) -> Drawn<Vec<Pair>> {
         let mut pairs = Vec::new();
         for i in 1..self.up.len() {
             for j in 0..i {
@@ -73,7 +71,7 @@ impl Grid {
         Ok(pairs)
     }
 
-    fn draw_pair(&self, area: &Area<'_>, front: &Front<'_>, i: usize, j: usize) -> Drawn<Pair> {
+    fn draw_pair(&self, area: &Area<'_>, front: &DrawnFront<'_>, i: usize, j: usize) -> Drawn<Pair> {
         let Frame { width, height, .. } = self.panel;
         let frame = Frame {
             left: self.panel.left + j as i32 * (width + self.gap),
@@ -98,7 +96,7 @@ impl Grid {
 
 /// Many dots as one path: each is a line of no length with a round end, placed relative to the
 /// one before. An element each would take ten times the room.
-pub(super) fn dots(places: &[Place], colour: RGBColor, size: i32) -> String {
+pub(super) fn dots(places: &[Point], colour: RGBColor, size: i32) -> String {
     let mut places = places.to_vec();
     places.sort_unstable();
     places.dedup();

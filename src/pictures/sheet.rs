@@ -12,6 +12,8 @@ pub(super) const UNIT: i32 = 10;
 /// Width of every picture, in units of paper.
 pub(super) const WIDTH: i32 = 900 * UNIT;
 
+/// A point on the paper, in its units.
+pub(super) type Point = (i32, i32);
 pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 pub(super) type Drawn<T = ()> = Result<T, DrawingAreaErrorKind<std::io::Error>>;
 

@@ -1,10 +1,10 @@
 //! The boundary of the values that a front of two objectives reaches.
 
-use super::Goal;
+use super::PlotGoal;
 
 /// Corners of the staircase through the best of the `points`, from the best first objective to the
 /// best second one: beyond it, no design is feasible. Dominated points do not matter.
-pub(super) fn staircase(goals: (Goal, Goal), points: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
+pub(super) fn staircase(goals: (PlotGoal, PlotGoal), points: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
     let mut order: Vec<(f64, f64)> = points.collect();
     order.sort_by(|a, b| goals.0.better_first(a.0, b.0).then(goals.1.better_first(a.1, b.1)));
     let mut corners: Vec<(f64, f64)> = Vec::new();
@@ -27,12 +27,12 @@ mod tests {
         let points = [(1.0, 5.0), (3.0, 2.0), (2.0, 4.0), (2.5, 9.0), (1.0, 7.0)];
         let corners = |first, second| staircase((first, second), points.into_iter());
         let falling = [(1.0, 5.0), (2.0, 5.0), (2.0, 4.0), (3.0, 4.0), (3.0, 2.0)];
-        assert_eq!(corners(Goal::Min, Goal::Min), falling);
+        assert_eq!(corners(PlotGoal::Min, PlotGoal::Min), falling);
         let rising = [(3.0, 2.0), (2.5, 2.0), (2.5, 9.0)];
-        assert_eq!(corners(Goal::Max, Goal::Max), rising);
-        assert_eq!(corners(Goal::Max, Goal::Min), [(3.0, 2.0)]);
+        assert_eq!(corners(PlotGoal::Max, PlotGoal::Max), rising);
+        assert_eq!(corners(PlotGoal::Max, PlotGoal::Min), [(3.0, 2.0)]);
         let mixed = [(1.0, 7.0), (2.5, 7.0), (2.5, 9.0)];
-        assert_eq!(corners(Goal::Min, Goal::Max), mixed);
-        assert!(staircase((Goal::Min, Goal::Min), std::iter::empty()).is_empty());
+        assert_eq!(corners(PlotGoal::Min, PlotGoal::Max), mixed);
+        assert!(staircase((PlotGoal::Min, PlotGoal::Min), std::iter::empty()).is_empty());
     }
 }

@@ -7,14 +7,14 @@ use std::f64::consts::PI;
 
 /// The stress of one check point around the circumference.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Curve {
+pub struct StressCurve {
     /// Position of the check point in [`CHECK_POINTS`].
     pub number: usize,
     /// Von Mises stress at every degree, both ends of the turn included, MPa.
     pub von_mises: Vec<f64>,
 }
 
-impl Curve {
+impl StressCurve {
     /// Name of the check point.
     pub fn name(&self) -> &'static str {
         CHECK_POINTS[self.number]
@@ -25,7 +25,7 @@ impl Curve {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Around {
     /// One curve per check point.
-    pub curves: Vec<Curve>,
+    pub curves: Vec<StressCurve>,
     /// Wrap angle from the slack end, degrees.
     pub wrap_deg: f64,
     /// Angles of the bolts, degrees.
@@ -38,7 +38,7 @@ impl Around {
         let view = turn.view();
         let curve = |number: usize| {
             let point = view.check_point(number)?;
-            Some(Curve { number, von_mises: turn.by_degree(point, phase) })
+            Some(StressCurve { number, von_mises: turn.by_degree(point, phase) })
         };
         let wrap_deg = turn.case().wrap * 180.0 / PI;
         Self { curves: (0..CHECK_POINTS.len()).filter_map(curve).collect(), wrap_deg, bolts_deg: bolts_deg(turn, phase) }
@@ -67,7 +67,7 @@ mod tests {
             let turn = Turn::new(View::new(&table), fixtures::case(&dimensions));
             let summary = turn.summary(None, [None; 2]);
             let around = Around::new(&turn, summary.largest.phase);
-            let names: Vec<_> = around.curves.iter().map(Curve::name).collect();
+            let names: Vec<_> = around.curves.iter().map(StressCurve::name).collect();
             for name in CHECK_POINTS {
                 assert_eq!(names.contains(&name), mesh.points.iter().any(|point| point.name == name), "{kind:?} {name}");
             }

@@ -32,7 +32,7 @@ pub(super) type Term = [[f64; CHUNK]; 2];
 /// Terms of the harmonics of a chunk of points, a list per stress; harmonics follow each other in even or odd multiples of the same.
 pub(super) type Terms = [Vec<Term>; STRESSES];
 /// Stresses of eight points at all angles.
-pub(super) type Field = Vec<[[f64; CHUNK]; STRESSES]>;
+pub(super) type ChunkStresses = Vec<[[f64; CHUNK]; STRESSES]>;
 
 /// Stresses of one point at one angle: along and around, less the normal stress, and shear.
 pub type Stress = [f64; STRESSES];
@@ -82,7 +82,7 @@ pub(super) struct Limits {
 
 /// Adds up the harmonics `step` times 0, 1, 2, ... at the angles of a quarter turn, and the others by symmetry.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-pub(super) fn synthesise(terms: &Terms, step: usize, quarter: &[Waves], field: &mut Field) {
+pub(super) fn synthesise(terms: &Terms, step: usize, quarter: &[Waves], field: &mut ChunkStresses) {
     field.resize(ANGLES, [[0.0; CHUNK]; STRESSES]);
     for place in 0..=QUARTER {
         let waves = &quarter[place].0;
@@ -136,7 +136,7 @@ fn raise(to: &mut [f64; CHUNK], values: [f64; CHUNK]) {
 }
 
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-pub(super) fn limits(belt: &Field, held: &Field) -> Limits {
+pub(super) fn limits(belt: &ChunkStresses, held: &ChunkStresses) -> Limits {
     let mut limits = Limits { belt: [0.0; CHUNK], held: [0.0; CHUNK], swing: [0.0; CHUNK] };
     let (mut low, mut high) = (belt[0], belt[0]);
     for step in 0..belt.len() {
@@ -175,7 +175,12 @@ pub(super) fn length_squared([r, z, theta]: Stress) -> f64 {
 
 /// The largest measures over the turn of what eight points have together, and where, with the held field shifted by some angles.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-pub(super) fn largest_of(belt: &Field, held: &Field, shift: usize, measure: impl Fn(Stress) -> f64) -> ([f64; CHUNK], [usize; CHUNK]) {
+pub(super) fn largest_of(
+    belt: &ChunkStresses,
+    held: &ChunkStresses,
+    shift: usize,
+    measure: impl Fn(Stress) -> f64,
+) -> ([f64; CHUNK], [usize; CHUNK]) {
     let (mut most, mut angles) = ([0.0; CHUNK], [0.0; CHUNK]);
     for step in 0..ANGLES {
         let (belt, held) = (&belt[step], &held[(step + ANGLES - shift) % ANGLES]);

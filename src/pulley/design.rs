@@ -1,13 +1,13 @@
 //! A pulley with its loads and strengths: what a solve is asked for.
 
-use super::section::{Dimensions, Fineness, Kind};
+use super::section::{Dimensions, Fineness, SectionKind};
 use super::turn::{Case, Strength};
 
 /// A pulley: its section and how it is loaded and how strong it is, in mm, N, MPa and rad.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Design {
     /// Type of the section.
-    pub kind: Kind,
+    pub kind: SectionKind,
     /// Its dimensions.
     pub dimensions: Dimensions,
     /// Poisson's ratio.

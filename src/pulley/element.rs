@@ -84,7 +84,7 @@ fn local_shapes(corners: usize, at: DVec2) -> [Shape; 8] {
 
 /// A point of integration in the section.
 #[derive(Clone, Copy, Debug)]
-pub struct Sample {
+pub struct IntegrationPoint {
     /// Shape functions there, one per node of the element.
     pub shapes: [Shape; 8],
     /// Distance from the axis, mm.
@@ -94,7 +94,7 @@ pub struct Sample {
 }
 
 /// The points of integration of an element; an area that is not positive means a mesh that folds over.
-pub fn samples<'m>(mesh: &'m Mesh, element: &'m Element) -> impl Iterator<Item = Sample> + 'm {
+pub fn samples<'m>(mesh: &'m Mesh, element: &'m Element) -> impl Iterator<Item = IntegrationPoint> + 'm {
     let points: &[Gauss] = if element.corners() == 4 { &SQUARE } else { &TRIANGLE };
     points.iter().map(|&(at, weight)| {
         let mut shapes = local_shapes(element.corners(), at);
@@ -111,7 +111,7 @@ pub fn samples<'m>(mesh: &'m Mesh, element: &'m Element) -> impl Iterator<Item =
             let own = shape.slope;
             shape.slope = DVec2::new(own.x * dr.y - own.y * dr.x, own.y * dz.x - own.x * dz.y) / jacobian;
         }
-        Sample { shapes, radius, area: jacobian * weight }
+        IntegrationPoint { shapes, radius, area: jacobian * weight }
     })
 }
 

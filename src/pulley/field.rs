@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 
 /// Displacements of all nodes of a section under unit loads, times the elastic modulus.
 #[derive(Clone, Debug)]
-pub struct Answers {
+pub struct UnitDisplacements {
     poisson: f64,
     bolts: usize,
     orders: usize,
@@ -60,7 +60,7 @@ impl Motion {
     }
 }
 
-impl Answers {
+impl UnitDisplacements {
     /// Solves a section for unit loads, in the harmonics that [`super::response::respond`] solves with this fineness.
     pub fn new(mesh: &Mesh, dimensions: &Dimensions, poisson: f64, fineness: &Fineness) -> Self {
         let bolts = dimensions.bolt_count as usize;
@@ -208,7 +208,7 @@ mod tests {
             let (mesh, table) = fixtures::solved(kind, &dimensions, &fineness);
             let turn = Turn::new(View::new(&table), fixtures::case(&dimensions));
             let reported = turn.summary(None, [None; 2]).rim_displacement;
-            let answers = Answers::new(&mesh, &dimensions, 0.29, &fineness);
+            let answers = UnitDisplacements::new(&mesh, &dimensions, 0.29, &fineness);
             let phase = turn.case().phase.unwrap();
             let rim = |step: usize| {
                 let motion = answers.motion(&turn, angle(step), phase);
@@ -226,7 +226,7 @@ mod tests {
             let (mesh, table) = fixtures::solved(kind, &dimensions, &fineness);
             let turn = Turn::new(View::new(&table), fixtures::case(&dimensions));
             let largest = turn.summary(None, [None; 2]).largest;
-            let answers = Answers::new(&mesh, &dimensions, 0.29, &fineness);
+            let answers = UnitDisplacements::new(&mesh, &dimensions, 0.29, &fineness);
             let field = answers.field(&mesh, &turn, largest.theta, largest.phase);
             assert!(field.von_mises.iter().all(|it| it.is_finite()));
             let inside = answers.inside(&mesh, &answers.motion(&turn, largest.theta, largest.phase));

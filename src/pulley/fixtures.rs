@@ -2,16 +2,16 @@
 
 use super::loads::clamp_pressure;
 use super::response::{LONGEST, respond};
-use super::section::{Dimensions, Fineness, Kind, mesh};
+use super::section::{Dimensions, Fineness, SectionKind, mesh};
 use super::turn::Case;
 use crate::models::find;
 use crate::pulley::mesh::Mesh;
 use std::f64::consts::PI;
 
 /// One section of every type: the model's presets.
-pub fn sections() -> [(Kind, Dimensions); 4] {
+pub fn sections() -> [(SectionKind, Dimensions); 4] {
     let model = find("pulley").expect("there is such a model");
-    Kind::ALL.map(|kind| {
+    SectionKind::ALL.map(|kind| {
         let inputs = model.preset(kind.name()).expect("every type has a preset");
         (kind, model.pulley_of(&inputs).expect("it is a pulley").dimensions)
     })
@@ -33,7 +33,7 @@ pub fn case(dimensions: &Dimensions) -> Case {
 }
 
 /// A section's mesh and its answers.
-pub fn solved(kind: Kind, dimensions: &Dimensions, fineness: &Fineness) -> (Mesh, Vec<f64>) {
+pub fn solved(kind: SectionKind, dimensions: &Dimensions, fineness: &Fineness) -> (Mesh, Vec<f64>) {
     let mesh = mesh(kind, dimensions, fineness).expect("the section is possible");
     let mut table = vec![0.0; LONGEST];
     let length = respond(&mesh, kind, dimensions, 0.29, fineness, &mut table);

@@ -3,7 +3,7 @@
 //! The belt presses over the wrap, from its slack end at theta = 0, with `exp(mu' theta)`; bolt heads press on annuli of their own.
 
 use super::element::samples;
-use super::mesh::{Edge, Face, Mesh};
+use super::mesh::{Face, Mesh, MeshEdge};
 use super::section::Dimensions;
 use crate::real::Real;
 use glam::DVec2;
@@ -156,7 +156,7 @@ impl Seat {
     pub fn new(mesh: &Mesh, d: &Dimensions) -> Self {
         let inner = d.bolt_circle_radius - d.bolt_head_radius;
         let outer = d.bolt_circle_radius + d.bolt_head_radius;
-        let near = |edge: &&Edge| {
+        let near = |edge: &&MeshEdge| {
             let [start, _, end] = mesh.edge(edge);
             edge.face == Face::Seat && start.y.max(end.y) > inner && start.y.min(end.y) < outer
         };

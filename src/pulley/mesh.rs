@@ -49,7 +49,7 @@ pub enum Face {
 
 /// A piece of the surface: one side of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Edge {
+pub struct MeshEdge {
     /// Start, middle and end; walking from start to end, with z to the right and r up, the material lies on the right.
     pub nodes: [u32; 3],
     /// What it is.
@@ -73,7 +73,7 @@ pub struct Mesh {
     /// Elements.
     pub elements: Vec<Element>,
     /// The surface on which stress is recovered.
-    pub surface: Vec<Edge>,
+    pub surface: Vec<MeshEdge>,
     /// Check points.
     pub points: Vec<CheckPoint>,
     /// The node whose displacement is the rim's.
@@ -85,7 +85,7 @@ pub struct Mesh {
 
 impl Mesh {
     /// The points of an edge.
-    pub fn edge(&self, edge: &Edge) -> [DVec2; 3] {
+    pub fn edge(&self, edge: &MeshEdge) -> [DVec2; 3] {
         edge.nodes.map(|node| self.nodes[node as usize])
     }
 

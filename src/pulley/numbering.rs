@@ -1,6 +1,6 @@
 //! Numbers the nodes of a mesh so that the equations have a narrow band: reverse Cuthill-McKee.
 
-use super::mesh::{Edge, Element, Mesh};
+use super::mesh::{Element, Mesh, MeshEdge};
 use glam::DVec2;
 use std::collections::VecDeque;
 
@@ -38,7 +38,7 @@ pub fn renumbered(mesh: Mesh) -> Mesh {
     Mesh {
         nodes: order.iter().rev().map(|&node| mesh.nodes[node as usize]).collect(),
         elements: mesh.elements.iter().map(element).collect(),
-        surface: mesh.surface.iter().map(|edge| Edge { nodes: edge.nodes.map(of), ..*edge }).collect(),
+        surface: mesh.surface.iter().map(|edge| MeshEdge { nodes: edge.nodes.map(of), ..*edge }).collect(),
         points: mesh.points.iter().map(|point| super::mesh::CheckPoint { node: of(point.node), ..*point }).collect(),
         rim: of(mesh.rim),
         singular: mesh.singular.clone(),

@@ -11,7 +11,7 @@
 use super::band::{WIDTH, Wide};
 use super::equations::Displacements;
 use super::loads::EdgePoint;
-use super::mesh::{Edge, Face, Mesh};
+use super::mesh::{Face, Mesh, MeshEdge};
 use glam::DVec2;
 
 /// Stresses kept of a surface point: along the section and around, both less the normal stress, and the shear between them.
@@ -90,7 +90,7 @@ pub fn points_of_edges(mesh: &Mesh) -> Vec<[usize; 3]> {
     surface_points(mesh).1
 }
 
-fn add_stencils(stencils: &mut Vec<Stencil>, mesh: &Mesh, edge: &Edge, local: f64, share: f64) {
+fn add_stencils(stencils: &mut Vec<Stencil>, mesh: &Mesh, edge: &MeshEdge, local: f64, share: f64) {
     const GAUSS: f64 = 0.577_350_269_189_625_8;
     for side in [-1.0, 1.0] {
         let weight = share * 0.5 * (1.0 + side * local / GAUSS);

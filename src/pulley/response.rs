@@ -12,7 +12,7 @@ use super::loads::{Seat, belt_patterns, spin};
 use super::mesh::Mesh;
 pub use super::recovery::{STRESSES, points_of_edges};
 use super::recovery::{SurfacePoint, surface_points};
-use super::section::{Dimensions, Fineness, Kind};
+use super::section::{Dimensions, Fineness, SectionKind};
 use super::spline;
 use std::f64::consts::PI;
 
@@ -47,7 +47,7 @@ fn padded(points: usize) -> usize {
 
 /// Sizes of a flat table.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Sizes {
+struct TableSizes {
     /// Points, padded.
     padded: usize,
     /// Harmonics, the zeroth included.
@@ -56,7 +56,7 @@ struct Sizes {
     clamps: usize,
 }
 
-impl Sizes {
+impl TableSizes {
     const PLACES: usize = 4;
 
     fn places(&self) -> usize {
@@ -79,14 +79,14 @@ impl Sizes {
 /// Longest flat table.
 pub const LONGEST: usize = {
     let (padded, orders) = (super::section::SURFACE_POINTS + NAMED + CHUNK, Fineness::FINE.harmonics + 1);
-    Head::End as usize + padded * (Sizes::PLACES + STRESSES * (BELT * orders + orders + 1))
+    Head::End as usize + padded * (TableSizes::PLACES + STRESSES * (BELT * orders + orders + 1))
 };
 
 /// A section's answers in a flat table.
 #[derive(Clone, Copy, Debug)]
 pub struct View<'t> {
     table: &'t [f64],
-    sizes: Sizes,
+    sizes: TableSizes,
 }
 
 impl<'t> View<'t> {
@@ -95,7 +95,7 @@ impl<'t> View<'t> {
         let orders = table[Head::Orders as usize] as usize;
         let bolts = table[Head::Bolts as usize] as usize;
         let padded = padded(table[Head::Points as usize] as usize);
-        Self { table, sizes: Sizes { padded, orders, clamps: (orders - 1) / bolts + 1 } }
+        Self { table, sizes: TableSizes { padded, orders, clamps: (orders - 1) / bolts + 1 } }
     }
 
     /// Numbers in the table.
@@ -225,11 +225,11 @@ pub fn folds_over(mesh: &Mesh) -> bool {
 
 /// Solves a section for unit loads and writes what load cases need into `table`, which has room for [`LONGEST`] numbers.
 /// Returns how many were written.
-pub fn respond(mesh: &Mesh, kind: Kind, dimensions: &Dimensions, poisson: f64, fineness: &Fineness, table: &mut [f64]) -> usize {
+pub fn respond(mesh: &Mesh, kind: SectionKind, dimensions: &Dimensions, poisson: f64, fineness: &Fineness, table: &mut [f64]) -> usize {
     let (points, _) = surface_points(mesh);
     let bolts = dimensions.bolt_count as usize;
     let orders = fineness.harmonics + 1;
-    let sizes = Sizes { padded: padded(points.len()), orders, clamps: (orders - 1) / bolts + 1 };
+    let sizes = TableSizes { padded: padded(points.len()), orders, clamps: (orders - 1) / bolts + 1 };
     let named = sizes.padded - NAMED;
     let table = &mut table[..sizes.length()];
     table.fill(0.0);
@@ -288,12 +288,13 @@ pub fn respond(mesh: &Mesh, kind: Kind, dimensions: &Dimensions, poisson: f64, f
 /// Bytes of the table that [`respond`] writes, and those that it needs meanwhile.
 pub fn bytes(mesh: &Mesh, dimensions: &Dimensions, fineness: &Fineness) -> (u64, u64) {
     let orders = fineness.harmonics + 1;
-    let sizes = Sizes { padded: padded(surface_points(mesh).0.len()), orders, clamps: (orders - 1) / dimensions.bolt_count as usize + 1 };
+    let sizes =
+        TableSizes { padded: padded(surface_points(mesh).0.len()), orders, clamps: (orders - 1) / dimensions.bolt_count as usize + 1 };
     (8 * sizes.length() as u64, super::equations::bytes(mesh))
 }
 
 /// Where the stresses of all points under a unit load in a harmonic stand, if they are kept.
-fn row_of(sizes: &Sizes, order: usize, side: usize, bolts: usize) -> Option<usize> {
+fn row_of(sizes: &TableSizes, order: usize, side: usize, bolts: usize) -> Option<usize> {
     match side {
         CLAMP_SIDE => order.is_multiple_of(bolts).then(|| sizes.clamp() + order / bolts * STRESSES * sizes.padded),
         SPIN_SIDE => (order == 0).then(|| sizes.spin()),

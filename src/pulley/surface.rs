@@ -1,6 +1,6 @@
 //! The surface of a section as lines with arc lengths, for the pictures of the unrolled surface.
 
-use super::mesh::{Edge, Mesh};
+use super::mesh::{Mesh, MeshEdge};
 use super::response::points_of_edges;
 
 /// A stretch of the surface.
@@ -34,9 +34,9 @@ pub fn stretches(mesh: &Mesh) -> Vec<Stretch> {
     let points = points_of_edges(mesh);
     // Walking with the material on the right goes from the bore out along the left side and back along the right one.
     let mut chains: Vec<Vec<usize>> = Vec::new();
-    let starts_at = |edge: &Edge, node: u32| edge.nodes[0] == node;
+    let starts_at = |edge: &MeshEdge, node: u32| edge.nodes[0] == node;
     let parts = |node: u32| node == mesh.rim || mesh.nodes[node as usize].y <= bore(mesh) + 1e-9;
-    let has_before = |edge: &Edge| mesh.surface.iter().any(|other| other.nodes[2] == edge.nodes[0]);
+    let has_before = |edge: &MeshEdge| mesh.surface.iter().any(|other| other.nodes[2] == edge.nodes[0]);
     for (first, edge) in mesh.surface.iter().enumerate().filter(|(_, edge)| !has_before(edge) || parts(edge.nodes[0])) {
         let mut chain = vec![first];
         let mut end = edge.nodes[2];
@@ -111,7 +111,7 @@ mod tests {
             let mesh = mesh(kind, &dimensions, &Fineness::USUAL).unwrap();
             let stretches = stretches(&mesh);
             let names: Vec<_> = stretches.iter().map(|stretch| stretch.name).collect();
-            let discs = kind == crate::pulley::section::Kind::WeldedDiscs;
+            let discs = kind == crate::pulley::section::SectionKind::WeldedDiscs;
             assert_eq!(names, if discs { vec!["left side", "groove", "right side"] } else { vec!["left side", "right side"] });
             for stretch in &stretches {
                 assert!(stretch.arc.windows(2).all(|pair| pair[0] <= pair[1]), "{kind:?}");

@@ -7,7 +7,7 @@
 
 #![allow(clippy::needless_range_loop, reason = "loops over lanes, of constant length, are what the compiler makes vectors of")]
 
-use super::chunk::{Field, QUARTER, Term, Terms, Waves, farthest, largest_of, length_squared, limits, synthesise};
+use super::chunk::{ChunkStresses, QUARTER, Term, Terms, Waves, farthest, largest_of, length_squared, limits, synthesise};
 use super::loads::{Complex, belt_harmonic};
 use super::response::{BELT, CHECK_POINTS, CHUNK, NAMED, RIM, STRESSES, View};
 use std::f64::consts::PI;
@@ -61,8 +61,8 @@ struct Shares {
 #[derive(Clone, Debug, Default)]
 struct TurnRoom {
     terms: Terms,
-    belt: Field,
-    held: Field,
+    belt: ChunkStresses,
+    held: ChunkStresses,
 }
 
 /// A load case on a section.
@@ -155,7 +155,7 @@ impl<'t> Turn<'t> {
     }
 
     /// All results of a load case. `own` are surface points that the user asks for.
-    pub fn summary(&self, fatigue: Option<Strength>, own: [Option<usize>; 2]) -> Summary {
+    pub fn summary(&self, fatigue: Option<Strength>, own: [Option<usize>; 2]) -> CaseSummary {
         let view = &self.view;
         let mut room = TurnRoom::default();
         let phases = self.phases();
@@ -190,7 +190,7 @@ impl<'t> Turn<'t> {
         let named = self.named(&phases, &mut room);
         let check_points =
             std::array::from_fn(|number| view.check_point(number).map(|point| Peak { point, ..self.refined(named.0[number]) }));
-        Summary {
+        CaseSummary {
             largest,
             check_points,
             own_points: own.map(|point| point.map(|point| self.peak(point, &phases, &mut room))),
@@ -369,7 +369,7 @@ pub struct Fatigue {
 
 /// The results of a load case.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Summary {
+pub struct CaseSummary {
     /// The largest stress outside the excluded radius.
     pub largest: Peak,
     /// The check points in their order, where the section has them.
@@ -418,7 +418,7 @@ impl Turn<'_> {
 }
 
 /// The two angles at which the stresses of one point differ most: half the von Mises stress of the difference, and their numbers.
-fn widest(field: &Field, lane: usize) -> (f64, usize, usize) {
+fn widest(field: &ChunkStresses, lane: usize) -> (f64, usize, usize) {
     let history: [[f64; ANGLES]; STRESSES] = [0, 1, 2].map(|stress| std::array::from_fn(|step| field[step][stress][lane]));
     let (square, a, b) = farthest(&history);
     (0.5 * square.sqrt(), a, b)

@@ -24,7 +24,7 @@ const MOST_SCENARIOS: usize = 20_000;
 const NOWHERE: u32 = u32::MAX;
 
 /// The part of the front that is shown.
-pub struct Front {
+pub struct ShownFront {
     /// Their indices.
     pub designs: Vec<u64>,
     /// Position in `json["columns"]` of what each of the study's objectives and constraints is about.
@@ -52,7 +52,7 @@ struct Shown {
 ///
 /// # Errors
 /// As [`super::of_result`], if the table is missing or contradicts the study.
-pub fn read(file: &Path, all: usize, plan: &Plan, threads: usize, patience: Duration, control: &Control) -> Result<Front> {
+pub fn read(file: &Path, all: usize, plan: &Plan, threads: usize, patience: Duration, control: &Control) -> Result<ShownFront> {
     let study = &plan.study;
     let columns = certify::columns(study);
     let taken = all.min(MOST_ON_PAGE);
@@ -111,7 +111,7 @@ pub fn read(file: &Path, all: usize, plan: &Plan, threads: usize, patience: Dura
         own.or_else(|| position(study.constraints[number].quantity))
     };
     let scenarios = shown.iter().filter_map(|it| it.scenarios.as_ref()).flatten().filter(|&&it| it != NOWHERE);
-    Ok(Front {
+    Ok(ShownFront {
         designs,
         objectives: study.objectives.iter().filter_map(|it| position(it.quantity)).collect(),
         constraints: (0..study.constraints.len()).filter_map(of_constraint).collect(),

@@ -148,7 +148,7 @@ pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
 }
 
 /// The row of the knee, found by its design.
-fn with_knee(front: &front::Front, summary: &Value) -> Value {
+fn with_knee(front: &front::ShownFront, summary: &Value) -> Value {
     let knee = summary["knee"]["design_index"].as_u64();
     let mut json = front.json.clone();
     json["knee"] = knee.and_then(|knee| front.designs.iter().position(|&it| it == knee)).into();

@@ -14,7 +14,7 @@ const TABLE: u64 = 1 << 15;
 pub(super) type Setting = Vec<(usize, f64, f64)>;
 
 /// Values of the designs of a block, by input number.
-type Inputs = Vec<(usize, Vec<f64>)>;
+type InputColumns = Vec<(usize, Vec<f64>)>;
 
 /// The inputs of the designs of one block that the fast axes set.
 #[derive(Debug)]
@@ -22,9 +22,9 @@ pub(super) struct FastBlock {
     pub(super) count: usize,
     pub(super) offsets: Vec<u64>,
     /// By input number, in SI units.
-    pub(super) si: Inputs,
+    pub(super) si: InputColumns,
     /// By input number, in the input's unit, where the plan tracks or constrains the input itself.
-    pub(super) own: Inputs,
+    pub(super) own: InputColumns,
 }
 
 /// What all threads of an engine share: made once per plan.
@@ -66,7 +66,7 @@ impl FastBlock {
     pub(super) fn new(plan: &Plan, designs: impl Iterator<Item = u64>) -> Self {
         let model = &plan.study.model;
         let set = plan.fast.inputs();
-        let mut columns: Inputs =
+        let mut columns: InputColumns =
             (0..model.inputs.len()).filter(|&input| set.contains(input)).map(|input| (input, Vec::with_capacity(BLOCK))).collect();
         let mut inputs = vec![0.0; model.inputs.len()];
         let mut offsets = Vec::with_capacity(BLOCK);
@@ -93,7 +93,7 @@ impl FastBlock {
     pub(super) fn picked(plan: &Plan, tables: &Tables, designs: &[u64]) -> Self {
         let Some(first) = tables.blocks.first() else { return Self::new(plan, designs.iter().copied()) };
         let room = designs.len().next_multiple_of(LANES);
-        let columns = |of: fn(&Self) -> &Inputs| -> Inputs {
+        let columns = |of: fn(&Self) -> &InputColumns| -> InputColumns {
             let column = |number: usize| {
                 let at = |&design: &u64| of(&tables.blocks[design as usize / BLOCK])[number].1[design as usize % BLOCK];
                 let mut column = Vec::with_capacity(room);

@@ -21,9 +21,9 @@ const MOST_CELLS_IN_ALL: u64 = 2 * MOST_CELLS;
 /// Most values of a quantity at which a map has lines.
 pub(super) const MOST_THRESHOLDS: usize = 1000;
 
-type Checked = Result<(), String>;
+type CheckResult = Result<(), String>;
 
-fn require(good: bool, problem: impl FnOnce() -> String) -> Checked {
+fn require(good: bool, problem: impl FnOnce() -> String) -> CheckResult {
     if good { Ok(()) } else { Err(problem()) }
 }
 
@@ -74,7 +74,7 @@ impl Study {
     }
 
     /// Can designs and scenarios be numbered?
-    fn check_sizes(&self) -> Checked {
+    fn check_sizes(&self) -> CheckResult {
         let product = |axes: &mut dyn Iterator<Item = &Axis>| axes.map(Axis::count).try_fold(1, u64::checked_mul);
         match self.sample {
             Some(Sample { count, .. }) => {
@@ -97,7 +97,7 @@ impl Study {
     }
 
     /// Is this a quantity of the model whose values are all numbers?
-    fn check_quantity(&self, quantity: Quantity) -> Checked {
+    fn check_quantity(&self, quantity: Quantity) -> CheckResult {
         let model = &self.model;
         let number = match quantity {
             Quantity::Input(number) => number,
@@ -118,7 +118,7 @@ impl Study {
         require(!words, || format!("\"{}\" takes words, which have no order", input.name))
     }
 
-    fn check_report(&self, report: &Report) -> Checked {
+    fn check_report(&self, report: &Report) -> CheckResult {
         let mut seen = HashSet::new();
         for &column in &report.columns {
             self.check_quantity(column)?;
@@ -182,7 +182,7 @@ impl Study {
     }
 
     /// Contours need a plane: two axes of numbers in order, and no other design axis.
-    fn check_contours(&self, map: &MapSpec, contours: &ContourSpec) -> Checked {
+    fn check_contours(&self, map: &MapSpec, contours: &ContourSpec) -> CheckResult {
         self.check_quantity(contours.of)?;
         let varies = |(at, axis): (usize, &Axis)| ![map.x, map.y].contains(&at) && axis.count() > 1;
         require(!self.design.iter().enumerate().any(varies), || "the map's axes must be the only design axes".to_owned())?;
@@ -202,7 +202,7 @@ impl Study {
 }
 
 /// An axis must set inputs that no other axis sets, to values that they accept.
-fn check_axis(model: &Model, axis: &Axis, taken: &mut HashSet<usize>) -> Checked {
+fn check_axis(model: &Model, axis: &Axis, taken: &mut HashSet<usize>) -> CheckResult {
     for &input in axis.inputs() {
         require(input < model.inputs.len(), || format!("{} has no input number {input}", model.name))?;
         require(taken.insert(input), || format!("\"{}\" is set twice", model.inputs[input].name))?;
@@ -238,7 +238,7 @@ fn check_axis(model: &Model, axis: &Axis, taken: &mut HashSet<usize>) -> Checked
 }
 
 /// The bounds must allow some value.
-fn check_bounds(constraint: &Constraint) -> Checked {
+fn check_bounds(constraint: &Constraint) -> CheckResult {
     let Constraint { low, high, .. } = *constraint;
     require(low.is_some() || high.is_some(), || "there are no bounds".to_owned())?;
     require(low.iter().chain(&high).all(|(bound, _)| bound.is_finite()), || "a bound is not finite".to_owned())?;

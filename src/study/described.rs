@@ -8,7 +8,7 @@ use crate::models::{Model, Models};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-type Found<T> = Result<T, String>;
+type Restored<T> = Result<T, String>;
 
 impl Study {
     /// Restores the study of a description, such as a result's `study.json`. Described again it gives the same description.
@@ -28,7 +28,7 @@ impl Study {
     pub fn from_description_with(models: &Models, described: &Value) -> Result<Self, String> {
         let name = text(described, "model")?;
         let model = models.find(name).ok_or_else(|| format!("there is no model \"{name}\""))?;
-        let axes = |role: &str| list(described, role)?.iter().map(|axis| axis_of(&model, axis)).collect::<Found<Vec<_>>>();
+        let axes = |role: &str| list(described, role)?.iter().map(|axis| axis_of(&model, axis)).collect::<Restored<Vec<_>>>();
         let mut fixed = model.defaults();
         for (name, value) in described["fixed"].as_object().ok_or("\"fixed\" is missing")? {
             let input = input_of(&model, name)?;
@@ -63,7 +63,7 @@ impl Study {
     }
 }
 
-fn report_of(study: &Study, described: &Value) -> Found<Report> {
+fn report_of(study: &Study, described: &Value) -> Restored<Report> {
     let model = &study.model;
     let top = match &described["top"] {
         Value::Null => None,
@@ -90,7 +90,7 @@ fn report_of(study: &Study, described: &Value) -> Found<Report> {
     })
 }
 
-fn map_of(study: &Study, map: &Value) -> Found<MapSpec> {
+fn map_of(study: &Study, map: &Value) -> Restored<MapSpec> {
     let model = &study.model;
     let axis = |key: &str| {
         let input = input_of(model, text(map, key)?)?;
@@ -105,29 +105,29 @@ fn map_of(study: &Study, map: &Value) -> Found<MapSpec> {
     };
     let contours = map["contours"].as_array().map_or(&[][..], Vec::as_slice).iter().map(|it| {
         let at = match &it["at"] {
-            Value::Array(values) => Thresholds::At(values.iter().map(number_of).collect::<Found<_>>()?),
+            Value::Array(values) => Thresholds::At(values.iter().map(number_of).collect::<Restored<_>>()?),
             _ => Thresholds::Changes,
         };
         Ok(ContourSpec { of: quantity_of(model, &it["of"])?, at })
     });
-    Ok(MapSpec { x: axis("x")?, y: axis("y")?, value, contours: contours.collect::<Found<_>>()? })
+    Ok(MapSpec { x: axis("x")?, y: axis("y")?, value, contours: contours.collect::<Restored<_>>()? })
 }
 
-fn axis_of(model: &Model, axis: &Value) -> Found<Axis> {
+fn axis_of(model: &Model, axis: &Value) -> Restored<Axis> {
     if let Some(names) = axis["inputs"].as_array() {
-        let inputs = names.iter().map(|name| input_of(model, name.as_str().unwrap_or_default())).collect::<Found<Vec<_>>>()?;
-        let row = |row: &Value| -> Found<Vec<f64>> {
+        let inputs = names.iter().map(|name| input_of(model, name.as_str().unwrap_or_default())).collect::<Restored<Vec<_>>>()?;
+        let row = |row: &Value| -> Restored<Vec<f64>> {
             let values = row.as_array().filter(|values| values.len() == inputs.len()).ok_or("a row has another length than its inputs")?;
             inputs.iter().zip(values).map(|(&input, value)| value_of(model, input, value)).collect()
         };
-        return Ok(Axis::Joint { rows: list(axis, "rows")?.iter().map(row).collect::<Found<_>>()?, inputs });
+        return Ok(Axis::Joint { rows: list(axis, "rows")?.iter().map(row).collect::<Restored<_>>()?, inputs });
     }
     let input = input_of(model, text(axis, "input")?)?;
     let log = axis["spacing"] == "log";
     let number = |key: &str| number_of(&axis[key]);
     let has = |key: &str| !axis[key].is_null();
     let levels = match axis["values"].as_array() {
-        Some(values) => Levels::List(values.iter().map(|value| value_of(model, input, value)).collect::<Found<_>>()?),
+        Some(values) => Levels::List(values.iter().map(|value| value_of(model, input, value)).collect::<Restored<_>>()?),
         None if has("step") => Levels::Step { from: number("from")?, step: number("step")?, count: plain(&axis["count"], "count")?, log },
         None if has("count") => Levels::Even { from: number("from")?, to: number("to")?, count: plain(&axis["count"], "count")?, log },
         None => Levels::Continuous { from: number("from")?, to: number("to")?, log },
@@ -135,7 +135,7 @@ fn axis_of(model: &Model, axis: &Value) -> Found<Axis> {
     Ok(Axis::Single { input, levels })
 }
 
-fn constraint_of(model: &Model, constraint: &Value) -> Found<Constraint> {
+fn constraint_of(model: &Model, constraint: &Value) -> Restored<Constraint> {
     let bound = |inclusive: &str, exclusive: &str| match (&constraint[inclusive], &constraint[exclusive]) {
         (Value::Null, Value::Null) => Ok(None),
         (Value::Null, excluded) => number_of(excluded).map(|bound| Some((bound, true))),
@@ -144,18 +144,18 @@ fn constraint_of(model: &Model, constraint: &Value) -> Found<Constraint> {
     Ok(Constraint { quantity: quantity_of(model, &constraint["of"])?, low: bound("min", "above")?, high: bound("max", "below")? })
 }
 
-fn quantity_of(model: &Model, name: &Value) -> Found<Quantity> {
+fn quantity_of(model: &Model, name: &Value) -> Restored<Quantity> {
     let name = name.as_str().ok_or("a quantity has no name")?;
     let input = model.input(name).map(Quantity::Input);
     input.or_else(|| model.output(name).map(Quantity::Output)).ok_or_else(|| format!("{} has no \"{name}\"", model.name))
 }
 
-fn input_of(model: &Model, name: &str) -> Found<usize> {
+fn input_of(model: &Model, name: &str) -> Restored<usize> {
     model.input(name).ok_or_else(|| format!("{} has no input \"{name}\"", model.name))
 }
 
 /// A number, or the word of an input.
-fn value_of(model: &Model, input: usize, value: &Value) -> Found<f64> {
+fn value_of(model: &Model, input: usize, value: &Value) -> Restored<f64> {
     let table = &model.inputs[input];
     match value.as_str() {
         None => number_of(value),
@@ -163,24 +163,24 @@ fn value_of(model: &Model, input: usize, value: &Value) -> Found<f64> {
     }
 }
 
-fn number_of(value: &Value) -> Found<f64> {
+fn number_of(value: &Value) -> Restored<f64> {
     value.as_f64().ok_or_else(|| format!("{value} is no number"))
 }
 
-fn text<'v>(object: &'v Value, key: &str) -> Found<&'v str> {
+fn text<'v>(object: &'v Value, key: &str) -> Restored<&'v str> {
     object[key].as_str().ok_or_else(|| format!("\"{key}\" is missing"))
 }
 
-fn list<'v>(object: &'v Value, key: &str) -> Found<&'v [Value]> {
+fn list<'v>(object: &'v Value, key: &str) -> Restored<&'v [Value]> {
     object[key].as_array().map(Vec::as_slice).ok_or_else(|| format!("\"{key}\" is missing"))
 }
 
-fn each<T>(object: &Value, key: &str, read: impl Fn(&Value) -> Found<T>) -> Found<Vec<T>> {
+fn each<T>(object: &Value, key: &str, read: impl Fn(&Value) -> Restored<T>) -> Restored<Vec<T>> {
     list(object, key)?.iter().map(read).collect()
 }
 
 /// What serde reads as it stands.
-fn plain<T: DeserializeOwned>(value: &Value, key: &str) -> Found<T> {
+fn plain<T: DeserializeOwned>(value: &Value, key: &str) -> Restored<T> {
     T::deserialize(value).map_err(|error| format!("{key}: {error}"))
 }
 

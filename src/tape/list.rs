@@ -1,6 +1,6 @@
 //! A recorded formula cut down to what is asked for, run over any number type.
 
-use super::{Binary, ListLoop, Node, Operation, Recording, Rolled, RolledLoop, Root, Table};
+use super::{Binary, FormulaTable, ListLoop, Node, Operation, Recording, Rolled, RolledLoop, Root};
 use crate::real::Real;
 use std::cell::RefCell;
 use std::ops::BitOrAssign;
@@ -18,7 +18,7 @@ pub struct List {
     /// The loops that are recorded once, and the tables that they write.
     pub loops: Vec<ListLoop>,
     /// By number.
-    pub tables: Vec<Table>,
+    pub tables: Vec<FormulaTable>,
     /// Of every operation: is it part of a root's function or a loop's body, so that it has a value only while these run?
     pub inner: Vec<bool>,
     /// Of every operation: what the formula calls it.

@@ -25,7 +25,7 @@ pub use error_bound::{RunningError, nearest_f32};
 pub use interval::{EVERYTHING, Interval};
 pub use list::{List, ListRoot};
 pub use record::{Known, Loops, Recording, Trace};
-pub use rolled::{ListLoop, Rolled, RolledLoop, Store, Table};
+pub use rolled::{FormulaTable, ListLoop, Rolled, RolledLoop, Store};
 pub use set::Set;
 pub use stages::{Fields, First, Recordable, Second, Whole};
 

@@ -1,6 +1,6 @@
 //! Recording: a formula runs on names of numbers, and every operation that it asks for is written down.
 
-use super::{Binary, Fields, Node, Operation, Rolled, RolledLoop, Root, Store, Table, Unary};
+use super::{Binary, Fields, FormulaTable, Node, Operation, Rolled, RolledLoop, Root, Store, Unary};
 use crate::real::{Loop, Place, Real, bracketed_newton, chosen_at};
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -39,7 +39,7 @@ pub struct Recording {
     /// The loops that are recorded once; none where every iteration is.
     pub loops: Vec<RolledLoop>,
     /// The tables that these write.
-    pub tables: Vec<Table>,
+    pub tables: Vec<FormulaTable>,
     /// Are loops recorded once?
     rolls: bool,
     known: HashMap<Operation, Node>,
@@ -145,7 +145,7 @@ fn new_table(name: &'static str, length: usize, fill: Trace) -> Option<Trace> {
             let table = u8::try_from(recorder.tables.len()).expect("a formula has few tables");
             // Two tables that begin alike are two: their numbers differ.
             let version = recorder.push(Operation::Rolled(Rolled::Table(table, fill.0)));
-            recorder.tables.push(Table { name, length, version });
+            recorder.tables.push(FormulaTable { name, length, version });
             Trace(version)
         })
     })

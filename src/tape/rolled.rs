@@ -31,7 +31,7 @@ pub enum Rolled {
 
 /// A table of the formula.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Table {
+pub struct FormulaTable {
     /// What it is called, unless it is passed on to the second stage.
     pub name: &'static str,
     /// How many numbers it has.

@@ -139,11 +139,11 @@ pub fn command_line() -> String {
 
 /// Text in columns, each as wide as its widest cell; the last one is not padded.
 #[derive(Debug, Default)]
-pub struct Grid {
+pub struct TextGrid {
     rows: Vec<Vec<String>>,
 }
 
-impl Grid {
+impl TextGrid {
     /// Adds a row.
     pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
         self.rows.push(cells.into_iter().collect());
@@ -206,11 +206,11 @@ mod tests {
 
     #[test]
     fn a_grid_lines_up() {
-        let mut grid = Grid::default();
+        let mut grid = TextGrid::default();
         grid.row(["a", "10", "x"].map(str::to_owned));
         grid.row(["bbb", "5", "y"].map(str::to_owned));
         assert_eq!(grid.indented(1), " a    10  x\n bbb   5  y\n");
-        let mut mixed = Grid::default();
+        let mut mixed = TextGrid::default();
         mixed.row(["what", "12 345"].map(str::to_owned));
         mixed.row(["time", "about 3 s"].map(str::to_owned));
         assert_eq!(mixed.indented(0), "what  12 345\ntime  about 3 s\n");

@@ -1,6 +1,6 @@
 //! The summary of a sweep on the terminal.
 
-use super::{Grid, bold, dim, grouped, scaled, short, span, width};
+use super::{TextGrid, bold, dim, grouped, scaled, short, span, width};
 use beltspace::certify::Row;
 use beltspace::export::{Certified, RunRecord, Summary};
 use beltspace::models::OVERFLOW;
@@ -18,7 +18,7 @@ pub fn summary(outcome: &Certified<'_>, record: &RunRecord, out: &Path, page: Op
     let study = &plan.study;
     let feasible = outcome.state.feasible;
     let share = 100.0 * feasible as f64 / plan.designs() as f64;
-    let mut facts = Grid::default();
+    let mut facts = TextGrid::default();
     let mut fact = |what: &str, value: String| facts.row([bold(what), value]);
     let (designs, time, rate) = (grouped(plan.designs()), span(record.time.as_secs_f64()), record.rate());
     fact(
@@ -102,7 +102,7 @@ fn limits(outcome: &Certified<'_>) -> String {
         return String::new();
     }
     let percent = |count: u64| format!("{:.1} %", 100.0 * count as f64 / tally.sampled as f64);
-    let mut grid = Grid::default();
+    let mut grid = TextGrid::default();
     for (count, only, reason) in reasons {
         let alone = if only > 0 { dim(&format!("(alone: {})", percent(only))) } else { String::new() };
         grid.row([reason, format!("fails {}", percent(count)), alone]);
@@ -123,7 +123,7 @@ fn front(outcome: &Certified<'_>) -> String {
     let columns = outcome.objective_columns();
     let goals =
         study.objectives.iter().map(|it| format!("{} ({})", it.quantity.name(model), if it.goal == Goal::Min { "min" } else { "max" }));
-    let mut grid = Grid::default();
+    let mut grid = TextGrid::default();
     grid.row(std::iter::once(String::new()).chain(goals.chain(["design".to_owned()]).map(|head| bold(&head))));
     if let Some(ideal) = &summary.ideal {
         grid.row(std::iter::once("ideal".to_owned()).chain(ideal.iter().map(|&value| short(value))));

@@ -1,16 +1,16 @@
 //! The pulley as a three-dimensional model for CalculiX: its loads, and its solution compared with the harmonics.
 
 use crate::pulleys::{COARSE, calculix, job, shown, solved};
-use beltspace::pulley::calculix::{Comparison, Forces, Job, Results, Sweep, closed_form, compare, export, write_deck};
+use beltspace::pulley::calculix::{ComparedQuantity, Forces, Job, Results, Sweep, closed_form, compare, export, write_deck};
 use beltspace::pulley::loads::{Seat, clamp_harmonic};
 use beltspace::pulley::mesh::{Face, Mesh};
-use beltspace::pulley::section::{Fineness, Kind, mesh};
+use beltspace::pulley::section::{Fineness, SectionKind, mesh};
 use beltspace::pulley::turn::Case;
 use glam::DVec3;
 use std::collections::HashMap;
 
 fn coarse() -> Job {
-    job(Kind::PressedCup, COARSE, 50)
+    job(SectionKind::PressedCup, COARSE, 50)
 }
 
 fn mesh_of(job: &Job) -> Mesh {
@@ -64,7 +64,7 @@ fn the_forces_of_the_deck_add_up_to_the_pull_of_the_strands_the_torque_and_the_b
     // The belt pulls in the groove's mid-plane, and the bolts do not tilt.
     let plane = 10.0 + 3.4 + 3.4 * 18f64.to_radians().cos() + 6.5;
     assert!(near(moment.x, plane * 632.2963, 0.02) && near(moment.y, -plane * 819.5717, 0.02), "{moment}");
-    for kind in [Kind::Machined, Kind::WeldedDiscs, Kind::DoubleGroove] {
+    for kind in [SectionKind::Machined, SectionKind::WeldedDiscs, SectionKind::DoubleGroove] {
         let job = job(kind, COARSE, 36);
         let (force, moment) = loads_of(&deck_of(&job));
         let expected = closed_form(&job.dimensions, &job.case);
@@ -76,7 +76,7 @@ fn the_forces_of_the_deck_add_up_to_the_pull_of_the_strands_the_torque_and_the_b
 /// Integration that leaves out where heads and holes begin is four per cent off beside the heads on a coarse mesh.
 #[test]
 fn harmonics_of_the_bolt_heads_are_integrated_to_their_edges() {
-    for kind in Kind::ALL {
+    for kind in SectionKind::ALL {
         let d = job(kind, COARSE, 12).dimensions;
         for fineness in [Fineness::USUAL, Fineness { solid: 4.0, straight: 4.0, held: 4.0, ..COARSE }] {
             let mesh = mesh(kind, &d, &fineness).expect("the section is possible");
@@ -131,7 +131,7 @@ fn a_wrong_sign_of_a_load_shows_in_the_sums() {
 
 #[test]
 fn the_deck_says_all_that_it_was_made_from() {
-    for kind in [Kind::Machined, Kind::PressedCup] {
+    for kind in [SectionKind::Machined, SectionKind::PressedCup] {
         let job = job(kind, COARSE, 12);
         let deck = deck_of(&job);
         assert_eq!(Job::from_deck(&deck).expect("it reads its own decks"), job);
@@ -144,7 +144,7 @@ fn the_deck_says_all_that_it_was_made_from() {
 /// What no export writes would take all memory, divide by zero or never end.
 #[test]
 fn numbers_of_a_deck_that_no_export_writes_are_refused() {
-    let deck = deck_of(&job(Kind::PressedCup, COARSE, 12));
+    let deck = deck_of(&job(SectionKind::PressedCup, COARSE, 12));
     let wrong = [
         ("mesh.sectors", "1e18", "1e18, and it is 8 to 720"),
         ("mesh.sectors", "12.5", "12.5, and it is a whole number"),
@@ -168,7 +168,7 @@ fn numbers_of_a_deck_that_no_export_writes_are_refused() {
 #[test]
 fn results_of_nodes_that_the_deck_has_not_are_refused() {
     let directory = tempfile::tempdir().expect("there is room");
-    let job = job(Kind::Machined, COARSE, 12);
+    let job = job(SectionKind::Machined, COARSE, 12);
     export(&job, directory.path()).expect("the deck is written");
     let nodes = Sweep::new(&mesh_of(&job), job.sectors).nodes();
     let displaced: String = (1..=nodes).map(|node| format!("{node} 0.0 0.0 0.0\n")).collect();
@@ -192,7 +192,7 @@ fn results_of_nodes_that_the_deck_has_not_are_refused() {
 #[test]
 fn a_deck_whose_nodes_were_moved_is_not_compared() {
     let directory = tempfile::tempdir().expect("there is room");
-    export(&job(Kind::Machined, COARSE, 12), directory.path()).expect("the deck is written");
+    export(&job(SectionKind::Machined, COARSE, 12), directory.path()).expect("the deck is written");
     let results = " displacements\n 1 0.0 0.0 0.0\n forces\n 1 0.0 0.0 0.0\n";
     std::fs::write(directory.path().join("pulley.dat"), results).expect("it is written");
     let message = || compare(directory.path()).expect_err("the results are of one node").to_string();
@@ -206,7 +206,7 @@ fn a_deck_whose_nodes_were_moved_is_not_compared() {
 
 #[test]
 fn sectors_share_their_planes_and_the_last_closes_on_the_first() {
-    let job = job(Kind::Machined, COARSE, 12);
+    let job = job(SectionKind::Machined, COARSE, 12);
     let mesh = mesh_of(&job);
     let sweep = Sweep::new(&mesh, job.sectors);
     let positions = sweep.positions(&mesh);
@@ -266,7 +266,7 @@ fn harmonics_and_calculix_agree_on_a_coarse_pressed_cup() {
         assert!(off.abs() <= tolerance(&row.quantity), "{}: {off} %\n{}", row.quantity, shown(&rows));
     }
     assert_eq!(rows.len(), 20, "{}", shown(&rows));
-    let outside = |rows: &[Comparison]| -> Vec<String> {
+    let outside = |rows: &[ComparedQuantity]| -> Vec<String> {
         let wrong = rows.iter().filter(|row| row.difference_on_same_section().abs() > tolerance(&row.quantity));
         wrong.map(|row| row.quantity.clone()).collect()
     };

@@ -50,3 +50,5 @@ mod shaders;
 mod timing_mesh;
 /// The tutorials of `docs/`, run and compared with what the program prints.
 mod tutorial;
+/// Names of the crate's types.
+mod type_names;

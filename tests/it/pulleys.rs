@@ -1,8 +1,8 @@
 //! Pulleys of the four section types as jobs for CalculiX, and how it is run.
 
 use beltspace::models::find;
-use beltspace::pulley::calculix::{Comparison, Job, compare, export};
-use beltspace::pulley::section::{Fineness, Kind};
+use beltspace::pulley::calculix::{ComparedQuantity, Job, compare, export};
+use beltspace::pulley::section::{Fineness, SectionKind};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
@@ -11,7 +11,7 @@ use std::time::Instant;
 pub const COARSE: Fineness = Fineness { through: 1, straight: 2.0, bend: 1.2, held: 2.0, solid: 2.5, harmonics: 24, every: false };
 
 /// The preset of a type under the model's default loads.
-pub fn job(kind: Kind, fineness: Fineness, sectors: usize) -> Job {
+pub fn job(kind: SectionKind, fineness: Fineness, sectors: usize) -> Job {
     let model = find("pulley").expect("there is such a model");
     let inputs = model.preset(kind.name()).expect("every type has a preset");
     let design = model.pulley_of(&inputs).expect("it is a pulley");
@@ -31,7 +31,7 @@ pub fn calculix() -> PathBuf {
 }
 
 /// Exports, solves and compares; also returns the seconds that CalculiX took, and its CPU seconds.
-pub fn solved(program: &Path, job: &Job, directory: &Path) -> (Vec<Comparison>, [f64; 2]) {
+pub fn solved(program: &Path, job: &Job, directory: &Path) -> (Vec<ComparedQuantity>, [f64; 2]) {
     export(job, directory).expect("the deck is written");
     let start = Instant::now();
     // The last lines are the shell's, with the CPU time of its children.
@@ -49,7 +49,7 @@ pub fn solved(program: &Path, job: &Job, directory: &Path) -> (Vec<Comparison>, 
     (compare(directory).expect("the results are complete"), [seconds, used])
 }
 
-pub fn shown(rows: &[Comparison]) -> String {
+pub fn shown(rows: &[ComparedQuantity]) -> String {
     let mut text =
         "quantity,unit,harmonics,harmonics_same_section,calculix,difference_percent,difference_same_section_percent\n".to_owned();
     for row in rows {

@@ -6,7 +6,7 @@ mod sizing;
 use super::read_study;
 use super::sweep::{default_out, files_of};
 use crate::cli::{self, Cli, Command};
-use crate::terminal::{self, Grid, bold, grouped, quoted, span};
+use crate::terminal::{self, TextGrid, bold, grouped, quoted, span};
 use beltspace::checkpoint::Saved;
 use beltspace::directory::Contents;
 use beltspace::error::{Error, Result};
@@ -62,7 +62,7 @@ impl Scheduler {
     }
 }
 
-pub fn run(request: &cli::Slurm) -> Result<()> {
+pub fn run(request: &cli::SlurmArgs) -> Result<()> {
     let scheduler = if request.pbs { Scheduler::Pbs } else { Scheduler::Slurm };
     let (study, _) = read_study(&request.study)?;
     let plan = Plan::new(study);
@@ -94,7 +94,7 @@ pub fn run(request: &cli::Slurm) -> Result<()> {
     let memory = [0, 1].map(|job| if request.memory.is_some() { least[job] } else { least[job].max(wanted[job]) });
     let limit = if method.bounds { sizing::limit_of_bounds(work.of_all()) } else { sizing::limit(work.of_shard(shards)) };
     let time = [limit, sizing::limit(LEAST_MERGE + work.of_merge())].map(|seconds| time.clone().unwrap_or_else(|| sizing::clock(seconds)));
-    let scripts = scripts::Plan {
+    let scripts = scripts::ScriptContents {
         scheduler,
         title: terminal::told(&plan.study.title),
         name: job_name(&request.study),
@@ -135,11 +135,11 @@ pub fn run(request: &cli::Slurm) -> Result<()> {
     if request.quiet { Ok(()) } else { terminal::print(&summary(&plan, &work, (method.bounds, speed.how()), &scripts, &out, &jobs)) }
 }
 
-fn summary(plan: &Plan, work: &Work, (bounds, how): (bool, &str), scripts: &scripts::Plan, out: &Path, jobs: &Path) -> String {
+fn summary(plan: &Plan, work: &Work, (bounds, how): (bool, &str), scripts: &scripts::ScriptContents, out: &Path, jobs: &Path) -> String {
     let (shards, cpus) = (scripts.shards, scripts.cpus);
     let on = if cpus == 1 { "1 CPU".to_owned() } else { format!("{cpus} CPUs") };
     let each = if shards == 1 { "" } else { " each" };
-    let mut facts = Grid::default();
+    let mut facts = TextGrid::default();
     let mut fact = |what: &str, value: String| facts.row([bold(what), value]);
     fact("designs", grouped(plan.designs()));
     let long = span(work.of_shard(shards));
@@ -158,7 +158,7 @@ fn summary(plan: &Plan, work: &Work, (bounds, how): (bool, &str), scripts: &scri
 }
 
 /// Remarks on what the user may not expect.
-fn remark(plan: &Plan, work: &Work, request: &cli::Slurm, shards: u64) {
+fn remark(plan: &Plan, work: &Work, request: &cli::SlurmArgs, shards: u64) {
     if let Some(asked) = request.shards.filter(|&asked| asked > shards) {
         let (short, long) = (span(work.of_own(asked)), span(work.of_own(shards)));
         let (them, word) = (grouped(asked), if shards == 1 { "shard" } else { "shards" });
@@ -198,7 +198,7 @@ fn work(plan: &Plan, seconds: f64, cpus: u16) -> Work {
 }
 
 /// The options for the sweep, parsed as the shards will parse them, so that a mistake is reported now and not by every job.
-fn checked_options(study: &Path, options: &[String]) -> Result<cli::Sweep> {
+fn checked_options(study: &Path, options: &[String]) -> Result<cli::SweepArgs> {
     let mut words: Vec<OsString> = ["beltspace", "sweep"].map(OsString::from).to_vec();
     words.push(study.into());
     words.extend(["--shard", "1/1", "--out", "shard", "--resume", "--quiet", "--threads", "1"].map(OsString::from));

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 /// The contents of the scripts. Paths and words are quoted for a shell.
 #[derive(Debug)]
-pub struct Plan {
+pub struct ScriptContents {
     pub scheduler: Scheduler,
     /// Title of the study.
     pub title: String,
@@ -45,7 +45,7 @@ pub fn folder(number: &str, shards: u64) -> String {
     format!("shard-{number}-of-{shards}")
 }
 
-impl Plan {
+impl ScriptContents {
     /// Every script with its name, the one to submit last.
     pub fn scripts(&self) -> [(&'static str, String); 3] {
         [(SHARDS, self.shards()), (MERGE, self.merge()), (SUBMIT, self.submit())]

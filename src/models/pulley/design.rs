@@ -7,7 +7,7 @@ use super::fields::{ANGLE_WORST, FINE, Inputs, POINT_NONE};
 use crate::models::pulley_load;
 use crate::pulley::Design;
 use crate::pulley::loads::clamp_pressure;
-use crate::pulley::section::{Dimensions, Fineness, Kind};
+use crate::pulley::section::{Dimensions, Fineness, SectionKind};
 use crate::pulley::turn::{Case, Strength};
 use crate::real::Real;
 use crate::units::{MEGAPASCAL, MILLIMETRE, NEWTON_PER_MILLIMETRE, Unit};
@@ -25,7 +25,7 @@ pub(super) struct Body<R> {
 
 impl<R: Real> Body<R> {
     /// Of inputs in SI units whose section is of this type.
-    pub fn new(si: &[R], kind: Kind) -> Self {
+    pub fn new(si: &[R], kind: SectionKind) -> Self {
         let i = Inputs::read(si);
         let dimensions = dimensions(si).of_kind(kind, R::constant(0.0));
         Self { section: i.section, accuracy: i.accuracy, dimensions, poisson: i.poisson_ratio }
@@ -40,7 +40,7 @@ impl<R: Real> Body<R> {
 
 impl Body<f64> {
     /// Type of the section.
-    pub fn kind(&self) -> Kind {
+    pub fn kind(&self) -> SectionKind {
         kind_of(self.section)
     }
 
@@ -103,7 +103,7 @@ pub(super) struct Loading<R> {
 
 impl<R: Real<Shared = R>> Loading<R> {
     /// Of inputs in SI units whose section is of this type.
-    pub fn new(si: &[R], kind: Kind) -> Self {
+    pub fn new(si: &[R], kind: SectionKind) -> Self {
         let (i, load, dimensions) = (Inputs::read(si), pulley_load::wrap_load(si), dimensions(si));
         let (sine, cosine) = (i.friction_direction.sin(), i.friction_direction.cos());
         let tensile = from_si(MEGAPASCAL, i.tensile_strength);
@@ -182,12 +182,12 @@ pub(super) fn to_si<R: Real>(unit: Unit, value: R) -> R {
 }
 
 /// Type of the section of this number.
-pub(super) fn kind_of(section: f64) -> Kind {
-    Kind::ALL[(section as usize).clamp(1, Kind::ALL.len()) - 1]
+pub(super) fn kind_of(section: f64) -> SectionKind {
+    SectionKind::ALL[(section as usize).clamp(1, SectionKind::ALL.len()) - 1]
 }
 
 /// Type of the section.
-pub(crate) fn kind(si: &[f64]) -> Kind {
+pub(crate) fn kind(si: &[f64]) -> SectionKind {
     kind_of(Inputs::read(si).section)
 }
 

@@ -23,8 +23,8 @@ use super::formula::{Columns, Dependencies, Footprint, Kernel, Scratch, Sizes};
 use super::pulley_load;
 use crate::pulley::Design;
 use crate::pulley::response::{self, CHECK_POINTS, LONGEST, View};
-use crate::pulley::section::{self, Flaw, Kind};
-use crate::pulley::turn::{Case, Peak, Summary, Turn};
+use crate::pulley::section::{self, Flaw, SectionKind};
+use crate::pulley::turn::{Case, CaseSummary, Peak, Turn};
 use crate::real::Real;
 use crate::tape::{Known, List, Recording, Set, Trace};
 use crate::units::{CUBIC_MILLIMETRE, MEGAPASCAL, MILLIMETRE};
@@ -179,7 +179,7 @@ impl Kernel for Pulley {
         let Sizes { outputs, conditions, .. } = self.sizes();
         let mut all = Dependencies { prepared: Set::EMPTY, outputs: vec![Set::EMPTY; outputs], conditions: vec![Set::EMPTY; conditions] };
         let section = if let Known::Fixed(section) = inputs[Inputs::NUMBER.section] { Some(section) } else { None };
-        for kind in Kind::ALL.into_iter().filter(|kind| section.is_none_or(|section| design::kind_of(section) == *kind)) {
+        for kind in SectionKind::ALL.into_iter().filter(|kind| section.is_none_or(|section| design::kind_of(section) == *kind)) {
             let of_kind = dependencies_of(inputs, kind);
             all.prepared |= of_kind.prepared;
             all.outputs.iter_mut().zip(of_kind.outputs).for_each(|(set, of)| *set |= of);
@@ -190,7 +190,7 @@ impl Kernel for Pulley {
 }
 
 /// What depends on what for a type of section: the very code of both stages, recorded with a number in place of what is solved.
-fn dependencies_of(inputs: &[Known], kind: Kind) -> Dependencies {
+fn dependencies_of(inputs: &[Known], kind: SectionKind) -> Dependencies {
     let (recording, nodes) = Recording::of(&[inputs, &[Known::ANY]].concat(), |named| {
         let (inputs, unknown) = (&named[..inputs.len()], named[inputs.len()]);
         let (body, loading) = (union(unknown, Body::new(inputs, kind).numbers()), Loading::new(inputs, kind));
@@ -215,7 +215,7 @@ fn dependencies_of(inputs: &[Known], kind: Kind) -> Dependencies {
 }
 
 /// Inputs that the first stage reads for a type of section.
-fn read_by(kind: Kind) -> Set {
+fn read_by(kind: SectionKind) -> Set {
     dependencies_of(&vec![Known::ANY; Inputs::<usize>::NAMES.len()], kind).prepared
 }
 
@@ -226,7 +226,14 @@ fn union(unknown: Trace, numbers: impl IntoIterator<Item = Trace>) -> Trace {
 
 impl Pulley {
     /// Second stage; `last` is the load case before and what came of it, which is used again if nothing of it has changed.
-    fn finish_after(&self, prepared: &[f64], inputs: &[f64], wanted: Set, outputs: &mut [f64], last: &mut Option<(Case, Asked, Summary)>) {
+    fn finish_after(
+        &self,
+        prepared: &[f64],
+        inputs: &[f64],
+        wanted: Set,
+        outputs: &mut [f64],
+        last: &mut Option<(Case, Asked, CaseSummary)>,
+    ) {
         // What this design does not have must not be left from the one before.
         outputs.fill(0.0);
         pulley_load::finish_all(inputs, outputs);
@@ -291,7 +298,7 @@ struct Answered<R> {
 }
 
 impl Answered<f64> {
-    fn new(volume: f64, summary: &Summary, view: &View<'_>) -> Self {
+    fn new(volume: f64, summary: &CaseSummary, view: &View<'_>) -> Self {
         let peak = summary.largest;
         let stress = |point: Option<Peak>| point.map_or(0.0, |peak| peak.stress);
         Self {

@@ -5,7 +5,7 @@ use super::super::model::Model;
 use super::super::status::{Evaluation, Status};
 use super::fields::OUT;
 use super::{Design, design};
-use crate::pulley::section::{self, Dimensions, Kind};
+use crate::pulley::section::{self, Dimensions, SectionKind};
 
 /// Sentences on one evaluation, for inputs in their units.
 pub(super) fn notes(model: &Model, inputs: &[f64], evaluation: &Evaluation) -> Vec<String> {
@@ -62,12 +62,12 @@ fn place(model: &Model, design: &Design, evaluation: &Evaluation) -> Option<Stri
 }
 
 /// Bends that are tighter than the sheet is thick: pressing thins and hardens them, which the model does not know.
-fn tight_bends(kind: Kind, d: &Dimensions) -> Option<String> {
+fn tight_bends(kind: SectionKind, d: &Dimensions) -> Option<String> {
     let outer = |radius: f64| radius - d.thickness;
     let bends: &[(&str, f64)] = match kind {
-        Kind::Machined => &[],
-        Kind::WeldedDiscs => &[("B", d.hub_bend_radius)],
-        Kind::DoubleGroove | Kind::PressedCup => {
+        SectionKind::Machined => &[],
+        SectionKind::WeldedDiscs => &[("B", d.hub_bend_radius)],
+        SectionKind::DoubleGroove | SectionKind::PressedCup => {
             &[("B", outer(d.hub_bend_radius)), ("C", d.web_bend_radius), ("D", outer(d.fold_radius)), ("E and F", d.floor_bend_radius)]
         }
     };

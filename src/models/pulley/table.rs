@@ -6,7 +6,7 @@ use super::super::model::Model;
 use super::super::pulley_load;
 use super::fields::{ANGLE_WORST, FINE, FROM_TENSILE, POINT_NONE, TORQUE};
 use super::{Design, Pulley, notes, profile, read_by};
-use crate::pulley::section::Kind;
+use crate::pulley::section::SectionKind;
 use crate::units::{CUBIC_MILLIMETRE, DEGREE, GRAM, KILOGRAM_PER_CUBIC_METRE, MEGAPASCAL, MILLIMETRE, NEWTON, NEWTON_METRE, NONE};
 use std::sync::Arc;
 
@@ -219,8 +219,8 @@ fn inputs(belt: Vec<Input>) -> Vec<Input> {
     ];
     let mut inputs = [belt, own].concat();
     for (number, input) in inputs.iter_mut().enumerate() {
-        let readers: Vec<_> = Kind::ALL.into_iter().filter(|&kind| read_by(kind).contains(number)).map(Kind::name).collect();
-        if (1..Kind::ALL.len()).contains(&readers.len()) {
+        let readers: Vec<_> = SectionKind::ALL.into_iter().filter(|&kind| read_by(kind).contains(number)).map(SectionKind::name).collect();
+        if (1..SectionKind::ALL.len()).contains(&readers.len()) {
             *input = input.clone().read_only_for(&readers);
         }
     }

@@ -215,7 +215,7 @@ fn a_type_is_shaped_by_the_inputs_it_says_and_by_no_other() {
         let (kind, dimensions) = (design::kind(&si), design::dimensions(&si));
         let outline = section::checked_outline(kind, &dimensions).expect("a preset and what is near it");
         // The weld does not show in the outline.
-        let mesh = (kind == Kind::WeldedDiscs).then(|| section::mesh(kind, &dimensions, &section::Fineness::USUAL));
+        let mesh = (kind == SectionKind::WeldedDiscs).then(|| section::mesh(kind, &dimensions, &section::Fineness::USUAL));
         (outline, mesh)
     };
     let any: std::collections::BTreeSet<&str> = SHAPE.iter().flat_map(|(_, shape)| *shape).copied().collect();

@@ -26,7 +26,7 @@ const NEVER_LIFTS: f64 = 1e30;
 
 /// Coefficients of the rows, divided by f cos phi.
 #[derive(Clone, Copy, Debug)]
-pub struct Rows<R> {
+pub struct RowCoefficients<R> {
     /// Teeth in mesh, N + 1.
     pub teeth: R,
     /// `exp(-2 mu beta)`: what a land leaves of the tension.
@@ -87,7 +87,7 @@ impl<R: Real> Linear<R> {
 /// positive; so the largest and the least are among these.
 pub type Boundary<R> = [Linear<R>; 5];
 
-impl<R: Real> Rows<R> {
+impl<R: Real> RowCoefficients<R> {
     pub fn new(i: &Inputs<R>) -> Self {
         let [one, two] = [1.0, 2.0].map(R::constant);
         let lift = lift_angle(i).named("lift", "");
@@ -146,7 +146,7 @@ pub struct Elimination<R> {
 }
 
 impl<R: Real> Elimination<R> {
-    pub fn new(rows: &Rows<R>) -> Self {
+    pub fn new(rows: &RowCoefficients<R>) -> Self {
         let [zero, one] = [0.0, 1.0].map(R::constant);
         let [mut after, mut meshed_own, mut meshed_tight] = ["after", "meshed_own", "meshed_tight"].map(|name| R::table(name, zero));
         let [mut tight, mut short] = ["tight", "short"].map(|name| R::table(name, one));
@@ -191,7 +191,7 @@ impl<R: Real> Tooth<R> {
     /// The tooth at `at`, from 0, given what is known of the one behind it: the tension that leaves this one, and H there, as far as
     /// the tight tension makes it.
     #[inline(always)]
-    fn new(rows: &Rows<R>, e: &Elimination<R>, at: Place, leaving: Linear<R>, behind: R) -> Self {
+    fn new(rows: &RowCoefficients<R>, e: &Elimination<R>, at: Place, leaving: Linear<R>, behind: R) -> Self {
         let [zero, one] = [0.0, 1.0].map(R::constant);
         let slack = Linear::new(zero, one);
         let is_last = R::beyond(at.next(), rows.teeth).named("is_last", "");
@@ -223,7 +223,7 @@ pub struct Complete<R> {
 }
 
 /// Solves the complete mesh of one design.
-pub fn complete(rows: &Rows<f64>, e: &Elimination<f64>) -> Complete<f64> {
+pub fn complete(rows: &RowCoefficients<f64>, e: &Elimination<f64>) -> Complete<f64> {
     let none = Linear::new(0.0, 0.0);
     let mut complete = Complete { tension: [none; TEETH], load: [none; TEETH], inward: [none; TEETH] };
     f64::fold(Loop::to(rows.teeth, TEETH).backwards(), [0.0, 1.0, 0.0], |at, [tight, slack, behind]| {
@@ -257,7 +257,7 @@ impl<R: Real> Lifted<R> {
 
     /// Before the tooth at `at`, from what is behind it.
     #[inline(always)]
-    fn before(self, rows: &Rows<R>, at: Place) -> Self {
+    fn before(self, rows: &RowCoefficients<R>, at: Place) -> Self {
         let [zero, one] = [0.0, 1.0].map(R::constant);
         let is_last = R::beyond(at.next(), rows.teeth).named("is_last", "");
         let after_first = (R::number(at) - R::constant(0.5)).named("after_first", "");
@@ -279,7 +279,7 @@ impl<R: Real> Lifted<R> {
 
 /// The incomplete mesh if the tooth at `at` is the first lifted one.
 #[inline(always)]
-fn boundary<R: Real>(rows: &Rows<R>, e: &Elimination<R>, at: Place, behind: &Lifted<R>) -> Boundary<R> {
+fn boundary<R: Real>(rows: &RowCoefficients<R>, e: &Elimination<R>, at: Place, behind: &Lifted<R>) -> Boundary<R> {
     let [zero, one] = [0.0, 1.0].map(R::constant);
     let after_first = (R::number(at) - R::constant(0.5)).named("after_first", "");
     // What the elimination from the tight side says of the tooth before.
@@ -303,8 +303,8 @@ fn boundary<R: Real>(rows: &Rows<R>, e: &Elimination<R>, at: Place, behind: &Lif
     [star, first, own, before, force_last.over(rows.lifted_flank)]
 }
 
-/// What is found for every tooth, each as what the tight and the slack tension make of it.
-pub struct Found<'a, R> {
+/// Tables of what is found for every tooth, each number as what the tight and the slack tension make of it.
+pub struct ToothTables<'a, R> {
     /// What presses a tooth of the complete mesh inwards, at tooth - 1.
     pub inward: [&'a mut [R]; 2],
     /// The incomplete mesh for every boundary: at j - 1 for j = 1 ..= N + 2, the last of which is the complete mesh.
@@ -312,7 +312,7 @@ pub struct Found<'a, R> {
 }
 
 /// Goes from the last tooth to the first over what [`Elimination`] made of them; returns the first tooth's load in the complete mesh.
-pub fn back<R: Real>(rows: &Rows<R>, e: &Elimination<R>, found: &mut Found<'_, R>) -> Linear<R> {
+pub fn back<R: Real>(rows: &RowCoefficients<R>, e: &Elimination<R>, found: &mut ToothTables<'_, R>) -> Linear<R> {
     let [zero, one] = [0.0, 1.0].map(R::constant);
     let Lifted { sigma, short, last, sum } = Lifted::last();
     // Tension and force behind, load of this tooth, load of the last, and what is lifted behind.
@@ -398,7 +398,7 @@ pub struct Solved<R> {
 /// The direct solve for one pair of tensions. With the option, lands where the centrifugal force outweighs the tension lose their
 /// friction, all of them at once and for good, until nothing changes.
 #[inline(never)]
-pub fn solve<R: Real>(rows: &Rows<R>, tight: R, slack: R, j: R, option: R, centrifugal: R) -> Solved<R> {
+pub fn solve<R: Real>(rows: &RowCoefficients<R>, tight: R, slack: R, j: R, option: R, centrifugal: R) -> Solved<R> {
     let [zero, one] = [0.0, 1.0].map(R::constant);
     let teeth = rows.teeth.iterations(TEETH).max(2);
     // Without a lifted tooth the mesh is the plain complete one.

@@ -116,11 +116,11 @@ impl Formula for TimingBelt {
 
     fn prepare<R: Real>(inputs: &[R], wanted: Set, prepared: &mut [R]) {
         let i = Inputs::read(inputs);
-        let rows = mesh::Rows::new(&i);
+        let rows = mesh::RowCoefficients::new(&i);
         let elimination = mesh::Elimination::new(&rows);
         let (numbers, tables) = prepared.split_at_mut(NUMBERS);
         let (inward, boundaries) = tables.split_at_mut(2 * TEETH);
-        let mut found = mesh::Found {
+        let mut found = mesh::ToothTables {
             inward: in_two(inward),
             boundaries: (wanted.meets(INCOMPLETE)).then(|| {
                 let mut parts = boundaries.chunks_mut(2 * BOUNDARIES);
@@ -288,7 +288,7 @@ fn centrifugal_tension<R: Real>(i: &Inputs<R>) -> R {
 fn with_land_friction<R: Real>(i: &Inputs<R>, boundary_tooth: R, out: &mut [R]) {
     let option = i.centrifugal_land_friction;
     let [star, peak, least] = R::left_to_f64(|| {
-        let rows = mesh::Rows::new(i);
+        let rows = mesh::RowCoefficients::new(i);
         let solved = mesh::solve(&rows, i.tight_tension, i.slack_tension, boundary_tooth, option, centrifugal_tension(i));
         let (mut peak, mut least) = (solved.load[0], solved.load[0]);
         for tooth in 1..i.teeth_in_mesh.iterations(TEETH) {

@@ -14,7 +14,7 @@ pub fn profile(model: &Model, inputs: &[f64]) -> Profile {
     let i = Inputs::read(&si);
     let outputs = model.kernel.outputs(&model.kernel.prepared(&si), &si, Set::ALL);
     let j = outputs[OUT.boundary_tooth];
-    let rows = mesh::Rows::new(&i);
+    let rows = mesh::RowCoefficients::new(&i);
     let complete = mesh::complete(&rows, &mesh::Elimination::new(&rows));
     let solved = mesh::solve(&rows, i.tight_tension, i.slack_tension, j, i.centrifugal_land_friction, centrifugal_tension(&i));
     let of_both = |value: mesh::Linear<f64>| value.tight * i.tight_tension + value.slack * i.slack_tension;

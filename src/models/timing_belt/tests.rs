@@ -24,11 +24,12 @@ fn every_boundary_of_the_tables_is_that_of_the_direct_solve() {
         for (lift, friction) in [(SPACE, 0.45), (0.0, 0.3), (1.0, 0.0)] {
             let si = belt(&[(number.teeth_in_mesh, teeth), (number.lift_angle, lift), (number.friction, friction)]);
             let i = Inputs::read(&si);
-            let rows = mesh::Rows::new(&i);
+            let rows = mesh::RowCoefficients::new(&i);
             let elimination = mesh::Elimination::new(&rows);
             let mut inward = [0.0; 2 * TEETH];
             let mut tables = [[0.0; 2 * BOUNDARIES]; 5];
-            let mut found = mesh::Found { inward: in_two(&mut inward), boundaries: Some(tables.each_mut().map(|table| in_two(table))) };
+            let mut found =
+                mesh::ToothTables { inward: in_two(&mut inward), boundaries: Some(tables.each_mut().map(|table| in_two(table))) };
             mesh::back(&rows, &elimination, &mut found);
             for j in 1..=teeth as usize + 1 {
                 for (tight, slack) in [(1.0, 0.0), (1.0, 0.4), (0.0, 1.0)] {
@@ -56,7 +57,7 @@ fn loads_fall_towards_the_slack_side_so_that_four_of_them_tell_the_extremes() {
     let number = Inputs::NUMBER;
     for teeth in [4.0, 23.0, 60.0] {
         let si = belt(&[(number.teeth_in_mesh, teeth)]);
-        let rows = mesh::Rows::new(&Inputs::read(&si));
+        let rows = mesh::RowCoefficients::new(&Inputs::read(&si));
         for j in 1..=teeth as usize + 1 {
             for slack in [0.0, 0.3, 0.99] {
                 let loads = mesh::solve(&rows, 1.0, slack, j as f64, 0.0, 0.0).load;
@@ -73,7 +74,7 @@ fn loads_fall_towards_the_slack_side_so_that_four_of_them_tell_the_extremes() {
 fn with_the_option_off_the_direct_solve_needs_no_second_round() {
     let si = belt(&[]);
     let i = Inputs::read(&si);
-    let rows = mesh::Rows::new(&i);
+    let rows = mesh::RowCoefficients::new(&i);
     let solve = |option| mesh::solve(&rows, i.tight_tension, 0.0, 16.0, option, centrifugal_tension(&i));
     // The centrifugal tension of the default belt is 52 N: the lands behind it carry less.
     assert!((centrifugal_tension(&i) - 52.0).abs() < 0.1);

@@ -2,7 +2,7 @@
 
 use super::super::{Figure, Inputs, Paper, numbers};
 use super::{PaperCurve, metal, rubber};
-use crate::pictures::{Guide, Line, Marker, Quantity, Scale, Stroke, lines};
+use crate::pictures::{Guide, Line, Marker, PlotQuantity, Scale, Stroke, lines};
 use crate::table::Table;
 
 /// Every figure of the paper that has something to compute.
@@ -14,7 +14,7 @@ const RATIOS: [(&str, f64); 3] = [("R = 1", 1.0), ("R = 2", 2.0), ("R = 1/2", 0.
 
 fn figure_1() -> Figure {
     let belts = RATIOS.map(|(label, ratio)| (label.to_owned(), ratio, rubber().with(&[("ratio", ratio)])));
-    Drawn {
+    ForceFigure {
         id: "cvt-fig-1",
         title: "Fig. 1: nondimensional axial force of the rubber V-belt variator",
         caption: "(4) and (5) with the paper's data: friction 0.4, groove angle 30°, belt length 1066 mm, centre distance 260 mm. \
@@ -29,7 +29,7 @@ fn figure_1() -> Figure {
 
 fn figure_2() -> Figure {
     let belts = [0.35, 0.4, 0.45].map(|friction| (format!("μ = {friction:.2}"), friction, rubber().with(&[("friction", friction)])));
-    Drawn {
+    ForceFigure {
         id: "cvt-fig-2",
         title: "Fig. 2: axial force of the rubber V-belt variator at R = 1, theory",
         caption: "(4) and (5) at R = 1 for the paper's three coefficients of friction. The measured points are lost in the scan; they ended \
@@ -44,7 +44,7 @@ fn figure_2() -> Figure {
 
 fn figure_7() -> Figure {
     let belts = RATIOS.map(|(label, ratio)| (label.to_owned(), ratio, metal().with(&[("friction", 0.1), ("ratio", ratio)])));
-    Drawn {
+    ForceFigure {
         id: "cvt-fig-7",
         title: "Fig. 7: nondimensional axial force of the metal V-belt variator",
         caption: "(15) and (16) with the paper's data: friction 0.1, groove angle 22°, belt length 613 mm, centre distance 156 mm. As in the \
@@ -59,7 +59,7 @@ fn figure_7() -> Figure {
 
 fn figure_9() -> Figure {
     let belts = [0.08, 0.11, 0.14].map(|friction| (format!("μ = {friction:.2}"), friction, metal().with(&[("friction", friction)])));
-    Drawn {
+    ForceFigure {
         id: "cvt-fig-9",
         title: "Fig. 9: axial force of the metal V-belt variator at R = 1, theory",
         caption: "(15) and (16) at R = 1 for the paper's three coefficients of friction, each up to its slip limit. The measured points are lost \
@@ -77,7 +77,7 @@ fn upright(at: f64, words: &str) -> Guide {
 }
 
 /// Axial forces over the traction for some values of a parameter.
-struct Drawn<'a> {
+struct ForceFigure<'a> {
     id: &'static str,
     title: &'a str,
     caption: &'a str,
@@ -90,7 +90,7 @@ struct Drawn<'a> {
     guides: &'a [Guide],
 }
 
-impl Drawn<'_> {
+impl ForceFigure<'_> {
     fn figure(&self) -> Figure {
         let curves: Vec<_> = self.belts.iter().map(|(label, value, belt)| (label, *value, PaperCurve::of(belt))).collect();
         let line = |label: String, curve: &PaperCurve, y: &[f64], colour, stroke| Line {
@@ -108,8 +108,8 @@ impl Drawn<'_> {
             line(format!("{label}, driven"), curve, &curve.driven, colour, Stroke::Dashed)
         };
         let drawn: Vec<Line> = curves.iter().enumerate().map(driver).chain(curves.iter().enumerate().map(driven)).collect();
-        let x = Scale { quantity: Quantity::new("traction coefficient λ", "–"), range: Some((0.0, 1.0)) };
-        let y = Scale { quantity: Quantity::new(self.force, "–"), range: Some((0.0, from_zero(&drawn))) };
+        let x = Scale { quantity: PlotQuantity::new("traction coefficient λ", "–"), range: Some((0.0, 1.0)) };
+        let y = Scale { quantity: PlotQuantity::new(self.force, "–"), range: Some((0.0, from_zero(&drawn))) };
         let along = |of: fn(&PaperCurve) -> &[f64]| curves.iter().flat_map(move |(_, _, curve)| of(curve).iter().copied().map(Some));
         let parameter = curves.iter().flat_map(|(_, value, curve)| curve.traction.iter().map(|_| Some(*value)));
         Figure {
@@ -174,8 +174,8 @@ fn conclusion_1() -> Figure {
         line(format!("metal belt, band tension T = {BAND_TENSION} N constant"), &metal, 1),
     ];
     let title = "Conclusion (1): driver axial force against load at constant pretension";
-    let x = Scale { quantity: Quantity::new("transmitted force P", "N"), range: Some((0.0, 2000.0)) };
-    let y = Scale { quantity: Quantity::new("driver axial force", "N"), range: Some((0.0, from_zero(&drawn))) };
+    let x = Scale { quantity: PlotQuantity::new("transmitted force P", "N"), range: Some((0.0, 2000.0)) };
+    let y = Scale { quantity: PlotQuantity::new("driver axial force", "N"), range: Some((0.0, from_zero(&drawn))) };
     Figure {
         id: "cvt-conclusion-1",
         title: title.to_owned(),

@@ -3,7 +3,7 @@
 use super::super::{Figure, Inputs, Paper, numbers};
 use super::Stressed;
 use crate::export::pulley::NodeStress;
-use crate::pictures::{Quantity, Series, curves};
+use crate::pictures::{PlotQuantity, Series, curves};
 use crate::table::Table;
 
 /// Tension, line force and flank force over the wrap.
@@ -18,7 +18,7 @@ pub(super) fn loads() -> Figure {
     let values = columns.map(|(name, ..)| belt.column(name));
     let panel = |((_, words, unit, _), y): (&(&str, &str, &str, &str), &Vec<f64>)| {
         let series = Series { label: String::new(), x: position.clone(), y: y.clone() };
-        (Quantity::new(*words, *unit), vec![series])
+        (PlotQuantity::new(*words, *unit), vec![series])
     };
     let panels: Vec<_> = columns.iter().zip(&values).map(panel).collect();
     let title = "Loads over the wrap, from the slack end (0°) to the tight end";
@@ -34,7 +34,7 @@ pub(super) fn loads() -> Figure {
                   of them."
             .to_owned(),
         group: Paper::Pulley,
-        svg: curves(title, &Quantity::new("wrap position α", "deg"), &panels),
+        svg: curves(title, &PlotQuantity::new("wrap position α", "deg"), &panels),
         table: Table { columns: table },
     }
 }

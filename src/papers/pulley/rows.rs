@@ -3,11 +3,11 @@
 use super::super::comparison::{Rows, digits, percent};
 use super::super::{Comparison, Inputs, Paper, Printed};
 use super::tables::{bolt_force, friction_each_way};
-use super::thickness::{DIRECTIONS, Sheet, choice};
+use super::thickness::{DIRECTIONS, SheetCase, choice};
 use super::{Stressed, example};
 
 /// All rows of the paper, in its order.
-pub(super) fn all(studied: &[Sheet], stressed: &[Stressed]) -> Vec<Comparison> {
+pub(super) fn all(studied: &[SheetCase], stressed: &[Stressed]) -> Vec<Comparison> {
     let mut rows = Rows::of(Paper::Pulley);
     data(&mut rows);
     loads(&mut rows);
@@ -112,7 +112,7 @@ fn bolts(rows: &mut Rows) {
     );
 }
 
-fn thickness(rows: &mut Rows, studied: &[Sheet]) {
+fn thickness(rows: &mut Rows, studied: &[SheetCase]) {
     let at = "4.4, Fig. 12";
     let printed = Printed::digits("1.8");
     let stress = |thickness: f64| {

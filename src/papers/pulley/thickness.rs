@@ -3,7 +3,7 @@
 use super::super::{Figure, Inputs, Paper, PaperTable, numbers, words};
 use super::example;
 use crate::models::CHECK_POINT_STRESSES;
-use crate::pictures::{Guide, Line, Marker, Quantity, Scale, Stroke, lines};
+use crate::pictures::{Guide, Line, Marker, PlotQuantity, Scale, Stroke, lines};
 use crate::table::{Data, Table, TableColumn};
 
 /// The paper's direction of friction, deg from the circumference, and the customary one.
@@ -12,7 +12,7 @@ pub(super) const DIRECTIONS: [f64; 2] = [45.0, 0.0];
 const THICKNESSES: [f64; 6] = [1.4, 1.6, 1.8, 2.0, 2.2, 2.4];
 
 /// One sheet under one direction of friction.
-pub(super) struct Sheet {
+pub(super) struct SheetCase {
     pub direction: f64,
     pub thickness: f64,
     pub stress: f64,
@@ -23,14 +23,14 @@ pub(super) struct Sheet {
 }
 
 /// The example with every thickness of the table, in both directions of friction.
-pub(super) fn study() -> Vec<Sheet> {
+pub(super) fn study() -> Vec<SheetCase> {
     let example = example();
     let limit = example.input("yield_strength_MPa");
     let mut sheets = Vec::new();
     for direction in DIRECTIONS {
         let of_thickness = |thickness: f64| {
             let outputs = example.with(&[("thickness_mm", thickness), ("friction_direction_deg", direction)]).outputs();
-            Sheet {
+            SheetCase {
                 direction,
                 thickness,
                 stress: outputs.get("max_stress_MPa"),
@@ -39,7 +39,7 @@ pub(super) fn study() -> Vec<Sheet> {
                 chosen: false,
             }
         };
-        let mut of_one: Vec<Sheet> = THICKNESSES.map(of_thickness).into();
+        let mut of_one: Vec<SheetCase> = THICKNESSES.map(of_thickness).into();
         if let Some(thinnest) = of_one.iter_mut().find(|sheet| sheet.stress <= limit) {
             thinnest.chosen = true;
         }
@@ -49,14 +49,14 @@ pub(super) fn study() -> Vec<Sheet> {
 }
 
 /// The thickness that is chosen in a direction of friction, mm.
-pub(super) fn choice(studied: &[Sheet], direction: f64) -> f64 {
-    let of_one = |sheet: &&Sheet| sheet.direction == direction && sheet.chosen;
+pub(super) fn choice(studied: &[SheetCase], direction: f64) -> f64 {
+    let of_one = |sheet: &&SheetCase| sheet.direction == direction && sheet.chosen;
     studied.iter().find(of_one).expect("some sheet is thick enough").thickness
 }
 
 /// The table of the study.
-pub(super) fn table(studied: &[Sheet]) -> PaperTable {
-    let each = |of: fn(&Sheet) -> f64| studied.iter().map(move |sheet| Some(of(sheet)));
+pub(super) fn table(studied: &[SheetCase]) -> PaperTable {
+    let each = |of: fn(&SheetCase) -> f64| studied.iter().map(move |sheet| Some(of(sheet)));
     let mut columns = vec![
         numbers("friction_direction_deg", "deg", "Direction of friction from the circumference.", each(|sheet| sheet.direction)),
         numbers("thickness_mm", "mm", "Thickness of the sheet.", each(|sheet| sheet.thickness)),
@@ -85,7 +85,7 @@ pub(super) fn table(studied: &[Sheet]) -> PaperTable {
 }
 
 /// Largest stress over the thickness.
-pub(super) fn figure(studied: &[Sheet]) -> Figure {
+pub(super) fn figure(studied: &[SheetCase]) -> Figure {
     let example = example();
     let limit = example.input("yield_strength_MPa");
     let finely: Vec<f64> = (0..=20).map(|step| f64::from(140 + 5 * step) / 100.0).collect();
@@ -102,7 +102,7 @@ pub(super) fn figure(studied: &[Sheet]) -> Figure {
             stroke: Stroke::Solid,
             marker: Marker::None,
         };
-        let of_one: Vec<&Sheet> = studied.iter().filter(|sheet| sheet.direction == direction).collect();
+        let of_one: Vec<&SheetCase> = studied.iter().filter(|sheet| sheet.direction == direction).collect();
         let marks = |chosen: bool| of_one.iter().copied().filter(move |sheet| sheet.chosen == chosen);
         let dots = |label: &str, chosen: bool, marker| Line {
             // Once in the legend is enough.
@@ -118,8 +118,8 @@ pub(super) fn figure(studied: &[Sheet]) -> Figure {
         drawn.extend(all);
     }
     let title = "Thickness study: largest stress of the pressed cup over the sheet's thickness";
-    let x = Scale { quantity: Quantity::new("sheet thickness t", "mm"), range: Some((1.35, 2.45)) };
-    let y = Scale { quantity: Quantity::new("largest von Mises stress", "MPa"), range: Some((0.0, 450.0)) };
+    let x = Scale { quantity: PlotQuantity::new("sheet thickness t", "mm"), range: Some((1.35, 2.45)) };
+    let y = Scale { quantity: PlotQuantity::new("largest von Mises stress", "MPa"), range: Some((0.0, 450.0)) };
     let guides = [
         Guide { at: limit, upright: false, words: format!("yield strength {limit} MPa"), colour: None },
         Guide { at: 1.8, upright: true, words: "chosen in the paper: 1.8 mm".to_owned(), colour: None },

@@ -2,7 +2,7 @@
 
 use super::super::{Figure, Paper, numbers, words};
 use super::{TimingMesh, driven, driver_at_rest};
-use crate::pictures::{Guide, Line, Marker, Quantity, Scale, Stroke, lines};
+use crate::pictures::{Guide, Line, Marker, PlotQuantity, Scale, Stroke, lines};
 use crate::table::{Data, Table, TableColumn};
 
 /// Every figure of the paper that has something to compute.
@@ -129,8 +129,8 @@ fn figure(
     meshes: &[(&'static str, &TimingMesh)],
 ) -> Figure {
     let most = drawn.iter().flat_map(|line| &line.y).copied().fold(0.0, f64::max);
-    let x = Scale { quantity: Quantity::new("tooth number i, from the tight side", "–"), range: Some((0.0, 24.0)) };
-    let y = Scale { quantity: Quantity::new("tooth load Q(i)", "N"), range: Some((0.0, 1.12 * most)) };
+    let x = Scale { quantity: PlotQuantity::new("tooth number i, from the tight side", "–"), range: Some((0.0, 24.0)) };
+    let y = Scale { quantity: PlotQuantity::new("tooth load Q(i)", "N"), range: Some((0.0, 1.12 * most)) };
     Figure {
         id,
         title: title.to_owned(),

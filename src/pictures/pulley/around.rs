@@ -1,6 +1,6 @@
 //! Curves of the check points' stress around the circumference.
 
-use super::super::axis::Axis;
+use super::super::axis::PlotAxis;
 use super::super::colours::{GREY, INK, LINES};
 use super::super::header::{Header, Mark, sentence};
 use super::super::number::significant;
@@ -8,9 +8,9 @@ use super::super::panel::{PanelPlan, axis_label, x_labels_height, y_labels_width
 use super::super::range::bounds;
 use super::super::sheet::{Area, Dash, Drawn, Frame, Sheet, UNIT, WIDTH, stroked};
 use super::super::words::{text, text_width};
-use super::super::{Quantity, axis::Numbers};
+use super::super::{PlotQuantity, axis::Numbers};
 use super::drawing::filled;
-use crate::pulley::around::{Around, Curve};
+use crate::pulley::around::{Around, StressCurve};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
 use std::fmt::Write;
@@ -30,8 +30,8 @@ pub fn around(title: &str, around: &Around, yield_strength: Option<f64>) -> Stri
     let drawn = yield_strength.filter(|strength| *strength < 2.0 * most);
     let header = Header::new(title, legend(around, yield_strength, drawn.is_some()));
     let most = drawn.map_or(most, |strength| strength.max(most));
-    let y = Axis::vertical((0.0, 1.06 * most), HEIGHT, Numbers::Long);
-    let y_label = axis_label(&Quantity::new("von_Mises_stress_MPa", "MPa"), &y, HEIGHT);
+    let y = PlotAxis::vertical((0.0, 1.06 * most), HEIGHT, Numbers::Long);
+    let y_label = axis_label(&PlotQuantity::new("von_Mises_stress_MPa", "MPa"), &y, HEIGHT);
     let left = 12 * UNIT + y_labels_width(y.label_width(), &y_label);
     let frame = Frame { left, top: header.height() + 16 * UNIT, width: WIDTH - left - 30 * UNIT, height: HEIGHT };
     let x = turn_axis();
@@ -85,17 +85,17 @@ pub(super) fn name_bolts(area: &Area<'_>, bolts_deg: &[f64], frame: Frame) -> Dr
 }
 
 /// The axis of a turn.
-pub(super) fn turn_axis() -> Axis {
-    Axis::with_ticks((0.0, 360.0), (0..=12).map(|tick| (30.0 * f64::from(tick), (30 * tick).to_string())))
+pub(super) fn turn_axis() -> PlotAxis {
+    PlotAxis::with_ticks((0.0, 360.0), (0..=12).map(|tick| (30.0 * f64::from(tick), (30 * tick).to_string())))
 }
 
 /// Its label.
-pub(super) fn turn_label(axis: &Axis, room: i32) -> Vec<String> {
-    axis_label(&Quantity::new("θ from the slack end", "°"), axis, room)
+pub(super) fn turn_label(axis: &PlotAxis, room: i32) -> Vec<String> {
+    axis_label(&PlotQuantity::new("θ from the slack end", "°"), axis, room)
 }
 
 fn legend(around: &Around, yield_strength: Option<f64>, drawn: bool) -> Vec<(Mark, String)> {
-    let entry = |curve: &Curve| {
+    let entry = |curve: &StressCurve| {
         let (colour, dash) = look(curve);
         let most = curve.von_mises.iter().copied().fold(0.0, f64::max);
         (Mark::Line(colour, dash), format!("{} up to {} MPa", curve.name(), significant(most, 3)))
@@ -110,7 +110,7 @@ fn legend(around: &Around, yield_strength: Option<f64>, drawn: bool) -> Vec<(Mar
 }
 
 /// A colour per bend, a dash per side.
-fn look(curve: &Curve) -> (RGBColor, Dash) {
+fn look(curve: &StressCurve) -> (RGBColor, Dash) {
     (LINES[curve.number / 2], if curve.number.is_multiple_of(2) { Dash::Solid } else { Dash::Dashed })
 }
 

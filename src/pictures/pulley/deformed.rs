@@ -1,14 +1,14 @@
 //! The deformed section in the colours of von Mises stress.
 
-use super::super::Quantity;
-use super::super::axis::{Axis, Numbers};
-use super::super::colour_bar::Bar;
+use super::super::PlotQuantity;
+use super::super::axis::{Numbers, PlotAxis};
+use super::super::colour_bar::ColourBar;
 use super::super::colours::{GREY, HATCH, INK, VERMILION};
 use super::super::header::{Header, Mark};
 use super::super::number::{power_of_ten, scientific, significant};
 use super::super::panel::{PanelPlan, axis_label, x_labels_height, y_labels_width};
 use super::super::sheet::{Dash, Frame, Sheet, UNIT, WIDTH, stroked};
-use super::drawing::{Box, Drawing, Scale, filled};
+use super::drawing::{Box, Drawing, DrawingScale, filled};
 use super::section::outwards;
 use super::shape::{boundary, coloured, dense};
 use crate::pulley::field::{Field, degrees};
@@ -29,9 +29,9 @@ pub fn deformed(title: &str, mesh: &Mesh, turn: &Turn<'_>, field: &Field) -> Str
     let places: Vec<DVec2> = mesh.nodes.iter().zip(&field.displacement).map(|(at, u)| *at + factor * DVec2::new(u[1], u[0])).collect();
     let largest = Largest::new(mesh, turn, field);
     let header = Header::new(title, legend(factor, field, turn.view().excluded_radius(), mesh));
-    let value = Quantity::new("von Mises stress", "MPa");
+    let value = PlotQuantity::new("von Mises stress", "MPa");
     let range = (0.0, if largest.stress > 0.0 { largest.stress } else { 1.0 });
-    let bar = Bar::new(range, &value, HEIGHT, false);
+    let bar = ColourBar::new(range, &value, HEIGHT, false);
     let layout = DeformedLayout::new(mesh, &places, &bar, header.height());
     let mut sheet = Sheet::new(layout.bottom());
     sheet.draw(|area| header.draw(area));
@@ -146,7 +146,7 @@ impl Largest {
 }
 
 /// Tints and hatches the clamped zone and names it.
-fn exclude(drawing: &mut Drawing, frame: Frame, scale: &Scale, radius: f64) {
+fn exclude(drawing: &mut Drawing, frame: Frame, scale: &DrawingScale, radius: f64) {
     let top = scale.place(DVec2::new(0.0, radius)).1.clamp(frame.top, frame.bottom());
     let (left, right, bottom) = (frame.left, frame.right(), frame.bottom());
     if top >= bottom {
@@ -166,14 +166,14 @@ fn exclude(drawing: &mut Drawing, frame: Frame, scale: &Scale, radius: f64) {
 /// Where panel and colour bar stand.
 struct DeformedLayout {
     frame: Frame,
-    scale: Scale,
-    z: Axis,
-    r: Axis,
+    scale: DrawingScale,
+    z: PlotAxis,
+    r: PlotAxis,
     labels: [Vec<String>; 2],
 }
 
 impl DeformedLayout {
-    fn new(mesh: &Mesh, places: &[DVec2], bar: &Bar, top: i32) -> Self {
+    fn new(mesh: &Mesh, places: &[DVec2], bar: &ColourBar, top: i32) -> Self {
         let (rest, moved) = (bounds(&mesh.nodes), bounds(places));
         let (low, high) = (rest.0.min(moved.0), rest.1.max(moved.1));
         let left = 80 * UNIT;
@@ -184,13 +184,14 @@ impl DeformedLayout {
         let half = DVec2::new(f64::from(width), f64::from(HEIGHT)) / (2.0 * per_mm);
         let middle = 0.5 * (low + high);
         let (z, r) = ((middle.x - half.x, middle.x + half.x), (middle.y - half.y, middle.y + half.y));
-        let z_axis = Axis::horizontal(z, width, 25 * UNIT, Numbers::Long);
-        let r_axis = Axis::vertical(r, HEIGHT, Numbers::Long);
-        let labels = [axis_label(&Quantity::new("z", "mm"), &z_axis, width), axis_label(&Quantity::new("r", "mm"), &r_axis, HEIGHT)];
+        let z_axis = PlotAxis::horizontal(z, width, 25 * UNIT, Numbers::Long);
+        let r_axis = PlotAxis::vertical(r, HEIGHT, Numbers::Long);
+        let labels =
+            [axis_label(&PlotQuantity::new("z", "mm"), &z_axis, width), axis_label(&PlotQuantity::new("r", "mm"), &r_axis, HEIGHT)];
         let left = left.max(12 * UNIT + y_labels_width(r_axis.label_width(), &labels[1]));
         let frame = Frame { left, top, width, height: HEIGHT };
         let origin = DVec2::new(f64::from(left) - per_mm * z.0, f64::from(frame.bottom()) + per_mm * r.0);
-        Self { frame, scale: Scale { origin, per_mm }, z: z_axis, r: r_axis, labels }
+        Self { frame, scale: DrawingScale { origin, per_mm }, z: z_axis, r: r_axis, labels }
     }
 
     fn bottom(&self) -> i32 {
@@ -214,7 +215,7 @@ impl DeformedLayout {
 mod tests {
     use super::super::super::sheet::tests::assert_svg;
     use super::*;
-    use crate::pulley::field::Answers;
+    use crate::pulley::field::UnitDisplacements;
     use crate::pulley::fixtures;
     use crate::pulley::response::View;
     use crate::pulley::section::Fineness;
@@ -226,7 +227,7 @@ mod tests {
             let (mesh, table) = fixtures::solved(kind, &dimensions, &fineness);
             let turn = Turn::new(View::new(&table), fixtures::case(&dimensions));
             let largest = turn.summary(None, [None; 2]).largest;
-            let answers = Answers::new(&mesh, &dimensions, 0.29, &fineness);
+            let answers = UnitDisplacements::new(&mesh, &dimensions, 0.29, &fineness);
             let field = answers.field(&mesh, &turn, largest.theta, largest.phase);
             let svg = deformed("a & b", &mesh, &turn, &field);
             assert_svg(&svg);

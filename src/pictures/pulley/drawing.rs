@@ -1,7 +1,7 @@
 //! A section on paper: equal scale on both axes, filled shapes, dimension lines, and words that keep clear of what is there.
 
 use super::super::colours::{GREY, INK};
-use super::super::sheet::{Dash, Drawn, Sheet, UNIT, stroked};
+use super::super::sheet::{Dash, Drawn, Point, Sheet, UNIT, stroked};
 use super::super::words::{line_height, text, text_width};
 use glam::DVec2;
 use plotters::prelude::*;
@@ -14,18 +14,16 @@ const ARROW: f64 = 90.0;
 /// Radius around a labelled place that its line leaves free for a mark.
 const MARK: f64 = 50.0;
 
-pub(super) type Point = (i32, i32);
-
 /// Where a place of the section, (z, r) in mm, stands on the paper.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Scale {
+pub(super) struct DrawingScale {
     /// Paper of z = 0 on the axis.
     pub origin: DVec2,
     /// Units of paper per mm.
     pub per_mm: f64,
 }
 
-impl Scale {
+impl DrawingScale {
     pub fn exact(&self, at: DVec2) -> DVec2 {
         DVec2::new(self.origin.x + self.per_mm * at.x, self.origin.y - self.per_mm * at.y)
     }

@@ -4,10 +4,10 @@ use super::super::colours::{BLUE, GREY, HATCH, INK, VERMILION};
 use super::super::header::{Header, Mark, sentence};
 use super::super::number::significant;
 use super::super::sheet::{Dash, Sheet, UNIT, WIDTH, stroked};
-use super::drawing::{Box, Drawing, Scale, filled, rounded};
+use super::drawing::{Box, Drawing, DrawingScale, filled, rounded};
 use super::shape::{boundary, dense};
-use crate::pulley::mesh::{Edge, Face, Mesh};
-use crate::pulley::section::{Dimensions, Kind, checked_outline};
+use crate::pulley::mesh::{Face, Mesh, MeshEdge};
+use crate::pulley::section::{Dimensions, SectionKind, checked_outline};
 use glam::DVec2;
 use plotters::style::RGBColor;
 
@@ -21,7 +21,7 @@ const ROW: i32 = 27 * UNIT;
 
 /// Draws a section with z to the right and r up, both to the same scale. `mesh` must be of the same dimensions. Dimensions that give
 /// no section: the picture says why.
-pub fn section(title: &str, kind: Kind, dimensions: &Dimensions, mesh: &Mesh) -> String {
+pub fn section(title: &str, kind: SectionKind, dimensions: &Dimensions, mesh: &Mesh) -> String {
     let outline = match checked_outline(kind, dimensions) {
         Ok(outline) => outline.parts,
         Err(flaw) => return sentence(title, &flaw.to_string()),
@@ -57,10 +57,10 @@ fn diameter(radius: f64) -> String {
 
 /// Where everything stands.
 struct SectionPlan<'a> {
-    kind: Kind,
+    kind: SectionKind,
     d: &'a Dimensions,
     mesh: &'a Mesh,
-    scale: Scale,
+    scale: DrawingScale,
     /// Height of the axis on the paper.
     axis: i32,
     /// Ends of the section along the axis, mm.
@@ -71,7 +71,7 @@ struct SectionPlan<'a> {
 }
 
 impl<'a> SectionPlan<'a> {
-    fn new(kind: Kind, d: &'a Dimensions, mesh: &'a Mesh, header: i32) -> Self {
+    fn new(kind: SectionKind, d: &'a Dimensions, mesh: &'a Mesh, header: i32) -> Self {
         let z = |pick: fn(f64, f64) -> f64, start| mesh.nodes.iter().map(|node| node.x).fold(start, pick);
         let ends = (z(f64::min, f64::INFINITY), z(f64::max, f64::NEG_INFINITY));
         let top = mesh.nodes.iter().map(|node| node.y).fold(0.0, f64::max);
@@ -79,7 +79,7 @@ impl<'a> SectionPlan<'a> {
         let roof = header + 2 * ROW + 44 * UNIT;
         let axis = roof + (per_mm * top).round() as i32;
         let origin = DVec2::new(f64::from(WIDTH / 2) - per_mm * 0.5 * (ends.0 + ends.1), f64::from(axis));
-        Self { kind, d, mesh, scale: Scale { origin, per_mm }, axis, ends, top, header }
+        Self { kind, d, mesh, scale: DrawingScale { origin, per_mm }, axis, ends, top, header }
     }
 
     fn drawing(&self, outline: &[Vec<DVec2>]) -> Drawing {
@@ -89,7 +89,7 @@ impl<'a> SectionPlan<'a> {
         drawing.insert(&filled(&path, STEEL, "1"));
         self.bolt(&mut drawing);
         drawing.insert(&stroked(&path, INK, 12, Dash::Solid));
-        if self.kind == Kind::WeldedDiscs {
+        if self.kind == SectionKind::WeldedDiscs {
             let weld = [self.d.bore_radius, self.d.weld_radius].map(|r| self.scale.place(DVec2::new(self.d.thickness, r)));
             drawing.insert(&stroked(&format!("M{} {}V{}", weld[0].0, weld[0].1, weld[1].1), INK, 36, Dash::Solid));
         }
@@ -146,13 +146,13 @@ impl<'a> SectionPlan<'a> {
 
     /// z of the hub's front, mm.
     fn front(&self) -> f64 {
-        if self.kind == Kind::WeldedDiscs { 2.0 * self.d.thickness } else { self.d.thickness }
+        if self.kind == SectionKind::WeldedDiscs { 2.0 * self.d.thickness } else { self.d.thickness }
     }
 
     /// Middles of the grooves, mm.
     fn grooves(&self) -> Vec<f64> {
         let bands = self.mesh.surface.iter().filter(|edge| edge.face == Face::Band);
-        let across = |edge: &Edge| {
+        let across = |edge: &MeshEdge| {
             let [start, _, end] = self.mesh.edge(edge);
             let mean = self.d.mean_radius;
             let share = (mean - start.y) / (end.y - start.y);
@@ -170,7 +170,7 @@ impl<'a> SectionPlan<'a> {
         let (left, right) = (place(self.ends.0.min(-0.09 * self.top), 0.0).0, place(self.ends.1, 0.0).0);
         drawing.line((left - 4 * ROW, self.axis), (right + 3 * ROW, self.axis), INK, Dash::Centre);
         let mut inner = vec![(d.bore_radius, 0.0), (d.bolt_circle_radius, -0.09 * self.top), (d.bracket_radius, -0.09 * self.top)];
-        if self.kind == Kind::WeldedDiscs {
+        if self.kind == SectionKind::WeldedDiscs {
             inner.push((d.weld_radius, 0.0));
         }
         inner[..].sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -197,7 +197,7 @@ impl<'a> SectionPlan<'a> {
         let (from, to) = (self.outermost(|node| -node.x), self.outermost(|node| node.x));
         drawing.across(from, to, roof - 24 * UNIT - ROW, &mm(self.ends.1 - self.ends.0));
         let words = match self.kind {
-            Kind::WeldedDiscs => format!("2 × {}", mm(d.thickness)),
+            SectionKind::WeldedDiscs => format!("2 × {}", mm(d.thickness)),
             _ => mm(d.thickness),
         };
         let below = place(0.0, d.bore_radius).1 + 22 * UNIT;

@@ -1,7 +1,7 @@
 //! Shapes of a meshed section: its boundary, and smooth colours inside its elements.
 
 use super::super::colours::{STEPS, step_colour, step_of};
-use super::drawing::Scale;
+use super::drawing::DrawingScale;
 use crate::pulley::element::value_at;
 use crate::pulley::mesh::{Element, Mesh};
 use glam::DVec2;
@@ -37,7 +37,7 @@ fn sides(element: &Element) -> impl Iterator<Item = [u32; 3]> + '_ {
 }
 
 /// Elements as small polygons in the colours of a value at the nodes, as SVG elements: one path per colour.
-pub(super) fn coloured(mesh: &Mesh, places: &[DVec2], values: &[f64], (low, high): (f64, f64), scale: &Scale) -> String {
+pub(super) fn coloured(mesh: &Mesh, places: &[DVec2], values: &[f64], (low, high): (f64, f64), scale: &DrawingScale) -> String {
     let mut paths = vec![String::new(); STEPS];
     for element in &mesh.elements {
         let nodes = element.nodes();

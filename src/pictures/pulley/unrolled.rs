@@ -1,8 +1,8 @@
 //! The surface of a pulley unrolled: von Mises stress over the angle and the arc length, one map per side.
 
-use super::super::Quantity;
-use super::super::axis::{Axis, Numbers};
-use super::super::colour_bar::Bar;
+use super::super::PlotQuantity;
+use super::super::axis::{Numbers, PlotAxis};
+use super::super::colour_bar::ColourBar;
 use super::super::colours::{GREY, HATCH, INK, STEPS, VERMILION, step_of};
 use super::super::header::{Header, Mark};
 use super::super::number::significant;
@@ -42,11 +42,11 @@ pub fn unrolled(title: &str, mesh: &Mesh, turn: &Turn<'_>, largest: &Peak) -> St
     let heights: Vec<i32> = stretches.iter().map(|it| ((HEIGHT * share(it)).round() as i32).max(90 * UNIT)).collect();
     let bottom = top + heights.iter().sum::<i32>() + (count - 1) * GAP;
     let range = (0.0, if largest.stress > 0.0 { largest.stress } else { 1.0 });
-    let bar = Bar::new(range, &Quantity::new("von Mises stress", "MPa"), bottom - top, false);
-    let axes: Vec<Axis> =
-        stretches.iter().zip(&heights).map(|(it, height)| Axis::vertical((0.0, it.length()), *height, Numbers::Long)).collect();
+    let bar = ColourBar::new(range, &PlotQuantity::new("von Mises stress", "MPa"), bottom - top, false);
+    let axes: Vec<PlotAxis> =
+        stretches.iter().zip(&heights).map(|(it, height)| PlotAxis::vertical((0.0, it.length()), *height, Numbers::Long)).collect();
     let labels: Vec<Vec<String>> = stretches.iter().zip(&axes).zip(&heights).map(|((it, axis), height)| label(it, axis, *height)).collect();
-    let tick_room = axes.iter().map(Axis::label_width).max().unwrap_or(0);
+    let tick_room = axes.iter().map(PlotAxis::label_width).max().unwrap_or(0);
     let left = 12 * UNIT + labels.iter().map(|label| y_labels_width(tick_room, label)).max().unwrap_or(0);
     let width = WIDTH - left - 20 * UNIT - bar.room();
     let x = turn_axis();
@@ -92,10 +92,10 @@ fn legend(largest: &Peak, wrap_deg: f64) -> Vec<(Mark, String)> {
     ]
 }
 
-fn label(stretch: &Stretch, axis: &Axis, room: i32) -> Vec<String> {
+fn label(stretch: &Stretch, axis: &PlotAxis, room: i32) -> Vec<String> {
     let from = if stretch.name == "groove" { "rim" } else { "bore" };
     let mut lines = vec![stretch.name.to_owned()];
-    lines.extend(axis_label(&Quantity::new(format!("arc length from the {from}"), "mm"), axis, room));
+    lines.extend(axis_label(&PlotQuantity::new(format!("arc length from the {from}"), "mm"), axis, room));
     lines
 }
 
@@ -233,7 +233,7 @@ mod tests {
     use super::*;
     use crate::pulley::fixtures;
     use crate::pulley::response::View;
-    use crate::pulley::section::{Fineness, Kind};
+    use crate::pulley::section::{Fineness, SectionKind};
 
     #[test]
     fn maps_show_the_stress_of_the_surface_and_name_every_check_point() {
@@ -247,7 +247,7 @@ mod tests {
                 assert_eq!(svg.matches(&format!("\n{}\n", point.name)).count(), 1, "{kind:?} {}", point.name);
             }
             assert!(svg.contains(&format!("largest stress {} MPa", significant(largest.stress, 4))));
-            let maps = if kind == Kind::WeldedDiscs { 3 } else { 2 };
+            let maps = if kind == SectionKind::WeldedDiscs { 3 } else { 2 };
             assert_eq!(svg.matches("<image").count(), maps + 1);
             // The colour of a cell is that of its stress.
             let stretch = &stretches(&mesh)[0];

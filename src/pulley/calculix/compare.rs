@@ -4,7 +4,7 @@ use super::forces::{Wrench, closed_form};
 use super::recovery::Surface;
 use super::results::Results;
 use super::sweep::Sweep;
-use super::{Error, Job, NAME};
+use super::{CalculixError, Job, NAME};
 use crate::files::read_text;
 use crate::pulley::mesh::Mesh;
 use crate::pulley::response::{CHECK_POINTS, CHUNK, LONGEST, NAMED, View, respond};
@@ -15,7 +15,7 @@ use std::path::Path;
 
 /// A quantity computed in both ways.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Comparison {
+pub struct ComparedQuantity {
     /// What it is.
     pub quantity: String,
     /// Its unit.
@@ -28,7 +28,7 @@ pub struct Comparison {
     pub calculix: f64,
 }
 
-impl Comparison {
+impl ComparedQuantity {
     /// The harmonics less CalculiX, in per cent of CalculiX.
     pub fn difference(&self) -> f64 {
         100.0 * (self.harmonic / self.calculix - 1.0)
@@ -57,29 +57,29 @@ struct SolverAnswers {
 ///
 /// # Errors
 /// A file that cannot be read or is incomplete.
-pub fn compare(directory: &Path) -> Result<Vec<Comparison>, Error> {
+pub fn compare(directory: &Path) -> Result<Vec<ComparedQuantity>, CalculixError> {
     let read = |extension: &str| {
         let path = directory.join(NAME).with_extension(extension);
-        read_text(&path, MOST_BYTES, "export a coarser mesh").map_err(|error| Error::Taken { what: error.to_string() })
+        read_text(&path, MOST_BYTES, "export a coarser mesh").map_err(|error| CalculixError::Taken { what: error.to_string() })
     };
     let deck = read("inp")?;
     let job = Job::from_deck(&deck)?;
     let results = Results::new(&read("dat")?)?;
-    let mesh = section::mesh(job.kind, &job.dimensions, &job.fineness).map_err(Error::Flaw)?;
+    let mesh = section::mesh(job.kind, &job.dimensions, &job.fineness).map_err(CalculixError::Flaw)?;
     let sweep = Sweep::new(&mesh, job.sectors);
     // Every node takes a line: a mesh with more nodes than the deck has bytes is refused before it is built.
     let positions = if sweep.nodes() <= deck.len() { sweep.positions(&mesh) } else { Vec::new() };
     if !has_nodes(&deck, &positions) {
         let what =
             "the deck has other nodes than its first lines give: it was changed, or another version of beltspace wrote it".to_owned();
-        return Err(Error::Unreadable { what });
+        return Err(CalculixError::Unreadable { what });
     }
     let usual = harmonics(&job, &Fineness::USUAL)?;
     let same = harmonics(&job, &Fineness { harmonics: 60, every: true, ..job.fineness })?;
     let solid = calculix(&mesh, &job, &sweep, &results)?;
     let mut rows = Vec::new();
     let mut row = |quantity: String, unit: &'static str, harmonic: f64, same_section: f64, calculix: f64| {
-        rows.push(Comparison { quantity, unit, harmonic, same_section, calculix });
+        rows.push(ComparedQuantity { quantity, unit, harmonic, same_section, calculix });
     };
     row("rim displacement".to_owned(), "mm", usual.rim_displacement, same.rim_displacement, solid.rim_displacement);
     row("volume".to_owned(), "mm^3", usual.volume, same.volume, solid.volume);
@@ -95,7 +95,9 @@ pub fn compare(directory: &Path) -> Result<Vec<Comparison>, Error> {
     }
     let at = |(&node, &force)| positions.get(node).map(|&position| (position, force));
     let Some(reactions) = results.reactions.iter().map(at).collect::<Option<Vec<_>>>() else {
-        return Err(Error::Unreadable { what: "the results have a node that the deck has not: they are of another deck".to_owned() });
+        return Err(CalculixError::Unreadable {
+            what: "the results have a node that the deck has not: they are of another deck".to_owned(),
+        });
     };
     let reaction = Wrench::of(reactions.into_iter());
     let load = closed_form(&job.dimensions, &job.case);
@@ -118,8 +120,8 @@ fn has_nodes(deck: &str, positions: &[DVec3]) -> bool {
     block.into_iter().all(|line| expected.next().is_some_and(|at| same(line, at))) && expected.next().is_none()
 }
 
-fn harmonics(job: &Job, fineness: &Fineness) -> Result<SolverAnswers, Error> {
-    let mesh = section::mesh(job.kind, &job.dimensions, fineness).map_err(Error::Flaw)?;
+fn harmonics(job: &Job, fineness: &Fineness) -> Result<SolverAnswers, CalculixError> {
+    let mesh = section::mesh(job.kind, &job.dimensions, fineness).map_err(CalculixError::Flaw)?;
     let case = Case { phase: Some(job.case.phase.unwrap_or(0.0)), ..job.case };
     // No more than three points per edge and twelve stresses per harmonic.
     let room = (3 * mesh.surface.len() + CHUNK + NAMED) * 12 * (fineness.harmonics + 3);
@@ -137,7 +139,7 @@ fn harmonics(job: &Job, fineness: &Fineness) -> Result<SolverAnswers, Error> {
     })
 }
 
-fn calculix(mesh: &Mesh, job: &Job, sweep: &Sweep, results: &Results) -> Result<SolverAnswers, Error> {
+fn calculix(mesh: &Mesh, job: &Job, sweep: &Sweep, results: &Results) -> Result<SolverAnswers, CalculixError> {
     let surface = Surface::new(mesh, job, sweep, results)?;
     let peaks = surface.peaks();
     let excluded = job.dimensions.excluded_radius(job.kind);
@@ -147,7 +149,7 @@ fn calculix(mesh: &Mesh, job: &Job, sweep: &Sweep, results: &Results) -> Result<
         at.y >= excluded && !mesh.singular.iter().any(|(place, distance)| at.distance(*place) <= distance * (1.0 + 1e-9))
     };
     let counted = peaks.iter().filter(|peak| counts(peak.node));
-    let none = || Error::Unreadable { what: "no surface outside the bracket".to_owned() };
+    let none = || CalculixError::Unreadable { what: "no surface outside the bracket".to_owned() };
     let largest = counted.max_by(|a, b| a.stress.total_cmp(&b.stress)).ok_or_else(none)?;
     let at = mesh.nodes[largest.node as usize];
     let check_point = |name: &str| {

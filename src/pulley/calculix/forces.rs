@@ -4,7 +4,7 @@
 
 use super::sweep::{Sweep, face, turned};
 use crate::pulley::loads::{EdgePoint, GAUSS_3, gauss, seat_points};
-use crate::pulley::mesh::{Edge, Face, Mesh};
+use crate::pulley::mesh::{Face, Mesh, MeshEdge};
 use crate::pulley::section::Dimensions;
 use crate::pulley::turn::Case;
 use glam::{DVec2, DVec3};
@@ -48,7 +48,7 @@ impl Forces {
     }
 
     /// Adds a force per angle, of an angle, on a point of an edge between two angles within a sector.
-    fn add(&mut self, sweep: &Sweep, sector: usize, edge: &Edge, local: f64, range: (f64, f64), force: impl Fn(f64) -> DVec3) {
+    fn add(&mut self, sweep: &Sweep, sector: usize, edge: &MeshEdge, local: f64, range: (f64, f64), force: impl Fn(f64) -> DVec3) {
         let (start, width) = (sweep.angle(sector, 0.0), sweep.angle(1, 0.0));
         let (from, to) = (range.0.max(start), range.1.min(start + width));
         if from >= to {
@@ -63,7 +63,7 @@ impl Forces {
     }
 
     /// The belt: normal to the flank, along it and around, from angle 0 to the wrap.
-    fn belt(&mut self, mesh: &Mesh, sweep: &Sweep, edge: &Edge, case: &Case) {
+    fn belt(&mut self, mesh: &Mesh, sweep: &Sweep, edge: &MeshEdge, case: &Case) {
         for (local, weight) in GAUSS_3 {
             let point = EdgePoint::new(mesh.edge(edge), local);
             let out = DVec2::new(-point.along.y, point.along.x);
@@ -81,7 +81,7 @@ impl Forces {
     }
 
     /// Pressure of the bolt heads, between hole and head.
-    fn heads(&mut self, mesh: &Mesh, sweep: &Sweep, edge: &Edge, d: &Dimensions, case: &Case) {
+    fn heads(&mut self, mesh: &Mesh, sweep: &Sweep, edge: &MeshEdge, d: &Dimensions, case: &Case) {
         let circle = d.bolt_circle_radius;
         for (local, weight) in seat_points(mesh.edge(edge), d) {
             let point = EdgePoint::new(mesh.edge(edge), local);

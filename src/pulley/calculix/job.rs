@@ -1,7 +1,7 @@
 //! The job that a deck was made from, as its first lines state it.
 
-use super::Error;
-use crate::pulley::section::{Dimensions, Fineness, Kind};
+use super::CalculixError;
+use crate::pulley::section::{Dimensions, Fineness, SectionKind};
 use crate::pulley::turn::Case;
 use std::collections::HashMap;
 
@@ -9,7 +9,7 @@ use std::collections::HashMap;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Job {
     /// Type of section.
-    pub kind: Kind,
+    pub kind: SectionKind,
     /// Its dimensions.
     pub dimensions: Dimensions,
     /// How finely the section is meshed.
@@ -69,24 +69,24 @@ impl Job {
     ///
     /// # Errors
     /// An input that is missing, is not a number, or has a value that no export writes.
-    pub fn from_deck(deck: &str) -> Result<Self, Error> {
+    pub fn from_deck(deck: &str) -> Result<Self, CalculixError> {
         let lines = deck.lines().take_while(|line| line.starts_with("**"));
         let pairs = lines.filter_map(|line| line.trim_start_matches('*').split_once('='));
         let values: HashMap<&str, &str> = pairs.map(|(name, value)| (name.trim(), value.trim())).collect();
-        let get = |name: &str| -> Result<f64, Error> {
-            let missing = || Error::Unreadable { what: format!("the deck's first lines do not say {name}") };
+        let get = |name: &str| -> Result<f64, CalculixError> {
+            let missing = || CalculixError::Unreadable { what: format!("the deck's first lines do not say {name}") };
             values.get(name).and_then(|value| value.parse().ok()).ok_or_else(missing)
         };
         // The file may have been changed: values that no export writes could take all memory, or endless time.
-        let within = |name: &str, (least, most): (f64, f64)| -> Result<f64, Error> {
+        let within = |name: &str, (least, most): (f64, f64)| -> Result<f64, CalculixError> {
             let value = get(name)?;
             let what = || format!("the deck's first lines say {name} = {value:e}, and it is {least} to {most}; export the pulley again");
-            if (least..=most).contains(&value) { Ok(value) } else { Err(Error::Unreadable { what: what() }) }
+            if (least..=most).contains(&value) { Ok(value) } else { Err(CalculixError::Unreadable { what: what() }) }
         };
-        let whole = |name: &str, range: (f64, f64)| -> Result<usize, Error> {
+        let whole = |name: &str, range: (f64, f64)| -> Result<usize, CalculixError> {
             let value = within(name, range)?;
             let what = || format!("the deck's first lines say {name} = {value}, and it is a whole number; export the pulley again");
-            if value.fract() == 0.0 { Ok(value as usize) } else { Err(Error::Unreadable { what: what() }) }
+            if value.fract() == 0.0 { Ok(value as usize) } else { Err(CalculixError::Unreadable { what: what() }) }
         };
         let dimension = |name: &'static str| match name {
             "bolt_count" => whole("section.bolt_count", (1.0, 100.0)).map(|count| count as f64),
@@ -95,10 +95,10 @@ impl Job {
         };
         let load = |name: &str| within(&format!("load.{name}"), (-LARGEST, LARGEST));
         let length = |name: &str| within(&format!("mesh.{name}"), (SHORTEST_EDGE, LONGEST));
-        let kind = whole("section.type", (1.0, Kind::ALL.len() as f64))?;
-        let unknown = || Error::Unreadable { what: format!("there is no type {kind} of section") };
+        let kind = whole("section.type", (1.0, SectionKind::ALL.len() as f64))?;
+        let unknown = || CalculixError::Unreadable { what: format!("there is no type {kind} of section") };
         Ok(Self {
-            kind: *kind.checked_sub(1).and_then(|number| Kind::ALL.get(number)).ok_or_else(unknown)?,
+            kind: *kind.checked_sub(1).and_then(|number| SectionKind::ALL.get(number)).ok_or_else(unknown)?,
             dimensions: Dimensions::from_entries(dimension)?,
             fineness: Fineness {
                 through: whole("mesh.through", (1.0, 16.0))?,

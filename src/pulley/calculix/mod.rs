@@ -11,15 +11,16 @@ mod recovery;
 mod results;
 mod sweep;
 
-pub use compare::{Comparison, compare};
+pub use compare::{ComparedQuantity, compare};
 pub use deck::write_deck;
 pub use forces::{Forces, Wrench, closed_form};
 pub use job::Job;
-pub use recovery::{Place, Surface};
+pub use recovery::{Surface, SurfaceStress};
 pub use results::Results;
 pub use sweep::Sweep;
 
 use super::section::{self, Flaw};
+use crate::error::Error;
 use crate::files::{MOVE, refuse_foreign, replace_with};
 use std::fs;
 use std::io;
@@ -30,7 +31,7 @@ pub const NAME: &str = "pulley";
 
 /// Why there is no deck or no comparison.
 #[derive(Debug, thiserror::Error)]
-pub enum Error {
+pub enum CalculixError {
     /// The section is impossible.
     #[error("{0}")]
     Flaw(Flaw),
@@ -60,22 +61,22 @@ pub enum Error {
 ///
 /// # Errors
 /// An impossible section, a file that cannot be written, or one that this program did not write.
-pub fn export(job: &Job, directory: &Path) -> Result<(), Error> {
-    let mesh = section::mesh(job.kind, &job.dimensions, &job.fineness).map_err(Error::Flaw)?;
+pub fn export(job: &Job, directory: &Path) -> Result<(), CalculixError> {
+    let mesh = section::mesh(job.kind, &job.dimensions, &job.fineness).map_err(CalculixError::Flaw)?;
     let failed = |path: &Path| {
         let path = path.to_owned();
-        move |source| Error::File { path, source }
+        move |source| CalculixError::File { path, source }
     };
     fs::create_dir_all(directory).map_err(failed(directory))?;
     let [deck, readme] = [format!("{NAME}.inp"), "README.txt".to_owned()].map(|name| directory.join(name));
     let first_line = HOW_TO.lines().next().unwrap_or_default();
     let own = refuse_foreign(&deck, MOVE, |head| head.contains("** written by beltspace "))
         .and_then(|()| refuse_foreign(&readme, MOVE, |head| head.starts_with(first_line)));
-    own.map_err(|error| Error::Taken { what: error.to_string() })?;
+    own.map_err(|error| CalculixError::Taken { what: error.to_string() })?;
     let write = |path: &Path, text: &dyn Fn(&mut dyn io::Write) -> io::Result<()>| {
         replace_with(path, |out| text(out)).map_err(|error| match error {
-            crate::error::Error::Io { path, source } => Error::File { path, source },
-            other => Error::Taken { what: other.to_string() },
+            Error::Io { path, source } => CalculixError::File { path, source },
+            other => CalculixError::Taken { what: other.to_string() },
         })
     };
     write(&deck, &|mut out| write_deck(&mut out, &mesh, job))?;

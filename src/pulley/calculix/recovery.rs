@@ -5,7 +5,7 @@
 
 use super::results::Results;
 use super::sweep::Sweep;
-use super::{Error, Job};
+use super::{CalculixError, Job};
 use crate::pulley::loads::EdgePoint;
 use crate::pulley::mesh::{Face, Mesh};
 use crate::pulley::turn::von_mises_squared;
@@ -30,7 +30,7 @@ pub struct Surface<'m> {
 
 /// A stress on the surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Place {
+pub struct SurfaceStress {
     /// Von Mises stress, MPa.
     pub stress: f64,
     /// Node of the section.
@@ -47,7 +47,7 @@ impl<'m> Surface<'m> {
     ///
     /// # Errors
     /// A surface node without displacement.
-    pub fn new(mesh: &'m Mesh, job: &'m Job, sweep: &Sweep, results: &Results) -> Result<Self, Error> {
+    pub fn new(mesh: &'m Mesh, job: &'m Job, sweep: &Sweep, results: &Results) -> Result<Self, CalculixError> {
         let mut rings = HashMap::new();
         let waves = RecoveredWaves::new(sweep.sectors());
         for node in mesh.surface.iter().flat_map(|edge| edge.nodes).chain([mesh.rim]) {
@@ -56,7 +56,7 @@ impl<'m> Surface<'m> {
             }
             let on_plane = |sector: usize| {
                 let number = sweep.on_plane(sector, node);
-                let missing = || Error::Unreadable { what: format!("node {} has no displacement in the results", number + 1) };
+                let missing = || CalculixError::Unreadable { what: format!("node {} has no displacement in the results", number + 1) };
                 results.displacements.get(&number).copied().ok_or_else(missing)
             };
             let values: Vec<DVec3> = (0..sweep.sectors()).map(on_plane).collect::<Result<_, _>>()?;
@@ -94,7 +94,7 @@ impl<'m> Surface<'m> {
     }
 
     /// The largest von Mises stress over the turn of every node of every smooth stretch of the surface.
-    pub fn peaks(&self) -> Vec<Place> {
+    pub fn peaks(&self) -> Vec<SurfaceStress> {
         // Strains at the two points of Gauss of each edge, extended linearly to its nodes and averaged where two edges meet smoothly.
         const GAUSS: f64 = 0.577_350_269_189_625_8;
         const SMOOTH: f64 = 0.8;
@@ -126,11 +126,11 @@ impl<'m> Surface<'m> {
     }
 
     /// The largest von Mises stress over the turn of a node, `pressed` being the belt's share of it.
-    fn peak(&self, node: u32, strains: &[Strain], pressed: f64) -> Place {
+    fn peak(&self, node: u32, strains: &[Strain], pressed: f64) -> SurfaceStress {
         let case = &self.job.case;
         let poisson = self.job.poisson;
         let radius = self.mesh.nodes[node as usize].y;
-        let mut best = Place { node, ..Place::default() };
+        let mut best = SurfaceStress { node, ..SurfaceStress::default() };
         for (step, [along, around, shear]) in strains.iter().enumerate() {
             let theta = self.angle(step);
             let normal = if theta <= case.wrap { -pressed * case.normal * libm::exp(case.growth * theta) / radius } else { 0.0 };
@@ -140,7 +140,7 @@ impl<'m> Surface<'m> {
             let tension = [along + poisson * around, around + poisson * along].map(|it| plane * it + share);
             let stress = von_mises_squared([tension[0], tension[1], 0.5 * case.modulus / (1.0 + poisson) * shear]).sqrt();
             if stress > best.stress {
-                best = Place { stress, node, theta };
+                best = SurfaceStress { stress, node, theta };
             }
         }
         best

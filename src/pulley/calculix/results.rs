@@ -1,6 +1,6 @@
 //! What CalculiX has printed into its `.dat` file.
 
-use super::Error;
+use super::CalculixError;
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -20,7 +20,7 @@ impl Results {
     ///
     /// # Errors
     /// A line that is no result, or a file without displacements or reactions.
-    pub fn new(text: &str) -> Result<Self, Error> {
+    pub fn new(text: &str) -> Result<Self, CalculixError> {
         enum FrdBlock {
             Displacements,
             Reactions,
@@ -42,7 +42,7 @@ impl Results {
                 };
                 continue;
             }
-            let unreadable = || Error::Unreadable { what: format!("no result of CalculiX: {line}") };
+            let unreadable = || CalculixError::Unreadable { what: format!("no result of CalculiX: {line}") };
             let vector = || -> Option<(usize, DVec3)> {
                 let mut words = line.split_whitespace();
                 let node: usize = words.next()?.parse().ok()?;
@@ -64,7 +64,7 @@ impl Results {
         }
         if results.displacements.is_empty() || results.reactions.is_empty() {
             let what = "the results hold no displacements or no reactions: CalculiX has not finished".to_owned();
-            return Err(Error::Unreadable { what });
+            return Err(CalculixError::Unreadable { what });
         }
         Ok(results)
     }

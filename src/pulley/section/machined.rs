@@ -6,7 +6,7 @@
 
 use super::strip::{Corner, Piece, rounded};
 use super::{Dimensions, Fineness, Flaw, Outline, sheet};
-use crate::pulley::mesh::{CheckPoint, Edge, Element, Face, Mesh};
+use crate::pulley::mesh::{CheckPoint, Element, Face, Mesh, MeshEdge};
 use crate::pulley::numbering;
 use glam::DVec2;
 use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation};
@@ -170,7 +170,7 @@ pub(super) fn mesh(d: &Dimensions, fineness: &Fineness) -> Result<Mesh, Flaw> {
         let middle = nodes.len() as u32;
         nodes.push(chord.middle);
         middles.insert(key(a, b), middle);
-        surface.push(Edge { nodes: [a, middle, b], face: chord.face });
+        surface.push(MeshEdge { nodes: [a, middle, b], face: chord.face });
         if let Some((name, in_the_middle)) = chord.point {
             points.push(CheckPoint { name, node: if in_the_middle { middle } else { a } });
         }

@@ -19,7 +19,7 @@ use crate::real::Real;
 
 /// The types of section, numbered as in the source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum SectionKind {
     /// Type 1: machined or cast, single groove.
     Machined,
     /// Type 2: two pressed discs, welded together at the hub.
@@ -30,7 +30,7 @@ pub enum Kind {
     PressedCup,
 }
 
-impl Kind {
+impl SectionKind {
     /// All types, in the source's order.
     pub const ALL: [Self; 4] = [Self::Machined, Self::WeldedDiscs, Self::DoubleGroove, Self::PressedCup];
 
@@ -138,11 +138,11 @@ impl<T: Copy> Dimensions<T> {
     /// The dimensions that a type reads, with `none` in place of the others. The code that makes and solves a section gets no others, so
     /// this is the only place that defines on what a type depends.
     #[must_use]
-    pub fn of_kind(self, kind: Kind, none: T) -> Self {
+    pub fn of_kind(self, kind: SectionKind, none: T) -> Self {
         let of_sheet =
             Self { wall_thickness: none, rim_thickness: none, lip_thickness: none, fillet_radius: none, groove_offset: none, ..self };
         match kind {
-            Kind::Machined => Self {
+            SectionKind::Machined => Self {
                 hub_bend_radius: none,
                 web_bend_radius: none,
                 fold_radius: none,
@@ -152,7 +152,7 @@ impl<T: Copy> Dimensions<T> {
                 weld_radius: none,
                 ..self
             },
-            Kind::WeldedDiscs => Self {
+            SectionKind::WeldedDiscs => Self {
                 cup_radius: none,
                 wall_radius: none,
                 wall_offset: none,
@@ -163,8 +163,8 @@ impl<T: Copy> Dimensions<T> {
                 floor_depth: none,
                 ..of_sheet
             },
-            Kind::DoubleGroove => Self { weld_radius: none, ..of_sheet },
-            Kind::PressedCup => Self { ridge_width: none, weld_radius: none, ..of_sheet },
+            SectionKind::DoubleGroove => Self { weld_radius: none, ..of_sheet },
+            SectionKind::PressedCup => Self { ridge_width: none, weld_radius: none, ..of_sheet },
         }
     }
 }
@@ -187,8 +187,8 @@ impl<R: Real> Dimensions<R> {
 
     /// Radius inside which stress is not reported as the largest: the edges of bracket and bolt heads are singular, and the values
     /// beside them grow without limit as the mesh gets finer.
-    pub fn excluded_radius(&self, kind: Kind) -> R {
-        let beside = if kind == Kind::Machined { self.thickness.min(self.fillet_radius) } else { self.thickness };
+    pub fn excluded_radius(&self, kind: SectionKind) -> R {
+        let beside = if kind == SectionKind::Machined { self.thickness.min(self.fillet_radius) } else { self.thickness };
         self.held_radius() + beside
     }
 }
@@ -445,13 +445,13 @@ impl Fineness {
 ///
 /// # Errors
 /// A [`Flaw`]: the first that is found.
-pub fn mesh(kind: Kind, dimensions: &Dimensions, fineness: &Fineness) -> Result<Mesh, Flaw> {
+pub fn mesh(kind: SectionKind, dimensions: &Dimensions, fineness: &Fineness) -> Result<Mesh, Flaw> {
     checked_outline(kind, dimensions)?;
     match kind {
-        Kind::Machined => machined::mesh(dimensions, fineness),
-        Kind::WeldedDiscs => welded_discs::mesh(dimensions, fineness),
-        Kind::DoubleGroove => double_groove::mesh(dimensions, fineness),
-        Kind::PressedCup => pressed_cup::mesh(dimensions, fineness),
+        SectionKind::Machined => machined::mesh(dimensions, fineness),
+        SectionKind::WeldedDiscs => welded_discs::mesh(dimensions, fineness),
+        SectionKind::DoubleGroove => double_groove::mesh(dimensions, fineness),
+        SectionKind::PressedCup => pressed_cup::mesh(dimensions, fineness),
     }
 }
 
@@ -459,15 +459,15 @@ pub fn mesh(kind: Kind, dimensions: &Dimensions, fineness: &Fineness) -> Result<
 ///
 /// # Errors
 /// A [`Flaw`]: the first that is found.
-pub fn checked_outline(kind: Kind, dimensions: &Dimensions) -> Result<Outline, Flaw> {
+pub fn checked_outline(kind: SectionKind, dimensions: &Dimensions) -> Result<Outline, Flaw> {
     if dimensions.groove_count != f64::from(kind.grooves()) {
         return Err(Flaw::Grooves { asked: dimensions.groove_count, has: kind.grooves() });
     }
     let outline = match kind {
-        Kind::Machined => machined::outline(dimensions),
-        Kind::WeldedDiscs => welded_discs::outline(dimensions),
-        Kind::DoubleGroove => double_groove::outline(dimensions),
-        Kind::PressedCup => pressed_cup::outline(dimensions),
+        SectionKind::Machined => machined::outline(dimensions),
+        SectionKind::WeldedDiscs => welded_discs::outline(dimensions),
+        SectionKind::DoubleGroove => double_groove::outline(dimensions),
+        SectionKind::PressedCup => pressed_cup::outline(dimensions),
     }?;
     match outline.crossing() {
         Some(at) => Err(Flaw::Crossing { at }),

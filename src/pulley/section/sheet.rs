@@ -2,7 +2,7 @@
 
 use super::strip::{Piece, Station};
 use super::{Fineness, Flaw};
-use crate::pulley::mesh::{Edge, Element, Face};
+use crate::pulley::mesh::{Element, Face, MeshEdge};
 use glam::DVec2;
 
 /// Most points of the surface that a section may have: the length of the table that is kept of a section.
@@ -10,7 +10,7 @@ pub const SURFACE_POINTS: usize = 1024;
 
 /// A place across the sheet where nodes stand.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub struct SheetStation {
     /// Where.
     pub station: Station,
     /// The piece of the line that it follows (of two that meet there, the later).
@@ -21,7 +21,7 @@ pub struct Place {
 #[derive(Clone, Debug)]
 pub struct Stations {
     /// The stations.
-    pub places: Vec<Place>,
+    pub places: Vec<SheetStation>,
     /// Of each piece, the positions of its first and last station.
     pub spans: Vec<(usize, usize)>,
 }
@@ -60,7 +60,7 @@ impl Stations {
                         continue;
                     }
                     let share = range[0] + (range[1] - range[0]) * (half as f64 / (2 * count) as f64);
-                    stations.places.push(Place { station: piece.station(share), piece: number });
+                    stations.places.push(SheetStation { station: piece.station(share), piece: number });
                 }
             }
             stations.spans.push((first, stations.places.len() - 1));
@@ -81,7 +81,7 @@ pub fn across(position: usize, through: usize) -> usize {
 }
 
 /// The points across the sheet at a station, from the left side.
-pub fn points(place: &Place, position: usize, thickness: f64, through: usize) -> impl Iterator<Item = DVec2> {
+pub fn points(place: &SheetStation, position: usize, thickness: f64, through: usize) -> impl Iterator<Item = DVec2> {
     let count = across(position, through);
     let Station { left, through } = place.station;
     (0..count).map(move |depth| left + through * (thickness * (depth as f64 / (count - 1) as f64)))
@@ -125,7 +125,7 @@ pub fn edges(
     through: usize,
     node: impl Fn(usize, usize) -> u32,
     face: impl Fn(usize, f64) -> Face,
-) -> Vec<Edge> {
+) -> Vec<MeshEdge> {
     let depth = |position: usize| if side == Side::Left { 0 } else { across(position, through) - 1 };
     let edge = |position: usize| {
         let mut nodes = [position, position + 1, position + 2].map(|it| node(it, depth(it)));
@@ -133,7 +133,7 @@ pub fn edges(
             nodes.reverse();
         }
         let middle = &stations.places[position + 1];
-        Edge { nodes, face: face(middle.piece, middle.station.left.y) }
+        MeshEdge { nodes, face: face(middle.piece, middle.station.left.y) }
     };
     (0..stations.places.len() - 1).step_by(2).map(edge).collect()
 }

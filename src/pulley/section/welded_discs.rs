@@ -6,7 +6,7 @@
 use super::sheet::{self, Side, Stations};
 use super::strip::{Corner, Piece, rounded};
 use super::{Dimensions, Fineness, Flaw, Outline};
-use crate::pulley::mesh::{CheckPoint, Edge, Element, Face, Mesh};
+use crate::pulley::mesh::{CheckPoint, Element, Face, Mesh, MeshEdge};
 use glam::DVec2;
 
 /// The left side of the disc on the bracket: hub, bend, flank. The groove is on its right side.
@@ -81,7 +81,7 @@ pub(super) fn mesh(d: &Dimensions, fineness: &Fineness) -> Result<Mesh, Flaw> {
     let groove = |piece, radius: f64| {
         if piece == flank && radius + lift > band.0 && radius + lift < band.1 { Face::Band } else { Face::Free }
     };
-    let inside = |edge: &Edge| {
+    let inside = |edge: &MeshEdge| {
         let place = edge.nodes[1];
         (0..count).step_by(2).take_while(|&position| position < weld).any(|position| node(position + 1, across(position + 1) - 1) == place)
     };
@@ -89,7 +89,7 @@ pub(super) fn mesh(d: &Dimensions, fineness: &Fineness) -> Result<Mesh, Flaw> {
     surface.extend(sheet::edges(&stations, Side::Right, through, node, groove).into_iter().filter(|edge| !inside(edge)));
     let others =
         [sheet::edges(&stations, Side::Left, through, mirrored, front), sheet::edges(&stations, Side::Right, through, mirrored, groove)];
-    let reversed = |edge: Edge| Edge { nodes: [edge.nodes[2], edge.nodes[1], edge.nodes[0]], ..edge };
+    let reversed = |edge: MeshEdge| MeshEdge { nodes: [edge.nodes[2], edge.nodes[1], edge.nodes[0]], ..edge };
     surface.extend(others.into_iter().flatten().map(reversed).filter(|edge| !inside(edge)));
     let mean = stations.places.iter().position(|place| place.piece == flank && place.station.left.y + lift >= d.mean_radius - 1e-9);
     let (at_bend, at_mean) = (stations.middle(bend), mean.unwrap_or(count - 1));

@@ -4,7 +4,7 @@ use super::{close, cup};
 use crate::pulley::fixtures::sections;
 use crate::pulley::loads::{EdgePoint, Seat, belt_harmonic, belt_patterns, clamp_pressure};
 use crate::pulley::mesh::{Face, Mesh};
-use crate::pulley::section::{Dimensions, Fineness, Kind, mesh};
+use crate::pulley::section::{Dimensions, Fineness, SectionKind, mesh};
 use glam::DVec2;
 use std::f64::consts::PI;
 
@@ -17,7 +17,7 @@ struct Resultant {
 
 /// The belt of the reference numbers: 700 N slack, 88 degrees, 3 kW, 3000 rpm, R_b 60 mm, 0.11 kg/m, one groove of 36 degrees.
 #[derive(Clone, Copy, Debug)]
-struct Belt {
+struct ReferenceBelt {
     /// Slack and tight tension less the centrifugal part, N.
     pressing: [f64; 2],
     wrap: f64,
@@ -28,7 +28,7 @@ struct Belt {
     direction: f64,
 }
 
-impl Belt {
+impl ReferenceBelt {
     fn new(d: &Dimensions, direction: f64) -> Self {
         let speed = PI * 0.06 * 3000.0 / 30.0;
         let (slack, tight, lost) = (700.0, 700.0 + 3000.0 / speed, 0.11 * speed * speed);
@@ -129,7 +129,7 @@ fn the_belts_loads_balance_strands_and_torque_on_every_type() {
     for (kind, d) in sections() {
         let mesh = mesh(kind, &d, &Fineness::USUAL).unwrap();
         for direction in [0.0, 30.0, 45.0] {
-            let belt = Belt { radius: d.mean_radius, ..Belt::new(&d, f64::to_radians(direction)) };
+            let belt = ReferenceBelt { radius: d.mean_radius, ..ReferenceBelt::new(&d, f64::to_radians(direction)) };
             let [along, around] = belt.friction();
             let found = belt.resultant(&mesh, &combined(&mesh, [1.0, along, around]), d.band_length());
             let expected = belt.strands(middle(&mesh));
@@ -146,13 +146,13 @@ fn the_belts_loads_balance_strands_and_torque_on_every_type() {
 #[test]
 fn the_example_has_the_reference_resultant() {
     let d = cup(1.8);
-    let mesh = mesh(Kind::PressedCup, &d, &Fineness::USUAL).unwrap();
+    let mesh = mesh(SectionKind::PressedCup, &d, &Fineness::USUAL).unwrap();
     // The groove's middle: z 10 + R_D + R_D cos(beta/2) + half the width.
     close(middle(&mesh), 23.1336, 1e-5, "middle");
     for (direction, normal) in [(45.0, 15.4418), (30.0, 16.448), (0.0, 17.823)] {
-        close(Belt::new(&d, f64::to_radians(direction)).normal(), normal, 4e-5, "R(0)");
+        close(ReferenceBelt::new(&d, f64::to_radians(direction)).normal(), normal, 4e-5, "R(0)");
     }
-    let belt = Belt::new(&d, 45f64.to_radians());
+    let belt = ReferenceBelt::new(&d, 45f64.to_radians());
     close(belt.growth(), 0.140_481, 4e-6, "mu'");
     close(belt.friction()[0], 0.050_106, 1e-5, "mu");
     let found = belt.resultant(&mesh, &combined(&mesh, [1.0, belt.friction()[0], belt.friction()[1]]), d.band_length());
@@ -169,8 +169,8 @@ fn the_example_has_the_reference_resultant() {
 #[test]
 fn the_balance_objects_to_other_conventions() {
     let d = cup(1.8);
-    let section = mesh(Kind::PressedCup, &d, &Fineness::USUAL).unwrap();
-    let belt = Belt::new(&d, 45f64.to_radians());
+    let section = mesh(SectionKind::PressedCup, &d, &Fineness::USUAL).unwrap();
+    let belt = ReferenceBelt::new(&d, 45f64.to_radians());
     let [along, around] = belt.friction();
     let expected = belt.strands(middle(&section));
     let error = |loads: &[f64]| errors(&belt.resultant(&section, loads, d.band_length()), &expected);
@@ -198,14 +198,14 @@ fn the_balance_objects_to_other_conventions() {
     assert!(length.abs() < 1e-12 && (torque + 2.0).abs() < 1e-12, "circumferential friction to the slack end: {backwards:?}");
     assert!((backwards.force[0] - expected.force[0]).hypot(backwards.force[1] - expected.force[1]) > 100.0, "its direction is wrong");
 
-    let circumferential = Belt::new(&d, 0.0);
+    let circumferential = ReferenceBelt::new(&d, 0.0);
     let loads = combined(&section, [1.0, circumferential.friction()[0], circumferential.friction()[1]]);
     let (length, torque) = errors(&circumferential.resultant(&section, &loads, d.band_length()), &expected);
     assert!(length.abs() < 1e-12 && torque.abs() < 1e-12, "friction around the circumference alone balances too");
 
     // The same groove with its band 1 mm higher.
     let raised = Dimensions { mean_radius: 61.0, groove_height: 4.0, floor_depth: 8.0, contact_height: 8.0, ..d };
-    let higher = mesh(Kind::PressedCup, &raised, &Fineness::USUAL).unwrap();
+    let higher = mesh(SectionKind::PressedCup, &raised, &Fineness::USUAL).unwrap();
     let found = belt.resultant(&higher, &combined(&higher, [1.0, along, around]), raised.band_length());
     let (length, torque) = errors(&found, &expected);
     assert!(length.abs() < 1e-12 && (torque - 0.016_67).abs() < 5e-6, "band centred 1 mm above: {length} {torque}");

@@ -9,7 +9,7 @@ mod series;
 use super::band::Wide;
 use super::fixtures::sections;
 use super::loads::EdgePoint;
-use super::mesh::{Edge, Element, Face, Mesh};
+use super::mesh::{Element, Face, Mesh, MeshEdge};
 use super::section::{Dimensions, Fineness};
 use glam::DVec2;
 
@@ -18,10 +18,10 @@ const MODULUS: f64 = 206_000.0;
 /// Their Poisson's ratio.
 const POISSON: f64 = 0.29;
 
-/// Elements that a grid is made of.
+/// How the cells of a grid are divided into elements.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Cells {
-    /// Quadrilaterals.
+enum CellDivision {
+    /// One quadrilateral each.
     Whole,
     /// Two triangles each.
     Split,
@@ -29,7 +29,7 @@ enum Cells {
 
 /// A mesh of `count.0` elements along z and `count.1` along r with corners at `corner(i, j)` and straight sides. Its surface is all
 /// around: of the faces, the innermost (small r) is `Bracket`, the outermost `Band`, the first in z `Seat`, the last `Free`.
-fn grid(count: (usize, usize), cells: Cells, corner: impl Fn(usize, usize) -> DVec2) -> Mesh {
+fn grid(count: (usize, usize), division: CellDivision, corner: impl Fn(usize, usize) -> DVec2) -> Mesh {
     let (columns, rows) = (2 * count.0 + 1, 2 * count.1 + 1);
     // Numbers go along the shorter side first: a narrower band.
     let by_rows = columns <= rows;
@@ -41,7 +41,7 @@ fn grid(count: (usize, usize), cells: Cells, corner: impl Fn(usize, usize) -> DV
         (0..columns).flat_map(|i| (0..rows).map(move |j| (i, j))).collect()
     };
     for (i, j) in places {
-        if cells == Cells::Whole && i % 2 == 1 && j % 2 == 1 {
+        if division == CellDivision::Whole && i % 2 == 1 && j % 2 == 1 {
             continue;
         }
         number[j * columns + i] = nodes.len() as u32;
@@ -53,9 +53,9 @@ fn grid(count: (usize, usize), cells: Cells, corner: impl Fn(usize, usize) -> DV
     for (i, j) in (0..count.1).flat_map(|j| (0..count.0).map(move |i| (2 * i, 2 * j))) {
         let [a, b, c, d] = [at(i, j), at(i + 2, j), at(i + 2, j + 2), at(i, j + 2)];
         let [ab, bc, cd, da] = [at(i + 1, j), at(i + 2, j + 1), at(i + 1, j + 2), at(i, j + 1)];
-        match cells {
-            Cells::Whole => elements.push(Element::quadrilateral([a, b, c, d, ab, bc, cd, da])),
-            Cells::Split => {
+        match division {
+            CellDivision::Whole => elements.push(Element::quadrilateral([a, b, c, d, ab, bc, cd, da])),
+            CellDivision::Split => {
                 let middle = at(i + 1, j + 1);
                 elements.push(Element::triangle([a, b, c, ab, bc, middle]));
                 elements.push(Element::triangle([a, c, d, middle, cd, da]));
@@ -63,7 +63,7 @@ fn grid(count: (usize, usize), cells: Cells, corner: impl Fn(usize, usize) -> DV
         }
     }
     let mut surface = Vec::new();
-    let mut edge = |nodes, face| surface.push(Edge { nodes, face });
+    let mut edge = |nodes, face| surface.push(MeshEdge { nodes, face });
     (0..columns - 1).step_by(2).rev().for_each(|i| edge([at(i + 2, 0), at(i + 1, 0), at(i, 0)], Face::Bracket));
     (0..rows - 1).step_by(2).for_each(|j| edge([at(0, j), at(0, j + 1), at(0, j + 2)], Face::Seat));
     let top = rows - 1;

@@ -1,6 +1,6 @@
 //! Patch tests: fields of constant stress on skewed meshes.
 
-use super::{Cells, POISSON, grid, node, set, tractions};
+use super::{CellDivision, POISSON, grid, node, set, tractions};
 use crate::pulley::band::WIDTH;
 use crate::pulley::element::Lame;
 use crate::pulley::equations::{Equations, stiffness};
@@ -55,12 +55,12 @@ impl PatchField {
 }
 
 /// A patch of four by three elements of which no inner side is parallel to another.
-fn skewed(cells: Cells) -> Mesh {
+fn skewed(division: CellDivision) -> Mesh {
     let wobble = |i: usize, j: usize| {
         let (i, j) = (i as f64, j as f64);
         DVec2::new((2.7 * i + 1.9 * j).sin(), (1.3 * i - 3.1 * j).cos())
     };
-    grid((4, 3), cells, |i, j| {
+    grid((4, 3), division, |i, j| {
         let inner = (1..4).contains(&i) && (1..3).contains(&j);
         let amount = if inner { 0.35 } else { 0.0 };
         DVec2::new(-1.0 + 2.0 * i as f64, 10.0 + 2.0 * j as f64 + 0.3 * i as f64) + amount * wobble(i, j)
@@ -83,14 +83,14 @@ fn loaded(mesh: &Mesh, field: &PatchField) -> (Equations, [u32; 2]) {
 
 #[test]
 fn nodal_forces_of_constant_stress_are_those_of_its_tractions() {
-    for cells in [Cells::Whole, Cells::Split] {
-        let mesh = skewed(cells);
+    for division in [CellDivision::Whole, CellDivision::Split] {
+        let mesh = skewed(division);
         let matrices = stiffness(&mesh, POISSON, &vec![[false; 3]; mesh.nodes.len()], Vec::new());
         for field in &FIELDS {
             let (forces, expected) = (matrices.times(field.order, &field.nodal(&mesh)), tractions(&mesh, |_, point| field.traction(point)));
             for (place, (force, expected)) in forces.iter().zip(&expected).enumerate() {
                 // Rigid motions among them: no force and no energy.
-                assert!((force - expected).abs() < 2e-12, "{cells:?}, {}, {place}: {force} {expected}", field.name);
+                assert!((force - expected).abs() < 2e-12, "{division:?}, {}, {place}: {force} {expected}", field.name);
             }
         }
     }
@@ -98,8 +98,8 @@ fn nodal_forces_of_constant_stress_are_those_of_its_tractions() {
 
 #[test]
 fn a_skewed_patch_under_its_tractions_has_the_linear_field() {
-    for cells in [Cells::Whole, Cells::Split] {
-        let mesh = skewed(cells);
+    for division in [CellDivision::Whole, CellDivision::Split] {
+        let mesh = skewed(division);
         for field in FIELDS.iter().filter(|field| field.strain != [0.0; 6]) {
             let (mut equations, [a, b]) = loaded(&mesh, field);
             let answer = equations.solve([field.order; WIDTH], WIDTH);
@@ -115,7 +115,7 @@ fn a_skewed_patch_under_its_tractions_has_the_linear_field() {
                 let expected = [r - shift - tilt * place.x, z - axial + tilt * place.y, theta + shift + tilt * place.x];
                 for (found, expected) in answer.of(number, 0).into_iter().zip(expected) {
                     for found in found {
-                        assert!((found - expected).abs() < 1e-10, "{cells:?}, {}, {place}: {found} {expected}", field.name);
+                        assert!((found - expected).abs() < 1e-10, "{division:?}, {}, {place}: {found} {expected}", field.name);
                     }
                 }
             }
@@ -125,8 +125,8 @@ fn a_skewed_patch_under_its_tractions_has_the_linear_field() {
 
 #[test]
 fn the_surface_of_a_skewed_patch_has_the_constant_stress() {
-    for cells in [Cells::Whole, Cells::Split] {
-        let mesh = skewed(cells);
+    for division in [CellDivision::Whole, CellDivision::Split] {
+        let mesh = skewed(division);
         for field in FIELDS.iter().filter(|field| field.strain != [0.0; 6]) {
             let (mut equations, _) = loaded(&mesh, field);
             let answer = equations.solve([field.order; WIDTH], WIDTH);
@@ -141,7 +141,7 @@ fn the_surface_of_a_skewed_patch_has_the_constant_stress() {
                 let normal = on(out, out);
                 let expected = [on(along, along) - normal, tt - normal, rt * along.y + zt * along.x];
                 for (found, expected) in point.stresses(&answer, 0, POISSON, normal).iter().zip(expected) {
-                    assert!((found[0] - expected).abs() < 1e-11, "{cells:?}, {}, {}: {} {expected}", field.name, at.at, found[0]);
+                    assert!((found[0] - expected).abs() < 1e-11, "{division:?}, {}, {}: {} {expected}", field.name, at.at, found[0]);
                 }
             }
         }

@@ -4,12 +4,12 @@ use super::{close, cup, every};
 use crate::pulley::fixtures::sections;
 use crate::pulley::loads::belt_harmonic;
 use crate::pulley::response::{BELT, RIM, STRESSES, View, respond};
-use crate::pulley::section::{Dimensions, Fineness, Kind, mesh};
-use crate::pulley::turn::{Case, Summary, Turn};
+use crate::pulley::section::{Dimensions, Fineness, SectionKind, mesh};
+use crate::pulley::turn::{Case, CaseSummary, Turn};
 use std::f64::consts::PI;
 
 /// The answers of a section.
-fn table(kind: Kind, d: &Dimensions, fineness: &Fineness) -> Vec<f64> {
+fn table(kind: SectionKind, d: &Dimensions, fineness: &Fineness) -> Vec<f64> {
     let mesh = mesh(kind, d, fineness).unwrap();
     let orders = fineness.harmonics + 1;
     let mut table = vec![0.0; 64 + (2 * mesh.nodes.len() + 64) * (4 + STRESSES * (BELT + 1) * (orders + 1))];
@@ -34,12 +34,12 @@ fn case() -> Case {
     }
 }
 
-fn summary(table: &[f64], case: Case) -> Summary {
+fn summary(table: &[f64], case: Case) -> CaseSummary {
     Turn::new(View::new(table), case).summary(None, [None; 2])
 }
 
 /// The largest relative difference of largest stress and of check points E and F (and D), against others.
-fn differences(found: &Summary, exact: &Summary) -> (f64, f64) {
+fn differences(found: &CaseSummary, exact: &CaseSummary) -> (f64, f64) {
     let stress = |found: f64, exact: f64| (found / exact - 1.0).abs();
     let points = found.check_points.iter().zip(&exact.check_points).skip(6);
     let worst = points.filter_map(|(a, b)| Some(stress(a.as_ref()?.stress, b.as_ref()?.stress))).fold(0.0, f64::max);
@@ -48,7 +48,7 @@ fn differences(found: &Summary, exact: &Summary) -> (f64, f64) {
 
 #[test]
 fn harmonics_up_to_24_are_enough() {
-    let of = |harmonics: usize| summary(&table(Kind::PressedCup, &cup(1.8), &Fineness { harmonics, ..every() }), case());
+    let of = |harmonics: usize| summary(&table(SectionKind::PressedCup, &cup(1.8), &Fineness { harmonics, ..every() }), case());
     let exact = of(48);
     // Groove and largest stress: 0.07 % at most with 24 harmonics, 0.2 with 20, 0.3 with 16, 0.4 with 12, 3.4 with 8.
     for (harmonics, percent) in [(24, 0.08), (16, 0.4), (8, 4.0)] {
@@ -80,7 +80,7 @@ fn harmonics_between_those_solved_are_interpolated_within_a_thousandth() {
 
 #[test]
 fn a_mirrored_load_has_mirrored_stresses() {
-    let table = table(Kind::PressedCup, &cup(1.8), &Fineness::USUAL);
+    let table = table(SectionKind::PressedCup, &cup(1.8), &Fineness::USUAL);
     let case = case();
     let end = case.normal * (case.growth * case.wrap).exp();
     let phase = case.phase.map(|phase| (case.wrap - phase).rem_euclid(0.5 * PI));
@@ -102,7 +102,7 @@ fn a_mirrored_load_has_mirrored_stresses() {
 
 #[test]
 fn the_free_flank_opens() {
-    let table = table(Kind::PressedCup, &cup(1.8), &Fineness::USUAL);
+    let table = table(SectionKind::PressedCup, &cup(1.8), &Fineness::USUAL);
     let (view, case) = (View::new(&table), case());
     let theta = 48f64.to_radians();
     let rim = view.padded() + RIM;
@@ -131,7 +131,7 @@ fn the_free_flank_opens() {
 fn the_number_of_bolts_does_not_touch_the_belts_part() {
     let free = Case { pressure: 0.0, spin: 0.0, ..case() };
     let fineness = every();
-    let of = |bolts: f64| table(Kind::PressedCup, &Dimensions { bolt_count: bolts, ..cup(1.8) }, &fineness);
+    let of = |bolts: f64| table(SectionKind::PressedCup, &Dimensions { bolt_count: bolts, ..cup(1.8) }, &fineness);
     let four = of(4.0);
     for bolts in [3.0, 5.0, 6.0] {
         let other = of(bolts);

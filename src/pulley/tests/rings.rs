@@ -1,6 +1,6 @@
 //! Cylinders, discs and rings with exact solutions. Numbers of the cases for a modulus of 206 GPa and a Poisson's ratio of 0.29.
 
-use super::{Cells, MODULUS, POISSON, close, grid, node, set, tractions};
+use super::{CellDivision, MODULUS, POISSON, close, grid, node, set, tractions};
 use crate::pulley::band::{WIDTH, Wide};
 use crate::pulley::equations::Equations;
 use crate::pulley::loads::spin;
@@ -10,7 +10,7 @@ use glam::DVec2;
 
 /// A ring of one element along the axis and `count` from radius a to b, whose lengths grow in proportion to the radius.
 fn ring(a: f64, b: f64, thickness: f64, count: usize) -> Mesh {
-    grid((1, count), Cells::Whole, |i, j| DVec2::new(thickness * i as f64, a * (b / a).powf(j as f64 / count as f64)))
+    grid((1, count), CellDivision::Whole, |i, j| DVec2::new(thickness * i as f64, a * (b / a).powf(j as f64 / count as f64)))
 }
 
 /// What a ring does halfway along its faces: displacements in mm and stresses in MPa.
@@ -176,7 +176,7 @@ fn a_thin_ring_bends_like_a_beam() {
 #[test]
 fn a_long_cylinder_loaded_at_its_edge_is_a_beam_on_elastic_foundation() {
     let (radius, thickness, length) = (50.0, 1.0, 40.0);
-    let mesh = grid((40, 1), Cells::Whole, |i, j| DVec2::new(length * i as f64 / 40.0, radius - 0.5 + thickness * j as f64));
+    let mesh = grid((40, 1), CellDivision::Whole, |i, j| DVec2::new(length * i as f64 / 40.0, radius - 0.5 + thickness * j as f64));
     // 1 N per mm of the mean circumference, over the end face.
     let loads = tractions(&mesh, |face, point| if face == Face::Seat { [radius / (thickness * point.at.y), 0.0, 0.0] } else { [0.0; 3] });
     let fixed = mesh.nodes.iter().map(|node| [false, node.x == length, true]).collect();

@@ -2,14 +2,14 @@
 
 use super::{Histogram, names};
 use crate::error::Result;
-use crate::pictures::{self, Quantity};
+use crate::pictures::{self, PlotQuantity};
 use crate::reading::{Folder, changed, owned, rows_of};
 use crate::study::{HistogramSpec, Study};
 use serde_json::{Map, Value, json};
 
 /// The picture of a histogram.
 pub fn picture(study: &Study, spec: &HistogramSpec, histogram: &Histogram) -> String {
-    let quantity = Quantity::new(spec.of.name(&study.model), spec.of.unit(&study.model));
+    let quantity = PlotQuantity::new(spec.of.name(&study.model), spec.of.unit(&study.model));
     let Histogram { from, to, counts, below, above, .. } = histogram;
     pictures::histogram(&study.title, &quantity, *from, *to, counts, *below, *above)
 }

@@ -3,7 +3,7 @@
 use super::Map;
 use super::shown::{has_words, value_of};
 use crate::contours::{Contour, Vertex};
-use crate::pictures::{self, Contours, Curve, MapDetails, Quantity};
+use crate::pictures::{self, Contours, Curve, MapDetails, PlotQuantity};
 use crate::study::{Best, ContourSpec, MapSpec, Study, Thresholds};
 use crate::table::written;
 use crate::table::{Data, Table};
@@ -13,7 +13,7 @@ pub fn picture(study: &Study, spec: &MapSpec, map: &Map, table: &Table, contours
     let axis = |axis: usize| {
         let axis = &study.design[axis];
         let input = &study.model.inputs[axis.inputs()[0]];
-        (Quantity::new(&input.name, input.unit.symbol), (0..axis.count()).map(|level| axis.value(0, level)).collect::<Vec<_>>())
+        (PlotQuantity::new(&input.name, input.unit.symbol), (0..axis.count()).map(|level| axis.value(0, level)).collect::<Vec<_>>())
     };
     let (x, y) = (axis(spec.x), axis(spec.y));
     let words = |axis: usize, values: &[f64]| {
@@ -28,7 +28,7 @@ pub fn picture(study: &Study, spec: &MapSpec, map: &Map, table: &Table, contours
         words: [words(spec.x, &x.1), words(spec.y, &y.1)],
         contours: (!spec.contours.is_empty()).then(|| spec.contours.iter().map(|it| lines(study, it, contours)).collect()),
     };
-    pictures::heatmap(&study.title, (&x.0, &x.1), (&y.0, &y.1), &Quantity::new(name, unit), cells, &details)
+    pictures::heatmap(&study.title, (&x.0, &x.1), (&y.0, &y.1), &PlotQuantity::new(name, unit), cells, &details)
 }
 
 /// The lines of one of the quantities.
@@ -37,7 +37,7 @@ fn lines(study: &Study, spec: &ContourSpec, contours: &[Contour]) -> Contours {
     let lines = |contour: &Contour| contour.lines.iter().map(|line| line.iter().map(point).collect()).collect();
     let curve = |contour: &Contour| Curve { at: contour.at, lines: lines(contour) };
     Contours {
-        quantity: Quantity::new(spec.of.name(&study.model), spec.of.unit(&study.model)),
+        quantity: PlotQuantity::new(spec.of.name(&study.model), spec.of.unit(&study.model)),
         every_change: spec.at == Thresholds::Changes,
         curves: contours.iter().filter(|contour| contour.of == spec.of).map(curve).collect(),
     }

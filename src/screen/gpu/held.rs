@@ -2,7 +2,7 @@
 
 use crate::models::input_to_si;
 use crate::plan::Plan;
-use crate::space::{Dimension, Product};
+use crate::space::{Product, SpaceDimension};
 use crate::study::{Axis, Levels, Quantity};
 
 /// Random numbers are multiples of this fraction of their range.
@@ -54,15 +54,15 @@ fn axes(plan: &Plan) -> Option<String> {
 }
 
 /// The values of an axis that are nearest to zero and farthest from it, as far as a rule gives them, or all that are listed.
-fn values(dimension: &Dimension, column: usize) -> Vec<f64> {
+fn values(dimension: &SpaceDimension, column: usize) -> Vec<f64> {
     let (low, high) = dimension.ends(column);
     let last = dimension.count() - 1;
     match dimension {
-        Dimension::Sampled(_) => vec![low, high, (high - low) * FINEST],
-        Dimension::Axis(Axis::Joint { .. } | Axis::Single { levels: Levels::List(_), .. }) => {
+        SpaceDimension::Sampled(_) => vec![low, high, (high - low) * FINEST],
+        SpaceDimension::Axis(Axis::Joint { .. } | Axis::Single { levels: Levels::List(_), .. }) => {
             (0..=last).map(|level| dimension.value(column, level)).collect()
         }
-        Dimension::Axis(_) => {
+        SpaceDimension::Axis(_) => {
             // Next to a level at zero stands one that is a step away.
             let levels = [0, 1.min(last), last.saturating_sub(1), last].map(|level| dimension.value(column, level));
             levels.into_iter().chain([levels[1] - levels[0]]).collect()

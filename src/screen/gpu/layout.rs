@@ -6,7 +6,7 @@ use super::held::beyond_f32;
 use crate::error::{Error, Result};
 use crate::models::{Fields, Reads, Set, Worse, input_to_si};
 use crate::plan::{Plan, Source, knowns};
-use crate::space::{Dimension, Product};
+use crate::space::{Product, SpaceDimension};
 use crate::study::{Axis, Goal, Levels, Quantity};
 use crate::tape::nearest_f32;
 
@@ -364,7 +364,7 @@ fn level(plan: &Plan, input: usize, value: f64) -> Level {
 }
 
 /// Appends the entries of one level of a dimension, an entry per input.
-pub fn push_level(plan: &Plan, dimension: &Dimension, at: u64, entries: &mut Vec<Level>) {
+pub fn push_level(plan: &Plan, dimension: &SpaceDimension, at: u64, entries: &mut Vec<Level>) {
     for (column, &input) in dimension.inputs().iter().enumerate() {
         entries.push(level(plan, input, dimension.value(column, at)));
     }
@@ -387,8 +387,8 @@ fn scenario_table(plan: &Plan, product: &Product, steady: &mut Vec<Level>) -> Sc
 
 /// Does f32 hold all levels of an input exactly, and do they differ in f32 wherever they differ in f64?
 #[allow(clippy::cast_possible_truncation, reason = "rounding to f32 is the question")]
-fn in_f32(dimension: &Dimension, column: usize) -> (bool, bool) {
-    if matches!(dimension, Dimension::Sampled(_)) || dimension.count() > WINDOW {
+fn in_f32(dimension: &SpaceDimension, column: usize) -> (bool, bool) {
+    if matches!(dimension, SpaceDimension::Sampled(_)) || dimension.count() > WINDOW {
         return (false, false);
     }
     let mut values: Vec<f64> = (0..dimension.count()).map(|level| dimension.value(column, level)).collect();
@@ -400,8 +400,8 @@ fn in_f32(dimension: &Dimension, column: usize) -> (bool, bool) {
 
 /// The linear rule of a fast axis, with the largest error that its evaluation in f32 can have, whether it is contracted or not.
 #[allow(clippy::cast_possible_truncation, clippy::cast_precision_loss, reason = "the rounding is measured")]
-fn linear(plan: &Plan, dimension: &Dimension, input: usize) -> Option<Values> {
-    let Dimension::Axis(Axis::Single { levels, .. }) = dimension else { return None };
+fn linear(plan: &Plan, dimension: &SpaceDimension, input: usize) -> Option<Values> {
+    let SpaceDimension::Axis(Axis::Single { levels, .. }) = dimension else { return None };
     if !matches!(levels, Levels::Even { log: false, .. } | Levels::Step { log: false, .. }) || levels.count() > WINDOW {
         return None;
     }

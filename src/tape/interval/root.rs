@@ -48,21 +48,21 @@ struct Search<F> {
 
 /// A place and what the functions are there.
 #[derive(Clone, Copy)]
-struct Place {
+struct SearchPoint {
     x: f64,
     value: Interval,
     slope: f64,
 }
 
 impl<F: Fn(f64) -> (Interval, Interval)> Search<F> {
-    fn place(&self, x: f64) -> Place {
+    fn place(&self, x: f64) -> SearchPoint {
         let x = x.max(self.inner.low).min(self.inner.high);
         let (value, slope) = (self.function)(x);
-        Place { x, value, slope: slope.middle() }
+        SearchPoint { x, value, slope: slope.middle() }
     }
 
     /// Somewhere among the roots: where the values are as much above zero as below.
-    fn newton(&self, start: f64) -> Place {
+    fn newton(&self, start: f64) -> SearchPoint {
         let mut place = self.place(start);
         for _ in 0..10 {
             let step = place.value.middle() / place.slope;
@@ -81,7 +81,7 @@ impl<F: Fn(f64) -> (Interval, Interval)> Search<F> {
     }
 
     /// A place below every root, close to the least of them (or above every root, close to the largest), if there is one to be found.
-    fn edge(&self, near: Place, is_below: bool) -> Option<f64> {
+    fn edge(&self, near: SearchPoint, is_below: bool) -> Option<f64> {
         let outwards = if is_below { -1.0 } else { 1.0 };
         // Less than zero beyond all roots, by more than f64 can be wrong.
         let beyond = |value: Interval| 2.0 * value.error + if is_below { value.high } else { -value.low };

@@ -1,8 +1,8 @@
 //! Loops that are recorded once, and the tables that they write and read, as text.
 
-use super::{Kind, Writer, put};
+use super::{Arithmetic, Writer, put};
 use crate::real::Place;
-use crate::tape::{ListLoop, Node, Operation, Rolled, Table};
+use crate::tape::{FormulaTable, ListLoop, Node, Operation, Rolled};
 
 impl Writer<'_> {
     /// What an operation of a loop or table is, as a number.
@@ -13,7 +13,7 @@ impl Writer<'_> {
             Rolled::Unknown => "Real(0.0, infinity())".to_owned(),
             Rolled::Get(table, place) => self.entry(table, &index(place)),
             Rolled::GetAt(table, at) => {
-                let at = self.operand(at, Kind::Bounded);
+                let at = self.operand(at, Arithmetic::Bounded);
                 let entry = self.entry(table, &format!("whole({at})"));
                 format!("if_known({at}.bound == 0.0, {entry})")
             }
@@ -63,16 +63,16 @@ impl Writer<'_> {
             Rolled::Table(table, fill) => {
                 let table = usize::from(table);
                 if !self.tables.contains_key(&table) {
-                    let Table { name, length, .. } = self.list.tables[table];
+                    let FormulaTable { name, length, .. } = self.list.tables[table];
                     put(&mut text, indent, &format!("var {name}: array<Real, {length}>;"), "");
                     if self.list.operations[fill as usize] != Operation::Constant(0) {
-                        let fill = self.operand(fill, Kind::Bounded);
+                        let fill = self.operand(fill, Arithmetic::Bounded);
                         put(&mut text, indent, &format!("for (var at = 0; at < {length}; at++) {{ {name}[at] = {fill}; }}"), "");
                     }
                 }
             }
             Rolled::PutLast(table, end, number) => {
-                let [end, number] = [end, number].map(|node| self.operand(node, Kind::Bounded));
+                let [end, number] = [end, number].map(|node| self.operand(node, Arithmetic::Bounded));
                 put(&mut text, indent, &self.put(self.list.table(table), &format!("whole({end})"), &number), "");
             }
             Rolled::Written(number, ..) => text = self.loop_once(number, indent),
@@ -95,11 +95,11 @@ impl Writer<'_> {
         if !self.written.insert(number) {
             return text;
         }
-        let end = self.operand(recorded.end, Kind::Bounded);
+        let end = self.operand(recorded.end, Arithmetic::Bounded);
         put(&mut text, indent, &format!("let end_{number} = min(whole({end}), {}u);", recorded.most), "");
         let states: Vec<usize> = (0..used.len()).filter(|&at| used[at]).collect();
         for &at in &states {
-            let begin = self.operand(recorded.state[at].0, Kind::Bounded);
+            let begin = self.operand(recorded.state[at].0, Arithmetic::Bounded);
             put(&mut text, indent, &format!("var {} = {begin};", self.state(number, at as u8)), "");
         }
         let first = recorded.first;
@@ -116,14 +116,14 @@ impl Writer<'_> {
         let is_state = |node: Node| matches!(list.operations[node as usize], Operation::Rolled(Rolled::State(..)));
         let mut next: Vec<(String, String)> = Vec::new();
         let kept: Vec<Node> = inner.iter().copied().filter(|&node| self.is_kept(node)).collect();
-        text.push_str(&self.lines(&kept, Kind::Bounded, &deeper));
+        text.push_str(&self.lines(&kept, Arithmetic::Bounded, &deeper));
         for store in recorded.stores.iter().filter(|store| store.number != Node::MAX) {
-            let number = self.operand(store.number, Kind::Bounded);
+            let number = self.operand(store.number, Arithmetic::Bounded);
             put(&mut text, &deeper, &self.put(store.table.into(), &index(store.place), &number), "");
         }
         for &at in &states {
             let node = recorded.state[at].1;
-            let (name, value) = (self.state(number, at as u8), self.operand(node, Kind::Bounded));
+            let (name, value) = (self.state(number, at as u8), self.operand(node, Arithmetic::Bounded));
             if states.len() > 1 && (is_state(node) || !self.is_kept(node)) && name != value {
                 put(&mut text, &deeper, &format!("let next_{number}_{at} = {value};"), "");
                 next.push((name, format!("next_{number}_{at}")));

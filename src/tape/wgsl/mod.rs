@@ -64,7 +64,7 @@ const TAKEN: &[&str] = &[
 
 /// How a list's numbers are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum Arithmetic {
     /// With error bounds, by the functions of the shared text.
     Bounded,
     /// In plain f32, inside the search for a root.
@@ -82,7 +82,8 @@ fn first_stage(fields: &Fields, first: &First) -> String {
     let asked: Vec<_> = first.prepared.iter().copied().map(Some).collect();
     let list = List::cut(&first.recording, &asked);
     let leaf = |input: usize, _: &str| format!("i.{}", fields.inputs[input]);
-    let results: Vec<Line> = fields.prepared.iter().map(|field| Line { to: format!("p.{field}"), name: field, equation: "" }).collect();
+    let results: Vec<Assignment> =
+        fields.prepared.iter().map(|field| Assignment { to: format!("p.{field}"), name: field, equation: "" }).collect();
     let mut writer = Writer::new("prepare", fields, &list, &leaf, &results);
     for (&result, (table, _)) in list.results[results.len()..].iter().flatten().zip(fields.tables) {
         writer.tables.insert(list.table(result), table);
@@ -108,17 +109,18 @@ fn second_stage(fields: &Fields, second: &Second, conditions: usize, equations: 
         },
     };
     let cut = |nodes: &[Node]| List::cut(&second.recording, &nodes.iter().copied().map(Some).collect::<Vec<_>>());
-    let lines: Vec<Line> = (0..conditions).map(|number| Line { to: format!("margins[{number}]"), name: "", equation: "" }).collect();
+    let lines: Vec<Assignment> =
+        (0..conditions).map(|number| Assignment { to: format!("margins[{number}]"), name: "", equation: "" }).collect();
     let list = cut(&second.conditions[..conditions]);
     let mut conditions = Writer::new("conditions", fields, &list, &leaf, &lines);
     let margins = "var margins: array<Real, CONDITIONS>;";
     conditions.function("conditions(p: Prepared, i: Inputs) -> array<Real, CONDITIONS>", margins, &lines, "return margins;");
-    let line = |(number, field): (usize, &&'static str)| Line {
+    let line = |(number, field): (usize, &&'static str)| Assignment {
         to: format!("out.{field}"),
         name: field,
         equation: equations.get(number).copied().unwrap_or_default(),
     };
-    let lines: Vec<Line> = fields.outputs.iter().enumerate().map(line).collect();
+    let lines: Vec<Assignment> = fields.outputs.iter().enumerate().map(line).collect();
     let list = cut(&second.outputs);
     let mut finish = Writer::new("finish", fields, &list, &leaf, &lines);
     finish.function("finish(p: Prepared, i: Inputs) -> Outputs", "var out: Outputs;", &lines, "return out;");
@@ -126,7 +128,7 @@ fn second_stage(fields: &Fields, second: &Second, conditions: usize, equations: 
 }
 
 /// Where a result goes.
-struct Line<'a> {
+struct Assignment<'a> {
     /// The place that it is assigned to.
     to: String,
     /// What it is called; empty for one without a name.
@@ -158,7 +160,13 @@ struct Writer<'a> {
 }
 
 impl<'a> Writer<'a> {
-    fn new(stage: &'static str, fields: &Fields, list: &'a List, leaf: &'a dyn Fn(usize, &str) -> String, results: &[Line<'_>]) -> Self {
+    fn new(
+        stage: &'static str,
+        fields: &Fields,
+        list: &'a List,
+        leaf: &'a dyn Fn(usize, &str) -> String,
+        results: &[Assignment<'_>],
+    ) -> Self {
         let mut reads = vec![0; list.operations.len()];
         let mut read = |node: Node| reads[node as usize] += 1;
         list.results.iter().flatten().for_each(|&node| read(node));
@@ -238,39 +246,41 @@ impl<'a> Writer<'a> {
     }
 
     /// The text of a number: its name, or how it is computed.
-    fn operand(&mut self, node: Node, kind: Kind) -> String {
+    fn operand(&mut self, node: Node, arithmetic: Arithmetic) -> String {
         match self.given.get(&node) {
             Some(name) => name.clone(),
             None if self.is_kept(node) => self.name(node),
-            None => self.expression(node, kind),
+            None => self.expression(node, arithmetic),
         }
     }
 
     /// How a number is computed.
-    fn expression(&mut self, node: Node, kind: Kind) -> String {
+    fn expression(&mut self, node: Node, arithmetic: Arithmetic) -> String {
         match self.list.operations[node as usize] {
             Operation::Input(input) => (self.leaf)(input.into(), ""),
             Operation::Rolled(rolled) => self.rolled(rolled),
-            Operation::Constant(bits) => constant(f64::from_bits(bits), kind),
+            Operation::Constant(bits) => constant(f64::from_bits(bits), arithmetic),
             Operation::Argument(_) => "x".to_owned(),
-            Operation::Root(number) => self.root(node, number, kind),
+            Operation::Root(number) => self.root(node, number, arithmetic),
             Operation::Unary(operation, a) => {
-                let a = self.operand(a, kind);
-                if kind == Kind::Bounded { bounded_unary(operation, &a) } else { plain_unary(operation, &a) }
+                let a = self.operand(a, arithmetic);
+                if arithmetic == Arithmetic::Bounded { bounded_unary(operation, &a) } else { plain_unary(operation, &a) }
             }
-            Operation::Binary(Binary::Mul, a, b) if a == b && kind == Kind::Bounded => format!("square({})", self.operand(a, kind)),
-            Operation::Binary(Binary::Mul, a, b) if kind == Kind::Bounded && (self.may_be_zero(a) || self.may_be_zero(b)) => {
-                format!("mul_or_zero({}, {})", self.operand(a, kind), self.operand(b, kind))
+            Operation::Binary(Binary::Mul, a, b) if a == b && arithmetic == Arithmetic::Bounded => {
+                format!("square({})", self.operand(a, arithmetic))
+            }
+            Operation::Binary(Binary::Mul, a, b) if arithmetic == Arithmetic::Bounded && (self.may_be_zero(a) || self.may_be_zero(b)) => {
+                format!("mul_or_zero({}, {})", self.operand(a, arithmetic), self.operand(b, arithmetic))
             }
             Operation::Binary(operation, a, b) => {
-                let (a, b) = (self.operand(a, kind), self.operand(b, kind));
-                if kind == Kind::Bounded { bounded_binary(operation, &a, &b) } else { plain_binary(operation, &a, &b) }
+                let (a, b) = (self.operand(a, arithmetic), self.operand(b, arithmetic));
+                if arithmetic == Arithmetic::Bounded { bounded_binary(operation, &a, &b) } else { plain_binary(operation, &a, &b) }
             }
             Operation::Select(margin, a, b) => {
-                let [margin, a, b] = [margin, a, b].map(|node| self.operand(node, kind));
-                match kind {
-                    Kind::Bounded => format!("select_({margin}, {a}, {b})"),
-                    Kind::Plain => format!("select({b}, {a}, {margin} >= 0.0)"),
+                let [margin, a, b] = [margin, a, b].map(|node| self.operand(node, arithmetic));
+                match arithmetic {
+                    Arithmetic::Bounded => format!("select_({margin}, {a}, {b})"),
+                    Arithmetic::Plain => format!("select({b}, {a}, {margin} >= 0.0)"),
                 }
             }
         }
@@ -287,7 +297,7 @@ impl<'a> Writer<'a> {
     }
 
     /// The lines that keep these numbers, operands first.
-    fn lines(&mut self, nodes: &[Node], kind: Kind, indent: &str) -> String {
+    fn lines(&mut self, nodes: &[Node], arithmetic: Arithmetic, indent: &str) -> String {
         let mut text = String::new();
         for &node in nodes {
             if let Operation::Rolled(rolled) = self.list.operations[node as usize]
@@ -296,7 +306,7 @@ impl<'a> Writer<'a> {
                 text.push_str(&statement);
                 continue;
             }
-            let expression = self.expression(node, kind);
+            let expression = self.expression(node, arithmetic);
             let name = self.name(node);
             let equation = self.list.names[node as usize].map_or("", |(_, equation)| equation);
             put(&mut text, indent, &format!("let {name} = {expression};"), equation);
@@ -305,14 +315,14 @@ impl<'a> Writer<'a> {
     }
 
     /// Writes a function that assigns the results.
-    fn function(&mut self, head: &str, begin: &str, results: &[Line<'_>], end: &str) {
+    fn function(&mut self, head: &str, begin: &str, results: &[Assignment<'_>], end: &str) {
         let list = self.list;
         let kept: Vec<Node> = (0..list.operations.len() as Node).filter(|&node| !list.inner[node as usize] && self.is_kept(node)).collect();
-        let lines = self.lines(&kept, Kind::Bounded, "    ");
+        let lines = self.lines(&kept, Arithmetic::Bounded, "    ");
         let mut text = format!("\nfn {head} {{\n{lines}    {begin}\n");
         for (line, node) in results.iter().zip(&list.results) {
             if let Some(node) = *node {
-                let value = self.operand(node, Kind::Bounded);
+                let value = self.operand(node, Arithmetic::Bounded);
                 put(&mut text, "    ", &format!("{} = {value};", line.to), line.equation);
             }
         }
@@ -321,7 +331,7 @@ impl<'a> Writer<'a> {
     }
 
     /// The functions that find a root, and the call of one.
-    fn root(&mut self, node: Node, number: u8, kind: Kind) -> String {
+    fn root(&mut self, node: Node, number: u8, arithmetic: Arithmetic) -> String {
         let list = self.list;
         let ListRoot { root: Root { bracket, start, argument, value, slope }, inner } = &list.roots[number as usize];
         let own = self.name(node);
@@ -336,8 +346,8 @@ impl<'a> Writer<'a> {
         };
         list.roots[number as usize].root.reads(&mut read);
         inner.iter().for_each(|&node| list.operations[node as usize].operands(&mut read));
-        let given: Vec<String> = outside.iter().map(|&node| self.operand(node, kind)).collect();
-        let call = format!("{name}_{}({})", if kind == Kind::Bounded { "root" } else { "near" }, given.join(", "));
+        let given: Vec<String> = outside.iter().map(|&node| self.operand(node, arithmetic)).collect();
+        let call = format!("{name}_{}({})", if arithmetic == Arithmetic::Bounded { "root" } else { "near" }, given.join(", "));
         if self.roots.contains(&format!("fn {name}_near(")) {
             return call;
         }
@@ -371,11 +381,11 @@ impl<'a> Writer<'a> {
             names.push(own);
         }
         let kept: Vec<Node> = inner.iter().copied().filter(|&node| inside.is_kept(node)).collect();
-        let [low, high, first] = [bracket.0, bracket.1, *start].map(|node| inside.operand(node, Kind::Plain));
-        let plain = inside.lines(&kept, Kind::Plain, "        ");
-        let [near_value, near_slope] = [*value, *slope].map(|node| inside.operand(node, Kind::Plain));
-        let bounded = inside.lines(&kept, Kind::Bounded, "    ");
-        let [value, slope] = [*value, *slope].map(|node| inside.operand(node, Kind::Bounded));
+        let [low, high, first] = [bracket.0, bracket.1, *start].map(|node| inside.operand(node, Arithmetic::Plain));
+        let plain = inside.lines(&kept, Arithmetic::Plain, "        ");
+        let [near_value, near_slope] = [*value, *slope].map(|node| inside.operand(node, Arithmetic::Plain));
+        let bounded = inside.lines(&kept, Arithmetic::Bounded, "    ");
+        let [value, slope] = [*value, *slope].map(|node| inside.operand(node, Arithmetic::Bounded));
         let parameters = |of: &str| names.iter().map(|name| format!("{name}: {of}")).collect::<Vec<_>>().join(", ");
         let values = names.iter().map(|name| format!("{name}.value")).collect::<Vec<_>>().join(", ");
         let mut text = String::new();
@@ -436,13 +446,13 @@ fn broken(line: &str, indent: &str) -> String {
 }
 
 /// A constant: exact in f32, or with what f32 loses of it.
-fn constant(value: f64, kind: Kind) -> String {
+fn constant(value: f64, arithmetic: Arithmetic) -> String {
     let (near, bound) = nearest_f32(value);
-    match kind {
-        Kind::Plain if near < 0.0 => format!("({near:?})"),
-        Kind::Plain => format!("{near:?}"),
-        Kind::Bounded if bound == 0.0 => format!("constant({near:?})"),
-        Kind::Bounded => format!("Real({near:?}, {bound:?})"),
+    match arithmetic {
+        Arithmetic::Plain if near < 0.0 => format!("({near:?})"),
+        Arithmetic::Plain => format!("{near:?}"),
+        Arithmetic::Bounded if bound == 0.0 => format!("constant({near:?})"),
+        Arithmetic::Bounded => format!("Real({near:?}, {bound:?})"),
     }
 }
 

@@ -7,7 +7,7 @@ use beltspace::gpu::PointKernel;
 use beltspace::models::{self, Model};
 use beltspace::plan::Plan;
 use beltspace::study::Study;
-use beltspace::verify::{Report, compare, points_of_model, points_of_study};
+use beltspace::verify::{VerifyReport, compare, points_of_model, points_of_study};
 use std::sync::Arc;
 
 /// The largest fraction of its bound that an error may reach.
@@ -17,7 +17,7 @@ fn kernel(model: &Arc<Model>) -> PointKernel {
     PointKernel::new(&device().device, model, &[]).expect("the kernel compiles")
 }
 
-fn assert_kept(report: &Report, what: &str) {
+fn assert_kept(report: &VerifyReport, what: &str) {
     assert_eq!((report.flips, &report.flip), (0, &None), "{what}");
     let each = || report.outputs.iter().chain(&report.conditions);
     let broken: Vec<_> = each().filter_map(|it| it.example.clone()).collect();

@@ -6,18 +6,18 @@ use beltspace::gpu::PointKernel;
 use beltspace::models::{self, Model, find};
 use beltspace::screen::gpu::Wrong;
 use beltspace::sweep::OnDevice;
-use beltspace::verify::{Report, compare, points_of_model};
+use beltspace::verify::{VerifyReport, compare, points_of_model};
 use std::sync::Arc;
 
 /// A comparison with a kernel that has another piece of text in place of one of its own.
-fn compared(model: &Arc<Model>, piece: &str, other: &str) -> Report {
+fn compared(model: &Arc<Model>, piece: &str, other: &str) -> VerifyReport {
     let source = PointKernel::source(model, &[]).expect("it has a GPU implementation");
     assert!(source.contains(piece), "the kernel of {} has no {piece}", model.name);
     let kernel = PointKernel::from_source(&device().device, model, &source.replace(piece, other)).expect("it compiles all the same");
     compare(&kernel, model, &[], &points_of_model(model, 20_000, 3)).expect("the device works")
 }
 
-fn assert_objects(report: &Report, what: &str) {
+fn assert_objects(report: &VerifyReport, what: &str) {
     let error = report.require().expect_err(what);
     assert!(matches!(&error, Error::ErrorBound(_)), "{what}: {error}");
 }
