@@ -68,9 +68,9 @@ pub struct Scratch {
 }
 
 impl Scratch {
-    /// Room for designs of a model with this formula.
-    pub fn new(kernel: &dyn Kernel) -> Self {
-        let Sizes { inputs, outputs, conditions, .. } = kernel.sizes();
+    /// Room for designs of a model that lists so many inputs (it may list more than its formula reads) and has this formula.
+    pub fn new(inputs: usize, kernel: &dyn Kernel) -> Self {
+        let Sizes { outputs, conditions, .. } = kernel.sizes();
         let [inputs, outputs, margins] = [inputs, outputs, conditions].map(|length| vec![Lanes::splat(0.0); length]);
         Self { inputs, outputs, margins }
     }

@@ -93,7 +93,7 @@ impl<'p> CpuEngine<'p> {
             alive: Vec::new(),
             values: vec![vec![0.0; BLOCK]; plan.tracked.len()],
             row_index: 0,
-            scratch: Scratch::new(&*plan.study.model.kernel),
+            scratch: Scratch::new(plan.study.model.inputs.len(), &*plan.study.model.kernel),
             row_margins: vec![0.0; conditions],
             row_outputs: vec![0.0; outputs],
             latest: Latest::new(&plan.study.model),

@@ -59,7 +59,7 @@ fn differing(model: &Model, count: usize, scratch: &mut Scratch, random: &mut Ra
 #[test]
 fn a_batch_has_the_same_bits_as_its_designs_alone() {
     // What one batch leaves behind must not show in the next.
-    let mut scratches: Vec<_> = models::all().iter().map(|model| Scratch::new(&*model.kernel)).collect();
+    let mut scratches: Vec<_> = models::all().iter().map(|model| Scratch::new(model.inputs.len(), &*model.kernel)).collect();
     let random = &mut Random::new(51);
     let counts: Vec<usize> = (0..40).flat_map(|_| 1..=17).collect();
     for (done, &count) in counts.iter().enumerate() {
@@ -78,7 +78,9 @@ fn a_last_bit_is_noticed_in_a_batch() {
     let random = &mut Random::new(52);
     for model in models::all() {
         let tried = evaluations(model, 50);
-        let noticed = (0..tried).filter(|_| differing(model, 9, &mut Scratch::new(&*model.kernel), random, f64::next_up).is_some()).count();
+        let noticed = (0..tried)
+            .filter(|_| differing(model, 9, &mut Scratch::new(model.inputs.len(), &*model.kernel), random, f64::next_up).is_some())
+            .count();
         assert!(noticed as u64 * 5 > tried * 4, "{}: {noticed} of {tried}", model.name);
     }
 }
