@@ -59,6 +59,9 @@ fn every_file_of_a_result_has_a_name_of_one() {
         let foreign: Vec<_> = result_files(&study).into_iter().filter(|name| !is_ours(name)).collect();
         assert!(foreign.is_empty(), "{foreign:?}");
     }
+    // Quantities of models that the program does not know count too.
+    assert!(["histogram-braking_share.csv", "map-braking_share-2.parquet", "map-feasible_share.svg"].iter().all(|name| is_ours(name)));
+    assert!(!["histogram-.csv", "histogram-1.csv", "map-a b.csv", "map-../x.csv"].iter().any(|name| is_ours(name)));
 }
 
 #[cfg(unix)]

@@ -47,7 +47,7 @@ impl Models {
 }
 
 /// Is this a name that may stand before `=` in a study file and in a file's name?
-fn is_name(name: &str) -> bool {
+pub(crate) fn is_name(name: &str) -> bool {
     name.starts_with(|it: char| it.is_ascii_alphabetic()) && name.bytes().all(|it| it.is_ascii_alphanumeric() || it == b'_')
 }
 

@@ -34,6 +34,7 @@ pub use evaluation::{evaluate, evaluate_asked};
 pub(crate) use evaluation::{fill_si, holds, input_to_si, judge, shown, to_si};
 pub use formula::{Columns, Dependencies, Footprint, Formula, Kernel, Reads, Scratch, Sizes};
 pub use known::Models;
+pub(crate) use known::is_name;
 pub use latest::{Evaluator, Latest};
 pub use many::{Evaluations, evaluate_many};
 pub use model::{AlongTheBelt, Model, Notes, PulleyOf, Remarks};

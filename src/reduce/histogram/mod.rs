@@ -190,7 +190,7 @@ impl Reducer for Histogram {
 
     fn is_file(name: &str) -> bool {
         // Those of other versions among them.
-        is_named(name, "histogram-", &[], &["csv", "parquet", "svg"])
+        is_named(name, "histogram-", &["csv", "parquet", "svg"])
     }
 
     fn write(&self, results: &ReducerResults<'_>, put: &mut Put<'_>) -> Result<()> {

@@ -5,7 +5,7 @@ use super::super::reducer::{Put, ReducerResults, ReducerRoom};
 use super::Map;
 #[cfg(feature = "pictures")]
 use super::picture::picture;
-use super::shown::{SHARE, has_words, value_of};
+use super::shown::{has_words, value_of};
 use crate::contours::{Along, Contour, contours as lines_over};
 use crate::error::Result;
 use crate::plan::Plan;
@@ -53,7 +53,7 @@ pub fn all(study: &Study) -> Vec<String> {
 
 /// May a map of some study have a file of this name?
 pub fn is_file(name: &str) -> bool {
-    is_named(name, "map-", &[SHARE], &["csv", "parquet", "svg"]) || is_named(name, "contours-", &[SHARE], &["csv"])
+    is_named(name, "map-", &["csv", "parquet", "svg"]) || is_named(name, "contours-", &["csv"])
 }
 
 /// What the maps of a study take.

@@ -3,7 +3,7 @@
 use crate::study::{Axis, Best, Levels, MapSpec, Study};
 
 /// Name of a map of feasible shares, in place of a quantity's.
-pub const SHARE: &str = "feasible_share";
+const SHARE: &str = "feasible_share";
 
 /// What a map shows: name and unit.
 pub fn value_of<'s>(study: &'s Study, spec: &MapSpec) -> (&'s str, &'static str) {

@@ -251,7 +251,7 @@ fn a_map_with_lines_is_the_same_however_it_is_made() {
     let empty = left["contours-resultant_force_N.csv"].as_deref();
     assert_eq!(empty, Some(&b"of,at,line,mean_radius_mm,slack_tension_N,bracket,along\n"[..]), "nothing found: the header only");
     assert!(is_ours("contours-slip_margin.csv") && is_ours("contours-resultant_force_N-2.csv"));
-    for foreign in ["contours-notes.csv", "contours-slip_margin.svg", "contours.csv"] {
+    for foreign in ["contours-my notes.csv", "contours-slip_margin.svg", "contours.csv"] {
         assert!(!is_ours(foreign), "{foreign} is someone else's");
     }
 }
