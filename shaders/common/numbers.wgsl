@@ -161,6 +161,16 @@ fn asin_(a: Real) -> Real {
     return rounded(arc_sine(a.value), inherited, FUNCTION);
 }
 
+// Exact unless a whole number lies within the bound; then as many whole numbers off as the bound reaches over. Below zero the distance from
+// the whole number below may be rounded up to 1, and that from the one above down to 0, which leaves nothing sure. A bound that is no number
+// stays one.
+fn floor_(a: Real) -> Real {
+    let value = floor(a.value);
+    let above = a.value - value;
+    let sure = a.bound == 0.0 || (a.bound < above && a.bound < 1.0 - above);
+    return Real(value, select(ceil(a.bound), 0.0, sure));
+}
+
 // The search for the root of an increasing function: Newton's steps inside a shrinking bracket, as in `bracketed_newton` of src/real.
 struct Search {
     low: f32,

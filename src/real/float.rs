@@ -77,6 +77,10 @@ macro_rules! float {
                 $asin(self)
             }
             #[inline(always)]
+            fn floor(self) -> Self {
+                $float::floor(self)
+            }
+            #[inline(always)]
             fn select(margin: Self, at_least_zero: Self, below_zero: Self) -> Self {
                 if margin >= 0.0 { at_least_zero } else { below_zero }
             }

@@ -141,6 +141,10 @@ impl Real for Lanes {
         self.map(Real::asin)
     }
     #[inline(always)]
+    fn floor(self) -> Self {
+        self.map(f64::floor)
+    }
+    #[inline(always)]
     fn select(margin: Self, at_least_zero: Self, below_zero: Self) -> Self {
         let mut chosen = below_zero;
         for lane in 0..LANES {

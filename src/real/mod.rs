@@ -5,6 +5,7 @@
 //! That is why `Real` has no comparison and no branching: a formula selects with [`Real::select`], clamps with `min` and `max`, and
 //! answers questions with signed margins.
 
+mod elementary;
 mod float;
 pub mod functions;
 mod lanes;
@@ -48,6 +49,14 @@ pub trait Real:
     fn cos(self) -> Self;
     /// Arc sine; the caller clamps the argument to [-1, 1].
     fn asin(self) -> Self;
+    /// The largest whole number that is not above it.
+    fn floor(self) -> Self;
+    /// The slope of [`Real::floor`], zero but at the jumps: a number that stands for many designs does not know it where some of them
+    /// lie on different steps.
+    #[inline(always)]
+    fn floor_slope(self) -> Self {
+        Self::constant(0.0)
+    }
     /// `at_least_zero` where `margin >= 0`, else `below_zero`. Both are evaluated: neither may be a NaN that leaks.
     fn select(margin: Self, at_least_zero: Self, below_zero: Self) -> Self;
     /// The slope, in some direction, of what [`Real::select`] gives, from the branches' slopes and from the margin's own: a number that
@@ -131,6 +140,75 @@ pub trait Real:
         parameters: [Self; P],
         function: impl Fn([Self; P], Self) -> (Self, Self),
     ) -> Self;
+
+    /// The exponential function. In f32 it has no error bound beyond about 87 on either side of zero; in f64 it is infinite above 709, and
+    /// below -709 what it is there, half the least normal number.
+    #[inline(always)]
+    #[must_use]
+    fn exp(self) -> Self {
+        elementary::exp(self)
+    }
+    /// Natural logarithm of a number above zero.
+    #[inline(always)]
+    #[must_use]
+    fn ln(self) -> Self {
+        elementary::ln(self)
+    }
+    /// Logarithm to base 10 of a number above zero.
+    #[inline(always)]
+    #[must_use]
+    fn log10(self) -> Self {
+        elementary::log10(self)
+    }
+    /// Hyperbolic tangent.
+    #[inline(always)]
+    #[must_use]
+    fn tanh(self) -> Self {
+        elementary::tanh(self)
+    }
+    /// Tangent.
+    #[inline(always)]
+    #[must_use]
+    fn tan(self) -> Self {
+        self.sin() / self.cos()
+    }
+    /// Arc cosine; the caller clamps the argument to [-1, 1].
+    #[inline(always)]
+    #[must_use]
+    fn acos(self) -> Self {
+        elementary::acos(self)
+    }
+    /// Arc tangent.
+    #[inline(always)]
+    #[must_use]
+    fn atan(self) -> Self {
+        elementary::atan(self)
+    }
+    /// The angle of the point at height `self` and distance `x` to the right, above -pi and up to pi: 0 at the origin, pi on the axis to
+    /// the left of it, whatever the signs of zeros are. On a device a point whose coordinates are both zero, or nearly, is left to f64.
+    #[inline(always)]
+    #[must_use]
+    fn atan2(self, x: Self) -> Self {
+        elementary::atan2(self, x)
+    }
+    /// Root of the sum of two squares, of which none overflows or vanishes.
+    #[inline(always)]
+    #[must_use]
+    fn hypot(self, other: Self) -> Self {
+        elementary::hypot(self, other)
+    }
+    /// The least whole number that is not below it.
+    #[inline(always)]
+    #[must_use]
+    fn ceil(self) -> Self {
+        -(-self).floor()
+    }
+    /// The nearest whole number: `floor(x + 1/2)`, so that halves go up, below zero too.
+    #[inline(always)]
+    #[must_use]
+    fn round(self) -> Self {
+        (self + Self::constant(0.5)).floor()
+    }
 
     /// Square.
     #[inline(always)]

@@ -211,6 +211,15 @@ impl<T: Real<Shared = T>, const N: usize> Real for Dual<T, N> {
         })
     }
     #[inline(always)]
+    fn floor(self) -> Self {
+        self.chain(self.value.floor(), || self.value.floor_slope())
+    }
+    #[inline(always)]
+    fn floor_slope(self) -> Self {
+        let slope = self.value.floor_slope();
+        self.with_slopes(slope, |_| slope)
+    }
+    #[inline(always)]
     fn select(margin: Self, at_least_zero: Self, below_zero: Self) -> Self {
         let mut selected = Self { value: T::select(margin.value, at_least_zero.value, below_zero.value), ..margin };
         let branches = at_least_zero.slopes.iter().zip(&below_zero.slopes);

@@ -166,6 +166,13 @@ impl Real for RunningError {
     fn asin(self) -> Self {
         self.monotone(Real::asin(self.value), |x| libm::asin(x.clamp(-1.0, 1.0)), FUNCTION)
     }
+    /// Exact unless a whole number lies within the bound; then as many whole numbers off as the bound reaches over.
+    fn floor(self) -> Self {
+        let value = f32::floor(self.value);
+        let above = f64::from(self.value) - f64::from(value);
+        let is_sure = self.bound == 0.0 || (self.bound < above && self.bound < 1.0 - above);
+        Self { value, bound: if is_sure { 0.0 } else { self.bound.ceil() } }
+    }
     fn select(margin: Self, at_least_zero: Self, below_zero: Self) -> Self {
         let (chosen, other) = if margin.value >= 0.0 { (at_least_zero, below_zero) } else { (below_zero, at_least_zero) };
         // A margin that is exact decides at zero too: a traction or torque of 0 is no borderline case.

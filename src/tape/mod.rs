@@ -67,6 +67,7 @@ pub enum Unary {
     Sin,
     Cos,
     Asin,
+    Floor,
     /// Times two to this power, which is exact.
     Scale(i16),
 }
@@ -97,6 +98,7 @@ impl Unary {
             Self::Sin => a.sin(),
             Self::Cos => a.cos(),
             Self::Asin => a.asin(),
+            Self::Floor => a.floor(),
             Self::Scale(power) => a.scaled(power),
         }
     }

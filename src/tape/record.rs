@@ -257,6 +257,9 @@ impl Real for Trace {
     fn asin(self) -> Self {
         self.unary(Unary::Asin)
     }
+    fn floor(self) -> Self {
+        self.unary(Unary::Floor)
+    }
     fn select(margin: Self, at_least_zero: Self, below_zero: Self) -> Self {
         match with(|recorder| recorder.ends(margin.0)) {
             Some((low, _)) if low >= 0.0 => at_least_zero,

@@ -12,6 +12,8 @@ mod calculix;
 mod command_line;
 /// How many evaluations a test may make of a model.
 mod effort;
+/// A model with all elementary functions.
+mod every_function;
 /// Screening on a graphics device.
 mod gpu;
 /// Identities of the V-belt variator, and the tables of its paper.

@@ -1,7 +1,7 @@
 //! The operations of a formula over intervals.
 
 use super::root::root_of_all;
-use super::{DOWN, EVERYTHING, Interval, UP, greater, lesser};
+use super::{DOWN, EVERYTHING, Interval, UP, ZERO, greater, lesser};
 use crate::real::Real;
 
 impl Real for Interval {
@@ -101,6 +101,15 @@ impl Real for Interval {
         let slope = 1.0 / ((1.0 - magnitude) * (1.0 + magnitude) * DOWN).sqrt();
         let inherited = lesser(error * slope, 2.3 * error.sqrt());
         self.increasing(|value| libm::asin(value.clamp(-1.0, 1.0)), |_| inherited)
+    }
+    #[inline]
+    fn floor(self) -> Self {
+        // Two numbers less than a whole one apart may lie on both sides of a jump.
+        Self::known(self.low.floor(), self.high.floor(), self.error.ceil())
+    }
+    #[inline]
+    fn floor_slope(self) -> Self {
+        if self.low.floor() == self.high.floor() { ZERO } else { EVERYTHING }
     }
     #[inline(always)]
     fn select(margin: Self, at_least_zero: Self, below_zero: Self) -> Self {

@@ -25,6 +25,8 @@ const TAKEN: &[&str] = &[
     "div",
     "exp",
     "f32",
+    "floor",
+    "floor_",
     "fn",
     "half",
     "i",
@@ -466,6 +468,7 @@ fn bounded_unary(operation: Unary, a: &str) -> String {
         Unary::Sin => format!("sin_({a})"),
         Unary::Cos => format!("cos_({a})"),
         Unary::Asin => format!("asin_({a})"),
+        Unary::Floor => format!("floor_({a})"),
         Unary::Scale(1) => format!("twice({a})"),
         Unary::Scale(-1) => format!("half({a})"),
         Unary::Scale(power) => format!("scaled_({a}, {:?})", 2f32.powi(power.into())),
@@ -483,6 +486,7 @@ fn plain_unary(operation: Unary, a: &str) -> String {
         Unary::Sin => format!("sine({a})"),
         Unary::Cos => format!("cosine({a})"),
         Unary::Asin => format!("arc_sine({a})"),
+        Unary::Floor => format!("floor({a})"),
         Unary::Scale(power) => format!("({:?} * {a})", 2f32.powi(power.into())),
     }
 }

@@ -2,6 +2,7 @@
 //! device never saw them.
 
 use super::{device, shipped};
+use crate::every_function::{BOUND_FACTOR, arguments, every_function};
 use crate::numbers::{meaningful_si, run_over, si};
 use crate::physics::{Region, draw};
 use crate::random::Random;
@@ -10,6 +11,7 @@ use beltspace::models::{self, CONDITION_BOUND_FACTOR, Model};
 use beltspace::plan::Plan;
 use beltspace::study::Study;
 use beltspace::tape::RunningError;
+use beltspace::verify::compare;
 use std::sync::Arc;
 
 const DESIGNS: usize = 20_000;
@@ -51,7 +53,11 @@ impl Compared {
 
 /// Compares a device with f64: each value may be off by the bound of the list, times what decisions allow for, over `divisor`.
 fn compared(model: &Arc<Model>, designs: &[Vec<f64>], divisor: f64) -> Compared {
-    let kernel = PointKernel::new(&device().device, model, &[]).expect("the kernel compiles");
+    compared_on(&PointKernel::new(&device().device, model, &[]).expect("the kernel compiles"), model, designs, divisor)
+}
+
+/// The same with this kernel.
+fn compared_on(kernel: &PointKernel, model: &Arc<Model>, designs: &[Vec<f64>], divisor: f64) -> Compared {
     let points: Vec<_> = designs.iter().map(|inputs| si(model, inputs)).collect();
     let found = kernel.evaluate(&points).expect("the device works");
     let mut all = Compared::default();
@@ -125,4 +131,54 @@ fn a_bound_a_thousand_times_too_small_is_noticed_on_a_device() {
         let found = compared(model, &random_designs(model, Region::Usual, 33), 1000.0);
         assert!(found.broken > found.values / 10, "{}: only {} of {}", model.name, found.broken, found.values);
     }
+}
+
+/// The kernel of the model with all elementary functions, with other pieces of text in place of some of its own.
+fn with_functions(model: &Arc<Model>, pieces: &[(&str, &str)]) -> PointKernel {
+    let mut source = PointKernel::source(model, &[]).expect("it has a kernel");
+    for (piece, other) in pieces {
+        assert!(source.contains(piece), "the kernel has no {piece}");
+        source = source.replace(piece, other);
+    }
+    PointKernel::from_source(&device().device, model, &source).expect("the kernel compiles")
+}
+
+#[test]
+fn elementary_functions_on_a_device_lie_within_the_bounds_of_the_list_and_their_own() {
+    let model = every_function();
+    let kernel = with_functions(&model, &[]);
+    let designs = arguments(&model, 3 * DESIGNS, 34);
+    // The bounds of the list are in f64 and hold as they are.
+    let found = compared_on(&kernel, &model, &designs, BOUND_FACTOR);
+    assert_eq!((found.broken, found.example), (0, None));
+    let (all, values) = (designs.len() * (model.outputs.len() + 1), found.values);
+    assert!(values * 20 > all * 19 && found.unbounded * 50 < values, "{values} of {all}, {} without a bound", found.unbounded);
+    let report = compare(&kernel, &model, &[], &designs.into()).expect("the device works");
+    for it in &report.outputs {
+        eprintln!("{}: at most {:.3} of a bound, median bound {:.1e}", it.name, it.used, it.median_bound);
+    }
+    report.require().expect("the device's own bounds hold");
+}
+
+#[test]
+fn wrong_elementary_functions_on_a_device_are_noticed() {
+    let model = every_function();
+    let designs = arguments(&model, DESIGNS, 35);
+    // Their values, by the bounds of the list.
+    for (piece, other) in [
+        ("let value = floor(a.value);", "let value = round(a.value);"),
+        ("let value = floor(a.value);", "let value = floor(a.value + 1e-4);"),
+        ("constant(709.0)", "constant(60.0)"),
+        ("constant(32.0)", "constant(2.0)"),
+    ] {
+        let found = compared_on(&with_functions(&model, &[(piece, other)]), &model, &designs, BOUND_FACTOR);
+        assert!(found.broken > 50, "{piece} -> {other}: {}", found.broken);
+    }
+    let found = compared(&model, &designs, 1000.0);
+    assert!(found.broken > found.values / 10, "only {} of {}", found.broken, found.values);
+    // The bound that a device finds itself: a whole number within the bound of the argument must not be passed over.
+    let blind = with_functions(&model, &[("select(ceil(a.bound), 0.0, sure)", "0.0")]);
+    let report = compare(&blind, &model, &[], &designs.into()).expect("the device works");
+    let broken: Vec<_> = report.outputs.iter().filter(|it| it.broken > 0).map(|it| it.name.as_str()).collect();
+    assert!(["floor", "ceil", "round"].iter().all(|name| broken.contains(name)), "only {broken:?} object");
 }

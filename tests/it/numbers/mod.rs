@@ -5,6 +5,7 @@ mod boxes;
 mod columns;
 mod dependence;
 mod derivatives;
+mod elementary;
 mod intervals;
 mod precise;
 

@@ -202,6 +202,10 @@ impl Real for Precise {
         }
         angle
     }
+    fn floor(self) -> Self {
+        let whole = self.high.floor();
+        Self::from(if whole == self.high && self.low < 0.0 { whole - 1.0 } else { whole })
+    }
     fn select(margin: Self, at_least_zero: Self, below_zero: Self) -> Self {
         if margin.high >= 0.0 { at_least_zero } else { below_zero }
     }

@@ -2,6 +2,7 @@
 //!
 //! `shaders/write` writes them again.
 
+use crate::every_function::every_function;
 use beltspace::gpu::PointKernel;
 use beltspace::models::{self, Model, Set};
 use beltspace::real::Place;
@@ -213,6 +214,7 @@ impl Reader<'_> {
                     }
                     (MathFunction::Sqrt, None) => self.push(Operation::Unary(Unary::Sqrt, a)),
                     (MathFunction::Abs, None) => self.push(Operation::Unary(Unary::Abs, a)),
+                    (MathFunction::Floor, None) => self.push(Operation::Unary(Unary::Floor, a)),
                     other => panic!("{other:?}"),
                 }
             }
@@ -274,6 +276,7 @@ impl Reader<'_> {
             ("sin_", Unary::Sin),
             ("cos_", Unary::Cos),
             ("asin_", Unary::Asin),
+            ("floor_", Unary::Floor),
             ("twice", Unary::Scale(1)),
             ("half", Unary::Scale(-1)),
             ("exp_m1", Unary::ExpM1),
@@ -557,5 +560,29 @@ fn another_operation_in_a_shader_is_noticed() {
         ("mul(i.ratio, driver_radius)", "mul(driver_radius, i.ratio)"),
     ] {
         assert_ne!(differences(metal, piece, other), Vec::<String>::new(), "{piece} -> {other}");
+    }
+}
+
+#[test]
+fn a_shader_has_the_elementary_functions_as_the_operations_that_they_are_made_of() {
+    let model = every_function();
+    assert_eq!(differences(&model, "", ""), Vec::<String>::new());
+    let source = PointKernel::source(&model, &[]).expect("it has a kernel");
+    naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty())
+        .validate(&naga::front::wgsl::parse_str(&source).expect("it is WGSL"))
+        .expect("it is right");
+}
+
+#[test]
+fn another_operation_of_an_elementary_function_in_a_shader_is_noticed() {
+    let model = every_function();
+    for (piece, other) in [
+        ("floor_(i.step)", "abs_(i.step)"),
+        ("floor((9.536743e-7 * x))", "abs((9.536743e-7 * x))"),
+        ("out.ceil = neg(", "out.ceil = abs_("),
+        ("constant(709.0)", "constant(708.0)"),
+        ("max_(i.x, ", "min_(i.x, "),
+    ] {
+        assert_ne!(differences(&model, piece, other), Vec::<String>::new(), "{piece} -> {other}");
     }
 }
