@@ -78,6 +78,8 @@ pub mod error;
 pub mod export;
 #[doc(hidden)]
 pub mod files;
+#[doc(hidden)]
+pub mod formula;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 #[doc(hidden)]

@@ -24,6 +24,8 @@ pub enum Dimension {
     Compliance,
     Density,
     Volume,
+    /// What only formulas of a study measure.
+    Other,
 }
 
 impl Dimension {
@@ -46,6 +48,7 @@ impl Dimension {
             Self::Compliance => "a deflection per force",
             Self::Density => "a density",
             Self::Volume => "a volume",
+            Self::Other => "a quantity of its own",
         }
     }
 }
@@ -66,6 +69,12 @@ pub struct Unit {
 impl Unit {
     const fn new(symbol: &'static str, dimension: Dimension, multiply: f64, divide: f64) -> Self {
         Self { symbol, dimension, multiply, divide }
+    }
+
+    /// The unit of a quantity that formulas give: one of the units below if there is such, else one of its own with these factors.
+    pub(crate) fn of_formulas(symbol: &'static str, (multiply, divide): (f64, f64)) -> Self {
+        let known = UNITS.iter().map(|(unit, _)| *unit).find(|unit| unit.symbol == symbol && unit.factors() == (multiply, divide));
+        known.unwrap_or(Self::new(symbol, Dimension::Other, multiply, divide))
     }
 
     /// The value in SI units of a value in this unit.
@@ -210,6 +219,11 @@ units! {
     CUBIC_METRE = "m3" | "m³", Volume, 1.0, 1.0;
     /// Pound-force per inch.
     POUND_PER_INCH = "lbf/in", ForcePerLength, POUND_FORCE, INCH;
+}
+
+/// Every unit with the ways to write it.
+pub(crate) fn all() -> impl Iterator<Item = (Unit, &'static [&'static str])> {
+    UNITS.iter().copied()
 }
 
 /// Why a text is not a value in the wanted unit.

@@ -1,0 +1,475 @@
+//! A set of formulas that has been checked as a whole.
+
+use super::check::{CheckedTree, Checker, QuantityType, SlotType};
+use super::dimension::QuantityDimension;
+use super::evaluate::{SlotValues, evaluate};
+use super::expression::Expression;
+use super::function::is_reserved;
+use super::order::order;
+use super::parse::parse;
+use super::problem::{Fault, FormulaProblem};
+use super::scope::{MeasuredCurve, NameRole, Scope};
+use super::typed::{Need, Typed};
+use super::unit::QuantityUnit;
+use crate::likeness::closest;
+use crate::real::Real;
+use std::collections::BTreeSet;
+
+/// Most formulas of a set.
+pub const MOST_FORMULAS: usize = 200;
+/// Most roots in all formulas together.
+pub const MOST_ROOTS: usize = 16;
+
+/// A formula of a set.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct StudyFormula {
+    /// Its name.
+    pub name: String,
+    /// As it was written.
+    pub text: String,
+    /// Its unit: that of the input which it gives, or what the end of its name says.
+    pub measure: QuantityUnit,
+    /// What it says; printed, it is the formula as a person writes it.
+    pub expression: Expression,
+    /// Where its value goes: the slot of the input that it gives, or one of its own.
+    pub slot: usize,
+    /// Does it give an input of the model?
+    pub gives_input: bool,
+    /// Slots that it reads itself.
+    pub reads: Vec<usize>,
+    /// Slots of all inputs, variables and outputs that it depends on, through other formulas too.
+    pub depends_on: Vec<usize>,
+    /// Does it depend on an output of the model, itself or through other formulas?
+    pub reads_outputs: bool,
+    /// Are all its values whole numbers?
+    pub whole: bool,
+    /// Slots of the names whose absence may make its value absent.
+    pub absent_with: Vec<usize>,
+    pub(super) typed: Typed,
+    needs: Vec<Need>,
+}
+
+/// What must hold for a formula to have a value. A design that breaks it has the status `formula NAME: REASON`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct FormulaRequirement {
+    /// Number of the formula, in the order given.
+    pub formula: usize,
+    /// The status.
+    pub status: String,
+    /// Must the margin be greater than zero, rather than at least zero?
+    pub strict: bool,
+}
+
+/// Formulas that have been checked together, and can be evaluated over any number type.
+///
+/// Numbers are kept in slots: first the names of the scope, in their order, then the formulas that give no input, in theirs. A formula
+/// that gives an input writes to that input's slot. All are in SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Formulas {
+    formulas: Vec<StudyFormula>,
+    curves: Vec<MeasuredCurve>,
+    order: Vec<usize>,
+    requirements: Vec<FormulaRequirement>,
+    /// Of each formula: its first requirement.
+    first: Vec<usize>,
+    slots: usize,
+}
+
+impl Formulas {
+    /// Checks formulas, given by name and text, in the order of their file.
+    ///
+    /// # Errors
+    /// Every problem that was found, in the order of the file.
+    pub fn new(scope: &Scope, formulas: &[(String, String)]) -> Result<Self, Vec<FormulaProblem>> {
+        Builder::new(scope, formulas).build()
+    }
+
+    /// The formulas, in the order of the file.
+    pub fn all(&self) -> &[StudyFormula] {
+        &self.formulas
+    }
+
+    /// Number of the formula of that name.
+    pub fn find(&self, name: &str) -> Option<usize> {
+        self.formulas.iter().position(|formula| formula.name == name)
+    }
+
+    /// Numbers of the formulas in the order in which they are evaluated: by dependence, then as in the file.
+    pub fn order(&self) -> &[usize] {
+        &self.order
+    }
+
+    /// Numbers of the formulas that depend on no output, in order: they are evaluated before the model.
+    pub fn before_model(&self) -> impl Iterator<Item = usize> {
+        self.order.iter().copied().filter(|&formula| !self.formulas[formula].reads_outputs)
+    }
+
+    /// Numbers of the formulas that depend on outputs, in order: they are evaluated after the model.
+    pub fn after_model(&self) -> impl Iterator<Item = usize> {
+        self.order.iter().copied().filter(|&formula| self.formulas[formula].reads_outputs)
+    }
+
+    /// What must hold, in the order in which the formulas are evaluated: the first that is broken is the status.
+    pub fn requirements(&self) -> &[FormulaRequirement] {
+        &self.requirements
+    }
+
+    /// How many slots there are.
+    pub fn slots(&self) -> usize {
+        self.slots
+    }
+
+    /// A formula and all that depend on it, itself or through others.
+    pub fn dependents(&self, formula: usize) -> Vec<usize> {
+        let mut slots = vec![self.formulas[formula].slot];
+        let mut found = vec![formula];
+        for &other in &self.order {
+            let it = &self.formulas[other];
+            if other != formula && it.reads.iter().any(|slot| slots.contains(slot)) {
+                slots.push(it.slot);
+                found.push(other);
+            }
+        }
+        found
+    }
+
+    /// Does any formula read this slot itself?
+    pub fn is_read(&self, slot: usize) -> bool {
+        self.formulas.iter().any(|formula| formula.reads.contains(&slot))
+    }
+
+    /// Evaluates a formula whose operands are in their slots: writes its value to its slot, whether it has one to `present` (at least
+    /// zero if it has, `None` if it always has), and its requirements' margins to `margins`, which has one place for each of
+    /// [`Formulas::requirements`].
+    ///
+    /// # Panics
+    /// If `slots` or `present` is shorter than [`Formulas::slots`], or `margins` than [`Formulas::requirements`].
+    pub fn evaluate<R: Real>(&self, formula: usize, slots: &mut [R], present: &mut [Option<R>], margins: &mut [R]) {
+        let it = &self.formulas[formula];
+        let first = self.first[formula];
+        let around = SlotValues { slots, present, curves: &self.curves };
+        let value = evaluate(&it.typed, &around, &mut margins[first..first + it.needs.len()]);
+        slots[it.slot] = value.value;
+        present[it.slot] = value.present;
+    }
+
+    /// Evaluates all formulas, in order. What outputs are must be known: where formulas give inputs, evaluate
+    /// [`Formulas::before_model`] first, then the model, then [`Formulas::after_model`].
+    ///
+    /// # Panics
+    /// As [`Formulas::evaluate`].
+    pub fn evaluate_all<R: Real>(&self, slots: &mut [R], present: &mut [Option<R>], margins: &mut [R]) {
+        for &formula in &self.order {
+            self.evaluate(formula, slots, present, margins);
+        }
+    }
+}
+
+/// Checks a set.
+struct Builder<'s> {
+    scope: &'s Scope,
+    sources: &'s [(String, String)],
+    problems: Vec<FormulaProblem>,
+}
+
+/// Names and texts of formulas, and what is known of each before it is checked.
+struct Heads {
+    slots: Vec<SlotType>,
+    measures: Vec<QuantityUnit>,
+    /// Slot of each formula.
+    of: Vec<usize>,
+    gives_input: Vec<bool>,
+}
+
+impl<'s> Builder<'s> {
+    fn new(scope: &'s Scope, sources: &'s [(String, String)]) -> Self {
+        Self { scope, sources, problems: Vec::new() }
+    }
+
+    fn add(&mut self, formula: usize, fault: Fault) {
+        let (name, text) = &self.sources[formula];
+        self.problems.push(FormulaProblem::new(formula, name, text, fault));
+    }
+
+    fn build(mut self) -> Result<Formulas, Vec<FormulaProblem>> {
+        let sources = self.sources;
+        if sources.len() > MOST_FORMULAS {
+            let message = format!("there may be at most {MOST_FORMULAS} formulas, here are {}", sources.len());
+            self.add(MOST_FORMULAS, Fault::new(0, message));
+            return Err(self.problems);
+        }
+        self.check_curves();
+        let mut heads = self.heads();
+        let expressions: Vec<Option<Expression>> =
+            (0..sources.len()).map(|formula| parse(&sources[formula].1).map_err(|fault| self.add(formula, fault)).ok()).collect();
+        let reads: Vec<Vec<usize>> = expressions.iter().map(|expression| slots_read(expression.as_ref(), &heads.slots)).collect();
+        let giver = |slot: usize| heads.of.iter().position(|&own| own == slot);
+        let formulas_read: Vec<Vec<usize>> = reads.iter().map(|slots| slots.iter().filter_map(|&slot| giver(slot)).collect()).collect();
+        let (order, circles) = order(&formulas_read);
+        for circle in &circles {
+            self.circle(circle, expressions[circle[0]].as_ref());
+        }
+        let mut depends: Vec<BTreeSet<usize>> = vec![BTreeSet::new(); sources.len()];
+        for &formula in &order {
+            let mut all = BTreeSet::new();
+            for &slot in &reads[formula] {
+                match giver(slot) {
+                    Some(other) => all.extend(depends[other].clone()),
+                    None => {
+                        all.insert(slot);
+                    }
+                }
+            }
+            depends[formula] = all;
+        }
+        let is_output = |slot: usize| self.scope.names.get(slot).is_some_and(|name| name.role == NameRole::Output);
+        let reads_outputs: Vec<bool> = depends.iter().map(|slots| slots.iter().any(|&slot| is_output(slot))).collect();
+        let mut formulas: Vec<Option<StudyFormula>> = vec![None; sources.len()];
+        let mut roots = 0;
+        for &formula in &order {
+            let Some(expression) = &expressions[formula] else { continue };
+            if heads.gives_input[formula] && reads_outputs[formula] {
+                let path = path_to_output(formula, &reads, giver, is_output);
+                self.reads_output(formula, &path, &heads.slots, expression);
+            }
+            let mut checker = Checker::new(self.scope, &heads.slots);
+            let checked = checker.check(expression);
+            roots += checker.roots;
+            let (mut faults, needs) = (checker.faults, checker.needs);
+            if checker.roots > 0 && roots > MOST_ROOTS {
+                faults.push(Fault::new(0, format!("there may be at most {MOST_ROOTS} roots in all formulas together")));
+            }
+            let fits = self.fit(formula, &checked, &heads);
+            faults.extend(fits);
+            faults.into_iter().for_each(|fault| self.add(formula, fault));
+            let slot = heads.of[formula];
+            let own = &mut heads.slots[slot];
+            own.whole = checked.whole;
+            own.absent.clone_from(&checked.absent);
+            formulas[formula] = Some(StudyFormula {
+                name: sources[formula].0.clone(),
+                text: sources[formula].1.clone(),
+                measure: heads.measures[formula],
+                expression: expression.clone(),
+                slot,
+                gives_input: heads.gives_input[formula],
+                reads: reads[formula].clone(),
+                depends_on: depends[formula].iter().copied().collect(),
+                reads_outputs: reads_outputs[formula],
+                whole: checked.whole,
+                absent_with: checked.absent,
+                typed: checked.typed,
+                needs,
+            });
+        }
+        if !self.problems.is_empty() {
+            self.problems.sort_by_key(|problem| (problem.formula, problem.at));
+            return Err(self.problems);
+        }
+        let formulas: Vec<StudyFormula> = formulas.into_iter().flatten().collect();
+        Ok(put_together(formulas, order, self.scope.curves.clone(), heads.slots.len()))
+    }
+
+    /// What each formula is before its text is read: name, slot and unit.
+    fn heads(&mut self) -> Heads {
+        let scope = self.scope;
+        let slot = |name: &super::scope::ScopeName, slot: usize| SlotType {
+            name: name.name.clone(),
+            dimension: name.measure.dimension,
+            whole: name.whole,
+            words: name.words.clone(),
+            only_words: name.only_words,
+            absent: if name.may_be_absent { vec![slot] } else { Vec::new() },
+        };
+        let slots: Vec<SlotType> = scope.names.iter().enumerate().map(|(at, name)| slot(name, at)).collect();
+        let mut heads = Heads { slots, measures: Vec::new(), of: Vec::new(), gives_input: Vec::new() };
+        for (formula, (name, _)) in self.sources.iter().enumerate() {
+            let known = scope.slot(name);
+            let is_input = known.is_some_and(|slot| scope.names[slot].role == NameRole::Input);
+            let fault = |builder: &mut Self, message: String| builder.add(formula, Fault::new(0, message));
+            if let Some(message) = unfit_name(name) {
+                fault(self, message);
+            } else if self.sources[..formula].iter().any(|(other, _)| other == name) {
+                fault(self, format!("there are two formulas of the name {name}; keep one of the two"));
+            } else if scope.curves.iter().any(|curve| curve.name == *name) {
+                fault(self, format!("{name} is a curve already; choose another name"));
+            }
+            match known.map(|slot| scope.names[slot].role) {
+                Some(NameRole::Output) => fault(self, format!("{name} is an output of the model already; choose another name")),
+                Some(NameRole::Variable) => fault(self, format!("{name} is given as a variable already; drop it there, or here")),
+                Some(NameRole::Input) | None => {}
+            }
+            if let Some(slot) = known.filter(|_| is_input) {
+                let input = &mut heads.slots[slot];
+                if input.only_words {
+                    fault(self, format!("{name} takes words only, and a formula gives numbers"));
+                }
+                // A number that a formula gives is never a word.
+                input.words.clear();
+                heads.of.push(slot);
+                heads.measures.push(scope.names[slot].measure);
+            } else {
+                let measure = scope.units.of_name(name).unwrap_or_else(|message| {
+                    fault(self, message);
+                    QuantityUnit::NONE
+                });
+                heads.of.push(heads.slots.len());
+                heads.measures.push(measure);
+                // Until it is checked it may be whole: of a circle nothing else is said.
+                heads.slots.push(SlotType {
+                    name: name.clone(),
+                    dimension: measure.dimension,
+                    whole: true,
+                    words: Vec::new(),
+                    only_words: false,
+                    absent: Vec::new(),
+                });
+            }
+            heads.gives_input.push(is_input);
+        }
+        heads
+    }
+
+    fn check_curves(&mut self) {
+        let curves = &self.scope.curves;
+        for (at, curve) in curves.iter().enumerate() {
+            let twice = curves[..at].iter().any(|other| other.name == curve.name);
+            let message = if twice {
+                format!("there are two curves of the name {}; keep one of the two", curve.name)
+            } else if self.scope.slot(&curve.name).is_some() {
+                format!("{} is an input, output or variable already; choose another name for the curve", curve.name)
+            } else if let Some(message) = unfit_name(&curve.name) {
+                message
+            } else {
+                continue;
+            };
+            self.problems.push(FormulaProblem::new(self.sources.len(), &curve.name, "", Fault::new(0, message)));
+        }
+    }
+
+    fn circle(&mut self, circle: &[usize], expression: Option<&Expression>) {
+        let name = |formula: &usize| self.sources[*formula].0.as_str();
+        let path: Vec<&str> = circle.iter().chain(&circle[..1]).map(name).collect();
+        let message = match circle {
+            [_] => format!("{} reads itself", path[0]),
+            _ => format!("these formulas read each other in a circle: {}", path.join(" -> ")),
+        };
+        let at = place_of(expression, path[1]);
+        self.add(circle[0], Fault::new(at, message));
+    }
+
+    fn reads_output(&mut self, formula: usize, path: &[usize], slots: &[SlotType], expression: &Expression) {
+        let names: Vec<&str> = path.iter().map(|&slot| slots[slot].name.as_str()).collect();
+        let name = self.sources[formula].0.as_str();
+        let output = names.last().copied().unwrap_or_default();
+        let through = if names.len() > 1 { format!(" ({name} -> {})", names.join(" -> ")) } else { String::new() };
+        let message = format!(
+            "{name} is an input of the model, so it cannot depend on {output}, which is an output{through}: the model is evaluated once"
+        );
+        let at = place_of(Some(expression), names.first().copied().unwrap_or_default());
+        self.add(formula, Fault::new(at, message));
+    }
+
+    /// Does the value fit what the formula's name says?
+    fn fit(&self, formula: usize, checked: &CheckedTree, heads: &Heads) -> Option<Fault> {
+        let name = &self.sources[formula].0;
+        let wanted = heads.measures[formula].dimension;
+        let given = match checked.kind {
+            QuantityType::Of(dimension) => dimension,
+            QuantityType::Zero => wanted,
+            QuantityType::Broken => return None,
+        };
+        let units = &self.scope.units;
+        if given != wanted {
+            let (given, said) = (units.in_words(given), units.in_words(wanted));
+            let hint = if wanted == QuantityDimension::NONE && !heads.gives_input[formula] {
+                "; end the name in the unit, as belt_mass_kg does, or divide by one"
+            } else {
+                ""
+            };
+            return Some(Fault::new(0, format!("the formula gives {given}, but {name} is {said}{hint}")));
+        }
+        let must_be_whole = heads.gives_input[formula] && self.scope.names[heads.of[formula]].whole;
+        if must_be_whole && !checked.whole {
+            return Some(Fault::new(0, format!("{name} takes whole numbers; end the formula in round(...), floor(...) or ceil(...)")));
+        }
+        None
+    }
+}
+
+/// The set with its requirements numbered.
+fn put_together(formulas: Vec<StudyFormula>, order: Vec<usize>, curves: Vec<MeasuredCurve>, slots: usize) -> Formulas {
+    let mut requirements = Vec::new();
+    let mut first = vec![0; formulas.len()];
+    for &formula in &order {
+        first[formula] = requirements.len();
+        let it = &formulas[formula];
+        requirements.extend(it.needs.iter().map(|need| FormulaRequirement {
+            formula,
+            status: format!("formula {}: {}", it.name, need.reason),
+            strict: need.strict,
+        }));
+    }
+    Formulas { formulas, curves, order, requirements, first, slots }
+}
+
+/// Why this cannot be the name of a formula or curve.
+fn unfit_name(name: &str) -> Option<String> {
+    let is_name = name.starts_with(|first: char| first.is_ascii_alphabetic() || first == '_')
+        && name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_')
+        && name.len() <= 80;
+    if is_reserved(name) {
+        Some(format!("{name} means something in every formula; choose another name"))
+    } else if !is_name {
+        Some(format!("\"{name}\" is no name; use up to 80 letters, digits and \"_\", a letter first"))
+    } else {
+        None
+    }
+}
+
+/// Slots that an expression reads, each once, in the order of the text.
+fn slots_read(expression: Option<&Expression>, slots: &[SlotType]) -> Vec<usize> {
+    let mut read = Vec::new();
+    for (name, _) in expression.map(Expression::names).unwrap_or_default() {
+        let slot = slots.iter().position(|slot| slot.name == name);
+        read.extend(slot.filter(|slot| !read.contains(slot)));
+    }
+    read
+}
+
+/// Where an expression reads a name.
+fn place_of(expression: Option<&Expression>, name: &str) -> usize {
+    let names = expression.map(Expression::names).unwrap_or_default();
+    names.iter().find(|(read, _)| *read == name).map_or(0, |&(_, at)| at)
+}
+
+/// The slots on the shortest way from a formula to an output.
+fn path_to_output(
+    formula: usize,
+    reads: &[Vec<usize>],
+    giver: impl Fn(usize) -> Option<usize>,
+    is_output: impl Fn(usize) -> bool,
+) -> Vec<usize> {
+    let mut seen = BTreeSet::from([formula]);
+    let mut open = std::collections::VecDeque::from([(formula, Vec::new())]);
+    while let Some((formula, path)) = open.pop_front() {
+        for &slot in &reads[formula] {
+            let path = [&path[..], &[slot]].concat();
+            match giver(slot) {
+                None if is_output(slot) => return path,
+                Some(next) if seen.insert(next) => open.push_back((next, path)),
+                _ => {}
+            }
+        }
+    }
+    Vec::new()
+}
+
+/// The name most like `name` among what a set of formulas reads without knowing it: what a name that nothing reads was meant to be.
+pub fn meant(name: &str, texts: &[(String, String)]) -> Option<String> {
+    let read: Vec<Expression> = texts.iter().filter_map(|(_, text)| parse(text).ok()).collect();
+    let names: Vec<&str> = read.iter().flat_map(Expression::names).map(|(read, _)| read).filter(|read| *read != name).collect();
+    closest(name, &names).map(str::to_owned)
+}

@@ -1,0 +1,70 @@
+//! A formula that has been checked: names are slots, units are factors, and what can fail has a number.
+
+use super::function::Function;
+
+/// A formula with everything looked up, in SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Typed {
+    Constant(f64),
+    /// What a name stands for.
+    Slot(usize),
+    /// What a name stands for, in the expression of a root: its number among the root's parameters.
+    Parameter(usize),
+    /// The unknown of the root around it.
+    Unknown,
+    Negative(Box<Typed>),
+    Sum(Box<[Typed; 2]>),
+    Difference(Box<[Typed; 2]>),
+    Product(Box<[Typed; 2]>),
+    /// With the condition that the divisor is not zero, unless it is a constant.
+    Quotient(Box<[Typed; 2]>, Option<usize>),
+    /// A whole power from -8 to 8; a negative one with the condition that its base is not zero.
+    WholePower(Box<Typed>, i8, Option<usize>),
+    /// Any other power, with the conditions on its base and on its size. A power that is surely positive may have zero as its base.
+    Power {
+        parts: Box<[Typed; 2]>,
+        of_zero: bool,
+        base: usize,
+        size: Option<usize>,
+    },
+    /// A function, with the condition on its argument if it has one.
+    Apply(Function, Vec<Typed>, Option<usize>),
+    /// What is compared, then the two values.
+    If(IfTest, Box<[Typed; 4]>),
+    /// A curve by number, with the condition that the argument lies between its ends.
+    Curve(usize, Box<Typed>, usize),
+    /// From, to and expression, the slots of its parameters, and the condition that there is a root.
+    Root(Box<[Typed; 3]>, Vec<usize>, usize),
+}
+
+impl Typed {
+    /// Is it this number?
+    pub(super) fn constant(&self) -> Option<f64> {
+        match self {
+            Self::Constant(value) => Some(*value),
+            _ => None,
+        }
+    }
+}
+
+/// How an `if` compares.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum IfTest {
+    Less,
+    AtMost,
+    Greater,
+    AtLeast,
+    /// Of whole numbers: half a step of room on either side.
+    EqualWhole,
+    /// Of a number and the code of a word.
+    EqualWord,
+}
+
+/// What a formula needs beside its operands having a value.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Need {
+    /// What is said of a design that breaks it.
+    pub(super) reason: String,
+    /// Must the margin be greater than zero, rather than at least zero?
+    pub(super) strict: bool,
+}
