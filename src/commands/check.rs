@@ -30,6 +30,10 @@ pub fn run(path: &Path) -> Result<()> {
             axes.row([role.to_owned(), name(axis), levels, ends.join(", ")]);
         }
     }
+    let mut formulas = TextGrid::default();
+    for (name, text) in model.formulas() {
+        formulas.row([bold("formula"), name.clone(), terminal::told(text)]);
+    }
     let cores = threads(None);
     let speed = Speed::measured(&plan, cores, TRIAL);
     #[allow(clippy::cast_precision_loss, reason = "an estimate for people")]
@@ -64,7 +68,11 @@ pub fn run(path: &Path) -> Result<()> {
     for (name, bytes) in large_files(&plan, needs.front) {
         fact("large file", format!("{name}, about {} MB", grouped(bytes / 1_000_000)));
     }
-    let mut text = format!("{}\n\n{}\n{}", bold(&terminal::told(&study.title)), axes.indented(2), facts.indented(0));
+    let mut text = format!("{}\n\n{}\n", bold(&terminal::told(&study.title)), axes.indented(2));
+    if !model.formulas().is_empty() {
+        text.push_str(&format!("{}\n", formulas.indented(2)));
+    }
+    text.push_str(&facts.indented(0));
     for warning in warnings(&plan, &name) {
         text.push_str(&format!("{} {warning}\n", bold("warning:")));
     }

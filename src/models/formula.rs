@@ -2,7 +2,8 @@
 
 use super::description::Output;
 use crate::real::{LANES, Lanes, Real};
-use crate::tape::{Fields, First, Known, List, Loops, Operation, Recordable, Recording, Second, Set, Trace, Whole};
+use crate::tape::{Fields, Known, List, Operation, Recordable, Set, Trace};
+use std::any::Any;
 
 /// A model's formula in two stages, over any [`Real`]. All values are in SI units.
 ///
@@ -59,12 +60,26 @@ pub struct Columns<'a> {
     pub conditions: &'a [usize],
 }
 
+impl Columns<'_> {
+    /// Turns the outputs among the results from SI into their units.
+    pub fn to_units(&self, outputs: &[Output], results: &mut [Vec<f64>]) {
+        for (&output, result) in self.outputs.iter().zip(results) {
+            let unit = outputs[output].unit;
+            if !unit.is_si() {
+                result[..self.count].iter_mut().for_each(|value| *value = unit.from_si(*value));
+            }
+        }
+    }
+}
+
 /// Room for the inner loop, kept between calls: filling it anew would cost as much as a short block.
 #[derive(Debug)]
 pub struct Scratch {
     inputs: Vec<Lanes>,
     outputs: Vec<Lanes>,
     margins: Vec<Lanes>,
+    /// What a kernel keeps that needs more than that.
+    pub(super) own: Option<Box<dyn Any + Send>>,
 }
 
 impl Scratch {
@@ -72,7 +87,7 @@ impl Scratch {
     pub fn new(inputs: usize, kernel: &dyn Kernel) -> Self {
         let Sizes { outputs, conditions, .. } = kernel.sizes();
         let [inputs, outputs, margins] = [inputs, outputs, conditions].map(|length| vec![Lanes::splat(0.0); length]);
-        Self { inputs, outputs, margins }
+        Self { inputs, outputs, margins, own: None }
     }
 }
 
@@ -134,16 +149,8 @@ pub trait Kernel: Send + Sync {
     }
     /// Second stage for many designs at once: same bits as [`Kernel::finish`].
     ///
-    /// `outputs` are those of the model. `results` has one column per asked output (in the output's unit), then one per asked condition (the margin).
-    fn finish_columns(
-        &self,
-        outputs: &[Output],
-        prepared: &[f64],
-        inputs: &[f64],
-        columns: &Columns<'_>,
-        scratch: &mut Scratch,
-        results: &mut [Vec<f64>],
-    );
+    /// `results` has one column per asked output (in SI units), then one per asked condition (the margin).
+    fn finish_columns(&self, prepared: &[f64], inputs: &[f64], columns: &Columns<'_>, scratch: &mut Scratch, results: &mut [Vec<f64>]);
     /// What depends on what, given what is known of the inputs.
     fn dependencies(&self, inputs: &[Known]) -> Dependencies;
     /// The formula to be recorded; `None` if it is none over any number type.
@@ -170,54 +177,17 @@ impl<F: Formula + Send + Sync> Recordable for F {
         F::FIELDS
     }
 
-    fn whole(&self, known: &[Known], wanted: Set, conditions: Set) -> Whole {
-        let mut lengths = [0; 2];
-        let (recording, nodes) = Recording::of(known, |named| {
-            let mut prepared = vec![Trace::constant(0.0); F::FIELDS.prepared_len()];
-            F::prepare(named, wanted, &mut prepared);
-            let [outputs, margins] = finish::<F>(&prepared, named, wanted, conditions);
-            lengths = [prepared.len(), outputs.len()];
-            [prepared, outputs, margins].concat()
-        });
-        let (prepared, rest) = nodes.split_at(lengths[0]);
-        let (outputs, conditions) = rest.split_at(lengths[1]);
-        Whole { recording, prepared: prepared.to_vec(), outputs: outputs.to_vec(), conditions: conditions.to_vec() }
+    fn trace_prepare(&self, inputs: &[Trace], wanted: Set, prepared: &mut [Trace]) {
+        F::prepare(inputs, wanted, prepared);
     }
 
-    fn stages(&self, wanted: Set, conditions: Set) -> (First, Second) {
-        let known = vec![Known::ANY; F::FIELDS.inputs.len()];
-        let (recording, prepared) = Recording::recorded(Loops::Once, &known, |named| {
-            let mut prepared = Trace::to_pass_on(&F::FIELDS);
-            F::prepare(named, wanted, &mut prepared);
-            F::FIELDS.places().map(|(first, _)| prepared[first].as_written()).collect()
-        });
-        (First { recording, prepared }, second::<F>(Loops::Once, &known, wanted, conditions))
+    fn trace_conditions(&self, prepared: &[Trace], inputs: &[Trace], wanted: Set, margins: &mut [Trace]) {
+        F::conditions(prepared, inputs, wanted, margins);
     }
 
-    fn second(&self, known: &[Known], wanted: Set, conditions: Set) -> Second {
-        second::<F>(Loops::EveryIteration, known, wanted, conditions)
+    fn trace_finish(&self, prepared: &[Trace], inputs: &[Trace], wanted: Set, outputs: &mut [Trace]) {
+        F::finish(prepared, inputs, wanted, outputs);
     }
-}
-
-fn second<F: Formula>(loops: Loops, known: &[Known], wanted: Set, conditions: Set) -> Second {
-    let passed = vec![Known::ANY; F::FIELDS.prepared_len()];
-    let mut count = 0;
-    let (recording, nodes) = Recording::recorded(loops, &[known, &passed].concat(), |named| {
-        let (inputs, prepared) = named.split_at(known.len());
-        let [outputs, margins] = finish::<F>(prepared, inputs, wanted, conditions);
-        count = outputs.len();
-        [outputs, margins].concat()
-    });
-    let (outputs, conditions) = nodes.split_at(count);
-    Second { recording, outputs: outputs.to_vec(), conditions: conditions.to_vec() }
-}
-
-/// Outputs and margins of the second stage of a formula that is recorded.
-fn finish<F: Formula>(prepared: &[Trace], inputs: &[Trace], wanted: Set, conditions: Set) -> [Vec<Trace>; 2] {
-    let [mut outputs, mut margins] = [F::FIELDS.outputs.len(), F::FIELDS.conditions].map(|length| vec![Trace::constant(0.0); length]);
-    F::finish(prepared, inputs, wanted, &mut outputs);
-    F::conditions(prepared, inputs, conditions, &mut margins);
-    [outputs, margins]
 }
 
 impl Dependencies {
@@ -273,25 +243,11 @@ impl<F: Formula + Send + Sync> Kernel for F {
         F::finish(prepared, inputs, wanted, outputs);
     }
 
-    fn finish_columns(
-        &self,
-        outputs: &[Output],
-        prepared: &[f64],
-        inputs: &[f64],
-        columns: &Columns<'_>,
-        scratch: &mut Scratch,
-        results: &mut [Vec<f64>],
-    ) {
+    fn finish_columns(&self, prepared: &[f64], inputs: &[f64], columns: &Columns<'_>, scratch: &mut Scratch, results: &mut [Vec<f64>]) {
         for (lanes, &value) in scratch.inputs.iter_mut().zip(inputs) {
             *lanes = Lanes::splat(value);
         }
         finish_columns::<F>(prepared, columns, scratch, results);
-        for (&output, result) in columns.outputs.iter().zip(results) {
-            let unit = outputs[output].unit;
-            if !unit.is_si() {
-                result[..columns.count].iter_mut().for_each(|value| *value = unit.from_si(*value));
-            }
-        }
     }
 
     fn dependencies(&self, inputs: &[Known]) -> Dependencies {
@@ -309,7 +265,7 @@ impl<F: Formula + Send + Sync> Kernel for F {
 /// product and a sum, so the choice never changes a bit.
 #[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
 fn finish_columns<F: Formula>(prepared: &[f64], columns: &Columns<'_>, scratch: &mut Scratch, results: &mut [Vec<f64>]) {
-    let Scratch { inputs, outputs, margins } = scratch;
+    let Scratch { inputs, outputs, margins, .. } = scratch;
     let wanted = Set::of(columns.outputs);
     let asked = Set::of(columns.conditions);
     if F::finish_block(prepared, inputs, columns, results) {

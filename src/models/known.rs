@@ -91,7 +91,7 @@ impl Model {
             })
     }
 
-    fn flaw_of_sizes(&self) -> Option<String> {
+    pub(super) fn flaw_of_sizes(&self) -> Option<String> {
         let Sizes { inputs, outputs, conditions, .. } = self.kernel.sizes();
         let fields = self.kernel.formula().map_or(0, |formula| formula.fields().places().count());
         let limited = [

@@ -60,6 +60,7 @@ pub fn model() -> Model {
         starter: include_str!("../../studies/metal-cvt.toml").into(),
         kernel: Arc::new(Cvt(MetalBelt)),
         pulley: None,
+        origin: None,
         profile: None,
         notes: None,
         remarks: None,

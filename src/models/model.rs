@@ -17,6 +17,41 @@ pub type AlongTheBelt = Arc<dyn Fn(&Model, &[f64]) -> Profile + Send + Sync>;
 /// The pulley behind inputs of the model in their units.
 pub type PulleyOf = Arc<dyn Fn(&Model, &[f64]) -> Design + Send + Sync>;
 
+/// A measured curve as a study gives it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CurveSource {
+    /// What formulas call it.
+    pub name: String,
+    /// Name of what its argument is, which says the argument's unit.
+    pub x: String,
+    /// Name of what its value is.
+    pub y: String,
+    /// Points, in these units.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// What a study adds to a model.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Extension {
+    /// Units of its own, such as `EUR`.
+    pub units: Vec<String>,
+    /// Numbers that axes and fixed values give, and formulas read.
+    pub variables: Vec<String>,
+    /// Measured curves.
+    pub curves: Vec<CurveSource>,
+    /// Formulas by name and text, in the order of the file.
+    pub formulas: Vec<(String, String)>,
+}
+
+/// A model and what a study added to it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Origin {
+    /// The model without it.
+    pub base: Arc<Model>,
+    /// What was added.
+    pub extension: Extension,
+}
+
 /// A model: everything that the rest of the program knows about it.
 ///
 /// It is plain data with a formula, so one may be made at run time ([`Model::new`]) as well as be one of [`all`](super::all). It is
@@ -61,12 +96,19 @@ pub struct Model {
     pub profile: Option<AlongTheBelt>,
     /// The pulley that its inputs describe, where designs are solved by finite elements: there are pictures of such.
     pub pulley: Option<PulleyOf>,
+    /// What it was made of, if a study's formulas stand around it.
+    pub(crate) origin: Option<Arc<Origin>>,
 }
 
 impl Model {
     /// Number of the input of that name.
     pub fn input(&self, name: &str) -> Option<usize> {
         self.inputs.iter().position(|input| input.name == name)
+    }
+
+    /// The formulas that a study put around the model, by name and text, in the order of the file.
+    pub fn formulas(&self) -> &[(String, String)] {
+        self.origin.as_ref().map_or(&[], |origin| &origin.extension.formulas)
     }
 
     /// Number of the output of that name.
@@ -161,6 +203,7 @@ impl Model {
             notes: None,
             profile: None,
             pulley: None,
+            origin: None,
         }
     }
 
@@ -237,7 +280,12 @@ impl PartialEq for Model {
             let Model { name, version, summary, source, limits, starter, .. } = model;
             [name, version, summary, source, limits, starter]
         }
-        Arc::ptr_eq(&self.kernel, &other.kernel)
+        let one_formula = match (&self.origin, &other.origin) {
+            (Some(one), Some(other)) => one == other,
+            (None, None) => Arc::ptr_eq(&self.kernel, &other.kernel),
+            _ => false,
+        };
+        one_formula
             && texts(self) == texts(other)
             && (&self.inputs, &self.outputs, &self.conditions) == (&other.inputs, &other.outputs, &other.conditions)
             && (&self.presets, self.effort, self.sample) == (&other.presets, other.effort, other.sample)

@@ -229,6 +229,7 @@ pub fn model() -> Model {
         ],
         presets: Vec::new(),
         pulley: None,
+        origin: None,
         starter: include_str!("../../studies/pulley-load.toml").into(),
         kernel: Arc::new(PulleyLoad),
         profile: Some(Arc::new(profile)),

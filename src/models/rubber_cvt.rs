@@ -59,6 +59,7 @@ pub fn model() -> Model {
         starter: include_str!("../../studies/rubber-cvt.toml").into(),
         kernel: Arc::new(Cvt(RubberBelt)),
         pulley: None,
+        origin: None,
         profile: None,
         notes: None,
         remarks: None,

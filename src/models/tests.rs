@@ -58,16 +58,8 @@ impl Kernel for Watched {
         self.inner.finish(prepared, inputs, wanted, outputs);
     }
 
-    fn finish_columns(
-        &self,
-        outputs: &[Output],
-        prepared: &[f64],
-        inputs: &[f64],
-        columns: &Columns<'_>,
-        scratch: &mut Scratch,
-        results: &mut [Vec<f64>],
-    ) {
-        self.inner.finish_columns(outputs, prepared, inputs, columns, scratch, results);
+    fn finish_columns(&self, prepared: &[f64], inputs: &[f64], columns: &Columns<'_>, scratch: &mut Scratch, results: &mut [Vec<f64>]) {
+        self.inner.finish_columns(prepared, inputs, columns, scratch, results);
         self.count(&self.blocks);
     }
 

@@ -336,14 +336,8 @@ impl<'p> CpuEngine<'p> {
         let plan = self.plan;
         let prepared = &self.prepared[prepared];
         let columns = Columns { count: fast.count, varying: &fast.si, outputs: &plan.lane_outputs, conditions: &plan.lane_conditions };
-        plan.study.model.kernel.finish_columns(
-            &plan.study.model.outputs,
-            prepared,
-            &self.si,
-            &columns,
-            &mut self.scratch,
-            &mut self.results,
-        );
+        plan.study.model.kernel.finish_columns(prepared, &self.si, &columns, &mut self.scratch, &mut self.results);
+        columns.to_units(&plan.study.model.outputs, &mut self.results);
     }
 
     fn judge_block_scenario(&mut self, first: bool) {

@@ -3,7 +3,7 @@
 use super::read::shown;
 use super::{Axis, Best, Constraint, ContourSpec, Goal, Levels, Quantity, Study, Thresholds};
 use crate::error::brief;
-use crate::models::Model;
+use crate::models::{CurveSource, Extension, Model};
 use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
 
@@ -60,6 +60,9 @@ impl Study {
         if report.variants {
             described["variants"] = true.into();
         }
+        if let Some(origin) = &model.origin {
+            describe_extension(&origin.extension, &mut described);
+        }
         if !model.version.is_empty() {
             described["model_version"] = model.version.clone().into();
         }
@@ -70,6 +73,24 @@ impl Study {
     pub fn hash(&self) -> String {
         let digest = Sha256::digest(self.describe().to_string());
         digest.iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+}
+
+/// What a study adds to its model: units, variables, curves with their points, and formulas, each in the order of the file.
+fn describe_extension(extension: &Extension, described: &mut Value) {
+    let Extension { units, variables, curves, formulas } = extension;
+    let curve = |it: &CurveSource| json!({ "name": it.name, "x": it.x, "y": it.y, "points": it.points });
+    let formula = |(name, text): &(String, String)| json!({ "name": name, "is": text });
+    let parts = [
+        ("units", json!(units)),
+        ("variables", json!(variables)),
+        ("curves", curves.iter().map(curve).collect()),
+        ("formulas", formulas.iter().map(formula).collect()),
+    ];
+    for (key, part) in parts {
+        if part.as_array().is_some_and(|list| !list.is_empty()) {
+            described[key] = part;
+        }
     }
 }
 

@@ -4,9 +4,10 @@ use super::{
     Axis, Best, Constraint, ContourSpec, Goal, HistogramSpec, Levels, MapSpec, Objective, Quantity, Report, SampleSpec, Study, Thresholds,
     TopSpec,
 };
-use crate::models::{Model, Models};
+use crate::models::{CurveSource, Extension, Model, Models, extended};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
+use std::sync::Arc;
 
 type Restored<T> = Result<T, String>;
 
@@ -28,6 +29,12 @@ impl Study {
     pub fn from_description_with(models: &Models, described: &Value) -> Result<Self, String> {
         let name = text(described, "model")?;
         let model = models.find(name).ok_or_else(|| format!("there is no model \"{name}\""))?;
+        let extension = extension_of(described)?;
+        let model = if extension == Extension::default() {
+            model
+        } else {
+            Arc::new(extended(&model, extension).map_err(|_| "\"formulas\" do not fit the model")?)
+        };
         let axes = |role: &str| list(described, role)?.iter().map(|axis| axis_of(&model, axis)).collect::<Restored<Vec<_>>>();
         let mut fixed = model.defaults();
         for (name, value) in described["fixed"].as_object().ok_or("\"fixed\" is missing")? {
@@ -61,6 +68,24 @@ impl Study {
             Some(difference) => Err(difference.clone()),
         }
     }
+}
+
+fn extension_of(described: &Value) -> Restored<Extension> {
+    fn names(described: &Value, key: &str) -> Restored<Vec<String>> {
+        if described[key].is_null() { Ok(Vec::new()) } else { plain(&described[key], key) }
+    }
+    fn parts<T>(described: &Value, key: &str, part: impl Fn(&Value) -> Restored<T>) -> Restored<Vec<T>> {
+        if described[key].is_null() { Ok(Vec::new()) } else { each(described, key, part) }
+    }
+    let named = |it: &Value, key: &str| text(it, key).map(str::to_owned);
+    Ok(Extension {
+        units: names(described, "units")?,
+        variables: names(described, "variables")?,
+        curves: parts(described, "curves", |it| {
+            Ok(CurveSource { name: named(it, "name")?, x: named(it, "x")?, y: named(it, "y")?, points: plain(&it["points"], "points")? })
+        })?,
+        formulas: parts(described, "formulas", |it| Ok((named(it, "name")?, named(it, "is")?)))?,
+    })
 }
 
 fn report_of(study: &Study, described: &Value) -> Restored<Report> {

@@ -1,6 +1,7 @@
 //! A model's formula recorded: as a whole, and as the two stages that a sweep runs it in.
 
-use super::{Known, List, Node, Recording, Set};
+use super::{Known, List, Loops, Node, Recording, Set, Trace};
+use crate::real::Real;
 
 /// The names of a formula's values, in the order of its arrays.
 #[derive(Clone, Copy, Debug)]
@@ -46,16 +47,69 @@ impl Fields {
     }
 }
 
-/// A formula that can be recorded as a list of operations.
+/// A formula that can be recorded as a list of operations: its stages over names of numbers, and what is made of them.
 pub trait Recordable: Send + Sync {
     /// The names of the formula's values.
     fn fields(&self) -> Fields;
+    /// First stage, as in a sweep.
+    fn trace_prepare(&self, inputs: &[Trace], wanted: Set, prepared: &mut [Trace]);
+    /// Margins of the conditions, as in a sweep.
+    fn trace_conditions(&self, prepared: &[Trace], inputs: &[Trace], wanted: Set, margins: &mut [Trace]);
+    /// Second stage, as in a sweep.
+    fn trace_finish(&self, prepared: &[Trace], inputs: &[Trace], wanted: Set, outputs: &mut [Trace]);
+
     /// The whole formula, given what is known of its inputs, for the outputs and conditions of these sets.
-    fn whole(&self, known: &[Known], wanted: Set, conditions: Set) -> Whole;
+    fn whole(&self, known: &[Known], wanted: Set, conditions: Set) -> Whole {
+        let fields = self.fields();
+        let (recording, nodes) = Recording::of(known, |named| {
+            let mut prepared = vec![Trace::constant(0.0); fields.prepared_len()];
+            self.trace_prepare(named, wanted, &mut prepared);
+            let results = self.results(&fields, &prepared, named, wanted, conditions);
+            [prepared, results].concat()
+        });
+        let (prepared, rest) = nodes.split_at(fields.prepared_len());
+        let (outputs, conditions) = rest.split_at(fields.outputs.len());
+        Whole { recording, prepared: prepared.to_vec(), outputs: outputs.to_vec(), conditions: conditions.to_vec() }
+    }
+
     /// Its second stage.
-    fn second(&self, known: &[Known], wanted: Set, conditions: Set) -> Second;
+    fn second(&self, known: &[Known], wanted: Set, conditions: Set) -> Second {
+        self.recorded_second(Loops::EveryIteration, known, wanted, conditions)
+    }
+
     /// Both stages as a device runs them: nothing known of the inputs, and loops recorded once.
-    fn stages(&self, wanted: Set, conditions: Set) -> (First, Second);
+    fn stages(&self, wanted: Set, conditions: Set) -> (First, Second) {
+        let fields = self.fields();
+        let known = vec![Known::ANY; fields.inputs.len()];
+        let (recording, prepared) = Recording::recorded(Loops::Once, &known, |named| {
+            let mut prepared = Trace::to_pass_on(&fields);
+            self.trace_prepare(named, wanted, &mut prepared);
+            fields.places().map(|(first, _)| prepared[first].as_written()).collect()
+        });
+        (First { recording, prepared }, self.recorded_second(Loops::Once, &known, wanted, conditions))
+    }
+
+    /// Its second stage, with the loops recorded one way or the other.
+    #[doc(hidden)]
+    fn recorded_second(&self, loops: Loops, known: &[Known], wanted: Set, conditions: Set) -> Second {
+        let fields = self.fields();
+        let passed = vec![Known::ANY; fields.prepared_len()];
+        let (recording, nodes) = Recording::recorded(loops, &[known, &passed].concat(), |named| {
+            let (inputs, prepared) = named.split_at(known.len());
+            self.results(&fields, prepared, inputs, wanted, conditions)
+        });
+        let (outputs, conditions) = nodes.split_at(fields.outputs.len());
+        Second { recording, outputs: outputs.to_vec(), conditions: conditions.to_vec() }
+    }
+
+    /// Outputs, then margins, of the second stage.
+    #[doc(hidden)]
+    fn results(&self, fields: &Fields, prepared: &[Trace], inputs: &[Trace], wanted: Set, conditions: Set) -> Vec<Trace> {
+        let [mut outputs, mut margins] = [fields.outputs.len(), fields.conditions].map(|length| vec![Trace::constant(0.0); length]);
+        self.trace_finish(prepared, inputs, wanted, &mut outputs);
+        self.trace_conditions(prepared, inputs, conditions, &mut margins);
+        [outputs, margins].concat()
+    }
 }
 
 /// A formula from its inputs to its results.

@@ -14,6 +14,8 @@ mod command_line;
 mod effort;
 /// A model with all elementary functions.
 mod every_function;
+/// Studies with formulas, by brute force.
+mod formulas;
 /// Screening on a graphics device.
 mod gpu;
 /// Identities of the V-belt variator, and the tables of its paper.

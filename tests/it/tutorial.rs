@@ -2,7 +2,7 @@
 //!
 //! A page is checked like this (`docs/README.md` tells it to readers):
 //!
-//! - A block ```` ```toml ```` under a line that ends in `` `NAME.toml`: `` is written to that file, in a folder of the page's own.
+//! - A block ```` ```toml ```` or ```` ```csv ```` under a line that ends in `` `NAME.toml`: `` (or `.csv`) is written to that file, in a folder of the page's own.
 //! - A block ```` ```console ```` has commands, lines that start with `$ `, each followed by what it prints: its output, then its notes.
 //!   A line `...` stands for any lines, `...` at the end of a line for the rest of it; all else must be equal.
 //! - A block ```` ```rust ```` under a line that ends in `` `FILE.rs`: `` stands in that file of the repository, but for lines `...`.
@@ -48,8 +48,9 @@ fn parts(page: &str) -> Result<Vec<Part<'_>>, String> {
         };
         let block: Vec<&str> = lines.by_ref().take_while(|line| *line != "```").collect();
         match kind {
-            "toml" => {
-                let name = before.strip_suffix("`:").and_then(|line| line.rsplit('`').next()).filter(|name| name.ends_with(".toml"));
+            "toml" | "csv" => {
+                let ending = format!(".{kind}");
+                let name = before.strip_suffix("`:").and_then(|line| line.rsplit('`').next()).filter(|name| name.ends_with(&ending));
                 let name = name.ok_or_else(|| format!("a file without a name, after: {before}"))?;
                 parts.push(Part::File { name, content: block.join("\n") + "\n" });
             }

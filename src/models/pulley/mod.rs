@@ -18,7 +18,6 @@ mod tests;
 pub use profile::CHECK_POINT_STRESSES;
 pub use table::model;
 
-use super::description::Output;
 use super::formula::{Columns, Dependencies, Footprint, Kernel, Scratch, Sizes};
 use super::pulley_load;
 use crate::pulley::Design;
@@ -143,15 +142,7 @@ impl Kernel for Pulley {
         self.finish_after(prepared, inputs, wanted, outputs, &mut None);
     }
 
-    fn finish_columns(
-        &self,
-        outputs: &[Output],
-        prepared: &[f64],
-        inputs: &[f64],
-        columns: &Columns<'_>,
-        _scratch: &mut Scratch,
-        results: &mut [Vec<f64>],
-    ) {
+    fn finish_columns(&self, prepared: &[f64], inputs: &[f64], columns: &Columns<'_>, _scratch: &mut Scratch, results: &mut [Vec<f64>]) {
         let mut inputs = inputs.to_vec();
         let mut found = [0.0; Result::<usize>::NAMES.len()];
         let mut last = None;
@@ -164,7 +155,7 @@ impl Kernel for Pulley {
                 self.finish_after(prepared, &inputs, wanted, &mut found, &mut last);
             }
             for (&output, result) in columns.outputs.iter().zip(&mut *results) {
-                result[design] = outputs[output].unit.from_si(found[output]);
+                result[design] = found[output];
             }
             if !columns.conditions.is_empty() {
                 let margins = self.margins(prepared, &inputs);

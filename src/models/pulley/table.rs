@@ -430,5 +430,6 @@ pub fn model() -> Model {
         notes: Some(Arc::new(notes::notes)),
         remarks: None,
         pulley: Some(Arc::new(|model, inputs| Design::new(&to_si(model, inputs)))),
+        origin: None,
     }
 }

@@ -217,6 +217,7 @@ pub fn model() -> Model {
         starter: include_str!("../../../studies/timing-design.toml").into(),
         kernel: Arc::new(TimingBelt),
         pulley: None,
+        origin: None,
         profile: Some(Arc::new(profile::profile)),
         notes: Some(Arc::new(notes)),
         remarks: Some(Arc::new(remarks)),

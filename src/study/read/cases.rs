@@ -10,6 +10,7 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry as Row;
 use std::fs::File;
 use std::io::Read;
+use std::path::Path;
 use toml::de::DeValue;
 
 /// Most problems that are reported of one CSV file.
@@ -130,33 +131,10 @@ impl Reader<'_> {
         };
         let name = super::text(entry.node, problems, label)?;
         let at = entry.node.at;
-        let text = self.csv_text(&name).map_err(|error| problems.add(at, format!("{label}: {error}"))).ok()?;
+        let text = csv_text(self.folder, &name).map_err(|error| problems.add(at, format!("{label}: {error}"))).ok()?;
         let before = problems.count();
         let axis = self.csv_rows(role, at, &name, &text);
         axis.filter(|_| known && problems.count() == before)
-    }
-
-    /// The text of a CSV file.
-    fn csv_text(&self, name: &str) -> Result<String, String> {
-        let path = self.folder.join(name);
-        let name = shortened(name);
-        let unreadable = |error: std::io::Error| format!("cannot read \"{name}\": {error}; paths are relative to the folder of the study");
-        let file = std::fs::metadata(&path).map_err(unreadable)?;
-        if !file.is_file() {
-            return Err(format!("\"{name}\" is not a file; name a CSV file"));
-        }
-        let large = |bytes: u64| Err(format!("\"{name}\" has {bytes} bytes, at most {MOST_CSV_BYTES} are read; split it"));
-        if file.len() > MOST_CSV_BYTES {
-            return large(file.len());
-        }
-        // The file may grow while it is read.
-        let mut bytes = Vec::new();
-        File::open(&path).and_then(|file| file.take(MOST_CSV_BYTES + 1).read_to_end(&mut bytes)).map_err(unreadable)?;
-        if bytes.len() as u64 > MOST_CSV_BYTES {
-            return large(bytes.len() as u64);
-        }
-        let text = String::from_utf8(bytes).map_err(|_| format!("\"{name}\" is not UTF-8 text; save it in the encoding UTF-8"))?;
-        Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
     }
 
     /// The rows of a CSV text. Its first line names the inputs.
@@ -235,6 +213,29 @@ impl Reader<'_> {
         }
         inputs
     }
+}
+
+/// The text of a CSV file that a study names.
+pub(super) fn csv_text(folder: &Path, name: &str) -> Result<String, String> {
+    let path = folder.join(name);
+    let name = shortened(name);
+    let unreadable = |error: std::io::Error| format!("cannot read \"{name}\": {error}; paths are relative to the folder of the study");
+    let file = std::fs::metadata(&path).map_err(unreadable)?;
+    if !file.is_file() {
+        return Err(format!("\"{name}\" is not a file; name a CSV file"));
+    }
+    let large = |bytes: u64| Err(format!("\"{name}\" has {bytes} bytes, at most {MOST_CSV_BYTES} are read; split it"));
+    if file.len() > MOST_CSV_BYTES {
+        return large(file.len());
+    }
+    // The file may grow while it is read.
+    let mut bytes = Vec::new();
+    File::open(&path).and_then(|file| file.take(MOST_CSV_BYTES + 1).read_to_end(&mut bytes)).map_err(unreadable)?;
+    if bytes.len() as u64 > MOST_CSV_BYTES {
+        return large(bytes.len() as u64);
+    }
+    let text = String::from_utf8(bytes).map_err(|_| format!("\"{name}\" is not UTF-8 text; save it in the encoding UTF-8"))?;
+    Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
 }
 
 /// The line of an earlier row with the same values. Rows with problems, marked by NaN, equal no other row.

@@ -8,6 +8,7 @@
 //! | `axes.rs`       | `[design]`, `[operation]`, `[uncertainty]`, `[fixed]` |
 //! | `range.rs`      | `{ from, to, ... }`                                |
 //! | `cases.rs`      | joint axes, from rows or a CSV file                |
+//! | `formulas.rs`   | `units`, `[curves]`, `[formulas]`                   |
 //! | `quantities.rs` | `[constraints]`, `[objectives]`                    |
 //! | `report.rs`     | `[report]`                                         |
 //! | `contours.rs`   | the contours of its maps                           |
@@ -15,6 +16,7 @@
 mod axes;
 mod cases;
 mod contours;
+mod formulas;
 mod quantities;
 mod range;
 mod report;
@@ -47,8 +49,22 @@ pub(super) const MOST_LEVELS: u64 = 1 << 53;
 /// Most scenarios of a study.
 pub(super) const MOST_SCENARIOS: u64 = 1 << 32;
 /// Keys and tables at the top level of a study file.
-const TOP_LEVEL: &[&str] =
-    &["model", "preset", "title", "design", "operation", "uncertainty", "fixed", "constraints", "objectives", "report", "sample"];
+const TOP_LEVEL: &[&str] = &[
+    "model",
+    "preset",
+    "title",
+    "design",
+    "operation",
+    "uncertainty",
+    "fixed",
+    "constraints",
+    "objectives",
+    "report",
+    "sample",
+    "units",
+    "curves",
+    "formulas",
+];
 
 /// One mistake in a study.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -179,7 +195,7 @@ fn read_study_of(model: Option<Arc<Model>>, top: &TomlTable<'_>, problems: &Prob
     let title = top.get("title").and_then(|entry| text(entry.node, problems, "title"));
     let sample_table = section(top, "sample", problems);
     let sample = sample_table.as_ref().and_then(|table| read_sample(table, problems));
-    let model = model?;
+    let model = formulas::with_formulas(model?, top, problems, folder)?;
 
     let reader = Reader {
         model: &model,

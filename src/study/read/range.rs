@@ -125,12 +125,18 @@ impl Reader<'_> {
         let levels = check_ends(ends, input).and_then(|()| match (count, step) {
             (Some(count), _) => count.map(|count| even(ends, count, input)).transpose(),
             (_, Some(step)) => step.map(|step| stepped(ends, step, input)).transpose(),
-            (None, None) if input.integer => stepped(ends, 1.0, input).map(Some),
+            (None, None) if input.integer || self.counts(ends, input) => stepped(ends, 1.0, input).map(Some),
             (None, None) => self.unruled(ends, role).map(Some),
         });
         let levels = levels.map_err(|error| problems.add(table.at, format!("{label}: {error}"))).ok().flatten()?;
         within(&levels, input).map_err(|error| problems.add(table.at, format!("{label}: {error}"))).ok()?;
         Some(levels)
+    }
+
+    /// Is this a variable without a unit that goes from one whole number to another, where all designs are judged? Then it counts.
+    fn counts(&self, RangeEnds { from, to, log }: RangeEnds, input: &Input) -> bool {
+        let is_variable = self.model.origin.as_ref().is_some_and(|it| it.extension.variables.contains(&input.name));
+        is_variable && input.unit == NONE && from.fract() == 0.0 && to.fract() == 0.0 && !log && !self.sampled
     }
 
     /// A range with neither count nor step: for sampled designs only.

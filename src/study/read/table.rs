@@ -130,6 +130,11 @@ impl<'t> Problems<'t> {
         self.incomplete.set(true);
     }
 
+    /// Does this text stand in the file at that byte?
+    pub(super) fn has(&self, at: usize, text: &str) -> bool {
+        self.lines.text.get(at..).is_some_and(|rest| rest.starts_with(text))
+    }
+
     /// Line number of a byte, for messages that point elsewhere.
     pub(super) fn line_number(&self, at: usize) -> usize {
         // Called for every row: finding the column too would read the whole line.

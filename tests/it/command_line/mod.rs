@@ -6,6 +6,8 @@ mod budget;
 mod checkpoints;
 /// Contours of maps, compared with the models.
 mod contours;
+/// Studies with formulas.
+mod formulas;
 /// Files that were changed, and things that are not files.
 mod mangled;
 /// Judging every design, or bounding boxes of them.

@@ -39,7 +39,8 @@ fn differing(model: &Model, count: usize, scratch: &mut Scratch, random: &mut Ra
     let prepared = model.kernel.prepared(&shared);
     let mut results = vec![vec![f64::NAN; padded]; outputs.len() + conditions.len()];
     let columns = Columns { count, varying: &varying, outputs: &outputs, conditions: &conditions };
-    model.kernel.finish_columns(&model.outputs, &prepared, &shared, &columns, scratch, &mut results);
+    model.kernel.finish_columns(&prepared, &shared, &columns, scratch, &mut results);
+    columns.to_units(&model.outputs, &mut results);
     let wanted = Set::of(&outputs);
     for (lane, design) in designs.iter().enumerate() {
         let scalar = model.kernel.outputs(&prepared, design, wanted);

@@ -1,0 +1,271 @@
+//! An extended model over many designs at once: the formulas as lists over columns, the model as it computes its own.
+
+use super::surroundings::Surroundings;
+use crate::models::LANES;
+use crate::models::formula::{Columns, Scratch};
+use crate::tape::{CHUNK, ColumnValue, Known, List, Node, NodeColumns, Operation, Recording, Set, Trace};
+
+/// What formulas compute, as lists.
+#[derive(Debug)]
+pub struct Lists {
+    /// From inputs to the inputs of the model that formulas give.
+    before: List,
+    /// From inputs, outputs of the model and margins of its conditions to what formulas give and the margins of their conditions: results
+    /// are these outputs, the margins before the model's, and those after it.
+    after: List,
+    base_outputs: usize,
+    base_conditions: usize,
+}
+
+impl Lists {
+    /// Records the formulas.
+    pub fn new(around: &Surroundings) -> Self {
+        let [inputs, outputs, conditions] = [around.inputs.len(), around.base_outputs(), around.base.conditions.len()];
+        let (recording, nodes) = Recording::of(&vec![Known::ANY; inputs], |named| {
+            let numbers = around.before(named);
+            around.given.iter().map(|&slot| numbers.slots[slot]).collect()
+        });
+        let before = List::cut(&recording, &nodes.into_iter().map(Some).collect::<Vec<_>>());
+        let (recording, nodes) = Recording::of(&vec![Known::ANY; inputs + outputs + conditions], |named: &[Trace]| {
+            let mut numbers = around.before(&named[..inputs]);
+            around.after(&mut numbers, &named[inputs..inputs + outputs], &named[inputs + outputs..]);
+            around.own_outputs(&numbers).chain(around.margins_before(&numbers)).chain(around.margins_after(&numbers)).collect()
+        });
+        let after = List::cut(&recording, &nodes.into_iter().map(Some).collect::<Vec<_>>());
+        Self { before, after, base_outputs: outputs, base_conditions: conditions }
+    }
+
+    /// Result of the second list that an output or a condition of the extended model is; `None` for the model's own.
+    fn result(&self, around: &Surroundings, asked: AskedResult) -> Option<usize> {
+        let formulas = around.formulas.all().len();
+        match asked {
+            AskedResult::Output(output) => output.checked_sub(self.base_outputs),
+            AskedResult::Condition(condition) => match condition.checked_sub(around.first_condition()) {
+                None => Some(formulas + condition),
+                Some(condition) => condition.checked_sub(self.base_conditions).map(|after| formulas + around.first_condition() + after),
+            },
+        }
+    }
+}
+
+#[derive(Clone, Copy)]
+enum AskedResult {
+    Output(usize),
+    Condition(usize),
+}
+
+/// A list over a block of designs: which operations are needed, and which have a number per design.
+#[derive(Debug)]
+struct Running {
+    numbers: NodeColumns,
+    needed: Vec<Node>,
+    each: Vec<bool>,
+}
+
+impl Running {
+    fn new(list: &List) -> Self {
+        Self { numbers: NodeColumns::new(list), needed: Vec::new(), each: Vec::new() }
+    }
+
+    /// Turns to these results, where these inputs of the list differ between designs.
+    fn turn_to(&mut self, list: &List, results: impl Iterator<Item = usize>, varying: impl Fn(u16) -> bool) {
+        let nodes: Vec<Node> = results.filter_map(|result| list.results[result]).collect();
+        self.needed = list.needed_by(&nodes);
+        self.each = list.dependencies(|input| Bits(varying(input))).into_iter().map(|it| it.0).collect();
+    }
+
+    /// Computes `count` designs, a chunk at a time; `input` gives the list's inputs, `take` is given every chunk.
+    fn run<'c>(&mut self, list: &List, count: usize, input: impl Fn(u16) -> ColumnValue<'c>, mut take: impl FnMut(&Self, usize, usize)) {
+        for first in (0..count).step_by(CHUNK) {
+            let length = CHUNK.min(count - first);
+            self.numbers.begin(length);
+            let Self { numbers, needed, each } = self;
+            for &node in &*needed {
+                match list.operations[node as usize] {
+                    Operation::Input(number) => match input(number) {
+                        ColumnValue::One(value) => numbers.slots[node as usize] = value,
+                        ColumnValue::Each(column) => numbers.fill(node, |to| to.copy_from_slice(&column[first..first + length])),
+                    },
+                    _ if each[node as usize] => numbers.compute(list, node, |node| each[node as usize]),
+                    _ => list.compute(node, &mut numbers.slots),
+                }
+            }
+            take(self, first, length);
+        }
+    }
+
+    fn result(&self, list: &List, result: usize) -> ColumnValue<'_> {
+        let node = list.results[result].expect("every result is asked for");
+        self.numbers.value(node, |node| self.each[node as usize])
+    }
+}
+
+/// One bit, to be joined over what a number depends on.
+#[derive(Clone, Copy, Default)]
+struct Bits(bool);
+
+impl std::ops::BitOrAssign for Bits {
+    fn bitor_assign(&mut self, other: Self) {
+        self.0 |= other.0;
+    }
+}
+
+/// Room for a thread.
+#[derive(Debug)]
+pub struct ExtendedColumns {
+    before: Running,
+    after: Running,
+    of_base: Scratch,
+    /// What the rest was laid out for: inputs that vary, outputs, conditions.
+    laid_out: Option<(Vec<usize>, Vec<usize>, Vec<usize>)>,
+    /// Of the model: its inputs, those of them that vary, what it is asked for, and what it answers.
+    base_inputs: Vec<f64>,
+    varying: Vec<(usize, Vec<f64>)>,
+    outputs: Vec<usize>,
+    conditions: Vec<usize>,
+    answers: Vec<Vec<f64>>,
+}
+
+impl ExtendedColumns {
+    /// Room for a model with these formulas.
+    pub fn new(around: &Surroundings, lists: &Lists) -> Self {
+        Self {
+            before: Running::new(&lists.before),
+            after: Running::new(&lists.after),
+            of_base: Scratch::new(around.base.inputs.len(), &*around.base.kernel),
+            laid_out: None,
+            base_inputs: vec![0.0; around.base.inputs.len()],
+            varying: Vec::new(),
+            outputs: Vec::new(),
+            conditions: Vec::new(),
+            answers: Vec::new(),
+        }
+    }
+
+    /// Lays out what a block needs that asks this.
+    fn lay_out(&mut self, around: &Surroundings, lists: &Lists, columns: &Columns<'_>) {
+        let varying: Vec<usize> = columns.varying.iter().map(|(input, _)| *input).collect();
+        let asked = (&varying[..], columns.outputs, columns.conditions);
+        if self.laid_out.as_ref().is_some_and(|(a, b, c)| (&a[..], &b[..], &c[..]) == asked) {
+            return;
+        }
+        let inputs = around.inputs.len();
+        self.before.turn_to(&lists.before, 0..around.given.len(), |input| varying.contains(&usize::from(input)));
+        let own = asked_of(columns).filter_map(|it| lists.result(around, it));
+        // What the model computes counts as different from design to design.
+        self.after.turn_to(&lists.after, own, |input| usize::from(input) >= inputs || varying.contains(&usize::from(input)));
+        let (mut outputs, mut conditions) = (Set::EMPTY, Set::EMPTY);
+        for &node in &self.after.needed {
+            if let Operation::Input(input) = lists.after.operations[node as usize]
+                && let Some(of_base) = usize::from(input).checked_sub(inputs)
+            {
+                match of_base.checked_sub(lists.base_outputs) {
+                    None => outputs.insert(of_base),
+                    Some(condition) => conditions.insert(condition),
+                }
+            }
+        }
+        for asked in asked_of(columns).filter(|it| lists.result(around, *it).is_none()) {
+            match asked {
+                AskedResult::Output(output) => outputs.insert(output),
+                AskedResult::Condition(condition) => conditions.insert(condition - around.first_condition()),
+            }
+        }
+        self.outputs = outputs.iter().collect();
+        self.conditions = conditions.iter().collect();
+        self.answers = vec![Vec::new(); self.outputs.len() + self.conditions.len()];
+        let kept = varying.iter().map(|&input| around.inputs[input]).filter(|&slot| slot < around.base.inputs.len());
+        let given = around.given.iter().enumerate().filter(|(result, _)| {
+            let node = lists.before.results[*result].expect("every result is asked for");
+            self.before.each[node as usize]
+        });
+        self.varying = kept.chain(given.map(|(_, &slot)| slot)).map(|slot| (slot, Vec::new())).collect();
+        self.laid_out = Some((varying, columns.outputs.to_vec(), columns.conditions.to_vec()));
+    }
+
+    /// As [`Kernel::finish_columns`](crate::models::Kernel::finish_columns).
+    pub fn run(
+        &mut self,
+        around: &Surroundings,
+        lists: &Lists,
+        prepared: &[f64],
+        inputs: &[f64],
+        columns: &Columns<'_>,
+        results: &mut [Vec<f64>],
+    ) {
+        self.lay_out(around, lists, columns);
+        let count = columns.count;
+        let room = count.next_multiple_of(LANES);
+        let column_of = |input: usize| columns.varying.iter().find(|(it, _)| *it == input).map(|(_, column)| &column[..]);
+        let of_input = |input: usize| column_of(input).map_or(ColumnValue::One(inputs[input]), ColumnValue::Each);
+
+        let Self { before, after, of_base, base_inputs, varying, outputs, conditions, answers, .. } = self;
+        varying.iter_mut().for_each(|(_, column)| column.resize(room.max(column.len()), 1.0));
+        for (input, &slot) in around.inputs.iter().enumerate().filter(|(_, slot)| **slot < around.base.inputs.len()) {
+            base_inputs[slot] = inputs[input];
+            if let (Some(from), Some((_, to))) = (column_of(input), varying.iter_mut().find(|(it, _)| *it == slot)) {
+                to[..room].copy_from_slice(&from[..room]);
+            }
+        }
+        before.run(
+            &lists.before,
+            count,
+            |input| of_input(input.into()),
+            |before, first, length| {
+                for (result, &slot) in around.given.iter().enumerate() {
+                    match before.result(&lists.before, result) {
+                        ColumnValue::One(value) => base_inputs[slot] = value,
+                        ColumnValue::Each(values) => {
+                            let (_, column) = varying.iter_mut().find(|(it, _)| *it == slot).expect("it was laid out");
+                            column[first..first + length].copy_from_slice(values);
+                        }
+                    }
+                }
+            },
+        );
+        // Lanes beyond the last design are computed too, of numbers like those of the last.
+        varying.iter_mut().for_each(|(_, column)| {
+            let last = column[count - 1];
+            column[count..room].fill(last);
+        });
+
+        answers.iter_mut().for_each(|answer| answer.resize(room.max(answer.len()), 0.0));
+        if !answers.is_empty() {
+            let asked = Columns { count, varying, outputs, conditions };
+            around.base.kernel.finish_columns(prepared, base_inputs, &asked, of_base, answers);
+        }
+        let answer = |of_base: usize| match of_base.checked_sub(lists.base_outputs) {
+            None => outputs.iter().position(|&it| it == of_base),
+            Some(condition) => conditions.iter().position(|&it| it == condition).map(|at| outputs.len() + at),
+        };
+        let answered = |of_base: usize| &answers[answer(of_base).expect("the model was asked for it")];
+        let of_after = |input: u16| match usize::from(input).checked_sub(around.inputs.len()) {
+            None => of_input(input.into()),
+            Some(of_base) => ColumnValue::Each(answered(of_base)),
+        };
+        for (asked, result) in asked_of(columns).zip(&mut *results) {
+            if lists.result(around, asked).is_none() {
+                let number = match asked {
+                    AskedResult::Output(output) => output,
+                    AskedResult::Condition(condition) => lists.base_outputs + condition - around.first_condition(),
+                };
+                result[..count].copy_from_slice(&answered(number)[..count]);
+            }
+        }
+        after.run(&lists.after, count, of_after, |after, first, length| {
+            for (asked, result) in asked_of(columns).zip(&mut *results) {
+                let Some(own) = lists.result(around, asked) else { continue };
+                match after.result(&lists.after, own) {
+                    ColumnValue::One(value) => result[first..first + length].fill(value),
+                    ColumnValue::Each(values) => result[first..first + length].copy_from_slice(values),
+                }
+            }
+        });
+    }
+}
+
+/// What a block is asked for, in the order of its results.
+fn asked_of<'c>(columns: &Columns<'c>) -> impl Iterator<Item = AskedResult> + use<'c> {
+    let (outputs, conditions) = (columns.outputs, columns.conditions);
+    outputs.iter().map(|&it| AskedResult::Output(it)).chain(conditions.iter().map(|&it| AskedResult::Condition(it)))
+}

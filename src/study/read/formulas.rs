@@ -1,0 +1,234 @@
+//! `units`, `[curves]` and `[formulas]`: what a study adds to its model, and which names are variables.
+
+use super::cases::csv_text;
+use super::table::{Entry, Problems, TomlTable, list, shortened};
+use super::{section, text};
+use crate::formula::{Expression, meant};
+use crate::models::{CurveSource, Extension, ExtensionProblem, Model, extended};
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Where the parts of an extension stand in the file.
+#[derive(Default)]
+struct ExtensionPlaces {
+    units: Vec<usize>,
+    /// Of each curve: where it stands, its file and the first line of each of its rows.
+    curves: Vec<CurvePlace>,
+    /// Of each formula: where its text starts, and does a byte of it stand for one of the file?
+    formulas: Vec<(usize, bool)>,
+}
+
+struct CurvePlace {
+    at: usize,
+    file: String,
+    lines: Vec<usize>,
+}
+
+/// The model with what the study adds to it; `None` if a problem was reported that leaves none.
+pub(super) fn with_formulas(model: Arc<Model>, top: &TomlTable<'_>, problems: &Problems<'_>, folder: &Path) -> Option<Arc<Model>> {
+    let before = problems.count();
+    let mut places = ExtensionPlaces::default();
+    let mut extension = Extension {
+        units: read_units(top, problems, &mut places),
+        variables: Vec::new(),
+        curves: read_curves(top, problems, folder, &mut places),
+        formulas: read_formulas(top, problems, &mut places),
+    };
+    if problems.count() > before {
+        return None;
+    }
+    if extension == Extension::default() {
+        return Some(model);
+    }
+    extension.variables = variables(&model, &extension, top, folder);
+    refuse_twice_given(&model, &extension, top, problems);
+    let unread = extension.clone();
+    match extended(&model, extension) {
+        Ok(model) if problems.count() == before => Some(Arc::new(model)),
+        Ok(_) => None,
+        Err(found) => {
+            report_unused(&model, &unread, top, problems, folder);
+            found.into_iter().for_each(|problem| tell(problem, &places, top, problems));
+            None
+        }
+    }
+}
+
+fn read_units(top: &TomlTable<'_>, problems: &Problems<'_>, places: &mut ExtensionPlaces) -> Vec<String> {
+    let Some(entry) = top.get("units") else { return Vec::new() };
+    let Some(list) = entry.node.list() else {
+        let found = entry.node.found();
+        problems.add(entry.node.at, format!("units: found {found}, wanted a list of texts such as [\"EUR\"]"));
+        return Vec::new();
+    };
+    let units = list.filter_map(|node| {
+        places.units.push(node.at);
+        text(node, problems, "units")
+    });
+    units.collect()
+}
+
+fn read_formulas(top: &TomlTable<'_>, problems: &Problems<'_>, places: &mut ExtensionPlaces) -> Vec<(String, String)> {
+    let Some(table) = section(top, "formulas", problems) else { return Vec::new() };
+    let formula = |entry: &Entry<'_>| {
+        let text = text(entry.node, problems, &format!("formula \"{}\"", shortened(entry.key)))?;
+        // A text in quotes without escapes stands in the file as it is, one byte behind its quote.
+        let at = entry.node.at;
+        let plain = problems.has(at + 1, &text);
+        places.formulas.push((if plain { at + 1 } else { at }, plain));
+        Some((entry.key.to_owned(), text))
+    };
+    table.entries.iter().take_while(|_| !problems.is_full()).filter_map(formula).collect()
+}
+
+fn read_curves(top: &TomlTable<'_>, problems: &Problems<'_>, folder: &Path, places: &mut ExtensionPlaces) -> Vec<CurveSource> {
+    let Some(table) = section(top, "curves", problems) else { return Vec::new() };
+    let curve = |entry: &Entry<'_>| {
+        let label = format!("curve \"{}\"", shortened(entry.key));
+        let Some(parts) = entry.node.table() else {
+            let found = entry.node.found();
+            problems.add(entry.node.at, format!("{label}: found {found}, wanted {{ csv = \"file.csv\", x = \"...\", y = \"...\" }}"));
+            return None;
+        };
+        parts.check_keys(problems, &label, &["csv", "x", "y"]);
+        let part = |key: &str| {
+            let Some(entry) = parts.get(key) else {
+                problems.add(parts.at, format!("{label}: \"{key}\" is missing; write {{ csv = \"file.csv\", x = \"...\", y = \"...\" }}"));
+                return None;
+            };
+            text(entry.node, problems, &label)
+        };
+        let (file, x, y) = (part("csv"), part("x"), part("y"));
+        let (file, x, y) = (file?, x?, y?);
+        let text = csv_text(folder, &file).map_err(|error| problems.add(entry.node.at, format!("{label}: {error}"))).ok()?;
+        let tell = |line: usize, message: String| problems.add_in(entry.node.at, &file, line, 1, format!("{label}: {message}"));
+        let (points, lines) = points(&text, &x, &y).map_err(|(line, message)| tell(line, message)).ok()?;
+        places.curves.push(CurvePlace { at: entry.node.at, file, lines });
+        Some(CurveSource { name: entry.key.to_owned(), x, y, points })
+    };
+    table.entries.iter().take_while(|_| !problems.is_full()).filter_map(curve).collect()
+}
+
+/// The points of a curve, and the line of each.
+type PointsWithLines = (Vec<(f64, f64)>, Vec<usize>);
+
+/// The points of a curve, or a line and what is wrong there.
+fn points(text: &str, x: &str, y: &str) -> Result<PointsWithLines, (usize, String)> {
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
+    let line_of = |record: &csv::StringRecord| record.position().map_or(1, |position| position.line() as usize);
+    let wrong = |error: csv::Error| (error.position().map_or(1, |position| position.line() as usize), format!("this is not CSV: {error}"));
+    let header = reader.headers().map_err(wrong)?.clone();
+    let column = |name: &str| {
+        let known = || format!("its columns are {}", list(header.iter()));
+        header.iter().position(|it| it == name).ok_or_else(|| (1, format!("there is no column \"{}\"; {}", shortened(name), known())))
+    };
+    let (x, y) = (column(x)?, column(y)?);
+    let (mut points, mut lines) = (Vec::new(), Vec::new());
+    for record in reader.records() {
+        let record = record.map_err(wrong)?;
+        let line = line_of(&record);
+        let number = |column: usize| {
+            let cell = &record[column];
+            cell.parse::<f64>().map_err(|_| (line, format!("\"{}\" in column \"{}\" is no number", shortened(cell), &header[column])))
+        };
+        points.push((number(x)?, number(y)?));
+        lines.push(line);
+    }
+    Ok((points, lines))
+}
+
+/// Tables of a study whose keys are inputs or variables.
+const GIVING: [&str; 4] = ["design", "operation", "uncertainty", "fixed"];
+
+/// Every name that the study gives numbers to, with its place.
+fn given(top: &TomlTable<'_>, folder: &Path) -> Vec<(String, usize)> {
+    let mut names = Vec::new();
+    for table in GIVING.iter().filter_map(|name| top.get(name)).filter_map(|entry| entry.node.table()) {
+        for entry in table.entries {
+            names.push((entry.key.to_owned(), entry.key_at));
+            if !entry.key.starts_with("cases") {
+                continue;
+            }
+            if let Some(rows) = entry.node.list() {
+                let first = rows.filter_map(|row| row.table()).next();
+                names.extend(first.into_iter().flat_map(|row| row.entries).map(|cell| (cell.key.to_owned(), cell.key_at)));
+            }
+            let file = entry.node.table().and_then(|table| Some(table.get("csv")?.node.value.as_str()?.to_owned()));
+            // What cannot be read is reported when the axis is.
+            if let Some(text) = file.and_then(|file| csv_text(folder, &file).ok()) {
+                let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
+                let header = reader.headers().cloned().unwrap_or_default();
+                names.extend(header.iter().map(|name| (name.to_owned(), entry.key_at)));
+            }
+        }
+    }
+    names
+}
+
+/// The names that formulas read and axes or fixed values give, which neither the model nor a formula has.
+fn variables(model: &Model, extension: &Extension, top: &TomlTable<'_>, folder: &Path) -> Vec<String> {
+    let parsed: Vec<Expression> = extension.formulas.iter().filter_map(|(_, text)| Expression::parse(text).ok()).collect();
+    let read: BTreeSet<&str> = parsed.iter().flat_map(Expression::names).map(|(name, _)| name).collect();
+    let is_known =
+        |name: &str| model.input(name).is_some() || model.output(name).is_some() || extension.formulas.iter().any(|(it, _)| it == name);
+    let mut variables: Vec<String> = Vec::new();
+    for (name, _) in given(top, folder) {
+        if read.contains(&name[..]) && !is_known(&name) && !variables.contains(&name) {
+            variables.push(name);
+        }
+    }
+    variables
+}
+
+/// Reports names that axes or fixed values give and nothing reads, which formulas may have meant under another name.
+fn report_unused(model: &Model, extension: &Extension, top: &TomlTable<'_>, problems: &Problems<'_>, folder: &Path) {
+    for (name, at) in given(top, folder) {
+        let is_case = name.starts_with("cases");
+        let is_unused = model.input(&name).is_none() && !extension.variables.contains(&name) && !is_case;
+        if let Some(meant) = meant(&name, &extension.formulas).filter(|_| is_unused) {
+            problems.add(at, format!("nothing reads \"{}\"; did you mean \"{meant}\"?", shortened(&name)));
+        }
+    }
+}
+
+/// Reports inputs that a formula gives and an axis or a fixed value too.
+fn refuse_twice_given(model: &Model, extension: &Extension, top: &TomlTable<'_>, problems: &Problems<'_>) {
+    for table in GIVING.iter().filter_map(|name| top.get(name)).filter_map(|entry| entry.node.table()) {
+        for entry in table.entries.iter().filter(|entry| extension.formulas.iter().any(|(name, _)| name == entry.key)) {
+            let what = if model.input(entry.key).is_some() { "input" } else { "name" };
+            problems.add(entry.key_at, format!("the {what} \"{}\" is given by a formula; drop one of the two", shortened(entry.key)));
+        }
+    }
+}
+
+/// Reports a problem of an extension where it stands in the file.
+fn tell(problem: ExtensionProblem, places: &ExtensionPlaces, top: &TomlTable<'_>, problems: &Problems<'_>) {
+    match problem {
+        ExtensionProblem::Whole(message) => {
+            problems
+                .add(top.get("formulas").map_or(0, |entry| entry.key_at), format!("with these formulas the model cannot be: {message}"));
+        }
+        ExtensionProblem::Unit(number, message) => problems.add(places.units[number], format!("units: {message}")),
+        ExtensionProblem::Variable(name, message) => {
+            let tables = GIVING.iter().filter_map(|table| top.get(table)).filter_map(|entry| entry.node.table());
+            let at = tables.flat_map(|table| table.entries).find(|entry| entry.key == name).map_or(0, |entry| entry.key_at);
+            problems.add(at, format!("variable \"{}\": {message}", shortened(&name)));
+        }
+        ExtensionProblem::Curve(number, point, message) => {
+            let CurvePlace { at, file, lines } = &places.curves[number];
+            match point.and_then(|point| lines.get(point)) {
+                Some(&line) => problems.add_in(*at, file, line, 1, message),
+                None => problems.add(*at, format!("curve: {message}")),
+            }
+        }
+        ExtensionProblem::Formula(problem) => match places.formulas.get(problem.formula) {
+            Some(&(at, plain)) => {
+                let place = if plain { String::new() } else { format!(" (line {}, column {} of its text)", problem.line, problem.column) };
+                let at = if plain { at + problem.at } else { at };
+                problems.add(at, format!("formula \"{}\"{place}: {}", shortened(&problem.name), problem.message));
+            }
+            None => problems.add(0, problem.message),
+        },
+    }
+}
