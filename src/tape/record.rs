@@ -2,8 +2,8 @@
 
 use super::{Binary, Fields, FormulaTable, Node, Operation, Rolled, RolledLoop, Root, Store, Unary};
 use crate::real::{Loop, Place, Real, bracketed_newton, chosen_at};
+use rustc_hash::FxHashMap as HashMap;
 use std::cell::RefCell;
-use std::collections::HashMap;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// What is known of an input before the formula runs.
