@@ -51,7 +51,7 @@ fn place_z(name: &str, symbol: &str) -> Input {
     }
 }
 
-/// Inputs in the order of [`Inputs`]: the belt's, then the pulley's.
+/// Inputs in the order of [`Inputs`](super::fields::Inputs): the belt's, then the pulley's.
 fn inputs(belt: Vec<Input>) -> Vec<Input> {
     let own = vec![
         Input::enumeration(
