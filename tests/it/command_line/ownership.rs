@@ -4,8 +4,7 @@ use super::{Answer, SMALL, ask, ask_words, files, folder_with, json_of, larger, 
 use crate::random::Random;
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::process::Child;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Studies that end in a moment and whose results have different fronts.
 const RACERS: u32 = 6;
@@ -245,7 +244,7 @@ fn a_crowd_on_one_directory_leaves_one_whole_result() {
     for round in 0..rounds {
         let out = folder.path().join("out");
         let _ = std::fs::remove_dir_all(&out);
-        let mut crowd: Vec<(String, Child)> = Vec::new();
+        let mut crowd = Vec::new();
         for _ in 0..CROWD {
             let racer = random.below(RACERS as usize);
             let line = match random.below(8) {
@@ -255,20 +254,31 @@ fn a_crowd_on_one_directory_leaves_one_whole_result() {
                 _ => format!("sweep t{racer}.toml --out out --quiet --engine cpu --force --no-report"),
             };
             let child = program(folder.path(), &line.split_whitespace().collect::<Vec<_>>()).spawn().expect("the program starts");
-            crowd.push((line, child));
+            let started = Instant::now();
+            let ended = std::thread::spawn(move || {
+                let answer = Answer::from(child.wait_with_output().expect("the output can be read"));
+                (answer, Instant::now())
+            });
+            crowd.push((line, started, ended));
             std::thread::sleep(Duration::from_micros(random.below(20_000) as u64));
         }
+        let crowd: Vec<_> = crowd.into_iter().map(|(line, started, ended)| (line, started, ended.join().expect("it ends"))).collect();
+        let is_writer = |line: &str, answer: &Answer| answer.code == Some(0) && !line.starts_with("report");
+        let first_result = crowd.iter().filter(|(line, _, (answer, _))| is_writer(line, answer)).map(|(_, _, (_, ended))| *ended).min();
         let mut finished = 0;
-        for (line, child) in crowd {
-            let answer = Answer::from(child.wait_with_output().expect("the output can be read"));
+        for (line, started, (answer, _)) in crowd {
             // Possible messages: another process is using the directory, or what was there when this process got it.
             let told = [
                 (1, "another beltspace is using this directory"),
                 (2, "holds a finished result; replace it with --force"),
                 (2, "is not a directory; name the one that"),
             ];
+            // Between the moment in which the first writer makes the directory and that in which it has it for itself, it is empty.
+            let empty = "is not a finished result: it has no summary.json";
+            let may_be_empty = line.starts_with("report") && first_result.is_some_and(|ended| started < ended);
             let how = match answer.code {
                 Some(0) => "done",
+                Some(2) if may_be_empty && answer.err.contains(empty) => empty,
                 code => told.iter().find(|(it, words)| code == Some(*it) && answer.err.contains(words)).map_or("", |(_, words)| words),
             };
             assert!(!how.is_empty(), "round {round}: {line}: exit {:?}: {}", answer.code, answer.err);
