@@ -3,10 +3,9 @@
 //! What can fail leaves a margin and goes on with a harmless number. The margin counts only where the value is used: not in the branch
 //! of an `if` that is not taken, and not where an operand is absent.
 
-use super::check::MOST_PARAMETERS;
 use super::function::Function;
 use super::scope::{MeasuredCurve, Scope, slope};
-use super::typed::{IfTest, Need, Typed};
+use super::typed::{IfTest, MOST_PARAMETERS, Need, Typed};
 use super::value::{LARGEST_EXPONENT, Value, both};
 use crate::real::Real;
 

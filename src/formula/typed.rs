@@ -2,6 +2,9 @@
 
 use super::function::Function;
 
+/// Most names that the expression of a root may read.
+pub(super) const MOST_PARAMETERS: usize = 16;
+
 /// A formula with everything looked up, in SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Typed {

@@ -8,13 +8,11 @@ use super::expression::{ComparisonSign, Expression, ExpressionNode, Operator};
 use super::function::{FUNCTIONS, is_reserved};
 use super::problem::Fault;
 use super::scope::Scope;
-use super::typed::{IfTest, Need, Typed};
+use super::typed::{IfTest, MOST_PARAMETERS, Need, Typed};
 use crate::likeness::remedy;
 
 /// Most problems that are told of one formula.
 const MOST_PROBLEMS: usize = 20;
-/// Most names that the expression of a root may read.
-pub(super) const MOST_PARAMETERS: usize = 16;
 
 /// Why a value cannot be computed.
 pub(super) mod reason {

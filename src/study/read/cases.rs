@@ -4,19 +4,15 @@ use super::super::axis::Axis;
 use super::super::check::{MOST_ROWS, MOST_VALUES};
 use super::Reader;
 use super::axes::{AxisClaim, AxisRole};
+use super::csv_file::csv_text;
 use super::table::{Entry, Lines, TomlNode, TomlTable, list, shortened};
 use super::value::input_text;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry as Row;
-use std::fs::File;
-use std::io::Read;
-use std::path::Path;
 use toml::de::DeValue;
 
 /// Most problems that are reported of one CSV file.
 const MOST_CSV_PROBLEMS: usize = 20;
-/// Largest CSV file that is read, in bytes.
-const MOST_CSV_BYTES: u64 = 1 << 26;
 
 impl Reader<'_> {
     /// A joint axis.
@@ -213,29 +209,6 @@ impl Reader<'_> {
         }
         inputs
     }
-}
-
-/// The text of a CSV file that a study names.
-pub(super) fn csv_text(folder: &Path, name: &str) -> Result<String, String> {
-    let path = folder.join(name);
-    let name = shortened(name);
-    let unreadable = |error: std::io::Error| format!("cannot read \"{name}\": {error}; paths are relative to the folder of the study");
-    let file = std::fs::metadata(&path).map_err(unreadable)?;
-    if !file.is_file() {
-        return Err(format!("\"{name}\" is not a file; name a CSV file"));
-    }
-    let large = |bytes: u64| Err(format!("\"{name}\" has {bytes} bytes, at most {MOST_CSV_BYTES} are read; split it"));
-    if file.len() > MOST_CSV_BYTES {
-        return large(file.len());
-    }
-    // The file may grow while it is read.
-    let mut bytes = Vec::new();
-    File::open(&path).and_then(|file| file.take(MOST_CSV_BYTES + 1).read_to_end(&mut bytes)).map_err(unreadable)?;
-    if bytes.len() as u64 > MOST_CSV_BYTES {
-        return large(bytes.len() as u64);
-    }
-    let text = String::from_utf8(bytes).map_err(|_| format!("\"{name}\" is not UTF-8 text; save it in the encoding UTF-8"))?;
-    Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
 }
 
 /// The line of an earlier row with the same values. Rows with problems, marked by NaN, equal no other row.

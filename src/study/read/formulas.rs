@@ -1,6 +1,6 @@
 //! `units`, `[curves]` and `[formulas]`: what a study adds to its model, and which names are variables.
 
-use super::cases::csv_text;
+use super::csv_file::csv_text;
 use super::table::{Entry, Problems, TomlTable, list, shortened};
 use super::{section, text};
 use crate::formula::{Expression, meant};

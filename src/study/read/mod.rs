@@ -16,6 +16,7 @@
 mod axes;
 mod cases;
 mod contours;
+mod csv_file;
 mod formulas;
 mod quantities;
 mod range;

@@ -1,0 +1,32 @@
+//! CSV files that a study names.
+
+use super::table::shortened;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+/// Largest CSV file that is read, in bytes.
+const MOST_CSV_BYTES: u64 = 1 << 26;
+
+/// The text of a CSV file that a study names.
+pub(super) fn csv_text(folder: &Path, name: &str) -> Result<String, String> {
+    let path = folder.join(name);
+    let name = shortened(name);
+    let unreadable = |error: std::io::Error| format!("cannot read \"{name}\": {error}; paths are relative to the folder of the study");
+    let file = std::fs::metadata(&path).map_err(unreadable)?;
+    if !file.is_file() {
+        return Err(format!("\"{name}\" is not a file; name a CSV file"));
+    }
+    let large = |bytes: u64| Err(format!("\"{name}\" has {bytes} bytes, at most {MOST_CSV_BYTES} are read; split it"));
+    if file.len() > MOST_CSV_BYTES {
+        return large(file.len());
+    }
+    // The file may grow while it is read.
+    let mut bytes = Vec::new();
+    File::open(&path).and_then(|file| file.take(MOST_CSV_BYTES + 1).read_to_end(&mut bytes)).map_err(unreadable)?;
+    if bytes.len() as u64 > MOST_CSV_BYTES {
+        return large(bytes.len() as u64);
+    }
+    let text = String::from_utf8(bytes).map_err(|_| format!("\"{name}\" is not UTF-8 text; save it in the encoding UTF-8"))?;
+    Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
+}
