@@ -85,6 +85,24 @@ pub fn columns(study: &Study) -> Vec<Column> {
     columns
 }
 
+/// One column per constraint, in their order, each at the scenario that is nearest to breaking it, or breaks it most.
+pub(crate) fn margin_columns(study: &Study) -> Vec<Column> {
+    let column = |(n, it): (usize, &Constraint)| {
+        let name = it.quantity.name(&study.model).to_owned();
+        Column { name, quantity: it.quantity, role: Role::Constraint(n), worst: Worst::Margin(*it) }
+    };
+    study.constraints.iter().enumerate().map(column).collect()
+}
+
+/// One column per quantity, each at the scenario where it is lowest.
+pub(crate) fn lowest_columns(study: &Study, quantities: &[Quantity]) -> Vec<Column> {
+    let column = |&quantity: &Quantity| {
+        let name = quantity.name(&study.model).to_owned();
+        Column { name, quantity, role: Role::Report, worst: Worst::End(Worse::Lower) }
+    };
+    quantities.iter().map(column).collect()
+}
+
 /// Position of a quantity among the inputs that design axes set, in file order; `None` if it is not one of them. Such a quantity is the
 /// same in every scenario, and its column is among the design inputs, even if it is also an objective or has a constraint.
 pub fn design_input(study: &Study, quantity: Quantity) -> Option<usize> {
@@ -107,6 +125,8 @@ pub struct Row {
     pub index: u64,
     /// Does it keep all constraints, with status ok, in every scenario?
     pub feasible: bool,
+    /// Scenarios in which it has no result: the status is not ok, or a value that the study asks for has no meaning.
+    pub without_result: u64,
     /// All inputs in their units; those that differ between scenarios have their values of scenario 0.
     pub inputs: Vec<f64>,
     /// One entry per column.
@@ -221,7 +241,7 @@ impl<'p> Reference<'p> {
         }
         let Sizes { outputs, conditions, .. } = model.kernel.sizes();
         let [mut si, mut outputs, mut margins] = [inputs.len(), outputs, conditions].map(|length| vec![0.0; length]);
-        let mut feasible = true;
+        let (mut feasible, mut without_result) = (true, 0);
         let mut worst = vec![(f64::NEG_INFINITY, AtWorst { value: None, scenario: 0 }); self.columns.len()];
         for q in 0..plan.slow_scenarios.count() {
             plan.slow_scenarios.set(q, &mut inputs);
@@ -246,10 +266,11 @@ impl<'p> Reference<'p> {
                     Quantity::Input(input) => Some(inputs[input]),
                     Quantity::Output(output) => shown(model, &outputs, present, output),
                 };
-                feasible &= status == Status::Ok;
-                feasible &= plan.study.constraints.iter().all(|it| value(it.quantity).is_some_and(|value| it.holds(value)));
                 // A tracked quantity without a value in some scenario makes a design infeasible, as in the sweep.
-                feasible &= plan.tracked.iter().all(|(it, _)| value(it.quantity).is_some());
+                let mut asked = plan.tracked.iter().map(|(it, _)| it.quantity).chain(plan.study.constraints.iter().map(|it| it.quantity));
+                let has_result = status == Status::Ok && asked.all(|quantity| value(quantity).is_some());
+                without_result += u64::from(!has_result);
+                feasible &= has_result && plan.study.constraints.iter().all(|it| value(it.quantity).is_some_and(|value| it.holds(value)));
                 let scenario = plan.slow_scenarios.source_index(q) + plan.fast_scenarios.source_index(t);
                 for (column, (badness, at)) in self.columns.iter().zip(&mut worst) {
                     let Some(value) = value(column.quantity) else { continue };
@@ -261,6 +282,6 @@ impl<'p> Reference<'p> {
             }
         }
         let columns = worst.into_iter().map(|(_, at)| at).collect();
-        Some(Row { index, feasible, inputs: first, columns })
+        Some(Row { index, feasible, without_result, inputs: first, columns })
     }
 }

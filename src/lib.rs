@@ -79,6 +79,8 @@ pub mod export;
 #[doc(hidden)]
 pub mod files;
 #[doc(hidden)]
+pub mod findings;
+#[doc(hidden)]
 pub mod formula;
 #[cfg(feature = "gpu")]
 pub mod gpu;

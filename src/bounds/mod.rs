@@ -88,6 +88,8 @@ pub struct BoundedStudy {
     requirements: Vec<Bounded>,
     /// Points of a front at which a search gives up.
     pub most_points: u64,
+    /// Boxes at which a search gives up.
+    pub most_boxes: u64,
 }
 
 impl BoundedStudy {
@@ -104,7 +106,7 @@ impl BoundedStudy {
         };
         let requirements = requirements(plan, &tape, &axes).into_iter().map(bounded).collect();
         let most_points = crate::reduce::most_points(plan.study.objectives.len(), crate::reduce::FRONT_BYTES);
-        Some(Self { axes, tape, requirements, most_points })
+        Some(Self { axes, tape, requirements, most_points, most_boxes: u64::MAX })
     }
 
     /// A counter for one thread.
@@ -144,7 +146,7 @@ impl BoundedStudy {
     }
 
     /// Searches a range of positions and takes what it finds into `found`; `None` if it was stopped, or the front has more than
-    /// [`BoundedStudy::most_points`].
+    /// [`BoundedStudy::most_points`], or it took more than [`BoundedStudy::most_boxes`].
     pub fn search(&self, job: SearchJob<'_>, sought: Sought, workers: &mut [Worker<'_>], found: &mut Reducers) -> Option<Searched> {
         let SearchJob { plan, reduction, range, stop, progress } = job;
         let roots = self.axes.boxes(range);
@@ -168,6 +170,7 @@ impl BoundedStudy {
             bounding: self.tape.list.operations.len() as f64 * OPERATION,
             row: plan.fast.count(),
             most_points: self.most_points,
+            most_boxes: self.most_boxes,
         };
         search.run(&roots, workers, found)
     }

@@ -168,6 +168,8 @@ pub struct BoxSearch<'a> {
     pub row: u64,
     /// Points of a front at which it is given up.
     pub most_points: u64,
+    /// Boxes at which it is given up.
+    pub most_boxes: u64,
 }
 
 /// What a thread works with.
@@ -235,6 +237,9 @@ impl BoxSearch<'_> {
                 return None;
             }
             total.add(&settled);
+            if total.boxes > self.most_boxes {
+                return None;
+            }
             next.into_iter().for_each(|part| queue.push(part));
         }
         Some(total)

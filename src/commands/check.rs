@@ -8,11 +8,14 @@ use beltspace::models::Set;
 use beltspace::plan::Plan;
 use beltspace::study::Axis;
 use beltspace::sweep::costs::{PATIENCE, Speed, why_every_design};
+use beltspace::sweep::{BoundsTrial, try_bounds};
 use std::path::Path;
 use std::time::Duration;
 
 /// How long the speed is measured.
 const TRIAL: Duration = Duration::from_millis(300);
+/// And how long bounds are tried, where the sweep would begin by them.
+const TRIAL_OF_BOUNDS: Duration = Duration::from_millis(1500);
 
 pub fn run(path: &Path) -> Result<()> {
     let (study, _) = read_study(path)?;
@@ -41,9 +44,14 @@ pub fn run(path: &Path) -> Result<()> {
     // The sample that shows what limits feasibility and a list of all designs are judged a second time.
     let listed = if study.report.variants { designs } else { 0 };
     let seconds = [designs, designs.min(model.sample), listed].iter().map(|&judged| speed.of(judged, cores)).sum();
-    let method = match why_every_design(&plan, speed.of(designs, cores)) {
-        Some(why) => format!("every design: {why}"),
-        None => format!("bounds; if they are not faster, every design after at most about {}", span(PATIENCE * seconds)),
+    let rate = format!("on {cores} threads, {}designs/s ({})", scaled(speed.of(1, cores).recip()), speed.how());
+    let one_by_one = format!("about {} plus the time for the front, {rate}", span(seconds));
+    let (method, expected) = match why_every_design(&plan, speed.of(designs, cores)) {
+        Some(why) => (format!("every design: {why}"), one_by_one),
+        None => {
+            let method = format!("bounds; if they are not faster, every design after at most about {}", span(PATIENCE * seconds));
+            (method, by_bounds(try_bounds(&plan, cores, TRIAL_OF_BOUNDS), seconds, &one_by_one))
+        }
     };
     let mut facts = TextGrid::default();
     let mut fact = |what: &str, value: String| facts.row([bold(what), value]);
@@ -51,15 +59,7 @@ pub fn run(path: &Path) -> Result<()> {
     fact("designs", grouped(designs));
     fact("scenarios", grouped(scenarios));
     fact("evaluations", format!("{evaluations:.3e}"));
-    fact(
-        "expected time",
-        format!(
-            "about {} plus the time for the front, on {cores} threads, {}designs/s ({})",
-            span(seconds),
-            scaled(speed.of(1, cores).recip()),
-            speed.how()
-        ),
-    );
+    fact("expected time", expected);
     fact("method", method);
     let needs = Needs::of(&plan, cores, true);
     let front =
@@ -77,6 +77,23 @@ pub fn run(path: &Path) -> Result<()> {
         text.push_str(&format!("{} {warning}\n", bold("warning:")));
     }
     terminal::print(&text)
+}
+
+/// How long the method that begins by bounds is expected to take, where judging one by one takes so many `seconds`.
+fn by_bounds(trial: Option<BoundsTrial>, seconds: f64, one_by_one: &str) -> String {
+    match trial {
+        Some(BoundsTrial::Finished(time)) => format!("about {} by bounds (tried: they settled every design)", span(time)),
+        Some(trial @ BoundsTrial::Begun { settled, seconds: time }) if trial.expected() < seconds => format!(
+            "about {} by bounds (tried for {}: {} % of the work)",
+            span(trial.expected()),
+            span(time),
+            terminal::short((settled * 1e3).round() / 10.0),
+        ),
+        Some(BoundsTrial::Begun { seconds: time, .. }) => {
+            format!("unknown (bounds settled little in {}); every design one by one: {one_by_one}", span(time))
+        }
+        None => format!("unknown by bounds; every design one by one: {one_by_one}"),
+    }
 }
 
 fn ends(plan: &Plan, axis: &Axis, column: usize, input: usize) -> String {

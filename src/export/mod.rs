@@ -18,6 +18,7 @@ use crate::certify::{self, Column, Row};
 use crate::checkpoint::Checkpoint;
 use crate::directory::Contents;
 use crate::error::{Error, Result};
+use crate::findings::Findings;
 #[cfg(feature = "pictures")]
 use crate::names::knee_name;
 use crate::names::{MARK, RUN};
@@ -47,6 +48,8 @@ pub struct Certified<'p> {
     pub named: Vec<Vec<Row>>,
     /// Every design, feasible or not, if the study asks for it.
     pub variants: Vec<Row>,
+    /// What a person should know of it besides.
+    pub findings: Findings,
 }
 
 impl<'p> Certified<'p> {
@@ -79,7 +82,8 @@ impl<'p> Certified<'p> {
             let seen = state.feasible;
             return Err(Error::Disagreement(format!("the sweep counted {seen} feasible designs, the f64 reference finds {feasible}")));
         }
-        Ok(Self { plan, state, tally, columns, front, named, variants })
+        let findings = Findings::of(plan, state.feasible, &front, threads, control)?;
+        Ok(Self { plan, state, tally, columns, front, named, variants, findings })
     }
 
     /// Number of reported designs that were certified, without those of a list of all designs; one that is in two lists counts twice.

@@ -113,6 +113,10 @@ impl<'a> Summary<'a> {
                 "constraints": constraints.collect::<Vec<_>>(),
             },
         });
+        let findings = &self.outcome.findings;
+        if !findings.is_empty() {
+            summary["findings"] = findings.to_json(study);
+        }
         let remarks = study.remarks();
         if !remarks.is_empty() {
             summary["notes"] = remarks.into();

@@ -138,6 +138,7 @@ pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
         "evaluate": evaluate,
         "tally": summary["tally"],
         "extremes": summary["extremes"],
+        "findings": summary["findings"]["in_words"],
         "notes": summary["notes"],
         "figures": figures(folder)?,
         "variants": variants(folder, plan)?,

@@ -29,11 +29,17 @@ pub fn check(summary: &Value, plan: &Plan) -> Result<(), String> {
         ("knee", none(&summary["knee"]) || knee(&summary["knee"])),
         ("extremes", by_name(&summary["extremes"], &|it| end(&it["least"]) && end(&it["largest"]))),
         ("tally", is_tally(&summary["tally"], study)),
+        ("findings", none(&summary["findings"]) || are_sentences(&summary["findings"]["in_words"])),
     ];
     match parts.into_iter().find(|(_, good)| !good) {
         Some((part, _)) => Err(format!("its \"{part}\" does not belong to the study")),
         None => Ok(()),
     }
+}
+
+/// Are these sentences, at least one?
+fn are_sentences(sentences: &Value) -> bool {
+    sentences.as_array().is_some_and(|it| !it.is_empty() && it.iter().all(Value::is_string))
 }
 
 /// Are these counts over the sample, with every constraint?

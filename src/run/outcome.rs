@@ -78,6 +78,9 @@ pub struct Highlights {
     pub feasible_of_sample: u64,
     /// What the other designs of the sample fail at; one design may fail at several things.
     pub limits: Vec<Limit>,
+    /// What is worth knowing besides: how far off feasibility is where nothing is feasible, ends of axes on which the front stands,
+    /// quantities below zero that no constraint forbids. One sentence each.
+    pub findings: Vec<String>,
     /// Remarks on the study as a whole.
     pub notes: Vec<String>,
 }
@@ -226,6 +229,7 @@ impl Highlights {
             sampled: tally.sampled,
             feasible_of_sample: tally.feasible,
             limits,
+            findings: certified.findings.in_words(study),
             notes: study.remarks(),
         }
     }

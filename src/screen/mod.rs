@@ -13,6 +13,7 @@ pub(crate) use columns::ends;
 pub use cpu::CpuEngine;
 pub use tables::{BLOCK, Tables};
 pub use tally::Tally;
+pub(crate) use tally::sample;
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};

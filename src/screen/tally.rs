@@ -142,7 +142,7 @@ impl Tally {
 }
 
 /// The design indices of the sample: one in each of `most` equal strata.
-fn sample(designs: u64, most: u64) -> impl Iterator<Item = u64> {
+pub(crate) fn sample(designs: u64, most: u64) -> impl Iterator<Item = u64> {
     let strata = designs.min(most);
     let edge = move |stratum: u64| (u128::from(designs) * u128::from(stratum) / u128::from(strata)) as u64;
     (0..strata).map(move |stratum| {

@@ -51,6 +51,60 @@ pub fn sweep_by_bounds(
     }
 }
 
+/// How bounds got on when they were tried for a moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BoundsTrial {
+    /// They settled every design, in so many seconds.
+    Finished(f64),
+    /// They settled this fraction of their work in so many seconds.
+    Begun {
+        /// Fraction of the work, from 0 to 1.
+        settled: f64,
+        /// Seconds.
+        seconds: f64,
+    },
+}
+
+impl BoundsTrial {
+    /// Seconds that all of it takes at this pace; infinite where nothing was settled.
+    pub fn expected(&self) -> f64 {
+        match *self {
+            Self::Finished(seconds) => seconds,
+            Self::Begun { settled, seconds } => seconds / settled,
+        }
+    }
+}
+
+/// Sweeps a plan by bounds for so long at most, to see how they get on; nothing is kept. `None` if they cannot serve it or fail.
+pub fn try_bounds(plan: &Plan, threads: usize, time: Duration) -> Option<BoundsTrial> {
+    let tables = Tables::new(plan);
+    let reduction = Reduction::new(plan, &[]);
+    let settings = Settings { threads, ..Settings::default() };
+    let (control, over) = (Control::default(), AtomicBool::new(false));
+    let start = Instant::now();
+    let watch = || {
+        while !over.load(Ordering::Relaxed) && start.elapsed() < time {
+            std::thread::sleep(OFTEN);
+        }
+        control.stop.store(true, Ordering::Relaxed);
+    };
+    let swept = with_beside(watch, |runs| {
+        let _end = AtEnd(&over);
+        // Without a thread to watch it nothing would end it.
+        if runs { Some(sweep_by_bounds(plan, &tables, &reduction, &settings, None, &control)) } else { None }
+    })?;
+    let seconds = start.elapsed().as_secs_f64();
+    match swept {
+        Ok(_) => Some(BoundsTrial::Finished(seconds)),
+        #[allow(clippy::cast_precision_loss, reason = "an estimate")]
+        Err(Error::Stopped { .. }) => {
+            let settled = control.done.load(Ordering::Relaxed) as f64 / plan.designs() as f64;
+            Some(BoundsTrial::Begun { settled: settled.min(1.0), seconds })
+        }
+        Err(_) => None,
+    }
+}
+
 /// What came of bounds.
 pub(super) enum Settling {
     /// They settled every design.

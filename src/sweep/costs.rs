@@ -169,6 +169,12 @@ impl Forecast {
     }
 }
 
+const DAY: f64 = 86_400.0;
+const YEAR: f64 = 365.25 * DAY;
+/// From here on a span is told in years, and from there on not any more.
+const MANY_DAYS: f64 = 1000.0;
+const MANY_YEARS: f64 = 10_000.0;
+
 /// A time span for people.
 pub fn span(seconds: f64) -> String {
     match seconds {
@@ -176,7 +182,9 @@ pub fn span(seconds: f64) -> String {
         s if s < 120.0 => format!("{s:.1} s"),
         s if s < 7200.0 => format!("{:.0} min", s / 60.0),
         s if s < 172_800.0 => format!("{:.1} h", s / 3600.0),
-        s => format!("{:.0} days", s / 86_400.0),
+        s if s < MANY_DAYS * DAY => format!("{:.0} days", s / DAY),
+        s if s < MANY_YEARS * YEAR => format!("{:.0} years", s / YEAR),
+        _ => format!("more than {MANY_YEARS} years"),
     }
 }
 
@@ -226,6 +234,14 @@ mod tests {
         // Nothing in the first half: what counts is what comes now.
         near(pace(4.0, |time| 20.0 * (time - 2.0).max(0.0)).rest(4.0, 40.0, 60.0, 20.0), 3.0);
         assert_eq!(Pace::default().rest(4.0, 0.0, 60.0, 20.0), f64::INFINITY);
+    }
+
+    #[test]
+    fn spans_are_told_in_units_of_their_size() {
+        let told = [0.0123, 3.21, 600.0, 1e4, 3e6, 1e8, 1e11, 1e13, f64::INFINITY].map(span);
+        let expected =
+            ["12 ms", "3.2 s", "10 min", "2.8 h", "35 days", "3 years", "3169 years", "more than 10000 years", "more than 10000 years"];
+        assert_eq!(told, expected);
     }
 
     #[test]

@@ -19,7 +19,7 @@ mod watch;
 
 pub use crate::screen::Control;
 pub use auto::{Auto, Left, Rule, Settler, sweep_auto};
-pub use bounds::sweep_by_bounds;
+pub use bounds::{BoundsTrial, sweep_by_bounds, try_bounds};
 pub use costs::Forecast;
 #[cfg(feature = "gpu")]
 pub use gpu::{DeviceRecord, OnDevice, recheck_on_device, sweep_on_device};

@@ -58,16 +58,24 @@ pub fn summary(outcome: &Certified<'_>, record: &RunRecord, out: &Path, page: Op
     }
     if !study.objectives.is_empty() {
         let designs = match outcome.front.len() {
+            0 => "empty".to_owned(),
             1 => "1 design".to_owned(),
             count => format!("{} designs, each", grouped(count as u64)),
         };
-        fact("front", format!("{designs} certified in f64 over every scenario"));
+        let certified = if outcome.front.is_empty() { "" } else { " certified in f64 over every scenario" };
+        fact("front", format!("{designs}{certified}"));
     }
     let mut text = format!("{}\n\n{}", bold(&super::told(&study.title)), facts.indented(0));
     text.push_str(&limits(outcome));
     if !outcome.front.is_empty() {
         text.push_str(&front(outcome));
         text.push_str(&plot(outcome));
+    }
+    for finding in outcome.findings.in_words(study) {
+        text.push_str(&format!("\n{} {finding}", bold("finding")));
+    }
+    if !outcome.findings.is_empty() {
+        text.push('\n');
     }
     for remark in study.remarks() {
         text.push_str(&format!("\n{} {remark}\n", bold("note")));

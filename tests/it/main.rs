@@ -14,6 +14,8 @@ mod command_line;
 mod effort;
 /// A model with all elementary functions.
 mod every_function;
+/// What a result says besides its numbers, by brute force.
+mod findings;
 /// Studies with formulas, by brute force.
 mod formulas;
 /// Screening on a graphics device.

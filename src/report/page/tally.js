@@ -47,15 +47,23 @@
     return said;
   };
 
+  // How far off feasibility is, ends of axes on which the front stands, quantities below zero that no constraint forbids.
+  const drawFindings = (place, findings) => {
+    const list = page.element("ul", { class: "findings", "data-testid": "findings" }, findings.map((text) => page.element("li", {}, text)));
+    place.append(page.element("h3", {}, "Findings"), list);
+  };
+
   page.startTally = () => {
     const { data, front } = page;
-    const { tally, study } = data;
+    const { tally, study, findings } = data;
     if (tally) drawTally(tally);
     const none = study && (study.feasible === 0 || (front && front.rows === 0 && front.objectives.length));
+    if (findings && !none) drawFindings(page.byId("overview"), findings);
     if (!none) return;
     const lead = page.byId("lead");
     lead.hidden = false;
     lead.append(page.element("h2", {}, "No design is feasible: what limits it"), ...(tally ? sentences(tally) : ["The result does not say why."]).map((text) => page.element("p", {}, text)));
+    if (findings) drawFindings(lead, findings);
     if (tally) lead.after(page.byId("tally"));
   };
 }
