@@ -69,6 +69,7 @@ pub mod certify;
 pub mod checkpoint;
 #[doc(hidden)]
 pub mod contours;
+mod decimal;
 #[doc(hidden)]
 pub mod decision;
 #[doc(hidden)]

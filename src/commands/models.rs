@@ -6,6 +6,7 @@ use crate::terminal::{self, TextGrid, bold, dim};
 use beltspace::error::Result;
 use beltspace::models::{self, Input, Model, Range, Worse};
 use beltspace::study::{number, value_of};
+use beltspace::tape::{EquationLine, Equations};
 use serde_json::{Map, Value, json};
 
 pub fn run(request: &cli::ModelsArgs) -> Result<()> {
@@ -58,9 +59,10 @@ fn page(model: &Model) -> String {
     }
     let presets: Vec<_> = model.presets.iter().map(|it| it.name.as_str()).collect();
     let presets = if presets.is_empty() { String::new() } else { format!("presets: {}\n\n", presets.join(", ")) };
+    let equations = equations(model);
     let where_run = if !model.on_gpu { "\nComputed in f64 on the CPU only." } else { "" };
     format!(
-        "{}  {}\n\n{}{where_run}\n\n{}\n{}\n{}\n{presets}{} {}\n",
+        "{}  {}\n\n{}{where_run}\n\n{}\n{}\n{}\n{equations}{presets}{} {}\n",
         bold(&model.name),
         model.summary,
         model.source,
@@ -70,6 +72,29 @@ fn page(model: &Model) -> String {
         bold("Not in the model:"),
         model.limits,
     )
+}
+
+/// What the model computes, line by line, with its symbols.
+fn equations(model: &Model) -> String {
+    let Some(Equations { lines, margins, .. }) = model.equations() else { return String::new() };
+    let mut grid = TextGrid::default();
+    for EquationLine { depth, left, right, source, .. } in lines {
+        let indent = "  ".repeat(depth);
+        let source = if source.is_empty() { String::new() } else { dim(&format!("  {source}")) };
+        grid.row(if left.is_empty() {
+            [format!("{indent}{right}"), String::new()]
+        } else {
+            [format!("{indent}{left}"), format!("= {right}{source}")]
+        });
+    }
+    let mut statuses = TextGrid::default();
+    for (condition, margin) in model.conditions.iter().zip(margins) {
+        let sign = if condition.strict { ">" } else { ">=" };
+        let reason = if condition.quiet { format!("absent: {}", condition.invalidates.join(", ")) } else { condition.reason.clone() };
+        statuses.row([reason, format!("unless {margin} {sign} 0")]);
+    }
+    let head = bold("equations, in SI units and radians");
+    format!("  {head}\n{}\n{}\n", grid.indented(2), statuses.indented(2))
 }
 
 /// A table with a sentence below each row but the first: beside the numbers the sentence would not fit a terminal.

@@ -5,7 +5,7 @@ use super::formula::Kernel;
 use super::status::Evaluation;
 use crate::error::{Error, Result};
 use crate::pulley::Design;
-use crate::tape::Recordable;
+use crate::tape::{Equations, Recordable, Symbols};
 use std::sync::Arc;
 
 /// Sentences on a study, from the values of the inputs that no axis sets.
@@ -123,6 +123,16 @@ impl Model {
     pub fn on_device(&self) -> Result<&dyn Recordable> {
         let formula = self.kernel.formula().filter(|_| self.on_gpu);
         formula.ok_or_else(|| Error::CpuOnly { model: self.name.clone(), remedy: None })
+    }
+
+    /// What it computes as equations for people, in its symbols; `None` if its formula cannot be recorded.
+    pub fn equations(&self) -> Option<Equations> {
+        let formula = self.kernel.formula()?;
+        let symbols = Symbols {
+            inputs: self.inputs.iter().map(|input| input.symbol.clone()).collect(),
+            outputs: self.outputs.iter().map(|output| output.symbol.clone()).collect(),
+        };
+        Some(Equations::of(formula, &symbols, self.outputs.len(), self.conditions.len()))
     }
 
     /// The defaults of all inputs, in their units.

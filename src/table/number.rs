@@ -1,41 +1,9 @@
-//! Numbers as text.
+//! Values of inputs as text.
 
+pub use crate::decimal::{plain, short};
 use crate::models::Input;
-
-/// The shortest decimal text that reads back as the same f64; plain where that is short, with an exponent beyond; no "-0".
-pub fn plain(value: f64) -> String {
-    let magnitude = value.abs();
-    if value == 0.0 {
-        "0".to_owned()
-    } else if (1e-5..1e16).contains(&magnitude) {
-        format!("{value}")
-    } else {
-        format!("{value:e}")
-    }
-}
-
-/// A number with at most six significant digits.
-pub fn short(value: f64) -> String {
-    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
-    plain(rounded)
-}
 
 /// A value of an input as people write it.
 pub fn written(input: &Input, value: f64) -> String {
     input.word_for(value).map_or_else(|| plain(value), str::to_owned)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_are_short_and_read_back() {
-        let cases =
-            [(0.0, "0"), (-0.0, "0"), (30.0, "30"), (0.1, "0.1"), (1e300, "1e300"), (-2.5e-7, "-2.5e-7"), (1e15, "1000000000000000")];
-        for (value, text) in cases {
-            assert_eq!(plain(value), text);
-            assert_eq!(text.parse::<f64>().unwrap(), value);
-        }
-    }
 }

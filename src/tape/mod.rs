@@ -8,6 +8,7 @@
 
 mod columns;
 mod dual;
+mod equations;
 pub(crate) mod error_bound;
 mod interval;
 mod list;
@@ -21,6 +22,7 @@ pub mod wgsl;
 
 pub use columns::{CHUNK, ColumnValue, NodeColumns};
 pub use dual::Dual;
+pub use equations::{EquationLine, Equations, Symbols};
 pub use error_bound::{RunningError, nearest_f32};
 pub use interval::{EVERYTHING, Interval};
 pub use list::{List, ListRoot};

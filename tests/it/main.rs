@@ -12,6 +12,8 @@ mod calculix;
 mod command_line;
 /// How many evaluations a test may make of a model.
 mod effort;
+/// The equations that are printed of a model, computed again.
+mod equations;
 /// A model with all elementary functions.
 mod every_function;
 /// What a result says besides its numbers, by brute force.
