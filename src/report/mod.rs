@@ -110,9 +110,9 @@ pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
         .objectives
         .iter()
         .zip(objectives)
-        .map(|(it, column)| json!({ "of": it.quantity.name(model), "column": column, "goal": it.goal, "resolution": it.resolution }));
+        .map(|(it, column)| json!({ "of": it.name(model), "column": column, "goal": it.goal, "resolution": it.resolution }));
     let constraints = study.constraints.iter().enumerate().map(|(at, it)| {
-        let mut constraint = json!({ "of": it.quantity.name(model), "column": constraints.get(at), "bounds": it.in_words() });
+        let mut constraint = json!({ "of": it.name(model), "column": constraints.get(at), "bounds": it.in_words() });
         for (bound, inclusive, exclusive) in [(it.low, "min", "above"), (it.high, "max", "below")] {
             if let Some((bound, excluded)) = bound {
                 constraint[if excluded { exclusive } else { inclusive }] = number(bound);

@@ -10,6 +10,7 @@ mod describe;
 mod described;
 mod read;
 mod resolved;
+mod spectrum;
 
 pub use axis::{Axis, Levels, Method, Sample};
 #[doc(hidden)]
@@ -18,7 +19,9 @@ pub use describe::{differences, number, value_of};
 pub(crate) use read::tests::study_of;
 pub use read::{Problem, StudyErrors};
 #[doc(hidden)]
-pub use resolved::worst_end;
+pub use resolved::{worst_end, worst_end_over};
 pub use resolved::{
-    Best, Constraint, ContourSpec, Goal, HistogramSpec, MapSpec, Objective, Quantity, Report, SampleSpec, Study, Thresholds, TopSpec,
+    Best, Constraint, ContourSpec, Goal, HistogramSpec, MapSpec, Objective, Quantity, Report, ReportColumn, SampleSpec, Study, Thresholds,
+    TopSpec,
 };
+pub use spectrum::{OverScenarios, Spectrum};
