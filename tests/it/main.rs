@@ -51,6 +51,7 @@ mod shader_constants;
 /// The committed shaders against the formulas.
 mod shaders;
 /// The timing belt: figures, closed forms, similarity.
+mod spectra;
 mod timing_mesh;
 /// The tutorials of `docs/`, run and compared with what the program prints.
 mod tutorial;
