@@ -288,7 +288,17 @@ impl<'p> Reference<'p> {
                 summed.push(quantity);
             }
         }
-        Self { plan, columns, wanted, summed, row: None, prepared: Vec::new(), beyond: Vec::new(), latest: Latest::new(&plan.study.model), stop }
+        Self {
+            plan,
+            columns,
+            wanted,
+            summed,
+            row: None,
+            prepared: Vec::new(),
+            beyond: Vec::new(),
+            latest: Latest::new(&plan.study.model),
+            stop,
+        }
     }
 
     /// The row of a design; `None` if it was stopped.
@@ -332,11 +342,8 @@ impl<'p> Reference<'p> {
                     Quantity::Output(output) => shown(model, &outputs, present, output),
                 };
                 feasible &= status == Status::Ok;
-                feasible &= plan
-                    .study
-                    .constraints
-                    .iter()
-                    .all(|it| value(it.quantity).is_some_and(|value| !it.over.is_worst() || it.holds(value)));
+                feasible &=
+                    plan.study.constraints.iter().all(|it| value(it.quantity).is_some_and(|value| !it.over.is_worst() || it.holds(value)));
                 // A tracked quantity without a value in some scenario makes a design infeasible, as in the sweep.
                 feasible &= plan.tracked.iter().all(|(it, _)| value(it.quantity).is_some());
                 let scenario = plan.slow_scenarios.source_index(q) + plan.fast_scenarios.source_index(t);

@@ -7,7 +7,7 @@
 use crate::models::{Dependencies, Effort, Worse, input_to_si};
 use crate::space::{Product, Space};
 pub use crate::study::worst_end;
-use crate::study::{Axis, OverScenarios, Quantity, Study};
+use crate::study::{Axis, OverScenarios, Quantity, Spectrum, Study};
 use crate::tape::{Known, Set};
 
 /// Most combinations of the fast design axes in a row, so that their values fit into a table.
@@ -96,6 +96,11 @@ impl SpectrumPlan {
         let (along, slot) = if self.is_slow { (slow, fast) } else { (fast, 0) };
         let case = (along % cases as u64) as usize;
         CasePlace { case, weight: self.weights[case], is_last: case + 1 == cases, slot }
+    }
+
+    /// The weight of a scenario of the study.
+    pub fn weight_of(&self, scenario: u64) -> f64 {
+        self.weights[(scenario / self.stride % self.weights.len() as u64) as usize]
     }
 
     /// The number of the sum of this value.
@@ -239,6 +244,12 @@ impl Plan {
     /// Outputs that the study asks for.
     pub fn used_outputs(&self) -> Set {
         self.row_outputs | Set::of(&self.lane_outputs)
+    }
+
+    /// The spectrum whose weights are no input, so that they stand in a column of their own where scenarios are listed.
+    pub fn listed_weights(&self) -> Option<(&Spectrum, &SpectrumPlan)> {
+        let spectrum = self.study.spectrum.as_ref().filter(|it| self.study.model.input(&it.weight).is_none())?;
+        Some((spectrum, self.spectrum.as_ref()?))
     }
 
     /// Number of designs.

@@ -185,7 +185,8 @@ impl BoundedStudy {
         match sought {
             Sought::Front => plan.study.objectives.iter().map(|objective| target(objective, false)).collect(),
             Sought::Top => {
-                let as_objective = |top: &TopSpec| Objective { quantity: top.by, goal: top.goal, resolution: None, over: OverScenarios::Worst };
+                let as_objective =
+                    |top: &TopSpec| Objective { quantity: top.by, goal: top.goal, resolution: None, over: OverScenarios::Worst };
                 plan.study.report.top.iter().map(|top| target(&as_objective(top), false)).collect()
             }
             Sought::Extreme { objective, largest } => {

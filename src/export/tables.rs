@@ -29,7 +29,9 @@ pub fn designs(outcome: &Certified<'_>, rows: &[Row]) -> Table {
                 ("objective", if study.objectives[objective].goal == Goal::Min { "min".to_owned() } else { "max".to_owned() })
             }
             Role::Constraint(constraint) => ("constraint", study.constraints[constraint].in_words()),
-            Role::Report if column.is_end_asked(study) => ("report", format!("{} of the scenarios", column.end().map_or("worst", Worse::word))),
+            Role::Report if column.is_end_asked(study) => {
+                ("report", format!("{} of the scenarios", column.end().map_or("worst", Worse::word)))
+            }
             Role::Report => ("report", String::new()),
         };
         let direction = match column.over_words(study) {
@@ -46,12 +48,7 @@ pub fn designs(outcome: &Certified<'_>, rows: &[Row]) -> Table {
         columns.push(TableColumn {
             unit: column.unit(study),
             direction,
-            ..TableColumn::new(
-                &column.name,
-                role,
-                &column.doc(study),
-                Data::Number(rows.iter().map(|row| row.columns[at].value).collect()),
-            )
+            ..TableColumn::new(&column.name, role, &column.doc(study), Data::Number(rows.iter().map(|row| row.columns[at].value).collect()))
         });
         let scenarios = rows.iter().map(|row| row.columns[at].value.map(|_| row.columns[at].scenario));
         let what = if column.over.is_worst() {

@@ -203,10 +203,21 @@ fn scenario_inputs<'s>(plan: &Plan, numbers: impl IntoIterator<Item = &'s u64>) 
         let input = &study.model.inputs[input];
         json!({ "name": input.name, "unit": input.unit.symbol, "doc": input.doc })
     });
+    let weights = plan.listed_weights();
+    let of_weights =
+        weights.map(|(it, _)| json!({ "name": it.weight, "unit": it.unit, "doc": format!("Weight of the case of {}.", it.name) }));
+    let columns = columns.chain(of_weights);
     let mut values = study.fixed.clone();
-    let rows = numbers.into_iter().map(|&number| {
-        plan.space.scenarios.set(number, &mut values);
-        (number.to_string(), inputs.iter().map(|&input| value_of(&study.model, input, values[input])).collect::<Value>())
+    let rows = numbers.into_iter().map(|&scenario| {
+        plan.space.scenarios.set(scenario, &mut values);
+        (
+            scenario.to_string(),
+            inputs
+                .iter()
+                .map(|&input| value_of(&study.model, input, values[input]))
+                .chain(weights.map(|(_, it)| number(it.weight_of(scenario))))
+                .collect::<Value>(),
+        )
     });
     let rows: Map<_, _> = rows.collect();
     json!({ "columns": columns.collect::<Vec<_>>(), "rows": rows })

@@ -178,8 +178,7 @@ fn constraint_of(model: &Model, constraint: &Constraint) -> Value {
 }
 
 fn objective_of(model: &Model, objective: &Objective) -> Value {
-    let mut value =
-        json!({ "of": objective.quantity.name(model), "goal": objective.goal, "resolution": objective.resolution });
+    let mut value = json!({ "of": objective.quantity.name(model), "goal": objective.goal, "resolution": objective.resolution });
     describe_over(objective.over, &mut value);
     value
 }

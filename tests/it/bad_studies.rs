@@ -1,7 +1,8 @@
 //! Study files: broken ones are refused with every problem and its position, good ones are understood correctly.
 
 use beltspace::study::{
-    Axis, Best, Constraint, Goal, HistogramSpec, Levels, MapSpec, Method, Objective, OverScenarios, Quantity, Report, Sample, Study, TopSpec,
+    Axis, Best, Constraint, Goal, HistogramSpec, Levels, MapSpec, Method, Objective, OverScenarios, Quantity, Report, Sample, Study,
+    TopSpec,
 };
 use std::path::Path;
 

@@ -50,8 +50,9 @@ mod second;
 mod shader_constants;
 /// The committed shaders against the formulas.
 mod shaders;
-/// The timing belt: figures, closed forms, similarity.
+/// Load spectra: means and sums over weighted cases.
 mod spectra;
+/// The timing belt: figures, closed forms, similarity.
 mod timing_mesh;
 /// The tutorials of `docs/`, run and compared with what the program prints.
 mod tutorial;

@@ -101,7 +101,9 @@ impl CaseReader<'_, '_> {
                         entry.key_at,
                         format!("{label}: \"{}\" is missing in the first row; give every row the same inputs", entry.key),
                     ),
-                    (None, _) if !first && !self.is_weight(entry.key) => problems.add(entry.key_at, format!("{label}: {}", self.no_input(entry.key))),
+                    (None, _) if !first && !self.is_weight(entry.key) => {
+                        problems.add(entry.key_at, format!("{label}: {}", self.no_input(entry.key)))
+                    }
                     (None, _) => {}
                 }
             }
@@ -187,8 +189,7 @@ impl CaseReader<'_, '_> {
         let before = self.problems.count();
         let problem = |line: usize, field: usize, message: String| self.problems.add_in(at, name, line, field, message);
         let mut builder = csv::ReaderBuilder::new();
-        let mut reader =
-            builder.has_headers(false).flexible(true).trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
+        let mut reader = builder.has_headers(false).flexible(true).trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
         let mut columns: Option<Vec<CaseColumn>> = None;
         let (mut rows, mut known) = (Vec::new(), HashMap::new());
         for record in reader.records() {

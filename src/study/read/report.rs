@@ -355,9 +355,8 @@ impl Reader<'_> {
                     (None, None) => {
                         // An objective with a problem of its own, or with a wrong name, has been reported.
                         let is_objective = |entry: &Entry<'_>| entry.key == name || self.find_quantity(entry.key).is_none();
-                        let is_wrong = |table: &TomlTable<'_>| {
-                            table.entries.len() > known.objectives.len() && table.entries.iter().any(is_objective)
-                        };
+                        let is_wrong =
+                            |table: &TomlTable<'_>| table.entries.len() > known.objectives.len() && table.entries.iter().any(is_objective);
                         if !known.named.is_some_and(is_wrong) {
                             let message =
                                 format!("{label}: \"{name}\" is no objective; say which value is best: best = \"min\" or best = \"max\"");

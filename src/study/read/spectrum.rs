@@ -63,7 +63,7 @@ impl Reader<'_> {
         let label = format!("axis \"{}\"", shortened(entry.key));
         let first = self.weighted_at.replace(Some(entry.key_at));
         if role != AxisRole::Operation {
-            let message = format!("{label}: cases have weights in [operation] only; move the axis there, or write it as cases = ...");
+            let message = format!("{label}: cases have weights in [operation] only; move the axis there, or write it as cases = [...]");
             problems.add(entry.key_at, message);
             return None;
         }

@@ -148,9 +148,11 @@ impl Expected {
         let names = scenario_inputs.iter().map(|&input| model.inputs[input].name.to_owned());
         let scenarios = evaluated.cases(0).iter().enumerate().map(|(number, case)| {
             let inputs = scenario_inputs.iter().map(|&input| input_cell(study, input, case.inputs[input]));
-            std::iter::once(whole(number as u64)).chain(inputs).collect()
+            let weight = evaluated.weight(number).map(Cell::number);
+            std::iter::once(whole(number as u64)).chain(inputs).chain(weight).collect()
         });
-        let header = std::iter::once("scenario".to_owned()).chain(names).collect();
+        let weight = study.spectrum.as_ref().map(|spectrum| spectrum.weight.clone());
+        let header = std::iter::once("scenario".to_owned()).chain(names).chain(weight).collect();
         tables.insert("scenarios.csv".to_owned(), Table { header, rows: scenarios.collect() });
         if !study.objectives.is_empty() {
             tables.insert("front.csv".to_owned(), designs_table(study, evaluated, &self.front));

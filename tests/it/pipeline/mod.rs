@@ -229,8 +229,7 @@ fn cover(draft: &Draft, plan: &Plan, evaluated: &Evaluated, expected: &Expected,
         let touches = |design: u64, inclusive: bool| {
             let bounds = [constraint.low, constraint.high].into_iter().flatten();
             let values = evaluated.groups(constraint.over).into_iter();
-            let values: Vec<_> =
-                values.map(|group| evaluated.value_over(design, &group, constraint.quantity, constraint.over)).collect();
+            let values: Vec<_> = values.map(|group| evaluated.value_over(design, &group, constraint.quantity, constraint.over)).collect();
             bounds.filter(|(_, strict)| *strict != inclusive).any(|(bound, _)| values.contains(&Some(bound)))
         };
         let number = study.constraints.iter().position(|it| it == constraint).expect("it is one of them");

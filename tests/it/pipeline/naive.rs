@@ -70,6 +70,11 @@ impl Evaluated {
         Self { designs, scenarios, spectrum, cases }
     }
 
+    /// The weight of a scenario, if the study has weights.
+    pub fn weight(&self, scenario: usize) -> Option<f64> {
+        self.spectrum.as_ref().map(|(weights, stride)| weights[scenario / stride % weights.len()])
+    }
+
     /// The scenarios whose cases add up, each group by the numbers of its cases; without a sum every scenario is its own.
     pub fn groups(&self, over: OverScenarios) -> Vec<Vec<usize>> {
         let scenarios = 0..self.scenarios as usize;
