@@ -1,8 +1,10 @@
 //! Load spectra: means and sums over weighted cases against a plain loop, whatever runs them, and how a result shows them.
 
 use crate::pipeline::runs::{Pipeline, differing_file};
+use beltspace::certify;
 use beltspace::models::{Status, evaluate};
 use beltspace::plan::Plan;
+use beltspace::screen::Control;
 use beltspace::study::{Axis, OverScenarios, Quantity, Study};
 use beltspace::sweep::Settings;
 use std::path::Path;
@@ -215,7 +217,11 @@ fn a_case_of_weight_0_must_be_survived() {
 /// spectrum is used.
 #[test]
 fn every_way_gives_the_same_files() {
-    for text in [MEAN, UNCERTAIN, MINER] {
+    // The weight is a variable too where a formula reads it.
+    let read = MEAN
+        .replace("[fixed]", "[formulas]\nshared_force_N = \"axial_force_N * share\"\n[fixed]")
+        .replace("\"max_stress_MPa\"", "\"shared_force_N\"");
+    for text in [MEAN, UNCERTAIN, MINER, &read] {
         let plan = Plan::new(study_of(text));
         let described = plan.study.describe();
         let back = Study::from_description(&described).expect("it comes back");
@@ -232,6 +238,30 @@ fn every_way_gives_the_same_files() {
         let state = pipeline.sharded(&mut crate::random::Random::new(5), folder.path());
         assert_eq!(differing_file(&reference, &pipeline.write(state, 2, &folder.path().join("merged"))), None);
     }
+}
+
+/// The comparison objects to another weight, to weights in another order, and to a mean in place of a sum.
+#[test]
+fn the_plain_loop_is_not_that_of_another_spectrum() {
+    let plan = Plan::new(study_of(UNCERTAIN));
+    let columns = certify::columns(&plan.study);
+    let row = certify::rows(&plan, &columns, &[5], 1, &Control::default()).expect("nobody stops it").remove(0);
+    let column = columns.iter().position(|it| it.name == "axial_force_N_sum").expect("it is constrained");
+    let found = row.columns[column].value.expect("it has a value");
+    let quantity = columns[column].quantity;
+    let expected = |study: &Study, over: OverScenarios| {
+        let inputs = combinations(&study.design.iter().collect::<Vec<_>>(), &study.fixed).remove(5);
+        by_hand(study, &inputs, quantity, over, true).expect("it has a value").worst
+    };
+    assert_eq!(expected(&plan.study, Sum).to_bits(), found.to_bits());
+    assert_ne!(expected(&plan.study, Mean), found);
+    let changed = |change: fn(&mut Vec<f64>)| {
+        let mut study = plan.study.clone();
+        change(&mut study.spectrum.as_mut().expect("it has one").weights);
+        expected(&study, Sum)
+    };
+    assert_ne!(changed(|weights| weights[1] *= 1.0 + 1e-12), found);
+    assert_ne!(changed(|weights| weights.reverse()), found);
 }
 
 /// The sums under way are few whatever the axes are, and all that is done is the same.

@@ -8,6 +8,7 @@ use super::csv_file::csv_text;
 use super::spectrum::WeightColumn;
 use super::table::{Entry, Lines, TomlNode, TomlTable, list, shortened};
 use super::value::input_text;
+use crate::likeness::closest;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry as Row;
 use toml::de::DeValue;
@@ -128,6 +129,13 @@ impl CaseReader<'_, '_> {
         columns.filter(|_| problems.count() == before).map(|inputs| Axis::Joint { inputs, rows })
     }
 
+    /// Why there is no input of that name; it may be the column of the weights misspelt.
+    fn no_input(&self, name: &str) -> String {
+        let meant = self.weight.and_then(|weight| closest(name, &[weight.name]));
+        let of_weight = meant.map(|weight| format!("there is no input \"{}\"; did you mean \"{weight}\"?", shortened(name)));
+        of_weight.unwrap_or_else(|| self.reader.no_input(name))
+    }
+
     /// Is it the column of the weights?
     fn is_weight(&self, name: &str) -> bool {
         self.weight.is_some_and(|weight| weight.name == name)
@@ -141,10 +149,13 @@ impl CaseReader<'_, '_> {
         let mut inputs = Vec::new();
         let named = table.entries.iter().filter(|entry| !self.is_weight(entry.key) || self.model.input(entry.key).is_some());
         for entry in named.take_while(|_| !self.problems.is_full()) {
-            if let Some(input) = self.input(entry.key, entry.key_at, label) {
-                self.claims.borrow_mut().push(AxisClaim { input, role: self.role, at: entry.key_at, single: false, word: None });
-                inputs.push(input);
-            }
+            let Some(input) = self.model.input(entry.key) else {
+                self.problems.add(entry.key_at, format!("{label}: {}", self.no_input(entry.key)));
+                self.misnamed.set(true);
+                continue;
+            };
+            self.claims.borrow_mut().push(AxisClaim { input, role: self.role, at: entry.key_at, single: false, word: None });
+            inputs.push(input);
         }
         inputs
     }
