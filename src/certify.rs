@@ -7,9 +7,9 @@ use crate::error::{Error, Result};
 use crate::keys::{KeyRule, Points};
 use crate::models::{Latest, Set, Sizes, Status, Worse, fill_si, judge, shown};
 use crate::parallel::on_threads;
-use crate::plan::{Plan, worst_end};
+use crate::plan::Plan;
 use crate::screen::Control;
-use crate::study::{Axis, Constraint, Quantity, Study};
+use crate::study::{Axis, Constraint, OverScenarios, Quantity, ReportColumn, Study, worst_end_over};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Why a column is in the tables.
@@ -23,17 +23,66 @@ pub enum Role {
     Report,
 }
 
-/// A column of the result tables: a quantity at its worst scenario.
+/// A column of the result tables: a quantity at its worst scenario, or its mean or sum over the cases of a spectrum.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
-    /// Name of the column: the quantity's, with `_constrained` added if an objective of the same quantity has the other worst end.
+    /// Name of the column: the quantity's, with `_mean` or `_sum` where it is one, and with `_constrained`, `_lowest` or `_highest` if a
+    /// column before it has the other worst end.
     pub name: String,
     /// The quantity.
     pub quantity: Quantity,
+    /// What becomes of its values over the scenarios.
+    pub over: OverScenarios,
     /// Why the column is there; the first reason if there are several.
     pub role: Role,
     /// What makes a scenario worse.
     worst: Worst,
+}
+
+impl Column {
+    /// Is it of this quantity, in this way? Several may be, and the first one is that of an objective, if there is one.
+    pub fn is_of(&self, quantity: Quantity, over: OverScenarios) -> bool {
+        self.quantity == quantity && self.over == over
+    }
+
+    /// Its unit, as text.
+    pub fn unit(&self, study: &Study) -> String {
+        study.unit_over(self.quantity, self.over)
+    }
+
+    /// What it is, in a sentence or two.
+    pub fn doc(&self, study: &Study) -> String {
+        let doc = self.quantity.doc(&study.model);
+        match (self.over_words(study), self.role) {
+            (Some(words), _) => format!("{doc} The {words}."),
+            (None, Role::Report) if self.is_end_asked(study) => format!("{doc} The {} of the scenarios.", self.end_word()),
+            (None, _) => doc.to_owned(),
+        }
+    }
+
+    /// Of a mean or sum, and of a column that asks for one end: what it is of the scenarios, such as `mean over duty`.
+    pub fn over_words(&self, study: &Study) -> Option<String> {
+        let spectrum = study.spectrum.as_ref().filter(|_| !self.over.is_worst())?;
+        let (word, name, weight) = (self.over.word(), &spectrum.name, &spectrum.weight);
+        let others = study.operation.len() + study.uncertainty.len() > 1;
+        let rest = if others { format!(", {} of the other scenarios", self.end_word()) } else { String::new() };
+        Some(format!("{word} over {name}, weighted by {weight}{rest}"))
+    }
+
+    /// Does the report ask for the end that it shows?
+    pub fn is_end_asked(&self, study: &Study) -> bool {
+        let asks = |it: &&ReportColumn| self.is_of(it.of, it.over) && it.worst.is_some();
+        self.role == Role::Report && study.report.columns.iter().any(|it| asks(&it) && it.worst == self.end())
+    }
+
+    fn end_word(&self) -> &'static str {
+        self.end().map_or("worst", Worse::word)
+    }
+
+    /// Which end of the scenarios it shows, if that is one end and not the distance to two bounds.
+    pub fn end(&self) -> Option<Worse> {
+        self.worst.end()
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,15 +101,28 @@ impl Worst {
         }
     }
 
-    /// Do both choose the same scenario?
-    fn same(self, other: Self) -> bool {
-        let end = |worst| match worst {
+    /// The end that is worse, if it is always the same.
+    fn end(self) -> Option<Worse> {
+        match self {
             Self::End(worse) => Some(worse),
             Self::Margin(Constraint { low: Some(_), high: None, .. }) => Some(Worse::Lower),
             Self::Margin(Constraint { low: None, high: Some(_), .. }) => Some(Worse::Higher),
             Self::Margin(_) => None,
-        };
-        end(self).is_some() && end(self) == end(other)
+        }
+    }
+
+    /// Takes in a value, if there is one; of equally bad ones that of the first scenario stays.
+    fn take(self, (badness, at): &mut (f64, AtWorst), value: Option<f64>, scenario: u64) {
+        let Some(value) = value else { return };
+        let this = self.badness(value);
+        if at.value.is_none() || this > *badness || (this == *badness && scenario < at.scenario) {
+            (*badness, *at) = (this, AtWorst { value: Some(value + 0.0), scenario });
+        }
+    }
+
+    /// Do both choose the same scenario?
+    fn same(self, other: Self) -> bool {
+        self.end().is_some() && self.end() == other.end()
     }
 }
 
@@ -69,27 +131,41 @@ impl Worst {
 pub fn columns(study: &Study) -> Vec<Column> {
     let model = &study.model;
     let mut columns: Vec<Column> = Vec::new();
-    let objectives = study.objectives.iter().enumerate().map(|(n, it)| (it.quantity, Role::Objective(n), Worst::End(it.goal.worse())));
-    let constraints = study.constraints.iter().enumerate().map(|(n, it)| (it.quantity, Role::Constraint(n), Worst::Margin(*it)));
-    let report = study.report.columns.iter().map(|&it| (it, Role::Report, Worst::End(worst_end(study, it))));
-    for (quantity, role, worst) in objectives.chain(constraints).chain(report) {
-        let held = columns.iter().find(|it| it.quantity == quantity);
-        let name = quantity.name(model).to_owned();
-        match held {
-            // A report column of a quantity that is there already is dropped. A constraint may have another worst scenario, so it is kept.
-            Some(held) if role == Role::Report || held.worst.same(worst) => {}
-            Some(_) => columns.push(Column { name: name + "_constrained", quantity, role, worst }),
-            None => columns.push(Column { name, quantity, role, worst }),
-        }
+    let objectives =
+        study.objectives.iter().enumerate().map(|(n, it)| (it.quantity, it.over, Role::Objective(n), Worst::End(it.goal.worse()), None));
+    let constraints =
+        study.constraints.iter().enumerate().map(|(n, it)| (it.quantity, it.over, Role::Constraint(n), Worst::Margin(*it), None));
+    let report = study.report.columns.iter().map(|it| {
+        let end = it.worst.unwrap_or_else(|| worst_end_over(study, it.of, it.over));
+        (it.of, it.over, Role::Report, Worst::End(end), it.worst)
+    });
+    for (quantity, over, role, worst, asked) in objectives.chain(constraints).chain(report) {
+        let mut held = columns.iter().filter(|it| it.is_of(quantity, over)).peekable();
+        let name = over.column(quantity, model);
+        let is_first = held.peek().is_none();
+        let is_held = held.any(|held| held.worst.same(worst));
+        let name = match (role, asked) {
+            _ if is_first => name,
+            // A report column of a quantity that is there already is dropped, unless it asks for the other end. A constraint may have
+            // another worst scenario, so it is kept.
+            (Role::Report, None) => continue,
+            _ if is_held => continue,
+            (_, Some(end)) => format!("{name}_{}", end.word()),
+            _ => name + "_constrained",
+        };
+        columns.push(Column { name, quantity, over, role, worst });
     }
     columns
 }
 
 /// One column per constraint, in their order, each at the scenario that is nearest to breaking it, or breaks it most.
 pub(crate) fn margin_columns(study: &Study) -> Vec<Column> {
-    let column = |(n, it): (usize, &Constraint)| {
-        let name = it.quantity.name(&study.model).to_owned();
-        Column { name, quantity: it.quantity, role: Role::Constraint(n), worst: Worst::Margin(*it) }
+    let column = |(n, it): (usize, &Constraint)| Column {
+        name: it.name(&study.model),
+        quantity: it.quantity,
+        over: it.over,
+        role: Role::Constraint(n),
+        worst: Worst::Margin(*it),
     };
     study.constraints.iter().enumerate().map(column).collect()
 }
@@ -98,7 +174,7 @@ pub(crate) fn margin_columns(study: &Study) -> Vec<Column> {
 pub(crate) fn lowest_columns(study: &Study, quantities: &[Quantity]) -> Vec<Column> {
     let column = |&quantity: &Quantity| {
         let name = quantity.name(&study.model).to_owned();
-        Column { name, quantity, role: Role::Report, worst: Worst::End(Worse::Lower) }
+        Column { name, quantity, over: OverScenarios::Worst, role: Role::Report, worst: Worst::End(Worse::Lower) }
     };
     quantities.iter().map(column).collect()
 }
@@ -114,7 +190,7 @@ pub fn design_input(study: &Study, quantity: Quantity) -> Option<usize> {
 pub struct AtWorst {
     /// The value, in its unit; `None` if it has no meaning in any scenario.
     pub value: Option<f64>,
-    /// The scenario; of equally bad ones that with the lowest index.
+    /// The scenario; of equally bad ones that with the lowest index. Of a mean or sum, that of its first case.
     pub scenario: u64,
 }
 
@@ -168,14 +244,14 @@ pub fn front(plan: &Plan, columns: &[Column], points: &Points, threads: usize, c
     // Objectives are the first columns, unless two objectives share a quantity.
     let column_of: Vec<usize> = objectives
         .iter()
-        .map(|objective| columns.iter().position(|it| it.quantity == objective.quantity).expect("every objective has a column"))
+        .map(|it| columns.iter().position(|column| column.is_of(it.quantity, it.over)).expect("every objective has a column"))
         .collect();
     for (row, keys) in rows.iter().zip(points.keys.chunks(objectives.len().max(1))) {
         check_feasible(row)?;
         for ((objective, &column), &seen) in objectives.iter().zip(&column_of).zip(keys) {
             let value = row.columns[column].value.unwrap_or(f64::NAN);
             if KeyRule::from(objective).key(value) != seen {
-                let name = objective.quantity.name(&plan.study.model);
+                let name = objective.name(&plan.study.model);
                 return Err(Error::Disagreement(format!(
                     "{name} of design {}: the sweep found {seen}, the f64 reference gives {value}",
                     row.index
@@ -209,6 +285,8 @@ struct Reference<'p> {
     plan: &'p Plan,
     columns: &'p [Column],
     wanted: Set,
+    /// The quantities that are summed over the cases of a spectrum, each once.
+    summed: Vec<Quantity>,
     row: Option<u64>,
     /// The prepared numbers of the first slow scenarios, as many as there is room for.
     prepared: Vec<Vec<f64>>,
@@ -224,7 +302,26 @@ impl<'p> Reference<'p> {
         let tracked = plan.tracked.iter().map(|(it, _)| it.quantity);
         let asked = columns.iter().map(|it| it.quantity).chain(plan.study.constraints.iter().map(|it| it.quantity)).chain(tracked);
         let wanted = asked.filter_map(Quantity::output).collect();
-        Self { plan, columns, wanted, row: None, prepared: Vec::new(), beyond: Vec::new(), latest: Latest::new(&plan.study.model), stop }
+        let of_columns = columns.iter().map(|it| (it.quantity, it.over));
+        let of_constraints = plan.study.constraints.iter().map(|it| (it.quantity, it.over));
+        let of_tracked = plan.tracked.iter().map(|(it, _)| (it.quantity, it.over));
+        let mut summed = Vec::new();
+        for (quantity, over) in of_columns.chain(of_constraints).chain(of_tracked) {
+            if !over.is_worst() && !summed.contains(&quantity) {
+                summed.push(quantity);
+            }
+        }
+        Self {
+            plan,
+            columns,
+            wanted,
+            summed,
+            row: None,
+            prepared: Vec::new(),
+            beyond: Vec::new(),
+            latest: Latest::new(&plan.study.model),
+            stop,
+        }
     }
 
     /// The row of a design; `None` if it was stopped.
@@ -243,6 +340,7 @@ impl<'p> Reference<'p> {
         let [mut si, mut outputs, mut margins] = [inputs.len(), outputs, conditions].map(|length| vec![0.0; length]);
         let (mut feasible, mut without_result) = (true, 0);
         let mut worst = vec![(f64::NEG_INFINITY, AtWorst { value: None, scenario: 0 }); self.columns.len()];
+        let mut sums = SummedCases::new(plan, &self.summed);
         for q in 0..plan.slow_scenarios.count() {
             plan.slow_scenarios.set(q, &mut inputs);
             for t in 0..plan.fast_scenarios.count() {
@@ -270,18 +368,66 @@ impl<'p> Reference<'p> {
                 let mut asked = plan.tracked.iter().map(|(it, _)| it.quantity).chain(plan.study.constraints.iter().map(|it| it.quantity));
                 let has_result = status == Status::Ok && asked.all(|quantity| value(quantity).is_some());
                 without_result += u64::from(!has_result);
-                feasible &= has_result && plan.study.constraints.iter().all(|it| value(it.quantity).is_some_and(|value| it.holds(value)));
+                feasible &= has_result;
+                feasible &=
+                    plan.study.constraints.iter().all(|it| value(it.quantity).is_some_and(|value| !it.over.is_worst() || it.holds(value)));
                 let scenario = plan.slow_scenarios.source_index(q) + plan.fast_scenarios.source_index(t);
-                for (column, (badness, at)) in self.columns.iter().zip(&mut worst) {
-                    let Some(value) = value(column.quantity) else { continue };
-                    let this = column.worst.badness(value);
-                    if at.value.is_none() || this > *badness || (this == *badness && scenario < at.scenario) {
-                        (*badness, *at) = (this, AtWorst { value: Some(value + 0.0), scenario });
-                    }
+                for (column, worst) in self.columns.iter().zip(&mut worst).filter(|(column, _)| column.over.is_worst()) {
+                    column.worst.take(worst, value(column.quantity), scenario);
+                }
+                let Some(known) = sums.add((q, t), scenario, value) else { continue };
+                let sum = |quantity, over| sums.result(known, quantity, over);
+                feasible &= plan
+                    .study
+                    .constraints
+                    .iter()
+                    .all(|it| it.over.is_worst() || sum(it.quantity, it.over).is_some_and(|value| it.holds(value)));
+                feasible &= plan.tracked.iter().all(|(it, _)| it.over.is_worst() || sum(it.quantity, it.over).is_some());
+                for (column, worst) in self.columns.iter().zip(&mut worst).filter(|(column, _)| !column.over.is_worst()) {
+                    column.worst.take(worst, sum(column.quantity, column.over), known.1);
                 }
             }
         }
         let columns = worst.into_iter().map(|(_, at)| at).collect();
         Some(Row { index, feasible, without_result, inputs: first, columns })
+    }
+}
+
+/// Sums over the cases of a spectrum for one design.
+struct SummedCases<'p> {
+    plan: &'p Plan,
+    summed: &'p [Quantity],
+    /// Of each sum under way, of each quantity: the sum, if every case so far has a value.
+    sums: Vec<Option<f64>>,
+}
+
+/// A sum that has all its cases: which of those under way, and the scenario of its first case.
+type KnownSum = (u64, u64);
+
+impl<'p> SummedCases<'p> {
+    fn new(plan: &'p Plan, summed: &'p [Quantity]) -> Self {
+        let under_way = plan.spectrum.as_ref().map_or(0, |spectrum| spectrum.under_way) as usize;
+        Self { plan, summed, sums: vec![None; under_way * summed.len()] }
+    }
+
+    /// Adds a scenario; tells what is known once it was the last case.
+    fn add(&mut self, turn: (u64, u64), scenario: u64, value: impl Fn(Quantity) -> Option<f64>) -> Option<KnownSum> {
+        let spectrum = self.plan.spectrum.as_ref().filter(|_| !self.summed.is_empty())?;
+        let place = spectrum.place(turn);
+        let first = place.slot as usize * self.summed.len();
+        for (sum, &quantity) in self.sums[first..].iter_mut().zip(self.summed) {
+            let before = if place.case == 0 { Some(0.0) } else { *sum };
+            *sum = before.zip(value(quantity)).map(|(sum, value)| sum + place.weight * value);
+        }
+        place.is_last.then(|| (place.slot, scenario - place.case as u64 * spectrum.stride))
+    }
+
+    /// The mean or sum of a quantity; `None` if a case has no value, or it is beyond what f64 holds.
+    fn result(&self, (slot, _): KnownSum, quantity: Quantity, over: OverScenarios) -> Option<f64> {
+        let number = self.summed.iter().position(|&it| it == quantity)?;
+        let sum = self.sums[slot as usize * self.summed.len() + number]?;
+        let total = self.plan.spectrum.as_ref()?.total;
+        let result = if over == OverScenarios::Mean { sum / total } else { sum };
+        result.is_finite().then_some(result)
     }
 }

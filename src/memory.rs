@@ -302,7 +302,7 @@ pub fn large_files(plan: &Plan, front: u64) -> Vec<(String, u64)> {
     let study = &plan.study;
     let inputs = |axes: &[Axis]| axes.iter().map(|axis| axis.inputs().len() as u64).sum::<u64>();
     let columns = certify::columns(study).len() as u64;
-    let scenario = inputs(&study.operation) + inputs(&study.uncertainty);
+    let scenario = inputs(&study.operation) + inputs(&study.uncertainty) + u64::from(plan.listed_weights().is_some());
     let row = NUMBER * (inputs(&study.design) + columns) + 7 * (1 + columns);
     let mut files = vec![
         ("scenarios.csv".to_owned(), plan.scenarios().saturating_mul(scenario * NUMBER + 9)),

@@ -7,7 +7,7 @@
 use crate::models::{Dependencies, Effort, Worse, input_to_si};
 use crate::space::{Product, Space};
 pub use crate::study::worst_end;
-use crate::study::{Quantity, Study};
+use crate::study::{Axis, OverScenarios, Quantity, Spectrum, Study};
 use crate::tape::{Known, Set};
 
 /// Most combinations of the fast design axes in a row, so that their values fit into a table.
@@ -25,6 +25,15 @@ pub struct Tracked {
     pub quantity: Quantity,
     /// Which end of its range is the worst.
     pub worse: Worse,
+    /// What becomes of its values over the scenarios.
+    pub over: OverScenarios,
+}
+
+impl Tracked {
+    /// A quantity in the worst of all scenarios.
+    pub fn worst(quantity: Quantity, worse: Worse) -> Self {
+        Self { quantity, worse, over: OverScenarios::Worst }
+    }
 }
 
 /// Where a value in a row comes from.
@@ -47,6 +56,62 @@ impl Source {
     }
 }
 
+/// How the cases of a spectrum are summed while the sweep walks through the scenarios.
+///
+/// Its axis is the innermost of the slow or of the fast scenario axes. So the cases come in order for every scenario of the other axes,
+/// and few sums are under way at a time.
+#[derive(Debug)]
+pub struct SpectrumPlan {
+    /// The weight of each case.
+    pub weights: Vec<f64>,
+    /// The sum of the weights.
+    pub total: f64,
+    /// Is its axis among the slow ones?
+    pub is_slow: bool,
+    /// Sums of one value that are under way at a time.
+    pub under_way: u64,
+    /// Distance of two cases in the study's index of scenarios.
+    pub stride: u64,
+    /// The values that are summed during the sweep, each once.
+    pub sums: Vec<Source>,
+}
+
+/// Where a scenario stands in the sum over its cases.
+#[derive(Clone, Copy, Debug)]
+pub struct CasePlace {
+    /// Number of the case.
+    pub case: usize,
+    /// Its weight.
+    pub weight: f64,
+    /// Is it the last case, after which the sum is known?
+    pub is_last: bool,
+    /// Which of the sums under way it belongs to.
+    pub slot: u64,
+}
+
+impl SpectrumPlan {
+    /// The place of a slow and a fast scenario.
+    pub fn place(&self, (slow, fast): (u64, u64)) -> CasePlace {
+        let cases = self.weights.len();
+        let (along, slot) = if self.is_slow { (slow, fast) } else { (fast, 0) };
+        let case = (along % cases as u64) as usize;
+        CasePlace { case, weight: self.weights[case], is_last: case + 1 == cases, slot }
+    }
+
+    /// The weight of a scenario of the study.
+    pub fn weight_of(&self, scenario: u64) -> f64 {
+        self.weights[(scenario / self.stride % self.weights.len() as u64) as usize]
+    }
+
+    /// The number of the sum of this value.
+    ///
+    /// # Panics
+    /// If the plan does not sum it.
+    pub fn number(&self, source: Source) -> usize {
+        self.sums.iter().position(|&it| it == source).expect("the plan sums what a mean or sum is asked of")
+    }
+}
+
 /// A study with its plan for sweeping.
 #[derive(Debug)]
 pub struct Plan {
@@ -62,6 +127,8 @@ pub struct Plan {
     pub slow_scenarios: Product,
     /// The other scenario axes.
     pub fast_scenarios: Product,
+    /// The sums over the cases of a spectrum, if the study has one.
+    pub spectrum: Option<SpectrumPlan>,
     /// Quantities whose worst value is needed during the sweep, without duplicates.
     pub tracked: Vec<(Tracked, Source)>,
     /// Positions of the objectives among `tracked`.
@@ -83,17 +150,16 @@ pub struct Plan {
 /// The worst end: that of the objective, else that of the report's use of the quantity, else that of the model.
 fn quantities_to_track(study: &Study) -> Vec<Tracked> {
     let mut tracked: Vec<Tracked> = Vec::new();
-    let mut track = |quantity, worse| {
-        let entry = Tracked { quantity, worse };
+    let mut track = |entry| {
         if !tracked.contains(&entry) {
             tracked.push(entry);
         }
     };
     for objective in &study.objectives {
-        track(objective.quantity, objective.goal.worse());
+        track(Tracked { quantity: objective.quantity, worse: objective.goal.worse(), over: objective.over });
     }
     for (quantity, worse) in study.report.followed(study) {
-        track(quantity, worse);
+        track(Tracked::worst(quantity, worse));
     }
     tracked
 }
@@ -107,7 +173,8 @@ impl Plan {
         // The values of the fast axes are tabulated: axes that would make the table too large are treated like slow ones.
         let (outer, fast) = fast.narrow(FAST_DESIGNS);
         let slow = slow.with(&outer);
-        let (slow_scenarios, fast_scenarios) = space.scenarios.split(dependencies.prepared);
+        let scenarios = space.scenarios.split(dependencies.prepared);
+        let (slow_scenarios, fast_scenarios) = with_cases_inside(&study, scenarios);
         let lane_inputs = fast.inputs();
         let mut row_outputs = Set::EMPTY;
         let mut lane_outputs = Vec::new();
@@ -130,9 +197,10 @@ impl Plan {
             }
         };
         let tracked: Vec<_> = quantities_to_track(&study).into_iter().map(|it| (it, source(it.quantity))).collect();
-        let constraints = study.constraints.iter().map(|constraint| source(constraint.quantity)).collect();
+        let constraints: Vec<Source> = study.constraints.iter().map(|constraint| source(constraint.quantity)).collect();
+        let spectrum = spectrum_plan(&study, &tracked, &constraints, (&slow_scenarios, &fast_scenarios));
         let objectives = study.objectives.iter().map(|objective| {
-            let wanted = Tracked { quantity: objective.quantity, worse: objective.goal.worse() };
+            let wanted = Tracked { quantity: objective.quantity, worse: objective.goal.worse(), over: objective.over };
             tracked.iter().position(|(it, _)| *it == wanted).expect("every objective is tracked")
         });
         let objectives = objectives.collect();
@@ -150,6 +218,7 @@ impl Plan {
             fast,
             slow_scenarios,
             fast_scenarios,
+            spectrum,
             tracked,
             objectives,
             constraints,
@@ -163,18 +232,24 @@ impl Plan {
         }
     }
 
-    /// Position among [`Plan::tracked`] of a quantity that the study tracks.
+    /// Position among [`Plan::tracked`] of a quantity whose worst value the study tracks.
     ///
     /// # Panics
     /// If it is not tracked.
     pub fn position(&self, quantity: Quantity, worse: Worse) -> usize {
-        let wanted = Tracked { quantity, worse };
+        let wanted = Tracked::worst(quantity, worse);
         self.tracked.iter().position(|(it, _)| *it == wanted).expect("the plan tracks what the report needs")
     }
 
     /// Outputs that the study asks for.
     pub fn used_outputs(&self) -> Set {
         self.row_outputs | Set::of(&self.lane_outputs)
+    }
+
+    /// The spectrum whose weights are no input, so that they stand in a column of their own where scenarios are listed.
+    pub fn listed_weights(&self) -> Option<(&Spectrum, &SpectrumPlan)> {
+        let spectrum = self.study.spectrum.as_ref().filter(|it| self.study.model.input(&it.weight).is_none())?;
+        Some((spectrum, self.spectrum.as_ref()?))
     }
 
     /// Number of designs.
@@ -232,7 +307,7 @@ impl Plan {
     pub fn inert_axes(&self) -> Vec<usize> {
         let study = &self.study;
         let asked = self.tracked.iter().map(|(it, _)| it.quantity);
-        let asked = asked.chain(study.constraints.iter().map(|it| it.quantity)).chain(study.report.columns.iter().copied());
+        let asked = asked.chain(study.constraints.iter().map(|it| it.quantity)).chain(study.report.columns.iter().map(|it| it.of));
         let quantities = asked.map(|quantity| match quantity {
             Quantity::Input(input) => Set::one(input),
             Quantity::Output(output) => self.dependencies.outputs[output],
@@ -243,6 +318,58 @@ impl Plan {
         let inert = |axis: &usize| study.design[*axis].inputs().iter().all(|&input| !mattering.contains(input));
         (0..study.design.len()).filter(inert).filter(|axis| !shown.contains(axis)).collect()
     }
+}
+
+/// Most sums of one value over the cases of a spectrum that are under way at a time.
+const MOST_UNDER_WAY: u64 = 256;
+
+/// Slow and fast scenario axes, with the cases of a spectrum innermost. Fast axes that would keep too many sums under way are treated like
+/// slow ones.
+fn with_cases_inside(study: &Study, (slow, fast): (Product, Product)) -> (Product, Product) {
+    let Some(spectrum) = &study.spectrum else { return (slow, fast) };
+    let inputs: Set = study.operation[spectrum.axis].inputs().iter().collect();
+    let inside = |product: &Product| {
+        let (cases, others) = product.split(inputs);
+        (others, cases)
+    };
+    if !slow.inputs().meets(inputs) {
+        let (others, cases) = inside(&fast);
+        return (slow, others.with(&cases));
+    }
+    let (others, cases) = inside(&slow);
+    let (outer, inner) = fast.narrow(MOST_UNDER_WAY);
+    // One axis alone may be too long.
+    let too_long = if inner.count() > MOST_UNDER_WAY { inner.inputs() } else { Set::EMPTY };
+    let (long, inner) = inner.split(too_long);
+    (others.with(&outer).with(&long).with(&cases), inner)
+}
+
+fn spectrum_plan(
+    study: &Study,
+    tracked: &[(Tracked, Source)],
+    constraints: &[Source],
+    (slow, fast): (&Product, &Product),
+) -> Option<SpectrumPlan> {
+    let spectrum = study.spectrum.as_ref()?;
+    let inputs: Set = study.operation[spectrum.axis].inputs().iter().collect();
+    let of_constraints = study.constraints.iter().zip(constraints).filter(|(it, _)| !it.over.is_worst()).map(|(_, &source)| source);
+    let of_tracked = tracked.iter().filter(|(it, _)| !it.over.is_worst()).map(|&(_, source)| source);
+    let mut sums = Vec::new();
+    for source in of_tracked.chain(of_constraints) {
+        if !sums.contains(&source) {
+            sums.push(source);
+        }
+    }
+    let is_slow = slow.inputs().meets(inputs);
+    let inner = study.operation[spectrum.axis + 1..].iter().chain(&study.uncertainty).map(Axis::count);
+    Some(SpectrumPlan {
+        weights: spectrum.weights.clone(),
+        total: spectrum.total(),
+        is_slow,
+        under_way: if is_slow { fast.count() } else { 1 },
+        stride: inner.product(),
+        sums,
+    })
 }
 
 /// The inputs of a study: fixed numbers, or ranges that an axis covers.

@@ -177,7 +177,8 @@ pub fn points_of_study(plan: &Plan, samples: usize, seed: u64) -> VerifyPoints {
             Quantity::Input(input) => Some(inputs[input]),
             Quantity::Output(output) => found.outputs[output],
         };
-        plan.study.constraints.iter().map(|it| value(it.quantity).is_some_and(|value| it.holds(value))).collect::<Vec<_>>()
+        let of_scenarios = plan.study.constraints.iter().filter(|it| it.over.is_worst());
+        of_scenarios.map(|it| value(it.quantity).is_some_and(|value| it.holds(value))).collect::<Vec<_>>()
     };
     let (designs, scenarios) = (plan.designs(), plan.scenarios());
     let any = |random: &mut Random| plan.space.inputs(random.next() % designs, random.next() % scenarios);
@@ -238,7 +239,8 @@ pub fn compare(kernel: &PointKernel, model: &Model, constraints: &[Constraint], 
             }
         }
         let mut ok = status == crate::models::Status::Ok;
-        for constraint in constraints {
+        // A mean or sum is no number of a single point.
+        for constraint in constraints.iter().filter(|it| it.over.is_worst()) {
             let Quantity::Output(output) = constraint.quantity else { continue };
             let unit = model.outputs[output].unit;
             ok &= present.contains(output) && constraint.holds(unit.from_si(exact[output]));

@@ -28,7 +28,7 @@ use crate::parallel::on_threads;
 use crate::plan::Plan;
 use crate::reduce::{KeyRule, ReducerNeeds, Reducers, Reduction, Reported};
 use crate::screen::{CpuEngine, Tables};
-use crate::study::{Axis, Constraint, Goal, Objective, Quantity, TopSpec};
+use crate::study::{Axis, Constraint, Goal, Objective, OverScenarios, Quantity, TopSpec};
 use axes::{Axes, Spans};
 use bounder::{AskedNumber, Bounder};
 use open::{Bounded, Decided, all_open};
@@ -46,6 +46,9 @@ pub fn refusal(plan: &Plan) -> Option<String> {
     let study = &plan.study;
     if study.model.kernel.formula().is_none() {
         return Some(format!("{} is no formula that could be bounded", study.model.name));
+    }
+    if study.decides_by_spectrum() {
+        return Some("a mean or sum over the cases of a spectrum is no worst value, and bounds are on worst values".to_owned());
     }
     if study.sample.is_some() {
         return Some("[sample] draws single designs, and bounds need a grid".to_owned());
@@ -185,7 +188,8 @@ impl BoundedStudy {
         match sought {
             Sought::Front => plan.study.objectives.iter().map(|objective| target(objective, false)).collect(),
             Sought::Top => {
-                let as_objective = |top: &TopSpec| Objective { quantity: top.by, goal: top.goal, resolution: None };
+                let as_objective =
+                    |top: &TopSpec| Objective { quantity: top.by, goal: top.goal, resolution: None, over: OverScenarios::Worst };
                 plan.study.report.top.iter().map(|top| target(&as_objective(top), false)).collect()
             }
             Sought::Extreme { objective, largest } => {

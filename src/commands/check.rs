@@ -30,7 +30,9 @@ pub fn run(path: &Path) -> Result<()> {
         for axis in list {
             let ends: Vec<_> = axis.inputs().iter().enumerate().map(|(column, &input)| ends(&plan, axis, column, input)).collect();
             let levels = if study.sample.is_some() && role == "design" { "sampled".to_owned() } else { grouped(axis.count()) };
-            axes.row([role.to_owned(), name(axis), levels, ends.join(", ")]);
+            let weighted = study.spectrum.as_ref().filter(|it| std::ptr::eq(axis, &study.operation[it.axis]));
+            let weights = weighted.map(|it| format!("{}, weighted by {}", it.name, it.weight));
+            axes.row([role.to_owned(), name(axis), levels, ends.into_iter().chain(weights).collect::<Vec<_>>().join(", ")]);
         }
     }
     let mut formulas = TextGrid::default();

@@ -13,7 +13,7 @@ use beltspace::names::is_picture;
 use beltspace::pictures::{self, PlotQuantity, Series};
 use beltspace::plan::Plan;
 use beltspace::screen::Control;
-use beltspace::study::{Quantity, Study, number, value_of};
+use beltspace::study::{Quantity, ReportColumn, Study, number, value_of};
 use beltspace::table::{Data, Table, TableColumn, csv_text};
 use beltspace::units::parse_value;
 use serde_json::{Map, Value, json};
@@ -247,7 +247,8 @@ fn print_worst(plan: &Plan, design: u64, as_json: bool) -> Result<()> {
     let model = &study.model;
     // As if the study asked for every output as a report column.
     let mut everything = Study::clone(study);
-    everything.report.columns = (0..model.outputs.len()).map(Quantity::Output).collect();
+    let further = study.report.columns.iter().copied().filter(|it| *it != ReportColumn::from(it.of));
+    everything.report.columns = (0..model.outputs.len()).map(|output| Quantity::Output(output).into()).chain(further).collect();
     let columns = certify::columns(&everything);
     let row = certify::rows(plan, &columns, &[design], 1, &Control::default())?.remove(0);
     let mut evaluator = Evaluator::new(model);
@@ -258,12 +259,13 @@ fn print_worst(plan: &Plan, design: u64, as_json: bool) -> Result<()> {
 
     let varied: Vec<usize> = study.operation.iter().chain(&study.uncertainty).flat_map(|axis| axis.inputs()).copied().collect();
     let inputs = (0..model.inputs.len()).filter(|input| !varied.contains(input));
-    let at_worst = |quantity: Quantity, suffix: &str| {
-        let name = format!("{}{suffix}", quantity.name(model));
+    let at_worst = |name: &str, suffix: &str| {
+        let name = format!("{name}{suffix}");
         columns.iter().position(|column| column.name == name).map(|at| row.columns[at])
     };
     let constraints = study.constraints.iter().map(|constraint| {
-        let worst = at_worst(constraint.quantity, "_constrained").or_else(|| at_worst(constraint.quantity, ""));
+        let name = constraint.name(model);
+        let worst = at_worst(&name, "_constrained").or_else(|| at_worst(&name, ""));
         (constraint, worst.filter(|it| it.value.is_some()))
     });
     if as_json {
@@ -276,7 +278,7 @@ fn print_worst(plan: &Plan, design: u64, as_json: bool) -> Result<()> {
         let constraints = constraints.map(|(constraint, worst)| {
             let value = worst.and_then(|it| it.value);
             json!({
-                "of": constraint.quantity.name(model), "bounds": constraint.in_words(), "value": value.map(number),
+                "of": constraint.name(model), "bounds": constraint.in_words(), "value": value.map(number),
                 "margin": value.map(|value| number(constraint.margin(value))), "scenario": worst.map(|it| it.scenario),
                 "holds": value.is_some_and(|value| constraint.holds(value)),
             })
@@ -298,7 +300,7 @@ fn print_worst(plan: &Plan, design: u64, as_json: bool) -> Result<()> {
     results.row(["", "worst", "in scenario", ""].map(str::to_owned));
     for (column, at) in columns.iter().zip(&row.columns) {
         let value = at.value.map_or("-".to_owned(), short);
-        results.row([column.name.clone(), value, at.scenario.to_string(), dim(column.quantity.doc(model))]);
+        results.row([column.name.clone(), value, at.scenario.to_string(), dim(&column.doc(study))]);
     }
     let mut margins = TextGrid::default();
     for (constraint, worst) in constraints {
@@ -309,7 +311,7 @@ fn print_worst(plan: &Plan, design: u64, as_json: bool) -> Result<()> {
             None => bold("no value"),
         };
         let margin = value.map_or("-".to_owned(), |value| short(constraint.margin(value)));
-        margins.row([constraint.quantity.name(model).to_owned(), constraint.in_words(), verdict, "margin".to_owned(), margin]);
+        margins.row([constraint.name(model), constraint.in_words(), verdict, "margin".to_owned(), margin]);
     }
     let not_ok = failed.first().map_or(String::new(), |(scenario, _)| {
         format!(" in scenario {scenario} ({} of {} scenarios are not ok)", failed.len(), plan.scenarios())

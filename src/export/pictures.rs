@@ -2,11 +2,7 @@
 
 use super::{Certified, Summary};
 use crate::pictures::{self, PlotQuantity};
-use crate::study::{Goal, Quantity, Study};
-
-fn quantity(study: &Study, of: Quantity) -> PlotQuantity {
-    PlotQuantity::new(of.name(&study.model), of.unit(&study.model))
-}
+use crate::study::Goal;
 
 /// The front over its objectives, with ideal and knee.
 pub fn front(outcome: &Certified<'_>) -> String {
@@ -15,7 +11,7 @@ pub fn front(outcome: &Certified<'_>) -> String {
         .objectives
         .iter()
         .map(|objective| pictures::PlotObjective {
-            quantity: quantity(study, objective.quantity),
+            quantity: PlotQuantity::new(objective.name(&study.model), study.unit_over(objective.quantity, objective.over)),
             goal: if objective.goal == Goal::Min { pictures::PlotGoal::Min } else { pictures::PlotGoal::Max },
         })
         .collect();

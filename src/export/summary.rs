@@ -70,9 +70,9 @@ impl<'a> Summary<'a> {
         let Certified { plan, state, tally, front, .. } = self.outcome;
         let study = &plan.study;
         let model = &study.model;
-        let names: Vec<_> = study.objectives.iter().map(|objective| objective.quantity.name(model)).collect();
+        let names: Vec<_> = study.objectives.iter().map(|objective| objective.name(model)).collect();
         let named =
-            |values: &[f64]| -> Map<_, _> { names.iter().zip(values).map(|(name, &value)| ((*name).to_owned(), number(value))).collect() };
+            |values: &[f64]| -> Map<_, _> { names.iter().zip(values).map(|(name, &value)| (name.clone(), number(value))).collect() };
         let points = self.points();
         let knee = self.knee.map(|knee| {
             let row = &front[knee.row];
@@ -82,7 +82,7 @@ impl<'a> Summary<'a> {
         });
         let extremes = names.iter().zip(state.extremes.least.iter().zip(&state.extremes.largest)).filter_map(|(name, (least, largest))| {
             let end = |it: &crate::reduce::Extreme| json!({ "value": number(it.value), "design_index": it.index });
-            Some(((*name).to_owned(), json!({ "least": end(least.as_ref()?), "largest": end(largest.as_ref()?) })))
+            Some((name.clone(), json!({ "least": end(least.as_ref()?), "largest": end(largest.as_ref()?) })))
         });
         let conditions = model.conditions.iter().zip(&tally.conditions).filter(|(condition, _)| !condition.quiet);
         let mut status: Map<_, Value> = conditions.map(|(condition, &count)| (condition.reason.to_owned(), count.into())).collect();
@@ -91,7 +91,7 @@ impl<'a> Summary<'a> {
             status.insert(OVERFLOW.to_owned(), tally.overflow.into());
         }
         let constraints = study.constraints.iter().zip(tally.constraints.iter().zip(&tally.only)).map(|(constraint, (violated, only))| {
-            json!({ "of": constraint.quantity.name(model), "bounds": constraint.in_words(), "violated": violated, "only": only })
+            json!({ "of": constraint.name(model), "bounds": constraint.in_words(), "violated": violated, "only": only })
         });
         let mut summary = json!({
             "version": env!("CARGO_PKG_VERSION"),
@@ -136,7 +136,7 @@ impl Certified<'_> {
 
     /// Position of each objective among the columns.
     pub fn objective_columns(&self) -> Vec<usize> {
-        let column = |objective: &Objective| self.columns.iter().position(|column| column.quantity == objective.quantity);
+        let column = |objective: &Objective| self.columns.iter().position(|column| column.is_of(objective.quantity, objective.over));
         self.plan.study.objectives.iter().map(|objective| column(objective).expect("every objective has a column")).collect()
     }
 }

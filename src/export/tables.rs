@@ -2,6 +2,7 @@
 
 use super::Certified;
 use crate::certify::{self, Role, Row};
+use crate::models::Worse;
 use crate::study::{Axis, Goal};
 use crate::table::written;
 use crate::table::{Data, Table, TableColumn};
@@ -28,7 +29,15 @@ pub fn designs(outcome: &Certified<'_>, rows: &[Row]) -> Table {
                 ("objective", if study.objectives[objective].goal == Goal::Min { "min".to_owned() } else { "max".to_owned() })
             }
             Role::Constraint(constraint) => ("constraint", study.constraints[constraint].in_words()),
+            Role::Report if column.is_end_asked(study) => {
+                ("report", format!("{} of the scenarios", column.end().map_or("worst", Worse::word)))
+            }
             Role::Report => ("report", String::new()),
+        };
+        let direction = match column.over_words(study) {
+            Some(words) if direction.is_empty() => words,
+            Some(words) => format!("{direction}, {words}"),
+            None => direction,
         };
         if let Some(input) = certify::design_input(study, column.quantity) {
             let held = &mut columns[first_input + input];
@@ -37,17 +46,17 @@ pub fn designs(outcome: &Certified<'_>, rows: &[Row]) -> Table {
             continue;
         }
         columns.push(TableColumn {
-            unit: column.quantity.unit(model).to_owned(),
+            unit: column.unit(study),
             direction,
-            ..TableColumn::new(
-                &column.name,
-                role,
-                column.quantity.doc(model),
-                Data::Number(rows.iter().map(|row| row.columns[at].value).collect()),
-            )
+            ..TableColumn::new(&column.name, role, &column.doc(study), Data::Number(rows.iter().map(|row| row.columns[at].value).collect()))
         });
         let scenarios = rows.iter().map(|row| row.columns[at].value.map(|_| row.columns[at].scenario));
-        columns.push(TableColumn::index(&format!("{}_scenario", column.name), "The scenario in which it is the worst.", scenarios));
+        let what = if column.over.is_worst() {
+            "The scenario in which it is the worst."
+        } else {
+            "The scenario of the other axes in which it is the worst: that of its first case."
+        };
+        columns.push(TableColumn::index(&format!("{}_scenario", column.name), what, scenarios));
     }
     Table { columns }
 }

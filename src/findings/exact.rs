@@ -70,7 +70,7 @@ fn study_of(study: &Study, constraint: usize, alone: Alone) -> Option<Study> {
     }
     let others = study.constraints.iter().enumerate().filter(|&(other, _)| other != constraint && alone == Alone::No).map(|(_, it)| *it);
     Some(Study {
-        objectives: vec![Objective { quantity: bounded.quantity, goal, resolution: None }],
+        objectives: vec![Objective { quantity: bounded.quantity, over: bounded.over, goal, resolution: None }],
         constraints: others.collect(),
         report: Report { front_budget: u64::MAX, ..Report::default() },
         ..study.clone()

@@ -119,7 +119,7 @@ pub(super) fn below_zero(plan: &Plan, front: &[Row], threads: usize, control: &C
     let study = &plan.study;
     let model = &study.model;
     let margins = (0..model.outputs.len()).filter(|&output| model.outputs[output].worse == Worse::Lower).map(Quantity::Output);
-    let named = study.objectives.iter().map(|it| it.quantity).chain(study.report.columns.iter().copied());
+    let named = study.objectives.iter().map(|it| it.quantity).chain(study.report.columns.iter().map(|it| it.of));
     let mut asked: Vec<Quantity> = Vec::new();
     for quantity in named.filter(|it| it.output().is_some()).chain(margins) {
         let is_bounded = study.constraints.iter().any(|it| it.quantity == quantity);

@@ -101,7 +101,7 @@ impl Infeasible {
         let of = |it: &Reached| if it.exact { "of all designs" } else { "of the sample" };
         for (constraint, reach) in study.constraints.iter().zip(&self.reach) {
             let what = constraint_in_words(study, constraint);
-            let unit = constraint.quantity.unit(model);
+            let unit = &study.unit_over(constraint.quantity, constraint.over);
             let mut parts = Vec::new();
             if let Some(best) = reach.best.filter(|it| !constraint.holds(it.value)) {
                 parts.push(format!("the best {} has {} ({})", of(&best), quantity(best.value, unit), named(best.design)));
@@ -120,7 +120,7 @@ impl Infeasible {
             let misses = study.constraints.iter().zip(&nearest.values).filter(|(it, value)| !value.is_some_and(|value| it.holds(value)));
             let misses = misses.map(|(it, value)| {
                 let value = value.map_or("has no value".to_owned(), |value| format!("is {}", short(value)));
-                format!("{} {value}, wanted {}", it.quantity.name(model), it.in_words())
+                format!("{} {value}, wanted {}", it.name(model), it.in_words())
             });
             let misses: Vec<_> = misses.collect();
             let inputs = design_in_words(study, &nearest.inputs);
@@ -141,7 +141,7 @@ impl Infeasible {
                 })
             };
             json!({
-                "of": constraint.quantity.name(model), "bounds": constraint.in_words(),
+                "of": constraint.name(model), "bounds": constraint.in_words(),
                 "best": reached(reach.best), "first": reached(reach.first),
             })
         });
@@ -149,7 +149,7 @@ impl Infeasible {
             let values = study.constraints.iter().zip(&nearest.values).map(|(constraint, &value)| {
                 let violation = value.map(|value| (-constraint.margin(value)).max(0.0));
                 json!({
-                    "of": constraint.quantity.name(model), "bounds": constraint.in_words(),
+                    "of": constraint.name(model), "bounds": constraint.in_words(),
                     "value": number_or_null(value), "violation": number_or_null(violation),
                 })
             });
@@ -187,8 +187,8 @@ fn letting_through(constraint: &Constraint, value: f64) -> f64 {
 
 /// A constraint with its unit, such as `stress_margin at least 0`.
 fn constraint_in_words(study: &Study, constraint: &Constraint) -> String {
-    let unit = constraint.quantity.unit(&study.model);
-    format!("{} {} {unit}", constraint.quantity.name(&study.model), constraint.in_words()).trim_end().to_owned()
+    let unit = study.unit_over(constraint.quantity, constraint.over);
+    format!("{} {} {unit}", constraint.name(&study.model), constraint.in_words()).trim_end().to_owned()
 }
 
 /// What the rows of the sample reach of each constraint; `all`: they are all designs.

@@ -1,6 +1,7 @@
 //! What a model's tables are made of: inputs, outputs, conditions, presets, profiles.
 
 use crate::units::Unit;
+use serde::{Deserialize, Serialize};
 
 /// Numbers that an input may take.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -207,12 +208,23 @@ pub(crate) fn either<'a>(words: impl Iterator<Item = &'a str>) -> String {
 }
 
 /// Which end of a value's scatter over the scenarios is the worst, where no objective or constraint says so.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Worse {
     /// The largest value (stresses, forces).
     Higher,
     /// The least value (margins, capacities).
     Lower,
+}
+
+impl Worse {
+    /// The value that every other one is worse than.
+    pub(crate) fn least_bad(self) -> f64 {
+        match self {
+            Self::Higher => f64::NEG_INFINITY,
+            Self::Lower => f64::INFINITY,
+        }
+    }
 }
 
 /// One output of a model. Its name carries the unit.

@@ -84,15 +84,15 @@ pub fn check_row(file: &Path, row: &csv::StringRecord, plan: &Plan, header: &[St
 pub fn list(file: &Path, plan: &Plan, most: u64, all: bool) -> Result<Value> {
     let study = &plan.study;
     let model = &study.model;
-    let own = header(study, &certify::columns(study));
+    let of_study = certify::columns(study);
+    let own = header(study, &of_study);
     let mut columns = own.clone();
     columns.extend(all.then(|| FEASIBLE.to_owned()));
     let mut reader = table_reader(file)?;
     check_header(file, reader.headers().map_err(|error| unreadable(file, error))?, &columns)?;
     let unit = |name: &String| {
-        let name = name.strip_suffix("_constrained").unwrap_or(name);
-        let input = model.input(name).map(|it| model.inputs[it].unit.symbol);
-        input.or_else(|| model.output(name).map(|it| model.outputs[it].unit.symbol)).unwrap_or_default()
+        let column = of_study.iter().find(|it| it.name == *name).map(|it| it.unit(study));
+        column.or_else(|| model.input(name).map(|it| model.inputs[it].unit.symbol.to_owned())).unwrap_or_default()
     };
     let units: Vec<_> = columns.iter().map(unit).collect();
     let (mut rows, mut known) = (Vec::new(), HashSet::new());
@@ -124,7 +124,7 @@ pub fn dots(file: &Path, plan: &Plan, all: u64) -> Result<Value> {
     let columns = header(study, &certify::columns(study));
     let mut reader = table_reader(file)?;
     check_header(file, reader.headers().map_err(|error| unreadable(file, error))?, &columns)?;
-    let names: Vec<&str> = study.objectives.iter().map(|it| it.quantity.name(&study.model)).collect();
+    let names: Vec<String> = study.objectives.iter().map(|it| it.name(&study.model)).collect();
     let places: Vec<usize> = names.iter().filter_map(|name| columns.iter().position(|column| column == name)).collect();
     let taken = all.min(MOST_DOTS);
     let mut values = vec![Vec::new(); places.len()];

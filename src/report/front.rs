@@ -9,7 +9,7 @@ use crate::reading::designs::{check_header, check_row, header, inputs};
 use crate::reading::packed::{Packed, packed};
 use crate::reading::{changed, table_reader, unreadable};
 use crate::screen::Control;
-use crate::study::{Axis, Goal, Quantity, Study};
+use crate::study::{Axis, Goal, OverScenarios, Quantity, ReportColumn, Study};
 use crate::table::written;
 use serde_json::{Value, json};
 use std::collections::{BTreeSet, HashSet};
@@ -39,7 +39,7 @@ pub struct ShownFront {
 /// Values at their worst scenarios, design by design.
 struct Shown {
     name: String,
-    unit: &'static str,
+    unit: String,
     doc: String,
     role: &'static str,
     direction: String,
@@ -59,7 +59,7 @@ pub fn read(file: &Path, all: usize, plan: &Plan, threads: usize, patience: Dura
     let (rows, designs) = rows_of(file, plan, &columns, all, taken)?;
     let mut shown = vec![Shown {
         name: "design_index".to_owned(),
-        unit: "",
+        unit: String::new(),
         doc: "Index of the design in the study.".to_owned(),
         role: "index",
         direction: String::new(),
@@ -104,16 +104,16 @@ pub fn read(file: &Path, all: usize, plan: &Plan, threads: usize, patience: Dura
             shown.push(Shown { role: "output", ..Shown::of(study, column, Packed::F32(values), scenarios.collect()) });
         }
     }
-    let position = |quantity| columns.iter().position(|it| it.quantity == quantity).map(|at| place[at]);
+    let position = |quantity: Quantity, over: OverScenarios| columns.iter().position(|it| it.is_of(quantity, over)).map(|at| place[at]);
     let of_constraint = |number: usize| {
         // If the objective has another worst scenario, the constraint has a column of its own.
         let own = columns.iter().position(|it| it.role == Role::Constraint(number)).map(|at| place[at]);
-        own.or_else(|| position(study.constraints[number].quantity))
+        own.or_else(|| position(study.constraints[number].quantity, study.constraints[number].over))
     };
     let scenarios = shown.iter().filter_map(|it| it.scenarios.as_ref()).flatten().filter(|&&it| it != NOWHERE);
     Ok(ShownFront {
         designs,
-        objectives: study.objectives.iter().filter_map(|it| position(it.quantity)).collect(),
+        objectives: study.objectives.iter().filter_map(|it| position(it.quantity, it.over)).collect(),
         constraints: (0..study.constraints.len()).filter_map(of_constraint).collect(),
         scenarios: scenarios.map(|&it| u64::from(it)).collect::<BTreeSet<_>>().into_iter().take(MOST_SCENARIOS).collect(),
         json: json!({
@@ -176,7 +176,7 @@ fn input_column<'r>(study: &Study, axis: &Axis, column: usize, input: usize, cel
     };
     Shown {
         name: table.name.to_owned(),
-        unit: table.unit.symbol,
+        unit: table.unit.symbol.to_owned(),
         doc: table.doc.clone(),
         role: "design",
         direction: String::new(),
@@ -198,8 +198,8 @@ impl Shown {
     fn of(study: &Study, column: &Column, values: Packed, scenarios: Vec<u32>) -> Self {
         Self {
             name: column.name.clone(),
-            unit: column.quantity.unit(&study.model),
-            doc: column.quantity.doc(&study.model).to_owned(),
+            unit: column.unit(study),
+            doc: column.doc(study),
             role: match column.role {
                 Role::Objective(_) => "objective",
                 Role::Constraint(_) => "constraint",
@@ -231,7 +231,7 @@ fn complete(
     control: &Control,
 ) -> Option<(Vec<Column>, Vec<Row>)> {
     let mut everything = plan.study.clone();
-    everything.report.columns.extend((0..everything.model.outputs.len()).map(Quantity::Output));
+    everything.report.columns.extend((0..everything.model.outputs.len()).map(|output| ReportColumn::from(Quantity::Output(output))));
     let all = certify::columns(&everything);
     // A high estimate of the time, by the model's own figures: if it is hopeless, the work is not begun.
     #[allow(clippy::cast_precision_loss, reason = "an estimate")]

@@ -110,9 +110,9 @@ pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
         .objectives
         .iter()
         .zip(objectives)
-        .map(|(it, column)| json!({ "of": it.quantity.name(model), "column": column, "goal": it.goal, "resolution": it.resolution }));
+        .map(|(it, column)| json!({ "of": it.name(model), "column": column, "goal": it.goal, "resolution": it.resolution }));
     let constraints = study.constraints.iter().enumerate().map(|(at, it)| {
-        let mut constraint = json!({ "of": it.quantity.name(model), "column": constraints.get(at), "bounds": it.in_words() });
+        let mut constraint = json!({ "of": it.name(model), "column": constraints.get(at), "bounds": it.in_words() });
         for (bound, inclusive, exclusive) in [(it.low, "min", "above"), (it.high, "max", "below")] {
             if let Some((bound, excluded)) = bound {
                 constraint[if excluded { exclusive } else { inclusive }] = number(bound);
@@ -204,10 +204,21 @@ fn scenario_inputs<'s>(plan: &Plan, numbers: impl IntoIterator<Item = &'s u64>) 
         let input = &study.model.inputs[input];
         json!({ "name": input.name, "unit": input.unit.symbol, "doc": input.doc })
     });
+    let weights = plan.listed_weights();
+    let of_weights =
+        weights.map(|(it, _)| json!({ "name": it.weight, "unit": it.unit, "doc": format!("Weight of the case of {}.", it.name) }));
+    let columns = columns.chain(of_weights);
     let mut values = study.fixed.clone();
-    let rows = numbers.into_iter().map(|&number| {
-        plan.space.scenarios.set(number, &mut values);
-        (number.to_string(), inputs.iter().map(|&input| value_of(&study.model, input, values[input])).collect::<Value>())
+    let rows = numbers.into_iter().map(|&scenario| {
+        plan.space.scenarios.set(scenario, &mut values);
+        (
+            scenario.to_string(),
+            inputs
+                .iter()
+                .map(|&input| value_of(&study.model, input, values[input]))
+                .chain(weights.map(|(_, it)| number(it.weight_of(scenario))))
+                .collect::<Value>(),
+        )
     });
     let rows: Map<_, _> = rows.collect();
     json!({ "columns": columns.collect::<Vec<_>>(), "rows": rows })

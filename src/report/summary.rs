@@ -1,7 +1,7 @@
 //! Checks `summary.json` and `run.json` of a result before a page shows them: they must have the parts that this program writes.
 
 use crate::plan::Plan;
-use crate::study::{Quantity, Study};
+use crate::study::Study;
 use serde_json::{Map, Value};
 
 /// Is this the summary of a result of this plan? Its numbers of designs are checked elsewhere.
@@ -10,10 +10,10 @@ use serde_json::{Map, Value};
 /// The part that is not as this program writes it.
 pub fn check(summary: &Value, plan: &Plan) -> Result<(), String> {
     let study = &plan.study;
-    let names: Vec<&str> = study.objectives.iter().map(|it| it.quantity.name(&study.model)).collect();
+    let names: Vec<String> = study.objectives.iter().map(|it| it.name(&study.model)).collect();
     let design = |it: &Value| it.as_u64().is_some_and(|it| it < plan.designs());
     let by_name = |it: &Value, each: &dyn Fn(&Value) -> bool| {
-        it.as_object().is_some_and(|it| it.iter().all(|(name, value)| names.contains(&name.as_str()) && each(value)))
+        it.as_object().is_some_and(|it| it.iter().all(|(name, value)| names.contains(name) && each(value)))
     };
     let end = |it: &Value| it["value"].is_number() && design(&it["design_index"]);
     let knee = |it: &Value| design(&it["design_index"]) && it["distance"].is_number();
@@ -47,10 +47,10 @@ fn is_tally(tally: &Value, study: &Study) -> bool {
     let Some(sampled) = tally["sampled"].as_u64() else { return false };
     let count = |it: &Value| it.as_u64().is_some_and(|it| it <= sampled);
     let Some(constraints) = tally["constraints"].as_array() else { return false };
-    let of_study = |(it, constraint): (&Value, &(Quantity, String))| {
-        it["of"] == constraint.0.name(&study.model) && it["bounds"] == constraint.1.as_str() && count(&it["violated"]) && count(&it["only"])
+    let of_study = |(it, constraint): (&Value, &(String, String))| {
+        it["of"] == constraint.0.as_str() && it["bounds"] == constraint.1.as_str() && count(&it["violated"]) && count(&it["only"])
     };
-    let expected: Vec<_> = study.constraints.iter().map(|it| (it.quantity, it.in_words())).collect();
+    let expected: Vec<_> = study.constraints.iter().map(|it| (it.name(&study.model), it.in_words())).collect();
     count(&tally["feasible"])
         && tally["status"].as_object().is_some_and(|it: &Map<_, _>| it.values().all(count))
         && constraints.len() == expected.len()

@@ -117,7 +117,7 @@ pub fn about(cpu: Speed) -> Speed {
 
 #[allow(clippy::cast_precision_loss, reason = "an estimate")]
 fn is_worth_a_device(plan: &Plan) -> bool {
-    plan.study.model.on_gpu && (plan.designs() as f64) * (plan.scenarios() as f64) >= WORTH_A_DEVICE
+    plan.study.model.on_gpu && !plan.study.decides_by_spectrum() && (plan.designs() as f64) * (plan.scenarios() as f64) >= WORTH_A_DEVICE
 }
 
 /// A hardware adapter for a study that is large enough; whatever is wrong with it is a remark.

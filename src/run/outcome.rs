@@ -209,7 +209,7 @@ impl Highlights {
         let Certified { plan, state, tally, .. } = certified;
         let study = &plan.study;
         let model = &study.model;
-        let names = || study.objectives.iter().map(|objective| objective.quantity.name(model).to_owned());
+        let names = || study.objectives.iter().map(|objective| objective.name(model));
         let Summary { ideal, knee, .. } = Summary::new(certified);
         let ends = state.extremes.least.iter().zip(&state.extremes.largest);
         let spread = |(name, (least, largest)): (String, (&Option<Extreme>, &Option<Extreme>))| {
@@ -220,7 +220,7 @@ impl Highlights {
         let mut limits: Vec<_> = conditions.map(|(condition, &count)| failed(&condition.reason, count, None)).collect();
         limits.extend((tally.overflow > 0).then(|| failed(OVERFLOW, tally.overflow, None)));
         limits.extend(study.constraints.iter().zip(tally.constraints.iter().zip(&tally.only)).map(|(constraint, (&designs, &only))| {
-            failed(&format!("{} {}", constraint.quantity.name(model), constraint.in_words()), designs, Some(only))
+            failed(&format!("{} {}", constraint.name(model), constraint.in_words()), designs, Some(only))
         }));
         Self {
             ideal: names().zip(ideal.unwrap_or_default()).map(|(name, value)| Named { name, value }).collect(),

@@ -103,7 +103,7 @@ pub fn ends(alive: &[u64], values: &[f64]) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::Quantity;
+    use crate::study::{OverScenarios, Quantity};
 
     #[test]
     fn the_columns_agree_with_the_scalar_definition() {
@@ -111,7 +111,7 @@ mod tests {
         let bounds = [None, Some((0.0, false)), Some((0.0, true)), Some((1.0, false)), Some((1.0, true))];
         for low in bounds {
             for high in bounds {
-                let constraint = Constraint { quantity: Quantity::Input(0), low, high };
+                let constraint = Constraint { quantity: Quantity::Input(0), low, high, over: OverScenarios::Worst };
                 let mut alive = [IN; 9];
                 keep_within(&mut alive, &values, &constraint);
                 for (alive, value) in alive.iter().zip(values) {

@@ -5,6 +5,7 @@
 
 use super::Block;
 use super::columns::{self, any, keep_finite, keep_margin, keep_within, lower, raise};
+use super::spectrum::CaseSums;
 use super::tables::{BLOCK, FastBlock, Setting, Tables, setting};
 use crate::decision::Decision;
 use crate::models::{self, Columns, Latest, Scratch, Set, Sizes, Worse};
@@ -41,6 +42,11 @@ pub struct CpuEngine<'p> {
     alive: Vec<u64>,
     values: Vec<Vec<f64>>,
     row_index: u64,
+    /// Sums over the cases of a spectrum: of values that are the same for the whole row, and of those of the block.
+    row_sums: CaseSums,
+    lane_sums: CaseSums,
+    /// The current slow and fast scenario.
+    scenario: (u64, u64),
     scratch: Scratch,
     /// Condition margins and row outputs (SI) of the current row and scenario.
     pub(super) row_margins: Vec<f64>,
@@ -65,9 +71,9 @@ impl<'p> CpuEngine<'p> {
         Self { stop: Some(stop), ..self }
     }
 
-    /// Bytes of prepared numbers that an engine for this plan keeps.
+    /// Bytes of prepared numbers and sums under way that an engine for this plan keeps.
     pub fn prepared_bytes(plan: &Plan) -> u64 {
-        8 * plan.study.model.kernel.prepared_len() as u64 * (plan.kept_scenarios() + 1)
+        8 * plan.study.model.kernel.prepared_len() as u64 * (plan.kept_scenarios() + 1) + CaseSums::bytes(plan, BLOCK)
     }
 
     /// An engine that keeps the prepared numbers of that many slow scenarios.
@@ -93,6 +99,9 @@ impl<'p> CpuEngine<'p> {
             alive: Vec::new(),
             values: vec![vec![0.0; BLOCK]; plan.tracked.len()],
             row_index: 0,
+            row_sums: CaseSums::new(plan, 1),
+            lane_sums: CaseSums::new(plan, BLOCK),
+            scenario: (0, 0),
             scratch: Scratch::new(plan.study.model.inputs.len(), &*plan.study.model.kernel),
             row_margins: vec![0.0; conditions],
             row_outputs: vec![0.0; outputs],
@@ -194,7 +203,7 @@ impl<'p> CpuEngine<'p> {
         self.row = Some(row);
         self.row_feasible = true;
         for (worst, (tracked, _)) in self.row_worst.iter_mut().zip(&self.plan.tracked) {
-            *worst = least_bad(tracked.worse);
+            *worst = tracked.worse.least_bad();
         }
         let done = self.each_scenario(|engine, prepared, _, _| {
             engine.row_feasible &= engine.judge_row_scenario(prepared);
@@ -218,6 +227,7 @@ impl<'p> CpuEngine<'p> {
                         return false;
                     }
                     self.set_fast_scenario(t);
+                    self.scenario = (q, t);
                     if !judge(self, prepared.clone(), q == 0 && t == 0, t + 1 == fast) {
                         return true;
                     }
@@ -232,6 +242,7 @@ impl<'p> CpuEngine<'p> {
             let prepared = self.prepare_at(part[0].0, self.room);
             for (number, &(_, t)) in part.iter().enumerate() {
                 self.set_fast_scenario(t);
+                self.scenario = (part[0].0, t);
                 goes_on = goes_on && judge(self, prepared.clone(), at == 0 && number == 0, number + 1 == part.len());
             }
             if !goes_on || self.stopped() {
@@ -266,14 +277,14 @@ impl<'p> CpuEngine<'p> {
         }
         let value = |source| row_value(plan, source, &self.own, &self.row_outputs);
         let constraints = plan.study.constraints.iter().zip(&plan.constraints);
-        if !constraints.filter(|(_, source)| source.is_row()).all(|(constraint, &source)| {
+        if !constraints.filter(|(it, source)| source.is_row() && it.over.is_worst()).all(|(constraint, &source)| {
             let value = value(source);
             value.is_finite() && constraint.holds(value)
         }) {
             return false;
         }
         for ((tracked, source), worst) in plan.tracked.iter().zip(&mut self.row_worst) {
-            if source.is_row() {
+            if source.is_row() && tracked.over.is_worst() {
                 let value = value(*source);
                 if !value.is_finite() {
                     return false;
@@ -281,7 +292,7 @@ impl<'p> CpuEngine<'p> {
                 *worst = worse_of(tracked.worse, *worst, value);
             }
         }
-        true
+        self.row_sums.judge_row(plan, self.scenario, value, &mut self.row_worst)
     }
 
     /// Computes condition margins and row outputs in the current scenario.
@@ -348,12 +359,16 @@ impl<'p> CpuEngine<'p> {
         for (&number, margins) in plan.lane_conditions.iter().zip(&*margins) {
             keep_margin(alive, margins, plan.study.model.conditions[number].strict);
         }
-        for (constraint, source) in plan.study.constraints.iter().zip(&plan.constraints) {
+        let sums = &mut self.lane_sums;
+        if let Some(spectrum) = &plan.spectrum {
+            sums.judge_lanes(plan, spectrum, (self.scenario, first), outputs, alive, &mut self.values);
+        }
+        for (constraint, source) in plan.study.constraints.iter().zip(&plan.constraints).filter(|(it, _)| it.over.is_worst()) {
             if let Source::LaneOutput(position) = *source {
                 keep_within(alive, &outputs[position], constraint);
             }
         }
-        for ((tracked, source), worst) in plan.tracked.iter().zip(&mut self.values) {
+        for ((tracked, source), worst) in plan.tracked.iter().zip(&mut self.values).filter(|((it, _), _)| it.over.is_worst()) {
             if let Source::LaneOutput(position) = *source {
                 let output = &outputs[position][..alive.len()];
                 // A constraint on the same output has asked for a finite number already.
@@ -437,14 +452,6 @@ pub(super) fn row_value(plan: &Plan, source: Source, own: &[f64], outputs: &[f64
         Source::RowInput(input) => own[input],
         Source::RowOutput(output) => plan.study.model.outputs[output].unit.from_si(outputs[output]),
         Source::LaneInput(_) | Source::LaneOutput(_) => unreachable!("asked for row sources only"),
-    }
-}
-
-/// The value that every other one is worse than.
-fn least_bad(worse: Worse) -> f64 {
-    match worse {
-        Worse::Higher => f64::NEG_INFINITY,
-        Worse::Lower => f64::INFINITY,
     }
 }
 

@@ -6,6 +6,7 @@ mod columns;
 mod cpu;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+mod spectrum;
 mod tables;
 mod tally;
 

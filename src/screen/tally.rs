@@ -6,6 +6,7 @@
 
 use super::Control;
 use super::cpu::{CpuEngine, holds, row_value};
+use super::spectrum::CaseSums;
 use super::tables::{BLOCK, FastBlock, Tables};
 use crate::error::{Error, Result};
 use crate::models::Set;
@@ -39,7 +40,7 @@ pub struct Tally {
 struct Failures {
     /// Conditions of the model.
     conditions: Set,
-    /// Constraints of the study: at most one for every input and output of the model, which all fit.
+    /// Constraints of the study: a study has no more than fit.
     constraints: Set,
     /// A value that the study asks for is beyond what f64 holds.
     overflow: bool,
@@ -81,7 +82,7 @@ impl Tally {
     /// The range of every histogram of the study: as given, else what the sample's feasible designs cover.
     pub fn histogram_ranges(&self, plan: &Plan) -> Vec<(f64, f64)> {
         let automatic = |of| {
-            let wanted = Tracked { quantity: of, worse: worst_end(&plan.study, of) };
+            let wanted = Tracked::worst(of, worst_end(&plan.study, of));
             let column = plan.tracked.iter().position(|(it, _)| *it == wanted).expect("the plan tracks what histograms are of");
             match self.ranges[column] {
                 Some((low, high)) if low < high => (low, high),
@@ -183,6 +184,7 @@ impl<'p> Counter<'p> {
         let plan = self.plan;
         let fast = FastBlock::new(plan, designs.iter().copied());
         let mut failures = vec![Failures::NONE; designs.len()];
+        let mut sums = CaseSums::new(plan, designs.len());
         self.engine.set_row(row);
         for q in 0..plan.slow_scenarios.count() {
             let prepared = self.engine.prepare(q);
@@ -195,15 +197,20 @@ impl<'p> Counter<'p> {
                 let failed = plan.row_conditions.iter().filter(|&&number| !holds(plan, number, self.engine.row_margins[number]));
                 let of_row = failed.min();
                 self.engine.evaluate(prepared.clone(), &fast);
+                let mut has_failed = vec![false; designs.len()];
                 for (lane, failures) in failures.iter_mut().enumerate() {
                     let lane_margins = plan.lane_conditions.iter().zip(&self.engine.results[plan.lane_outputs.len()..]);
                     let failed = lane_margins.filter(|&(&number, margins)| !holds(plan, number, margins[lane]));
                     // The first condition that fails is the status; what comes after it may have lost its meaning.
                     match failed.map(|(number, _)| number).chain(of_row).min() {
-                        Some(&first) => failures.conditions.insert(first),
+                        Some(&first) => {
+                            failures.conditions.insert(first);
+                            has_failed[lane] = true;
+                        }
                         None => self.violated(lane, &fast, failures),
                     }
                 }
+                self.sum(&mut sums, (q, t), &fast, &has_failed, &mut failures);
             }
         }
         for &failures in &failures {
@@ -217,19 +224,57 @@ impl<'p> Counter<'p> {
 
     /// Adds the constraints that a design violates in the current scenario, and whether a value is beyond what f64 holds.
     fn violated(&self, lane: usize, fast: &FastBlock, failures: &mut Failures) {
-        let value = |source| match source {
-            Source::LaneInput(input) => fast.own(input)[lane],
-            Source::LaneOutput(position) => self.engine.results[position][lane],
-            Source::RowInput(_) | Source::RowOutput(_) => row_value(self.plan, source, &self.engine.own, &self.engine.row_outputs),
-        };
+        let value = |source| self.value(source, lane, fast);
         for (number, (constraint, &source)) in self.plan.study.constraints.iter().zip(&self.plan.constraints).enumerate() {
             match value(source) {
                 value if !value.is_finite() => failures.overflow = true,
-                value if !constraint.holds(value) => failures.constraints.insert(number),
+                value if constraint.over.is_worst() && !constraint.holds(value) => failures.constraints.insert(number),
                 _ => {}
             }
         }
         failures.overflow |= self.plan.tracked.iter().any(|&(_, source)| !value(source).is_finite());
+    }
+
+    /// The value of a design in the current scenario.
+    fn value(&self, source: Source, lane: usize, fast: &FastBlock) -> f64 {
+        match source {
+            Source::LaneInput(input) => fast.own(input)[lane],
+            Source::LaneOutput(position) => self.engine.results[position][lane],
+            Source::RowInput(_) | Source::RowOutput(_) => row_value(self.plan, source, &self.engine.own, &self.engine.row_outputs),
+        }
+    }
+
+    /// Adds the current scenario to the sums over the cases of a spectrum. After the last case, adds the constraints on sums that are
+    /// violated, and whether a sum is beyond what f64 holds. A sum with a case that has failed has no meaning: it is NaN.
+    fn sum(&self, sums: &mut CaseSums, scenario: (u64, u64), fast: &FastBlock, has_failed: &[bool], failures: &mut [Failures]) {
+        let Some(spectrum) = &self.plan.spectrum else { return };
+        let place = spectrum.place(scenario);
+        for (number, &source) in spectrum.sums.iter().enumerate() {
+            let value = |lane: usize| {
+                let value = self.value(source, lane, fast);
+                if has_failed[lane] || !value.is_finite() { f64::NAN } else { value }
+            };
+            sums.add(place, number, (0..has_failed.len()).map(value));
+        }
+        if !place.is_last {
+            return;
+        }
+        let is_beyond = |sum: f64, failures: Failures| sum.is_infinite() || (sum.is_nan() && failures == Failures::NONE);
+        for (number, (constraint, &source)) in self.plan.study.constraints.iter().zip(&self.plan.constraints).enumerate() {
+            if !constraint.over.is_worst() {
+                let result = sums.result(place, spectrum.number(source), constraint.over);
+                for (failures, &sum) in failures.iter_mut().zip(result) {
+                    failures.overflow |= is_beyond(sum, *failures);
+                    if sum.is_finite() && !constraint.holds(sum) {
+                        failures.constraints.insert(number);
+                    }
+                }
+            }
+        }
+        for (tracked, source) in self.plan.tracked.iter().filter(|(tracked, _)| !tracked.over.is_worst()) {
+            let result = sums.result(place, spectrum.number(*source), tracked.over);
+            failures.iter_mut().zip(result).for_each(|(failures, &sum)| failures.overflow |= is_beyond(sum, *failures));
+        }
     }
 
     /// Takes the worst values of the block's feasible designs into account; false if it was stopped.

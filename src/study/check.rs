@@ -8,7 +8,8 @@ use super::read::{
     BINS, FRONT_BUDGET, MOST_CELLS, MOST_LEVELS, MOST_OBJECTIVES, MOST_SAMPLE, MOST_SCENARIOS, MOST_TOP, MOST_VARIANTS, check_levels,
 };
 use super::resolved::{Best, Constraint, ContourSpec, MapSpec, Quantity, Report, Study, Thresholds};
-use crate::models::Model;
+use super::spectrum::OverScenarios;
+use crate::models::{Model, Set};
 use std::collections::HashSet;
 
 /// Most rows of a joint axis, and most values in them.
@@ -46,11 +47,14 @@ impl Study {
             check_axis(model, axis, &mut taken)?;
         }
         self.check_sizes()?;
+        self.check_spectrum()?;
+        let (number, most) = (self.constraints.len(), Set::SIZE);
+        require(number <= most, || format!("there are {number} constraints, at most {most} are possible"))?;
         let mut seen = HashSet::new();
         for it in &self.constraints {
-            self.check_quantity(it.quantity)?;
-            let name = it.quantity.name(model);
-            require(seen.insert(it.quantity), || format!("\"{name}\" is constrained twice"))?;
+            self.check_over(it.quantity, it.over)?;
+            let name = it.name(model);
+            require(seen.insert((it.quantity, it.over)), || format!("\"{name}\" is constrained twice"))?;
             check_bounds(it).map_err(|problem| format!("constraint \"{name}\": {problem}"))?;
         }
         require(self.objectives.len() <= MOST_OBJECTIVES, || {
@@ -58,9 +62,9 @@ impl Study {
         })?;
         seen.clear();
         for it in &self.objectives {
-            self.check_quantity(it.quantity)?;
-            let name = it.quantity.name(model);
-            require(seen.insert(it.quantity), || format!("\"{name}\" is an objective twice"))?;
+            self.check_over(it.quantity, it.over)?;
+            let name = it.name(model);
+            require(seen.insert((it.quantity, it.over)), || format!("\"{name}\" is an objective twice"))?;
             require(it.resolution.is_none_or(|it| it > 0.0 && it.is_finite()), || {
                 format!("objective \"{name}\": its resolution must be greater than 0")
             })?;
@@ -118,13 +122,44 @@ impl Study {
         require(!words, || format!("\"{}\" takes words, which have no order", input.name))
     }
 
+    /// Is it an input that a design axis sets?
+    fn is_chosen(&self, quantity: Quantity) -> bool {
+        matches!(quantity, Quantity::Input(input) if self.design.iter().any(|axis| axis.inputs().contains(&input)))
+    }
+
+    /// Weights belong to the cases of a joint axis.
+    fn check_spectrum(&self) -> CheckResult {
+        let Some(spectrum) = &self.spectrum else { return Ok(()) };
+        let cases = match self.operation.get(spectrum.axis) {
+            Some(Axis::Joint { rows, .. }) => rows.len(),
+            _ => return Err("the weighted axis is no joint axis of [operation]".to_owned()),
+        };
+        let weights = &spectrum.weights;
+        require(weights.len() == cases, || format!("there are {} weights for {cases} cases", weights.len()))?;
+        require(weights.iter().all(|it| it.is_finite() && *it >= 0.0), || "a weight is not a finite number of at least 0".to_owned())?;
+        require(spectrum.total() > 0.0 && spectrum.total().is_finite(), || "the weights add up to nothing, or beyond any number".to_owned())
+    }
+
+    /// The same as [`Study::check_quantity`], and a mean or sum must have weights.
+    fn check_over(&self, quantity: Quantity, over: OverScenarios) -> CheckResult {
+        self.check_quantity(quantity)?;
+        let name = quantity.name(&self.model);
+        let word = over.word();
+        require(over.is_worst() || self.spectrum.is_some(), || format!("the {word} of \"{name}\" needs an axis with weights"))?;
+        require(over.is_worst() || !self.is_chosen(quantity), || format!("\"{name}\" is a design input, the same in every case"))?;
+        let column = over.column(quantity, &self.model);
+        let taken = self.model.output(&column).is_some() || self.model.input(&column).is_some();
+        require(over.is_worst() || !taken, || format!("the {word} of \"{name}\" would have the name of another quantity, {column}"))
+    }
+
     fn check_report(&self, report: &Report) -> CheckResult {
         let mut seen = HashSet::new();
-        for &column in &report.columns {
-            self.check_quantity(column)?;
-            let name = column.name(&self.model);
-            let chosen = matches!(column, Quantity::Input(input) if self.design.iter().any(|axis| axis.inputs().contains(&input)));
-            require(!chosen, || format!("columns: \"{name}\" is a design input, which the tables have anyway"))?;
+        for column in &report.columns {
+            self.check_over(column.of, column.over)?;
+            let name = column.over.column(column.of, &self.model);
+            require(!self.is_chosen(column.of), || format!("columns: \"{name}\" is a design input, which the tables have anyway"))?;
+            let taken = column.worst.map(|end| format!("{name}_{}", end.word())).filter(|it| self.model.output(it).is_some());
+            require(taken.is_none(), || format!("columns: \"{name}\" at one end would have the name of another quantity"))?;
             require(seen.insert(column), || format!("columns: \"{name}\" is listed twice"))?;
         }
         if let Some(top) = report.top {

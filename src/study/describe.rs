@@ -1,9 +1,9 @@
 //! The resolved study in words and names: `study.json`, the study's hash, and what changed between two studies.
 
 use super::read::shown;
-use super::{Axis, Best, Constraint, ContourSpec, Goal, Levels, Quantity, Study, Thresholds};
+use super::{Axis, Best, Constraint, ContourSpec, Goal, Levels, Objective, OverScenarios, Quantity, ReportColumn, Study, Thresholds};
 use crate::error::brief;
-use crate::models::{CurveSource, Extension, Model};
+use crate::models::{CurveSource, Extension, Model, Worse};
 use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
 
@@ -30,10 +30,8 @@ impl Study {
             "uncertainty": axes(&self.uncertainty),
             "fixed": fixed,
             "constraints": self.constraints.iter().map(|it| constraint_of(model, it)).collect::<Vec<_>>(),
-            "objectives": self.objectives.iter().map(|it| {
-                json!({ "of": it.quantity.name(model), "goal": it.goal, "resolution": it.resolution })
-            }).collect::<Vec<_>>(),
-            "columns": report.columns.iter().map(|it| it.name(model)).collect::<Vec<_>>(),
+            "objectives": self.objectives.iter().map(|it| objective_of(model, it)).collect::<Vec<_>>(),
+            "columns": report.columns.iter().map(|it| column_of(model, it)).collect::<Vec<_>>(),
             "top": report.top.map(|top| json!({ "by": top.by.name(model), "goal": top.goal, "count": top.count })),
             "histograms": report.histograms.iter().map(|it| {
                 json!({ "of": it.of.name(model), "from": it.range.map(|it| it.0), "to": it.range.map(|it| it.1), "bins": it.bins })
@@ -56,6 +54,10 @@ impl Study {
         // Likewise: the hash changes only if this is used.
         if let Some(sample) = report.sample {
             described["feasible_sample"] = json!({ "count": sample.count, "seed": sample.seed });
+        }
+        if let Some(it) = &self.spectrum {
+            let weights: Vec<_> = it.weights.iter().map(|&weight| number(weight)).collect();
+            described["spectrum"] = json!({ "axis": it.axis, "name": it.name, "weight": it.weight, "unit": it.unit, "weights": weights });
         }
         if report.variants {
             described["variants"] = true.into();
@@ -171,7 +173,35 @@ fn constraint_of(model: &Model, constraint: &Constraint) -> Value {
             value[if excluded { exclusive } else { inclusive }] = number(bound);
         }
     }
+    describe_over(constraint.over, &mut value);
     value
+}
+
+fn objective_of(model: &Model, objective: &Objective) -> Value {
+    let mut value = json!({ "of": objective.quantity.name(model), "goal": objective.goal, "resolution": objective.resolution });
+    describe_over(objective.over, &mut value);
+    value
+}
+
+/// A column that only has a name is described by that name, as before there was more to say.
+fn column_of(model: &Model, column: &ReportColumn) -> Value {
+    let name = column.of.name(model);
+    if *column == ReportColumn::from(column.of) {
+        return name.into();
+    }
+    let mut value = json!({ "of": name });
+    describe_over(column.over, &mut value);
+    if let Some(worst) = column.worst {
+        value["worst"] = worst.word().into();
+    }
+    value
+}
+
+/// The hash changes only if something else than the worst is asked for.
+fn describe_over(over: OverScenarios, value: &mut Value) {
+    if !over.is_worst() {
+        value["over_scenarios"] = over.word().into();
+    }
 }
 
 fn contours_of(model: &Model, contours: &ContourSpec) -> Value {
@@ -188,6 +218,16 @@ impl Constraint {
         let low = self.low.map(|(bound, excluded)| format!("{} {}", if excluded { "above" } else { "at least" }, shown(bound)));
         let high = self.high.map(|(bound, excluded)| format!("{} {}", if excluded { "below" } else { "at most" }, shown(bound)));
         low.into_iter().chain(high).collect::<Vec<_>>().join(" and ")
+    }
+}
+
+impl Worse {
+    /// The end in a word, as a study writes it: `highest` or `lowest`.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Higher => "highest",
+            Self::Lower => "lowest",
+        }
     }
 }
 

@@ -1,10 +1,10 @@
 //! Restores a study from [`Study::describe`], so that a result directory is enough even without the study file and its tables.
 
 use super::{
-    Axis, Best, Constraint, ContourSpec, Goal, HistogramSpec, Levels, MapSpec, Objective, Quantity, Report, SampleSpec, Study, Thresholds,
-    TopSpec,
+    Axis, Best, Constraint, ContourSpec, Goal, HistogramSpec, Levels, MapSpec, Objective, OverScenarios, Quantity, Report, ReportColumn,
+    SampleSpec, Spectrum, Study, Thresholds, TopSpec,
 };
-use crate::models::{CurveSource, Extension, Model, Models, extended};
+use crate::models::{CurveSource, Extension, Model, Models, Worse, extended};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::sync::Arc;
@@ -47,6 +47,7 @@ impl Study {
             design: axes("design")?,
             sample: plain(&described["sample"], "sample")?,
             operation: axes("operation")?,
+            spectrum: spectrum_of(&described["spectrum"])?,
             uncertainty: axes("uncertainty")?,
             fixed,
             constraints: each(described, "constraints", |it| constraint_of(&model, it))?,
@@ -55,6 +56,7 @@ impl Study {
                     quantity: quantity_of(&model, &it["of"])?,
                     goal: plain(&it["goal"], "goal")?,
                     resolution: plain(&it["resolution"], "resolution")?,
+                    over: over_of(it)?,
                 })
             })?,
             report: Report::default(),
@@ -105,7 +107,7 @@ fn report_of(study: &Study, described: &Value) -> Restored<Report> {
         sample => Some(SampleSpec { count: plain(&sample["count"], "count")?, seed: plain(&sample["seed"], "seed")? }),
     };
     Ok(Report {
-        columns: each(described, "columns", |it| quantity_of(model, it))?,
+        columns: each(described, "columns", |it| column_of(model, it))?,
         top,
         histograms: each(described, "histograms", histogram)?,
         maps: each(described, "maps", |it| map_of(study, it))?,
@@ -166,7 +168,37 @@ fn constraint_of(model: &Model, constraint: &Value) -> Restored<Constraint> {
         (Value::Null, excluded) => number_of(excluded).map(|bound| Some((bound, true))),
         (included, _) => number_of(included).map(|bound| Some((bound, false))),
     };
-    Ok(Constraint { quantity: quantity_of(model, &constraint["of"])?, low: bound("min", "above")?, high: bound("max", "below")? })
+    let [low, high] = [bound("min", "above")?, bound("max", "below")?];
+    Ok(Constraint { quantity: quantity_of(model, &constraint["of"])?, low, high, over: over_of(constraint)? })
+}
+
+fn spectrum_of(spectrum: &Value) -> Restored<Option<Spectrum>> {
+    if spectrum.is_null() {
+        return Ok(None);
+    }
+    let named = |key: &str| text(spectrum, key).map(str::to_owned);
+    let weights = list(spectrum, "weights")?.iter().map(number_of).collect::<Restored<_>>()?;
+    let [name, weight, unit] = [named("name")?, named("weight")?, named("unit")?];
+    Ok(Some(Spectrum { axis: plain(&spectrum["axis"], "axis")?, name, weight, unit, weights }))
+}
+
+/// A column by its name, or with what else is said of it.
+fn column_of(model: &Model, column: &Value) -> Restored<ReportColumn> {
+    if column.is_string() {
+        return quantity_of(model, column).map(ReportColumn::from);
+    }
+    let worst = match &column["worst"] {
+        Value::Null => None,
+        word if word == Worse::Higher.word() => Some(Worse::Higher),
+        word if word == Worse::Lower.word() => Some(Worse::Lower),
+        other => return Err(format!("a column's worst cannot be {other}")),
+    };
+    Ok(ReportColumn { of: quantity_of(model, &column["of"])?, over: over_of(column)?, worst })
+}
+
+fn over_of(it: &Value) -> Restored<OverScenarios> {
+    let over = &it["over_scenarios"];
+    if over.is_null() { Ok(OverScenarios::Worst) } else { plain(over, "over_scenarios") }
 }
 
 fn quantity_of(model: &Model, name: &Value) -> Restored<Quantity> {

@@ -10,6 +10,7 @@ mod describe;
 mod described;
 mod read;
 mod resolved;
+mod spectrum;
 
 pub use axis::{Axis, Levels, Method, Sample};
 #[doc(hidden)]
@@ -17,8 +18,10 @@ pub use describe::{differences, number, value_of};
 #[cfg(test)]
 pub(crate) use read::tests::study_of;
 pub use read::{Problem, StudyErrors};
-#[doc(hidden)]
-pub use resolved::worst_end;
 pub use resolved::{
-    Best, Constraint, ContourSpec, Goal, HistogramSpec, MapSpec, Objective, Quantity, Report, SampleSpec, Study, Thresholds, TopSpec,
+    Best, Constraint, ContourSpec, Goal, HistogramSpec, MapSpec, Objective, Quantity, Report, ReportColumn, SampleSpec, Study, Thresholds,
+    TopSpec,
 };
+#[doc(hidden)]
+pub use resolved::{worst_end, worst_end_over};
+pub use spectrum::{OverScenarios, Spectrum};

@@ -1,6 +1,7 @@
 //! The resolved study.
 
 use super::axis::{Axis, Sample};
+use super::spectrum::{OverScenarios, Spectrum, unit_over};
 use crate::models::{Model, Worse};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -75,9 +76,19 @@ pub struct Objective {
     pub goal: Goal,
     /// Values in the same step of this width count as equal for dominance.
     pub resolution: Option<f64>,
+    /// What becomes of its values over the scenarios.
+    #[serde(default)]
+    pub over: OverScenarios,
 }
 
-/// A constraint: bounds that hold in every scenario.
+impl Objective {
+    /// The name of its column.
+    pub fn name(&self, model: &Model) -> String {
+        self.over.column(self.quantity, model)
+    }
+}
+
+/// A constraint: bounds that hold in every scenario; of a mean or sum, in every scenario of the other axes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Constraint {
     /// What is bounded.
@@ -86,9 +97,17 @@ pub struct Constraint {
     pub low: Option<(f64, bool)>,
     /// Largest value, and whether it is itself excluded.
     pub high: Option<(f64, bool)>,
+    /// What becomes of its values over the scenarios before the bounds are asked.
+    #[serde(default)]
+    pub over: OverScenarios,
 }
 
 impl Constraint {
+    /// The name of what is bounded, as its column has it.
+    pub fn name(&self, model: &Model) -> String {
+        self.over.column(self.quantity, model)
+    }
+
     /// Does the value satisfy the constraint? NaN never does.
     #[inline(always)]
     pub fn holds(&self, value: f64) -> bool {
@@ -102,6 +121,23 @@ impl Constraint {
         let low = self.low.map_or(f64::INFINITY, |(bound, _)| value - bound);
         let high = self.high.map_or(f64::INFINITY, |(bound, _)| bound - value);
         low.min(high)
+    }
+}
+
+/// A further column of the tables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct ReportColumn {
+    /// Of which quantity.
+    pub of: Quantity,
+    /// What becomes of its values over the scenarios.
+    pub over: OverScenarios,
+    /// The end that counts as the worst; `None`: that of its objective if it has one, else that of the model.
+    pub worst: Option<Worse>,
+}
+
+impl From<Quantity> for ReportColumn {
+    fn from(of: Quantity) -> Self {
+        Self { of, over: OverScenarios::Worst, worst: None }
     }
 }
 
@@ -183,7 +219,7 @@ pub struct MapSpec {
 #[derive(Clone, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub struct Report {
     /// Further columns of the tables.
-    pub columns: Vec<Quantity>,
+    pub columns: Vec<ReportColumn>,
     /// The best designs by one quantity.
     pub top: Option<TopSpec>,
     /// Histograms, in file order.
@@ -220,8 +256,14 @@ impl Report {
 
 /// Which end of a quantity's range is the worst: that of its objective if it has one, else that of the model.
 pub fn worst_end(study: &Study, quantity: Quantity) -> Worse {
-    let goal = study.objectives.iter().find(|objective| objective.quantity == quantity).map(|objective| objective.goal);
-    goal.map_or(quantity.worse(&study.model), Goal::worse)
+    worst_end_over(study, quantity, OverScenarios::Worst)
+}
+
+/// The same of a mean or sum. An objective of the same kind comes first, then any other of the quantity.
+pub fn worst_end_over(study: &Study, quantity: Quantity, over: OverScenarios) -> Worse {
+    let of_quantity = || study.objectives.iter().filter(|objective| objective.quantity == quantity);
+    let objective = of_quantity().find(|objective| objective.over == over).or_else(|| of_quantity().next());
+    objective.map_or(quantity.worse(&study.model), |objective| objective.goal.worse())
 }
 
 /// A request: which designs to judge, over which scenarios, by what.
@@ -237,6 +279,8 @@ pub struct Study {
     pub sample: Option<Sample>,
     /// Operation axes in file order.
     pub operation: Vec<Axis>,
+    /// The operation axis that has weights, if one has.
+    pub spectrum: Option<Spectrum>,
     /// Uncertainty axes in file order.
     pub uncertainty: Vec<Axis>,
     /// A value for every input, in its unit: that of `[fixed]`, else the default. Unused if an axis sets the input.
@@ -250,6 +294,17 @@ pub struct Study {
 }
 
 impl Study {
+    /// The unit of a quantity's value over the scenarios, as text: that of a sum is multiplied by that of the weights.
+    pub fn unit_over(&self, quantity: Quantity, over: OverScenarios) -> String {
+        unit_over(quantity, over, &self.model, self.spectrum.as_ref())
+    }
+
+    /// Does an objective or constraint ask for a mean or a sum?
+    pub fn decides_by_spectrum(&self) -> bool {
+        let objectives = self.objectives.iter().map(|it| it.over);
+        objectives.chain(self.constraints.iter().map(|it| it.over)).any(|over| !over.is_worst())
+    }
+
     /// What the model has to say of this study as a whole.
     pub fn remarks(&self) -> Vec<String> {
         let set_by_axes =

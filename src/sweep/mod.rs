@@ -97,7 +97,8 @@ impl Settings {
 fn coarser(plan: &Plan) -> String {
     let objective = plan.study.objectives[0];
     let goal = if objective.goal == crate::study::Goal::Min { "min" } else { "max" };
-    format!("{} = {{ goal = \"{goal}\", resolution = ... }}", objective.quantity.name(&plan.study.model))
+    let over = if objective.over.is_worst() { String::new() } else { format!(", over_scenarios = \"{}\"", objective.over.word()) };
+    format!("{} = {{ goal = \"{goal}\"{over}, resolution = ... }}", objective.quantity.name(&plan.study.model))
 }
 
 /// What a finished sweep knows.

@@ -18,7 +18,7 @@ pub fn write(table: &Table) -> Vec<u8> {
     writer.into_inner().expect(IN_MEMORY)
 }
 
-/// Every scenario with its inputs. Rows are written one by one, because there can be many scenarios.
+/// Every scenario with its inputs, and its weight if the study has weights. Rows are written one by one, because there can be many scenarios.
 ///
 /// # Errors
 /// Those of `out`.
@@ -28,7 +28,8 @@ pub fn scenarios(plan: &Plan, out: &mut dyn Write) -> io::Result<()> {
     let inputs: Vec<usize> = axes.flat_map(|axis| axis.inputs()).copied().collect();
     let mut writer = Writer::from_writer(out);
     let names = inputs.iter().map(|&input| study.model.inputs[input].name.as_str());
-    writer.write_record(std::iter::once("scenario").chain(names))?;
+    let weights = plan.listed_weights();
+    writer.write_record(std::iter::once("scenario").chain(names).chain(weights.map(|(it, _)| &it.weight[..])))?;
     let mut values = study.fixed.clone();
     for scenario in 0..plan.scenarios() {
         plan.space.scenarios.set(scenario, &mut values);
@@ -36,7 +37,8 @@ pub fn scenarios(plan: &Plan, out: &mut dyn Write) -> io::Result<()> {
             Some(word) => word.to_owned(),
             None => plain(values[input]),
         });
-        writer.write_record(std::iter::once(scenario.to_string()).chain(cells))?;
+        let weight = weights.map(|(_, it)| plain(it.weight_of(scenario)));
+        writer.write_record(std::iter::once(scenario.to_string()).chain(cells).chain(weight))?;
     }
     writer.flush()
 }

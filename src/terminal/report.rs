@@ -97,12 +97,8 @@ fn limits(outcome: &Certified<'_>) -> String {
     let mut reasons: Vec<(u64, u64, String)> = statuses.map(|(condition, &count)| (count, 0, condition.reason.to_owned())).collect();
     reasons.push((tally.overflow, 0, OVERFLOW.to_owned()));
     for (constraint, (&violated, &only)) in study.constraints.iter().zip(tally.constraints.iter().zip(&tally.only)) {
-        let unit = constraint.quantity.unit(model);
-        reasons.push((
-            violated,
-            only,
-            format!("{} {} {unit}", constraint.quantity.name(model), constraint.in_words()).trim_end().to_owned(),
-        ));
+        let unit = study.unit_over(constraint.quantity, constraint.over);
+        reasons.push((violated, only, format!("{} {} {unit}", constraint.name(model), constraint.in_words()).trim_end().to_owned()));
     }
     reasons.retain(|(count, ..)| *count > 0);
     reasons.sort_by_key(|(count, ..)| std::cmp::Reverse(*count));
@@ -129,8 +125,7 @@ fn front(outcome: &Certified<'_>) -> String {
     let model = &study.model;
     let summary = Summary::new(outcome);
     let columns = outcome.objective_columns();
-    let goals =
-        study.objectives.iter().map(|it| format!("{} ({})", it.quantity.name(model), if it.goal == Goal::Min { "min" } else { "max" }));
+    let goals = study.objectives.iter().map(|it| format!("{} ({})", it.name(model), if it.goal == Goal::Min { "min" } else { "max" }));
     let mut grid = TextGrid::default();
     grid.row(std::iter::once(String::new()).chain(goals.chain(["design".to_owned()]).map(|head| bold(&head))));
     if let Some(ideal) = &summary.ideal {
@@ -185,7 +180,7 @@ fn plot(outcome: &Certified<'_>) -> String {
     chart.borders();
     chart.axis();
     chart.figures();
-    let name = |objective: usize| study.objectives[objective].quantity.name(&study.model);
+    let name = |objective: usize| study.objectives[objective].name(&study.model);
     format!(
         "\n{}\n{chart}{}\n",
         dim(&format!("{} upwards", name(1))),

@@ -1,7 +1,8 @@
 //! Study files: broken ones are refused with every problem and its position, good ones are understood correctly.
 
 use beltspace::study::{
-    Axis, Best, Constraint, Goal, HistogramSpec, Levels, MapSpec, Method, Objective, Quantity, Report, Sample, Study, TopSpec,
+    Axis, Best, Constraint, Goal, HistogramSpec, Levels, MapSpec, Method, Objective, OverScenarios, Quantity, Report, Sample, Study,
+    TopSpec,
 };
 use std::path::Path;
 
@@ -434,9 +435,9 @@ fn the_example_means_what_it_says() {
     assert_eq!((study.fixed.clone(), study.sample), (fixed, None));
     let output = |name| Quantity::Output(study.model.output(name).unwrap());
     let (force, stress, slip) = (output("axial_force_N"), output("stress_margin"), output("slip_margin"));
-    let constraint = |quantity| Constraint { quantity, low: Some((0.0, false)), high: None };
+    let constraint = |quantity| Constraint { quantity, low: Some((0.0, false)), high: None, over: OverScenarios::Worst };
     assert_eq!(study.constraints, [constraint(slip), constraint(stress)]);
-    let objective = |quantity, goal| Objective { quantity, goal, resolution: None };
+    let objective = |quantity, goal| Objective { quantity, goal, resolution: None, over: OverScenarios::Worst };
     let bands = Quantity::Input(study.model.input("band_count").unwrap());
     let objectives = [(force, Goal::Min), (stress, Goal::Max), (slip, Goal::Max), (bands, Goal::Min)];
     assert_eq!(study.objectives, objectives.map(|(quantity, goal)| objective(quantity, goal)));
@@ -444,7 +445,7 @@ fn the_example_means_what_it_says() {
         study.report,
         Report {
             variants: false,
-            columns: vec![output("max_stress_MPa")],
+            columns: vec![output("max_stress_MPa").into()],
             top: Some(TopSpec { by: force, goal: Goal::Min, count: 20 }),
             histograms: vec![HistogramSpec { of: force, range: Some((0.0, 60_000.0)), bins: 60 }],
             maps: vec![MapSpec { x: 1, y: 0, value: Best::Value(force, Goal::Min), contours: Vec::new() }],
@@ -551,9 +552,10 @@ fn constraints_objectives_and_reports_are_understood() {
     let study = study.unwrap();
     let output = |name| Quantity::Output(study.model.output(name).unwrap());
     let width = Quantity::Input(study.model.input("band_width_mm").unwrap());
-    let force = Constraint { quantity: output("axial_force_N"), low: Some((0.0, true)), high: Some((20_000.0, false)) };
-    assert_eq!(study.constraints, [force, Constraint { quantity: width, low: None, high: Some((25.4, true)) }]);
-    assert_eq!(study.objectives, [Objective { quantity: output("max_stress_MPa"), goal: Goal::Min, resolution: Some(0.1) }]);
+    let over = OverScenarios::Worst;
+    let force = Constraint { quantity: output("axial_force_N"), low: Some((0.0, true)), high: Some((20_000.0, false)), over };
+    assert_eq!(study.constraints, [force, Constraint { quantity: width, low: None, high: Some((25.4, true)), over }]);
+    assert_eq!(study.objectives, [Objective { quantity: output("max_stress_MPa"), goal: Goal::Min, resolution: Some(0.1), over }]);
     // The goal follows from what is worse: a margin is best when large.
     assert_eq!(study.report.top, Some(TopSpec { by: output("slip_margin"), goal: Goal::Max, count: 3 }));
     let map = |x, y, value| MapSpec { x, y, value, contours: Vec::new() };

@@ -130,7 +130,7 @@ fn in_a_large_study_bounds_find_the_exact_best() {
     let quantity = study.constraints[0].quantity;
     let alone = Study {
         constraints: Vec::new(),
-        objectives: vec![Objective { quantity, goal: Goal::Max, resolution: None }],
+        objectives: vec![Objective { quantity, over: Default::default(), goal: Goal::Max, resolution: None }],
         report: beltspace::study::Report { front_budget: 1, ..Default::default() },
         ..study
     };

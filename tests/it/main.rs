@@ -54,6 +54,8 @@ mod second;
 mod shader_constants;
 /// The committed shaders against the formulas.
 mod shaders;
+/// Load spectra: means and sums over weighted cases.
+mod spectra;
 /// The timing belt: figures, closed forms, similarity.
 mod timing_mesh;
 /// The tutorials of `docs/`, run and compared with what the program prints.

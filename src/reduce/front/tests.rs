@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::sample::mix;
-use crate::study::{Goal, Objective, Quantity};
+use crate::study::{Goal, Objective, OverScenarios, Quantity};
 
 /// A block that owns its columns.
 struct Owned {
@@ -21,7 +21,8 @@ impl Owned {
 
 fn rules(dimensions: usize) -> Vec<KeyRule> {
     let goal = |d: usize| if d.is_multiple_of(2) { Goal::Min } else { Goal::Max };
-    let objective = |d| Objective { quantity: Quantity::Input(0), goal: goal(d), resolution: (d == 3).then_some(3.0) };
+    let objective =
+        |d| Objective { quantity: Quantity::Input(0), goal: goal(d), resolution: (d == 3).then_some(3.0), over: OverScenarios::Worst };
     (0..dimensions).map(|d| KeyRule::from(&objective(d))).collect()
 }
 
@@ -110,7 +111,8 @@ fn designs_that_tie_in_everything_are_one_point_with_the_lowest_index() {
 fn the_table_never_drops_a_point_of_the_front() {
     // Denormal spans and huge offsets: the bin function must stay monotone.
     for (offset, width) in [(0.0, 1e-310), (1e300, 1e285), (-1e-3, 1e-19), (5.0, 0.0)] {
-        let rules = [KeyRule::from(&Objective { quantity: Quantity::Input(0), goal: Goal::Min, resolution: None }); 2];
+        let rules =
+            [KeyRule::from(&Objective { quantity: Quantity::Input(0), goal: Goal::Min, resolution: None, over: OverScenarios::Worst }); 2];
         let value = |i: u64, d: u64| offset + width * (mix(i * 2 + d) % 1000) as f64;
         let mut front = Front::new(&rules);
         let column = |d| (0..512).map(|i| value(i, d)).collect::<Vec<_>>();

@@ -486,8 +486,11 @@ pub fn supports(plan: &Plan, limited_loops: bool) -> Result<()> {
     KernelLayout::new(plan, limited_loops, false).map(|_| ())
 }
 
-/// Does the report ask for nothing but counts and candidates?
+/// Does the study ask for nothing but worst values, counts and candidates?
 fn supports_report(plan: &Plan) -> Result<()> {
+    if plan.study.decides_by_spectrum() {
+        return Err(refuse("it asks for a mean or sum over the cases of a spectrum, and these are added up on the CPU".to_owned()));
+    }
     let beyond = Reported::needs(&plan.study.report).into_iter().find_map(ReducerNeeds::beyond_devices);
     beyond.map_or(Ok(()), |why| Err(refuse(why.to_owned())))
 }

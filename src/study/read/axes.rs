@@ -2,6 +2,7 @@
 
 use super::super::axis::{Axis, Levels};
 use super::Reader;
+use super::spectrum::weighted_cases;
 use super::table::{Entry, TOP_LEVEL_REMEDY, TomlNode, TomlTable, is_top_level, shortened};
 use super::value::{input_value, shown};
 use crate::likeness::remedy;
@@ -50,7 +51,10 @@ pub(super) struct AxisClaim {
 impl Reader<'_> {
     /// The axes of a table, in file order. Those with problems are left out.
     pub(super) fn axes(&self, role: AxisRole, table: &TomlTable<'_>) -> Vec<Axis> {
-        let axis = |entry: &Entry<'_>| {
+        let axis = |(position, entry): (usize, &Entry<'_>)| {
+            if let Some(table) = weighted_cases(entry).filter(|_| self.model.input(entry.key).is_none()) {
+                return self.weighted(role, position, entry, &table);
+            }
             let joint = entry.key.starts_with("cases") && self.model.input(entry.key).is_none();
             if joint { self.joint(role, entry) } else { self.single(role, entry) }
         };
@@ -59,7 +63,7 @@ impl Reader<'_> {
             let message = format!("[{}] has {} axes, but {} has {most} inputs", role.name(), table.entries.len(), self.model.name);
             self.problems.add(extra.key_at, format!("{message}; every input has one axis at most, drop the others"));
         }
-        table.entries.iter().take(most).take_while(|_| !self.problems.is_full()).filter_map(axis).collect()
+        table.entries.iter().take(most).take_while(|_| !self.problems.is_full()).enumerate().filter_map(axis).collect()
     }
 
     /// The value of every input: fixed, of the preset, or default.

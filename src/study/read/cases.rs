@@ -5,8 +5,10 @@ use super::super::check::{MOST_ROWS, MOST_VALUES};
 use super::Reader;
 use super::axes::{AxisClaim, AxisRole};
 use super::csv_file::csv_text;
+use super::spectrum::WeightColumn;
 use super::table::{Entry, Lines, TomlNode, TomlTable, list, shortened};
 use super::value::input_text;
+use crate::likeness::closest;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry as Row;
 use toml::de::DeValue;
@@ -14,17 +16,50 @@ use toml::de::DeValue;
 /// Most problems that are reported of one CSV file.
 const MOST_CSV_PROBLEMS: usize = 20;
 
+/// Reads the cases of one joint axis.
+pub(super) struct CaseReader<'r, 'a> {
+    /// What is known of the study.
+    pub(super) reader: &'r Reader<'a>,
+    /// The table that the axis stands in.
+    pub(super) role: AxisRole,
+    /// The column of its weights, if it has some.
+    pub(super) weight: Option<&'r WeightColumn<'r>>,
+}
+
+/// A column of a CSV file; one with a problem is neither.
+#[derive(Clone, Copy)]
+struct CaseColumn {
+    /// The input whose values it holds.
+    input: Option<usize>,
+    /// Does it hold the weights?
+    is_weight: bool,
+}
+
+impl<'a> std::ops::Deref for CaseReader<'_, 'a> {
+    type Target = Reader<'a>;
+
+    fn deref(&self) -> &Reader<'a> {
+        self.reader
+    }
+}
+
 impl Reader<'_> {
     /// A joint axis.
     pub(super) fn joint(&self, role: AxisRole, entry: &Entry<'_>) -> Option<Axis> {
-        let label = format!("axis \"{}\"", shortened(entry.key));
-        match entry.node.value {
-            DeValue::Array(_) => self.rows(role, entry.node, &label),
-            DeValue::Table(_) => entry.node.table().and_then(|table| self.csv(role, &table, &label)),
+        CaseReader { reader: self, role, weight: None }.cases(entry.node, &format!("axis \"{}\"", shortened(entry.key)))
+    }
+}
+
+impl CaseReader<'_, '_> {
+    /// The axis of these cases.
+    pub(super) fn cases(&self, node: TomlNode<'_>, label: &str) -> Option<Axis> {
+        match node.value {
+            DeValue::Array(_) => self.rows(node, label),
+            DeValue::Table(_) => node.table().and_then(|table| self.csv(&table, label)),
             _ => {
-                let found = entry.node.found();
+                let found = node.found();
                 self.problems.add(
-                    entry.node.at,
+                    node.at,
                     format!("{label}: found {found}, wanted rows such as [{{ {} }}, ...] or {{ csv = \"file.csv\" }}", self.example_row()),
                 );
                 None
@@ -38,7 +73,7 @@ impl Reader<'_> {
     }
 
     /// Rows as listed. The first row decides which inputs there are.
-    fn rows(&self, role: AxisRole, node: TomlNode<'_>, label: &str) -> Option<Axis> {
+    fn rows(&self, node: TomlNode<'_>, label: &str) -> Option<Axis> {
         let problems = self.problems;
         let before = problems.count();
         let mut columns: Option<Vec<usize>> = None;
@@ -49,26 +84,36 @@ impl Reader<'_> {
                 continue;
             };
             let first = columns.is_none();
-            let inputs = columns.get_or_insert_with(|| self.columns(role, &table, label));
+            let inputs = columns.get_or_insert_with(|| self.columns(&table, label));
             if inputs.is_empty() {
                 continue;
             }
             let mut row = vec![f64::NAN; inputs.len()];
+            let known_name = |name: &str| self.model.input(name).is_some() || self.is_weight(name);
             for entry in table.entries.iter().take_while(|_| !problems.is_full()) {
+                if let Some(weight) = self.weight.filter(|weight| weight.name == entry.key)
+                    && let Err(error) = weight.take_node(entry.node)
+                {
+                    problems.add(entry.node.at, format!("{label}: {error}"));
+                }
                 match (self.model.input(entry.key), inputs.iter().position(|&input| self.model.inputs[input].name == entry.key)) {
                     (Some(number), Some(column)) => row[column] = self.input_value(entry.node, number, label).unwrap_or(f64::NAN),
                     (Some(_), None) => problems.add(
                         entry.key_at,
                         format!("{label}: \"{}\" is missing in the first row; give every row the same inputs", entry.key),
                     ),
-                    (None, _) if !first => problems.add(entry.key_at, format!("{label}: {}", self.no_input(entry.key))),
+                    (None, _) if !first && !self.is_weight(entry.key) => {
+                        problems.add(entry.key_at, format!("{label}: {}", self.no_input(entry.key)))
+                    }
                     (None, _) => {}
                 }
             }
-            let missing: Vec<_> =
-                inputs.iter().map(|&input| self.model.inputs[input].name.as_str()).filter(|name| table.get(name).is_none()).collect();
+            let names = inputs.iter().map(|&input| self.model.inputs[input].name.as_str());
+            // A weight that formulas read is an input as well.
+            let weight = self.weight.map(|weight| weight.name).filter(|name| self.model.input(name).is_none());
+            let missing: Vec<_> = names.chain(weight).filter(|name| table.get(name).is_none()).collect();
             // A wrong name is probably the missing one misspelt.
-            if !missing.is_empty() && table.entries.iter().all(|entry| self.model.input(entry.key).is_some()) {
+            if !missing.is_empty() && table.entries.iter().all(|entry| known_name(entry.key)) {
                 problems.add(table.at, format!("{label}: this row lacks {}; give every row the same inputs", list(missing)));
             }
             self.mark_words(inputs, &row);
@@ -84,17 +129,33 @@ impl Reader<'_> {
         columns.filter(|_| problems.count() == before).map(|inputs| Axis::Joint { inputs, rows })
     }
 
+    /// Why there is no input of that name; it may be the column of the weights misspelt.
+    fn no_input(&self, name: &str) -> String {
+        let meant = self.weight.and_then(|weight| closest(name, &[weight.name]));
+        let of_weight = meant.map(|weight| format!("there is no input \"{}\"; did you mean \"{weight}\"?", shortened(name)));
+        of_weight.unwrap_or_else(|| self.reader.no_input(name))
+    }
+
+    /// Is it the column of the weights?
+    fn is_weight(&self, name: &str) -> bool {
+        self.weight.is_some_and(|weight| weight.name == name)
+    }
+
     /// The inputs that the first row names.
-    fn columns(&self, role: AxisRole, table: &TomlTable<'_>, label: &str) -> Vec<usize> {
-        if table.entries.is_empty() {
+    fn columns(&self, table: &TomlTable<'_>, label: &str) -> Vec<usize> {
+        if table.entries.iter().all(|entry| self.is_weight(entry.key) && self.model.input(entry.key).is_none()) {
             self.problems.add(table.at, format!("{label}: the row names no input; write {{ {} }}", self.example_row()));
         }
         let mut inputs = Vec::new();
-        for entry in table.entries.iter().take_while(|_| !self.problems.is_full()) {
-            if let Some(input) = self.input(entry.key, entry.key_at, label) {
-                self.claims.borrow_mut().push(AxisClaim { input, role, at: entry.key_at, single: false, word: None });
-                inputs.push(input);
-            }
+        let named = table.entries.iter().filter(|entry| !self.is_weight(entry.key) || self.model.input(entry.key).is_some());
+        for entry in named.take_while(|_| !self.problems.is_full()) {
+            let Some(input) = self.model.input(entry.key) else {
+                self.problems.add(entry.key_at, format!("{label}: {}", self.no_input(entry.key)));
+                self.misnamed.set(true);
+                continue;
+            };
+            self.claims.borrow_mut().push(AxisClaim { input, role: self.role, at: entry.key_at, single: false, word: None });
+            inputs.push(input);
         }
         inputs
     }
@@ -113,7 +174,7 @@ impl Reader<'_> {
     }
 
     /// Rows from a CSV file.
-    fn csv(&self, role: AxisRole, table: &TomlTable<'_>, label: &str) -> Option<Axis> {
+    fn csv(&self, table: &TomlTable<'_>, label: &str) -> Option<Axis> {
         let problems = self.problems;
         let known = table.check_keys(problems, label, &["csv"]);
         let Some(entry) = table.get("csv") else {
@@ -129,17 +190,18 @@ impl Reader<'_> {
         let at = entry.node.at;
         let text = csv_text(self.folder, &name).map_err(|error| problems.add(at, format!("{label}: {error}"))).ok()?;
         let before = problems.count();
-        let axis = self.csv_rows(role, at, &name, &text);
+        let axis = self.csv_rows(at, &name, &text);
         axis.filter(|_| known && problems.count() == before)
     }
 
     /// The rows of a CSV text. Its first line names the inputs.
-    fn csv_rows(&self, role: AxisRole, at: usize, name: &str, text: &str) -> Option<Axis> {
+    fn csv_rows(&self, at: usize, name: &str, text: &str) -> Option<Axis> {
         let lines = Lines::new(text);
         let before = self.problems.count();
         let problem = |line: usize, field: usize, message: String| self.problems.add_in(at, name, line, field, message);
-        let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).trim(csv::Trim::All).from_reader(text.as_bytes());
-        let mut columns: Option<Vec<Option<usize>>> = None;
+        let mut builder = csv::ReaderBuilder::new();
+        let mut reader = builder.has_headers(false).flexible(true).trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
+        let mut columns: Option<Vec<CaseColumn>> = None;
         let (mut rows, mut known) = (Vec::new(), HashMap::new());
         for record in reader.records() {
             if self.problems.is_full() || self.problems.count() - before >= MOST_CSV_PROBLEMS {
@@ -155,7 +217,7 @@ impl Reader<'_> {
             };
             let line = record_line(&lines, text, &record);
             let Some(columns) = &columns else {
-                columns = Some(self.header(role, at, &record, |field, message| problem(line, field, message)));
+                columns = Some(self.header(at, &record, |field, message| problem(line, field, message)));
                 continue;
             };
             if record.len() != columns.len() {
@@ -167,8 +229,13 @@ impl Reader<'_> {
                 );
                 continue;
             }
-            let cell = |(field, (text, column)): (usize, (&str, &Option<usize>))| {
-                let input = &self.model.inputs[(*column)?];
+            let cell = |(field, (text, column)): (usize, (&str, &CaseColumn))| {
+                if let Some(weight) = self.weight.filter(|_| column.is_weight)
+                    && let Err(error) = weight.take_text(text)
+                {
+                    problem(line, field + 1, format!("column \"{}\": {error}", weight.name));
+                }
+                let input = &self.model.inputs[column.input?];
                 let value = if text.is_empty() { Err("the field is empty; give a value".to_owned()) } else { input_text(text, input) };
                 Some(value.map_err(|error| problem(line, field + 1, format!("column \"{}\": {error}", input.name))).unwrap_or(f64::NAN))
             };
@@ -177,7 +244,7 @@ impl Reader<'_> {
                 return None;
             }
             let row: Vec<f64> = record.iter().zip(columns).enumerate().filter_map(cell).collect();
-            self.mark_words(&columns.iter().flatten().copied().collect::<Vec<_>>(), &row);
+            self.mark_words(&columns.iter().filter_map(|column| column.input).collect::<Vec<_>>(), &row);
             if let Some(first) = duplicate(&mut known, &row, line) {
                 problem(line, 1, format!("the row equals that of line {first}; drop one"));
             }
@@ -187,27 +254,38 @@ impl Reader<'_> {
             let inputs = list(self.model.inputs.iter().take(2).map(|input| input.name.as_str()));
             problem(1, 1, format!("there are no rows; the first line names inputs, such as {inputs}, every other line gives their values"));
         }
-        let inputs = columns?.into_iter().collect::<Option<Vec<_>>>()?;
-        Some(Axis::Joint { inputs, rows })
+        let columns = columns?;
+        let is_good = columns.iter().all(|column| column.is_weight || column.input.is_some());
+        is_good.then(|| Axis::Joint { inputs: columns.iter().filter_map(|column| column.input).collect(), rows })
     }
 
-    /// The inputs that a CSV header names; `None` for a column with a problem.
-    fn header(&self, role: AxisRole, at: usize, record: &csv::StringRecord, problem: impl Fn(usize, String)) -> Vec<Option<usize>> {
-        let mut inputs: Vec<Option<usize>> = Vec::new();
+    /// What the columns of a CSV header hold.
+    fn header(&self, at: usize, record: &csv::StringRecord, problem: impl Fn(usize, String)) -> Vec<CaseColumn> {
+        let mut columns: Vec<CaseColumn> = Vec::new();
         for (index, name) in record.iter().enumerate().take_while(|_| !self.problems.is_full()) {
             let input = self.model.input(name);
+            let is_weight = self.is_weight(name);
             match input {
+                _ if record.iter().take(index).any(|before| before == name) && (is_weight || input.is_some()) => {
+                    problem(index + 1, format!("\"{name}\" has two columns; drop one"))
+                }
+                None if is_weight => {}
                 None if name.contains(';') || name.contains('\t') => {
                     problem(index + 1, "the columns are not separated by commas; save the file with commas".to_owned())
                 }
                 None if name.is_empty() => problem(index + 1, "the column has no name; name the input whose values it holds".to_owned()),
                 None => problem(index + 1, self.no_input(name)),
-                Some(_) if inputs.contains(&input) => problem(index + 1, format!("\"{name}\" has two columns; drop one")),
-                Some(input) => self.claims.borrow_mut().push(AxisClaim { input, role, at, single: false, word: None }),
+                Some(input) => self.claims.borrow_mut().push(AxisClaim { input, role: self.role, at, single: false, word: None }),
             }
-            inputs.push(input);
+            columns.push(CaseColumn { input, is_weight });
         }
-        inputs
+        let names = || list(record.iter().map(|name| format!("\"{}\"", shortened(name))));
+        if let Some(weight) = self.weight.filter(|weight| !record.iter().any(|name| name == weight.name)) {
+            problem(1, format!("there is no column \"{}\" with the weights; the columns are {}", shortened(weight.name), names()));
+        } else if !columns.is_empty() && columns.iter().all(|column| column.is_weight && column.input.is_none()) {
+            problem(1, format!("there are only weights; name an input in the first line, such as {}", self.model.inputs[0].name));
+        }
+        columns
     }
 }
 
@@ -225,9 +303,14 @@ fn duplicate(known: &mut HashMap<Vec<u64>, usize>, row: &[f64], line: usize) -> 
     }
 }
 
-/// Line number of a record, which starts after blank lines that the reader has skipped.
+/// Line number of a record, which starts after blank lines and comments that the reader has skipped.
 fn record_line(lines: &Lines<'_>, text: &str, record: &csv::StringRecord) -> usize {
     let start = record.position().map_or(0, |position| usize::try_from(position.byte()).unwrap_or(0)).min(text.len());
-    let blank = text.as_bytes()[start..].iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).count();
-    lines.index(start + blank) + 1
+    let mut rest = &text.as_bytes()[start..];
+    // Comments are skipped as well.
+    while let [first @ (b'\r' | b'\n' | b'#'), ..] = rest {
+        let length = if *first == b'#' { rest.iter().take_while(|&&byte| byte != b'\n').count() } else { 1 };
+        rest = &rest[length..];
+    }
+    lines.index(text.len() - rest.len()) + 1
 }

@@ -1,7 +1,8 @@
 //! `units`, `[curves]` and `[formulas]`: what a study adds to its model, and which names are variables.
 
 use super::csv_file::csv_text;
-use super::table::{Entry, Problems, TomlTable, list, shortened};
+use super::spectrum::weighted_cases;
+use super::table::{Entry, Problems, TomlNode, TomlTable, list, shortened};
 use super::{section, text};
 use crate::formula::{Expression, meant};
 use crate::models::{CurveSource, Extension, ExtensionProblem, Model, extended};
@@ -146,15 +147,19 @@ fn given(top: &TomlTable<'_>, folder: &Path) -> Vec<(String, usize)> {
     let mut names = Vec::new();
     for table in GIVING.iter().filter_map(|name| top.get(name)).filter_map(|entry| entry.node.table()) {
         for entry in table.entries {
-            names.push((entry.key.to_owned(), entry.key_at));
-            if !entry.key.starts_with("cases") {
-                continue;
+            let weighted = weighted_cases(&entry);
+            let cases = weighted.as_ref().map_or(Some(entry.node), |table| table.get("cases").map(|entry| entry.node));
+            if weighted.is_none() {
+                names.push((entry.key.to_owned(), entry.key_at));
+                if !entry.key.starts_with("cases") {
+                    continue;
+                }
             }
-            if let Some(rows) = entry.node.list() {
+            if let Some(rows) = cases.and_then(TomlNode::list) {
                 let first = rows.filter_map(|row| row.table()).next();
                 names.extend(first.into_iter().flat_map(|row| row.entries).map(|cell| (cell.key.to_owned(), cell.key_at)));
             }
-            let file = entry.node.table().and_then(|table| Some(table.get("csv")?.node.value.as_str()?.to_owned()));
+            let file = cases.and_then(TomlNode::table).and_then(|table| Some(table.get("csv")?.node.value.as_str()?.to_owned()));
             // What cannot be read is reported when the axis is.
             if let Some(text) = file.and_then(|file| csv_text(folder, &file).ok()) {
                 let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());

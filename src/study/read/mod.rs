@@ -8,6 +8,7 @@
 //! | `axes.rs`       | `[design]`, `[operation]`, `[uncertainty]`, `[fixed]` |
 //! | `range.rs`      | `{ from, to, ... }`                                |
 //! | `cases.rs`      | joint axes, from rows or a CSV file                |
+//! | `spectrum.rs`   | weights of cases, and `over_scenarios`              |
 //! | `formulas.rs`   | `units`, `[curves]`, `[formulas]`                   |
 //! | `quantities.rs` | `[constraints]`, `[objectives]`                    |
 //! | `report.rs`     | `[report]`                                         |
@@ -21,6 +22,7 @@ mod formulas;
 mod quantities;
 mod range;
 mod report;
+mod spectrum;
 mod syntax;
 mod table;
 #[cfg(test)]
@@ -34,6 +36,7 @@ pub(super) use value::shown;
 
 use super::axis::{Axis, Method, Sample};
 use super::resolved::Study;
+use super::spectrum::Spectrum;
 use crate::error::Result;
 use crate::files::{STUDY_BYTES, read_bytes};
 use crate::likeness::remedy;
@@ -183,6 +186,10 @@ struct Reader<'a> {
     claims: RefCell<Vec<AxisClaim>>,
     /// Is an input given values under a wrong name? Then it is unknown which inputs have none.
     misnamed: Cell<bool>,
+    /// Where an axis has weights, or should have.
+    weighted_at: Cell<Option<usize>>,
+    /// The axis with weights, if it is right.
+    spectrum: RefCell<Option<Spectrum>>,
 }
 
 /// Walks the whole file. `None` if a problem was reported that leaves no study.
@@ -206,6 +213,8 @@ fn read_study_of(model: Option<Arc<Model>>, top: &TomlTable<'_>, problems: &Prob
         sampled: top.get("sample").is_some(),
         claims: RefCell::default(),
         misnamed: Cell::default(),
+        weighted_at: Cell::default(),
+        spectrum: RefCell::default(),
     };
     let axes = |role: AxisRole| section(top, role.name(), problems).map_or_else(Vec::new, |table| reader.axes(role, &table));
     let (design, operation, uncertainty) = (axes(AxisRole::Design), axes(AxisRole::Operation), axes(AxisRole::Uncertainty));
@@ -220,7 +229,8 @@ fn read_study_of(model: Option<Arc<Model>>, top: &TomlTable<'_>, problems: &Prob
     let report = reader.report(report_table.as_ref(), objectives_table.as_ref(), &objectives, &design, &fixed);
     reader.check_purpose(top, objectives_table.as_ref(), report_table.as_ref());
     let title = title.unwrap_or_else(|| model.summary.to_owned());
-    Some(Study { model, title, design, sample, operation, uncertainty, fixed, constraints, objectives, report })
+    let spectrum = reader.spectrum.take();
+    Some(Study { model, title, design, sample, operation, spectrum, uncertainty, fixed, constraints, objectives, report })
 }
 
 /// The model that the file names.

@@ -1,10 +1,11 @@
 //! Inputs and outputs that a study is about: constraints and objectives.
 
 use super::super::resolved::{Constraint, Goal, Objective, Quantity};
+use super::super::spectrum::OverScenarios;
 use super::axes::AxisRole;
 use super::table::{Entry, TomlTable, shortened};
-use super::value::{measured, shown_in};
-use super::{Reader, choice};
+use super::value::measured;
+use super::{Reader, choice, text};
 use crate::likeness::remedy;
 use crate::units::Unit;
 use toml::de::DeValue;
@@ -68,6 +69,44 @@ impl Reader<'_> {
         Some(quantity)
     }
 
+    /// The quantity that an entry of `[constraints]` or `[objectives]` is about: its key, or what stands behind `of`.
+    fn asked(&self, entry: &Entry<'_>, label: &str, fixed: &[f64]) -> Option<Quantity> {
+        let table = entry.node.table();
+        let Some(of) = table.as_ref().and_then(|table| table.get("of")) else {
+            return self.numeric(entry.key, entry.key_at, label, fixed);
+        };
+        let name = text(of.node, self.problems, label)?;
+        if name != entry.key && self.find_quantity(entry.key).is_some() {
+            let key = shortened(entry.key);
+            self.problems.add(entry.key_at, format!("{label}: {key} is a quantity itself; choose another label, or drop of"));
+            return None;
+        }
+        self.numeric(&name, of.node.at, label, fixed)
+    }
+
+    /// Reports entries that are about the same as one before; the others are left.
+    fn single_ones<T: Copy>(
+        &self,
+        table: &TomlTable<'_>,
+        what: &str,
+        remedy: &str,
+        read: impl Fn(&Entry<'_>) -> Option<T>,
+        same: impl Fn(&T, &T) -> bool,
+    ) -> Vec<T> {
+        let mut held: Vec<(T, usize)> = Vec::new();
+        for entry in table.entries.iter().take_while(|_| !self.problems.is_full()) {
+            let Some(one) = read(entry) else { continue };
+            if let Some((_, first)) = held.iter().find(|(other, _)| same(other, &one)) {
+                let line = self.problems.line_number(*first);
+                let key = shortened(entry.key);
+                self.problems.add(entry.key_at, format!("{what} \"{key}\": line {line} asks for the same; {remedy}"));
+                continue;
+            }
+            held.push((one, entry.key_at));
+        }
+        held.into_iter().map(|(one, _)| one).collect()
+    }
+
     /// The unit of a quantity.
     pub(super) fn unit(&self, quantity: Quantity) -> Unit {
         match quantity {
@@ -89,20 +128,23 @@ impl Reader<'_> {
 
     /// The `[constraints]` table.
     pub(super) fn constraints(&self, table: &TomlTable<'_>, fixed: &[f64]) -> Vec<Constraint> {
-        table.entries.iter().take_while(|_| !self.problems.is_full()).filter_map(|entry| self.constraint(entry, fixed)).collect()
+        let same = |a: &Constraint, b: &Constraint| (a.quantity, a.over) == (b.quantity, b.over);
+        self.single_ones(table, "constraint", "give all bounds in one entry", |entry| self.constraint(entry, fixed), same)
     }
 
     fn constraint(&self, entry: &Entry<'_>, fixed: &[f64]) -> Option<Constraint> {
         let problems = self.problems;
         let label = format!("constraint \"{}\"", shortened(entry.key));
-        let quantity = self.numeric(entry.key, entry.key_at, &label, fixed)?;
+        let quantity = self.asked(entry, &label, fixed)?;
         let Some(table) = entry.node.table() else {
             let found = entry.node.found();
             problems.add(entry.node.at, format!("{label}: found {found}, wanted bounds such as {{ min = 0 }}"));
             return None;
         };
-        let known = table.check_keys(problems, &label, &["min", "max", "above", "below"]);
-        if table.entries.is_empty() {
+        let known = table.check_keys(problems, &label, &["min", "max", "above", "below", "of", "over_scenarios"]);
+        let over = self.over(&table, quantity, &label)?;
+        let is_bounded = ["min", "max", "above", "below"].iter().any(|key| table.get(key).is_some());
+        if !is_bounded && known {
             problems.add(table.at, format!("{label}: there are no bounds; give min, max, above or below"));
         }
         let bound = |inclusive: &str, strict: &str| -> Option<Option<(f64, bool, usize)>> {
@@ -116,21 +158,21 @@ impl Reader<'_> {
                 (None, Some(entry)) => (entry, true),
                 (None, None) => return Some(None),
             };
-            self.quantity_value(entry, quantity, &label).map(|value| Some((value, excluded, entry.key_at)))
+            self.value_over(entry, quantity, over, &label).map(|value| Some((value, excluded, entry.key_at)))
         };
         let (low, high) = (bound("min", "above"), bound("max", "below"));
         let (low, high) = (low?, high?);
         if let (Some((least, no_least, at_least)), Some((most, no_most, at_most))) = (low, high)
             && (least > most || (least == most && (no_least || no_most)))
         {
-            let unit = self.unit(quantity);
-            let low = format!("{} {}", if no_least { "above" } else { "at least" }, shown_in(least, unit));
-            let high = format!("{} {}", if no_most { "below" } else { "at most" }, shown_in(most, unit));
+            let shown = |value: f64| self.shown_over(value, quantity, over);
+            let low = format!("{} {}", if no_least { "above" } else { "at least" }, shown(least));
+            let high = format!("{} {}", if no_most { "below" } else { "at most" }, shown(most));
             problems.add(at_least.max(at_most), format!("{label}: no value is {low} and {high}; swap or widen the bounds"));
             return None;
         }
         let side = |bound: Option<(f64, bool, usize)>| bound.map(|(value, excluded, _)| (value, excluded));
-        (known && !table.entries.is_empty()).then_some(Constraint { quantity, low: side(low), high: side(high) })
+        (known && is_bounded).then_some(Constraint { quantity, low: side(low), high: side(high), over })
     }
 
     /// The `[objectives]` table.
@@ -145,13 +187,14 @@ impl Reader<'_> {
                 ),
             );
         }
-        table.entries.iter().take_while(|_| !self.problems.is_full()).filter_map(|entry| self.objective(entry, fixed)).collect()
+        let same = |a: &Objective, b: &Objective| (a.quantity, a.over) == (b.quantity, b.over);
+        self.single_ones(table, "objective", "drop one", |entry| self.objective(entry, fixed), same)
     }
 
     fn objective(&self, entry: &Entry<'_>, fixed: &[f64]) -> Option<Objective> {
         let problems = self.problems;
         let label = format!("objective \"{}\"", shortened(entry.key));
-        let quantity = self.numeric(entry.key, entry.key_at, &label, fixed);
+        let quantity = self.asked(entry, &label, fixed);
         let goal_of = |text: &Entry<'_>| choice(&Entry { key: "goal", key_at: text.key_at, node: text.node }, problems, &label, GOALS);
         let Some(table) = entry.node.table() else {
             if !matches!(entry.node.value, DeValue::String(_)) {
@@ -162,9 +205,9 @@ impl Reader<'_> {
                 );
                 return None;
             }
-            return Some(Objective { goal: goal_of(entry)?, quantity: quantity?, resolution: None });
+            return Some(Objective { goal: goal_of(entry)?, quantity: quantity?, resolution: None, over: OverScenarios::Worst });
         };
-        let known = table.check_keys(problems, &label, &["goal", "resolution"]);
+        let known = table.check_keys(problems, &label, &["goal", "resolution", "of", "over_scenarios"]);
         let goal = match table.get("goal") {
             Some(entry) => goal_of(entry),
             None => {
@@ -175,18 +218,19 @@ impl Reader<'_> {
             }
         };
         let quantity = quantity?;
+        let over = self.over(&table, quantity, &label)?;
         let resolution = match table.get("resolution") {
             None => None,
             Some(entry) => {
-                let value = self.quantity_value(entry, quantity, &label)?;
+                let value = self.value_over(entry, quantity, over, &label)?;
                 if value <= 0.0 {
-                    let value = shown_in(value, self.unit(quantity));
+                    let value = self.shown_over(value, quantity, over);
                     problems.add(entry.node.at, format!("{label}: the resolution {value} cannot be used; it must be greater than 0"));
                     return None;
                 }
                 Some(value)
             }
         };
-        Some(Objective { quantity, goal: goal.filter(|_| known)?, resolution })
+        Some(Objective { quantity, goal: goal.filter(|_| known)?, resolution, over })
     }
 }

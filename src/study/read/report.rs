@@ -2,7 +2,7 @@
 
 use super::super::axis::Axis;
 use super::super::check::MOST_PICTURES;
-use super::super::resolved::{Best, Goal, HistogramSpec, MapSpec, Objective, Quantity, Report, SampleSpec, TopSpec};
+use super::super::resolved::{Best, Goal, HistogramSpec, MapSpec, Objective, Quantity, Report, ReportColumn, SampleSpec, TopSpec};
 use super::axes::AxisRole;
 use super::contours::Plane;
 use super::quantities::GOALS;
@@ -36,9 +36,9 @@ struct ReportContext<'a> {
 }
 
 impl ReportContext<'_> {
-    /// The goal of the objective for this quantity.
+    /// The goal of the objective for this quantity in its worst scenario.
     fn goal(&self, quantity: Quantity) -> Option<Goal> {
-        self.objectives.iter().find(|objective| objective.quantity == quantity).map(|objective| objective.goal)
+        self.objectives.iter().find(|it| it.quantity == quantity && it.over.is_worst()).map(|objective| objective.goal)
     }
 }
 
@@ -152,8 +152,8 @@ impl Reader<'_> {
         self.numeric(&name, entry.node.at, label, known.fixed)
     }
 
-    fn columns_of_report(&self, entry: &Entry<'_>, known: &ReportContext<'_>) -> Vec<Quantity> {
-        let mut columns = Vec::new();
+    fn columns_of_report(&self, entry: &Entry<'_>, known: &ReportContext<'_>) -> Vec<ReportColumn> {
+        let mut columns: Vec<ReportColumn> = Vec::new();
         let Some(nodes) = entry.node.list() else {
             let found = entry.node.found();
             self.problems
@@ -161,17 +161,44 @@ impl Reader<'_> {
             return columns;
         };
         for node in nodes.take_while(|_| !self.problems.is_full()) {
-            let Some(name) = text(node, self.problems, "columns") else { continue };
-            let Some(quantity) = self.numeric(&name, node.at, "columns", known.fixed) else { continue };
-            match quantity {
+            let Some(column) = self.column_of_report(node, known) else { continue };
+            let name = column.of.name(self.model);
+            match column.of {
                 Quantity::Input(number) if self.is_chosen(number) => {
                     self.problems.add(node.at, format!("columns: \"{name}\" is a design input, which the tables have anyway; drop it"));
                 }
-                _ if columns.contains(&quantity) => self.problems.add(node.at, format!("columns: \"{name}\" is listed twice; drop one")),
-                _ => columns.push(quantity),
+                _ if columns.contains(&column) => self.problems.add(node.at, format!("columns: \"{name}\" is listed twice; drop one")),
+                _ => columns.push(column),
             }
         }
         columns
+    }
+
+    /// A column: a name, or a table that says more.
+    fn column_of_report(&self, node: TomlNode<'_>, known: &ReportContext<'_>) -> Option<ReportColumn> {
+        let label = "columns";
+        let Some(table) = node.table() else {
+            let name = text(node, self.problems, label)?;
+            return self.numeric(&name, node.at, label, known.fixed).map(ReportColumn::from);
+        };
+        let good = table.check_keys(self.problems, label, &["of", "worst", "over_scenarios"]);
+        let example = format!("{{ of = \"{}\", worst = \"lowest\" }}", self.some_output());
+        let of = self.needed(&table, "of", label, &example).and_then(|entry| self.named(entry, label, known))?;
+        let over = self.over(&table, of, label)?;
+        let ends = [("lowest", Worse::Lower), ("highest", Worse::Higher)];
+        let worst = match table.get("worst") {
+            Some(entry) => Some(choice(entry, self.problems, label, &ends)?),
+            None => None,
+        };
+        good.then_some(ReportColumn { of, over, worst })
+    }
+
+    /// Is everything that this table asks for a worst value? What counts designs or lists the best has no means and sums.
+    fn is_of_worst(&self, table: &TomlTable<'_>, label: &str) -> bool {
+        let Some(entry) = table.get("over_scenarios") else { return true };
+        let message = format!("{label}: over_scenarios is for constraints, objectives and columns, not in {label}; drop it");
+        self.problems.add(entry.key_at, message);
+        false
     }
 
     /// An output for examples in messages, one that studies often use.
@@ -181,6 +208,9 @@ impl Reader<'_> {
     }
 
     fn top(&self, table: &TomlTable<'_>, known: &ReportContext<'_>) -> Option<TopSpec> {
+        if !self.is_of_worst(table, "top") {
+            return None;
+        }
         let good = table.check_keys(self.problems, "top", &["by", "count", "goal"]);
         let example = format!("top = {{ by = \"{}\", count = 20 }}", self.some_output());
         let by = self.needed(table, "by", "top", &example).and_then(|entry| self.named(entry, "top", known));
@@ -197,6 +227,9 @@ impl Reader<'_> {
 
     fn histogram(&self, table: &TomlTable<'_>, known: &ReportContext<'_>) -> Option<HistogramSpec> {
         let label = "histograms";
+        if !self.is_of_worst(table, label) {
+            return None;
+        }
         let good = table.check_keys(self.problems, label, &["of", "bins", "from", "to"]);
         let example = format!("{{ of = \"{}\", bins = 50 }}", self.some_output());
         let of = self.needed(table, "of", label, &example).and_then(|entry| self.named(entry, label, known));
@@ -231,6 +264,9 @@ impl Reader<'_> {
     fn map(&self, table: &TomlTable<'_>, known: &ReportContext<'_>) -> Option<MapSpec> {
         let label = "maps";
         let problems = self.problems;
+        if !self.is_of_worst(table, label) {
+            return None;
+        }
         let good = table.check_keys(problems, label, &["x", "y", "value", "best", "contours"]);
         if self.sampled {
             problems.add(table.at, format!("{label}: sampled designs lie on no grid, so there is no map; drop it or [sample]"));
@@ -319,7 +355,9 @@ impl Reader<'_> {
                     (None, None) => {
                         // An objective with a problem of its own, or with a wrong name, has been reported.
                         let is_objective = |entry: &Entry<'_>| entry.key == name || self.find_quantity(entry.key).is_none();
-                        if !known.named.is_some_and(|objectives| objectives.entries.iter().any(is_objective)) {
+                        let is_wrong =
+                            |table: &TomlTable<'_>| table.entries.len() > known.objectives.len() && table.entries.iter().any(is_objective);
+                        if !known.named.is_some_and(is_wrong) {
                             let message =
                                 format!("{label}: \"{name}\" is no objective; say which value is best: best = \"min\" or best = \"max\"");
                             problems.add_if_complete(entry.node.at, message);

@@ -16,7 +16,7 @@ pub(super) fn shown_in(value: f64, unit: Unit) -> String {
 }
 
 /// The number, if the value is one: `None` if it is something else, an error if it is not finite.
-fn number(node: TomlNode<'_>) -> Option<Result<f64, String>> {
+pub(super) fn number(node: TomlNode<'_>) -> Option<Result<f64, String>> {
     let value = match node.value {
         DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str().parse().unwrap_or(f64::NAN),
         #[allow(clippy::cast_precision_loss, reason = "an integer that is no f64 is rounded, as it would be in a float")]

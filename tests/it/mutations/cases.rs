@@ -60,6 +60,14 @@ const SAMPLED: &str = "model = \"metal-cvt\"\n[sample]\nmethod = \"sobol\"\ncoun
                        band_thickness_mm = { from = 0.1, to = 0.4, spacing = \"log\" }\nband_count = { from = 6, to = 14 }\n\
                        [objectives]\naxial_force_N = \"min\"\nslip_margin = \"max\"\n";
 
+/// One with weights, labels and ends of columns.
+const SPECTRUM: &str = "model = \"metal-cvt\"\n[design]\nband_thickness_mm = [0.1, 0.15, 0.2]\nband_count = { from = 6, to = 14 }\n\
+                        [operation]\nduty = { cases = [{ torque_Nm = 50, time_h = 3 }, { torque_Nm = 90, time_h = 1.5 }, \
+                        { torque_Nm = 95, time_h = 0 }], weight = \"time_h\" }\n[uncertainty]\nfriction = [0.07, 0.09]\n[constraints]\n\
+                        most = { of = \"axial_force_N\", over_scenarios = \"sum\", max = 1e6 }\n[objectives]\n\
+                        mean = { of = \"axial_force_N\", goal = \"min\", over_scenarios = \"mean\" }\nstress_margin = \"max\"\n\
+                        [report]\ncolumns = [{ of = \"axial_force_N\", worst = \"lowest\" }]\nvariants = true\n";
+
 const TABLE: &str = "\u{feff}ratio, torque_Nm,friction\r\n0.5,50,0.08\r\n\r\n1,\"60 Nm\",0.08\r\n2,150,9e-2\n2.0,151,0.1\n";
 
 /// The kinds of what is mangled.
@@ -76,7 +84,7 @@ pub fn prepare(folder: &Path) {
         let output = command.args(words).current_dir(folder).output().expect("the program starts");
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     };
-    for (study, name) in [(FULL, "full"), (LINES, "lines"), (SAMPLED, "sampled")] {
+    for (study, name) in [(FULL, "full"), (LINES, "lines"), (SAMPLED, "sampled"), (SPECTRUM, "spectrum")] {
         sweep(study, &["--no-report", "--out", &format!("result-{name}")]);
         sweep(study, &["--shard", "1/1", "--out", &format!("checkpoint-{name}-whole")]);
         sweep(study, &["--shard", "1/2", "--out", &format!("checkpoint-{name}-half")]);
@@ -144,10 +152,11 @@ fn bite(number: u64) {
 
 /// A study text: those of the models, and some with what studies have besides.
 fn study(random: &mut Random) -> Vec<u8> {
-    let base = match random.below(6) {
+    let base = match random.below(7) {
         0 | 1 => FULL,
         2 => LINES,
         3 => SAMPLED,
+        4 => SPECTRUM,
         _ => &models::all()[random.below(models::all().len())].starter,
     };
     let other = &models::all()[random.below(models::all().len())].starter;

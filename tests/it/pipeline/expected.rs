@@ -1,15 +1,18 @@
 //! What a result directory must contain, by brute force.
 
 use super::answer::{Answer, Cell, Table, whole};
-use super::naive::{Evaluated, Failures, front, key, worst_end};
+use super::naive::{Evaluated, Failures, front, key, worst_end, worst_end_over};
 use beltspace::models::Worse;
-use beltspace::study::{Axis, Best, Goal, Objective, Quantity, Study};
+use beltspace::study::{Axis, Best, Goal, Objective, OverScenarios, Quantity, Study};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// A column of the design tables.
 struct Column {
     name: String,
     quantity: Quantity,
+    over: OverScenarios,
+    /// The end that it shows, unless it depends.
+    end: Option<Worse>,
     /// How bad a value is: more is worse.
     badness: Box<dyn Fn(f64) -> f64>,
 }
@@ -21,14 +24,20 @@ fn columns(study: &Study) -> Vec<Column> {
         if worse == Worse::Higher { Box::new(|value| value) } else { Box::new(|value: f64| -value) }
     };
     let mut columns: Vec<Column> = Vec::new();
+    let name_of = |quantity: Quantity, over: OverScenarios| match over {
+        OverScenarios::Worst => quantity.name(&study.model).to_owned(),
+        OverScenarios::Mean => format!("{}_mean", quantity.name(&study.model)),
+        OverScenarios::Sum => format!("{}_sum", quantity.name(&study.model)),
+    };
     for objective in &study.objectives {
-        let quantity = objective.quantity;
-        columns.push(Column { name: quantity.name(&study.model).to_owned(), quantity, badness: end(worst_end(study, quantity)) });
+        let (quantity, over) = (objective.quantity, objective.over);
+        let worse = if objective.goal == Goal::Min { Worse::Higher } else { Worse::Lower };
+        columns.push(Column { name: name_of(quantity, over), quantity, over, end: Some(worse), badness: end(worse) });
     }
     for &constraint in &study.constraints {
-        let quantity = constraint.quantity;
-        let name = quantity.name(&study.model);
-        let objective = study.objectives.iter().find(|it| it.quantity == quantity);
+        let (quantity, over) = (constraint.quantity, constraint.over);
+        let name = name_of(quantity, over);
+        let objective = study.objectives.iter().find(|it| it.quantity == quantity && it.over == over);
         // A bound on the end that is the objective's worst has its worst scenario too.
         let served = matches!(
             (objective.map(|it| it.goal), constraint.low, constraint.high),
@@ -41,13 +50,26 @@ fn columns(study: &Study) -> Vec<Column> {
         };
         let suffix = if objective.is_some() { "_constrained" } else { "" };
         if !served {
-            columns.push(Column { name: format!("{name}{suffix}"), quantity, badness: Box::new(margin) });
+            let only = match (constraint.low, constraint.high) {
+                (Some(_), None) => Some(Worse::Lower),
+                (None, Some(_)) => Some(Worse::Higher),
+                _ => None,
+            };
+            columns.push(Column { name: format!("{name}{suffix}"), quantity, over, end: only, badness: Box::new(margin) });
         }
     }
-    for &quantity in &study.report.columns {
-        if columns.iter().all(|column| column.quantity != quantity) {
-            columns.push(Column { name: quantity.name(&study.model).to_owned(), quantity, badness: end(worst_end(study, quantity)) });
-        }
+    for asked in &study.report.columns {
+        let (quantity, over) = (asked.of, asked.over);
+        let same = |column: &&Column| column.quantity == quantity && column.over == over;
+        let worse = asked.worst.unwrap_or_else(|| worst_end_over(study, quantity, over));
+        let name = name_of(quantity, over);
+        let suffix = if worse == Worse::Higher { "highest" } else { "lowest" };
+        let name = match asked.worst {
+            _ if !columns.iter().any(|column| same(&column)) => name,
+            Some(_) if columns.iter().filter(same).all(|column| column.end != Some(worse)) => format!("{name}_{suffix}"),
+            _ => continue,
+        };
+        columns.push(Column { name, quantity, over, end: Some(worse), badness: end(worse) });
     }
     let set: Vec<usize> = study.design.iter().flat_map(Axis::inputs).copied().collect();
     columns.retain(|column| set.iter().all(|&input| column.quantity != Quantity::Input(input)));
@@ -72,11 +94,11 @@ fn designs_table(study: &Study, evaluated: &Evaluated, designs: &[u64]) -> Table
         row.extend(inputs.iter().map(|&input| input_cell(study, input, cases[0].inputs[input])));
         for column in &columns {
             let mut worst: Option<(f64, f64, usize)> = None;
-            for (scenario, case) in cases.iter().enumerate() {
-                if let Some(value) = case.value(column.quantity)
+            for group in evaluated.groups(column.over) {
+                if let Some(value) = evaluated.value_over(design, &group, column.quantity, column.over)
                     && worst.is_none_or(|(badness, _, _)| (column.badness)(value) > badness)
                 {
-                    worst = Some(((column.badness)(value), value, scenario));
+                    worst = Some(((column.badness)(value), value, group[0]));
                 }
             }
             row.push(worst.map_or(Cell::Absent, |(_, value, _)| Cell::number(value)));
@@ -107,7 +129,7 @@ impl Expected {
         let on_front: HashSet<Vec<u64>> = front_positions.iter().map(|&position| bits(position)).collect();
         let ties = (0..keys.len()).filter(|&position| on_front.contains(&bits(position))).count() - front_positions.len();
         let mut front: Vec<u64> = front_positions.iter().map(|&position| feasible[position]).collect();
-        let value = |design: u64, objective: &Objective| evaluated.worst(design, objective.quantity, worst_end(study, objective.quantity));
+        let value = |design: u64, objective: &Objective| worst_of(evaluated, design, objective);
         let signed = |design: u64, objective: &Objective| value(design, objective) * if objective.goal == Goal::Min { 1.0 } else { -1.0 };
         front.sort_by(|&a, &b| {
             let differences = study.objectives.iter().map(|it| signed(a, it).partial_cmp(&signed(b, it)).expect("numbers"));
@@ -126,9 +148,11 @@ impl Expected {
         let names = scenario_inputs.iter().map(|&input| model.inputs[input].name.to_owned());
         let scenarios = evaluated.cases(0).iter().enumerate().map(|(number, case)| {
             let inputs = scenario_inputs.iter().map(|&input| input_cell(study, input, case.inputs[input]));
-            std::iter::once(whole(number as u64)).chain(inputs).collect()
+            let weight = evaluated.weight(number).map(Cell::number);
+            std::iter::once(whole(number as u64)).chain(inputs).chain(weight).collect()
         });
-        let header = std::iter::once("scenario".to_owned()).chain(names).collect();
+        let weight = study.spectrum.as_ref().map(|spectrum| spectrum.weight.clone());
+        let header = std::iter::once("scenario".to_owned()).chain(names).chain(weight).collect();
         tables.insert("scenarios.csv".to_owned(), Table { header, rows: scenarios.collect() });
         if !study.objectives.is_empty() {
             tables.insert("front.csv".to_owned(), designs_table(study, evaluated, &self.front));
@@ -222,7 +246,7 @@ impl Expected {
     }
 
     fn fill_summary(&mut self, study: &Study, evaluated: &Evaluated) {
-        let value = |design: u64, objective: &Objective| evaluated.worst(design, objective.quantity, worst_end(study, objective.quantity));
+        let value = |design: u64, objective: &Objective| worst_of(evaluated, design, objective);
         let mut summary = BTreeMap::new();
         let mut put = |name: &str, cell: Cell| summary.insert(name.to_owned(), cell);
         put("designs", whole(evaluated.designs));
@@ -249,7 +273,12 @@ impl Expected {
         }
         let mut scaled = vec![0.0; self.front.len()];
         for objective in &study.objectives {
-            let name = objective.quantity.name(&study.model);
+            let suffix = match objective.over {
+                OverScenarios::Worst => "",
+                OverScenarios::Mean => "_mean",
+                OverScenarios::Sum => "_sum",
+            };
+            let name = format!("{}{suffix}", objective.quantity.name(&study.model));
             for (end, sign) in [("least", 1.0), ("largest", -1.0)] {
                 let further =
                     |a: &&u64, b: &&u64| (sign * value(**a, objective)).partial_cmp(&(sign * value(**b, objective))).expect("numbers");
@@ -278,6 +307,12 @@ impl Expected {
         }
         self.answer.summary = summary;
     }
+}
+
+/// The worst value of an objective.
+fn worst_of(evaluated: &Evaluated, design: u64, objective: &Objective) -> f64 {
+    let worse = if objective.goal == Goal::Min { Worse::Higher } else { Worse::Lower };
+    evaluated.worst_over(design, objective.quantity, objective.over, worse)
 }
 
 /// The place of a design in the shuffled order that a sample of feasible designs is taken from: four rounds over halves of 32 bits.

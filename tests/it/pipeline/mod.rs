@@ -124,7 +124,8 @@ fn check_all_ways(seed: u64, text: &str, study: Study, evaluated: &Evaluated) ->
             panic!("seed {seed}: {name} differs with {way}");
         }
     }
-    if plan.study.model.on_gpu {
+    // Means and sums are for the CPU.
+    if plan.study.model.on_gpu && !plan.study.decides_by_spectrum() {
         let (state, files) = pipeline.on_device(seed.is_multiple_of(2), &folder.path().join("device"));
         assert_eq!(state.feasible, reference_state.feasible, "seed {seed}: on the device");
         if let Some(name) = differing_file(&reference, &files) {
@@ -179,6 +180,15 @@ const EVERY_FEATURE: &[&str] = &[
     "map of a share",
     "report columns",
     "list of all designs",
+    "spectrum",
+    "case of weight 0",
+    "mean or sum as objective",
+    "mean or sum as constraint",
+    "mean or sum as column",
+    "column of the other end",
+    "spectrum among slow scenarios",
+    "spectrum among fast scenarios",
+    "spectrum beside other scenarios",
     "several scenarios",
     "worst scenario is not the first",
     "front of at least 2 points",
@@ -218,9 +228,9 @@ fn cover(draft: &Draft, plan: &Plan, evaluated: &Evaluated, expected: &Expected,
     for constraint in &study.constraints {
         let touches = |design: u64, inclusive: bool| {
             let bounds = [constraint.low, constraint.high].into_iter().flatten();
-            bounds
-                .filter(|(_, strict)| *strict != inclusive)
-                .any(|(bound, _)| evaluated.cases(design).iter().any(|case| case.value(constraint.quantity) == Some(bound)))
+            let values = evaluated.groups(constraint.over).into_iter();
+            let values: Vec<_> = values.map(|group| evaluated.value_over(design, &group, constraint.quantity, constraint.over)).collect();
+            bounds.filter(|(_, strict)| *strict != inclusive).any(|(bound, _)| values.contains(&Some(bound)))
         };
         let number = study.constraints.iter().position(|it| it == constraint).expect("it is one of them");
         let only_this = |design: &u64| expected.failures[*design as usize].constraints == [number];
@@ -241,6 +251,17 @@ fn cover(draft: &Draft, plan: &Plan, evaluated: &Evaluated, expected: &Expected,
     note("list of all designs", study.report.variants);
     note("report columns", !study.report.columns.is_empty());
     note("several scenarios", evaluated.scenarios > 1);
+    if let (Some(spectrum), Some(planned)) = (&study.spectrum, &plan.spectrum) {
+        note("spectrum", true);
+        note("case of weight 0", spectrum.weights.contains(&0.0));
+        note("mean or sum as objective", study.objectives.iter().any(|it| !it.over.is_worst()));
+        note("mean or sum as constraint", study.constraints.iter().any(|it| !it.over.is_worst()));
+        note("mean or sum as column", study.report.columns.iter().any(|it| !it.over.is_worst()));
+        note("column of the other end", study.report.columns.iter().any(|it| it.worst.is_some()));
+        note("spectrum among slow scenarios", planned.is_slow && !planned.sums.is_empty());
+        note("spectrum among fast scenarios", !planned.is_slow && !planned.sums.is_empty());
+        note("spectrum beside other scenarios", evaluated.scenarios > spectrum.weights.len() as u64);
+    }
     let front = expected.answer.tables.get("front.csv");
     let late = |table: &answer::Table| {
         let scenario = |(name, cell): (&String, &Cell)| name.ends_with("_scenario") && *cell != Cell::number(0.0);

@@ -3,7 +3,7 @@
 
 use beltspace::models::{Evaluation, Status, Worse, evaluate};
 use beltspace::space::Space;
-use beltspace::study::{Axis, Best, Constraint, Goal, Quantity, Study};
+use beltspace::study::{Axis, Best, Constraint, Goal, OverScenarios, Quantity, Study};
 
 /// A design in a scenario.
 pub struct Case {
@@ -15,6 +15,8 @@ pub struct Case {
 pub struct Evaluated {
     pub designs: u64,
     pub scenarios: u64,
+    /// The weights of a spectrum, and the distance of two of its cases among the scenarios.
+    spectrum: Option<(Vec<f64>, usize)>,
     cases: Vec<Case>,
 }
 
@@ -61,7 +63,53 @@ impl Evaluated {
                 cases.push(Case { evaluation: evaluate(&study.model, &inputs), inputs: inputs.clone() });
             }
         }
-        Self { designs, scenarios, cases }
+        let spectrum = study.spectrum.as_ref().map(|spectrum| {
+            let inner: u64 = scenario[spectrum.axis + 1..].iter().map(|axis| axis.count()).product();
+            (spectrum.weights.clone(), inner as usize)
+        });
+        Self { designs, scenarios, spectrum, cases }
+    }
+
+    /// The weight of a scenario, if the study has weights.
+    pub fn weight(&self, scenario: usize) -> Option<f64> {
+        self.spectrum.as_ref().map(|(weights, stride)| weights[scenario / stride % weights.len()])
+    }
+
+    /// The scenarios whose cases add up, each group by the numbers of its cases; without a sum every scenario is its own.
+    pub fn groups(&self, over: OverScenarios) -> Vec<Vec<usize>> {
+        let scenarios = 0..self.scenarios as usize;
+        match &self.spectrum {
+            Some((weights, stride)) if over != OverScenarios::Worst => {
+                let first = scenarios.filter(|scenario| (scenario / stride) % weights.len() == 0);
+                first.map(|first| (0..weights.len()).map(|case| first + case * stride).collect()).collect()
+            }
+            _ => scenarios.map(|scenario| vec![scenario]).collect(),
+        }
+    }
+
+    /// What a quantity comes to in a group of scenarios: its value, or the mean or sum; `None` if it has no meaning in one of them.
+    pub fn value_over(&self, design: u64, group: &[usize], quantity: Quantity, over: OverScenarios) -> Option<f64> {
+        let cases = self.cases(design);
+        if over == OverScenarios::Worst {
+            return cases[group[0]].value(quantity);
+        }
+        let (weights, _) = self.spectrum.as_ref().expect("a mean or sum has weights");
+        let (mut sum, mut total) = (0.0, 0.0);
+        for (&scenario, weight) in group.iter().zip(weights) {
+            sum += weight * cases[scenario].value(quantity)?;
+            total += weight;
+        }
+        let result: f64 = if over == OverScenarios::Mean { sum / total } else { sum };
+        result.is_finite().then_some(result)
+    }
+
+    /// The worst mean or sum of a quantity that has one in every scenario of the other axes.
+    pub fn worst_over(&self, design: u64, quantity: Quantity, over: OverScenarios, worse: Worse) -> f64 {
+        let values = self.groups(over).into_iter();
+        let mut values: Vec<f64> =
+            values.map(|group| self.value_over(design, &group, quantity, over).expect("it has a meaning in every scenario")).collect();
+        values.sort_by(|a, b| a.partial_cmp(b).expect("numbers"));
+        (if worse == Worse::Higher { values[values.len() - 1] } else { values[0] }) + 0.0
     }
 
     /// The scenarios of a design.
@@ -72,11 +120,16 @@ impl Evaluated {
 
     /// Worst values, in order, of the designs in which the quantity has a meaning everywhere; `None` if there are none.
     pub fn sorted_worst_values(&self, study: &Study, quantity: Quantity, worse: Worse) -> Option<Vec<f64>> {
+        self.sorted_values_over(study, quantity, OverScenarios::Worst, worse)
+    }
+
+    /// The same of a mean or sum.
+    pub fn sorted_values_over(&self, study: &Study, quantity: Quantity, over: OverScenarios, worse: Worse) -> Option<Vec<f64>> {
         let ok = |design: &u64| {
             let fine = |case: &Case| case.evaluation.status == Status::Ok && case.value(quantity).is_some();
             self.cases(*design).iter().all(fine)
         };
-        let mut values: Vec<f64> = (0..self.designs).filter(ok).map(|design| self.worst(design, quantity, worse)).collect();
+        let mut values: Vec<f64> = (0..self.designs).filter(ok).map(|design| self.worst_over(design, quantity, over, worse)).collect();
         debug_assert_eq!(study.fixed.len(), self.cases[0].inputs.len());
         values.sort_by(f64::total_cmp);
         (!values.is_empty()).then_some(values)
@@ -119,9 +172,16 @@ pub fn satisfied(constraint: &Constraint, value: f64) -> bool {
 
 /// The worst end of a quantity: that of its objective, else that of the model.
 pub fn worst_end(study: &Study, quantity: Quantity) -> Worse {
-    for objective in &study.objectives {
-        if objective.quantity == quantity {
-            return if objective.goal == Goal::Min { Worse::Higher } else { Worse::Lower };
+    worst_end_over(study, quantity, OverScenarios::Worst)
+}
+
+/// The same of a mean or sum: an objective of the same kind goes before another of the quantity.
+pub fn worst_end_over(study: &Study, quantity: Quantity, over: OverScenarios) -> Worse {
+    for same in [true, false] {
+        for objective in study.objectives.iter().filter(|it| (it.over == over) == same) {
+            if objective.quantity == quantity {
+                return if objective.goal == Goal::Min { Worse::Higher } else { Worse::Lower };
+            }
         }
     }
     match quantity {
@@ -171,10 +231,30 @@ impl Failures {
             } else if needed.iter().any(|&quantity| case.value(quantity).is_none()) {
                 meaningless = true;
             } else {
-                for (number, constraint) in study.constraints.iter().enumerate() {
+                for (number, constraint) in study.constraints.iter().enumerate().filter(|(_, it)| it.over == OverScenarios::Worst) {
                     if !case.value(constraint.quantity).is_some_and(|value| satisfied(constraint, value)) {
                         note(|failures| &mut failures.constraints, number);
                     }
+                }
+            }
+        }
+        let objectives = study.objectives.iter().map(|it| (it.quantity, it.over, None));
+        let constraints = study.constraints.iter().enumerate().map(|(number, it)| (it.quantity, it.over, Some((number, it))));
+        for (quantity, over, constraint) in objectives.chain(constraints).filter(|(_, over, _)| *over != OverScenarios::Worst) {
+            for group in evaluated.groups(over) {
+                let is_ok = |&scenario: &usize| {
+                    let case = &evaluated.cases(design)[scenario];
+                    case.evaluation.status == Status::Ok && case.value(quantity).is_some()
+                };
+                if !group.iter().all(is_ok) {
+                    continue;
+                }
+                match (evaluated.value_over(design, &group, quantity, over), constraint) {
+                    (None, _) => meaningless = true,
+                    (Some(value), Some((number, constraint))) if !satisfied(constraint, value) => {
+                        note(|failures| &mut failures.constraints, number)
+                    }
+                    _ => {}
                 }
             }
         }
@@ -190,7 +270,8 @@ impl Failures {
 /// What dominance compares: less is better.
 pub fn key(study: &Study, evaluated: &Evaluated, design: u64) -> Vec<f64> {
     let coordinate = |objective: &beltspace::study::Objective| {
-        let value = evaluated.worst(design, objective.quantity, worst_end(study, objective.quantity));
+        let worse = if objective.goal == Goal::Min { Worse::Higher } else { Worse::Lower };
+        let value = evaluated.worst_over(design, objective.quantity, objective.over, worse);
         let value = objective.resolution.map_or(value, |resolution| (value / resolution).floor());
         if objective.goal == Goal::Min { value } else { -value }
     };

@@ -5,7 +5,7 @@ use super::random_axes::{AxisDraft, Generator, three_digits, written};
 use crate::effort::is_slow;
 use crate::random::Random;
 use beltspace::models::{self, Model, Worse};
-use beltspace::study::{Axis, Quantity, Study};
+use beltspace::study::{Axis, OverScenarios, Quantity, Study};
 use std::fmt::Write;
 use std::sync::Arc;
 
@@ -23,6 +23,12 @@ pub struct Draft {
     constraints: Vec<String>,
     /// Quantity, goal, resolution.
     objectives: Vec<(Quantity, &'static str, Option<f64>)>,
+    /// What becomes of each objective over the scenarios, if it is not the worst; all of it goes with `spectrum`.
+    over: Vec<Option<&'static str>>,
+    /// Does an operation axis have weights?
+    spectrum: bool,
+    /// Further report columns as they are written.
+    columns: Vec<String>,
     /// Quantity, bins, range.
     histograms: Vec<(Quantity, usize, Ends)>,
     /// Only what bounds can serve: nothing that asks about every design.
@@ -88,6 +94,9 @@ impl Draft {
             fixed,
             constraints: Vec::new(),
             objectives: Vec::new(),
+            over: Vec::new(),
+            spectrum: false,
+            columns: Vec::new(),
             histograms: Vec::new(),
             for_bounds,
             report: Vec::new(),
@@ -99,7 +108,53 @@ impl Draft {
         // Models go by the seed too, and four of them share a factor with ten numbers.
         let number = if for_bounds { turn + turn / 4 } else { turn };
         draft.ask(random, [2, 3, 1, 0, 2, 4, 6, 2, 5, 3][number % 10]);
+        if !for_bounds {
+            // Numbers of their own, so that all else stays as it is without.
+            draft.weigh(&mut Random::new(seed ^ 0x5BEC_7124));
+        }
         draft
+    }
+
+    /// Gives the cases of an operation axis weights, some of them 0, and asks for means and sums.
+    fn weigh(&mut self, random: &mut Random) {
+        let model = self.model.clone();
+        let Some(axis) = self.axes[1].iter_mut().find(|axis| !axis.log && !axis.rows.is_empty()) else { return };
+        let mut weights: Vec<f64> = axis.rows.iter().map(|_| if random.chance(0.2) { 0.0 } else { random.between(0.0, 2.0) }).collect();
+        weights[0] = if weights.iter().all(|&weight| weight == 0.0) { 0.25 } else { weights[0] };
+        let name = random.pick(&["share", "time_h"]);
+        let row = |(row, weight): (&Vec<f64>, &f64)| {
+            let cells = axis.inputs.iter().zip(row).map(|(&input, &value)| (&model.inputs[input].name, written(&model, input, value)));
+            let cells: String = cells.map(|(name, value)| format!("{name} = {value}, ")).collect();
+            format!("{{ {cells}{name} = {weight} }}")
+        };
+        let rows: Vec<String> = axis.rows.iter().zip(&weights).map(row).collect();
+        axis.text = format!("{{ cases = [{}], weight = \"{name}\" }}", rows.join(", "));
+        axis.key = "duty".to_owned();
+        self.spectrum = true;
+        let over = |random: &mut Random| random.pick(&["mean", "sum"]);
+        for (quantity, ..) in &self.objectives {
+            // A map takes the goal of its objective, which must be one of worst values.
+            let name = format!("value = \"{}\" }}", quantity.name(&model));
+            let is_free = !self.is_chosen(*quantity) && !self.report.iter().any(|line| line.contains(&name));
+            self.over.push((is_free && random.chance(0.5)).then(|| over(random)));
+        }
+        let quantities: Vec<Quantity> = self.quantities().into_iter().filter(|it| !self.is_chosen(*it)).collect();
+        for _ in 0..random.below(4) {
+            let name = self.draw(random, &quantities).name(&model);
+            let worst = random.pick(&["", ", worst = \"lowest\"", ", worst = \"highest\""]);
+            let column = match random.below(3) {
+                0 => format!("{{ of = \"{name}\"{worst} }}"),
+                _ => format!("{{ of = \"{name}\"{worst}, over_scenarios = \"{}\" }}", over(random)),
+            };
+            if !self.columns.contains(&column) && !self.report.iter().any(|line| line.contains(&format!("\"{name}\""))) {
+                self.columns.push(column);
+            }
+        }
+    }
+
+    /// Is it an input that a design axis sets?
+    fn is_chosen(&self, quantity: Quantity) -> bool {
+        matches!(quantity, Quantity::Input(input) if self.axes[0].iter().any(|axis| axis.inputs.contains(&input)))
     }
 
     /// Names of all quantities with a number: a traction that takes "limit" has none.
@@ -249,6 +304,7 @@ impl Draft {
         if self.for_bounds && random.chance(0.4) {
             self.bound_at_zero(random, &used);
         }
+        self.constrain_sums(&mut Random::new(seed ^ 0x5BEC_C057), study, evaluated);
         let worst_values = |quantity: Quantity| {
             let values = evaluated.sorted_worst_values(study, quantity, quantity.worse(&self.model))?;
             (values[0] < values[values.len() - 1]).then_some(values)
@@ -266,6 +322,29 @@ impl Draft {
                 let ends = worst_values(*quantity).map(|values| (values[values.len() / 10], values[values.len() - 1 - values.len() / 5]));
                 *range = ends.filter(|(low, high)| low < high);
             }
+        }
+    }
+
+    /// Places bounds on means and sums where some designs just touch them.
+    fn constrain_sums(&mut self, random: &mut Random, study: &Study, evaluated: &Evaluated) {
+        let quantities: Vec<Quantity> = self.quantities().into_iter().filter(|it| !self.is_chosen(*it)).collect();
+        let wanted = if self.spectrum { random.pick(&[0, 1, 1, 2]) } else { 0 };
+        let mut used = Vec::new();
+        for number in 0..wanted {
+            let quantity = self.draw(random, &quantities);
+            let (over, word) = random.pick(&[(OverScenarios::Mean, "mean"), (OverScenarios::Sum, "sum")]);
+            let high = random.chance(0.5);
+            let worse = if high { Worse::Higher } else { Worse::Lower };
+            let Some(values) = evaluated.sorted_values_over(study, quantity, over, worse) else { continue };
+            if used.contains(&(quantity, word)) {
+                continue;
+            }
+            used.push((quantity, word));
+            let place = (random.between(0.4, 0.98) * values.len() as f64) as usize;
+            let bound = if high { values[place] } else { values[values.len() - 1 - place] };
+            let key = random.pick(if high { &["max", "below"] } else { &["min", "above"] });
+            let name = quantity.name(&self.model);
+            self.constraints.push(format!("label_{number} = {{ of = \"{name}\", over_scenarios = \"{word}\", {key} = {} }}", bound + 0.0));
         }
     }
 
@@ -305,21 +384,31 @@ impl Draft {
             self.fixed.iter().map(|&(input, value)| format!("{} = {}", self.model.inputs[input].name, written(&self.model, input, value)));
         section("fixed", &fixed.collect::<Vec<_>>());
         section("constraints", &self.constraints);
-        let objective = |&(quantity, goal, resolution): &(Quantity, &str, Option<f64>)| {
+        let objective = |(number, &(quantity, goal, resolution)): (usize, &(Quantity, &str, Option<f64>))| {
             let name = quantity.name(&self.model);
+            let resolved = resolution.map_or(String::new(), |resolution| format!(", resolution = {resolution}"));
+            if let Some(over) = self.over.get(number).copied().flatten() {
+                return format!("{name} = {{ goal = \"{goal}\", over_scenarios = \"{over}\"{resolved} }}");
+            }
             match resolution {
                 Some(resolution) => format!("{name} = {{ goal = \"{goal}\", resolution = {resolution} }}"),
                 None => format!("{name} = \"{goal}\""),
             }
         };
-        section("objectives", &self.objectives.iter().map(objective).collect::<Vec<_>>());
+        section("objectives", &self.objectives.iter().enumerate().map(objective).collect::<Vec<_>>());
         let histogram = |&(quantity, bins, range): &(Quantity, usize, Ends)| {
             let range = range.map_or(String::new(), |(low, high)| format!(", from = {low}, to = {high}"));
             format!("{{ of = \"{}\", bins = {bins}{range} }}", quantity.name(&self.model))
         };
         let histograms: Vec<_> = self.histograms.iter().map(histogram).collect();
         let histograms = (!histograms.is_empty()).then(|| format!("histograms = [{}]", histograms.join(", ")));
-        section("report", &self.report.iter().cloned().chain(histograms).collect::<Vec<_>>());
+        let listed = |line: &String| line.starts_with("columns = ");
+        let mut columns = self.columns.clone();
+        let before = self.report.iter().find(|line| listed(line)).map(|line| line["columns = [".len()..line.len() - 1].to_owned());
+        columns.splice(0..0, before);
+        let columns = (!columns.is_empty()).then(|| format!("columns = [{}]", columns.join(", ")));
+        let report = self.report.iter().filter(|line| !listed(line)).cloned();
+        section("report", &report.chain(columns).chain(histograms).collect::<Vec<_>>());
         text
     }
 
