@@ -1,8 +1,8 @@
 //! Restores a study from [`Study::describe`], so that a result directory is enough even without the study file and its tables.
 
 use super::{
-    Axis, Best, Constraint, ContourSpec, Goal, HistogramSpec, Levels, MapSpec, Objective, Quantity, Report, SampleSpec, Study, Thresholds,
-    TopSpec,
+    Axis, Best, Constraint, ContourSpec, Goal, HistogramSpec, Label, Levels, MapSpec, Objective, Quantity, Report, SampleSpec, Study,
+    Thresholds, TopSpec,
 };
 use crate::models::{CurveSource, Extension, Model, Models, extended};
 use serde::de::DeserializeOwned;
@@ -45,6 +45,7 @@ impl Study {
             model: model.clone(),
             title: text(described, "title")?.to_owned(),
             design: axes("design")?,
+            labels: labels_of(list(described, "design")?)?,
             sample: plain(&described["sample"], "sample")?,
             operation: axes("operation")?,
             uncertainty: axes("uncertainty")?,
@@ -58,6 +59,7 @@ impl Study {
                 })
             })?,
             report: Report::default(),
+            left_out: Vec::new(),
         };
         let report = report_of(&study, described)?;
         let study = Self { report, ..study };
@@ -160,6 +162,17 @@ fn axis_of(model: &Model, axis: &Value) -> Restored<Axis> {
     Ok(Axis::Single { input, levels })
 }
 
+/// The labels of all design axes.
+fn labels_of(axes: &[Value]) -> Restored<Vec<Label>> {
+    let mut labels = Vec::new();
+    for (number, axis) in axes.iter().enumerate().filter(|(_, axis)| !axis["labels"].is_null()) {
+        labels.extend(each(axis, "labels", |it| {
+            Ok(Label { name: text(it, "name")?.to_owned(), axis: number, texts: plain(&it["texts"], "texts")? })
+        })?);
+    }
+    Ok(labels)
+}
+
 fn constraint_of(model: &Model, constraint: &Value) -> Restored<Constraint> {
     let bound = |inclusive: &str, exclusive: &str| match (&constraint[inclusive], &constraint[exclusive]) {
         (Value::Null, Value::Null) => Ok(None),
@@ -223,8 +236,8 @@ mod tests {
             let (study, _) = Study::read(&path).expect("it is right");
             let back = Study::from_description(&study.describe()).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
             assert_eq!(back.hash(), study.hash(), "{}", path.display());
-            // Values of inputs that axes set are never read.
-            assert_eq!(Study { fixed: study.fixed.clone(), ..back }, study, "{}", path.display());
+            // Values of inputs that axes set are never read, and what was left out is told only of the file.
+            assert_eq!(Study { fixed: study.fixed.clone(), left_out: study.left_out.clone(), ..back }, study, "{}", path.display());
             seen += 1;
         }
         assert!(seen >= 8);

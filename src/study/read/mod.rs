@@ -8,6 +8,8 @@
 //! | `axes.rs`       | `[design]`, `[operation]`, `[uncertainty]`, `[fixed]` |
 //! | `range.rs`      | `{ from, to, ... }`                                |
 //! | `cases.rs`      | joint axes, from rows or a CSV file                |
+//! | `labels.rs`     | `labels`                                           |
+//! | `presets.rs`    | axes over presets                                  |
 //! | `formulas.rs`   | `units`, `[curves]`, `[formulas]`                   |
 //! | `quantities.rs` | `[constraints]`, `[objectives]`                    |
 //! | `report.rs`     | `[report]`                                         |
@@ -18,6 +20,8 @@ mod cases;
 mod contours;
 mod csv_file;
 mod formulas;
+mod labels;
+mod presets;
 mod quantities;
 mod range;
 mod report;
@@ -33,12 +37,14 @@ pub(super) use report::{BINS, FRONT_BUDGET, MOST_CELLS, MOST_SAMPLE, MOST_TOP, M
 pub(super) use value::shown;
 
 use super::axis::{Axis, Method, Sample};
+use super::label::Label;
 use super::resolved::Study;
 use crate::error::Result;
 use crate::files::{STUDY_BYTES, read_bytes};
 use crate::likeness::remedy;
 use crate::models::{Model, Models};
 use axes::{AxisClaim, AxisRole};
+use labels::{DeclaredLabel, check_label_names, read_labels};
 use std::cell::{Cell, RefCell};
 use std::path::Path;
 use std::sync::Arc;
@@ -65,6 +71,7 @@ const TOP_LEVEL: &[&str] = &[
     "units",
     "curves",
     "formulas",
+    "labels",
 ];
 
 /// One mistake in a study.
@@ -183,6 +190,15 @@ struct Reader<'a> {
     claims: RefCell<Vec<AxisClaim>>,
     /// Is an input given values under a wrong name? Then it is unknown which inputs have none.
     misnamed: Cell<bool>,
+    /// The labels that the study declares, and those that its axes have.
+    declared: &'a [DeclaredLabel],
+    labels: RefCell<Vec<Label>>,
+    /// Is there a CSV file that was not read?
+    unread: Cell<bool>,
+    /// The whole file.
+    top: &'a TomlTable<'a>,
+    /// What was left out of catalogues.
+    left_out: RefCell<Vec<String>>,
 }
 
 /// Walks the whole file. `None` if a problem was reported that leaves no study.
@@ -196,7 +212,9 @@ fn read_study_of(model: Option<Arc<Model>>, top: &TomlTable<'_>, problems: &Prob
     let title = top.get("title").and_then(|entry| text(entry.node, problems, "title"));
     let sample_table = section(top, "sample", problems);
     let sample = sample_table.as_ref().and_then(|table| read_sample(table, problems));
-    let model = formulas::with_formulas(model?, top, problems, folder)?;
+    let declared = read_labels(top, problems);
+    let model = formulas::with_formulas(model?, top, &declared, problems, folder)?;
+    check_label_names(&declared, &model, problems);
 
     let reader = Reader {
         model: &model,
@@ -206,11 +224,17 @@ fn read_study_of(model: Option<Arc<Model>>, top: &TomlTable<'_>, problems: &Prob
         sampled: top.get("sample").is_some(),
         claims: RefCell::default(),
         misnamed: Cell::default(),
+        declared: &declared,
+        labels: RefCell::default(),
+        unread: Cell::default(),
+        top,
+        left_out: RefCell::default(),
     };
     let axes = |role: AxisRole| section(top, role.name(), problems).map_or_else(Vec::new, |table| reader.axes(role, &table));
     let (design, operation, uncertainty) = (axes(AxisRole::Design), axes(AxisRole::Operation), axes(AxisRole::Uncertainty));
     let fixed = reader.fixed(section(top, "fixed", problems).as_ref());
     reader.check_claims();
+    reader.check_labels();
     reader.check_sizes(top, &design, &[&operation, &uncertainty]);
 
     let constraints = section(top, "constraints", problems).map_or_else(Vec::new, |table| reader.constraints(&table, &fixed));
@@ -220,7 +244,8 @@ fn read_study_of(model: Option<Arc<Model>>, top: &TomlTable<'_>, problems: &Prob
     let report = reader.report(report_table.as_ref(), objectives_table.as_ref(), &objectives, &design, &fixed);
     reader.check_purpose(top, objectives_table.as_ref(), report_table.as_ref());
     let title = title.unwrap_or_else(|| model.summary.to_owned());
-    Some(Study { model, title, design, sample, operation, uncertainty, fixed, constraints, objectives, report })
+    let (labels, left_out) = (reader.labels.take(), reader.left_out.take());
+    Some(Study { model, title, design, labels, sample, operation, uncertainty, fixed, constraints, objectives, report, left_out })
 }
 
 /// The model that the file names.
