@@ -239,7 +239,8 @@ impl Reader<'_> {
         let problems = self.problems;
         let before = problems.count();
         let known = table.check_keys(problems, label, &["csv", "unused"]);
-        let unused = table.get("unused").and_then(|entry| choice(entry, problems, label, &[("ok", ())]));
+        // A key that is wrong is told once, and not again by every column that it was meant for.
+        let leaves_out = table.get("unused").map(|entry| choice(entry, problems, label, &[("ok", ())])).is_some() || !known;
         let Some(entry) = table.get("csv") else {
             if known {
                 problems.add(
@@ -256,7 +257,7 @@ impl Reader<'_> {
         let at = entry.node.at;
         let text = csv_text(self.folder, &name).map_err(|error| problems.add(at, format!("{label}: {error}"))).ok()?;
         self.unread.set(before_it);
-        let axis = self.csv_rows(&CasesPlace { at, csv: &name, leaves_out: unused.is_some(), ..place }, &text);
+        let axis = self.csv_rows(&CasesPlace { at, csv: &name, leaves_out, ..place }, &text);
         axis.filter(|_| known && problems.count() == before)
     }
 
@@ -359,7 +360,7 @@ impl Reader<'_> {
                     left_out.push(self.left_out_as(name));
                     Ok(CaseColumn::Nothing)
                 }
-                None => Err(format!("{}; or leave the column out with unused = \"ok\" beside csv", self.no_column(name))),
+                None => Err(self.no_column(name, place.role)),
                 Some(column) if columns.contains(&column) => Err(format!("\"{name}\" has two columns; drop one")),
                 Some(column) => self.claim_column(column, place.role, place.at).map(|()| column),
             };
@@ -388,12 +389,17 @@ impl Reader<'_> {
     }
 
     /// Why there is no column of that name.
-    fn no_column(&self, name: &str) -> String {
-        if self.model.output(name).is_some() {
-            return self.no_input(name);
-        }
-        let otherwise = || format!("list it in labels to carry it along as a text; its inputs are {}", list(self.names()));
-        format!("{} has no input \"{}\"; {}", self.model.name, shortened(name), remedy(name, &self.names(), otherwise))
+    fn no_column(&self, name: &str, role: AxisRole) -> String {
+        let otherwise = || {
+            let label = if role == AxisRole::Design { "list it in labels to carry it along as a text; " } else { "" };
+            format!("{label}its inputs are {}", list(self.model.inputs.iter().map(|input| input.name.as_str())))
+        };
+        let told = match self.model.output(name) {
+            Some(_) => self.no_input(name),
+            None => format!("{} has no input \"{}\"; {}", self.model.name, shortened(name), remedy(name, &self.names(), otherwise)),
+        };
+        let then = if told.ends_with('?') { "" } else { ";" };
+        format!("{told}{then} unused = \"ok\" beside csv leaves the column out")
     }
 }
 

@@ -56,6 +56,8 @@ pub(super) fn with_formulas(
     match extended(&model, extension) {
         Ok(model) if problems.count() == before => Some(Arc::new(model)),
         Ok(_) => None,
+        // What a file that cannot be read would have given is unknown, so that formulas may be right.
+        Err(_) if report_unreadable(top, problems, folder) => None,
         Err(found) => {
             report_unused(&model, &unread, labels, top, problems, folder);
             found.into_iter().for_each(|problem| tell(problem, &places, top, problems));
@@ -163,15 +165,33 @@ pub(super) fn given(top: &TomlTable<'_>, folder: &Path) -> Vec<(String, usize)> 
                 let first = rows.filter_map(|row| row.table()).next();
                 names.extend(first.into_iter().flat_map(|row| row.entries).map(|cell| (cell.key.to_owned(), cell.key_at)));
             }
-            let file = entry.node.table().and_then(|table| Some(table.get("csv")?.node.value.as_str()?.to_owned()));
             // What cannot be read is reported when the axis is.
-            if let Some(text) = file.and_then(|file| csv_text(folder, &file).ok()) {
+            if let Some(text) = csv_of_cases(&entry).and_then(|(file, _)| csv_text(folder, &file).ok()) {
                 let header = csv_builder().from_reader(text.as_bytes()).headers().cloned().unwrap_or_default();
                 names.extend(header.iter().map(|name| (name.to_owned(), entry.key_at)));
             }
         }
     }
     names
+}
+
+/// The CSV file of cases, and its place.
+fn csv_of_cases(entry: &Entry<'_>) -> Option<(String, usize)> {
+    let node = entry.node.table()?.get("csv")?.node;
+    Some((node.value.as_str()?.to_owned(), node.at))
+}
+
+/// Reports CSV files of cases that cannot be read; says whether there is one.
+fn report_unreadable(top: &TomlTable<'_>, problems: &Problems<'_>, folder: &Path) -> bool {
+    let before = problems.count();
+    let tables = GIVING.iter().filter_map(|name| top.get(name)).filter_map(|entry| entry.node.table());
+    for entry in tables.flat_map(|table| table.entries).filter(|entry| entry.key.starts_with("cases")) {
+        let Some((file, at)) = csv_of_cases(&entry) else { continue };
+        if let Err(error) = csv_text(folder, &file) {
+            problems.add(at, format!("axis \"{}\": {error}", shortened(entry.key)));
+        }
+    }
+    problems.count() > before
 }
 
 /// The names that formulas read.
