@@ -91,7 +91,9 @@ impl Reader<'_> {
         if self.unread.get() {
             return;
         }
-        for DeclaredLabel { name, at, .. } in self.declared.iter().filter(|it| !it.is_given.get()) {
+        // A name that no label can have is told already.
+        let missing = self.declared.iter().filter(|it| !it.is_given.get() && flaw_of_name(&it.name, self.model).is_none());
+        for DeclaredLabel { name, at, .. } in missing {
             let name = shortened(name);
             self.problems.add_if_complete(
                 *at,
