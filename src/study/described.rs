@@ -244,6 +244,32 @@ mod tests {
     }
 
     #[test]
+    fn labels_come_back_and_texts_that_do_not_fit_the_rows_do_not() {
+        let text = "model = \"metal-cvt\"\nlabels = [\"part_no\", \"maker\"]\n[design]\nfriction = [0.08, 0.09]\ncases = [\n\
+                    { maker = \"A\", part_no = \"007\", band_count = 8 },\n{ part_no = \"008\", maker = \"B, \\\"C\\\"\", band_count = 8 }]\n\
+                    [objectives]\naxial_force_N = \"min\"\n";
+        let study = Study::parse(text).unwrap_or_else(|errors| panic!("{errors}"));
+        assert_eq!(study.labels.iter().map(|it| (it.name.as_str(), it.axis)).collect::<Vec<_>>(), [("part_no", 1), ("maker", 1)]);
+        let described = study.describe();
+        let back = Study::from_description(&described).expect("it comes back");
+        assert_eq!((back.labels, back.design), (study.labels.clone(), study.design.clone()));
+        let other = Study::parse(&text.replace("007", "07")).unwrap_or_else(|errors| panic!("{errors}"));
+        assert_ne!(other.hash(), study.hash(), "a label is part of the hash");
+        let refused = |edit: fn(&mut Value)| {
+            let mut changed = described.clone();
+            edit(&mut changed["design"][1]["labels"][0]);
+            Study::from_description(&changed).expect_err("it was changed")
+        };
+        assert_eq!(refused(|it| it["texts"] = serde_json::json!(["007"])), "label \"part_no\": it has 1 texts for 2 rows");
+        assert!(refused(|it| it["name"] = "friction".into()).contains("it is an input or a variable too"));
+        assert_eq!(refused(|it| it["name"] = "maker".into()), "label \"maker\": it is there twice");
+        assert!(refused(|it| it["texts"][0] = "a\nb".into()).contains("control character"));
+        let mut same = described.clone();
+        same["design"][1]["labels"] = serde_json::json!([{ "name": "part_no", "texts": ["007", "007"] }]);
+        assert_eq!(Study::from_description(&same).unwrap_err(), "axis \"band_count\": two rows are equal");
+    }
+
+    #[test]
     fn words_joint_rows_samples_and_bounds_come_back_and_a_changed_description_does_not() {
         let text = r#"
             model = "metal-cvt"

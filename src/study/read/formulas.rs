@@ -50,7 +50,9 @@ pub(super) fn with_formulas(
         return Some(model);
     }
     extension.variables = variables(&model, &extension, labels, top, folder);
-    refuse_read_labels(&extension, labels, problems);
+    if are_labels_read(&extension, labels, problems) {
+        return None;
+    }
     refuse_twice_given(&model, &extension, top, problems);
     let unread = extension.clone();
     match extended(&model, extension) {
@@ -200,13 +202,15 @@ fn names_read(extension: &Extension) -> BTreeSet<String> {
     parsed.flat_map(|it| it.names().into_iter().map(|(name, _)| name.to_owned()).collect::<Vec<_>>()).collect()
 }
 
-/// Reports labels that a formula reads: texts have no value.
-fn refuse_read_labels(extension: &Extension, labels: &[DeclaredLabel], problems: &Problems<'_>) {
+/// Reports labels that a formula reads, for texts have no value; says whether there are such.
+fn are_labels_read(extension: &Extension, labels: &[DeclaredLabel], problems: &Problems<'_>) -> bool {
+    let before = problems.count();
     let read = names_read(extension);
     for label in labels.iter().filter(|label| read.contains(&label.name)) {
         let message = "a formula reads it, and a label is a text that is only carried along; drop it from labels if its column has numbers";
         problems.add(label.at, format!("label \"{}\": {message}", shortened(&label.name)));
     }
+    problems.count() > before
 }
 
 /// The names that formulas read and axes or fixed values give, which neither the model nor a formula has.
