@@ -395,11 +395,11 @@ fn broken_catalogues_are_refused_at_their_place_with_a_remedy() {
         ),
         (
             format!("[{{ part_no = \"7\", {band} }}, {{ {band} }}]"),
-            "study.toml:6:61: axis \"cases\": this row lacks part_no; give every row the same inputs",
+            "study.toml:6:63: axis \"cases\": this row lacks part_no; give every row the same inputs",
         ),
         (
             format!("[{{ {band}, part_no = \"7\" }}, {{ {band}, part_no = \"7\" }}]"),
-            "study.toml:6:61: axis \"cases\": this row equals that of line 6; drop one",
+            "study.toml:6:63: axis \"cases\": this row equals that of line 6; drop one",
         ),
         (
             "[{ part_no = \"7\" }]\nprice_EUR = 3".to_owned(),
