@@ -35,6 +35,8 @@ const CASE_DESCRIBED: u64 = 680;
 const ROW: u64 = 250;
 const ROW_COLUMN: u64 = 140;
 const ROW_INPUT: u64 = 50;
+/// Bytes of a label of such a row, a text of some twenty characters: held, as text and in Parquet.
+const ROW_LABEL: u64 = 100;
 /// Bytes of the page, of a design on it, of each output of such a design, and of a row of the list of all designs.
 const PAGE: u64 = 700_000;
 const PAGE_ROW: u64 = 1_050;
@@ -110,12 +112,12 @@ impl StudySizes {
             table: room.tables.iter().map(table).max().unwrap_or(0),
             bins: room.bins,
             shown: room.shown,
-            cases: axes.map(listed).sum(),
+            cases: axes.map(listed).chain(study.labels.iter().map(|it| it.texts.len() as u64)).sum(),
             rows: variants + room.rows,
             indices: room.indices,
             dots: room.dots,
             variants,
-            row: ROW + certify::columns(study).iter().map(bytes_of).sum::<u64>(),
+            row: ROW + study.labels.len() as u64 * ROW_LABEL + certify::columns(study).iter().map(bytes_of).sum::<u64>(),
             outputs: study.model.outputs.len() as u64,
             objectives: study.objectives.len() as u64,
         }
@@ -303,7 +305,7 @@ pub fn large_files(plan: &Plan, front: u64) -> Vec<(String, u64)> {
     let inputs = |axes: &[Axis]| axes.iter().map(|axis| axis.inputs().len() as u64).sum::<u64>();
     let columns = certify::columns(study).len() as u64;
     let scenario = inputs(&study.operation) + inputs(&study.uncertainty) + u64::from(plan.listed_weights().is_some());
-    let row = NUMBER * (inputs(&study.design) + columns) + 7 * (1 + columns);
+    let row = NUMBER * (inputs(&study.design) + study.labels.len() as u64 + columns) + 7 * (1 + columns);
     let mut files = vec![
         ("scenarios.csv".to_owned(), plan.scenarios().saturating_mul(scenario * NUMBER + 9)),
         ("front.csv".to_owned(), front.saturating_mul(row)),

@@ -165,6 +165,14 @@ fn quantities_to_track(study: &Study) -> Vec<Tracked> {
 }
 
 impl Plan {
+    /// The texts of the study's labels for a design, in the order of the labels.
+    pub fn labels(&self, design: u64) -> impl Iterator<Item = &str> {
+        self.study.labels.iter().map(move |label| {
+            let row = usize::try_from(self.space.level(label.axis, design)).expect("rows are held in memory");
+            label.texts[row].as_str()
+        })
+    }
+
     /// Plans a study.
     pub fn new(study: Study) -> Self {
         let space = Space::new(&study);

@@ -66,6 +66,11 @@ impl Sampler {
         }
     }
 
+    /// The level or row of axis number `axis` in sample `index`.
+    pub fn level(&self, axis: usize, index: u64) -> u64 {
+        level_of(self.unit(axis, index), self.axes[axis].count())
+    }
+
     /// Least and largest value of input number `column`.
     pub fn ends(&self, column: usize) -> (f64, f64) {
         let (axis, column) = self.columns[column];

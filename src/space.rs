@@ -227,6 +227,14 @@ impl Space {
         Self { designs: designs.expect(numbered), scenarios: scenarios.expect(numbered), fixed: study.fixed.clone() }
     }
 
+    /// The level or row of design axis number `axis` in a design.
+    pub fn level(&self, axis: usize, design: u64) -> u64 {
+        match self.designs.dimensions().next() {
+            Some((SpaceDimension::Sampled(sampler), _)) => sampler.level(axis, design),
+            _ => self.designs.digit(axis, design),
+        }
+    }
+
     /// All inputs of one design in one scenario, in their units.
     pub fn inputs(&self, design: u64, scenario: u64) -> Vec<f64> {
         let mut inputs = self.fixed.clone();

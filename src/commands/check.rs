@@ -116,7 +116,7 @@ fn ends(plan: &Plan, axis: &Axis, column: usize, input: usize) -> String {
 
 fn warnings(plan: &Plan, name: &impl Fn(&Axis) -> String) -> Vec<String> {
     let study = &plan.study;
-    let mut warnings = Vec::new();
+    let mut warnings = study.left_out.clone();
     for axis in plan.inert_axes() {
         let axis = &study.design[axis];
         warnings.push(format!(

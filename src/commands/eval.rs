@@ -84,7 +84,7 @@ fn parse_assignment(model: &Model, assignment: &str) -> std::result::Result<(usi
 }
 
 /// Prints one design in one scenario.
-fn print_one(model: &Model, inputs: &[f64], of_study: Option<(u64, u64)>, request: &cli::EvalArgs) -> Result<()> {
+fn print_one(model: &Model, inputs: &[f64], of_study: Option<(&Plan, u64, u64)>, request: &cli::EvalArgs) -> Result<()> {
     let evaluation = evaluate(model, inputs);
     let spelled_out = model.spelled_out(inputs);
     let inputs = &spelled_out;
@@ -102,13 +102,17 @@ fn print_one(model: &Model, inputs: &[f64], of_study: Option<(u64, u64)>, reques
     let reason = evaluation.status.reason(model);
     if request.json {
         let mut object = json!({ "model": model.name, "inputs": named_inputs(model, inputs), "outputs": named_outputs(model, &evaluation), "status": reason });
-        if let Some((design, scenario)) = of_study {
+        if let Some((plan, design, scenario)) = of_study {
             object["design"] = design.into();
             object["scenario"] = scenario.into();
+            add_labels(plan, design, &mut object);
         }
         return terminal::print(&format!("{object:#}\n"));
     }
     let mut table = TextGrid::default();
+    if let Some((plan, design, _)) = of_study {
+        label_rows(plan, design, &mut table);
+    }
     for (input, &value) in model.inputs.iter().zip(inputs) {
         let text = input.word_for(value).map_or_else(|| short(value), str::to_owned);
         table.row([input.name.to_owned(), text, dim(&input.doc)]);
@@ -130,6 +134,22 @@ fn print_one(model: &Model, inputs: &[f64], of_study: Option<(u64, u64)>, reques
         results.indented(2),
         bold("status")
     ))
+}
+
+/// The labels of a design, before its inputs.
+fn label_rows(plan: &Plan, design: u64, table: &mut TextGrid) {
+    for (label, text) in plan.study.labels.iter().zip(plan.labels(design)) {
+        table.row([label.name.clone(), terminal::told(text), dim("Label, as the catalogue has it.")]);
+    }
+}
+
+/// The same in JSON, if the study has labels.
+fn add_labels(plan: &Plan, design: u64, object: &mut Value) {
+    let labels = plan.study.labels.iter().zip(plan.labels(design)).map(|(label, text)| (label.name.clone(), Value::from(text)));
+    let labels: Map<_, _> = labels.collect();
+    if !labels.is_empty() {
+        object["labels"] = labels.into();
+    }
 }
 
 fn named_inputs(model: &Model, inputs: &[f64]) -> Map<String, Value> {
@@ -233,7 +253,7 @@ fn of_study(request: &cli::EvalArgs, path: &Path) -> Result<()> {
         if scenario >= scenarios {
             return Err(Error::Request(format!("there is no scenario {scenario}; the study's scenarios are 0 to {}", scenarios - 1)));
         }
-        return print_one(model, &plan.space.inputs(design, scenario), Some((design, scenario)), request);
+        return print_one(model, &plan.space.inputs(design, scenario), Some((&plan, design, scenario)), request);
     }
     if request.profile.is_some() || request.plot.is_some() {
         return Err(Error::Request(format!("--profile and --plot show one scenario; add --scenario K, from 0 to {}", scenarios - 1)));
@@ -283,14 +303,16 @@ fn print_worst(plan: &Plan, design: u64, as_json: bool) -> Result<()> {
                 "holds": value.is_some_and(|value| constraint.holds(value)),
             })
         });
-        let object = json!({
+        let mut object = json!({
             "model": model.name, "design": design, "inputs": inputs, "outputs": outputs.collect::<Map<_, _>>(),
             "constraints": constraints.collect::<Vec<_>>(), "status": status, "feasible": row.feasible,
             "scenarios": plan.scenarios(), "scenarios_not_ok": failed.len(),
         });
+        add_labels(plan, design, &mut object);
         return terminal::print(&format!("{object:#}\n"));
     }
     let mut table = TextGrid::default();
+    label_rows(plan, design, &mut table);
     for input in inputs {
         let value = row.inputs[input];
         let text = model.inputs[input].word_for(value).map_or_else(|| short(value), str::to_owned);

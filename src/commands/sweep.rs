@@ -3,7 +3,7 @@
 use super::{engine, read_study, report as page, threads};
 use crate::cli;
 use crate::terminal::{self, progress::Bar, report};
-use beltspace::checkpoint::Checkpoint;
+use beltspace::checkpoint::{Checkpoint, Saved};
 use beltspace::directory::{self, Contents};
 use beltspace::error::{Error, Kept, Result};
 use beltspace::export::RunRecord;
@@ -12,6 +12,7 @@ use beltspace::plan::Plan;
 use beltspace::result_files::result_files;
 use beltspace::run::judge::{How, Judged, judge, record_of};
 use beltspace::run::{device, method};
+use beltspace::study::{Study, StudyErrors};
 use beltspace::sweep::costs::Speed;
 use beltspace::sweep::{Control, Settings};
 use beltspace::tiles::Shard;
@@ -21,9 +22,12 @@ use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 pub fn run(request: &cli::SweepArgs) -> Result<()> {
-    let (study, text) = read_study(&request.study)?;
     let shard = request.shard.unwrap_or(Shard::WHOLE);
     let out = request.out.clone().unwrap_or_else(|| default_out(&request.study, request.shard));
+    let (study, text) = match read_study(&request.study) {
+        Err(Error::Study(errors)) if request.resume => kept_study(&request.study, &out, errors)?,
+        read => read?,
+    };
     let plan = Plan::new(study);
     let wrong = engine::wrong(&plan.study.model, &request.perturb)?;
     let threads = threads(request.threads);
@@ -42,6 +46,7 @@ pub fn run(request: &cli::SweepArgs) -> Result<()> {
     let files = if request.shard.is_some() { Vec::new() } else { files_of(&plan, request.no_report) };
     contents.refuse_to_overwrite(&files, request.force, request.resume)?;
     let mut warn = |text: &str| terminal::remark("warning", text);
+    plan.study.left_out.iter().for_each(|left_out| terminal::remark("note", left_out));
     let engine = method.engine(request.engine, on_a_device);
     let device = device::choose_tried(&plan, engine, request.engine, request.adapter.as_deref(), wrong, &mut warn)?;
     let control = Arc::new(Control::default());
@@ -84,6 +89,17 @@ pub fn run(request: &cli::SweepArgs) -> Result<()> {
     let page =
         if request.no_report { None } else { Some(page::beside(&plan, &out, &request.study, record.time, settings.threads, &control)?) };
     if request.quiet { Ok(()) } else { terminal::print(&report::summary(&outcome, &record, &out, page.as_ref())) }
+}
+
+/// The study of the checkpoint in `out`, which has the rows and labels of every table that it names. It goes on where such a table is no
+/// longer there, as long as the study file itself is the same.
+fn kept_study(study: &Path, out: &Path, errors: StudyErrors) -> Result<(Study, String)> {
+    let now = std::fs::read_to_string(study).ok();
+    let kept = Saved::read(&out.join(CHECKPOINT)).ok().filter(|kept| now.as_deref() == Some(kept.study_text()));
+    let Some(kept) = kept else { return Err(Error::Study(errors)) };
+    let why = errors.problems.first().map_or(String::new(), |problem| format!(" ({problem})"));
+    terminal::remark("note", &format!("a table that the study names has changed{why}; going on with the rows that the checkpoint holds"));
+    Ok((kept.study().clone(), kept.study_text().to_owned()))
 }
 
 /// `results/<study name>`, of a shard `results/<study name>-K-of-N`.

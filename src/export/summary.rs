@@ -77,8 +77,16 @@ impl<'a> Summary<'a> {
         let knee = self.knee.map(|knee| {
             let row = &front[knee.row];
             let inputs = study.design.iter().flat_map(|axis| axis.inputs());
-            let inputs: Map<_, _> = inputs.map(|&input| (model.inputs[input].name.to_owned(), value_of(model, input, row.inputs[input]))).collect();
-            json!({ "design_index": row.index, "distance": number(knee.distance), "inputs": inputs, "objectives": named(&points[knee.row]) })
+            let inputs: Map<_, _> =
+                inputs.map(|&input| (model.inputs[input].name.to_owned(), value_of(model, input, row.inputs[input]))).collect();
+            let mut knee = json!({
+                "design_index": row.index, "distance": number(knee.distance), "inputs": inputs, "objectives": named(&points[knee.row])
+            });
+            if !study.labels.is_empty() {
+                let names = study.labels.iter().map(|it| it.name.clone());
+                knee["labels"] = names.zip(plan.labels(row.index).map(Value::from)).collect::<Map<_, _>>().into();
+            }
+            knee
         });
         let extremes = names.iter().zip(state.extremes.least.iter().zip(&state.extremes.largest)).filter_map(|(name, (least, largest))| {
             let end = |it: &crate::reduce::Extreme| json!({ "value": number(it.value), "design_index": it.index });

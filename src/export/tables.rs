@@ -7,12 +7,19 @@ use crate::study::{Axis, Goal};
 use crate::table::written;
 use crate::table::{Data, Table, TableColumn};
 
-/// A table of designs: index, design inputs, then the worst value of every other column and its scenario. A design input that is also an
+/// What a label is.
+pub const LABEL: &str = "As the catalogue has it.";
+
+/// A table of designs: index, labels, design inputs, then the worst value of every other column and its scenario. A design input that is also an
 /// objective or has a constraint stands once, in all its roles.
 pub fn designs(outcome: &Certified<'_>, rows: &[Row]) -> Table {
     let study = &outcome.plan.study;
     let model = &study.model;
     let mut columns = vec![TableColumn::index("design_index", "Index of the design in the study.", rows.iter().map(|row| Some(row.index)))];
+    for (number, label) in study.labels.iter().enumerate() {
+        let texts = rows.iter().filter_map(|row| outcome.plan.labels(row.index).nth(number)).map(str::to_owned);
+        columns.push(TableColumn::new(&label.name, "label", LABEL, Data::Text(texts.collect())));
+    }
     for &input in study.design.iter().flat_map(Axis::inputs) {
         let table = &model.inputs[input];
         let values = rows.iter().map(|row| row.inputs[input]);
@@ -22,7 +29,7 @@ pub fn designs(outcome: &Certified<'_>, rows: &[Row]) -> Table {
         let column = TableColumn::new(&table.name, "design", &table.doc, data);
         columns.push(TableColumn { unit: table.unit.symbol.to_owned(), ..column });
     }
-    let first_input = 1;
+    let first_input = 1 + study.labels.len();
     for (at, column) in outcome.columns.iter().enumerate() {
         let (role, direction) = match column.role {
             Role::Objective(objective) => {

@@ -53,19 +53,22 @@ pub fn read_text(path: &Path, most: u64, remedy: &str) -> Result<String> {
     String::from_utf8(read_bytes(path, most, remedy)?).map_err(not_text)
 }
 
-/// Reads as long as no line is longer than `most` bytes: a table may be larger than the memory, but a row must not be.
+/// Reads as long as no line is longer than `most` bytes: a table may be larger than the memory, but a row must not be. A quote that its line
+/// does not close would make a row of many lines, and is refused too.
 #[derive(Debug)]
 pub struct ShortLines<R> {
     inner: R,
     most: u64,
     /// Bytes of the line so far.
     line: u64,
+    /// Is a quote open in it?
+    quoted: bool,
 }
 
 impl<R: Read> ShortLines<R> {
     /// Reads from `inner`.
     pub fn new(inner: R, most: u64) -> Self {
-        Self { inner, most, line: 0 }
+        Self { inner, most, line: 0, quoted: false }
     }
 }
 
@@ -74,7 +77,11 @@ impl<R: Read> Read for ShortLines<R> {
         let read = self.inner.read(buffer)?;
         let (mut first, bytes) = (true, &buffer[..read]);
         for line in bytes.split(|&byte| byte == b'\n') {
+            if !first && self.quoted {
+                return Err(io::Error::new(io::ErrorKind::InvalidData, "a line has a quote that is not closed"));
+            }
             self.line = if first { self.line } else { 0 } + line.len() as u64;
+            self.quoted ^= line.iter().filter(|&&byte| byte == b'"').count() % 2 == 1;
             first = false;
             if self.line > self.most {
                 return Err(io::Error::new(io::ErrorKind::InvalidData, format!("a line has more than {} bytes", self.most)));
@@ -128,6 +135,8 @@ mod tests {
             let read = |text: &str| ShortLines::new(Pieces(text.as_bytes(), pieces), 4).read_to_string(&mut String::new());
             assert_eq!(read("four\nfour\n\n4444").expect("no line is longer"), 15);
             assert!(read("four\nfives\n").is_err() && read("fives").is_err(), "in pieces of {pieces}");
+            assert_eq!(read("\",\"\nno\n").expect("its quotes are closed"), 7);
+            assert!(read("a,\"b\n\"c\"\n").is_err(), "in pieces of {pieces}");
         }
     }
 }

@@ -33,7 +33,8 @@ pub fn header(study: &Study, columns: &[Column]) -> Vec<String> {
     let inputs = inputs(study).map(|(_, _, input)| study.model.inputs[input].name.to_owned());
     let columns = columns.iter().filter(|it| certify::design_input(study, it.quantity).is_none());
     let columns = columns.flat_map(|it| [it.name.clone(), format!("{}_scenario", it.name)]);
-    std::iter::once("design_index".to_owned()).chain(inputs).chain(columns).collect()
+    let labels = study.labels.iter().map(|it| it.name.clone());
+    std::iter::once("design_index".to_owned()).chain(labels).chain(inputs).chain(columns).collect()
 }
 
 /// Refuses a header that is not the expected one.
@@ -47,13 +48,20 @@ pub fn check_header(file: &Path, found: &csv::StringRecord, expected: &[String])
     Err(changed(file, &format!("its columns are not those of the study: {differs}")))
 }
 
-/// The design of a row. Its inputs must be those of the study, its values numbers, its scenarios scenarios of the study.
+/// The design of a row. Its labels and inputs must be those of the study, its values numbers, its scenarios scenarios of the study.
 pub fn check_row(file: &Path, row: &csv::StringRecord, plan: &Plan, header: &[String]) -> Result<u64> {
     let study = &plan.study;
     let design = design_of(&row[0], plan).ok_or_else(|| changed(file, "it has a design_index that the study does not have"))?;
     let own = plan.space.inputs(design, 0);
     let shown = |text: &str| text.chars().take(60).flat_map(char::escape_debug).collect::<String>();
     let mut at = 1;
+    for (label, given) in study.labels.iter().zip(plan.labels(design)) {
+        if row[at] != *given {
+            let (name, found) = (&label.name, shown(&row[at]));
+            return Err(changed(file, &format!("{name} of design {design} is {found}, and the study gives {given}")));
+        }
+        at += 1;
+    }
     for (_, _, input) in inputs(study) {
         let (table, found) = (&study.model.inputs[input], &row[at]);
         let given = written(table, own[input]);
@@ -115,7 +123,11 @@ pub fn list(file: &Path, plan: &Plan, most: u64, all: bool) -> Result<Value> {
     if all && known.len() as u64 != most {
         return Err(changed(file, &format!("it has {} designs, not {most}", known.len())));
     }
-    Ok(json!({ "columns": columns, "units": units, "rows": rows, "of": known.len() }))
+    let mut list = json!({ "columns": columns, "units": units, "rows": rows, "of": known.len() });
+    if !study.labels.is_empty() {
+        list["labels"] = study.labels.iter().map(|it| it.name.as_str()).collect();
+    }
+    Ok(list)
 }
 
 /// The objectives of designs that are shown as dots: `all` designs, in rising order.

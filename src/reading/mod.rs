@@ -30,10 +30,11 @@ pub fn picture_of(file: &Path) -> Result<String> {
     Ok(svg)
 }
 
-/// Reads a table of a result row by row. No name or word in it has a comma, so nothing in it is quoted.
+/// Reads a table of a result row by row. Only labels are quoted, where they have a comma or a quote, and none has a line end: every row is
+/// one line.
 pub fn table_reader(file: &Path) -> Result<csv::Reader<ShortLines<File>>> {
     let opened = open(file).map_err(|source| unreadable_file(file, source))?;
-    Ok(csv::ReaderBuilder::new().quoting(false).from_reader(ShortLines::new(opened, ROW_BYTES)))
+    Ok(csv::Reader::from_reader(ShortLines::new(opened, ROW_BYTES)))
 }
 
 /// The error for a file that the CSV reader refuses.

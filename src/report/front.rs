@@ -2,6 +2,7 @@
 
 use crate::certify::{self, Column, Role, Row};
 use crate::error::Result;
+use crate::export::tables::LABEL;
 use crate::names::MOST_ON_PAGE;
 use crate::parallel::with_beside;
 use crate::plan::Plan;
@@ -67,6 +68,11 @@ pub fn read(file: &Path, all: usize, plan: &Plan, threads: usize, patience: Dura
         values: Packed::U64(designs.clone()),
         scenarios: None,
     }];
+    for label in &study.labels {
+        let at = shown.len();
+        shown.push(label_column(&label.name, rows.iter().map(|row| &row[at])));
+    }
+    let first_input = shown.len();
     for (axis, column, input) in inputs(study) {
         let at = shown.len();
         shown.push(input_column(study, axis, column, input, rows.iter().map(|row| &row[at])));
@@ -77,7 +83,7 @@ pub fn read(file: &Path, all: usize, plan: &Plan, threads: usize, patience: Dura
     let mut further = 0;
     for column in &columns {
         if let Some(own) = certify::design_input(study, column.quantity) {
-            let own = own + 1;
+            let own = own + first_input;
             place.push(own);
             if shown[own].direction.is_empty() {
                 shown[own].direction = direction(study, column);
@@ -153,6 +159,22 @@ fn rows_of(file: &Path, plan: &Plan, columns: &[Column], all: usize, taken: usiz
         seen += 1;
     }
     if seen == all { Ok((rows, designs)) } else { Err(changed(file, &format!("it has {seen} designs, and summary.json says {all}"))) }
+}
+
+/// A label, with its texts in alphabetic order.
+fn label_column<'r>(name: &str, cells: impl Iterator<Item = &'r str> + Clone) -> Shown {
+    let words: Vec<&str> = cells.clone().collect::<BTreeSet<_>>().into_iter().collect();
+    let place = |cell: &str| words.binary_search(&cell).map_or(NOWHERE, |at| scenario_number(at as u64));
+    Shown {
+        name: name.to_owned(),
+        unit: String::new(),
+        doc: LABEL.to_owned(),
+        role: "label",
+        direction: String::new(),
+        values: Packed::U32(cells.map(place).collect()),
+        words: Some(words.into_iter().map(str::to_owned).collect()),
+        scenarios: None,
+    }
 }
 
 /// A design input; where one of its values is a word, all are taken by name.

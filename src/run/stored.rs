@@ -100,6 +100,9 @@ fn column(name: &str, study: &Study) -> TableColumn {
     if name == "design_index" || name.ends_with("_scenario") {
         return TableColumn::index(name, "", []);
     }
+    if study.labels.iter().any(|it| it.name == name) {
+        return TableColumn::new(name, "label", "", Data::Text(Vec::new()));
+    }
     if let Some(input) = model.input(name).map(|input| &model.inputs[input]) {
         let data = if input.words.is_empty() { Data::Number(Vec::new()) } else { Data::Text(Vec::new()) };
         return TableColumn { unit: input.unit.symbol.to_owned(), ..TableColumn::new(name, "design", &input.doc, data) };

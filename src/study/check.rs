@@ -4,6 +4,7 @@
 //! file that somebody changed cannot ask for anything that a study file could not.
 
 use super::axis::{Axis, Levels, Sample};
+use super::label::{Label, MOST_LABELS, flaw_of_name, flaw_of_text};
 use super::read::{
     BINS, FRONT_BUDGET, MOST_CELLS, MOST_LEVELS, MOST_OBJECTIVES, MOST_SAMPLE, MOST_SCENARIOS, MOST_TOP, MOST_VARIANTS, check_levels,
 };
@@ -43,8 +44,10 @@ impl Study {
         }
         require(!self.design.is_empty(), || "there is nothing to choose; name at least one input in [design]".to_owned())?;
         let mut taken = HashSet::new();
-        for axis in self.axes() {
-            check_axis(model, axis, &mut taken)?;
+        self.check_labels()?;
+        for (number, axis) in self.axes().enumerate() {
+            let labels: Vec<_> = self.labels.iter().filter(|it| it.axis == number).collect();
+            check_axis(model, axis, &labels, &mut taken)?;
         }
         self.check_sizes()?;
         self.check_spectrum()?;
@@ -75,6 +78,25 @@ impl Study {
     /// All axes.
     fn axes(&self) -> impl Iterator<Item = &Axis> {
         self.design.iter().chain(&self.operation).chain(&self.uncertainty)
+    }
+
+    /// Does every label have a name of its own, and a text for every row of a joint design axis?
+    fn check_labels(&self) -> CheckResult {
+        require(self.labels.len() <= MOST_LABELS, || format!("there are {} labels, at most {MOST_LABELS} fit", self.labels.len()))?;
+        let mut known = HashSet::new();
+        for Label { name, axis, texts } in &self.labels {
+            let wrong = |problem: &str| format!("label \"{name}\": {problem}");
+            require(known.insert(name), || wrong("it is there twice"))?;
+            flaw_of_name(name, &self.model).map_or(Ok(()), |flaw| Err(wrong(&flaw)))?;
+            let rows = match self.design.get(*axis) {
+                Some(Axis::Joint { rows, .. }) => rows.len(),
+                _ => return Err(wrong("it is of no joint design axis")),
+            };
+            require(texts.len() == rows, || wrong(&format!("it has {} texts for {rows} rows", texts.len())))?;
+            texts.iter().find_map(|text| flaw_of_text(text)).map_or(Ok(()), |flaw| Err(wrong(&flaw)))?;
+        }
+        // So that the order of the columns is that of the axes.
+        require(self.labels.is_sorted_by_key(|it| it.axis), || "the labels are not in the order of their axes".to_owned())
     }
 
     /// Can designs and scenarios be numbered?
@@ -236,8 +258,8 @@ impl Study {
     }
 }
 
-/// An axis must set inputs that no other axis sets, to values that they accept.
-fn check_axis(model: &Model, axis: &Axis, taken: &mut HashSet<usize>) -> CheckResult {
+/// An axis must set inputs that no other axis sets, to values that they accept. Rows may be equal if a label tells them apart.
+fn check_axis(model: &Model, axis: &Axis, labels: &[&Label], taken: &mut HashSet<usize>) -> CheckResult {
     for &input in axis.inputs() {
         require(input < model.inputs.len(), || format!("{} has no input number {input}", model.name))?;
         require(taken.insert(input), || format!("\"{}\" is set twice", model.inputs[input].name))?;
@@ -264,7 +286,8 @@ fn check_axis(model: &Model, axis: &Axis, taken: &mut HashSet<usize>) -> CheckRe
                 Some("a row is not one of values that its inputs take")
             } else {
                 let bits = |row: &Vec<f64>| row.iter().map(|it| (it + 0.0).to_bits()).collect::<Vec<_>>();
-                rows.iter().any(|row| !known.insert(bits(row))).then_some("two rows are equal")
+                let texts = |at: usize| labels.iter().map(|it| it.texts[at].as_str()).collect::<Vec<_>>();
+                rows.iter().enumerate().any(|(at, row)| !known.insert((bits(row), texts(at)))).then_some("two rows are equal")
             };
             (first, problem)
         }

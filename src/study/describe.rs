@@ -24,7 +24,7 @@ impl Study {
         let mut described = json!({
             "model": model.name,
             "title": self.title,
-            "design": axes(&self.design),
+            "design": self.design.iter().enumerate().map(|(number, axis)| self.design_axis(number, axis)).collect::<Vec<_>>(),
             "sample": self.sample,
             "operation": axes(&self.operation),
             "uncertainty": axes(&self.uncertainty),
@@ -67,6 +67,17 @@ impl Study {
         }
         if !model.version.is_empty() {
             described["model_version"] = model.version.clone().into();
+        }
+        described
+    }
+
+    /// A design axis with its labels, if it has some.
+    fn design_axis(&self, number: usize, axis: &Axis) -> Value {
+        let mut described = axis_of(&self.model, axis);
+        let own = self.labels.iter().filter(|it| it.axis == number);
+        let own: Vec<_> = own.map(|it| json!({ "name": it.name, "texts": it.texts })).collect();
+        if !own.is_empty() {
+            described["labels"] = own.into();
         }
         described
     }

@@ -1,8 +1,8 @@
 //! Restores a study from [`Study::describe`], so that a result directory is enough even without the study file and its tables.
 
 use super::{
-    Axis, Best, Constraint, ContourSpec, Goal, HistogramSpec, Levels, MapSpec, Objective, OverScenarios, Quantity, Report, ReportColumn,
-    SampleSpec, Spectrum, Study, Thresholds, TopSpec,
+    Axis, Best, Constraint, ContourSpec, Goal, HistogramSpec, Label, Levels, MapSpec, Objective, OverScenarios, Quantity, Report,
+    ReportColumn, SampleSpec, Spectrum, Study, Thresholds, TopSpec,
 };
 use crate::models::{CurveSource, Extension, Model, Models, Worse, extended};
 use serde::de::DeserializeOwned;
@@ -45,6 +45,7 @@ impl Study {
             model: model.clone(),
             title: text(described, "title")?.to_owned(),
             design: axes("design")?,
+            labels: labels_of(list(described, "design")?)?,
             sample: plain(&described["sample"], "sample")?,
             operation: axes("operation")?,
             spectrum: spectrum_of(&described["spectrum"])?,
@@ -60,6 +61,7 @@ impl Study {
                 })
             })?,
             report: Report::default(),
+            left_out: Vec::new(),
         };
         let report = report_of(&study, described)?;
         let study = Self { report, ..study };
@@ -162,6 +164,17 @@ fn axis_of(model: &Model, axis: &Value) -> Restored<Axis> {
     Ok(Axis::Single { input, levels })
 }
 
+/// The labels of all design axes.
+fn labels_of(axes: &[Value]) -> Restored<Vec<Label>> {
+    let mut labels = Vec::new();
+    for (number, axis) in axes.iter().enumerate().filter(|(_, axis)| !axis["labels"].is_null()) {
+        labels.extend(each(axis, "labels", |it| {
+            Ok(Label { name: text(it, "name")?.to_owned(), axis: number, texts: plain(&it["texts"], "texts")? })
+        })?);
+    }
+    Ok(labels)
+}
+
 fn constraint_of(model: &Model, constraint: &Value) -> Restored<Constraint> {
     let bound = |inclusive: &str, exclusive: &str| match (&constraint[inclusive], &constraint[exclusive]) {
         (Value::Null, Value::Null) => Ok(None),
@@ -255,11 +268,37 @@ mod tests {
             let (study, _) = Study::read(&path).expect("it is right");
             let back = Study::from_description(&study.describe()).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
             assert_eq!(back.hash(), study.hash(), "{}", path.display());
-            // Values of inputs that axes set are never read.
-            assert_eq!(Study { fixed: study.fixed.clone(), ..back }, study, "{}", path.display());
+            // Values of inputs that axes set are never read, and what was left out is told only of the file.
+            assert_eq!(Study { fixed: study.fixed.clone(), left_out: study.left_out.clone(), ..back }, study, "{}", path.display());
             seen += 1;
         }
         assert!(seen >= 8);
+    }
+
+    #[test]
+    fn labels_come_back_and_texts_that_do_not_fit_the_rows_do_not() {
+        let text = "model = \"metal-cvt\"\nlabels = [\"part_no\", \"maker\"]\n[design]\nfriction = [0.08, 0.09]\ncases = [\n\
+                    { maker = \"A\", part_no = \"007\", band_count = 8 },\n{ part_no = \"008\", maker = \"B, \\\"C\\\"\", band_count = 8 }]\n\
+                    [objectives]\naxial_force_N = \"min\"\n";
+        let study = Study::parse(text).unwrap_or_else(|errors| panic!("{errors}"));
+        assert_eq!(study.labels.iter().map(|it| (it.name.as_str(), it.axis)).collect::<Vec<_>>(), [("part_no", 1), ("maker", 1)]);
+        let described = study.describe();
+        let back = Study::from_description(&described).expect("it comes back");
+        assert_eq!((back.labels, back.design), (study.labels.clone(), study.design.clone()));
+        let other = Study::parse(&text.replace("007", "07")).unwrap_or_else(|errors| panic!("{errors}"));
+        assert_ne!(other.hash(), study.hash(), "a label is part of the hash");
+        let refused = |edit: fn(&mut Value)| {
+            let mut changed = described.clone();
+            edit(&mut changed["design"][1]["labels"][0]);
+            Study::from_description(&changed).expect_err("it was changed")
+        };
+        assert_eq!(refused(|it| it["texts"] = serde_json::json!(["007"])), "label \"part_no\": it has 1 texts for 2 rows");
+        assert!(refused(|it| it["name"] = "friction".into()).contains("it is an input or a variable too"));
+        assert_eq!(refused(|it| it["name"] = "maker".into()), "label \"maker\": it is there twice");
+        assert!(refused(|it| it["texts"][0] = "a\nb".into()).contains("control character"));
+        let mut same = described.clone();
+        same["design"][1]["labels"] = serde_json::json!([{ "name": "part_no", "texts": ["007", "007"] }]);
+        assert_eq!(Study::from_description(&same).unwrap_err(), "axis \"band_count\": two rows are equal");
     }
 
     #[test]

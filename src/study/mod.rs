@@ -8,6 +8,7 @@ mod axis;
 mod check;
 mod describe;
 mod described;
+mod label;
 mod read;
 mod resolved;
 mod spectrum;
@@ -15,6 +16,7 @@ mod spectrum;
 pub use axis::{Axis, Levels, Method, Sample};
 #[doc(hidden)]
 pub use describe::{differences, number, value_of};
+pub use label::Label;
 #[cfg(test)]
 pub(crate) use read::tests::study_of;
 pub use read::{Problem, StudyErrors};

@@ -1,6 +1,7 @@
 //! The resolved study.
 
 use super::axis::{Axis, Sample};
+use super::label::Label;
 use super::spectrum::{OverScenarios, Spectrum, unit_over};
 use crate::models::{Model, Worse};
 use serde::{Deserialize, Serialize};
@@ -275,6 +276,8 @@ pub struct Study {
     pub title: String,
     /// Design axes in file order; the last varies fastest in the design index.
     pub design: Vec<Axis>,
+    /// Text columns of the rows of joint design axes, carried along into every table of designs.
+    pub labels: Vec<Label>,
     /// Sampled designs in place of the product.
     pub sample: Option<Sample>,
     /// Operation axes in file order.
@@ -291,6 +294,9 @@ pub struct Study {
     pub objectives: Vec<Objective>,
     /// What else to report.
     pub report: Report,
+    /// What was left out of catalogues because nothing uses it, in a sentence for each. Told when the study is read, and no part of its
+    /// description.
+    pub left_out: Vec<String>,
 }
 
 impl Study {

@@ -119,6 +119,13 @@ fn limits(outcome: &Certified<'_>) -> String {
     format!("\n{} {what}\n{}", bold("what limits feasibility,"), grid.indented(2))
 }
 
+/// A label as it is listed: a long one is cut off, and the tables have all of it.
+fn shown_label(text: &str) -> String {
+    const MOST: usize = 32;
+    let text = super::told(text);
+    if text.chars().nth(MOST).is_none() { text } else { text.chars().take(MOST - 3).chain("...".chars()).collect() }
+}
+
 /// Ideal, knee and the best designs by the first objective, and what the knee is made of.
 fn front(outcome: &Certified<'_>) -> String {
     let study = &outcome.plan.study;
@@ -127,13 +134,15 @@ fn front(outcome: &Certified<'_>) -> String {
     let columns = outcome.objective_columns();
     let goals = study.objectives.iter().map(|it| format!("{} ({})", it.name(model), if it.goal == Goal::Min { "min" } else { "max" }));
     let mut grid = TextGrid::default();
-    grid.row(std::iter::once(String::new()).chain(goals.chain(["design".to_owned()]).map(|head| bold(&head))));
+    let labels = study.labels.iter().map(|it| it.name.clone());
+    grid.row(std::iter::once(String::new()).chain(goals.chain(["design".to_owned()]).chain(labels).map(|head| bold(&head))));
     if let Some(ideal) = &summary.ideal {
         grid.row(std::iter::once("ideal".to_owned()).chain(ideal.iter().map(|&value| short(value))));
     }
     let mut row = |label: &str, row: &Row| {
         let objectives = columns.iter().map(|&column| row.columns[column].value.map_or(String::new(), short));
-        grid.row(std::iter::once(label.to_owned()).chain(objectives).chain([row.index.to_string()]));
+        let labels = outcome.plan.labels(row.index).map(shown_label);
+        grid.row(std::iter::once(label.to_owned()).chain(objectives).chain([row.index.to_string()]).chain(labels));
     };
     let knee = summary.knee.map(|knee| &outcome.front[knee.row]);
     if let Some(knee) = knee {
@@ -153,7 +162,9 @@ fn front(outcome: &Certified<'_>) -> String {
             let value = knee.inputs[input];
             format!("{} {}", model.inputs[input].name, model.inputs[input].word_for(value).map_or_else(|| short(value), str::to_owned))
         });
-        format!("\n{} {} (design {})\n", bold("knee:"), each.collect::<Vec<_>>().join(", "), knee.index)
+        let labels = study.labels.iter().zip(outcome.plan.labels(knee.index));
+        let labels = labels.map(|(label, text)| format!("{} {}", label.name, shown_label(text)));
+        format!("\n{} {} (design {})\n", bold("knee:"), labels.chain(each).collect::<Vec<_>>().join(", "), knee.index)
     });
     format!("\n{}\n{}{more}{inputs}", bold("front"), grid.indented(2))
 }

@@ -176,7 +176,10 @@ fn problems_of_a_csv_file_name_its_line_and_field() {
     let cases: &[(&str, &[&str])] = &[
         ("", &["1:1: there are no rows; the first line names inputs, such as [..]"]),
         ("ratio,torque_Nm\n", &["1:1: there are no rows; [..]"]),
-        ("ratio,torqe_Nm\n1,2\n", &["1:2: metal-cvt has no input \"torqe_Nm\"; did you mean \"torque_Nm\"?"]),
+        (
+            "ratio,torqe_Nm\n1,2\n",
+            &["1:2: metal-cvt has no input \"torqe_Nm\"; did you mean \"torque_Nm\"? unused = \"ok\" beside csv leaves the column out"],
+        ),
         ("ratio,slip_margin\n1,2\n", &["1:2: slip_margin is an output; [..]"]),
         ("ratio,ratio\n1,2\n", &["1:2: \"ratio\" has two columns; drop one"]),
         ("ratio,\n1,2\n", &["1:2: the column has no name; [..]"]),

@@ -8,6 +8,8 @@ mod bounds;
 mod browser;
 /// The pulley as a model for CalculiX, and its solution compared with the harmonics.
 mod calculix;
+/// The catalogues that come with the program, searched for typing slips.
+mod catalogues;
 /// The binary: exit codes, messages, files, interrupted runs.
 mod command_line;
 /// How many evaluations a test may make of a model.

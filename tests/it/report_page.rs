@@ -245,6 +245,50 @@ fn a_page_with_one_point_and_one_with_none() {
 
 #[test]
 #[ignore = "drives the page in Chromium: cargo test --test it -- --ignored report_page --test-threads 1"]
+fn labels_stand_in_the_table_the_card_the_readout_and_what_is_selected() {
+    let swept = Swept::text(
+        "model = \"metal-cvt\"\nlabels = [\"part_no\", \"maker\"]\n[design]\ncases = [\n\
+         { part_no = \"007\", maker = \"Alpha, Ltd\", band_thickness_mm = 0.1 },\n\
+         { part_no = \"008\", maker = \"Says \\\"hi\\\"\", band_thickness_mm = 0.15 },\n]\nband_count = { from = 6, to = 12 }\n\
+         [objectives]\nband_count = \"min\"\nstress_margin = \"max\"\n[report]\ntop = { by = \"stress_margin\", count = 5 }\n",
+    );
+    let front = swept.front();
+    let mut browser = Browser::open(&swept.page(), "");
+    for (row, cells) in front.iter().enumerate() {
+        browser.evaluate(&format!("beltspace.openCard({row})"));
+        for name in ["part_no", "maker"] {
+            let shown = browser.text(&format!("document.querySelector('#card [data-name={name}]').textContent"));
+            assert_eq!(shown, cells[name], "card of row {row}");
+            let shown = browser.text(&format!(
+                "document.querySelector('#designs tr[data-row=\"{row}\"]').cells\
+                 [[...document.querySelectorAll('#designs th')].findIndex((it) => it.dataset.column === '{name}')].textContent"
+            ));
+            assert_eq!(shown, cells[name], "table, row {row}");
+        }
+    }
+    let last = &front[front.len() - 1];
+    browser.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))");
+    let readout = browser.text("document.querySelector('#readout').textContent");
+    assert!(readout.contains(&format!("part_no{}", last["part_no"])), "{readout}");
+    let saved = browser.text("beltspace.csv()");
+    let mut reader = csv::Reader::from_reader(saved.as_bytes());
+    let rows: Vec<BTreeMap<String, String>> = reader.deserialize().map(|row| row.expect("rows are complete")).collect();
+    assert!(rows.len() == front.len() && rows.iter().zip(&front).all(|(a, b)| ["part_no", "maker"].iter().all(|it| a[*it] == b[*it])));
+    // A number that a list shortens stays as it is where it is a label.
+    let top = browser.text("document.querySelector('#top tbody').textContent");
+    assert!(top.contains("007") || top.contains("008"), "{top}");
+    // Labels can be a colour and an axis.
+    browser.evaluate("beltspace.setColour('maker')");
+    browser.evaluate("beltspace.chooseColumns('parallel', ['part_no', 'band_count'])");
+    browser.evaluate("beltspace.brushAxis('part_no', [-0.4, 0.4])");
+    let selected = browser.number("beltspace.selected().length");
+    assert_eq!(selected, front.iter().filter(|row| row["part_no"] == "007").count() as f64);
+    browser.picture("labels");
+    assert_eq!(browser.complaints, Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored report_page --test-threads 1"]
 fn a_hundred_thousand_points_are_brushed() {
     // Points of a sphere dominate each other nowhere: every row of a catalogue is on the front.
     let folder = tempfile::tempdir().expect("there is room");

@@ -23,12 +23,15 @@
     page.byId("chips").replaceChildren(...chips);
   };
 
-  const groups = { design: "Design inputs", objective: "Objectives", constraint: "Constraints", report: "Report columns", output: "Other outputs" };
+  const groups = { label: "Labels", design: "Design inputs", objective: "Objectives", constraint: "Constraints", report: "Report columns", output: "Other outputs" };
+
+  // Columns that can be an axis or a colour, by what they are. Labels of very many texts, such as part numbers, are only in the tables.
+  page.columnsOf = (role) => page.front.shown.filter((column) => column.role === role && !(role === "label" && column.words.length > 40));
 
   // Options of all columns, grouped by what they are.
   page.columnOptions = (select, chosen) => {
     for (const [role, label] of Object.entries(groups)) {
-      const columns = page.front.shown.filter((column) => column.role === role);
+      const columns = page.columnsOf(role);
       if (!columns.length) continue;
       const option = (column) => page.element("option", { value: column.name, selected: column.name === chosen }, page.withUnit(column.name, column.unit));
       select.append(page.element("optgroup", { label }, columns.map(option)));

@@ -35,7 +35,7 @@
   const inputs = (row) => {
     const { front, data } = page;
     const line = (name, cell, doc) => page.element("tr", {}, page.element("th", { scope: "row", title: doc }, page.breakable(name)), cell);
-    const chosen = front.shown.filter((column) => column.role === "design").map((column) => line(column.name, columnCell(column, row), column.doc));
+    const chosen = front.shown.filter((column) => column.role === "label" || column.role === "design").map((column) => line(column.name, columnCell(column, row), column.doc));
     const fixed = (data.inputs || []).filter((input) => input.role === "fixed").map((input) => line(input.name, valueCell(input.name, page.full(input.value), page.short(input.value), typeof input.value === "number" ? input.unit : ""), input.doc));
     const ranged = (data.inputs || []).filter((input) => input.role === "operation" || input.role === "uncertainty").map((input) => line(input.name, page.element("td", { class: "number" }, input.over || rangeInScenarios(input.name), input.unit ? page.element("span", { class: "unit" }, ` ${input.unit}`) : null), input.doc));
     const group = (title, lines) => (lines.length ? [page.element("h4", {}, title), table("values", lines)] : []);
@@ -104,7 +104,7 @@
 
   const outputs = (row) => {
     const { front } = page;
-    const columns = front.shown.filter((column) => column.role !== "design");
+    const columns = front.shown.filter((column) => column.role !== "label" && column.role !== "design");
     const line = (column) => page.element("tr", {}, heading(column), columnCell(column, row), scenarioCell(column, row));
     const lines = columns.map(line);
     const numbers = [...new Set(columns.filter((column) => column.scenarios).map((column) => column.scenarios[row]))].filter((number) => number !== page.noScenario).sort((a, b) => a - b);

@@ -64,7 +64,7 @@
       built = true;
       const head = ["column", "unit", "matrix", "axes", "at least", "at most"].map((name) => page.element("th", { scope: "col" }, name));
       const bodies = Object.entries(page.columnGroups).map(([role, label]) => {
-        const columns = page.front.shown.filter((column) => column.role === role);
+        const columns = page.columnsOf(role);
         return columns.length ? page.element("tbody", {}, page.element("tr", { class: "group" }, page.element("th", { colspan: 6, scope: "rowgroup" }, label)), columns.map(line)) : null;
       });
       const close = page.element("button", { type: "button", click: () => page.toggleChooser(false) }, "Close");

@@ -5,11 +5,12 @@
 
   const shorten = (text) => (text !== "" && Number.isFinite(Number(text)) ? page.short(Number(text)) : text);
 
-  const block = (id, title, hint, { columns, units, rows, of = rows.length }) => {
-    const words = columns.map((_, at) => rows.some((row) => row[at] !== "" && !Number.isFinite(Number(row[at]))));
+  const block = (id, title, hint, { columns, units, rows, of = rows.length, labels = [] }) => {
+    // A label may look like a number, such as 007, and stays as it is.
+    const words = columns.map((name, at) => labels.includes(name) || rows.some((row) => row[at] !== "" && !Number.isFinite(Number(row[at]))));
     const kind = (at) => (words[at] ? "" : "number");
     const head = columns.map((name, at) => page.element("th", { scope: "col", class: kind(at) }, page.breakable(name), units && units[at] ? page.element("span", { class: "unit" }, units[at]) : null));
-    const line = (row) => page.element("tr", { class: row[columns.indexOf("feasible")] === "no" ? "infeasible" : null }, row.map((text, at) => page.element("td", { class: kind(at), title: text }, shorten(text))));
+    const line = (row) => page.element("tr", { class: row[columns.indexOf("feasible")] === "no" ? "infeasible" : null }, row.map((text, at) => page.element("td", { class: kind(at), title: text }, labels.includes(columns[at]) ? text : shorten(text))));
     const table = page.element("table", {}, page.element("thead", {}, page.element("tr", {}, head)), page.element("tbody", {}, rows.slice(0, MOST).map(line)));
     const rest = of > MOST ? ` The first ${MOST} of ${page.count(of)} rows are shown.` : "";
     return page.element("section", { id, "data-testid": id, "aria-labelledby": `${id}-title` }, page.element("h2", { id: `${id}-title` }, title), page.element("p", { class: "hint" }, hint + rest), page.element("div", { class: "scroll tall", tabindex: 0, role: "region", "aria-label": title }, table));

@@ -26,7 +26,8 @@
     if (row !== null && row !== undefined) {
       const what = state.current !== null ? "pointed at" : state.card !== null ? "card" : "knee";
       const mark = row === front.knee && what !== "knee" ? `${what}, knee` : what;
-      const names = [...new Set([...state.matrix, ...state.parallel])].slice(0, 18);
+      const labels = front.shown.filter((column) => column.role === "label").map((column) => column.name);
+      const names = [...new Set([...labels, ...state.matrix, ...state.parallel])].slice(0, 18 + labels.length);
       const entry = (name) => {
         const column = front.byName.get(name);
         const value = page.element("dd", {}, page.valueText(column, row), column.words || !column.unit || Number.isNaN(column.values[row]) ? "" : ` ${column.unit}`);

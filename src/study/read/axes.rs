@@ -34,6 +34,9 @@ impl AxisRole {
     }
 }
 
+/// The key of an axis over presets of the model, and the name of its label.
+pub(super) const PRESET: &str = "preset";
+
 /// A place in the file that gives an input values.
 pub(super) struct AxisClaim {
     /// Number of the input.
@@ -51,19 +54,24 @@ pub(super) struct AxisClaim {
 impl Reader<'_> {
     /// The axes of a table, in file order. Those with problems are left out.
     pub(super) fn axes(&self, role: AxisRole, table: &TomlTable<'_>) -> Vec<Axis> {
-        let axis = |(position, entry): (usize, &Entry<'_>)| {
-            if let Some(table) = weighted_cases(entry).filter(|_| self.model.input(entry.key).is_none()) {
-                return self.weighted(role, position, entry, &table);
-            }
-            let joint = entry.key.starts_with("cases") && self.model.input(entry.key).is_none();
-            if joint { self.joint(role, entry) } else { self.single(role, entry) }
-        };
         let most = self.model.inputs.len();
         if let Some(extra) = table.entries.get(most) {
             let message = format!("[{}] has {} axes, but {} has {most} inputs", role.name(), table.entries.len(), self.model.name);
             self.problems.add(extra.key_at, format!("{message}; every input has one axis at most, drop the others"));
         }
-        table.entries.iter().take(most).take_while(|_| !self.problems.is_full()).enumerate().filter_map(axis).collect()
+        let mut axes = Vec::new();
+        for entry in table.entries.iter().take(most).take_while(|_| !self.problems.is_full()) {
+            let is_input = self.model.input(entry.key).is_some();
+            let weighted = weighted_cases(entry).filter(|_| !is_input);
+            let axis = match entry.key {
+                _ if weighted.is_some() => weighted.and_then(|table| self.weighted(role, axes.len(), entry, &table)),
+                key if key.starts_with("cases") && !is_input => self.joint(role, entry, axes.len()),
+                PRESET if !is_input => self.preset_axis(role, entry, axes.len()),
+                _ => self.single(role, entry),
+            };
+            axes.extend(axis);
+        }
+        axes
     }
 
     /// The value of every input: fixed, of the preset, or default.

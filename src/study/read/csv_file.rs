@@ -30,3 +30,10 @@ pub(super) fn csv_text(folder: &Path, name: &str) -> Result<String, String> {
     let text = String::from_utf8(bytes).map_err(|_| format!("\"{name}\" is not UTF-8 text; save it in the encoding UTF-8"))?;
     Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
 }
+
+/// How such a text is read: lines that start with `#` are comments, blank lines are skipped, and spaces around a value do not count.
+pub(super) fn csv_builder() -> csv::ReaderBuilder {
+    let mut builder = csv::ReaderBuilder::new();
+    builder.trim(csv::Trim::All).comment(Some(b'#'));
+    builder
+}

@@ -1,6 +1,8 @@
 //! `units`, `[curves]` and `[formulas]`: what a study adds to its model, and which names are variables.
 
-use super::csv_file::csv_text;
+use super::axes::PRESET;
+use super::csv_file::{csv_builder, csv_text};
+use super::labels::DeclaredLabel;
 use super::spectrum::weighted_cases;
 use super::table::{Entry, Problems, TomlNode, TomlTable, list, shortened};
 use super::{section, text};
@@ -27,7 +29,13 @@ struct CurvePlace {
 }
 
 /// The model with what the study adds to it; `None` if a problem was reported that leaves none.
-pub(super) fn with_formulas(model: Arc<Model>, top: &TomlTable<'_>, problems: &Problems<'_>, folder: &Path) -> Option<Arc<Model>> {
+pub(super) fn with_formulas(
+    model: Arc<Model>,
+    top: &TomlTable<'_>,
+    labels: &[DeclaredLabel],
+    problems: &Problems<'_>,
+    folder: &Path,
+) -> Option<Arc<Model>> {
     let before = problems.count();
     let mut places = ExtensionPlaces::default();
     let mut extension = Extension {
@@ -42,14 +50,19 @@ pub(super) fn with_formulas(model: Arc<Model>, top: &TomlTable<'_>, problems: &P
     if extension == Extension::default() {
         return Some(model);
     }
-    extension.variables = variables(&model, &extension, top, folder);
+    extension.variables = variables(&model, &extension, labels, top, folder);
+    if are_labels_read(&extension, labels, problems) {
+        return None;
+    }
     refuse_twice_given(&model, &extension, top, problems);
     let unread = extension.clone();
     match extended(&model, extension) {
         Ok(model) if problems.count() == before => Some(Arc::new(model)),
         Ok(_) => None,
+        // What a file that cannot be read would have given is unknown, so that formulas may be right.
+        Err(_) if report_unreadable(top, problems, folder) => None,
         Err(found) => {
-            report_unused(&model, &unread, top, problems, folder);
+            report_unused(&model, &unread, labels, top, problems, folder);
             found.into_iter().for_each(|problem| tell(problem, &places, top, problems));
             None
         }
@@ -116,7 +129,7 @@ type PointsWithLines = (Vec<(f64, f64)>, Vec<usize>);
 
 /// The points of a curve, or a line and what is wrong there.
 fn points(text: &str, x: &str, y: &str) -> Result<PointsWithLines, (usize, String)> {
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
+    let mut reader = csv_builder().from_reader(text.as_bytes());
     let line_of = |record: &csv::StringRecord| record.position().map_or(1, |position| position.line() as usize);
     let wrong = |error: csv::Error| (error.position().map_or(1, |position| position.line() as usize), format!("this is not CSV: {error}"));
     let header = reader.headers().map_err(wrong)?.clone();
@@ -143,7 +156,7 @@ fn points(text: &str, x: &str, y: &str) -> Result<PointsWithLines, (usize, Strin
 const GIVING: [&str; 4] = ["design", "operation", "uncertainty", "fixed"];
 
 /// Every name that the study gives numbers to, with its place.
-fn given(top: &TomlTable<'_>, folder: &Path) -> Vec<(String, usize)> {
+pub(super) fn given(top: &TomlTable<'_>, folder: &Path) -> Vec<(String, usize)> {
     let mut names = Vec::new();
     for table in GIVING.iter().filter_map(|name| top.get(name)).filter_map(|entry| entry.node.table()) {
         for entry in table.entries {
@@ -159,11 +172,9 @@ fn given(top: &TomlTable<'_>, folder: &Path) -> Vec<(String, usize)> {
                 let first = rows.filter_map(|row| row.table()).next();
                 names.extend(first.into_iter().flat_map(|row| row.entries).map(|cell| (cell.key.to_owned(), cell.key_at)));
             }
-            let file = cases.and_then(TomlNode::table).and_then(|table| Some(table.get("csv")?.node.value.as_str()?.to_owned()));
             // What cannot be read is reported when the axis is.
-            if let Some(text) = file.and_then(|file| csv_text(folder, &file).ok()) {
-                let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
-                let header = reader.headers().cloned().unwrap_or_default();
+            if let Some(text) = cases.and_then(csv_of_cases).and_then(|(file, _)| csv_text(folder, &file).ok()) {
+                let header = csv_builder().from_reader(text.as_bytes()).headers().cloned().unwrap_or_default();
                 names.extend(header.iter().map(|name| (name.to_owned(), entry.key_at)));
             }
         }
@@ -171,15 +182,53 @@ fn given(top: &TomlTable<'_>, folder: &Path) -> Vec<(String, usize)> {
     names
 }
 
+/// The CSV file of cases, and its place.
+fn csv_of_cases(cases: TomlNode<'_>) -> Option<(String, usize)> {
+    let node = cases.table()?.get("csv")?.node;
+    Some((node.value.as_str()?.to_owned(), node.at))
+}
+
+/// Reports CSV files of cases that cannot be read; says whether there is one.
+fn report_unreadable(top: &TomlTable<'_>, problems: &Problems<'_>, folder: &Path) -> bool {
+    let before = problems.count();
+    let tables = GIVING.iter().filter_map(|name| top.get(name)).filter_map(|entry| entry.node.table());
+    for entry in tables.flat_map(|table| table.entries) {
+        let weighted = weighted_cases(&entry).and_then(|table| table.get("cases").map(|entry| entry.node));
+        let plain = entry.key.starts_with("cases").then_some(entry.node);
+        let Some((file, at)) = weighted.or(plain).and_then(csv_of_cases) else { continue };
+        if let Err(error) = csv_text(folder, &file) {
+            problems.add(at, format!("axis \"{}\": {error}", shortened(entry.key)));
+        }
+    }
+    problems.count() > before
+}
+
+/// The names that formulas read.
+fn names_read(extension: &Extension) -> BTreeSet<String> {
+    let parsed = extension.formulas.iter().filter_map(|(_, text)| Expression::parse(text).ok());
+    parsed.flat_map(|it| it.names().into_iter().map(|(name, _)| name.to_owned()).collect::<Vec<_>>()).collect()
+}
+
+/// Reports labels that a formula reads, for texts have no value; says whether there are such.
+fn are_labels_read(extension: &Extension, labels: &[DeclaredLabel], problems: &Problems<'_>) -> bool {
+    let before = problems.count();
+    let read = names_read(extension);
+    for label in labels.iter().filter(|label| read.contains(&label.name)) {
+        let message = "a formula reads it, and a label is a text that is only carried along; drop it from labels if its column has numbers";
+        problems.add(label.at, format!("label \"{}\": {message}", shortened(&label.name)));
+    }
+    problems.count() > before
+}
+
 /// The names that formulas read and axes or fixed values give, which neither the model nor a formula has.
-fn variables(model: &Model, extension: &Extension, top: &TomlTable<'_>, folder: &Path) -> Vec<String> {
-    let parsed: Vec<Expression> = extension.formulas.iter().filter_map(|(_, text)| Expression::parse(text).ok()).collect();
-    let read: BTreeSet<&str> = parsed.iter().flat_map(Expression::names).map(|(name, _)| name).collect();
+fn variables(model: &Model, extension: &Extension, labels: &[DeclaredLabel], top: &TomlTable<'_>, folder: &Path) -> Vec<String> {
+    let read = names_read(extension);
     let is_known =
         |name: &str| model.input(name).is_some() || model.output(name).is_some() || extension.formulas.iter().any(|(it, _)| it == name);
     let mut variables: Vec<String> = Vec::new();
     for (name, _) in given(top, folder) {
-        if read.contains(&name[..]) && !is_known(&name) && !variables.contains(&name) {
+        let is_label = labels.iter().any(|label| label.name == name);
+        if read.contains(&name) && !is_known(&name) && !is_label && !variables.contains(&name) {
             variables.push(name);
         }
     }
@@ -187,9 +236,16 @@ fn variables(model: &Model, extension: &Extension, top: &TomlTable<'_>, folder: 
 }
 
 /// Reports names that axes or fixed values give and nothing reads, which formulas may have meant under another name.
-fn report_unused(model: &Model, extension: &Extension, top: &TomlTable<'_>, problems: &Problems<'_>, folder: &Path) {
+fn report_unused(
+    model: &Model,
+    extension: &Extension,
+    labels: &[DeclaredLabel],
+    top: &TomlTable<'_>,
+    problems: &Problems<'_>,
+    folder: &Path,
+) {
     for (name, at) in given(top, folder) {
-        let is_case = name.starts_with("cases");
+        let is_case = name.starts_with("cases") || name == PRESET || labels.iter().any(|label| label.name == name);
         let is_unused = model.input(&name).is_none() && !extension.variables.contains(&name) && !is_case;
         if let Some(meant) = meant(&name, &extension.formulas).filter(|_| is_unused) {
             problems.add(at, format!("nothing reads \"{}\"; did you mean \"{meant}\"?", shortened(&name)));

@@ -9,6 +9,8 @@
 //! | `range.rs`      | `{ from, to, ... }`                                |
 //! | `cases.rs`      | joint axes, from rows or a CSV file                |
 //! | `spectrum.rs`   | weights of cases, and `over_scenarios`              |
+//! | `labels.rs`     | `labels`                                           |
+//! | `presets.rs`    | axes over presets                                  |
 //! | `formulas.rs`   | `units`, `[curves]`, `[formulas]`                   |
 //! | `quantities.rs` | `[constraints]`, `[objectives]`                    |
 //! | `report.rs`     | `[report]`                                         |
@@ -19,6 +21,8 @@ mod cases;
 mod contours;
 mod csv_file;
 mod formulas;
+mod labels;
+mod presets;
 mod quantities;
 mod range;
 mod report;
@@ -35,6 +39,7 @@ pub(super) use report::{BINS, FRONT_BUDGET, MOST_CELLS, MOST_SAMPLE, MOST_TOP, M
 pub(super) use value::shown;
 
 use super::axis::{Axis, Method, Sample};
+use super::label::Label;
 use super::resolved::Study;
 use super::spectrum::Spectrum;
 use crate::error::Result;
@@ -42,6 +47,7 @@ use crate::files::{STUDY_BYTES, read_bytes};
 use crate::likeness::remedy;
 use crate::models::{Model, Models};
 use axes::{AxisClaim, AxisRole};
+use labels::{DeclaredLabel, check_label_names, read_labels};
 use std::cell::{Cell, RefCell};
 use std::path::Path;
 use std::sync::Arc;
@@ -68,6 +74,7 @@ const TOP_LEVEL: &[&str] = &[
     "units",
     "curves",
     "formulas",
+    "labels",
 ];
 
 /// One mistake in a study.
@@ -190,6 +197,15 @@ struct Reader<'a> {
     weighted_at: Cell<Option<usize>>,
     /// The axis with weights, if it is right.
     spectrum: RefCell<Option<Spectrum>>,
+    /// The labels that the study declares, and those that its axes have.
+    declared: &'a [DeclaredLabel],
+    labels: RefCell<Vec<Label>>,
+    /// Is there a CSV file that was not read?
+    unread: Cell<bool>,
+    /// The whole file.
+    top: &'a TomlTable<'a>,
+    /// What was left out of catalogues.
+    left_out: RefCell<Vec<String>>,
 }
 
 /// Walks the whole file. `None` if a problem was reported that leaves no study.
@@ -203,7 +219,9 @@ fn read_study_of(model: Option<Arc<Model>>, top: &TomlTable<'_>, problems: &Prob
     let title = top.get("title").and_then(|entry| text(entry.node, problems, "title"));
     let sample_table = section(top, "sample", problems);
     let sample = sample_table.as_ref().and_then(|table| read_sample(table, problems));
-    let model = formulas::with_formulas(model?, top, problems, folder)?;
+    let declared = read_labels(top, problems);
+    let model = formulas::with_formulas(model?, top, &declared, problems, folder)?;
+    check_label_names(&declared, &model, problems);
 
     let reader = Reader {
         model: &model,
@@ -215,11 +233,17 @@ fn read_study_of(model: Option<Arc<Model>>, top: &TomlTable<'_>, problems: &Prob
         misnamed: Cell::default(),
         weighted_at: Cell::default(),
         spectrum: RefCell::default(),
+        declared: &declared,
+        labels: RefCell::default(),
+        unread: Cell::default(),
+        top,
+        left_out: RefCell::default(),
     };
     let axes = |role: AxisRole| section(top, role.name(), problems).map_or_else(Vec::new, |table| reader.axes(role, &table));
     let (design, operation, uncertainty) = (axes(AxisRole::Design), axes(AxisRole::Operation), axes(AxisRole::Uncertainty));
     let fixed = reader.fixed(section(top, "fixed", problems).as_ref());
     reader.check_claims();
+    reader.check_labels();
     reader.check_sizes(top, &design, &[&operation, &uncertainty]);
 
     let constraints = section(top, "constraints", problems).map_or_else(Vec::new, |table| reader.constraints(&table, &fixed));
@@ -230,7 +254,8 @@ fn read_study_of(model: Option<Arc<Model>>, top: &TomlTable<'_>, problems: &Prob
     reader.check_purpose(top, objectives_table.as_ref(), report_table.as_ref());
     let title = title.unwrap_or_else(|| model.summary.to_owned());
     let spectrum = reader.spectrum.take();
-    Some(Study { model, title, design, sample, operation, spectrum, uncertainty, fixed, constraints, objectives, report })
+    let (labels, left_out) = (reader.labels.take(), reader.left_out.take());
+    Some(Study { model, title, design, labels, sample, operation, spectrum, uncertainty, fixed, constraints, objectives, report, left_out })
 }
 
 /// The model that the file names.

@@ -4,7 +4,7 @@ use super::super::axis::Axis;
 use super::super::resolved::Quantity;
 use super::super::spectrum::{OverScenarios, Spectrum, unit_over};
 use super::axes::AxisRole;
-use super::cases::CaseReader;
+use super::cases::CasesPlace;
 use super::table::{Entry, TomlNode, TomlTable, shortened};
 use super::value::{number, shown, shown_in};
 use super::{Reader, choice, text};
@@ -85,7 +85,8 @@ impl Reader<'_> {
         let (cases, (name, at)) = (cases?, name?);
         let unit = self.weight_unit(&name).map_err(|error| problems.add(at, format!("{label}: {error}"))).ok()?;
         let column = WeightColumn { name: &name, weights: RefCell::default() };
-        let axis = CaseReader { reader: self, role, weight: Some(&column) }.cases(cases.node, &label)?;
+        let place = CasesPlace { role, number: position, at: cases.node.at, csv: "", leaves_out: false, weight: Some(&column) };
+        let axis = self.cases(place, cases.node, &label)?;
         let weights = column.weights.into_inner();
         let spectrum = Spectrum { axis: position, name: entry.key.to_owned(), weight: name.clone(), unit, weights };
         if spectrum.total() <= 0.0 {

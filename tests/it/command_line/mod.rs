@@ -2,6 +2,8 @@
 
 /// The budget of a front.
 mod budget;
+/// Catalogues: labels, columns that nothing uses, presets as an axis.
+mod catalogues;
 /// Checkpoints and shards that must not be used.
 mod checkpoints;
 /// Contours of maps, compared with the models.
