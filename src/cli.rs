@@ -25,10 +25,7 @@ pub enum Command {
     /// Export one design to another program: a pulley as a model for CalculiX
     Export(ExportArgs),
     /// Check a study without running it: size, axes without effect, memory, expected time
-    Check {
-        /// Study file
-        study: PathBuf,
-    },
+    Check(CheckArgs),
     /// Judge every design of a study and write the result directory
     Sweep(SweepArgs),
     /// Merge the shards of a study into the same result as that of one run
@@ -69,6 +66,16 @@ pub struct ModelsArgs {
     pub study: bool,
 }
 
+/// Options of `check`.
+#[derive(Debug, Args)]
+pub struct CheckArgs {
+    /// Study file
+    pub study: PathBuf,
+    /// Set an input in place of its axis, fixed value or formula; a unit may follow the number. May be repeated
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+}
+
 /// Options of `export`.
 #[derive(Debug, Args)]
 pub struct ExportArgs {
@@ -104,8 +111,8 @@ pub struct EvalArgs {
     /// Name of a model, or a study file
     #[arg(value_name = "MODEL|STUDY")]
     pub target: String,
-    /// Set an input; a unit may follow the number ("0.25 in"). May be repeated
-    #[arg(long, value_name = "NAME=VALUE", conflicts_with = "design")]
+    /// Set an input, of a study in place of its axis, fixed value or formula; a unit may follow the number ("0.25 in"). May be repeated
+    #[arg(long, value_name = "NAME=VALUE")]
     pub set: Vec<String>,
     /// Start from a named set of inputs instead of the defaults
     #[arg(long, conflicts_with = "design")]
@@ -132,6 +139,9 @@ pub struct EvalArgs {
 pub struct SweepArgs {
     /// Study file
     pub study: PathBuf,
+    /// Set an input in place of its axis, fixed value or formula; a unit may follow the number. May be repeated
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
     /// Result directory [default: results/<study name>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

@@ -1,6 +1,7 @@
 //! `beltspace check`: checks a study and estimates its run.
 
-use super::{read_study, threads};
+use super::{read_study_set, threads};
+use crate::cli;
 use crate::terminal::{self, TextGrid, bold, grouped, scaled, span};
 use beltspace::error::Result;
 use beltspace::memory::{Needs, large_files};
@@ -8,14 +9,13 @@ use beltspace::models::Set;
 use beltspace::plan::Plan;
 use beltspace::study::Axis;
 use beltspace::sweep::costs::{PATIENCE, Speed, why_every_design};
-use std::path::Path;
 use std::time::Duration;
 
 /// How long the speed is measured.
 const TRIAL: Duration = Duration::from_millis(300);
 
-pub fn run(path: &Path) -> Result<()> {
-    let (study, _) = read_study(path)?;
+pub fn run(request: &cli::CheckArgs) -> Result<()> {
+    let (study, _) = read_study_set(&request.study, &request.set)?;
     let plan = Plan::new(study);
     let study = &plan.study;
     let model = &study.model;

@@ -13,7 +13,7 @@ use beltspace::names::is_picture;
 use beltspace::pictures::{self, PlotQuantity, Series};
 use beltspace::plan::Plan;
 use beltspace::screen::Control;
-use beltspace::study::{Quantity, Study, number, value_of};
+use beltspace::study::{Axis, Levels, Quantity, Report, Study, number, value_of};
 use beltspace::table::{Data, Table, TableColumn, csv_text};
 use beltspace::units::parse_value;
 use serde_json::{Map, Value, json};
@@ -223,26 +223,50 @@ pub(super) fn studied(path: &Path, design: Option<u64>) -> Result<(Plan, u64)> {
 }
 
 fn of_study(request: &cli::EvalArgs, path: &Path) -> Result<()> {
-    if !request.set.is_empty() || request.preset.is_some() {
-        return Err(Error::Request("--set and --preset are for models; for a study use --design N".to_owned()));
+    if request.preset.is_some() {
+        return Err(Error::Request("--preset is for models; a study names its own".to_owned()));
     }
-    let (plan, design) = studied(path, request.design)?;
+    let (own, number) = studied(path, request.design)?;
+    let (plan, design) = if request.set.is_empty() { (own, number) } else { (what_if(&own, number, path, &request.set)?, 0) };
     let model = &plan.study.model;
     let scenarios = plan.scenarios();
     if let Some(scenario) = request.scenario.or((scenarios == 1).then_some(0)) {
         if scenario >= scenarios {
             return Err(Error::Request(format!("there is no scenario {scenario}; the study's scenarios are 0 to {}", scenarios - 1)));
         }
-        return print_one(model, &plan.space.inputs(design, scenario), Some((design, scenario)), request);
+        return print_one(model, &plan.space.inputs(design, scenario), Some((number, scenario)), request);
     }
     if request.profile.is_some() || request.plot.is_some() {
         return Err(Error::Request(format!("--profile and --plot show one scenario; add --scenario K, from 0 to {}", scenarios - 1)));
     }
-    print_worst(&plan, design, request.json)
+    print_worst(&plan, design, number, request)
 }
 
-/// Prints a design's inputs, every output at its worst scenario, and the constraints with their margins.
-fn print_worst(plan: &Plan, design: u64, as_json: bool) -> Result<()> {
+/// The study of this one design, with what `--set` says.
+fn what_if(own: &Plan, design: u64, path: &Path, set: &[String]) -> Result<Plan> {
+    let mut study = Study::read_what_if(path, set)?;
+    let inputs = own.space.inputs(design, 0);
+    let is_set = |name: &str| set.iter().any(|it| it.split('=').next().is_some_and(|it| it.trim() == name));
+    // A formula that gave an input may be gone, so inputs have other numbers.
+    let model = study.model.clone();
+    let value = |axis: &Axis, column: usize| {
+        let name = &model.inputs[axis.inputs()[column]].name;
+        own.study.model.input(name).filter(|_| !is_set(name)).map_or_else(|| axis.value(column, 0), |own| inputs[own])
+    };
+    let alone = |axis: &Axis| -> Vec<Axis> {
+        let level = |(column, &input): (usize, &usize)| Axis::Single { input, levels: Levels::List(vec![value(axis, column)]) };
+        axis.inputs().iter().enumerate().map(level).collect()
+    };
+    study.design = study.design.iter().flat_map(alone).collect();
+    study.sample = None;
+    // Maps, histograms and lists are of many designs.
+    study.report = Report { columns: study.report.columns, front_budget: study.report.front_budget, ..Report::default() };
+    Ok(Plan::new(study))
+}
+
+/// Prints the inputs of a design, which the user knows by `number`, every output at its worst scenario, and the constraints with their
+/// margins.
+fn print_worst(plan: &Plan, design: u64, number_of: u64, request: &cli::EvalArgs) -> Result<()> {
     let study = &plan.study;
     let model = &study.model;
     // As if the study asked for every output as a report column.
@@ -266,7 +290,7 @@ fn print_worst(plan: &Plan, design: u64, as_json: bool) -> Result<()> {
         let worst = at_worst(constraint.quantity, "_constrained").or_else(|| at_worst(constraint.quantity, ""));
         (constraint, worst.filter(|it| it.value.is_some()))
     });
-    if as_json {
+    if request.json {
         let inputs: Map<_, _> =
             inputs.map(|input| (model.inputs[input].name.to_owned(), value_of(model, input, row.inputs[input]))).collect();
         let outputs = columns
@@ -281,11 +305,14 @@ fn print_worst(plan: &Plan, design: u64, as_json: bool) -> Result<()> {
                 "holds": value.is_some_and(|value| constraint.holds(value)),
             })
         });
-        let object = json!({
-            "model": model.name, "design": design, "inputs": inputs, "outputs": outputs.collect::<Map<_, _>>(),
+        let mut object = json!({
+            "model": model.name, "design": number_of, "inputs": inputs, "outputs": outputs.collect::<Map<_, _>>(),
             "constraints": constraints.collect::<Vec<_>>(), "status": status, "feasible": row.feasible,
             "scenarios": plan.scenarios(), "scenarios_not_ok": failed.len(),
         });
+        if !request.set.is_empty() {
+            object["set"] = json!(request.set);
+        }
         return terminal::print(&format!("{object:#}\n"));
     }
     let mut table = TextGrid::default();
@@ -314,8 +341,9 @@ fn print_worst(plan: &Plan, design: u64, as_json: bool) -> Result<()> {
     let not_ok = failed.first().map_or(String::new(), |(scenario, _)| {
         format!(" in scenario {scenario} ({} of {} scenarios are not ok)", failed.len(), plan.scenarios())
     });
+    let with = if request.set.is_empty() { String::new() } else { format!(" with {}", request.set.join(", ")) };
     terminal::print(&format!(
-        "{} {design}, worst of {} scenarios\n\n{}\n{}\n{}\n{}\n{}\n{}\n{} {status}{not_ok}\n{} {}\n",
+        "{} {number_of}{with}, worst of {} scenarios\n\n{}\n{}\n{}\n{}\n{}\n{}\n{} {status}{not_ok}\n{} {}\n",
         bold("design"),
         plan.scenarios(),
         bold("inputs"),

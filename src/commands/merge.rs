@@ -72,7 +72,7 @@ pub fn run(request: &cli::MergeArgs) -> Result<()> {
     let page = if request.no_report {
         None
     } else {
-        let study = request.out.join("study.toml");
+        let study = terminal::quoted(&request.out.join("study.toml"));
         Some(page::beside(&plan, &request.out, &study, record.time, threads, &Control::default())?)
     };
     if request.quiet { Ok(()) } else { terminal::print(&report::summary(&outcome, &record, &request.out, page.as_ref())) }

@@ -32,7 +32,7 @@ pub fn run(command: Command) -> Result<()> {
         Command::Models(request) => models::run(&request),
         Command::Eval(request) => eval::run(&request),
         Command::Export(request) => export::run(&request),
-        Command::Check { study } => check::run(&study),
+        Command::Check(request) => check::run(&request),
         Command::Sweep(request) => sweep::run(&request),
         Command::Merge(request) => merge::run(&request),
         Command::Slurm(request) => slurm::run(&request),
@@ -60,7 +60,12 @@ fn find_model(name: &str) -> Result<Arc<Model>> {
 
 /// Reads a study file; if there is none of this name, the request is wrong.
 fn read_study(path: &Path) -> Result<(Study, String)> {
-    Study::read(path).map_err(|error| match error {
+    read_study_set(path, &[])
+}
+
+/// The same with values in place of what it gives some inputs, each as `NAME=VALUE`.
+fn read_study_set(path: &Path, set: &[String]) -> Result<(Study, String)> {
+    Study::read_set(path, set).map_err(|error| match error {
         Error::Io { path, source } => Error::Request(format!("cannot read study {}: {source}", path.display())),
         other => other,
     })

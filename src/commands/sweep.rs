@@ -1,6 +1,6 @@
 //! `beltspace sweep`: judges every design of a study and writes the result.
 
-use super::{engine, read_study, report as page, threads};
+use super::{engine, read_study_set, report as page, threads};
 use crate::cli;
 use crate::terminal::{self, progress::Bar, report};
 use beltspace::checkpoint::Checkpoint;
@@ -21,7 +21,7 @@ use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 pub fn run(request: &cli::SweepArgs) -> Result<()> {
-    let (study, text) = read_study(&request.study)?;
+    let (study, text) = read_study_set(&request.study, &request.set)?;
     let shard = request.shard.unwrap_or(Shard::WHOLE);
     let out = request.out.clone().unwrap_or_else(|| default_out(&request.study, request.shard));
     let plan = Plan::new(study);
@@ -82,8 +82,14 @@ pub fn run(request: &cli::SweepArgs) -> Result<()> {
     };
     outcome.write(checkpoint, &text, &record).map_err(|error| name_the_way_back(error, &out, request))?;
     let page =
-        if request.no_report { None } else { Some(page::beside(&plan, &out, &request.study, record.time, settings.threads, &control)?) };
+        if request.no_report { None } else { Some(page::beside(&plan, &out, &named(request), record.time, settings.threads, &control)?) };
     if request.quiet { Ok(()) } else { terminal::print(&report::summary(&outcome, &record, &out, page.as_ref())) }
+}
+
+/// The study as words of a command line.
+fn named(request: &cli::SweepArgs) -> String {
+    let set = request.set.iter().map(|it| format!(" --set {}", terminal::quoted_word(it)));
+    terminal::quoted(&request.study) + &set.collect::<String>()
 }
 
 /// `results/<study name>`, of a shard `results/<study name>-K-of-N`.
@@ -102,8 +108,11 @@ pub fn files_of(plan: &Plan, no_page: bool) -> Vec<String> {
 
 /// A run was killed while it put its result in place; that has been completed. Only its page may be missing.
 fn finish_interrupted(plan: &Plan, request: &cli::SweepArgs, out: &Path, threads: usize) -> Result<()> {
-    let page =
-        if request.no_report { None } else { Some(page::beside(plan, out, &request.study, Duration::ZERO, threads, &Control::default())?) };
+    let page = if request.no_report {
+        None
+    } else {
+        Some(page::beside(plan, out, &named(request), Duration::ZERO, threads, &Control::default())?)
+    };
     let page = page.map_or(String::new(), |page| format!("page   {}\n", page.display()));
     if request.quiet {
         Ok(())
@@ -127,7 +136,7 @@ fn stop_on_ctrl_c(control: &Arc<Control>) {
 
 fn name_the_way_back(error: Error, out: &Path, request: &cli::SweepArgs) -> Error {
     let shard = request.shard.map_or(String::new(), |shard| format!(" --shard {shard}"));
-    let [study, folder] = [&request.study, out].map(terminal::quoted);
+    let (study, folder) = (named(request), terminal::quoted(out));
     let resume = format!("beltspace sweep {study} --out {folder}{shard} --resume");
     let checkpoint = out.join(CHECKPOINT).display().to_string();
     match error {

@@ -12,6 +12,7 @@
 //! | `quantities.rs` | `[constraints]`, `[objectives]`                    |
 //! | `report.rs`     | `[report]`                                         |
 //! | `contours.rs`   | the contours of its maps                           |
+//! | `set.rs`        | values in place of what a study says               |
 
 mod axes;
 mod cases;
@@ -21,6 +22,7 @@ mod formulas;
 mod quantities;
 mod range;
 mod report;
+mod set;
 mod syntax;
 mod table;
 #[cfg(test)]
@@ -39,6 +41,7 @@ use crate::files::{STUDY_BYTES, read_bytes};
 use crate::likeness::remedy;
 use crate::models::{Model, Models};
 use axes::{AxisClaim, AxisRole};
+use set::SetAxes;
 use std::cell::{Cell, RefCell};
 use std::path::Path;
 use std::sync::Arc;
@@ -114,6 +117,28 @@ impl Study {
     /// [`Error::Io`](crate::error::Error::Io) if the file cannot be read, [`Error::Study`](crate::error::Error::Study) with all mistakes
     /// in it.
     pub fn read(path: &Path) -> Result<(Self, String)> {
+        Self::read_set(path, &[])
+    }
+
+    /// The same with values in place of what the file gives some inputs, each as `NAME=VALUE`: of an axis, a fixed value or a formula. The
+    /// text is that of the file with these values.
+    ///
+    /// # Errors
+    /// As [`Study::read`]; [`Error::Request`](crate::error::Error::Request) for what is wrong with the values.
+    pub fn read_set(path: &Path, set: &[String]) -> Result<(Self, String)> {
+        Self::read_edited(path, set, SetAxes::Go)
+    }
+
+    /// The same for one design that is asked about: a design axis whose input is set stays, with that value only.
+    ///
+    /// # Errors
+    /// As [`Study::read_set`].
+    #[doc(hidden)]
+    pub fn read_what_if(path: &Path, set: &[String]) -> Result<Self> {
+        Self::read_edited(path, set, SetAxes::Stay).map(|(study, _)| study)
+    }
+
+    fn read_edited(path: &Path, set: &[String], axes: SetAxes) -> Result<(Self, String)> {
         let bytes = read_bytes(path, STUDY_BYTES, "long lists of values go into a CSV file")?;
         let file = path.display().to_string();
         let text = String::from_utf8(bytes).map_err(|error| {
@@ -122,8 +147,7 @@ impl Study {
             let message = "this is not UTF-8 text; save the file in the encoding UTF-8".to_owned();
             StudyErrors { problems: vec![Problem { file: file.clone(), line, column, message }] }
         })?;
-        let study = Self::parse_in(&text, &file, path.parent().unwrap_or(Path::new("")))?;
-        Ok((study, text))
+        Self::parse_edited(&Models::new(), &text, &file, path.parent().unwrap_or(Path::new("")), set, axes)
     }
 
     /// Checks a study given as text, such as `include_str!("study.toml")`. CSV files that it names are looked for in the current folder.
