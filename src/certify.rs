@@ -85,6 +85,13 @@ pub fn columns(study: &Study) -> Vec<Column> {
     columns
 }
 
+/// The column that has a constraint's worst value: its own, if an objective of the same quantity has the other worst end.
+pub(crate) fn constraint_column(columns: &[Column], quantity: Quantity, name: &str) -> Option<usize> {
+    let constrained = format!("{name}_constrained");
+    let own = columns.iter().position(|it| it.quantity == quantity && it.name == constrained);
+    own.or_else(|| columns.iter().position(|it| it.quantity == quantity))
+}
+
 /// Position of a quantity among the inputs that design axes set, in file order; `None` if it is not one of them. Such a quantity is the
 /// same in every scenario, and its column is among the design inputs, even if it is also an objective or has a constraint.
 pub fn design_input(study: &Study, quantity: Quantity) -> Option<usize> {
@@ -107,6 +114,8 @@ pub struct Row {
     pub index: u64,
     /// Does it keep all constraints, with status ok, in every scenario?
     pub feasible: bool,
+    /// The status in the first scenario in which it is not ok.
+    pub status: Status,
     /// All inputs in their units; those that differ between scenarios have their values of scenario 0.
     pub inputs: Vec<f64>,
     /// One entry per column.
@@ -189,6 +198,8 @@ struct Reference<'p> {
     plan: &'p Plan,
     columns: &'p [Column],
     wanted: Set,
+    /// Outputs that the study judges by: of these an overflow is a status.
+    used: Vec<usize>,
     row: Option<u64>,
     /// The prepared numbers of the first slow scenarios, as many as there is room for.
     prepared: Vec<Vec<f64>>,
@@ -204,7 +215,9 @@ impl<'p> Reference<'p> {
         let tracked = plan.tracked.iter().map(|(it, _)| it.quantity);
         let asked = columns.iter().map(|it| it.quantity).chain(plan.study.constraints.iter().map(|it| it.quantity)).chain(tracked);
         let wanted = asked.filter_map(Quantity::output).collect();
-        Self { plan, columns, wanted, row: None, prepared: Vec::new(), beyond: Vec::new(), latest: Latest::new(&plan.study.model), stop }
+        let (model, used) = (&plan.study.model, plan.used_outputs());
+        let used = (0..model.outputs.len()).filter(|&it| used.contains(it)).collect();
+        Self { plan, columns, wanted, used, row: None, prepared: Vec::new(), beyond: Vec::new(), latest: Latest::new(model), stop }
     }
 
     /// The row of a design; `None` if it was stopped.
@@ -222,6 +235,7 @@ impl<'p> Reference<'p> {
         let Sizes { outputs, conditions, .. } = model.kernel.sizes();
         let [mut si, mut outputs, mut margins] = [inputs.len(), outputs, conditions].map(|length| vec![0.0; length]);
         let mut feasible = true;
+        let mut first_not_ok = (u64::MAX, Status::Ok);
         let mut worst = vec![(f64::NEG_INFINITY, AtWorst { value: None, scenario: 0 }); self.columns.len()];
         for q in 0..plan.slow_scenarios.count() {
             plan.slow_scenarios.set(q, &mut inputs);
@@ -242,6 +256,7 @@ impl<'p> Reference<'p> {
                 model.kernel.finish(prepared, &si, self.wanted, &mut outputs);
                 model.kernel.conditions(prepared, &si, &mut margins);
                 let (status, present) = judge(model, &margins);
+                let scenario = plan.slow_scenarios.source_index(q) + plan.fast_scenarios.source_index(t);
                 let value = |quantity| match quantity {
                     Quantity::Input(input) => Some(inputs[input]),
                     Quantity::Output(output) => shown(model, &outputs, present, output),
@@ -250,7 +265,13 @@ impl<'p> Reference<'p> {
                 feasible &= plan.study.constraints.iter().all(|it| value(it.quantity).is_some_and(|value| it.holds(value)));
                 // A tracked quantity without a value in some scenario makes a design infeasible, as in the sweep.
                 feasible &= plan.tracked.iter().all(|(it, _)| value(it.quantity).is_some());
-                let scenario = plan.slow_scenarios.source_index(q) + plan.fast_scenarios.source_index(t);
+                // What no condition takes away and is absent all the same has overflowed.
+                let overflown = |&it: &usize| present.contains(it) && shown(model, &outputs, present, it).is_none();
+                let overflow = status == Status::Ok && self.used.iter().any(overflown);
+                let status = if overflow { Status::Overflow } else { status };
+                if status != Status::Ok && scenario < first_not_ok.0 {
+                    first_not_ok = (scenario, status);
+                }
                 for (column, (badness, at)) in self.columns.iter().zip(&mut worst) {
                     let Some(value) = value(column.quantity) else { continue };
                     let this = column.worst.badness(value);
@@ -261,6 +282,6 @@ impl<'p> Reference<'p> {
             }
         }
         let columns = worst.into_iter().map(|(_, at)| at).collect();
-        Some(Row { index, feasible, inputs: first, columns })
+        Some(Row { index, feasible, status: first_not_ok.1, inputs: first, columns })
     }
 }

@@ -123,6 +123,18 @@ pub struct EvalArgs {
     /// Scenario of a study, by its index; without it the worst over all scenarios
     #[arg(long, value_name = "K", requires = "design")]
     pub scenario: Option<u64>,
+    /// Evaluate every row of a table, CSV or .parquet, or CSV from standard input (-): columns give inputs; of a study, a row is a design
+    #[arg(long, value_name = "ROWS", conflicts_with_all = ["design", "json", "profile", "plot"])]
+    pub table: Option<PathBuf>,
+    /// Where the rows and their results go: .csv or .parquet, or CSV on standard output (-)
+    #[arg(long, value_name = "FILE", default_value = "-", requires = "table")]
+    pub out: PathBuf,
+    /// Take a column of the rows along as it is. May be repeated
+    #[arg(long, value_name = "COLUMN", requires = "table")]
+    pub carry: Vec<String>,
+    /// Replace the file of --out
+    #[arg(long, requires = "table")]
+    pub force: bool,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,

@@ -1,6 +1,6 @@
 //! `beltspace eval`: evaluates one design of a model or of a study.
 
-use super::{find_model, read_study};
+use super::{find_model, read_study, read_study_what_if, rows};
 use crate::cli;
 use crate::terminal::{self, TextGrid, bold, dim, short};
 use beltspace::certify;
@@ -13,15 +13,18 @@ use beltspace::names::is_picture;
 use beltspace::pictures::{self, PlotQuantity, Series};
 use beltspace::plan::Plan;
 use beltspace::screen::Control;
-use beltspace::study::{Axis, Levels, Quantity, Report, Study, number, value_of};
+use beltspace::study::{Axis, Levels, Quantity, Study, number, value_of};
 use beltspace::table::{Data, Table, TableColumn, csv_text};
 use beltspace::units::parse_value;
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 
 pub fn run(request: &cli::EvalArgs) -> Result<()> {
+    if let Some(rows) = &request.table {
+        return rows::run(request, rows);
+    }
     let path = Path::new(&request.target);
-    if beltspace::models::find(&request.target).is_none() && (path.extension().is_some_and(|it| it == "toml") || path.exists()) {
+    if is_study(&request.target) {
         return of_study(request, path);
     }
     let model = find_model(&request.target)?;
@@ -30,6 +33,12 @@ pub fn run(request: &cli::EvalArgs) -> Result<()> {
     }
     let inputs = inputs_of(&model, request.preset.as_deref(), &request.set)?;
     print_one(&model, &inputs, None, request)
+}
+
+/// Is the target a study's file, and no model?
+pub(super) fn is_study(target: &str) -> bool {
+    let path = Path::new(target);
+    models::find(target).is_none() && (path.extension().is_some_and(|it| it == "toml") || path.exists())
 }
 
 /// Defaults, then the preset, then every `--set`.
@@ -224,7 +233,7 @@ pub(super) fn studied(path: &Path, design: Option<u64>) -> Result<(Plan, u64)> {
 
 fn of_study(request: &cli::EvalArgs, path: &Path) -> Result<()> {
     if request.preset.is_some() {
-        return Err(Error::Request("--preset is for models; a study names its own".to_owned()));
+        return Err(no_preset());
     }
     let (own, number) = studied(path, request.design)?;
     let (plan, design) = if request.set.is_empty() { (own, number) } else { (what_if(&own, number, path, &request.set)?, 0) };
@@ -242,9 +251,14 @@ fn of_study(request: &cli::EvalArgs, path: &Path) -> Result<()> {
     print_worst(&plan, design, number, request)
 }
 
+/// The error for `--preset` with a study.
+pub(super) fn no_preset() -> Error {
+    Error::Request("--preset is for models; a study names its own".to_owned())
+}
+
 /// The study of this one design, with what `--set` says.
 fn what_if(own: &Plan, design: u64, path: &Path, set: &[String]) -> Result<Plan> {
-    let mut study = Study::read_what_if(path, set)?;
+    let mut study = read_study_what_if(path, set)?;
     let inputs = own.space.inputs(design, 0);
     let is_set = |name: &str| set.iter().any(|it| it.split('=').next().is_some_and(|it| it.trim() == name));
     // A formula that gave an input may be gone, so inputs have other numbers.
@@ -259,8 +273,6 @@ fn what_if(own: &Plan, design: u64, path: &Path, set: &[String]) -> Result<Plan>
     };
     study.design = study.design.iter().flat_map(alone).collect();
     study.sample = None;
-    // Maps, histograms and lists are of many designs.
-    study.report = Report { columns: study.report.columns, front_budget: study.report.front_budget, ..Report::default() };
     Ok(Plan::new(study))
 }
 

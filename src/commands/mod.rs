@@ -11,6 +11,7 @@ mod merge;
 mod models;
 mod report;
 mod reproduce;
+mod rows;
 mod slurm;
 mod sweep;
 #[cfg(feature = "gpu")]
@@ -65,10 +66,19 @@ fn read_study(path: &Path) -> Result<(Study, String)> {
 
 /// The same with values in place of what it gives some inputs, each as `NAME=VALUE`.
 fn read_study_set(path: &Path, set: &[String]) -> Result<(Study, String)> {
-    Study::read_set(path, set).map_err(|error| match error {
+    Study::read_set(path, set).map_err(unreadable)
+}
+
+/// The same where a design axis that is set stays, with that value only.
+fn read_study_what_if(path: &Path, set: &[String]) -> Result<Study> {
+    Study::read_what_if(path, set).map_err(unreadable)
+}
+
+fn unreadable(error: Error) -> Error {
+    match error {
         Error::Io { path, source } => Error::Request(format!("cannot read study {}: {source}", path.display())),
         other => other,
-    })
+    }
 }
 
 /// The number of threads asked for, or one per core; fewer if the system does not let so many be started.

@@ -17,6 +17,7 @@ pub use describe::{differences, number, value_of};
 #[cfg(test)]
 pub(crate) use read::tests::study_of;
 pub use read::{Problem, StudyErrors};
+pub(crate) use read::{input_text, input_value_checked};
 #[doc(hidden)]
 pub use resolved::worst_end;
 pub use resolved::{

@@ -33,6 +33,7 @@ pub(super) use quantities::MOST_OBJECTIVES;
 pub(super) use range::check_levels;
 pub(super) use report::{BINS, FRONT_BUDGET, MOST_CELLS, MOST_SAMPLE, MOST_TOP, MOST_VARIANTS};
 pub(super) use value::shown;
+pub(crate) use value::{checked as input_value_checked, input_text};
 
 use super::axis::{Axis, Method, Sample};
 use super::resolved::Study;
