@@ -44,6 +44,8 @@ const PAGE_VARIANT: u64 = 1_400;
 const DOT: u64 = 24;
 /// Indices kept per design of a sample: up to twice as many as are wanted may wait.
 const INDICES: u64 = 2;
+/// Copies of packed numbers: those that are kept, and while a checkpoint is saved a copy and its bytes.
+const PACKED_COPIES: u64 = 3;
 /// Copies of a point of the front during the sweep.
 const POINT_COPIES: u64 = 6;
 /// Measured peaks scatter, so the estimate is multiplied by this many per cent: rather too high than too low.
@@ -85,6 +87,8 @@ struct StudySizes {
     /// Designs of which only the index is kept during a sweep, and designs that are dots on a page.
     indices: u64,
     dots: u64,
+    /// Bytes of packed numbers of designs.
+    packed: u64,
     /// Bytes of a row.
     row: u64,
     outputs: u64,
@@ -114,6 +118,7 @@ impl StudySizes {
             rows: variants + room.rows,
             indices: room.indices,
             dots: room.dots,
+            packed: room.packed,
             variants,
             row: ROW + certify::columns(study).iter().map(bytes_of).sum::<u64>(),
             outputs: study.model.outputs.len() as u64,
@@ -145,6 +150,7 @@ impl Needs {
             solving(plan, threads),
             8 * sizes.bins * (threads + 2),
             times(sizes.indices, INDICES * 8 * (threads + 2)),
+            times(sizes.packed, PACKED_COPIES),
         ]);
         let met = times(sizes.cells.min(MET), CELL_MET);
         let points = times(front, POINT_COPIES * 8 * (sizes.objectives + 1));

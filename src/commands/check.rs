@@ -39,7 +39,7 @@ pub fn run(request: &cli::CheckArgs) -> Result<()> {
     #[allow(clippy::cast_precision_loss, reason = "an estimate for people")]
     let evaluations = designs as f64 * scenarios as f64;
     // The sample that shows what limits feasibility and a list of all designs are judged a second time.
-    let listed = if study.report.variants { designs } else { 0 };
+    let listed = if study.report.variants || study.report.feasible { designs } else { 0 };
     let seconds = [designs, designs.min(model.sample), listed].iter().map(|&judged| speed.of(judged, cores)).sum();
     let method = match why_every_design(&plan, speed.of(designs, cores)) {
         Some(why) => format!("every design: {why}"),

@@ -198,6 +198,9 @@ pub struct Report {
     /// Is every design to be listed, feasible or not?
     #[serde(default)]
     pub variants: bool,
+    /// Are all feasible designs to be written?
+    #[serde(default)]
+    pub feasible: bool,
 }
 
 impl Report {
@@ -250,6 +253,13 @@ pub struct Study {
 }
 
 impl Study {
+    /// Numbers in a row of a table of designs, at most: of what has a scenario, two.
+    pub(crate) fn row_numbers(&self) -> u64 {
+        let inputs = self.design.iter().map(|axis| axis.inputs().len()).sum::<usize>();
+        let quantities = self.objectives.len() + self.constraints.len() + self.report.columns.len();
+        (1 + inputs + 2 * quantities) as u64
+    }
+
     /// What the model has to say of this study as a whole.
     pub fn remarks(&self) -> Vec<String> {
         let set_by_axes =

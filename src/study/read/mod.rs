@@ -31,7 +31,7 @@ mod value;
 
 pub(super) use quantities::MOST_OBJECTIVES;
 pub(super) use range::check_levels;
-pub(super) use report::{BINS, FRONT_BUDGET, MOST_CELLS, MOST_SAMPLE, MOST_TOP, MOST_VARIANTS};
+pub(super) use report::{BINS, FRONT_BUDGET, MOST_CELLS, MOST_FEASIBLE, MOST_SAMPLE, MOST_TOP, MOST_VARIANTS};
 pub(super) use value::shown;
 pub(crate) use value::{checked as input_value_checked, input_text};
 
@@ -204,6 +204,8 @@ struct Reader<'a> {
     base: Vec<f64>,
     /// Are the designs sampled?
     sampled: bool,
+    /// How many are, where that is understood.
+    sample_count: Option<u64>,
     /// Every place that gives an input values.
     claims: RefCell<Vec<AxisClaim>>,
     /// Is an input given values under a wrong name? Then it is unknown which inputs have none.
@@ -229,6 +231,7 @@ fn read_study_of(model: Option<Arc<Model>>, top: &TomlTable<'_>, problems: &Prob
         folder,
         base: read_preset(top, &model, problems),
         sampled: top.get("sample").is_some(),
+        sample_count: sample.map(|it| it.count),
         claims: RefCell::default(),
         misnamed: Cell::default(),
     };
@@ -376,13 +379,13 @@ impl Reader<'_> {
         let asks = |key: &&str| report.is_some_and(|table| table.get(key).is_some());
         let broken = top.get("objectives").is_some() && objectives.is_none() || top.get("report").is_some() && report.is_none();
         let empty = objectives.is_none_or(|table| table.entries.is_empty());
-        if empty && !broken && !["top", "histograms", "maps", "sample", "variants"].iter().any(asks) {
+        if empty && !broken && !["top", "histograms", "maps", "sample", "variants", "feasible"].iter().any(asks) {
             let example = self.some_output();
             self.problems.add_if_complete(
                 objectives.map_or(0, |table| table.at),
                 format!(
                     "the study asks for nothing; name an objective in [objectives], such as {example} = \"min\", \
-                     or top, histograms, maps, a sample or variants in [report]"
+                     or top, histograms, maps, a sample, variants or feasible in [report]"
                 ),
             );
         }
