@@ -74,6 +74,9 @@ pub struct CheckArgs {
     /// Set an input in place of its axis, fixed value or formula; a unit may follow the number. May be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     pub set: Vec<String>,
+    /// As with sweep --feasible: also says how large the file of all feasible designs may become
+    #[arg(long)]
+    pub feasible: bool,
 }
 
 /// Options of `export`.
@@ -154,6 +157,9 @@ pub struct SweepArgs {
     /// Set an input in place of its axis, fixed value or formula; a unit may follow the number. May be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     pub set: Vec<String>,
+    /// Write every feasible design into feasible.parquet
+    #[arg(long)]
+    pub feasible: bool,
     /// Result directory [default: results/<study name>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

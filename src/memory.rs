@@ -303,6 +303,11 @@ const NUMBER: u64 = 19;
 /// Bytes of a value in Parquet.
 const PACKED: u64 = 8;
 
+/// Of a study that asks for all feasible designs: as many as there may be, and about how many bytes each takes in their file.
+pub fn most_feasible(plan: &Plan) -> Option<(u64, u64)> {
+    plan.study.report.feasible.then(|| (plan.designs(), PACKED * plan.study.row_numbers()))
+}
+
 /// The large files that a run will write, with about how many bytes they will have.
 pub fn large_files(plan: &Plan, front: u64) -> Vec<(String, u64)> {
     let study = &plan.study;

@@ -1,13 +1,14 @@
 //! `beltspace check`: checks a study and estimates its run.
 
-use super::{read_study_set, threads};
+use super::{read_study_with, threads};
 use crate::cli;
 use crate::terminal::{self, TextGrid, bold, grouped, scaled, span};
 use beltspace::error::Result;
-use beltspace::memory::{Needs, large_files};
+use beltspace::memory::{Needs, large_files, most_feasible};
 use beltspace::models::Set;
 use beltspace::plan::Plan;
-use beltspace::study::Axis;
+use beltspace::reduce::FEASIBLE_FILE;
+use beltspace::study::{Axis, StudyEdits};
 use beltspace::sweep::costs::{PATIENCE, Speed, why_every_design};
 use std::time::Duration;
 
@@ -15,7 +16,7 @@ use std::time::Duration;
 const TRIAL: Duration = Duration::from_millis(300);
 
 pub fn run(request: &cli::CheckArgs) -> Result<()> {
-    let (study, _) = read_study_set(&request.study, &request.set)?;
+    let (study, _) = read_study_with(&request.study, StudyEdits { set: &request.set, feasible: request.feasible })?;
     let plan = Plan::new(study);
     let study = &plan.study;
     let model = &study.model;
@@ -65,6 +66,9 @@ pub fn run(request: &cli::CheckArgs) -> Result<()> {
     let front =
         if study.objectives.is_empty() { String::new() } else { format!(", with about {} designs on the front", grouped(needs.front)) };
     fact("memory", format!("about {} MB{front}", needs.run.div_ceil(1_000_000)));
+    if let Some(size) = feasible_file(&plan) {
+        fact("feasible file", size);
+    }
     for (name, bytes) in large_files(&plan, needs.front) {
         fact("large file", format!("{name}, about {} MB", grouped(bytes / 1_000_000)));
     }
@@ -77,6 +81,13 @@ pub fn run(request: &cli::CheckArgs) -> Result<()> {
         text.push_str(&format!("{} {warning}\n", bold("warning:")));
     }
     terminal::print(&text)
+}
+
+/// What the file of all feasible designs takes at most, if the study asks for it.
+pub(super) fn feasible_file(plan: &Plan) -> Option<String> {
+    let (rows, bytes) = most_feasible(plan)?;
+    let size = grouped((rows * bytes).div_ceil(1_000_000));
+    Some(format!("{FEASIBLE_FILE}, at most {} designs x {bytes} bytes = {size} MB", grouped(rows)))
 }
 
 fn ends(plan: &Plan, axis: &Axis, column: usize, input: usize) -> String {

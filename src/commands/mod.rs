@@ -22,7 +22,7 @@ use crate::terminal;
 use beltspace::error::{Error, Result};
 use beltspace::models::Model;
 use beltspace::parallel::to_be_had;
-use beltspace::study::Study;
+use beltspace::study::{Study, StudyEdits};
 use clap::CommandFactory;
 use std::path::Path;
 use std::sync::Arc;
@@ -61,12 +61,12 @@ fn find_model(name: &str) -> Result<Arc<Model>> {
 
 /// Reads a study file; if there is none of this name, the request is wrong.
 fn read_study(path: &Path) -> Result<(Study, String)> {
-    read_study_set(path, &[])
+    read_study_with(path, StudyEdits::default())
 }
 
-/// The same with values in place of what it gives some inputs, each as `NAME=VALUE`.
-fn read_study_set(path: &Path, set: &[String]) -> Result<(Study, String)> {
-    Study::read_set(path, set).map_err(unreadable)
+/// The same with what else is asked of it.
+fn read_study_with(path: &Path, edits: StudyEdits<'_>) -> Result<(Study, String)> {
+    Study::read_with(path, edits).map_err(unreadable)
 }
 
 /// The same where a design axis that is set stays, with that value only.

@@ -1,6 +1,7 @@
 //! `beltspace sweep`: judges every design of a study and writes the result.
 
-use super::{engine, read_study_set, report as page, threads};
+use super::check::feasible_file;
+use super::{engine, read_study_with, report as page, threads};
 use crate::cli;
 use crate::terminal::{self, progress::Bar, report};
 use beltspace::checkpoint::Checkpoint;
@@ -12,6 +13,7 @@ use beltspace::plan::Plan;
 use beltspace::result_files::result_files;
 use beltspace::run::judge::{How, Judged, judge, record_of};
 use beltspace::run::{device, method};
+use beltspace::study::StudyEdits;
 use beltspace::sweep::costs::Speed;
 use beltspace::sweep::{Control, Settings};
 use beltspace::tiles::Shard;
@@ -21,7 +23,7 @@ use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 pub fn run(request: &cli::SweepArgs) -> Result<()> {
-    let (study, text) = read_study_set(&request.study, &request.set)?;
+    let (study, text) = read_study_with(&request.study, StudyEdits { set: &request.set, feasible: request.feasible })?;
     let shard = request.shard.unwrap_or(Shard::WHOLE);
     let out = request.out.clone().unwrap_or_else(|| default_out(&request.study, request.shard));
     let plan = Plan::new(study);
@@ -58,6 +60,9 @@ pub fn run(request: &cli::SweepArgs) -> Result<()> {
         return finish_shard(&plan, &out, shard, request.quiet);
     }
     let resumed = checkpoint.saved().has_progress();
+    if let Some(size) = feasible_file(&plan).filter(|_| !request.quiet) {
+        terminal::remark("note", &size);
+    }
     let front_bytes = request.front_memory << 20;
     let settings = Settings { threads, tile: request.tile, shard, front_bytes, ..Settings::default() };
     let bar = Bar::start(&control, shard.range(plan.designs()), request.quiet);
@@ -136,7 +141,8 @@ fn stop_on_ctrl_c(control: &Arc<Control>) {
 
 fn name_the_way_back(error: Error, out: &Path, request: &cli::SweepArgs) -> Error {
     let shard = request.shard.map_or(String::new(), |shard| format!(" --shard {shard}"));
-    let (study, folder) = (named(request), terminal::quoted(out));
+    let feasible = if request.feasible { " --feasible" } else { "" };
+    let (study, folder) = (named(request) + feasible, terminal::quoted(out));
     let resume = format!("beltspace sweep {study} --out {folder}{shard} --resume");
     let checkpoint = out.join(CHECKPOINT).display().to_string();
     match error {

@@ -60,6 +60,22 @@ pub fn write(outcome: &Certified<'_>, list: &FeasibleList, threads: usize, contr
     stream.finish()
 }
 
+/// The whole table in memory.
+///
+/// # Errors
+/// As [`write`], but for those of files.
+pub fn table(outcome: &Certified<'_>, list: &FeasibleList) -> Result<Table> {
+    let mut whole: Option<Table> = None;
+    each_block(outcome, list, outcome.threads, outcome.control, |table| {
+        match &mut whole {
+            None => whole = Some(table),
+            Some(whole) => whole.append(table),
+        }
+        Ok(())
+    })?;
+    whole.ok_or_else(|| Error::Disagreement("the table of feasible designs has no columns".to_owned()))
+}
+
 /// Is a level of the design axis of this input a word? All blocks must have the same kind of column.
 fn may_be_a_word(study: &Study, input: usize) -> bool {
     let table = &study.model.inputs[input];

@@ -3,7 +3,7 @@
 //! Without the feature `pictures` it has no pictures and no page, without `parquet` no tables in Parquet: `front.csv` has the same values
 //! as `front.parquet`, and maps of any size are CSV. All other files have the same bytes.
 
-mod feasible;
+pub(crate) mod feasible;
 #[cfg(feature = "pictures")]
 mod pictures;
 #[cfg(feature = "pictures")]

@@ -5,7 +5,8 @@
 
 use super::axis::{Axis, Levels, Sample};
 use super::read::{
-    BINS, FRONT_BUDGET, MOST_CELLS, MOST_FEASIBLE, MOST_LEVELS, MOST_OBJECTIVES, MOST_SAMPLE, MOST_SCENARIOS, MOST_TOP, MOST_VARIANTS, check_levels,
+    BINS, FRONT_BUDGET, MOST_CELLS, MOST_FEASIBLE, MOST_LEVELS, MOST_OBJECTIVES, MOST_SAMPLE, MOST_SCENARIOS, MOST_TOP, MOST_VARIANTS,
+    check_levels,
 };
 use super::resolved::{Best, Constraint, ContourSpec, MapSpec, Quantity, Report, Study, Thresholds};
 use crate::models::Model;

@@ -14,6 +14,8 @@ mod resolved;
 pub use axis::{Axis, Levels, Method, Sample};
 #[doc(hidden)]
 pub use describe::{differences, number, value_of};
+#[doc(hidden)]
+pub use read::StudyEdits;
 #[cfg(test)]
 pub(crate) use read::tests::study_of;
 pub use read::{Problem, StudyErrors};

@@ -96,6 +96,18 @@ impl Table {
         Self { columns: self.columns.iter().map(|it| TableColumn { data: part(&it.data), ..it.clone() }).collect() }
     }
 
+    /// Adds the rows of a table of the same columns.
+    pub(crate) fn append(&mut self, other: Self) {
+        for (own, other) in self.columns.iter_mut().zip(other.columns) {
+            match (&mut own.data, other.data) {
+                (Data::Whole(own), Data::Whole(other)) => own.extend(other),
+                (Data::Number(own), Data::Number(other)) => own.extend(other),
+                (Data::Text(own), Data::Text(other)) => own.extend(other),
+                _ => unreachable!("columns of the same table are of one kind"),
+            }
+        }
+    }
+
     /// The first name that two of its columns have.
     pub(crate) fn doubled_name(&self) -> Option<&str> {
         let mut known = std::collections::HashSet::new();

@@ -43,6 +43,7 @@ use crate::likeness::remedy;
 use crate::models::{Model, Models};
 use axes::{AxisClaim, AxisRole};
 use set::SetAxes;
+pub use set::StudyEdits;
 use std::cell::{Cell, RefCell};
 use std::path::Path;
 use std::sync::Arc;
@@ -127,7 +128,16 @@ impl Study {
     /// # Errors
     /// As [`Study::read`]; [`Error::Request`](crate::error::Error::Request) for what is wrong with the values.
     pub fn read_set(path: &Path, set: &[String]) -> Result<(Self, String)> {
-        Self::read_edited(path, set, SetAxes::Go)
+        Self::read_with(path, StudyEdits { set, feasible: false })
+    }
+
+    /// The same with all that may be asked of a study besides what its file says.
+    ///
+    /// # Errors
+    /// As [`Study::read_set`].
+    #[doc(hidden)]
+    pub fn read_with(path: &Path, edits: StudyEdits<'_>) -> Result<(Self, String)> {
+        Self::read_edited(path, edits, SetAxes::Go)
     }
 
     /// The same for one design that is asked about: a design axis whose input is set stays, with that value only.
@@ -136,10 +146,10 @@ impl Study {
     /// As [`Study::read_set`].
     #[doc(hidden)]
     pub fn read_what_if(path: &Path, set: &[String]) -> Result<Self> {
-        Self::read_edited(path, set, SetAxes::Stay).map(|(study, _)| study)
+        Self::read_edited(path, StudyEdits { set, feasible: false }, SetAxes::Stay).map(|(study, _)| study)
     }
 
-    fn read_edited(path: &Path, set: &[String], axes: SetAxes) -> Result<(Self, String)> {
+    fn read_edited(path: &Path, edits: StudyEdits<'_>, axes: SetAxes) -> Result<(Self, String)> {
         let bytes = read_bytes(path, STUDY_BYTES, "long lists of values go into a CSV file")?;
         let file = path.display().to_string();
         let text = String::from_utf8(bytes).map_err(|error| {
@@ -148,7 +158,7 @@ impl Study {
             let message = "this is not UTF-8 text; save the file in the encoding UTF-8".to_owned();
             StudyErrors { problems: vec![Problem { file: file.clone(), line, column, message }] }
         })?;
-        Self::parse_edited(&Models::new(), &text, &file, path.parent().unwrap_or(Path::new("")), set, axes)
+        Self::parse_edited(&Models::new(), &text, &file, path.parent().unwrap_or(Path::new("")), edits, axes)
     }
 
     /// Checks a study given as text, such as `include_str!("study.toml")`. CSV files that it names are looked for in the current folder.

@@ -57,7 +57,11 @@ impl Reader<'_> {
         let mut report = Report { front_budget: FRONT_BUDGET.0, ..Report::default() };
         let Some(table) = table else { return report };
         let known = ReportContext { named, objectives, design, fixed };
-        table.check_keys(self.problems, "[report]", &["columns", "top", "histograms", "maps", "sample", "front_budget", "variants", "feasible"]);
+        table.check_keys(
+            self.problems,
+            "[report]",
+            &["columns", "top", "histograms", "maps", "sample", "front_budget", "variants", "feasible"],
+        );
         if let Some(entry) = table.get("columns") {
             report.columns = self.columns_of_report(entry, &known);
         }

@@ -18,8 +18,18 @@ use toml::de::{DeTable, DeValue};
 
 /// A value that replaces what the study says.
 struct Setting {
+    table: &'static str,
     name: String,
     value: String,
+}
+
+/// What is asked of a study besides what its file says.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct StudyEdits<'a> {
+    /// Values in place of what it gives some inputs, each as `NAME=VALUE`.
+    pub set: &'a [String],
+    /// `feasible = true` in its `[report]`.
+    pub feasible: bool,
 }
 
 impl Setting {
@@ -27,13 +37,25 @@ impl Setting {
     fn new(assignment: &str) -> std::result::Result<Self, String> {
         let parts = assignment.split_once('=').map(|(name, value)| (name.trim(), value.trim()));
         match parts.filter(|(name, value)| !name.is_empty() && !value.is_empty()) {
-            Some((name, value)) => Ok(Self { name: name.to_owned(), value: value.to_owned() }),
+            Some((name, value)) => Ok(Self { table: "fixed", name: name.to_owned(), value: value.to_owned() }),
             None => Err(format!("--set \"{}\": write NAME=VALUE", shortened(assignment))),
         }
     }
 
+    /// `feasible = true` in `[report]`.
+    fn feasible() -> Self {
+        Self { table: "report", name: "feasible".to_owned(), value: "true".to_owned() }
+    }
+
+    fn is_of_report(&self) -> bool {
+        self.table == "report"
+    }
+
     /// The value as a study file has it: a number, else a text.
     fn in_toml(&self) -> String {
+        if self.is_of_report() {
+            return self.value.clone();
+        }
         match self.value.parse::<f64>() {
             Ok(number) if number.is_finite() => format!("{number:?}").trim_end_matches(".0").to_owned(),
             _ => Value::from(self.value.as_str()).to_string(),
@@ -43,10 +65,16 @@ impl Setting {
     /// The same as [`unplaced`] gives it.
     fn in_json(&self) -> Value {
         let text = self.in_toml();
+        if self.is_of_report() {
+            return Value::from(true);
+        }
         if text.starts_with('"') { Value::from(self.value.as_str()) } else { Value::from(text) }
     }
 
     fn told(&self) -> String {
+        if self.is_of_report() {
+            return "--feasible".to_owned();
+        }
         format!("--set {}={}", shortened(&self.name), shortened(&self.value))
     }
 }
@@ -73,8 +101,8 @@ struct EditedText {
     text: String,
     /// Of each setting: where it stands.
     places: Vec<Range<usize>>,
-    /// The first line that was put in, and how many.
-    lines: Range<usize>,
+    /// Lines that were put in, in order.
+    lines: Vec<Range<usize>>,
 }
 
 impl Study {
@@ -84,7 +112,7 @@ impl Study {
     /// # Errors
     /// [`Error::Request`] for what is wrong with the values, [`Error::Study`] for what is wrong with the study, in file order.
     pub fn parse_set(models: &Models, text: &str, file: &str, folder: &Path, set: &[String]) -> Result<(Self, String)> {
-        Self::parse_edited(models, text, file, folder, set, SetAxes::Go)
+        Self::parse_edited(models, text, file, folder, StudyEdits { set, feasible: false }, SetAxes::Go)
     }
 
     /// The same, where design axes go or stay.
@@ -93,10 +121,11 @@ impl Study {
         text: &str,
         file: &str,
         folder: &Path,
-        set: &[String],
+        edits: StudyEdits<'_>,
         axes: SetAxes,
     ) -> Result<(Self, String)> {
-        let settings = read_settings(set)?;
+        let mut settings = read_settings(edits.set)?;
+        settings.extend(edits.feasible.then(Setting::feasible));
         // What is wrong with the syntax is told first.
         let tree = if settings.is_empty() { None } else { DeTable::parse(text).ok() };
         let Some(tree) = tree else {
@@ -140,6 +169,14 @@ fn edited(settings: &[Setting], top: &TomlTable<'_>, text: &str, models: &Models
     for (number, setting) in settings.iter().enumerate() {
         let name = setting.name.as_str();
         let entry = |table: &str| top.get(table)?.node.table()?.entries.into_iter().find(|entry| entry.key == name);
+        let in_place = |entry: Entry<'_>| Edit { range: span(&entry), with: line_of(setting), writes: Some(number) };
+        if setting.is_of_report() {
+            match entry("report") {
+                Some(entry) => edits.push(in_place(entry)),
+                None => new.push(number),
+            }
+            continue;
+        }
         if let Some((table, axis)) = joint_axis(name, top, folder, &is_input) {
             let why = format!("{} is set by the rows of \"{axis}\" in [{table}]", setting.name);
             problems.push(format!("{}: {why}; --set replaces the axis of one input: change the rows", setting.told()));
@@ -153,7 +190,6 @@ fn edited(settings: &[Setting], top: &TomlTable<'_>, text: &str, models: &Models
             problems.push(format!("{}: there is no input of that name; names have letters, digits and \"_\"", setting.told()));
             continue;
         }
-        let in_place = |entry: Entry<'_>| Edit { range: span(&entry), with: line_of(setting), writes: Some(number) };
         if let Some(axis) = entry("design").filter(|_| axes == SetAxes::Stay) {
             edits.push(in_place(axis));
             continue;
@@ -169,10 +205,13 @@ fn edited(settings: &[Setting], top: &TomlTable<'_>, text: &str, models: &Models
     if !problems.is_empty() {
         return Err(refusal(problems));
     }
-    let (at, before, after) = place_in_fixed(top, text);
-    for &number in &new {
-        let [before, after] = [&before, &after].map(|it| if number == new[0] { &it[0] } else { &it[1] });
-        edits.push(Edit { range: at..at, with: format!("{before}{}{after}", line_of(&settings[number])), writes: Some(number) });
+    for table in ["fixed", "report"] {
+        let (at, before, after) = place_in(table, top, text);
+        let of_table = new.iter().filter(|&&number| settings[number].table == table);
+        for (count, &number) in of_table.enumerate() {
+            let [before, after] = [&before, &after].map(|it| &it[count.min(1)]);
+            edits.push(Edit { range: at..at, with: format!("{before}{}{after}", line_of(&settings[number])), writes: Some(number) });
+        }
     }
     let edited = applied(edits, text, settings.len());
     if is_as_meant(&edited.text, top, settings) {
@@ -232,27 +271,27 @@ fn left_out(entry: &Entry<'_>, text: &str) -> Edit {
     Edit { range, with: blank, writes: None }
 }
 
-/// Where a further fixed input goes, and what goes before and after it: the first, and any other.
-fn place_in_fixed(top: &TomlTable<'_>, text: &str) -> (usize, [String; 2], [String; 2]) {
+/// Where a further entry of a table goes, and what goes before and after it: the first, and any other.
+fn place_in(name: &str, top: &TomlTable<'_>, text: &str) -> (usize, [String; 2], [String; 2]) {
     let both = |it: &str| [it.to_owned(), it.to_owned()];
     let next_line = |at: usize| text[at..].find('\n').map_or((text.len(), "\n"), |end| (at + end + 1, ""));
-    let Some(fixed) = top.get("fixed") else {
+    let Some(table) = top.get(name) else {
         let start = if text.is_empty() || text.ends_with('\n') { "" } else { "\n" };
-        return (text.len(), [format!("{start}\n[fixed]\n"), String::new()], both("\n"));
+        return (text.len(), [format!("{start}\n[{name}]\n"), String::new()], both("\n"));
     };
-    let header = text[..fixed.key_at].trim_end().ends_with('[');
-    let entries = fixed.node.table().map_or(Vec::new(), |table| table.entries);
+    let header = text[..table.key_at].trim_end().ends_with('[');
+    let entries = table.node.table().map_or(Vec::new(), |table| table.entries);
     match entries.last() {
         None if header => {
-            let (at, start) = next_line(fixed.key_at);
+            let (at, start) = next_line(table.key_at);
             (at, [start.to_owned(), String::new()], both("\n"))
         }
         // Without a value `fixed = {}` is all there can be.
-        None => (fixed.node.end.saturating_sub(1), [" ".to_owned(), ", ".to_owned()], both("")),
+        None => (table.node.end.saturating_sub(1), [" ".to_owned(), ", ".to_owned()], both("")),
         Some(last) if header || text[..last.key_at].trim_end().ends_with('.') => {
             let (at, start) = next_line(last.node.end);
-            let key = if header { "" } else { "fixed." };
-            (at, [format!("{start}{key}"), key.to_owned()], both("\n"))
+            let key = if header { String::new() } else { format!("{name}.") };
+            (at, [format!("{start}{key}"), key], both("\n"))
         }
         Some(last) => (last.node.end, both(", "), both("")),
     }
@@ -261,15 +300,14 @@ fn place_in_fixed(top: &TomlTable<'_>, text: &str) -> (usize, [String; 2], [Stri
 fn applied(mut edits: Vec<Edit>, text: &str, settings: usize) -> EditedText {
     // In order; where several are put in at one place they keep theirs.
     edits.sort_by_key(|edit| edit.range.start);
-    let mut edited = EditedText { text: String::new(), places: vec![0..0; settings], lines: 0..0 };
+    let mut edited = EditedText { text: String::new(), places: vec![0..0; settings], lines: Vec::new() };
     let mut done = 0;
     for Edit { range, with, writes } in edits {
         edited.text.push_str(&text[done..range.start]);
         let start = edited.text.len();
         if range.is_empty() {
             let line = edited.text.matches('\n').count();
-            let first = if edited.lines.is_empty() { line } else { edited.lines.start };
-            edited.lines = first..line + with.matches('\n').count();
+            edited.lines.push(line..line + with.matches('\n').count());
         }
         edited.text.push_str(&with);
         if let Some(setting) = writes {
@@ -291,16 +329,20 @@ fn is_as_meant(text: &str, top: &TomlTable<'_>, settings: &[Setting]) -> bool {
         let entries = table.get(name).and_then(|entry| entry.node.table()).map_or(Vec::new(), |table| table.entries);
         entries.iter().filter(|entry| !is_set(entry.key)).map(|entry| (entry.key.to_owned(), unplaced(entry.node.value))).collect()
     };
-    let edited = |name: &str| GIVING.contains(&name) || name == "formulas";
+    let edited = |name: &str| GIVING.contains(&name) || ["formulas", "report"].contains(&name);
     let value = |name: &str, table: &str| own.get(table)?.node.table()?.get(name).map(|entry| unplaced(entry.node.value));
     // It has one place, whichever that is.
     let placed = |it: &Setting| {
-        let found: Vec<_> = GIVING.iter().chain(&["formulas"]).filter_map(|table| value(&it.name, table)).collect();
+        let found: Vec<_> = if it.is_of_report() {
+            value(&it.name, "report").into_iter().collect()
+        } else {
+            GIVING.iter().chain(&["formulas"]).filter_map(|table| value(&it.name, table)).collect()
+        };
         found == [it.in_json()]
     };
     top.entries.iter().all(|entry| {
         if edited(entry.key) { others(top, entry.key) == others(&own, entry.key) } else { same(Some(entry), own.get(entry.key)) }
-    }) && own.entries.iter().all(|entry| entry.key == "fixed" || top.get(entry.key).is_some())
+    }) && own.entries.iter().all(|entry| ["fixed", "report"].contains(&entry.key) || top.get(entry.key).is_some())
         && settings.iter().all(placed)
 }
 
@@ -327,11 +369,13 @@ fn explained(errors: StudyErrors, settings: &[Setting], edited: &EditedText, rig
         let at = (problem.line, problem.column);
         if let Some(number) = places.iter().position(|(from, to)| (from..=to).contains(&&at)) {
             let labels = ["fixed input", "axis"].map(|what| format!("{what} \"{}\": ", settings[number].name));
-            let message = labels.iter().find_map(|label| problem.message.strip_prefix(label)).unwrap_or(&problem.message);
+            let labels = labels.iter().map(String::as_str).chain(["feasible: "]);
+            let message = labels.into_iter().find_map(|label| problem.message.strip_prefix(label)).unwrap_or(&problem.message);
             of_settings.push(format!("{}: {message}", settings[number].told()));
             continue;
         }
-        let line = if problem.line > edited.lines.end { problem.line - edited.lines.len() } else { problem.line };
+        let put_in = edited.lines.iter().filter(|lines| lines.end < problem.line).map(Range::len).sum::<usize>();
+        let line = problem.line - put_in;
         let message = if right { format!("{}; without {told} the study is right", problem.message) } else { problem.message };
         of_file.push(Problem { line, message, ..problem });
     }
