@@ -69,7 +69,7 @@ pub fn run(request: &cli::MergeArgs) -> Result<()> {
             left: None,
         },
     };
-    outcome.write(checkpoint, &text, &record)?;
+    outcome.write(checkpoint, &text, &record, &control)?;
     let page = if request.no_report {
         None
     } else {

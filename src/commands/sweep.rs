@@ -85,7 +85,7 @@ pub fn run(request: &cli::SweepArgs) -> Result<()> {
         device: device.zip(did).map(|(device, did)| device.describe(&did)),
         method: record_of(method.why, settler),
     };
-    outcome.write(checkpoint, &text, &record).map_err(|error| name_the_way_back(error, &out, request))?;
+    outcome.write(checkpoint, &text, &record, &control).map_err(|error| name_the_way_back(error, &out, request))?;
     let page =
         if request.no_report { None } else { Some(page::beside(&plan, &out, &named(request), record.time, settings.threads, &control)?) };
     if request.quiet { Ok(()) } else { terminal::print(&report::summary(&outcome, &record, &out, page.as_ref())) }

@@ -64,9 +64,9 @@ pub fn write(outcome: &Certified<'_>, list: &FeasibleList, threads: usize, contr
 ///
 /// # Errors
 /// As [`write`], but for those of files.
-pub fn table(outcome: &Certified<'_>, list: &FeasibleList) -> Result<Table> {
+pub fn table(outcome: &Certified<'_>, list: &FeasibleList, threads: usize, control: &Control) -> Result<Table> {
     let mut whole: Option<Table> = None;
-    each_block(outcome, list, outcome.threads, outcome.control, |table| {
+    each_block(outcome, list, threads, control, |table| {
         match &mut whole {
             None => whole = Some(table),
             Some(whole) => whole.append(table),

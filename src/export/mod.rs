@@ -49,10 +49,6 @@ pub struct Certified<'p> {
     pub named: Vec<Vec<Row>>,
     /// Every design, feasible or not, if the study asks for it.
     pub variants: Vec<Row>,
-    /// Threads that may be used.
-    threads: usize,
-    /// Can stop what is still to be certified.
-    control: &'p Control,
 }
 
 impl<'p> Certified<'p> {
@@ -60,7 +56,7 @@ impl<'p> Certified<'p> {
     ///
     /// # Errors
     /// [`Error::Disagreement`] if the f64 reference disagrees with the sweep; [`Error::Stopped`] after `control.stop`.
-    pub fn certify(plan: &'p Plan, state: State, tally: Tally, threads: usize, control: &'p Control) -> Result<Self> {
+    pub fn certify(plan: &'p Plan, state: State, tally: Tally, threads: usize, control: &Control) -> Result<Self> {
         let columns = certify::columns(&plan.study);
         let designs = state.reported.designs();
         let all: Vec<u64> = if plan.study.report.variants { (0..plan.designs()).collect() } else { Vec::new() };
@@ -86,7 +82,7 @@ impl<'p> Certified<'p> {
             let seen = state.feasible;
             return Err(Error::Disagreement(format!("the sweep counted {seen} feasible designs, the f64 reference finds {feasible}")));
         }
-        Ok(Self { plan, state, tally, columns, front, named, variants, threads, control })
+        Ok(Self { plan, state, tally, columns, front, named, variants })
     }
 
     /// Number of reported designs that were certified, without those of a list of all designs; one that is in two lists counts twice.
@@ -95,11 +91,11 @@ impl<'p> Certified<'p> {
     }
 
     /// Makes the files of the result, one after the other in the order in which they are written, [`MARK`] last. `run.json` is left to the
-    /// caller.
+    /// caller. `control` can stop what is still to be certified.
     ///
     /// # Errors
     /// Those of `put`; [`Error::Io`] from the table writers.
-    fn make_files(&self, text: &str, put: &mut dyn FnMut(&str, Part<'_>) -> Result<()>) -> Result<()> {
+    fn make_files(&self, text: &str, threads: usize, control: &Control, put: &mut dyn FnMut(&str, Part<'_>) -> Result<()>) -> Result<()> {
         let study = &self.plan.study;
         let json = |value: &serde_json::Value| Part::Bytes((format!("{value:#}") + "\n").into_bytes());
         #[cfg(feature = "pictures")]
@@ -117,9 +113,9 @@ impl<'p> Certified<'p> {
             put("front.svg", svg(pictures::front(self)))?;
         }
         let table = |place: usize| tables::designs(self, &self.named[place]);
-        self.state.reported.write(self.plan, self.threads, &table, &mut |name, bytes| put(name, Part::Bytes(bytes)))?;
+        self.state.reported.write(self.plan, threads, &table, &mut |name, bytes| put(name, Part::Bytes(bytes)))?;
         for list in &self.state.reported.all_feasible {
-            put(FEASIBLE_FILE, Part::Feasible(self, list))?;
+            put(FEASIBLE_FILE, Part::Feasible(self, list, threads, control))?;
         }
         if study.report.variants {
             put("variants.csv", csv(&tables::variants(self, &self.variants)))?;
@@ -146,13 +142,13 @@ impl<'p> Certified<'p> {
     }
 
     /// Writes the result into the directory of a checkpoint, replaces an older result there, and removes the checkpoint. At any moment the
-    /// directory holds the old result, or the checkpoint with all of the new one, or the new one.
+    /// directory holds the old result, or the checkpoint with all of the new one, or the new one. `control` can stop it before that.
     ///
     /// # Errors
-    /// [`Error::Io`]; [`Error::Request`] if something that this program did not write has the name of one of the files.
-    pub fn write(&self, checkpoint: Checkpoint, text: &str, run: &RunRecord) -> Result<()> {
+    /// [`Error::Io`]; [`Error::Stopped`]; [`Error::Disagreement`] if the f64 reference finds one of all feasible designs infeasible; [`Error::Request`] if something that this program did not write has the name of one of the files.
+    pub fn write(&self, checkpoint: Checkpoint, text: &str, run: &RunRecord, control: &Control) -> Result<()> {
         let mut files: Vec<String> = Vec::new();
-        self.make_files(text, &mut |name, part| {
+        self.make_files(text, run.threads, control, &mut |name, part| {
             files.push(name.to_owned());
             let mut failure = None;
             let staged = checkpoint.stage(name, |out| {
@@ -186,7 +182,7 @@ enum Part<'a> {
     /// The table of scenarios, which may be too large for the memory.
     Scenarios(&'a Plan),
     /// The table of feasible designs, likewise.
-    Feasible(&'a Certified<'a>, &'a FeasibleList),
+    Feasible(&'a Certified<'a>, &'a FeasibleList, usize, &'a Control),
 }
 
 impl Part<'_> {
@@ -194,7 +190,7 @@ impl Part<'_> {
         match self {
             Self::Bytes(bytes) => out.write_all(bytes).map_err(Error::io(Path::new("result"))),
             Self::Scenarios(plan) => csv::scenarios(plan, out).map_err(Error::io(Path::new("result"))),
-            Self::Feasible(outcome, list) => feasible::write(outcome, list, outcome.threads, outcome.control, out),
+            Self::Feasible(outcome, list, threads, control) => feasible::write(outcome, list, *threads, control, out),
         }
     }
 }

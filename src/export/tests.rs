@@ -29,8 +29,7 @@ fn files(text: &str) -> Vec<(String, String)> {
     let tally = Tally::new(&plan, &tables, 1);
     let reduction = Reduction::new(&plan, &tally.histogram_ranges(&plan));
     let swept = sweep(&plan, &tables, &reduction, &Settings::default(), None, &Control::default()).expect("the sweep ends");
-    let control = Control::default();
-    let outcome = Certified::certify(&plan, swept.state, tally, 1, &control).expect("it is certified");
+    let outcome = Certified::certify(&plan, swept.state, tally, 1, &Control::default()).expect("it is certified");
     let mut files = Vec::new();
     let mut put = |name: &str, part: super::Part<'_>| {
         let mut bytes = Vec::new();
@@ -38,7 +37,7 @@ fn files(text: &str) -> Vec<(String, String)> {
         files.push((name.to_owned(), String::from_utf8_lossy(&bytes).into_owned()));
         Ok(())
     };
-    outcome.make_files(text, &mut put).expect("the tables are written");
+    outcome.make_files(text, 1, &Control::default(), &mut put).expect("the tables are written");
     files
 }
 

@@ -85,7 +85,7 @@ pub fn judge<'p>(
     plan: &'p Plan,
     settings: &Settings,
     checkpoint: Option<&mut Checkpoint>,
-    control: &'p Control,
+    control: &Control,
     whole: bool,
     how: How<'_>,
     remark: &mut dyn FnMut(&str),

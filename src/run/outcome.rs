@@ -10,6 +10,7 @@ use crate::models::OVERFLOW;
 use crate::parallel::to_be_had;
 use crate::plan::Plan;
 use crate::reduce::{Extreme, Histogram, histogram, map};
+use crate::screen::Control;
 use crate::study::Study;
 use crate::sweep::Settings;
 use crate::sweep::costs::Speed;
@@ -163,12 +164,12 @@ impl Study {
         let record = record_of(method.why, settler);
         let engine = if did.is_some() { Engine::Gpu } else { Engine::Cpu };
         let course = Course { engine, method: record.name, why: record.why, time, remarks };
-        Outcome::new(&certified, threads, course)
+        Outcome::new(&certified, threads, &control, course)
     }
 }
 
 impl Outcome {
-    fn new(certified: &Certified<'_>, threads: usize, course: Course) -> Result<Self> {
+    fn new(certified: &Certified<'_>, threads: usize, control: &Control, course: Course) -> Result<Self> {
         let Certified { plan, state, .. } = certified;
         let study = &plan.study;
         let report = &study.report;
@@ -190,7 +191,7 @@ impl Outcome {
             top: listed(places.top),
             sample: listed(places.samples),
             variants: study.report.variants.then(|| tables::variants(certified, &certified.variants)),
-            feasible: state.reported.all_feasible.first().map(|list| feasible::table(certified, list)).transpose()?,
+            feasible: state.reported.all_feasible.first().map(|list| feasible::table(certified, list, threads, control)).transpose()?,
             histograms: histogram::names(study).into_iter().zip(state.reported.histograms.iter().map(Histogram::table)).collect(),
             contours: lines.collect(),
             maps: {

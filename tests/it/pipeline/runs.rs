@@ -122,7 +122,7 @@ impl<'p> Pipeline<'p> {
         let claim = Claim::new(folder, "a test").expect("nobody has it");
         let (study, designs) = (&self.plan.study, self.plan.designs());
         let checkpoint = Checkpoint::create(&claim, study, self.text, Shard::WHOLE, designs).expect("a folder can be made");
-        outcome.write(checkpoint, self.text, &record).expect("a result can be written");
+        outcome.write(checkpoint, self.text, &record, &Control::default()).expect("a result can be written");
         files(folder)
     }
 }
