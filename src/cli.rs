@@ -20,7 +20,7 @@ pub struct Cli {
 pub enum Command {
     /// List the models, or one model's inputs, outputs, units, ranges and sources
     Models(ModelsArgs),
-    /// Evaluate one design: every input, output and margin
+    /// Evaluate one design, or every row of a table: every input, output and margin
     Eval(EvalArgs),
     /// Export one design to another program: a pulley as a model for CalculiX
     Export(ExportArgs),

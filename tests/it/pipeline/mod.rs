@@ -97,8 +97,11 @@ fn check_all_ways(seed: u64, text: &str, study: Study, evaluated: &Evaluated) ->
         panic!("seed {seed}: {difference}");
     }
     assert_eq!(reference["study.toml"], text.as_bytes(), "seed {seed}");
-    for name in
-        expected.answer.tables.keys().filter(|name| !["scenarios.csv", "top.csv", "sample.csv", "variants.csv"].contains(&name.as_str()))
+    for name in expected
+        .answer
+        .tables
+        .keys()
+        .filter(|name| !["scenarios.csv", "top.csv", "sample.csv", "feasible.parquet", "variants.csv"].contains(&name.as_str()))
     {
         assert!(reference.contains_key(&name.replace(".csv", ".svg")), "seed {seed}: there is no picture of {name}");
     }
@@ -173,6 +176,7 @@ const EVERY_FEATURE: &[&str] = &[
     "input as constraint",
     "top",
     "sample of feasible designs",
+    "all feasible designs written",
     "histogram, range given",
     "histogram, range automatic",
     "map of a value",
@@ -232,6 +236,7 @@ fn cover(draft: &Draft, plan: &Plan, evaluated: &Evaluated, expected: &Expected,
     note("resolution", study.objectives.iter().any(|it| it.resolution.is_some()));
     note("input as objective", study.objectives.iter().any(|it| is_input(it.quantity)));
     note("input as constraint", study.constraints.iter().any(|it| is_input(it.quantity)));
+    note("all feasible designs written", study.report.feasible && !expected.feasible.is_empty());
     note("top", study.report.top.is_some());
     note("sample of feasible designs", study.report.sample.is_some());
     note("histogram, range given", study.report.histograms.iter().any(|it| it.range.is_some()));
