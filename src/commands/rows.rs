@@ -70,7 +70,8 @@ fn reader_of(rows: &Path) -> Result<RowReader> {
     if rows == Path::new(STREAM) {
         return RowReader::csv("standard input", Box::new(std::io::stdin()));
     }
-    let (name, file) = (rows.display().to_string(), open(rows).map_err(|error| Error::Request(format!("cannot read {}: {error}", rows.display())))?);
+    let (name, file) =
+        (rows.display().to_string(), open(rows).map_err(|error| Error::Request(format!("cannot read {}: {error}", rows.display())))?);
     if ends_in(rows, "parquet") { RowReader::parquet(&name, file) } else { RowReader::csv(&name, Box::new(file)) }
 }
 

@@ -59,7 +59,7 @@ impl PackedIndices {
     /// Are these `count` rising numbers below `designs`? What was read from a checkpoint may have been changed.
     fn fits(&self, designs: u64) -> bool {
         let (mut reader, mut count) = (self.read(), 0);
-        while let Some(index) = reader.next() {
+        for index in reader.by_ref() {
             if index >= designs {
                 return false;
             }
@@ -257,7 +257,7 @@ mod tests {
         let bytes = postcard::to_stdvec(&kept).expect("it can be written");
         assert!(bytes.len() < 2 * all.len(), "{} bytes for {} numbers", bytes.len(), all.len());
         let read: FeasibleList = postcard::from_bytes(&bytes).expect("it was written so");
-        assert!(read == kept && read.fits(&kept, u64::MAX, u64::MAX) == false, "the last number is no design of so few");
+        assert!(read == kept && !read.fits(&kept, u64::MAX, u64::MAX), "the last number is no design of so few");
         assert_eq!(parts.lacks(&kept), None);
         assert_eq!(list(all[..9].iter().copied()).lacks(&list(all[..10].iter().copied())), Some((FeasibleList::STATE, all[9])));
         assert_eq!(list([1, 2]).lacks(&list([0, 1, 2])), Some((FeasibleList::STATE, 0)));
