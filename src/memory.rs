@@ -373,6 +373,9 @@ mod tests {
         assert!(listed.run > needs(&plain, 1, true).run + 10_000_000);
         let drawn = needs(&grid(3000, "[report]\nsample = 1_000_000"), 2, true);
         assert!(drawn.run > needs(&grid(3000, ""), 2, true).run + 500_000_000 && drawn.shard > 60_000_000, "{drawn:?}");
+        let written = grid(3000, "[report]\nfeasible = true");
+        assert!(needs(&written, 2, true).shard > needs(&grid(3000, ""), 2, true).shard + 25_000_000);
+        assert_eq!((most_feasible(&written), most_feasible(&plain)), (Some((9_000_000, 56)), None));
         let rows: String = (1..=50_000).map(|torque| format!("{{ torque_Nm = {torque} }},")).collect();
         let cases = plan(&format!("model = \"metal-cvt\"\n[design]\ncases = [{rows}]\n[objectives]\naxial_force_N = \"min\"\n"));
         assert!(needs(&cases, 1, false).run > one.run + 20_000_000);

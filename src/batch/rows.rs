@@ -1,7 +1,9 @@
 //! Rows of a table that somebody wrote: CSV or Parquet, read block by block.
 
 use super::refusal;
-use crate::error::{Result, brief};
+use crate::error::Result;
+#[cfg(feature = "parquet")]
+use crate::error::brief;
 use crate::table::stream::BLOCK_ROWS;
 use std::io::Read;
 

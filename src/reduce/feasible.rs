@@ -199,7 +199,8 @@ impl Reducer for FeasibleList {
     }
 
     fn is_file(name: &str) -> bool {
-        name == FEASIBLE_FILE
+        // Of either kind of build.
+        ["feasible.parquet", "feasible.csv"].contains(&name)
     }
 
     /// Its file has more rows than fit into the memory: whoever writes the result writes it block by block.

@@ -402,6 +402,41 @@ fn a_sample_with_a_design_that_is_not_feasible_or_one_too_few_is_not_written() {
     }
 }
 
+/// The same for the list of all feasible designs: one too few is noticed before anything is written, a wrong one when its row is made.
+#[test]
+fn a_list_of_feasible_designs_that_is_wrong_is_not_written() {
+    let text = "model = \"metal-cvt\"\n[design]\nband_thickness_mm = { from = 0.1, to = 0.3, count = 41 }\nband_count = { from = 6, to = 12 }\n\
+                [constraints]\nstress_margin = { min = 0.4 }\n[objectives]\naxial_force_N = \"min\"\n[report]\nfeasible = true\n";
+    let plan = Plan::new(parse(text));
+    let pipeline = Pipeline::new(&plan, text);
+    let good = pipeline.whole(&Settings { threads: 1, ..Settings::default() });
+    let evaluated = Evaluated::new(&plan.study);
+    let feasible = Expected::new(&plan.study, &evaluated).feasible;
+    let infeasible = (0..plan.designs()).find(|it| feasible.binary_search(it).is_err()).expect("some are not feasible");
+    let forged = |designs: &[u64]| {
+        let mut designs = designs.to_vec();
+        designs.sort_unstable();
+        // As it is kept: one piece, the differences of neighbours, which here take a byte each.
+        let differences = designs.iter().scan(0, |last, &it| Some(u8::try_from(it - std::mem::replace(last, it)).expect("they lie close")));
+        let bytes = postcard::to_stdvec(&vec![(designs.len() as u64, differences.collect::<Vec<u8>>())]).expect("it can be written");
+        let mut state = good.clone();
+        state.reported.all_feasible = vec![postcard::from_bytes(&bytes).expect("that is how it is kept")];
+        state
+    };
+    assert_eq!(forged(&feasible).reported, good.reported);
+    let check = |state: &State| pipeline.reduction.check(state, plan.designs(), plan.designs());
+    assert_eq!((check(&good), pipeline.certified(good.clone()).map(drop).map_err(|error| error.to_string())), (Ok(()), Ok(())));
+    let lost = pipeline.certified(forged(&feasible[1..])).map(drop).expect_err("one is missing").to_string();
+    assert!(lost.contains(&format!("the sweep kept {} of the {} feasible designs", feasible.len() - 1, feasible.len())), "{lost}");
+    let mut wrong = feasible[1..].to_vec();
+    wrong.push(infeasible);
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    let failed = pipeline.try_write(forged(&wrong), 1, folder.path()).expect_err("one is not feasible").to_string();
+    assert!(failed.contains(&format!("design {infeasible}: the sweep found it feasible, the f64 reference does not")), "{failed}");
+    assert!(!folder.path().join("summary.json").exists() && !folder.path().join("feasible.parquet").exists());
+    assert_eq!(check(&forged(&[100, 200, plan.designs()])), Err("its list of feasible designs cannot be of this study".to_owned()));
+}
+
 /// A histogram of a quantity that some designs lack in some scenario makes those infeasible, in the list of all designs too. (Found
 /// by seed 178.) A map over an axis that takes a word shows the word. (Found by seed 101.)
 #[test]
