@@ -31,7 +31,7 @@ enum BatchKind {
 }
 
 /// The given columns, and those of the results.
-type Columns = (Vec<TableColumn>, Vec<TableColumn>);
+type RowColumns = (Vec<TableColumn>, Vec<TableColumn>);
 
 impl BatchTarget {
     /// A model, where inputs without a column have these values; `set` names those of them that the user gave.
@@ -109,14 +109,21 @@ impl BatchTarget {
         values: &[Vec<f64>],
         has_words: &dyn Fn(usize) -> bool,
         threads: usize,
-    ) -> Result<Columns> {
+    ) -> Result<RowColumns> {
         match &self.kind {
             BatchKind::Model(inputs) => Ok(self.by_model(inputs, given, values, has_words, threads)),
             BatchKind::Study(study, columns) => by_study(study, columns, given, values, has_words, threads),
         }
     }
 
-    fn by_model(&self, base: &[f64], given: &[usize], values: &[Vec<f64>], has_words: &dyn Fn(usize) -> bool, threads: usize) -> Columns {
+    fn by_model(
+        &self,
+        base: &[f64],
+        given: &[usize],
+        values: &[Vec<f64>],
+        has_words: &dyn Fn(usize) -> bool,
+        threads: usize,
+    ) -> RowColumns {
         let model = &self.model;
         let rows = values[0].len();
         let evaluated = |rows: std::ops::Range<usize>| -> Vec<Evaluation> {
@@ -154,7 +161,7 @@ fn by_study(
     values: &[Vec<f64>],
     has_words: &dyn Fn(usize) -> bool,
     threads: usize,
-) -> Result<Columns> {
+) -> Result<RowColumns> {
     let model = &study.model;
     let count = values[0].len();
     let rows: Vec<Vec<f64>> = (0..count).map(|row| values.iter().map(|it| it[row]).collect()).collect();

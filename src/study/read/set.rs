@@ -17,7 +17,7 @@ use std::path::Path;
 use toml::de::{DeTable, DeValue};
 
 /// A value that replaces what the study says.
-struct Setting {
+struct StudySetting {
     table: &'static str,
     name: String,
     value: String,
@@ -32,7 +32,7 @@ pub struct StudyEdits<'a> {
     pub feasible: bool,
 }
 
-impl Setting {
+impl StudySetting {
     /// Takes `NAME=VALUE` apart.
     fn new(assignment: &str) -> std::result::Result<Self, String> {
         let parts = assignment.split_once('=').map(|(name, value)| (name.trim(), value.trim()));
@@ -125,7 +125,7 @@ impl Study {
         axes: SetAxes,
     ) -> Result<(Self, String)> {
         let mut settings = read_settings(edits.set)?;
-        settings.extend(edits.feasible.then(Setting::feasible));
+        settings.extend(edits.feasible.then(StudySetting::feasible));
         // What is wrong with the syntax is told first.
         let tree = if settings.is_empty() { None } else { DeTable::parse(text).ok() };
         let Some(tree) = tree else {
@@ -143,10 +143,10 @@ impl Study {
     }
 }
 
-fn read_settings(set: &[String]) -> Result<Vec<Setting>> {
-    let (mut settings, mut problems): (Vec<Setting>, _) = (Vec::new(), Vec::new());
+fn read_settings(set: &[String]) -> Result<Vec<StudySetting>> {
+    let (mut settings, mut problems): (Vec<StudySetting>, _) = (Vec::new(), Vec::new());
     for assignment in set {
-        match Setting::new(assignment) {
+        match StudySetting::new(assignment) {
             Ok(it) if settings.iter().any(|other| other.name == it.name) => {
                 problems.push(format!("--set gives {} twice; keep one of the two", shortened(&it.name)));
             }
@@ -162,7 +162,7 @@ fn refusal(problems: Vec<String>) -> Error {
 }
 
 /// Puts the settings into the text.
-fn edited(settings: &[Setting], top: &TomlTable<'_>, text: &str, models: &Models, folder: &Path, axes: SetAxes) -> Result<EditedText> {
+fn edited(settings: &[StudySetting], top: &TomlTable<'_>, text: &str, models: &Models, folder: &Path, axes: SetAxes) -> Result<EditedText> {
     let model = top.get("model").and_then(|entry| models.find(entry.node.value.as_str()?));
     let is_input = |name: &str| model.as_ref().is_some_and(|model| model.input(name).is_some());
     let (mut edits, mut new, mut problems) = (Vec::new(), Vec::new(), Vec::new());
@@ -217,11 +217,11 @@ fn edited(settings: &[Setting], top: &TomlTable<'_>, text: &str, models: &Models
     if is_as_meant(&edited.text, top, settings) {
         return Ok(edited);
     }
-    let told = settings.iter().map(Setting::told).collect::<Vec<_>>().join(" ");
+    let told = settings.iter().map(StudySetting::told).collect::<Vec<_>>().join(" ");
     Err(refusal(vec![format!("{told}: the study is written in a way that cannot be edited; give the value in its [fixed]")]))
 }
 
-fn line_of(setting: &Setting) -> String {
+fn line_of(setting: &StudySetting) -> String {
     format!("{} = {}", setting.name, setting.in_toml())
 }
 
@@ -320,7 +320,7 @@ fn applied(mut edits: Vec<Edit>, text: &str, settings: usize) -> EditedText {
 }
 
 /// Does the edited text say what the other said, but for the settings?
-fn is_as_meant(text: &str, top: &TomlTable<'_>, settings: &[Setting]) -> bool {
+fn is_as_meant(text: &str, top: &TomlTable<'_>, settings: &[StudySetting]) -> bool {
     let Ok(tree) = DeTable::parse(text) else { return false };
     let own = TomlTable::new(tree.get_ref(), 0);
     let is_set = |key: &str| settings.iter().any(|it| it.name == key);
@@ -332,7 +332,7 @@ fn is_as_meant(text: &str, top: &TomlTable<'_>, settings: &[Setting]) -> bool {
     let edited = |name: &str| GIVING.contains(&name) || ["formulas", "report"].contains(&name);
     let value = |name: &str, table: &str| own.get(table)?.node.table()?.get(name).map(|entry| unplaced(entry.node.value));
     // It has one place, whichever that is.
-    let placed = |it: &Setting| {
+    let placed = |it: &StudySetting| {
         let found: Vec<_> = if it.is_of_report() {
             value(&it.name, "report").into_iter().collect()
         } else {
@@ -360,10 +360,10 @@ fn unplaced(value: &DeValue<'_>) -> Value {
 }
 
 /// Problems of the edited text, told where the user can change them: those of a setting by its name, others at their place in the file.
-fn explained(errors: StudyErrors, settings: &[Setting], edited: &EditedText, right: bool) -> Error {
+fn explained(errors: StudyErrors, settings: &[StudySetting], edited: &EditedText, right: bool) -> Error {
     let lines = Lines::new(&edited.text);
     let places: Vec<_> = edited.places.iter().map(|it| (lines.position(it.start), lines.position(it.end))).collect();
-    let told = settings.iter().map(Setting::told).collect::<Vec<_>>().join(" ");
+    let told = settings.iter().map(StudySetting::told).collect::<Vec<_>>().join(" ");
     let (mut of_settings, mut of_file) = (Vec::new(), Vec::new());
     for problem in errors.problems {
         let at = (problem.line, problem.column);
