@@ -179,6 +179,14 @@ pub(crate) fn lowest_columns(study: &Study, quantities: &[Quantity]) -> Vec<Colu
     quantities.iter().map(column).collect()
 }
 
+/// The column that has a constraint's worst value: its own, if an objective of the same quantity has the other worst end.
+pub(crate) fn constraint_column(columns: &[Column], constraint: &Constraint, name: &str) -> Option<usize> {
+    let constrained = format!("{name}_constrained");
+    let is_its = |it: &&Column| it.is_of(constraint.quantity, constraint.over);
+    let own = columns.iter().position(|it| is_its(&it) && it.name == constrained);
+    own.or_else(|| columns.iter().position(|it| is_its(&it)))
+}
+
 /// Position of a quantity among the inputs that design axes set, in file order; `None` if it is not one of them. Such a quantity is the
 /// same in every scenario, and its column is among the design inputs, even if it is also an objective or has a constraint.
 pub fn design_input(study: &Study, quantity: Quantity) -> Option<usize> {
@@ -203,6 +211,8 @@ pub struct Row {
     pub feasible: bool,
     /// Scenarios in which it has no result: the status is not ok, or a value that the study asks for has no meaning.
     pub without_result: u64,
+    /// The status in the first scenario in which it is not ok.
+    pub status: Status,
     /// All inputs in their units; those that differ between scenarios have their values of scenario 0.
     pub inputs: Vec<f64>,
     /// One entry per column.
@@ -287,6 +297,8 @@ struct Reference<'p> {
     wanted: Set,
     /// The quantities that are summed over the cases of a spectrum, each once.
     summed: Vec<Quantity>,
+    /// Outputs that the study judges by: of these an overflow is a status.
+    used: Vec<usize>,
     row: Option<u64>,
     /// The prepared numbers of the first slow scenarios, as many as there is room for.
     prepared: Vec<Vec<f64>>,
@@ -311,17 +323,9 @@ impl<'p> Reference<'p> {
                 summed.push(quantity);
             }
         }
-        Self {
-            plan,
-            columns,
-            wanted,
-            summed,
-            row: None,
-            prepared: Vec::new(),
-            beyond: Vec::new(),
-            latest: Latest::new(&plan.study.model),
-            stop,
-        }
+        let (model, used) = (&plan.study.model, plan.used_outputs());
+        let used = (0..model.outputs.len()).filter(|&it| used.contains(it)).collect();
+        Self { plan, columns, wanted, summed, used, row: None, prepared: Vec::new(), beyond: Vec::new(), latest: Latest::new(model), stop }
     }
 
     /// The row of a design; `None` if it was stopped.
@@ -339,6 +343,7 @@ impl<'p> Reference<'p> {
         let Sizes { outputs, conditions, .. } = model.kernel.sizes();
         let [mut si, mut outputs, mut margins] = [inputs.len(), outputs, conditions].map(|length| vec![0.0; length]);
         let (mut feasible, mut without_result) = (true, 0);
+        let mut first_not_ok = (u64::MAX, Status::Ok);
         let mut worst = vec![(f64::NEG_INFINITY, AtWorst { value: None, scenario: 0 }); self.columns.len()];
         let mut sums = SummedCases::new(plan, &self.summed);
         for q in 0..plan.slow_scenarios.count() {
@@ -360,6 +365,7 @@ impl<'p> Reference<'p> {
                 model.kernel.finish(prepared, &si, self.wanted, &mut outputs);
                 model.kernel.conditions(prepared, &si, &mut margins);
                 let (status, present) = judge(model, &margins);
+                let scenario = plan.slow_scenarios.source_index(q) + plan.fast_scenarios.source_index(t);
                 let value = |quantity| match quantity {
                     Quantity::Input(input) => Some(inputs[input]),
                     Quantity::Output(output) => shown(model, &outputs, present, output),
@@ -371,7 +377,13 @@ impl<'p> Reference<'p> {
                 feasible &= has_result;
                 feasible &=
                     plan.study.constraints.iter().all(|it| value(it.quantity).is_some_and(|value| !it.over.is_worst() || it.holds(value)));
-                let scenario = plan.slow_scenarios.source_index(q) + plan.fast_scenarios.source_index(t);
+                // What no condition takes away and is absent all the same has overflowed.
+                let overflown = |&it: &usize| present.contains(it) && shown(model, &outputs, present, it).is_none();
+                let overflow = status == Status::Ok && self.used.iter().any(overflown);
+                let status = if overflow { Status::Overflow } else { status };
+                if status != Status::Ok && scenario < first_not_ok.0 {
+                    first_not_ok = (scenario, status);
+                }
                 for (column, worst) in self.columns.iter().zip(&mut worst).filter(|(column, _)| column.over.is_worst()) {
                     column.worst.take(worst, value(column.quantity), scenario);
                 }
@@ -389,7 +401,7 @@ impl<'p> Reference<'p> {
             }
         }
         let columns = worst.into_iter().map(|(_, at)| at).collect();
-        Some(Row { index, feasible, without_result, inputs: first, columns })
+        Some(Row { index, feasible, without_result, status: first_not_ok.1, inputs: first, columns })
     }
 }
 

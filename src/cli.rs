@@ -20,15 +20,12 @@ pub struct Cli {
 pub enum Command {
     /// List the models, or one model's inputs, outputs, units, ranges and sources
     Models(ModelsArgs),
-    /// Evaluate one design: every input, output and margin
+    /// Evaluate one design, or every row of a table: every input, output and margin
     Eval(EvalArgs),
     /// Export one design to another program: a pulley as a model for CalculiX
     Export(ExportArgs),
     /// Check a study without running it: size, axes without effect, memory, expected time
-    Check {
-        /// Study file
-        study: PathBuf,
-    },
+    Check(CheckArgs),
     /// Judge every design of a study and write the result directory
     Sweep(SweepArgs),
     /// Merge the shards of a study into the same result as that of one run
@@ -69,6 +66,19 @@ pub struct ModelsArgs {
     pub study: bool,
 }
 
+/// Options of `check`.
+#[derive(Debug, Args)]
+pub struct CheckArgs {
+    /// Study file
+    pub study: PathBuf,
+    /// Set an input in place of its axis, fixed value or formula; a unit may follow the number. May be repeated
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// As with sweep --feasible: also says how large the file of all feasible designs may become
+    #[arg(long)]
+    pub feasible: bool,
+}
+
 /// Options of `export`.
 #[derive(Debug, Args)]
 pub struct ExportArgs {
@@ -104,8 +114,8 @@ pub struct EvalArgs {
     /// Name of a model, or a study file
     #[arg(value_name = "MODEL|STUDY")]
     pub target: String,
-    /// Set an input; a unit may follow the number ("0.25 in"). May be repeated
-    #[arg(long, value_name = "NAME=VALUE", conflicts_with = "design")]
+    /// Set an input, of a study in place of its axis, fixed value or formula; a unit may follow the number ("0.25 in"). May be repeated
+    #[arg(long, value_name = "NAME=VALUE")]
     pub set: Vec<String>,
     /// Start from a named set of inputs instead of the defaults
     #[arg(long, conflicts_with = "design")]
@@ -116,6 +126,18 @@ pub struct EvalArgs {
     /// Scenario of a study, by its index; without it the worst over all scenarios
     #[arg(long, value_name = "K", requires = "design")]
     pub scenario: Option<u64>,
+    /// Evaluate every row of a table, CSV or .parquet, or CSV from standard input (-): columns give inputs; of a study, a row is a design
+    #[arg(long, value_name = "ROWS", conflicts_with_all = ["design", "json", "profile", "plot"])]
+    pub table: Option<PathBuf>,
+    /// Where the rows and their results go: .csv or .parquet, or CSV on standard output (-)
+    #[arg(long, value_name = "FILE", default_value = "-", requires = "table")]
+    pub out: PathBuf,
+    /// Take a column of the rows along as it is. May be repeated
+    #[arg(long, value_name = "COLUMN", requires = "table")]
+    pub carry: Vec<String>,
+    /// Replace the file of --out
+    #[arg(long, requires = "table")]
+    pub force: bool,
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
@@ -132,6 +154,12 @@ pub struct EvalArgs {
 pub struct SweepArgs {
     /// Study file
     pub study: PathBuf,
+    /// Set an input in place of its axis, fixed value or formula; a unit may follow the number. May be repeated
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// Write every feasible design into feasible.parquet
+    #[arg(long)]
+    pub feasible: bool,
     /// Result directory [default: results/<study name>]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

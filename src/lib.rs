@@ -62,6 +62,8 @@
 //! These modules are public for the program and its tests only: they are not shown here, and may change with every version.
 
 #[doc(hidden)]
+pub mod batch;
+#[doc(hidden)]
 pub mod bounds;
 #[doc(hidden)]
 pub mod certify;

@@ -46,6 +46,8 @@ const PAGE_VARIANT: u64 = 1_400;
 const DOT: u64 = 24;
 /// Indices kept per design of a sample: up to twice as many as are wanted may wait.
 const INDICES: u64 = 2;
+/// Copies of packed numbers: those that are kept, and while a checkpoint is saved a copy and its bytes.
+const PACKED_COPIES: u64 = 3;
 /// Copies of a point of the front during the sweep.
 const POINT_COPIES: u64 = 6;
 /// Measured peaks scatter, so the estimate is multiplied by this many per cent: rather too high than too low.
@@ -87,6 +89,8 @@ struct StudySizes {
     /// Designs of which only the index is kept during a sweep, and designs that are dots on a page.
     indices: u64,
     dots: u64,
+    /// Bytes of packed numbers of designs.
+    packed: u64,
     /// Bytes of a row.
     row: u64,
     outputs: u64,
@@ -116,6 +120,7 @@ impl StudySizes {
             rows: variants + room.rows,
             indices: room.indices,
             dots: room.dots,
+            packed: room.packed,
             variants,
             row: ROW + study.labels.len() as u64 * ROW_LABEL + certify::columns(study).iter().map(bytes_of).sum::<u64>(),
             outputs: study.model.outputs.len() as u64,
@@ -147,6 +152,7 @@ impl Needs {
             solving(plan, threads),
             8 * sizes.bins * (threads + 2),
             times(sizes.indices, INDICES * 8 * (threads + 2)),
+            times(sizes.packed, PACKED_COPIES),
         ]);
         let met = times(sizes.cells.min(MET), CELL_MET);
         let points = times(front, POINT_COPIES * 8 * (sizes.objectives + 1));
@@ -299,6 +305,11 @@ const NUMBER: u64 = 19;
 /// Bytes of a value in Parquet.
 const PACKED: u64 = 8;
 
+/// Of a study that asks for all feasible designs: as many as there may be, and about how many bytes each takes in their file.
+pub fn most_feasible(plan: &Plan) -> Option<(u64, u64)> {
+    plan.study.report.feasible.then(|| (plan.designs(), PACKED * plan.study.row_numbers()))
+}
+
 /// The large files that a run will write, with about how many bytes they will have.
 pub fn large_files(plan: &Plan, front: u64) -> Vec<(String, u64)> {
     let study = &plan.study;
@@ -364,6 +375,9 @@ mod tests {
         assert!(listed.run > needs(&plain, 1, true).run + 10_000_000);
         let drawn = needs(&grid(3000, "[report]\nsample = 1_000_000"), 2, true);
         assert!(drawn.run > needs(&grid(3000, ""), 2, true).run + 500_000_000 && drawn.shard > 60_000_000, "{drawn:?}");
+        let written = grid(3000, "[report]\nfeasible = true");
+        assert!(needs(&written, 2, true).shard > needs(&grid(3000, ""), 2, true).shard + 25_000_000);
+        assert_eq!((most_feasible(&written), most_feasible(&plain)), (Some((9_000_000, 56)), None));
         let rows: String = (1..=50_000).map(|torque| format!("{{ torque_Nm = {torque} }},")).collect();
         let cases = plan(&format!("model = \"metal-cvt\"\n[design]\ncases = [{rows}]\n[objectives]\naxial_force_N = \"min\"\n"));
         assert!(needs(&cases, 1, false).run > one.run + 20_000_000);

@@ -19,6 +19,21 @@ pub const MOST_ON_PAGE: usize = 200_000;
 /// Most designs of a sample on a page; of more this many are shown, evenly along the table.
 pub const MOST_DOTS: u64 = 20_000;
 
+/// Columns that tables have besides quantities: nothing that a study names may be called so.
+const COLUMNS: [&str; 10] = ["design_index", "scenario", "feasible", "feasible_share", "status", "of", "at", "line", "bracket", "along"];
+/// What is added to the name of a quantity where it has a further column.
+const ADDED: [&str; 4] = ["_scenario", "_constrained", "_constrained_scenario", "_value"];
+
+/// What a table's column of this name holds besides a quantity of this name, if some table may have such; `is_known` knows the names of
+/// the study's quantities. Two columns of one name cannot be told apart, and most readers of tables drop one.
+pub fn column_of_tables(name: &str, is_known: impl Fn(&str) -> bool) -> Option<String> {
+    if COLUMNS.contains(&name) {
+        return Some("in tables of results".to_owned());
+    }
+    let of = ADDED.iter().filter_map(|added| name.strip_suffix(added)).find(|of| is_known(of));
+    of.map(|of| format!("that tables of results have beside \"{of}\""))
+}
+
 /// File of a picture of the knee.
 pub fn knee_name(picture: &str) -> String {
     format!("knee-{picture}.svg")

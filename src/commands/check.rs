@@ -1,15 +1,16 @@
 //! `beltspace check`: checks a study and estimates its run.
 
-use super::{read_study, threads};
+use super::{read_study_with, threads};
+use crate::cli;
 use crate::terminal::{self, TextGrid, bold, grouped, scaled, span};
 use beltspace::error::Result;
-use beltspace::memory::{Needs, large_files};
+use beltspace::memory::{Needs, large_files, most_feasible};
 use beltspace::models::Set;
 use beltspace::plan::Plan;
-use beltspace::study::Axis;
+use beltspace::reduce::FEASIBLE_FILE;
+use beltspace::study::{Axis, StudyEdits};
 use beltspace::sweep::costs::{PATIENCE, Speed, why_every_design};
 use beltspace::sweep::{BoundsTrial, try_bounds};
-use std::path::Path;
 use std::time::Duration;
 
 /// How long the speed is measured.
@@ -17,8 +18,8 @@ const TRIAL: Duration = Duration::from_millis(300);
 /// And how long bounds are tried, where the sweep would begin by them.
 const TRIAL_OF_BOUNDS: Duration = Duration::from_millis(1500);
 
-pub fn run(path: &Path) -> Result<()> {
-    let (study, _) = read_study(path)?;
+pub fn run(request: &cli::CheckArgs) -> Result<()> {
+    let (study, _) = read_study_with(&request.study, StudyEdits { set: &request.set, feasible: request.feasible })?;
     let plan = Plan::new(study);
     let study = &plan.study;
     let model = &study.model;
@@ -44,7 +45,7 @@ pub fn run(path: &Path) -> Result<()> {
     #[allow(clippy::cast_precision_loss, reason = "an estimate for people")]
     let evaluations = designs as f64 * scenarios as f64;
     // The sample that shows what limits feasibility and a list of all designs are judged a second time.
-    let listed = if study.report.variants { designs } else { 0 };
+    let listed = if study.report.variants || study.report.feasible { designs } else { 0 };
     let seconds = [designs, designs.min(model.sample), listed].iter().map(|&judged| speed.of(judged, cores)).sum();
     let rate = format!("on {cores} threads, {}designs/s ({})", scaled(speed.of(1, cores).recip()), speed.how());
     let one_by_one = format!("about {} plus the time for the front, {rate}", span(seconds));
@@ -67,6 +68,9 @@ pub fn run(path: &Path) -> Result<()> {
     let front =
         if study.objectives.is_empty() { String::new() } else { format!(", with about {} designs on the front", grouped(needs.front)) };
     fact("memory", format!("about {} MB{front}", needs.run.div_ceil(1_000_000)));
+    if let Some(size) = feasible_file(&plan) {
+        fact("feasible file", size);
+    }
     for (name, bytes) in large_files(&plan, needs.front) {
         fact("large file", format!("{name}, about {} MB", grouped(bytes / 1_000_000)));
     }
@@ -96,6 +100,13 @@ fn by_bounds(trial: Option<BoundsTrial>, seconds: f64, one_by_one: &str) -> Stri
         }
         None => format!("unknown by bounds; every design one by one: {one_by_one}"),
     }
+}
+
+/// What the file of all feasible designs takes at most, if the study asks for it.
+pub(super) fn feasible_file(plan: &Plan) -> Option<String> {
+    let (rows, bytes) = most_feasible(plan)?;
+    let size = grouped((rows * bytes).div_ceil(1_000_000));
+    Some(format!("{FEASIBLE_FILE}, at most {} designs x {bytes} bytes = {size} MB", grouped(rows)))
 }
 
 fn ends(plan: &Plan, axis: &Axis, column: usize, input: usize) -> String {

@@ -1,6 +1,6 @@
 //! `beltspace eval`: evaluates one design of a model or of a study.
 
-use super::{find_model, read_study};
+use super::{find_model, read_study, read_study_what_if, rows};
 use crate::cli;
 use crate::terminal::{self, TextGrid, bold, dim, short};
 use beltspace::certify;
@@ -13,15 +13,18 @@ use beltspace::names::is_picture;
 use beltspace::pictures::{self, PlotQuantity, Series};
 use beltspace::plan::Plan;
 use beltspace::screen::Control;
-use beltspace::study::{Quantity, ReportColumn, Study, number, value_of};
+use beltspace::study::{Axis, Label, Levels, Quantity, ReportColumn, Study, number, value_of};
 use beltspace::table::{Data, Table, TableColumn, csv_text};
 use beltspace::units::parse_value;
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 
 pub fn run(request: &cli::EvalArgs) -> Result<()> {
+    if let Some(rows) = &request.table {
+        return rows::run(request, rows);
+    }
     let path = Path::new(&request.target);
-    if beltspace::models::find(&request.target).is_none() && (path.extension().is_some_and(|it| it == "toml") || path.exists()) {
+    if is_study(&request.target) {
         return of_study(request, path);
     }
     let model = find_model(&request.target)?;
@@ -30,6 +33,12 @@ pub fn run(request: &cli::EvalArgs) -> Result<()> {
     }
     let inputs = inputs_of(&model, request.preset.as_deref(), &request.set)?;
     print_one(&model, &inputs, None, request)
+}
+
+/// Is the target a study's file, and no model?
+pub(super) fn is_study(target: &str) -> bool {
+    let path = Path::new(target);
+    models::find(target).is_none() && (path.extension().is_some_and(|it| it == "toml") || path.exists())
 }
 
 /// Defaults, then the preset, then every `--set`.
@@ -83,8 +92,16 @@ fn parse_assignment(model: &Model, assignment: &str) -> std::result::Result<(usi
     Err(format!("{name} = {text} {whole}; it must be {}{or_word}", input.valid.in_words()))
 }
 
+/// A design of a study in one of its scenarios; the user knows it by `number`.
+struct ShownDesign<'p> {
+    plan: &'p Plan,
+    design: u64,
+    number: u64,
+    scenario: u64,
+}
+
 /// Prints one design in one scenario.
-fn print_one(model: &Model, inputs: &[f64], of_study: Option<(&Plan, u64, u64)>, request: &cli::EvalArgs) -> Result<()> {
+fn print_one(model: &Model, inputs: &[f64], of_study: Option<ShownDesign<'_>>, request: &cli::EvalArgs) -> Result<()> {
     let evaluation = evaluate(model, inputs);
     let spelled_out = model.spelled_out(inputs);
     let inputs = &spelled_out;
@@ -102,15 +119,15 @@ fn print_one(model: &Model, inputs: &[f64], of_study: Option<(&Plan, u64, u64)>,
     let reason = evaluation.status.reason(model);
     if request.json {
         let mut object = json!({ "model": model.name, "inputs": named_inputs(model, inputs), "outputs": named_outputs(model, &evaluation), "status": reason });
-        if let Some((plan, design, scenario)) = of_study {
-            object["design"] = design.into();
+        if let Some(ShownDesign { plan, design, number, scenario }) = of_study {
+            object["design"] = number.into();
             object["scenario"] = scenario.into();
             add_labels(plan, design, &mut object);
         }
         return terminal::print(&format!("{object:#}\n"));
     }
     let mut table = TextGrid::default();
-    if let Some((plan, design, _)) = of_study {
+    if let Some(ShownDesign { plan, design, .. }) = of_study {
         label_rows(plan, design, &mut table);
     }
     for (input, &value) in model.inputs.iter().zip(inputs) {
@@ -243,26 +260,56 @@ pub(super) fn studied(path: &Path, design: Option<u64>) -> Result<(Plan, u64)> {
 }
 
 fn of_study(request: &cli::EvalArgs, path: &Path) -> Result<()> {
-    if !request.set.is_empty() || request.preset.is_some() {
-        return Err(Error::Request("--set and --preset are for models; for a study use --design N".to_owned()));
+    if request.preset.is_some() {
+        return Err(no_preset());
     }
-    let (plan, design) = studied(path, request.design)?;
+    let (own, number) = studied(path, request.design)?;
+    let (plan, design) = if request.set.is_empty() { (own, number) } else { (what_if(&own, number, path, &request.set)?, 0) };
     let model = &plan.study.model;
     let scenarios = plan.scenarios();
     if let Some(scenario) = request.scenario.or((scenarios == 1).then_some(0)) {
         if scenario >= scenarios {
             return Err(Error::Request(format!("there is no scenario {scenario}; the study's scenarios are 0 to {}", scenarios - 1)));
         }
-        return print_one(model, &plan.space.inputs(design, scenario), Some((&plan, design, scenario)), request);
+        let shown = ShownDesign { plan: &plan, design, number, scenario };
+        return print_one(model, &plan.space.inputs(design, scenario), Some(shown), request);
     }
     if request.profile.is_some() || request.plot.is_some() {
         return Err(Error::Request(format!("--profile and --plot show one scenario; add --scenario K, from 0 to {}", scenarios - 1)));
     }
-    print_worst(&plan, design, request.json)
+    print_worst(&plan, design, number, request)
 }
 
-/// Prints a design's inputs, every output at its worst scenario, and the constraints with their margins.
-fn print_worst(plan: &Plan, design: u64, as_json: bool) -> Result<()> {
+/// The error for `--preset` with a study.
+pub(super) fn no_preset() -> Error {
+    Error::Request("--preset is for models; a study names its own".to_owned())
+}
+
+/// The study of this one design, with what `--set` says.
+fn what_if(own: &Plan, design: u64, path: &Path, set: &[String]) -> Result<Plan> {
+    let mut study = read_study_what_if(path, set)?;
+    let inputs = own.space.inputs(design, 0);
+    let is_set = |name: &str| set.iter().any(|it| it.split('=').next().is_some_and(|it| it.trim() == name));
+    // A formula that gave an input may be gone, so inputs have other numbers.
+    let model = study.model.clone();
+    let value = |axis: &Axis, column: usize| {
+        let name = &model.inputs[axis.inputs()[column]].name;
+        own.study.model.input(name).filter(|_| !is_set(name)).map_or_else(|| axis.value(column, 0), |own| inputs[own])
+    };
+    let alone = |axis: &Axis| -> Vec<Axis> {
+        let level = |(column, &input): (usize, &usize)| Axis::Single { input, levels: Levels::List(vec![value(axis, column)]) };
+        axis.inputs().iter().enumerate().map(level).collect()
+    };
+    study.design = study.design.iter().flat_map(alone).collect();
+    let texts = own.study.labels.iter().zip(own.labels(design));
+    study.labels = texts.map(|(label, text)| Label { name: label.name.clone(), axis: 0, texts: vec![text.to_owned()] }).collect();
+    study.sample = None;
+    Ok(Plan::new(study))
+}
+
+/// Prints the inputs of a design, which the user knows by `number`, every output at its worst scenario, and the constraints with their
+/// margins.
+fn print_worst(plan: &Plan, design: u64, number_of: u64, request: &cli::EvalArgs) -> Result<()> {
     let study = &plan.study;
     let model = &study.model;
     // As if the study asked for every output as a report column.
@@ -288,7 +335,7 @@ fn print_worst(plan: &Plan, design: u64, as_json: bool) -> Result<()> {
         let worst = at_worst(&name, "_constrained").or_else(|| at_worst(&name, ""));
         (constraint, worst.filter(|it| it.value.is_some()))
     });
-    if as_json {
+    if request.json {
         let inputs: Map<_, _> =
             inputs.map(|input| (model.inputs[input].name.to_owned(), value_of(model, input, row.inputs[input]))).collect();
         let outputs = columns
@@ -304,11 +351,14 @@ fn print_worst(plan: &Plan, design: u64, as_json: bool) -> Result<()> {
             })
         });
         let mut object = json!({
-            "model": model.name, "design": design, "inputs": inputs, "outputs": outputs.collect::<Map<_, _>>(),
+            "model": model.name, "design": number_of, "inputs": inputs, "outputs": outputs.collect::<Map<_, _>>(),
             "constraints": constraints.collect::<Vec<_>>(), "status": status, "feasible": row.feasible,
             "scenarios": plan.scenarios(), "scenarios_not_ok": failed.len(),
         });
         add_labels(plan, design, &mut object);
+        if !request.set.is_empty() {
+            object["set"] = json!(request.set);
+        }
         return terminal::print(&format!("{object:#}\n"));
     }
     let mut table = TextGrid::default();
@@ -338,8 +388,9 @@ fn print_worst(plan: &Plan, design: u64, as_json: bool) -> Result<()> {
     let not_ok = failed.first().map_or(String::new(), |(scenario, _)| {
         format!(" in scenario {scenario} ({} of {} scenarios are not ok)", failed.len(), plan.scenarios())
     });
+    let with = if request.set.is_empty() { String::new() } else { format!(" with {}", request.set.join(", ")) };
     terminal::print(&format!(
-        "{} {design}, worst of {} scenarios\n\n{}\n{}\n{}\n{}\n{}\n{}\n{} {status}{not_ok}\n{} {}\n",
+        "{} {number_of}{with}, worst of {} scenarios\n\n{}\n{}\n{}\n{}\n{}\n{}\n{} {status}{not_ok}\n{} {}\n",
         bold("design"),
         plan.scenarios(),
         bold("inputs"),

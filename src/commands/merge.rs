@@ -51,7 +51,8 @@ pub fn run(request: &cli::MergeArgs) -> Result<()> {
     // The merged state is saved as that of a complete run: if this is interrupted from here on, `sweep --resume` finishes it.
     let mut checkpoint = Checkpoint::create(&taken.claim, &plan.study, &text, Shard::WHOLE, plan.designs())?;
     checkpoint.save(&Ranges::of(0..plan.designs()), &state)?;
-    let outcome = Certified::certify(&plan, state, tally, threads, &Control::default())?;
+    let control = Control::default();
+    let outcome = Certified::certify(&plan, state, tally, threads, &control)?;
     let record = RunRecord {
         engine: "cpu",
         threads,
@@ -68,11 +69,11 @@ pub fn run(request: &cli::MergeArgs) -> Result<()> {
             left: None,
         },
     };
-    outcome.write(checkpoint, &text, &record)?;
+    outcome.write(checkpoint, &text, &record, &control)?;
     let page = if request.no_report {
         None
     } else {
-        let study = request.out.join("study.toml");
+        let study = terminal::quoted(&request.out.join("study.toml"));
         Some(page::beside(&plan, &request.out, &study, record.time, threads, &Control::default())?)
     };
     if request.quiet { Ok(()) } else { terminal::print(&report::summary(&outcome, &record, &request.out, page.as_ref())) }

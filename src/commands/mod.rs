@@ -11,6 +11,7 @@ mod merge;
 mod models;
 mod report;
 mod reproduce;
+mod rows;
 mod slurm;
 mod sweep;
 #[cfg(feature = "gpu")]
@@ -21,7 +22,7 @@ use crate::terminal;
 use beltspace::error::{Error, Result};
 use beltspace::models::Model;
 use beltspace::parallel::to_be_had;
-use beltspace::study::Study;
+use beltspace::study::{Study, StudyEdits};
 use clap::CommandFactory;
 use std::path::Path;
 use std::sync::Arc;
@@ -32,7 +33,7 @@ pub fn run(command: Command) -> Result<()> {
         Command::Models(request) => models::run(&request),
         Command::Eval(request) => eval::run(&request),
         Command::Export(request) => export::run(&request),
-        Command::Check { study } => check::run(&study),
+        Command::Check(request) => check::run(&request),
         Command::Sweep(request) => sweep::run(&request),
         Command::Merge(request) => merge::run(&request),
         Command::Slurm(request) => slurm::run(&request),
@@ -60,10 +61,24 @@ fn find_model(name: &str) -> Result<Arc<Model>> {
 
 /// Reads a study file; if there is none of this name, the request is wrong.
 fn read_study(path: &Path) -> Result<(Study, String)> {
-    Study::read(path).map_err(|error| match error {
+    read_study_with(path, StudyEdits::default())
+}
+
+/// The same with what else is asked of it.
+fn read_study_with(path: &Path, edits: StudyEdits<'_>) -> Result<(Study, String)> {
+    Study::read_with(path, edits).map_err(unreadable)
+}
+
+/// The same where a design axis that is set stays, with that value only.
+fn read_study_what_if(path: &Path, set: &[String]) -> Result<Study> {
+    Study::read_what_if(path, set).map_err(unreadable)
+}
+
+fn unreadable(error: Error) -> Error {
+    match error {
         Error::Io { path, source } => Error::Request(format!("cannot read study {}: {source}", path.display())),
         other => other,
-    })
+    }
 }
 
 /// The number of threads asked for, or one per core; fewer if the system does not let so many be started.

@@ -23,7 +23,7 @@ pub fn run(request: &cli::ReportArgs) -> Result<()> {
     let file = request.out.clone().unwrap_or_else(|| folder.join(PAGE));
     refuse_to_replace(&file, request.force)?;
     let patience = Duration::from_secs(request.patience.into());
-    let page = make(&plan, folder, &folder.join("study.toml"), threads(request.threads), patience, &Control::default())?;
+    let page = make(&plan, folder, &quoted(&folder.join("study.toml")), threads(request.threads), patience, &Control::default())?;
     replace(&file, page.html.as_bytes())?;
     if request.quiet {
         return Ok(());
@@ -61,8 +61,9 @@ fn refuse_to_replace(file: &Path, force: bool) -> Result<()> {
     refuse_foreign(file, "replace it with --force, or name another", is_page)
 }
 
-/// Writes the page of a result that has just been written, and says where. `study` is the file that the user named.
-pub fn beside(plan: &Plan, out: &Path, study: &Path, took: Duration, threads: usize, control: &Control) -> Result<PathBuf> {
+/// Writes the page of a result that has just been written, and says where. `study` is the one that the user named, as words of
+/// a command line.
+pub fn beside(plan: &Plan, out: &Path, study: &str, took: Duration, threads: usize, control: &Control) -> Result<PathBuf> {
     let file = out.join(PAGE);
     let page = make(plan, out, study, threads, LEAST_PATIENCE.max(took / 4), control);
     // If this fails, the result is complete all the same.
@@ -74,12 +75,12 @@ pub fn beside(plan: &Plan, out: &Path, study: &Path, took: Duration, threads: us
     Ok(file)
 }
 
-fn make(plan: &Plan, folder: &Path, study: &Path, threads: usize, patience: Duration, control: &Control) -> Result<Page> {
+fn make(plan: &Plan, folder: &Path, study: &str, threads: usize, patience: Duration, control: &Control) -> Result<Page> {
     // Prefer the result's copy of the study, which never changes. It cannot be used if it names tables beside the original.
     let copy = folder.join("study.toml");
     let alone = Study::read(&copy).is_ok_and(|(copy, _)| copy.hash() == plan.study.hash());
-    let study = if alone { &copy } else { study };
-    let evaluate = format!("beltspace eval {} --design {{design}}", quoted(study));
+    let study = if alone { quoted(&copy) } else { study.to_owned() };
+    let evaluate = format!("beltspace eval {study} --design {{design}}");
     let page = of_result(&Request { folder, plan, evaluate: &evaluate, threads, patience }, control)?;
     if page.designs < page.of {
         terminal::remark("note", &format!("the page shows {} of the front's {} designs", page.designs, page.of));

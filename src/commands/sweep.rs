@@ -1,6 +1,7 @@
 //! `beltspace sweep`: judges every design of a study and writes the result.
 
-use super::{engine, read_study, report as page, threads};
+use super::check::feasible_file;
+use super::{engine, read_study_with, report as page, threads};
 use crate::cli;
 use crate::terminal::{self, progress::Bar, report};
 use beltspace::checkpoint::{Checkpoint, Saved};
@@ -12,7 +13,7 @@ use beltspace::plan::Plan;
 use beltspace::result_files::result_files;
 use beltspace::run::judge::{How, Judged, judge, record_of};
 use beltspace::run::{device, method};
-use beltspace::study::{Study, StudyErrors};
+use beltspace::study::{Study, StudyEdits, StudyErrors};
 use beltspace::sweep::costs::Speed;
 use beltspace::sweep::{Control, Settings};
 use beltspace::tiles::Shard;
@@ -24,7 +25,7 @@ use std::time::Duration;
 pub fn run(request: &cli::SweepArgs) -> Result<()> {
     let shard = request.shard.unwrap_or(Shard::WHOLE);
     let out = request.out.clone().unwrap_or_else(|| default_out(&request.study, request.shard));
-    let (study, text) = match read_study(&request.study) {
+    let (study, text) = match read_study_with(&request.study, StudyEdits { set: &request.set, feasible: request.feasible }) {
         Err(Error::Study(errors)) if request.resume => kept_study(&request.study, &out, errors)?,
         read => read?,
     };
@@ -63,6 +64,9 @@ pub fn run(request: &cli::SweepArgs) -> Result<()> {
         return finish_shard(&plan, &out, shard, request.quiet);
     }
     let resumed = checkpoint.saved().has_progress();
+    if let Some(size) = feasible_file(&plan).filter(|_| !request.quiet) {
+        terminal::remark("note", &size);
+    }
     let front_bytes = request.front_memory << 20;
     let settings = Settings { threads, tile: request.tile, shard, front_bytes, ..Settings::default() };
     let bar = Bar::start(&control, shard.range(plan.designs()), request.quiet);
@@ -85,9 +89,9 @@ pub fn run(request: &cli::SweepArgs) -> Result<()> {
         device: device.zip(did).map(|(device, did)| device.describe(&did)),
         method: record_of(method.why, settler),
     };
-    outcome.write(checkpoint, &text, &record).map_err(|error| name_the_way_back(error, &out, request))?;
+    outcome.write(checkpoint, &text, &record, &control).map_err(|error| name_the_way_back(error, &out, request))?;
     let page =
-        if request.no_report { None } else { Some(page::beside(&plan, &out, &request.study, record.time, settings.threads, &control)?) };
+        if request.no_report { None } else { Some(page::beside(&plan, &out, &named(request), record.time, settings.threads, &control)?) };
     if request.quiet { Ok(()) } else { terminal::print(&report::summary(&outcome, &record, &out, page.as_ref())) }
 }
 
@@ -100,6 +104,12 @@ fn kept_study(study: &Path, out: &Path, errors: StudyErrors) -> Result<(Study, S
     let why = errors.problems.first().map_or(String::new(), |problem| format!(" ({problem})"));
     terminal::remark("note", &format!("a table that the study names has changed{why}; going on with the rows that the checkpoint holds"));
     Ok((kept.study().clone(), kept.study_text().to_owned()))
+}
+
+/// The study as words of a command line.
+fn named(request: &cli::SweepArgs) -> String {
+    let set = request.set.iter().map(|it| format!(" --set {}", terminal::quoted_word(it)));
+    terminal::quoted(&request.study) + &set.collect::<String>()
 }
 
 /// `results/<study name>`, of a shard `results/<study name>-K-of-N`.
@@ -118,8 +128,11 @@ pub fn files_of(plan: &Plan, no_page: bool) -> Vec<String> {
 
 /// A run was killed while it put its result in place; that has been completed. Only its page may be missing.
 fn finish_interrupted(plan: &Plan, request: &cli::SweepArgs, out: &Path, threads: usize) -> Result<()> {
-    let page =
-        if request.no_report { None } else { Some(page::beside(plan, out, &request.study, Duration::ZERO, threads, &Control::default())?) };
+    let page = if request.no_report {
+        None
+    } else {
+        Some(page::beside(plan, out, &named(request), Duration::ZERO, threads, &Control::default())?)
+    };
     let page = page.map_or(String::new(), |page| format!("page   {}\n", page.display()));
     if request.quiet {
         Ok(())
@@ -143,7 +156,8 @@ fn stop_on_ctrl_c(control: &Arc<Control>) {
 
 fn name_the_way_back(error: Error, out: &Path, request: &cli::SweepArgs) -> Error {
     let shard = request.shard.map_or(String::new(), |shard| format!(" --shard {shard}"));
-    let [study, folder] = [&request.study, out].map(terminal::quoted);
+    let feasible = if request.feasible { " --feasible" } else { "" };
+    let (study, folder) = (named(request) + feasible, terminal::quoted(out));
     let resume = format!("beltspace sweep {study} --out {folder}{shard} --resume");
     let checkpoint = out.join(CHECKPOINT).display().to_string();
     match error {

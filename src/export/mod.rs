@@ -3,6 +3,7 @@
 //! Without the feature `pictures` it has no pictures and no page, without `parquet` no tables in Parquet: `front.csv` has the same values
 //! as `front.parquet`, and maps of any size are CSV. All other files have the same bytes.
 
+pub(crate) mod feasible;
 #[cfg(feature = "pictures")]
 mod pictures;
 #[cfg(feature = "pictures")]
@@ -23,12 +24,13 @@ use crate::findings::Findings;
 use crate::names::knee_name;
 use crate::names::{MARK, RUN};
 use crate::plan::Plan;
-use crate::reduce::State;
+use crate::reduce::{FEASIBLE_FILE, FeasibleList, State};
 use crate::screen::{Control, Tally};
 #[cfg(feature = "parquet")]
 use crate::table::parquet;
 use crate::table::{Table, csv};
 use std::io::Write;
+use std::path::Path;
 use std::sync::atomic::Ordering;
 
 /// A finished, certified sweep: everything that the result directory contains.
@@ -63,6 +65,7 @@ impl<'p> Certified<'p> {
         let all: Vec<u64> = if plan.study.report.variants { (0..plan.designs()).collect() } else { Vec::new() };
         let reported = state.front.indices.len() + designs.iter().map(Vec::len).sum::<usize>() + all.len();
         control.reported.store(reported as u64, Ordering::Relaxed);
+        state.reported.all_feasible.iter().try_for_each(|list| feasible::check_count(list, state.feasible))?;
         let front = certify::front(plan, &columns, &state.front, threads, control)?;
         let mut named = Vec::new();
         for (designs, all) in designs.iter().zip(state.reported.designs_of(state.feasible)) {
@@ -92,11 +95,11 @@ impl<'p> Certified<'p> {
     }
 
     /// Makes the files of the result, one after the other in the order in which they are written, [`MARK`] last. `run.json` is left to the
-    /// caller.
+    /// caller. `control` can stop what is still to be certified.
     ///
     /// # Errors
     /// Those of `put`; [`Error::Io`] from the table writers.
-    fn make_files(&self, text: &str, threads: usize, put: &mut dyn FnMut(&str, Part<'_>) -> Result<()>) -> Result<()> {
+    fn make_files(&self, text: &str, threads: usize, control: &Control, put: &mut dyn FnMut(&str, Part<'_>) -> Result<()>) -> Result<()> {
         let study = &self.plan.study;
         let json = |value: &serde_json::Value| Part::Bytes((format!("{value:#}") + "\n").into_bytes());
         #[cfg(feature = "pictures")]
@@ -115,6 +118,9 @@ impl<'p> Certified<'p> {
         }
         let table = |place: usize| tables::designs(self, &self.named[place]);
         self.state.reported.write(self.plan, threads, &table, &mut |name, bytes| put(name, Part::Bytes(bytes)))?;
+        for list in &self.state.reported.all_feasible {
+            put(FEASIBLE_FILE, Part::Feasible(self, list, threads, control))?;
+        }
         if study.report.variants {
             put("variants.csv", csv(&tables::variants(self, &self.variants)))?;
         }
@@ -140,15 +146,30 @@ impl<'p> Certified<'p> {
     }
 
     /// Writes the result into the directory of a checkpoint, replaces an older result there, and removes the checkpoint. At any moment the
-    /// directory holds the old result, or the checkpoint with all of the new one, or the new one.
+    /// directory holds the old result, or the checkpoint with all of the new one, or the new one. `control` can stop it before that.
     ///
     /// # Errors
-    /// [`Error::Io`]; [`Error::Request`] if something that this program did not write has the name of one of the files.
-    pub fn write(&self, checkpoint: Checkpoint, text: &str, run: &RunRecord) -> Result<()> {
+    /// [`Error::Io`]; [`Error::Stopped`]; [`Error::Disagreement`] if the f64 reference finds one of all feasible designs infeasible; [`Error::Request`] if something that this program did not write has the name of one of the files.
+    pub fn write(&self, checkpoint: Checkpoint, text: &str, run: &RunRecord, control: &Control) -> Result<()> {
         let mut files: Vec<String> = Vec::new();
-        self.make_files(text, run.threads, &mut |name, part| {
+        self.make_files(text, run.threads, control, &mut |name, part| {
             files.push(name.to_owned());
-            checkpoint.stage(name, |out| part.write(out))
+            let mut failure = None;
+            let staged = checkpoint.stage(name, |out| {
+                part.write(out).map_err(|error| {
+                    failure = Some(error);
+                    std::io::ErrorKind::Other.into()
+                })
+            });
+            // What is wrong with the rows says more than that they could not be written; a full disk is told with the file's path.
+            match failure {
+                Some(Error::Io { source, .. }) => staged.map_err(|error| match error {
+                    Error::Io { path, .. } => Error::Io { path, source },
+                    other => other,
+                }),
+                Some(error) => Err(error),
+                None => staged,
+            }
         })?;
         files.insert(files.len() - 1, RUN.to_owned());
         let run = format!("{:#}\n", run.to_json(&files));
@@ -164,13 +185,16 @@ enum Part<'a> {
     Bytes(Vec<u8>),
     /// The table of scenarios, which may be too large for the memory.
     Scenarios(&'a Plan),
+    /// The table of feasible designs, likewise.
+    Feasible(&'a Certified<'a>, &'a FeasibleList, usize, &'a Control),
 }
 
 impl Part<'_> {
-    fn write(&self, out: &mut dyn Write) -> std::io::Result<()> {
+    fn write(&self, out: &mut dyn Write) -> Result<()> {
         match self {
-            Self::Bytes(bytes) => out.write_all(bytes),
-            Self::Scenarios(plan) => csv::scenarios(plan, out),
+            Self::Bytes(bytes) => out.write_all(bytes).map_err(Error::io(Path::new("result"))),
+            Self::Scenarios(plan) => csv::scenarios(plan, out).map_err(Error::io(Path::new("result"))),
+            Self::Feasible(outcome, list, threads, control) => feasible::write(outcome, list, *threads, control, out),
         }
     }
 }

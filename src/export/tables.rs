@@ -1,9 +1,9 @@
 //! The tables of designs of a result.
 
 use super::Certified;
-use crate::certify::{self, Role, Row};
-use crate::models::Worse;
-use crate::study::{Axis, Goal};
+use crate::certify::{self, Column, Role, Row};
+use crate::models::{Input, Worse};
+use crate::study::{Axis, Goal, Study};
 use crate::table::written;
 use crate::table::{Data, Table, TableColumn};
 
@@ -13,24 +13,37 @@ pub const LABEL: &str = "As the catalogue has it.";
 /// A table of designs: index, labels, design inputs, then the worst value of every other column and its scenario. A design input that is also an
 /// objective or has a constraint stands once, in all its roles.
 pub fn designs(outcome: &Certified<'_>, rows: &[Row]) -> Table {
-    let study = &outcome.plan.study;
+    let has_words = |input: usize| {
+        let table = &outcome.plan.study.model.inputs[input];
+        table.is_enumeration() || rows.iter().any(|row| table.word_for(row.inputs[input]).is_some())
+    };
+    of_rows(&outcome.plan.study, &label_texts(outcome), &outcome.columns, rows, &has_words)
+}
+
+/// The texts of the labels of a design, in the order of the study's labels.
+pub type LabelTexts<'t> = dyn Fn(u64) -> Vec<String> + 't;
+
+/// Those of the designs of an outcome.
+pub fn label_texts<'t>(outcome: &'t Certified<'_>) -> impl Fn(u64) -> Vec<String> + 't {
+    |design| outcome.plan.labels(design).map(str::to_owned).collect()
+}
+
+/// The same where it is known which inputs have words in the table, some rows of which these may be.
+pub fn of_rows(study: &Study, labels: &LabelTexts<'_>, columns_of: &[Column], rows: &[Row], has_words: &dyn Fn(usize) -> bool) -> Table {
     let model = &study.model;
     let mut columns = vec![TableColumn::index("design_index", "Index of the design in the study.", rows.iter().map(|row| Some(row.index)))];
-    for (number, label) in study.labels.iter().enumerate() {
-        let texts = rows.iter().filter_map(|row| outcome.plan.labels(row.index).nth(number)).map(str::to_owned);
-        columns.push(TableColumn::new(&label.name, "label", LABEL, Data::Text(texts.collect())));
+    let mut texts = vec![Vec::with_capacity(rows.len()); study.labels.len()];
+    if !texts.is_empty() {
+        rows.iter().for_each(|row| texts.iter_mut().zip(labels(row.index)).for_each(|(column, text)| column.push(text)));
+    }
+    for (label, texts) in study.labels.iter().zip(texts) {
+        columns.push(TableColumn::new(&label.name, "label", LABEL, Data::Text(texts)));
     }
     for &input in study.design.iter().flat_map(Axis::inputs) {
-        let table = &model.inputs[input];
-        let values = rows.iter().map(|row| row.inputs[input]);
-        let words = table.is_enumeration() || values.clone().any(|value| table.word_for(value).is_some());
-        let data =
-            if words { Data::Text(values.map(|value| written(table, value)).collect()) } else { Data::Number(values.map(Some).collect()) };
-        let column = TableColumn::new(&table.name, "design", &table.doc, data);
-        columns.push(TableColumn { unit: table.unit.symbol.to_owned(), ..column });
+        columns.push(input_column(&model.inputs[input], rows.iter().map(|row| row.inputs[input]), has_words(input)));
     }
     let first_input = 1 + study.labels.len();
-    for (at, column) in outcome.columns.iter().enumerate() {
+    for (at, column) in columns_of.iter().enumerate() {
         let (role, direction) = match column.role {
             Role::Objective(objective) => {
                 ("objective", if study.objectives[objective].goal == Goal::Min { "min".to_owned() } else { "max".to_owned() })
@@ -66,6 +79,12 @@ pub fn designs(outcome: &Certified<'_>, rows: &[Row]) -> Table {
         columns.push(TableColumn::index(&format!("{}_scenario", column.name), what, scenarios));
     }
     Table { columns }
+}
+
+/// The column of an input.
+pub fn input_column(input: &Input, values: impl Iterator<Item = f64>, words: bool) -> TableColumn {
+    let data = if words { Data::Text(values.map(|it| written(input, it)).collect()) } else { Data::Number(values.map(Some).collect()) };
+    TableColumn { unit: input.unit.symbol.to_owned(), ..TableColumn::new(&input.name, "design", &input.doc, data) }
 }
 
 /// Every design, feasible or not.

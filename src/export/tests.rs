@@ -37,7 +37,7 @@ fn files(text: &str) -> Vec<(String, String)> {
         files.push((name.to_owned(), String::from_utf8_lossy(&bytes).into_owned()));
         Ok(())
     };
-    outcome.make_files(text, 1, &mut put).expect("the tables are written");
+    outcome.make_files(text, 1, &Control::default(), &mut put).expect("the tables are written");
     files
 }
 

@@ -1,7 +1,7 @@
 //! The list of the reducers that a study may ask for.
 
 use super::reducer::{Put, Reducer, ReducerNeeds, ReducerResults, ReducerRoom};
-use super::{Answers, FeasibleSample, Histogram, Map, Top};
+use super::{Answers, FeasibleList, FeasibleSample, Histogram, Map, Top};
 use crate::error::Result;
 use crate::plan::Plan;
 #[cfg(feature = "pictures")]
@@ -187,4 +187,6 @@ reducers! {
     maps: Map,
     /// A sample of the feasible designs, if the study asks for one.
     samples: FeasibleSample,
+    /// Every feasible design, if the study asks for them.
+    all_feasible: FeasibleList,
 }

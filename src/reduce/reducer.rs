@@ -69,6 +69,8 @@ pub struct ReducerRoom {
     pub indices: u64,
     /// Designs on the page.
     pub dots: u64,
+    /// Bytes of packed numbers, at most.
+    pub packed: u64,
     /// Files that may be large, and numbers in each.
     pub files: Vec<(String, u64)>,
     /// Tables of designs as text that may be large, and their rows.
@@ -86,6 +88,7 @@ impl ReducerRoom {
             (&mut self.rows, other.rows),
             (&mut self.indices, other.indices),
             (&mut self.dots, other.dots),
+            (&mut self.packed, other.packed),
         ] {
             *own = own.saturating_add(other);
         }

@@ -5,11 +5,12 @@ use super::judge::{How, Judged, judge, record_of};
 use super::{Engine, Options, method};
 use crate::contours::contours as lines_over;
 use crate::error::Result;
-use crate::export::{Certified, Knee, Summary, tables};
+use crate::export::{Certified, Knee, Summary, feasible, tables};
 use crate::models::OVERFLOW;
 use crate::parallel::to_be_had;
 use crate::plan::Plan;
 use crate::reduce::{Extreme, Histogram, histogram, map};
+use crate::screen::Control;
 use crate::study::Study;
 use crate::sweep::Settings;
 use crate::sweep::costs::Speed;
@@ -36,6 +37,8 @@ pub struct Outcome {
     pub sample: Option<Table>,
     /// Every design, feasible or not, if the study asks for it.
     pub variants: Option<Table>,
+    /// All feasible designs in the order of their indices, if the study asks for them.
+    pub feasible: Option<Table>,
     /// The bins of each histogram with the name of its file without extension, in the order of the study.
     pub histograms: Vec<(String, Table)>,
     /// The cells of each map, row by row, named likewise.
@@ -164,12 +167,12 @@ impl Study {
         let record = record_of(method.why, settler);
         let engine = if did.is_some() { Engine::Gpu } else { Engine::Cpu };
         let course = Course { engine, method: record.name, why: record.why, time, remarks };
-        Ok(Outcome::new(&certified, threads, course))
+        Outcome::new(&certified, threads, &control, course)
     }
 }
 
 impl Outcome {
-    fn new(certified: &Certified<'_>, threads: usize, course: Course) -> Self {
+    fn new(certified: &Certified<'_>, threads: usize, control: &Control, course: Course) -> Result<Self> {
         let Certified { plan, state, .. } = certified;
         let study = &plan.study;
         let report = &study.report;
@@ -180,7 +183,7 @@ impl Outcome {
         });
         let places = state.reported.places();
         let listed = |places: Range<usize>| certified.named[places].first().map(|rows| tables::designs(certified, rows));
-        Self {
+        Ok(Self {
             counts: Counts {
                 designs: plan.designs(),
                 scenarios: plan.scenarios(),
@@ -191,6 +194,7 @@ impl Outcome {
             top: listed(places.top),
             sample: listed(places.samples),
             variants: study.report.variants.then(|| tables::variants(certified, &certified.variants)),
+            feasible: state.reported.all_feasible.first().map(|list| feasible::table(certified, list, threads, control)).transpose()?,
             histograms: histogram::names(study).into_iter().zip(state.reported.histograms.iter().map(Histogram::table)).collect(),
             contours: lines.collect(),
             maps: {
@@ -200,7 +204,7 @@ impl Outcome {
             summary: Highlights::new(certified),
             course,
             study: study.clone(),
-        }
+        })
     }
 }
 

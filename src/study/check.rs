@@ -6,7 +6,8 @@
 use super::axis::{Axis, Levels, Sample};
 use super::label::{Label, MOST_LABELS, flaw_of_name, flaw_of_text};
 use super::read::{
-    BINS, FRONT_BUDGET, MOST_CELLS, MOST_LEVELS, MOST_OBJECTIVES, MOST_SAMPLE, MOST_SCENARIOS, MOST_TOP, MOST_VARIANTS, check_levels,
+    BINS, FRONT_BUDGET, MOST_CELLS, MOST_FEASIBLE, MOST_LEVELS, MOST_OBJECTIVES, MOST_SAMPLE, MOST_SCENARIOS, MOST_TOP, MOST_VARIANTS,
+    check_levels,
 };
 use super::resolved::{Best, Constraint, ContourSpec, MapSpec, Quantity, Report, Study, Thresholds};
 use super::spectrum::OverScenarios;
@@ -211,7 +212,11 @@ impl Study {
         require(!report.variants || (self.sample.is_none() && designs <= MOST_VARIANTS), || {
             format!("variants: a list of all is for grids of at most {MOST_VARIANTS} designs")
         })?;
-        let lists = report.top.is_some() || report.sample.is_some() || report.variants;
+        let all = self.sample.map_or(designs, |sample| sample.count);
+        require(!report.feasible || all <= MOST_FEASIBLE, || {
+            format!("feasible: all feasible designs are written of studies of at most {MOST_FEASIBLE} designs")
+        })?;
+        let lists = report.top.is_some() || report.sample.is_some() || report.variants || report.feasible;
         let asks = !self.objectives.is_empty() || lists || !histograms.is_empty() || !maps.is_empty();
         require(asks, || "the study asks for nothing".to_owned())
     }

@@ -62,6 +62,9 @@ impl Study {
         if report.variants {
             described["variants"] = true.into();
         }
+        if report.feasible {
+            described["feasible"] = true.into();
+        }
         if let Some(origin) = &model.origin {
             describe_extension(&origin.extension, &mut described);
         }

@@ -116,6 +116,7 @@ fn report_of(study: &Study, described: &Value) -> Restored<Report> {
         sample,
         front_budget: plain(&described["front_budget"], "front_budget")?,
         variants: described["variants"] == true,
+        feasible: described["feasible"] == true,
     })
 }
 

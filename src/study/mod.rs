@@ -17,9 +17,12 @@ pub use axis::{Axis, Levels, Method, Sample};
 #[doc(hidden)]
 pub use describe::{differences, number, value_of};
 pub use label::Label;
+#[doc(hidden)]
+pub use read::StudyEdits;
 #[cfg(test)]
 pub(crate) use read::tests::study_of;
 pub use read::{Problem, StudyErrors};
+pub(crate) use read::{input_text, input_value_checked};
 pub use resolved::{
     Best, Constraint, ContourSpec, Goal, HistogramSpec, MapSpec, Objective, Quantity, Report, ReportColumn, SampleSpec, Study, Thresholds,
     TopSpec,

@@ -235,6 +235,9 @@ pub struct Report {
     /// Is every design to be listed, feasible or not?
     #[serde(default)]
     pub variants: bool,
+    /// Are all feasible designs to be written?
+    #[serde(default)]
+    pub feasible: bool,
 }
 
 impl Report {
@@ -309,6 +312,13 @@ impl Study {
     pub fn decides_by_spectrum(&self) -> bool {
         let objectives = self.objectives.iter().map(|it| it.over);
         objectives.chain(self.constraints.iter().map(|it| it.over)).any(|over| !over.is_worst())
+    }
+
+    /// Numbers in a row of a table of designs, at most: of what has a scenario, two.
+    pub(crate) fn row_numbers(&self) -> u64 {
+        let inputs = self.design.iter().map(|axis| axis.inputs().len()).sum::<usize>();
+        let quantities = self.objectives.len() + self.constraints.len() + self.report.columns.len();
+        (1 + self.labels.len() + inputs + 2 * quantities) as u64
     }
 
     /// What the model has to say of this study as a whole.

@@ -4,6 +4,7 @@ pub(crate) mod csv;
 mod number;
 #[cfg(feature = "parquet")]
 pub(crate) mod parquet;
+pub mod stream;
 
 pub use csv::write as csv_text;
 pub use number::{plain, short, written};
@@ -82,6 +83,35 @@ impl Table {
             Data::Number(values) => values.len(),
             Data::Text(values) => values.len(),
         })
+    }
+
+    /// Some of its rows.
+    #[cfg(all(test, feature = "parquet"))]
+    pub(crate) fn part(&self, rows: std::ops::Range<usize>) -> Self {
+        let part = |data: &Data| match data {
+            Data::Whole(values) => Data::Whole(values[rows.clone()].to_vec()),
+            Data::Number(values) => Data::Number(values[rows.clone()].to_vec()),
+            Data::Text(values) => Data::Text(values[rows.clone()].to_vec()),
+        };
+        Self { columns: self.columns.iter().map(|it| TableColumn { data: part(&it.data), ..it.clone() }).collect() }
+    }
+
+    /// Adds the rows of a table of the same columns.
+    pub(crate) fn append(&mut self, other: Self) {
+        for (own, other) in self.columns.iter_mut().zip(other.columns) {
+            match (&mut own.data, other.data) {
+                (Data::Whole(own), Data::Whole(other)) => own.extend(other),
+                (Data::Number(own), Data::Number(other)) => own.extend(other),
+                (Data::Text(own), Data::Text(other)) => own.extend(other),
+                _ => unreachable!("columns of the same table are of one kind"),
+            }
+        }
+    }
+
+    /// The first name that two of its columns have.
+    pub(crate) fn doubled_name(&self) -> Option<&str> {
+        let mut known = std::collections::HashSet::new();
+        self.columns.iter().map(|column| column.name.as_str()).find(|name| !known.insert(*name))
     }
 
     /// The table as CSV, as in a result directory: a header, decimal points, the shortest numbers that read back as the same f64, nothing

@@ -9,11 +9,12 @@ use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::{ColumnPath, Type};
+use std::io::Write;
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Rows of a row group.
-const GROUP: usize = 65_536;
+pub const GROUP: usize = 65_536;
 
 /// A table as Parquet. The file's key-value metadata has unit, role, direction and description of every column, as
 /// `<column>.unit` and so on.
@@ -21,7 +22,81 @@ const GROUP: usize = 65_536;
 /// # Errors
 /// [`Error::Io`] if the writer refuses the table.
 pub fn write(table: &Table) -> Result<Vec<u8>> {
-    let failed = |error: ParquetError| Error::Io { path: PathBuf::from("Parquet table"), source: std::io::Error::other(error) };
+    let mut stream = ParquetStream::new(table)?;
+    stream.write(table)?;
+    stream.finish()
+}
+
+fn failed(error: ParquetError) -> Error {
+    Error::Io { path: PathBuf::from("Parquet table"), source: std::io::Error::other(error) }
+}
+
+/// Bytes that were written and have not been taken yet.
+#[derive(Clone, Default)]
+struct Pending(Arc<Mutex<Vec<u8>>>);
+
+impl Pending {
+    fn take(&self) -> Vec<u8> {
+        std::mem::take(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+impl Write for Pending {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+/// A table as Parquet, block of rows after block of rows; the bytes are taken as they come.
+pub struct ParquetStream {
+    writer: SerializedFileWriter<Pending>,
+    pending: Pending,
+}
+
+impl ParquetStream {
+    /// Starts a table with the columns of this one; its rows are not written yet.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if the writer refuses the columns.
+    pub fn new(table: &Table) -> Result<Self> {
+        let pending = Pending::default();
+        let (schema, properties) = (schema(table).map_err(failed)?, properties(table));
+        let writer = SerializedFileWriter::new(pending.clone(), schema, Arc::new(properties)).map_err(failed)?;
+        Ok(Self { writer, pending })
+    }
+
+    /// Adds the rows of a table of the same columns. Blocks of [`GROUP`] rows give the file that the whole table would give.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if the writer refuses them.
+    pub fn write(&mut self, table: &Table) -> Result<()> {
+        for first in (0..table.rows()).step_by(GROUP) {
+            write_group(&mut self.writer, table, first..table.rows().min(first + GROUP)).map_err(failed)?;
+        }
+        Ok(())
+    }
+
+    /// The bytes so far that have not been taken.
+    pub fn take(&self) -> Vec<u8> {
+        self.pending.take()
+    }
+
+    /// Ends the table: the rest of its bytes.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if the writer cannot end.
+    pub fn finish(self) -> Result<Vec<u8>> {
+        self.writer.close().map_err(failed)?;
+        Ok(self.pending.take())
+    }
+}
+
+fn schema(table: &Table) -> std::result::Result<Arc<Type>, ParquetError> {
     let fields = table.columns.iter().map(|column| {
         let (physical, repetition, logical) = match column.data {
             // A study may have more designs than a signed number can count.
@@ -32,8 +107,11 @@ pub fn write(table: &Table) -> Result<Vec<u8>> {
         let builder = Type::primitive_type_builder(&column.name, physical).with_repetition(repetition).with_logical_type(logical);
         builder.build().map(Arc::new)
     });
-    let fields = fields.collect::<std::result::Result<Vec<_>, _>>().map_err(failed)?;
-    let schema = Type::group_type_builder("designs").with_fields(fields).build().map(Arc::new).map_err(failed)?;
+    let fields = fields.collect::<std::result::Result<Vec<_>, _>>()?;
+    Type::group_type_builder("designs").with_fields(fields).build().map(Arc::new)
+}
+
+fn properties(table: &Table) -> WriterProperties {
     let metadata = table.columns.iter().flat_map(|column| {
         let about =
             [("unit", &column.unit), ("role", &column.role), ("direction", &column.direction), ("description", &column.description)];
@@ -48,17 +126,11 @@ pub fn write(table: &Table) -> Result<Vec<u8>> {
         let path = ColumnPath::from(column.name.as_str());
         properties = properties.set_column_dictionary_enabled(path.clone(), false).set_column_encoding(path, Encoding::DELTA_BINARY_PACKED);
     }
-    let properties = properties.build();
-    let mut writer = SerializedFileWriter::new(Vec::new(), schema, Arc::new(properties)).map_err(failed)?;
-    for first in (0..table.rows()).step_by(GROUP) {
-        let rows = first..table.rows().min(first + GROUP);
-        write_group(&mut writer, table, rows).map_err(failed)?;
-    }
-    writer.into_inner().map_err(failed)
+    properties.build()
 }
 
 fn write_group(
-    writer: &mut SerializedFileWriter<Vec<u8>>,
+    writer: &mut SerializedFileWriter<Pending>,
     table: &Table,
     rows: std::ops::Range<usize>,
 ) -> std::result::Result<(), ParquetError> {
@@ -117,6 +189,14 @@ mod tests {
         };
         let bytes = write(&table).unwrap();
         assert_eq!(bytes, write(&table).unwrap(), "equal tables are equal bytes");
+        let mut stream = ParquetStream::new(&table).unwrap();
+        let mut in_pieces = Vec::new();
+        for first in [0, GROUP] {
+            stream.write(&table.part(first..(first + GROUP).min(70_000))).unwrap();
+            in_pieces.extend(stream.take());
+        }
+        in_pieces.extend(stream.finish().unwrap());
+        assert!(bytes == in_pieces, "a table in blocks is the same file");
         let reader = SerializedFileReader::new(bytes::Bytes::from(bytes)).unwrap();
         let metadata = reader.metadata();
         assert_eq!((metadata.num_row_groups(), metadata.file_metadata().num_rows()), (2, 70_000));

@@ -448,6 +448,7 @@ fn the_example_means_what_it_says() {
         study.report,
         Report {
             variants: false,
+            feasible: false,
             columns: vec![output("max_stress_MPa").into()],
             top: Some(TopSpec { by: force, goal: Goal::Min, count: 20 }),
             histograms: vec![HistogramSpec { of: force, range: Some((0.0, 60_000.0)), bins: 60 }],

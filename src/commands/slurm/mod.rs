@@ -193,7 +193,7 @@ fn remark(plan: &Plan, work: &Work, request: &cli::SlurmArgs, shards: u64) {
 fn work(plan: &Plan, seconds: f64, cpus: u16) -> Work {
     let designs = plan.designs();
     let sample = designs.min(plan.study.model.sample);
-    let listed = if plan.study.report.variants { designs } else { 0 };
+    let listed = if plan.study.report.variants || plan.study.report.feasible { designs } else { 0 };
     Work { designs, seconds, sample: if plan.shards_sample() { sample } else { 0 }, again: sample + listed, cpus }
 }
 

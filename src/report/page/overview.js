@@ -55,6 +55,7 @@
       model ? page.element("p", { class: "model" }, page.element("strong", {}, model.name), `: ${model.summary}.`) : "",
       model && model.limits ? page.element("details", { class: "limits" }, page.element("summary", {}, "Limits of the model"), page.element("p", {}, model.limits), model.source ? page.element("p", { class: "source" }, `Source: ${model.source}.`) : null) : "",
       page.element("dl", { class: "facts" }, facts.filter(Boolean)),
+      data.feasible_file ? page.element("p", { class: "hint", "data-testid": "feasible-file" }, `All feasible designs are in ${data.feasible_file} beside this page's result.`) : "",
       (data.notes || []).map((note) => page.element("p", { class: "notice" }, note)),
       front && front.rows && front.objectives.length ? page.element("div", { class: "goals" }, objectives(), openKnee) : "",
     ];

@@ -8,6 +8,7 @@ use super::table::{Entry, Problems, TomlNode, TomlTable, list, shortened};
 use super::{section, text};
 use crate::formula::{Expression, meant};
 use crate::models::{CurveSource, Extension, ExtensionProblem, Model, extended};
+use crate::names::column_of_tables;
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
@@ -55,6 +56,7 @@ pub(super) fn with_formulas(
         return None;
     }
     refuse_twice_given(&model, &extension, top, problems);
+    refuse_names_of_columns(&model, &extension, top, problems);
     let unread = extension.clone();
     match extended(&model, extension) {
         Ok(model) if problems.count() == before => Some(Arc::new(model)),
@@ -153,7 +155,7 @@ fn points(text: &str, x: &str, y: &str) -> Result<PointsWithLines, (usize, Strin
 }
 
 /// Tables of a study whose keys are inputs or variables.
-const GIVING: [&str; 4] = ["design", "operation", "uncertainty", "fixed"];
+pub(super) const GIVING: [&str; 4] = ["design", "operation", "uncertainty", "fixed"];
 
 /// Every name that the study gives numbers to, with its place.
 pub(super) fn given(top: &TomlTable<'_>, folder: &Path) -> Vec<(String, usize)> {
@@ -260,6 +262,18 @@ fn refuse_twice_given(model: &Model, extension: &Extension, top: &TomlTable<'_>,
             let what = if model.input(entry.key).is_some() { "input" } else { "name" };
             problems.add(entry.key_at, format!("the {what} \"{}\" is given by a formula; drop one of the two", shortened(entry.key)));
         }
+    }
+}
+
+/// Reports variables and formulas whose column in a table of the result would have the name of another one.
+fn refuse_names_of_columns(model: &Model, extension: &Extension, top: &TomlTable<'_>, problems: &Problems<'_>) {
+    let own: Vec<&str> = extension.variables.iter().chain(extension.formulas.iter().map(|(name, _)| name)).map(String::as_str).collect();
+    let is_known = |name: &str| model.input(name).is_some() || model.output(name).is_some() || own.contains(&name);
+    let tables = || GIVING.iter().chain(&["formulas"]).filter_map(|name| top.get(name)?.node.table());
+    for name in own.iter().filter(|name| model.input(name).is_none()) {
+        let Some(column) = column_of_tables(name, is_known) else { continue };
+        let at = tables().flat_map(|table| table.entries).find(|entry| entry.key == *name).map_or(0, |entry| entry.key_at);
+        problems.add(at, format!("\"{}\" is the name of a column {column}; choose another name", shortened(name)));
     }
 }
 

@@ -15,6 +15,7 @@
 //! | `quantities.rs` | `[constraints]`, `[objectives]`                    |
 //! | `report.rs`     | `[report]`                                         |
 //! | `contours.rs`   | the contours of its maps                           |
+//! | `set.rs`        | values in place of what a study says               |
 
 mod axes;
 mod cases;
@@ -26,6 +27,7 @@ mod presets;
 mod quantities;
 mod range;
 mod report;
+mod set;
 mod spectrum;
 mod syntax;
 mod table;
@@ -35,8 +37,9 @@ mod value;
 
 pub(super) use quantities::MOST_OBJECTIVES;
 pub(super) use range::check_levels;
-pub(super) use report::{BINS, FRONT_BUDGET, MOST_CELLS, MOST_SAMPLE, MOST_TOP, MOST_VARIANTS};
+pub(super) use report::{BINS, FRONT_BUDGET, MOST_CELLS, MOST_FEASIBLE, MOST_SAMPLE, MOST_TOP, MOST_VARIANTS};
 pub(super) use value::shown;
+pub(crate) use value::{checked as input_value_checked, input_text};
 
 use super::axis::{Axis, Method, Sample};
 use super::label::Label;
@@ -48,6 +51,8 @@ use crate::likeness::remedy;
 use crate::models::{Model, Models};
 use axes::{AxisClaim, AxisRole};
 use labels::{DeclaredLabel, check_label_names, read_labels};
+use set::SetAxes;
+pub use set::StudyEdits;
 use std::cell::{Cell, RefCell};
 use std::path::Path;
 use std::sync::Arc;
@@ -124,6 +129,37 @@ impl Study {
     /// [`Error::Io`](crate::error::Error::Io) if the file cannot be read, [`Error::Study`](crate::error::Error::Study) with all mistakes
     /// in it.
     pub fn read(path: &Path) -> Result<(Self, String)> {
+        Self::read_set(path, &[])
+    }
+
+    /// The same with values in place of what the file gives some inputs, each as `NAME=VALUE`: of an axis, a fixed value or a formula. The
+    /// text is that of the file with these values.
+    ///
+    /// # Errors
+    /// As [`Study::read`]; [`Error::Request`](crate::error::Error::Request) for what is wrong with the values.
+    pub fn read_set(path: &Path, set: &[String]) -> Result<(Self, String)> {
+        Self::read_with(path, StudyEdits { set, feasible: false })
+    }
+
+    /// The same with all that may be asked of a study besides what its file says.
+    ///
+    /// # Errors
+    /// As [`Study::read_set`].
+    #[doc(hidden)]
+    pub fn read_with(path: &Path, edits: StudyEdits<'_>) -> Result<(Self, String)> {
+        Self::read_edited(path, edits, SetAxes::Go)
+    }
+
+    /// The same for one design that is asked about: a design axis whose input is set stays, with that value only.
+    ///
+    /// # Errors
+    /// As [`Study::read_set`].
+    #[doc(hidden)]
+    pub fn read_what_if(path: &Path, set: &[String]) -> Result<Self> {
+        Self::read_edited(path, StudyEdits { set, feasible: false }, SetAxes::Stay).map(|(study, _)| study)
+    }
+
+    fn read_edited(path: &Path, edits: StudyEdits<'_>, axes: SetAxes) -> Result<(Self, String)> {
         let bytes = read_bytes(path, STUDY_BYTES, "long lists of values go into a CSV file")?;
         let file = path.display().to_string();
         let text = String::from_utf8(bytes).map_err(|error| {
@@ -132,8 +168,7 @@ impl Study {
             let message = "this is not UTF-8 text; save the file in the encoding UTF-8".to_owned();
             StudyErrors { problems: vec![Problem { file: file.clone(), line, column, message }] }
         })?;
-        let study = Self::parse_in(&text, &file, path.parent().unwrap_or(Path::new("")))?;
-        Ok((study, text))
+        Self::parse_edited(&Models::new(), &text, &file, path.parent().unwrap_or(Path::new("")), edits, axes)
     }
 
     /// Checks a study given as text, such as `include_str!("study.toml")`. CSV files that it names are looked for in the current folder.
@@ -189,6 +224,8 @@ struct Reader<'a> {
     base: Vec<f64>,
     /// Are the designs sampled?
     sampled: bool,
+    /// How many are, where that is understood.
+    sample_count: Option<u64>,
     /// Every place that gives an input values.
     claims: RefCell<Vec<AxisClaim>>,
     /// Is an input given values under a wrong name? Then it is unknown which inputs have none.
@@ -229,6 +266,7 @@ fn read_study_of(model: Option<Arc<Model>>, top: &TomlTable<'_>, problems: &Prob
         folder,
         base: read_preset(top, &model, problems),
         sampled: top.get("sample").is_some(),
+        sample_count: sample.map(|it| it.count),
         claims: RefCell::default(),
         misnamed: Cell::default(),
         weighted_at: Cell::default(),
@@ -386,13 +424,13 @@ impl Reader<'_> {
         let asks = |key: &&str| report.is_some_and(|table| table.get(key).is_some());
         let broken = top.get("objectives").is_some() && objectives.is_none() || top.get("report").is_some() && report.is_none();
         let empty = objectives.is_none_or(|table| table.entries.is_empty());
-        if empty && !broken && !["top", "histograms", "maps", "sample", "variants"].iter().any(asks) {
+        if empty && !broken && !["top", "histograms", "maps", "sample", "variants", "feasible"].iter().any(asks) {
             let example = self.some_output();
             self.problems.add_if_complete(
                 objectives.map_or(0, |table| table.at),
                 format!(
                     "the study asks for nothing; name an objective in [objectives], such as {example} = \"min\", \
-                     or top, histograms, maps, a sample or variants in [report]"
+                     or top, histograms, maps, a sample, variants or feasible in [report]"
                 ),
             );
         }

@@ -23,6 +23,8 @@ pub(in super::super) const MOST_SAMPLE: u64 = 1_000_000;
 const SEED: u64 = 0;
 /// Most designs of a list of all.
 pub(in super::super) const MOST_VARIANTS: u64 = 10_000;
+/// Most designs of a study all feasible ones of which are written.
+pub(in super::super) const MOST_FEASIBLE: u64 = 100_000_000;
 /// Most cells of a map.
 pub(in super::super) const MOST_CELLS: u64 = 1 << 26;
 
@@ -55,7 +57,11 @@ impl Reader<'_> {
         let mut report = Report { front_budget: FRONT_BUDGET.0, ..Report::default() };
         let Some(table) = table else { return report };
         let known = ReportContext { named, objectives, design, fixed };
-        table.check_keys(self.problems, "[report]", &["columns", "top", "histograms", "maps", "sample", "front_budget", "variants"]);
+        table.check_keys(
+            self.problems,
+            "[report]",
+            &["columns", "top", "histograms", "maps", "sample", "front_budget", "variants", "feasible"],
+        );
         if let Some(entry) = table.get("columns") {
             report.columns = self.columns_of_report(entry, &known);
         }
@@ -72,6 +78,7 @@ impl Reader<'_> {
             report.front_budget = budget;
         }
         report.variants = table.get("variants").is_some_and(|entry| self.variants(entry, design));
+        report.feasible = table.get("feasible").is_some_and(|entry| self.feasible(entry, design));
         report
     }
 
@@ -96,19 +103,40 @@ impl Reader<'_> {
 
     /// Is every design to be listed?
     fn variants(&self, entry: &Entry<'_>, design: &[Axis]) -> bool {
-        let DeValue::Boolean(wanted) = entry.node.value else {
-            self.problems.add(entry.node.at, format!("variants: found {}, wanted true or false", entry.node.found()));
-            return false;
-        };
+        let wanted = self.is_wanted(entry);
         let designs = design.iter().fold(1u64, |product, axis| product.saturating_mul(axis.count()));
-        if *wanted && (self.sampled || designs > MOST_VARIANTS) {
+        if wanted && (self.sampled || designs > MOST_VARIANTS) {
             let found =
                 if self.sampled { "this study samples its designs".to_owned() } else { format!("this study has {designs} designs") };
             let message = format!("variants: {found}; a list of all is for grids of at most {MOST_VARIANTS}: use top or the front");
             self.problems.add(entry.node.at, message);
             return false;
         }
-        *wanted
+        wanted
+    }
+
+    /// Are all feasible designs to be written?
+    fn feasible(&self, entry: &Entry<'_>, design: &[Axis]) -> bool {
+        let wanted = self.is_wanted(entry);
+        let designs = self.sample_count.unwrap_or_else(|| design.iter().fold(1u64, |product, axis| product.saturating_mul(axis.count())));
+        if wanted && designs > MOST_FEASIBLE {
+            let message = format!(
+                "feasible: this study has {designs} designs; all feasible ones are written of at most {MOST_FEASIBLE}: \
+                 use a sample of them (sample = 100000), or fewer levels"
+            );
+            self.problems.add(entry.node.at, message);
+            return false;
+        }
+        wanted
+    }
+
+    /// True or false.
+    fn is_wanted(&self, entry: &Entry<'_>) -> bool {
+        if let DeValue::Boolean(wanted) = entry.node.value {
+            return *wanted;
+        }
+        self.problems.add(entry.node.at, format!("{}: found {}, wanted true or false", entry.key, entry.node.found()));
+        false
     }
 
     /// A node that must be a table.

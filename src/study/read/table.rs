@@ -160,17 +160,18 @@ impl<'t> Problems<'t> {
     }
 }
 
-/// A value and where it starts.
+/// A value, where it starts and where it ends.
 #[derive(Clone, Copy)]
 pub(super) struct TomlNode<'a> {
     pub(super) value: &'a DeValue<'a>,
     pub(super) at: usize,
+    pub(super) end: usize,
 }
 
 impl<'a> TomlNode<'a> {
     /// The value in the syntax tree.
     pub(super) fn new(value: &'a Spanned<DeValue<'a>>) -> Self {
-        Self { value: value.get_ref(), at: value.span().start }
+        Self { value: value.get_ref(), at: value.span().start, end: value.span().end }
     }
 
     /// As a table.

@@ -66,7 +66,7 @@ pub(super) fn input_value(node: TomlNode<'_>, input: &Input) -> Result<f64, Stri
 }
 
 /// A value that an input can take, given as text: a number, a number with a unit, or one of the input's words.
-pub(super) fn input_text(text: &str, input: &Input) -> Result<f64, String> {
+pub(crate) fn input_text(text: &str, input: &Input) -> Result<f64, String> {
     match input.value_of(text.trim()) {
         Some(encoded) => Ok(encoded),
         None if input.is_enumeration() => Err(no_word(&format!("\"{}\"", shortened(text)), input)),
@@ -98,7 +98,7 @@ fn or_word(error: String, input: &Input) -> String {
 }
 
 /// Is this a value that the input can take?
-pub(super) fn checked(value: f64, input: &Input) -> Result<f64, String> {
+pub(crate) fn checked(value: f64, input: &Input) -> Result<f64, String> {
     if !input.valid.contains(value) {
         let mut unit = String::new();
         if !input.unit.symbol.is_empty() {

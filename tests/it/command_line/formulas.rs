@@ -53,7 +53,17 @@ fn another_formula_is_another_study() {
 }
 
 /// Edits of a right study, and what is said of each: line and column in the study, and the sentence.
-const BROKEN: [(&str, &str, &str); 14] = [
+const BROKEN: [(&str, &str, &str); 16] = [
+    (
+        "cost_EUR = \"belt",
+        "scenario = \"1\"\ncost_EUR = \"belt",
+        r#"study.toml:21:1: "scenario" is the name of a column in tables of results; choose another name"#,
+    ),
+    (
+        "cost_EUR = \"belt",
+        "axial_force_N_scenario = \"1\"\ncost_EUR = \"belt",
+        r#"study.toml:21:1: "axial_force_N_scenario" is the name of a column that tables of results have beside "axial_force_N"; choose another name"#,
+    ),
     ("700[mm] * 7850", "700[mm] + 7850", r#"study.toml:20:17: formula "belt_mass_kg": a volume and a density cannot be added"#),
     (
         "axial_force_N / belt_mass_kg",

@@ -8,6 +8,8 @@ mod catalogues;
 mod checkpoints;
 /// Contours of maps, compared with the models.
 mod contours;
+/// Every feasible design.
+mod feasible;
 /// Studies with formulas.
 mod formulas;
 /// Files that were changed, and things that are not files.
@@ -16,14 +18,20 @@ mod mangled;
 mod method;
 /// `models` and `eval`.
 mod models_and_eval;
+/// Names of columns.
+mod names;
 /// Which process uses a directory, and which files in it are beltspace's.
 mod ownership;
 /// Interrupted, divided and resumed runs.
 mod recovery;
 /// The page of a result.
 mod report;
+/// Rows of a table, evaluated one by one.
+mod rows;
 /// A sample of the feasible designs.
 mod sample;
+/// Values in place of what a study says.
+mod set;
 /// Scripts for a cluster, run by programs that imitate its scheduler.
 #[cfg(unix)]
 mod slurm;

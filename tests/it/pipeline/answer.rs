@@ -1,5 +1,7 @@
 //! What a result directory says, as cells that are compared bit by bit.
 
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::record::Field;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -96,12 +98,31 @@ impl Answer {
                 let header = reader.headers().expect("a table has a header").iter().map(str::to_owned).collect();
                 let rows = reader.records().map(|row| row.expect("rows are complete").iter().map(Cell::parse).collect());
                 answer.tables.insert(name, Table { header, rows: rows.collect() });
+            } else if name == "feasible.parquet" {
+                answer.tables.insert(name, in_parquet(&path));
             }
         }
         let summary = std::fs::read_to_string(folder.join("summary.json")).expect("there is a summary");
         flatten("", &serde_json::from_str(&summary).expect("it is JSON"), &mut answer.summary);
         answer
     }
+}
+
+/// A table in Parquet, read by a reader of its own.
+fn in_parquet(path: &Path) -> Table {
+    let reader = SerializedFileReader::new(std::fs::File::open(path).expect("it can be opened")).expect("it is Parquet");
+    let header = reader.metadata().file_metadata().schema().get_fields().iter().map(|field| field.name().to_owned()).collect();
+    let cell = |field: &Field| match field {
+        Field::Null => Cell::Absent,
+        Field::Double(value) => Cell::number(*value),
+        Field::ULong(value) => Cell::parse(&value.to_string()),
+        other => Cell::parse(other.to_string().trim_matches('"')),
+    };
+    let rows = reader.get_row_iter(None).expect("it has rows").map(|row| {
+        let row = row.expect("a row can be read");
+        row.get_column_iter().map(|(_, field)| cell(field)).collect()
+    });
+    Table { header, rows: rows.collect() }
 }
 
 fn flatten(path: &str, value: &serde_json::Value, into: &mut BTreeMap<String, Cell>) {

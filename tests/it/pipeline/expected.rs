@@ -175,6 +175,9 @@ impl Expected {
             drawn.sort_unstable();
             tables.insert("sample.csv".to_owned(), designs_table(study, evaluated, &drawn));
         }
+        if study.report.feasible {
+            tables.insert("feasible.parquet".to_owned(), designs_table(study, evaluated, &self.feasible));
+        }
         if study.report.variants {
             let all: Vec<u64> = (0..evaluated.designs).collect();
             let mut table = designs_table(study, evaluated, &all);

@@ -97,8 +97,11 @@ fn check_all_ways(seed: u64, text: &str, study: Study, evaluated: &Evaluated) ->
         panic!("seed {seed}: {difference}");
     }
     assert_eq!(reference["study.toml"], text.as_bytes(), "seed {seed}");
-    for name in
-        expected.answer.tables.keys().filter(|name| !["scenarios.csv", "top.csv", "sample.csv", "variants.csv"].contains(&name.as_str()))
+    for name in expected
+        .answer
+        .tables
+        .keys()
+        .filter(|name| !["scenarios.csv", "top.csv", "sample.csv", "feasible.parquet", "variants.csv"].contains(&name.as_str()))
     {
         assert!(reference.contains_key(&name.replace(".csv", ".svg")), "seed {seed}: there is no picture of {name}");
     }
@@ -174,6 +177,7 @@ const EVERY_FEATURE: &[&str] = &[
     "input as constraint",
     "top",
     "sample of feasible designs",
+    "all feasible designs written",
     "histogram, range given",
     "histogram, range automatic",
     "map of a value",
@@ -242,6 +246,7 @@ fn cover(draft: &Draft, plan: &Plan, evaluated: &Evaluated, expected: &Expected,
     note("resolution", study.objectives.iter().any(|it| it.resolution.is_some()));
     note("input as objective", study.objectives.iter().any(|it| is_input(it.quantity)));
     note("input as constraint", study.constraints.iter().any(|it| is_input(it.quantity)));
+    note("all feasible designs written", study.report.feasible && !expected.feasible.is_empty());
     note("top", study.report.top.is_some());
     note("sample of feasible designs", study.report.sample.is_some());
     note("histogram, range given", study.report.histograms.iter().any(|it| it.range.is_some()));
@@ -416,6 +421,41 @@ fn a_sample_with_a_design_that_is_not_feasible_or_one_too_few_is_not_written() {
     for beyond in [forged(&[plan.designs()]), forged(&[0; 41])] {
         assert_eq!(check(&beyond), Err("its sample cannot be of this study".to_owned()));
     }
+}
+
+/// The same for the list of all feasible designs: one too few is noticed before anything is written, a wrong one when its row is made.
+#[test]
+fn a_list_of_feasible_designs_that_is_wrong_is_not_written() {
+    let text = "model = \"metal-cvt\"\n[design]\nband_thickness_mm = { from = 0.1, to = 0.3, count = 41 }\nband_count = { from = 6, to = 12 }\n\
+                [constraints]\nstress_margin = { min = 0.4 }\n[objectives]\naxial_force_N = \"min\"\n[report]\nfeasible = true\n";
+    let plan = Plan::new(parse(text));
+    let pipeline = Pipeline::new(&plan, text);
+    let good = pipeline.whole(&Settings { threads: 1, ..Settings::default() });
+    let evaluated = Evaluated::new(&plan.study);
+    let feasible = Expected::new(&plan.study, &evaluated).feasible;
+    let infeasible = (0..plan.designs()).find(|it| feasible.binary_search(it).is_err()).expect("some are not feasible");
+    let forged = |designs: &[u64]| {
+        let mut designs = designs.to_vec();
+        designs.sort_unstable();
+        // As it is kept: one piece, the differences of neighbours, which here take a byte each.
+        let differences = designs.iter().scan(0, |last, &it| Some(u8::try_from(it - std::mem::replace(last, it)).expect("they lie close")));
+        let bytes = postcard::to_stdvec(&vec![(designs.len() as u64, differences.collect::<Vec<u8>>())]).expect("it can be written");
+        let mut state = good.clone();
+        state.reported.all_feasible = vec![postcard::from_bytes(&bytes).expect("that is how it is kept")];
+        state
+    };
+    assert_eq!(forged(&feasible).reported, good.reported);
+    let check = |state: &State| pipeline.reduction.check(state, plan.designs(), plan.designs());
+    assert_eq!((check(&good), pipeline.certified(good.clone()).map(drop).map_err(|error| error.to_string())), (Ok(()), Ok(())));
+    let lost = pipeline.certified(forged(&feasible[1..])).map(drop).expect_err("one is missing").to_string();
+    assert!(lost.contains(&format!("the sweep kept {} of the {} feasible designs", feasible.len() - 1, feasible.len())), "{lost}");
+    let mut wrong = feasible[1..].to_vec();
+    wrong.push(infeasible);
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    let failed = pipeline.try_write(forged(&wrong), 1, folder.path()).expect_err("one is not feasible").to_string();
+    assert!(failed.contains(&format!("design {infeasible}: the sweep found it feasible, the f64 reference does not")), "{failed}");
+    assert!(!folder.path().join("summary.json").exists() && !folder.path().join("feasible.parquet").exists());
+    assert_eq!(check(&forged(&[100, 200, plan.designs()])), Err("its list of feasible designs cannot be of this study".to_owned()));
 }
 
 /// A histogram of a quantity that some designs lack in some scenario makes those infeasible, in the list of all designs too. (Found

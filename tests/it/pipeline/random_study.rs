@@ -105,6 +105,9 @@ impl Draft {
         if turn % 3 == 1 && !sampled && !for_bounds && listed <= 1000 {
             draft.report.push("variants = true".to_owned());
         }
+        if turn % 4 == 1 && !for_bounds {
+            draft.report.push("feasible = true".to_owned());
+        }
         // Models go by the seed too, and four of them share a factor with ten numbers.
         let number = if for_bounds { turn + turn / 4 } else { turn };
         draft.ask(random, [2, 3, 1, 0, 2, 4, 6, 2, 5, 3][number % 10]);

@@ -173,7 +173,8 @@ impl Prelude<'_> {
         let cut = layout.cut;
         let share_or_value = !plan.study.report.maps.is_empty();
         // Only the closer look knows the index of a design.
-        let all = share_or_value || !plan.study.report.histograms.is_empty() || plan.study.report.sample.is_some();
+        let report = &plan.study.report;
+        let all = share_or_value || !report.histograms.is_empty() || report.sample.is_some() || report.feasible;
         let uses_row_dominators = row_dominators(plan);
         let each = if cut.keeps { cut.block } else { 1 };
         let shared = if uses_row_dominators { cut.group_rows * cut.group_chunks * each } else { 1 };

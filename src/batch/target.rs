@@ -1,0 +1,205 @@
+//! What rows are evaluated by: a model, or a study.
+
+use super::refusal;
+use crate::certify::{self, Column, Row};
+use crate::error::Result;
+use crate::export::tables::{input_column, of_rows};
+use crate::likeness::remedy;
+use crate::models::{Evaluation, Model, evaluate};
+use crate::parallel::on_threads;
+use crate::plan::Plan;
+use crate::screen::Control;
+use crate::study::{Axis, Constraint, Study};
+use crate::table::{Data, TableColumn};
+use std::sync::Arc;
+
+/// What rows are evaluated by.
+#[derive(Debug)]
+pub struct BatchTarget {
+    model: Arc<Model>,
+    kind: BatchKind,
+    /// Names that `--set` gives: no column may give them too.
+    set: Vec<String>,
+}
+
+#[derive(Debug)]
+enum BatchKind {
+    /// With these values of the inputs that have no column.
+    Model(Vec<f64>),
+    /// In the worst of its scenarios; what the tables of its results have.
+    Study(Box<Study>, Vec<Column>),
+}
+
+/// The given columns, and those of the results.
+type RowColumns = (Vec<TableColumn>, Vec<TableColumn>);
+
+impl BatchTarget {
+    /// A model, where inputs without a column have these values; `set` names those of them that the user gave.
+    pub fn of_model(model: Arc<Model>, inputs: Vec<f64>, set: Vec<String>) -> Self {
+        Self { model, kind: BatchKind::Model(inputs), set }
+    }
+
+    /// A study, every row of which is a design; `set` names inputs whose values the user gave.
+    pub fn of_study(study: Study, set: Vec<String>) -> Self {
+        let columns = certify::columns(&study);
+        Self { model: study.model.clone(), kind: BatchKind::Study(Box::new(study), columns), set }
+    }
+
+    /// The model.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The input that a column of this name gives, or why it can give none.
+    pub(super) fn input(&self, name: &str) -> std::result::Result<usize, String> {
+        let model = &self.model;
+        if self.set.iter().any(|it| it == name) {
+            return Err("--set gives it too; keep one of the two".to_owned());
+        }
+        let Some(input) = model.input(name) else {
+            let carry = format!("--carry {name} takes it along as it is");
+            if model.output(name).is_some() {
+                return Err(format!("it is a result and no input; drop the column, or {carry}"));
+            }
+            let names: Vec<&str> = model.inputs.iter().map(|it| it.name.as_str()).collect();
+            return Err(format!("{} has no such input; {}", model.name, remedy(name, &names, || carry.clone())));
+        };
+        let BatchKind::Study(study, _) = &self.kind else { return Ok(input) };
+        for (role, axes) in [("operation", &study.operation), ("uncertainty", &study.uncertainty)] {
+            if axes.iter().any(|axis| axis.inputs().contains(&input)) {
+                return Err(format!("the study gives it in [{role}], and judges every row over all of that; drop the column"));
+            }
+        }
+        Ok(input)
+    }
+
+    /// Says which inputs have a column.
+    pub(super) fn given(&mut self, given: &[usize]) -> Result<()> {
+        if given.is_empty() {
+            return Err(refusal(format!(
+                "there is no column with the values of an input; inputs are those of beltspace models {}",
+                self.model.name
+            )));
+        }
+        let BatchKind::Study(study, _) = &mut self.kind else { return Ok(()) };
+        let mut missing = Vec::new();
+        for axis in &study.design {
+            for (column, &input) in axis.inputs().iter().enumerate().filter(|(_, input)| !given.contains(input)) {
+                if axis.count() == 1 {
+                    study.fixed[input] = axis.value(column, 0);
+                } else {
+                    missing.push(self.model.inputs[input].name.clone());
+                }
+            }
+        }
+        study.sample = None;
+        match &missing[..] {
+            [] => Ok(()),
+            [first, ..] => Err(refusal(format!(
+                "the rows must say what the study chooses: there is no column {}; add it, or give one value with --set {first}=...",
+                missing.join(", ")
+            ))),
+        }
+    }
+
+    /// Evaluates rows: the values of the given inputs, column by column.
+    pub(super) fn evaluate(
+        &self,
+        given: &[usize],
+        values: &[Vec<f64>],
+        has_words: &dyn Fn(usize) -> bool,
+        threads: usize,
+    ) -> Result<RowColumns> {
+        match &self.kind {
+            BatchKind::Model(inputs) => Ok(self.by_model(inputs, given, values, has_words, threads)),
+            BatchKind::Study(study, columns) => by_study(study, columns, given, values, has_words, threads),
+        }
+    }
+
+    fn by_model(
+        &self,
+        base: &[f64],
+        given: &[usize],
+        values: &[Vec<f64>],
+        has_words: &dyn Fn(usize) -> bool,
+        threads: usize,
+    ) -> RowColumns {
+        let model = &self.model;
+        let rows = values[0].len();
+        let evaluated = |rows: std::ops::Range<usize>| -> Vec<Evaluation> {
+            let mut inputs = base.to_vec();
+            let row = |row: usize| {
+                given.iter().zip(values).for_each(|(&input, values)| inputs[input] = values[row]);
+                evaluate(model, &inputs)
+            };
+            rows.map(row).collect()
+        };
+        let share = rows.div_ceil(threads.max(1)).max(1);
+        let parts = on_threads((0..rows).step_by(share).map(|first| first..rows.min(first + share)), evaluated);
+        let evaluations: Vec<Evaluation> = parts.into_iter().flatten().collect();
+        let inputs =
+            given.iter().zip(values).map(|(&input, values)| input_column(&model.inputs[input], values.iter().copied(), has_words(input)));
+        let outputs = model.outputs.iter().enumerate().map(|(number, output)| TableColumn {
+            unit: output.unit.symbol.to_owned(),
+            ..TableColumn::new(&output.name, "output", &output.doc, Data::Number(evaluations.iter().map(|it| it.outputs[number]).collect()))
+        });
+        let status = evaluations.iter().map(|it| it.status.reason(model).to_owned());
+        let results = outputs.chain([status_column("Is it ok, and if not, why?", status)]).collect();
+        (inputs.collect(), results)
+    }
+}
+
+fn status_column(doc: &str, status: impl Iterator<Item = String>) -> TableColumn {
+    TableColumn::new("status", "status", doc, Data::Text(status.collect()))
+}
+
+/// Rows as the designs of a study whose only axis is them.
+fn by_study(
+    study: &Study,
+    columns: &[Column],
+    given: &[usize],
+    values: &[Vec<f64>],
+    has_words: &dyn Fn(usize) -> bool,
+    threads: usize,
+) -> Result<RowColumns> {
+    let model = &study.model;
+    let count = values[0].len();
+    let rows: Vec<Vec<f64>> = (0..count).map(|row| values.iter().map(|it| it[row]).collect()).collect();
+    let mut own = study.clone();
+    own.design = vec![Axis::Joint { inputs: given.to_vec(), rows }];
+    // The rows are designs of their own, not those of a catalogue.
+    own.labels.clear();
+    let found = if count == 0 {
+        Vec::new()
+    } else {
+        let designs: Vec<u64> = (0..count as u64).collect();
+        certify::rows(&Plan::new(own.clone()), columns, &designs, threads, &Control::default())?
+    };
+    let mut table = of_rows(&own, &|_| Vec::new(), columns, &found, has_words).columns;
+    // The rows have no number in the study.
+    table.remove(0);
+    let mut results = table.split_off(given.len());
+    results.extend(study.constraints.iter().map(|constraint| margin_column(study, constraint, columns, &found)));
+    let feasible = found.iter().map(|row| if row.feasible { "yes" } else { "no" }.to_owned());
+    results.push(TableColumn::new("feasible", "feasible", "Does it satisfy everything in every scenario?", Data::Text(feasible.collect())));
+    let status = found.iter().map(|row| row.status.reason(model).to_owned());
+    results.push(status_column("Is it ok in every scenario, and if not, why not in the first?", status));
+    Ok((table, results))
+}
+
+/// The least margin of a constraint over the scenarios.
+fn margin_column(study: &Study, constraint: &Constraint, columns: &[Column], rows: &[Row]) -> TableColumn {
+    let name = constraint.name(&study.model);
+    let at = certify::constraint_column(columns, constraint, &name);
+    let margin = |row: &Row| row.columns[at?].value.map(|value| constraint.margin(value));
+    TableColumn {
+        unit: study.unit_over(constraint.quantity, constraint.over),
+        direction: constraint.in_words(),
+        ..TableColumn::new(
+            &format!("{name}_margin"),
+            "margin",
+            "The least distance to a bound of the constraint over the scenarios; negative where it is violated.",
+            Data::Number(rows.iter().map(margin).collect()),
+        )
+    }
+}

@@ -1,0 +1,383 @@
+//! One value in place of whatever a study gives an input: `--set NAME=VALUE`.
+//!
+//! The text of the study is edited, and then read like any other: an axis or a formula of that name becomes a comment, the value goes into
+//! `[fixed]`. So the study is the same as one that was written so by hand, and the text that a result keeps says what was judged. Lines
+//! keep their order; where a line is put in, problems in the lines after it are told at their place in the user's file.
+
+use super::csv_file::csv_text;
+use super::formulas::GIVING;
+use super::table::{Entry, Lines, TomlTable, shortened};
+use super::{Problem, StudyErrors};
+use crate::error::{Error, Result};
+use crate::models::{Models, is_name};
+use crate::study::Study;
+use serde_json::Value;
+use std::ops::Range;
+use std::path::Path;
+use toml::de::{DeTable, DeValue};
+
+/// A value that replaces what the study says.
+struct StudySetting {
+    table: &'static str,
+    name: String,
+    value: String,
+}
+
+/// What is asked of a study besides what its file says.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct StudyEdits<'a> {
+    /// Values in place of what it gives some inputs, each as `NAME=VALUE`.
+    pub set: &'a [String],
+    /// `feasible = true` in its `[report]`.
+    pub feasible: bool,
+}
+
+impl StudySetting {
+    /// Takes `NAME=VALUE` apart.
+    fn new(assignment: &str) -> std::result::Result<Self, String> {
+        let parts = assignment.split_once('=').map(|(name, value)| (name.trim(), value.trim()));
+        match parts.filter(|(name, value)| !name.is_empty() && !value.is_empty()) {
+            Some((name, value)) => Ok(Self { table: "fixed", name: name.to_owned(), value: value.to_owned() }),
+            None => Err(format!("--set \"{}\": write NAME=VALUE", shortened(assignment))),
+        }
+    }
+
+    /// `feasible = true` in `[report]`.
+    fn feasible() -> Self {
+        Self { table: "report", name: "feasible".to_owned(), value: "true".to_owned() }
+    }
+
+    fn is_of_report(&self) -> bool {
+        self.table == "report"
+    }
+
+    /// The value as a study file has it: a number, else a text.
+    fn in_toml(&self) -> String {
+        if self.is_of_report() {
+            return self.value.clone();
+        }
+        match self.value.parse::<f64>() {
+            Ok(number) if number.is_finite() => format!("{number:?}").trim_end_matches(".0").to_owned(),
+            _ => Value::from(self.value.as_str()).to_string(),
+        }
+    }
+
+    /// The same as [`unplaced`] gives it.
+    fn in_json(&self) -> Value {
+        let text = self.in_toml();
+        if self.is_of_report() {
+            return Value::from(true);
+        }
+        if text.starts_with('"') { Value::from(self.value.as_str()) } else { Value::from(text) }
+    }
+
+    fn told(&self) -> String {
+        if self.is_of_report() {
+            return "--feasible".to_owned();
+        }
+        format!("--set {}={}", shortened(&self.name), shortened(&self.value))
+    }
+}
+
+/// What becomes of a design axis whose input is set.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum SetAxes {
+    /// It goes: the study is one of fewer axes.
+    Go,
+    /// It stays with that one value, for what only one design is asked of: maps keep their axes.
+    Stay,
+}
+
+/// A part of the text that becomes another.
+struct Edit {
+    range: Range<usize>,
+    with: String,
+    /// Number of the setting that it writes.
+    writes: Option<usize>,
+}
+
+/// The study's text with all settings in it.
+struct EditedText {
+    text: String,
+    /// Of each setting: where it stands.
+    places: Vec<Range<usize>>,
+    /// Lines that were put in, in order.
+    lines: Vec<Range<usize>>,
+}
+
+impl Study {
+    /// Checks a study given as text, with values in place of what it gives some inputs, each as `NAME=VALUE`. Returns the study and its
+    /// text with these values. `models`, `file` and `folder` are as for [`Study::parse_with`].
+    ///
+    /// # Errors
+    /// [`Error::Request`] for what is wrong with the values, [`Error::Study`] for what is wrong with the study, in file order.
+    pub fn parse_set(models: &Models, text: &str, file: &str, folder: &Path, set: &[String]) -> Result<(Self, String)> {
+        Self::parse_edited(models, text, file, folder, StudyEdits { set, feasible: false }, SetAxes::Go)
+    }
+
+    /// The same, where design axes go or stay.
+    pub(super) fn parse_edited(
+        models: &Models,
+        text: &str,
+        file: &str,
+        folder: &Path,
+        edits: StudyEdits<'_>,
+        axes: SetAxes,
+    ) -> Result<(Self, String)> {
+        let mut settings = read_settings(edits.set)?;
+        settings.extend(edits.feasible.then(StudySetting::feasible));
+        // What is wrong with the syntax is told first.
+        let tree = if settings.is_empty() { None } else { DeTable::parse(text).ok() };
+        let Some(tree) = tree else {
+            return Ok((Self::parse_with(models, text, file, folder)?, text.to_owned()));
+        };
+        let top = TomlTable::new(tree.get_ref(), 0);
+        let edited = edited(&settings, &top, text, models, folder, axes)?;
+        match Self::parse_with(models, &edited.text, file, folder) {
+            Ok(study) => Ok((study, edited.text)),
+            Err(errors) => {
+                let right = Self::parse_with(models, text, file, folder).is_ok();
+                Err(explained(errors, &settings, &edited, right))
+            }
+        }
+    }
+}
+
+fn read_settings(set: &[String]) -> Result<Vec<StudySetting>> {
+    let (mut settings, mut problems): (Vec<StudySetting>, _) = (Vec::new(), Vec::new());
+    for assignment in set {
+        match StudySetting::new(assignment) {
+            Ok(it) if settings.iter().any(|other| other.name == it.name) => {
+                problems.push(format!("--set gives {} twice; keep one of the two", shortened(&it.name)));
+            }
+            Ok(it) => settings.push(it),
+            Err(problem) => problems.push(problem),
+        }
+    }
+    if problems.is_empty() { Ok(settings) } else { Err(refusal(problems)) }
+}
+
+fn refusal(problems: Vec<String>) -> Error {
+    Error::Request(problems.join("\n       "))
+}
+
+/// Puts the settings into the text.
+fn edited(settings: &[StudySetting], top: &TomlTable<'_>, text: &str, models: &Models, folder: &Path, axes: SetAxes) -> Result<EditedText> {
+    let model = top.get("model").and_then(|entry| models.find(entry.node.value.as_str()?));
+    let is_input = |name: &str| model.as_ref().is_some_and(|model| model.input(name).is_some());
+    let (mut edits, mut new, mut problems) = (Vec::new(), Vec::new(), Vec::new());
+    for (number, setting) in settings.iter().enumerate() {
+        let name = setting.name.as_str();
+        let entry = |table: &str| top.get(table)?.node.table()?.entries.into_iter().find(|entry| entry.key == name);
+        let in_place = |entry: Entry<'_>| Edit { range: span(&entry), with: line_of(setting), writes: Some(number) };
+        if setting.is_of_report() {
+            match entry("report") {
+                Some(entry) => edits.push(in_place(entry)),
+                None => new.push(number),
+            }
+            continue;
+        }
+        if let Some((table, axis)) = joint_axis(name, top, folder, &is_input) {
+            let why = format!("{} is set by the rows of \"{axis}\" in [{table}]", setting.name);
+            problems.push(format!("{}: {why}; --set replaces the axis of one input: change the rows", setting.told()));
+            continue;
+        }
+        if entry("formulas").is_some() && !is_input(name) {
+            problems.push(format!("{}: {name} is what a formula gives; only inputs and variables can be set", setting.told()));
+            continue;
+        }
+        if !is_name(name) {
+            problems.push(format!("{}: there is no input of that name; names have letters, digits and \"_\"", setting.told()));
+            continue;
+        }
+        if let Some(axis) = entry("design").filter(|_| axes == SetAxes::Stay) {
+            edits.push(in_place(axis));
+            continue;
+        }
+        for table in ["design", "operation", "uncertainty", "formulas"] {
+            edits.extend(entry(table).map(|entry| Edit { writes: None, ..left_out(&entry, text) }));
+        }
+        match entry("fixed") {
+            Some(entry) => edits.push(in_place(entry)),
+            None => new.push(number),
+        }
+    }
+    if !problems.is_empty() {
+        return Err(refusal(problems));
+    }
+    for table in ["fixed", "report"] {
+        let (at, before, after) = place_in(table, top, text);
+        let of_table = new.iter().filter(|&&number| settings[number].table == table);
+        for (count, &number) in of_table.enumerate() {
+            let [before, after] = [&before, &after].map(|it| &it[count.min(1)]);
+            edits.push(Edit { range: at..at, with: format!("{before}{}{after}", line_of(&settings[number])), writes: Some(number) });
+        }
+    }
+    let edited = applied(edits, text, settings.len());
+    if is_as_meant(&edited.text, top, settings) {
+        return Ok(edited);
+    }
+    let told = settings.iter().map(StudySetting::told).collect::<Vec<_>>().join(" ");
+    Err(refusal(vec![format!("{told}: the study is written in a way that cannot be edited; give the value in its [fixed]")]))
+}
+
+fn line_of(setting: &StudySetting) -> String {
+    format!("{} = {}", setting.name, setting.in_toml())
+}
+
+/// The table and the name of the joint axis that sets an input.
+fn joint_axis(name: &str, top: &TomlTable<'_>, folder: &Path, is_input: &dyn Fn(&str) -> bool) -> Option<(&'static str, String)> {
+    let names_it = |entry: &Entry<'_>| {
+        if let Some(mut rows) = entry.node.list() {
+            return rows.any(|row| row.table().is_some_and(|row| row.get(name).is_some()));
+        }
+        let file = entry.node.table().and_then(|table| Some(table.get("csv")?.node.value.as_str()?.to_owned()));
+        // A file that cannot be read is reported when the study is.
+        let Some(text) = file.and_then(|file| csv_text(folder, &file).ok()) else { return false };
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
+        reader.headers().is_ok_and(|header| header.iter().any(|it| it == name))
+    };
+    GIVING.iter().find_map(|&table| {
+        let entries = top.get(table)?.node.table()?.entries;
+        let joint = entries.into_iter().find(|it| it.key.starts_with("cases") && !is_input(it.key) && names_it(it));
+        joint.map(|entry| (table, entry.key.to_owned()))
+    })
+}
+
+/// A key with its value.
+fn span(entry: &Entry<'_>) -> Range<usize> {
+    entry.key_at..entry.node.end
+}
+
+/// An entry that becomes a comment, or blank where others follow on its line.
+fn left_out(entry: &Entry<'_>, text: &str) -> Edit {
+    let mut range = span(entry);
+    // `design.ratio = ...`: the whole key.
+    if text[..range.start].trim_end().ends_with('.') {
+        range.start = text[..range.start].rfind(['\n', '{', ',']).map_or(0, |at| at + 1);
+    }
+    let line = text[..range.start].rfind('\n').map_or(0, |at| at + 1);
+    if text[line..range.start].trim().is_empty() {
+        return Edit { with: format!("# {}", text[range.clone()].replace('\n', "\n# ")), range, writes: None };
+    }
+    // Within braces, with one of the commas around it.
+    let rest = &text[range.end..];
+    if rest.trim_start().starts_with(',') {
+        range.end += rest.len() - rest.trim_start().len() + 1;
+    } else if text[..range.start].trim_end().ends_with(',') {
+        range.start = text[..range.start].trim_end().len() - 1;
+    }
+    let blank = text[range.clone()].chars().map(|it| if it == '\n' { '\n' } else { ' ' }).collect();
+    Edit { range, with: blank, writes: None }
+}
+
+/// Where a further entry of a table goes, and what goes before and after it: the first, and any other.
+fn place_in(name: &str, top: &TomlTable<'_>, text: &str) -> (usize, [String; 2], [String; 2]) {
+    let both = |it: &str| [it.to_owned(), it.to_owned()];
+    let next_line = |at: usize| text[at..].find('\n').map_or((text.len(), "\n"), |end| (at + end + 1, ""));
+    let Some(table) = top.get(name) else {
+        let start = if text.is_empty() || text.ends_with('\n') { "" } else { "\n" };
+        return (text.len(), [format!("{start}\n[{name}]\n"), String::new()], both("\n"));
+    };
+    let header = text[..table.key_at].trim_end().ends_with('[');
+    let entries = table.node.table().map_or(Vec::new(), |table| table.entries);
+    match entries.last() {
+        None if header => {
+            let (at, start) = next_line(table.key_at);
+            (at, [start.to_owned(), String::new()], both("\n"))
+        }
+        // Without a value `fixed = {}` is all there can be.
+        None => (table.node.end.saturating_sub(1), [" ".to_owned(), ", ".to_owned()], both("")),
+        Some(last) if header || text[..last.key_at].trim_end().ends_with('.') => {
+            let (at, start) = next_line(last.node.end);
+            let key = if header { String::new() } else { format!("{name}.") };
+            (at, [format!("{start}{key}"), key], both("\n"))
+        }
+        Some(last) => (last.node.end, both(", "), both("")),
+    }
+}
+
+fn applied(mut edits: Vec<Edit>, text: &str, settings: usize) -> EditedText {
+    // In order; where several are put in at one place they keep theirs.
+    edits.sort_by_key(|edit| edit.range.start);
+    let mut edited = EditedText { text: String::new(), places: vec![0..0; settings], lines: Vec::new() };
+    let mut done = 0;
+    for Edit { range, with, writes } in edits {
+        edited.text.push_str(&text[done..range.start]);
+        let start = edited.text.len();
+        if range.is_empty() {
+            let line = edited.text.matches('\n').count();
+            edited.lines.push(line..line + with.matches('\n').count());
+        }
+        edited.text.push_str(&with);
+        if let Some(setting) = writes {
+            edited.places[setting] = start..edited.text.len();
+        }
+        done = range.end;
+    }
+    edited.text.push_str(&text[done..]);
+    edited
+}
+
+/// Does the edited text say what the other said, but for the settings?
+fn is_as_meant(text: &str, top: &TomlTable<'_>, settings: &[StudySetting]) -> bool {
+    let Ok(tree) = DeTable::parse(text) else { return false };
+    let own = TomlTable::new(tree.get_ref(), 0);
+    let is_set = |key: &str| settings.iter().any(|it| it.name == key);
+    let same = |a: Option<&Entry<'_>>, b: Option<&Entry<'_>>| a.map(|it| unplaced(it.node.value)) == b.map(|it| unplaced(it.node.value));
+    let others = |table: &TomlTable<'_>, name: &str| -> Vec<(String, Value)> {
+        let entries = table.get(name).and_then(|entry| entry.node.table()).map_or(Vec::new(), |table| table.entries);
+        entries.iter().filter(|entry| !is_set(entry.key)).map(|entry| (entry.key.to_owned(), unplaced(entry.node.value))).collect()
+    };
+    let edited = |name: &str| GIVING.contains(&name) || ["formulas", "report"].contains(&name);
+    let value = |name: &str, table: &str| own.get(table)?.node.table()?.get(name).map(|entry| unplaced(entry.node.value));
+    // It has one place, whichever that is.
+    let placed = |it: &StudySetting| {
+        let found: Vec<_> = if it.is_of_report() {
+            value(&it.name, "report").into_iter().collect()
+        } else {
+            GIVING.iter().chain(&["formulas"]).filter_map(|table| value(&it.name, table)).collect()
+        };
+        found == [it.in_json()]
+    };
+    top.entries.iter().all(|entry| {
+        if edited(entry.key) { others(top, entry.key) == others(&own, entry.key) } else { same(Some(entry), own.get(entry.key)) }
+    }) && own.entries.iter().all(|entry| ["fixed", "report"].contains(&entry.key) || top.get(entry.key).is_some())
+        && settings.iter().all(placed)
+}
+
+/// A value without its place.
+fn unplaced(value: &DeValue<'_>) -> Value {
+    match value {
+        DeValue::String(text) => Value::from(text.as_ref()),
+        DeValue::Integer(it) => Value::from(it.to_string()),
+        DeValue::Float(it) => Value::from(it.to_string()),
+        DeValue::Boolean(it) => Value::from(*it),
+        DeValue::Datetime(it) => Value::from(it.to_string()),
+        DeValue::Array(it) => it.iter().map(|it| unplaced(it.get_ref())).collect(),
+        DeValue::Table(it) => it.iter().map(|(key, value)| (key.get_ref().to_string(), unplaced(value.get_ref()))).collect(),
+    }
+}
+
+/// Problems of the edited text, told where the user can change them: those of a setting by its name, others at their place in the file.
+fn explained(errors: StudyErrors, settings: &[StudySetting], edited: &EditedText, right: bool) -> Error {
+    let lines = Lines::new(&edited.text);
+    let places: Vec<_> = edited.places.iter().map(|it| (lines.position(it.start), lines.position(it.end))).collect();
+    let told = settings.iter().map(StudySetting::told).collect::<Vec<_>>().join(" ");
+    let (mut of_settings, mut of_file) = (Vec::new(), Vec::new());
+    for problem in errors.problems {
+        let at = (problem.line, problem.column);
+        if let Some(number) = places.iter().position(|(from, to)| (from..=to).contains(&&at)) {
+            let labels = ["fixed input", "axis"].map(|what| format!("{what} \"{}\": ", settings[number].name));
+            let labels = labels.iter().map(String::as_str).chain(["feasible: "]);
+            let message = labels.into_iter().find_map(|label| problem.message.strip_prefix(label)).unwrap_or(&problem.message);
+            of_settings.push(format!("{}: {message}", settings[number].told()));
+            continue;
+        }
+        let put_in = edited.lines.iter().filter(|lines| lines.end < problem.line).map(Range::len).sum::<usize>();
+        let line = problem.line - put_in;
+        let message = if right { format!("{}; without {told} the study is right", problem.message) } else { problem.message };
+        of_file.push(Problem { line, message, ..problem });
+    }
+    if of_settings.is_empty() { StudyErrors { problems: of_file }.into() } else { refusal(of_settings) }
+}

@@ -1,0 +1,202 @@
+//! `--set` with a study: the same study as one written so by hand, and clear words where that cannot be.
+
+use super::report::data_of;
+use super::{SMALL, ask, ask_words, changed, files, folder_with, json_of, read, same_result, write};
+
+const COST: &str = include_str!("../formulas/cost.toml");
+const MEASURED: &str = include_str!("../formulas/measured.toml");
+const CURVE: &str = include_str!("../formulas/slip.csv");
+
+/// The description of the study that a sweep was of.
+fn described(folder: &std::path::Path, words: &[&str]) -> String {
+    ask_words(folder, &[&["sweep", "study.toml", "--out", "described", "--force", "--quiet", "--no-report"], words].concat()).text();
+    read(&folder.join("described/study.json"))
+}
+
+#[test]
+fn a_set_study_is_the_one_written_so_by_hand() {
+    let by_hand = |text: &str| described(folder_with("study.toml", text).path(), &[]);
+    let no_traction = ("traction          = { from = 0.30, to = 0.50, count = 5 }\n", "");
+    for (set, edits) in [
+        // In place of a fixed value, also in another unit.
+        (&["strength_MPa=700"][..], &[("strength_MPa = 800", "strength_MPa = 700")][..]),
+        (&["strength_MPa=0.7 GPa"], &[("strength_MPa = 800", "strength_MPa = \"0.7 GPa\"")]),
+        // Of an axis of scenarios; of a default.
+        (&["friction=0.08"], &[("friction  = [0.065, 0.095]", ""), ("strength_MPa = 800", "strength_MPa = 800\nfriction = 0.08")]),
+        (&["band_width_mm = 9.5"], &[("strength_MPa = 800", "strength_MPa = 800\nband_width_mm = 9.5")]),
+        // Of a design axis, by a word.
+        (&["traction=limit"], &[no_traction, ("strength_MPa = 800", "strength_MPa = 800\ntraction = \"limit\"")]),
+        (
+            &["traction=0.4", "ratio=1"],
+            &[
+                no_traction,
+                ("ratio     = { from = 0.5, to = 2.0, count = 3, spacing = \"log\" }\n", ""),
+                ("strength_MPa = 800", "strength_MPa = 800\ntraction = 0.4\nratio = 1"),
+            ],
+        ),
+    ] {
+        let folder = folder_with("study.toml", SMALL);
+        let words: Vec<&str> = set.iter().flat_map(|it| ["--set", it]).collect();
+        assert_eq!(described(folder.path(), &words), by_hand(&changed(SMALL, edits)), "{set:?}");
+    }
+}
+
+#[test]
+fn every_way_to_write_a_table_can_be_set() {
+    let rest = "[objectives]\naxial_force_N = \"min\"\n";
+    let expected = described(
+        folder_with(
+            "study.toml",
+            &format!("model = \"metal-cvt\"\n[design]\nband_count = [6, 9]\n[fixed]\nratio = 2\nfriction = 0.1\n{rest}"),
+        )
+        .path(),
+        &[],
+    );
+    for head in [
+        "design.band_count = [6, 9]\ndesign.friction = [0.1, 0.2]\nfixed.ratio = 2\n",
+        "design = { friction = [0.1, 0.2], band_count = [6, 9] }\nfixed = { ratio = 2 }\n",
+        "design = { band_count = [6, 9], friction = [0.1, 0.2] }\nfixed = {}\noperation = { ratio = [1, 2] } # both\n",
+        "[design]\nband_count = [6, 9]\nfriction = [ # as measured\n  0.1,\n  0.2,\n]\n[fixed]\nratio = 1 # for now\n",
+        "[fixed]\nratio = 1\n[design]\nband_count = [6, 9]\n[operation]\nfriction = { from = 0.1, to = 0.2, count = 3 }\n",
+    ] {
+        let folder = folder_with("study.toml", &format!("model = \"metal-cvt\"\n{head}{rest}"));
+        assert_eq!(described(folder.path(), &["--set", "friction=0.1", "--set", "ratio=2"]), expected, "{head}");
+    }
+    // What cannot be edited is refused, and says what to do.
+    let folder = folder_with(
+        "study.toml",
+        &format!("model = \"metal-cvt\"\n[design]\nratio = [1, 2]\n[design.friction]\nfrom = 0.1\nto = 0.2\ncount = 2\n{rest}"),
+    );
+    let said = ask(folder.path(), "check study.toml --set friction=0.1").refusal(2);
+    assert_eq!(said, "error: --set friction=0.1: the study is written in a way that cannot be edited; give the value in its [fixed]\n");
+}
+
+#[test]
+fn a_formula_that_gives_an_input_goes_and_a_variable_stays_one() {
+    let folder = folder_with("study.toml", MEASURED);
+    write(folder.path(), "slip.csv", CURVE);
+    let own = described(folder.path(), &["--set", "friction=0.09"]);
+    let by_hand = changed(
+        MEASURED,
+        &[
+            ("friction = \"friction_of_speed(belt_speed_m_per_s) * tanh(band_count / 4)\"\n", ""),
+            ("[formulas]", "[fixed]\nfriction = 0.09\n[formulas]"),
+        ],
+    );
+    write(folder.path(), "study.toml", &by_hand);
+    assert_eq!(own, described(folder.path(), &[]));
+    let folder = folder_with("study.toml", COST);
+    let own = described(folder.path(), &["--set", "belt_price_EUR_per_kg=13"]);
+    assert!(own.contains("\"belt_price_EUR_per_kg\": 13"), "{own}");
+    let said = ask(folder.path(), "check study.toml --set cost_EUR=3").refusal(2);
+    assert_eq!(said, "error: --set cost_EUR=3: cost_EUR is what a formula gives; only inputs and variables can be set\n");
+}
+
+/// What is set in [`SMALL`], and all that is said of it.
+const WRONG: [(&str, &str); 11] = [
+    ("ratio", "--set \"ratio\": write NAME=VALUE"),
+    ("ratio=", "--set \"ratio=\": write NAME=VALUE"),
+    ("frictoin=0.1", "--set frictoin=0.1: metal-cvt has no input \"frictoin\"; did you mean \"friction\"?"),
+    ("a b=0.1", "--set a b=0.1: there is no input of that name; names have letters, digits and \"_\""),
+    (
+        "slip_margin=2",
+        "--set slip_margin=2: slip_margin is an output; outputs can be constrained, made an objective or reported, only inputs can be given values",
+    ),
+    ("friction=-1", "--set friction=-1: -1 is out of range; it must be greater than 0"),
+    ("friction=3 N", "--set friction=3 N: \"N\" measures a force, but a plain number is wanted; use %"),
+    ("traction=foo", "--set traction=foo: \"foo\" is not a number with a unit; write for example \"12\"; or write \"limit\""),
+    ("strength_MPa=-1", "--set strength_MPa=-1: -1 is out of range; it must be greater than 0 (MPa)"),
+    ("band_count=7.5", "--set band_count=7.5: 7.5 is not a whole number; use 7 or 8"),
+    (
+        "band_count=9",
+        "study.toml:28:36: maps: \"band_count\" is no design axis; choose one of [design], or put it there; without --set band_count=9 the study is right",
+    ),
+];
+
+#[test]
+fn what_cannot_be_set_is_told_by_its_name() {
+    let folder = folder_with("study.toml", SMALL);
+    for (set, told) in WRONG {
+        for command in ["check", "sweep"] {
+            assert_eq!(ask_words(folder.path(), &[command, "study.toml", "--set", set]).refusal(2), format!("error: {told}\n"));
+        }
+    }
+    let twice = ask(folder.path(), "check study.toml --set ratio=1 --set ratio=2").refusal(2);
+    assert_eq!(twice, "error: --set gives ratio twice; keep one of the two\n");
+    // What is wrong with the study itself is told at its place, though lines were put in.
+    write(folder.path(), "study.toml", &changed(SMALL, &[("axial_force_N = \"min\"", "axial_farce_N = \"min\"")]));
+    let broken = ask(folder.path(), "check study.toml --set ratio=1 --set band_width_mm=9 --feasible").refusal(2);
+    assert!(broken.starts_with("error: study.toml:19:1: objective \"axial_farce_N\"") && !broken.contains("without --set"), "{broken}");
+    let alone = "model = \"metal-cvt\"\n[design]\nfriction = [0.08, 0.09]\n[objectives]\naxial_force_N = \"min\"\n";
+    write(folder.path(), "study.toml", alone);
+    let none = ask(folder.path(), "check study.toml --set friction=0.1").refusal(2);
+    assert_eq!(
+        none,
+        "error: study.toml:2:1: there is nothing to choose; name at least one input in [design], such as friction = [...]; \
+         without --set friction=0.1 the study is right\n"
+    );
+    let joint = "model = \"metal-cvt\"\n[design]\nband_count = [6, 7]\n[operation]\ncases = [{ ratio = 1, torque_Nm = 50 }, { ratio = 2, torque_Nm = 60 }]\n[objectives]\naxial_force_N = \"min\"\n";
+    write(folder.path(), "study.toml", joint);
+    let said = ask(folder.path(), "check study.toml --set torque_Nm=70").refusal(2);
+    let told = "torque_Nm is set by the rows of \"cases\" in [operation]; --set replaces the axis of one input: change the rows";
+    assert_eq!(said, format!("error: --set torque_Nm=70: {told}\n"));
+    write(folder.path(), "loads.csv", "ratio,torque_Nm\n1,50\n2,60\n");
+    write(
+        folder.path(),
+        "study.toml",
+        &changed(joint, &[("[{ ratio = 1, torque_Nm = 50 }, { ratio = 2, torque_Nm = 60 }]", "{ csv = \"loads.csv\" }")]),
+    );
+    assert_eq!(ask(folder.path(), "check study.toml --set torque_Nm=70").refusal(2), format!("error: --set torque_Nm=70: {told}\n"));
+}
+
+#[test]
+fn a_result_says_what_was_set_and_another_setting_is_another_study() {
+    let folder = folder_with("study.toml", SMALL);
+    let at = folder.path();
+    ask(at, "sweep study.toml --set friction=0.08 --out r").text();
+    let data = data_of(&at.join("r/report.html"));
+    let text = data["study"]["text"].as_str().expect("the page has the study");
+    assert!(text.contains("\n# friction  = [0.065, 0.095]\n") && text.contains("\nfriction = 0.08\n"), "{text}");
+    // The page's command evaluates a design of that study.
+    assert_eq!(data["evaluate"], "beltspace eval r/study.toml --design {design}");
+    let knee = json_of(&at.join("r/summary.json"))["knee"].clone();
+    let one = ask(at, &format!("eval r/study.toml --design {} --json", knee["design_index"])).json();
+    assert_eq!(one["outputs"]["axial_force_N"]["value"], knee["objectives"]["axial_force_N"]);
+    // Its own study, swept again, gives the same result; so do its shards.
+    ask(at, "sweep r/study.toml --out again").text();
+    same_result(&files(&at.join("again")), &files(&at.join("r"))).expect("it is the same");
+    ask(at, "sweep study.toml --set friction=0.08 --shard 1/2 --out a").text();
+    ask(at, "sweep study.toml --set friction=0.08 --shard 2/2 --out b").text();
+    ask(at, "merge a b --out m").text();
+    same_result(&files(&at.join("m")), &files(&at.join("r"))).expect("it is the same");
+    let other = ask(at, "sweep study.toml --set friction=0.09 --shard 2/2 --out a --resume").refusal(2);
+    assert!(other.contains("the checkpoint is of another study (fixed: was ") && other.contains("start again with --force"), "{other}");
+}
+
+#[test]
+fn what_if_evaluates_a_design_with_other_inputs() {
+    let folder = folder_with("study.toml", SMALL);
+    let at = folder.path();
+    let plain = ask(at, "eval study.toml --design 500 --json").json();
+    // A design axis, though a map is over it; the design keeps all else.
+    let what_if = ask(at, "eval study.toml --design 500 --set band_count=14 --json").json();
+    let mut expected = plain["inputs"].clone();
+    expected["band_count"] = 14.into();
+    assert_eq!((&what_if["inputs"], &what_if["design"], &what_if["set"]), (&expected, &500.into(), &serde_json::json!(["band_count=14"])));
+    let axes = ["band_thickness_mm", "groove_angle_deg", "traction", "band_count"];
+    let number = |name: &str| what_if["inputs"][name].as_f64().expect("a number");
+    // It is the design of the grid that has these inputs: groove angle, thickness, count, traction, the last one fastest.
+    let level = |name: &str, from: f64, step: f64| ((number(name) - from) / step).round() as u64;
+    let [thickness, angle, traction, count] =
+        [level(axes[0], 0.1, 0.01), level(axes[1], 18.0, 1.0), level(axes[2], 0.3, 0.05), level(axes[3], 6.0, 1.0)];
+    let same = ((angle * 21 + thickness) * 9 + count) * 5 + traction;
+    let there = ask(at, &format!("eval study.toml --design {same} --json")).json();
+    assert_eq!((&what_if["outputs"], &what_if["constraints"]), (&there["outputs"], &there["constraints"]));
+    assert_ne!(what_if["outputs"], plain["outputs"]);
+    // An input of the scenarios: what is left are those of the others.
+    let sure = ask(at, "eval study.toml --design 500 --set friction=0.065 --json").json();
+    assert_eq!(sure["scenarios"], 6);
+    let told = ask(at, "eval study.toml --design 500 --set friction=0.065").text();
+    assert!(told.starts_with("design 500 with friction=0.065, worst of 6 scenarios\n"), "{told}");
+    assert!(ask(at, "eval study.toml --design 500 --set friction=0").refusal(2).contains("--set friction=0: 0 is out of range"));
+}
