@@ -1,6 +1,6 @@
 //! `beltspace eval`: evaluates one design of a model or of a study.
 
-use super::{find_model, read_study};
+use super::{Target, read_study, target};
 use crate::cli;
 use crate::terminal::{self, TextGrid, bold, dim, short};
 use beltspace::certify;
@@ -20,11 +20,10 @@ use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 
 pub fn run(request: &cli::EvalArgs) -> Result<()> {
-    let path = Path::new(&request.target);
-    if beltspace::models::find(&request.target).is_none() && (path.extension().is_some_and(|it| it == "toml") || path.exists()) {
-        return of_study(request, path);
-    }
-    let model = find_model(&request.target)?;
+    let model = match target(&request.target)? {
+        Target::Study(path) => return of_study(request, path),
+        Target::Model(model) => model,
+    };
     if request.design.is_some() {
         return Err(Error::Request(format!("--design is for studies, and {} is a model; use --set", model.name)));
     }

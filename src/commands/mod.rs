@@ -21,7 +21,7 @@ use crate::terminal;
 use beltspace::error::{Error, Result};
 use beltspace::models::Model;
 use beltspace::parallel::to_be_had;
-use beltspace::study::Study;
+use beltspace::study::{FileKind, Study, file_kind, read_model};
 use clap::CommandFactory;
 use std::path::Path;
 use std::sync::Arc;
@@ -56,6 +56,38 @@ fn find_model(name: &str) -> Result<Arc<Model>> {
         let names: Vec<_> = beltspace::models::all().iter().map(|model| model.name.as_str()).collect();
         Error::Request(format!("unknown model \"{name}\"; models are: {}", names.join(", ")))
     })
+}
+
+/// What a command works on: a model by name or from a file, or a study.
+enum Target<'t> {
+    Model(Arc<Model>),
+    Study(&'t Path),
+}
+
+/// The model or study that is meant: files are told apart by what stands in them.
+fn target(named: &str) -> Result<Target<'_>> {
+    let path = Path::new(named);
+    if beltspace::models::find(named).is_some() || !(path.extension().is_some_and(|it| it == "toml") || path.exists()) {
+        return find_model(named).map(Target::Model);
+    }
+    // What cannot be read is told as of a study.
+    let kind = std::fs::read_to_string(path).map_or(FileKind::Study, |text| file_kind(&text));
+    match kind {
+        FileKind::Study => Ok(Target::Study(path)),
+        FileKind::Model => read_model(path).map(Target::Model),
+        FileKind::Other => Err(Error::Request(format!(
+            "{named} is neither a study, which names a model, nor a model, which has [formulas]; beltspace models NAME --study shows a study"
+        ))),
+    }
+}
+
+/// The model of that name, or in the file of that name.
+fn model_of(named: &str) -> Result<Arc<Model>> {
+    match target(named)? {
+        Target::Model(model) => Ok(model),
+        Target::Study(path) if path.exists() => Err(Error::Request(format!("{named} is a study; name a model, or a file that has [formulas] and no model"))),
+        Target::Study(path) => read_model(path),
+    }
 }
 
 /// Reads a study file; if there is none of this name, the request is wrong.

@@ -47,11 +47,17 @@ impl Range {
 
     /// The range in words: `greater than 0`, `at least 0 and less than 1`.
     pub fn in_words(&self) -> String {
+        if self.low.is_infinite() && self.high.is_infinite() {
+            return "any number".to_owned();
+        }
         let low = if self.includes_low { format!("at least {}", self.low) } else { format!("greater than {}", self.low) };
         if self.high.is_infinite() {
             return low;
         }
         let high = if self.includes_high { format!("at most {}", self.high) } else { format!("less than {}", self.high) };
+        if self.low.is_infinite() {
+            return high;
+        }
         format!("{low} and {high}")
     }
 }
@@ -213,6 +219,16 @@ pub enum Worse {
     Higher,
     /// The least value (margins, capacities).
     Lower,
+}
+
+impl Worse {
+    /// How a file says it.
+    pub(crate) fn word(self) -> &'static str {
+        match self {
+            Self::Higher => "highest",
+            Self::Lower => "lowest",
+        }
+    }
 }
 
 /// One output of a model. Its name carries the unit.

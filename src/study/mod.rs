@@ -16,7 +16,7 @@ pub use axis::{Axis, Levels, Method, Sample};
 pub use describe::{differences, number, value_of};
 #[cfg(test)]
 pub(crate) use read::tests::study_of;
-pub use read::{Problem, StudyErrors};
+pub use read::{FileKind, Problem, StudyErrors, file_kind, read_model};
 #[doc(hidden)]
 pub use resolved::worst_end;
 pub use resolved::{

@@ -101,11 +101,13 @@ pub(super) struct Checker<'s, 'e> {
     pub(super) needs: Vec<Need>,
     pub(super) roots: usize,
     unknown: Option<Unknown<'e>>,
+    /// Slots and words of the comparisons of which the branch that is being checked is the other one.
+    excluded: Vec<(usize, &'e str)>,
 }
 
 impl<'s, 'e> Checker<'s, 'e> {
     pub(super) fn new(scope: &'s Scope, slots: &'s [SlotType]) -> Self {
-        Self { scope, slots, faults: Vec::new(), needs: Vec::new(), roots: 0, unknown: None }
+        Self { scope, slots, faults: Vec::new(), needs: Vec::new(), roots: 0, unknown: None, excluded: Vec::new() }
     }
 
     fn fault(&mut self, at: usize, message: impl Into<String>) -> CheckedTree {
@@ -196,7 +198,8 @@ impl<'s, 'e> Checker<'s, 'e> {
         };
         let slots = self.slots;
         let known = &slots[slot];
-        if let Some((word, _)) = known.words.first() {
+        let is_excluded = |word: &str| !known.only_words && self.excluded.contains(&(slot, word));
+        if let Some((word, _)) = known.words.iter().find(|(word, _)| !is_excluded(word)) {
             let but = if known.only_words { "is a word" } else { "may be a word" };
             return self.fault(at, format!("{name} {but}, and no number can be computed from it; write if({name} == '{word}', x, y)"));
         }
@@ -362,13 +365,27 @@ impl<'s, 'e> Checker<'s, 'e> {
             (_, ExpressionNode::Word(word)) => self.word(comparison, left, word, right.span.start),
             _ => self.numbers(comparison, left, right),
         };
-        let (then, otherwise) = (self.check(then), self.check(otherwise));
+        let then = self.check(then);
+        // What is none of the words of an input is a number.
+        let excluded = self.excluded_by([left, right]);
+        self.excluded.extend(excluded);
+        let otherwise = self.check(otherwise);
+        self.excluded.truncate(self.excluded.len() - usize::from(excluded.is_some()));
         let kind =
             self.unified(&then, &otherwise, at, |a, b| format!("both values of if(...) must measure the same; these are {a} and {b}"));
         let Some((test, left, right)) = compared else { return CheckedTree::broken() };
         let whole = then.whole && otherwise.whole;
         let typed = Typed::If(test, Box::new([&left, &right, &then, &otherwise].map(|part| part.typed.clone())));
         CheckedTree::new(typed, kind, whole, &[&left, &right, &then, &otherwise])
+    }
+
+    /// The slot and the word that are not equal where the comparison does not hold.
+    fn excluded_by(&self, sides: [&'e Expression; 2]) -> Option<(usize, &'e str)> {
+        let (word, name) = match sides.map(|side| &side.node) {
+            [ExpressionNode::Word(word), ExpressionNode::Name(name)] | [ExpressionNode::Name(name), ExpressionNode::Word(word)] => (word, name),
+            _ => return None,
+        };
+        Some((self.slots.iter().position(|slot| slot.name == *name)?, word))
     }
 
     fn numbers(
