@@ -151,7 +151,7 @@ impl<'s, 'e> Checker<'s, 'e> {
             }
             ExpressionNode::Binary(operator, left, right) => self.binary(*operator, left, right),
             ExpressionNode::If(comparison, parts) => self.choice(*comparison, parts, expression.span.start),
-            ExpressionNode::Root(unknown, parts) => self.root(unknown, parts, expression.span.start),
+            ExpressionNode::Root(unknown, parts, start) => self.root(unknown, parts, start.as_deref(), expression.span.start),
             ExpressionNode::Call(name, arguments) => self.call(name, arguments, expression.span.start),
         };
         self.folded(checked, needs, expression.span.start)
@@ -453,7 +453,7 @@ impl<'s, 'e> Checker<'s, 'e> {
         Some((test, value, code))
     }
 
-    fn root(&mut self, unknown: &'e str, parts: &'e [Expression; 3], at: usize) -> CheckedTree {
+    fn root(&mut self, unknown: &'e str, parts: &'e [Expression; 3], start: Option<&'e Expression>, at: usize) -> CheckedTree {
         let [from_part, to_part, body] = parts;
         if self.unknown.is_some() {
             return self.fault(at, "a root cannot lie within another root's expression; give it a formula of its own");
@@ -467,12 +467,18 @@ impl<'s, 'e> Checker<'s, 'e> {
         let (from, to) = (self.check(from_part), self.check(to_part));
         let ends = self
             .unified(&from, &to, from_part.span.start, |a, b| format!("both ends of a root must measure the same; these are {a} and {b}"));
+        let start = start.map(|part| {
+            let start = self.check(part);
+            self.unified(&from, &start, part.span.start, |a, b| format!("a root starts between its ends; these are {a} and {b}"));
+            start
+        });
         // Two bare zeros are no bracket, and say nothing of the unknown.
         let kind = if ends == QuantityType::Zero { QuantityType::Of(QuantityDimension::NONE) } else { ends };
         self.unknown = Some(Unknown { name: unknown, kind, parameters: Vec::new() });
         let function = self.check(body);
         let parameters = self.unknown.take().map_or_else(Vec::new, |unknown| unknown.parameters);
-        if ends == QuantityType::Broken || function.kind == QuantityType::Broken {
+        let is_broken = |part: &CheckedTree| part.kind == QuantityType::Broken;
+        if ends == QuantityType::Broken || is_broken(&function) || start.as_ref().is_some_and(is_broken) {
             return CheckedTree::broken();
         }
         if !function.varies {
@@ -480,8 +486,10 @@ impl<'s, 'e> Checker<'s, 'e> {
         }
         self.roots += 1;
         let need = self.need(reason::NO_ROOT, false);
-        let typed = Typed::Root(Box::new([&from, &to, &function].map(|part| part.typed.clone())), parameters, need);
+        let parts = Box::new([&from, &to, &function].map(|part| part.typed.clone()));
+        let typed = Typed::Root(parts, start.as_ref().map(|part| Box::new(part.typed.clone())), parameters, need);
+        let of: Vec<&CheckedTree> = [&from, &to, &function].into_iter().chain(&start).collect();
         // The unknown stays within.
-        CheckedTree { varies: false, ..CheckedTree::new(typed, kind, false, &[&from, &to, &function]) }
+        CheckedTree { varies: false, ..CheckedTree::new(typed, kind, false, &of) }
     }
 }

@@ -34,17 +34,19 @@ impl FirstStage {
 
     /// Of formulas alone, which read only these many inputs. `asked`: formulas whose values are asked for from without.
     ///
-    /// What takes long (roots, exponentials, curves) decides which inputs are slow, as long as there is one left that is not: a first
-    /// stage that reads them all would serve no two designs.
+    /// What takes long decides which inputs are slow: roots as long as there is one left that is not, since a first stage that reads
+    /// them all would serve no two designs; exponentials, curves and the like as long as a third is left, since they take less time than
+    /// a first stage does that serves few.
     pub fn of(formulas: &Formulas, before: &[usize], inputs: usize, asked: &[usize]) -> Self {
         let all = formulas.all();
         let mut costly: Vec<(bool, &StudyFormula)> =
             before.iter().map(|&it| &all[it]).filter_map(|it| Some((!cost(&it.expression)?, it))).collect();
         costly.sort_by_key(|(is_cheaper, it)| (*is_cheaper, it.depends_on.len()));
         let mut slow: BTreeSet<usize> = BTreeSet::new();
-        for (_, formula) in costly {
+        for (is_cheaper, formula) in costly {
             let with: BTreeSet<usize> = slow.iter().chain(&formula.depends_on).copied().collect();
-            if with.len() < inputs {
+            let left = inputs - with.len();
+            if (is_cheaper && 3 * left >= inputs) || (!is_cheaper && left > 0) {
                 slow = with;
             }
         }
