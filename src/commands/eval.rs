@@ -1,6 +1,6 @@
 //! `beltspace eval`: evaluates one design of a model or of a study.
 
-use super::{Target, read_study, target};
+use super::{CommandTarget, read_study, target};
 use crate::cli;
 use crate::terminal::{self, TextGrid, bold, dim, short};
 use beltspace::certify;
@@ -21,8 +21,8 @@ use std::path::{Path, PathBuf};
 
 pub fn run(request: &cli::EvalArgs) -> Result<()> {
     let model = match target(&request.target)? {
-        Target::Study(path) => return of_study(request, path),
-        Target::Model(model) => model,
+        CommandTarget::Study(path) => return of_study(request, path),
+        CommandTarget::Model(model) => model,
     };
     if request.design.is_some() {
         return Err(Error::Request(format!("--design is for studies, and {} is a model; use --set", model.name)));

@@ -59,22 +59,22 @@ fn find_model(name: &str) -> Result<Arc<Model>> {
 }
 
 /// What a command works on: a model by name or from a file, or a study.
-enum Target<'t> {
+enum CommandTarget<'t> {
     Model(Arc<Model>),
     Study(&'t Path),
 }
 
 /// The model or study that is meant: files are told apart by what stands in them.
-fn target(named: &str) -> Result<Target<'_>> {
+fn target(named: &str) -> Result<CommandTarget<'_>> {
     let path = Path::new(named);
     if beltspace::models::find(named).is_some() || !(path.extension().is_some_and(|it| it == "toml") || path.exists()) {
-        return find_model(named).map(Target::Model);
+        return find_model(named).map(CommandTarget::Model);
     }
     // What cannot be read is told as of a study.
     let kind = std::fs::read_to_string(path).map_or(FileKind::Study, |text| file_kind(&text));
     match kind {
-        FileKind::Study => Ok(Target::Study(path)),
-        FileKind::Model => read_model(path).map(Target::Model),
+        FileKind::Study => Ok(CommandTarget::Study(path)),
+        FileKind::Model => read_model(path).map(CommandTarget::Model),
         FileKind::Other => Err(Error::Request(format!(
             "{named} is neither a study, which names a model, nor a model, which has [formulas]; beltspace models NAME --study shows a study"
         ))),
@@ -84,9 +84,9 @@ fn target(named: &str) -> Result<Target<'_>> {
 /// The model of that name, or in the file of that name.
 fn model_of(named: &str) -> Result<Arc<Model>> {
     match target(named)? {
-        Target::Model(model) => Ok(model),
-        Target::Study(path) if path.exists() => Err(Error::Request(format!("{named} is a study; name a model, or a file that has [formulas] and no model"))),
-        Target::Study(path) => read_model(path),
+        CommandTarget::Model(model) => Ok(model),
+        CommandTarget::Study(path) if path.exists() => Err(Error::Request(format!("{named} is a study; name a model, or a file that has [formulas] and no model"))),
+        CommandTarget::Study(path) => read_model(path),
     }
 }
 

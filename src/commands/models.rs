@@ -3,7 +3,7 @@
 use super::model_of;
 use crate::cli;
 use crate::terminal::{self, TextGrid, bold, dim};
-use beltspace::error::Result;
+use beltspace::error::{Error, Result};
 use beltspace::models::{self, Input, Model, Range, Worse};
 use beltspace::study::{number, value_of};
 use serde_json::{Map, Value, json};
@@ -11,6 +11,9 @@ use serde_json::{Map, Value, json};
 pub fn run(request: &cli::ModelsArgs) -> Result<()> {
     let model = request.name.as_deref().map(model_of).transpose()?;
     let text = match (model, request.json) {
+        (Some(model), _) if request.study && model.starter.is_empty() => {
+            return Err(Error::Request(format!("{} comes from a file, and with no study; docs/models-in-a-file.md shows one", model.name)));
+        }
         (Some(model), _) if request.study => model.starter.to_owned(),
         (Some(model), true) => format!("{:#}\n", describe(&model)),
         (None, true) => format!("{:#}\n", models::all().iter().map(|model| describe(model)).collect::<Value>()),

@@ -1,6 +1,6 @@
 //! `beltspace verify`: compares the GPU of this machine with f64.
 
-use super::{Target, engine, read_study, target, threads};
+use super::{CommandTarget, engine, read_study, target, threads};
 use crate::cli;
 use crate::terminal::{self, TextGrid, bold, grouped};
 use beltspace::error::{Error, Result};
@@ -20,8 +20,8 @@ use std::sync::Arc;
 pub fn run(request: &cli::VerifyArgs) -> Result<()> {
     let samples = usize::try_from(request.samples).map_err(|_| Error::Request("--samples: too many for this machine".to_owned()))?;
     let model = match target(&request.target)? {
-        Target::Model(model) => model,
-        Target::Study(path) => return of_study(request, path, samples),
+        CommandTarget::Model(model) => model,
+        CommandTarget::Study(path) => return of_study(request, path, samples),
     };
     let device = open(request, &model)?;
     let report = of_points(&device, &model, &[], &points_of_model(&model, samples, request.seed))?;

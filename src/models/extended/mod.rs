@@ -99,12 +99,18 @@ pub fn extended(base: &Arc<Model>, extension: Extension) -> Result<Model, Vec<Ex
 /// What the model and its variables are called in formulas, in the order of their slots.
 fn scope(base: &Model, extension: &Extension) -> Result<Scope, Vec<ExtensionProblem>> {
     let mut problems = Vec::new();
-    let units = Units::new(&extension.units).unwrap_or_else(|found| {
-        problems.extend(found.into_iter().map(|(at, message)| ExtensionProblem::Unit(at, message)));
+    let known = all_units(base, extension);
+    let units = Units::new(&names_of_units(&known)).unwrap_or_else(|found| {
+        let number = |at: usize| known[at].1.unwrap_or_default();
+        problems.extend(found.into_iter().map(|(at, message)| ExtensionProblem::Unit(number(at), message)));
         Units::default()
     });
-    let mut names: Vec<ScopeName> = base.inputs.iter().map(name_of_input).collect();
-    names.extend(extension.inputs().iter().map(|input| ScopeName { role: NameRole::Variable, ..name_of_input(input) }));
+    let measure = |name: &str, unit: Unit| measure_of(&units, base, name, unit);
+    let mut names: Vec<ScopeName> = base.inputs.iter().map(|input| name_of_input(input, measure(&input.name, input.unit))).collect();
+    names.extend(extension.inputs().iter().map(|input| {
+        let measure = units.of_name(&input.name).unwrap_or(input.unit.into());
+        ScopeName { role: NameRole::Variable, ..name_of_input(input, measure) }
+    }));
     for variable in &extension.variables {
         match units.of_name(variable) {
             Ok(measure) => names.push(ScopeName::new(variable, NameRole::Variable, measure)),
@@ -112,7 +118,7 @@ fn scope(base: &Model, extension: &Extension) -> Result<Scope, Vec<ExtensionProb
         }
     }
     names.extend(base.outputs.iter().map(|output| {
-        let name = ScopeName::new(&output.name, NameRole::Output, output.unit.into());
+        let name = ScopeName::new(&output.name, NameRole::Output, measure(&output.name, output.unit));
         let name = if output.integer { name.whole() } else { name };
         let may_go = base.conditions.iter().any(|condition| condition.invalidates.contains(&output.name));
         if may_go { name.maybe_absent() } else { name }
@@ -131,8 +137,32 @@ fn scope(base: &Model, extension: &Extension) -> Result<Scope, Vec<ExtensionProb
     if problems.is_empty() { Ok(Scope::new(units, names, curves)) } else { Err(problems) }
 }
 
-fn name_of_input(input: &Input) -> ScopeName {
-    let name = ScopeName::new(&input.name, NameRole::Input, input.unit.into());
+/// Units that the model has of its own, which formulas around it know too.
+fn base_units(base: &Model) -> Vec<String> {
+    base.origin.as_ref().map_or_else(Vec::new, |origin| [base_units(&origin.base), origin.extension.units.clone()].concat())
+}
+
+/// All units that formulas know besides the usual ones, each with its number among those that are added.
+fn all_units(base: &Model, extension: &Extension) -> Vec<(String, Option<usize>)> {
+    let of_base = base_units(base);
+    // A study may repeat those of its model.
+    let added = extension.units.iter().enumerate().filter(|(_, unit)| !of_base.contains(unit));
+    let added: Vec<_> = added.map(|(at, unit)| (unit.clone(), Some(at))).collect();
+    of_base.iter().map(|unit| (unit.clone(), None)).chain(added).collect()
+}
+
+fn names_of_units(units: &[(String, Option<usize>)]) -> Vec<String> {
+    units.iter().map(|(name, _)| name.clone()).collect()
+}
+
+/// What a name of the model measures: where the model has units of its own, its name says it.
+fn measure_of(units: &Units, base: &Model, name: &str, unit: Unit) -> QuantityUnit {
+    let own = base.origin.as_ref().and_then(|_| units.of_name(name).ok());
+    own.unwrap_or_else(|| unit.into())
+}
+
+fn name_of_input(input: &Input, measure: QuantityUnit) -> ScopeName {
+    let name = ScopeName::new(&input.name, NameRole::Input, measure);
     let name = if input.integer { name.whole() } else { name };
     if input.words.is_empty() { name } else { name.words(input.words.clone(), input.is_enumeration()) }
 }
@@ -226,7 +256,7 @@ struct ExtendedTables {
 impl ExtendedTables {
     fn new(around: &Surroundings, extension: &Extension) -> Self {
         let base = &around.base;
-        let units = Units::new(&extension.units).unwrap_or_default();
+        let units = Units::new(&names_of_units(&all_units(base, extension))).unwrap_or_default();
         let unit = |name: &str, measure: QuantityUnit| unit_of_measure(&units, name, measure);
         let inputs = around.inputs.iter().map(|&slot| match slot.checked_sub(base.inputs.len()) {
             None => base.inputs[slot].clone(),

@@ -127,7 +127,7 @@ impl Reader<'_> {
         };
         let name = super::text(entry.node, problems, label)?;
         let at = entry.node.at;
-        let text = csv_text(self.folder, &name).map_err(|error| problems.add(at, format!("{label}: {error}"))).ok()?;
+        let text = csv_text(self.folder, &name, "study").map_err(|error| problems.add(at, format!("{label}: {error}"))).ok()?;
         let before = problems.count();
         let axis = self.csv_rows(role, at, &name, &text);
         axis.filter(|_| known && problems.count() == before)

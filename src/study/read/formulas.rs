@@ -25,8 +25,8 @@ pub(super) struct ExtensionPlaces {
 /// Where the points of curves come from.
 #[derive(Clone, Copy)]
 pub(in super::super) enum CurvePoints<'a> {
-    /// From files in this folder.
-    Folder(&'a Path),
+    /// From files in the folder of a study or a model.
+    Folder(&'a Path, &'static str),
     /// They are known already, by the name of the curve.
     Known(&'a [CurveSource]),
 }
@@ -44,7 +44,7 @@ pub(super) fn with_formulas(model: Arc<Model>, top: &TomlTable<'_>, problems: &P
     let mut extension = Extension {
         units: read_units(top, problems, &mut places),
         variables: Vec::new(),
-        curves: read_curves(top, problems, CurvePoints::Folder(folder), &mut places),
+        curves: read_curves(top, problems, CurvePoints::Folder(folder, "study"), &mut places),
         formulas: read_formulas(top, problems, &mut places),
         file: None,
     };
@@ -148,11 +148,11 @@ pub(super) fn read_curves(
         };
         let (file, x, y) = (part("csv"), part("x"), part("y"));
         let (file, x, y) = (file?, x?, y?);
-        let folder = match points_from {
-            CurvePoints::Folder(folder) => folder,
+        let (folder, whose) = match points_from {
+            CurvePoints::Folder(folder, whose) => (folder, whose),
             CurvePoints::Known(known) => return known.iter().find(|it| it.name == entry.key).cloned(),
         };
-        let text = csv_text(folder, &file).map_err(|error| problems.add(entry.node.at, format!("{label}: {error}"))).ok()?;
+        let text = csv_text(folder, &file, whose).map_err(|error| problems.add(entry.node.at, format!("{label}: {error}"))).ok()?;
         let tell = |line: usize, message: String| problems.add_in(entry.node.at, &file, line, 1, format!("{label}: {message}"));
         let (points, lines) = points(&text, &x, &y).map_err(|(line, message)| tell(line, message)).ok()?;
         places.curves.push(CurvePlace { at: entry.node.at, file, lines });
@@ -207,7 +207,7 @@ fn given(top: &TomlTable<'_>, folder: &Path) -> Vec<(String, usize)> {
             }
             let file = entry.node.table().and_then(|table| Some(table.get("csv")?.node.value.as_str()?.to_owned()));
             // What cannot be read is reported when the axis is.
-            if let Some(text) = file.and_then(|file| csv_text(folder, &file).ok()) {
+            if let Some(text) = file.and_then(|file| csv_text(folder, &file, "study").ok()) {
                 let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
                 let header = reader.headers().cloned().unwrap_or_default();
                 names.extend(header.iter().map(|name| (name.to_owned(), entry.key_at)));

@@ -33,7 +33,7 @@ pub(in super::super) struct ModelText<'a> {
 pub fn read_model(path: &Path) -> Result<Arc<Model>> {
     let (text, file) = text_of(path, "long tables go into CSV files")?;
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
-    let curves = CurvePoints::Folder(path.parent().unwrap_or(Path::new("")));
+    let curves = CurvePoints::Folder(path.parent().unwrap_or(Path::new("")), "model");
     let source = ModelText { name: &name, text: &text, file: &file, curves };
     read_model_text(&Models::new(), source).map_err(|problems| StudyErrors { problems }.into())
 }
@@ -93,7 +93,7 @@ pub(super) fn named_model(models: &Models, name: &str, at: usize, problems: &Pro
         }
     };
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let curves = CurvePoints::Folder(path.parent().unwrap_or(Path::new("")));
+    let curves = CurvePoints::Folder(path.parent().unwrap_or(Path::new("")), "model");
     let source = ModelText { name: &stem, text: &text, file: &problems.beside(name), curves };
     read_model_text(models, source).map_err(|of_file| problems.adopt(at, of_file)).ok()
 }
@@ -140,7 +140,7 @@ impl ModelReader<'_> {
         for (name, at) in self.keys("formulas").into_iter().filter(|(name, _)| inputs.iter().any(|input| input.name == *name)) {
             problems.add(at, format!("{} is an input of this model already; choose another name", shortened(name)));
         }
-        let known = problems.count() == before;
+        let known = problems.count() == before && !problems.is_incomplete();
         let outputs = self.outputs(&mut formulas);
         let conditions = self.conditions(&base, &formulas, outputs.as_deref(), &mut places);
         let presets = self.presets(&base, &inputs);
@@ -221,7 +221,7 @@ impl ModelReader<'_> {
                 // A formula that could not be read has been reported.
                 if !self.keys("formulas").iter().any(|(name, _)| name == key) {
                     let remedy = remedy(key, &names, || "write a formula of that name in [formulas]".to_owned());
-                    problems.add(*key_at, format!("{label}: there is no such formula; {remedy}"));
+                    problems.add_if_complete(*key_at, format!("{label}: there is no such formula; {remedy}"));
                 }
                 continue;
             };
@@ -266,7 +266,7 @@ impl ModelReader<'_> {
             };
             parts.check_keys(problems, &label, &["margin", "strict", "quiet", "invalidates", "doc"]);
             let [strict, quiet] = ["strict", "quiet"].map(|key| parts.get(key).and_then(|it| truth(it, problems, &label)).unwrap_or(false));
-            let invalidates = parts.get("invalidates").map_or_else(Vec::new, |it| self.names(it, &label, &outputs));
+            let invalidates = parts.get("invalidates").map_or_else(Vec::new, |it| self.names(it, &label, &outputs, formulas));
             if quiet && parts.get("invalidates").is_none() {
                 problems.add(parts.at, format!("{label}: a quiet condition only takes outputs away; name them: invalidates = [\"...\"]"));
             }
@@ -282,7 +282,7 @@ impl ModelReader<'_> {
     }
 
     /// A list of names of which each is one of these.
-    fn names(&self, entry: &Entry<'_>, label: &str, known: &[&str]) -> Vec<String> {
+    fn names(&self, entry: &Entry<'_>, label: &str, known: &[&str], formulas: &[FormulaSource]) -> Vec<String> {
         let problems = self.problems;
         let Some(nodes) = entry.node.list() else {
             problems.add(entry.node.at, format!("{label}: found {}; {} must be a list of outputs", entry.node.found(), entry.key));
@@ -291,9 +291,11 @@ impl ModelReader<'_> {
         let mut names = Vec::new();
         for node in nodes {
             let Some(name) = text(node, problems, label) else { continue };
-            if !known.contains(&&*name) {
+            // A formula that could not be read has been reported.
+            let is_unread = || self.keys("formulas").iter().any(|(key, _)| *key == name) && !formulas.iter().any(|it| it.name == name);
+            if !known.contains(&&*name) && !is_unread() {
                 let remedy = remedy(&name, known, || "name outputs of this model".to_owned());
-                problems.add(node.at, format!("{label}: there is no output \"{}\"; {remedy}", shortened(&name)));
+                problems.add_if_complete(node.at, format!("{label}: there is no output \"{}\"; {remedy}", shortened(&name)));
             }
             names.push(name);
         }
@@ -320,7 +322,7 @@ impl ModelReader<'_> {
                 let Some(input) = inputs.iter().find(|it| it.name == *key) else {
                     if !self.keys("inputs").iter().any(|(name, _)| name == key) {
                         let remedy = remedy(key, &names, || format!("inputs are {}", list(&names)));
-                        problems.add(*key_at, format!("{label}: there is no input \"{}\"; {remedy}", shortened(key)));
+                        problems.add_if_complete(*key_at, format!("{label}: there is no input \"{}\"; {remedy}", shortened(key)));
                     }
                     continue;
                 };

@@ -45,7 +45,7 @@ impl ModelReader<'_> {
             return None;
         };
         parts.check_keys(problems, &label, &KEYS);
-        let words = self.word_list(&parts, "words", &label);
+        let words = self.word_list(&parts, "words", &label)?;
         let says_nothing = Range { low: f64::NEG_INFINITY, high: f64::INFINITY, includes_low: false, includes_high: false };
         let valid = match parts.get("valid") {
             Some(entry) => self.range(entry.node, unit, &label)?,
@@ -67,7 +67,7 @@ impl ModelReader<'_> {
                 return None;
             }
         };
-        input.only_for = self.word_list(&parts, "only_for", &label);
+        input.only_for = self.word_list(&parts, "only_for", &label)?;
         input.follows = parts.get("follows").and_then(|it| text(it.node, problems, &label));
         let Some(default) = parts.get("default") else {
             problems.add_if_complete(parts.at, format!("{label}: \"default\" is missing; it must be {}", input.valid_in_words()));
@@ -97,13 +97,13 @@ impl ModelReader<'_> {
         }
     }
 
-    /// A list of words, each once.
-    fn word_list(&self, parts: &TomlTable<'_>, key: &str, label: &str) -> Vec<String> {
+    /// A list of words, each once; `None` if it is no list.
+    fn word_list(&self, parts: &TomlTable<'_>, key: &str, label: &str) -> Option<Vec<String>> {
         let problems = self.problems;
-        let Some(entry) = parts.get(key) else { return Vec::new() };
+        let Some(entry) = parts.get(key) else { return Some(Vec::new()) };
         let Some(nodes) = entry.node.list() else {
             problems.add(entry.node.at, format!("{label}: found {}; {key} must be a list of words such as [\"smooth\", \"rough\"]", entry.node.found()));
-            return Vec::new();
+            return None;
         };
         let mut seen = HashSet::new();
         let mut words = Vec::new();
@@ -117,7 +117,7 @@ impl ModelReader<'_> {
                 words.push(word);
             }
         }
-        words
+        Some(words)
     }
 
     /// `[low, high]`, both included, or `{ above = low, max = high }` and the like.

@@ -141,6 +141,11 @@ impl<'t> Problems<'t> {
         self.incomplete.set(true);
     }
 
+    /// Was a part of the file not understood?
+    pub(super) fn is_incomplete(&self) -> bool {
+        self.incomplete.get()
+    }
+
     /// Does this text stand in the file at that byte?
     pub(super) fn has(&self, at: usize, text: &str) -> bool {
         self.lines.text.get(at..).is_some_and(|rest| rest.starts_with(text))
