@@ -85,7 +85,9 @@ fn target(named: &str) -> Result<CommandTarget<'_>> {
 fn model_of(named: &str) -> Result<Arc<Model>> {
     match target(named)? {
         CommandTarget::Model(model) => Ok(model),
-        CommandTarget::Study(path) if path.exists() => Err(Error::Request(format!("{named} is a study; name a model, or a file that has [formulas] and no model"))),
+        CommandTarget::Study(path) if path.exists() => {
+            Err(Error::Request(format!("{named} is a study; name a model, or a file that has [formulas] and no model")))
+        }
         CommandTarget::Study(path) => read_model(path),
     }
 }

@@ -51,7 +51,8 @@ fn page(model: &Model) -> String {
         inputs.row([input.name.to_owned(), default, usual, input.valid_in_words()]);
     }
     let from = |source: &str| if source.is_empty() { String::new() } else { format!(" [{source}]") };
-    let inputs = described(&inputs, model.inputs.iter().map(|input| format!("{}{}{}", input.doc, from(&input.source), only_for(model, input))));
+    let inputs =
+        described(&inputs, model.inputs.iter().map(|input| format!("{}{}{}", input.doc, from(&input.source), only_for(model, input))));
     let mut outputs = TextGrid::default();
     outputs.row(["output", "symbol", "equation"].map(bold));
     for output in &model.outputs {

@@ -258,14 +258,7 @@ impl<R: Real> TreeEvaluation<'_, R> {
     }
 
     #[inline(never)]
-    fn root(
-        &mut self,
-        parts: &[Typed; 3],
-        first: Option<&Typed>,
-        slots: &[usize],
-        need: usize,
-        place: EvaluationPlace<'_, R>,
-    ) -> Value<R> {
+    fn root(&mut self, parts: &[Typed; 3], first: Option<&Typed>, slots: &[usize], need: usize, place: EvaluationPlace<'_, R>) -> Value<R> {
         let zero = R::constant(0.0);
         let (from, to) = (self.of(&parts[0], place), self.of(&parts[1], place));
         let mut parameters = [zero; MOST_PARAMETERS];

@@ -124,6 +124,11 @@ impl Expression {
         parts.into_iter()
     }
 
+    /// How many roots there are in it.
+    pub fn roots(&self) -> usize {
+        usize::from(matches!(self.node, ExpressionNode::Root(..))) + self.parts().map(Self::roots).sum::<usize>()
+    }
+
     /// The names that it reads, each with its place, in the order of the text; the unknowns of its roots are not among them.
     pub fn names(&self) -> Vec<(&str, usize)> {
         let mut names = Vec::new();

@@ -1,10 +1,10 @@
 //! Restores a study from [`Study::describe`], so that a result directory is enough even without the study file and its tables.
 
+use super::read::{CurvePoints, ModelText, read_model_text};
 use super::{
     Axis, Best, Constraint, ContourSpec, Goal, HistogramSpec, Levels, MapSpec, Objective, Quantity, Report, SampleSpec, Study, Thresholds,
     TopSpec,
 };
-use super::read::{CurvePoints, ModelText, read_model_text};
 use crate::models::{CurveSource, Extension, FormulaSource, Model, Models, Worse, extended};
 use serde::de::DeserializeOwned;
 use serde_json::Value;

@@ -382,7 +382,9 @@ impl<'s, 'e> Checker<'s, 'e> {
     /// The slot and the word that are not equal where the comparison does not hold.
     fn excluded_by(&self, sides: [&'e Expression; 2]) -> Option<(usize, &'e str)> {
         let (word, name) = match sides.map(|side| &side.node) {
-            [ExpressionNode::Word(word), ExpressionNode::Name(name)] | [ExpressionNode::Name(name), ExpressionNode::Word(word)] => (word, name),
+            [ExpressionNode::Word(word), ExpressionNode::Name(name)] | [ExpressionNode::Name(name), ExpressionNode::Word(word)] => {
+                (word, name)
+            }
             _ => return None,
         };
         Some((self.slots.iter().position(|slot| slot.name == *name)?, word))

@@ -1,8 +1,8 @@
 //! The formula of an extended model.
 
 use super::columns::{ExtendedColumns, Lists};
-use super::interned::{interned, interned_list};
 use super::first::PassedNumber;
+use super::interned::{interned, interned_list};
 use super::surroundings::{ConditionPlace, Surroundings};
 use crate::models::description::Effort;
 use crate::models::formula::{Columns, Dependencies, Footprint, Kernel, Scratch, Sizes};
@@ -86,7 +86,10 @@ impl Extended {
         let Lists { first, after, .. } = self.lists();
         let operations = |list: &List| list.operations.len() as f64;
         let roots = |list: &List| list.operations.iter().filter(|it| matches!(it, Operation::Root(_))).count() as f64;
-        Effort { prepare: 1e-7 + 4e-9 * operations(first) + 1e-6 * roots(first), finish: 1e-9 + 3e-10 * operations(after) + 1e-6 * roots(after) }
+        Effort {
+            prepare: 1e-7 + 4e-9 * operations(first) + 1e-6 * roots(first),
+            finish: 1e-9 + 3e-10 * operations(after) + 1e-6 * roots(after),
+        }
     }
 
     /// The inputs of the model.
@@ -239,7 +242,8 @@ impl Kernel for Extended {
     }
 
     fn footprint(&self, inputs: &[f64]) -> Footprint {
-        self.around.base.kernel.footprint(&self.base_inputs(inputs))
+        let of_base = self.around.base.kernel.footprint(&self.base_inputs(inputs));
+        Footprint { prepared: of_base.prepared + 8 * self.around.first.passed.len() as u64, ..of_base }
     }
 }
 

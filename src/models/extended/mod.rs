@@ -15,7 +15,9 @@ use super::description::{CONDITION_BOUND_FACTOR, Condition, Input, Output, Prese
 use super::model::{Model, Origin};
 use super::source::{ConditionSource, CurveSource, Extension, FileSource};
 use super::status::{Evaluation, Status};
-use crate::formula::{FormulaKind, FormulaProblem, Formulas, MeasuredCurve, NameRole, QuantityUnit, Scope, ScopeName, Units};
+use crate::formula::{
+    Expression, FormulaKind, FormulaProblem, Formulas, MOST_ROOTS, MeasuredCurve, NameRole, QuantityUnit, Scope, ScopeName, Units,
+};
 use crate::units::Unit;
 use first::FirstStage;
 use interned::interned;
@@ -45,16 +47,20 @@ pub enum ExtensionProblem {
 /// Everything that is wrong with it.
 pub fn extended(base: &Arc<Model>, extension: Extension) -> Result<Model, Vec<ExtensionProblem>> {
     let formulas = checked(base, &extension)?;
+    let roots = roots_of(base) + roots_in(&extension);
+    if roots > MOST_ROOTS {
+        let message =
+            format!("there may be at most {MOST_ROOTS} roots in the formulas of a study and its model together, here are {roots}");
+        return Err(vec![ExtensionProblem::Whole(message)]);
+    }
     let around = surroundings(base, &extension, formulas);
     let tables = ExtendedTables::new(&around, &extension);
     let fields = base.kernel.formula().map(|formula| formula.fields());
     let around = Arc::new(around);
     let kernel = Extended::new((*around).clone(), fields);
     let effort = if around.is_alone() { kernel.effort() } else { base.effort };
-    let FileSource { name, summary, source, limits, .. } = extension.file.as_deref().cloned().unwrap_or_else(|| FileSource {
-        name: base.name.clone(),
-        ..FileSource::default()
-    });
+    let FileSource { name, summary, source, limits, .. } =
+        extension.file.as_deref().cloned().unwrap_or_else(|| FileSource { name: base.name.clone(), ..FileSource::default() });
     let words = |own: Option<String>, of_base: &String| own.unwrap_or_else(|| of_base.clone());
     let (remarks, notes, profile, pulley) = (base.remarks.clone(), base.notes.clone(), base.profile.clone(), base.pulley.clone());
     let wrapped = |around: &Arc<Surroundings>| around.clone();
@@ -94,6 +100,15 @@ pub fn extended(base: &Arc<Model>, extension: Extension) -> Result<Model, Vec<Ex
         ..(**base).clone()
     };
     model.flaw_of_sizes().map_or(Ok(model), |flaw| Err(vec![ExtensionProblem::Whole(flaw)]))
+}
+
+/// How many roots the formulas have that were added to a model.
+fn roots_of(model: &Model) -> usize {
+    model.origin.as_ref().map_or(0, |origin| roots_of(&origin.base) + roots_in(&origin.extension))
+}
+
+fn roots_in(extension: &Extension) -> usize {
+    extension.written().iter().filter_map(|it| Expression::parse(&it.text).ok()).map(|it| it.roots()).sum()
 }
 
 /// What the model and its variables are called in formulas, in the order of their slots.
@@ -318,9 +333,11 @@ fn conditions(around: &Surroundings, extension: &Extension, own: &[Output]) -> V
         }
         ConditionPlace::Base(number) => base.conditions[number].clone(),
         ConditionPlace::Margin(formula) => {
-            let ConditionSource { reason, margin, strict, quiet, invalidates, doc } = &extension.conditions()[formula - extension.formulas.len()];
+            let ConditionSource { reason, margin, strict, quiet, invalidates, doc } =
+                &extension.conditions()[formula - extension.formulas.len()];
             let taken: Vec<&str> = invalidates.iter().map(String::as_str).collect();
-            let doc = if doc.is_empty() { format!("{margin} is {} 0.", if *strict { "greater than" } else { "at least" }) } else { doc.clone() };
+            let doc =
+                if doc.is_empty() { format!("{margin} is {} 0.", if *strict { "greater than" } else { "at least" }) } else { doc.clone() };
             let condition = Condition::new(reason, *strict, &taken, doc);
             if *quiet { condition.quiet() } else { condition }
         }
@@ -365,7 +382,11 @@ impl Surroundings {
     fn evaluation_of_base(&self, evaluation: &Evaluation) -> Evaluation {
         let status = match evaluation.status {
             Status::Failed(condition) => {
-                if let ConditionPlace::Base(own) = self.conditions[condition] { Status::Failed(own) } else { Status::Ok }
+                if let ConditionPlace::Base(own) = self.conditions[condition] {
+                    Status::Failed(own)
+                } else {
+                    Status::Ok
+                }
             }
             other => other,
         };

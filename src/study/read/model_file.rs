@@ -272,7 +272,10 @@ impl ModelReader<'_> {
             }
             let doc = parts.get("doc").and_then(|it| text(it.node, problems, &label)).unwrap_or_default();
             let Some(margin) = parts.get("margin") else {
-                problems.add_if_complete(parts.at, format!("{label}: \"margin\" is missing; write margin = \"...\", at least 0 where all is well"));
+                problems.add_if_complete(
+                    parts.at,
+                    format!("{label}: \"margin\" is missing; write margin = \"...\", at least 0 where all is well"),
+                );
                 return None;
             };
             let margin = formula_text(margin.node, problems, &label, places)?;

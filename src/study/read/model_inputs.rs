@@ -32,7 +32,10 @@ impl ModelReader<'_> {
         let (problems, name) = (self.problems, entry.key);
         let label = format!("input \"{}\"", shortened(name));
         if !is_name(name) || is_reserved(name) || name.len() > 80 {
-            problems.add(entry.key_at, format!("{label}: this is no name; use up to 80 letters, digits and \"_\", a letter first, and no function's"));
+            problems.add(
+                entry.key_at,
+                format!("{label}: this is no name; use up to 80 letters, digits and \"_\", a letter first, and no function's"),
+            );
             return None;
         }
         if base.input(name).is_some() || base.output(name).is_some() {
@@ -102,7 +105,10 @@ impl ModelReader<'_> {
         let problems = self.problems;
         let Some(entry) = parts.get(key) else { return Some(Vec::new()) };
         let Some(nodes) = entry.node.list() else {
-            problems.add(entry.node.at, format!("{label}: found {}; {key} must be a list of words such as [\"smooth\", \"rough\"]", entry.node.found()));
+            problems.add(
+                entry.node.at,
+                format!("{label}: found {}; {key} must be a list of words such as [\"smooth\", \"rough\"]", entry.node.found()),
+            );
             return None;
         };
         let mut seen = HashSet::new();
@@ -110,7 +116,10 @@ impl ModelReader<'_> {
         for node in nodes {
             let Some(word) = text(node, problems, label) else { continue };
             if word.is_empty() || word.trim() != word || word.contains(['\'', '"', ',']) {
-                problems.add(node.at, format!("{label}: \"{}\" is no word; write it without quotes, commas and spaces at its ends", shortened(&word)));
+                problems.add(
+                    node.at,
+                    format!("{label}: \"{}\" is no word; write it without quotes, commas and spaces at its ends", shortened(&word)),
+                );
             } else if !seen.insert(word.clone()) {
                 problems.add(node.at, format!("{label}: the word \"{}\" stands twice; drop one of the two", shortened(&word)));
             } else {

@@ -174,6 +174,9 @@ fn commands_take_the_file_of_a_model_and_tell_it_from_a_study() {
     assert!(ask(at, "models study.toml").refusal(2).contains("study.toml is a study"));
     for command in ["eval", "verify", "models"] {
         let refused = ask(at, &format!("{command} neither.toml")).refusal(2);
-        assert!(refused.starts_with("error: neither.toml is neither a study, which names a model, nor a model, which has [formulas]"), "{refused}");
+        assert!(
+            refused.starts_with("error: neither.toml is neither a study, which names a model, nor a model, which has [formulas]"),
+            "{refused}"
+        );
     }
 }

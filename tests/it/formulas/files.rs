@@ -200,7 +200,8 @@ fn formulas_of_a_study_may_be_tables_and_a_hidden_one_is_no_output() {
              twice_N = \"2 * half_N\"\n[objectives]\ntwice_N = \"min\"\n[report]\ncolumns = [\"{column}\"]\n"
         )
     };
-    let swept = |table: &str, column: &str| parsed(&text(table, column)).sweep(Options::default().engine(Engine::Cpu)).expect("it is swept");
+    let swept =
+        |table: &str, column: &str| parsed(&text(table, column)).sweep(Options::default().engine(Engine::Cpu)).expect("it is swept");
     let column = |outcome: &beltspace::Outcome| match &outcome.front.column("half_N").expect("it is a column").data {
         beltspace::Data::Number(values) => values[0].expect("it has a value"),
         _ => panic!("it is a number"),
@@ -208,8 +209,9 @@ fn formulas_of_a_study_may_be_tables_and_a_hidden_one_is_no_output() {
     let high = column(&swept("half_N = \"belt_force_N / 2\"", "half_N"));
     let low = column(&swept("half_N = { is = \"belt_force_N / 2\", worst = \"lowest\" }", "half_N"));
     assert!((high - 2.0 * low).abs() < 1e-9 * high, "{high} and {low}");
-    let said = Study::parse_in(&text("half_N = { is = \"belt_force_N / 2\", hidden = true }", "half_N"), "s", Path::new(".")).expect_err("hidden");
-    let expected = "s:11:12: column: half_N is a hidden formula, an intermediate value; drop hidden, or name it among the outputs";
+    let said =
+        Study::parse_in(&text("half_N = { is = \"belt_force_N / 2\", hidden = true }", "half_N"), "s", Path::new(".")).expect_err("hidden");
+    let expected = "s:12:12: columns: half_N is a hidden formula, an intermediate value; drop hidden, or name it among the outputs";
     assert_eq!(said.to_string(), expected);
     let plain = parsed(&text("half_N = \"belt_force_N / 2\"", "half_N"));
     let as_table = parsed(&text("half_N = { is = \"belt_force_N / 2\" }", "half_N"));

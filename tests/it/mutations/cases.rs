@@ -113,7 +113,8 @@ pub fn run(kind: &str, random: &mut Random, number: u64, base: &Path) -> bool {
         }
         "model" => {
             let gently = random.chance(0.5);
-            let text = if gently { mutate::numbers(random, MODEL.as_bytes()) } else { mutate::bytes(random, MODEL.as_bytes(), FULL.as_bytes()) };
+            let text =
+                if gently { mutate::numbers(random, MODEL.as_bytes()) } else { mutate::bytes(random, MODEL.as_bytes(), FULL.as_bytes()) };
             fs::write(folder.path().join("grip.csv"), GRIP).expect("it can be written");
             readers::model(&text, folder.path())
         }
