@@ -76,7 +76,8 @@ fn target(named: &str) -> Result<CommandTarget<'_>> {
         FileKind::Study => Ok(CommandTarget::Study(path)),
         FileKind::Model => read_model(path).map(CommandTarget::Model),
         FileKind::Other => Err(Error::Request(format!(
-            "{named} is neither a study, which names a model, nor a model, which has [formulas]; beltspace models NAME --study shows a study"
+            "{named} is neither a study, which names a model, nor a model, which has [formulas]; \
+             beltspace models NAME --study shows a study"
         ))),
     }
 }

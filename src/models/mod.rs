@@ -6,7 +6,8 @@
 //! below, a study and one golden case; every generic test loops over the list. A model that is no such formula, such as a solver in
 //! f64, implements [`Kernel`] itself and is computed on the CPU only.
 //!
-//! Each file here uses those before it only: `description`, `source`, `status`, `formula`, `model`, `known`, `evaluation`, `latest`, `many`, `extended`,
+//! Each file here uses those before it only: `description`, `source`, `status`, `formula`, `model`, `known`, `evaluation`, `latest`,
+//! `many`, `extended`,
 //! then the models.
 
 mod cvt;

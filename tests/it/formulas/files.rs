@@ -135,7 +135,7 @@ fn fronts_of_a_model_in_a_file_are_those_of_brute_force_on_every_engine_and_by_e
     };
     let beltspace::Data::Number(torques) = &torque.data else { panic!("torques are numbers") };
     let designs: Vec<u64> = match &every.front.column("design_index").expect("it is a column").data {
-        beltspace::Data::Whole(designs) => designs.iter().flatten().map(|&it| it as u64).collect(),
+        beltspace::Data::Whole(designs) => designs.iter().flatten().copied().collect(),
         _ => panic!("designs are whole"),
     };
     assert_eq!(torques.iter().flatten().copied().collect::<Vec<_>>(), designs.into_iter().map(lowest).collect::<Vec<_>>());

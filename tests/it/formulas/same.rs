@@ -91,7 +91,7 @@ fn both(model: &str, text: &str, whole: bool) -> [Study; 2] {
         true => format!("[report]\ncolumns = [{columns}]\nhistograms = [{}]\ntop = {{ by = \"{first}\", count = 9 }}\n", bins.join(", ")),
         false => format!("[report]\ncolumns = [{columns}]\n"),
     };
-    [format!("{model}"), format!("{model}-in-a-file.toml")].map(|name| parsed(&format!("model = \"{name}\"\n{text}{report}")))
+    [model.to_owned(), format!("{model}-in-a-file.toml")].map(|name| parsed(&format!("model = \"{name}\"\n{text}{report}")))
 }
 
 /// Everything of an outcome that files hold, but for the names of statuses that never come up.
