@@ -41,7 +41,7 @@ pub enum ExtensionProblem {
     Whole(String),
 }
 
-/// A model with what a study adds to it, or the file of a model to the model that it is based on ([`nothing`] if it is formulas alone).
+/// A model with what a study adds to it, or the file of a model to the model that it is based on ([`nothing()`] if it is formulas alone).
 ///
 /// # Errors
 /// Everything that is wrong with it.

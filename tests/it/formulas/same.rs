@@ -52,6 +52,7 @@ slip_margin   = { min = 0 }
 stress_margin = { min = 0 }
 [objectives]
 axial_force_N = "min"
+stress_margin = "max"
 belt_width_mm = "min"
 "#,
     ),
@@ -68,7 +69,7 @@ groove_count     = { from = 1, to = 3 }
 cases = [{ power_kW = 3.0, speed_rpm = 3000 }, { power_kW = 0, speed_rpm = 900 }, { power_kW = 4.0, speed_rpm = 6500 }]
 wrap_angle_deg = [88, 110]
 [uncertainty]
-friction_direction_deg = [0, 22.5, 80]
+friction_direction_deg = [0, 22.5, 45]
 belt_mass_kg_per_m     = [0.10, 0.12]
 [constraints]
 friction_margin = { min = 0 }
