@@ -56,7 +56,7 @@ pub enum Command {
 /// Options of `models`.
 #[derive(Debug, Args)]
 pub struct ModelsArgs {
-    /// Name of a model; without it, all are listed
+    /// Name of a model, or the file of one; without it, all are listed
     pub name: Option<String>,
     /// Print JSON
     #[arg(long, conflicts_with = "study")]
@@ -111,7 +111,7 @@ pub struct ExportArgs {
 /// Options of `eval`.
 #[derive(Debug, Args)]
 pub struct EvalArgs {
-    /// Name of a model, or a study file
+    /// Name or file of a model, or a study file
     #[arg(value_name = "MODEL|STUDY")]
     pub target: String,
     /// Set an input, of a study in place of its axis, fixed value or formula; a unit may follow the number ("0.25 in"). May be repeated
@@ -230,7 +230,7 @@ pub struct ReportArgs {
 #[cfg(feature = "gpu")]
 #[derive(Debug, Args)]
 pub struct VerifyArgs {
-    /// Study file, or name of a model
+    /// Study file, or name or file of a model
     #[arg(value_name = "STUDY|MODEL")]
     pub target: String,
     /// Points to compare

@@ -111,12 +111,24 @@ impl Random {
     }
 }
 
+/// The usual range of an input; where none is said, a valid one around the default.
+fn tried(input: &Input) -> (f64, f64) {
+    if input.usual != (f64::MIN, f64::MAX) {
+        return input.usual;
+    }
+    let around = if input.word_for(input.default).is_some() { 1.0 } else { input.default };
+    let reach = 0.5 * around.abs().max(1.0);
+    let within = |value: f64, otherwise: f64| if input.valid.contains(value) { value } else { otherwise };
+    let inside = if input.valid.contains(around) { around } else { 0.5 * (input.valid.low + input.valid.high) };
+    (within(inside - reach, inside), within(inside + reach, inside))
+}
+
 /// A value of an input's usual range: an end of it, the default, or anything between, evenly or in the logarithm.
 fn usual(input: &Input, random: &mut Random) -> f64 {
     if input.cpu_only {
         return input.default;
     }
-    let (low, high) = input.usual;
+    let (low, high) = tried(input);
     if !input.words.is_empty() && (input.is_enumeration() || random.next().is_multiple_of(6)) {
         // If there is only one word, no random number is needed.
         let which = if input.words.len() > 1 { random.next() % input.words.len() as u64 } else { 0 };

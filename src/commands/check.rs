@@ -38,7 +38,7 @@ pub fn run(request: &cli::CheckArgs) -> Result<()> {
     }
     let mut formulas = TextGrid::default();
     for (name, text) in model.formulas() {
-        formulas.row([bold("formula"), name.clone(), terminal::told(text)]);
+        formulas.row([bold("formula"), name.to_owned(), terminal::told(text)]);
     }
     let cores = threads(None);
     let speed = Speed::measured(&plan, cores, TRIAL);

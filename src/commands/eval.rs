@@ -1,6 +1,6 @@
 //! `beltspace eval`: evaluates one design of a model or of a study.
 
-use super::{find_model, read_study, read_study_what_if, rows};
+use super::{CommandTarget, read_study, read_study_what_if, rows, target};
 use crate::cli;
 use crate::terminal::{self, TextGrid, bold, dim, short};
 use beltspace::certify;
@@ -23,22 +23,15 @@ pub fn run(request: &cli::EvalArgs) -> Result<()> {
     if let Some(rows) = &request.table {
         return rows::run(request, rows);
     }
-    let path = Path::new(&request.target);
-    if is_study(&request.target) {
-        return of_study(request, path);
-    }
-    let model = find_model(&request.target)?;
+    let model = match target(&request.target)? {
+        CommandTarget::Study(path) => return of_study(request, path),
+        CommandTarget::Model(model) => model,
+    };
     if request.design.is_some() {
         return Err(Error::Request(format!("--design is for studies, and {} is a model; use --set", model.name)));
     }
     let inputs = inputs_of(&model, request.preset.as_deref(), &request.set)?;
     print_one(&model, &inputs, None, request)
-}
-
-/// Is the target a study's file, and no model?
-pub(super) fn is_study(target: &str) -> bool {
-    let path = Path::new(target);
-    models::find(target).is_none() && (path.extension().is_some_and(|it| it == "toml") || path.exists())
 }
 
 /// Defaults, then the preset, then every `--set`.

@@ -1,7 +1,7 @@
 //! `beltspace export`: exports one design to another program.
 
 use super::eval::{inputs_of, studied};
-use super::find_model;
+use super::{CommandTarget, find_model, target};
 use crate::cli;
 use crate::terminal::{self, TextGrid, bold, short};
 use beltspace::error::{Error, Result};
@@ -51,9 +51,8 @@ fn failed(error: &calculix::CalculixError) -> Error {
 
 /// Model and inputs that a request names: a model with its settings, or a design of a study.
 fn design_of(request: &cli::ExportArgs) -> Result<(Arc<Model>, Vec<f64>)> {
-    let target = request.target.as_deref().ok_or_else(|| Error::Request("which design? name the model pulley or a study".to_owned()))?;
-    let path = Path::new(target);
-    if beltspace::models::find(target).is_none() && (path.extension().is_some_and(|it| it == "toml") || path.exists()) {
+    let named = request.target.as_deref().ok_or_else(|| Error::Request("which design? name the model pulley or a study".to_owned()))?;
+    if let CommandTarget::Study(path) = target(named)? {
         if !request.set.is_empty() || request.preset.is_some() {
             return Err(Error::Request("--set and --preset are for models; for a study use --design N".to_owned()));
         }
@@ -64,7 +63,7 @@ fn design_of(request: &cli::ExportArgs) -> Result<(Arc<Model>, Vec<f64>)> {
         })?;
         return Ok((plan.study.model.clone(), plan.space.inputs(design, scenario)));
     }
-    let model = find_model(target)?;
+    let model = find_model(named)?;
     if request.design.is_some() {
         return Err(Error::Request(format!("--design is for studies, and {} is a model; use --set", model.name)));
     }

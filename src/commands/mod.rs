@@ -22,7 +22,7 @@ use crate::terminal;
 use beltspace::error::{Error, Result};
 use beltspace::models::Model;
 use beltspace::parallel::to_be_had;
-use beltspace::study::{Study, StudyEdits};
+use beltspace::study::{FileKind, Study, StudyEdits, file_kind, read_model};
 use clap::CommandFactory;
 use std::path::Path;
 use std::sync::Arc;
@@ -57,6 +57,41 @@ fn find_model(name: &str) -> Result<Arc<Model>> {
         let names: Vec<_> = beltspace::models::all().iter().map(|model| model.name.as_str()).collect();
         Error::Request(format!("unknown model \"{name}\"; models are: {}", names.join(", ")))
     })
+}
+
+/// What a command works on: a model by name or from a file, or a study.
+enum CommandTarget<'t> {
+    Model(Arc<Model>),
+    Study(&'t Path),
+}
+
+/// The model or study that is meant: files are told apart by what stands in them.
+fn target(named: &str) -> Result<CommandTarget<'_>> {
+    let path = Path::new(named);
+    if beltspace::models::find(named).is_some() || !(path.extension().is_some_and(|it| it == "toml") || path.exists()) {
+        return find_model(named).map(CommandTarget::Model);
+    }
+    // What cannot be read is told as of a study.
+    let kind = std::fs::read_to_string(path).map_or(FileKind::Study, |text| file_kind(&text));
+    match kind {
+        FileKind::Study => Ok(CommandTarget::Study(path)),
+        FileKind::Model => read_model(path).map(CommandTarget::Model),
+        FileKind::Other => Err(Error::Request(format!(
+            "{named} is neither a study, which names a model, nor a model, which has [formulas]; \
+             beltspace models NAME --study shows a study"
+        ))),
+    }
+}
+
+/// The model of that name, or in the file of that name.
+fn model_of(named: &str) -> Result<Arc<Model>> {
+    match target(named)? {
+        CommandTarget::Model(model) => Ok(model),
+        CommandTarget::Study(path) if path.exists() => {
+            Err(Error::Request(format!("{named} is a study; name a model, or a file that has [formulas] and no model")))
+        }
+        CommandTarget::Study(path) => read_model(path),
+    }
 }
 
 /// Reads a study file; if there is none of this name, the request is wrong.

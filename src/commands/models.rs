@@ -1,17 +1,20 @@
 //! `beltspace models`: lists the models, or describes one.
 
-use super::find_model;
+use super::model_of;
 use crate::cli;
 use crate::terminal::{self, TextGrid, bold, dim};
-use beltspace::error::Result;
+use beltspace::error::{Error, Result};
 use beltspace::models::{self, Input, Model, Range, Worse};
 use beltspace::study::{number, value_of};
 use beltspace::tape::{EquationLine, Equations};
 use serde_json::{Map, Value, json};
 
 pub fn run(request: &cli::ModelsArgs) -> Result<()> {
-    let model = request.name.as_deref().map(find_model).transpose()?;
+    let model = request.name.as_deref().map(model_of).transpose()?;
     let text = match (model, request.json) {
+        (Some(model), _) if request.study && model.starter.is_empty() => {
+            return Err(Error::Request(format!("{} comes from a file, and with no study; docs/models-in-a-file.md shows one", model.name)));
+        }
         (Some(model), _) if request.study => model.starter.to_owned(),
         (Some(model), true) => format!("{:#}\n", describe(&model)),
         (None, true) => format!("{:#}\n", models::all().iter().map(|model| describe(model)).collect::<Value>()),
@@ -20,6 +23,9 @@ pub fn run(request: &cli::ModelsArgs) -> Result<()> {
     };
     terminal::print(&text)
 }
+
+/// The usual range of an input of which none is said.
+const ANY: (f64, f64) = (f64::MIN, f64::MAX);
 
 fn list() -> String {
     let mut grid = TextGrid::default();
@@ -42,10 +48,12 @@ fn page(model: &Model) -> String {
             Some((word, other)) => format!("{} ({word})", model.inputs[other].default),
             None => word.map_or_else(|| input.default.to_string(), str::to_owned),
         };
-        let usual = if input.is_enumeration() { "any".to_owned() } else { format!("{low} to {high}") };
+        let usual = if input.is_enumeration() || input.usual == ANY { "any".to_owned() } else { format!("{low} to {high}") };
         inputs.row([input.name.to_owned(), default, usual, input.valid_in_words()]);
     }
-    let inputs = described(&inputs, model.inputs.iter().map(|input| format!("{} [{}]{}", input.doc, input.source, only_for(model, input))));
+    let from = |source: &str| if source.is_empty() { String::new() } else { format!(" [{source}]") };
+    let inputs =
+        described(&inputs, model.inputs.iter().map(|input| format!("{}{}{}", input.doc, from(&input.source), only_for(model, input))));
     let mut outputs = TextGrid::default();
     outputs.row(["output", "symbol", "equation"].map(bold));
     for output in &model.outputs {
@@ -59,10 +67,16 @@ fn page(model: &Model) -> String {
     }
     let presets: Vec<_> = model.presets.iter().map(|it| it.name.as_str()).collect();
     let presets = if presets.is_empty() { String::new() } else { format!("presets: {}\n\n", presets.join(", ")) };
+    let mut formulas = TextGrid::default();
+    formulas.row([bold("formula"), String::new()]);
+    for (name, text) in model.formulas() {
+        formulas.row([name.to_owned(), terminal::told(text)]);
+    }
+    let formulas = if model.formulas().is_empty() { String::new() } else { format!("{}\n", formulas.indented(2)) };
     let equations = equations(model);
     let where_run = if !model.on_gpu { "\nComputed in f64 on the CPU only." } else { "" };
     format!(
-        "{}  {}\n\n{}{where_run}\n\n{}\n{}\n{}\n{equations}{presets}{} {}\n",
+        "{}  {}\n\n{}{where_run}\n\n{}\n{}\n{formulas}{}\n{equations}{presets}{} {}\n",
         bold(&model.name),
         model.summary,
         model.source,
@@ -130,7 +144,7 @@ fn describe(model: &Model) -> Value {
         let mut described = json!({
             "name": input.name, "symbol": input.symbol, "unit": input.unit.symbol,
             "default": value_of(model, at, defaults[at]),
-            "valid": range(&input.valid), "usual": [number(input.usual.0), number(input.usual.1)], "integer": input.integer,
+            "valid": range(&input.valid), "usual": (input.usual != ANY).then(|| [number(input.usual.0), number(input.usual.1)]), "integer": input.integer,
             "word": word, "follows": input.follows, "doc": input.doc, "source": input.source,
         });
         if input.is_enumeration() {
@@ -167,12 +181,16 @@ fn describe(model: &Model) -> Value {
             (preset.name.clone(), Value::from(values))
         })
         .collect();
-    json!({
+    let mut described = json!({
         "name": model.name, "summary": model.summary, "source": model.source, "limits": model.limits,
         "gpu": model.on_gpu,
         "inputs": inputs.collect::<Vec<_>>(), "outputs": outputs.collect::<Vec<_>>(),
         "statuses": conditions.collect::<Vec<_>>(), "presets": presets,
-    })
+    });
+    if !model.formulas().is_empty() {
+        described["formulas"] = model.formulas().into_iter().map(|(name, text)| json!({ "name": name, "is": text })).collect();
+    }
+    described
 }
 
 #[cfg(test)]

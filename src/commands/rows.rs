@@ -1,7 +1,7 @@
 //! `beltspace eval --table`: evaluates every row of a table.
 
-use super::eval::{inputs_of, is_study, no_preset};
-use super::{find_model, read_study_what_if, threads};
+use super::eval::{inputs_of, no_preset};
+use super::{CommandTarget, read_study_what_if, target, threads};
 use crate::cli;
 use crate::terminal;
 use beltspace::batch::{BatchTarget, RowReader, evaluate_rows};
@@ -53,16 +53,18 @@ pub fn run(request: &cli::EvalArgs, rows: &Path) -> Result<()> {
 /// What the rows are evaluated by.
 fn target_of(request: &cli::EvalArgs) -> Result<BatchTarget> {
     let set = request.set.iter().filter_map(|it| Some(it.split_once('=')?.0.trim().to_owned())).collect();
-    if !is_study(&request.target) {
-        let model = find_model(&request.target)?;
-        let inputs = inputs_of(&model, request.preset.as_deref(), &request.set)?;
-        return Ok(BatchTarget::of_model(model, inputs, set));
-    }
+    let path = match target(&request.target)? {
+        CommandTarget::Study(path) => path,
+        CommandTarget::Model(model) => {
+            let inputs = inputs_of(&model, request.preset.as_deref(), &request.set)?;
+            return Ok(BatchTarget::of_model(model, inputs, set));
+        }
+    };
     if request.preset.is_some() {
         return Err(no_preset());
     }
     // A design axis that is set has one value, which rows need not give.
-    let study = read_study_what_if(Path::new(&request.target), &request.set)?;
+    let study = read_study_what_if(path, &request.set)?;
     Ok(BatchTarget::of_study(study, set))
 }
 

@@ -1,6 +1,6 @@
 //! `beltspace verify`: compares the GPU of this machine with f64.
 
-use super::{engine, find_model, read_study, threads};
+use super::{CommandTarget, engine, read_study, target, threads};
 use crate::cli;
 use crate::terminal::{self, TextGrid, bold, grouped};
 use beltspace::error::{Error, Result};
@@ -18,29 +18,33 @@ use std::path::Path;
 use std::sync::Arc;
 
 pub fn run(request: &cli::VerifyArgs) -> Result<()> {
-    let path = Path::new(&request.target);
     let samples = usize::try_from(request.samples).map_err(|_| Error::Request("--samples: too many for this machine".to_owned()))?;
-    if beltspace::models::find(&request.target).is_none() && (path.extension().is_some_and(|it| it == "toml") || path.exists()) {
-        let (study, _) = read_study(path)?;
-        let plan = Plan::new(study);
-        let model = &plan.study.model;
-        let device = open(request, model)?;
-        let points = points_of_study(&plan, samples, request.seed);
-        let report = of_points(&device, model, &plan.study.constraints, &points)?;
-        let tables = Tables::new(&plan);
-        let ranges = Tally::new(&plan, &tables, threads(None)).histogram_ranges(&plan);
-        let reduction = Reduction::new(&plan, &ranges);
-        // A kernel that breaks an error bound at single points is refused without a sweep.
-        let swept = match report.require() {
-            Ok(()) => Some(recheck_on_device(&plan, &tables, &reduction, threads(None), &device.on)?),
-            Err(_) => None,
-        };
-        return print(request, &terminal::told(&plan.study.title), &device, &report, swept.as_ref());
-    }
-    let model = find_model(&request.target)?;
+    let model = match target(&request.target)? {
+        CommandTarget::Model(model) => model,
+        CommandTarget::Study(path) => return of_study(request, path, samples),
+    };
     let device = open(request, &model)?;
     let report = of_points(&device, &model, &[], &points_of_model(&model, samples, request.seed))?;
     print(request, &model.name, &device, &report, None)
+}
+
+/// Points of a study, and its sweep.
+fn of_study(request: &cli::VerifyArgs, path: &Path, samples: usize) -> Result<()> {
+    let (study, _) = read_study(path)?;
+    let plan = Plan::new(study);
+    let model = &plan.study.model;
+    let device = open(request, model)?;
+    let points = points_of_study(&plan, samples, request.seed);
+    let report = of_points(&device, model, &plan.study.constraints, &points)?;
+    let tables = Tables::new(&plan);
+    let ranges = Tally::new(&plan, &tables, threads(None)).histogram_ranges(&plan);
+    let reduction = Reduction::new(&plan, &ranges);
+    // A kernel that breaks an error bound at single points is refused without a sweep.
+    let swept = match report.require() {
+        Ok(()) => Some(recheck_on_device(&plan, &tables, &reduction, threads(None), &device.on)?),
+        Err(_) => None,
+    };
+    print(request, &terminal::told(&plan.study.title), &device, &report, swept.as_ref())
 }
 
 fn open(request: &cli::VerifyArgs, model: &Model) -> Result<Trusted> {

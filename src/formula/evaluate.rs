@@ -158,7 +158,7 @@ impl<R: Real> TreeEvaluation<'_, R> {
                 let at = self.of(of, place);
                 self.curve(&place.around.curves[*number], at, *need, place)
             }
-            Typed::Root(parts, slots, need) => self.root(parts, slots, *need, place),
+            Typed::Root(parts, first, slots, need) => self.root(parts, first.as_deref(), slots, *need, place),
         }
     }
 
@@ -258,7 +258,7 @@ impl<R: Real> TreeEvaluation<'_, R> {
     }
 
     #[inline(never)]
-    fn root(&mut self, parts: &[Typed; 3], slots: &[usize], need: usize, place: EvaluationPlace<'_, R>) -> Value<R> {
+    fn root(&mut self, parts: &[Typed; 3], first: Option<&Typed>, slots: &[usize], need: usize, place: EvaluationPlace<'_, R>) -> Value<R> {
         let zero = R::constant(0.0);
         let (from, to) = (self.of(&parts[0], place), self.of(&parts[1], place));
         let mut parameters = [zero; MOST_PARAMETERS];
@@ -275,7 +275,8 @@ impl<R: Real> TreeEvaluation<'_, R> {
         };
         // Ends in the wrong order fail below; here they must be a bracket all the same.
         let end = from.value.max(to.value);
-        let start = (from.value + end) * R::constant(0.5);
+        let first = first.map(|first| self.of(first, place));
+        let start = first.map_or_else(|| (from.value + end) * R::constant(0.5), |first| first.value);
         let root = R::monotone_root((from.value, end), start, parameters, |parameters, x| {
             let result = function(parameters, Value { slope: Some(R::constant(1.0)), ..Value::fixed(x) });
             (result.value, result.slope.unwrap_or(zero))
@@ -283,7 +284,7 @@ impl<R: Real> TreeEvaluation<'_, R> {
         // What fails at the root itself does.
         let within = Within { parameters, present, unknown: Value::fixed(root) };
         let at_root = self.of(&parts[2], EvaluationPlace { within: Some(&within), ..place });
-        let all = both(both(from.present, to.present), at_root.present);
+        let all = both(both(from.present, to.present), both(at_root.present, first.and_then(|first| first.present)));
         let [below, above] = [from, to].map(|end| function(parameters, Value::fixed(end.value)).value);
         self.need(Some(need), (-below).min(above).min(to.value - from.value), all, place);
         Value { present: all, ..Value::fixed(root) }

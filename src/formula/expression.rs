@@ -80,8 +80,8 @@ pub enum ExpressionNode {
     Binary(Operator, Box<Expression>, Box<Expression>),
     /// `if(left < right, then, otherwise)`.
     If(ComparisonSign, Box<[Expression; 4]>),
-    /// `root(unknown, from, to, expression)`, with the last three.
-    Root(String, Box<[Expression; 3]>),
+    /// `root(unknown, from, to, expression)`, with the last three, and where the search starts if that is said.
+    Root(String, Box<[Expression; 3]>, Option<Box<Expression>>),
     /// A function or a curve.
     Call(String, Vec<Expression>),
 }
@@ -118,10 +118,15 @@ impl Expression {
             ExpressionNode::Negative(of) => vec![of],
             ExpressionNode::Binary(_, left, right) => vec![left, right],
             ExpressionNode::If(_, parts) => parts.iter().collect(),
-            ExpressionNode::Root(_, parts) => parts.iter().collect(),
+            ExpressionNode::Root(_, parts, start) => parts.iter().chain(start.as_deref()).collect(),
             ExpressionNode::Call(_, arguments) => arguments.iter().collect(),
         };
         parts.into_iter()
+    }
+
+    /// How many roots there are in it.
+    pub fn roots(&self) -> usize {
+        usize::from(matches!(self.node, ExpressionNode::Root(..))) + self.parts().map(Self::roots).sum::<usize>()
     }
 
     /// The names that it reads, each with its place, in the order of the text; the unknowns of its roots are not among them.
@@ -145,8 +150,9 @@ impl Expression {
             ExpressionNode::If(comparison, parts) => {
                 ExpressionNode::If(*comparison, Box::new(std::array::from_fn(|part| renamed(&parts[part]))))
             }
-            ExpressionNode::Root(unknown, parts) => {
-                ExpressionNode::Root(unknown.clone(), Box::new(std::array::from_fn(|part| renamed(&parts[part]))))
+            ExpressionNode::Root(unknown, parts, start) => {
+                let parts = Box::new(std::array::from_fn(|part| renamed(&parts[part])));
+                ExpressionNode::Root(unknown.clone(), parts, start.as_deref().map(boxed))
             }
             ExpressionNode::Call(function, arguments) => ExpressionNode::Call(function.clone(), arguments.iter().map(renamed).collect()),
         };
@@ -156,13 +162,16 @@ impl Expression {
     fn collect<'e>(&'e self, unknowns: &mut Vec<&'e str>, names: &mut Vec<(&'e str, usize)>) {
         match &self.node {
             ExpressionNode::Name(name) if name != "pi" && !unknowns.contains(&name.as_str()) => names.push((name, self.span.start)),
-            ExpressionNode::Root(unknown, parts) => {
+            ExpressionNode::Root(unknown, parts, start) => {
                 let [from, to, body] = &**parts;
                 from.collect(unknowns, names);
                 to.collect(unknowns, names);
                 unknowns.push(unknown);
                 body.collect(unknowns, names);
                 unknowns.pop();
+                if let Some(start) = start {
+                    start.collect(unknowns, names);
+                }
             }
             _ => self.parts().for_each(|part| part.collect(unknowns, names)),
         }
@@ -205,9 +214,13 @@ impl Expression {
                 let [left, right, then, otherwise] = &**parts;
                 write!(out, "if({left} {} {right}, {then}, {otherwise})", comparison.symbol())?;
             }
-            ExpressionNode::Root(unknown, parts) => {
+            ExpressionNode::Root(unknown, parts, start) => {
                 let [from, to, body] = &**parts;
-                write!(out, "root({unknown}, {from}, {to}, {body})")?;
+                write!(out, "root({unknown}, {from}, {to}, {body}")?;
+                if let Some(start) = start {
+                    write!(out, ", {start}")?;
+                }
+                out.write_str(")")?;
             }
             ExpressionNode::Call(name, arguments) => {
                 write!(out, "{name}(")?;

@@ -45,6 +45,7 @@ mod token;
 mod typed;
 mod unit;
 mod value;
+mod written;
 
 pub use dimension::{MOST_OWN_UNITS, QuantityDimension};
 pub use expression::{ComparisonSign, Expression, ExpressionNode, Operator};
@@ -54,3 +55,4 @@ pub use problem::FormulaProblem;
 pub use scope::{MOST_POINTS, MeasuredCurve, NameRole, Scope, ScopeName};
 pub use set::{FormulaRequirement, Formulas, MOST_FORMULAS, MOST_ROOTS, StudyFormula, meant};
 pub use unit::{QuantityUnit, Units};
+pub use written::{FormulaKind, WrittenFormula};

@@ -197,8 +197,10 @@ impl<'t> Parser<'_, 't> {
                 let Token::Name(unknown) = self.advance() else {
                     return Err(Fault::new(at, format!("the first argument of root is a name for the unknown; write {EXAMPLE}")));
                 };
-                let rest = self.rest(EXAMPLE)?;
-                self.made(ExpressionNode::Root(unknown.to_owned(), Box::new(rest)), start)
+                let rest = self.arguments(EXAMPLE)?;
+                let first = if self.takes(",") { Some(Box::new(self.expression(0)?)) } else { None };
+                let [] = self.rest(EXAMPLE)?;
+                self.made(ExpressionNode::Root(unknown.to_owned(), Box::new(rest), first), start)
             }
             _ => {
                 let mut arguments = Vec::new();
@@ -221,8 +223,8 @@ impl<'t> Parser<'_, 't> {
         }
     }
 
-    /// The remaining arguments, each after a comma, and the closing parenthesis.
-    fn rest<const N: usize>(&mut self, example: &str) -> Result<[Expression; N], Fault> {
+    /// So many arguments, each after a comma.
+    fn arguments<const N: usize>(&mut self, example: &str) -> Result<[Expression; N], Fault> {
         let mut rest = Vec::with_capacity(N);
         for _ in 0..N {
             if !self.takes(",") {
@@ -233,11 +235,17 @@ impl<'t> Parser<'_, 't> {
             }
             rest.push(self.expression(0)?);
         }
+        rest.try_into().map_err(|_| self.misplaced())
+    }
+
+    /// The remaining arguments, each after a comma, and the closing parenthesis.
+    fn rest<const N: usize>(&mut self, example: &str) -> Result<[Expression; N], Fault> {
+        let rest = self.arguments(example)?;
         match self.peek() {
             Token::Sign(",") => Err(Fault::new(self.start(), format!("this argument is one too many; write {example}"))),
             Token::Sign(")") => {
                 self.advance();
-                rest.try_into().map_err(|_| self.misplaced())
+                Ok(rest)
             }
             _ => Err(self.misplaced()),
         }

@@ -11,6 +11,7 @@ use super::problem::{Fault, FormulaProblem};
 use super::scope::{MeasuredCurve, NameRole, Scope};
 use super::typed::{Need, Typed};
 use super::unit::QuantityUnit;
+use super::written::{FormulaKind, WrittenFormula};
 use crate::likeness::closest;
 use crate::real::Real;
 use std::collections::BTreeSet;
@@ -28,6 +29,8 @@ pub struct StudyFormula {
     pub name: String,
     /// As it was written.
     pub text: String,
+    /// What it is for.
+    pub kind: FormulaKind,
     /// Its unit: that of the input which it gives, or what the end of its name says.
     pub measure: QuantityUnit,
     /// What it says; printed, it is the formula as a person writes it.
@@ -48,6 +51,13 @@ pub struct StudyFormula {
     pub absent_with: Vec<usize>,
     pub(super) typed: Typed,
     needs: Vec<Need>,
+}
+
+impl StudyFormula {
+    /// The status of a design in which it has no value for this reason.
+    fn status(&self, reason: &str) -> String {
+        if self.kind == FormulaKind::Margin { format!("{}: {reason}", self.name) } else { format!("formula {}: {reason}", self.name) }
+    }
 }
 
 /// What must hold for a formula to have a value. A design that breaks it has the status `formula NAME: REASON`.
@@ -83,7 +93,16 @@ impl Formulas {
     /// # Errors
     /// Every problem that was found, in the order of the file.
     pub fn new(scope: &Scope, formulas: &[(String, String)]) -> Result<Self, Vec<FormulaProblem>> {
-        Builder::new(scope, formulas).build()
+        let formulas: Vec<_> = formulas.iter().map(|(name, text)| WrittenFormula::new(name, text, FormulaKind::Quantity)).collect();
+        Self::of(scope, &formulas)
+    }
+
+    /// Checks formulas of which it is said what they are for, in the order of their file. Margins come last.
+    ///
+    /// # Errors
+    /// As [`Formulas::new`].
+    pub fn of(scope: &Scope, formulas: &[WrittenFormula]) -> Result<Self, Vec<FormulaProblem>> {
+        Builder { scope, sources: formulas, problems: Vec::new() }.build()
     }
 
     /// The formulas, in the order of the file.
@@ -119,6 +138,18 @@ impl Formulas {
     /// How many slots there are.
     pub fn slots(&self) -> usize {
         self.slots
+    }
+
+    /// A formula and all that it depends on, in order.
+    pub fn ancestors(&self, formula: usize) -> Vec<usize> {
+        let mut found = vec![formula];
+        for &other in self.order.iter().rev() {
+            if other != formula && found.iter().any(|&it| self.formulas[it].reads.contains(&self.formulas[other].slot)) {
+                found.push(other);
+            }
+        }
+        found.sort_by_key(|it| self.order.iter().position(|other| other == it));
+        found
     }
 
     /// A formula and all that depend on it, itself or through others.
@@ -170,7 +201,7 @@ impl Formulas {
 /// Checks a set.
 struct Builder<'s> {
     scope: &'s Scope,
-    sources: &'s [(String, String)],
+    sources: &'s [WrittenFormula],
     problems: Vec<FormulaProblem>,
 }
 
@@ -184,12 +215,8 @@ struct Heads {
 }
 
 impl<'s> Builder<'s> {
-    fn new(scope: &'s Scope, sources: &'s [(String, String)]) -> Self {
-        Self { scope, sources, problems: Vec::new() }
-    }
-
     fn add(&mut self, formula: usize, fault: Fault) {
-        let (name, text) = &self.sources[formula];
+        let WrittenFormula { name, text, .. } = &self.sources[formula];
         self.problems.push(FormulaProblem::new(formula, name, text, fault));
     }
 
@@ -203,7 +230,7 @@ impl<'s> Builder<'s> {
         self.check_curves();
         let mut heads = self.heads();
         let expressions: Vec<Option<Expression>> =
-            (0..sources.len()).map(|formula| parse(&sources[formula].1).map_err(|fault| self.add(formula, fault)).ok()).collect();
+            (0..sources.len()).map(|formula| parse(&sources[formula].text).map_err(|fault| self.add(formula, fault)).ok()).collect();
         let reads: Vec<Vec<usize>> = expressions.iter().map(|expression| slots_read(expression.as_ref(), &heads.slots)).collect();
         let giver = |slot: usize| heads.of.iter().position(|&own| own == slot);
         let formulas_read: Vec<Vec<usize>> = reads.iter().map(|slots| slots.iter().filter_map(|&slot| giver(slot)).collect()).collect();
@@ -249,8 +276,9 @@ impl<'s> Builder<'s> {
             own.whole = checked.whole;
             own.absent.clone_from(&checked.absent);
             formulas[formula] = Some(StudyFormula {
-                name: sources[formula].0.clone(),
-                text: sources[formula].1.clone(),
+                name: sources[formula].name.clone(),
+                text: sources[formula].text.clone(),
+                kind: sources[formula].kind,
                 measure: heads.measures[formula],
                 expression: expression.clone(),
                 slot,
@@ -285,13 +313,16 @@ impl<'s> Builder<'s> {
         };
         let slots: Vec<SlotType> = scope.names.iter().enumerate().map(|(at, name)| slot(name, at)).collect();
         let mut heads = Heads { slots, measures: Vec::new(), of: Vec::new(), gives_input: Vec::new() };
-        for (formula, (name, _)) in self.sources.iter().enumerate() {
+        for (formula, WrittenFormula { name, kind, .. }) in self.sources.iter().enumerate() {
+            let is_margin = *kind == FormulaKind::Margin;
             let known = scope.slot(name);
             let is_input = known.is_some_and(|slot| scope.names[slot].role == NameRole::Input);
             let fault = |builder: &mut Self, message: String| builder.add(formula, Fault::new(0, message));
-            if let Some(message) = unfit_name(name) {
+            if is_margin {
+                // Its name is none that a formula could have.
+            } else if let Some(message) = unfit_name(name) {
                 fault(self, message);
-            } else if self.sources[..formula].iter().any(|(other, _)| other == name) {
+            } else if self.sources[..formula].iter().any(|other| other.name == *name) {
                 fault(self, format!("there are two formulas of the name {name}; keep one of the two"));
             } else if scope.curves.iter().any(|curve| curve.name == *name) {
                 fault(self, format!("{name} is a curve already; choose another name"));
@@ -311,7 +342,8 @@ impl<'s> Builder<'s> {
                 heads.of.push(slot);
                 heads.measures.push(scope.names[slot].measure);
             } else {
-                let measure = scope.units.of_name(name).unwrap_or_else(|message| {
+                let named = if is_margin { Ok(QuantityUnit::NONE) } else { scope.units.of_name(name) };
+                let measure = named.unwrap_or_else(|message| {
                     fault(self, message);
                     QuantityUnit::NONE
                 });
@@ -350,7 +382,7 @@ impl<'s> Builder<'s> {
     }
 
     fn circle(&mut self, circle: &[usize], expression: Option<&Expression>) {
-        let name = |formula: &usize| self.sources[*formula].0.as_str();
+        let name = |formula: &usize| self.sources[*formula].name.as_str();
         let path: Vec<&str> = circle.iter().chain(&circle[..1]).map(name).collect();
         let message = match circle {
             [_] => format!("{} reads itself", path[0]),
@@ -362,7 +394,7 @@ impl<'s> Builder<'s> {
 
     fn reads_output(&mut self, formula: usize, path: &[usize], slots: &[SlotType], expression: &Expression) {
         let names: Vec<&str> = path.iter().map(|&slot| slots[slot].name.as_str()).collect();
-        let name = self.sources[formula].0.as_str();
+        let name = self.sources[formula].name.as_str();
         let output = names.last().copied().unwrap_or_default();
         let through = if names.len() > 1 { format!(" ({name} -> {})", names.join(" -> ")) } else { String::new() };
         let message = format!(
@@ -374,7 +406,10 @@ impl<'s> Builder<'s> {
 
     /// Does the value fit what the formula's name says?
     fn fit(&self, formula: usize, checked: &CheckedTree, heads: &Heads) -> Option<Fault> {
-        let name = &self.sources[formula].0;
+        let WrittenFormula { name, kind, .. } = &self.sources[formula];
+        if *kind == FormulaKind::Margin {
+            return None;
+        }
         let wanted = heads.measures[formula].dimension;
         let given = match checked.kind {
             QuantityType::Of(dimension) => dimension,
@@ -395,6 +430,10 @@ impl<'s> Builder<'s> {
         if must_be_whole && !checked.whole {
             return Some(Fault::new(0, format!("{name} takes whole numbers; end the formula in round(...), floor(...) or ceil(...)")));
         }
+        if *kind == FormulaKind::Whole && !checked.whole {
+            let remedy = "end the formula in round(...), floor(...) or ceil(...), or drop integer";
+            return Some(Fault::new(0, format!("{name} is said to be whole, but this may give other numbers; {remedy}")));
+        }
         None
     }
 }
@@ -408,7 +447,7 @@ fn put_together(formulas: Vec<StudyFormula>, order: Vec<usize>, curves: Vec<Meas
         let it = &formulas[formula];
         requirements.extend(it.needs.iter().map(|need| FormulaRequirement {
             formula,
-            status: format!("formula {}: {}", it.name, need.reason),
+            status: it.status(&need.reason),
             strict: need.strict,
         }));
     }
@@ -468,8 +507,8 @@ fn path_to_output(
 }
 
 /// The name most like `name` among what a set of formulas reads without knowing it: what a name that nothing reads was meant to be.
-pub fn meant(name: &str, texts: &[(String, String)]) -> Option<String> {
-    let read: Vec<Expression> = texts.iter().filter_map(|(_, text)| parse(text).ok()).collect();
+pub fn meant<'t>(name: &str, texts: impl IntoIterator<Item = &'t str>) -> Option<String> {
+    let read: Vec<Expression> = texts.into_iter().filter_map(|text| parse(text).ok()).collect();
     let names: Vec<&str> = read.iter().flat_map(Expression::names).map(|(read, _)| read).filter(|read| *read != name).collect();
     closest(name, &names).map(str::to_owned)
 }

@@ -36,8 +36,9 @@ pub(super) enum Typed {
     If(IfTest, Box<[Typed; 4]>),
     /// A curve by number, with the condition that the argument lies between its ends.
     Curve(usize, Box<Typed>, usize),
-    /// From, to and expression, the slots of its parameters, and the condition that there is a root.
-    Root(Box<[Typed; 3]>, Vec<usize>, usize),
+    /// From, to and expression, where the search starts if that is said, the slots of its parameters, and the condition that there is
+    /// a root.
+    Root(Box<[Typed; 3]>, Option<Box<Typed>>, Vec<usize>, usize),
 }
 
 impl Typed {

@@ -48,11 +48,17 @@ impl Range {
 
     /// The range in words: `greater than 0`, `at least 0 and less than 1`.
     pub fn in_words(&self) -> String {
+        if self.low.is_infinite() && self.high.is_infinite() {
+            return "any number".to_owned();
+        }
         let low = if self.includes_low { format!("at least {}", self.low) } else { format!("greater than {}", self.low) };
         if self.high.is_infinite() {
             return low;
         }
         let high = if self.includes_high { format!("at most {}", self.high) } else { format!("less than {}", self.high) };
+        if self.low.is_infinite() {
+            return high;
+        }
         format!("{low} and {high}")
     }
 }
@@ -218,6 +224,14 @@ pub enum Worse {
 }
 
 impl Worse {
+    /// The end in a word, as a study writes it: `highest` or `lowest`.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Higher => "highest",
+            Self::Lower => "lowest",
+        }
+    }
+
     /// The value that every other one is worse than.
     pub(crate) fn least_bad(self) -> f64 {
         match self {

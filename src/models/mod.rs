@@ -6,7 +6,8 @@
 //! below, a study and one golden case; every generic test loops over the list. A model that is no such formula, such as a solver in
 //! f64, implements [`Kernel`] itself and is computed on the CPU only.
 //!
-//! Each file here uses those before it only: `description`, `status`, `formula`, `model`, `known`, `evaluation`, `latest`, `many`, `extended`,
+//! Each file here uses those before it only: `description`, `source`, `status`, `formula`, `model`, `known`, `evaluation`, `latest`,
+//! `many`, `extended`,
 //! then the models.
 
 mod cvt;
@@ -23,6 +24,7 @@ mod model;
 mod pulley;
 mod pulley_load;
 mod rubber_cvt;
+mod source;
 mod status;
 mod timing_belt;
 
@@ -33,15 +35,15 @@ pub use cvt::{optimum_thickness, printed_torque_coefficient, torque_coefficient,
 pub use description::{CONDITION_BOUND_FACTOR, Condition, Effort, Input, Output, Preset, Profile, ProfileColumn, Range, SAMPLE, Worse};
 pub use evaluation::{evaluate, evaluate_asked};
 pub(crate) use evaluation::{fill_si, holds, input_to_si, judge, shown, to_si};
-pub(crate) use extended::{ExtensionProblem, extended};
+pub(crate) use extended::{ExtensionProblem, extended, nothing, unit_of_name};
 pub use formula::{Columns, Dependencies, Footprint, Formula, Kernel, Reads, Scratch, Sizes};
 pub use known::Models;
 pub(crate) use known::is_name;
 pub use latest::{Evaluator, Latest};
 pub use many::{Evaluations, evaluate_many};
 pub use model::{AlongTheBelt, Model, Notes, PulleyOf, Remarks};
-pub(crate) use model::{CurveSource, Extension};
 pub use pulley::CHECK_POINT_STRESSES;
+pub(crate) use source::{ConditionSource, CurveSource, Extension, FileSource, FormulaSource};
 pub use status::{Evaluation, OVERFLOW, Status};
 use std::sync::{Arc, LazyLock};
 

@@ -2,6 +2,7 @@
 
 use super::description::{Condition, Effort, Input, Output, Preset, Profile, SAMPLE};
 use super::formula::Kernel;
+use super::source::{Extension, FormulaSource};
 use super::status::Evaluation;
 use crate::error::{Error, Result};
 use crate::pulley::Design;
@@ -17,33 +18,7 @@ pub type AlongTheBelt = Arc<dyn Fn(&Model, &[f64]) -> Profile + Send + Sync>;
 /// The pulley behind inputs of the model in their units.
 pub type PulleyOf = Arc<dyn Fn(&Model, &[f64]) -> Design + Send + Sync>;
 
-/// A measured curve as a study gives it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CurveSource {
-    /// What formulas call it.
-    pub name: String,
-    /// Name of what its argument is, which says the argument's unit.
-    pub x: String,
-    /// Name of what its value is.
-    pub y: String,
-    /// Points, in these units.
-    pub points: Vec<(f64, f64)>,
-}
-
-/// What a study adds to a model.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Extension {
-    /// Units of its own, such as `EUR`.
-    pub units: Vec<String>,
-    /// Numbers that axes and fixed values give, and formulas read.
-    pub variables: Vec<String>,
-    /// Measured curves.
-    pub curves: Vec<CurveSource>,
-    /// Formulas by name and text, in the order of the file.
-    pub formulas: Vec<(String, String)>,
-}
-
-/// A model and what a study added to it.
+/// A model and what was added to it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Origin {
     /// The model without it.
@@ -106,9 +81,20 @@ impl Model {
         self.inputs.iter().position(|input| input.name == name)
     }
 
-    /// The formulas that a study put around the model, by name and text, in the order of the file.
-    pub fn formulas(&self) -> &[(String, String)] {
-        self.origin.as_ref().map_or(&[], |origin| &origin.extension.formulas)
+    /// The formulas that the model is made of, by name and text: those of its file, then those that a study put around it.
+    pub fn formulas(&self) -> Vec<(&str, &str)> {
+        self.formula_sources().into_iter().map(|it| (&*it.name, &*it.text)).collect()
+    }
+
+    /// The same with all that is said of them.
+    pub(crate) fn formula_sources(&self) -> Vec<&FormulaSource> {
+        let Some(origin) = &self.origin else { return Vec::new() };
+        origin.base.formula_sources().into_iter().chain(&origin.extension.formulas).collect()
+    }
+
+    /// Is this the name of an intermediate value, which only formulas of the same model read?
+    pub(crate) fn hides(&self, name: &str) -> bool {
+        self.origin.as_ref().is_some_and(|origin| origin.extension.hides(name) || origin.base.hides(name))
     }
 
     /// Number of the output of that name.

@@ -75,11 +75,11 @@ pub fn study_of(folder: &Path) -> Result<Study> {
     if summary["study_hash"] != study.hash().as_str() {
         return Err(changed(&folder.join(MARK), "it belongs to another study than study.json"));
     }
-    // The text may name tables that are elsewhere; then it cannot be read here.
+    // The text may name tables or a model that are elsewhere; then it cannot be read here.
     let (file, text) = (folder.join("study.toml"), text_of(folder, "study.toml")?);
     match Study::parse_in(&text, "study.toml", folder) {
         Ok(written) if written.hash() == study.hash() => {}
-        Err(_) if text.contains("csv") => {}
+        Err(_) if text.contains("csv") || described["model_file"].is_object() => {}
         _ => return Err(changed(&file, "it is not the study that study.json describes")),
     }
     Ok(study)

@@ -3,7 +3,7 @@
 use super::read::shown;
 use super::{Axis, Best, Constraint, ContourSpec, Goal, Levels, Objective, OverScenarios, Quantity, ReportColumn, Study, Thresholds};
 use crate::error::brief;
-use crate::models::{CurveSource, Extension, Model, Worse};
+use crate::models::{CurveSource, Extension, FormulaSource, Model};
 use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
 
@@ -65,8 +65,13 @@ impl Study {
         if report.feasible {
             described["feasible"] = true.into();
         }
-        if let Some(origin) = &model.origin {
-            describe_extension(&origin.extension, &mut described);
+        let mut part = model.origin.as_ref();
+        while let Some(origin) = part {
+            match &origin.extension.file {
+                Some(file) => described["model_file"] = model_file_of(&origin.extension, &file.text),
+                None => describe_extension(&origin.extension, &mut described),
+            }
+            part = origin.base.origin.as_ref();
         }
         if !model.version.is_empty() {
             described["model_version"] = model.version.clone().into();
@@ -94,20 +99,47 @@ impl Study {
 
 /// What a study adds to its model: units, variables, curves with their points, and formulas, each in the order of the file.
 fn describe_extension(extension: &Extension, described: &mut Value) {
-    let Extension { units, variables, curves, formulas } = extension;
-    let curve = |it: &CurveSource| json!({ "name": it.name, "x": it.x, "y": it.y, "points": it.points });
-    let formula = |(name, text): &(String, String)| json!({ "name": name, "is": text });
+    let Extension { units, variables, curves, formulas, .. } = extension;
     let parts = [
         ("units", json!(units)),
         ("variables", json!(variables)),
-        ("curves", curves.iter().map(curve).collect()),
-        ("formulas", formulas.iter().map(formula).collect()),
+        ("curves", curves.iter().map(curve_of).collect()),
+        ("formulas", formulas.iter().map(formula_of).collect()),
     ];
     for (key, part) in parts {
         if part.as_array().is_some_and(|list| !list.is_empty()) {
             described[key] = part;
         }
     }
+}
+
+fn curve_of(curve: &CurveSource) -> Value {
+    json!({ "name": curve.name, "x": curve.x, "y": curve.y, "points": curve.points })
+}
+
+/// A formula: name and text, and whatever else is said of it.
+fn formula_of(formula: &FormulaSource) -> Value {
+    let FormulaSource { name, text, worst, integer, hidden, symbol, doc, source } = formula;
+    let mut described = json!({ "name": name, "is": text });
+    if let Some(worst) = worst {
+        described["worst"] = worst.word().into();
+    }
+    for (key, said) in [("integer", integer), ("hidden", hidden)] {
+        if *said {
+            described[key] = true.into();
+        }
+    }
+    for (key, said) in [("symbol", symbol), ("doc", doc), ("source", source)] {
+        if !said.is_empty() {
+            described[key] = said.clone().into();
+        }
+    }
+    described
+}
+
+/// The file of a model: its text, and the points of its curves, which stand in files of their own.
+fn model_file_of(extension: &Extension, text: &str) -> Value {
+    json!({ "text": text, "curves": extension.curves.iter().map(curve_of).collect::<Vec<_>>() })
 }
 
 /// Most differing entries of a list that are reported.
@@ -232,16 +264,6 @@ impl Constraint {
         let low = self.low.map(|(bound, excluded)| format!("{} {}", if excluded { "above" } else { "at least" }, shown(bound)));
         let high = self.high.map(|(bound, excluded)| format!("{} {}", if excluded { "below" } else { "at most" }, shown(bound)));
         low.into_iter().chain(high).collect::<Vec<_>>().join(" and ")
-    }
-}
-
-impl Worse {
-    /// The end in a word, as a study writes it: `highest` or `lowest`.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Higher => "highest",
-            Self::Lower => "lowest",
-        }
     }
 }
 

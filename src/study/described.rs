@@ -1,10 +1,11 @@
 //! Restores a study from [`Study::describe`], so that a result directory is enough even without the study file and its tables.
 
+use super::read::{CurvePoints, ModelText, read_model_text};
 use super::{
     Axis, Best, Constraint, ContourSpec, Goal, HistogramSpec, Label, Levels, MapSpec, Objective, OverScenarios, Quantity, Report,
     ReportColumn, SampleSpec, Spectrum, Study, Thresholds, TopSpec,
 };
-use crate::models::{CurveSource, Extension, Model, Models, Worse, extended};
+use crate::models::{CurveSource, Extension, FormulaSource, Model, Models, Worse, extended};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::sync::Arc;
@@ -28,7 +29,10 @@ impl Study {
     #[doc(hidden)]
     pub fn from_description_with(models: &Models, described: &Value) -> Result<Self, String> {
         let name = text(described, "model")?;
-        let model = models.find(name).ok_or_else(|| format!("there is no model \"{name}\""))?;
+        let model = match &described["model_file"] {
+            Value::Null => models.find(name).ok_or_else(|| format!("there is no model \"{name}\""))?,
+            file => model_of_file(models, name, file)?,
+        };
         let extension = extension_of(described)?;
         let model = if extension == Extension::default() {
             model
@@ -74,6 +78,30 @@ impl Study {
     }
 }
 
+/// The model in a file, of the file's text.
+fn model_of_file(models: &Models, name: &str, file: &Value) -> Restored<Arc<Model>> {
+    let curves = each(file, "curves", curve_of)?;
+    let source = ModelText { name, text: text(file, "text")?, file: "model_file", curves: CurvePoints::Known(&curves) };
+    read_model_text(models, source).map_err(|problems| format!("model_file: {}", problems[0].message))
+}
+
+fn curve_of(curve: &Value) -> Restored<CurveSource> {
+    let named = |key: &str| text(curve, key).map(str::to_owned);
+    Ok(CurveSource { name: named("name")?, x: named("x")?, y: named("y")?, points: plain(&curve["points"], "points")? })
+}
+
+fn formula_of(formula: &Value) -> Restored<FormulaSource> {
+    let said = |key: &str| if formula[key].is_null() { Ok(String::new()) } else { text(formula, key).map(str::to_owned) };
+    let worst = match formula["worst"].as_str() {
+        Some("lowest") => Some(Worse::Lower),
+        Some("highest") => Some(Worse::Higher),
+        _ => None,
+    };
+    let [integer, hidden] = ["integer", "hidden"].map(|key| formula[key] == true);
+    let plain = FormulaSource::plain(text(formula, "name")?, text(formula, "is")?);
+    Ok(FormulaSource { worst, integer, hidden, symbol: said("symbol")?, doc: said("doc")?, source: said("source")?, ..plain })
+}
+
 fn extension_of(described: &Value) -> Restored<Extension> {
     fn names(described: &Value, key: &str) -> Restored<Vec<String>> {
         if described[key].is_null() { Ok(Vec::new()) } else { plain(&described[key], key) }
@@ -81,14 +109,12 @@ fn extension_of(described: &Value) -> Restored<Extension> {
     fn parts<T>(described: &Value, key: &str, part: impl Fn(&Value) -> Restored<T>) -> Restored<Vec<T>> {
         if described[key].is_null() { Ok(Vec::new()) } else { each(described, key, part) }
     }
-    let named = |it: &Value, key: &str| text(it, key).map(str::to_owned);
     Ok(Extension {
         units: names(described, "units")?,
         variables: names(described, "variables")?,
-        curves: parts(described, "curves", |it| {
-            Ok(CurveSource { name: named(it, "name")?, x: named(it, "x")?, y: named(it, "y")?, points: plain(&it["points"], "points")? })
-        })?,
-        formulas: parts(described, "formulas", |it| Ok((named(it, "name")?, named(it, "is")?)))?,
+        curves: parts(described, "curves", curve_of)?,
+        formulas: parts(described, "formulas", formula_of)?,
+        file: None,
     })
 }
 

@@ -34,7 +34,7 @@ pub fn flaw_of_name(name: &str, model: &Model) -> Option<String> {
     if TAKEN.contains(&name) || TAKEN_ENDINGS.iter().any(|ending| name.ends_with(ending)) {
         return Some("tables have columns of such names themselves; rename it".to_owned());
     }
-    let is_formula = model.formulas().iter().any(|(formula, _)| formula == name);
+    let is_formula = model.formulas().iter().any(|(formula, _)| *formula == name);
     let what = match () {
         () if model.input(name).is_some() => "an input or a variable",
         () if is_formula => "a formula",

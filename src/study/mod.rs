@@ -21,7 +21,7 @@ pub use label::Label;
 pub use read::StudyEdits;
 #[cfg(test)]
 pub(crate) use read::tests::study_of;
-pub use read::{Problem, StudyErrors};
+pub use read::{FileKind, Problem, StudyErrors, file_kind, read_model};
 pub(crate) use read::{input_text, input_value_checked};
 pub use resolved::{
     Best, Constraint, ContourSpec, Goal, HistogramSpec, MapSpec, Objective, Quantity, Report, ReportColumn, SampleSpec, Study, Thresholds,

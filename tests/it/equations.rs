@@ -44,7 +44,7 @@ fn value(expression: &Expression, values: &Values, inside: &[(String, Expression
             };
             if holds { of(then) } else { of(otherwise) }
         }
-        ExpressionNode::Root(unknown, parts) => {
+        ExpressionNode::Root(unknown, parts, _) => {
             let [from, to, function] = &**parts;
             let (mut low, mut high) = (of(from), of(to));
             let at = |x: f64| {

@@ -101,11 +101,13 @@ pub(super) struct Checker<'s, 'e> {
     pub(super) needs: Vec<Need>,
     pub(super) roots: usize,
     unknown: Option<Unknown<'e>>,
+    /// Slots and words of the comparisons of which the branch that is being checked is the other one.
+    excluded: Vec<(usize, &'e str)>,
 }
 
 impl<'s, 'e> Checker<'s, 'e> {
     pub(super) fn new(scope: &'s Scope, slots: &'s [SlotType]) -> Self {
-        Self { scope, slots, faults: Vec::new(), needs: Vec::new(), roots: 0, unknown: None }
+        Self { scope, slots, faults: Vec::new(), needs: Vec::new(), roots: 0, unknown: None, excluded: Vec::new() }
     }
 
     fn fault(&mut self, at: usize, message: impl Into<String>) -> CheckedTree {
@@ -149,7 +151,7 @@ impl<'s, 'e> Checker<'s, 'e> {
             }
             ExpressionNode::Binary(operator, left, right) => self.binary(*operator, left, right),
             ExpressionNode::If(comparison, parts) => self.choice(*comparison, parts, expression.span.start),
-            ExpressionNode::Root(unknown, parts) => self.root(unknown, parts, expression.span.start),
+            ExpressionNode::Root(unknown, parts, start) => self.root(unknown, parts, start.as_deref(), expression.span.start),
             ExpressionNode::Call(name, arguments) => self.call(name, arguments, expression.span.start),
         };
         self.folded(checked, needs, expression.span.start)
@@ -196,7 +198,8 @@ impl<'s, 'e> Checker<'s, 'e> {
         };
         let slots = self.slots;
         let known = &slots[slot];
-        if let Some((word, _)) = known.words.first() {
+        let is_excluded = |word: &str| !known.only_words && self.excluded.contains(&(slot, word));
+        if let Some((word, _)) = known.words.iter().find(|(word, _)| !is_excluded(word)) {
             let but = if known.only_words { "is a word" } else { "may be a word" };
             return self.fault(at, format!("{name} {but}, and no number can be computed from it; write if({name} == '{word}', x, y)"));
         }
@@ -362,13 +365,29 @@ impl<'s, 'e> Checker<'s, 'e> {
             (_, ExpressionNode::Word(word)) => self.word(comparison, left, word, right.span.start),
             _ => self.numbers(comparison, left, right),
         };
-        let (then, otherwise) = (self.check(then), self.check(otherwise));
+        let then = self.check(then);
+        // What is none of the words of an input is a number.
+        let excluded = self.excluded_by([left, right]);
+        self.excluded.extend(excluded);
+        let otherwise = self.check(otherwise);
+        self.excluded.truncate(self.excluded.len() - usize::from(excluded.is_some()));
         let kind =
             self.unified(&then, &otherwise, at, |a, b| format!("both values of if(...) must measure the same; these are {a} and {b}"));
         let Some((test, left, right)) = compared else { return CheckedTree::broken() };
         let whole = then.whole && otherwise.whole;
         let typed = Typed::If(test, Box::new([&left, &right, &then, &otherwise].map(|part| part.typed.clone())));
         CheckedTree::new(typed, kind, whole, &[&left, &right, &then, &otherwise])
+    }
+
+    /// The slot and the word that are not equal where the comparison does not hold.
+    fn excluded_by(&self, sides: [&'e Expression; 2]) -> Option<(usize, &'e str)> {
+        let (word, name) = match sides.map(|side| &side.node) {
+            [ExpressionNode::Word(word), ExpressionNode::Name(name)] | [ExpressionNode::Name(name), ExpressionNode::Word(word)] => {
+                (word, name)
+            }
+            _ => return None,
+        };
+        Some((self.slots.iter().position(|slot| slot.name == *name)?, word))
     }
 
     fn numbers(
@@ -436,7 +455,7 @@ impl<'s, 'e> Checker<'s, 'e> {
         Some((test, value, code))
     }
 
-    fn root(&mut self, unknown: &'e str, parts: &'e [Expression; 3], at: usize) -> CheckedTree {
+    fn root(&mut self, unknown: &'e str, parts: &'e [Expression; 3], start: Option<&'e Expression>, at: usize) -> CheckedTree {
         let [from_part, to_part, body] = parts;
         if self.unknown.is_some() {
             return self.fault(at, "a root cannot lie within another root's expression; give it a formula of its own");
@@ -450,12 +469,18 @@ impl<'s, 'e> Checker<'s, 'e> {
         let (from, to) = (self.check(from_part), self.check(to_part));
         let ends = self
             .unified(&from, &to, from_part.span.start, |a, b| format!("both ends of a root must measure the same; these are {a} and {b}"));
+        let start = start.map(|part| {
+            let start = self.check(part);
+            self.unified(&from, &start, part.span.start, |a, b| format!("a root starts between its ends; these are {a} and {b}"));
+            start
+        });
         // Two bare zeros are no bracket, and say nothing of the unknown.
         let kind = if ends == QuantityType::Zero { QuantityType::Of(QuantityDimension::NONE) } else { ends };
         self.unknown = Some(Unknown { name: unknown, kind, parameters: Vec::new() });
         let function = self.check(body);
         let parameters = self.unknown.take().map_or_else(Vec::new, |unknown| unknown.parameters);
-        if ends == QuantityType::Broken || function.kind == QuantityType::Broken {
+        let is_broken = |part: &CheckedTree| part.kind == QuantityType::Broken;
+        if ends == QuantityType::Broken || is_broken(&function) || start.as_ref().is_some_and(is_broken) {
             return CheckedTree::broken();
         }
         if !function.varies {
@@ -463,8 +488,10 @@ impl<'s, 'e> Checker<'s, 'e> {
         }
         self.roots += 1;
         let need = self.need(reason::NO_ROOT, false);
-        let typed = Typed::Root(Box::new([&from, &to, &function].map(|part| part.typed.clone())), parameters, need);
+        let parts = Box::new([&from, &to, &function].map(|part| part.typed.clone()));
+        let typed = Typed::Root(parts, start.as_ref().map(|part| Box::new(part.typed.clone())), parameters, need);
+        let of: Vec<&CheckedTree> = [&from, &to, &function].into_iter().chain(&start).collect();
         // The unknown stays within.
-        CheckedTree { varies: false, ..CheckedTree::new(typed, kind, false, &[&from, &to, &function]) }
+        CheckedTree { varies: false, ..CheckedTree::new(typed, kind, false, &of) }
     }
 }

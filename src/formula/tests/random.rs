@@ -51,13 +51,18 @@ impl RandomTree {
                     [ComparisonSign::Less, ComparisonSign::AtMost, ComparisonSign::Greater, ComparisonSign::AtLeast, ComparisonSign::Equal];
                 ExpressionNode::If(*self.one(&all), Box::new(std::array::from_fn(|_| self.tree(depth - 1))))
             }
-            8 => ExpressionNode::Root("r".to_owned(), Box::new(std::array::from_fn(|_| self.tree(depth - 1)))),
+            8 => ExpressionNode::Root("r".to_owned(), Box::new(std::array::from_fn(|_| self.tree(depth - 1))), self.start(depth)),
             _ => {
                 let arguments = self.below(4);
                 ExpressionNode::Call((*self.one(&["min", "f", "slip"])).to_owned(), (0..arguments).map(|_| self.tree(depth - 1)).collect())
             }
         };
         Expression::new(node, 0..0)
+    }
+
+    /// Where a root starts, or nothing.
+    fn start(&mut self, depth: usize) -> Option<Box<Expression>> {
+        (self.below(2) == 0).then(|| Box::new(self.tree(depth - 1)))
     }
 
     /// The text of a formula for a plain number.

@@ -1,6 +1,6 @@
 //! An extended model over many designs at once: the formulas as lists over columns, the model as it computes its own.
 
-use super::surroundings::Surroundings;
+use super::surroundings::{ConditionPlace, SlotNumbers, Surroundings};
 use crate::models::LANES;
 use crate::models::formula::{Columns, Scratch};
 use crate::tape::{CHUNK, ColumnValue, Known, List, Node, NodeColumns, Operation, Recording, Set, Trace};
@@ -10,9 +10,11 @@ use crate::tape::{CHUNK, ColumnValue, Known, List, Node, NodeColumns, Operation,
 pub struct Lists {
     /// From inputs to the inputs of the model that formulas give.
     before: List,
-    /// From inputs, outputs of the model and margins of its conditions to what formulas give and the margins of their conditions: results
-    /// are these outputs, the margins before the model's, and those after it.
-    after: List,
+    /// From inputs to what the first stage passes on.
+    pub first: List,
+    /// From inputs, outputs of the model, margins of its conditions and what the first stage passed on to what formulas give that is
+    /// shown, and the margins of all conditions.
+    pub after: List,
     base_outputs: usize,
     base_conditions: usize,
 }
@@ -21,31 +23,65 @@ impl Lists {
     /// Records the formulas.
     pub fn new(around: &Surroundings) -> Self {
         let [inputs, outputs, conditions] = [around.inputs.len(), around.base_outputs(), around.base.conditions.len()];
-        let (recording, nodes) = Recording::of(&vec![Known::ANY; inputs], |named| {
-            let numbers = around.before(named);
-            around.given.iter().map(|&slot| numbers.slots[slot]).collect()
-        });
-        let before = List::cut(&recording, &nodes.into_iter().map(Some).collect::<Vec<_>>());
-        let (recording, nodes) = Recording::of(&vec![Known::ANY; inputs + outputs + conditions], |named: &[Trace]| {
-            let mut numbers = around.before(&named[..inputs]);
-            around.after(&mut numbers, &named[inputs..inputs + outputs], &named[inputs + outputs..]);
-            around.own_outputs(&numbers).chain(around.margins_before(&numbers)).chain(around.margins_after(&numbers)).collect()
+        let of_inputs = |results: &dyn Fn(&SlotNumbers<Trace>) -> Vec<Trace>| {
+            let (recording, nodes) = Recording::of(&vec![Known::ANY; inputs], |named| results(&around.before(named)));
+            List::cut(&recording, &nodes.into_iter().map(Some).collect::<Vec<_>>())
+        };
+        let before = of_inputs(&|numbers| around.given.iter().map(|&slot| numbers.slots[slot]).collect());
+        let first = of_inputs(&|numbers| around.passed(numbers).collect());
+        let all = inputs + outputs + conditions + around.first.passed.len();
+        let (recording, nodes) = Recording::of(&vec![Known::ANY; all], |named: &[Trace]| {
+            let (named, rest) = named.split_at(inputs);
+            let (of_base, rest) = rest.split_at(outputs);
+            let (margins, passed) = rest.split_at(conditions);
+            let mut numbers = around.before_second(named, passed);
+            around.after(&mut numbers, of_base, margins);
+            around.own_outputs(&numbers).chain(around.margins(&numbers, margins)).collect()
         });
         let after = List::cut(&recording, &nodes.into_iter().map(Some).collect::<Vec<_>>());
-        Self { before, after, base_outputs: outputs, base_conditions: conditions }
+        Self { before, first, after, base_outputs: outputs, base_conditions: conditions }
     }
 
-    /// Result of the second list that an output or a condition of the extended model is; `None` for the model's own.
-    fn result(&self, around: &Surroundings, asked: AskedResult) -> Option<usize> {
-        let formulas = around.formulas.all().len();
+    /// Where an output or condition of the extended model comes from.
+    fn place(&self, around: &Surroundings, asked: AskedResult) -> ResultPlace {
         match asked {
-            AskedResult::Output(output) => output.checked_sub(self.base_outputs),
-            AskedResult::Condition(condition) => match condition.checked_sub(around.first_condition()) {
-                None => Some(formulas + condition),
-                Some(condition) => condition.checked_sub(self.base_conditions).map(|after| formulas + around.first_condition() + after),
+            AskedResult::Output(output) => match output.checked_sub(self.base_outputs) {
+                None => ResultPlace::Base(output),
+                Some(own) => ResultPlace::Own(own),
+            },
+            AskedResult::Condition(condition) => match around.conditions[condition] {
+                ConditionPlace::Base(number) => ResultPlace::Base(self.base_outputs + number),
+                _ => ResultPlace::Own(around.shown.len() + condition),
             },
         }
     }
+
+    /// Number of an input of the second list among outputs of the model and then margins of its conditions, or of what was passed on.
+    fn source(&self, around: &Surroundings, input: u16) -> ListSource {
+        let base = self.base_outputs + self.base_conditions;
+        match usize::from(input).checked_sub(around.inputs.len()) {
+            None => ListSource::Input(input.into()),
+            Some(of_base) if of_base < base => ListSource::Base(of_base),
+            Some(beyond) => ListSource::Passed(beyond - base),
+        }
+    }
+}
+
+/// Where a result comes from.
+#[derive(Clone, Copy)]
+enum ResultPlace {
+    /// From the model: number among its outputs and then the margins of its conditions.
+    Base(usize),
+    /// From the second list, by the number of its result.
+    Own(usize),
+}
+
+/// What an input of the second list is.
+#[derive(Clone, Copy)]
+enum ListSource {
+    Input(usize),
+    Base(usize),
+    Passed(usize),
 }
 
 #[derive(Clone, Copy)]
@@ -149,26 +185,32 @@ impl ExtendedColumns {
         if self.laid_out.as_ref().is_some_and(|(a, b, c)| (&a[..], &b[..], &c[..]) == asked) {
             return;
         }
-        let inputs = around.inputs.len();
         self.before.turn_to(&lists.before, 0..around.given.len(), |input| varying.contains(&usize::from(input)));
-        let own = asked_of(columns).filter_map(|it| lists.result(around, it));
+        let own = asked_of(columns).filter_map(|it| match lists.place(around, it) {
+            ResultPlace::Own(result) => Some(result),
+            ResultPlace::Base(_) => None,
+        });
         // What the model computes counts as different from design to design.
-        self.after.turn_to(&lists.after, own, |input| usize::from(input) >= inputs || varying.contains(&usize::from(input)));
+        self.after.turn_to(&lists.after, own, |input| match lists.source(around, input) {
+            ListSource::Input(input) => varying.contains(&input),
+            ListSource::Base(_) => true,
+            ListSource::Passed(_) => false,
+        });
         let (mut outputs, mut conditions) = (Set::EMPTY, Set::EMPTY);
+        let mut ask = |of_base: usize| match of_base.checked_sub(lists.base_outputs) {
+            None => outputs.insert(of_base),
+            Some(condition) => conditions.insert(condition),
+        };
         for &node in &self.after.needed {
             if let Operation::Input(input) = lists.after.operations[node as usize]
-                && let Some(of_base) = usize::from(input).checked_sub(inputs)
+                && let ListSource::Base(of_base) = lists.source(around, input)
             {
-                match of_base.checked_sub(lists.base_outputs) {
-                    None => outputs.insert(of_base),
-                    Some(condition) => conditions.insert(condition),
-                }
+                ask(of_base);
             }
         }
-        for asked in asked_of(columns).filter(|it| lists.result(around, *it).is_none()) {
-            match asked {
-                AskedResult::Output(output) => outputs.insert(output),
-                AskedResult::Condition(condition) => conditions.insert(condition - around.first_condition()),
+        for asked in asked_of(columns) {
+            if let ResultPlace::Base(of_base) = lists.place(around, asked) {
+                ask(of_base);
             }
         }
         self.outputs = outputs.iter().collect();
@@ -239,22 +281,20 @@ impl ExtendedColumns {
             Some(condition) => conditions.iter().position(|&it| it == condition).map(|at| outputs.len() + at),
         };
         let answered = |of_base: usize| &answers[answer(of_base).expect("the model was asked for it")];
-        let of_after = |input: u16| match usize::from(input).checked_sub(around.inputs.len()) {
-            None => of_input(input.into()),
-            Some(of_base) => ColumnValue::Each(answered(of_base)),
+        let passed = around.passed_of(prepared);
+        let of_after = |input: u16| match lists.source(around, input) {
+            ListSource::Input(input) => of_input(input),
+            ListSource::Base(of_base) => ColumnValue::Each(answered(of_base)),
+            ListSource::Passed(number) => ColumnValue::One(passed[number]),
         };
         for (asked, result) in asked_of(columns).zip(&mut *results) {
-            if lists.result(around, asked).is_none() {
-                let number = match asked {
-                    AskedResult::Output(output) => output,
-                    AskedResult::Condition(condition) => lists.base_outputs + condition - around.first_condition(),
-                };
-                result[..count].copy_from_slice(&answered(number)[..count]);
+            if let ResultPlace::Base(of_base) = lists.place(around, asked) {
+                result[..count].copy_from_slice(&answered(of_base)[..count]);
             }
         }
         after.run(&lists.after, count, of_after, |after, first, length| {
             for (asked, result) in asked_of(columns).zip(&mut *results) {
-                let Some(own) = lists.result(around, asked) else { continue };
+                let ResultPlace::Own(own) = lists.place(around, asked) else { continue };
                 match after.result(&lists.after, own) {
                     ColumnValue::One(value) => result[first..first + length].fill(value),
                     ColumnValue::Each(values) => result[first..first + length].copy_from_slice(values),

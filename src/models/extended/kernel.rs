@@ -1,11 +1,13 @@
 //! The formula of an extended model.
 
 use super::columns::{ExtendedColumns, Lists};
+use super::first::PassedNumber;
 use super::interned::{interned, interned_list};
-use super::surroundings::Surroundings;
+use super::surroundings::{ConditionPlace, Surroundings};
+use crate::models::description::Effort;
 use crate::models::formula::{Columns, Dependencies, Footprint, Kernel, Scratch, Sizes};
 use crate::real::Real;
-use crate::tape::{Fields, Known, Recordable, Set, Trace};
+use crate::tape::{Fields, Known, List, Operation, Recordable, Set, Trace};
 use std::sync::OnceLock;
 
 /// A model's formula with a study's formulas around it.
@@ -22,22 +24,32 @@ impl Extended {
         let base = around.base.inputs.len();
         let fields = of_base.map(|fields| {
             // What stands before these keeps them apart from the words of a shader.
-            let variable = |slot: usize| interned(&format!("given_{slot}"));
+            let files = around.inputs_of_file.clone();
+            let variable = |slot: usize| match files.clone().position(|it| it == slot) {
+                Some(input) => interned(&format!("of_file_{input}")),
+                None => interned(&format!("given_{slot}")),
+            };
             let inputs: Vec<_> = around.inputs.iter().map(|&slot| if slot < base { fields.inputs[slot] } else { variable(slot) }).collect();
-            let own = around.formulas.all().iter().map(|formula| interned(&format!("own_{}", formula.name)));
+            let formulas = around.formulas.all();
+            let own = around.shown.iter().map(|&formula| interned(&format!("own_{}", formulas[formula].name)));
+            let passed = around.first.passed.iter().map(|&passed| match passed {
+                PassedNumber::Slot(slot) => interned(&format!("kept_{slot}")),
+                PassedNumber::Need(need) => interned(&format!("need_{need}")),
+            });
+            let prepared: Vec<_> = fields.prepared.iter().copied().chain(passed).collect();
             let outputs: Vec<_> = fields.outputs[..around.base_outputs()].iter().copied().chain(own).collect();
-            let [inputs, outputs] = [inputs, outputs].map(|names| interned_list(&names));
-            Fields { inputs, outputs, conditions: around.conditions(), ..fields }
+            let [inputs, prepared, outputs] = [inputs, prepared, outputs].map(|names| interned_list(&names));
+            Fields { inputs, prepared, outputs, conditions: around.conditions.len(), ..fields }
         });
         Self { around, fields, lists: OnceLock::new() }
     }
 
     /// The second stage and the conditions, over any number type: outputs and margins, given how the model computes its own.
-    fn results<R: Real>(&self, inputs: &[R], wanted: WantedResults, base: &impl Base<R>) -> (Vec<R>, Vec<R>) {
+    fn results<R: Real>(&self, inputs: &[R], wanted: WantedResults, passed: &[R], base: &impl Base<R>) -> (Vec<R>, Vec<R>) {
         let around = &self.around;
         let Sizes { outputs, conditions, .. } = around.base.kernel.sizes();
         let [mut outputs, mut margins] = [outputs, conditions].map(|length| vec![R::constant(1.0); length]);
-        let mut numbers = around.before(inputs);
+        let mut numbers = around.before_second(inputs, passed);
         let base_inputs = numbers.slots[..around.base.inputs.len()].to_vec();
         let own = if wanted.margins { around.wanted_by_conditions() } else { Set::EMPTY };
         let of_base = around.wanted_of_base(wanted.outputs) | own;
@@ -50,10 +62,34 @@ impl Extended {
         around.after(&mut numbers, &outputs, &margins);
         outputs.truncate(around.base_outputs());
         outputs.extend(around.own_outputs(&numbers));
-        let mut all: Vec<R> = around.margins_before(&numbers).collect();
-        all.extend(&margins[..around.base.conditions.len()]);
-        all.extend(around.margins_after(&numbers));
+        let all = around.margins(&numbers, &margins).collect();
         (outputs, all)
+    }
+
+    fn lists(&self) -> &Lists {
+        self.lists.get_or_init(|| Lists::new(&self.around))
+    }
+
+    /// Outputs and margins in f64: of formulas alone from the list, which is quicker.
+    fn results_in_f64(&self, prepared: &[f64], inputs: &[f64], wanted: WantedResults) -> (Vec<f64>, Vec<f64>) {
+        let passed = self.around.passed_of(prepared);
+        if self.around.is_alone() {
+            let mut outputs = self.lists().after.run(&[inputs, passed].concat());
+            let margins = outputs.split_off(self.around.shown.len());
+            return (outputs, margins);
+        }
+        self.results(inputs, wanted, passed, &InF64 { kernel: &*self.around.base.kernel, prepared })
+    }
+
+    /// How long it takes, where it is formulas alone.
+    pub fn effort(&self) -> Effort {
+        let Lists { first, after, .. } = self.lists();
+        let operations = |list: &List| list.operations.len() as f64;
+        let roots = |list: &List| list.operations.iter().filter(|it| matches!(it, Operation::Root(_))).count() as f64;
+        Effort {
+            prepare: 1e-7 + 4e-9 * operations(first) + 1e-6 * roots(first),
+            finish: 1e-9 + 3e-10 * operations(after) + 1e-6 * roots(after),
+        }
     }
 
     /// The inputs of the model.
@@ -125,38 +161,48 @@ impl Kernel for Extended {
         let around = &self.around;
         Sizes {
             inputs: around.inputs.len(),
-            prepared: around.base.kernel.prepared_len(),
-            outputs: around.base_outputs() + around.formulas.all().len(),
-            conditions: around.conditions(),
+            prepared: around.base.kernel.prepared_len() + around.first.passed.len(),
+            outputs: around.base_outputs() + around.shown.len(),
+            conditions: around.conditions.len(),
         }
     }
 
     fn prepare(&self, inputs: &[f64], wanted: Set, prepared: &mut [f64]) {
-        self.around.base.kernel.prepare(&self.base_inputs(inputs), self.prepared_for(wanted), prepared);
+        if !self.around.first.passed.is_empty() {
+            let passed = self.lists().first.run(inputs);
+            prepared[self.around.base.kernel.prepared_len()..][..passed.len()].copy_from_slice(&passed);
+        }
+        if !self.around.is_alone() {
+            self.around.base.kernel.prepare(&self.base_inputs(inputs), self.prepared_for(wanted), prepared);
+        }
     }
 
     fn prepared_used(&self, prepared: &[f64]) -> usize {
+        if self.around.is_alone() {
+            return prepared.len();
+        }
         self.around.base.kernel.prepared_used(prepared)
     }
 
     fn prepared_reads(&self, inputs: &[f64]) -> Set {
+        if self.around.is_alone() {
+            return Set::ALL;
+        }
         self.sources(self.around.base.kernel.prepared_reads(&self.base_inputs(inputs)))
     }
 
     fn conditions(&self, prepared: &[f64], inputs: &[f64], margins: &mut [f64]) {
-        let base = InF64 { kernel: &*self.around.base.kernel, prepared };
-        let found = self.results(inputs, WantedResults { outputs: Set::EMPTY, margins: true }, &base).1;
+        let found = self.results_in_f64(prepared, inputs, WantedResults { outputs: Set::EMPTY, margins: true }).1;
         margins[..found.len()].copy_from_slice(&found);
     }
 
     fn finish(&self, prepared: &[f64], inputs: &[f64], wanted: Set, outputs: &mut [f64]) {
-        let base = InF64 { kernel: &*self.around.base.kernel, prepared };
-        let found = self.results(inputs, WantedResults { outputs: wanted, margins: false }, &base).0;
+        let found = self.results_in_f64(prepared, inputs, WantedResults { outputs: wanted, margins: false }).0;
         outputs[..found.len()].copy_from_slice(&found);
     }
 
     fn finish_columns(&self, prepared: &[f64], inputs: &[f64], columns: &Columns<'_>, scratch: &mut Scratch, results: &mut [Vec<f64>]) {
-        let lists = self.lists.get_or_init(|| Lists::new(&self.around));
+        let lists = self.lists();
         let own = scratch.own.get_or_insert_with(|| Box::new(ExtendedColumns::new(&self.around, lists)));
         let own = own.downcast_mut::<ExtendedColumns>().expect("scratch serves one model");
         own.run(&self.around, lists, prepared, inputs, columns, results);
@@ -181,17 +227,13 @@ impl Kernel for Extended {
                 _ => position(slot).map_or(set, |input| set | Set::one(input)),
             })
         };
-        let needs =
-            |needs: &[usize]| needs.iter().map(|&need| of_formula(around.formulas.requirements()[need].formula)).collect::<Vec<_>>();
-        let conditions = [
-            needs(&around.needs_before),
-            around.ends.iter().map(|end| around.sources(end.slot())).collect(),
-            of_base.conditions[..around.base.conditions.len()].iter().map(|&set| with_prepared(set)).collect(),
-            needs(&around.needs_after),
-            around.maybe_absent.iter().map(|&formula| of_formula(formula)).collect(),
-        ]
-        .concat();
-        let own = (0..around.formulas.all().len()).map(of_formula).collect();
+        let conditions = around.conditions.iter().map(|&condition| match condition {
+            ConditionPlace::End(end) => around.sources(around.ends[end].slot()),
+            ConditionPlace::Base(number) => with_prepared(of_base.conditions[number]),
+            _ => around.formula_of(condition).map_or(Set::EMPTY, of_formula),
+        });
+        let conditions = conditions.collect();
+        let own = around.shown.iter().map(|&formula| of_formula(formula)).collect();
         Dependencies { prepared: self.sources(of_base.prepared), outputs: [outputs.clone(), own].concat(), conditions }
     }
 
@@ -200,7 +242,8 @@ impl Kernel for Extended {
     }
 
     fn footprint(&self, inputs: &[f64]) -> Footprint {
-        self.around.base.kernel.footprint(&self.base_inputs(inputs))
+        let of_base = self.around.base.kernel.footprint(&self.base_inputs(inputs));
+        Footprint { prepared: of_base.prepared + 8 * self.around.first.passed.len() as u64, ..of_base }
     }
 }
 
@@ -216,18 +259,25 @@ impl Recordable for Extended {
     }
 
     fn trace_prepare(&self, inputs: &[Trace], wanted: Set, prepared: &mut [Trace]) {
+        let own = self.around.base.kernel.prepared_len();
+        if !self.around.first.passed.is_empty() {
+            let numbers = self.around.before(inputs);
+            prepared[own..].iter_mut().zip(self.around.passed(&numbers)).for_each(|(to, value)| *to = value);
+        }
         self.recordable().trace_prepare(&self.base_inputs(inputs), self.prepared_for(wanted), prepared);
     }
 
     fn trace_conditions(&self, prepared: &[Trace], inputs: &[Trace], _wanted: Set, margins: &mut [Trace]) {
         let base = Traced { formula: self.recordable(), prepared };
-        let found = self.results(inputs, WantedResults { outputs: Set::EMPTY, margins: true }, &base).1;
+        let passed = self.around.passed_of(prepared);
+        let found = self.results(inputs, WantedResults { outputs: Set::EMPTY, margins: true }, passed, &base).1;
         margins[..found.len()].copy_from_slice(&found);
     }
 
     fn trace_finish(&self, prepared: &[Trace], inputs: &[Trace], wanted: Set, outputs: &mut [Trace]) {
         let base = Traced { formula: self.recordable(), prepared };
-        let found = self.results(inputs, WantedResults { outputs: wanted, margins: false }, &base).0;
+        let passed = self.around.passed_of(prepared);
+        let found = self.results(inputs, WantedResults { outputs: wanted, margins: false }, passed, &base).0;
         outputs[..found.len()].copy_from_slice(&found);
     }
 }

@@ -5,19 +5,26 @@
 //! formulas and not to the model, variables, are inputs.
 
 mod columns;
+mod first;
 mod interned;
 mod kernel;
+mod nothing;
 mod surroundings;
 
 use super::description::{CONDITION_BOUND_FACTOR, Condition, Input, Output, Preset, Range, Worse};
-use super::model::{CurveSource, Extension, Model, Origin};
+use super::model::{Model, Origin};
+use super::source::{ConditionSource, CurveSource, Extension, FileSource};
 use super::status::{Evaluation, Status};
-use crate::formula::{FormulaProblem, Formulas, MeasuredCurve, NameRole, QuantityUnit, Scope, ScopeName, Units};
+use crate::formula::{
+    Expression, FormulaKind, FormulaProblem, Formulas, MOST_ROOTS, MeasuredCurve, NameRole, QuantityUnit, Scope, ScopeName, Units,
+};
 use crate::units::Unit;
+use first::FirstStage;
 use interned::interned;
 use kernel::Extended;
+pub use nothing::nothing;
 use std::sync::Arc;
-use surroundings::Surroundings;
+use surroundings::{ConditionPlace, Surroundings};
 
 /// What is wrong with an extension.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,24 +41,40 @@ pub enum ExtensionProblem {
     Whole(String),
 }
 
-/// A model with what a study adds to it.
+/// A model with what a study adds to it, or the file of a model to the model that it is based on ([`nothing()`] if it is formulas alone).
 ///
 /// # Errors
 /// Everything that is wrong with it.
 pub fn extended(base: &Arc<Model>, extension: Extension) -> Result<Model, Vec<ExtensionProblem>> {
     let formulas = checked(base, &extension)?;
+    let roots = roots_of(base) + roots_in(&extension);
+    if roots > MOST_ROOTS {
+        let message =
+            format!("there may be at most {MOST_ROOTS} roots in the formulas of a study and its model together, here are {roots}");
+        return Err(vec![ExtensionProblem::Whole(message)]);
+    }
     let around = surroundings(base, &extension, formulas);
     let tables = ExtendedTables::new(&around, &extension);
     let fields = base.kernel.formula().map(|formula| formula.fields());
     let around = Arc::new(around);
     let kernel = Extended::new((*around).clone(), fields);
+    let effort = if around.is_alone() { kernel.effort() } else { base.effort };
+    let FileSource { name, summary, source, limits, .. } =
+        extension.file.as_deref().cloned().unwrap_or_else(|| FileSource { name: base.name.clone(), ..FileSource::default() });
+    let words = |own: Option<String>, of_base: &String| own.unwrap_or_else(|| of_base.clone());
     let (remarks, notes, profile, pulley) = (base.remarks.clone(), base.notes.clone(), base.profile.clone(), base.pulley.clone());
     let wrapped = |around: &Arc<Surroundings>| around.clone();
     let model = Model {
+        name,
+        summary: words(summary, &base.summary),
+        source: words(source, &base.source),
+        limits: words(limits, &base.limits),
+        effort,
+        starter: if extension.file.is_some() { String::new() } else { base.starter.clone() },
         inputs: tables.inputs,
         outputs: tables.outputs,
         conditions: tables.conditions,
-        presets: presets(&around),
+        presets: presets(&around, &extension),
         kernel: Arc::new(kernel),
         remarks: remarks.map(|remarks| {
             let around = wrapped(&around);
@@ -79,14 +102,30 @@ pub fn extended(base: &Arc<Model>, extension: Extension) -> Result<Model, Vec<Ex
     model.flaw_of_sizes().map_or(Ok(model), |flaw| Err(vec![ExtensionProblem::Whole(flaw)]))
 }
 
+/// How many roots the formulas have that were added to a model.
+fn roots_of(model: &Model) -> usize {
+    model.origin.as_ref().map_or(0, |origin| roots_of(&origin.base) + roots_in(&origin.extension))
+}
+
+fn roots_in(extension: &Extension) -> usize {
+    extension.written().iter().filter_map(|it| Expression::parse(&it.text).ok()).map(|it| it.roots()).sum()
+}
+
 /// What the model and its variables are called in formulas, in the order of their slots.
 fn scope(base: &Model, extension: &Extension) -> Result<Scope, Vec<ExtensionProblem>> {
     let mut problems = Vec::new();
-    let units = Units::new(&extension.units).unwrap_or_else(|found| {
-        problems.extend(found.into_iter().map(|(at, message)| ExtensionProblem::Unit(at, message)));
+    let known = all_units(base, extension);
+    let units = Units::new(&names_of_units(&known)).unwrap_or_else(|found| {
+        let number = |at: usize| known[at].1.unwrap_or_default();
+        problems.extend(found.into_iter().map(|(at, message)| ExtensionProblem::Unit(number(at), message)));
         Units::default()
     });
-    let mut names: Vec<ScopeName> = base.inputs.iter().map(name_of_input).collect();
+    let measure = |name: &str, unit: Unit| measure_of(&units, base, name, unit);
+    let mut names: Vec<ScopeName> = base.inputs.iter().map(|input| name_of_input(input, measure(&input.name, input.unit))).collect();
+    names.extend(extension.inputs().iter().map(|input| {
+        let measure = units.of_name(&input.name).unwrap_or(input.unit.into());
+        ScopeName { role: NameRole::Variable, ..name_of_input(input, measure) }
+    }));
     for variable in &extension.variables {
         match units.of_name(variable) {
             Ok(measure) => names.push(ScopeName::new(variable, NameRole::Variable, measure)),
@@ -94,7 +133,7 @@ fn scope(base: &Model, extension: &Extension) -> Result<Scope, Vec<ExtensionProb
         }
     }
     names.extend(base.outputs.iter().map(|output| {
-        let name = ScopeName::new(&output.name, NameRole::Output, output.unit.into());
+        let name = ScopeName::new(&output.name, NameRole::Output, measure(&output.name, output.unit));
         let name = if output.integer { name.whole() } else { name };
         let may_go = base.conditions.iter().any(|condition| condition.invalidates.contains(&output.name));
         if may_go { name.maybe_absent() } else { name }
@@ -113,38 +152,92 @@ fn scope(base: &Model, extension: &Extension) -> Result<Scope, Vec<ExtensionProb
     if problems.is_empty() { Ok(Scope::new(units, names, curves)) } else { Err(problems) }
 }
 
-fn name_of_input(input: &Input) -> ScopeName {
-    let name = ScopeName::new(&input.name, NameRole::Input, input.unit.into());
+/// Units that the model has of its own, which formulas around it know too.
+fn base_units(base: &Model) -> Vec<String> {
+    base.origin.as_ref().map_or_else(Vec::new, |origin| [base_units(&origin.base), origin.extension.units.clone()].concat())
+}
+
+/// All units that formulas know besides the usual ones, each with its number among those that are added.
+fn all_units(base: &Model, extension: &Extension) -> Vec<(String, Option<usize>)> {
+    let of_base = base_units(base);
+    // A study may repeat those of its model.
+    let added = extension.units.iter().enumerate().filter(|(_, unit)| !of_base.contains(unit));
+    let added: Vec<_> = added.map(|(at, unit)| (unit.clone(), Some(at))).collect();
+    of_base.iter().map(|unit| (unit.clone(), None)).chain(added).collect()
+}
+
+fn names_of_units(units: &[(String, Option<usize>)]) -> Vec<String> {
+    units.iter().map(|(name, _)| name.clone()).collect()
+}
+
+/// What a name of the model measures: where the model has units of its own, its name says it.
+fn measure_of(units: &Units, base: &Model, name: &str, unit: Unit) -> QuantityUnit {
+    let own = base.origin.as_ref().and_then(|_| units.of_name(name).ok());
+    own.unwrap_or_else(|| unit.into())
+}
+
+fn name_of_input(input: &Input, measure: QuantityUnit) -> ScopeName {
+    let name = ScopeName::new(&input.name, NameRole::Input, measure);
     let name = if input.integer { name.whole() } else { name };
     if input.words.is_empty() { name } else { name.words(input.words.clone(), input.is_enumeration()) }
 }
 
 fn checked(base: &Model, extension: &Extension) -> Result<Formulas, Vec<ExtensionProblem>> {
     let scope = scope(base, extension)?;
-    Formulas::new(&scope, &extension.formulas).map_err(|problems| problems.into_iter().map(ExtensionProblem::Formula).collect())
+    Formulas::of(&scope, &extension.written()).map_err(|problems| problems.into_iter().map(ExtensionProblem::Formula).collect())
 }
 
 fn surroundings(base: &Arc<Model>, extension: &Extension, formulas: Formulas) -> Surroundings {
     let inputs = base.inputs.len();
     let given: Vec<usize> = formulas.order().iter().map(|&it| &formulas.all()[it]).filter(|it| it.gives_input).map(|it| it.slot).collect();
-    let needs = |reads_outputs: bool| {
-        let of = |number: &usize| formulas.all()[formulas.requirements()[*number].formula].reads_outputs == reads_outputs;
-        (0..formulas.requirements().len()).filter(of).collect()
-    };
     let ends = given.iter().flat_map(|&slot| ends(&base.inputs[slot], slot)).map(|(end, _)| end).collect();
-    Surroundings {
-        inputs: (0..inputs).filter(|slot| !given.contains(slot)).chain(inputs..inputs + extension.variables.len()).collect(),
-        first_output: inputs + extension.variables.len(),
-        before: formulas.before_model().collect(),
+    let first_variable = inputs + extension.inputs().len();
+    let first_output = first_variable + extension.variables.len();
+    let before: Vec<usize> = formulas.before_model().collect();
+    let mut around = Surroundings {
+        inputs: (0..inputs).filter(|slot| !given.contains(slot)).chain(inputs..first_output).collect(),
+        inputs_of_file: inputs..first_variable,
+        first_output,
         after: formulas.after_model().collect(),
-        needs_before: needs(false),
-        needs_after: needs(true),
+        shown: extension.shown(),
         ends,
-        maybe_absent: (0..formulas.all().len()).filter(|&it| !formulas.all()[it].absent_with.is_empty()).collect(),
+        conditions: Vec::new(),
+        first: FirstStage::none(&before),
+        before,
         given,
         base: base.clone(),
         formulas,
+    };
+    around.conditions = condition_places(&around, extension);
+    if around.is_alone() {
+        let margins = extension.formulas.len()..around.formulas.all().len();
+        let asked: Vec<usize> = around.shown.iter().copied().chain(margins).collect();
+        around.first = FirstStage::of(&around.formulas, &around.before, around.inputs.len(), &asked);
     }
+    around
+}
+
+/// The conditions in their order: what stands before the model, the model's, those of a file, what is left. One of a file comes behind
+/// the requirements of the formulas that it depends on.
+fn condition_places(around: &Surroundings, extension: &Extension) -> Vec<ConditionPlace> {
+    let all = around.formulas.all();
+    let needs = |of: &dyn Fn(usize) -> bool| {
+        let needs = around.formulas.requirements().iter().enumerate();
+        needs.filter(|(_, need)| of(need.formula)).map(|(need, _)| ConditionPlace::Need(need)).collect::<Vec<_>>()
+    };
+    // Of formulas alone none stands before a model.
+    let mut places = if around.is_alone() { Vec::new() } else { needs(&|formula| !all[formula].reads_outputs) };
+    places.extend((0..around.ends.len()).map(ConditionPlace::End));
+    places.extend((0..around.base.conditions.len()).map(ConditionPlace::Base));
+    for margin in extension.formulas.len()..all.len() {
+        let ancestors = around.formulas.ancestors(margin);
+        let new: Vec<_> = needs(&|formula| ancestors.contains(&formula)).into_iter().filter(|it| !places.contains(it)).collect();
+        places.extend(new);
+        places.push(ConditionPlace::Margin(margin));
+    }
+    let left: Vec<_> = needs(&|_| true).into_iter().filter(|it| !places.contains(it)).collect();
+    let may_be_absent = around.shown.iter().copied().filter(|&formula| !all[formula].absent_with.is_empty());
+    places.into_iter().chain(left).chain(may_be_absent.map(ConditionPlace::Absent)).collect()
 }
 
 /// The ends that a computed input must keep, with whether the end itself is out of range.
@@ -153,6 +246,19 @@ fn ends(input: &Input, slot: usize) -> Vec<(surroundings::RangeEnd, bool)> {
     let lower = low.is_finite().then(|| (surroundings::RangeEnd::new(slot, input.unit.to_si(low), false), !includes_low));
     let upper = high.is_finite().then(|| (surroundings::RangeEnd::new(slot, input.unit.to_si(high), true), !includes_high));
     lower.into_iter().chain(upper).collect()
+}
+
+/// The unit that the end of a name says.
+///
+/// # Errors
+/// A sentence if it cannot be a unit.
+pub fn unit_of_name(units: &Units, name: &str) -> Result<Unit, String> {
+    Ok(unit_of_measure(units, name, units.of_name(name)?))
+}
+
+fn unit_of_measure(units: &Units, name: &str, measure: QuantityUnit) -> Unit {
+    let symbol = units.symbol_of_name(name).unwrap_or_default().replace('2', "²").replace('3', "³");
+    Unit::of_formulas(interned(&symbol), measure.factors())
 }
 
 /// The tables of an extended model.
@@ -165,74 +271,88 @@ struct ExtendedTables {
 impl ExtendedTables {
     fn new(around: &Surroundings, extension: &Extension) -> Self {
         let base = &around.base;
-        let units = Units::new(&extension.units).unwrap_or_default();
-        let unit = |name: &str, measure: QuantityUnit| {
-            let symbol = units.symbol_of_name(name).unwrap_or_default().replace('2', "²").replace('3', "³");
-            Unit::of_formulas(interned(&symbol), measure.factors())
-        };
+        let units = Units::new(&names_of_units(&all_units(base, extension))).unwrap_or_default();
+        let unit = |name: &str, measure: QuantityUnit| unit_of_measure(&units, name, measure);
         let inputs = around.inputs.iter().map(|&slot| match slot.checked_sub(base.inputs.len()) {
             None => base.inputs[slot].clone(),
-            Some(variable) => {
+            Some(input) if around.inputs_of_file.contains(&slot) => extension.inputs()[input].clone(),
+            Some(beyond) => {
+                let variable = beyond - around.inputs_of_file.len();
                 let name = &extension.variables[variable];
                 let measure = units.of_name(name).unwrap_or(QuantityUnit::NONE);
                 let all = Range::between(f64::NEG_INFINITY, f64::INFINITY);
                 Input::new(name, "", unit(name, measure), 0.0, (f64::MIN, f64::MAX), "A variable of the study.", "the study").valid(all)
             }
         });
-        let own = around.formulas.all().iter().map(|formula| {
-            if formula.gives_input {
+        let whose = if extension.file.is_some() { "model" } else { "study" };
+        let said = |own: &String, otherwise: String| if own.is_empty() { otherwise } else { own.clone() };
+        let own = around.shown.iter().map(|&number| {
+            let (formula, of) = (&around.formulas.all()[number], &extension.formulas[number]);
+            let (symbol, unit, doc) = if formula.gives_input {
                 let input = &base.inputs[formula.slot];
-                let doc = format!("{} Given by a formula of the study.", input.doc);
-                return Output::new(&input.name, &input.symbol, input.unit, Worse::Higher, &formula.text, doc);
-            }
-            let output = Output::new(
-                &formula.name,
-                "",
-                unit(&formula.name, formula.measure),
-                Worse::Higher,
-                &formula.text,
-                "A formula of the study.",
-            );
-            if formula.whole { output.whole() } else { output }
+                (input.symbol.clone(), input.unit, format!("{} Given by a formula of the {whose}.", input.doc))
+            } else {
+                (String::new(), unit(&formula.name, formula.measure), format!("A formula of the {whose}."))
+            };
+            let (symbol, source, doc) = (said(&of.symbol, symbol), said(&of.source, formula.text.clone()), said(&of.doc, doc));
+            let output = Output::new(&formula.name, symbol, unit, of.worst.unwrap_or(Worse::Higher), source, doc);
+            if formula.whole && !formula.gives_input { output.whole() } else { output }
         });
         let outputs: Vec<Output> = base.outputs.iter().cloned().chain(own.map(|it| it.with_bound_factor(CONDITION_BOUND_FACTOR))).collect();
-        Self { inputs: inputs.collect(), conditions: conditions(around, &outputs[base.outputs.len()..]), outputs }
+        Self { inputs: inputs.collect(), conditions: conditions(around, extension, &outputs[base.outputs.len()..]), outputs }
     }
 }
 
 /// The conditions of an extended model, in the order of its margins.
-fn conditions(around: &Surroundings, own: &[Output]) -> Vec<Condition> {
+fn conditions(around: &Surroundings, extension: &Extension, own: &[Output]) -> Vec<Condition> {
     let base = &around.base;
     let everything: Vec<&str> = base.outputs.iter().chain(own).map(|it| it.name.as_str()).collect();
     let formulas = around.formulas.all();
-    let gives_input = |slots: &[usize]| formulas.iter().any(|it| it.gives_input && slots.contains(&it.slot));
-    let need = |&number: &usize| {
+    let need = |number: usize| {
         let requirement = &around.formulas.requirements()[number];
         let formula = &formulas[requirement.formula];
         let dependents = around.formulas.dependents(requirement.formula);
-        let slots: Vec<usize> = dependents.iter().map(|&it| formulas[it].slot).collect();
-        let names: Vec<&str> = dependents.iter().map(|&it| own[it].name.as_str()).collect();
-        let taken = if gives_input(&slots) { &everything[..] } else { &names[..] };
-        Condition::new(requirement.status.clone(), requirement.strict, taken, format!("The formula {} has a value.", formula.name))
+        let gives_input = dependents.iter().any(|&it| formulas[it].gives_input);
+        let is_taken = |name: &&str| dependents.iter().any(|&it| formulas[it].name == *name);
+        let names: Vec<&str> = own.iter().map(|it| it.name.as_str()).filter(is_taken).collect();
+        let taken = if gives_input { &everything[..] } else { &names[..] };
+        let whose = if formula.kind == FormulaKind::Margin { String::new() } else { "formula ".to_owned() };
+        Condition::new(requirement.status.clone(), requirement.strict, taken, format!("The {whose}{} has a value.", formula.name))
     };
-    let range = |&slot: &usize| {
-        let input = &base.inputs[slot];
-        let doc = format!("{} is {}, as the model needs it.", input.name, input.valid.in_words());
-        ends(input, slot).into_iter().map(move |(_, strict)| (format!("input {} out of range", input.name), strict, doc.clone()))
+    let ranges: Vec<(&Input, bool)> = around
+        .given
+        .iter()
+        .flat_map(|&slot| ends(&base.inputs[slot], slot).into_iter().map(move |(_, strict)| (&base.inputs[slot], strict)))
+        .collect();
+    let condition = |&place: &ConditionPlace| match place {
+        ConditionPlace::Need(number) => need(number),
+        ConditionPlace::End(number) => {
+            let (input, strict) = ranges[number];
+            let doc = format!("{} is {}, as the model needs it.", input.name, input.valid.in_words());
+            Condition::new(format!("input {} out of range", input.name), strict, &everything, doc)
+        }
+        ConditionPlace::Base(number) => base.conditions[number].clone(),
+        ConditionPlace::Margin(formula) => {
+            let ConditionSource { reason, margin, strict, quiet, invalidates, doc } =
+                &extension.conditions()[formula - extension.formulas.len()];
+            let taken: Vec<&str> = invalidates.iter().map(String::as_str).collect();
+            let doc =
+                if doc.is_empty() { format!("{margin} is {} 0.", if *strict { "greater than" } else { "at least" }) } else { doc.clone() };
+            let condition = Condition::new(reason, *strict, &taken, doc);
+            if *quiet { condition.quiet() } else { condition }
+        }
+        ConditionPlace::Absent(formula) => {
+            let name = &formulas[formula].name;
+            let doc = format!("What {name} is computed from has a value.");
+            Condition::new(format!("formula {name}: no value"), false, &[name], doc).quiet()
+        }
     };
-    let of_ranges = around.given.iter().flat_map(range).map(|(reason, strict, doc)| Condition::new(reason, strict, &everything, doc));
-    let absent = |&formula: &usize| {
-        let name = &formulas[formula].name;
-        let doc = format!("What {name} is computed from has a value.");
-        Condition::new(format!("formula {name}: no value"), false, &[own[formula].name.as_str()], doc).quiet()
-    };
-    let before = around.needs_before.iter().map(need).chain(of_ranges);
-    let after = around.needs_after.iter().map(need).chain(around.maybe_absent.iter().map(absent));
-    before.chain(base.conditions.iter().cloned()).chain(after).collect()
+    around.conditions.iter().map(condition).collect()
 }
 
-/// Presets without what formulas give.
-fn presets(around: &Surroundings) -> Vec<Preset> {
+/// Presets of the model, without what formulas give, and of a file.
+fn presets(around: &Surroundings, extension: &Extension) -> Vec<Preset> {
+    let own = extension.file.as_ref().map_or(&[][..], |file| &file.presets);
     let base = &around.base;
     let is_given = |name: &String| base.input(name).is_some_and(|slot| around.given.contains(&slot));
     let without = |preset: &Preset| {
@@ -240,7 +360,7 @@ fn presets(around: &Surroundings) -> Vec<Preset> {
         preset.changes.retain(|(name, _)| !is_given(name));
         preset
     };
-    base.presets.iter().map(without).collect()
+    base.presets.iter().map(without).chain(own.iter().cloned()).collect()
 }
 
 impl Surroundings {
@@ -262,8 +382,11 @@ impl Surroundings {
     fn evaluation_of_base(&self, evaluation: &Evaluation) -> Evaluation {
         let status = match evaluation.status {
             Status::Failed(condition) => {
-                let own = condition.checked_sub(self.first_condition()).filter(|it| *it < self.base.conditions.len());
-                own.map_or(Status::Ok, Status::Failed)
+                if let ConditionPlace::Base(own) = self.conditions[condition] {
+                    Status::Failed(own)
+                } else {
+                    Status::Ok
+                }
             }
             other => other,
         };

@@ -1,5 +1,6 @@
 //! Where formulas and model find each other's numbers.
 
+use super::first::{FirstStage, PassedNumber};
 use crate::formula::Formulas;
 use crate::models::description::Condition;
 use crate::models::model::Model;
@@ -33,12 +34,26 @@ impl RangeEnd {
     }
 }
 
+/// What a condition of the extended model is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ConditionPlace {
+    /// A requirement of a formula, by number.
+    Need(usize),
+    /// An end of the valid range of an input that a formula gives, by number.
+    End(usize),
+    /// A condition of the model, by number.
+    Base(usize),
+    /// A condition of a file: number of the formula of its margin.
+    Margin(usize),
+    /// Whether a formula has a value.
+    Absent(usize),
+}
+
 /// Formulas around a model, and the numbers of everything.
 ///
-/// Slots of the formulas are the model's inputs, then variables, then the model's outputs, then what formulas give besides. Inputs of
-/// the extended model are the model's that no formula gives, then variables. Outputs are the model's, then one per formula. Conditions
-/// are those of formulas before the model, valid ranges of inputs that formulas give, the model's, those of formulas after it, and one
-/// per formula that may have no value.
+/// Slots of the formulas are the model's inputs, then those of a file, then variables, then the model's outputs, then what formulas give
+/// besides. Inputs of the extended model are the model's that no formula gives, then those of a file, then variables. Outputs are the
+/// model's, then the formulas that are shown.
 #[derive(Clone, Debug)]
 pub struct Surroundings {
     pub base: Arc<Model>,
@@ -47,17 +62,20 @@ pub struct Surroundings {
     pub inputs: Vec<usize>,
     /// Inputs of the model that formulas give.
     pub given: Vec<usize>,
+    /// Slots of the inputs of a file.
+    pub inputs_of_file: std::ops::Range<usize>,
     /// Slot of the model's first output.
     pub first_output: usize,
     /// Formulas before the model, and after it, in the order in which they are evaluated.
     pub before: Vec<usize>,
     pub after: Vec<usize>,
-    /// SlotNumbers of the requirements of either.
-    pub needs_before: Vec<usize>,
-    pub needs_after: Vec<usize>,
+    /// Formulas that are outputs, in their order.
+    pub shown: Vec<usize>,
     pub ends: Vec<RangeEnd>,
-    /// Formulas that may have no value.
-    pub maybe_absent: Vec<usize>,
+    /// Of each condition, in their order, what it is.
+    pub conditions: Vec<ConditionPlace>,
+    /// What is computed once for designs that have slow inputs in common.
+    pub first: FirstStage,
 }
 
 /// The numbers of one design.
@@ -68,19 +86,14 @@ pub struct SlotNumbers<R> {
 }
 
 impl Surroundings {
+    /// Are there formulas alone, around a model that is nothing?
+    pub fn is_alone(&self) -> bool {
+        self.base.inputs.is_empty() && self.base.outputs.is_empty()
+    }
+
     /// How many outputs of the model are listed.
     pub fn base_outputs(&self) -> usize {
         self.base.outputs.len()
-    }
-
-    /// How many conditions stand before the model's.
-    pub fn first_condition(&self) -> usize {
-        self.needs_before.len() + self.ends.len()
-    }
-
-    /// How many conditions there are.
-    pub fn conditions(&self) -> usize {
-        self.first_condition() + self.base.conditions.len() + self.needs_after.len() + self.maybe_absent.len()
     }
 
     /// Slots that a formula depends on, through others too.
@@ -101,14 +114,23 @@ impl Surroundings {
     /// The model's outputs that these outputs need.
     pub fn wanted_of_base(&self, wanted: Set) -> Set {
         let base = self.base_outputs();
-        let own = (0..self.formulas.all().len()).filter(|formula| wanted.contains(base + formula)).map(|formula| self.outputs_of(formula));
+        let own = self.shown.iter().enumerate().filter(|(at, _)| wanted.contains(base + at)).map(|(_, &formula)| self.outputs_of(formula));
         own.fold(wanted & Set::between(0, base), |set, it| set | it)
+    }
+
+    /// The formula that a condition is about; `None` for those of the model and of ranges.
+    pub fn formula_of(&self, condition: ConditionPlace) -> Option<usize> {
+        match condition {
+            ConditionPlace::Need(need) => Some(self.formulas.requirements()[need].formula),
+            ConditionPlace::Margin(formula) | ConditionPlace::Absent(formula) => Some(formula),
+            ConditionPlace::End(_) | ConditionPlace::Base(_) => None,
+        }
     }
 
     /// The model's outputs that conditions of formulas need.
     pub fn wanted_by_conditions(&self) -> Set {
-        let needing = self.needs_after.iter().map(|&need| self.formulas.requirements()[need].formula);
-        needing.chain(self.maybe_absent.iter().copied()).fold(Set::EMPTY, |set, formula| set | self.outputs_of(formula))
+        let needing = self.conditions.iter().filter_map(|&condition| self.formula_of(condition));
+        needing.fold(Set::EMPTY, |set, formula| set | self.outputs_of(formula))
     }
 
     /// Do formulas ask whether outputs of the model have a value?
@@ -127,6 +149,35 @@ impl Surroundings {
 
     /// All numbers that are known before the model is evaluated; inputs of the model are the first slots.
     pub fn before<R: Real>(&self, inputs: &[R]) -> SlotNumbers<R> {
+        self.evaluated(inputs, &self.before, |_| ())
+    }
+
+    /// The same where the first stage has passed on these numbers.
+    pub fn before_second<R: Real>(&self, inputs: &[R], passed: &[R]) -> SlotNumbers<R> {
+        self.evaluated(inputs, &self.first.left, |numbers| {
+            for (&to, &value) in self.first.passed.iter().zip(passed) {
+                match to {
+                    PassedNumber::Slot(slot) => numbers.slots[slot] = value,
+                    PassedNumber::Need(need) => numbers.needs[need] = value,
+                }
+            }
+        })
+    }
+
+    /// What the first stage passed on, behind what the model's did.
+    pub fn passed_of<'p, R>(&self, prepared: &'p [R]) -> &'p [R] {
+        if self.first.passed.is_empty() { &[] } else { &prepared[self.base.kernel.prepared_len()..][..self.first.passed.len()] }
+    }
+
+    /// What the first stage passes on.
+    pub fn passed<'n, R: Real>(&'n self, numbers: &'n SlotNumbers<R>) -> impl Iterator<Item = R> + 'n {
+        self.first.passed.iter().map(|&from| match from {
+            PassedNumber::Slot(slot) => numbers.slots[slot],
+            PassedNumber::Need(need) => numbers.needs[need],
+        })
+    }
+
+    fn evaluated<R: Real>(&self, inputs: &[R], formulas: &[usize], known: impl FnOnce(&mut SlotNumbers<R>)) -> SlotNumbers<R> {
         let one = R::constant(1.0);
         let mut numbers = SlotNumbers {
             slots: vec![one; self.formulas.slots()],
@@ -134,7 +185,8 @@ impl Surroundings {
             needs: vec![one; self.formulas.requirements().len()],
         };
         self.inputs.iter().zip(inputs).for_each(|(&slot, &value)| numbers.slots[slot] = value);
-        for &formula in &self.before {
+        known(&mut numbers);
+        for &formula in formulas {
             self.formulas.evaluate(formula, &mut numbers.slots, &mut numbers.present, &mut numbers.needs);
         }
         numbers
@@ -151,22 +203,26 @@ impl Surroundings {
         }
     }
 
-    /// What formulas give, in their order.
+    /// What formulas give that are outputs, in their order.
     pub fn own_outputs<'n, R: Real>(&'n self, numbers: &'n SlotNumbers<R>) -> impl Iterator<Item = R> + 'n {
-        self.formulas.all().iter().map(|formula| numbers.slots[formula.slot])
+        self.shown.iter().map(|&formula| numbers.slots[self.formulas.all()[formula].slot])
     }
 
-    /// Margins of the conditions that stand before the model's.
-    pub fn margins_before<'n, R: Real>(&'n self, numbers: &'n SlotNumbers<R>) -> impl Iterator<Item = R> + 'n {
-        let needs = self.needs_before.iter().map(|&need| numbers.needs[need]);
-        needs.chain(self.ends.iter().map(|end| end.margin(&numbers.slots)))
-    }
-
-    /// Margins of the conditions that stand after the model's.
-    pub fn margins_after<'n, R: Real>(&'n self, numbers: &'n SlotNumbers<R>) -> impl Iterator<Item = R> + 'n {
-        let needs = self.needs_after.iter().map(|&need| numbers.needs[need]);
-        let present = |&formula: &usize| numbers.present[self.formulas.all()[formula].slot].unwrap_or(R::constant(1.0));
-        needs.chain(self.maybe_absent.iter().map(present))
+    /// Margins of all conditions, given those of the model.
+    pub fn margins<'n, R: Real>(&'n self, numbers: &'n SlotNumbers<R>, of_base: &'n [R]) -> impl Iterator<Item = R> + 'n {
+        let one = R::constant(1.0);
+        let slot = |formula: usize| self.formulas.all()[formula].slot;
+        self.conditions.iter().map(move |&condition| match condition {
+            ConditionPlace::Need(need) => numbers.needs[need],
+            ConditionPlace::End(end) => self.ends[end].margin(&numbers.slots),
+            ConditionPlace::Base(number) => of_base[number],
+            // Of what has no value nothing is asked.
+            ConditionPlace::Margin(formula) => {
+                let margin = numbers.slots[slot(formula)];
+                numbers.present[slot(formula)].map_or(margin, |present| R::select(present, margin, one))
+            }
+            ConditionPlace::Absent(formula) => numbers.present[slot(formula)].unwrap_or(one),
+        })
     }
 }
 

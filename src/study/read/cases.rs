@@ -292,7 +292,7 @@ impl Reader<'_> {
         let before_it = self.unread.replace(true);
         let name = text(entry.node, problems, label)?;
         let at = entry.node.at;
-        let text = csv_text(self.folder, &name).map_err(|error| problems.add(at, format!("{label}: {error}"))).ok()?;
+        let text = csv_text(self.folder, &name, "study").map_err(|error| problems.add(at, format!("{label}: {error}"))).ok()?;
         self.unread.set(before_it);
         let axis = self.csv_rows(&CasesPlace { at, csv: &name, leaves_out, ..place }, &text);
         axis.filter(|_| known && problems.count() == before)

@@ -1,4 +1,4 @@
-//! CSV files that a study names.
+//! CSV files that a study or a model names.
 
 use super::table::shortened;
 use std::fs::File;
@@ -8,11 +8,11 @@ use std::path::Path;
 /// Largest CSV file that is read, in bytes.
 const MOST_CSV_BYTES: u64 = 1 << 26;
 
-/// The text of a CSV file that a study names.
-pub(super) fn csv_text(folder: &Path, name: &str) -> Result<String, String> {
+/// The text of a CSV file that a study or a model (`whose` says which) names.
+pub(super) fn csv_text(folder: &Path, name: &str, whose: &str) -> Result<String, String> {
     let path = folder.join(name);
     let name = shortened(name);
-    let unreadable = |error: std::io::Error| format!("cannot read \"{name}\": {error}; paths are relative to the folder of the study");
+    let unreadable = |error: std::io::Error| format!("cannot read \"{name}\": {error}; paths are relative to the folder of the {whose}");
     let file = std::fs::metadata(&path).map_err(unreadable)?;
     if !file.is_file() {
         return Err(format!("\"{name}\" is not a file; name a CSV file"));

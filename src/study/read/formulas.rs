@@ -1,13 +1,16 @@
 //! `units`, `[curves]` and `[formulas]`: what a study adds to its model, and which names are variables.
+//!
+//! The file of a model has the same three.
 
 use super::axes::PRESET;
 use super::csv_file::{csv_builder, csv_text};
 use super::labels::DeclaredLabel;
 use super::spectrum::weighted_cases;
 use super::table::{Entry, Problems, TomlNode, TomlTable, list, shortened};
-use super::{section, text};
+use super::value::truth;
+use super::{choice, section, text};
 use crate::formula::{Expression, meant};
-use crate::models::{CurveSource, Extension, ExtensionProblem, Model, extended};
+use crate::models::{CurveSource, Extension, ExtensionProblem, FormulaSource, Model, Worse, extended};
 use crate::names::column_of_tables;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -15,12 +18,21 @@ use std::sync::Arc;
 
 /// Where the parts of an extension stand in the file.
 #[derive(Default)]
-struct ExtensionPlaces {
+pub(super) struct ExtensionPlaces {
     units: Vec<usize>,
     /// Of each curve: where it stands, its file and the first line of each of its rows.
     curves: Vec<CurvePlace>,
-    /// Of each formula: where its text starts, and does a byte of it stand for one of the file?
+    /// Of each formula, those of conditions last: where its text starts, and does a byte of it stand for one of the file?
     formulas: Vec<(usize, bool)>,
+}
+
+/// Where the points of curves come from.
+#[derive(Clone, Copy)]
+pub(in super::super) enum CurvePoints<'a> {
+    /// From files in the folder of a study or a model.
+    Folder(&'a Path, &'static str),
+    /// They are known already, by the name of the curve.
+    Known(&'a [CurveSource]),
 }
 
 struct CurvePlace {
@@ -42,8 +54,9 @@ pub(super) fn with_formulas(
     let mut extension = Extension {
         units: read_units(top, problems, &mut places),
         variables: Vec::new(),
-        curves: read_curves(top, problems, folder, &mut places),
+        curves: read_curves(top, problems, CurvePoints::Folder(folder, "study"), &mut places),
         formulas: read_formulas(top, problems, &mut places),
+        file: None,
     };
     if problems.count() > before {
         return None;
@@ -71,7 +84,7 @@ pub(super) fn with_formulas(
     }
 }
 
-fn read_units(top: &TomlTable<'_>, problems: &Problems<'_>, places: &mut ExtensionPlaces) -> Vec<String> {
+pub(super) fn read_units(top: &TomlTable<'_>, problems: &Problems<'_>, places: &mut ExtensionPlaces) -> Vec<String> {
     let Some(entry) = top.get("units") else { return Vec::new() };
     let Some(list) = entry.node.list() else {
         let found = entry.node.found();
@@ -85,20 +98,54 @@ fn read_units(top: &TomlTable<'_>, problems: &Problems<'_>, places: &mut Extensi
     units.collect()
 }
 
-fn read_formulas(top: &TomlTable<'_>, problems: &Problems<'_>, places: &mut ExtensionPlaces) -> Vec<(String, String)> {
+pub(super) fn read_formulas(top: &TomlTable<'_>, problems: &Problems<'_>, places: &mut ExtensionPlaces) -> Vec<FormulaSource> {
     let Some(table) = section(top, "formulas", problems) else { return Vec::new() };
     let formula = |entry: &Entry<'_>| {
-        let text = text(entry.node, problems, &format!("formula \"{}\"", shortened(entry.key)))?;
-        // A text in quotes without escapes stands in the file as it is, one byte behind its quote.
-        let at = entry.node.at;
-        let plain = problems.has(at + 1, &text);
-        places.formulas.push((if plain { at + 1 } else { at }, plain));
-        Some((entry.key.to_owned(), text))
+        let label = format!("formula \"{}\"", shortened(entry.key));
+        let Some(parts) = entry.node.table() else {
+            return Some(FormulaSource::plain(entry.key, formula_text(entry.node, problems, &label, places)?));
+        };
+        parts.check_keys(problems, &label, &["is", "worst", "integer", "hidden", "symbol", "doc", "source"]);
+        let Some(is) = parts.get("is") else {
+            problems.add_if_complete(parts.at, format!("{label}: \"is\" is missing; write {{ is = \"...\", doc = \"...\" }}"));
+            return None;
+        };
+        let text = formula_text(is.node, problems, &label, places);
+        let source = FormulaSource { name: entry.key.to_owned(), text: text.unwrap_or_default(), ..FormulaSource::default() };
+        let [integer, hidden] = ["integer", "hidden"].map(|key| parts.get(key).and_then(|it| truth(it, problems, &label)).unwrap_or(false));
+        Some(FormulaSource { integer, hidden, ..words_of(&parts, problems, &label, source) })
     };
     table.entries.iter().take_while(|_| !problems.is_full()).filter_map(formula).collect()
 }
 
-fn read_curves(top: &TomlTable<'_>, problems: &Problems<'_>, folder: &Path, places: &mut ExtensionPlaces) -> Vec<CurveSource> {
+/// The text of a formula, whose place is kept.
+pub(super) fn formula_text(node: TomlNode<'_>, problems: &Problems<'_>, label: &str, places: &mut ExtensionPlaces) -> Option<String> {
+    let text = text(node, problems, label)?;
+    // A text in quotes without escapes stands in the file as it is, one byte behind its quote.
+    let plain = problems.has(node.at + 1, &text);
+    places.formulas.push((if plain { node.at + 1 } else { node.at }, plain));
+    Some(text)
+}
+
+/// A formula with what a table says of it for people.
+pub(super) fn words_of(parts: &TomlTable<'_>, problems: &Problems<'_>, label: &str, formula: FormulaSource) -> FormulaSource {
+    let ends = [("lowest", Worse::Lower), ("highest", Worse::Higher)];
+    let said = |key: &str, otherwise: String| parts.get(key).and_then(|it| text(it.node, problems, label)).unwrap_or(otherwise);
+    FormulaSource {
+        worst: parts.get("worst").and_then(|it| choice(it, problems, label, &ends)).or(formula.worst),
+        symbol: said("symbol", formula.symbol),
+        doc: said("doc", formula.doc),
+        source: said("source", formula.source),
+        ..formula
+    }
+}
+
+pub(super) fn read_curves(
+    top: &TomlTable<'_>,
+    problems: &Problems<'_>,
+    points_from: CurvePoints<'_>,
+    places: &mut ExtensionPlaces,
+) -> Vec<CurveSource> {
     let Some(table) = section(top, "curves", problems) else { return Vec::new() };
     let curve = |entry: &Entry<'_>| {
         let label = format!("curve \"{}\"", shortened(entry.key));
@@ -117,7 +164,11 @@ fn read_curves(top: &TomlTable<'_>, problems: &Problems<'_>, folder: &Path, plac
         };
         let (file, x, y) = (part("csv"), part("x"), part("y"));
         let (file, x, y) = (file?, x?, y?);
-        let text = csv_text(folder, &file).map_err(|error| problems.add(entry.node.at, format!("{label}: {error}"))).ok()?;
+        let (folder, whose) = match points_from {
+            CurvePoints::Folder(folder, whose) => (folder, whose),
+            CurvePoints::Known(known) => return known.iter().find(|it| it.name == entry.key).cloned(),
+        };
+        let text = csv_text(folder, &file, whose).map_err(|error| problems.add(entry.node.at, format!("{label}: {error}"))).ok()?;
         let tell = |line: usize, message: String| problems.add_in(entry.node.at, &file, line, 1, format!("{label}: {message}"));
         let (points, lines) = points(&text, &x, &y).map_err(|(line, message)| tell(line, message)).ok()?;
         places.curves.push(CurvePlace { at: entry.node.at, file, lines });
@@ -175,7 +226,7 @@ pub(super) fn given(top: &TomlTable<'_>, folder: &Path) -> Vec<(String, usize)> 
                 names.extend(first.into_iter().flat_map(|row| row.entries).map(|cell| (cell.key.to_owned(), cell.key_at)));
             }
             // What cannot be read is reported when the axis is.
-            if let Some(text) = cases.and_then(csv_of_cases).and_then(|(file, _)| csv_text(folder, &file).ok()) {
+            if let Some(text) = cases.and_then(csv_of_cases).and_then(|(file, _)| csv_text(folder, &file, "study").ok()) {
                 let header = csv_builder().from_reader(text.as_bytes()).headers().cloned().unwrap_or_default();
                 names.extend(header.iter().map(|name| (name.to_owned(), entry.key_at)));
             }
@@ -198,7 +249,7 @@ fn report_unreadable(top: &TomlTable<'_>, problems: &Problems<'_>, folder: &Path
         let weighted = weighted_cases(&entry).and_then(|table| table.get("cases").map(|entry| entry.node));
         let plain = entry.key.starts_with("cases").then_some(entry.node);
         let Some((file, at)) = weighted.or(plain).and_then(csv_of_cases) else { continue };
-        if let Err(error) = csv_text(folder, &file) {
+        if let Err(error) = csv_text(folder, &file, "study") {
             problems.add(at, format!("axis \"{}\": {error}", shortened(entry.key)));
         }
     }
@@ -207,7 +258,7 @@ fn report_unreadable(top: &TomlTable<'_>, problems: &Problems<'_>, folder: &Path
 
 /// The names that formulas read.
 fn names_read(extension: &Extension) -> BTreeSet<String> {
-    let parsed = extension.formulas.iter().filter_map(|(_, text)| Expression::parse(text).ok());
+    let parsed = extension.formulas.iter().filter_map(|it| Expression::parse(&it.text).ok());
     parsed.flat_map(|it| it.names().into_iter().map(|(name, _)| name.to_owned()).collect::<Vec<_>>()).collect()
 }
 
@@ -226,7 +277,7 @@ fn are_labels_read(extension: &Extension, labels: &[DeclaredLabel], problems: &P
 fn variables(model: &Model, extension: &Extension, labels: &[DeclaredLabel], top: &TomlTable<'_>, folder: &Path) -> Vec<String> {
     let read = names_read(extension);
     let is_known =
-        |name: &str| model.input(name).is_some() || model.output(name).is_some() || extension.formulas.iter().any(|(it, _)| it == name);
+        |name: &str| model.input(name).is_some() || model.output(name).is_some() || extension.formulas.iter().any(|it| it.name == name);
     let mut variables: Vec<String> = Vec::new();
     for (name, _) in given(top, folder) {
         let is_label = labels.iter().any(|label| label.name == name);
@@ -249,7 +300,7 @@ fn report_unused(
     for (name, at) in given(top, folder) {
         let is_case = name.starts_with("cases") || name == PRESET || labels.iter().any(|label| label.name == name);
         let is_unused = model.input(&name).is_none() && !extension.variables.contains(&name) && !is_case;
-        if let Some(meant) = meant(&name, &extension.formulas).filter(|_| is_unused) {
+        if let Some(meant) = meant(&name, extension.formulas.iter().map(|it| &*it.text)).filter(|_| is_unused) {
             problems.add(at, format!("nothing reads \"{}\"; did you mean \"{meant}\"?", shortened(&name)));
         }
     }
@@ -258,7 +309,7 @@ fn report_unused(
 /// Reports inputs that a formula gives and an axis or a fixed value too.
 fn refuse_twice_given(model: &Model, extension: &Extension, top: &TomlTable<'_>, problems: &Problems<'_>) {
     for table in GIVING.iter().filter_map(|name| top.get(name)).filter_map(|entry| entry.node.table()) {
-        for entry in table.entries.iter().filter(|entry| extension.formulas.iter().any(|(name, _)| name == entry.key)) {
+        for entry in table.entries.iter().filter(|entry| extension.formulas.iter().any(|it| it.name == entry.key)) {
             let what = if model.input(entry.key).is_some() { "input" } else { "name" };
             problems.add(entry.key_at, format!("the {what} \"{}\" is given by a formula; drop one of the two", shortened(entry.key)));
         }
@@ -267,7 +318,7 @@ fn refuse_twice_given(model: &Model, extension: &Extension, top: &TomlTable<'_>,
 
 /// Reports variables and formulas whose column in a table of the result would have the name of another one.
 fn refuse_names_of_columns(model: &Model, extension: &Extension, top: &TomlTable<'_>, problems: &Problems<'_>) {
-    let own: Vec<&str> = extension.variables.iter().chain(extension.formulas.iter().map(|(name, _)| name)).map(String::as_str).collect();
+    let own: Vec<&str> = extension.variables.iter().chain(extension.formulas.iter().map(|it| &it.name)).map(String::as_str).collect();
     let is_known = |name: &str| model.input(name).is_some() || model.output(name).is_some() || own.contains(&name);
     let tables = || GIVING.iter().chain(&["formulas"]).filter_map(|name| top.get(name)?.node.table());
     for name in own.iter().filter(|name| model.input(name).is_none()) {
@@ -278,7 +329,7 @@ fn refuse_names_of_columns(model: &Model, extension: &Extension, top: &TomlTable
 }
 
 /// Reports a problem of an extension where it stands in the file.
-fn tell(problem: ExtensionProblem, places: &ExtensionPlaces, top: &TomlTable<'_>, problems: &Problems<'_>) {
+pub(super) fn tell(problem: ExtensionProblem, places: &ExtensionPlaces, top: &TomlTable<'_>, problems: &Problems<'_>) {
     match problem {
         ExtensionProblem::Whole(message) => {
             problems
@@ -301,7 +352,10 @@ fn tell(problem: ExtensionProblem, places: &ExtensionPlaces, top: &TomlTable<'_>
             Some(&(at, plain)) => {
                 let place = if plain { String::new() } else { format!(" (line {}, column {} of its text)", problem.line, problem.column) };
                 let at = if plain { at + problem.at } else { at };
-                problems.add(at, format!("formula \"{}\"{place}: {}", shortened(&problem.name), problem.message));
+                // What conditions call their margins is no name.
+                let label = shortened(&problem.name);
+                let label = if label.starts_with("condition ") { label } else { format!("formula \"{label}\"") };
+                problems.add(at, format!("{label}{place}: {}", problem.message));
             }
             None => problems.add(0, problem.message),
         },

@@ -12,6 +12,7 @@
 //! | `labels.rs`     | `labels`                                           |
 //! | `presets.rs`    | axes over presets                                  |
 //! | `formulas.rs`   | `units`, `[curves]`, `[formulas]`                   |
+//! | `model_file.rs` | the file of a model, and in `model_inputs.rs` its inputs |
 //! | `quantities.rs` | `[constraints]`, `[objectives]`                    |
 //! | `report.rs`     | `[report]`                                         |
 //! | `contours.rs`   | the contours of its maps                           |
@@ -23,6 +24,8 @@ mod contours;
 mod csv_file;
 mod formulas;
 mod labels;
+mod model_file;
+mod model_inputs;
 mod presets;
 mod quantities;
 mod range;
@@ -35,6 +38,9 @@ mod table;
 pub(crate) mod tests;
 mod value;
 
+pub(super) use formulas::CurvePoints;
+pub use model_file::{FileKind, file_kind, read_model};
+pub(super) use model_file::{ModelText, read_model_text};
 pub(super) use quantities::MOST_OBJECTIVES;
 pub(super) use range::check_levels;
 pub(super) use report::{BINS, FRONT_BUDGET, MOST_CELLS, MOST_FEASIBLE, MOST_SAMPLE, MOST_TOP, MOST_VARIANTS};
@@ -46,7 +52,6 @@ use super::label::Label;
 use super::resolved::Study;
 use super::spectrum::Spectrum;
 use crate::error::Result;
-use crate::files::{STUDY_BYTES, read_bytes};
 use crate::likeness::remedy;
 use crate::models::{Model, Models};
 use axes::{AxisClaim, AxisRole};
@@ -56,7 +61,7 @@ pub use set::StudyEdits;
 use std::cell::{Cell, RefCell};
 use std::path::Path;
 use std::sync::Arc;
-use table::{Entry, Lines, Problems, TomlNode, TomlTable, list, shortened};
+use table::{Entry, Problems, TomlNode, TomlTable, list, shortened};
 use value::whole;
 
 /// Most levels of one axis given by a rule: up to here an index is an exact f64.
@@ -160,14 +165,7 @@ impl Study {
     }
 
     fn read_edited(path: &Path, edits: StudyEdits<'_>, axes: SetAxes) -> Result<(Self, String)> {
-        let bytes = read_bytes(path, STUDY_BYTES, "long lists of values go into a CSV file")?;
-        let file = path.display().to_string();
-        let text = String::from_utf8(bytes).map_err(|error| {
-            let good = error.utf8_error().valid_up_to();
-            let (line, column) = Lines::new(&String::from_utf8_lossy(&error.as_bytes()[..good])).position(good);
-            let message = "this is not UTF-8 text; save the file in the encoding UTF-8".to_owned();
-            StudyErrors { problems: vec![Problem { file: file.clone(), line, column, message }] }
-        })?;
+        let (text, file) = model_file::text_of(path, "long lists of values go into a CSV file")?;
         Self::parse_edited(&Models::new(), &text, &file, path.parent().unwrap_or(Path::new("")), edits, axes)
     }
 
@@ -247,7 +245,7 @@ struct Reader<'a> {
 
 /// Walks the whole file. `None` if a problem was reported that leaves no study.
 fn read_study(models: &Models, top: &TomlTable<'_>, problems: &Problems<'_>, folder: &Path) -> Option<Study> {
-    read_study_of(read_model(models, top, problems), top, problems, folder)
+    read_study_of(model_named(models, top, problems, folder), top, problems, folder)
 }
 
 /// The same for a model that has been found; `None` if that has a problem of its own.
@@ -297,13 +295,16 @@ fn read_study_of(model: Option<Arc<Model>>, top: &TomlTable<'_>, problems: &Prob
 }
 
 /// The model that the file names.
-fn read_model(models: &Models, top: &TomlTable<'_>, problems: &Problems<'_>) -> Option<Arc<Model>> {
+fn model_named(models: &Models, top: &TomlTable<'_>, problems: &Problems<'_>, folder: &Path) -> Option<Arc<Model>> {
     let names = || list(models.iter().map(|model| model.name.as_str()));
     let Some(entry) = top.get("model") else {
         problems.add_if_complete(0, format!("no model is named; write model = \"...\", models are: {}", names()));
         return None;
     };
     let name = text(entry.node, problems, "model")?;
+    if name.ends_with(".toml") {
+        return model_file::named_model(models, &name, entry.node.at, problems, folder);
+    }
     let model = models.find(&name);
     if model.is_none() {
         problems.add(entry.node.at, format!("unknown model \"{}\"; models are: {}", shortened(&name), names()));

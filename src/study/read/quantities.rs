@@ -24,7 +24,10 @@ impl Reader<'_> {
     /// The input or output of that name, with a report if there is none.
     pub(super) fn quantity(&self, name: &str, at: usize, label: &str) -> Option<Quantity> {
         let found = self.find_quantity(name);
-        if found.is_none() {
+        if found.is_none() && self.model.hides(name) {
+            let message = format!("{label}: {name} is a hidden formula, an intermediate value; drop hidden, or name it among the outputs");
+            self.problems.add(at, message);
+        } else if found.is_none() {
             let names: Vec<_> = self
                 .model
                 .outputs

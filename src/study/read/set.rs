@@ -233,7 +233,7 @@ fn joint_axis(name: &str, top: &TomlTable<'_>, folder: &Path, is_input: &dyn Fn(
         }
         let file = entry.node.table().and_then(|table| Some(table.get("csv")?.node.value.as_str()?.to_owned()));
         // A file that cannot be read is reported when the study is.
-        let Some(text) = file.and_then(|file| csv_text(folder, &file).ok()) else { return false };
+        let Some(text) = file.and_then(|file| csv_text(folder, &file, "study").ok()) else { return false };
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
         reader.headers().is_ok_and(|header| header.iter().any(|it| it == name))
     };

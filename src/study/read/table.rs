@@ -104,8 +104,7 @@ impl<'t> Problems<'t> {
             return;
         }
         // Named as the study itself is: relative to where the user is.
-        let file = Path::new(self.file).parent().unwrap_or(Path::new("")).join(csv);
-        self.push(at, file.display().to_string(), line, column, message.as_ref());
+        self.push(at, self.beside(csv), line, column, message.as_ref());
     }
 
     fn push(&self, at: usize, file: String, line: usize, column: usize, message: &str) {
@@ -118,6 +117,18 @@ impl<'t> Problems<'t> {
         self.found.borrow_mut().push((at, Problem { file, line, column, message }));
     }
 
+    /// Adds the problems of a file that the study names at the byte `at`.
+    pub(super) fn adopt(&self, at: usize, of_file: Vec<Problem>) {
+        for problem in of_file.into_iter().take_while(|_| !self.is_full()) {
+            self.found.borrow_mut().push((at, problem));
+        }
+    }
+
+    /// A file as messages call it that has this path from the folder of this one.
+    pub(super) fn beside(&self, file: &str) -> String {
+        Path::new(self.file).parent().unwrap_or(Path::new("")).join(file).display().to_string()
+    }
+
     /// Are there as many as are reported? Then the rest need not be read.
     pub(super) fn is_full(&self) -> bool {
         let full = self.found.borrow().len() >= MOST_PROBLEMS;
@@ -128,6 +139,11 @@ impl<'t> Problems<'t> {
     /// Notes that parts of the file were not understood.
     pub(super) fn mark_incomplete(&self) {
         self.incomplete.set(true);
+    }
+
+    /// Was a part of the file not understood?
+    pub(super) fn is_incomplete(&self) -> bool {
+        self.incomplete.get()
     }
 
     /// Does this text stand in the file at that byte?

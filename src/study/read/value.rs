@@ -114,6 +114,15 @@ pub(crate) fn checked(value: f64, input: &Input) -> Result<f64, String> {
     Ok(value)
 }
 
+/// True or false, with a report if it is something else.
+pub(super) fn truth(entry: &Entry<'_>, problems: &Problems<'_>, label: &str) -> Option<bool> {
+    let value = if let DeValue::Boolean(value) = entry.node.value { Some(*value) } else { None };
+    if value.is_none() {
+        problems.add(entry.node.at, format!("{label}: found {}; {} must be true or false", entry.node.found(), entry.key));
+    }
+    value
+}
+
 /// A whole number between two ends, with a report if it is something else.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked to be whole, not negative and exact")]
 pub(super) fn whole(entry: &Entry<'_>, problems: &Problems<'_>, label: &str, low: u64, high: u64) -> Option<u64> {

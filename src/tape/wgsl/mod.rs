@@ -423,6 +423,10 @@ fn put(text: &mut String, indent: &str, line: &str, equation: &str) {
 fn broken(line: &str, indent: &str) -> String {
     let Some(open) = line.find('(') else { return line.to_owned() };
     let Some(close) = line.rfind(')') else { return line.to_owned() };
+    // Parentheses around a sum are no call: a comma in front of the closing one would be none of WGSL.
+    if !line[..open].ends_with(|it: char| it.is_ascii_alphanumeric() || it == '_') {
+        return line.to_owned();
+    }
     let (mut depth, mut from, mut parts) = (0, open + 1, Vec::new());
     for (at, byte) in line.bytes().enumerate().take(close).skip(open + 1) {
         match byte {

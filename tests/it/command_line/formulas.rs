@@ -139,3 +139,54 @@ fn what_is_wrong_with_formulas_is_told_with_its_place() {
     }
     assert!(wrong.is_empty(), "{wrong}");
 }
+
+const BRAKE: &str = include_str!("../formulas/models/band-brake.toml");
+const GRIP: &str = include_str!("../formulas/models/grip.csv");
+const BRAKES: &str = include_str!("../formulas/models/brakes.toml");
+
+#[test]
+fn a_result_of_a_model_in_a_file_needs_neither_model_nor_curve() {
+    let folder = folder_with("study.toml", BRAKES);
+    let at = folder.path();
+    write(at, "band-brake.toml", BRAKE);
+    write(at, "grip.csv", GRIP);
+    ask(at, "sweep study.toml --out one --engine cpu").text();
+    for number in 1..=2 {
+        ask(at, &format!("sweep study.toml --shard {number}/2 --out shard-{number} --tile 100")).text();
+    }
+    for name in ["band-brake.toml", "grip.csv"] {
+        std::fs::remove_file(at.join(name)).expect("it was there");
+    }
+    ask(at, "merge shard-1 shard-2 --out two").text();
+    same_result(&files(&at.join("one")), &files(&at.join("two"))).unwrap_or_else(|problem| panic!("{problem}"));
+    ask(at, "report one").text();
+    let refused = ask(at, "check study.toml").refusal(2);
+    assert!(refused.starts_with("error: study.toml:1:9: model: ") && refused.contains("band-brake.toml"), "{refused}");
+}
+
+#[test]
+fn commands_take_the_file_of_a_model_and_tell_it_from_a_study() {
+    let folder = folder_with("brake.toml", BRAKE);
+    let at = folder.path();
+    write(at, "grip.csv", GRIP);
+    write(at, "neither.toml", "title = \"Something\"\n");
+    write(at, "study.toml", &changed(BRAKES, &[("band-brake.toml", "brake.toml")]));
+    let page = ask(at, "models brake.toml").text();
+    assert!(page.contains("grip_used") && page.contains("if(friction == 'measured', grip(rubbing_speed_m_per_s), friction)"), "{page}");
+    let described: serde_json::Value = serde_json::from_str(&ask(at, "models brake.toml --json").text()).expect("it is JSON");
+    assert_eq!((&described["name"], described["formulas"].as_array().map(Vec::len)), (&"brake".into(), Some(8)));
+    let one = ask(at, "eval brake.toml --preset heavy --set friction=0.2 --json").text();
+    let one: serde_json::Value = serde_json::from_str(&one).expect("it is JSON");
+    assert_eq!((&one["model"], &one["inputs"]["rows"], &one["status"]), (&"brake".into(), &3.into(), &"ok".into()));
+    let verified = ask(at, "verify brake.toml --samples 2000").text();
+    assert!(verified.contains("all error bounds hold"), "{verified}");
+    assert!(ask(at, "eval study.toml --design 780").text().contains("total_EUR"));
+    assert!(ask(at, "models study.toml").refusal(2).contains("study.toml is a study"));
+    for command in ["eval", "verify", "models"] {
+        let refused = ask(at, &format!("{command} neither.toml")).refusal(2);
+        assert!(
+            refused.starts_with("error: neither.toml is neither a study, which names a model, nor a model, which has [formulas]"),
+            "{refused}"
+        );
+    }
+}

@@ -2,12 +2,21 @@
 //!
 //! The second implementation of each formula is a closure in Rust, in other words than the formula, around the model as it stands.
 
+mod broken_models;
+mod files;
+mod same;
+
 use beltspace::models::{Model, Status, evaluate, find};
 use beltspace::plan::Plan;
 use beltspace::study::Goal;
 use beltspace::{Data, Engine, Judging, Options, Outcome, Study};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
+
+/// A study whose model and curves stand in `models`.
+fn parsed(text: &str) -> Study {
+    Study::parse_in(text, "study.toml", "tests/it/formulas/models".as_ref()).unwrap_or_else(|error| panic!("{error}"))
+}
 
 /// Numbers by name.
 type Numbers = BTreeMap<String, f64>;

@@ -70,8 +70,12 @@ const SPECTRUM: &str = "model = \"metal-cvt\"\n[design]\nband_thickness_mm = [0.
 
 const TABLE: &str = "\u{feff}ratio, torque_Nm,friction\r\n0.5,50,0.08\r\n\r\n1,\"60 Nm\",0.08\r\n2,150,9e-2\n2.0,151,0.1\n";
 
+/// The file of a model.
+const MODEL: &str = include_str!("../formulas/models/band-brake.toml");
+const GRIP: &str = include_str!("../formulas/models/grip.csv");
+
 /// The kinds of what is mangled.
-pub const KINDS: [&str; 4] = ["study", "table", "result", "checkpoint"];
+pub const KINDS: [&str; 5] = ["study", "table", "model", "result", "checkpoint"];
 /// One that breaks on purpose, by the number of the case.
 pub const BITE: &str = "bite";
 
@@ -114,6 +118,13 @@ pub fn run(kind: &str, random: &mut Random, number: u64, base: &Path) -> bool {
             let gently = random.chance(0.5);
             let text = if gently { mutate::numbers(random, &text) } else { mutate::bytes(random, &text, FULL.as_bytes()) };
             readers::table(&text, folder.path())
+        }
+        "model" => {
+            let gently = random.chance(0.5);
+            let text =
+                if gently { mutate::numbers(random, MODEL.as_bytes()) } else { mutate::bytes(random, MODEL.as_bytes(), FULL.as_bytes()) };
+            fs::write(folder.path().join("grip.csv"), GRIP).expect("it can be written");
+            readers::model(&text, folder.path())
         }
         "result" => {
             copy(&base.join(["result-full", "result-full", "result-lines", "result-sampled"][random.below(4)]), folder.path());

@@ -41,6 +41,11 @@ fn mangled_tables_are_read_or_refused() {
 }
 
 #[test]
+fn mangled_models_are_read_or_refused() {
+    check("model");
+}
+
+#[test]
 fn mangled_results_are_read_or_refused() {
     check("result");
 }

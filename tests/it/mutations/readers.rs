@@ -5,13 +5,14 @@ use beltspace::checkpoint::{Checkpoint, Saved};
 use beltspace::directory::{self, Contents};
 use beltspace::export::Certified;
 use beltspace::merge::{check_set, merge};
+use beltspace::models::evaluate;
 use beltspace::names::CHECKPOINT;
 use beltspace::plan::Plan;
 use beltspace::reduce::Reduction;
 use beltspace::report::{Request, of_result, study_of};
 use beltspace::result_files::result_files;
 use beltspace::screen::{Control, Tables, Tally};
-use beltspace::study::{Study, Thresholds};
+use beltspace::study::{Study, Thresholds, read_model};
 use beltspace::sweep::{Settings, sweep};
 use std::path::Path;
 use std::time::Duration;
@@ -36,6 +37,17 @@ pub fn table(csv: &[u8], folder: &Path) -> bool {
     std::fs::write(folder.join("table.csv"), csv).expect("it can be written");
     let study_text = "model = \"metal-cvt\"\n[design]\nband_count = [8, 10]\n[operation]\ncases = { csv = \"table.csv\" }\n\
                       [objectives]\nslip_margin = \"max\"\n";
+    study(study_text, folder)
+}
+
+/// The file of a model that a study names.
+pub fn model(text: &[u8], folder: &Path) -> bool {
+    let path = folder.join("brake.toml");
+    std::fs::write(&path, text).expect("it can be written");
+    if let Ok(model) = read_model(&path) {
+        let _ = evaluate(&model, &model.defaults());
+    }
+    let study_text = "model = \"brake.toml\"\n[design]\nrows = [1, 2]\n[operation]\nspeed_rpm = [0, 900]\n[objectives]\nrows = \"max\"\n";
     study(study_text, folder)
 }
 

@@ -1,0 +1,170 @@
+//! Models of the program written again as files: a study of either has the same results, on every engine and by every method.
+
+use super::parsed;
+use beltspace::{Engine, Judging, Options, Outcome, Study};
+use std::path::Path;
+use std::time::Instant;
+
+/// Studies of models that are also files: all axes, some of them words or joint, a report with all it may have.
+const STUDIES: [(&str, &str); 3] = [
+    (
+        "metal-cvt",
+        r#"
+title = "Metal"
+[design]
+groove_angle_deg  = { from = 18, to = 30, count = 4 }
+band_thickness_mm = { from = 0.10, to = 0.30, step = 0.02 }
+band_count        = { from = 6, to = 14, step = 2 }
+traction          = ["limit", 0, 0.3, 0.5]
+belt_length_mm    = [300, 500, 613, 640]
+[operation]
+ratio     = { from = 0.5, to = 2.0, count = 5, spacing = "log" }
+torque_Nm = [0, 50, 150]
+[uncertainty]
+friction = { from = 0.065, to = 0.095, count = 3 }
+[fixed]
+strength_MPa = 800
+[constraints]
+slip_margin   = { min = 0 }
+stress_margin = { min = 0 }
+[objectives]
+axial_force_N = "min"
+stress_margin = "max"
+band_count    = "min"
+"#,
+    ),
+    (
+        "rubber-cvt",
+        r#"
+title = "Rubber"
+[design]
+groove_angle_deg  = { from = 24, to = 34, count = 5 }
+belt_width_mm     = { from = 20, to = 50, count = 7 }
+belt_thickness_mm = { from = 1, to = 3, count = 5 }
+traction          = [0.4, 0.6, 0.8, "limit"]
+[operation]
+cases = [{ ratio = 0.6, torque_Nm = 8 }, { ratio = 1, torque_Nm = 12 }, { ratio = 2.2, torque_Nm = 10 }]
+[uncertainty]
+friction            = { from = 0.3, to = 0.45, count = 3 }
+elastic_modulus_MPa = [500, 700]
+[constraints]
+slip_margin   = { min = 0 }
+stress_margin = { min = 0 }
+[objectives]
+axial_force_N = "min"
+stress_margin = "max"
+belt_width_mm = "min"
+"#,
+    ),
+    (
+        "pulley-load",
+        r#"
+title = "Pulley"
+[design]
+mean_radius_mm   = { from = 40, to = 80, step = 4 }
+slack_tension_N  = { from = 100, to = 900, step = 50 }
+groove_angle_deg = { from = 34, to = 38, count = 3 }
+groove_count     = { from = 1, to = 3 }
+[operation]
+cases = [{ power_kW = 3.0, speed_rpm = 3000 }, { power_kW = 0, speed_rpm = 900 }, { power_kW = 4.0, speed_rpm = 6500 }]
+wrap_angle_deg = [88, 110]
+[uncertainty]
+friction_direction_deg = [0, 22.5, 45]
+belt_mass_kg_per_m     = [0.10, 0.12]
+[constraints]
+friction_margin = { min = 0 }
+[objectives]
+resultant_force_N              = "min"
+mean_radius_mm                 = "min"
+tight_end_flank_force_N_per_mm = "min"
+"#,
+    ),
+];
+
+/// A study of the model itself, and of the same in a file; with all its outputs in the tables and histograms, or with the front alone.
+fn both(model: &str, text: &str, whole: bool) -> [Study; 2] {
+    let known = beltspace::models::find(model).expect("it is a model");
+    let names: Vec<String> = known.outputs.iter().map(|output| format!("\"{}\"", output.name)).collect();
+    let first = &known.outputs[0].name;
+    let bins: Vec<String> = known.outputs.iter().map(|output| format!("{{ of = \"{}\", bins = 9 }}", output.name)).collect();
+    let columns = names.join(", ");
+    let report = match whole {
+        true => format!("[report]\ncolumns = [{columns}]\nhistograms = [{}]\ntop = {{ by = \"{first}\", count = 9 }}\n", bins.join(", ")),
+        false => format!("[report]\ncolumns = [{columns}]\n"),
+    };
+    [model.to_owned(), format!("{model}-in-a-file.toml")].map(|name| parsed(&format!("model = \"{name}\"\n{text}{report}")))
+}
+
+/// Everything of an outcome that files hold, but for the names of statuses that never come up.
+fn results(outcome: &Outcome) -> Vec<(String, String)> {
+    let tables = outcome.histograms.iter().map(|(name, table)| (name.clone(), String::from_utf8_lossy(&table.csv()).into_owned()));
+    let own = [("front", Some(&outcome.front)), ("top", outcome.top.as_ref())];
+    let own = own.into_iter().filter_map(|(name, table)| Some((name.to_owned(), String::from_utf8_lossy(&table?.csv()).into_owned())));
+    own.chain(tables).chain([("counts".to_owned(), format!("{:?}", outcome.counts))]).collect()
+}
+
+#[test]
+fn a_model_written_again_as_a_file_gives_the_same_bytes() {
+    let adapter = beltspace::gpu::adapters().into_iter().next().expect("the tests have an adapter").name;
+    let cpu = || Options::default().engine(Engine::Cpu);
+    for (model, text) in STUDIES {
+        let [known, in_file] = both(model, text, true);
+        let expected = known.sweep(cpu().judging(Judging::Exhaustive)).expect("it is swept");
+        let counts = expected.counts;
+        assert!(counts.feasible > 20 && counts.feasible < counts.designs && counts.front > 3, "{model}: {counts:?}");
+        let expected = results(&expected);
+        let gpu = Options::default().engine(Engine::Gpu).adapter(adapter.clone());
+        for options in [cpu(), cpu().threads(1), gpu] {
+            let found = results(&in_file.sweep(options.judging(Judging::Exhaustive)).expect("it is swept"));
+            for (one, other) in expected.iter().zip(&found) {
+                assert_eq!(one, other, "{model}");
+            }
+            assert_eq!(expected.len(), found.len(), "{model}");
+        }
+        let [known, in_file] = both(model, text, false);
+        let by = |study: &Study, judging: Judging| results(&study.sweep(cpu().judging(judging)).expect("it is swept"));
+        assert_eq!(by(&known, Judging::Exhaustive), by(&in_file, Judging::Bounds), "{model}");
+    }
+}
+
+/// One operation in another order is seen.
+#[test]
+fn another_order_of_operations_gives_other_bytes() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/it/formulas/models");
+    let text = std::fs::read_to_string(folder.join("pulley-load-in-a-file.toml")).expect("it is there");
+    let other = text.replace("\"power_kW / belt_speed_m_per_s\"", "\"power_kW * (1 / belt_speed_m_per_s)\"");
+    assert_ne!(text, other);
+    let own = tempfile::tempdir().expect("there is room");
+    std::fs::write(own.path().join("other.toml"), other).expect("it is written");
+    let (_, study) = STUDIES[2];
+    let [known, _] = both("pulley-load", study, true);
+    let other = Study::parse_in(
+        &format!("model = \"other.toml\"\n{study}[report]\ncolumns = [\"effective_tension_N\"]\n"),
+        "study.toml",
+        own.path(),
+    );
+    let options = || Options::default().engine(Engine::Cpu).judging(Judging::Exhaustive);
+    let [known, other] = [known, other.expect("it is right")].map(|it| it.sweep(options()).expect("it is swept"));
+    assert_ne!(known.front.csv(), other.front.csv());
+}
+
+/// Not a test of time, which depends on the machine: it prints the factor, and fails only where something is computed again and again.
+#[test]
+fn a_model_in_a_file_takes_about_as_long() {
+    for (model, text) in STUDIES {
+        // Levels enough that the time is that of the designs.
+        let text =
+            text.replace("step = 0.02 }", "step = 0.001 }").replace("count = 7 }", "count = 201 }").replace("step = 50 }", "step = 4 }");
+        let [known, in_file] = both(model, &text, false).map(|study| {
+            let options = || Options::default().engine(Engine::Cpu).judging(Judging::Exhaustive).threads(1);
+            let time = |_| {
+                let start = Instant::now();
+                study.sweep(options()).expect("it is swept");
+                start.elapsed().as_secs_f64()
+            };
+            (0..3).map(time).fold(f64::INFINITY, f64::min)
+        });
+        println!("{model}: {known:.3} s, in a file {in_file:.3} s, factor {:.2}", in_file / known);
+        assert!(in_file < 20.0 * known, "{model}: {known} s, in a file {in_file} s");
+    }
+}
