@@ -127,12 +127,15 @@ pub fn run(kind: &str, random: &mut Random, number: u64, base: &Path) -> bool {
             readers::model(&text, folder.path())
         }
         "result" => {
-            copy(&base.join(["result-full", "result-full", "result-lines", "result-sampled"][random.below(4)]), folder.path());
+            copy(
+                &base.join(["result-full", "result-full", "result-lines", "result-sampled", "result-spectrum"][random.below(5)]),
+                folder.path(),
+            );
             result(random, folder.path());
             readers::result(folder.path())
         }
         "checkpoint" => {
-            let (name, part) = (random.pick(&["full", "full", "lines", "sampled"]), random.pick(&["whole", "half"]));
+            let (name, part) = (random.pick(&["full", "full", "lines", "sampled", "spectrum"]), random.pick(&["whole", "half"]));
             copy(&base.join(format!("checkpoint-{name}-{part}")), folder.path());
             checkpoint(random, &folder.path().join("checkpoint"));
             readers::checkpoint(folder.path())
