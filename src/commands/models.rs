@@ -6,7 +6,7 @@ use crate::terminal::{self, TextGrid, bold, dim};
 use beltspace::error::{Error, Result};
 use beltspace::models::{self, Input, Model, Range, Worse};
 use beltspace::study::{number, value_of};
-use beltspace::tape::{EquationLine, Equations};
+use beltspace::tape::{EquationLine, FormulaEquations};
 use serde_json::{Map, Value, json};
 
 pub fn run(request: &cli::ModelsArgs) -> Result<()> {
@@ -89,8 +89,14 @@ fn page(model: &Model) -> String {
 }
 
 /// What the model computes, line by line, with its symbols.
+///
+/// Of a model with formulas of its own, which stand on the page as they are written, it is what they are based on.
 fn equations(model: &Model) -> String {
-    let Some(Equations { lines, margins, .. }) = model.equations() else { return String::new() };
+    let (model, of) = match &model.origin() {
+        Some(base) => (*base, format!(" of {}", base.name)),
+        None => (model, String::new()),
+    };
+    let Some(FormulaEquations { lines, margins, .. }) = model.equations() else { return String::new() };
     let mut grid = TextGrid::default();
     for EquationLine { depth, left, right, source, .. } in lines {
         let indent = "  ".repeat(depth);
@@ -107,7 +113,10 @@ fn equations(model: &Model) -> String {
         let reason = if condition.quiet { format!("absent: {}", condition.invalidates.join(", ")) } else { condition.reason.clone() };
         statuses.row([reason, format!("unless {margin} {sign} 0")]);
     }
-    let head = bold("equations, in SI units and radians");
+    if grid.is_empty() && statuses.is_empty() {
+        return String::new();
+    }
+    let head = bold(&format!("equations{of}, in SI units and radians"));
     format!("  {head}\n{}\n{}\n", grid.indented(2), statuses.indented(2))
 }
 

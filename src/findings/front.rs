@@ -2,7 +2,7 @@
 
 use crate::certify::{Row, lowest_columns, rows};
 use crate::error::Result;
-use crate::models::{Effort, Worse};
+use crate::models::Effort;
 use crate::plan::Plan;
 use crate::screen::Control;
 use crate::study::{Axis, Quantity, Study, number};
@@ -111,14 +111,15 @@ pub(super) fn ends(plan: &Plan, front: &[Row]) -> Vec<FrontEnd> {
     found
 }
 
-/// Quantities without a constraint that fall below zero on the front: objectives, columns of the report, and outputs of which less is worse.
+/// Quantities without a constraint that fall below zero on the front: objectives, columns of the report, and margins of the model.
 ///
 /// # Errors
 /// [`Error::Stopped`](crate::error::Error::Stopped) after `control.stop`.
 pub(super) fn below_zero(plan: &Plan, front: &[Row], threads: usize, control: &Control) -> Result<Vec<BelowZero>> {
     let study = &plan.study;
     let model = &study.model;
-    let margins = (0..model.outputs.len()).filter(|&output| model.outputs[output].worse == Worse::Lower).map(Quantity::Output);
+    // Of other outputs below zero may be as good as above it.
+    let margins = (0..model.outputs.len()).filter(|&output| model.outputs[output].name.ends_with("margin")).map(Quantity::Output);
     let named = study.objectives.iter().map(|it| it.quantity).chain(study.report.columns.iter().map(|it| it.of));
     let mut asked: Vec<Quantity> = Vec::new();
     for quantity in named.filter(|it| it.output().is_some()).chain(margins) {

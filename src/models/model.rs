@@ -6,7 +6,7 @@ use super::source::{Extension, FormulaSource};
 use super::status::Evaluation;
 use crate::error::{Error, Result};
 use crate::pulley::Design;
-use crate::tape::{Equations, Recordable, Symbols};
+use crate::tape::{FormulaEquations, Recordable, Symbols};
 use std::sync::Arc;
 
 /// Sentences on a study, from the values of the inputs that no axis sets.
@@ -112,13 +112,13 @@ impl Model {
     }
 
     /// What it computes as equations for people, in its symbols; `None` if its formula cannot be recorded.
-    pub fn equations(&self) -> Option<Equations> {
+    pub fn equations(&self) -> Option<FormulaEquations> {
         let formula = self.kernel.formula()?;
         let symbols = Symbols {
             inputs: self.inputs.iter().map(|input| input.symbol.clone()).collect(),
             outputs: self.outputs.iter().map(|output| output.symbol.clone()).collect(),
         };
-        Some(Equations::of(formula, &symbols, self.outputs.len(), self.conditions.len()))
+        Some(FormulaEquations::of(formula, &symbols, self.outputs.len(), self.conditions.len()))
     }
 
     /// The defaults of all inputs, in their units.

@@ -44,7 +44,7 @@ pub struct Symbols {
 /// The equations of a formula.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
-pub struct Equations {
+pub struct FormulaEquations {
     /// What is computed on the way, and then the outputs, operands first.
     pub lines: Vec<EquationLine>,
     /// The margin of each condition, with what is computed for it on the way. A condition holds where its margin is at least zero (above
@@ -52,7 +52,7 @@ pub struct Equations {
     pub margins: Vec<String>,
 }
 
-impl Equations {
+impl FormulaEquations {
     /// Of a formula with so many outputs and conditions that its model lists.
     pub fn of(formula: &dyn Recordable, symbols: &Symbols, outputs: usize, conditions: usize) -> Self {
         let fields = formula.fields();

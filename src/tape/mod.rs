@@ -22,7 +22,7 @@ pub mod wgsl;
 
 pub use columns::{CHUNK, ColumnValue, NodeColumns};
 pub use dual::Dual;
-pub use equations::{EquationLine, Equations, Symbols};
+pub use equations::{EquationLine, FormulaEquations, Symbols};
 pub use error_bound::{RunningError, nearest_f32};
 pub use interval::{EVERYTHING, Interval};
 pub use list::{List, ListRoot};

@@ -4,7 +4,7 @@
 use crate::random::Random;
 use beltspace::formula::{ComparisonSign, Expression, ExpressionNode, Operator};
 use beltspace::models::{Model, evaluate, find};
-use beltspace::tape::{EquationLine, Equations};
+use beltspace::tape::{EquationLine, FormulaEquations};
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
@@ -83,7 +83,7 @@ fn value(expression: &Expression, values: &Values, inside: &[(String, Expression
 }
 
 /// Everything that the equations compute of inputs in SI units, and the margins.
-fn computed(model: &Model, equations: &Equations, si: &[f64]) -> (Values, Vec<f64>) {
+fn computed(model: &Model, equations: &FormulaEquations, si: &[f64]) -> (Values, Vec<f64>) {
     let fields = model.kernel.formula().expect("it can be recorded").fields();
     let symbol = |symbol: &str, field: &str| {
         if symbol.is_empty() || legal(symbol).contains([' ', '/', '(', '*']) { field.to_owned() } else { legal(symbol) }
@@ -105,7 +105,7 @@ fn computed(model: &Model, equations: &Equations, si: &[f64]) -> (Values, Vec<f6
 }
 
 /// Compares what the equations give with the model at random inputs; returns how many numbers were compared.
-fn compare(model: &Model, equations: &Equations) -> Result<usize, String> {
+fn compare(model: &Model, equations: &FormulaEquations) -> Result<usize, String> {
     let fields = model.kernel.formula().expect("it can be recorded").fields();
     let mut random = Random::new(7);
     let mut compared = 0;
