@@ -2,6 +2,8 @@
 //!
 //! The second implementation of each formula is a closure in Rust, in other words than the formula, around the model as it stands.
 
+mod random;
+
 use beltspace::models::{Model, Status, evaluate, find};
 use beltspace::plan::Plan;
 use beltspace::study::Goal;

@@ -1,9 +1,9 @@
 //! Random small studies, judged by brute force and by the pipeline in many ways, which must all agree to the last bit.
 
-mod answer;
-mod expected;
+pub mod answer;
+pub mod expected;
 pub mod naive;
-mod random_axes;
+pub mod random_axes;
 pub mod random_study;
 pub mod runs;
 
@@ -87,26 +87,31 @@ fn check(seed: u64, text: &mut String, coverage: &mut Coverage) {
 fn check_all_ways(seed: u64, text: &str, study: Study, evaluated: &Evaluated) -> (Plan, Expected) {
     let expected = Expected::new(&study, evaluated);
     let plan = Plan::new(study);
-    let pipeline = Pipeline::new(&plan, text);
+    let on_gpu = plan.study.model.on_gpu;
+    check_ways(seed, text, &plan, on_gpu, |found| expected.answer.difference(found));
+    (plan, expected)
+}
+
+/// Compares the result of one run with what is expected, and that of every other way to run the study with the first.
+pub fn check_ways(seed: u64, text: &str, plan: &Plan, on_gpu: bool, difference: impl Fn(&Answer) -> Option<String>) {
+    let pipeline = Pipeline::new(plan, text);
     let folder = tempfile::tempdir().expect("a folder can be made");
 
     let reference_state = pipeline.whole(&Settings { threads: 1, ..Settings::default() });
     let reference = pipeline.write(reference_state.clone(), 1, &folder.path().join("whole"));
     let found = Answer::read(&folder.path().join("whole"));
-    if let Some(difference) = expected.answer.difference(&found) {
+    if let Some(difference) = difference(&found) {
         panic!("seed {seed}: {difference}");
     }
     assert_eq!(reference["study.toml"], text.as_bytes(), "seed {seed}");
-    for name in
-        expected.answer.tables.keys().filter(|name| !["scenarios.csv", "top.csv", "sample.csv", "variants.csv"].contains(&name.as_str()))
-    {
+    for name in found.tables.keys().filter(|name| !["scenarios.csv", "top.csv", "sample.csv", "variants.csv"].contains(&name.as_str())) {
         assert!(reference.contains_key(&name.replace(".csv", ".svg")), "seed {seed}: there is no picture of {name}");
     }
 
     let random = &mut Random::new(seed);
     let mut ways: Vec<(String, State)> = Vec::new();
     // Handing over tens of thousands of single designs would only measure the lock.
-    let least = evaluated.designs / 2000;
+    let least = plan.designs() / 2000;
     for tile in [1, 7, 1000, Settings::default().tile].map(|tile| tile.max(least)) {
         let options = options(random, tile);
         ways.push((format!("{options:?}"), pipeline.whole(&options)));
@@ -124,15 +129,13 @@ fn check_all_ways(seed: u64, text: &str, study: Study, evaluated: &Evaluated) ->
             panic!("seed {seed}: {name} differs with {way}");
         }
     }
-    if plan.study.model.on_gpu {
+    if on_gpu {
         let (state, files) = pipeline.on_device(seed.is_multiple_of(2), &folder.path().join("device"));
         assert_eq!(state.feasible, reference_state.feasible, "seed {seed}: on the device");
         if let Some(name) = differing_file(&reference, &files) {
             panic!("seed {seed}: {name} differs on the device");
         }
     }
-    drop(pipeline);
-    (plan, expected)
 }
 
 const EVERY_FEATURE: &[&str] = &[
