@@ -88,12 +88,21 @@ fn check_all_ways(seed: u64, text: &str, study: Study, evaluated: &Evaluated) ->
     let expected = Expected::new(&study, evaluated);
     let plan = Plan::new(study);
     let on_gpu = plan.study.model.on_gpu;
-    check_ways(seed, text, &plan, on_gpu, |found| expected.answer.difference(found));
+    check_ways(seed, text, &plan, Thorough { on_gpu, write_all: full() }, |found| expected.answer.difference(found));
     (plan, expected)
 }
 
+/// What takes its time.
+#[derive(Clone, Copy)]
+pub struct Thorough {
+    /// Run it on the device too?
+    pub on_gpu: bool,
+    /// Write the files of every way? They are a function of the state; syncing them to the disk takes most of the time.
+    pub write_all: bool,
+}
+
 /// Compares the result of one run with what is expected, and that of every other way to run the study with the first.
-pub fn check_ways(seed: u64, text: &str, plan: &Plan, on_gpu: bool, difference: impl Fn(&Answer) -> Option<String>) {
+pub fn check_ways(seed: u64, text: &str, plan: &Plan, thorough: Thorough, difference: impl Fn(&Answer) -> Option<String>) {
     let pipeline = Pipeline::new(plan, text);
     let folder = tempfile::tempdir().expect("a folder can be made");
 
@@ -120,8 +129,7 @@ pub fn check_ways(seed: u64, text: &str, plan: &Plan, on_gpu: bool, difference: 
     let written_too = random.below(ways.len());
     for (number, (way, state)) in ways.into_iter().enumerate() {
         assert!(same(&state, &reference_state), "seed {seed}: something else is kept with {way}");
-        // The files are a function of the state; syncing them to the disk takes most of the time.
-        if !full() && number != written_too {
+        if !thorough.write_all && number != written_too {
             continue;
         }
         let files = pipeline.write(state, random.whole(1, 3), &folder.path().join(number.to_string()));
@@ -129,7 +137,7 @@ pub fn check_ways(seed: u64, text: &str, plan: &Plan, on_gpu: bool, difference: 
             panic!("seed {seed}: {name} differs with {way}");
         }
     }
-    if on_gpu {
+    if thorough.on_gpu {
         let (state, files) = pipeline.on_device(seed.is_multiple_of(2), &folder.path().join("device"));
         assert_eq!(state.feasible, reference_state.feasible, "seed {seed}: on the device");
         if let Some(name) = differing_file(&reference, &files) {

@@ -55,7 +55,7 @@ impl Asked {
         let goal = |random: &mut Random| random.pick(&["min", "max"]);
         let mut asked = Self::default();
         let mut names: Vec<&str> = Vec::new();
-        let wanted = random.pick(&[0, 1, 2, 2, 2, 3, 4]);
+        let wanted = random.pick(&[0, 1, 2, 2, 3, 3, 4]);
         while names.len() < wanted {
             let name = draw(random);
             if !names.contains(&name) {

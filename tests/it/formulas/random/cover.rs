@@ -139,7 +139,7 @@ const SHORT: &[&str] = &[
     "by bounds",
     "on the device",
     "empty front",
-    "front of at least 5",
+    "front of 1",
 ];
 
 /// Counts what a study had.

@@ -31,6 +31,9 @@ const SIGNS: [&str; 4] = ["<", "<=", ">", ">="];
 impl Grower<'_> {
     /// What a tree comes to in a design, if it has a value there.
     fn value(&mut self, tree: &Tree) -> Option<f64> {
+        if !constants_are_good(tree) {
+            return None;
+        }
         let start = self.random.below(self.samples.len());
         let named = Named { name: String::new(), tree: tree.clone() };
         (0..6).find_map(|at| match self.walker.formula(&named, &self.samples[(start + at) % self.samples.len()]).held {
@@ -82,6 +85,12 @@ impl Grower<'_> {
         if self.random.chance(0.06) && powers == PLAIN {
             return Tree::Pi;
         }
+        // What may have no value is rare, and matters.
+        if let Some(lacking) = self.named(|it| it.may_lack && is_small(quotient(powers, it.powers))).filter(|_| self.random.chance(0.3)) {
+            let rest = quotient(powers, lacking.powers);
+            let name = Tree::Name(lacking.name);
+            return if rest == PLAIN { name } else { Tree::binary('*', name, self.number(rest, 1.0)) };
+        }
         match self.named(|it| it.powers == powers) {
             Some(found) if self.random.chance(0.7) => Tree::Name(found.name),
             _ => match self.named(|it| is_small(quotient(powers, it.powers))) {
@@ -121,14 +130,13 @@ impl Grower<'_> {
                 let factor = Tree::Number(self.random.whole(2, 9) as f64, None);
                 // A quotient of what is made of whole numbers comes out just below or above a whole one now and then.
                 let of = match self.named(|it| it.powers != PLAIN) {
-                    Some(name) if self.random.chance(0.4) => {
-                        let size = [0.1, 0.01, 0.001, 0.3, 0.7][self.random.below(5)];
-                        let near = self.number(name.powers, 1.0);
-                        let part = match near {
-                            Tree::Number(_, bracket) => Tree::Number(size, bracket),
-                            other => other,
-                        };
-                        Tree::binary('/', Tree::Name(name.name), part)
+                    Some(name) if self.random.chance(0.5) => {
+                        let parts = self.random.whole(3, 50) as f64;
+                        let of = Tree::Name(name.name);
+                        let si = self.value(&of).filter(|it| it.abs() > 1e-100).unwrap_or(1.0).abs();
+                        let bracket = bracket(name.powers, |limit| self.random.below(limit));
+                        let part = bracket.as_ref().map_or(si, |it| it.measured.from_si(si)) / parts;
+                        Tree::binary('/', of, Tree::Number(part, bracket))
                     }
                     _ => Tree::binary('*', factor, self.ratio(depth)),
                 };
@@ -143,6 +151,12 @@ impl Grower<'_> {
             return self.leaf(powers);
         }
         let d = depth - 1;
+        if powers == PLAIN && self.random.chance(0.4) {
+            return self.plain(d);
+        }
+        if powers == ANGLE && self.random.chance(0.5) {
+            return self.angle(d);
+        }
         match self.random.below(26) {
             0..=2 => {
                 let left = self.tree(powers, d);
@@ -207,10 +221,8 @@ impl Grower<'_> {
             }
             21 => self.root(powers, d),
             22 | 23 => self.curve(powers, d),
-            _ if powers == PLAIN => self.plain(d),
-            _ if powers == ANGLE => self.angle(d),
             _ => {
-                let factor = self.ratio(d);
+                let factor = if self.random.chance(0.6) { self.plain(d) } else { self.ratio(d) };
                 Tree::binary('*', self.tree(powers, d), factor)
             }
         }
@@ -353,7 +365,7 @@ impl Grower<'_> {
             // Beyond what an exponent may be, now and then.
             "exp" | "exp_m1" if self.random.chance(0.1) => Tree::binary('*', Tree::Number(600.0, None), self.ratio(depth)),
             "ln" | "ln_1p" | "log10" if self.random.chance(0.3) => {
-                let least = Tree::Number(self.random.pick(&[0.5, 0.9, 2.0]), None);
+                let least = Tree::Number(self.random.pick(&[0.3, 0.5, 0.7, 1.2]), None);
                 Tree::binary('-', self.ratio(depth), least)
             }
             _ => self.ratio(depth),

@@ -2,6 +2,7 @@
 //! models.
 
 mod asked;
+mod bites;
 mod cover;
 mod grow;
 mod measure;
@@ -12,7 +13,7 @@ mod walk;
 use crate::bounds::ways;
 use crate::pipeline::expected::Expected;
 use crate::pipeline::runs::{Pipeline, differing_file};
-use crate::pipeline::{Coverage, check_ways, full};
+use crate::pipeline::{Coverage, Thorough, check_ways, full};
 use crate::random::Random;
 use asked::{Asked, Whole, parsed, walked};
 use beltspace::bounds::refusal;
@@ -122,7 +123,7 @@ fn random_formulas_give_what_a_walk_over_their_trees_gives_however_they_are_run(
     let (mut on_device, mut failed) = (Duration::ZERO, Vec::new());
     for seed in first..first + studies() {
         let mut text = String::new();
-        let device = on_device < PATIENCE && (full() || seed % 8 == 1);
+        let device = on_device < PATIENCE && (full() || seed % 12 == 1);
         let checked = catch_unwind(AssertUnwindSafe(|| check(seed, device, &mut text, &mut coverage)));
         match checked {
             Ok(took) => on_device += took,
@@ -132,8 +133,8 @@ fn random_formulas_give_what_a_walk_over_their_trees_gives_however_they_are_run(
             }
         }
     }
-    assert!(failed.is_empty(), "the studies of these seeds failed, see above: {failed:?}");
     eprintln!("of {} studies: {coverage:#?}", studies());
+    assert!(failed.is_empty(), "the studies of these seeds failed, see above: {failed:?}");
     if first == 1 {
         let missing = cover::missing(&coverage, full());
         assert!(missing.is_empty(), "too few random studies have: {missing:?}");
@@ -147,7 +148,8 @@ fn check(seed: u64, device: bool, text: &mut String, coverage: &mut Coverage) ->
     let curves = drawn.around.walker.curves.iter();
     text.extend(curves.map(|curve| format!("# {}.csv: {:?}\n", curve.name, curve.points)));
     let plan = Plan::new(parsed(&drawn.whole.text, drawn.folder.path()));
-    check_ways(seed, &drawn.whole.text, &plan, false, |found| drawn.expected.answer.difference_beyond(TOLERANCE, found));
+    let thorough = Thorough { on_gpu: false, write_all: false };
+    check_ways(seed, &drawn.whole.text, &plan, thorough, |found| drawn.expected.answer.difference_beyond(TOLERANCE, found));
     let mut took = Duration::ZERO;
     if device {
         let begun = Instant::now();

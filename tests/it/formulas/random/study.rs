@@ -57,6 +57,8 @@ struct Builder<'r> {
     by_formula: Vec<usize>,
     walker: Walker,
     samples: Vec<Numbers>,
+    /// Is the model's status ok there?
+    good: Vec<bool>,
 }
 
 impl Around {
@@ -71,6 +73,7 @@ impl Around {
             variables: Vec::new(),
             by_formula: Vec::new(),
             samples: Vec::new(),
+            good: Vec::new(),
         };
         builder.axes();
         builder.variables();
@@ -227,7 +230,8 @@ impl Builder<'_> {
             }
         }
         if with_outputs {
-            let lacks = |name: &str| self.model.conditions.iter().any(|it| it.invalidates.iter().any(|taken| taken == name));
+            // Where the model has a meaning otherwise.
+            let lacks = |name: &str| self.samples.iter().zip(&self.good).any(|(numbers, &good)| good && numbers[name] == Held::Absent);
             known.extend(self.model.outputs.iter().map(|it| plain(&it.name, it.integer, lacks(&it.name))));
         }
         known.extend(self.variables.iter().map(|it| plain(it, false, false)));
@@ -239,8 +243,9 @@ impl Builder<'_> {
     /// Adds a formula that is drawn until enough designs of the sample like what it gives.
     fn add(&mut self, name: &str, with_outputs: bool, draw: impl Fn(&mut Grower<'_>) -> Tree, likes: impl Fn(f64) -> bool) -> Option<()> {
         let known = self.readable(with_outputs);
-        let least = if self.random.chance(0.12) { 0.3 } else { 0.75 };
-        for _ in 0..40 {
+        // Now and then a formula of which many designs have no value, and that some surely have not.
+        let (least, most) = self.random.pick(&[(0.75, 1.0), (0.75, 1.0), (0.3, 1.0), (0.4, 0.95)]);
+        for attempt in 0..40 {
             let mut grower = Grower { random: self.random, known: known.clone(), walker: &self.walker, samples: &self.samples };
             let named = Named { name: name.to_owned(), tree: draw(&mut grower) };
             if !constants_are_good(&named.tree) || named.tree.to_string().len() > 1500 {
@@ -253,7 +258,9 @@ impl Builder<'_> {
                 _ => false,
             });
             let differ = values.iter().any(|it| *it != values[0]);
-            if (good.count() as f64) < least * values.len() as f64 || (!differ && self.random.chance(0.9)) {
+            let share = good.count() as f64 / values.len() as f64;
+            let too_good = share > most && attempt < 25;
+            if share < least || too_good || (!differ && self.random.chance(0.9)) {
                 continue;
             }
             for (numbers, value) in self.samples.iter_mut().zip(values) {
@@ -286,7 +293,6 @@ impl Builder<'_> {
 
     /// Evaluates the model at the samples; `None` where hardly any has a meaning.
     fn model(&mut self) -> Option<()> {
-        let mut good = 0;
         for numbers in &mut self.samples {
             let given = |input: &beltspace::models::Input| match numbers[&input.name] {
                 Held::Value(si) => of_name(&input.name).from_si(si),
@@ -296,14 +302,14 @@ impl Builder<'_> {
             let given: Vec<f64> = self.model.inputs.iter().map(given).collect();
             let valid = self.model.inputs.iter().zip(&given).all(|(input, &value)| input.accepts(value));
             let evaluation = valid.then(|| evaluate(&self.model, &given));
-            good += usize::from(evaluation.as_ref().is_some_and(|it| it.status == Status::Ok));
+            self.good.push(evaluation.as_ref().is_some_and(|it| it.status == Status::Ok));
             for (at, output) in self.model.outputs.iter().enumerate() {
                 let value = evaluation.as_ref().and_then(|it| it.outputs[at]);
                 let held = value.map_or(Held::Absent, |value| Held::Value(self.walker.si(&output.name, value)));
                 numbers.insert(output.name.clone(), held);
             }
         }
-        (2 * good > SAMPLES).then_some(())
+        (2 * self.good.iter().filter(|it| **it).count() > SAMPLES).then_some(())
     }
 
     fn after(&mut self) -> Option<()> {

@@ -15,6 +15,9 @@ const SHAKE: f64 = 2e-11;
 /// What is so near to a whole number is one.
 const NEAR_WHOLE: f64 = 1e-9;
 
+/// Powers of e below this one are not told from zero by everyone.
+const LEAST_EXPONENT: f64 = -700.0;
+
 /// A formula and its name.
 #[derive(Clone, Debug)]
 pub struct Named {
@@ -509,6 +512,9 @@ impl Walk<'_> {
         if size > 700.0 && !(is_constant && exponent.abs() <= 0.9) {
             return self.fails(SIZE);
         }
+        if size < LEAST_EXPONENT {
+            self.of.doubt();
+        }
         if base == 1.0 || exponent == 0.0 {
             return Ok(Some(1.0));
         }
@@ -553,6 +559,9 @@ impl Walk<'_> {
         if !holds {
             return self.needing(false, tree, 0.0);
         }
+        if function == "exp" && x < LEAST_EXPONENT {
+            self.of.doubt();
+        }
         exact(self.of.shaken(value, function, of))
     }
 
@@ -576,7 +585,7 @@ impl Walk<'_> {
             (self.counts, self.unknown) = (counts, None);
             return Ok(None);
         };
-        let (mut low, mut high) = (from, to);
+        let (mut low, mut high) = (from, if below == 0.0 { from } else { to });
         let holds = below <= 0.0 && above >= 0.0 && from <= to;
         while holds {
             let middle = low + (high - low) / 2.0;
