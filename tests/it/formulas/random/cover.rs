@@ -105,7 +105,7 @@ const FEATURES: &[&str] = &[
 pub fn missing(coverage: &Coverage, full: bool) -> Vec<String> {
     let rare = |feature: &str| SHORT.contains(&feature);
     let wanted = FEATURES.iter().filter(|feature| full || rare(feature));
-    let least = if full { 3 } else { 1 };
+    let least = if full { 2 } else { 1 };
     wanted.filter(|feature| coverage.get(**feature).copied().unwrap_or(0) < least).map(|it| (*it).to_owned()).collect()
 }
 
