@@ -2,8 +2,8 @@
 
 use super::asked::{parsed, walked};
 use super::measure::bracket;
-use super::tree::Tree;
-use super::walk::{Named, Slip, Walker};
+use super::tree::{Named, Tree};
+use super::walk::{Slip, Walker};
 use super::{Drawn, TOLERANCE, drawn};
 use crate::pipeline::answer::Answer;
 use crate::pipeline::expected::Expected;

@@ -123,7 +123,6 @@ const SHORT: &[&str] = &[
     "max",
     "abs",
     "sqrt",
-    "exp",
     "clamp",
     "whole power",
     "unit",

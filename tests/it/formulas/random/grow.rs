@@ -1,8 +1,8 @@
 //! Random trees that measure what they are asked to, with numbers in them that matter among the values of a few designs.
 
 use super::measure::{ANGLE, PLAIN, Powers, bracket, fraction, is_small, of_name, product, quotient};
-use super::tree::Tree;
-use super::walk::{Held, Named, Numbers, Walker, constant};
+use super::tree::{Named, Tree};
+use super::walk::{Held, Numbers, Walker, constant};
 use crate::random::Random;
 
 /// A name that formulas may read.
@@ -45,7 +45,7 @@ impl Grower<'_> {
     /// A number in some unit that is about this large in SI units.
     pub fn number(&mut self, powers: Powers, si: f64) -> Tree {
         let bracket = bracket(powers, |limit| self.random.below(limit));
-        let value = bracket.as_ref().map_or(si, |it| it.measured.from_si(si));
+        let value = bracket.as_ref().map_or(si, |it| it.measured.of_si(si));
         let digits = self.random.below(4);
         let rounded: f64 = format!("{:.digits$e}", value.abs()).parse().expect("a number was printed");
         let rounded = if rounded.is_finite() && (1e-150..1e150).contains(&rounded) { rounded } else { 1.0 };
@@ -135,7 +135,7 @@ impl Grower<'_> {
                         let of = Tree::Name(name.name);
                         let si = self.value(&of).filter(|it| it.abs() > 1e-100).unwrap_or(1.0).abs();
                         let bracket = bracket(name.powers, |limit| self.random.below(limit));
-                        let part = bracket.as_ref().map_or(si, |it| it.measured.from_si(si)) / parts;
+                        let part = bracket.as_ref().map_or(si, |it| it.measured.of_si(si)) / parts;
                         Tree::binary('/', of, Tree::Number(part, bracket))
                     }
                     _ => Tree::binary('*', factor, self.ratio(depth)),

@@ -27,7 +27,7 @@ impl Measured {
         value * self.multiply / self.divide
     }
 
-    pub fn from_si(self, value: f64) -> f64 {
+    pub fn of_si(self, value: f64) -> f64 {
         value * self.divide / self.multiply
     }
 

@@ -2,8 +2,8 @@
 
 use super::grow::{Grower, Readable, constants_are_good};
 use super::measure::{OWN, SUFFIXES, of_name};
-use super::tree::Tree;
-use super::walk::{Curve, Held, Named, Numbers, Walker};
+use super::tree::{Curve, Named, Tree};
+use super::walk::{Held, Numbers, Walker};
 use crate::pipeline::random_axes::{AxisDraft, Generator, three_digits};
 use crate::random::Random;
 use beltspace::models::{self, Model, Status, evaluate};
@@ -285,7 +285,7 @@ impl Builder<'_> {
             let curve = self.walker.curves.iter().find(|it| it.y == input.name).cloned();
             let (low, high) = (measured.to_si(input.usual.0), measured.to_si(input.usual.1));
             let draw = |grower: &mut Grower<'_>| given_tree(grower, &input, (low, high), curve.as_ref());
-            let likes = |value: f64| valid.contains(measured.from_si(value)) && value >= low * 0.5 && value <= high * 1.5;
+            let likes = |value: f64| valid.contains(measured.of_si(value)) && value >= low * 0.5 && value <= high * 1.5;
             self.add(&input.name, false, draw, likes)?;
         }
         Some(())
@@ -295,7 +295,7 @@ impl Builder<'_> {
     fn model(&mut self) -> Option<()> {
         for numbers in &mut self.samples {
             let given = |input: &beltspace::models::Input| match numbers[&input.name] {
-                Held::Value(si) => of_name(&input.name).from_si(si),
+                Held::Value(si) => of_name(&input.name).of_si(si),
                 Held::Word(word) => word,
                 _ => f64::NAN,
             };

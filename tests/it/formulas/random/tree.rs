@@ -24,6 +24,22 @@ pub enum Tree {
     Root(Box<[Tree; 3]>),
 }
 
+/// A formula and its name.
+#[derive(Clone, Debug)]
+pub struct Named {
+    pub name: String,
+    pub tree: Tree,
+}
+
+/// A curve as its file has it.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    pub name: String,
+    pub x: String,
+    pub y: String,
+    pub points: Vec<(f64, f64)>,
+}
+
 /// What the unknown of every root is called.
 pub const UNKNOWN: &str = "it";
 

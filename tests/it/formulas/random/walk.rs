@@ -4,7 +4,7 @@
 //! another answer when shaken depends on rounding, and no second implementation can be expected to agree with it.
 
 use super::measure::of_name;
-use super::tree::Tree;
+use super::tree::{Curve, Named, Tree};
 use beltspace::models::{Evaluation, Model, Status, evaluate};
 use std::cell::Cell;
 use std::collections::HashMap;
@@ -17,22 +17,6 @@ const NEAR_WHOLE: f64 = 1e-9;
 
 /// Powers of e below this one are not told from zero by everyone.
 const LEAST_EXPONENT: f64 = -700.0;
-
-/// A formula and its name.
-#[derive(Clone, Debug)]
-pub struct Named {
-    pub name: String,
-    pub tree: Tree,
-}
-
-/// A curve as its file has it.
-#[derive(Clone, Debug)]
-pub struct Curve {
-    pub name: String,
-    pub x: String,
-    pub y: String,
-    pub points: Vec<(f64, f64)>,
-}
 
 /// What a name stands for in a design.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -137,7 +121,7 @@ impl Walker {
 
     fn unit(&self, name: &str, si: f64) -> f64 {
         let measured = of_name(name);
-        if measured.multiply == measured.divide { si } else { self.rounded(measured.from_si(si), &[]) }
+        if measured.multiply == measured.divide { si } else { self.rounded(measured.of_si(si), &[]) }
     }
 
     fn is_formula(&self, name: &str) -> bool {
@@ -238,8 +222,8 @@ impl Walker {
                 if !valid.contains(value) && !value.is_nan() && self.slip != Some(Slip::NoRanges) {
                     let is_reason = |condition: &beltspace::models::Condition| condition.reason == reason;
                     let mut ends = model.conditions.iter().enumerate().filter(|(_, condition)| is_reason(condition)).map(|(at, _)| at);
-                    let low = value < valid.low || value == valid.low;
-                    status = status.or(if low { ends.next() } else { ends.last() });
+                    let low = value <= valid.low;
+                    status = status.or(if low { ends.next() } else { ends.next_back() });
                 }
             }
         }
@@ -587,9 +571,9 @@ impl Walk<'_> {
         };
         let (mut low, mut high) = (from, if below == 0.0 { from } else { to });
         let holds = below <= 0.0 && above >= 0.0 && from <= to;
-        while holds {
+        loop {
             let middle = low + (high - low) / 2.0;
-            if middle <= low || middle >= high {
+            if !holds || middle <= low || middle >= high {
                 break;
             }
             match at(middle) {
