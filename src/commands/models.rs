@@ -92,11 +92,11 @@ fn page(model: &Model) -> String {
 ///
 /// Of a model with formulas of its own, which stand on the page as they are written, it is what they are based on.
 fn equations(model: &Model) -> String {
-    let (model, of) = match &model.origin() {
-        Some(base) => (*base, format!(" of {}", base.name)),
+    let (model, of) = match model.base() {
+        Some(base) => (base, format!(" of {}", base.name)),
         None => (model, String::new()),
     };
-    let Some(FormulaEquations { lines, margins, .. }) = model.equations() else { return String::new() };
+    let Some(FormulaEquations { lines, margins, .. }) = model.equations().filter(|it| !it.lines.is_empty()) else { return String::new() };
     let mut grid = TextGrid::default();
     for EquationLine { depth, left, right, source, .. } in lines {
         let indent = "  ".repeat(depth);
@@ -112,9 +112,6 @@ fn equations(model: &Model) -> String {
         let sign = if condition.strict { ">" } else { ">=" };
         let reason = if condition.quiet { format!("absent: {}", condition.invalidates.join(", ")) } else { condition.reason.clone() };
         statuses.row([reason, format!("unless {margin} {sign} 0")]);
-    }
-    if grid.is_empty() && statuses.is_empty() {
-        return String::new();
     }
     let head = bold(&format!("equations{of}, in SI units and radians"));
     format!("  {head}\n{}\n{}\n", grid.indented(2), statuses.indented(2))

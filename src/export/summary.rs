@@ -92,8 +92,8 @@ impl<'a> Summary<'a> {
             let end = |it: &crate::reduce::Extreme| json!({ "value": number(it.value), "design_index": it.index });
             Some((name.clone(), json!({ "least": end(least.as_ref()?), "largest": end(largest.as_ref()?) })))
         });
-        let conditions = model.conditions.iter().zip(&tally.conditions).filter(|(condition, _)| !condition.quiet);
-        let mut status: Map<_, Value> = conditions.map(|(condition, &count)| (condition.reason.to_owned(), count.into())).collect();
+        let statuses = tally.statuses(model);
+        let mut status: Map<_, Value> = statuses.into_iter().map(|(reason, count)| (reason.to_owned(), count.into())).collect();
         // So rare that most summaries do not have it.
         if tally.overflow > 0 {
             status.insert(OVERFLOW.to_owned(), tally.overflow.into());

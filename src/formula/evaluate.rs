@@ -228,8 +228,10 @@ impl<R: Real> TreeEvaluation<'_, R> {
             IfTest::EqualWhole => (Value::constant(0.5).minus(apart(a, b)), true),
             IfTest::EqualWord => (apart(a, b).negative(), true),
         };
+        // Where what is compared is absent, neither branch is taken.
+        let compared = margin.present.map(|margin| Guard { margin, at_least_zero: true, outer: place.guard });
         let mut branch = |part: &Typed, at_least_zero: bool| {
-            let guard = Guard { margin: margin.value, at_least_zero, outer: place.guard };
+            let guard = Guard { margin: margin.value, at_least_zero, outer: compared.as_ref().or(place.guard) };
             self.of(part, EvaluationPlace { guard: Some(&guard), ..place })
         };
         let (then, otherwise) = (branch(&parts[2], then_at_least_zero), branch(&parts[3], !then_at_least_zero));

@@ -111,6 +111,11 @@ impl Model {
         formula.ok_or_else(|| Error::CpuOnly { model: self.name.clone(), remedy: None })
     }
 
+    /// The model that formulas of a study or file stand around; `None` for one that is no such model.
+    pub fn base(&self) -> Option<&Self> {
+        self.origin.as_ref().map(|origin| origin.base.base().unwrap_or(&origin.base))
+    }
+
     /// What it computes as equations for people, in its symbols; `None` if its formula cannot be recorded.
     pub fn equations(&self) -> Option<FormulaEquations> {
         let formula = self.kernel.formula()?;

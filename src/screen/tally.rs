@@ -9,7 +9,7 @@ use super::cpu::{CpuEngine, holds, row_value};
 use super::spectrum::CaseSums;
 use super::tables::{BLOCK, FastBlock, Tables};
 use crate::error::{Error, Result};
-use crate::models::Set;
+use crate::models::{Model, Set};
 use crate::parallel::on_threads;
 use crate::plan::{Plan, Source, Tracked, worst_end};
 use crate::sample::mix;
@@ -23,7 +23,7 @@ pub struct Tally {
     pub sampled: u64,
     /// Of these, feasible.
     pub feasible: u64,
-    /// Per condition of the model: designs whose status it is in some scenario.
+    /// Per condition of the model: designs whose status it is in some scenario. Conditions of one reason count as the first of them.
     pub conditions: Vec<u64>,
     /// Designs of which a value that the study asks for is beyond what f64 holds in some scenario.
     pub overflow: u64,
@@ -111,6 +111,17 @@ impl Tally {
         }
     }
 
+    /// How many designs have each status in some scenario, by its reason. Both ends of an input's valid range have the same.
+    pub fn statuses<'m>(&self, model: &'m Model) -> Vec<(&'m str, u64)> {
+        let mut statuses: Vec<(&str, u64)> = Vec::new();
+        for (number, condition) in model.conditions.iter().enumerate().filter(|(_, condition)| !condition.quiet) {
+            if first_of_reason(model, number) == number {
+                statuses.push((&condition.reason, self.conditions[number]));
+            }
+        }
+        statuses
+    }
+
     fn merge(mut self, other: Self) -> Self {
         let add = |to: &mut [u64], from: &[u64]| to.iter_mut().zip(from).for_each(|(to, from)| *to += from);
         self.sampled += other.sampled;
@@ -140,6 +151,12 @@ impl Tally {
             *only += u64::from(failures == Failures { constraints: Set::one(number), ..Failures::NONE });
         }
     }
+}
+
+/// The first condition with the same reason as this one.
+fn first_of_reason(model: &Model, condition: usize) -> usize {
+    let reason = &model.conditions[condition].reason;
+    model.conditions.iter().position(|it| it.reason == *reason).unwrap_or(condition)
 }
 
 /// The design indices of the sample: one in each of `most` equal strata.
@@ -204,7 +221,7 @@ impl<'p> Counter<'p> {
                     // The first condition that fails is the status; what comes after it may have lost its meaning.
                     match failed.map(|(number, _)| number).chain(of_row).min() {
                         Some(&first) => {
-                            failures.conditions.insert(first);
+                            failures.conditions.insert(first_of_reason(&plan.study.model, first));
                             has_failed[lane] = true;
                         }
                         None => self.violated(lane, &fast, failures),

@@ -93,8 +93,8 @@ fn limits(outcome: &Certified<'_>) -> String {
     let tally = &outcome.tally;
     let study = &outcome.plan.study;
     let model = &study.model;
-    let statuses = model.conditions.iter().zip(&tally.conditions).filter(|(condition, _)| !condition.quiet);
-    let mut reasons: Vec<(u64, u64, String)> = statuses.map(|(condition, &count)| (count, 0, condition.reason.to_owned())).collect();
+    let statuses = tally.statuses(model).into_iter();
+    let mut reasons: Vec<(u64, u64, String)> = statuses.map(|(reason, count)| (count, 0, reason.to_owned())).collect();
     reasons.push((tally.overflow, 0, OVERFLOW.to_owned()));
     for (constraint, (&violated, &only)) in study.constraints.iter().zip(tally.constraints.iter().zip(&tally.only)) {
         let unit = study.unit_over(constraint.quantity, constraint.over);

@@ -225,3 +225,20 @@ fn the_example_of_the_documentation_by_hand() {
     let power = value("power_kW", "torque_Nm * speed_rpm / 1[rad]", &[("torque_Nm", 100.0), ("speed_rpm", 1500.0 * PI / 30.0)]);
     assert!((power - 15_707.963_267_948_966).abs() < 1e-9);
 }
+
+/// Where what is compared is absent neither branch is taken, and what fails in one is no status. (Found by random study 59.)
+#[test]
+fn of_an_absent_comparison_neither_branch_fails() {
+    let scope = scope();
+    let formulas = Formulas::new(&scope, &sources(&[("it", "if(force_N > 1[N], sqrt(friction), ln(friction))")])).expect("it is right");
+    let force = scope.slot("force_N").expect("a name");
+    for (value, present) in [(0.0, 1.0), (2.0, 1.0), (0.0, -1.0), (2.0, -1.0)] {
+        let mut slots = vec![-1.0; formulas.slots()];
+        slots[force] = value;
+        let mut presence = vec![None; formulas.slots()];
+        presence[force] = Some(present);
+        let mut margins = vec![0.0; formulas.requirements().len()];
+        formulas.evaluate_all(&mut slots, &mut presence, &mut margins);
+        assert_eq!(margins.iter().any(|margin| *margin < 0.0), present >= 0.0, "{value} {present}: {margins:?}");
+    }
+}

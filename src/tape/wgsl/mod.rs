@@ -423,8 +423,8 @@ fn put(text: &mut String, indent: &str, line: &str, equation: &str) {
 fn broken(line: &str, indent: &str) -> String {
     let Some(open) = line.find('(') else { return line.to_owned() };
     let Some(close) = line.rfind(')') else { return line.to_owned() };
-    // Parentheses around a sum are no call: a comma in front of the closing one would be none of WGSL.
-    if !line[..open].ends_with(|it: char| it.is_ascii_alphanumeric() || it == '_') {
+    // Parentheses that only group have no arguments, and no comma may stand behind what they hold.
+    if !line[..open].ends_with(|before: char| before.is_ascii_alphanumeric() || before == '_') {
         return line.to_owned();
     }
     let (mut depth, mut from, mut parts) = (0, open + 1, Vec::new());
@@ -516,5 +516,19 @@ fn plain_binary(operation: Binary, a: &str, b: &str) -> String {
         Binary::Div => format!("({a} / {b})"),
         Binary::Min => format!("min({a}, {b})"),
         Binary::Max => format!("max({a}, {b})"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::broken;
+
+    #[test]
+    fn calls_are_broken_and_parentheses_that_group_are_not() {
+        let long = format!("(2.0 * arc_sine({})) + n24", "max(n1, n2) + ".repeat(9) + "n3");
+        assert_eq!(broken(&format!("({long})"), "    "), format!("({long})"));
+        let call = format!("let n = select(n1, ({long}), n2 >= 0.0);");
+        let lines = format!("let n = select(\n        n1,\n        ({long}),\n        n2 >= 0.0,\n    );");
+        assert_eq!(broken(&call, "    "), lines);
     }
 }

@@ -3,7 +3,7 @@
 mod bites;
 mod left;
 mod structured;
-mod ways;
+pub mod ways;
 
 use crate::pipeline::naive::Evaluated;
 use crate::pipeline::random_study::Draft;

@@ -4,6 +4,7 @@
 
 mod broken_models;
 mod files;
+mod random;
 mod same;
 
 use beltspace::models::{Model, Status, evaluate, find};
@@ -210,6 +211,18 @@ fn fronts_with_formulas_are_those_of_brute_force_on_every_engine_and_by_every_me
             assert_eq!(other.counts, every.counts, "{title}");
         }
     }
+}
+
+/// Both ends of a valid range have the same status: a design counts once, whichever end it leaves. (Found by random study 194.)
+#[test]
+fn an_input_out_of_range_is_counted_at_either_end() {
+    let text = "model = \"timing-belt\"\n[design]\ntight_tension_N = [50, 110, 300]\n[operation]\nshare = [1, 30]\n\
+                [formulas]\nteeth_in_mesh = \"round(share * tight_tension_N / 50[N])\"\n[objectives]\neffective_tension_N = \"max\"\n";
+    let study = Study::parse_in(text, "study.toml", ".".as_ref()).unwrap_or_else(|error| panic!("{error}"));
+    let outcome = study.sweep(Options::default().engine(Engine::Cpu)).expect("it is swept");
+    let limits: Vec<_> = outcome.summary.limits.iter().filter(|it| it.what == "input teeth_in_mesh out of range").collect();
+    // 1 and 30 teeth, 2 and 66, 6 and 180.
+    assert_eq!(limits.iter().map(|it| it.designs).collect::<Vec<_>>(), [3]);
 }
 
 #[test]

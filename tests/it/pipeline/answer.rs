@@ -27,6 +27,18 @@ impl Cell {
         }
     }
 
+    /// Is it the same, or a number that differs by at most this, relative to the larger one?
+    fn is_like(&self, other: &Self, tolerance: f64) -> bool {
+        match (self, other) {
+            _ if self == other => true,
+            (Self::Number(a), Self::Number(b)) if tolerance > 0.0 => {
+                let [a, b] = [*a, *b].map(f64::from_bits);
+                (a - b).abs() <= tolerance * a.abs().max(b.abs())
+            }
+            _ => false,
+        }
+    }
+
     fn shown(&self) -> String {
         match self {
             Self::Absent => "nothing".to_owned(),
@@ -58,13 +70,19 @@ pub struct Answer {
 impl Answer {
     /// The first thing in which two answers differ.
     pub fn difference(&self, found: &Self) -> Option<String> {
+        self.difference_beyond(0.0, found)
+    }
+
+    /// The first thing in which two answers differ by more than this, relative. Counts and indices below a million never differ by less
+    /// than a millionth.
+    pub fn difference_beyond(&self, tolerance: f64, found: &Self) -> Option<String> {
         let (expected_names, names): (Vec<_>, Vec<_>) = (self.tables.keys().collect(), found.tables.keys().collect());
         if expected_names != names {
             return Some(format!("expected the tables {expected_names:?}, found {names:?}"));
         }
         for (name, expected) in &self.summary {
             let found = found.summary.get(name).unwrap_or(&Cell::Absent);
-            if found != expected {
+            if !found.is_like(expected, tolerance) {
                 return Some(format!("summary.json: {name} should be {}, is {}", expected.shown(), found.shown()));
             }
         }
@@ -75,7 +93,7 @@ impl Answer {
             }
             for (row, (expected, found)) in expected.rows.iter().zip(&found.rows).enumerate() {
                 for (column, (expected, cell)) in self.tables[name].header.iter().zip(expected.iter().zip(found)) {
-                    if expected != cell {
+                    if !expected.is_like(cell, tolerance) {
                         return Some(format!("{name}, row {row}: {column} should be {}, is {}", expected.shown(), cell.shown()));
                     }
                 }

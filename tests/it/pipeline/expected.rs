@@ -260,8 +260,11 @@ impl Expected {
         put("title", Cell::Text(study.title.clone()));
         put("tally.sampled", whole(evaluated.designs));
         put("tally.feasible", whole(self.feasible.len() as u64));
-        for (number, condition) in study.model.conditions.iter().enumerate().filter(|(_, condition)| !condition.quiet) {
-            let failed = self.failures.iter().filter(|it| it.statuses.contains(&number)).count();
+        let conditions = &study.model.conditions;
+        for condition in conditions.iter().filter(|condition| !condition.quiet) {
+            // Both ends of an input's range say the same.
+            let says_so = |&number: &usize| conditions[number].reason == condition.reason;
+            let failed = self.failures.iter().filter(|it| it.statuses.iter().any(says_so)).count();
             put(&format!("tally.status.{}", condition.reason), whole(failed as u64));
         }
         for number in 0..study.constraints.len() {

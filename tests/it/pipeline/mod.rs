@@ -1,9 +1,9 @@
 //! Random small studies, judged by brute force and by the pipeline in many ways, which must all agree to the last bit.
 
-mod answer;
-mod expected;
+pub mod answer;
+pub mod expected;
 pub mod naive;
-mod random_axes;
+pub mod random_axes;
 pub mod random_study;
 pub mod runs;
 
@@ -87,18 +87,33 @@ fn check(seed: u64, text: &mut String, coverage: &mut Coverage) {
 fn check_all_ways(seed: u64, text: &str, study: Study, evaluated: &Evaluated) -> (Plan, Expected) {
     let expected = Expected::new(&study, evaluated);
     let plan = Plan::new(study);
-    let pipeline = Pipeline::new(&plan, text);
+    let on_gpu = plan.study.model.on_gpu;
+    check_ways(seed, text, &plan, Thorough { on_gpu, write_all: full() }, |found| expected.answer.difference(found));
+    (plan, expected)
+}
+
+/// What takes its time.
+#[derive(Clone, Copy)]
+pub struct Thorough {
+    /// Run it on the device too?
+    pub on_gpu: bool,
+    /// Write the files of every way? They are a function of the state; syncing them to the disk takes most of the time.
+    pub write_all: bool,
+}
+
+/// Compares the result of one run with what is expected, and that of every other way to run the study with the first.
+pub fn check_ways(seed: u64, text: &str, plan: &Plan, thorough: Thorough, difference: impl Fn(&Answer) -> Option<String>) {
+    let pipeline = Pipeline::new(plan, text);
     let folder = tempfile::tempdir().expect("a folder can be made");
 
     let reference_state = pipeline.whole(&Settings { threads: 1, ..Settings::default() });
     let reference = pipeline.write(reference_state.clone(), 1, &folder.path().join("whole"));
     let found = Answer::read(&folder.path().join("whole"));
-    if let Some(difference) = expected.answer.difference(&found) {
+    if let Some(difference) = difference(&found) {
         panic!("seed {seed}: {difference}");
     }
     assert_eq!(reference["study.toml"], text.as_bytes(), "seed {seed}");
-    for name in expected
-        .answer
+    for name in found
         .tables
         .keys()
         .filter(|name| !["scenarios.csv", "top.csv", "sample.csv", "feasible.parquet", "variants.csv"].contains(&name.as_str()))
@@ -109,7 +124,7 @@ fn check_all_ways(seed: u64, text: &str, study: Study, evaluated: &Evaluated) ->
     let random = &mut Random::new(seed);
     let mut ways: Vec<(String, State)> = Vec::new();
     // Handing over tens of thousands of single designs would only measure the lock.
-    let least = evaluated.designs / 2000;
+    let least = plan.designs() / 2000;
     for tile in [1, 7, 1000, Settings::default().tile].map(|tile| tile.max(least)) {
         let options = options(random, tile);
         ways.push((format!("{options:?}"), pipeline.whole(&options)));
@@ -118,8 +133,7 @@ fn check_all_ways(seed: u64, text: &str, study: Study, evaluated: &Evaluated) ->
     let written_too = random.below(ways.len());
     for (number, (way, state)) in ways.into_iter().enumerate() {
         assert!(same(&state, &reference_state), "seed {seed}: something else is kept with {way}");
-        // The files are a function of the state; syncing them to the disk takes most of the time.
-        if !full() && number != written_too {
+        if !thorough.write_all && number != written_too {
             continue;
         }
         let files = pipeline.write(state, random.whole(1, 3), &folder.path().join(number.to_string()));
@@ -128,15 +142,13 @@ fn check_all_ways(seed: u64, text: &str, study: Study, evaluated: &Evaluated) ->
         }
     }
     // Means and sums are for the CPU.
-    if plan.study.model.on_gpu && !plan.study.decides_by_spectrum() {
+    if thorough.on_gpu && !plan.study.decides_by_spectrum() {
         let (state, files) = pipeline.on_device(seed.is_multiple_of(2), &folder.path().join("device"));
         assert_eq!(state.feasible, reference_state.feasible, "seed {seed}: on the device");
         if let Some(name) = differing_file(&reference, &files) {
             panic!("seed {seed}: {name} differs on the device");
         }
     }
-    drop(pipeline);
-    (plan, expected)
 }
 
 const EVERY_FEATURE: &[&str] = &[

@@ -43,6 +43,11 @@ impl Evaluated {
 
     /// Some designs, which are numbered anew.
     pub fn of(study: &Study, chosen: impl IntoIterator<Item = u64>) -> Self {
+        Self::by(study, chosen, &|inputs| evaluate(&study.model, inputs))
+    }
+
+    /// The same by another evaluation, which is given the values of all inputs.
+    pub fn by(study: &Study, chosen: impl IntoIterator<Item = u64>, evaluate: &dyn Fn(&[f64]) -> Evaluation) -> Self {
         let design: Vec<&Axis> = study.design.iter().collect();
         let scenario: Vec<&Axis> = study.operation.iter().chain(&study.uncertainty).collect();
         // The sampler has tests of its own: its designs are taken as they come.
@@ -60,7 +65,7 @@ impl Evaluated {
             }
             for number in 0..scenarios {
                 set(&scenario, number, &mut inputs);
-                cases.push(Case { evaluation: evaluate(&study.model, &inputs), inputs: inputs.clone() });
+                cases.push(Case { evaluation: evaluate(&inputs), inputs: inputs.clone() });
             }
         }
         let spectrum = study.spectrum.as_ref().map(|spectrum| {
