@@ -55,7 +55,7 @@ const MARGIN: u64 = 112;
 /// If only coarser grids were judged, the front of the whole study may be larger than expected by one part in this many.
 const UNSEEN: u64 = 8;
 /// Designs for which the memory of solving them is asked.
-const ASKED: u64 = 48;
+const ASKED: u64 = 192;
 
 /// About how long fronts of coarser grids are computed.
 const LOOK: Duration = Duration::from_millis(600);
@@ -182,7 +182,8 @@ impl Needs {
 fn solving(plan: &Plan, threads: u64) -> u64 {
     let kernel = &plan.study.model.kernel;
     let asked = ASKED.min(plan.designs());
-    let needs = (0..asked).map(|step| kernel.footprint(&to_si(&plan.study.model, &plan.space.inputs(plan.spread(step), 0))));
+    let design = |step| if asked == plan.designs() { step } else { plan.spread(step) };
+    let needs = (0..asked).map(|step| kernel.footprint(&to_si(&plan.study.model, &plan.space.inputs(design(step), 0))));
     let (prepared, scratch) = needs.fold((0, 0), |most, needs| (most.0.max(needs.prepared), most.1.max(needs.scratch)));
     let kept = prepared.saturating_mul(plan.kept_scenarios());
     // Certification and completing the page each have a table per thread, and one of the two has the tables of all scenarios.

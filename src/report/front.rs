@@ -221,7 +221,10 @@ impl Shown {
         Self {
             name: column.name.clone(),
             unit: column.unit(study),
-            doc: column.doc(study),
+            doc: match column.end().filter(|_| column.over.is_worst()) {
+                Some(end) => format!("{} Shown: the {} of the scenarios.", column.doc(study), end.word()),
+                None => column.doc(study),
+            },
             role: match column.role {
                 Role::Objective(_) => "objective",
                 Role::Constraint(_) => "constraint",

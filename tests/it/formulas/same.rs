@@ -168,3 +168,47 @@ fn a_model_in_a_file_takes_about_as_long() {
         assert!(in_file < 20.0 * known, "{model}: {known} s, in a file {in_file} s");
     }
 }
+
+/// Formulas around a model of the program, in a file or in the study itself: one front, and a study's own formulas may stand around both.
+#[test]
+fn a_file_based_on_a_model_is_the_model_with_these_formulas() {
+    let formulas = r#"
+[formulas]
+belt_mass_kg = "2 * band_count * band_width_mm * band_thickness_mm * belt_length_mm * 7850[kg/m^3]"
+cost_EUR     = { is = "price_EUR_per_kg * belt_mass_kg + 0.8[EUR] * band_count", doc = "What the bands cost." }
+"#;
+    let study = r#"
+[design]
+band_thickness_mm = { from = 0.10, to = 0.30, count = 9 }
+band_count        = { from = 6, to = 12 }
+price_EUR_per_kg  = [12, 14]
+[operation]
+torque_Nm = [50, 150]
+[constraints]
+stress_margin = { min = 0 }
+[objectives]
+cost_EUR      = "min"
+axial_force_N = "min"
+"#;
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    let model =
+        format!("base = \"metal-cvt\"\nunits = [\"EUR\"]\n[inputs]\nprice_EUR_per_kg = {{ default = 12, valid = [0, 100] }}\n{formulas}");
+    std::fs::write(folder.path().join("priced.toml"), model).expect("a file can be written");
+    let parse = |text: String| Study::parse_in(&text, "study.toml", folder.path()).unwrap_or_else(|error| panic!("{error}"));
+    let own = parse(format!("model = \"metal-cvt\"\nunits = [\"EUR\"]\n{formulas}{study}"));
+    let based = parse(format!("model = \"priced.toml\"\n{study}"));
+    let around = study.replace("cost_EUR      = \"min\"", "twice_EUR = \"min\"");
+    let around = parse(format!("model = \"priced.toml\"\n[formulas]\ntwice_EUR = \"2 * cost_EUR\"\n{around}"));
+    let swept = |study: &Study, judging| study.sweep(Options::default().engine(Engine::Cpu).judging(judging)).expect("it is swept");
+    let expected = swept(&own, Judging::Exhaustive);
+    assert!(expected.counts.feasible > 20 && expected.counts.front > 1, "{:?}", expected.counts);
+    for judging in [Judging::Exhaustive, Judging::Bounds] {
+        let found = swept(&based, judging);
+        assert_eq!((found.counts, found.front.csv()), (expected.counts, expected.front.csv()));
+        let around = swept(&around, judging);
+        let rows = |outcome: &Outcome| (0..outcome.front.rows()).filter_map(|row| outcome.front.design(row)).collect::<Vec<_>>();
+        assert_eq!((around.counts, rows(&around)), (expected.counts, rows(&expected)));
+        let doubled = around.front.number("twice_EUR", 0).zip(expected.front.number("cost_EUR", 0));
+        assert!(doubled.is_some_and(|(twice, cost)| twice == 2.0 * cost), "{doubled:?}");
+    }
+}

@@ -247,9 +247,10 @@ impl Failures {
         let constraints = study.constraints.iter().enumerate().map(|(number, it)| (it.quantity, it.over, Some((number, it))));
         for (quantity, over, constraint) in objectives.chain(constraints).filter(|(_, over, _)| *over != OverScenarios::Worst) {
             for group in evaluated.groups(over) {
+                // As in a single scenario: only where everything that is needed has a meaning.
                 let is_ok = |&scenario: &usize| {
                     let case = &evaluated.cases(design)[scenario];
-                    case.evaluation.status == Status::Ok && case.value(quantity).is_some()
+                    case.evaluation.status == Status::Ok && needed.iter().all(|&quantity| case.value(quantity).is_some())
                 };
                 if !group.iter().all(is_ok) {
                     continue;

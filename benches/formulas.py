@@ -1,0 +1,115 @@
+"""Times studies with formulas: from text to result, and a model in a file against the same model of the program."""
+
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+PROGRAM = Path("target/release/beltspace").resolve()
+MODELS = Path("tests/it/formulas/models")
+RUNS = 5
+
+EDITED = """
+model = "metal-cvt"
+title = "Ten million belts"
+units = ["EUR"]
+[design]
+band_thickness_mm      = { from = 0.10, to = 0.30, count = 161 }
+band_count             = { from = 4, to = 14 }
+groove_angle_deg       = { from = 18, to = 30, count = 141 }
+steel_price_EUR_per_kg = { from = 10, to = 16, count = 41 }
+[operation]
+ratio     = [0.6, 1, 1.7]
+torque_Nm = [50, 150]
+[fixed]
+strength_MPa = 600
+[formulas]
+belt_mass_kg = "2 * band_count * band_width_mm * band_thickness_mm * belt_length_mm * 7850[kg/m^3]"
+cost_EUR     = "steel_price_EUR_per_kg * belt_mass_kg + 0.8[EUR] * band_count"
+[constraints]
+stress_margin = { min = 0 }
+[objectives]
+cost_EUR      = "min"
+axial_force_N = "min"
+"""
+
+WRITTEN_AGAIN = {
+    "metal-cvt": """
+[design]
+groove_angle_deg  = { from = 18, to = 30, count = 9 }
+band_thickness_mm = { from = 0.10, to = 0.30, count = 401 }
+band_count        = { from = 4, to = 14 }
+[operation]
+ratio     = { from = 0.5, to = 2.0, count = 13, spacing = "log" }
+torque_Nm = [50, 100, 150]
+[objectives]
+axial_force_N = "min"
+stress_margin = "max"
+""",
+    "rubber-cvt": """
+[design]
+groove_angle_deg  = { from = 24, to = 34, count = 11 }
+belt_width_mm     = { from = 20, to = 50, count = 61 }
+belt_thickness_mm = { from = 1, to = 3, count = 81 }
+[operation]
+ratio     = { from = 0.5, to = 2.0, count = 13, spacing = "log" }
+torque_Nm = [8, 10, 12]
+[objectives]
+axial_force_N = "min"
+stress_margin = "max"
+""",
+    "pulley-load": """
+[design]
+mean_radius_mm   = { from = 40, to = 80, count = 81 }
+slack_tension_N  = { from = 300, to = 900, count = 121 }
+groove_angle_deg = { from = 34, to = 38, count = 9 }
+[operation]
+power_kW = [1, 2, 3]
+speed_rpm = [1000, 3000, 5000]
+[objectives]
+resultant_force_N = "min"
+friction_margin   = "max"
+""",
+}
+
+
+def best(folder, study):
+    """Seconds of the clock and of the processor, each the best of some runs of a sweep in a folder."""
+    clock, used = [], []
+    for run in range(RUNS):
+        out = folder / f"out-{run}"
+        before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
+        words = [PROGRAM, "sweep", study, "--out", out, "--quiet", "--engine", "cpu"]
+        subprocess.run(words, cwd=folder, check=True, stderr=subprocess.DEVNULL)
+        clock.append(time.perf_counter() - start)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        used.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+        shutil.rmtree(out)
+    return min(clock), min(used)
+
+
+def main():
+    folder = Path(tempfile.mkdtemp())
+    try:
+        (folder / "edited.toml").write_text(EDITED)
+        clock, used = best(folder, "edited.toml")
+        print(f"from text to result, page included: {161 * 11 * 141 * 41} designs x 6 scenarios, two formulas: {clock:.3f} s, processor {used:.3f} s")
+        if len(sys.argv) > 1 and clock > float(sys.argv[1]):
+            sys.exit(f"that is more than {sys.argv[1]} s")
+        for file in MODELS.glob("*-in-a-file.toml"):
+            shutil.copy(file, folder)
+        for model, study in WRITTEN_AGAIN.items():
+            times = []
+            for name in (model, f"{model}-in-a-file.toml"):
+                (folder / "study.toml").write_text(f'model = "{name}"\n{study}')
+                times.append(best(folder, "study.toml")[1])
+            print(f"{model}: processor {times[0]:.3f} s, written as a file {times[1]:.3f} s, ratio {times[1] / times[0]:.2f}")
+    finally:
+        shutil.rmtree(folder)
+
+
+if __name__ == "__main__":
+    main()
