@@ -52,7 +52,8 @@ pub fn run(request: &cli::CheckArgs) -> Result<()> {
     let (method, expected) = match why_every_design(&plan, speed.of(designs, cores)) {
         Some(why) => (format!("every design: {why}"), one_by_one),
         None => {
-            let method = format!("bounds; if they are not faster, every design after at most about {}", span(PATIENCE * seconds));
+            let left = span(PATIENCE * seconds);
+            let method = format!("bounds; if they are not faster, every design after at most about {left}, {rate}");
             (method, by_bounds(try_bounds(&plan, cores, TRIAL_OF_BOUNDS), seconds, &one_by_one))
         }
     };
