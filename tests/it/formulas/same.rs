@@ -188,7 +188,7 @@ torque_Nm = [50, 150]
 stress_margin = { min = 0 }
 [objectives]
 cost_EUR      = "min"
-axial_force_N = "min"
+stress_margin = "max"
 "#;
     let folder = tempfile::tempdir().expect("a folder can be made");
     let model =
