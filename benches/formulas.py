@@ -95,8 +95,13 @@ def main():
     folder = Path(tempfile.mkdtemp())
     try:
         (folder / "edited.toml").write_text(EDITED)
+        six, used_six = best(folder, "edited.toml")
+        head, rest = EDITED.split("[operation]")
+        (folder / "edited.toml").write_text(head + "[fixed]\ntorque_Nm = 150" + rest.split("[fixed]")[1])
         clock, used = best(folder, "edited.toml")
-        print(f"from text to result, page included: {161 * 11 * 141 * 41} designs x 6 scenarios, two formulas: {clock:.3f} s, processor {used:.3f} s")
+        designs = 161 * 11 * 141 * 41
+        print(f"from text to result, page included: {designs} designs, two formulas: {clock:.3f} s, processor {used:.3f} s; "
+              f"in 6 scenarios each: {six:.3f} s, processor {used_six:.3f} s")
         if len(sys.argv) > 1 and clock > float(sys.argv[1]):
             sys.exit(f"that is more than {sys.argv[1]} s")
         for file in MODELS.glob("*-in-a-file.toml"):
