@@ -1,6 +1,7 @@
 //! `beltspace export`: exports one design to another program.
 
-use super::eval::{inputs_of, studied};
+use super::eval::studied;
+use super::settings::inputs_of;
 use super::{CommandTarget, find_model, target};
 use crate::cli;
 use crate::terminal::{self, TextGrid, bold, short};

@@ -12,6 +12,7 @@ mod models;
 mod report;
 mod reproduce;
 mod rows;
+mod settings;
 mod slurm;
 mod sweep;
 #[cfg(feature = "gpu")]

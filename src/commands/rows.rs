@@ -1,6 +1,6 @@
 //! `beltspace eval --table`: evaluates every row of a table.
 
-use super::eval::{inputs_of, no_preset};
+use super::settings::{inputs_of, no_preset};
 use super::{CommandTarget, read_study_what_if, target, threads};
 use crate::cli;
 use crate::terminal;

@@ -1,6 +1,6 @@
 //! The best that any design reaches of one constraint, found as the front of a study with that one objective.
 
-use super::infeasible::Reached;
+use super::reached::Reached;
 use crate::bounds::{BoundedStudy, SearchJob, Sought};
 use crate::certify::{columns, rows};
 use crate::error::{Error, Result};

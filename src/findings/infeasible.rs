@@ -1,6 +1,7 @@
 //! How far a study is from its first feasible design.
 
 use super::exact::{self, Alone};
+use super::reached::Reached;
 use super::{design_in_words, design_inputs, number_or_null};
 use crate::certify::{Row, margin_columns, rows};
 use crate::error::Result;
@@ -38,18 +39,6 @@ pub struct Reach {
     /// The best worst value of the designs that keep all other constraints: a bound there would let the first design through. `None`: no
     /// design that was looked at keeps the others.
     pub first: Option<Reached>,
-}
-
-/// A value that a design reaches.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Reached {
-    /// The worst value over the scenarios, in the quantity's unit.
-    pub value: f64,
-    /// The design.
-    pub design: u64,
-    /// Is it the best of all designs, or of the sample only?
-    pub exact: bool,
 }
 
 /// The design of the sample with the least sum of violations, each relative to the spread of its quantity over the sample.

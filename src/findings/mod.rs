@@ -4,9 +4,11 @@
 mod exact;
 mod front;
 mod infeasible;
+mod reached;
 
 pub use front::{BelowZero, FrontEnd};
-pub use infeasible::{Infeasible, Nearest, Reach, Reached};
+pub use infeasible::{Infeasible, Nearest, Reach};
+pub use reached::Reached;
 
 use crate::certify::Row;
 use crate::error::Result;

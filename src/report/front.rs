@@ -221,7 +221,8 @@ impl Shown {
         Self {
             name: column.name.clone(),
             unit: column.unit(study),
-            doc: match column.end().filter(|_| column.over.is_worst()) {
+            // What asks for one end says so itself.
+            doc: match column.end().filter(|_| column.over.is_worst() && !column.is_end_asked(study)) {
                 Some(end) => format!("{} Shown: the {} of the scenarios.", column.doc(study), end.word()),
                 None => column.doc(study),
             },

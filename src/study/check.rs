@@ -5,24 +5,19 @@
 
 use super::axis::{Axis, Levels, Sample};
 use super::label::{Label, MOST_LABELS, flaw_of_name, flaw_of_text};
+use super::limits::{MOST_PICTURES, MOST_ROWS, MOST_THRESHOLDS, MOST_VALUES};
+use super::quantity::Quantity;
 use super::read::{
     BINS, FRONT_BUDGET, MOST_CELLS, MOST_FEASIBLE, MOST_LEVELS, MOST_OBJECTIVES, MOST_SAMPLE, MOST_SCENARIOS, MOST_TOP, MOST_VARIANTS,
     check_levels,
 };
-use super::resolved::{Best, Constraint, ContourSpec, MapSpec, Quantity, Report, Study, Thresholds};
+use super::resolved::{Best, Constraint, ContourSpec, MapSpec, Report, Study, Thresholds};
 use super::spectrum::OverScenarios;
 use crate::models::{Model, Set};
 use std::collections::HashSet;
 
-/// Most rows of a joint axis, and most values in them.
-pub(super) const MOST_ROWS: usize = 1 << 21;
-pub(super) const MOST_VALUES: usize = 1 << 23;
-/// Most histograms of a study, and most maps.
-pub(super) const MOST_PICTURES: usize = 100;
 /// Most cells of all maps of a study together.
 const MOST_CELLS_IN_ALL: u64 = 2 * MOST_CELLS;
-/// Most values of a quantity at which a map has lines.
-pub(super) const MOST_THRESHOLDS: usize = 1000;
 
 type CheckResult = Result<(), String>;
 

@@ -9,6 +9,8 @@ mod check;
 mod describe;
 mod described;
 mod label;
+mod limits;
+mod quantity;
 mod read;
 mod resolved;
 mod spectrum;
@@ -17,6 +19,7 @@ pub use axis::{Axis, Levels, Method, Sample};
 #[doc(hidden)]
 pub use describe::{differences, number, value_of};
 pub use label::Label;
+pub use quantity::Quantity;
 #[doc(hidden)]
 pub use read::StudyEdits;
 #[cfg(test)]
@@ -24,8 +27,7 @@ pub(crate) use read::tests::study_of;
 pub use read::{FileKind, Problem, StudyErrors, file_kind, read_model};
 pub(crate) use read::{input_text, input_value_checked};
 pub use resolved::{
-    Best, Constraint, ContourSpec, Goal, HistogramSpec, MapSpec, Objective, Quantity, Report, ReportColumn, SampleSpec, Study, Thresholds,
-    TopSpec,
+    Best, Constraint, ContourSpec, Goal, HistogramSpec, MapSpec, Objective, Report, ReportColumn, SampleSpec, Study, Thresholds, TopSpec,
 };
 #[doc(hidden)]
 pub use resolved::{worst_end, worst_end_over};

@@ -1,6 +1,6 @@
 //! Load spectra: a scenario axis whose cases have weights, and what becomes of a quantity over the scenarios.
 
-use super::resolved::Quantity;
+use super::quantity::Quantity;
 use crate::models::Model;
 use serde::{Deserialize, Serialize};
 

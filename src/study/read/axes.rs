@@ -2,54 +2,13 @@
 
 use super::super::axis::{Axis, Levels};
 use super::Reader;
-use super::spectrum::weighted_cases;
+use super::roles::{AxisClaim, AxisRole, PRESET};
 use super::table::{Entry, TOP_LEVEL_REMEDY, TomlNode, TomlTable, is_top_level, shortened};
 use super::value::{input_value, shown};
+use super::weights::weighted_cases;
 use crate::likeness::remedy;
 use std::collections::HashSet;
 use toml::de::DeValue;
-
-/// The tables that give inputs values.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum AxisRole {
-    /// What the engineer chooses.
-    Design,
-    /// What the drive must survive.
-    Operation,
-    /// What nobody knows exactly.
-    Uncertainty,
-    /// What is settled.
-    Fixed,
-}
-
-impl AxisRole {
-    /// Name of the table.
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Design => "design",
-            Self::Operation => "operation",
-            Self::Uncertainty => "uncertainty",
-            Self::Fixed => "fixed",
-        }
-    }
-}
-
-/// The key of an axis over presets of the model, and the name of its label.
-pub(super) const PRESET: &str = "preset";
-
-/// A place in the file that gives an input values.
-pub(super) struct AxisClaim {
-    /// Number of the input.
-    pub(super) input: usize,
-    /// The table.
-    pub(super) role: AxisRole,
-    /// Byte in the study file.
-    pub(super) at: usize,
-    /// Is it an axis of this input alone?
-    pub(super) single: bool,
-    /// A word that is among the values.
-    pub(super) word: Option<String>,
-}
 
 impl Reader<'_> {
     /// The axes of a table, in file order. Those with problems are left out.

@@ -1,14 +1,14 @@
 //! Joint axes: several inputs that walk through rows together, written in the study or in a CSV file such as a catalogue, with labels.
 
 use super::super::axis::Axis;
-use super::super::check::{MOST_ROWS, MOST_VALUES};
 use super::super::label::flaw_of_text;
+use super::super::limits::{MOST_ROWS, MOST_VALUES};
 use super::Reader;
-use super::axes::{AxisClaim, AxisRole};
 use super::csv_file::{csv_builder, csv_text};
-use super::spectrum::WeightColumn;
+use super::roles::{AxisClaim, AxisRole};
 use super::table::{Entry, Lines, TomlNode, TomlTable, list, shortened};
 use super::value::input_text;
+use super::weights::WeightColumn;
 use super::{choice, text};
 use crate::likeness::{closest, remedy};
 use std::collections::HashMap;

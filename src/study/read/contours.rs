@@ -1,8 +1,9 @@
 //! The `contours` of a map: the quantities and values at which lines are drawn.
 
 use super::super::axis::{Axis, Levels};
-use super::super::check::MOST_THRESHOLDS;
-use super::super::resolved::{Best, ContourSpec, Quantity, Thresholds};
+use super::super::limits::MOST_THRESHOLDS;
+use super::super::quantity::Quantity;
+use super::super::resolved::{Best, ContourSpec, Thresholds};
 use super::table::{Entry, TomlNode, TomlTable, list};
 use super::value::{measured, shown, shown_in};
 use super::{Reader, text};

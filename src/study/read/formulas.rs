@@ -2,12 +2,12 @@
 //!
 //! The file of a model has the same three.
 
-use super::axes::PRESET;
 use super::csv_file::{csv_builder, csv_text};
 use super::labels::DeclaredLabel;
-use super::spectrum::weighted_cases;
+use super::roles::PRESET;
 use super::table::{Entry, Problems, TomlNode, TomlTable, list, shortened};
 use super::value::truth;
+use super::weights::weighted_cases;
 use super::{choice, section, text};
 use crate::formula::{Expression, meant};
 use crate::models::{CurveSource, Extension, ExtensionProblem, FormulaSource, Model, Worse, extended};

@@ -8,7 +8,9 @@
 //! | `axes.rs`       | `[design]`, `[operation]`, `[uncertainty]`, `[fixed]` |
 //! | `range.rs`      | `{ from, to, ... }`                                |
 //! | `cases.rs`      | joint axes, from rows or a CSV file                |
-//! | `spectrum.rs`   | weights of cases, and `over_scenarios`              |
+//! | `spectrum.rs`   | axes with weights, and `over_scenarios`             |
+//! | `weights.rs`    | the weights of cases                               |
+//! | `roles.rs`      | who gives inputs values                            |
 //! | `labels.rs`     | `labels`                                           |
 //! | `presets.rs`    | axes over presets                                  |
 //! | `formulas.rs`   | `units`, `[curves]`, `[formulas]`                   |
@@ -30,6 +32,7 @@ mod presets;
 mod quantities;
 mod range;
 mod report;
+mod roles;
 mod set;
 mod spectrum;
 mod syntax;
@@ -37,6 +40,7 @@ mod table;
 #[cfg(test)]
 pub(crate) mod tests;
 mod value;
+mod weights;
 
 pub(super) use formulas::CurvePoints;
 pub use model_file::{FileKind, file_kind, read_model};
@@ -54,8 +58,8 @@ use super::spectrum::Spectrum;
 use crate::error::Result;
 use crate::likeness::remedy;
 use crate::models::{Model, Models};
-use axes::{AxisClaim, AxisRole};
 use labels::{DeclaredLabel, check_label_names, read_labels};
+use roles::{AxisClaim, AxisRole};
 use set::SetAxes;
 pub use set::StudyEdits;
 use std::cell::{Cell, RefCell};

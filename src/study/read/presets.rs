@@ -3,8 +3,8 @@
 use super::super::axis::Axis;
 use super::super::label::Label;
 use super::Reader;
-use super::axes::{AxisClaim, AxisRole, PRESET};
 use super::formulas::given;
+use super::roles::{AxisClaim, AxisRole, PRESET};
 use super::table::{Entry, list, shortened};
 use super::text;
 use std::collections::{HashMap, HashSet};

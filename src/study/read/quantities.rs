@@ -1,8 +1,9 @@
 //! Inputs and outputs that a study is about: constraints and objectives.
 
-use super::super::resolved::{Constraint, Goal, Objective, Quantity};
+use super::super::quantity::Quantity;
+use super::super::resolved::{Constraint, Goal, Objective};
 use super::super::spectrum::OverScenarios;
-use super::axes::AxisRole;
+use super::roles::AxisRole;
 use super::table::{Entry, TomlTable, shortened};
 use super::value::measured;
 use super::{Reader, choice, text};

@@ -1,7 +1,7 @@
 //! Axes given by a rule: `{ from, to, count }`, `{ from, to, step }`, linear or logarithmic.
 
 use super::super::axis::Levels;
-use super::axes::AxisRole;
+use super::roles::AxisRole;
 use super::table::TomlTable;
 use super::value::{checked, input_number, measured, shown, shown_in, whole};
 use super::{MOST_LEVELS, Reader, choice};

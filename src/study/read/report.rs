@@ -1,11 +1,12 @@
 //! The `[report]` table: what else to report.
 
 use super::super::axis::Axis;
-use super::super::check::MOST_PICTURES;
-use super::super::resolved::{Best, Goal, HistogramSpec, MapSpec, Objective, Quantity, Report, ReportColumn, SampleSpec, TopSpec};
-use super::axes::AxisRole;
+use super::super::limits::MOST_PICTURES;
+use super::super::quantity::Quantity;
+use super::super::resolved::{Best, Goal, HistogramSpec, MapSpec, Objective, Report, ReportColumn, SampleSpec, TopSpec};
 use super::contours::Plane;
 use super::quantities::GOALS;
+use super::roles::AxisRole;
 use super::table::{Entry, TomlNode, TomlTable};
 use super::value::{shown_in, whole};
 use super::{Reader, choice, text};
