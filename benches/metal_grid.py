@@ -38,7 +38,7 @@ def axes(k):
 def designs(mu, a, r1, r2, w1, w2, h, n):
     """torque capacity (N mm) and the larger axial force (N), broadcast over the arguments."""
     s, t, c = np.sin(a / 2), np.tan(a / 2), np.cos(a / 2)
-    lam = np.tanh(mu / s * w2 / 2)
+    lam = np.tanh(mu / s * np.minimum(w1, w2) / 2)  # whichever pulley slips first
     stress = np.maximum(0., STRENGTH - MODULUS * h / 2 * (1 / np.minimum(r1, r2) - 1 / FREE))
     P = stress * 2 * n * WIDTH * h * 2 * lam / (1 + lam)
     k = (1 - mu * t) / (mu + t)
@@ -75,7 +75,7 @@ def _slab(mu, a, r1, r2, w1, w2, h, n, cap, force):
         k = (1 - mu * t) / (mu + t)
         got = 0
         for i in range(len(r1)):
-            lam = np.tanh(mu / s * w2[i] / 2)
+            lam = np.tanh(mu / s * min(w1[i], w2[i]) / 2)
             arc = np.log((1 + lam) / (1 - lam)) * s / mu
             f = max((1 + lam) / (4 * lam) * w1[i] * k, (1 - lam) / (4 * lam) * (w2[i] - arc) * k + c / (2 * mu))
             bend = MODULUS / 2 * (1 / min(r1[i], r2[i]) - 1 / FREE)
@@ -121,7 +121,7 @@ def _rows(mu, a, r1, r2, w1, w2, h, n, ceiling, coarse, start, cap, force, survi
         for i in range(len(r1)):
             if writes and survivors[q, i] == 0:
                 continue
-            lam = np.tanh(mu / s * w2[i] / 2)
+            lam = np.tanh(mu / s * min(w1[i], w2[i]) / 2)
             arc = np.log((1 + lam) / (1 - lam)) * s / mu
             f = max((1 + lam) / (4 * lam) * w1[i] * k, (1 - lam) / (4 * lam) * (w2[i] - arc) * k + c / (2 * mu))
             bend = MODULUS / 2 * (1 / min(r1[i], r2[i]) - 1 / FREE)

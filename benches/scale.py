@@ -37,7 +37,7 @@ LARGEST = {
     "every design, lavapipe": (98, 98, "a software device shows that answers agree, not how fast one is"),
     "bounds": (560, 560, "nothing"),
 }
-CVT = Path("studies/metal-cvt.toml").read_text()
+CVT = Path("benches/studies/metal-cvt-traction.toml").read_text()
 # Levels of groove angle, thickness and traction: all levels of the shipped study (61, 41, 11) are among them.
 CVT_LEVELS = ((61, 41, 11), (121, 81, 21), (481, 321, 81), (2101, 1401, 381))
 # Of axial_force_N, stress_margin and slip_margin: without them the front of four objectives would grow as the grid does.
@@ -129,6 +129,9 @@ def known_elsewhere(designs):
             say(f"{file} is not there: nothing to compare with")
             continue
         record = json.loads(file.read_text())
+        if "judged" in record:
+            say(f"{file} counts otherwise and is not compared: {record['judged']}")
+            continue
         for row in record.get("runs", [record]):
             if row["command"].startswith("beltspace sweep metal-grid") and row["run"]["engine"] == "gpu" and row["run"]["designs"] == designs:
                 yield name, row
@@ -166,7 +169,7 @@ def grid(program, levels, long, limit, folder, problems):
 
 
 def cvt_study(resolutions, angle, thickness, traction):
-    """The shipped metal-cvt study, finer. Bounds give no histograms and no maps, and without resolutions the front of four objectives
+    """The study benches/studies/metal-cvt-traction.toml, finer. Bounds give no histograms and no maps, and without resolutions the front of four objectives
     would be as large as the grid."""
     force, stress, slip = resolutions
     text, changes = CVT, (
@@ -179,7 +182,7 @@ def cvt_study(resolutions, angle, thickness, traction):
     )
     for old, new in changes:
         if text.count(old) != 1:
-            sys.exit(f"studies/metal-cvt.toml has changed: {old} stands in it {text.count(old)} times")
+            sys.exit(f"benches/studies/metal-cvt-traction.toml has changed: {old} stands in it {text.count(old)} times")
         text = text.replace(old, new)
     return re.sub(r"(?m)^(histograms|maps) .*\n", "", text)
 

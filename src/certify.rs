@@ -217,6 +217,8 @@ pub struct Row {
     pub inputs: Vec<f64>,
     /// One entry per column.
     pub columns: Vec<AtWorst>,
+    /// Of each column: does its quantity have a value in every scenario?
+    pub complete: Vec<bool>,
 }
 
 /// Computes the rows of designs, in the order given, on several threads. `control` shows the progress and can stop it.
@@ -345,6 +347,7 @@ impl<'p> Reference<'p> {
         let (mut feasible, mut without_result) = (true, 0);
         let mut first_not_ok = (u64::MAX, Status::Ok);
         let mut worst = vec![(f64::NEG_INFINITY, AtWorst { value: None, scenario: 0 }); self.columns.len()];
+        let mut complete = vec![true; self.columns.len()];
         let mut sums = SummedCases::new(plan, &self.summed);
         for q in 0..plan.slow_scenarios.count() {
             plan.slow_scenarios.set(q, &mut inputs);
@@ -384,8 +387,11 @@ impl<'p> Reference<'p> {
                 if status != Status::Ok && scenario < first_not_ok.0 {
                     first_not_ok = (scenario, status);
                 }
-                for (column, worst) in self.columns.iter().zip(&mut worst).filter(|(column, _)| column.over.is_worst()) {
-                    column.worst.take(worst, value(column.quantity), scenario);
+                let of_columns = self.columns.iter().zip(worst.iter_mut().zip(&mut complete));
+                for (column, (worst, complete)) in of_columns.filter(|(column, _)| column.over.is_worst()) {
+                    let value = value(column.quantity);
+                    *complete &= value.is_some();
+                    column.worst.take(worst, value, scenario);
                 }
                 let Some(known) = sums.add((q, t), scenario, value) else { continue };
                 let sum = |quantity, over| sums.result(known, quantity, over);
@@ -395,13 +401,16 @@ impl<'p> Reference<'p> {
                     .iter()
                     .all(|it| it.over.is_worst() || sum(it.quantity, it.over).is_some_and(|value| it.holds(value)));
                 feasible &= plan.tracked.iter().all(|(it, _)| it.over.is_worst() || sum(it.quantity, it.over).is_some());
-                for (column, worst) in self.columns.iter().zip(&mut worst).filter(|(column, _)| !column.over.is_worst()) {
-                    column.worst.take(worst, sum(column.quantity, column.over), known.1);
+                let of_columns = self.columns.iter().zip(worst.iter_mut().zip(&mut complete));
+                for (column, (worst, complete)) in of_columns.filter(|(column, _)| !column.over.is_worst()) {
+                    let value = sum(column.quantity, column.over);
+                    *complete &= value.is_some();
+                    column.worst.take(worst, value, known.1);
                 }
             }
         }
         let columns = worst.into_iter().map(|(_, at)| at).collect();
-        Some(Row { index, feasible, without_result, status: first_not_ok.1, inputs: first, columns })
+        Some(Row { index, feasible, without_result, status: first_not_ok.1, inputs: first, columns, complete })
     }
 }
 

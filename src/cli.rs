@@ -1,5 +1,6 @@
 //! Every option of the command line.
 
+use beltspace::influence::InfluenceOver;
 use beltspace::run::{Engine, Judging};
 use beltspace::tiles::Shard;
 use clap::{Args, Parser, Subcommand};
@@ -28,6 +29,8 @@ pub enum Command {
     Check(CheckArgs),
     /// Judge every design of a study and write the result directory
     Sweep(SweepArgs),
+    /// Tell which uncertain input or design choice matters for each quantity of a study
+    Sensitivity(SensitivityArgs),
     /// Merge the shards of a study into the same result as that of one run
     Merge(MergeArgs),
     /// Write the job scripts that run a study on a cluster with Slurm or PBS
@@ -77,6 +80,9 @@ pub struct CheckArgs {
     /// As with sweep --feasible: also says how large the file of all feasible designs may become
     #[arg(long)]
     pub feasible: bool,
+    /// Write the draws that choose designs, of a study with distributions, as CSV
+    #[arg(long, value_name = "FILE.csv")]
+    pub draws: Option<PathBuf>,
 }
 
 /// Options of `export`.
@@ -126,6 +132,9 @@ pub struct EvalArgs {
     /// Scenario of a study, by its index; without it the worst over all scenarios
     #[arg(long, value_name = "K", requires = "design")]
     pub scenario: Option<u64>,
+    /// Draw of a study with distributions, by its number, in the operating case --scenario; without it the medians
+    #[arg(long, value_name = "N", requires = "design")]
+    pub draw: Option<u64>,
     /// Evaluate every row of a table, CSV or .parquet, or CSV from standard input (-): columns give inputs; of a study, a row is a design
     #[arg(long, value_name = "ROWS", conflicts_with_all = ["design", "json", "profile", "plot"])]
     pub table: Option<PathBuf>,
@@ -202,6 +211,46 @@ pub struct SweepArgs {
     /// For testing: change the GPU's value of an output by this fraction; the sweep must notice and fail
     #[arg(long, value_name = "OUTPUT=FRACTION")]
     pub perturb: Vec<String>,
+}
+
+/// Options of `sensitivity`.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Levels are taken to be equally likely. Few combinations are all looked at, and their shares are exact; else draws \
+    estimate them. Shares are of the variance: first-order and total Sobol indices, and Shapley effects, which add up to 1 with \
+    correlations, too, and over the designs that hold. More than ten inputs are also screened after Morris. The quantity holds is 1 where \
+    every constraint is kept with status ok."
+)]
+pub struct SensitivityArgs {
+    /// Study file
+    pub study: PathBuf,
+    /// Set an input in place of its axis, fixed value or formula; a unit may follow the number. May be repeated
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// Design whose uncertainty is looked at, by its index [default: the only one]
+    #[arg(long, value_name = "N")]
+    pub design: Option<u64>,
+    /// What varies [default: uncertainty if the study has some]
+    #[arg(long, value_enum)]
+    pub over: Option<InfluenceOver>,
+    /// Quantity to look at: a column of the result, an output, or holds. May be repeated [default: those of the study, and holds]
+    #[arg(long, value_name = "QUANTITY")]
+    pub of: Vec<String>,
+    /// Directory for sensitivity.csv, with the columns of SALib, sensitivity.json, tornado.csv and pictures
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Draws of each set, 16 times a power of two, where there are too many combinations to look at all
+    #[arg(long, value_name = "N", default_value_t = 4096, value_parser = clap::value_parser!(u64).range(16..=1 << 24))]
+    pub draws: u64,
+    /// Seed of the draws [default: that of the study's draws, else 1]
+    #[arg(long, value_name = "S")]
+    pub seed: Option<u64>,
+    /// Worker threads [default: one per core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub threads: Option<u16>,
+    /// Print nothing but errors
+    #[arg(long)]
+    pub quiet: bool,
 }
 
 /// Options of `report`.

@@ -12,6 +12,9 @@ pub enum Error {
     /// The study file has mistakes.
     #[error(transparent)]
     Study(#[from] StudyErrors),
+    /// A mistake in a distribution, in draws, or in a statement about them.
+    #[error(transparent)]
+    Probability(#[from] crate::probability::ProbabilityProblem),
     /// A wrong value or combination of options; the text says which and what to do.
     #[error("{0}")]
     Request(String),
@@ -273,6 +276,7 @@ impl Error {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Study(_)
+            | Self::Probability(_)
             | Self::Request(_)
             | Self::NoSuchInput { .. }
             | Self::Columns { .. }

@@ -32,6 +32,8 @@
 //! - [`Study::parse`] and [`Study::read`] check a study, [`Study::sweep`] judges it; [`Options`] choose threads, engine and method, and
 //!   change no result.
 //! - [`models::evaluate`] and [`models::evaluate_many`] evaluate designs without a study.
+//! - [`probability`] draws uncertain inputs from their distributions, and says how sure a count of draws is; [`sensitivity`] tells which of
+//!   them matter.
 //! - [`Stored::read`] reads the directory that `beltspace sweep` has written.
 //! - `gpu::adapters` lists the GPUs of this machine, for [`Options::adapter`].
 //!
@@ -88,9 +90,12 @@ pub mod formula;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 #[doc(hidden)]
+pub mod influence;
+#[doc(hidden)]
 pub mod keys;
 #[doc(hidden)]
 pub mod likeness;
+mod masks;
 #[doc(hidden)]
 pub mod memory;
 #[doc(hidden)]
@@ -108,6 +113,7 @@ pub mod parallel;
 pub mod pictures;
 #[doc(hidden)]
 pub mod plan;
+pub mod probability;
 #[doc(hidden)]
 pub mod pulley;
 #[cfg(feature = "pictures")]
@@ -124,8 +130,10 @@ pub mod run;
 mod sample;
 #[doc(hidden)]
 pub mod screen;
+pub mod sensitivity;
 #[doc(hidden)]
 pub mod space;
+mod spread;
 pub mod study;
 #[doc(hidden)]
 pub mod sweep;

@@ -37,8 +37,10 @@ const ROW_COLUMN: u64 = 140;
 const ROW_INPUT: u64 = 50;
 /// Bytes of a label of such a row, a text of some twenty characters: held, as text and in Parquet.
 const ROW_LABEL: u64 = 100;
-/// Bytes of the page, of a design on it, of each output of such a design, and of a row of the list of all designs.
+/// Bytes of the page, of a cell of a map that it shows, of a design on it, of each output of such a design, and of a row of the list of
+/// all designs.
 const PAGE: u64 = 700_000;
+const PAGE_CELL: u64 = 190;
 const PAGE_ROW: u64 = 1_050;
 const PAGE_OUTPUT: u64 = 50;
 const PAGE_VARIANT: u64 = 1_400;
@@ -153,6 +155,7 @@ impl Needs {
             8 * sizes.bins * (threads + 2),
             times(sizes.indices, INDICES * 8 * (threads + 2)),
             times(sizes.packed, PACKED_COPIES),
+            plan.study.probability.as_ref().map_or(0, |it| it.bytes(threads, plan.fast.count())),
         ]);
         let met = times(sizes.cells.min(MET), CELL_MET);
         let points = times(front, POINT_COPIES * 8 * (sizes.objectives + 1));
@@ -163,7 +166,7 @@ impl Needs {
         let on_page = [
             times(front.min(MOST_ON_PAGE as u64), PAGE_ROW + PAGE_OUTPUT * sizes.outputs),
             times(sizes.variants, PAGE_VARIANT),
-            times(sizes.shown, CELL_COLUMN * 4),
+            times(sizes.shown, PAGE_CELL),
             times(sizes.dots, DOT * sizes.objectives),
         ];
         let page = if page { sum(&[state, PAGE, sum(&on_page)]) } else { 0 };

@@ -1,10 +1,11 @@
 //! Sampled designs: design `i` is a function of the study and `i` alone, so a sample is swept like a grid.
 
+use crate::spread::{SobolSequence, permuted};
 use crate::study::{Axis, Levels, Method, Sample};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
-use sobol::Sobol;
-use sobol::params::JoeKuoD6;
+
+pub(crate) use crate::spread::mix;
 
 /// Bits of a sampled number: as many as an f64 in [0, 1) holds.
 const BITS: u32 = 53;
@@ -17,25 +18,22 @@ pub struct Sampler {
     /// Axis and column within it, for every input that is set.
     columns: Vec<(usize, usize)>,
     inputs: Vec<usize>,
-    /// Sobol direction numbers per axis, and a random shift per axis.
-    directions: Vec<Vec<u64>>,
+    /// Without dimensions unless it is needed; and a random shift per axis.
+    sobol: SobolSequence,
     shifts: Vec<u64>,
 }
 
 impl Sampler {
     /// A sampler over the design axes of a study.
     pub fn new(sample: Sample, axes: &[Axis]) -> Self {
-        let directions = match sample.method {
-            Method::Sobol => Sobol::<u64>::init_direction_vals::<u32>(axes.len(), 64, &JoeKuoD6::minimal()),
-            Method::LatinHypercube | Method::Random => Vec::new(),
-        };
+        let dimensions = if sample.method == Method::Sobol { axes.len() } else { 0 };
         let mut random = ChaCha8Rng::seed_from_u64(sample.seed);
         let columns: Vec<_> =
             axes.iter().enumerate().flat_map(|(axis, it)| (0..it.inputs().len()).map(move |column| (axis, column))).collect();
         Self {
             inputs: columns.iter().map(|&(axis, column)| axes[axis].inputs()[column]).collect(),
             columns,
-            directions,
+            sobol: SobolSequence::new(dimensions),
             shifts: axes.iter().map(|_| random.next_u64()).collect(),
             axes: axes.to_vec(),
             sample,
@@ -55,15 +53,7 @@ impl Sampler {
     /// The value of input number `column` in sample `index`.
     pub fn value(&self, column: usize, index: u64) -> f64 {
         let (axis, column) = self.columns[column];
-        let place = self.unit(axis, index);
-        match &self.axes[axis] {
-            Axis::Single { levels: Levels::Continuous { from, to, log: false }, .. } => (from + place * (to - from)).min(from.max(*to)),
-            Axis::Single { levels: Levels::Continuous { from, to, log: true }, .. } => {
-                let (low, high) = (libm::log(*from), libm::log(*to));
-                libm::exp(low + place * (high - low)).clamp(from.min(*to), from.max(*to))
-            }
-            levels => levels.value(column, level_of(place, levels.count())),
-        }
+        value_at(&self.axes[axis], column, self.unit(axis, index))
     }
 
     /// The level or row of axis number `axis` in sample `index`.
@@ -82,12 +72,7 @@ impl Sampler {
     fn unit(&self, axis: usize, index: u64) -> f64 {
         let to_unit = |bits: u64| (bits >> (64 - BITS)) as f64 / (1u64 << BITS) as f64;
         match self.sample.method {
-            Method::Sobol => {
-                let gray = index ^ index >> 1;
-                let directions = &self.directions[axis];
-                let point = (0..64).filter(|bit| gray >> bit & 1 == 1).fold(0, |point, bit| point ^ directions[bit as usize]);
-                to_unit(point ^ self.shifts[axis])
-            }
+            Method::Sobol => to_unit(self.sobol.point(axis, index) ^ self.shifts[axis]),
             Method::Random => to_unit(self.random(axis, index)),
             Method::LatinHypercube => {
                 let count = self.sample.count;
@@ -107,36 +92,22 @@ impl Sampler {
     }
 }
 
+/// The value that an axis gives its input number `column` at a place in [0, 1): of a whole range, or one of its levels, each as likely.
+pub(crate) fn value_at(axis: &Axis, column: usize, place: f64) -> f64 {
+    match axis {
+        Axis::Single { levels: Levels::Continuous { from, to, log: false }, .. } => (from + place * (to - from)).min(from.max(*to)),
+        Axis::Single { levels: Levels::Continuous { from, to, log: true }, .. } => {
+            let (low, high) = (libm::log(*from), libm::log(*to));
+            libm::exp(low + place * (high - low)).clamp(from.min(*to), from.max(*to))
+        }
+        levels => levels.value(column, level_of(place, levels.count())),
+    }
+}
+
 /// One of `count` levels, each as likely.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, reason = "place is in [0, 1)")]
 fn level_of(place: f64, count: u64) -> u64 {
     ((place * count as f64) as u64).min(count - 1)
-}
-
-/// The image of `index` under a random permutation of `0..count` that `key` chooses, without a table: a Feistel network over
-/// the next even power of two, walked until it lands inside.
-fn permuted(index: u64, count: u64, key: u64) -> u64 {
-    let half = (64 - (count - 1).leading_zeros()).div_ceil(2).max(1);
-    let mask = (1u64 << half) - 1;
-    let mut x = index;
-    loop {
-        let (mut left, mut right) = (x >> half, x & mask);
-        for round in 0..6u64 {
-            let mixed = mix(right ^ key.rotate_left(round as u32 * 11) ^ round << 56);
-            (left, right) = (right, left ^ (mixed & mask));
-        }
-        x = left << half | right;
-        if x < count {
-            return x;
-        }
-    }
-}
-
-/// The finaliser of SplitMix64 (Steele, Lea, Flood 2014): every input bit reaches every output bit.
-pub(crate) fn mix(x: u64) -> u64 {
-    let x = (x ^ x >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    x ^ x >> 31
 }
 
 #[cfg(test)]
@@ -147,16 +118,6 @@ mod tests {
         let continuous = |input| Axis::Single { input, levels: Levels::Continuous { from: 0.0, to: 1.0, log: false } };
         let integers = Axis::Single { input: 2, levels: Levels::Step { from: 1.0, step: 1.0, count: 4, log: false } };
         Sampler::new(Sample { method, count, seed: 7 }, &[continuous(0), continuous(1), integers])
-    }
-
-    #[test]
-    fn a_permutation_hits_every_number_once() {
-        for count in [1, 2, 3, 64, 1000, 4097] {
-            let mut seen: Vec<_> = (0..count).map(|i| permuted(i, count, 99)).collect();
-            assert!(count < 64 || seen.iter().enumerate().filter(|&(i, &x)| i as u64 == x).count() < 10, "it should mix");
-            seen.sort_unstable();
-            assert!(seen.into_iter().eq(0..count), "{count}");
-        }
     }
 
     #[test]

@@ -11,6 +11,8 @@ mod own_model;
 mod read;
 #[path = "../examples/sweep.rs"]
 mod sweep;
+#[path = "../examples/uncertain.rs"]
+mod uncertain;
 
 use beltspace::run::Control;
 use beltspace::{Data, Engine, Error, Judging, Options, Outcome, Stored, Study};
@@ -159,6 +161,7 @@ fn the_examples_run() {
     evaluate::main().expect("it evaluates");
     own_model::main().expect("every engine gives the same");
     read::main().expect("it reads");
+    uncertain::main().expect("it draws");
     #[cfg(feature = "gpu")]
     engine::main().expect("both engines agree");
 }

@@ -110,9 +110,38 @@ impl BatchTarget {
         has_words: &dyn Fn(usize) -> bool,
         threads: usize,
     ) -> Result<RowColumns> {
+        self.refuse_replaced(given, values)?;
         match &self.kind {
             BatchKind::Model(inputs) => Ok(self.by_model(inputs, given, values, has_words, threads)),
             BatchKind::Study(study, columns) => by_study(study, columns, given, values, has_words, threads),
+        }
+    }
+
+    /// Refuses rows that give an input although a number of another one takes its place.
+    fn refuse_replaced(&self, given: &[usize], values: &[Vec<f64>]) -> Result<()> {
+        let model = &self.model;
+        let fixed = match &self.kind {
+            BatchKind::Model(inputs) => inputs,
+            BatchKind::Study(study, _) => &study.fixed,
+        };
+        let is_number = |input: usize, value: f64| model.inputs[input].word_for(value).is_none();
+        let column = |name: &str| given.iter().position(|&input| model.inputs[input].name == name);
+        // What else the study or --set gives differs from what the model takes by itself, or makes no difference.
+        let differs = |name: &str| {
+            let other = model.input(name).filter(|&it| fixed[it] != model.inputs[it].default);
+            other.filter(|_| matches!(self.kind, BatchKind::Study(..)) || self.set.iter().any(|it| it == name))
+        };
+        let gives_numbers = |name: &str| match column(name) {
+            Some(column) => values[column].iter().any(|&value| is_number(given[column], value)),
+            None => differs(name).is_some_and(|input| is_number(input, fixed[input])),
+        };
+        let gives = |name: &str| column(name).is_some() || differs(name).is_some();
+        match model.contradiction(gives_numbers, gives) {
+            None => Ok(()),
+            Some((input, other)) => {
+                let message = format!("{other} cannot be given beside {input}, which takes its place; drop the column of one of the two");
+                Err(refusal(message))
+            }
         }
     }
 

@@ -20,9 +20,11 @@ mod staircase;
 mod study_tape;
 #[cfg(test)]
 mod tests;
+mod yields;
 
 pub use count::{BoxCounter, Settled};
 pub use search::{Searched, Sought, Worker};
+pub use yields::{EnclosureProblem, YieldBounds, YieldInput, enclose_yield};
 
 use crate::parallel::on_threads;
 use crate::plan::Plan;
@@ -44,6 +46,9 @@ use study_tape::{Merit, StudyTape};
 /// Why bounds cannot serve a study: something that asks about every design; `None` if they can.
 pub fn refusal(plan: &Plan) -> Option<String> {
     let study = &plan.study;
+    if study.probability.is_some() {
+        return Some("yields are counted draw by draw, and bounds know levels only".to_owned());
+    }
     if study.model.kernel.formula().is_none() {
         return Some(format!("{} is no formula that could be bounded", study.model.name));
     }

@@ -1,9 +1,9 @@
 //! `beltspace check`: checks a study and estimates its run.
 
-use super::{read_study_with, threads};
+use super::{draws, read_study_with, threads};
 use crate::cli;
 use crate::terminal::{self, TextGrid, bold, grouped, scaled, span};
-use beltspace::error::Result;
+use beltspace::error::{Error, Result};
 use beltspace::memory::{Needs, large_files, most_feasible};
 use beltspace::models::Set;
 use beltspace::plan::Plan;
@@ -17,6 +17,10 @@ use std::time::Duration;
 const TRIAL: Duration = Duration::from_millis(300);
 /// And how long bounds are tried, where the sweep would begin by them.
 const TRIAL_OF_BOUNDS: Duration = Duration::from_millis(1500);
+
+/// Designs, and scenarios of each, in which contradictions of the inputs are looked for.
+const DOUBTED_DESIGNS: u64 = 4096;
+const DOUBTED_SCENARIOS: u64 = 4;
 
 pub fn run(request: &cli::CheckArgs) -> Result<()> {
     let (study, _) = read_study_with(&request.study, StudyEdits { set: &request.set, feasible: request.feasible })?;
@@ -36,6 +40,20 @@ pub fn run(request: &cli::CheckArgs) -> Result<()> {
             axes.row([role.to_owned(), name(axis), levels, ends.into_iter().chain(weights).collect::<Vec<_>>().join(", ")]);
         }
     }
+    let mut of_draws: Vec<(String, String)> = Vec::new();
+    if let Some(probability) = &study.probability {
+        for axis in &probability.drive.operation {
+            let ends: Vec<_> = axis.inputs().iter().enumerate().map(|(column, &input)| ends(&plan, axis, column, input)).collect();
+            axes.row(["operation".to_owned(), name(axis), grouped(axis.count()), ends.join(", ")]);
+        }
+        draws::axes(probability, &mut axes);
+        draws::facts(probability, |what, value| of_draws.push((what.to_owned(), value)))?;
+        if let Some(path) = &request.draws {
+            draws::write(probability, path)?;
+        }
+    } else if request.draws.is_some() {
+        return Err(Error::Request("--draws is for studies with distributions; this one has none".to_owned()));
+    }
     let mut formulas = TextGrid::default();
     for (name, text) in model.formulas() {
         formulas.row([bold("formula"), name.to_owned(), terminal::told(text)]);
@@ -43,7 +61,7 @@ pub fn run(request: &cli::CheckArgs) -> Result<()> {
     let cores = threads(None);
     let speed = Speed::measured(&plan, cores, TRIAL);
     #[allow(clippy::cast_precision_loss, reason = "an estimate for people")]
-    let evaluations = designs as f64 * scenarios as f64;
+    let evaluations = designs as f64 * scenarios as f64 * study.probability.as_ref().map_or(1.0, |it| it.evaluations() as f64);
     // The sample that shows what limits feasibility and a list of all designs are judged a second time.
     let listed = if study.report.variants || study.report.feasible { designs } else { 0 };
     let seconds = [designs, designs.min(model.sample), listed].iter().map(|&judged| speed.of(judged, cores)).sum();
@@ -62,6 +80,7 @@ pub fn run(request: &cli::CheckArgs) -> Result<()> {
     fact("model", format!("{}: {}", model.name, model.summary));
     fact("designs", grouped(designs));
     fact("scenarios", grouped(scenarios));
+    of_draws.into_iter().for_each(|(what, value)| fact(&what, value));
     fact("evaluations", format!("{evaluations:.3e}"));
     fact("expected time", expected);
     fact("method", method);
@@ -148,10 +167,31 @@ fn warnings(plan: &Plan, name: &impl Fn(&Axis) -> String) -> Vec<String> {
     for (input, &value) in study.fixed.iter().enumerate().filter(|&(input, _)| !set.contains(input)) {
         unusual(plan, input, (value, value), &mut warnings);
     }
+    let known = |input: usize| (!set.contains(input)).then_some(study.fixed[input]);
+    let is_set = |input: &usize| known(*input) != Some(study.model.inputs[*input].default);
+    warnings.extend((0..study.fixed.len()).filter(is_set).filter_map(|input| study.model.unread(input, known)));
+    warnings.extend(draws::warnings(study));
+    warnings.extend(contradiction(plan));
     if study.constraints.is_empty() {
-        warnings.push("there are no constraints: every design with status ok is feasible".to_owned());
+        warnings.push(match study.probability {
+            None => "there are no constraints: every design with status ok is feasible".to_owned(),
+            Some(_) => "no yield is asked for in [constraints]: a design is feasible even if no draw of it holds".to_owned(),
+        });
     }
     warnings
+}
+
+/// Inputs that contradict each other, in the first design of those looked at where they do.
+fn contradiction(plan: &Plan) -> Option<String> {
+    let (designs, scenarios) = (plan.space.designs.coarse(DOUBTED_DESIGNS), plan.space.scenarios.coarse(DOUBTED_SCENARIOS));
+    let mut found = designs.iter().filter_map(|&design| {
+        let doubts = |&scenario: &u64| plan.study.model.doubts_on(&plan.space.inputs(design, scenario));
+        scenarios.iter().find_map(|scenario| doubts(scenario).into_iter().next()).map(|doubt| (design, doubt))
+    });
+    let (design, doubt) = found.next()?;
+    let others = found.count();
+    let more = if others == 0 { String::new() } else { format!(" and {} more", grouped(others as u64)) };
+    Some(format!("{doubt} (design {design}{more}, of {} looked at)", grouped(designs.len() as u64)))
 }
 
 fn unusual(plan: &Plan, input: usize, (low, high): (f64, f64), warnings: &mut Vec<String>) {

@@ -1,9 +1,9 @@
 //! `beltspace eval`: evaluates one design of a model or of a study.
 
 use super::settings::{inputs_of, no_preset};
-use super::{CommandTarget, read_study, read_study_what_if, rows, target};
+use super::{CommandTarget, draws, read_study, read_study_what_if, rows, target};
 use crate::cli;
-use crate::terminal::{self, TextGrid, bold, dim, short};
+use crate::terminal::{self, TextGrid, bold, dim, grouped, short};
 use beltspace::certify;
 use beltspace::error::{Error, Result};
 use beltspace::export::pulley;
@@ -12,6 +12,7 @@ use beltspace::models::{self, Evaluation, Evaluator, Model, Profile, Status, eva
 use beltspace::names::is_picture;
 use beltspace::pictures::{self, PlotQuantity, Series};
 use beltspace::plan::Plan;
+use beltspace::probability::Effect;
 use beltspace::screen::Control;
 use beltspace::study::{Axis, Label, Levels, Quantity, ReportColumn, Study, number, value_of};
 use beltspace::table::{Data, Table, TableColumn, csv_text};
@@ -72,7 +73,11 @@ fn print_one(model: &Model, inputs: &[f64], of_study: Option<ShownDesign<'_>>, r
         label_rows(plan, design, &mut table);
     }
     for (input, &value) in model.inputs.iter().zip(inputs) {
-        let text = input.word_for(value).map_or_else(|| short(value), str::to_owned);
+        let text = match input.word_for(value) {
+            _ if model.is_replaced(&input.name, inputs) => "-".to_owned(),
+            Some(word) => word.to_owned(),
+            None => short(value),
+        };
         table.row([input.name.to_owned(), text, dim(&input.doc)]);
     }
     let mut results = TextGrid::default();
@@ -206,9 +211,18 @@ fn of_study(request: &cli::EvalArgs, path: &Path) -> Result<()> {
     }
     let (own, number) = studied(path, request.design)?;
     let (plan, design) = if request.set.is_empty() { (own, number) } else { (what_if(&own, number, path, &request.set)?, 0) };
+    if request.draw.is_some() || (plan.study.probability.is_some() && request.scenario.is_some()) {
+        let (one, scenario, inputs) = draws::drive(&plan, design, request)?;
+        return print_one(&one.study.model, &inputs, Some(ShownDesign { plan: &one, design, number, scenario }), request);
+    }
     let model = &plan.study.model;
     let scenarios = plan.scenarios();
-    if let Some(scenario) = request.scenario.or((scenarios == 1).then_some(0)) {
+    if plan.study.probability.is_some() && (request.profile.is_some() || request.plot.is_some()) {
+        return Err(Error::Request(
+            "--profile and --plot show one drive; add --scenario K, and --draw N unless it is to be that at the medians".to_owned(),
+        ));
+    }
+    if let Some(scenario) = request.scenario.or((scenarios == 1 && plan.study.probability.is_none()).then_some(0)) {
         if scenario >= scenarios {
             return Err(Error::Request(format!("there is no scenario {scenario}; the study's scenarios are 0 to {}", scenarios - 1)));
         }
@@ -260,8 +274,13 @@ fn print_worst(plan: &Plan, design: u64, number_of: u64, request: &cli::EvalArgs
     let failed = statuses.filter(|(_, status)| *status != Status::Ok).collect::<Vec<_>>();
     let status = failed.first().map_or(Status::Ok, |(_, status)| *status).reason(model);
 
-    let varied: Vec<usize> = study.operation.iter().chain(&study.uncertainty).flat_map(|axis| axis.inputs()).copied().collect();
+    let mut varied: Vec<usize> = study.operation.iter().chain(&study.uncertainty).flat_map(|axis| axis.inputs()).copied().collect();
+    if let Some(probability) = &study.probability {
+        varied.extend(probability.drive.operation.iter().flat_map(|axis| axis.inputs()));
+        varied.extend(probability.inputs.iter().filter(|it| it.effect == Effect::Is).map(|it| it.input));
+    }
     let inputs = (0..model.inputs.len()).filter(|input| !varied.contains(input));
+    let enclosed = draws::enclosed(study, design)?;
     let at_worst = |name: &str, suffix: &str| {
         let name = format!("{name}{suffix}");
         columns.iter().position(|column| column.name == name).map(|at| row.columns[at])
@@ -292,6 +311,10 @@ fn print_worst(plan: &Plan, design: u64, number_of: u64, request: &cli::EvalArgs
             "scenarios": plan.scenarios(), "scenarios_not_ok": failed.len(),
         });
         add_labels(plan, design, &mut object);
+        if let Some((found, _)) = enclosed {
+            object["enclosure"] =
+                json!({ "yield_at_least": number(found.at_least), "yield_at_most": number(found.at_most), "boxes": found.boxes });
+        }
         if !request.set.is_empty() {
             object["set"] = json!(request.set);
         }
@@ -310,6 +333,11 @@ fn print_worst(plan: &Plan, design: u64, number_of: u64, request: &cli::EvalArgs
         let value = at.value.map_or("-".to_owned(), short);
         results.row([column.name.clone(), value, at.scenario.to_string(), dim(&column.doc(study))]);
     }
+    if let Some((found, words)) = enclosed {
+        let doc = dim(&format!("Proven for the distributions themselves, not for draws of them ({words})."));
+        results.row(["yield_at_least".to_owned(), short(found.at_least), String::new(), doc]);
+        results.row(["yield_at_most".to_owned(), short(found.at_most), String::new(), String::new()]);
+    }
     let mut margins = TextGrid::default();
     for (constraint, worst) in constraints {
         let value = worst.and_then(|it| it.value);
@@ -325,10 +353,14 @@ fn print_worst(plan: &Plan, design: u64, number_of: u64, request: &cli::EvalArgs
         format!(" in scenario {scenario} ({} of {} scenarios are not ok)", failed.len(), plan.scenarios())
     });
     let with = if request.set.is_empty() { String::new() } else { format!(" with {}", request.set.join(", ")) };
+    let of_all = match &study.probability {
+        None => format!("worst of {} scenarios", plan.scenarios()),
+        Some(it) if it.levels == 1 => format!("over {} draws", grouped(it.draws)),
+        Some(it) => format!("over {} draws, worst of {} levels", grouped(it.draws), grouped(it.levels)),
+    };
     terminal::print(&format!(
-        "{} {number_of}{with}, worst of {} scenarios\n\n{}\n{}\n{}\n{}\n{}\n{}\n{} {status}{not_ok}\n{} {}\n",
+        "{} {number_of}{with}, {of_all}\n\n{}\n{}\n{}\n{}\n{}\n{}\n{} {status}{not_ok}\n{} {}\n",
         bold("design"),
-        plan.scenarios(),
         bold("inputs"),
         table.indented(2),
         bold("outputs"),

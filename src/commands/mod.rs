@@ -3,6 +3,7 @@
 #[cfg(feature = "gpu")]
 mod adapters;
 mod check;
+mod draws;
 #[cfg_attr(not(feature = "gpu"), path = "no_engine.rs")]
 mod engine;
 mod eval;
@@ -12,6 +13,7 @@ mod models;
 mod report;
 mod reproduce;
 mod rows;
+mod sensitivity;
 mod settings;
 mod slurm;
 mod sweep;
@@ -36,6 +38,7 @@ pub fn run(command: Command) -> Result<()> {
         Command::Export(request) => export::run(&request),
         Command::Check(request) => check::run(&request),
         Command::Sweep(request) => sweep::run(&request),
+        Command::Sensitivity(request) => sensitivity::run(&request),
         Command::Merge(request) => merge::run(&request),
         Command::Slurm(request) => slurm::run(&request),
         Command::Report(request) => report::run(&request),
@@ -147,7 +150,7 @@ mod unlike {
         let mut model = Model::clone(&find("pulley-load").expect("it is a model"));
         let section = Input::enumeration("section", "", SECTIONS, 4.0, "How the pulley is made.", "chosen");
         let mass = Input::new("disc_mass_g", "", beltspace::units::GRAM, 10.0, (1.0, 100.0), "Mass of a disc.", "chosen");
-        let mass = mass.read_only_for(&["machined", "welded-discs"]);
+        let mass = mass.read_only_for("section", &["machined", "welded-discs"]);
         model.name = "sections".into();
         model.inputs.extend([section, mass]);
         model.presets = vec![Preset::new("welded", &[("section", 2.0)])];

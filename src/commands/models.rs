@@ -52,8 +52,7 @@ fn page(model: &Model) -> String {
         inputs.row([input.name.to_owned(), default, usual, input.valid_in_words()]);
     }
     let from = |source: &str| if source.is_empty() { String::new() } else { format!(" [{source}]") };
-    let inputs =
-        described(&inputs, model.inputs.iter().map(|input| format!("{}{}{}", input.doc, from(&input.source), only_for(model, input))));
+    let inputs = described(&inputs, model.inputs.iter().map(|input| format!("{}{}{}", input.doc, from(&input.source), only_for(input))));
     let mut outputs = TextGrid::default();
     outputs.row(["output", "symbol", "equation"].map(bold));
     for output in &model.outputs {
@@ -65,8 +64,7 @@ fn page(model: &Model) -> String {
     for condition in model.conditions.iter().filter(|condition| !condition.quiet) {
         statuses.row([condition.reason.to_owned(), format!("unless: {}", condition.doc)]);
     }
-    let presets: Vec<_> = model.presets.iter().map(|it| it.name.as_str()).collect();
-    let presets = if presets.is_empty() { String::new() } else { format!("presets: {}\n\n", presets.join(", ")) };
+    let presets = presets(model);
     let mut formulas = TextGrid::default();
     formulas.row([bold("formula"), String::new()]);
     for (name, text) in model.formulas() {
@@ -86,6 +84,17 @@ fn page(model: &Model) -> String {
         bold("Not in the model:"),
         model.limits,
     )
+}
+
+/// Names of the presets, and what they are where that is said.
+fn presets(model: &Model) -> String {
+    let presets = &model.presets;
+    if presets.is_empty() {
+        return String::new();
+    }
+    let names: Vec<_> = presets.iter().map(|it| it.name.as_str()).collect();
+    let told = presets.iter().filter(|it| !it.about.is_empty()).map(|it| format!("{}\n", dim(&format!("  {}: {}", it.name, it.about))));
+    format!("presets: {}\n{}\n", names.join(", "), told.collect::<String>())
 }
 
 /// What the model computes, line by line, with its symbols.
@@ -126,11 +135,11 @@ fn described(table: &TextGrid, sentences: impl Iterator<Item = String>) -> Strin
     format!("{head}\n{}", rows.collect::<String>())
 }
 
-/// A sentence that says for which words of the model's enumeration an input is read, if not always.
-fn only_for(model: &Model, input: &Input) -> String {
-    let Some(of) = model.enumeration().filter(|_| !input.only_for.is_empty()) else { return String::new() };
-    let words: Vec<_> = input.only_for.iter().map(|word| format!("\"{word}\"")).collect();
-    format!(" Read for {} = {} only.", model.inputs[of].name, words.join(" or "))
+/// Sentences that say what an input takes the place of, and for which words of which input it is read, if not always.
+fn only_for(input: &Input) -> String {
+    let replaced = input.instead_of.as_ref().map_or_else(String::new, |other| format!(" A number takes the place of {other}."));
+    let read = input.only_for.as_ref().map_or_else(String::new, |it| format!(" Read for {} only.", it.in_words()));
+    replaced + &read
 }
 
 /// A model as JSON, with everything of its tables.
@@ -159,8 +168,11 @@ fn describe(model: &Model) -> Value {
         if input.words.len() > 1 {
             described["words"] = input.words.iter().map(|(word, _)| word.as_str()).collect();
         }
-        if !input.only_for.is_empty() {
-            described["only_for"] = input.only_for.clone().into();
+        if let Some(other) = &input.instead_of {
+            described["instead_of"] = other.as_str().into();
+        }
+        if let Some(only_for) = &input.only_for {
+            described["only_for"] = json!(only_for);
         }
         described
     });
@@ -229,7 +241,7 @@ mod tests {
         let [section, mass] = [&inputs[inputs.len() - 2], &inputs[inputs.len() - 1]];
         assert_eq!(section["words"], json!(["machined", "welded-discs", "pressed-cup"]));
         assert_eq!((&section["default"], &section["valid"], &section["word"]), (&json!("pressed-cup"), &Value::Null, &Value::Null));
-        assert_eq!(mass["only_for"], json!(["machined", "welded-discs"]));
+        assert_eq!(mass["only_for"], json!({ "input": "section", "words": ["machined", "welded-discs"] }));
         assert!(inputs[0].get("only_for").is_none() && inputs[0].get("words").is_none());
         assert_eq!(described["presets"]["welded"], json!({ "section": "welded-discs" }));
     }

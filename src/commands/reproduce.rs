@@ -5,7 +5,7 @@ use crate::terminal::{self, TextGrid, bold, dim};
 use beltspace::error::{Error, Result};
 use beltspace::files::{Claim, MOVE, is_regular, refuse_foreign, replace};
 use beltspace::names::{PAGE as HTML, is_page};
-use beltspace::papers::{PAGE, Paper, Reproduction, reproduce};
+use beltspace::papers::{PAGE, Paper, Reproduction, Verdict, reproduce};
 use beltspace::report::of_papers;
 use std::path::Path;
 
@@ -57,5 +57,8 @@ fn shown(all: &Reproduction, out: &Path) -> String {
         }
         text += &format!("{}\n{}\n", bold(paper.name()), grid.indented(2));
     }
-    text + &format!("{}\nreasons, figures and tables: {}\n", all.summary(), out.join(PAGE).display())
+    for verdict in Verdict::ALL {
+        text += &format!("{}: {}\n", bold(verdict.word()), verdict.meaning());
+    }
+    text + &format!("\n{}\nreasons, figures and tables: {}\n", all.summary(), out.join(PAGE).display())
 }

@@ -18,6 +18,11 @@ pub(super) fn inputs_of(model: &Model, preset: Option<&str>, set: &[String]) -> 
             Err(problem) => problems.push(problem),
         }
     }
+    let gives = |name: &str| set.iter().any(|it| it.split_once('=').is_some_and(|(own, _)| own.trim() == name));
+    let is_number = |name: &str| gives(name) && model.input(name).is_some_and(|at| model.inputs[at].word_for(inputs[at]).is_none());
+    if let Some((input, other)) = model.contradiction(is_number, gives).filter(|_| problems.is_empty()) {
+        problems.push(format!("{other} cannot be set beside {input}, which takes its place; drop one of the two"));
+    }
     if problems.is_empty() { Ok(inputs) } else { Err(Error::Request(problems.join("\n       "))) }
 }
 
@@ -69,7 +74,7 @@ mod tests {
     #[test]
     fn an_enumeration_is_set_by_its_words_only() {
         let model = with_a_section();
-        let section = model.enumeration().expect("it has one");
+        let section = model.input("section").expect("it has one");
         assert_eq!(parse_assignment(&model, "section = welded-discs"), Ok((section, 2.0)));
         for wrong in ["2", "cast", ""] {
             let expected = format!("section = {wrong}: section takes words only; write \"machined\", \"welded-discs\" or \"pressed-cup\"");

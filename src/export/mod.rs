@@ -3,6 +3,7 @@
 //! Without the feature `pictures` it has no pictures and no page, without `parquet` no tables in Parquet: `front.csv` has the same values
 //! as `front.parquet`, and maps of any size are CSV. All other files have the same bytes.
 
+mod confirmed;
 pub(crate) mod feasible;
 #[cfg(feature = "pictures")]
 mod pictures;
@@ -13,6 +14,7 @@ pub(crate) mod tables;
 #[cfg(test)]
 mod tests;
 
+pub use confirmed::Confirmed;
 pub use summary::{Knee, MethodRecord, RunRecord, Summary};
 
 use crate::certify::{self, Column, Row};

@@ -1,6 +1,6 @@
 //! The outcome of a study in one page, `summary.json`, and how it was computed, `run.json`.
 
-use super::Certified;
+use super::{Certified, Confirmed};
 use crate::bounds::Certificate;
 use crate::models::OVERFLOW;
 use crate::study::{Goal, Objective, number, value_of};
@@ -121,6 +121,9 @@ impl<'a> Summary<'a> {
                 "constraints": constraints.collect::<Vec<_>>(),
             },
         });
+        if let Some(confirmed) = Confirmed::of(self.outcome) {
+            summary["confirmed"] = confirmed.to_json();
+        }
         let findings = &self.outcome.findings;
         if !findings.is_empty() {
             summary["findings"] = findings.to_json(study);

@@ -2,7 +2,7 @@
 
 use super::constants::common_constants;
 use crate::models::{Fields, Model, Set};
-use crate::tape::{Recordable, wgsl};
+use crate::tape::{Recordable, StageLists, wgsl};
 use std::fmt::Write;
 
 /// Numbers, own functions and decisions, for every kernel.
@@ -18,8 +18,13 @@ pub fn common() -> String {
 
 /// The text of a model, written from its recorded formula.
 pub fn model_source(model: &Model, formula: &dyn Recordable) -> String {
+    stages_source(model, &formula.fields(), &StageLists::whole(formula, model.conditions.len()))
+}
+
+/// The same from lists of its formula.
+pub fn stages_source(model: &Model, fields: &Fields, lists: &StageLists) -> String {
     let equations: Vec<_> = model.outputs.iter().map(|output| output.source.as_str()).collect();
-    wgsl::text(formula, model.conditions.len(), &equations)
+    wgsl::stages_text(fields, lists, &equations)
 }
 
 /// A structure of `Real`s.

@@ -63,6 +63,22 @@ impl Range {
     }
 }
 
+/// The words of another input for which an input is read.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct OnlyFor {
+    /// Name of the other input.
+    pub input: String,
+    /// The words of it.
+    pub words: Vec<String>,
+}
+
+impl OnlyFor {
+    /// As a person says it: `section = "machined" or "welded-discs"`.
+    pub fn in_words(&self) -> String {
+        format!("{} = {}", self.input, either(self.words.iter().map(String::as_str)))
+    }
+}
+
 /// One input of a model. Its name carries the unit.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -83,10 +99,12 @@ pub struct Input {
     pub integer: bool,
     /// Words that stand for values (`"limit"`), each with the number that encodes it.
     pub words: Vec<(String, f64)>,
-    /// The words of the model's first [enumeration](Input::is_enumeration) for which this input is read at all; empty: always.
-    pub only_for: Vec<String>,
+    /// When this input is read at all; `None`: always.
+    pub only_for: Option<OnlyFor>,
     /// The input whose value its words stand for, if it is that simple: single designs show that value instead of the word.
     pub follows: Option<String>,
+    /// The input that a number for this one takes the place of: giving both is a contradiction.
+    pub instead_of: Option<String>,
     /// Is any other value than the default computed on the CPU only?
     pub cpu_only: bool,
     /// What it is, in a sentence.
@@ -115,8 +133,9 @@ impl Input {
             usual,
             integer: false,
             words: Vec::new(),
-            only_for: Vec::new(),
+            only_for: None,
             follows: None,
+            instead_of: None,
             cpu_only: false,
             doc: doc.into(),
             source: source.into(),
@@ -154,10 +173,22 @@ impl Input {
         Self { words: valued(words), ..self }
     }
 
-    /// The same input, read only for these words of the model's first [enumeration](Input::is_enumeration).
+    /// The same input, read only where the input of that name is one of these words of it.
     #[must_use]
-    pub fn read_only_for(self, words: &[&str]) -> Self {
-        Self { only_for: owned(words), ..self }
+    pub fn read_only_for(self, input: impl Into<String>, words: &[&str]) -> Self {
+        Self { only_for: Some(OnlyFor { input: input.into(), words: owned(words) }), ..self }
+    }
+
+    /// The same input, whose words stand for the value of another one.
+    #[must_use]
+    pub fn following(self, other: impl Into<String>) -> Self {
+        Self { follows: Some(other.into()), ..self }
+    }
+
+    /// The same input, whose numbers take the place of another one's values.
+    #[must_use]
+    pub fn instead_of(self, other: impl Into<String>) -> Self {
+        Self { instead_of: Some(other.into()), ..self }
     }
 
     /// Is every value of the input a word?
@@ -343,12 +374,20 @@ pub struct Preset {
     pub name: String,
     /// Names of the inputs that it sets, with their values in the inputs' units.
     pub changes: Vec<(String, f64)>,
+    /// What it is and where its values come from; may be empty.
+    pub about: String,
 }
 
 impl Preset {
     /// A preset of that name that sets these inputs.
     pub fn new(name: impl Into<String>, changes: &[(&str, f64)]) -> Self {
-        Self { name: name.into(), changes: valued(changes) }
+        Self { name: name.into(), changes: valued(changes), about: String::new() }
+    }
+
+    /// The same preset, with what it is and where its values come from.
+    #[must_use]
+    pub fn about(self, about: impl Into<String>) -> Self {
+        Self { about: about.into(), ..self }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::description::Output;
 use crate::real::{LANES, Lanes, Real};
-use crate::tape::{Fields, Known, List, Operation, Recordable, Set, Trace};
+use crate::tape::{Fields, Known, List, Recordable, Set, Trace};
 use std::any::Any;
 
 /// A model's formula in two stages, over any [`Real`]. All values are in SI units.
@@ -39,15 +39,6 @@ pub struct Dependencies {
     pub conditions: Vec<Set>,
 }
 
-/// What a formula's second stage and conditions read.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reads {
-    /// Fields that the first stage passes on, by their number in [`Fields::places`].
-    pub prepared: Set,
-    /// Inputs.
-    pub inputs: Set,
-}
-
 /// Many designs that share their slow inputs, evaluated together: what varies, what is asked, and where it goes.
 pub struct Columns<'a> {
     /// Number of designs, at most the length of every column rounded down to a multiple of [`LANES`] after rounding up `count`.
@@ -79,7 +70,7 @@ pub struct Scratch {
     outputs: Vec<Lanes>,
     margins: Vec<Lanes>,
     /// What a kernel keeps that needs more than that.
-    pub(super) own: Option<Box<dyn Any + Send>>,
+    pub(crate) own: Option<Box<dyn Any + Send>>,
 }
 
 impl Scratch {
@@ -203,25 +194,6 @@ impl Dependencies {
         let (prepared, rest) = of.split_at(whole.prepared.len());
         let (outputs, conditions) = rest.split_at(whole.outputs.len());
         Self { prepared: prepared.iter().copied().collect(), outputs: outputs.to_vec(), conditions: conditions.to_vec() }
-    }
-}
-
-impl Reads {
-    /// Of a formula that can be recorded, to give the outputs in `wanted` and all conditions.
-    pub fn of(formula: &dyn Recordable, inputs: &[Known], wanted: Set) -> Self {
-        let list = formula.second(inputs, wanted, Set::ALL).list(wanted, Set::ALL);
-        let field_of: Vec<usize> =
-            formula.fields().places().enumerate().flat_map(|(field, (_, length))| std::iter::repeat_n(field, length)).collect();
-        let mut reads = Self { prepared: Set::EMPTY, inputs: Set::EMPTY };
-        for operation in &list.operations {
-            if let Operation::Input(input) = *operation {
-                match usize::from(input).checked_sub(inputs.len()) {
-                    Some(passed) => reads.prepared.insert(field_of[passed]),
-                    None => reads.inputs.insert(input.into()),
-                }
-            }
-        }
-        reads
     }
 }
 

@@ -1,6 +1,6 @@
 //! Which model a name means, and what a model must be so that everything else can rely on it.
 
-use super::description::Input;
+use super::description::{Input, OnlyFor};
 use super::formula::Sizes;
 use super::model::Model;
 use crate::error::{Error, Result};
@@ -91,7 +91,7 @@ impl Model {
             })
     }
 
-    pub(super) fn flaw_of_sizes(&self) -> Option<String> {
+    pub(crate) fn flaw_of_sizes(&self) -> Option<String> {
         let Sizes { inputs, outputs, conditions, .. } = self.kernel.sizes();
         let fields = self.kernel.formula().map_or(0, |formula| formula.fields().places().count());
         let limited = [
@@ -113,7 +113,7 @@ impl Model {
     }
 
     fn flaw_of_input(&self, input: &Input) -> Option<String> {
-        let Input { name, words, only_for, follows, .. } = input;
+        let Input { name, words, only_for, follows, instead_of, .. } = input;
         let [mut texts, mut numbers] = [(); 2].map(|()| HashSet::new());
         if !words.iter().all(|(word, number)| texts.insert(word.clone()) && numbers.insert(number.to_bits().to_string())) {
             return Some(format!("two words of {name} are the same, or stand for the same number"));
@@ -124,12 +124,54 @@ impl Model {
         if !input.accepts(input.default) {
             return Some(format!("the default of {name} must be {}", input.valid_in_words()));
         }
-        let enumeration = self.enumeration().map(|number| &self.inputs[number]);
-        if let Some(word) = only_for.iter().find(|word| enumeration.is_none_or(|of| of.value_of(word).is_none())) {
-            return Some(format!("{name} is read for \"{word}\" only, which is no word of the model's first enumeration"));
+        if let Some(OnlyFor { input: of, words }) = only_for {
+            let Some(number) = self.input(of) else { return Some(format!("{name} is read for words of {of} only, which is no input")) };
+            if let Some(word) = words.iter().find(|word| self.inputs[number].value_of(word).is_none()) {
+                return Some(format!("{name} is read for {of} = \"{word}\" only, which is no word of it"));
+            }
         }
-        let other = follows.as_ref().filter(|other| self.input(other).is_none())?;
-        Some(format!("a word of {name} stands for {other}, which is no input"))
+        if let Some(other) = follows.as_ref().filter(|other| self.input(other).is_none()) {
+            return Some(format!("a word of {name} stands for {other}, which is no input"));
+        }
+        let other = instead_of.as_ref()?;
+        match self.input(other) {
+            // An input of the extended model may be given by a formula, and is an output then.
+            None if self.output(other).is_none() => Some(format!("{name} takes the place of {other}, which is no input")),
+            _ if input.word_for(input.default).is_none() => {
+                Some(format!("{name} takes the place of {other}, so its default must be a word"))
+            }
+            _ => None,
+        }
+    }
+
+    /// Inputs whose numbers take the place of another input's, each with that other one: of this model and of those it is made from.
+    fn replacements(&self) -> Vec<(String, String)> {
+        let own = self.inputs.iter().filter_map(|input| Some((input.name.clone(), input.instead_of.clone()?)));
+        let of_base = self.origin.as_ref().map_or_else(Vec::new, |origin| origin.base.replacements());
+        let mut all: Vec<_> = own.chain(of_base).collect();
+        all.sort();
+        all.dedup();
+        all
+    }
+
+    /// Does a number among these inputs take the place of this one?
+    pub fn is_replaced(&self, name: &str, inputs: &[f64]) -> bool {
+        let mut all = self.inputs.iter().zip(inputs);
+        all.any(|(input, value)| input.instead_of.as_deref() == Some(name) && input.word_for(*value).is_none())
+    }
+
+    /// Does a formula of a study or of a model's file give this input?
+    pub(crate) fn is_given_by_formula(&self, name: &str) -> bool {
+        self.origin.as_ref().is_some_and(|it| it.extension.formulas.iter().any(|it| it.name == name) || it.base.is_given_by_formula(name))
+    }
+
+    /// An input that is given a number and takes the place of another one that is given too: the first such pair. The caller says which
+    /// inputs it gives numbers, and which it gives anything; what formulas give comes besides.
+    pub fn contradiction(&self, gives_numbers: impl Fn(&str) -> bool, gives: impl Fn(&str) -> bool) -> Option<(String, String)> {
+        let mut pairs = self.replacements().into_iter();
+        pairs.find(|(input, other)| {
+            (gives_numbers(input) || self.is_given_by_formula(input)) && (gives(other) || self.is_given_by_formula(other))
+        })
     }
 
     fn flaw_of_change(&self, preset: &str, (name, value): &(String, f64)) -> Option<String> {
@@ -175,14 +217,23 @@ mod tests {
     fn tables_that_do_not_fit_each_other_are_refused_with_the_reason() {
         type Change = fn(&mut Model);
         let told = |change: Change| other(change).check().expect_err("it is wrong").to_string();
-        let cases: [(Change, &str); 12] = [
+        let cases: [(Change, &str); 15] = [
+            (|it| it.inputs[0] = it.inputs[0].clone().instead_of("speed"), "power_kW takes the place of speed, which is no input"),
+            (
+                |it| it.inputs[0] = it.inputs[0].clone().instead_of("speed_rpm"),
+                "power_kW takes the place of speed_rpm, so its default must be a word",
+            ),
             (|it| it.inputs[0].name = "power".into(), "power is in kW, so its name must end in _kW"),
             (|it| it.inputs[1].name = it.inputs[0].name.clone(), "power_kW stands twice"),
             (|it| it.inputs[0].default = -1.0, "the default of power_kW must be at least 0"),
             (|it| it.inputs[0].follows = Some("speed".into()), "a word of power_kW stands for speed, which is no input"),
             (
-                |it| it.inputs[0].only_for = vec!["cast".into()],
-                "power_kW is read for \"cast\" only, which is no word of the model's first enumeration",
+                |it| it.inputs[0] = it.inputs[0].clone().read_only_for("tensioning", &["slack", "spring"]),
+                "power_kW is read for tensioning = \"spring\" only, which is no word of it",
+            ),
+            (
+                |it| it.inputs[0] = it.inputs[0].clone().read_only_for("stretch", &["slack"]),
+                "power_kW is read for words of stretch only, which is no input",
             ),
             (|it| it.presets = vec![Preset::new("all", &[("force_N", 1.0)])], "the preset \"all\" sets force_N, which is no input"),
             (
@@ -191,14 +242,14 @@ mod tests {
             ),
             (
                 |it| it.outputs.extend((0..Set::SIZE).map(|n| Output::new(format!("f{n}_N"), "", NEWTON, Worse::Higher, "", ""))),
-                "it has 279 inputs and outputs, at most 256 are possible",
+                "it has 282 inputs and outputs, at most 256 are possible",
             ),
             (
                 |it| it.outputs.push(Output::new("force_N", "", NEWTON, Worse::Higher, "", "")),
-                "it lists 14 outputs, and its formula has 13",
+                "it lists 15 outputs, and its formula has 14",
             ),
-            (|it| it.conditions.extend(it.conditions.clone()), "it lists 4 conditions, and its formula has 2"),
-            (|it| drop(it.inputs.pop()), "it lists 9 inputs, and its formula has 10"),
+            (|it| it.conditions.extend(it.conditions.clone()), "it lists 8 conditions, and its formula has 4"),
+            (|it| drop(it.inputs.pop()), "it lists 11 inputs, and its formula has 12"),
             (|it| it.outputs[4].name = "a b".into(), "\"a b\" is no name: letters, digits and _ make one, a letter first"),
         ];
         for (change, problem) in cases {

@@ -30,18 +30,20 @@ mod timing_belt;
 
 pub use crate::pulley::Design;
 pub(crate) use crate::real::LANES;
-pub use crate::tape::{Fields, Recordable, Set};
+pub use crate::tape::{Fields, Reads, Recordable, Set};
 pub use cvt::{optimum_thickness, printed_torque_coefficient, torque_coefficient, traction_limit, wedge_factor};
-pub use description::{CONDITION_BOUND_FACTOR, Condition, Effort, Input, Output, Preset, Profile, ProfileColumn, Range, SAMPLE, Worse};
+pub use description::{
+    CONDITION_BOUND_FACTOR, Condition, Effort, Input, OnlyFor, Output, Preset, Profile, ProfileColumn, Range, SAMPLE, Worse,
+};
 pub use evaluation::{evaluate, evaluate_asked};
 pub(crate) use evaluation::{fill_si, holds, input_to_si, judge, shown, to_si};
-pub(crate) use extended::{ExtensionProblem, extended, nothing, unit_of_name};
-pub use formula::{Columns, Dependencies, Footprint, Formula, Kernel, Reads, Scratch, Sizes};
+pub(crate) use extended::{ExtensionProblem, extended, interned, nothing, unit_of_name};
+pub use formula::{Columns, Dependencies, Footprint, Formula, Kernel, Scratch, Sizes};
 pub use known::Models;
 pub(crate) use known::is_name;
 pub use latest::{Evaluator, Latest};
 pub use many::{Evaluations, evaluate_many};
-pub use model::{AlongTheBelt, Model, Notes, PulleyOf, Remarks};
+pub use model::{AlongTheBelt, Doubts, Model, Notes, PulleyOf, Remarks};
 pub use pulley::CHECK_POINT_STRESSES;
 pub(crate) use source::{ConditionSource, CurveSource, Extension, FileSource, FormulaSource};
 pub use status::{Evaluation, OVERFLOW, Status};

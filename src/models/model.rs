@@ -13,6 +13,8 @@ use std::sync::Arc;
 pub type Remarks = Arc<dyn Fn(&[Option<f64>]) -> Vec<String> + Send + Sync>;
 /// Sentences on one evaluation of the model, from its inputs in their units.
 pub type Notes = Arc<dyn Fn(&Model, &[f64], &Evaluation) -> Vec<String> + Send + Sync>;
+/// Sentences on inputs in their units that contradict each other.
+pub type Doubts = Arc<dyn Fn(&Model, &[f64]) -> Vec<String> + Send + Sync>;
 /// Values along the belt of the model, from inputs in their units.
 pub type AlongTheBelt = Arc<dyn Fn(&Model, &[f64]) -> Profile + Send + Sync>;
 /// The pulley behind inputs of the model in their units.
@@ -67,6 +69,8 @@ pub struct Model {
     pub remarks: Option<Remarks>,
     /// What a person should know of one evaluation besides its numbers.
     pub notes: Option<Notes>,
+    /// What inputs may say against each other, though the formula takes them.
+    pub doubts: Option<Doubts>,
     /// Values along the belt, where the model has such.
     pub profile: Option<AlongTheBelt>,
     /// The pulley that its inputs describe, where designs are solved by finite elements: there are pictures of such.
@@ -150,7 +154,25 @@ impl Model {
 
     /// What a person should know of one evaluation besides its numbers, for inputs in their units.
     pub fn notes_on(&self, inputs: &[f64], evaluation: &Evaluation) -> Vec<String> {
-        self.notes.as_ref().map_or_else(Vec::new, |notes| notes(self, inputs, evaluation))
+        let mut notes = self.notes.as_ref().map_or_else(Vec::new, |notes| notes(self, inputs, evaluation));
+        let set = |input: &usize| inputs[*input] != self.inputs[*input].default;
+        notes.extend((0..self.inputs.len()).filter(set).filter_map(|input| self.unread(input, |other| Some(inputs[other]))));
+        notes
+    }
+
+    /// A sentence on an input that is set and not read, for the values of those inputs that have one only.
+    pub fn unread(&self, input: usize, value: impl Fn(usize) -> Option<f64>) -> Option<String> {
+        let Input { name, only_for, .. } = &self.inputs[input];
+        let only_for = only_for.as_ref()?;
+        let decides = self.input(&only_for.input)?;
+        let word = self.inputs[decides].word_for(value(decides)?)?;
+        let unread = only_for.words.iter().all(|it| it != word);
+        unread.then(|| format!("{name} is set, but it is read for {} only", only_for.in_words()))
+    }
+
+    /// What inputs in their units say against each other, though the formula takes them.
+    pub fn doubts_on(&self, inputs: &[f64]) -> Vec<String> {
+        self.doubts.as_ref().map_or_else(Vec::new, |doubts| doubts(self, inputs))
     }
 
     /// Values along the belt for inputs in their units, whose status must be ok; `None` if the model has no such values.
@@ -163,16 +185,11 @@ impl Model {
         self.pulley.as_ref().map(|pulley| pulley(self, inputs))
     }
 
-    /// The first input whose every value is a word; [`Input::only_for`] names its words.
-    pub fn enumeration(&self) -> Option<usize> {
-        self.inputs.iter().position(Input::is_enumeration)
-    }
-
-    /// The same inputs with a value in place of every word that stands for another input's.
+    /// The same inputs with a value in place of every word that stands for another input's; the word stays where formulas give that one.
     pub fn spelled_out(&self, inputs: &[f64]) -> Vec<f64> {
-        let value = |(input, &value): (&Input, &f64)| match input.follows.as_ref().filter(|_| input.word_for(value).is_some()) {
-            Some(other) => inputs[self.input(other).expect("an input follows one of its model")],
-            None => value,
+        let value = |(input, &value): (&Input, &f64)| {
+            let followed = input.follows.as_ref().filter(|_| input.word_for(value).is_some());
+            followed.and_then(|other| self.input(other)).map_or(value, |other| inputs[other])
         };
         self.inputs.iter().zip(inputs).map(value).collect()
     }
@@ -201,6 +218,7 @@ impl Model {
             on_gpu: kernel.formula().is_some(),
             kernel: Arc::new(kernel),
             remarks: None,
+            doubts: None,
             notes: None,
             profile: None,
             pulley: None,

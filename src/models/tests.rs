@@ -87,7 +87,7 @@ pub(crate) fn with_a_section() -> Arc<Model> {
     let doc = "How the pulley is made.";
     let section = Input::enumeration("section", "", SECTIONS, 4.0, doc, "chosen");
     let mass = Input::new("disc_mass_g", "", crate::units::GRAM, 10.0, (1.0, 100.0), "Mass of a disc.", "chosen");
-    let mass = mass.read_only_for(&["welded-discs"]);
+    let mass = mass.read_only_for("section", &["welded-discs"]);
     let inputs: Vec<Input> = model.inputs.iter().cloned().chain([section, mass]).collect();
     let presets = vec![Preset::new("welded", &[("section", 2.0), ("power_kW", 5.0)])];
     Arc::new(Model { name: "sections".into(), inputs, presets, ..Model::clone(&model) })
@@ -96,7 +96,7 @@ pub(crate) fn with_a_section() -> Arc<Model> {
 #[test]
 fn an_enumeration_takes_its_words_and_nothing_else() {
     let model = with_a_section();
-    let section = &model.inputs[model.enumeration().expect("it has one")];
+    let section = &model.inputs[model.input("section").expect("it has one")];
     assert!(section.is_enumeration() && section.accepts(3.0) && !section.accepts(5.0) && !section.accepts(2.5));
     assert_eq!((section.word_for(2.0), section.value_of("machined"), section.value_of("2")), (Some("welded-discs"), Some(1.0), None));
     assert_eq!(section.valid_in_words(), r#""machined", "welded-discs", "double-groove" or "pressed-cup""#);
@@ -112,7 +112,7 @@ fn a_preset_changes_the_defaults_and_an_unknown_one_lists_what_there_is() {
     let model = with_a_section();
     let inputs = model.preset("welded").expect("it is a preset");
     let changed: Vec<_> = (0..inputs.len()).filter(|&input| inputs[input] != model.inputs[input].default).collect();
-    assert_eq!(changed, [0, model.enumeration().expect("it has one")]);
+    assert_eq!(changed, [0, model.input("section").expect("it has one")]);
     assert_eq!(model.preset("cast").unwrap_err(), "sections has no preset \"cast\"; presets are: welded");
     let none = find("metal-cvt").expect("it is a model").preset("x").unwrap_err();
     assert_eq!(none, "metal-cvt has no preset \"x\"; it has none");
@@ -126,17 +126,57 @@ fn words_are_unique_and_presets_and_conditions_of_inputs_name_what_exists() {
             let numbers: HashSet<_> = input.words.iter().map(|(_, number)| number.to_bits()).collect();
             assert!(words.len() == input.words.len() && numbers.len() == words.len(), "{}: {}", model.name, input.name);
             assert!(input.words.iter().all(|(_, number)| !input.valid.contains(*number)), "{}: {}", model.name, input.name);
-            let enumeration = model.enumeration().map(|of| &model.inputs[of]);
-            let known = |word: &String| enumeration.is_some_and(|of| of.value_of(word).is_some());
-            assert!(input.only_for.iter().all(known), "{}: {}", model.name, input.name);
+            if let Some(OnlyFor { input: of, words }) = &input.only_for {
+                let of = &model.inputs[model.input(of).unwrap_or_else(|| panic!("{}: {} depends on {of}", model.name, input.name))];
+                assert!(words.iter().all(|word| of.value_of(word).is_some()), "{}: {}", model.name, input.name);
+            }
         }
-        for Preset { name, changes } in &model.presets {
+        for Preset { name, changes, .. } in &model.presets {
             for (input, value) in changes {
                 let input = &model.inputs[model.input(input).unwrap_or_else(|| panic!("{}: {name} sets {input}", model.name))];
                 assert!(input.accepts(*value), "{}: {name} sets {} to {value}", model.name, input.name);
             }
         }
     }
+}
+
+#[test]
+fn an_input_is_read_for_the_words_that_it_names_and_no_other() {
+    let mut seen = 0;
+    for model in all() {
+        for (number, input) in model.inputs.iter().enumerate() {
+            let Some(OnlyFor { input: of, words }) = &input.only_for else { continue };
+            let of = model.input(of).expect("it is an input");
+            for (word, code) in &model.inputs[of].words {
+                let known = |at: usize| if at == of { Known::Fixed(*code) } else { Known::Within(-1.0, 1e9) };
+                let found = model.kernel.dependencies(&(0..model.inputs.len()).map(known).collect::<Vec<_>>());
+                let sets = [&[found.prepared][..], &found.outputs, &found.conditions].concat();
+                let is_read = sets.iter().any(|set| set.contains(number));
+                assert_eq!(is_read, words.contains(word), "{}: {} for {word}", model.name, input.name);
+                seen += 1;
+            }
+        }
+    }
+    assert!(seen > 40, "{seen}");
+}
+
+#[test]
+fn an_input_that_is_set_and_not_read_is_told() {
+    let model = find("pulley-load").expect("it is a model");
+    let told = |changes: &[(&str, f64)]| {
+        let mut inputs = model.defaults();
+        changes.iter().for_each(|(name, value)| inputs[model.input(name).expect("it is an input")] = *value);
+        model.notes_on(&inputs, &evaluate(&model, &inputs))
+    };
+    assert_eq!(
+        told(&[("installed_tension_N", 600.0)]),
+        ["installed_tension_N is set, but it is read for tensioning = \"fixed-centres\" only"]
+    );
+    assert_eq!(
+        told(&[("tensioning", 2.0), ("slack_tension_N", 600.0)]),
+        ["slack_tension_N is set, but it is read for tensioning = \"slack\" only"]
+    );
+    assert!(told(&[("tensioning", 2.0), ("installed_tension_N", 600.0)]).is_empty() && told(&[("slack_tension_N", 600.0)]).is_empty());
 }
 
 #[test]

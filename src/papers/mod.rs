@@ -1,9 +1,10 @@
 //! The three papers that the models come from, computed again: their tables and figures, as far as possible, and for each number whether it
 //! agrees and why.
 //!
-//! [`reproduce()`] evaluates the [`models`](crate::models) with the papers' data. Nothing is fitted to agree; values that had to be chosen
-//! or calibrated because a paper does not print them are marked as such. If a model has no answer because the printed numbers are out of
-//! its range, the printed equation itself is evaluated. A [`Comparison`] without a reason is refused.
+//! [`reproduce()`] evaluates the [`models`](crate::models) with the papers' data. Values that had to be chosen or calibrated because a paper
+//! does not print them are marked as such. If a model has no answer because the printed numbers are out of its range, or looks at more than
+//! the paper does, the printed equation itself is evaluated. What a comparison rests on ([`Basis`]) decides what it is worth that its numbers
+//! meet: an identity is no agreement. A [`Comparison`] without a reason is refused.
 
 mod comparison;
 mod cvt;
@@ -12,7 +13,7 @@ mod pulley;
 mod readme;
 mod timing;
 
-pub use comparison::{Comparison, Printed, Verdict, check};
+pub use comparison::{Basis, Comparison, Printed, Verdict, check};
 
 use evaluated::Inputs;
 
@@ -168,7 +169,7 @@ pub struct Reproduction {
 /// Computes the figures, tables and comparisons of all papers: a few seconds, most of them for the pulleys' finite elements.
 ///
 /// # Errors
-/// [`Error::Disagreement`] if a comparison gives no reason.
+/// [`Error::Disagreement`] if a comparison gives no reason, or its verdict does not follow from its numbers ([`check`]).
 pub fn reproduce() -> Result<Reproduction> {
     let mut all = Reproduction { figures: Vec::new(), tables: Vec::new(), comparisons: Vec::new(), repairs: Vec::new(), lost: Vec::new() };
     for of_one in [cvt::reproduce(), timing::reproduce(), pulley::reproduce()] {
@@ -190,13 +191,17 @@ impl Reproduction {
 
     /// How many comparisons there are of each kind, in a sentence.
     pub fn summary(&self) -> String {
+        let [meeting, missing] = [Verdict::ReadingMeets, Verdict::ReadingMisses].map(|verdict| self.count(verdict));
         format!(
-            "{} comparisons: {} agree, {} agree because a value was fitted to them, {} differ, {} are inputs used as printed, {} have no \
-             printed counterpart",
+            "{} comparisons: {} agree and {} differ; {} are identities and count as no agreement; {} agree because a value was fitted to them; \
+             {} are one of several readings ({meeting} meet the print, {missing} miss it); {} are inputs used as printed; {} have no printed \
+             counterpart",
             self.comparisons.len(),
             self.count(Verdict::Agrees),
-            self.count(Verdict::Fitted),
             self.count(Verdict::Differs),
+            self.count(Verdict::Identity),
+            self.count(Verdict::Fitted),
+            meeting + missing,
             self.count(Verdict::Input),
             self.count(Verdict::NotPrinted),
         )

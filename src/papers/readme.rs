@@ -1,23 +1,26 @@
 //! The page that a reproduction is read from.
 
 use super::comparison::digits;
-use super::{Comparison, Lost, Paper, Repair, Reproduction};
+use super::{Comparison, Lost, Paper, Repair, Reproduction, Verdict};
 use crate::table::{Data, Table};
 
 const INTRODUCTION: &str = "\
-Written by `beltspace reproduce`; a test writes it again and compares every byte. All numbers come from the models, evaluated with the
-papers' data. Where a model has no answer because the printed numbers lie beyond what it allows, the printed equation itself is
-evaluated, and the reason says so. *agrees* means within half a unit of the last printed digit, inside the printed range, or as the
-statement says; *fitted* agrees because an input that the paper does not print was chosen so; *input* is used as printed; *not printed*
-has nothing to compare with. Nothing is adjusted to agree without being named. All numbers in full are in [comparison.csv](comparison.csv).
+Written by `beltspace reproduce`; a test writes it again and compares every byte. All numbers come from the models and their equations,
+evaluated with the papers' data. Where a model has no answer because the printed numbers lie beyond what it allows, or looks at more than
+the paper does, the printed equation itself is evaluated. Nothing is adjusted to agree without being named. All numbers in full are in
+[comparison.csv](comparison.csv). Every verdict follows from the two numbers and from what the computed one rests on:
 ";
 
 /// The page as Markdown.
 pub(super) fn page(all: &Reproduction) -> String {
-    let mut text = format!("# The papers, computed again\n\n{INTRODUCTION}\n{}.\n", all.summary());
+    let mut text = format!("# The papers, computed again\n\n{INTRODUCTION}\n");
+    for verdict in Verdict::ALL {
+        text += &format!("- *{}*: {}\n", verdict.word(), verdict.meaning());
+    }
+    text += &format!("\n{}.\n", all.summary());
     for paper in Paper::ALL {
         text += &format!("\n## {}\n\n{}.\n", paper.name(), paper.citation());
-        text += "\n| where | what | printed | computed | difference | | reason |\n|---|---|---|---|---|---|---|\n";
+        text += "\n| where | what | printed | computed | difference | verdict | reason |\n|---|---|---|---|---|---|---|\n";
         for row in all.comparisons.iter().filter(|row| row.group == paper) {
             text += &line(row);
         }
@@ -50,7 +53,7 @@ fn line(row: &Comparison) -> String {
         cell(&if bare { number.to_owned() } else { format!("{number} {}", row.unit) })
     };
     let cells = [cell(row.at), cell(&row.what), with_unit(&row.printed), with_unit(&row.computed), cell(&row.difference)];
-    format!("| {} | {} | {} |\n", cells.join(" | "), row.verdict.word(), cell(&row.reason))
+    format!("| {} | {} | {} |\n", cells.join(" | "), row.verdict.word(), cell(&row.explanation()))
 }
 
 /// A table with numbers for people.

@@ -10,6 +10,7 @@
 //! that are not finite are left out.
 
 mod axis;
+mod bars;
 mod colour_bar;
 mod colours;
 mod contours;
@@ -33,6 +34,7 @@ mod staircase;
 mod thinning;
 mod words;
 
+pub use bars::{BarGroup, PlotBar, Swing, bars, tornado};
 pub use curves::curves;
 pub use heatmap::heatmap;
 pub use histogram::histogram;

@@ -1,6 +1,7 @@
 //! Least and largest worst-scenario value of each objective over the feasible designs.
 
-use crate::screen::{Block, ends};
+use crate::masks::ends;
+use crate::screen::Block;
 use serde::{Deserialize, Serialize};
 
 /// A value and the design that has it; of equal values the lowest index.

@@ -1,7 +1,7 @@
 //! The page of the papers computed again: figures and comparisons instead of a front.
 
 use super::page::page;
-use crate::papers::{Paper, PaperTable, Reproduction};
+use crate::papers::{Paper, PaperTable, Reproduction, Verdict};
 use serde_json::{Value, json};
 
 /// What the page is called.
@@ -18,15 +18,17 @@ pub fn of_papers(reproduction: &Reproduction) -> String {
         json!({
             "group": format!("{}: {}", it.group.name(), it.group.citation()), "at": it.at, "what": it.what, "unit": it.unit,
             "printed": it.printed, "computed": it.computed, "difference": it.difference, "verdict": it.verdict.word(),
-            "reason": it.reason,
+            "reason": it.explanation(),
         })
     });
+    let legend = Verdict::ALL.into_iter().map(|verdict| format!("{}: {}", verdict.word(), verdict.meaning()));
+    let notes = std::iter::once(reproduction.summary()).chain(legend);
     let item = |group: Paper, at: &str, text: &str| json!({ "group": group.name(), "at": at, "text": text });
     let data = json!({
         "program": concat!("beltspace ", env!("CARGO_PKG_VERSION")),
         "kind": "papers",
         "title": TITLE,
-        "notes": [reproduction.summary()],
+        "notes": notes.collect::<Vec<String>>(),
         "model": null, "study": null, "run": null, "front": null, "scenarios": null, "tally": null, "extremes": null, "top": null,
         "inputs": [], "objectives": [], "constraints": [], "histograms": [], "maps": [], "evaluate": "",
         "figures": figures.collect::<Vec<Value>>(),

@@ -60,6 +60,9 @@ pub fn choose(plan: &Plan, engine: Engine, adapter: Option<&str>, wrong: Wrong, 
         return Err(Error::Request("--perturb makes a GPU's kernel wrong on purpose: it needs --engine gpu".to_owned()));
     }
     let insists = engine == Engine::Gpu || (engine == Engine::Auto && adapter.is_some());
+    if insists && plan.study.probability.is_some() {
+        return Err(Error::NotOnDevice { why: "yields are counted draw by draw, on the CPU".to_owned() });
+    }
     if insists {
         refuse_cpu_only(&plan.study.model, "use --engine cpu, or leave --engine and --adapter out")?;
     }

@@ -4,10 +4,11 @@
 //! whole row, then run the inner loop over blocks of the fast design axes, scenario by scenario, until no design is left.
 
 use super::Block;
-use super::columns::{self, any, keep_finite, keep_margin, keep_within, lower, raise};
+use super::kept_rows::KeptRows;
 use super::spectrum::CaseSums;
 use super::tables::{BLOCK, FastBlock, Setting, Tables, setting};
 use crate::decision::Decision;
+use crate::masks::{self, any, keep_between, keep_finite, keep_margin};
 use crate::models::{self, Columns, Latest, Scratch, Set, Sizes, Worse};
 use crate::plan::{Plan, Source};
 use crate::space::Product;
@@ -51,6 +52,8 @@ pub struct CpuEngine<'p> {
     /// Condition margins and row outputs (SI) of the current row and scenario.
     pub(super) row_margins: Vec<f64>,
     pub(super) row_outputs: Vec<f64>,
+    /// The same of the rows before, for those that share it.
+    pub(super) kept_rows: KeptRows,
     /// Rows and scenarios that differ in what the first stage does not read for them share what it passed on.
     latest: Latest,
     /// Set to end the work as soon as may be.
@@ -105,6 +108,7 @@ impl<'p> CpuEngine<'p> {
             scratch: Scratch::new(plan.study.model.inputs.len(), &*plan.study.model.kernel),
             row_margins: vec![0.0; conditions],
             row_outputs: vec![0.0; outputs],
+            kept_rows: KeptRows::new(plan),
             latest: Latest::new(&plan.study.model),
             stop: None,
             chosen: Vec::new(),
@@ -227,7 +231,6 @@ impl<'p> CpuEngine<'p> {
                         return false;
                     }
                     self.set_fast_scenario(t);
-                    self.scenario = (q, t);
                     if !judge(self, prepared.clone(), q == 0 && t == 0, t + 1 == fast) {
                         return true;
                     }
@@ -242,7 +245,6 @@ impl<'p> CpuEngine<'p> {
             let prepared = self.prepare_at(part[0].0, self.room);
             for (number, &(_, t)) in part.iter().enumerate() {
                 self.set_fast_scenario(t);
-                self.scenario = (part[0].0, t);
                 goes_on = goes_on && judge(self, prepared.clone(), at == 0 && number == 0, number + 1 == part.len());
             }
             if !goes_on || self.stopped() {
@@ -261,6 +263,7 @@ impl<'p> CpuEngine<'p> {
         self.plan.slow.set(row, &mut self.own);
         models::fill_si(&self.plan.study.model, &self.own, &mut self.si);
         self.row_index = self.plan.slow.source_index(row);
+        self.kept_rows.turn(&before, &self.own);
         // The outer of the axes that the first stage does not read is walked with the slow ones: rows along it share what is prepared.
         let read = self.plan.dependencies.prepared & self.plan.slow.inputs();
         if (0..self.own.len()).any(|input| read.contains(input) && self.own[input] != before[input]) {
@@ -297,12 +300,16 @@ impl<'p> CpuEngine<'p> {
 
     /// Computes condition margins and row outputs in the current scenario.
     pub(super) fn row_values(&mut self, prepared: Range<usize>) {
+        if self.kept_rows.recall(self.scenario, &mut self.row_margins, &mut self.row_outputs) {
+            return;
+        }
         let kernel = &self.plan.study.model.kernel;
         let prepared = &self.prepared[prepared];
         if !self.plan.row_outputs.is_empty() {
             kernel.finish(prepared, &self.si, self.plan.row_outputs, &mut self.row_outputs);
         }
         kernel.conditions(prepared, &self.si, &mut self.row_margins);
+        self.kept_rows.keep(self.scenario, &self.row_margins, &self.row_outputs);
     }
 
     /// Judges one block of the current row over all scenarios; false if it was stopped before it had.
@@ -313,7 +320,8 @@ impl<'p> CpuEngine<'p> {
         self.alive.resize(count, u64::MAX);
         for (constraint, source) in plan.study.constraints.iter().zip(&plan.constraints) {
             if let Source::LaneInput(input) = *source {
-                keep_within(&mut self.alive, fast.own(input), constraint);
+                let (low, high) = constraint.ends();
+                keep_between(&mut self.alive, fast.own(input), low, high);
             }
         }
         for (((_, source), column), &worst) in plan.tracked.iter().zip(&mut self.values).zip(&self.row_worst) {
@@ -334,7 +342,7 @@ impl<'p> CpuEngine<'p> {
                 return false;
             }
         }
-        let feasible = columns::count(&self.alive);
+        let feasible = masks::count(&self.alive);
         if feasible > 0 {
             let (row_index, offsets) = (self.row_index, &fast.offsets);
             absorb(&Block { row_index, offsets, feasible_count: feasible, alive: &self.alive, values: &self.values });
@@ -365,7 +373,8 @@ impl<'p> CpuEngine<'p> {
         }
         for (constraint, source) in plan.study.constraints.iter().zip(&plan.constraints).filter(|(it, _)| it.over.is_worst()) {
             if let Source::LaneOutput(position) = *source {
-                keep_within(alive, &outputs[position], constraint);
+                let (low, high) = constraint.ends();
+                keep_between(alive, &outputs[position], low, high);
             }
         }
         for ((tracked, source), worst) in plan.tracked.iter().zip(&mut self.values).filter(|((it, _), _)| it.over.is_worst()) {
@@ -380,12 +389,7 @@ impl<'p> CpuEngine<'p> {
                     std::mem::swap(worst, &mut outputs[position]);
                     continue;
                 }
-                let worst = &mut worst[..alive.len()];
-                match tracked.worse {
-                    _ if first => worst.copy_from_slice(output),
-                    Worse::Higher => raise(worst, output),
-                    Worse::Lower => lower(worst, output),
-                }
+                masks::worsen(tracked.worse, first, &mut worst[..alive.len()], output);
             }
         }
     }
@@ -416,11 +420,13 @@ impl<'p> CpuEngine<'p> {
     }
 
     fn set_slow_scenario(&mut self, q: u64) {
+        self.scenario.0 = q;
         let tables = self.tables;
         self.apply(tables.slow_scenarios.get(usize::try_from(q).unwrap_or(usize::MAX)), &self.plan.slow_scenarios, q);
     }
 
     pub(super) fn set_fast_scenario(&mut self, t: u64) {
+        self.scenario.1 = t;
         let tables = self.tables;
         self.apply(tables.fast_scenarios.get(usize::try_from(t).unwrap_or(usize::MAX)), &self.plan.fast_scenarios, t);
     }
@@ -455,7 +461,7 @@ pub(super) fn row_value(plan: &Plan, source: Source, own: &[f64], outputs: &[f64
     }
 }
 
-fn worse_of(worse: Worse, a: f64, b: f64) -> f64 {
+pub(super) fn worse_of(worse: Worse, a: f64, b: f64) -> f64 {
     match worse {
         Worse::Higher => a.max(b),
         Worse::Lower => a.min(b),
@@ -480,6 +486,8 @@ mod tests {
         [operation]
         slack_tension_N = [500, 600, 700]
         belt_mass_kg_per_m = [0.1, 0.2]
+        [fixed]
+        friction_direction_deg = 45
         [constraints]
         friction_margin = { min = 0.65 }
         [objectives]

@@ -2,15 +2,14 @@
 //!
 //! An engine turns a range of positions into [`Block`]s; the reducers absorb them and never know where they came from.
 
-mod columns;
 mod cpu;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+mod kept_rows;
 mod spectrum;
 mod tables;
 mod tally;
 
-pub(crate) use columns::ends;
 pub use cpu::CpuEngine;
 pub use tables::{BLOCK, Tables};
 pub use tally::Tally;

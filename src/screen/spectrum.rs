@@ -1,6 +1,6 @@
 //! Sums over the cases of a spectrum while designs are judged.
 
-use super::columns::{keep_finite, keep_within, lower, raise};
+use crate::masks::{keep_between, keep_finite, lower, raise};
 use crate::models::Worse;
 use crate::plan::{CasePlace, Plan, Source, SpectrumPlan};
 use crate::study::OverScenarios;
@@ -116,7 +116,8 @@ impl CaseSums {
         }
         for (constraint, source) in plan.study.constraints.iter().zip(&plan.constraints) {
             if let (Source::LaneOutput(_), true) = (source, place.is_last && !constraint.over.is_worst()) {
-                keep_within(alive, self.result(place, spectrum.number(*source), constraint.over), constraint);
+                let (low, high) = constraint.ends();
+                keep_between(alive, self.result(place, spectrum.number(*source), constraint.over), low, high);
             }
         }
         for ((tracked, source), worst) in plan.tracked.iter().zip(worst) {

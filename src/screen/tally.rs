@@ -5,10 +5,11 @@
 //! the sweep.
 
 use super::Control;
-use super::cpu::{CpuEngine, holds, row_value};
+use super::cpu::{CpuEngine, holds, row_value, worse_of};
 use super::spectrum::CaseSums;
 use super::tables::{BLOCK, FastBlock, Tables};
 use crate::error::{Error, Result};
+use crate::masks;
 use crate::models::{Model, Set};
 use crate::parallel::on_threads;
 use crate::plan::{Plan, Source, Tracked, worst_end};
@@ -202,6 +203,8 @@ impl<'p> Counter<'p> {
         let fast = FastBlock::new(plan, designs.iter().copied());
         let mut failures = vec![Failures::NONE; designs.len()];
         let mut sums = CaseSums::new(plan, designs.len());
+        // Worst values that are sums over cases are found by judging the feasible designs once more.
+        let mut worst = vec![vec![0.0; designs.len()]; if plan.spectrum.is_none() { plan.tracked.len() } else { 0 }];
         self.engine.set_row(row);
         for q in 0..plan.slow_scenarios.count() {
             let prepared = self.engine.prepare(q);
@@ -228,15 +231,39 @@ impl<'p> Counter<'p> {
                     }
                 }
                 self.sum(&mut sums, (q, t), &fast, &has_failed, &mut failures);
+                self.worsen(&mut worst, q == 0 && t == 0, &fast);
             }
         }
         for &failures in &failures {
             self.tally.count_design(failures);
         }
-        if failures.contains(&Failures::NONE) {
-            return self.stretch_ranges(row, &fast, &failures);
+        match failures.contains(&Failures::NONE) {
+            true if plan.spectrum.is_some() => self.stretch_ranges(row, &fast, &failures),
+            true => {
+                stretch(&mut self.tally.ranges, &failures, &worst);
+                true
+            }
+            false => true,
         }
-        true
+    }
+
+    /// Takes the values of the current scenario into the worst ones of the block.
+    fn worsen(&self, worst: &mut [Vec<f64>], is_first: bool, fast: &FastBlock) {
+        for (worst, &(tracked, source)) in worst.iter_mut().zip(&self.plan.tracked) {
+            let count = worst.len();
+            match source {
+                Source::LaneOutput(position) => {
+                    let output = &self.engine.results[position][..count];
+                    masks::worsen(tracked.worse, is_first, worst, output);
+                }
+                Source::LaneInput(input) => worst.copy_from_slice(&fast.own(input)[..count]),
+                Source::RowInput(_) | Source::RowOutput(_) => {
+                    let value = row_value(self.plan, source, &self.engine.own, &self.engine.row_outputs);
+                    let of = |before: f64| worse_of(tracked.worse, if is_first { tracked.worse.least_bad() } else { before }, value);
+                    worst.iter_mut().for_each(|worst| *worst = of(*worst));
+                }
+            }
+        }
     }
 
     /// Adds the constraints that a design violates in the current scenario, and whether a value is beyond what f64 holds.
@@ -302,14 +329,19 @@ impl<'p> Counter<'p> {
         let entered = self.engine.enter_row(row);
         entered
             && self.engine.screen_block(fast, &mut |block| {
-                for lane in (0..block.count()).filter(|&lane| failures[lane] == Failures::NONE) {
-                    for (range, values) in ranges.iter_mut().zip(block.values) {
-                        let value = values[lane];
-                        let (low, high) = range.unwrap_or((value, value));
-                        *range = Some((low.min(value), high.max(value)));
-                    }
-                }
+                stretch(ranges, failures, block.values);
             })
+    }
+}
+
+/// Takes the worst values of the feasible designs of a block into the ranges.
+fn stretch(ranges: &mut [Option<(f64, f64)>], failures: &[Failures], worst: &[Vec<f64>]) {
+    for lane in (0..failures.len()).filter(|&lane| failures[lane] == Failures::NONE) {
+        for (range, values) in ranges.iter_mut().zip(worst) {
+            let value = values[lane];
+            let (low, high) = range.unwrap_or((value, value));
+            *range = Some((low.min(value), high.max(value)));
+        }
     }
 }
 
@@ -325,6 +357,8 @@ mod tests {
         power_kW = { from = 1, to = 4, count = 300 }
         [operation]
         slack_tension_N = [500, 700]
+        [fixed]
+        friction_direction_deg = 45
         [constraints]
         friction_margin = { min = 0.7 }
         [objectives]
@@ -341,6 +375,46 @@ mod tests {
         assert!(tally.feasible > 0 && tally.constraints[0] > 0, "{tally:?}");
         assert_eq!([&control.sample, &control.sampled].map(|it| it.load(Ordering::Relaxed)), [50, 50]);
         assert_eq!(tally, Tally::new(&plan, &Tables::new(&plan), 1), "whatever the threads");
+    }
+
+    /// Worst values of row and lane quantities, at either end, over every feasible design as a sweep finds them.
+    #[test]
+    fn ranges_are_those_of_all_feasible_designs_where_the_sample_has_all() {
+        let text = r#"
+            [design]
+            groove_angle_deg  = [18, 22, 26]
+            band_thickness_mm = { from = 0.10, to = 0.30, count = 20 }
+            band_count        = { from = 4, to = 14 }
+            [operation]
+            ratio     = [0.6, 1, 1.7]
+            torque_Nm = [50, 90]
+            [constraints]
+            stress_margin = { min = 0 }
+            [objectives]
+            axial_force_N = "min"
+            stress_margin = "max"
+            band_count = "min"
+            [report]
+            histograms = [
+                { of = "groove_angle_deg", bins = 3 }, { of = "torque_capacity_Nm", bins = 3 }, { of = "tight_force_N", bins = 3 },
+            ]
+        "#;
+        let plan = Plan::new(study_of(&crate::models::find("metal-cvt").expect("it is a model"), text).expect("the study is right"));
+        let tables = Tables::new(&plan);
+        let tally = Tally::new(&plan, &tables, 2);
+        let mut expected: Vec<Option<(f64, f64)>> = vec![None; plan.tracked.len()];
+        let mut feasible = 0;
+        CpuEngine::new(&plan, &tables).screen(0..plan.designs(), |block| {
+            for lane in block.feasible() {
+                feasible += 1;
+                for (range, column) in expected.iter_mut().zip(0..) {
+                    let value = block.column(column)[lane];
+                    *range = range.map_or(Some((value, value)), |(low, high)| Some((low.min(value), high.max(value))));
+                }
+            }
+        });
+        assert!(feasible > 20 && feasible < plan.designs() && plan.tracked.len() == 6, "{feasible} of {}", plan.tracked.len());
+        assert_eq!((tally.sampled, tally.feasible, tally.ranges), (plan.designs(), feasible, expected));
     }
 
     #[test]

@@ -127,6 +127,15 @@ impl Axis {
         }
     }
 
+    /// Is there such a value among those of its input number `column`? Of a range, which holds no word, the first one tells.
+    pub(crate) fn has_number(&self, column: usize, is_number: impl Fn(f64) -> bool) -> bool {
+        match self {
+            Self::Single { levels: Levels::List(values), .. } => values.iter().any(|&value| is_number(value)),
+            Self::Single { levels, .. } => is_number(levels.value(0)),
+            Self::Joint { rows, .. } => rows.iter().any(|row| is_number(row[column])),
+        }
+    }
+
     /// Least and largest value of its input number `column`.
     pub fn ends(&self, column: usize) -> (f64, f64) {
         match self {

@@ -32,6 +32,17 @@ impl Study {
     /// # Errors
     /// The first thing that is wrong.
     pub fn check(&self) -> Result<(), String> {
+        self.check_parts()?;
+        let Report { top, sample, variants, feasible, histograms, maps, .. } = &self.report;
+        let lists = top.is_some() || sample.is_some() || *variants || *feasible;
+        let asks = !self.objectives.is_empty() || lists || !histograms.is_empty() || !maps.is_empty();
+        require(asks, || "the study asks for nothing".to_owned())?;
+        // The drive of a draw is asked nothing of its own.
+        if self.probability.is_some() { self.of_one_draw().check_parts() } else { Ok(()) }
+    }
+
+    /// Everything but that something is asked.
+    fn check_parts(&self) -> CheckResult {
         let model = &self.model;
         let inputs = &model.inputs;
         require(self.fixed.len() == inputs.len(), || format!("there are {} fixed values for {} inputs", self.fixed.len(), inputs.len()))?;
@@ -211,9 +222,7 @@ impl Study {
         require(!report.feasible || all <= MOST_FEASIBLE, || {
             format!("feasible: all feasible designs are written of studies of at most {MOST_FEASIBLE} designs")
         })?;
-        let lists = report.top.is_some() || report.sample.is_some() || report.variants || report.feasible;
-        let asks = !self.objectives.is_empty() || lists || !histograms.is_empty() || !maps.is_empty();
-        require(asks, || "the study asks for nothing".to_owned())
+        Ok(())
     }
 
     /// The number of cells.

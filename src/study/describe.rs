@@ -1,9 +1,13 @@
 //! The resolved study in words and names: `study.json`, the study's hash, and what changed between two studies.
 
+use super::drawn::{Drive, Probability, Statistic, StatisticKind};
 use super::read::shown;
-use super::{Axis, Best, Constraint, ContourSpec, Goal, Levels, Objective, OverScenarios, Quantity, ReportColumn, Study, Thresholds};
+use super::{
+    Axis, Best, Constraint, ContourSpec, Goal, Levels, Objective, OverScenarios, Quantity, ReportColumn, Spectrum, Study, Thresholds,
+};
 use crate::error::brief;
 use crate::models::{CurveSource, Extension, FormulaSource, Model};
+use crate::probability::{Effect, Sampling};
 use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
 
@@ -56,8 +60,10 @@ impl Study {
             described["feasible_sample"] = json!({ "count": sample.count, "seed": sample.seed });
         }
         if let Some(it) = &self.spectrum {
-            let weights: Vec<_> = it.weights.iter().map(|&weight| number(weight)).collect();
-            described["spectrum"] = json!({ "axis": it.axis, "name": it.name, "weight": it.weight, "unit": it.unit, "weights": weights });
+            described["spectrum"] = spectrum_of(it);
+        }
+        if let Some(it) = &self.probability {
+            described["probability"] = probability_of(it);
         }
         if report.variants {
             described["variants"] = true.into();
@@ -95,6 +101,71 @@ impl Study {
         let digest = Sha256::digest(self.describe().to_string());
         digest.iter().map(|byte| format!("{byte:02x}")).collect()
     }
+}
+
+/// What is drawn, the drive of a draw, and what is asked of the draws.
+fn probability_of(it: &Probability) -> Value {
+    let Drive { model, operation, spectrum, constraints } = &it.drive;
+    let inputs = it.inputs.iter().map(|it| {
+        let effect = match it.effect {
+            Effect::Is => "is",
+            Effect::Times => "times",
+            Effect::Plus => "plus",
+        };
+        json!({ "input": it.name, "effect": effect, "distribution": it.law })
+    });
+    let pair = |&(a, b, value): &(usize, usize, f64)| json!([it.inputs[a].name, it.inputs[b].name, value]);
+    let method = match it.sampling {
+        Sampling::Random => "random",
+        Sampling::LatinHypercube { .. } => "latin-hypercube",
+        Sampling::Sobol { .. } => "sobol",
+    };
+    let mut described = json!({
+        "inputs": inputs.collect::<Vec<_>>(),
+        "correlation": it.correlation.iter().map(pair).collect::<Vec<_>>(),
+        "draws": it.draws,
+        "confirm": it.confirm,
+        "seed": it.seed,
+        "method": method,
+        "levels": it.levels,
+        "enclosure": it.enclosure,
+        "operation": operation.iter().map(|axis| axis_of(model, axis)).collect::<Vec<_>>(),
+        "constraints": constraints.iter().map(|it| constraint_of(model, it)).collect::<Vec<_>>(),
+        "statistics": it.statistics.iter().map(|it| statistic_of(model, it)).collect::<Vec<_>>(),
+    });
+    if let Some(spectrum) = spectrum {
+        described["spectrum"] = spectrum_of(spectrum);
+    }
+    described
+}
+
+fn statistic_of(model: &Model, statistic: &Statistic) -> Value {
+    let mut described = json!({ "name": statistic.name });
+    let (asked, draws) = match statistic.kind {
+        StatisticKind::Yield => return described,
+        StatisticKind::Confirmed(end) => {
+            described["confirmed"] = json!(end);
+            return described;
+        }
+        StatisticKind::YieldOf(constraint) => {
+            described["yield_of"] = constraint_of(model, &constraint);
+            return described;
+        }
+        StatisticKind::Plain(asked) => (asked, None),
+        StatisticKind::Over(asked, draws) => (asked, Some(draws)),
+    };
+    described["of"] = asked.quantity.name(model).into();
+    described["worst"] = asked.worse.word().into();
+    describe_over(asked.over, &mut described);
+    if let Some(draws) = draws {
+        described["over_draws"] = json!(draws);
+    }
+    described
+}
+
+fn spectrum_of(it: &Spectrum) -> Value {
+    let weights: Vec<_> = it.weights.iter().map(|&weight| number(weight)).collect();
+    json!({ "axis": it.axis, "name": it.name, "weight": it.weight, "unit": it.unit, "weights": weights })
 }
 
 /// What a study adds to its model: units, variables, curves with their points, and formulas, each in the order of the file.

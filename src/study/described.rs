@@ -1,11 +1,13 @@
 //! Restores a study from [`Study::describe`], so that a result directory is enough even without the study file and its tables.
 
+use super::drawn::{AskedQuantity, Drive, LawText, OverDraws, Probability, REPLICATES, Statistic, StatisticKind, UncertainInput};
 use super::read::{CurvePoints, ModelText, read_model_text};
 use super::{
     Axis, Best, Constraint, ContourSpec, Goal, HistogramSpec, Label, Levels, MapSpec, Objective, OverScenarios, Quantity, Report,
     ReportColumn, SampleSpec, Spectrum, Study, Thresholds, TopSpec,
 };
 use crate::models::{CurveSource, Extension, FormulaSource, Model, Models, Worse, extended};
+use crate::probability::{Effect, Sampling};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::sync::Arc;
@@ -39,6 +41,14 @@ impl Study {
         } else {
             Arc::new(extended(&model, extension).map_err(|_| "\"formulas\" do not fit the model")?)
         };
+        let probability = match &described["probability"] {
+            Value::Null => None,
+            described => Some(Arc::new(probability_of(&model, described)?)),
+        };
+        let model = match &probability {
+            None => model,
+            Some(it) => Arc::new(it.model()?),
+        };
         let axes = |role: &str| list(described, role)?.iter().map(|axis| axis_of(&model, axis)).collect::<Restored<Vec<_>>>();
         let mut fixed = model.defaults();
         for (name, value) in described["fixed"].as_object().ok_or("\"fixed\" is missing")? {
@@ -54,6 +64,7 @@ impl Study {
             operation: axes("operation")?,
             spectrum: spectrum_of(&described["spectrum"])?,
             uncertainty: axes("uncertainty")?,
+            probability,
             fixed,
             constraints: each(described, "constraints", |it| constraint_of(&model, it))?,
             objectives: each(described, "objectives", |it| {
@@ -76,6 +87,63 @@ impl Study {
             Some(difference) => Err(difference.clone()),
         }
     }
+}
+
+/// What is drawn, the drive of a draw, and what is asked of the draws.
+fn probability_of(model: &Arc<Model>, described: &Value) -> Restored<Probability> {
+    let input = |it: &Value| {
+        let name = text(it, "input")?;
+        let effect = match text(it, "effect")? {
+            "is" => Effect::Is,
+            "times" => Effect::Times,
+            "plus" => Effect::Plus,
+            other => return Err(format!("a drawn number cannot have the effect \"{other}\"")),
+        };
+        let law: LawText = plain(&it["distribution"], "distribution")?;
+        let distribution = law.distribution().map_err(|problem| format!("{name}: {problem}"))?;
+        Ok(UncertainInput { input: input_of(model, name)?, name: name.to_owned(), effect, law, distribution })
+    };
+    let inputs = each(described, "inputs", input)?;
+    let pair = |it: &Value| {
+        let (first, second, value): (String, String, f64) = plain(it, "correlation")?;
+        let place = |name: String| inputs.iter().position(|it| it.name == name).ok_or_else(|| format!("{name} has no distribution"));
+        Ok((place(first)?, place(second)?, value))
+    };
+    let correlation = each(described, "correlation", pair)?;
+    let sampling = match text(described, "method")? {
+        "random" => Sampling::Random,
+        "latin-hypercube" => Sampling::LatinHypercube { replicates: REPLICATES },
+        "sobol" => Sampling::Sobol { replicates: REPLICATES },
+        other => return Err(format!("draws cannot be spread by \"{other}\"")),
+    };
+    let drive = Drive {
+        model: model.clone(),
+        operation: each(described, "operation", |axis| axis_of(model, axis))?,
+        spectrum: spectrum_of(&described["spectrum"])?,
+        constraints: each(described, "constraints", |it| constraint_of(model, it))?,
+    };
+    let [draws, confirm, seed, levels] = ["draws", "confirm", "seed", "levels"].map(|key| plain(&described[key], key));
+    let enclosure = described["enclosure"] == true;
+    let statistics = each(described, "statistics", |it| statistic_of(model, it))?;
+    let (draws, confirm, seed, levels) = (draws?, confirm?, seed?, levels?);
+    Ok(Probability { inputs, correlation, draws, confirm, seed, sampling, levels, enclosure, drive, statistics })
+}
+
+fn statistic_of(model: &Model, described: &Value) -> Restored<Statistic> {
+    let name = text(described, "name")?.to_owned();
+    if !described["yield_of"].is_null() {
+        return Ok(Statistic { name, kind: StatisticKind::YieldOf(constraint_of(model, &described["yield_of"])?) });
+    }
+    if !described["confirmed"].is_null() {
+        return Ok(Statistic { name, kind: StatisticKind::Confirmed(plain(&described["confirmed"], "confirmed")?) });
+    }
+    if described["of"].is_null() {
+        return Ok(Statistic { name, kind: StatisticKind::Yield });
+    }
+    let worse = worst_of(described)?.ok_or("a statistic has no worst end")?;
+    let asked = AskedQuantity { quantity: quantity_of(model, &described["of"])?, over: over_of(described)?, worse };
+    let draws: Option<OverDraws> = plain(&described["over_draws"], "over_draws")?;
+    Ok(Statistic { name, kind: draws.map_or(StatisticKind::Plain(asked), |draws| StatisticKind::Over(asked, draws)) })
 }
 
 /// The model in a file, of the file's text.
@@ -227,13 +295,18 @@ fn column_of(model: &Model, column: &Value) -> Restored<ReportColumn> {
     if column.is_string() {
         return quantity_of(model, column).map(ReportColumn::from);
     }
-    let worst = match &column["worst"] {
-        Value::Null => None,
-        word if word == Worse::Higher.word() => Some(Worse::Higher),
-        word if word == Worse::Lower.word() => Some(Worse::Lower),
-        other => return Err(format!("a column's worst cannot be {other}")),
-    };
+    let worst = worst_of(column)?;
     Ok(ReportColumn { of: quantity_of(model, &column["of"])?, over: over_of(column)?, worst })
+}
+
+/// The end that counts as the worst, where that is said.
+fn worst_of(it: &Value) -> Restored<Option<Worse>> {
+    match &it["worst"] {
+        Value::Null => Ok(None),
+        word if word == Worse::Higher.word() => Ok(Some(Worse::Higher)),
+        word if word == Worse::Lower.word() => Ok(Some(Worse::Lower)),
+        other => Err(format!("a worst end cannot be {other}")),
+    }
 }
 
 fn over_of(it: &Value) -> Restored<OverScenarios> {
@@ -289,17 +362,27 @@ mod tests {
     #[test]
     fn every_shipped_study_comes_back_from_its_description() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("studies");
-        let mut seen = 0;
+        let (mut seen, mut drawn) = (0, 0);
         for entry in std::fs::read_dir(folder).expect("studies are shipped") {
             let path = entry.expect("it can be listed").path();
             let (study, _) = Study::read(&path).expect("it is right");
             let back = Study::from_description(&study.describe()).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
             assert_eq!(back.hash(), study.hash(), "{}", path.display());
+            assert_eq!(back.describe(), study.describe(), "{}", path.display());
+            // The model of draws is made anew, and models are equal only if their formulas are the very same.
+            assert_eq!(
+                (&back.model.outputs, &back.model.conditions),
+                (&study.model.outputs, &study.model.conditions),
+                "{}",
+                path.display()
+            );
+            let model = if study.probability.is_some() { study.model.clone() } else { back.model.clone() };
+            drawn += u64::from(study.probability.is_some());
             // Values of inputs that axes set are never read, and what was left out is told only of the file.
-            assert_eq!(Study { fixed: study.fixed.clone(), left_out: study.left_out.clone(), ..back }, study, "{}", path.display());
+            assert_eq!(Study { model, fixed: study.fixed.clone(), left_out: study.left_out.clone(), ..back }, study, "{}", path.display());
             seen += 1;
         }
-        assert!(seen >= 8);
+        assert!(seen >= 8 && drawn >= 2);
     }
 
     #[test]

@@ -8,6 +8,7 @@ mod axis;
 mod check;
 mod describe;
 mod described;
+mod drawn;
 mod label;
 mod limits;
 mod quantity;
@@ -18,6 +19,7 @@ mod spectrum;
 pub use axis::{Axis, Levels, Method, Sample};
 #[doc(hidden)]
 pub use describe::{differences, number, value_of};
+pub use drawn::{AskedQuantity, ConfirmedEnd, Drive, LawText, NamedLaw, OverDraws, Probability, Statistic, StatisticKind, UncertainInput};
 pub use label::Label;
 pub use quantity::Quantity;
 #[doc(hidden)]

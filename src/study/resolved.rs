@@ -1,6 +1,7 @@
 //! The resolved study.
 
 use super::axis::{Axis, Sample};
+use super::drawn::{Drive, Probability};
 use super::label::Label;
 use super::quantity::Quantity;
 use super::spectrum::{OverScenarios, Spectrum, unit_over};
@@ -75,6 +76,14 @@ impl Constraint {
         let low = self.low.is_none_or(|(bound, excluded)| if excluded { value > bound } else { value >= bound });
         let high = self.high.is_none_or(|(bound, excluded)| if excluded { value < bound } else { value <= bound });
         low && high && !value.is_nan()
+    }
+
+    /// The least and the largest finite value that satisfies it. An excluded bound is moved to the next number inside, so that one
+    /// inclusive comparison serves both kinds.
+    pub(crate) fn ends(&self) -> (f64, f64) {
+        let low = self.low.map_or(f64::MIN, |(bound, excluded)| if excluded { bound.next_up() } else { bound });
+        let high = self.high.map_or(f64::MAX, |(bound, excluded)| if excluded { bound.next_down() } else { bound });
+        (low, high)
     }
 
     /// Signed distance to the nearest bound, negative outside, in the quantity's unit.
@@ -249,6 +258,9 @@ pub struct Study {
     pub spectrum: Option<Spectrum>,
     /// Uncertainty axes in file order.
     pub uncertainty: Vec<Axis>,
+    /// Inputs with distributions and what is asked of their draws, if there are such. Then operating cases and constraints of single
+    /// draws stand there, and the model's outputs are yields and statistics.
+    pub probability: Option<Arc<Probability>>,
     /// A value for every input, in its unit: that of `[fixed]`, else the default. Unused if an axis sets the input.
     pub fixed: Vec<f64>,
     /// Constraints in file order.
@@ -266,6 +278,15 @@ impl Study {
     /// The unit of a quantity's value over the scenarios, as text: that of a sum is multiplied by that of the weights.
     pub fn unit_over(&self, quantity: Quantity, over: OverScenarios) -> String {
         unit_over(quantity, over, &self.model, self.spectrum.as_ref())
+    }
+
+    /// The study of a single draw: the drive in its operating cases with the constraints that a draw must keep, and without objectives.
+    /// Drawn inputs have their medians, or what the design says. The study itself if nothing is drawn.
+    pub fn of_one_draw(&self) -> Self {
+        let Some(probability) = &self.probability else { return self.clone() };
+        let Drive { model, operation, spectrum, constraints } = probability.drive.clone();
+        let report = Report { front_budget: self.report.front_budget, ..Report::default() };
+        Self { model, operation, spectrum, constraints, objectives: Vec::new(), report, probability: None, ..self.clone() }
     }
 
     /// Does an objective or constraint ask for a mean or a sum?

@@ -12,8 +12,8 @@ use std::sync::Arc;
 /// A study with that many designs.
 fn study(designs: u64) -> String {
     format!(
-        "[design]\npower_kW = {{ from = 1, to = 4, count = {designs} }}\n[constraints]\nfriction_margin = {{ min = 0.7 }}\n\
-         [objectives]\ntorque_Nm = \"max\"\nfriction_margin = \"max\"\n"
+        "[design]\npower_kW = {{ from = 1, to = 4, count = {designs} }}\n[fixed]\nfriction_direction_deg = 45\n\
+         [constraints]\nfriction_margin = {{ min = 0.7 }}\n[objectives]\ntorque_Nm = \"max\"\nfriction_margin = \"max\"\n"
     )
 }
 

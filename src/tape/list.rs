@@ -39,8 +39,8 @@ pub struct ListRoot {
 /// In the sets of roots and loops that an operation depends on: where the loops begin.
 const LOOPS: u8 = 32;
 
-/// Which operations these results need.
-fn needed(recording: &Recording, asked: &[Option<Node>]) -> Vec<bool> {
+/// Which operations these results need: those that a list cut to them has, in this order.
+pub(super) fn needed(recording: &Recording, asked: &[Option<Node>]) -> Vec<bool> {
     let mut needed = vec![false; recording.operations.len()];
     let mut open: Vec<Node> = asked.iter().flatten().copied().collect();
     while let Some(node) = open.pop() {
@@ -82,11 +82,8 @@ impl List {
             let new = list.operations.len() as Node;
             place[node] = new;
             let at = |old: Node| place[old as usize];
-            let operation = match operation {
-                Operation::Unary(kind, a) => Operation::Unary(kind, at(a)),
-                Operation::Binary(kind, a, b) => Operation::Binary(kind, at(a), at(b)),
-                Operation::Select(margin, a, b) => Operation::Select(at(margin), at(a), at(b)),
-                Operation::Rolled(rolled) => Operation::Rolled(rolled.map(at).renumbered(new_number)),
+            let operation = match operation.map(at) {
+                Operation::Rolled(rolled) => Operation::Rolled(rolled.renumbered(new_number)),
                 other => other,
             };
             let mut within = 0;
@@ -95,9 +92,7 @@ impl List {
                 Operation::Rolled(rolled) if rolled.inside().is_some() => within = 1 << (LOOPS + rolled.inside().unwrap_or_default()),
                 Operation::Root(number) => {
                     let root = &mut list.roots[number as usize];
-                    let Root { bracket, start, argument, value, slope } = root.root;
-                    let bracket = (at(bracket.0), at(bracket.1));
-                    root.root = Root { bracket, start: at(start), argument: at(argument), value: at(value), slope: at(slope) };
+                    root.root = root.root.map(at);
                     root.root.reads(|node| within |= arguments[node as usize]);
                     within &= !(1 << number);
                     let is_inner = |&node: &Node| {
@@ -175,6 +170,18 @@ impl List {
         }
     }
 
+    /// The value of every operation that is not [`List::inner`], given those of the inputs; `unknown` for what loops leave.
+    pub fn values<R: Real>(&self, inputs: &[R], unknown: R) -> Vec<R> {
+        let mut slots = vec![unknown; self.operations.len()];
+        for (node, operation) in self.operations.iter().enumerate().filter(|(node, _)| !self.inner[*node]) {
+            match *operation {
+                Operation::Input(input) => slots[node] = inputs[input as usize],
+                _ => self.compute(node as Node, &mut slots),
+            }
+        }
+        slots
+    }
+
     /// Computes one operation from its operands; what inputs are is the caller's business.
     #[inline]
     pub fn compute<R: Real>(&self, node: Node, slots: &mut [R]) {
@@ -208,13 +215,7 @@ impl List {
     /// Runs the list over numbers of any type, one per input; results that nobody asked for are zero.
     pub fn run<R: Real>(&self, inputs: &[R]) -> Vec<R> {
         let zero = R::constant(0.0);
-        let mut slots = vec![zero; self.operations.len()];
-        for (node, operation) in self.operations.iter().enumerate().filter(|(node, _)| !self.inner[*node]) {
-            match *operation {
-                Operation::Input(input) => slots[node] = inputs[input as usize],
-                _ => self.compute(node as Node, &mut slots),
-            }
-        }
+        let slots = self.values(inputs, zero);
         self.results.iter().map(|result| result.map_or(zero, |node| slots[node as usize])).collect()
     }
 }

@@ -12,9 +12,11 @@ mod equations;
 pub(crate) mod error_bound;
 mod interval;
 mod list;
+mod list_columns;
 mod record;
 mod rolled;
 mod set;
+mod settled;
 mod stages;
 #[cfg(test)]
 mod tests;
@@ -26,10 +28,12 @@ pub use equations::{EquationLine, FormulaEquations, Symbols};
 pub use error_bound::{RunningError, nearest_f32};
 pub use interval::{EVERYTHING, Interval};
 pub use list::{List, ListRoot};
+pub use list_columns::ListColumns;
 pub use record::{Known, Loops, Recording, Trace};
 pub use rolled::{FormulaTable, ListLoop, Rolled, RolledLoop, Store};
 pub use set::Set;
-pub use stages::{Fields, First, Recordable, Second, Whole};
+pub use settled::{SettledStages, StageLists};
+pub use stages::{Fields, First, Reads, Recordable, Second, Whole};
 
 use crate::real::Real;
 
@@ -140,6 +144,18 @@ impl Operation {
             Self::Rolled(rolled) => rolled.operands(each),
         }
     }
+
+    /// The same with other operands; those of a root's function are in [`Root`].
+    #[must_use]
+    pub fn map(self, at: impl Fn(Node) -> Node) -> Self {
+        match self {
+            Self::Input(_) | Self::Constant(_) | Self::Argument(_) | Self::Root(_) => self,
+            Self::Unary(kind, a) => Self::Unary(kind, at(a)),
+            Self::Binary(kind, a, b) => Self::Binary(kind, at(a), at(b)),
+            Self::Select(margin, a, b) => Self::Select(at(margin), at(a), at(b)),
+            Self::Rolled(rolled) => Self::Rolled(rolled.map(at)),
+        }
+    }
 }
 
 /// The root of an increasing function: where it is sought, and what the function is.
@@ -161,5 +177,12 @@ impl Root {
     /// Calls `each` with what the root is made of besides its argument.
     pub fn reads(&self, each: impl FnMut(Node)) {
         [self.bracket.0, self.bracket.1, self.start, self.value, self.slope].into_iter().for_each(each);
+    }
+
+    /// The same of other nodes.
+    #[must_use]
+    pub fn map(self, at: impl Fn(Node) -> Node) -> Self {
+        let Self { bracket, start, argument, value, slope } = self;
+        Self { bracket: (at(bracket.0), at(bracket.1)), start: at(start), argument: at(argument), value: at(value), slope: at(slope) }
     }
 }

@@ -1,6 +1,6 @@
 //! A model's formula recorded: as a whole, and as the two stages that a sweep runs it in.
 
-use super::{Known, List, Loops, Node, Recording, Set, Trace};
+use super::{Known, List, Loops, Node, Operation, Recording, Set, Trace};
 use crate::real::Real;
 
 /// The names of a formula's values, in the order of its arrays.
@@ -170,4 +170,36 @@ fn asked(outputs: &[Node], wanted: Set, margins: &[Node], conditions: Set) -> Ve
         nodes.iter().enumerate().map(|(number, &node)| set.contains(number).then_some(node)).collect()
     };
     [of(outputs, wanted), of(margins, conditions)].concat()
+}
+
+/// What a formula's second stage and conditions read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reads {
+    /// Fields that the first stage passes on, by their number in [`Fields::places`].
+    pub prepared: Set,
+    /// Inputs.
+    pub inputs: Set,
+}
+
+impl Reads {
+    /// Of a formula that can be recorded, to give the outputs in `wanted` and all conditions.
+    pub fn of(formula: &dyn Recordable, inputs: &[Known], wanted: Set) -> Self {
+        Self::of_lists(&formula.fields(), &[&formula.second(inputs, wanted, Set::ALL).list(wanted, Set::ALL)])
+    }
+
+    /// Of these lists of a second stage.
+    pub fn of_lists(fields: &Fields, lists: &[&List]) -> Self {
+        let field_of: Vec<usize> =
+            fields.places().enumerate().flat_map(|(field, (_, length))| std::iter::repeat_n(field, length)).collect();
+        let mut reads = Self { prepared: Set::EMPTY, inputs: Set::EMPTY };
+        for operation in lists.iter().flat_map(|list| &list.operations) {
+            if let Operation::Input(input) = *operation {
+                match usize::from(input).checked_sub(fields.inputs.len()) {
+                    Some(passed) => reads.prepared.insert(field_of[passed]),
+                    None => reads.inputs.insert(input.into()),
+                }
+            }
+        }
+        reads
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::{TextGrid, bold, dim, grouped, scaled, short, span, width};
 use beltspace::certify::Row;
-use beltspace::export::{Certified, RunRecord, Summary};
+use beltspace::export::{Certified, Confirmed, RunRecord, Summary};
 use beltspace::models::OVERFLOW;
 use beltspace::study::{Axis, Goal};
 use std::path::{Path, PathBuf};
@@ -64,6 +64,13 @@ pub fn summary(outcome: &Certified<'_>, record: &RunRecord, out: &Path, page: Op
         };
         let certified = if outcome.front.is_empty() { "" } else { " certified in f64 over every scenario" };
         fact("front", format!("{designs}{certified}"));
+    }
+    if let Some(Confirmed { draws, designs, wanted, together }) = Confirmed::of(outcome) {
+        let kept = wanted.map_or(String::new(), |(wanted, kept)| {
+            format!("{} of {} designs keep a yield of {wanted} in ", grouped(kept), grouped(designs))
+        });
+        let all = format!("all {} have {} or more with 99 % confidence", grouped(designs), short(together));
+        fact("confirmed", format!("{kept}{} fresh draws; {all}", grouped(draws)));
     }
     let mut text = format!("{}\n\n{}", bold(&super::told(&study.title)), facts.indented(0));
     text.push_str(&limits(outcome));

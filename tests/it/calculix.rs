@@ -1,4 +1,8 @@
 //! The pulley as a three-dimensional model for CalculiX: its loads, and its solution compared with the harmonics.
+//!
+//! CalculiX checks the solver and the way around the axis alone: section mesh, loads and supports of the deck are those of the harmonics, so
+//! an error in them shows in neither. The loads are therefore held against closed forms here, and against the balance of the belt in
+//! `pulley_balance.rs`.
 
 use crate::pulleys::{COARSE, calculix, job, shown, solved};
 use beltspace::pulley::calculix::{ComparedQuantity, Forces, Job, Results, Sweep, closed_form, compare, export, write_deck};

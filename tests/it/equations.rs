@@ -116,6 +116,9 @@ fn compare(model: &Model, equations: &FormulaEquations) -> Result<usize, String>
             .map(|it| {
                 let (low, high) = it.usual;
                 let value = low + (high - low) * random.unit();
+                if !it.words.is_empty() && random.chance(0.3) {
+                    return random.word(&it.words);
+                }
                 if it.integer { value.round() } else { value }
             })
             .collect();

@@ -10,6 +10,7 @@ mod browser;
 mod calculix;
 /// The catalogues that come with the program, searched for typing slips.
 mod catalogues;
+mod clamping;
 /// The binary: exit codes, messages, files, interrupted runs.
 mod command_line;
 /// How many evaluations a test may make of a model.
@@ -38,6 +39,8 @@ mod papers;
 mod physics;
 /// Random small studies, by brute force and by the pipeline.
 mod pipeline;
+/// Studies with distributions.
+mod probability;
 /// The loads on a V-belt pulley as vectors.
 mod pulley_balance;
 /// The stresses of a V-belt pulley against a converged reference.
@@ -52,6 +55,10 @@ mod readme;
 mod report_page;
 /// Independent second implementations of the models, and printed golden values.
 mod second;
+/// Which input matters: shares of the variance.
+mod sensitivity;
+/// `beltspace sensitivity` as people run it.
+mod sensitivity_files;
 /// Numbers that Rust and the shaders both know.
 mod shader_constants;
 /// The committed shaders against the formulas.

@@ -68,7 +68,7 @@ impl Pulley {
     /// The pull of the two strands, without the tension that only bends the moving belt.
     fn strands(&self) -> [f64; 2] {
         let wrap = self.get("wrap_angle_deg").to_radians();
-        let slack = self.get("slack_tension_N") - self.get("centrifugal_tension_N");
+        let slack = self.get("slack_tension_used_N") - self.get("centrifugal_tension_N");
         let tight = self.get("tight_tension_N") - self.get("centrifugal_tension_N");
         [-tight * wrap.sin(), tight * wrap.cos() - slack]
     }
@@ -84,7 +84,11 @@ fn pulleys(seed: u64) -> impl Iterator<Item = Pulley> {
     let inputs = move || -> Vec<f64> {
         let value = |input: &beltspace::models::Input| {
             let value = random.between(input.usual.0, input.usual.1);
-            if input.integer { value.round() } else { value }
+            match &input.words[..] {
+                [] if input.integer => value.round(),
+                [] => value,
+                words => random.word(words),
+            }
         };
         model.inputs.iter().map(value).collect()
     };
@@ -112,7 +116,7 @@ fn flank_pressure_and_friction_add_up_to_the_pull_of_the_strands_and_the_torque(
 #[test]
 fn friction_along_the_flank_taken_as_radial_does_not_balance() {
     let model = find("pulley-load").expect("it is a model");
-    let example = Pulley::new(model.defaults()).expect("the paper's example has a meaning");
+    let example = Pulley::new(model.preset("paper").expect("it is a preset")).expect("the paper's example has a meaning");
     let strands = example.strands();
     let radial = example.loads(1.0).0;
     let off = radial[0].hypot(radial[1]) / strands[0].hypot(strands[1]) - 1.0;
@@ -126,7 +130,7 @@ fn power_is_torque_times_speed() {
         let omega = pulley.get("speed_rpm") * 2.0 * PI / 60.0;
         let power = pulley.get("torque_Nm") * omega / 1000.0;
         assert!((power - pulley.get("power_kW")).abs() < 1e-13 * power, "{:?}", pulley.inputs);
-        let tight = pulley.get("slack_tension_N") + pulley.get("effective_tension_N");
+        let tight = pulley.get("slack_tension_used_N") + pulley.get("effective_tension_N");
         assert!((tight - pulley.get("tight_tension_N")).abs() < 1e-12 * tight, "{:?}", pulley.inputs);
         let belt = pulley.get("effective_tension_N") * pulley.get("belt_speed_m_per_s") / 1000.0;
         assert!((belt - power).abs() < 1e-13 * power, "{:?}", pulley.inputs);
@@ -164,7 +168,7 @@ fn tension_and_loads_grow_along_the_wrap_as_the_profile_says() {
         let column = |name: &str| profile.columns.iter().position(|it| it.name == name).expect("it is a column");
         let (first, last) = (&profile.rows[0], &profile.rows[profile.rows.len() - 1]);
         let ends = [
-            (first, "tension_N", pulley.get("slack_tension_N")),
+            (first, "tension_N", pulley.get("slack_tension_used_N")),
             (last, "tension_N", pulley.get("tight_tension_N")),
             (first, "line_force_N_per_mm", pulley.get("slack_end_line_force_N_per_mm")),
             (last, "line_force_N_per_mm", pulley.get("tight_end_line_force_N_per_mm")),
@@ -181,5 +185,93 @@ fn tension_and_loads_grow_along_the_wrap_as_the_profile_says() {
         for pair in profile.rows.windows(2) {
             assert!((pressing(&pair[1]) / pressing(&pair[0]) - factor).abs() < 1e-9, "{:?}", pulley.inputs);
         }
+    }
+}
+
+/// Outputs of random pulleys as they come and with changes to their inputs: a status other than ok gives `None`.
+fn changed(pulley: &Pulley, changes: &[(&str, f64)]) -> Option<Pulley> {
+    let mut inputs = pulley.inputs.clone();
+    for (name, value) in changes {
+        inputs[pulley.model.input(name).expect("it is an input")] = *value;
+    }
+    Pulley::new(inputs)
+}
+
+const FIXED_CENTRES: f64 = 2.0;
+
+#[test]
+fn between_fixed_centres_the_tensions_add_up_to_twice_the_installed_one() {
+    let mut fixed = 0;
+    for pulley in pulleys(5).filter(|pulley| pulley.get("tensioning") == FIXED_CENTRES) {
+        let [slack, tight, installed] = ["slack_tension_used_N", "tight_tension_N", "installed_tension_N"].map(|name| pulley.get(name));
+        assert!((slack + tight - 2.0 * installed).abs() < 1e-12 * installed, "{:?}", pulley.inputs);
+        // What is not read changes nothing.
+        let other = pulley.with("slack_tension_N", 1.7 * pulley.get("slack_tension_N")).expect("it is the same");
+        assert_eq!(other.outputs, pulley.outputs);
+        // The same tension of the slack side, given.
+        let given = changed(&pulley, &[("tensioning", 1.0), ("slack_tension_N", slack)]).expect("the same belt grips");
+        for (output, (one, other)) in pulley.outputs.iter().zip(&given.outputs).enumerate() {
+            let (one, other) = (one.expect("status ok"), other.expect("status ok"));
+            assert!((one - other).abs() <= 1e-11 * one.abs().max(1e-3), "{}: {one} {other}", pulley.model.outputs[output].name);
+        }
+        fixed += 1;
+    }
+    assert!(fixed > 300, "{fixed}");
+}
+
+#[test]
+fn a_belt_that_carries_nothing_has_one_tension_by_either_law() {
+    for pulley in pulleys(6).take(500) {
+        let tension = pulley.get("slack_tension_used_N");
+        let idle = |law: f64, power: f64| {
+            let own = [("tensioning", law), ("power_kW", power), ("slack_tension_N", tension), ("installed_tension_N", tension)];
+            changed(&pulley, &own).expect("it grips without load")
+        };
+        let (slack, fixed) = (idle(1.0, 0.0), idle(FIXED_CENTRES, 0.0));
+        assert_eq!(slack.outputs, fixed.outputs);
+        assert_eq!((slack.get("friction_margin"), slack.get("tight_tension_N")), (1.0, tension));
+        // The limit is no jump.
+        for law in [1.0, FIXED_CENTRES] {
+            let nearly = idle(law, 1e-9);
+            assert!((nearly.get("resultant_force_N") / slack.get("resultant_force_N") - 1.0).abs() < 1e-6);
+            assert!((nearly.get("friction_margin") - 1.0).abs() < 1e-6);
+        }
+        // Nor is the mass of a belt that weighs nothing: all of its tension presses.
+        let light = changed(&pulley, &[("belt_mass_kg_per_m", 1e-12)]).expect("it presses harder");
+        let pressed = light.get("slack_tension_used_N") / light.get("mean_radius_mm");
+        assert!((light.get("slack_end_line_force_N_per_mm") / pressed - 1.0).abs() < 1e-6, "{:?}", light.inputs);
+    }
+}
+
+#[test]
+fn along_the_circumference_more_power_never_presses_less() {
+    let mut seen = [0; 2];
+    for pulley in pulleys(7).filter_map(|pulley| pulley.with("friction_direction_deg", 0.0)) {
+        let Some(more) = pulley.with("power_kW", 1.1 * pulley.get("power_kW")) else { continue };
+        let end = "tight_end_flank_force_N_per_mm";
+        assert!(more.get(end) > pulley.get(end) && more.get("friction_used") > pulley.get("friction_used"), "{:?}", pulley.inputs);
+        let start = "slack_end_flank_force_N_per_mm";
+        let fixed = pulley.get("tensioning") == FIXED_CENTRES;
+        assert!(if fixed { more.get(start) < pulley.get(start) } else { more.get(start) == pulley.get(start) }, "{:?}", pulley.inputs);
+        seen[usize::from(fixed)] += 1;
+    }
+    assert!(seen.iter().all(|&count| count > 300), "{seen:?}");
+    // With the paper's direction the slack end is pressed the less the more the belt transmits.
+    let paper = find("pulley-load").expect("it is a model").preset("paper").expect("it is a preset");
+    let [idle, loaded] = [0.0, 3.0].map(|power| Pulley::new(paper.clone()).and_then(|it| it.with("power_kW", power)).expect("it grips"));
+    assert!(loaded.get("slack_end_flank_force_N_per_mm") < 0.9 * idle.get("slack_end_flank_force_N_per_mm"));
+}
+
+#[test]
+fn a_belt_slips_where_it_needs_more_friction_than_there_is() {
+    let model = find("pulley-load").expect("it is a model");
+    for pulley in pulleys(8).take(300) {
+        let used = pulley.get("friction_used");
+        let status = |limit: f64| {
+            let mut inputs = pulley.inputs.clone();
+            inputs[model.input("friction_limit").expect("it is an input")] = limit;
+            evaluate(&model, &inputs).status.reason(&model).to_owned()
+        };
+        assert_eq!([status(used * (1.0 + 1e-9)), status(used * (1.0 - 1e-9))], ["ok", "slip"], "{:?}", pulley.inputs);
     }
 }

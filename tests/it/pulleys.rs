@@ -10,10 +10,11 @@ use std::time::Instant;
 /// One element through the sheet, as in the smallest of the reference models.
 pub const COARSE: Fineness = Fineness { through: 1, straight: 2.0, bend: 1.2, held: 2.0, solid: 2.5, harmonics: 24, every: false };
 
-/// The preset of a type under the model's default loads.
+/// The preset of a type under the paper's loads.
 pub fn job(kind: SectionKind, fineness: Fineness, sectors: usize) -> Job {
     let model = find("pulley").expect("there is such a model");
-    let inputs = model.preset(kind.name()).expect("every type has a preset");
+    let mut inputs = model.preset(kind.name()).expect("every type has a preset");
+    inputs[model.input("friction_direction_deg").expect("it is an input")] = 45.0;
     let design = model.pulley_of(&inputs).expect("it is a pulley");
     // The deck's density is in t/mm^3.
     let density = design.density * 1e-12;

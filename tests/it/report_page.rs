@@ -90,11 +90,11 @@ fn a_front_is_brushed_and_a_card_says_what_the_table_says() {
     browser.picture("metal-cvt");
 
     // A brush in a cell, then another one in a second cell: both hold.
-    brush(&mut browser, "axial_force_N", "stress_margin", [0.0, 0.0], [0.6, 0.6]);
+    brush(&mut browser, "axial_force_upper_N", "stress_margin", [0.0, 0.0], [0.6, 0.6]);
     let state = "[...beltspace.state.cells.values()].map((c) => [c.x, c.y, ...c.xRange, ...c.yRange])";
     let ranges = browser.evaluate(state);
     assert_eq!(ranges.as_array().map(Vec::len), Some(1), "{ranges}");
-    brush(&mut browser, "stress_margin", "slip_margin", [0.2, 0.1], [1.0, 0.9]);
+    brush(&mut browser, "stress_margin", "clamping_utilisation", [0.2, 0.1], [1.0, 0.9]);
     browser.picture("metal-cvt-brushed");
     let ranges = browser.evaluate(state);
     let ranges: Vec<(String, String, [f64; 4])> = serde_json::from_value::<Vec<(String, String, f64, f64, f64, f64)>>(ranges)
@@ -120,9 +120,9 @@ fn a_front_is_brushed_and_a_card_says_what_the_table_says() {
     let table = &front[row];
     assert_eq!(card_differs(&mut browser, table), None);
     let mut wrong = table.clone();
-    let last = wrong["slip_margin"].clone();
-    wrong.insert("slip_margin".to_owned(), format!("1{last}"));
-    assert!(card_differs(&mut browser, &wrong).is_some_and(|it| it.starts_with("slip_margin")), "a wrong digit would go unseen");
+    let last = wrong["clamping_utilisation"].clone();
+    wrong.insert("clamping_utilisation".to_owned(), format!("1{last}"));
+    assert!(card_differs(&mut browser, &wrong).is_some_and(|it| it.starts_with("clamping_utilisation")), "a wrong digit would go unseen");
     let card = browser.text("document.querySelector('#card').innerText");
     assert!(card.contains(&format!("--design {}", table["design_index"])), "{card}");
     browser.picture("metal-cvt-card");
@@ -131,8 +131,8 @@ fn a_front_is_brushed_and_a_card_says_what_the_table_says() {
         browser.text("[...document.querySelectorAll('#card code')].map((it) => it.textContent).find((it) => it.includes('--design'))");
     let words: Vec<&str> = command.split_whitespace().skip(1).chain(["--json"]).filter(|word| *word != "--scenario").collect();
     let again: serde_json::Value = serde_json::from_str(&beltspace(&words)).expect("--json prints JSON");
-    let value = again["outputs"]["axial_force_N"]["value"].as_f64();
-    assert_eq!(value, Some(number(&table["axial_force_N"])), "{command}");
+    let value = again["outputs"]["axial_force_upper_N"]["value"].as_f64();
+    assert_eq!(value, Some(number(&table["axial_force_upper_N"])), "{command}");
 
     // Esc closes; the address holds the state, and brings it back.
     browser.key("Escape", 27);

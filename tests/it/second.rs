@@ -1,9 +1,13 @@
-//! A second implementation of the models (`timing-belt` in a file of its own), written from the
+//! A second implementation of the models (`timing-belt` in files of its own), written from the
 //! specification alone, in N, mm, MPa and not by the methods that it suggests: bisection instead of
 //! Newton, quadrature of the belt-element balance instead of closed forms. Both agreeing to 1e-9
 //! therefore says something about the equations, not only about rounding.
 
+mod printed;
 pub mod timing_belt;
+
+pub use printed::{GOLDEN, Golden};
+pub mod timing_data;
 
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -22,107 +26,7 @@ pub const SECOND: &[(&str, Second)] = &[
     ("flat-belt", flat_belt),
 ];
 
-/// A number printed in the papers or worked out by hand from them.
-pub struct Golden {
-    pub what: &'static str,
-    /// Only the inputs that differ from the model's defaults.
-    pub inputs: &'static [(&'static str, f64)],
-    pub output: &'static str,
-    pub expected: f64,
-    /// Half a unit of the last printed digit.
-    pub tolerance: f64,
-    pub source: &'static str,
-}
-
-const fn golden(
-    what: &'static str,
-    inputs: &'static [(&'static str, f64)],
-    output: &'static str,
-    expected: f64,
-    tolerance: f64,
-    source: &'static str,
-) -> Golden {
-    Golden { what, inputs, output, expected, tolerance, source }
-}
-
-const UNDERDRIVE: &[(&str, f64)] = &[("ratio", 2.0)];
-/// CVT Table 2: effective tension 2000 N on the 86.899 mm pulleys of the default belt at R = 1.
-const TABLE_2_RUBBER: &[(&str, f64)] = &[("torque_Nm", 173.797_198_6)];
-/// CVT Table 2 prints T = 2800 N at a traction of 0.58, which slips at the friction of its own
-/// force column; 0.577 does not, and the driver's axial force depends on T alone.
-const TABLE_2_METAL: &[(&str, f64)] = &[("traction", 0.577), ("torque_Nm", 98.156_434_42)];
-/// CVT Table 1 gives r0 and r1 and 180 degrees of wrap: at R = 1, L = 2 pi r0 and
-/// A = (L - 2 pi r1)/2. The traction is lambda_max, rounded down so that the belt does not slip.
-const TABLE_1_RUBBER: &[(&str, f64)] =
-    &[("belt_length_mm", 1_024.159_205_070), ("centre_distance_mm", 370.707_933_124), ("traction", 0.984_54)];
-const TABLE_1_RUBBER_LARGER_RADIUS: &[(&str, f64)] =
-    &[("belt_length_mm", 1_024.159_205_070), ("centre_distance_mm", 334.265_458_342), ("traction", 0.984_54)];
-/// Here the belt's own r0 and radius at R = 2, with the force ratio of 180 degrees.
-const TABLE_1_RUBBER_OWN_RADII: &[(&str, f64)] = &[("ratio", 2.0), ("traction", 0.984_54)];
-const EQUATION_26: &[(&str, f64)] = &[("belt_length_mm", 613.238_885_981), ("centre_distance_mm", 165.247_773_579)];
-
-/// Shigley, example 17-1, in the model's units: 15 hp with service factor 1.25 and design factor 1.1, 1750 rpm, pulleys of 6 and 18 in
-/// 96 in apart, belt 6 by 0.13 in of 0.042 lbf/in^3, friction 0.8, 100 lbf/in times 0.70. Not here: the torque, 742.8 lbf in, of which
-/// the book prints 742 and goes on with that, so that its slack tension of 172.6 lbf is 0.2 more than 172.40.
-const EXAMPLE_17_1: &[(&str, f64)] = &[
-    ("power_kW", 15.380_059_851_384_32),
-    ("driver_speed_rpm", 1750.0),
-    ("driver_diameter_mm", 152.4),
-    ("driven_diameter_mm", 457.2),
-    ("centre_distance_mm", 2438.4),
-    ("belt_width_mm", 152.4),
-    ("belt_thickness_mm", 3.302),
-    ("belt_density_kg_per_m3", 1_162.555_997_828_531),
-    ("friction", 0.8),
-    ("tension_per_width_N_per_mm", 12.258_878_467_253_35),
-];
-const RADIAN_IN_DEGREES: f64 = 180.0 / PI;
-const POUND_IN_NEWTONS: f64 = 4.448_221_615_260_5;
-const FOOT_PER_MINUTE: f64 = 0.3048 / 60.0;
-
-/// Not here, because no input produces them: C_M = 107.06, 112.9 and 114.1 of CVT (28) take
-/// x = 1.36, a traction of 0.581 that slips at the 180 degrees of wrap they are computed with.
-#[rustfmt::skip]
-pub const GOLDEN: &[(&str, Golden)] = &[
-    ("rubber-cvt", golden("driver radius at R = 2", UNDERDRIVE, "driver_radius_mm", 56.619, 5e-4, "CVT geometry, L 1066, A 260")),
-    ("rubber-cvt", golden("driven radius at R = 2", UNDERDRIVE, "driven_radius_mm", 113.238, 5e-4, "CVT geometry, L 1066, A 260")),
-    ("rubber-cvt", golden("driver wrap at R = 2", UNDERDRIVE, "driver_wrap_deg", 154.84, 5e-3, "CVT geometry, L 1066, A 260")),
-    ("rubber-cvt", golden("driven wrap at R = 2", UNDERDRIVE, "driven_wrap_deg", 205.16, 5e-3, "CVT geometry, L 1066, A 260")),
-    ("metal-cvt", golden("driver radius at R = 2", UNDERDRIVE, "driver_radius_mm", 31.270, 5e-4, "CVT geometry, L 613, A 156")),
-    ("metal-cvt", golden("driven radius at R = 2", UNDERDRIVE, "driven_radius_mm", 62.540, 5e-4, "CVT geometry, L 613, A 156")),
-    ("rubber-cvt", golden("slip limit, mu 0.4", &[], "traction_limit", 0.985, 5e-4, "CVT (12), R = 1")),
-    ("metal-cvt", golden("slip limit, mu 0.08", &[], "traction_limit", 0.577, 5e-4, "CVT (12), R = 1; measured 0.58")),
-    ("metal-cvt", golden("slip limit, mu 0.08", &[], "traction_limit", 0.5774, 5e-5, "CVT (12), R = 1; Table 2 gives 0.58")),
-    ("metal-cvt", golden("slip limit, mu 0.1", &[("friction", 0.1)], "traction_limit", 0.677, 5e-4, "CVT (12), R = 1, Fig. 7")),
-    ("metal-cvt", golden("slip limit, mu 0.11", &[("friction", 0.11)], "traction_limit", 0.719, 5e-4, "CVT (12), R = 1, Fig. 9")),
-    ("rubber-cvt", golden("belt force", TABLE_2_RUBBER, "belt_force_N", 2000.0, 0.5, "CVT Table 2")),
-    ("rubber-cvt", golden("tight side force", TABLE_2_RUBBER, "tight_force_N", 2250.0, 0.5, "CVT Table 2")),
-    ("rubber-cvt", golden("driver axial force, printed", TABLE_2_RUBBER, "driver_axial_force_N", 4720.0, 5.0, "CVT Table 2")),
-    ("rubber-cvt", golden("driver axial force, computed", TABLE_2_RUBBER, "driver_axial_force_N", 4724.0, 0.5, "CVT (6) with the data of Table 2")),
-    ("metal-cvt", golden("band tension", TABLE_2_METAL, "tight_force_N", 2800.0, 0.5, "CVT Table 2")),
-    ("metal-cvt", golden("driver axial force", TABLE_2_METAL, "driver_axial_force_N", 15_780.0, 5.0, "CVT Table 2 and (6)")),
-    ("rubber-cvt", golden("C_R with the printed radii", TABLE_1_RUBBER, "torque_coefficient_N_per_mm", 18.503, 5e-4, "CVT (21) with the data of Table 1, r0 163, r1 45")),
-    ("rubber-cvt", golden("C_R as printed", TABLE_1_RUBBER_LARGER_RADIUS, "torque_coefficient_N_per_mm", 20.5, 0.05, "CVT Table 1, with r0 163, r1 56.6")),
-    ("rubber-cvt", golden("C_R with the belt's own radii", TABLE_1_RUBBER_OWN_RADII, "torque_coefficient_N_per_mm", 20.1, 0.05, "CVT (21), r0 169.7, r1 56.6")),
-    ("metal-cvt", golden("optimum band thickness", EQUATION_26, "optimum_thickness_mm", 0.199, 5e-4, "CVT (26), sigma_t 250, r0 97.6, r1 45")),
-    ("pulley-load", golden("belt speed", &[], "belt_speed_m_per_s", 18.850, 5e-4, "PUL (2), Table 1; R_b, beta, w chosen")),
-    ("pulley-load", golden("tight tension", &[], "tight_tension_N", 859.155, 5e-4, "PUL (2), (15), Table 1; R_b, beta, w chosen")),
-    ("pulley-load", golden("effective tension", &[], "effective_tension_N", 159.155, 5e-4, "PUL (2), T_t - T_s, Table 1; R_b, beta, w chosen")),
-    ("pulley-load", golden("centrifugal tension", &[], "centrifugal_tension_N", 39.084, 5e-4, "PUL, w v^2, Table 1; R_b, beta, w chosen")),
-    ("pulley-load", golden("effective friction", &[], "effective_friction", 0.140_481, 5e-7, "PUL (13), Table 1; R_b, beta, w chosen")),
-    ("pulley-load", golden("total friction", &[], "friction_used", 0.070_860, 5e-7, "PUL (12), sqrt(2) times the paper's 0.050106")),
-    ("pulley-load", golden("flank force at the slack end", &[], "slack_end_flank_force_N_per_mm", 15.4418, 5e-5, "PUL (10), Table 1; R_b, beta, w chosen")),
-    ("pulley-load", golden("resultant", &[], "resultant_force_N", 1035.131, 5e-4, "PUL (9)-(16), Table 1; R_b, beta, w chosen")),
-    ("pulley-load", golden("torque", &[], "torque_Nm", 9.549_30, 5e-6, "PUL (2), Table 1; R_b, beta, w chosen")),
-    ("flat-belt", golden("wrap 3.0165 rad", EXAMPLE_17_1, "driver_wrap_deg", 3.0165 * RADIAN_IN_DEGREES, 5e-5 * RADIAN_IN_DEGREES, "Shigley, example 17-1")),
-    ("flat-belt", golden("speed 2749 ft/min", EXAMPLE_17_1, "belt_speed_m_per_s", 2749.0 * FOOT_PER_MINUTE, 0.5 * FOOT_PER_MINUTE, "Shigley, example 17-1")),
-    ("flat-belt", golden("F_c 25.6 lbf", EXAMPLE_17_1, "centrifugal_tension_N", 25.6 * POUND_IN_NEWTONS, 0.05 * POUND_IN_NEWTONS, "Shigley, example 17-1")),
-    ("flat-belt", golden("(F1)a 420 lbf", EXAMPLE_17_1, "tight_tension_N", 420.0 * POUND_IN_NEWTONS, 0.5 * POUND_IN_NEWTONS, "Shigley, example 17-1")),
-    ("flat-belt", golden("F_i 270.6 lbf", EXAMPLE_17_1, "initial_tension_N", 270.6 * POUND_IN_NEWTONS, 0.05 * POUND_IN_NEWTONS, "Shigley, example 17-1")),
-    ("flat-belt", golden("f' 0.328", EXAMPLE_17_1, "friction_used", 0.328, 5e-4, "Shigley, example 17-1")),
-];
-
-/// V-belt CVT with a rubber belt. Absent `traction` means "limit".
+/// V-belt CVT with a rubber belt. Absent `traction` means "limit", absent `clamping_force_N` "from-traction".
 fn rubber_cvt(inputs: &BTreeMap<String, f64>) -> (&'static str, Values) {
     let belt = Belt { width: value(inputs, "belt_width_mm"), thickness: value(inputs, "belt_thickness_mm"), metal: false };
     cvt(inputs, &belt)
@@ -210,7 +114,10 @@ fn geometry(length: f64, centre: f64, ratio: f64) -> Result<(f64, f64, f64), &'s
     Ok((driver, driven, if ratio < 1.0 { -g } else { g }))
 }
 
-const WEDGE_FAILURE: [&str; 6] = [
+const WEDGE_FAILURE: [&str; 9] = [
+    "thrust_ratio",
+    "clamping_safety",
+    "clamping_utilisation",
     "driver_axial_coefficient",
     "driven_axial_coefficient",
     "driver_axial_force_N",
@@ -218,7 +125,12 @@ const WEDGE_FAILURE: [&str; 6] = [
     "axial_force_N",
     "capacity_axial_force_N",
 ];
-const SLIP: [&str; 17] = [
+const SLIP: [&str; 22] = [
+    "driver_axial_force_upper_N",
+    "driven_axial_force_upper_N",
+    "axial_force_upper_N",
+    "thrust_ratio",
+    "flank_pressure_MPa",
     "active_arc_deg",
     "driver_axial_coefficient",
     "driven_axial_coefficient",
@@ -237,7 +149,13 @@ const SLIP: [&str; 17] = [
     "printed_torque_coefficient_N_per_mm",
     "entry_compression",
 ];
-const NO_TRACTION: [&str; 8] = [
+const NO_TRACTION: [&str; 14] = [
+    "flank_pressure_MPa",
+    "clamping_safety",
+    "clamping_utilisation",
+    "driver_axial_force_upper_N",
+    "driven_axial_force_upper_N",
+    "axial_force_upper_N",
     "tight_force_N",
     "slack_force_N",
     "driver_axial_force_N",
@@ -253,7 +171,8 @@ fn cvt(inputs: &BTreeMap<String, f64>, belt: &Belt) -> (&'static str, Values) {
     let friction = get("friction");
     let (sin, cos) = (0.5 * get("groove_angle_deg").to_radians()).sin_cos();
     let effective = friction / sin;
-    let mut out = Values::from([("effective_friction", effective)]);
+    let turning = get("driver_speed_rpm") / 60.0 * 2.0 * PI;
+    let mut out = Values::from([("effective_friction", effective), ("power_kW", get("torque_Nm") * turning / 1000.0)]);
 
     let length = get("belt_length_mm");
     let (driver, driven, g) = match geometry(length, get("centre_distance_mm"), get("ratio")) {
@@ -268,24 +187,12 @@ fn cvt(inputs: &BTreeMap<String, f64>, belt: &Belt) -> (&'static str, Values) {
 
     // Belt forces at gross slip are as 1 : q, so that lambda_max = (1 - q) / (1 + q).
     let limit = |wrap: f64| -(-effective * wrap).exp_m1() / (1.0 + (-effective * wrap).exp());
-    let traction_limit = limit(driven_wrap);
+    let (driven_limit, driver_limit) = (limit(driven_wrap), limit(driver_wrap));
+    let (traction_limit, limiting_wrap) =
+        if driven_wrap <= driver_wrap { (driven_limit, driven_wrap) } else { (driver_limit, driver_wrap) };
     out.insert("traction_limit", traction_limit);
-    out.insert("driver_traction_limit", limit(driver_wrap));
-
-    // 1 - lambda is carried beside lambda: near the limit of a rubber belt it is small, and the
-    // slack side force and the entry compression hang on its relative accuracy.
-    let q = (-effective * driven_wrap).exp();
-    let (traction, rest) = match inputs.get("traction") {
-        Some(&given) => (given, 1.0 - given),
-        None => (traction_limit, 2.0 * q / (1.0 + q)),
-    };
-    let slip = inputs.contains_key("traction") && traction > traction_limit;
-    out.insert("slip_margin", (traction_limit - traction) / traction_limit);
-
-    // CVT (12) from the force ratio; clamped because rounding may pass the wrap at the limit.
-    let exponent = (2.0 * traction / rest).ln_1p().min(effective * driven_wrap);
-    let active = exponent / effective;
-    out.insert("active_arc_deg", active.to_degrees());
+    out.insert("driven_traction_limit", driven_limit);
+    out.insert("driver_traction_limit", driver_limit);
 
     // Equilibrium of one belt element: both flanks carry the radial component of the belt force,
     // helped by friction only where the slip is radial. Returned per sheave and per radian.
@@ -293,33 +200,109 @@ fn cvt(inputs: &BTreeMap<String, f64>, belt: &Belt) -> (&'static str, Values) {
         let normal = 0.5 * force / (sin + radial_friction * cos);
         normal * (cos - radial_friction * sin)
     };
-    // Per unit of F1 + F2. The driver carries the tight force all around; the driven pulley the
-    // slack force over its idle arc, then a force that grows with friction along the belt.
-    let (tight, slack) = (0.5 * (1.0 + traction), 0.5 * rest);
-    let driver_axial = integrate(0.0, driver_wrap, 2, |_| axial(tight, friction));
-    let driven_axial = integrate(0.0, driven_wrap - active, 2, |_| axial(slack, friction))
-        + integrate(0.0, active, panels_for(exponent), |angle| axial(slack * (effective * angle).exp(), 0.0));
-    out.insert("driver_axial_coefficient", driver_axial);
-    out.insert("driven_axial_coefficient", driven_axial);
-    let larger = driver_axial.max(driven_axial);
+    // The driven pulley carries the slack force over its idle arc, helped by radial friction or not, then a force
+    // that grows with friction along the belt by this exponent.
+    let driven_axial_of = |slack: f64, exponent: f64, radial_friction: f64| {
+        let active = exponent / effective;
+        integrate(0.0, driven_wrap - active, 2, |_| axial(slack, radial_friction))
+            + integrate(0.0, active, panels_for(exponent), |angle| axial(slack * (effective * angle).exp(), 0.0))
+    };
 
     let torque = 1000.0 * get("torque_Nm");
     let belt_force = torque / driver;
     out.insert("belt_force_N", belt_force);
-    let sum = if torque == 0.0 { 0.0 } else { belt_force / traction };
+    let clamping = inputs.get("clamping_force_N").copied();
+    let wedged = friction * sin / cos >= 1.0;
+    // The whole wrap active: the least that holds the belt on the driven pulley.
+    let slip_force = belt_force * cos / (2.0 * friction);
+    let held = clamping.is_none_or(|clamping| clamping > slip_force && !wedged);
+
+    // 1 - lambda is carried beside lambda: near the limit of a rubber belt it is small, and the
+    // slack side force and the entry compression hang on its relative accuracy.
+    let (traction, rest, slack_force) = match (clamping, inputs.get("traction")) {
+        (Some(clamping), _) if held && belt_force > 0.0 => {
+            // The exponent by which the force grows around the driven pulley, from F2 = P/(e^x - 1): more growth, less axial force. The
+            // active arc carries P/mu_e, whatever the growth; that quadrature finds the same force is checked below.
+            let of_active = axial(belt_force / effective, 0.0);
+            let of_all = |x: f64| axial(belt_force / x.exp_m1(), friction) * (driven_wrap - x / effective) + of_active;
+            let (mut low, mut high) = (0.0, effective * driven_wrap);
+            loop {
+                let x = 0.5 * (low + high);
+                if x <= low || x >= high {
+                    break;
+                }
+                if of_all(x) > clamping {
+                    low = x;
+                } else {
+                    high = x;
+                }
+            }
+            ((0.5 * low).tanh(), 2.0 / (1.0 + low.exp()), belt_force / low.exp_m1())
+        }
+        (Some(clamping), _) => (0.0, 1.0, clamping / (driven_wrap * axial(1.0, friction))),
+        (None, Some(&given)) => (given, 1.0 - given, 0.5 * (1.0 - given) * belt_force / given),
+        (None, None) => {
+            let q = (-effective * limiting_wrap).exp();
+            (traction_limit, 2.0 * q / (1.0 + q), 0.5 * 2.0 * q / (1.0 + q) * belt_force / traction_limit)
+        }
+    };
+    let is_number = clamping.is_some() || inputs.contains_key("traction");
+    let slips_driven = if clamping.is_some() { clamping <= Some(slip_force) } else { is_number && traction > driven_limit };
+    let slips_driver = held && is_number && traction > driver_limit;
+    out.insert("traction_used", traction);
+    out.insert("slip_margin", (traction_limit - traction) / traction_limit);
+
+    // CVT (12) from the force ratio; clamped because rounding may pass the wrap at the limit.
+    let exponent = (2.0 * traction / rest).ln_1p().min(effective * driven_wrap);
+    out.insert("active_arc_deg", (exponent / effective).to_degrees());
+
+    // Per unit of F1 + F2. The driver carries the tight force all around.
+    let (tight, slack) = (0.5 * (1.0 + traction), 0.5 * rest);
+    let driver_axial = integrate(0.0, driver_wrap, 2, |_| axial(tight, friction));
+    let driven_axial = driven_axial_of(slack, exponent, friction);
+    out.insert("driver_axial_coefficient", driver_axial);
+    out.insert("driven_axial_coefficient", driven_axial);
+    out.insert("thrust_ratio", driver_axial / driven_axial);
+    let larger = driver_axial.max(driven_axial);
+    if let (Some(clamping), true) = (clamping, held) {
+        let again = driven_axial * (belt_force + 2.0 * slack_force);
+        assert!((again - clamping).abs() <= 1e-10 * clamping, "{again} by quadrature, {clamping} given: {inputs:?}");
+    }
+
+    let sum = match clamping {
+        Some(_) => belt_force + 2.0 * slack_force,
+        None if torque == 0.0 => 0.0,
+        None => belt_force / traction,
+    };
     out.insert("tight_force_N", tight * sum);
     out.insert("slack_force_N", slack * sum);
     out.insert("driver_axial_force_N", driver_axial * sum);
     out.insert("driven_axial_force_N", driven_axial * sum);
     out.insert("axial_force_N", larger * sum);
+    let (driver_upper, driven_upper) =
+        (integrate(0.0, driver_wrap, 2, |_| axial(tight * sum, 0.0)), driven_axial_of(slack * sum, exponent, 0.0));
+    out.insert("driver_axial_force_upper_N", driver_upper);
+    out.insert("driven_axial_force_upper_N", driven_upper);
+    out.insert("axial_force_upper_N", driver_upper.max(driven_upper));
+    // The force that holds over the force that would just hold; without a traction of its own the belt force cancels.
+    let safety = clamping.unwrap_or(driven_axial) / clamping.map_or(traction * cos / (2.0 * friction), |_| slip_force);
+    out.insert("clamping_safety", safety);
+    out.insert("clamping_utilisation", if torque == 0.0 { 0.0 } else { 1.0 / safety });
+
+    let speed = turning * driver / 1000.0;
+    let centrifugal = get("belt_mass_kg_per_m") * speed * speed;
+    out.insert("belt_speed_m_per_s", speed);
+    out.insert("centrifugal_force_N", centrifugal);
 
     let (modulus, strength) = (get("elastic_modulus_MPa"), get("strength_MPa"));
+    let bending_modulus = inputs.get("bending_modulus_MPa").copied().unwrap_or(modulus);
     let smaller = driver.min(driven);
     let free = length / (2.0 * PI);
     // Strain of the outer fibre times E, per millimetre of thickness.
-    let bending_rate = 0.5 * modulus * (1.0 / smaller - 1.0 / free);
+    let bending_rate = 0.5 * bending_modulus * (1.0 / smaller - 1.0 / free);
     let bending = bending_rate * belt.thickness;
-    let tensile = tight * sum / (belt.width * belt.thickness);
+    let area = belt.width * belt.thickness;
+    let tensile = (tight * sum + centrifugal) / area;
     out.insert("tensile_stress_MPa", tensile);
     out.insert("bending_stress_MPa", bending);
     out.insert("max_stress_MPa", tensile + bending);
@@ -328,12 +311,13 @@ fn cvt(inputs: &BTreeMap<String, f64>, belt: &Belt) -> (&'static str, Values) {
     // The thickness at which bending takes half of the strength.
     let optimum = 0.5 * strength / bending_rate;
     out.insert("optimum_thickness_mm", optimum);
-    // Sum F1 + F2 when the tight side reaches the strength left over by bending.
-    let strongest = |thickness: f64| (strength - bending_rate * thickness).max(0.0) * belt.width * thickness / tight;
-    // C is by definition the transmitted force at the optimum thickness per radius.
-    let coefficient = traction * strongest(optimum) / smaller;
+    // Sum F1 + F2 when the tight side reaches what bending (and here the centrifugal force) leave of the strength.
+    let strongest =
+        |thickness: f64, centrifugal: f64| ((strength - bending_rate * thickness) * belt.width * thickness - centrifugal).max(0.0) / tight;
+    // C is by definition the transmitted force at the optimum thickness per radius, at rest.
+    let coefficient = traction * strongest(optimum, 0.0) / smaller;
     out.insert("torque_coefficient_N_per_mm", coefficient);
-    let capacity = strongest(belt.thickness);
+    let capacity = strongest(belt.thickness, centrifugal);
     out.insert("torque_capacity_Nm", driver * traction * capacity / 1000.0);
     out.insert("capacity_axial_force_N", larger * capacity);
 
@@ -348,16 +332,26 @@ fn cvt(inputs: &BTreeMap<String, f64>, belt: &Belt) -> (&'static str, Values) {
             let entry = 1.0 - rest * e_minus_1 / (2.0 * traction);
             out.insert("entry_compression", entry);
         }
+    } else {
+        // A wedge of the half angle a/2, pressed inwards by F1 dtheta on two flanks of the length r dtheta.
+        out.insert("flank_pressure_MPa", tight * sum / (2.0 * smaller * belt.thickness * (sin / cos)));
     }
 
-    let failures = [
-        (friction * sin / cos >= 1.0, "friction beyond the wedge", &WEDGE_FAILURE[..]),
-        (slip, "slip", &SLIP[..]),
-        (traction == 0.0 && torque > 0.0, "no traction", &NO_TRACTION[..]),
+    let unclamped: Vec<&str> =
+        SLIP.iter().filter(|name| **name != "belt_force_N").chain(&["traction_used", "slip_margin"]).copied().collect();
+    const SAFETY: [&str; 2] = ["clamping_safety", "clamping_utilisation"];
+    let failures: [(bool, &str, &[&str]); 7] = [
+        (wedged, "friction beyond the wedge", &WEDGE_FAILURE),
+        (slips_driven, "slip on the driven pulley", &SLIP),
+        (slips_driver, "slip on the driver", &SLIP),
+        (clamping.is_none() && traction == 0.0 && torque > 0.0, "no traction", &NO_TRACTION),
+        (!held, "", &unclamped),
+        (clamping.is_none() && (slips_driven || slips_driver), "", &SAFETY),
+        (torque == 0.0, "", &["clamping_safety"]),
     ];
     let mut status = "ok";
     for (_, reason, absent) in failures.into_iter().filter(|failure| failure.0) {
-        if status == "ok" {
+        if status == "ok" && !reason.is_empty() {
             status = reason;
         }
         out.retain(|name, _| !absent.contains(name));
@@ -372,11 +366,14 @@ fn pulley_load(inputs: &BTreeMap<String, f64>) -> (&'static str, Values) {
     let angular = get("speed_rpm") * 2.0 * PI / 60.0;
     let torque = 1e6 * get("power_kW") / angular; // N mm
     let pull = torque / radius;
-    let slack = get("slack_tension_N");
+    // Between fixed centres the belt is as long as at rest: what one strand gains in stretch and tension the other loses.
+    let is_fixed = get("tensioning") == 2.0;
+    let slack = if is_fixed { (2.0 * get("installed_tension_N") - pull) / 2.0 } else { get("slack_tension_N") };
     let speed = angular * radius / 1000.0;
     let centrifugal = get("belt_mass_kg_per_m") * speed * speed;
     let mut out = Values::from([
         ("belt_speed_m_per_s", speed),
+        ("slack_tension_used_N", slack),
         ("tight_tension_N", slack + pull),
         ("effective_tension_N", pull),
         ("centrifugal_tension_N", centrifugal),
@@ -384,7 +381,7 @@ fn pulley_load(inputs: &BTreeMap<String, f64>) -> (&'static str, Values) {
     ]);
     let contact = slack - centrifugal;
     if contact <= 0.0 {
-        return ("belt lifts", out);
+        return (if is_fixed { "slack belt" } else { "belt lifts" }, out);
     }
 
     // dT/da = mu' (T - Tc) with its variables separated: mu' theta is the integral of
@@ -432,6 +429,11 @@ fn pulley_load(inputs: &BTreeMap<String, f64>) -> (&'static str, Values) {
     let available = get("friction_limit");
     out.insert("friction_used", used);
     out.insert("friction_margin", (available - used) / available);
+    if used > available {
+        // The tensions are those that the power asks for; what a slipping belt does to the pulley is another matter.
+        out.retain(|name, _| !name.ends_with("_line_force_N_per_mm") && *name != "resultant_force_N");
+        return ("slip", out);
+    }
     out.insert("slack_end_flank_force_N_per_mm", slack_normal);
     out.insert("tight_end_flank_force_N_per_mm", flank(tight_line).0);
     ("ok", out)

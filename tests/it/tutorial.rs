@@ -205,6 +205,10 @@ fn check(page: &str, home: &Path) -> Result<Checked, String> {
     for part in &parts {
         match part {
             Part::File { name, content } => {
+                let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("studies").join(name);
+                if std::fs::read_to_string(shipped).is_ok_and(|shipped| shipped != *content) {
+                    return Err(format!("{name} is not as it is shipped in studies/"));
+                }
                 std::fs::write(folder.path().join(name), content).map_err(|error| error.to_string())?;
                 shown.extend(numbers(content, true));
                 checked.files += 1;
@@ -280,7 +284,7 @@ fn tutorials_say_what_the_program_prints() {
             assert!(checked.commands >= 10 && checked.files >= 2 && checked.numbers >= 20, "docs/{name}: {checked:?}");
         }
     }
-    assert_eq!(tutorials, 3);
+    assert_eq!(tutorials, 4);
 }
 
 /// The models that the tutorials are about.
@@ -368,6 +372,10 @@ fn a_page_that_is_not_true_is_rejected() {
         let outcome = check(&TRUE.replacen(from, to, 1), &docs());
         assert!(outcome.as_ref().is_err_and(|why| why.contains(message)), "{what}: {outcome:?}");
     }
+    let shipped = std::fs::read_to_string(docs().join("../studies/camshaft-torque.toml")).expect("it is shipped");
+    let study = |text: &str| format!("{TRUE}\n`camshaft-torque.toml`:\n\n```toml\n{text}```\n");
+    assert!(check(&study(&shipped), &docs()).is_ok());
+    assert!(check(&study(&shipped.replace("13[N m]", "14[N m]")), &docs()).is_err_and(|why| why.contains("is not as it is shipped")));
     let source = |line: &str| format!("{TRUE}\n`tests/it/tutorial.rs`:\n\n```rust\n...\n{line}\n```\n");
     assert!(check(&source("const ANYTHING: &str = \"...\";"), &docs()).is_ok());
     assert!(check(&source("const ANYTHING: &str = \"..,\";"), &docs()).is_err_and(|why| why.contains("does not have this")));

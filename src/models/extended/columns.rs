@@ -3,7 +3,7 @@
 use super::surroundings::{ConditionPlace, SlotNumbers, Surroundings};
 use crate::models::LANES;
 use crate::models::formula::{Columns, Scratch};
-use crate::tape::{CHUNK, ColumnValue, Known, List, Node, NodeColumns, Operation, Recording, Set, Trace};
+use crate::tape::{ColumnValue, Known, List, ListColumns, Node, Operation, Recording, Set, Trace};
 
 /// What formulas compute, as lists.
 #[derive(Debug)]
@@ -15,6 +15,9 @@ pub struct Lists {
     /// From inputs, outputs of the model, margins of its conditions and what the first stage passed on to what formulas give that is
     /// shown, and the margins of all conditions.
     pub after: List,
+    /// The two halves of it, for a single design of formulas alone.
+    pub outputs: List,
+    pub margins: List,
     base_outputs: usize,
     base_conditions: usize,
 }
@@ -38,8 +41,10 @@ impl Lists {
             around.after(&mut numbers, of_base, margins);
             around.own_outputs(&numbers).chain(around.margins(&numbers, margins)).collect()
         });
-        let after = List::cut(&recording, &nodes.into_iter().map(Some).collect::<Vec<_>>());
-        Self { before, first, after, base_outputs: outputs, base_conditions: conditions }
+        let cut = |nodes: &[Node]| List::cut(&recording, &nodes.iter().copied().map(Some).collect::<Vec<_>>());
+        let (of_outputs, of_margins) = nodes.split_at(around.shown.len());
+        let [after, outputs_alone, margins_alone] = [&nodes[..], of_outputs, of_margins].map(cut);
+        Self { before, first, after, outputs: outputs_alone, margins: margins_alone, base_outputs: outputs, base_conditions: conditions }
     }
 
     /// Where an output or condition of the extended model comes from.
@@ -90,67 +95,11 @@ enum AskedResult {
     Condition(usize),
 }
 
-/// A list over a block of designs: which operations are needed, and which have a number per design.
-#[derive(Debug)]
-struct Running {
-    numbers: NodeColumns,
-    needed: Vec<Node>,
-    each: Vec<bool>,
-}
-
-impl Running {
-    fn new(list: &List) -> Self {
-        Self { numbers: NodeColumns::new(list), needed: Vec::new(), each: Vec::new() }
-    }
-
-    /// Turns to these results, where these inputs of the list differ between designs.
-    fn turn_to(&mut self, list: &List, results: impl Iterator<Item = usize>, varying: impl Fn(u16) -> bool) {
-        let nodes: Vec<Node> = results.filter_map(|result| list.results[result]).collect();
-        self.needed = list.needed_by(&nodes);
-        self.each = list.dependencies(|input| Bits(varying(input))).into_iter().map(|it| it.0).collect();
-    }
-
-    /// Computes `count` designs, a chunk at a time; `input` gives the list's inputs, `take` is given every chunk.
-    fn run<'c>(&mut self, list: &List, count: usize, input: impl Fn(u16) -> ColumnValue<'c>, mut take: impl FnMut(&Self, usize, usize)) {
-        for first in (0..count).step_by(CHUNK) {
-            let length = CHUNK.min(count - first);
-            self.numbers.begin(length);
-            let Self { numbers, needed, each } = self;
-            for &node in &*needed {
-                match list.operations[node as usize] {
-                    Operation::Input(number) => match input(number) {
-                        ColumnValue::One(value) => numbers.slots[node as usize] = value,
-                        ColumnValue::Each(column) => numbers.fill(node, |to| to.copy_from_slice(&column[first..first + length])),
-                    },
-                    _ if each[node as usize] => numbers.compute(list, node, |node| each[node as usize]),
-                    _ => list.compute(node, &mut numbers.slots),
-                }
-            }
-            take(self, first, length);
-        }
-    }
-
-    fn result(&self, list: &List, result: usize) -> ColumnValue<'_> {
-        let node = list.results[result].expect("every result is asked for");
-        self.numbers.value(node, |node| self.each[node as usize])
-    }
-}
-
-/// One bit, to be joined over what a number depends on.
-#[derive(Clone, Copy, Default)]
-struct Bits(bool);
-
-impl std::ops::BitOrAssign for Bits {
-    fn bitor_assign(&mut self, other: Self) {
-        self.0 |= other.0;
-    }
-}
-
 /// Room for a thread.
 #[derive(Debug)]
 pub struct ExtendedColumns {
-    before: Running,
-    after: Running,
+    before: ListColumns,
+    after: ListColumns,
     of_base: Scratch,
     /// What the rest was laid out for: inputs that vary, outputs, conditions.
     laid_out: Option<(Vec<usize>, Vec<usize>, Vec<usize>)>,
@@ -166,8 +115,8 @@ impl ExtendedColumns {
     /// Room for a model with these formulas.
     pub fn new(around: &Surroundings, lists: &Lists) -> Self {
         Self {
-            before: Running::new(&lists.before),
-            after: Running::new(&lists.after),
+            before: ListColumns::new(&lists.before),
+            after: ListColumns::new(&lists.after),
             of_base: Scratch::new(around.base.inputs.len(), &*around.base.kernel),
             laid_out: None,
             base_inputs: vec![0.0; around.base.inputs.len()],
@@ -201,7 +150,7 @@ impl ExtendedColumns {
             None => outputs.insert(of_base),
             Some(condition) => conditions.insert(condition),
         };
-        for &node in &self.after.needed {
+        for &node in self.after.needed() {
             if let Operation::Input(input) = lists.after.operations[node as usize]
                 && let ListSource::Base(of_base) = lists.source(around, input)
             {
@@ -219,7 +168,7 @@ impl ExtendedColumns {
         let kept = varying.iter().map(|&input| around.inputs[input]).filter(|&slot| slot < around.base.inputs.len());
         let given = around.given.iter().enumerate().filter(|(result, _)| {
             let node = lists.before.results[*result].expect("every result is asked for");
-            self.before.each[node as usize]
+            self.before.differs(node)
         });
         self.varying = kept.chain(given.map(|(_, &slot)| slot)).map(|slot| (slot, Vec::new())).collect();
         self.laid_out = Some((varying, columns.outputs.to_vec(), columns.conditions.to_vec()));

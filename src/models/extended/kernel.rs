@@ -51,12 +51,12 @@ impl Extended {
         let [mut outputs, mut margins] = [outputs, conditions].map(|length| vec![R::constant(1.0); length]);
         let mut numbers = around.before_second(inputs, passed);
         let base_inputs = numbers.slots[..around.base.inputs.len()].to_vec();
-        let own = if wanted.margins { around.wanted_by_conditions() } else { Set::EMPTY };
+        let own = if wanted.margins { around.reads.by_conditions } else { Set::EMPTY };
         let of_base = around.wanted_of_base(wanted.outputs) | own;
         if !of_base.is_empty() {
             base.finish(&base_inputs, of_base, &mut outputs);
         }
-        if wanted.margins || around.asks_for_presence() {
+        if wanted.margins || around.reads.asks_for_presence {
             base.conditions(&base_inputs, &mut margins);
         }
         around.after(&mut numbers, &outputs, &margins);
@@ -74,9 +74,9 @@ impl Extended {
     fn results_in_f64(&self, prepared: &[f64], inputs: &[f64], wanted: WantedResults) -> (Vec<f64>, Vec<f64>) {
         let passed = self.around.passed_of(prepared);
         if self.around.is_alone() {
-            let mut outputs = self.lists().after.run(&[inputs, passed].concat());
-            let margins = outputs.split_off(self.around.shown.len());
-            return (outputs, margins);
+            let numbers = [inputs, passed].concat();
+            let Lists { outputs, margins, .. } = self.lists();
+            return if wanted.margins { (Vec::new(), margins.run(&numbers)) } else { (outputs.run(&numbers), Vec::new()) };
         }
         self.results(inputs, wanted, passed, &InF64 { kernel: &*self.around.base.kernel, prepared })
     }
@@ -101,7 +101,7 @@ impl Extended {
 
     /// What the first stage of the model is asked for.
     fn prepared_for(&self, wanted: Set) -> Set {
-        self.around.wanted_of_base(wanted) | self.around.wanted_by_conditions()
+        self.around.wanted_of_base(wanted) | self.around.reads.by_conditions
     }
 
     /// A set of inputs of the model as one of the extended model.

@@ -20,11 +20,11 @@ use crate::formula::{
 };
 use crate::units::Unit;
 use first::FirstStage;
-use interned::interned;
+pub use interned::interned;
 use kernel::Extended;
 pub use nothing::nothing;
 use std::sync::Arc;
-use surroundings::{ConditionPlace, Surroundings};
+use surroundings::{ConditionPlace, ReadOutputs, Surroundings};
 
 /// What is wrong with an extension.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,6 +63,7 @@ pub fn extended(base: &Arc<Model>, extension: Extension) -> Result<Model, Vec<Ex
         extension.file.as_deref().cloned().unwrap_or_else(|| FileSource { name: base.name.clone(), ..FileSource::default() });
     let words = |own: Option<String>, of_base: &String| own.unwrap_or_else(|| of_base.clone());
     let (remarks, notes, profile, pulley) = (base.remarks.clone(), base.notes.clone(), base.profile.clone(), base.pulley.clone());
+    let doubts = base.doubts.clone();
     let wrapped = |around: &Arc<Surroundings>| around.clone();
     let model = Model {
         name,
@@ -85,6 +86,11 @@ pub fn extended(base: &Arc<Model>, extension: Extension) -> Result<Model, Vec<Ex
             Arc::new(move |model: &Model, inputs: &[f64], evaluation: &Evaluation| {
                 notes(&around.base, &around.units_of_base(model, inputs), &around.evaluation_of_base(evaluation))
             }) as super::model::Notes
+        }),
+        doubts: doubts.map(|doubts| {
+            let around = wrapped(&around);
+            Arc::new(move |model: &Model, inputs: &[f64]| doubts(&around.base, &around.units_of_base(model, inputs)))
+                as super::model::Doubts
         }),
         profile: profile.map(|profile| {
             let around = wrapped(&around);
@@ -203,12 +209,14 @@ fn surroundings(base: &Arc<Model>, extension: &Extension, formulas: Formulas) ->
         ends,
         conditions: Vec::new(),
         first: FirstStage::none(&before),
+        reads: ReadOutputs::default(),
         before,
         given,
         base: base.clone(),
         formulas,
     };
     around.conditions = condition_places(&around, extension);
+    around.reads = ReadOutputs::of(&around);
     if around.is_alone() {
         let margins = extension.formulas.len()..around.formulas.all().len();
         let asked: Vec<usize> = around.shown.iter().copied().chain(margins).collect();

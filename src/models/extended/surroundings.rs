@@ -2,7 +2,7 @@
 
 use super::first::{FirstStage, PassedNumber};
 use crate::formula::Formulas;
-use crate::models::description::Condition;
+use crate::models::description::{Condition, Output};
 use crate::models::model::Model;
 use crate::real::Real;
 use crate::tape::Set;
@@ -76,6 +76,8 @@ pub struct Surroundings {
     pub conditions: Vec<ConditionPlace>,
     /// What is computed once for designs that have slow inputs in common.
     pub first: FirstStage,
+    /// What is read of the model.
+    pub reads: ReadOutputs,
 }
 
 /// The numbers of one design.
@@ -96,26 +98,11 @@ impl Surroundings {
         self.base.outputs.len()
     }
 
-    /// Slots that a formula depends on, through others too.
-    fn depends_on(&self, formula: usize) -> &[usize] {
-        &self.formulas.all()[formula].depends_on
-    }
-
-    /// The model's outputs that a formula needs.
-    fn outputs_of(&self, formula: usize) -> Set {
-        let last = self.first_output + self.base_outputs();
-        self.depends_on(formula)
-            .iter()
-            .filter(|&&slot| (self.first_output..last).contains(&slot))
-            .map(|slot| slot - self.first_output)
-            .collect()
-    }
-
     /// The model's outputs that these outputs need.
     pub fn wanted_of_base(&self, wanted: Set) -> Set {
         let base = self.base_outputs();
-        let own = self.shown.iter().enumerate().filter(|(at, _)| wanted.contains(base + at)).map(|(_, &formula)| self.outputs_of(formula));
-        own.fold(wanted & Set::between(0, base), |set, it| set | it)
+        let own = self.reads.by_shown.iter().enumerate().filter(|(at, _)| wanted.contains(base + at)).map(|(_, &set)| set);
+        own.fold(wanted & self.reads.all, |set, it| set | it)
     }
 
     /// The formula that a condition is about; `None` for those of the model and of ranges.
@@ -125,17 +112,6 @@ impl Surroundings {
             ConditionPlace::Margin(formula) | ConditionPlace::Absent(formula) => Some(formula),
             ConditionPlace::End(_) | ConditionPlace::Base(_) => None,
         }
-    }
-
-    /// The model's outputs that conditions of formulas need.
-    pub fn wanted_by_conditions(&self) -> Set {
-        let needing = self.conditions.iter().filter_map(|&condition| self.formula_of(condition));
-        needing.fold(Set::EMPTY, |set, formula| set | self.outputs_of(formula))
-    }
-
-    /// Do formulas ask whether outputs of the model have a value?
-    pub fn asks_for_presence(&self) -> bool {
-        self.formulas.all().iter().any(|formula| !formula.absent_with.is_empty())
     }
 
     /// The inputs of the extended model that an input of the model comes from.
@@ -192,11 +168,11 @@ impl Surroundings {
         numbers
     }
 
-    /// All numbers, given the outputs of the model, and the margins of its conditions if [`Surroundings::asks_for_presence`].
+    /// All numbers, given the outputs of the model, and the margins of its conditions if [`ReadOutputs::asks_for_presence`].
     pub fn after<R: Real>(&self, numbers: &mut SlotNumbers<R>, outputs: &[R], margins: &[R]) {
-        for (number, (output, &value)) in self.base.outputs.iter().zip(outputs).enumerate() {
+        for (number, (taking, &value)) in self.reads.taking.iter().zip(outputs).enumerate() {
             numbers.slots[self.first_output + number] = value;
-            numbers.present[self.first_output + number] = present(&self.base.conditions, &output.name, margins);
+            numbers.present[self.first_output + number] = present(&self.base.conditions, taking, margins);
         }
         for &formula in &self.after {
             self.formulas.evaluate(formula, &mut numbers.slots, &mut numbers.present, &mut numbers.needs);
@@ -226,12 +202,50 @@ impl Surroundings {
     }
 }
 
-/// At least zero where no condition takes an output away; `None` if none can.
-fn present<R: Real>(conditions: &[Condition], output: &str, margins: &[R]) -> Option<R> {
-    let taking = conditions.iter().zip(margins).filter(|(condition, _)| condition.invalidates.iter().any(|it| it == output));
-    let kept = taking.map(|(condition, &margin)| {
-        let [one, less] = [1.0, -1.0].map(R::constant);
-        if condition.strict { R::select(-margin, less, one) } else { margin }
+/// At least zero where none of these conditions takes an output away; `None` if none can.
+fn present<R: Real>(conditions: &[Condition], taking: &[usize], margins: &[R]) -> Option<R> {
+    let kept = taking.iter().map(|&number| {
+        let margin = margins[number];
+        if conditions[number].strict { R::select(-margin, R::constant(-1.0), R::constant(1.0)) } else { margin }
     });
     kept.reduce(R::min)
+}
+
+/// Which of the model's outputs are read, and by what: the names are looked up once, not for every design.
+#[derive(Clone, Debug, Default)]
+pub struct ReadOutputs {
+    /// All outputs of the model.
+    all: Set,
+    /// Of each formula that is shown: the outputs that it needs.
+    by_shown: Vec<Set>,
+    /// Those that conditions of formulas need.
+    pub by_conditions: Set,
+    /// Of each output: the conditions of the model that take it away; none of those that no formula reads.
+    taking: Vec<Vec<usize>>,
+    /// Do formulas ask whether outputs of the model have a value?
+    pub asks_for_presence: bool,
+}
+
+impl ReadOutputs {
+    /// Looks it up; of `around` all the rest must be known.
+    pub fn of(around: &Surroundings) -> Self {
+        let all = around.formulas.all();
+        let outputs = around.base_outputs();
+        let read_by = |formula: usize| -> Set {
+            all[formula].depends_on.iter().filter_map(|slot| slot.checked_sub(around.first_output)).filter(|&it| it < outputs).collect()
+        };
+        let conditions = &around.base.conditions;
+        let read: Set = (0..all.len()).map(read_by).collect();
+        let taking = |(output, it): (usize, &Output)| {
+            let takes = |number: &usize| read.contains(output) && conditions[*number].invalidates.contains(&it.name);
+            (0..conditions.len()).filter(takes).collect()
+        };
+        Self {
+            all: (0..outputs).collect(),
+            by_shown: around.shown.iter().map(|&formula| read_by(formula)).collect(),
+            by_conditions: around.conditions.iter().filter_map(|&condition| around.formula_of(condition)).map(read_by).collect(),
+            taking: around.base.outputs.iter().enumerate().map(taking).collect(),
+            asks_for_presence: all.iter().any(|formula| !formula.absent_with.is_empty()),
+        }
+    }
 }

@@ -83,14 +83,20 @@ impl Pressing<f64> {
 /// All that the second stage is told.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Loading<R> {
-    /// Margins of the belt's two conditions.
-    pub margins: [R; 2],
+    /// Margins of the belt's conditions.
+    pub margins: [R; pulley_load::CONDITIONS],
+    /// Torque on the pulley, N m.
+    pub torque: R,
     /// What the stresses come from.
     pub pressing: Pressing<R>,
     /// Elastic modulus, MPa.
     pub modulus: R,
     /// Yield strength, MPa.
     pub yield_strength: R,
+    /// Preload stress of a bolt over its proof strength.
+    pub bolt_utilisation: R,
+    /// Torque that friction under the bolts holds, N m.
+    pub held_torque: R,
     /// Endured amplitude and tensile strength, MPa.
     pub strength: [R; 2],
     /// Density, kg/m^3.
@@ -107,6 +113,7 @@ impl<R: Real<Shared = R>> Loading<R> {
         let (i, load, dimensions) = (Inputs::read(si), pulley_load::wrap_load(si), dimensions(si));
         let (sine, cosine) = (i.friction_direction.sin(), i.friction_direction.cos());
         let tensile = from_si(MEGAPASCAL, i.tensile_strength);
+        let force = clamp_force(&i);
         // The word is a number below zero.
         let endurance = R::select(i.endurance_limit, from_si(MEGAPASCAL, i.endurance_limit), R::constant(0.33) * tensile);
         let pressing = Pressing {
@@ -116,7 +123,7 @@ impl<R: Real<Shared = R>> Loading<R> {
             around: load.friction_used * cosine,
             growth: load.effective_friction,
             wrap: i.wrap_angle,
-            pressure: clamp_pressure(&dimensions, clamp_force(&i)),
+            pressure: clamp_pressure(&dimensions, force),
             bolt_angle: i.bolt_angle,
             // kg/m^3 is 1e-12 t/mm^3.
             spin: i.density * R::constant(1e-12) * i.speed * i.speed,
@@ -126,6 +133,9 @@ impl<R: Real<Shared = R>> Loading<R> {
             pressing,
             modulus: from_si(MEGAPASCAL, i.elastic_modulus),
             yield_strength: from_si(MEGAPASCAL, i.yield_strength),
+            torque: load.torque,
+            bolt_utilisation: force / stress_area(&i) / i.bolt_proof_strength,
+            held_torque: i.bolt_count * force * i.joint_friction * i.bolt_circle * R::constant(0.5),
             strength: [endurance, tensile],
             density: i.density,
             own_points: [[i.point_1_r, i.point_1_z], [i.point_2_r, i.point_2_z]].map(|point| {
@@ -227,6 +237,12 @@ pub(crate) fn dimensions<R: Real>(si: &[R]) -> Dimensions<R> {
         bolt_head_radius: radius(i.bolt_head),
         bolt_hole_radius: radius(i.bolt_hole),
     }
+}
+
+/// Stress area of a bolt's thread (ISO 898-1), from the mean of pitch and root diameter: `d_3 = d_2 - p/sqrt(3)`.
+fn stress_area<R: Real>(i: &Inputs<R>) -> R {
+    let diameter = i.bolt_pitch_diameter - i.bolt_pitch * R::constant(0.5 / 3f64.sqrt());
+    R::constant(std::f64::consts::FRAC_PI_4) * diameter * diameter
 }
 
 /// Force of one bolt, N: as given, or what its tightening torque makes of it,

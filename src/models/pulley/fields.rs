@@ -6,14 +6,14 @@ use crate::tape::Set;
 record! {
     /// Inputs in the order of the table, in SI units.
     pub(super) Inputs {
-        power, speed, slack_tension, wrap_angle, mean_radius, groove_angle, groove_count, belt_mass, friction_limit,
-        friction_direction,
+        power, speed, tensioning, slack_tension, installed_tension, wrap_angle, mean_radius, groove_angle, groove_count, belt_mass,
+        friction_limit, friction_direction,
         section, accuracy,
         thickness, bore_diameter, cup_diameter, wall_diameter, wall_offset, hub_bend_radius, web_bend_radius, fold_radius,
         ridge_width, weld_diameter, wall_thickness, rim_thickness, lip_thickness, fillet_radius, groove_offset,
         groove_width, groove_height, floor_depth, floor_bend_radius, rim_height, contact_height,
         bracket_diameter, bolt_count, bolt_circle, bolt_hole, bolt_head, bolt_angle,
-        clamp_force, tightening_torque, bolt_friction, bolt_pitch, bolt_pitch_diameter,
+        clamp_force, tightening_torque, bolt_friction, bolt_pitch, bolt_pitch_diameter, bolt_proof_strength, joint_friction,
         elastic_modulus, poisson_ratio, density, yield_strength, tensile_strength, endurance_limit,
         point_1_r, point_1_z, point_2_r, point_2_z,
     }
@@ -22,11 +22,13 @@ record! {
 record! {
     /// Outputs in the order of the table.
     pub(super) Result {
-        belt_speed, tight_tension, effective_tension, centrifugal_tension, effective_friction, friction_used, friction_margin,
-        torque, resultant_force, slack_end_line_force, tight_end_line_force, slack_end_flank_force, tight_end_flank_force,
+        belt_speed, slack_tension, tight_tension, effective_tension, centrifugal_tension, effective_friction, friction_used,
+        friction_margin, torque, resultant_force, slack_end_line_force, tight_end_line_force, slack_end_flank_force,
+        tight_end_flank_force,
         max_stress, max_stress_r, max_stress_z, max_stress_theta,
         bl, br, cl, cr, dl, dr, el, er, fl, fr, own_1, own_2,
-        rim_displacement, volume, mass, yield_safety, fatigue_safety, fatigue_amplitude, fatigue_mean, excluded_radius, clamp_pressure,
+        rim_displacement, volume, mass, yield_safety, fatigue_safety, fatigue_amplitude, fatigue_mean, excluded_radius,
+        seat_pressure, bolt_utilisation, joint_slip_safety,
     }
 }
 

@@ -37,14 +37,15 @@ pub(super) struct Pulley;
 /// there, and the volume in mm^3.
 const HEAD: usize = 4;
 
-/// Conditions by number.
-const NO_SECTION: usize = 2;
-const BAND: usize = 3;
-const SEAT: usize = 4;
-const BOTH_SIDES: usize = 5;
-const WITH_F: usize = 6;
-const OWN: [usize; 2] = [7, 8];
-const CONDITIONS: usize = 9;
+/// Conditions by number, after those of the belt.
+const NO_SECTION: usize = pulley_load::CONDITIONS;
+const BAND: usize = NO_SECTION + 1;
+const SEAT: usize = NO_SECTION + 2;
+const BOTH_SIDES: usize = NO_SECTION + 3;
+const WITH_F: usize = NO_SECTION + 4;
+const OWN: [usize; 2] = [NO_SECTION + 5, NO_SECTION + 6];
+const LOADED: usize = NO_SECTION + 7;
+const CONDITIONS: usize = NO_SECTION + 8;
 
 /// The condition that a flaw fails.
 fn condition_of(flaw: &Flaw) -> usize {
@@ -89,11 +90,11 @@ fn solve(body: &Body<f64>, wanted: Set, prepared: &mut [f64]) {
 }
 
 /// Margins of all conditions; `flaw` is that of a condition that a flaw of the section fails.
-fn margins<R: Real>(belt: [R; 2], inputs: &[R], flaw: impl Fn(usize) -> R) -> [R; CONDITIONS] {
+fn margins<R: Real>(belt: [R; pulley_load::CONDITIONS], torque: R, inputs: &[R], flaw: impl Fn(usize) -> R) -> [R; CONDITIONS] {
     let [yes, no] = [1.0, -1.0].map(R::constant);
     let i = Inputs::read(inputs);
     let mut margins = [yes; CONDITIONS];
-    margins[..2].copy_from_slice(&belt);
+    margins[..belt.len()].copy_from_slice(&belt);
     for condition in [NO_SECTION, BAND, SEAT] {
         margins[condition] = flaw(condition);
     }
@@ -104,6 +105,7 @@ fn margins<R: Real>(belt: [R; 2], inputs: &[R], flaw: impl Fn(usize) -> R) -> [R
     // The word that stands for no point is a number below zero.
     margins[OWN[0]] = R::select(i.point_1_r, yes, no);
     margins[OWN[1]] = R::select(i.point_2_r, yes, no);
+    margins[LOADED] = torque;
     margins
 }
 
@@ -135,7 +137,8 @@ impl Kernel for Pulley {
 
     fn conditions(&self, prepared: &[f64], inputs: &[f64], room: &mut [f64]) {
         let flaw = |condition| if prepared[0] as usize == condition { prepared[1] } else { 1.0 };
-        room.copy_from_slice(&margins(pulley_load::wrap_load(inputs).margins, inputs, flaw));
+        let load = pulley_load::wrap_load(inputs);
+        room.copy_from_slice(&margins(load.margins, load.torque, inputs, flaw));
     }
 
     fn finish(&self, prepared: &[f64], inputs: &[f64], wanted: Set, outputs: &mut [f64]) {
@@ -188,9 +191,10 @@ fn dependencies_of(inputs: &[Known], kind: SectionKind) -> Dependencies {
         let mut outputs = [Trace::constant(0.0); Result::<usize>::NAMES.len()];
         pulley_load::finish_all(inputs, &mut outputs);
         let mut out = Result::read(&outputs);
+        write_bolts(&mut out, &loading);
         write(&mut out, &Answered::depending(unknown, body, &loading), &loading);
         out.write(&mut outputs);
-        let margins = margins(loading.margins, inputs, |_| body);
+        let margins = margins(loading.margins, loading.torque, inputs, |_| body);
         [body].into_iter().chain(outputs).chain(margins).collect()
     });
     let list = List::cut(&recording, &nodes.into_iter().map(Some).collect::<Vec<_>>());
@@ -200,8 +204,8 @@ fn dependencies_of(inputs: &[Known], kind: SectionKind) -> Dependencies {
     let prepared = of.next().expect("there is a node for every result");
     let outputs = of.by_ref().take(Result::<usize>::NAMES.len()).collect();
     let mut all = Dependencies { prepared, outputs, conditions: of.collect() };
-    // A section that cannot be leaves all but the belt's outputs empty.
-    all.outputs[OUT.max_stress..].iter_mut().for_each(|set| *set |= prepared);
+    // A section that cannot be leaves all but the outputs of belt and bolts empty.
+    all.outputs[OUT.max_stress..OUT.seat_pressure].iter_mut().for_each(|set| *set |= prepared);
     all
 }
 
@@ -229,7 +233,12 @@ impl Pulley {
         outputs.fill(0.0);
         pulley_load::finish_all(inputs, outputs);
         let loading = Loading::new(inputs, design::kind(inputs));
-        if loading.margins.iter().any(|margin| *margin <= 0.0) || prepared[0] != 0.0 {
+        let mut out = Result::read(outputs);
+        write_bolts(&mut out, &loading);
+        out.write(outputs);
+        let balanced = loading.margins[..pulley_load::SLIP].iter().all(|margin| *margin > 0.0);
+        // What slips is solved as if it gripped: designs that differ in friction_limit only share their stresses.
+        if !balanced || prepared[0] != 0.0 {
             return;
         }
         let mut answered = Answered { volume: prepared[3], ..Answered::default() };
@@ -250,7 +259,6 @@ impl Pulley {
             *last = Some((case, asked, summary));
             answered = Answered::new(prepared[3], &summary, &view);
         }
-        let mut out = Result::read(outputs);
         write(&mut out, &answered, &loading);
         out.write(outputs);
     }
@@ -322,13 +330,19 @@ impl Answered<Trace> {
     }
 }
 
-/// Everything that the pulley adds to the outputs of its belt.
+/// What the bolts bear and hold, whatever section they are on.
+fn write_bolts<R: Real>(out: &mut Result<R>, loading: &Loading<R>) {
+    out.seat_pressure = design::to_si(MEGAPASCAL, loading.pressing.pressure);
+    out.bolt_utilisation = loading.bolt_utilisation;
+    out.joint_slip_safety = loading.held_torque / loading.torque;
+}
+
+/// What section and belt load give together.
 fn write<R: Real>(out: &mut Result<R>, answered: &Answered<R>, loading: &Loading<R>) {
     let (stress, length) = (|value| design::to_si(MEGAPASCAL, value), |value| design::to_si(MILLIMETRE, value));
     out.volume = design::to_si(CUBIC_MILLIMETRE, answered.volume);
     out.mass = out.volume * loading.density;
     out.excluded_radius = length(loading.excluded_radius);
-    out.clamp_pressure = stress(loading.pressing.pressure);
     out.max_stress = stress(answered.stress);
     [out.max_stress_r, out.max_stress_z] = answered.place.map(length);
     out.max_stress_theta = answered.theta;

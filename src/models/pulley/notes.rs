@@ -3,7 +3,7 @@
 use super::super::evaluation::to_si;
 use super::super::model::Model;
 use super::super::status::{Evaluation, Status};
-use super::fields::OUT;
+use super::fields::{Inputs, OUT};
 use super::{Design, design};
 use crate::pulley::section::{self, Dimensions, SectionKind};
 
@@ -14,17 +14,17 @@ pub(super) fn notes(model: &Model, inputs: &[f64], evaluation: &Evaluation) -> V
     if let Err(flaw) = section::checked_outline(kind, &dimensions) {
         return vec![flaw.to_string()];
     }
+    let mut notes = bolts(model, inputs, evaluation);
     if evaluation.status != Status::Ok {
-        return Vec::new();
+        return notes;
     }
-    let mut notes = Vec::new();
     notes.extend(place(model, &Design::new(&si), evaluation));
     notes.extend(tight_bends(kind, &dimensions));
     let overhang = dimensions.bolt_circle_radius + dimensions.bolt_head_radius - dimensions.bracket_radius;
     if overhang > 0.0 {
         notes.push(format!("the bolt heads overhang the bracket by {} mm: the hub bends there", rounded(overhang)));
     }
-    let gamma = si[super::fields::Inputs::NUMBER.friction_direction].to_degrees();
+    let gamma = si[Inputs::NUMBER.friction_direction].to_degrees();
     if gamma > 0.0 {
         notes.push(format!(
             "friction at {} degrees from the circumference: at 0, which is customary for V-belts, the stress is higher",
@@ -36,6 +36,33 @@ pub(super) fn notes(model: &Model, inputs: &[f64], evaluation: &Evaluation) -> V
 
 fn rounded(value: f64) -> f64 {
     (value * 1000.0).round() / 1000.0
+}
+
+/// Bolts that are tightened beyond what they or the sheet under their heads bear.
+fn bolts(model: &Model, inputs: &[f64], evaluation: &Evaluation) -> Vec<String> {
+    let value = |output: usize| evaluation.outputs[output].unwrap_or(0.0);
+    let [proof, yielding] =
+        [Inputs::NUMBER.bolt_proof_strength, Inputs::NUMBER.yield_strength].map(|input| (&model.inputs[input].name, inputs[input]));
+    let mut notes = Vec::new();
+    let (pressure, utilisation) = (value(OUT.seat_pressure), value(OUT.bolt_utilisation));
+    if pressure > yielding.1 {
+        notes.push(format!(
+            "the bolt heads press with {} MPa, more than {} {}: the sheet gives way under them; use a larger bolt_head_mm (washers) or a \
+             smaller force",
+            rounded(pressure.round()),
+            yielding.0,
+            yielding.1
+        ));
+    }
+    if utilisation > 1.0 {
+        notes.push(format!(
+            "the bolts are tightened to {} MPa, more than {} {}: they stretch for good; use stronger or thicker bolts or a smaller force",
+            rounded((utilisation * proof.1).round()),
+            proof.0,
+            proof.1
+        ));
+    }
+    notes
 }
 
 /// Where the largest stress stands.

@@ -5,7 +5,7 @@ use super::super::evaluation::to_si;
 use super::super::model::Model;
 use super::super::pulley_load;
 use super::fields::{ANGLE_WORST, FINE, FROM_TENSILE, POINT_NONE, TORQUE};
-use super::{Design, Pulley, notes, profile, read_by};
+use super::{CHECK_POINT_STRESSES, Design, Pulley, notes, profile, read_by};
 use crate::pulley::section::SectionKind;
 use crate::units::{CUBIC_MILLIMETRE, DEGREE, GRAM, KILOGRAM_PER_CUBIC_METRE, MEGAPASCAL, MILLIMETRE, NEWTON, NEWTON_METRE, NONE};
 use std::sync::Arc;
@@ -190,6 +190,23 @@ fn inputs(belt: Vec<Input>) -> Vec<Input> {
         Input::new("bolt_friction", "mu_s, mu_w", NONE, 0.15, (0.08, 0.25), "Friction in the thread and under the head.", CUSTOM),
         length("bolt_pitch_mm", "p", 1.0, (0.5, 3.0), "Pitch of the thread.", "paper, M6x1"),
         length("bolt_pitch_diameter_mm", "d_2", 5.35, (2.5, 25.0), "Pitch diameter of the thread.", "ISO 724, M6"),
+        strength(
+            "bolt_proof_strength_MPa",
+            "S_p",
+            580.0,
+            (225.0, 970.0),
+            "Proof strength of the bolts: up to this stress no length is lost.",
+            "ISO 898-1, class 8.8 up to M16",
+        ),
+        Input::new(
+            "joint_friction",
+            "mu_j",
+            NONE,
+            0.15,
+            (0.08, 0.25),
+            "Friction between hub and bracket, which carries the torque.",
+            "customary: dry, machined steel",
+        ),
         strength("elastic_modulus_MPa", "E", 206_000.0, (60_000.0, 220_000.0), "Elastic modulus.", "steel"),
         Input {
             valid: Range { low: 0.0, high: 0.5, includes_low: true, includes_high: false },
@@ -221,7 +238,7 @@ fn inputs(belt: Vec<Input>) -> Vec<Input> {
     for (number, input) in inputs.iter_mut().enumerate() {
         let readers: Vec<_> = SectionKind::ALL.into_iter().filter(|&kind| read_by(kind).contains(number)).map(SectionKind::name).collect();
         if (1..SectionKind::ALL.len()).contains(&readers.len()) {
-            *input = input.clone().read_only_for(&readers);
+            *input = input.clone().read_only_for("section", &readers);
         }
     }
     inputs
@@ -289,60 +306,72 @@ fn outputs(belt: Vec<Output>) -> Vec<Output> {
             "edges of bracket and bolt heads",
             "Stress inside this radius does not count as the largest: beside the edges of bracket and bolt heads it has no limit.",
         ),
-        Output::new("clamp_pressure_MPa", "p", MEGAPASCAL, Higher, "F/(pi/4 (D_o^2 - D_i^2))", "Pressure under the bolt heads."),
+        Output::new(
+            "seat_pressure_MPa",
+            "p",
+            MEGAPASCAL,
+            Higher,
+            "F/(pi/4 (D_o^2 - D_i^2))",
+            "Pressure under the bolt heads: it presses on the section, and should stay below the yield strength of the sheet.",
+        ),
+        Output::new(
+            "bolt_utilisation",
+            "",
+            NONE,
+            Higher,
+            "F/(A_s S_p), A_s of ISO 898-1",
+            "Stress of a bolt from its clamp force, over its proof strength; the belt's pull is not in it.",
+        ),
+        Output::new(
+            "joint_slip_safety",
+            "",
+            NONE,
+            Lower,
+            "n_b F mu_j PCD/(2 torque)",
+            "Torque that friction between hub and bracket holds, over the torque; absent without torque.",
+        ),
     ];
     [belt, own].concat()
 }
 
-macro_rules! stresses_and {
-    ($($more:literal),*) => {
-        &[
-            "max_stress_MPa", "max_stress_r_mm", "max_stress_z_mm", "max_stress_theta_deg", "stress_Bl_MPa", "stress_Br_MPa",
-            "stress_Cl_MPa", "stress_Cr_MPa", "stress_Dl_MPa", "stress_Dr_MPa", "stress_El_MPa", "stress_Er_MPa", "stress_Fl_MPa",
-            "stress_Fr_MPa", "stress_P1_MPa", "stress_P2_MPa", "rim_displacement_mm", "yield_safety", "fatigue_safety",
-            "fatigue_amplitude_MPa", "fatigue_mean_MPa", "volume_mm3", "mass_g", "excluded_radius_mm", "clamp_pressure_MPa", $($more),*
-        ]
-    };
-}
+/// What the belt's pressure gives besides the stresses at the check points.
+const OF_THE_PRESSURE: [&str; 11] = [
+    "max_stress_MPa",
+    "max_stress_r_mm",
+    "max_stress_z_mm",
+    "max_stress_theta_deg",
+    "stress_P1_MPa",
+    "stress_P2_MPa",
+    "rim_displacement_mm",
+    "yield_safety",
+    "fatigue_safety",
+    "fatigue_amplitude_MPa",
+    "fatigue_mean_MPa",
+];
+
+/// What section and bolts give besides.
+const OF_THE_SECTION: [&str; 6] =
+    ["volume_mm3", "mass_g", "excluded_radius_mm", "seat_pressure_MPa", "bolt_utilisation", "joint_slip_safety"];
 
 fn without(reason: &str, invalidates: &[&str], doc: &str) -> Condition {
     Condition::new(reason, false, invalidates, doc).quiet()
 }
 
 fn conditions() -> Vec<Condition> {
-    vec![
-        Condition::new(
-            "belt lifts",
-            true,
-            stresses_and!(
-                "effective_friction",
-                "friction_used",
-                "friction_margin",
-                "resultant_force_N",
-                "slack_end_line_force_N_per_mm",
-                "tight_end_line_force_N_per_mm",
-                "slack_end_flank_force_N_per_mm",
-                "tight_end_flank_force_N_per_mm"
-            ),
-            "The slack tension exceeds the centrifugal tension; otherwise the belt lifts off.",
-        ),
-        Condition::new(
-            "no friction balances the load",
-            true,
-            stresses_and!("friction_used", "friction_margin", "slack_end_flank_force_N_per_mm", "tight_end_flank_force_N_per_mm"),
-            "Friction in this direction can carry the load: cos(gamma) > mu' sin(gamma) cos(beta/2).",
-        ),
+    let stresses = [&CHECK_POINT_STRESSES[..], &OF_THE_PRESSURE].concat();
+    let all = [&stresses[..], &OF_THE_SECTION].concat();
+    let own = [
         Condition::new(
             "no section",
             false,
-            stresses_and!(),
+            &all,
             "The dimensions make a section: every bend has an inside radius, bends do not overlap, the outline does not cross itself, and the type has this number of grooves.",
         ),
-        Condition::new("contact band off the flank", false, stresses_and!(), "The belt touches the straight part of the flanks only."),
+        Condition::new("contact band off the flank", false, &all, "The belt touches the straight part of the flanks only."),
         Condition::new(
             "no seat for bolts and bracket",
             false,
-            stresses_and!(),
+            &all,
             "Bolt heads and bracket are on the flat hub, heads do not touch each other, holes are inside the bracket and heads outside the bore.",
         ),
         without(
@@ -353,7 +382,9 @@ fn conditions() -> Vec<Condition> {
         without("no bend F", &["stress_Fl_MPa", "stress_Fr_MPa"], "Welded discs have no groove floor."),
         without("no point P1", &["stress_P1_MPa"], "point_1_r_mm is given."),
         without("no point P2", &["stress_P2_MPa"], "point_2_r_mm is given."),
-    ]
+        Condition::new("no torque", true, &["joint_slip_safety"], "There is torque that the joint could slip under.").quiet(),
+    ];
+    pulley_load::conditions(&all, &stresses).into_iter().chain(own).collect()
 }
 
 const SMALL_GROOVE: [(&str, f64); 3] = [("mean_radius_mm", 55.5), ("groove_width_mm", 12.7), ("groove_height_mm", 4.5)];
@@ -368,7 +399,8 @@ pub fn model() -> Model {
         source: "K.-S. Lee et al.: design and analysis system for V-belt pulleys; finite elements in harmonics around the axis".into(),
         limits: "Linear and elastic, axisymmetric but for its loads: no lightening holes, no bolt holes outside the bracket, no residual \
              stress or thinning from forming, no contact between welded discs. The back of the hub is fixed inside the bracket. \
-             Stress at the edges of bracket and bolt heads has no limit and is left out."
+             Stress at the edges of bracket and bolt heads has no limit and is left out. Of the bolts only preload, seat pressure and the \
+             joint's friction are looked at."
             .into(),
         inputs: inputs(load.inputs),
         outputs: outputs(load.outputs),
@@ -419,6 +451,8 @@ pub fn model() -> Model {
                 ],
             ),
             Preset::new(CUP, &[]),
+            // The example of the paper: the pressed cup, with the paper's friction.
+            Preset::new("paper", &[pulley_load::PAPERS_FRICTION]),
         ],
         starter: include_str!("../../../studies/pulley-thickness.toml").into(),
         kernel: Arc::new(Pulley),
@@ -429,6 +463,7 @@ pub fn model() -> Model {
         profile: Some(Arc::new(profile::profile)),
         notes: Some(Arc::new(notes::notes)),
         remarks: None,
+        doubts: None,
         pulley: Some(Arc::new(|model, inputs| Design::new(&to_si(model, inputs)))),
         origin: None,
     }

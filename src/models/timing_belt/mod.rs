@@ -11,10 +11,14 @@
 //! operations a tooth for what presses it inwards, and as many for the comparison with the centrifugal force. With T_s = 0
 //! everything is linear in T_t, so the boundary depends on `m r omega^2 / T_t` alone.
 //!
+//! The torque is `(T_t - T_s) (r + a)`, a being the distance of the pitch line from the tips: spans pull where the cords are.
+//!
 //! The boundary tooth is calibrated, not predicted: the paper compares the centrifugal force with "the sum of the radial inward
 //! forces" without printing it. Taken here is the free body of a whole pitch without land reaction,
 //! `inward = (T_in + T) sin(phi + beta) + Q (mu cos alpha - sin alpha)`, and m is chosen so that the paper's case (driven pulley,
-//! 5000 rpm, 196 N) has its first lifted tooth at the printed 16. `(T_in + T) sin phi` in its place would give 12.
+//! 5000 rpm, 196 N) has its first lifted tooth at the printed 16. `(T_in + T) sin phi` in its place would give 12. An ordinary car belt of
+//! twice that mass (preset `car-belt`) has its first lifted tooth at 7 there. With that belt the printed 16 comes out without calibration
+//! if the printed speed is the engine's, so that the driven pulley turns at 2500 rpm, and the balance has `(T_in + T) sin phi`.
 //!
 //! # Repairs of the printed equations
 //! - (5), (7), (13): printed `1/AE` is `l/AE`. (8): line i has `T(i-1)'`. (14): line M has `T(M-1)`.
@@ -27,9 +31,11 @@
 use super::formula::{Columns, Formula, record};
 use crate::real::{Lanes, Loop, Place, Real};
 use crate::tape::{Fields, Set};
+use std::f64::consts::PI;
 
 mod block;
 mod mesh;
+mod notes;
 mod profile;
 mod table;
 
@@ -42,26 +48,30 @@ const BOUNDARIES: usize = TEETH + 1;
 
 /// The number that stands for lift angle "space": lifted teeth turn by the whole tooth space.
 const SPACE: f64 = -1.0;
+/// The number that stands for pitch mass "from-belt": what a pitch of the belt weighs by (20).
+const FROM_BELT: f64 = -1.0;
 
 record! {
     /// Inputs in the order of the table, in SI units.
     pub(super) Inputs {
         pulley_speed, tight_tension, slack_tension, teeth_in_mesh, friction, tooth_compliance, cord_modulus, cord_area, tip_radius,
         land_half_angle, space_half_angle, tooth_length, pressure_angle, tight_span_angle, slack_span_angle, pitch_mass, lift_angle,
-        pitch, centrifugal_land_friction,
+        pitch, centrifugal_land_friction, pitch_line, belt_width, tooth_area, land_area, gross_cord_area, rubber_density, cord_density,
     }
 }
 
 record! {
     /// What depends on the belt and its pulley alone, besides the tables below.
-    pub(super) Prepared { teeth, mass_radius, peak_complete_tight, peak_complete_slack, lift_margin }
+    pub(super) Prepared {
+        teeth, mass_radius, peak_complete_tight, peak_complete_slack, lift_margin, wrap_margin, pitch_radius, pitch_mass,
+    }
 }
 
 record! {
     /// Outputs in the order of the table.
     pub(super) Result {
         centrifugal_force, boundary_tooth, boundary_position, incomplete_teeth, lift_speed, boundary_tension, peak_tooth_load,
-        peak_tooth_load_complete, least_tooth_load, effective_tension,
+        peak_tooth_load_complete, least_tooth_load, effective_tension, torque, pitch_mass_used,
     }
 }
 
@@ -99,7 +109,7 @@ const TOOTH: Set = Set::of(&[OUT.boundary_tooth, OUT.boundary_position, OUT.inco
 const LIFT: Set = Set::of(&[OUT.lift_speed]);
 const INCOMPLETE: Set = Set::of(&[OUT.boundary_tension, OUT.peak_tooth_load, OUT.least_tooth_load]);
 /// Number of the condition that a tooth lifts.
-const LIFTS: usize = 2;
+const LIFTS: usize = 3;
 
 pub(super) struct TimingBelt;
 
@@ -128,13 +138,18 @@ impl Formula for TimingBelt {
             }),
         };
         let first = mesh::back(&rows, &elimination, &mut found);
+        let mass = pitch_mass(&i).named("mass", "(20)");
+        let half_pitch = i.land_half_angle + i.space_half_angle;
         Prepared {
             teeth: i.teeth_in_mesh,
-            mass_radius: i.pitch_mass * i.tip_radius,
+            mass_radius: mass * i.tip_radius,
             // Loads fall towards the slack side: the first tooth's is the largest.
             peak_complete_tight: first.tight,
             peak_complete_slack: first.slack,
             lift_margin: R::select(i.lift_angle, i.space_half_angle - i.lift_angle, R::constant(1.0)),
+            wrap_margin: R::constant(PI) - i.teeth_in_mesh * half_pitch,
+            pitch_radius: i.tip_radius + i.pitch_line,
+            pitch_mass: mass,
         }
         .write(numbers);
     }
@@ -145,6 +160,7 @@ impl Formula for TimingBelt {
         let i = Inputs::read(inputs);
         margins[0] = i.tight_tension - i.slack_tension;
         margins[1] = p.lift_margin;
+        margins[2] = p.wrap_margin;
         if wanted.contains(LIFTS) {
             margins[LIFTS] = p.mass_radius * i.pulley_speed.squared() - least_inward(&p, &i, prepared);
         }
@@ -163,7 +179,10 @@ impl Formula for TimingBelt {
         let i = Inputs::read(inputs);
         let force = p.mass_radius * i.pulley_speed.squared(); // m r omega^2
         out[OUT.centrifugal_force] = force;
-        out[OUT.effective_tension] = i.tight_tension - i.slack_tension;
+        let effective = i.tight_tension - i.slack_tension;
+        out[OUT.effective_tension] = effective;
+        out[OUT.torque] = effective * p.pitch_radius;
+        out[OUT.pitch_mass_used] = p.pitch_mass;
         if wanted.contains(OUT.peak_tooth_load_complete) {
             out[OUT.peak_tooth_load_complete] = i.tight_tension * p.peak_complete_tight + i.slack_tension * p.peak_complete_slack;
         }
@@ -278,9 +297,16 @@ fn least_inward<R: Real>(p: &Prepared<R>, i: &Inputs<R>, prepared: &[R::Shared])
     least
 }
 
+/// m of (20) where the word asks for it: the rubber of the tooth and of the belt's back, and the cords.
+fn pitch_mass<R: Real>(i: &Inputs<R>) -> R {
+    let rubber = i.rubber_density * ((i.tooth_area + i.land_area) * i.belt_width);
+    let cords = i.cord_density * (i.gross_cord_area * i.pitch);
+    R::select(i.pitch_mass, i.pitch_mass, rubber + cords)
+}
+
 /// T_c = (m/p) (r omega)^2: the tension that only bends the moving belt around.
 fn centrifugal_tension<R: Real>(i: &Inputs<R>) -> R {
-    i.pitch_mass / i.pitch * (i.tip_radius * i.pulley_speed).squared()
+    pitch_mass(i) / i.pitch * (i.tip_radius * i.pulley_speed).squared()
 }
 
 /// The incomplete mesh with the option, for which no table serves: every pair is solved for itself.

@@ -63,7 +63,8 @@ fn figure_9() -> Figure {
         id: "cvt-fig-9",
         title: "Fig. 9: axial force of the metal V-belt variator at R = 1, theory",
         caption: "(15) and (16) at R = 1 for the paper's three coefficients of friction, each up to its slip limit. The measured points are lost \
-                  in the scan; they followed μ = 0.11 and ended at the marked traction, which is the slip limit of μ = 0.08.",
+                  in the scan; they followed μ = 0.11 and ended at the marked traction, where the belt slipped; with that friction the theory lets it \
+                  run on to 0.72.",
         force: "axial force per sum of belt forces S/(2T − P₂)",
         parameter: ("friction", "Coefficient of friction."),
         belts: &belts,

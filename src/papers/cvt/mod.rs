@@ -80,6 +80,25 @@ fn driver_force(belt: &Inputs, tight_force: f64, wrap: f64) -> f64 {
     tight_force / 2.0 * wrap * wedge_factor(belt.input("friction"), libm::sin(half), libm::cos(half))
 }
 
+/// Traction at which a belt slips on its driven pulley, (12): the paper's limit at every ratio, whatever the driver does.
+fn driven_limit(belt: &Inputs) -> f64 {
+    belt.output("driven_traction_limit")
+}
+
+/// Coefficient of friction with which a belt slips at this traction: (12) the other way round, by halving.
+fn friction_at_slip(belt: &Inputs, traction: f64) -> f64 {
+    let (mut low, mut high) = (1e-3, 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if driven_limit(&belt.with(&[("friction", middle)])) < traction {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    0.5 * (low + high)
+}
+
 /// The two axial forces per sum of belt forces over the traction, up to gross slip.
 struct PaperCurve {
     traction: Vec<f64>,
@@ -88,16 +107,23 @@ struct PaperCurve {
 }
 
 impl PaperCurve {
+    /// (4), (5) = (15), (16) up to the slip of the driven pulley, the only one that the paper looks at: at R = 2 the driver slips before, and the
+    /// model has no force there.
     fn of(belt: &Inputs) -> Self {
-        let limit = belt.output("traction_limit");
+        let outputs = belt.outputs();
+        let [driver_wrap, driven_wrap] = ["driver_wrap_deg", "driven_wrap_deg"].map(|name| outputs.get(name).to_radians());
+        let half = belt.input("groove_angle_deg").to_radians() / 2.0;
+        let (friction, cosine) = (belt.input("friction"), libm::cos(half));
+        let wedge = wedge_factor(friction, libm::sin(half), cosine);
+        let effective = outputs.get("effective_friction");
+        let limit = driven_limit(belt);
         let inside = (0..100).map(|step| f64::from(step) / 100.0).filter(|traction| *traction < limit);
-        let designs = inside.map(|traction| (traction, belt.with(&[("traction", traction)])));
         let mut curve = Self { traction: Vec::new(), driver: Vec::new(), driven: Vec::new() };
-        for (traction, design) in designs.chain([(limit, belt.with_word("traction", "limit"))]) {
-            let outputs = design.outputs();
+        for traction in inside.chain([limit]) {
+            let active_arc = (libm::log1p(2.0 * traction / (1.0 - traction)) / effective).min(driven_wrap);
             curve.traction.push(traction);
-            curve.driver.push(outputs.get("driver_axial_coefficient"));
-            curve.driven.push(outputs.get("driven_axial_coefficient"));
+            curve.driver.push((1.0 + traction) / 4.0 * driver_wrap * wedge);
+            curve.driven.push((1.0 - traction) / 4.0 * (driven_wrap - active_arc) * wedge + traction / (2.0 * friction) * cosine);
         }
         curve
     }
@@ -116,5 +142,34 @@ impl PaperCurve {
         let line = |traction: f64| self.driver[0] + rise * (traction - self.traction[0]) / (self.traction[last] - self.traction[0]);
         let distances = self.traction.iter().zip(&self.driver).map(|(traction, force)| ((force - line(*traction)) / rise).abs());
         distances.fold(0.0, f64::max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_paper_s_equations_are_the_model_where_it_has_an_answer() {
+        for (belt, ratio) in [(rubber(), 1.0), (rubber(), 2.0), (metal(), 1.0), (metal(), 2.0), (metal(), 0.5)] {
+            let belt = belt.with(&[("ratio", ratio)]);
+            let curve = PaperCurve::of(&belt);
+            for at in [0, 10, 30, 50] {
+                let outputs = belt.with(&[("traction", curve.traction[at])]).outputs();
+                for (name, value) in [("driver_axial_coefficient", curve.driver[at]), ("driven_axial_coefficient", curve.driven[at])] {
+                    let of_model = outputs.get(name);
+                    assert!((value / of_model - 1.0).abs() < 1e-13, "{name} at R {ratio}, {}: {value}, {of_model}", curve.traction[at]);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_friction_of_a_slip_is_the_inverse_of_tanh() {
+        // lambda = tanh(mu theta/(2 sin(alpha/2))) at theta = pi.
+        for (belt, traction, half) in [(rubber(), 0.8, 15.0_f64), (metal(), 0.58, 11.0)] {
+            let closed = libm::atanh(traction) * 2.0 / PI * libm::sin(half.to_radians());
+            assert!((friction_at_slip(&belt, traction) / closed - 1.0).abs() < 1e-12);
+        }
     }
 }

@@ -3,7 +3,7 @@
 use super::super::Printed;
 use super::super::comparison::{Rows, digits};
 use super::tables::{
-    MEASURED_X, METAL_R1, METAL_TRACTION, PRINTED_RADII, band_tension, band_thickness, consistent_metal_constant, metal_constant,
+    MEASURED_X, METAL_R1, METAL_TRACTION, PRINTED_RADII, band_tension, best_thickness, consistent_metal_constant, metal_constant,
     radius_at_2, rubber_constant, rubber_of_table_2, slip_pull,
 };
 use super::{driver_force, free_radius, metal, rubber};
@@ -19,24 +19,28 @@ pub(super) fn table_1(rows: &mut Rows) {
         "",
         &Printed::digits("1.545"),
         rubber().output("effective_friction"),
-        "mu/sin(alpha/2) with the printed data.",
-    );
+        "mu/sin(alpha/2) with the printed data: the definition.",
+    )
+    .identity("the scan had one of the three numbers wrong");
     rows.number(
         at,
         "effective friction mu', metal",
         "",
         &Printed::digits("0.419"),
         metal().output("effective_friction"),
-        "mu/sin(alpha/2) with the printed data.",
-    );
+        "mu/sin(alpha/2) with the printed data: the definition.",
+    )
+    .identity("the scan had one of the three numbers wrong");
     for (what, belt) in [("contact angle at R = 1, rubber", rubber()), ("contact angle at R = 1, metal", metal())] {
-        rows.number(at, what, "deg", &Printed::digits("180"), belt.output("driver_wrap_deg"), "Equal pulleys: half a turn each.");
+        rows.number(at, what, "deg", &Printed::digits("180"), belt.output("driver_wrap_deg"), "Equal pulleys: half a turn each.")
+            .identity("the two pulleys were not equal at R = 1");
     }
-    let radius = "One radius is printed for both belts. L/(2 pi) of (18) with the belt lengths of Figs 1 and 7 gives another for each.";
+    let radius = "L/(2 pi) of (18) with the belt lengths of Figs 1 and 7. The scan of this row is broken: it has one value where two columns belong, and that \
+                  it is meant for both belts is inferred from that alone.";
     rows.number(at, "initial belt radius r0, rubber", "mm", &Printed::digits("163"), own_rubber, radius);
     rows.number(at, "initial belt radius r0, metal", "mm", &Printed::digits("163"), own_metal, radius);
-    let least = "One radius is printed for both belts, and the paper does not say at which ratio. At R = 2, the largest ratio of Figs 1 and 7, \
-                 the open belt's geometry gives this.";
+    let least = "The open belt's geometry at R = 2, the largest ratio of Figs 1 and 7; the paper does not say at which ratio. That one radius is meant for \
+                 both belts is inferred from a broken row of the scan, as for r0.";
     rows.number(at, "minimum belt radius r1, rubber", "mm", &Printed::digits("45"), small_rubber, least);
     rows.number(at, "minimum belt radius r1, metal", "mm", &Printed::digits("45"), small_metal, least);
     let c_r = Printed::digits("20.5");
@@ -46,15 +50,15 @@ pub(super) fn table_1(rows: &mut Rows) {
         "N/mm",
         &c_r,
         rubber_constant(r0, r1),
-        "(21) with the printed r0 163 and r1 45 mm: the printed constant was computed with other radii than the table says.",
+        "(21) with the printed r0 163 and r1 45 mm: the printed constant does not follow from the radii as the scan has them.",
     );
-    rows.number(
+    rows.fitted(
         at,
         "C_R with r0 163 mm and the belt's own r1",
         "N/mm",
         &c_r,
         rubber_constant(r0, small_rubber),
-        format!("r1 = {} mm is the belt's radius at R = 2. This reading gives the printed constant.", digits(small_rubber)),
+        format!("r1 = {} mm is the belt's radius at R = 2, r0 is the printed one: a mixture that was found by searching for one that meets the print.", digits(small_rubber)),
     );
     rows.number(
         at,
@@ -111,28 +115,52 @@ pub(super) fn table_1(rows: &mut Rows) {
         "",
         &Printed::digits("0.58"),
         1.0 / (2.0 * MEASURED_X - 1.0),
-        "lambda = 1/(2x - 1), from (24) and P1 = 0: the measured x and the measured slip are the same number.",
-    );
+        "lambda = 1/(2x - 1), from (24) and P1 = 0: the measured x and the measured slip are one measurement, written twice.",
+    )
+    .identity("x and the slip traction had been measured apart and did not fit together");
     rows.number(
         at,
         "index of the rubber belt, printed C_R over printed C_M",
         "",
         &Printed::digits("16"),
         100.0 * 20.5 / 112.9,
-        "The table contradicts itself: its own constants give the .18 of the text.",
+        "The table contradicts itself: its own constants give the .18 of the text. Which of its numbers is wrong cannot be told.",
     );
+    rows.number(
+        at,
+        "index of the rubber belt, C_R at the printed radii over printed C_M",
+        "",
+        &Printed::digits("16"),
+        100.0 * rubber_constant(r0, r1) / 112.9,
+        format!(
+            "(21) at the printed radii gives {} N/mm. Over the printed C_M it makes the printed index, and the \"6 to 7\" of the text, as if the \
+             table's 20.5 were the number that is wrong: a reading, not proof.",
+            digits(rubber_constant(r0, r1))
+        ),
+    )
+    .reading();
     rows.number(
         "4.1.2",
         "index of the rubber belt, printed C_R over printed C_M",
         "",
         &Printed::digits("0.18"),
         20.5 / 112.9,
-        "The text's index follows from the table's constants.",
-    );
+        "The text's index is the quotient of the table's constants.",
+    )
+    .identity("the scan had one of the three numbers wrong");
     let ratio = metal_constant(r0, r1) / rubber_constant(r0, r1);
     let three = "Text and table disagree among themselves: 5-6 in the abstract, 6-7 and 1/6-1/7 in the text and conclusion (2), 5.5 from the table's constants.";
     rows.number("Abstract", "capacity, metal over rubber, printed radii", "", &Printed::between(5.0, 6.0), ratio, three);
     rows.number("4.2, conclusion (2)", "capacity, metal over rubber, printed radii", "", &Printed::between(6.0, 7.0), ratio, three);
+    rows.number(
+        "4.2, conclusion (2)",
+        "capacity, metal over rubber, printed C_M over C_R at the printed radii",
+        "",
+        &Printed::between(6.0, 7.0),
+        112.9 / rubber_constant(r0, r1),
+        "The same reading as for the index 16, the other way round.",
+    )
+    .reading();
     rows.number(
         at,
         "capacity, metal over rubber, quotient of the constants",
@@ -145,23 +173,41 @@ pub(super) fn table_1(rows: &mut Rows) {
 
 pub(super) fn thickness(rows: &mut Rows) {
     let printed = Printed::digits("0.2");
-    rows.number(
-        "(26), section 3",
-        "optimum band thickness at r1 = 45 mm",
-        "mm",
-        &printed,
-        band_thickness(97.6, 45.0),
-        "(26) with sigma_t = sigma_y/2 = 250 MPa and the belt's own r0 = 97.6 mm gives the thickness of the real bands.",
-    );
-    let own = radius_at_2(&metal());
-    rows.number(
-        "(26), section 3",
-        "optimum band thickness at the radius of R = 2",
-        "mm",
-        &printed,
-        band_thickness(free_radius(&metal()), own),
-        format!("At r1 = {} mm the bands bend more: for that radius a thinner band would carry more torque.", digits(own)),
-    );
+    let (r0, r1) = PRINTED_RADII;
+    let (own_r0, own_r1) = (free_radius(&metal()), radius_at_2(&metal()));
+    let open = "(26) with sigma_t = sigma_y/2 = 250 MPa. The paper prints 0.2 mm as the thickness of the real bands; it does not claim that (26) gives it.";
+    for (what, value, more) in [
+        ("optimum band thickness, printed r0 163 and r1 45 mm", best_thickness(&metal(), r0, r1), String::new()),
+        (
+            "optimum band thickness, own r0 and r1 at R = 2",
+            best_thickness(&metal(), own_r0, own_r1),
+            format!(" r0 = L/(2 pi) = {} mm, r1 = {} mm.", digits(own_r0), digits(own_r1)),
+        ),
+        (
+            "optimum band thickness, own r0 and printed r1 45 mm",
+            best_thickness(&metal(), own_r0, r1),
+            format!(
+                " r0 = {} mm of the belt with an r1 that is not the belt's: a mixture, and the only one of the three that meets it.",
+                digits(own_r0)
+            ),
+        ),
+    ] {
+        rows.number("(26), section 3", what, "mm", &printed, value, format!("{open}{more}")).reading();
+    }
+    let (own_r0, own_r1) = (free_radius(&rubber()), radius_at_2(&rubber()));
+    for (what, value) in [
+        ("optimum belt thickness, rubber, printed r0 163 and r1 45 mm", best_thickness(&rubber(), r0, r1)),
+        ("optimum belt thickness, rubber, own r0 and r1 at R = 2", best_thickness(&rubber(), own_r0, own_r1)),
+    ] {
+        rows.unprinted(
+            "(19)",
+            what,
+            "mm",
+            value,
+            "(19) with sigma_t = sigma_y/2 = 9 MPa; C_R of Table 1 holds for a belt of this thickness. The paper prints no thickness of the rubber \
+             belt. Real belts are several times as thick: (19) takes one modulus for tension and bending, and a real belt bends far more easily than it stretches.",
+        );
+    }
 }
 
 pub(super) fn table_2(rows: &mut Rows) {
@@ -176,8 +222,9 @@ pub(super) fn table_2(rows: &mut Rows) {
         "N",
         &Printed::digits("2250"),
         outputs.get("tight_force_N"),
-        "P (1 + lambda)/(2 lambda) with P 2000 N and lambda 0.8.",
-    );
+        "P (1 + lambda)/(2 lambda) with P 2000 N and lambda 0.8: the definition of lambda.",
+    )
+    .identity("the scan had one of the three numbers wrong");
     rows.number(
         at,
         "band tension T, metal",
@@ -217,8 +264,19 @@ pub(super) fn table_2(rows: &mut Rows) {
         "",
         &Printed::digits("34"),
         100.0 * 4720.0 / 15_780.0,
-        "The table contradicts itself: its own forces give 30.",
+        "The table contradicts itself: its own forces give 30. Which of its numbers is wrong cannot be told.",
     );
+    let at_forces = metal().with(&[("friction", 0.11)]);
+    rows.number(
+        at,
+        "index of the rubber belt, metal force with mu 0.11 and T of lambda 0.58",
+        "",
+        &Printed::digits("34"),
+        100.0 * rubber_force / driver_force(&at_forces, tension, PI),
+        "(6) with the friction that the measured forces of Fig. 9 follow, in place of Table 1's, and the tension that follows from P and lambda. A \
+         reading, not proof.",
+    )
+    .reading();
     rows.number(
         "Abstract, 4.2, conclusion (2)",
         "driver axial force, metal over rubber",

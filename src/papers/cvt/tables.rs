@@ -6,7 +6,7 @@ use crate::models::{optimum_thickness, printed_torque_coefficient, torque_coeffi
 use crate::table::Table;
 use std::f64::consts::PI;
 
-/// Radii as Table 1 prints them for both belts, mm: r0 and r1.
+/// Radii of Table 1, mm: r0 and r1. The scan has one value for each where two columns belong; that they are for both belts is inferred.
 pub(super) const PRINTED_RADII: (f64, f64) = (163.0, 45.0);
 /// x = T/P2 as measured, Table 1.
 pub(super) const MEASURED_X: f64 = 1.36;
@@ -46,9 +46,8 @@ pub(super) fn slip_pull() -> f64 {
     libm::expm1(metal().output("effective_friction") * PI)
 }
 
-/// Band thickness of (26), mm, with sigma_t = sigma_y/2.
-pub(super) fn band_thickness(r0: f64, r1: f64) -> f64 {
-    let belt = metal();
+/// Thickness of (19) and (26), mm, with sigma_t = sigma_y/2: of the rubber belt or of a metal band.
+pub(super) fn best_thickness(belt: &super::Inputs, r0: f64, r1: f64) -> f64 {
     optimum_thickness(belt.input("strength_MPa"), belt.input("elastic_modulus_MPa"), r1, r0 / (r0 - r1))
 }
 
@@ -121,8 +120,8 @@ pub(super) fn all() -> Vec<PaperTable> {
         PaperTable {
             id: "cvt-table-1",
             title: "Table 1: torque capacity of a rubber and a metal V-belt".to_owned(),
-            caption: "Every printed value that follows from others, with each reading of the radii. One pair of radii is printed for both belts, \
-                      and neither belt has it; the printed constants need other radii than the printed ones."
+            caption: "Every printed value that follows from others, with each reading of the radii. The scan has one pair of \
+                      radii where two columns belong; if it is meant for both belts, neither belt has it, and the printed constants do not follow from it."
                 .to_owned(),
             group: Paper::Cvt,
             table: table(&first),

@@ -8,7 +8,7 @@ use crate::table::Table;
 
 /// Tension, line force and flank force over the wrap.
 pub(super) fn loads() -> Figure {
-    let belt = Inputs::of("pulley-load");
+    let belt = Inputs::preset("pulley-load", "paper");
     let position = belt.column("wrap_position_deg");
     let columns = [
         ("tension_N", "belt tension T", "N", "Belt tension, (14)."),

@@ -68,8 +68,14 @@ const LOST: &[Lost] = &[
     },
     Lost {
         group: Paper::Pulley,
-        what: "Figs 8 to 12",
-        why: "Flow of the program and its dialogs. What stood in them, three thicknesses, the points P1 and P2, stresses and volumes, is lost; the \
+        what: "the text from the end of 3.2 into 4.2, with Figs 8 and 9",
+        why: "A page is missing in the scan: it breaks off at the support of the bolt seats and goes on at the dialogs. The meshing, the rest of \
+              chapter 3 and the structure of the program stood there.",
+    },
+    Lost {
+        group: Paper::Pulley,
+        what: "Figs 10 to 12",
+        why: "Dialogs and flow of the program. What stood in them, three thicknesses, the points P1 and P2, stresses and volumes, is lost; the \
               text gives the chosen thickness alone.",
     },
     Lost {
@@ -109,7 +115,7 @@ struct Stressed {
 
 impl Stressed {
     fn new(of: Type) -> Self {
-        let pulley = Inputs::preset("pulley", of.preset);
+        let pulley = Inputs::preset("pulley", of.preset).with(&[("friction_direction_deg", thickness::DIRECTIONS[0])]);
         let title = format!("Fig. 13, {}: von Mises stress in the deformed section", of.words);
         let (svg, nodes) = deformed(&pulley.model, &title, &pulley.values).expect("the example has a solution");
         let outputs = pulley.outputs();
@@ -126,7 +132,7 @@ impl Stressed {
 
 /// The example of the paper: the pressed cup under the data of Table 1.
 fn example() -> Inputs {
-    Inputs::of("pulley")
+    Inputs::preset("pulley", "paper")
 }
 
 /// Where the largest stress of a pulley stands.

@@ -38,7 +38,7 @@ fn data(rows: &mut Rows) {
 }
 
 fn loads(rows: &mut Rows) {
-    let belt = Inputs::of("pulley-load");
+    let belt = Inputs::preset("pulley-load", "paper");
     let outputs = belt.outputs();
     let get = |name: &str| outputs.get(name);
     let chosen = "Not printed. The mean radius of 60 mm is chosen.";
@@ -79,7 +79,7 @@ fn loads(rows: &mut Rows) {
         "radial force of the flanks if friction is radial, as the text says",
         "equal to Q of (10)",
         format!("{} more than Q", percent(literal / along_flank - 1.0).trim_start_matches('+')),
-        false,
+        (literal / along_flank - 1.0).abs() < 1e-9,
         "(10) balances Q only if that friction acts along the flank, inwards and towards the groove's middle; taken as radial the loads miss \
          the tensions' resultant. The model lets it act along the flank.",
     );
@@ -126,21 +126,23 @@ fn thickness(rows: &mut Rows, studied: &[SheetCase]) {
         &printed,
         choice(studied, DIRECTIONS[0]),
         format!(
-            "Thinnest of 1.4, 1.6 .. 2.4 mm below 270 MPa: {} MPa at 1.6 and {} MPa at 1.8 mm. The paper's section is lost and ours is chosen, \
-             so this agreement says little; only the choice is printed of the three thicknesses that were tried.",
+            "Thinnest of 1.4, 1.6 .. 2.4 mm below 270 MPa: {} MPa at 1.6 and {} MPa at 1.8 mm. The paper's section is lost and ours, with the belt's \
+             radius, mass and angle, is chosen; only the choice is printed of the three thicknesses that were tried.",
             digits(stress(1.6)),
             digits(stress(1.8))
         ),
-    );
+    )
+    .reading();
     rows.number(
         at,
         "sheet thickness chosen, friction around the circumference alone",
         "mm",
         &printed,
         choice(studied, DIRECTIONS[1]),
-        "The customary direction of friction presses the flanks harder, and the same section needs a thicker sheet: the paper's assumption is \
-         not the safe one.",
-    );
+        "The customary direction of friction presses the flanks harder, and the same chosen section needs a thicker sheet: the paper's \
+         assumption is not the safe one.",
+    )
+    .reading();
     let example = example().outputs();
     let not_printed = "Stood in a lost dialog; ours holds for a chosen section.";
     rows.unprinted(at, "largest stress at 1.8 mm", "MPa", example.get("max_stress_MPa"), not_printed);
@@ -162,7 +164,12 @@ fn stresses(rows: &mut Rows, stressed: &[Stressed]) {
             "bolt seats, shape changes, last contact",
             format!("{} MPa {}", digits(*largest), place.words),
             place.shape_changes,
-            format!("{why} Which type has which place is lost with the figure.{yields}"),
+            format!("{why} Our dimensions are chosen, and which type has which place is lost with the figure.{yields}"),
+        )
+        .reading()
+        .fails_if(
+            "the largest stress outside the bolt seats stood on a flat wall: farther from the groove's floor than its bend radius, or from the \
+             weld than a sheet's thickness. A section with bends on every side of the belt can hardly do that",
         );
     }
     let seats = stressed.iter().map(|one| format!("{} against {}", digits(one.seats().round()), digits(one.largest.round())));
@@ -175,7 +182,9 @@ fn stresses(rows: &mut Rows, stressed: &[Stressed]) {
         stressed.iter().any(|one| one.seats() > one.largest),
         "So for the stiff type 1 alone. Beside the edges of bracket and bolt heads an elastic stress grows with every refinement of the mesh: \
          that zone is left out of the largest stress, and these values say as much of the mesh as of the pulley.",
-    );
+    )
+    .reading()
+    .fails_if("the stress at the seats were below the largest elsewhere for all four types");
     let example = example();
     let (wrap, theta) = (example.input("wrap_angle_deg"), example.output("max_stress_theta_deg"));
     rows.statement(
@@ -185,6 +194,8 @@ fn stresses(rows: &mut Rows, stressed: &[Stressed]) {
         format!("{} deg of {wrap} deg", digits(theta)),
         (wrap - theta).abs() < 5.0,
         "If last contact means the tight end of the wrap: the belt presses hardest there, but the groove bends most where the belt presses on both \
-         sides of a place, so ours stands before the end.",
-    );
+         sides of a place, so ours stands before the end. The section is chosen.",
+    )
+    .reading()
+    .fails_if("the angle were 5 degrees or more from the tight end of the wrap");
 }

@@ -12,7 +12,7 @@ pub(super) fn friction_each_way(belt: &Inputs) -> f64 {
 /// Force of a bolt, N, from the pressure under its head.
 pub(super) fn bolt_force(pulley: &Inputs) -> f64 {
     let (outer, inner) = (pulley.input("bolt_head_mm"), pulley.input("bolt_hole_mm"));
-    pulley.output("clamp_pressure_MPa") * std::f64::consts::FRAC_PI_4 * (outer * outer - inner * inner)
+    pulley.output("seat_pressure_MPa") * std::f64::consts::FRAC_PI_4 * (outer * outer - inner * inner)
 }
 
 struct PulleyLine(&'static str, &'static str, f64, &'static str);
@@ -20,7 +20,7 @@ struct PulleyLine(&'static str, &'static str, f64, &'static str);
 /// Printed data, data that had to be chosen, and what follows.
 pub(super) fn data() -> PaperTable {
     let pulley = example();
-    let belt = Inputs::of("pulley-load");
+    let belt = Inputs::preset("pulley-load", "paper");
     let outputs = belt.outputs();
     let input = |what, unit, name: &str, origin| PulleyLine(what, unit, pulley.input(name), origin);
     let output = |what, unit, name: &str, origin| PulleyLine(what, unit, outputs.get(name), origin);

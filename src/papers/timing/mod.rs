@@ -2,6 +2,7 @@
 
 mod figures;
 mod printed;
+mod reading;
 mod rows;
 
 use super::{Inputs, Lost, Paper, Repair, Reproduction};
@@ -23,7 +24,7 @@ const REPAIRS: &[Repair] = &[
     Repair {
         group: Paper::TimingBelt,
         at: "(17)-(19)",
-        words: "Tooth j - 1 meshes: its belt leaves at phi, not phi - theta, and nu inside has cos phi. In (18) f is missing before two cosines; (19) has it.",
+        words: "Tooth j - 1 meshes: its belt leaves at phi in (17) and in nu, which (9) has with the psi of the slack span. With phi - theta in both places, as (17) has it, T* moves by 0.04 %. In (18) f is missing before two cosines; (19) has it.",
     },
     Repair {
         group: Paper::TimingBelt,

@@ -1,10 +1,21 @@
-//! The boundary tension exactly as the paper prints it.
+//! The boundary tension by the paper's closed form.
 
 use super::Inputs;
 
-/// T* of (19) as printed, N: tooth j - 1 leaves at phi - theta although it meshes, and nu inside it has cos psi. The model has cos phi in
-/// both places, with which (19) is the direct solution of the system. For a first lifted tooth j from 3 to N + 1.
-pub(super) fn boundary_tension(pulley: &Inputs, j: usize) -> f64 {
+/// Angle at which the belt leaves tooth j - 1, the last that meshes.
+#[derive(Clone, Copy)]
+pub(super) enum BoundaryAngle {
+    /// phi - theta, as a lifted tooth: printed in (17).
+    Lifted,
+    /// phi, as every tooth that meshes.
+    Meshed,
+    /// psi, as the last tooth of all: printed in nu of (9), which (19) takes over.
+    SlackSpan,
+}
+
+/// T* of (19), N, with the angle of tooth j - 1 in (17), and in the nu that (19) takes from (9). With phi in both places it is the
+/// direct solution of the system. For a first lifted tooth j from 3 to N + 1.
+pub(super) fn boundary_tension(pulley: &Inputs, j: usize, last: BoundaryAngle, in_nu: BoundaryAngle) -> f64 {
     let angle = |name: &str| pulley.input(name).to_radians();
     let (beta, phi) = (angle("land_half_angle_deg"), angle("space_half_angle_deg"));
     // The default lifts by the whole tooth space.
@@ -30,9 +41,14 @@ pub(super) fn boundary_tension(pulley: &Inputs, j: usize) -> f64 {
     let (of_tight, of_star) = before.pair(1, j - 2, j - 2);
     let (of_boundary, of_slack) = behind.pair(j, gaps, j);
     let tight = compliance * libm::cos(angle("tight_span_angle_deg")) * pulley.input("tight_tension_N");
-    let nu = compliance * libm::cos(angle("slack_span_angle_deg"));
+    let cosine = |at: BoundaryAngle| match at {
+        BoundaryAngle::Lifted => closing,
+        BoundaryAngle::Meshed => meshed,
+        BoundaryAngle::SlackSpan => libm::cos(angle("slack_span_angle_deg")),
+    };
+    let nu = compliance * cosine(in_nu);
     let numerator = compliance * (closing * v * of_slack * pulley.input("slack_tension_N") + land_ratio * meshed * of_tight * tight);
-    numerator / (free_stretch + compliance * (closing * (1.0 - u * of_boundary) + opening - land_ratio * meshed * nu * of_star))
+    numerator / (free_stretch + compliance * (cosine(last) - closing * u * of_boundary + opening - land_ratio * meshed * nu * of_star))
 }
 
 /// Solutions of `first T(i-1) - middle T(i) + last T(i+1) = 0` as powers of two roots.

@@ -2,6 +2,9 @@
 //!
 //! [`export`] writes the deck of a [`Job`]: the same section, swept around the axis, under the same loads. After `ccx` has solved it,
 //! [`compare()`] reads the displacements and compares stresses, rim displacement, volume and reactions with those of the harmonics.
+//!
+//! Solver, elements and the way around the axis are CalculiX's own; section mesh, loads and supports come from the same description as the
+//! harmonics', so the comparison says nothing about these.
 
 mod compare;
 mod deck;

@@ -4,11 +4,11 @@
 use super::constants::LANE_BITS;
 use super::held::beyond_f32;
 use crate::error::{Error, Result};
-use crate::models::{Fields, Reads, Set, Worse, input_to_si};
+use crate::models::{Fields, Set, Worse, input_to_si};
 use crate::plan::{Plan, Source, knowns};
 use crate::space::{Product, SpaceDimension};
 use crate::study::{Axis, Goal, Levels, Quantity};
-use crate::tape::nearest_f32;
+use crate::tape::{Reads, SettledStages, nearest_f32};
 
 /// Most loop iterations of one invocation: some drivers end it after 65 535 without a word.
 pub const MOST_ITERATIONS: u64 = 55_000;
@@ -139,6 +139,8 @@ pub fn refuse(why: String) -> Error {
 pub struct KernelLayout {
     /// The names of the formula's values.
     pub fields: Fields,
+    /// The stages where formulas of a study or a file are in them: these ask much that the ranges of the study settle.
+    pub settled: Option<SettledStages>,
     /// What passes from the first stage to the second.
     pub prepared: Vec<Passed>,
     /// Slow dimensions, outermost first.
@@ -200,7 +202,12 @@ impl KernelLayout {
             return Err(refuse(format!("a row of {} designs is too long", plan.fast.count())));
         }
         let used = plan.used_outputs();
-        let reads = Reads::of(formula, &knowns(&plan.study, &plan.space), used);
+        let known = knowns(&plan.study, &plan.space);
+        let settled = model.origin.is_some().then(|| {
+            let asked = plan.row_conditions.iter().chain(&plan.lane_conditions);
+            SettledStages::new(formula, &known, used, &asked.map(|&it| (it, model.conditions[it].strict)).collect::<Vec<_>>())
+        });
+        let reads = settled.as_ref().map_or_else(|| Reads::of(formula, &known, used), |it| it.reads);
 
         let mut steady = Vec::new();
         let slow_scenarios = scenario_table(plan, &plan.slow_scenarios, &mut steady);
@@ -257,6 +264,7 @@ impl KernelLayout {
         let slow_inputs = plan.slow.inputs();
         Ok(Self {
             fields,
+            settled,
             prepared: passed(&fields, reads.prepared),
             row_inputs: (reads.inputs & slow_inputs).iter().collect(),
             slow,
@@ -270,6 +278,11 @@ impl KernelLayout {
             represented,
             cut: Cut::new(plan, fields.iterations, grouped),
         })
+    }
+
+    /// Is this condition to be asked? Not if it surely holds.
+    pub fn asks(&self, condition: usize) -> bool {
+        self.settled.as_ref().is_none_or(|it| it.open.contains(condition))
     }
 
     /// Do the steady entries fit a uniform buffer? A storage buffer serves too, at twice the price of a load.

@@ -2,6 +2,7 @@
 
 use super::super::axis::{Axis, Levels};
 use super::Reader;
+use super::law::is_law;
 use super::roles::{AxisClaim, AxisRole, PRESET};
 use super::table::{Entry, TOP_LEVEL_REMEDY, TomlNode, TomlTable, is_top_level, shortened};
 use super::value::{input_value, shown};
@@ -20,6 +21,11 @@ impl Reader<'_> {
         }
         let mut axes = Vec::new();
         for entry in table.entries.iter().take(most).take_while(|_| !self.problems.is_full()) {
+            if role == AxisRole::Uncertainty && is_law(entry) {
+                self.has_laws.set(true);
+                self.uncertain(entry);
+                continue;
+            }
             let is_input = self.model.input(entry.key).is_some();
             let weighted = weighted_cases(entry).filter(|_| !is_input);
             let axis = match entry.key {
@@ -147,5 +153,33 @@ impl Reader<'_> {
                 self.problems.add(claim.at, message);
             }
         }
+    }
+
+    /// Reports an input that is given although a number of another one takes its place.
+    pub(super) fn check_replaced(&self, axes: [&Vec<Axis>; 3], fixed: &[f64], top: &TomlTable<'_>) {
+        let claims = self.claims.borrow();
+        let claim = |name: &str| {
+            let number = self.model.input(name)?;
+            claims.iter().find(|claim| claim.input == number)
+        };
+        let is_number = |input: usize, value: f64| self.model.inputs[input].word_for(value).is_none();
+        let gives_numbers = |name: &str| {
+            claim(name).is_some_and(|claim| match claim.role {
+                AxisRole::Fixed => is_number(claim.input, fixed[claim.input]),
+                _ => axes.iter().flat_map(|axes| axes.iter()).any(|axis| {
+                    let column = axis.inputs().iter().position(|&it| it == claim.input);
+                    column.is_some_and(|column| axis.has_number(column, |value| is_number(claim.input, value)))
+                }),
+            })
+        };
+        let Some((input, other)) = self.model.contradiction(gives_numbers, |name| claim(name).is_some()) else { return };
+        let by_formula = |name: &str| top.get("formulas")?.node.table()?.get(name).map(|entry| entry.key_at);
+        let place = |name: &str| claim(name).map(|claim| claim.at).or_else(|| by_formula(name));
+        let beside = match place(&input) {
+            Some(at) => format!("{input}, line {}", self.problems.line_number(at)),
+            None => format!("{input}, which the model gives"),
+        };
+        let at = place(&other).or_else(|| place(&input)).unwrap_or(0);
+        self.problems.add(at, format!("\"{other}\" cannot be given beside {beside}, which takes its place; drop one of the two"));
     }
 }

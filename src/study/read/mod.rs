@@ -18,14 +18,18 @@
 //! | `quantities.rs` | `[constraints]`, `[objectives]`                    |
 //! | `report.rs`     | `[report]`                                         |
 //! | `contours.rs`   | the contours of its maps                           |
+//! | `law.rs`        | distributions of `[uncertainty]`                    |
+//! | `drawn.rs`      | `[probability]`, and what is asked of draws         |
 //! | `set.rs`        | values in place of what a study says               |
 
 mod axes;
 mod cases;
 mod contours;
 mod csv_file;
+mod drawn;
 mod formulas;
 mod labels;
+mod law;
 mod model_file;
 mod model_inputs;
 mod presets;
@@ -52,12 +56,14 @@ pub(super) use value::shown;
 pub(crate) use value::{checked as input_value_checked, input_text};
 
 use super::axis::{Axis, Method, Sample};
+use super::drawn::{Probability, UncertainInput};
 use super::label::Label;
-use super::resolved::Study;
+use super::resolved::{Constraint, Objective, Report, Study};
 use super::spectrum::Spectrum;
 use crate::error::Result;
 use crate::likeness::remedy;
 use crate::models::{Model, Models};
+use crate::probability::Effect;
 use labels::{DeclaredLabel, check_label_names, read_labels};
 use roles::{AxisClaim, AxisRole};
 use set::SetAxes;
@@ -80,6 +86,7 @@ const TOP_LEVEL: &[&str] = &[
     "design",
     "operation",
     "uncertainty",
+    "probability",
     "fixed",
     "constraints",
     "objectives",
@@ -241,6 +248,12 @@ struct Reader<'a> {
     labels: RefCell<Vec<Label>>,
     /// Is there a CSV file that was not read?
     unread: Cell<bool>,
+    /// Does an input have a distribution, right or wrong?
+    has_laws: Cell<bool>,
+    /// Inputs with distributions, with their places.
+    uncertain: RefCell<Vec<(UncertainInput, usize)>>,
+    /// What names mean where something is asked of draws, and the drive of which that is.
+    meanings: Option<(drawn::Meanings, &'a Probability)>,
     /// The whole file.
     top: &'a TomlTable<'a>,
     /// What was left out of catalogues.
@@ -276,26 +289,76 @@ fn read_study_of(model: Option<Arc<Model>>, top: &TomlTable<'_>, problems: &Prob
         declared: &declared,
         labels: RefCell::default(),
         unread: Cell::default(),
+        has_laws: Cell::default(),
+        uncertain: RefCell::default(),
+        meanings: None,
         top,
         left_out: RefCell::default(),
     };
     let axes = |role: AxisRole| section(top, role.name(), problems).map_or_else(Vec::new, |table| reader.axes(role, &table));
     let (design, operation, uncertainty) = (axes(AxisRole::Design), axes(AxisRole::Operation), axes(AxisRole::Uncertainty));
-    let fixed = reader.fixed(section(top, "fixed", problems).as_ref());
+    let mut fixed = reader.fixed(section(top, "fixed", problems).as_ref());
     reader.check_claims();
+    reader.check_replaced([&design, &operation, &uncertainty], &fixed, top);
     reader.check_labels();
     reader.check_sizes(top, &design, &[&operation, &uncertainty]);
 
-    let constraints = section(top, "constraints", problems).map_or_else(Vec::new, |table| reader.constraints(&table, &fixed));
-    let objectives_table = section(top, "objectives", problems);
-    let objectives = objectives_table.as_ref().map_or_else(Vec::new, |table| reader.objectives(table, &fixed));
-    let report_table = section(top, "report", problems);
-    let report = reader.report(report_table.as_ref(), objectives_table.as_ref(), &objectives, &design, &fixed);
-    reader.check_purpose(top, objectives_table.as_ref(), report_table.as_ref());
     let title = title.unwrap_or_else(|| model.summary.to_owned());
-    let spectrum = reader.spectrum.take();
+    if !reader.has_laws.get() {
+        reader.probability(top, &drawn::DriveParts { operation: &operation, uncertainty: &uncertainty, fixed: &fixed });
+        let (constraints, objectives, report) = reader.asked_of_designs(top, &design, &fixed);
+        let spectrum = reader.spectrum.take();
+        let (labels, left_out) = (reader.labels.take(), reader.left_out.take());
+        let probability = None;
+        return Some(Study {
+            model,
+            title,
+            design,
+            labels,
+            sample,
+            operation,
+            spectrum,
+            uncertainty,
+            probability,
+            fixed,
+            constraints,
+            objectives,
+            report,
+            left_out,
+        });
+    }
+    if reader.uncertain.borrow().is_empty() {
+        return None;
+    }
+    for (it, _) in reader.uncertain.borrow().iter().filter(|(it, _)| it.effect == Effect::Is) {
+        fixed[it.input] = it.distribution.quantile(0.5).unwrap_or(fixed[it.input]);
+    }
+    let (probability, meanings) =
+        reader.probability(top, &drawn::DriveParts { operation: &operation, uncertainty: &uncertainty, fixed: &fixed })?;
+    let outer = drawn::model_of(&probability, &reader)?;
+    let reader = Reader { model: &outer, meanings: Some((meanings, &probability)), ..reader };
+    let (constraints, objectives, mut report) = reader.asked_of_designs(top, &design, &fixed);
+    report.columns.extend(drawn::confirmed_columns(&probability));
     let (labels, left_out) = (reader.labels.take(), reader.left_out.take());
-    Some(Study { model, title, design, labels, sample, operation, spectrum, uncertainty, fixed, constraints, objectives, report, left_out })
+    drop(reader);
+    let probability = Some(Arc::new(probability));
+    let (operation, spectrum) = (Vec::new(), None);
+    Some(Study {
+        model: outer,
+        title,
+        design,
+        labels,
+        sample,
+        operation,
+        spectrum,
+        uncertainty,
+        probability,
+        fixed,
+        constraints,
+        objectives,
+        report,
+        left_out,
+    })
 }
 
 /// The model that the file names.
@@ -395,6 +458,18 @@ fn read_sample(table: &TomlTable<'_>, problems: &Problems<'_>) -> Option<Sample>
 }
 
 impl Reader<'_> {
+    /// `[constraints]`, `[objectives]` and `[report]`.
+    fn asked_of_designs(&self, top: &TomlTable<'_>, design: &[Axis], fixed: &[f64]) -> (Vec<Constraint>, Vec<Objective>, Report) {
+        let problems = self.problems;
+        let constraints = section(top, "constraints", problems).map_or_else(Vec::new, |table| self.constraints(&table, fixed));
+        let objectives_table = section(top, "objectives", problems);
+        let objectives = objectives_table.as_ref().map_or_else(Vec::new, |table| self.objectives(table, fixed));
+        let report_table = section(top, "report", problems);
+        let report = self.report(report_table.as_ref(), objectives_table.as_ref(), &objectives, design, fixed);
+        self.check_purpose(top, objectives_table.as_ref(), report_table.as_ref());
+        (constraints, objectives, report)
+    }
+
     /// Can every design and every scenario have a number? Axes with problems are left out, so the counts may be too small.
     fn check_sizes(&self, top: &TomlTable<'_>, design: &[Axis], scenario: &[&Vec<Axis>]) {
         let at = |names: &[&str]| names.iter().find_map(|name| top.get(name)).map_or(0, |entry| entry.node.at);

@@ -5,11 +5,11 @@ use super::table::{Entry, TomlNode, TomlTable, shortened};
 use super::value::{input_value, measured, truth};
 use super::{section, text};
 use crate::formula::{Units, is_reserved};
-use crate::models::{Input, Model, Range, is_name, unit_of_name};
+use crate::models::{Input, Model, OnlyFor, Range, is_name, unit_of_name};
 use crate::units::Unit;
 use std::collections::HashSet;
 
-const KEYS: [&str; 10] = ["default", "valid", "usual", "integer", "words", "only_for", "follows", "symbol", "doc", "source"];
+const KEYS: [&str; 11] = ["default", "valid", "usual", "integer", "words", "only_for", "follows", "instead_of", "symbol", "doc", "source"];
 
 impl ModelReader<'_> {
     /// The inputs of the file, in its order.
@@ -70,34 +70,64 @@ impl ModelReader<'_> {
                 return None;
             }
         };
-        input.only_for = self.word_list(&parts, "only_for", &label)?;
+        input.only_for = self.only_for(&parts, &label)?;
         input.follows = parts.get("follows").and_then(|it| text(it.node, problems, &label));
+        input.instead_of = parts.get("instead_of").and_then(|it| text(it.node, problems, &label));
         let Some(default) = parts.get("default") else {
             problems.add_if_complete(parts.at, format!("{label}: \"default\" is missing; it must be {}", input.valid_in_words()));
             return None;
         };
         let value = input_value(default.node, &input).map_err(|error| problems.add(default.node.at, format!("{label}: {error}")));
         input.default = value.ok()?;
+        if input.instead_of.is_some() && input.word_for(input.default).is_none() {
+            problems.add(
+                default.node.at,
+                format!("{label}: with instead_of the default must be a word, which says that the other input holds"),
+            );
+        }
         Some(input)
     }
 
-    /// `only_for` names words of the first input that takes words only, `follows` another input.
+    /// `only_for` names an input and words of it, `follows` and `instead_of` another input.
     fn check_references(&self, table: &TomlTable<'_>, base: &Model, inputs: &[Input]) {
         let problems = self.problems;
-        let all = || base.inputs.iter().chain(inputs);
-        let enumeration = all().find(|input| input.is_enumeration());
+        let find = |name: &str| base.inputs.iter().chain(inputs).find(|it| it.name == name);
         for (input, entry) in inputs.iter().filter_map(|input| Some((input, table.get(&input.name)?))) {
             let label = format!("input \"{}\"", input.name);
-            if let Some(word) = input.only_for.iter().find(|word| enumeration.is_none_or(|of| of.value_of(word).is_none())) {
-                let known = enumeration.map_or("no input takes words only".to_owned(), |of| {
-                    format!("{} takes {}", of.name, of.words_listed().unwrap_or_default())
-                });
-                problems.add(entry.node.at, format!("{label}: only_for names \"{}\", but {known}", shortened(word)));
+            if let Some(OnlyFor { input: name, words }) = &input.only_for {
+                let of = find(name);
+                if of.is_none() {
+                    problems.add(entry.node.at, format!("{label}: only_for names \"{}\", which is no input", shortened(name)));
+                }
+                for (of, word) in of.into_iter().flat_map(|of| words.iter().map(move |word| (of, word))) {
+                    if of.value_of(word).is_none() {
+                        let known = of.words_listed().map_or("no words".to_owned(), |words| format!("the words {words}"));
+                        let word = shortened(word);
+                        problems.add(entry.node.at, format!("{label}: only_for names \"{word}\" of {name}, which takes {known}"));
+                    }
+                }
             }
-            if let Some(other) = input.follows.as_ref().filter(|other| !all().any(|it| it.name == **other)) {
+            if let Some(other) = input.follows.as_ref().filter(|other| find(other).is_none()) {
                 problems.add(entry.node.at, format!("{label}: follows names \"{}\", which is no input", shortened(other)));
             }
+            if let Some(other) = input.instead_of.as_ref().filter(|other| find(other).is_none()) {
+                problems.add(entry.node.at, format!("{label}: instead_of names \"{}\", which is no input", shortened(other)));
+            }
         }
+    }
+
+    /// `{ surface = ["rough"] }`: the words of an input for which another is read; `None` if it is something else.
+    fn only_for(&self, parts: &TomlTable<'_>, label: &str) -> Option<Option<OnlyFor>> {
+        let Some(entry) = parts.get("only_for") else { return Some(None) };
+        let table = entry.node.table();
+        let [of] = table.as_ref().map_or(&[][..], |table| &table.entries) else {
+            let found = entry.node.found();
+            let form = "only_for must be one input with words of it, such as { surface = [\"rough\"] }";
+            self.problems.add(entry.node.at, format!("{label}: found {found}; {form}"));
+            return None;
+        };
+        let words = self.word_list(table.as_ref()?, of.key, label)?;
+        Some(Some(OnlyFor { input: of.key.to_owned(), words }))
     }
 
     /// A list of words, each once; `None` if it is no list.

@@ -1,5 +1,6 @@
 //! Inputs and outputs that a study is about: constraints and objectives.
 
+use super::super::drawn::{OVER_DRAWS, YIELD};
 use super::super::quantity::Quantity;
 use super::super::resolved::{Constraint, Goal, Objective};
 use super::super::spectrum::OverScenarios;
@@ -44,6 +45,9 @@ impl Reader<'_> {
 
     /// The input or output of that name, if all its values are numbers; reports otherwise.
     pub(super) fn numeric(&self, name: &str, at: usize, label: &str, fixed: &[f64]) -> Option<Quantity> {
+        if let Some(meaning) = self.meanings.as_ref().and_then(|(meanings, _)| meanings.get(&at)) {
+            return *meaning;
+        }
         let quantity = self.quantity(name, at, label)?;
         let Quantity::Input(number) = quantity else { return Some(quantity) };
         let input = &self.model.inputs[number];
@@ -113,9 +117,14 @@ impl Reader<'_> {
 
     /// The unit of a quantity.
     pub(super) fn unit(&self, quantity: Quantity) -> Unit {
-        match quantity {
-            Quantity::Input(number) => self.model.inputs[number].unit,
-            Quantity::Output(number) => self.model.outputs[number].unit,
+        // A statistic is in the unit of what it is of.
+        let of_drive = self.meanings.as_ref().and_then(|(_, probability)| {
+            let asked = probability.statistics[quantity.output()?].kind.asked()?;
+            Some((asked.quantity, &probability.drive.model)).filter(|_| asked.over != OverScenarios::Sum)
+        });
+        match of_drive.unwrap_or((quantity, self.model)) {
+            (Quantity::Input(number), model) => model.inputs[number].unit,
+            (Quantity::Output(number), model) => model.outputs[number].unit,
         }
     }
 
@@ -133,10 +142,28 @@ impl Reader<'_> {
     /// The `[constraints]` table.
     pub(super) fn constraints(&self, table: &TomlTable<'_>, fixed: &[f64]) -> Vec<Constraint> {
         let same = |a: &Constraint, b: &Constraint| (a.quantity, a.over) == (b.quantity, b.over);
-        self.single_ones(table, "constraint", "give all bounds in one entry", |entry| self.constraint(entry, fixed), same)
+        let read = |entry: &Entry<'_>| {
+            if self.meanings.is_some() { self.constraint_of_draws(entry, fixed) } else { self.constraint(entry, fixed) }
+        };
+        self.single_ones(table, "constraint", "give all bounds in one entry", read, same)
     }
 
-    fn constraint(&self, entry: &Entry<'_>, fixed: &[f64]) -> Option<Constraint> {
+    /// Of a study with distributions: what is asked of all draws; `None` for what a single draw must keep.
+    fn constraint_of_draws(&self, entry: &Entry<'_>, fixed: &[f64]) -> Option<Constraint> {
+        let table = entry.node.table();
+        let at = table.as_ref().and_then(|table| table.get("of")).map_or(entry.key_at, |of| of.node.at);
+        let quantity = (*self.meanings.as_ref()?.0.get(&at)?)?;
+        match table?.get(YIELD) {
+            Some(wanted) => {
+                let least = self.quantity_value(wanted, quantity, &format!("constraint \"{}\"", shortened(entry.key)))?;
+                Some(Constraint { quantity, low: Some((least, false)), high: None, over: OverScenarios::Worst })
+            }
+            None => self.constraint(entry, fixed),
+        }
+    }
+
+    /// A constraint as it is written.
+    pub(super) fn constraint(&self, entry: &Entry<'_>, fixed: &[f64]) -> Option<Constraint> {
         let problems = self.problems;
         let label = format!("constraint \"{}\"", shortened(entry.key));
         let quantity = self.asked(entry, &label, fixed)?;
@@ -145,7 +172,8 @@ impl Reader<'_> {
             problems.add(entry.node.at, format!("{label}: found {found}, wanted bounds such as {{ min = 0 }}"));
             return None;
         };
-        let known = table.check_keys(problems, &label, &["min", "max", "above", "below", "of", "over_scenarios"]);
+        let known =
+            table.check_keys(problems, &label, &self.with_draws(&["min", "max", "above", "below", "of", "over_scenarios"], &[YIELD]));
         let over = self.over(&table, quantity, &label)?;
         let is_bounded = ["min", "max", "above", "below"].iter().any(|key| table.get(key).is_some());
         if !is_bounded && known {
@@ -177,6 +205,13 @@ impl Reader<'_> {
         }
         let side = |bound: Option<(f64, bool, usize)>| bound.map(|(value, excluded, _)| (value, excluded));
         (known && is_bounded).then_some(Constraint { quantity, low: side(low), high: side(high), over })
+    }
+
+    /// Keys that are allowed, with those that tell of draws where there are such.
+    pub(super) fn with_draws(&self, keys: &[&'static str], besides: &[&'static str]) -> Vec<&'static str> {
+        let drawn: &[&str] = if self.has_laws.get() { &[OVER_DRAWS] } else { &[] };
+        let besides = if drawn.is_empty() { &[] } else { besides };
+        [keys, drawn, besides].concat()
     }
 
     /// The `[objectives]` table.
@@ -211,7 +246,7 @@ impl Reader<'_> {
             }
             return Some(Objective { goal: goal_of(entry)?, quantity: quantity?, resolution: None, over: OverScenarios::Worst });
         };
-        let known = table.check_keys(problems, &label, &["goal", "resolution", "of", "over_scenarios"]);
+        let known = table.check_keys(problems, &label, &self.with_draws(&["goal", "resolution", "of", "over_scenarios"], &[]));
         let goal = match table.get("goal") {
             Some(entry) => goal_of(entry),
             None => {

@@ -210,7 +210,7 @@ impl Reader<'_> {
             let name = text(node, self.problems, label)?;
             return self.numeric(&name, node.at, label, known.fixed).map(ReportColumn::from);
         };
-        let good = table.check_keys(self.problems, label, &["of", "worst", "over_scenarios"]);
+        let good = table.check_keys(self.problems, label, &self.with_draws(&["of", "worst", "over_scenarios"], &[]));
         let example = format!("{{ of = \"{}\", worst = \"lowest\" }}", self.some_output());
         let of = self.needed(&table, "of", label, &example).and_then(|entry| self.named(entry, label, known))?;
         let over = self.over(&table, of, label)?;
@@ -240,7 +240,7 @@ impl Reader<'_> {
         if !self.is_of_worst(table, "top") {
             return None;
         }
-        let good = table.check_keys(self.problems, "top", &["by", "count", "goal"]);
+        let good = table.check_keys(self.problems, "top", &self.with_draws(&["by", "count", "goal"], &[]));
         let example = format!("top = {{ by = \"{}\", count = 20 }}", self.some_output());
         let by = self.needed(table, "by", "top", &example).and_then(|entry| self.named(entry, "top", known));
         let count = self.needed(table, "count", "top", &example).and_then(|entry| whole(entry, self.problems, "top", 1, MOST_TOP));
@@ -259,7 +259,7 @@ impl Reader<'_> {
         if !self.is_of_worst(table, label) {
             return None;
         }
-        let good = table.check_keys(self.problems, label, &["of", "bins", "from", "to"]);
+        let good = table.check_keys(self.problems, label, &self.with_draws(&["of", "bins", "from", "to"], &[]));
         let example = format!("{{ of = \"{}\", bins = 50 }}", self.some_output());
         let of = self.needed(table, "of", label, &example).and_then(|entry| self.named(entry, label, known));
         let bins = match table.get("bins") {
@@ -296,7 +296,7 @@ impl Reader<'_> {
         if !self.is_of_worst(table, label) {
             return None;
         }
-        let good = table.check_keys(problems, label, &["x", "y", "value", "best", "contours"]);
+        let good = table.check_keys(problems, label, &self.with_draws(&["x", "y", "value", "best", "contours"], &[]));
         if self.sampled {
             problems.add(table.at, format!("{label}: sampled designs lie on no grid, so there is no map; drop it or [sample]"));
             return None;

@@ -83,6 +83,10 @@ impl Reader<'_> {
     /// What becomes of a quantity over the scenarios, as a table says it.
     pub(super) fn over(&self, table: &TomlTable<'_>, quantity: Quantity, label: &str) -> Option<OverScenarios> {
         let Some(entry) = table.get("over_scenarios") else { return Some(OverScenarios::Worst) };
+        if self.meanings.is_some() {
+            // What becomes of the cases is part of the statistic.
+            return Some(OverScenarios::Worst);
+        }
         let problems = self.problems;
         let over = choice(entry, problems, label, OVER)?;
         if over.is_worst() {

@@ -42,7 +42,7 @@ fn an_enumeration_is_fixed_listed_and_joined_by_its_words() {
     "#;
     let model = with_a_section();
     let study = study_of(&model, text).expect("it is right");
-    let section = model.enumeration().expect("it has one");
+    let section = model.input("section").expect("it has one");
     assert_eq!(study.design, [Axis::Single { input: section, levels: Levels::List(vec![1.0, 4.0]) }]);
     assert_eq!(study.describe()["design"][0]["values"], serde_json::json!(["machined", "pressed-cup"]));
     let joint = text.replace("section = [\"machined\", \"pressed-cup\"]", "cases = [{ section = \"welded-discs\", groove_count = 2 }]");
@@ -90,7 +90,7 @@ fn words_have_no_order_to_constrain_or_weigh_them_by() {
 #[test]
 fn a_preset_is_the_base_of_what_is_fixed() {
     let model = with_a_section();
-    let section = model.enumeration().expect("it has one");
+    let section = model.input("section").expect("it has one");
     let study = |head: &str| study_of(&model, &format!("{head}\n[design]\ngroove_count = [1, 2]\n[objectives]\ntorque_Nm = \"max\"\n"));
     let welded = study("preset = \"welded\"").expect("it is right");
     assert_eq!((welded.fixed[0], welded.fixed[section]), (5.0, 2.0));

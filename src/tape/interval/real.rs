@@ -28,7 +28,8 @@ impl Real for Interval {
     }
     #[inline]
     fn sqrt(self) -> Self {
-        if self.high < 0.0 {
+        // What may be a NaN stays one.
+        if self.high < 0.0 || self == EVERYTHING {
             return EVERYTHING;
         }
         let low = greater(self.low, 0.0).sqrt();
@@ -43,6 +44,8 @@ impl Real for Interval {
             self
         } else if self.high <= 0.0 {
             -self
+        } else if self == EVERYTHING {
+            self
         } else {
             Self { low: 0.0, high: self.magnitude(), error: self.error }
         }

@@ -24,6 +24,7 @@ fn what_has_no_meaning_is_everything() {
     assert_eq!(Interval::constant(0.0) * EVERYTHING, EVERYTHING);
     assert_eq!((EVERYTHING - EVERYTHING).min(Interval::constant(1.0)), EVERYTHING, "f64 keeps a NaN that comes first");
     assert_eq!(Real::sqrt(between(-2.0, -1.0)), EVERYTHING);
+    assert_eq!((Real::sqrt(EVERYTHING), Real::abs(EVERYTHING)), (EVERYTHING, EVERYTHING), "a NaN stays one");
     assert_eq!(Real::ln_1p(between(-2.0, 1.0)), EVERYTHING);
     assert_eq!(Interval::point(f64::NAN), EVERYTHING);
 }

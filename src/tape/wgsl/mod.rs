@@ -6,7 +6,7 @@
 
 mod loops;
 
-use super::{Binary, Fields, First, List, ListRoot, Node, Operation, Recordable, Rolled, Root, Second, Set, Unary, nearest_f32};
+use super::{Binary, Fields, List, ListRoot, Node, Operation, Recordable, Rolled, Root, StageLists, Unary, nearest_f32};
 
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
@@ -75,18 +75,19 @@ enum Arithmetic {
 
 /// The text of a model's formula with so many conditions; `equations` has where each output comes from, as far as that is known.
 pub fn text(formula: &dyn Recordable, conditions: usize, equations: &[&str]) -> String {
-    let fields = formula.fields();
-    let (first, second) = formula.stages(Set::ALL, Set::ALL);
-    first_stage(&fields, &first) + &second_stage(&fields, &second, conditions, equations)
+    stages_text(&formula.fields(), &StageLists::whole(formula, conditions), equations)
 }
 
-fn first_stage(fields: &Fields, first: &First) -> String {
-    let asked: Vec<_> = first.prepared.iter().copied().map(Some).collect();
-    let list = List::cut(&first.recording, &asked);
+/// The same of a formula's lists.
+pub fn stages_text(fields: &Fields, lists: &StageLists, equations: &[&str]) -> String {
+    first_stage(fields, &lists.first) + &second_stage(fields, lists, equations)
+}
+
+fn first_stage(fields: &Fields, list: &List) -> String {
     let leaf = |input: usize, _: &str| format!("i.{}", fields.inputs[input]);
     let results: Vec<Assignment> =
         fields.prepared.iter().map(|field| Assignment { to: format!("p.{field}"), name: field, equation: "" }).collect();
-    let mut writer = Writer::new("prepare", fields, &list, &leaf, &results);
+    let mut writer = Writer::new("prepare", fields, list, &leaf, &results);
     for (&result, (table, _)) in list.results[results.len()..].iter().flatten().zip(fields.tables) {
         writer.tables.insert(list.table(result), table);
     }
@@ -94,7 +95,7 @@ fn first_stage(fields: &Fields, first: &First) -> String {
     writer.text()
 }
 
-fn second_stage(fields: &Fields, second: &Second, conditions: usize, equations: &[&str]) -> String {
+fn second_stage(fields: &Fields, lists: &StageLists, equations: &[&str]) -> String {
     let inputs = fields.inputs.len();
     let fields_passed: Vec<(usize, usize)> = fields.places().collect();
     // A number of a table by what is to be added to its first place.
@@ -110,11 +111,9 @@ fn second_stage(fields: &Fields, second: &Second, conditions: usize, equations: 
             }
         },
     };
-    let cut = |nodes: &[Node]| List::cut(&second.recording, &nodes.iter().copied().map(Some).collect::<Vec<_>>());
-    let lines: Vec<Assignment> =
-        (0..conditions).map(|number| Assignment { to: format!("margins[{number}]"), name: "", equation: "" }).collect();
-    let list = cut(&second.conditions[..conditions]);
-    let mut conditions = Writer::new("conditions", fields, &list, &leaf, &lines);
+    let margin = |number: usize| Assignment { to: format!("margins[{number}]"), name: "", equation: "" };
+    let lines: Vec<Assignment> = (0..lists.conditions.results.len()).map(margin).collect();
+    let mut conditions = Writer::new("conditions", fields, &lists.conditions, &leaf, &lines);
     let margins = "var margins: array<Real, CONDITIONS>;";
     conditions.function("conditions(p: Prepared, i: Inputs) -> array<Real, CONDITIONS>", margins, &lines, "return margins;");
     let line = |(number, field): (usize, &&'static str)| Assignment {
@@ -123,8 +122,7 @@ fn second_stage(fields: &Fields, second: &Second, conditions: usize, equations: 
         equation: equations.get(number).copied().unwrap_or_default(),
     };
     let lines: Vec<Assignment> = fields.outputs.iter().enumerate().map(line).collect();
-    let list = cut(&second.outputs);
-    let mut finish = Writer::new("finish", fields, &list, &leaf, &lines);
+    let mut finish = Writer::new("finish", fields, &lists.finish, &leaf, &lines);
     finish.function("finish(p: Prepared, i: Inputs) -> Outputs", "var out: Outputs;", &lines, "return out;");
     conditions.text() + &finish.text()
 }

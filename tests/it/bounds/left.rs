@@ -171,7 +171,7 @@ fn a_run_that_left_bounds_is_resumed_by_any_method() {
 const SLOW: &str = r#"model = "timing-belt"
 preset = "ohc-driven"
 [design]
-space_half_angle_deg = { from = 9.74, to = 11.840202539223348, step = 0.09546375178287946 }
+space_half_angle_deg = { from = 4.2, to = 6.300202539223348, step = 0.09546375178287946 }
 centrifugal_land_friction = { from = 0, to = 1 }
 friction = { from = 0.332, to = 0.4362754791485245, count = 38, spacing = "log" }
 pulley_speed_rpm = { from = 9030.0, to = 8510.0, count = 30, spacing = "log" }

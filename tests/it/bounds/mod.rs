@@ -47,7 +47,7 @@ fn draft_of(seed: u64) -> (Draft, String) {
 fn bounds_find_what_looking_at_every_design_finds() {
     let mut coverage = Coverage::new();
     // Another first seed tries other studies, or one that failed at once.
-    let first = std::env::var("BELTSPACE_SEED").ok().and_then(|seed| seed.parse().ok()).unwrap_or(1);
+    let first = std::env::var("BELTSPACE_SEED").ok().and_then(|seed| seed.parse().ok()).unwrap_or(61);
     let mut failed = Vec::new();
     for seed in first..first + studies() {
         let (draft, text) = draft_of(seed);

@@ -7,7 +7,7 @@ const COST: &str = include_str!("../formulas/cost.toml");
 /// What a report may have, of quantities that formulas give.
 const REPORT: &str = r#"
 [report]
-columns = ["friction", "belt_speed_m_per_s"]
+columns = ["friction", "band_speed_m_per_s"]
 top = { by = "life", goal = "max", count = 5 }
 histograms = [{ of = "life", bins = 10 }]
 maps = [{ x = "band_thickness_mm", y = "driver_speed_rpm", value = "life", best = "max" }]
@@ -36,7 +36,7 @@ fn a_result_with_formulas_needs_no_other_file_and_is_the_same_in_shards() {
     assert!(header.contains(",life,life_scenario,") && header.contains(",friction,friction_scenario,"), "{header}");
     ask(at, "report one").text();
     let page = read(&at.join("one/report.html"));
-    assert!(page.contains("belt_speed_m_per_s") && page.contains("m/s"));
+    assert!(page.contains("band_speed_m_per_s") && page.contains("m/s"));
 }
 
 #[test]
@@ -101,7 +101,7 @@ study.toml:21:13: formula "cost_EUR": unknown name "belt_price_EUR_per_kg"; it i
     (
         "friction = [0.08, 0.1]",
         "friction = [0.08, 0.1]\nelastic_modulus_MPa = [1, 2]\nwear = [1, 2]",
-        r#"study.toml:18:1: axis "wear": metal-cvt has no input "wear"; its inputs are friction, groove_angle_deg, ratio, belt_length_mm, centre_distance_mm, band_width_mm, band_thickness_mm, band_count, elastic_modulus_MPa, strength_MPa, traction, torque_Nm, belt_price_EUR_per_kg"#,
+        r#"study.toml:18:1: axis "wear": metal-cvt has no input "wear"; its inputs are friction, groove_angle_deg, ratio, belt_length_mm, centre_distance_mm, band_width_mm, band_thickness_mm, band_count, elastic_modulus_MPa, strength_MPa, traction, torque_Nm, clamping_force_N, driver_speed_rpm, belt_mass_kg_per_m, belt_price_EUR_per_kg"#,
     ),
     (
         "[constraints]",

@@ -13,13 +13,15 @@ const MODELS: [(&str, &str, &str); 5] = [
     (
         "rubber-cvt",
         r#"{"friction":0.4,"groove_angle_deg":30,"ratio":1,"belt_length_mm":1066,"centre_distance_mm":260,"belt_width_mm":50,
-            "belt_thickness_mm":10,"elastic_modulus_MPa":600,"strength_MPa":18,"traction":0.8,"torque_Nm":50}"#,
+            "belt_thickness_mm":10,"elastic_modulus_MPa":600,"strength_MPa":18,"traction":0.8,"torque_Nm":50,
+            "clamping_force_N":"from-traction","driver_speed_rpm":0,"belt_mass_kg_per_m":0,"bending_modulus_MPa":600}"#,
         VARIATOR_OUTPUTS,
     ),
     (
         "metal-cvt",
         r#"{"friction":0.08,"groove_angle_deg":22,"ratio":1,"belt_length_mm":613,"centre_distance_mm":156,"band_width_mm":9,
-            "band_thickness_mm":0.2,"band_count":10,"elastic_modulus_MPa":210000,"strength_MPa":500,"traction":"limit","torque_Nm":100}"#,
+            "band_thickness_mm":0.2,"band_count":10,"elastic_modulus_MPa":210000,"strength_MPa":500,"traction":"limit","torque_Nm":100,
+            "clamping_force_N":"from-traction","driver_speed_rpm":0,"belt_mass_kg_per_m":0}"#,
         METAL_OUTPUTS,
     ),
     (
@@ -28,48 +30,54 @@ const MODELS: [(&str, &str, &str); 5] = [
             "tooth_compliance_um_per_N":2.55,"cord_modulus_GPa":78.4,"cord_area_mm2":21.5,"tip_radius_mm":66.32,
             "land_half_angle_deg":1.473,"space_half_angle_deg":2.618,"tooth_length_mm":6.10,"pressure_angle_deg":20,
             "tight_span_angle_deg":6,"slack_span_angle_deg":6,"pitch_mass_g":0.411,"lift_angle_deg":2.618,"pitch_mm":9.525,
-            "centrifugal_land_friction":0}"#,
+            "centrifugal_land_friction":0,"pitch_line_mm":0.686,"belt_width_mm":12.7,"tooth_area_mm2":7.54,"land_area_mm2":8.23,
+            "gross_cord_area_mm2":10.52,"rubber_density_kg_per_m3":1300,"cord_density_kg_per_m3":1500}"#,
         "centrifugal_force_N boundary_tooth boundary_position incomplete_teeth lift_speed_rpm boundary_tension_N peak_tooth_load_N \
-         peak_tooth_load_complete_N least_tooth_load_N effective_tension_N",
+         peak_tooth_load_complete_N least_tooth_load_N effective_tension_N torque_Nm pitch_mass_used_g",
     ),
     (
         "pulley-load",
-        r#"{"power_kW":3,"speed_rpm":3000,"slack_tension_N":700,"wrap_angle_deg":88,"mean_radius_mm":60,"groove_angle_deg":36,
-            "groove_count":1,"belt_mass_kg_per_m":0.11,"friction_limit":0.3,"friction_direction_deg":45}"#,
-        "belt_speed_m_per_s tight_tension_N effective_tension_N centrifugal_tension_N effective_friction friction_used friction_margin \
-         torque_Nm resultant_force_N slack_end_line_force_N_per_mm tight_end_line_force_N_per_mm slack_end_flank_force_N_per_mm \
+        r#"{"power_kW":3,"speed_rpm":3000,"tensioning":"slack","slack_tension_N":700,"installed_tension_N":800,
+            "wrap_angle_deg":88,"mean_radius_mm":60,"groove_angle_deg":36,"groove_count":1,"belt_mass_kg_per_m":0.11,"friction_limit":0.3,"friction_direction_deg":0}"#,
+        "belt_speed_m_per_s slack_tension_used_N tight_tension_N effective_tension_N centrifugal_tension_N effective_friction \
+         friction_used friction_margin torque_Nm resultant_force_N slack_end_line_force_N_per_mm tight_end_line_force_N_per_mm slack_end_flank_force_N_per_mm \
          tight_end_flank_force_N_per_mm",
     ),
     (
         "pulley",
-        r#"{"power_kW":3,"speed_rpm":3000,"slack_tension_N":700,"wrap_angle_deg":88,"mean_radius_mm":60,"groove_angle_deg":36,
-            "groove_count":1,"belt_mass_kg_per_m":0.11,"friction_limit":0.3,"friction_direction_deg":45,"section":"pressed-cup",
+        r#"{"power_kW":3,"speed_rpm":3000,"tensioning":"slack","slack_tension_N":700,"installed_tension_N":800,
+            "wrap_angle_deg":88,"mean_radius_mm":60,"groove_angle_deg":36,"groove_count":1,"belt_mass_kg_per_m":0.11,"friction_limit":0.3,"friction_direction_deg":0,"section":"pressed-cup",
             "accuracy":"usual","thickness_mm":1.8,"bore_diameter_mm":20,"cup_diameter_mm":66,"wall_diameter_mm":78,
             "wall_offset_mm":10,"hub_bend_radius_mm":5,"web_bend_radius_mm":3,"fold_radius_mm":3.4,"ridge_width_mm":6,
             "weld_diameter_mm":66,"wall_thickness_mm":6,"rim_thickness_mm":5,"lip_thickness_mm":4,"fillet_radius_mm":1.5,
             "groove_offset_mm":16,"groove_width_mm":13,"groove_height_mm":5,"floor_depth_mm":7,"floor_bend_radius_mm":1.5,
             "rim_height_mm":1.5,"contact_height_mm":9,"bracket_diameter_mm":55,"bolt_count":4,"bolt_circle_mm":45,
             "bolt_hole_mm":6.6,"bolt_head_mm":12,"bolt_angle_deg":44,"clamp_force_N":8333.333,"tightening_torque_Nm":10,
-            "bolt_friction":0.15,"bolt_pitch_mm":1,"bolt_pitch_diameter_mm":5.35,"elastic_modulus_MPa":206000,
+            "bolt_friction":0.15,"bolt_pitch_mm":1,"bolt_pitch_diameter_mm":5.35,
+            "bolt_proof_strength_MPa":580,"joint_friction":0.15,"elastic_modulus_MPa":206000,
             "poisson_ratio":0.29,"density_kg_per_m3":7850,"yield_strength_MPa":270,"tensile_strength_MPa":370,
             "endurance_limit_MPa":"from-tensile","point_1_r_mm":"none","point_1_z_mm":0,"point_2_r_mm":"none","point_2_z_mm":0}"#,
-        "belt_speed_m_per_s tight_tension_N effective_tension_N centrifugal_tension_N effective_friction friction_used \
-         friction_margin torque_Nm resultant_force_N slack_end_line_force_N_per_mm tight_end_line_force_N_per_mm \
+        "belt_speed_m_per_s slack_tension_used_N tight_tension_N effective_tension_N centrifugal_tension_N effective_friction \
+         friction_used friction_margin torque_Nm resultant_force_N slack_end_line_force_N_per_mm tight_end_line_force_N_per_mm \
          slack_end_flank_force_N_per_mm tight_end_flank_force_N_per_mm max_stress_MPa max_stress_r_mm max_stress_z_mm \
          max_stress_theta_deg stress_Bl_MPa stress_Br_MPa stress_Cl_MPa stress_Cr_MPa stress_Dl_MPa stress_Dr_MPa stress_El_MPa \
          stress_Er_MPa stress_Fl_MPa stress_Fr_MPa stress_P1_MPa stress_P2_MPa rim_displacement_mm volume_mm3 mass_g \
-         yield_safety fatigue_safety fatigue_amplitude_MPa fatigue_mean_MPa excluded_radius_mm clamp_pressure_MPa",
+         yield_safety fatigue_safety fatigue_amplitude_MPa fatigue_mean_MPa excluded_radius_mm \
+         seat_pressure_MPa bolt_utilisation joint_slip_safety",
     ),
 ];
-const VARIATOR_OUTPUTS: &str = "driver_radius_mm driven_radius_mm driver_wrap_deg driven_wrap_deg effective_friction traction_limit \
-    driver_traction_limit slip_margin active_arc_deg driver_axial_coefficient driven_axial_coefficient belt_force_N tight_force_N \
-    slack_force_N driver_axial_force_N driven_axial_force_N axial_force_N tensile_stress_MPa bending_stress_MPa max_stress_MPa \
-    stress_margin optimum_thickness_mm torque_coefficient_N_per_mm torque_capacity_Nm capacity_axial_force_N";
-const METAL_OUTPUTS: &str = "driver_radius_mm driven_radius_mm driver_wrap_deg driven_wrap_deg effective_friction traction_limit \
-    driver_traction_limit slip_margin active_arc_deg driver_axial_coefficient driven_axial_coefficient belt_force_N tight_force_N \
-    slack_force_N driver_axial_force_N driven_axial_force_N axial_force_N tensile_stress_MPa bending_stress_MPa max_stress_MPa \
-    stress_margin optimum_thickness_mm torque_coefficient_N_per_mm torque_capacity_Nm capacity_axial_force_N \
-    printed_torque_coefficient_N_per_mm entry_compression";
+const VARIATOR_OUTPUTS: &str = "driver_radius_mm driven_radius_mm driver_wrap_deg driven_wrap_deg effective_friction traction_limit driven_traction_limit \
+    driver_traction_limit traction_used slip_margin active_arc_deg driver_axial_coefficient driven_axial_coefficient belt_force_N \
+    tight_force_N slack_force_N driver_axial_force_N driven_axial_force_N axial_force_N driver_axial_force_upper_N \
+    driven_axial_force_upper_N axial_force_upper_N clamping_safety clamping_utilisation thrust_ratio belt_speed_m_per_s \
+    centrifugal_force_N power_kW tensile_stress_MPa bending_stress_MPa max_stress_MPa stress_margin optimum_thickness_mm \
+    torque_coefficient_N_per_mm torque_capacity_Nm capacity_axial_force_N flank_pressure_MPa";
+const METAL_OUTPUTS: &str = "driver_radius_mm driven_radius_mm driver_wrap_deg driven_wrap_deg effective_friction traction_limit driven_traction_limit \
+    driver_traction_limit traction_used slip_margin active_arc_deg driver_axial_coefficient driven_axial_coefficient belt_force_N \
+    tight_force_N slack_force_N driver_axial_force_N driven_axial_force_N axial_force_N driver_axial_force_upper_N \
+    driven_axial_force_upper_N axial_force_upper_N clamping_safety clamping_utilisation thrust_ratio belt_speed_m_per_s \
+    centrifugal_force_N power_kW tensile_stress_MPa bending_stress_MPa max_stress_MPa stress_margin optimum_thickness_mm \
+    torque_coefficient_N_per_mm torque_capacity_Nm capacity_axial_force_N printed_torque_coefficient_N_per_mm entry_compression";
 
 /// Outputs that the defaults do not ask for.
 const NOT_ASKED: [&str; 2] = ["stress_P1_MPa", "stress_P2_MPa"];
@@ -169,9 +177,10 @@ fn a_design_of_defaults_has_every_output() {
 #[test]
 fn outputs_without_a_meaning_are_absent() {
     let slip = ask(here(), "eval metal-cvt --set traction=0.9 --json").json();
-    assert_eq!(slip["status"], "slip");
+    assert_eq!(slip["status"], "slip on the driven pulley");
     let kept = "driver_radius_mm driven_radius_mm driver_wrap_deg driven_wrap_deg effective_friction traction_limit \
-                driver_traction_limit slip_margin bending_stress_MPa optimum_thickness_mm";
+                driven_traction_limit driver_traction_limit traction_used slip_margin belt_speed_m_per_s centrifugal_force_N power_kW \
+                bending_stress_MPa optimum_thickness_mm";
     assert_eq!(keys(&slip["outputs"]), kept.split_whitespace().collect::<Vec<_>>());
     assert!(slip["outputs"]["slip_margin"].as_f64().is_some_and(|margin| margin < 0.0));
     let impossible = [
@@ -181,7 +190,7 @@ fn outputs_without_a_meaning_are_absent() {
     ];
     for (set, status) in impossible {
         let none = ask(here(), &format!("eval rubber-cvt --set {set} --json")).json();
-        assert_eq!((&none["status"], keys(&none["outputs"])), (&json!(status), vec!["effective_friction"]), "{set}");
+        assert_eq!((&none["status"], keys(&none["outputs"])), (&json!(status), vec!["effective_friction", "power_kW"]), "{set}");
         let table = ask(here(), &format!("eval rubber-cvt --set {set}")).text();
         assert!(table.contains(&format!("status {status}")), "{table}");
         assert!(table.lines().any(|line| line.trim_start().starts_with("axial_force_N") && line.contains(" - ")), "{table}");
@@ -189,16 +198,27 @@ fn outputs_without_a_meaning_are_absent() {
     }
     let lifted = ask(here(), "eval pulley-load --set slack_tension_N=20 --json").json();
     assert_eq!(lifted["status"], "belt lifts");
-    let kept = ["belt_speed_m_per_s", "tight_tension_N", "effective_tension_N", "centrifugal_tension_N", "torque_Nm"];
+    let kept =
+        ["belt_speed_m_per_s", "slack_tension_used_N", "tight_tension_N", "effective_tension_N", "centrifugal_tension_N", "torque_Nm"];
     assert_eq!(keys(&lifted["outputs"]), kept);
+    let loose = ask(here(), "eval pulley-load --set tensioning=fixed-centres --set installed_tension_N=110 --json").json();
+    assert_eq!((&loose["status"], keys(&loose["outputs"])), (&json!("slack belt"), kept.to_vec()));
     // With an impossible section only the belt's outputs have values, and a note says what is wrong.
     let bent = ask(here(), "eval pulley --set fold_radius_mm=1.8 --json");
     assert!(bent.err.contains("the inside radius of bend D would be 0 mm"), "{}", bent.err);
     let bent = bent.json();
-    assert_eq!((&bent["status"], keys(&bent["outputs"]).len()), (&json!("no section"), 13));
-    // Too much friction is a negative margin of a design that can be computed.
+    assert_eq!((&bent["status"], keys(&bent["outputs"]).len()), (&json!("no section"), 14));
+    // A belt that slips has its tensions and a negative margin, and does to the pulley nobody knows what.
     let weak = ask(here(), "eval pulley-load --set friction_limit=0.01 --json").json();
-    assert!(weak["status"] == "ok" && weak["outputs"]["friction_margin"].as_f64().is_some_and(|margin| margin < 0.0), "{weak}");
+    assert!(weak["status"] == "slip" && weak["outputs"]["friction_margin"].as_f64().is_some_and(|margin| margin < 0.0), "{weak}");
+    let kept = [&kept[..5], &["effective_friction", "friction_used", "friction_margin", "torque_Nm"]].concat();
+    assert_eq!(keys(&weak["outputs"]), kept);
+    let sliding = ask(here(), "eval pulley --set friction_limit=0.01 --json").json();
+    let section = ["volume_mm3", "mass_g", "excluded_radius_mm", "seat_pressure_MPa", "bolt_utilisation", "joint_slip_safety"];
+    assert_eq!((&sliding["status"], keys(&sliding["outputs"])), (&json!("slip"), [&kept[..], &section].concat()));
+    // Without torque nothing could slip at the bolts.
+    let idle = ask(here(), "eval pulley --set power_kW=0 --json").json();
+    assert!(idle["status"] == "ok" && idle["outputs"].get("joint_slip_safety").is_none(), "{idle}");
 }
 
 #[test]
@@ -339,11 +359,14 @@ fn a_design_of_a_study_is_what_the_front_says() {
     assert!(err.contains("there is no scenario 12; the study's scenarios are 0 to 11"), "{err}");
     // Traction 0.5 slips at the lower friction: not feasible, and the reader is told where.
     let bad = ask(at, &format!("eval small.toml --design {last} --json")).json();
-    assert_eq!((&bad["feasible"], &bad["status"]), (&json!(false), &json!("slip")), "{bad}");
+    assert_eq!((&bad["feasible"], &bad["status"]), (&json!(false), &json!("slip on the driven pulley")), "{bad}");
     assert!(bad["scenarios_not_ok"].as_u64().is_some_and(|count| 0 < count && count < 12), "{bad}");
     assert_eq!((&bad["constraints"][0]["of"], &bad["constraints"][0]["holds"]), (&json!("slip_margin"), &json!(false)));
     let table = ask(at, &format!("eval small.toml --design {last}")).text();
-    assert!(table.contains("feasible no") && table.contains("status slip in scenario 0") && table.contains("violated"), "{table}");
+    assert!(
+        table.contains("feasible no") && table.contains("status slip on the driven pulley in scenario 0") && table.contains("violated"),
+        "{table}"
+    );
 }
 
 #[test]

@@ -27,7 +27,10 @@ fn rows_of_a_model_are_what_eval_says_of_each() {
     let table = Csv::read(&at.join("out.csv"));
     assert_eq!(&table.header[..4], ["friction", "torque_Nm", "traction", "note"]);
     assert_eq!((table.column("note"), table.column("torque_Nm")), (vec!["a", "b", "c, d"], vec!["50", "60", "20"]));
-    assert_eq!((table.column("traction"), table.column("status")), (vec!["limit", "0.4", "0.9"], vec!["ok", "ok", "slip"]));
+    assert_eq!(
+        (table.column("traction"), table.column("status")),
+        (vec!["limit", "0.4", "0.9"], vec!["ok", "ok", "slip on the driven pulley"])
+    );
     let words = [
         ["friction=0.08", "torque_Nm=50", "traction=limit"],
         ["friction=0.09", "torque_Nm=60", "traction=0.4"],

@@ -79,7 +79,7 @@ fn a_formula_that_gives_an_input_goes_and_a_variable_stays_one() {
     let by_hand = changed(
         MEASURED,
         &[
-            ("friction = \"friction_of_speed(belt_speed_m_per_s) * tanh(band_count / 4)\"\n", ""),
+            ("friction = \"friction_of_speed(band_speed_m_per_s) * tanh(band_count / 4)\"\n", ""),
             ("[formulas]", "[fixed]\nfriction = 0.09\n[formulas]"),
         ],
     );
@@ -199,4 +199,45 @@ fn what_if_evaluates_a_design_with_other_inputs() {
     let told = ask(at, "eval study.toml --design 500 --set friction=0.065").text();
     assert!(told.starts_with("design 500 with friction=0.065, worst of 6 scenarios\n"), "{told}");
     assert!(ask(at, "eval study.toml --design 500 --set friction=0").refusal(2).contains("--set friction=0: 0 is out of range"));
+}
+
+/// A traction and a clamping force contradict each other, whoever gives them.
+#[test]
+fn what_takes_the_place_of_an_input_cannot_be_given_beside_it() {
+    let folder = folder_with("study.toml", SMALL);
+    let at = folder.path();
+    let line = SMALL.lines().position(|line| line.starts_with("traction")).expect("there is an axis") + 1;
+    let told = "which takes its place; drop one of the two";
+    let said = ask(at, "check study.toml --set clamping_force_N=30000").refusal(2);
+    assert!(
+        said.contains(&format!("study.toml:{line}:1: \"traction\" cannot be given beside clamping_force_N")) && said.contains(told),
+        "{said}"
+    );
+    // The word says that the traction is given.
+    ask(at, "check study.toml --set clamping_force_N=from-traction").text();
+    let by_formula = format!("{SMALL}[formulas]\nclamping_force_N = \"200[1/m] * torque_Nm\"\n");
+    write(at, "study.toml", &by_formula);
+    let given = by_formula.lines().position(|line| line.starts_with("clamping_force_N")).expect("there is a formula") + 1;
+    let said = ask(at, "check study.toml").refusal(2);
+    let expected = format!("error: study.toml:{line}:1: \"traction\" cannot be given beside clamping_force_N, line {given}, {told}\n");
+    assert_eq!(said, expected);
+    // The other way about, and in a row of cases.
+    write(at, "study.toml", &changed(&by_formula, &[("traction          = { from = 0.30, to = 0.50, count = 5 }\n", "")]));
+    let said = ask(at, "check study.toml --set traction=0.4").refusal(2);
+    assert!(said.contains("\"traction\" cannot be given beside clamping_force_N") && said.contains(told), "{said}");
+    let cases = "model = \"metal-cvt\"\n[design]\ncases = [{ traction = 0.3, clamping_force_N = \"from-traction\" }, \
+                 { traction = 0.3, clamping_force_N = 2e4 }]\n[objectives]\naxial_force_N = \"min\"\n";
+    write(at, "study.toml", cases);
+    assert!(ask(at, "check study.toml").refusal(2).contains("\"traction\" cannot be given beside clamping_force_N, line 3"));
+    // Of a model, and of rows.
+    let said = ask(at, "eval metal-cvt --set traction=0.4 --set clamping_force_N=3e4").refusal(2);
+    assert_eq!(said, format!("error: traction cannot be set beside clamping_force_N, {told}\n"));
+    ask(at, "eval metal-cvt --set traction=0.4 --set clamping_force_N=from-traction").text();
+    write(at, "rows.csv", "traction,clamping_force_N\n0.3,from-traction\n0.3,25000\n");
+    let said = ask(at, "eval metal-cvt --table rows.csv --out out.csv").refusal(2);
+    assert!(said.contains("traction cannot be given beside clamping_force_N, which takes its place; drop the column"), "{said}");
+    write(at, "rows.csv", "traction,clamping_force_N\n0.3,from-traction\n0.4,from-traction\n");
+    ask(at, "eval metal-cvt --table rows.csv --out out.csv").text();
+    let shown = ask(at, "eval metal-cvt --set clamping_force_N=25000").text();
+    assert!(shown.lines().any(|line| line.trim_start().starts_with("traction ") && line.contains("  -  ")), "{shown}");
 }

@@ -6,7 +6,7 @@ const MODEL: &str = include_str!("models/band-brake.toml");
 const GRIP: &str = include_str!("models/grip.csv");
 
 /// Edits of a right model, and what is said of each: line and column, and the sentence.
-const BROKEN: [(&str, &str, &str); 48] = [
+const BROKEN: [(&str, &str, &str); 51] = [
     (r#"summary = "Band"#, "summary = 7 #", "1:11: summary: found the number 7, wanted a text in quotes"),
     ("limits = ", "limit = ", r#"3:1: unknown key "limit"; did you mean "limits"?"#),
     (
@@ -95,8 +95,23 @@ units = ["EUR"]"#,
     ("default = 2, valid = [1, 9]", "default = 2.5, valid = [1, 9]", r#"13:30: input "rows": 2.5 is not a whole number; use 2 or 3"#),
     (
         "rows           = { default",
-        r#"rows           = { only_for = ["cast"], default"#,
-        r#"13:18: input "rows": only_for names "cast", but surface takes "smooth" or "rough""#,
+        r#"rows           = { only_for = { surface = ["cast"] }, default"#,
+        r#"13:18: input "rows": only_for names "cast" of surface, which takes the words "smooth" or "rough""#,
+    ),
+    (
+        "rows           = { default",
+        r#"rows           = { only_for = { finish = ["cast"] }, default"#,
+        r#"13:18: input "rows": only_for names "finish", which is no input"#,
+    ),
+    (
+        "rows           = { default",
+        r#"rows           = { only_for = { speed_rpm = ["cast"] }, default"#,
+        r#"13:18: input "rows": only_for names "cast" of speed_rpm, which takes no words"#,
+    ),
+    (
+        "rows           = { default",
+        r#"rows           = { only_for = ["rough"], default"#,
+        r#"13:31: input "rows": found a list; only_for must be one input with words of it, such as { surface = ["rough"] }"#,
     ),
     (
         "rows           = { default",

@@ -6,6 +6,7 @@ mod broken_models;
 mod files;
 mod random;
 mod same;
+mod settled;
 
 use beltspace::models::{Model, Status, evaluate, find};
 use beltspace::plan::Plan;
@@ -75,7 +76,7 @@ const CASES: [Case; 3] = [
         study: include_str!("measured.toml"),
         before: |it| {
             let speed = it["driver_speed_rpm"] * 2.0 * PI / 60.0 * 0.06;
-            it.insert("belt_speed_m_per_s".to_owned(), speed);
+            it.insert("band_speed_m_per_s".to_owned(), speed);
             let points = [(0.0, 0.10), (5.0, 0.09), (20.0, 0.07), (35.0, 0.06)];
             let segment = points.windows(2).find(|pair| pair[0].0 <= speed && speed <= pair[1].0)?;
             let [from, to] = [segment[0], segment[1]];

@@ -30,7 +30,7 @@ fn assert_kept(report: &VerifyReport, what: &str) {
 fn no_error_of_any_output_exceeds_a_quarter_of_its_bound() {
     for model in models::all().iter().filter(|model| model.on_gpu) {
         let kernel = kernel(model);
-        let report = compare(&kernel, model, &[], &points_of_model(model, 150_000, 1)).expect("the device works");
+        let report = compare(&kernel, model, &[], &points_of_model(model, 200_000, 1)).expect("the device works");
         assert_kept(&report, &model.name);
         for it in &report.outputs {
             assert!(it.values > 10_000, "{}: only {} values of {}", model.name, it.values, it.name);

@@ -91,14 +91,29 @@ fn assert_same(a: &State, b: &State, what: &str) {
     }
 }
 
-/// The studies that come with the program, of models that are computed on a device too.
-fn shipped() -> Vec<PathBuf> {
+/// The studies that come with the program.
+fn all_shipped() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("studies");
     let mut paths: Vec<_> = std::fs::read_dir(folder).expect("studies are shipped").map(|it| it.expect("it is listed").path()).collect();
     paths.retain(|path| path.extension().is_some_and(|it| it == "toml"));
-    paths.retain(|path| Study::read(path).expect("a shipped study is right").0.model.on_gpu);
     paths.sort();
-    assert!(paths.len() >= 4);
+    paths
+}
+
+/// Those that a device does not serve, each with what the program says of it.
+const NOT_ON_A_DEVICE: [(&str, &str); 5] = [
+    ("pulley-design", "pulley is computed in f64 on the CPU only"),
+    ("pulley-thickness", "pulley is computed in f64 on the CPU only"),
+    ("pulley-types", "pulley is computed in f64 on the CPU only"),
+    ("push-belt-yield", "yields are counted draw by draw, on the CPU"),
+    ("timing-tension", "yields are counted draw by draw, on the CPU"),
+];
+
+/// The studies that come with the program, but for those.
+fn shipped() -> Vec<PathBuf> {
+    let mut paths = all_shipped();
+    paths.retain(|path| NOT_ON_A_DEVICE.iter().all(|it| path.file_stem().is_none_or(|stem| stem != it.0)));
+    assert!(paths.len() >= 4 && paths.iter().all(|path| Study::read(path).expect("a shipped study is right").0.model.on_gpu));
     paths
 }
 

@@ -192,6 +192,7 @@ fn a_traction_at_its_limit_surely_does_not_slip_and_has_no_margin() {
         for _ in 0..1000 {
             let mut inputs = draw(model, Region::Usual, random);
             inputs[model.input("traction").expect("it is an input")] = -1.0;
+            inputs[model.input("clamping_force_N").expect("it is an input")] = -1.0;
             let (decision, outputs) = decided(model, &inputs);
             sure += usize::from(decision != Decision::Unsure);
             if decision == Decision::Yes {

@@ -24,7 +24,9 @@ pub fn formulas() -> impl Iterator<Item = &'static Arc<Model>> {
 fn list(model: &Model, iterations: Vec<usize>) -> &'static List {
     static LISTS: Mutex<BTreeMap<(String, Vec<usize>), &'static List>> = Mutex::new(BTreeMap::new());
     let mut lists = LISTS.lock().unwrap_or_else(PoisonError::into_inner);
-    lists.entry((model.name.to_owned(), iterations.clone())).or_insert_with(|| {
+    // Studies with formulas have models of one name.
+    let name = format!("{} {:?}", model.name, model.formulas());
+    lists.entry((name, iterations.clone())).or_insert_with(|| {
         let formula = model.kernel.formula().expect("it is a formula");
         let known = |(input, &most): (&Input, &usize)| if input.integer { Known::Within(0.0, most as f64) } else { Known::ANY };
         let known: Vec<Known> = model.inputs.iter().zip(&iterations).map(known).collect();

@@ -136,15 +136,18 @@ fn dependencies_of(model: &Model, si: &[f64], varied: impl Fn(usize) -> bool) ->
 /// Changes every input of a preset but the one that says which section it is. Of `wanted` outputs: how many pairs of input and
 /// output are named that were not seen to change, how many in all, and which inputs were seen to change anything.
 fn changed_one_by_one(model: &Model, preset: &str, wanted: Set) -> (Vec<String>, usize, BTreeSet<usize>) {
-    let section = model.enumeration().expect("it has presets for the words of an enumeration");
+    let [section, tensioning] = ["section", "tensioning"].map(|name| model.input(name).expect("it is an input"));
     let mut inputs = model.preset(preset).expect("it is a preset");
     // What is read in one case only is read.
     for (name, value) in [("clamp_force_N", -1.0), ("point_1_r_mm", 40.0), ("point_2_r_mm", 58.0), ("point_2_z_mm", 12.0)] {
         inputs[model.input(name).expect("it is an input")] = value;
     }
+    if preset == "paper" {
+        inputs[tensioning] = model.inputs[tensioning].value_of("fixed-centres").expect("it is a word");
+    }
     let base = si(model, &inputs);
     let before = Parts::wanted(model, &base, wanted);
-    let of_section = dependencies_of(model, &base, |input| input != section);
+    let of_section = dependencies_of(model, &base, |input| input != section && input != tensioning);
     let every = dependencies_of(model, &base, |_| true);
     let (mut seen, mut changing) = (BTreeSet::new(), BTreeSet::new());
     for input in (0..model.inputs.len()).filter(|input| *input != section) {
@@ -152,7 +155,8 @@ fn changed_one_by_one(model: &Model, preset: &str, wanted: Set) -> (Vec<String>,
         other[input] = nudged(model, input, inputs[input]);
         let after = Parts::wanted(model, &si(model, &other), wanted);
         let alone = dependencies_of(model, &base, |it| it == input);
-        for (what, dependencies) in [("its section fixed", &of_section), ("all inputs vary", &every), ("it alone varies", &alone)] {
+        let ways = [("its words fixed", &of_section), ("all inputs vary", &every), ("it alone varies", &alone)];
+        for (what, dependencies) in ways.into_iter().skip(usize::from(input == tensioning)) {
             assert_eq!(missed(model, dependencies, input, &before, &after, &mut seen), None, "{preset}, {what}");
         }
         let silent = Dependencies {
@@ -181,13 +185,13 @@ fn changed_one_by_one(model: &Model, preset: &str, wanted: Set) -> (Vec<String>,
 #[test]
 fn what_an_input_of_a_slow_model_changes_is_named_for_every_section_and_little_else() {
     for model in models::all().iter().filter(|model| is_slow(model)) {
-        let section = model.enumeration().expect("it has sections");
+        let section = model.input("section").expect("it has sections");
         let mut changing = BTreeSet::from([section]);
         for preset in model.presets.iter().map(|it| it.name.as_str()) {
             // A solid section takes seconds to solve. What its inputs do to loads, outline and mesh shows without; how stresses follow
             // from a mesh is the same for all sections.
             let solved = preset != "machined";
-            let cheap = ["volume_mm3", "mass_g", "excluded_radius_mm", "clamp_pressure_MPa"];
+            let cheap = ["volume_mm3", "mass_g", "excluded_radius_mm", "seat_pressure_MPa", "bolt_utilisation", "joint_slip_safety"];
             let loads = model.output("max_stress_MPa").expect("it is an output");
             let wanted = |number: &usize| solved || *number < loads || cheap.contains(&model.outputs[*number].name.as_str());
             let wanted = (0..model.outputs.len()).filter(wanted).collect();
@@ -203,7 +207,7 @@ fn what_an_input_of_a_slow_model_changes_is_named_for_every_section_and_little_e
 #[test]
 fn the_section_changes_all_but_the_loads() {
     for model in models::all().iter().filter(|model| is_slow(model)) {
-        let section = model.enumeration().expect("it has sections");
+        let section = model.input("section").expect("it has sections");
         let before = Parts::new(model, &si(model, &model.defaults()));
         let every = dependencies_of(model, &si(model, &model.defaults()), |input| input == section);
         let mut seen = BTreeSet::new();

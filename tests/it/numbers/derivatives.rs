@@ -9,7 +9,7 @@ use beltspace::real::Real;
 use beltspace::tape::{Dual, Interval};
 
 /// More directions than any formula has inputs.
-const DIRECTIONS: usize = 20;
+const DIRECTIONS: usize = 32;
 type Slopes = (Vec<Dual<Interval, DIRECTIONS>>, Vec<Dual<Interval, DIRECTIONS>>);
 
 /// Values and slopes with every input's own direction.

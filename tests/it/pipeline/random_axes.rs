@@ -27,6 +27,7 @@ fn range(model: &Model, number: usize) -> (f64, f64) {
         ("timing-belt", "pulley_speed_rpm") => (500.0, 8000.0),
         ("timing-belt", "lift_angle_deg") => (0.0, 2.4),
         ("timing-belt", "space_half_angle_deg") => (2.2, 4.0),
+        ("timing-belt", "land_half_angle_deg") => (0.5, 2.5),
         ("timing-belt", "teeth_in_mesh") => (4.0, 30.0),
         ("rubber-cvt", "elastic_modulus_MPa") => (100.0, 2500.0),
         ("rubber-cvt", "strength_MPa") => (5.0, 60.0),
@@ -35,7 +36,7 @@ fn range(model: &Model, number: usize) -> (f64, f64) {
         (_, "speed_rpm") => (500.0, 6000.0),
         (_, "power_kW") => (0.5, 12.0),
         (_, "mean_radius_mm") => (30.0, 120.0),
-        (_, "slack_tension_N") => (100.0, 1500.0),
+        (_, "slack_tension_N" | "installed_tension_N") => (100.0, 1500.0),
         (_, "wrap_angle_deg") => (60.0, 220.0),
         _ => input.usual,
     }

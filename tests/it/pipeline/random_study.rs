@@ -75,6 +75,12 @@ impl Draft {
         let scenarios = generator.random.log_between(1.0, 40.0).min(most as f64 / designs).max(1.0);
         // What a shader does not know would keep the study from the device.
         let mut free: Vec<usize> = (0..model.inputs.len()).filter(|&input| for_bounds || !model.inputs[input].cpu_only).collect();
+        // What takes the place of another input cannot stand beside it.
+        for (number, other) in model.inputs.iter().enumerate().filter_map(|(number, it)| Some((number, it.instead_of.as_ref()?))) {
+            let other = model.input(other).expect("it is an input");
+            let gone = if generator.random.chance(0.5) { number } else { other };
+            free.retain(|&input| input != gone);
+        }
         generator.random.shuffle(&mut free);
         let design = generator.axes(0, &mut free, if for_bounds { 5 } else { 4 }, designs, sampled);
         let operation = generator.axes(1, &mut free, 2, scenarios.sqrt(), false);
@@ -186,6 +192,8 @@ impl Draft {
             "stress_margin",
             "slip_margin",
             "axial_force_N",
+            "axial_force_upper_N",
+            "clamping_utilisation",
             "friction_margin",
             "boundary_tooth",
             "lift_speed_rpm",

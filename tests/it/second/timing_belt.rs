@@ -4,83 +4,9 @@
 //! influence of the two strands computed beforehand, so that an error in any of these shows.
 //! The closed forms (9), (15) and (19) of the paper, with their misprints repaired, are a third way.
 
-use super::{Golden, Values, golden, value};
+use super::{Values, value};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
-
-/// The belt and driven pulley that the paper's Fig. 9 was calibrated on. Angles in degrees.
-pub const OHC_DRIVEN: &[(&str, f64)] = &[
-    ("pulley_speed_rpm", 5000.0),
-    ("tight_tension_N", 196.0),
-    ("slack_tension_N", 0.0),
-    ("teeth_in_mesh", 23.0),
-    ("friction", 0.45),
-    ("tooth_compliance_um_per_N", 2.55),
-    ("cord_modulus_GPa", 78.4),
-    ("cord_area_mm2", 21.5),
-    ("tip_radius_mm", 66.32),
-    ("land_half_angle_deg", 1.473),
-    ("space_half_angle_deg", 2.618),
-    ("tooth_length_mm", 6.10),
-    ("pressure_angle_deg", 20.0),
-    ("tight_span_angle_deg", 6.0),
-    ("slack_span_angle_deg", 6.0),
-    ("pitch_mass_g", 0.411),
-    ("pitch_mm", 9.525),
-    ("centrifugal_land_friction", 0.0),
-];
-/// What differs on the driver: half the teeth, twice the speed.
-pub const OHC_DRIVER: &[(&str, f64)] = &[
-    ("pulley_speed_rpm", 10_000.0),
-    ("teeth_in_mesh", 11.0),
-    ("tip_radius_mm", 32.97),
-    ("land_half_angle_deg", 2.945),
-    ("space_half_angle_deg", 5.236),
-];
-
-/// All that the paper prints as a number; the rest of its results are curves lost in the scan.
-pub const GOLDEN: &[(&str, Golden)] = &[
-    ("timing-belt", golden("first incomplete tooth", &[], "boundary_tooth", 16.0, 0.5, "TIM Fig. 9; m calibrated on it")),
-    ("timing-belt", golden("incomplete teeth", &[], "incomplete_teeth", 8.0, 0.5, "TIM Fig. 9, 16 to N+1 = 23")),
-];
-
-/// What the paper says without a number: `later` has its boundary nearer to the slack side.
-pub struct Trend {
-    pub what: &'static str,
-    pub later: &'static [(&'static str, f64)],
-    pub earlier: &'static [(&'static str, f64)],
-    pub source: &'static str,
-}
-
-pub const TRENDS: &[Trend] = &[
-    Trend {
-        what: "tension moves the boundary to the slack side",
-        later: &[("pulley_speed_rpm", 4000.0), ("tight_tension_N", 490.0)],
-        earlier: &[("pulley_speed_rpm", 4000.0)],
-        source: "TIM Fig. 10",
-    },
-    Trend {
-        what: "speed moves the boundary to the tight side",
-        later: &[("pulley_speed_rpm", 2000.0)],
-        earlier: &[("pulley_speed_rpm", 3000.0)],
-        source: "TIM Fig. 11",
-    },
-    Trend {
-        what: "speed moves the boundary to the tight side",
-        later: &[("pulley_speed_rpm", 3000.0)],
-        earlier: &[("pulley_speed_rpm", 5000.0)],
-        source: "TIM Fig. 11",
-    },
-];
-
-/// Boundary teeth that follow from the calibration: not of the paper, which shows their order only.
-pub const CALIBRATED: &[(&[(&str, f64)], f64)] = &[
-    (&[], 16.0),
-    (&[("pulley_speed_rpm", 4000.0)], 19.0),
-    (&[("pulley_speed_rpm", 4000.0), ("tight_tension_N", 490.0)], 22.0),
-    (&[("pulley_speed_rpm", 3000.0)], 21.0),
-    (&[("pulley_speed_rpm", 2000.0)], 23.0),
-];
 
 /// One tooth in the complete mesh and in the incomplete one; both are the same if no tooth lifts.
 #[derive(Clone, Copy, Debug)]
@@ -97,9 +23,14 @@ pub struct Tooth {
 /// Status, and outputs by name. Without `lift_angle_deg` the teeth lift by all of the tooth space.
 pub fn timing_belt(inputs: &BTreeMap<String, f64>) -> (&'static str, Values) {
     let belt = Belt::new(inputs);
-    let mut out = Values::from([("centrifugal_force_N", belt.centrifugal_force()), ("effective_tension_N", belt.tight - belt.slack)]);
+    let mut out = Values::from([
+        ("centrifugal_force_N", belt.centrifugal_force()),
+        ("effective_tension_N", belt.tight - belt.slack),
+        ("torque_Nm", (belt.tight * belt.pitch_radius - belt.slack * belt.pitch_radius) / 1000.0),
+        ("pitch_mass_used_g", 1000.0 * belt.mass),
+    ]);
     let status = belt.status();
-    if status == "no effective tension" {
+    if status == "no effective tension" || belt.pulley_teeth() < belt.teeth as f64 {
         return (status, out);
     }
     let complete = belt.solve(&belt.complete());
@@ -208,6 +139,15 @@ fn boundary(margins: &[f64]) -> usize {
     1 + margins.iter().position(|&margin| margin < 0.0).unwrap_or(margins.len())
 }
 
+/// (20) volume by volume, in mm3 and kg: the tooth, the back's rubber and the cords.
+fn mass_of_pitch(inputs: &BTreeMap<String, f64>) -> f64 {
+    let get = |name: &str| value(inputs, name);
+    let width = get("belt_width_mm");
+    let volumes = [get("tooth_area_mm2") * width, get("land_area_mm2") * width, get("gross_cord_area_mm2") * get("pitch_mm")];
+    let densities = ["rubber_density_kg_per_m3", "rubber_density_kg_per_m3", "cord_density_kg_per_m3"].map(get);
+    volumes.iter().zip(densities).map(|(volume, density)| volume * 1e-9 * density).sum()
+}
+
 /// Forces in N, lengths in mm, masses in kg, angles in radians.
 struct Belt {
     teeth: usize,
@@ -218,6 +158,7 @@ struct Belt {
     /// A E of the cord.
     stiffness: f64,
     radius: f64,
+    pitch_radius: f64,
     beta: f64,
     phi: f64,
     theta: f64,
@@ -265,7 +206,8 @@ impl Belt {
     fn new(inputs: &BTreeMap<String, f64>) -> Belt {
         let get = |name: &str| value(inputs, name);
         let angle = |name: &str| get(name) * PI / 180.0;
-        let (radius, mass) = (get("tip_radius_mm"), get("pitch_mass_g") / 1000.0);
+        let radius = get("tip_radius_mm");
+        let mass = inputs.get("pitch_mass_g").map_or_else(|| mass_of_pitch(inputs), |mass| mass / 1000.0);
         let angular = get("pulley_speed_rpm") * 2.0 * PI / 60.0;
         let centrifugal_tension = || mass / (get("pitch_mm") / 1000.0) * (radius / 1000.0 * angular).powi(2);
         let land_friction = inputs.get("centrifugal_land_friction").is_some_and(|&on| on != 0.0);
@@ -277,6 +219,7 @@ impl Belt {
             compliance: get("tooth_compliance_um_per_N") / 1000.0,
             stiffness: get("cord_modulus_GPa") * 1000.0 * get("cord_area_mm2"),
             radius,
+            pitch_radius: radius + get("pitch_line_mm"),
             beta: angle("land_half_angle_deg"),
             phi: angle("space_half_angle_deg"),
             theta: angle(if inputs.contains_key("lift_angle_deg") { "lift_angle_deg" } else { "space_half_angle_deg" }),
@@ -295,9 +238,16 @@ impl Belt {
             "no effective tension"
         } else if self.theta > self.phi {
             "lift angle exceeds tooth space"
+        } else if self.pulley_teeth() < self.teeth as f64 {
+            "wrap exceeds 360 degrees"
         } else {
             "ok"
         }
+    }
+
+    /// How many lands with their spaces go around the pulley.
+    fn pulley_teeth(&self) -> f64 {
+        PI / (self.beta + self.phi)
     }
 
     fn centrifugal_force(&self) -> f64 {

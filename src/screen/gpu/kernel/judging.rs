@@ -27,7 +27,7 @@ impl Prelude<'_> {
                 "let margins = conditions(prepared, inputs);".to_owned(),
                 "var verdict = (*state).verdict;".to_owned(),
             ];
-            for &number in conditions {
+            for &number in conditions.iter().filter(|&&number| self.layout.asks(number)) {
                 let question = if plan.study.model.conditions[number].strict { "above_zero" } else { "at_least_zero" };
                 let factor = literal(CONDITION_BOUND_FACTOR as f32);
                 lines.push(format!("verdict = min(verdict, {question}(bounded(margins[{number}], {factor})));"));

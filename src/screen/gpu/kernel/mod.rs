@@ -21,7 +21,7 @@ use super::constants::{FIRST_REPORTED, SURVIVOR_HEAD, sweep_constants};
 use super::held::on_device;
 use super::layout::{BINS, KernelLayout, LIST, Values, row_dominators, scenario_worst, sign};
 use crate::gpu::constants::declare;
-use crate::gpu::{model_prelude, model_source, source, tables};
+use crate::gpu::{model_prelude, model_source, source, stages_source, tables};
 use crate::models::{CONDITION_BOUND_FACTOR, Worse};
 use crate::plan::{Plan, Source};
 use crate::reduce::Shuffle;
@@ -116,14 +116,20 @@ pub fn text(plan: &Plan, layout: &KernelLayout, perturb: &[(usize, f64)]) -> Str
     prelude.front();
     prelude.others();
     prelude.report();
-    let asked: Vec<usize> = plan.row_conditions.iter().chain(&plan.lane_conditions).copied().collect();
+    let conditions = plan.row_conditions.iter().chain(&plan.lane_conditions).copied();
+    let asked: Vec<usize> = conditions.filter(|&number| layout.asks(number)).collect();
+    let model = &plan.study.model;
+    let of_model = match &layout.settled {
+        Some(settled) => stages_source(model, &layout.fields, &settled.lists),
+        None => model_source(model, model.on_device().expect("a layout is for a device")),
+    };
     [
         &source::common(),
         &sweep_constants(),
         include_str!("../../../../shaders/common/wide.wgsl"),
-        &model_prelude(&layout.fields, plan.study.model.conditions.len(), plan.used_outputs(), &asked),
+        &model_prelude(&layout.fields, model.conditions.len(), plan.used_outputs(), &asked),
         &passed_tables(layout),
-        &model_source(&plan.study.model, plan.study.model.on_device().expect("a layout is for a device")),
+        &of_model,
         include_str!("../../../../shaders/sweep/tile.wgsl"),
         include_str!("../../../../shaders/sweep/shuffle.wgsl"),
         include_str!("../../../../shaders/sweep/bins.wgsl"),

@@ -83,7 +83,6 @@ const FEATURES: &[&str] = &[
     "root of a negative number",
     "logarithm of a number that is not positive",
     "arc sine of a number beyond -1 to 1",
-    "power of a number that is not positive",
     "power of a negative number",
     "exponent beyond 700",
     "beyond its ends",

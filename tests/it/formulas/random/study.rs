@@ -124,7 +124,12 @@ impl Around {
 impl Builder<'_> {
     fn axes(&mut self) {
         let model = self.model.clone();
-        let can_be_given = |it: &usize| !model.inputs[*it].is_enumeration() && !model.inputs[*it].cpu_only;
+        // What takes the place of another input cannot stand beside it.
+        let mut gone = Vec::new();
+        for (number, other) in model.inputs.iter().enumerate().filter_map(|(number, it)| Some((number, it.instead_of.as_ref()?))) {
+            gone.push(if self.random.chance(0.5) { number } else { model.input(other).expect("it is an input") });
+        }
+        let can_be_given = |it: &usize| !model.inputs[*it].is_enumeration() && !model.inputs[*it].cpu_only && !gone.contains(it);
         let mut inputs: Vec<usize> = (0..model.inputs.len()).filter(can_be_given).collect();
         self.random.shuffle(&mut inputs);
         // Whole ones are few, and tell whether formulas round as they should.
@@ -134,8 +139,9 @@ impl Builder<'_> {
         for _ in 0..self.random.pick(&[0, 1, 1, 2, 2]) {
             self.by_formula.extend(inputs.pop());
         }
-        let mut free: Vec<usize> =
-            (0..model.inputs.len()).filter(|it| !self.by_formula.contains(it) && !model.inputs[*it].cpu_only).collect();
+        let mut free: Vec<usize> = (0..model.inputs.len())
+            .filter(|it| !self.by_formula.contains(it) && !gone.contains(it) && !model.inputs[*it].cpu_only)
+            .collect();
         self.random.shuffle(&mut free);
         let designs = self.random.log_between(20.0, 250.0);
         let mut generator = Generator { random: self.random, model: model.clone(), joint_designs: true };

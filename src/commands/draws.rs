@@ -1,0 +1,149 @@
+//! Draws of a study with distributions: what they are like, as a table, and one of them evaluated.
+
+use crate::cli;
+use crate::terminal::{TextGrid, grouped, short};
+use beltspace::bounds::{EnclosureProblem, YieldBounds};
+use beltspace::error::{Error, Result};
+use beltspace::files::{MOVE, refuse_foreign, replace};
+use beltspace::plan::Plan;
+use beltspace::probability::{Effect, Enclosure, pearson, spearman};
+use beltspace::study::{Axis, Constraint, Probability, StatisticKind, Study, UncertainInput};
+use beltspace::table::{Data, Table, TableColumn, csv_text};
+use std::path::Path;
+
+/// Most draws that correlations are shown of.
+const SHOWN: u64 = 1 << 16;
+/// Draws of which this many are expected to miss the wanted yield tell little of it.
+const FEW: f64 = 10.0;
+
+/// A mean that is this small beside the standard deviation is what rounding leaves of zero.
+const ROUNDING: f64 = 1e-12;
+
+/// What an input with a distribution is called in tables: that a factor or addend is drawn stands in its name.
+fn column_name(it: &UncertainInput) -> String {
+    match it.effect {
+        Effect::Is => it.name.clone(),
+        Effect::Times => format!("{}_times", it.name),
+        Effect::Plus => format!("{}_plus", it.name),
+    }
+}
+
+fn columns(probability: &Probability, draws: u64) -> Result<Vec<Vec<f64>>> {
+    Ok(probability.choosing()?.columns(0..draws))
+}
+
+/// The axes of `check` that are drawn.
+pub fn axes(probability: &Probability, grid: &mut TextGrid) {
+    for it in &probability.inputs {
+        let ends = [("below", it.law.from), ("above", it.law.to)];
+        let ends: Vec<String> = ends.iter().filter_map(|(word, end)| Some(format!("{word} {}", short((*end)?)))).collect();
+        let cut = if ends.is_empty() { String::new() } else { format!(", cut off {}", ends.join(" and ")) };
+        let (mean, sd) = (it.distribution.mean(), it.distribution.sd());
+        // Numbers that cancel leave a rest of their rounding errors.
+        let mean = if mean.abs() < ROUNDING * sd { 0.0 } else { mean };
+        let law = format!("{}{cut}: mean {}, sd {}", it.law.name(), short(mean), short(sd));
+        let what = match it.effect {
+            Effect::Is => law,
+            Effect::Times => format!("times {law}"),
+            Effect::Plus => format!("plus {law}"),
+        };
+        grid.row(["drawn".to_owned(), it.name.clone(), String::new(), what]);
+    }
+}
+
+/// What else `check` says of the draws.
+pub fn facts(probability: &Probability, mut fact: impl FnMut(&str, String)) -> Result<()> {
+    let cases: u64 = probability.drive.operation.iter().map(Axis::count).product();
+    let of_cases = if cases == 1 { String::new() } else { format!(", each in {} operating cases", grouped(cases)) };
+    fact("draws", format!("{}{of_cases}; {} fresh ones judge what is reported", grouped(probability.draws), grouped(probability.confirm)));
+    if !probability.correlation.is_empty() {
+        let drawn = columns(probability, probability.draws.min(SHOWN))?;
+        for &(a, b, _) in &probability.correlation {
+            let both = |of: fn(&[f64], &[f64]) -> Option<f64>| of(&drawn[a], &drawn[b]).map_or("none".to_owned(), |it| format!("{it:.3}"));
+            let names = format!("{} and {}", probability.inputs[a].name, probability.inputs[b].name);
+            fact("correlation", format!("{names}: Pearson {}, Spearman {}", both(pearson), both(spearman)));
+        }
+    }
+    Ok(())
+}
+
+/// Wanted yields of which so few draws tell little.
+pub fn warnings(study: &Study) -> Vec<String> {
+    let Some(probability) = &study.probability else { return Vec::new() };
+    let warning = |constraint: &Constraint| {
+        let name = constraint.name(&study.model);
+        let kind = probability.statistics[constraint.quantity.output()?].kind;
+        let wanted = constraint.low.map(|it| it.0).filter(|_| matches!(kind, StatisticKind::Yield | StatisticKind::YieldOf(_)))?;
+        let misses = probability.draws as f64 * (1.0 - wanted);
+        if wanted >= 1.0 || misses >= FEW {
+            return None;
+        }
+        let draws = grouped((FEW / (1.0 - wanted)).ceil() as u64);
+        Some(format!(
+            "{name} at least {wanted}: only {} of {} draws may miss it, which tells little; use {draws} draws or more",
+            short(misses.floor()),
+            grouped(probability.draws)
+        ))
+    };
+    study.constraints.iter().filter_map(warning).collect()
+}
+
+/// Writes the draws that choose designs as CSV, replacing such a file only.
+pub fn write(probability: &Probability, path: &Path) -> Result<()> {
+    let names: Vec<String> = probability.inputs.iter().map(column_name).collect();
+    let header = format!("draw,{}\n", names.join(","));
+    refuse_foreign(path, MOVE, |head| head.starts_with(&header))?;
+    let drawn = columns(probability, probability.draws)?;
+    let number = TableColumn::index("draw", "Number of the draw.", (0..probability.draws).map(Some));
+    let of_inputs = names
+        .iter()
+        .zip(drawn)
+        .map(|(name, values)| TableColumn::new(name, "draw", "", Data::Number(values.into_iter().map(Some).collect())));
+    let table = Table { columns: std::iter::once(number).chain(of_inputs).collect() };
+    replace(path, &csv_text(&table))
+}
+
+/// The drive of one draw of a design, or that at the medians, in one scenario: operating cases outside, levels inside. Its plan, the
+/// scenario and the inputs.
+pub fn drive(plan: &Plan, design: u64, request: &cli::EvalArgs) -> Result<(Plan, u64, Vec<f64>)> {
+    let Some(probability) = &plan.study.probability else {
+        return Err(Error::Request("--draw is for studies with distributions; this one has none".to_owned()));
+    };
+    let one = Plan::new(plan.study.of_one_draw());
+    let scenarios = one.scenarios();
+    let scenario = request
+        .scenario
+        .or((scenarios == 1).then_some(0))
+        .ok_or_else(|| Error::Request(format!("a draw is shown in one operating case; add --scenario K, from 0 to {}", scenarios - 1)))?;
+    if scenario >= scenarios {
+        return Err(Error::Request(format!("there is no scenario {scenario}; those of a draw are 0 to {}", scenarios - 1)));
+    }
+    let mut inputs = one.space.inputs(design, scenario);
+    if let Some(draw) = request.draw {
+        if draw >= probability.draws {
+            return Err(Error::Request(format!("there is no draw {draw}; the study's draws are 0 to {}", probability.draws - 1)));
+        }
+        let drawn = probability.choosing()?.columns(draw..draw + 1);
+        for (it, drawn) in probability.inputs.iter().zip(drawn) {
+            inputs[it.input] = it.effect.of(inputs[it.input], drawn[0]);
+        }
+    }
+    Ok((one, scenario, inputs))
+}
+
+/// Boxes that the proof of a design's yield may take: some seconds.
+const BOXES: u64 = 200_000;
+
+/// Proven bounds of a design's yield, if the study asks for them, in words.
+pub fn enclosed(study: &Study, design: u64) -> Result<Option<(Enclosure, String)>> {
+    let Some(probability) = study.probability.as_ref().filter(|it| it.enclosure) else { return Ok(None) };
+    // A tenth of what may miss the wanted yield, or of one in a thousand.
+    let is_yield = |it: &&Constraint| it.quantity.output().is_some_and(|it| probability.statistics[it].kind == StatisticKind::Yield);
+    let wanted = study.constraints.iter().find(is_yield).and_then(|it| Some(it.low?.0)).filter(|it| *it < 1.0).unwrap_or(0.999);
+    let width = 0.1 * (1.0 - wanted);
+    let refused = |problem: EnclosureProblem| Error::Request(problem.to_string());
+    let found = YieldBounds::new(study).and_then(|bounds| bounds.of(design, width, BOXES)).map_err(refused)?;
+    let reached = if found.width() <= width { String::new() } else { format!(", where {} was wanted: the budget is spent", short(width)) };
+    let words = format!("{} boxes, {} apart{reached}", grouped(found.boxes), short(found.width()));
+    Ok(Some((found, words)))
+}

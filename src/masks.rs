@@ -1,0 +1,132 @@
+//! Loops over columns of values, compiled for several instruction sets.
+//!
+//! A mask has all bits set where a design is still in, none where it is out. Only comparisons and copies happen here, so the
+//! instruction set cannot change a result.
+
+use crate::models::Worse;
+use multiversion::multiversion;
+
+const IN: u64 = u64::MAX;
+
+fn mask(inside: bool) -> u64 {
+    if inside { IN } else { 0 }
+}
+
+/// Keeps the designs whose condition margin is at least zero (`strict`: above zero).
+pub fn keep_margin(alive: &mut [u64], margins: &[f64], strict: bool) {
+    keep_between(alive, margins, if strict { f64::from_bits(1) } else { 0.0 }, f64::INFINITY);
+}
+
+/// Keeps the designs whose value is a finite number.
+pub fn keep_finite(alive: &mut [u64], values: &[f64]) {
+    keep_between(alive, values, f64::MIN, f64::MAX);
+}
+
+/// Keeps the designs with `low <= value <= high`; NaN never is.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+pub fn keep_between(alive: &mut [u64], values: &[f64], low: f64, high: f64) {
+    for (alive, &value) in alive.iter_mut().zip(values) {
+        *alive &= mask(value >= low) & mask(value <= high);
+    }
+}
+
+/// Lowers each worst value to the new one where that is less.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+pub fn lower(worst: &mut [f64], values: &[f64]) {
+    for (worst, &value) in worst.iter_mut().zip(values) {
+        *worst = if value < *worst { value } else { *worst };
+    }
+}
+
+/// Raises each worst value to the new one where that is greater.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+pub fn raise(worst: &mut [f64], values: &[f64]) {
+    for (worst, &value) in worst.iter_mut().zip(values) {
+        *worst = if value > *worst { value } else { *worst };
+    }
+}
+
+/// Takes the values of a scenario into the worst ones, which the first scenario begins.
+pub fn worsen(worse: Worse, is_first: bool, worst: &mut [f64], values: &[f64]) {
+    match worse {
+        _ if is_first => worst.copy_from_slice(values),
+        Worse::Higher => raise(worst, values),
+        Worse::Lower => lower(worst, values),
+    }
+}
+
+/// Number of designs still in.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+pub fn count(alive: &[u64]) -> u64 {
+    alive.iter().map(|alive| alive & 1).sum()
+}
+
+/// Is any design still in?
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+pub fn any(alive: &[u64]) -> bool {
+    alive.iter().fold(0, |any, alive| any | alive) != 0
+}
+
+/// What is out becomes a NaN, which no comparison takes.
+#[inline(always)]
+fn if_in(alive: u64, value: f64) -> f64 {
+    f64::from_bits(value.to_bits() | !alive)
+}
+
+/// Least and largest value of the designs still in; infinite the wrong way round if there are none.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+pub fn ends(alive: &[u64], values: &[f64]) -> (f64, f64) {
+    const WIDTH: usize = 16;
+    let (mut least, mut largest) = ([f64::INFINITY; WIDTH], [f64::NEG_INFINITY; WIDTH]);
+    let (alive_chunks, alive_rest) = alive.as_chunks::<WIDTH>();
+    let (value_chunks, value_rest) = values.as_chunks::<WIDTH>();
+    for (alive, values) in alive_chunks.iter().zip(value_chunks) {
+        let mut present = *values;
+        for lane in 0..WIDTH {
+            present[lane] = if_in(alive[lane], values[lane]);
+        }
+        // One loop for each end: a common one is compiled to shuffles that cost more than both.
+        for lane in 0..WIDTH {
+            least[lane] = if present[lane] < least[lane] { present[lane] } else { least[lane] };
+        }
+        for lane in 0..WIDTH {
+            largest[lane] = if present[lane] > largest[lane] { present[lane] } else { largest[lane] };
+        }
+    }
+    for (lane, (&alive, &value)) in alive_rest.iter().zip(value_rest).enumerate() {
+        let value = if_in(alive, value);
+        least[lane] = if value < least[lane] { value } else { least[lane] };
+        largest[lane] = if value > largest[lane] { value } else { largest[lane] };
+    }
+    (least.into_iter().fold(f64::INFINITY, f64::min), largest.into_iter().fold(f64::NEG_INFINITY, f64::max))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::{Constraint, OverScenarios, Quantity};
+
+    #[test]
+    fn the_columns_agree_with_the_scalar_definition() {
+        let values = [-1.0, -0.0, 0.0, f64::MIN_POSITIVE, 1.0, 1.0f64.next_up(), f64::NAN, f64::INFINITY, 2.0];
+        let bounds = [None, Some((0.0, false)), Some((0.0, true)), Some((1.0, false)), Some((1.0, true))];
+        for low in bounds {
+            for high in bounds {
+                let constraint = Constraint { quantity: Quantity::Input(0), low, high, over: OverScenarios::Worst };
+                let mut alive = [IN; 9];
+                let (low, high) = constraint.ends();
+                keep_between(&mut alive, &values, low, high);
+                for (alive, value) in alive.iter().zip(values) {
+                    assert_eq!(*alive != 0, constraint.holds(value) && value.is_finite(), "{value} in {low:?} {high:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn ends_ignore_what_is_out() {
+        assert_eq!(ends(&[IN, 0, IN], &[3.0, 9.0, 2.0]), (2.0, 3.0));
+        assert_eq!(ends(&[0], &[3.0]), (f64::INFINITY, f64::NEG_INFINITY));
+        assert_eq!(count(&[IN, 0, IN]), 2);
+    }
+}

@@ -1,0 +1,511 @@
+//! Many designs at once: the same bits as for single designs, draw by draw.
+
+use super::super::quantity::Quantity;
+use super::super::resolved::Constraint;
+use super::super::spectrum::OverScenarios;
+use super::drive::{DrawnDrive, margin_of};
+use super::fold::{over_draws, worse_of};
+use super::statistic::{AskedQuantity, OverDraws, StatisticKind};
+use crate::masks::{any, keep_between, keep_finite, keep_margin, lower, raise};
+use crate::models::{Columns, Dependencies, LANES, Scratch, Worse, input_to_si};
+use crate::tape::{Known, Set};
+use std::ops::Range;
+
+/// Most values of draws that are kept at a time, and most designs that are given at once.
+const MOST_KEPT: usize = 1 << 21;
+const MOST_LANES: u64 = 512;
+/// Designs whose values of all draws are kept at a time, of so many statistics that need them.
+fn lanes_at_a_time(draws: usize, statistics: usize) -> usize {
+    (MOST_KEPT / (draws * statistics).max(1) / LANES * LANES).max(LANES)
+}
+
+/// Numbers that a thread keeps for statistics that need the values of all draws.
+pub fn most_kept(draws: u64, statistics: u64, designs: u64) -> u64 {
+    let lanes = lanes_at_a_time(usize::try_from(draws).unwrap_or(usize::MAX), statistics as usize) as u64;
+    lanes.min(MOST_LANES).min(designs) * draws.saturating_mul(statistics)
+}
+
+/// A mask of a design that is in.
+const IN: u64 = u64::MAX;
+
+/// Room for designs under way; one per thread.
+pub struct DrawnLanes {
+    scratch: Scratch,
+    /// What depends on what in the drive.
+    depends: Dependencies,
+    prepared: Vec<Vec<f64>>,
+    si: Vec<f64>,
+    /// Inputs that differ between the designs, as the draw changes them.
+    varying: Vec<(usize, Vec<f64>)>,
+    /// What of the drive differs between the designs, and what is the same for all: outputs and conditions.
+    of_lanes: Parts,
+    of_row: Parts,
+    /// Outputs and margins of the drive in the current draw and case: of each design, and those that all share.
+    results: Vec<Vec<f64>>,
+    row_outputs: Vec<f64>,
+    row_margins: Vec<f64>,
+    /// Which designs could be built, and which hold so far in the current draw.
+    built: Vec<u64>,
+    holds: Vec<u64>,
+    /// Constraints of a mean or sum that a draw must keep to hold: the folds of both ends.
+    of_spectrum: Vec<(Constraint, [usize; 2])>,
+    /// Quantities over the cases of the current draw, and what each statistic makes of the draws.
+    folds: Vec<CaseFold>,
+    tracks: Vec<Track>,
+    /// A value that all designs share, as a column.
+    same: Vec<f64>,
+}
+
+/// Outputs and conditions of the drive.
+#[derive(Default)]
+struct Parts {
+    outputs: Vec<usize>,
+    conditions: Vec<usize>,
+}
+
+/// A quantity over the cases of one draw, for each design.
+struct CaseFold {
+    asked: AskedQuantity,
+    present: Vec<u64>,
+    result: Vec<f64>,
+    sums: Vec<Vec<f64>>,
+}
+
+/// What becomes of the draws, for each design.
+enum Track {
+    /// Draws that hold.
+    Holding(Vec<u64>),
+    /// Draws that keep one constraint, with its mask in the current draw and the folds of both ends if it is of a mean or sum.
+    Keeping { constraint: Constraint, kept: Vec<u64>, folds: Option<[usize; 2]>, count: Vec<u64> },
+    /// The sum of a fold, NaN where a draw has no value.
+    Sum { fold: usize, sum: Vec<f64> },
+    /// The worst of a fold, and whether there is a value: in all draws, or in any.
+    Worst { fold: usize, worst: Vec<f64>, present: Vec<u64>, in_any: bool },
+    /// All values of a fold, draw by draw.
+    All { fold: usize, values: Vec<f64> },
+    /// Of fresh draws.
+    Fresh,
+}
+
+impl CaseFold {
+    fn begin(&mut self, count: usize) {
+        self.present[..count].fill(IN);
+        self.result[..count].fill(self.asked.worse.least_bad());
+        self.sums.iter_mut().for_each(|sum| sum[..count].fill(0.0));
+    }
+
+    /// Takes in the values of a case; absent are those that are no finite numbers.
+    fn take(&mut self, values: &[f64], place: Option<(usize, f64)>) {
+        keep_finite(&mut self.present[..values.len()], values);
+        match place {
+            None => worsen(self.asked.worse, &mut self.result[..values.len()], values),
+            Some((sum, weight)) => self.sums[sum].iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value),
+        }
+    }
+
+    /// After the last case.
+    fn end(&mut self, count: usize, total: f64, built: &[u64]) {
+        let Self { asked, present, result, sums } = self;
+        for sum in sums {
+            if asked.over == OverScenarios::Mean {
+                sum[..count].iter_mut().for_each(|it| *it /= total);
+            }
+            worsen(asked.worse, &mut result[..count], &sum[..count]);
+        }
+        keep_finite(&mut present[..count], &result[..count]);
+        present.iter_mut().zip(&built[..count]).for_each(|(present, built)| *present &= built);
+    }
+}
+
+fn worsen(worse: Worse, worst: &mut [f64], values: &[f64]) {
+    match worse {
+        Worse::Higher => raise(worst, values),
+        Worse::Lower => lower(worst, values),
+    }
+}
+
+/// Keeps what is built and, at both ends of a mean or sum, satisfies the constraint.
+fn keep_folds(alive: &mut [u64], constraint: &Constraint, ends: [usize; 2], folds: &[CaseFold]) {
+    let (low, high) = constraint.ends();
+    for fold in ends.map(|end| &folds[end]) {
+        keep_between(alive, &fold.result[..alive.len()], low, high);
+        alive.iter_mut().zip(&fold.present).for_each(|(alive, present)| *alive &= present);
+    }
+}
+
+impl DrawnLanes {
+    /// Room for a kernel.
+    pub fn new(kernel: &DrawnDrive) -> Self {
+        let base = &kernel.base;
+        let mut folds: Vec<CaseFold> = Vec::new();
+        let sums = kernel.cases.weights.as_ref().map_or(0, |it| it.sums);
+        let mut fold = |asked: AskedQuantity| {
+            folds.iter().position(|it| it.asked == asked).unwrap_or_else(|| {
+                let sums = if asked.over.is_worst() { 0 } else { sums };
+                folds.push(CaseFold { asked, present: Vec::new(), result: Vec::new(), sums: vec![Vec::new(); sums] });
+                folds.len() - 1
+            })
+        };
+        let mut ends = |constraint: &Constraint| {
+            [Worse::Lower, Worse::Higher].map(|worse| fold(AskedQuantity { quantity: constraint.quantity, over: constraint.over, worse }))
+        };
+        let of_spectrum = kernel.holds.iter().filter(|it| !it.over.is_worst()).map(|it| (*it, ends(it))).collect();
+        let mut keeping = |constraint: Constraint| {
+            let folds = (!constraint.over.is_worst()).then(|| ends(&constraint));
+            Track::Keeping { constraint, kept: Vec::new(), folds, count: Vec::new() }
+        };
+        let shares: Vec<Option<Track>> = kernel
+            .statistics
+            .iter()
+            .map(|it| match it.kind {
+                StatisticKind::Yield => Some(Track::Holding(Vec::new())),
+                StatisticKind::YieldOf(constraint) => Some(keeping(constraint)),
+                StatisticKind::Confirmed(_) => Some(Track::Fresh),
+                StatisticKind::Plain(_) | StatisticKind::Over(..) => None,
+            })
+            .collect();
+        let tracks = shares.into_iter().zip(&kernel.statistics).map(|(share, statistic)| {
+            share.unwrap_or_else(|| match statistic.kind {
+                StatisticKind::Over(asked, OverDraws::Mean) => Track::Sum { fold: fold(asked), sum: Vec::new() },
+                StatisticKind::Over(asked, OverDraws::Sd | OverDraws::Quantile(_)) => Track::All { fold: fold(asked), values: Vec::new() },
+                StatisticKind::Plain(asked) | StatisticKind::Over(asked, OverDraws::Worst) => {
+                    let in_any = matches!(statistic.kind, StatisticKind::Plain(_));
+                    Track::Worst { fold: fold(asked), worst: Vec::new(), present: Vec::new(), in_any }
+                }
+                StatisticKind::Yield | StatisticKind::YieldOf(_) | StatisticKind::Confirmed(_) => unreachable!("it is a share"),
+            })
+        });
+        let tracks = tracks.collect();
+        Self {
+            scratch: Scratch::new(base.inputs.len(), &*base.kernel),
+            depends: base.kernel.dependencies(&vec![Known::ANY; base.inputs.len()]),
+            prepared: Vec::new(),
+            si: vec![0.0; base.inputs.len()],
+            varying: Vec::new(),
+            of_lanes: Parts::default(),
+            of_row: Parts::default(),
+            results: Vec::new(),
+            row_outputs: vec![0.0; base.kernel.sizes().outputs],
+            row_margins: vec![0.0; base.kernel.sizes().conditions],
+            built: Vec::new(),
+            holds: Vec::new(),
+            of_spectrum,
+            folds,
+            tracks,
+            same: Vec::new(),
+        }
+    }
+
+    /// The statistics and conditions asked for, of designs that share the inputs that do not vary.
+    /// `fresh` is asked for what fresh draws say of a design, by its inputs and the number of the statistic.
+    pub fn run(
+        &mut self,
+        kernel: &DrawnDrive,
+        inputs: &[f64],
+        columns: &Columns<'_>,
+        results: &mut [Vec<f64>],
+        fresh: &dyn Fn(&[f64], usize) -> Option<f64>,
+    ) {
+        let kept = self.tracks.iter().filter(|it| matches!(it, Track::All { .. })).count();
+        let most = if kept == 0 { columns.count.next_multiple_of(LANES) } else { lanes_at_a_time(kernel.draws(), kept) };
+        self.divide(kernel, columns);
+        let absentees: Vec<usize> = kernel.absentees().collect();
+        for first in (0..columns.count).step_by(most) {
+            let range = first..columns.count.min(first + most);
+            self.draw_all(kernel, inputs, columns, &range);
+            for lane in 0..range.len() {
+                let mut design = inputs.to_vec();
+                columns.varying.iter().for_each(|(input, values)| design[*input] = values[first + lane]);
+                for (&output, result) in columns.outputs.iter().zip(&mut *results) {
+                    result[first + lane] = if matches!(self.tracks[output], Track::Fresh) {
+                        fresh(&design, output).unwrap_or(f64::NAN)
+                    } else {
+                        self.result(kernel, output, lane, range.len()).unwrap_or(f64::NAN)
+                    };
+                }
+                for (&condition, result) in columns.conditions.iter().zip(&mut results[columns.outputs.len()..]) {
+                    let statistic = absentees[condition];
+                    result[first + lane] = margin_of(self.result(kernel, statistic, lane, range.len()).is_some());
+                }
+            }
+        }
+    }
+
+    /// What of the drive differs between the designs of a block.
+    fn divide(&mut self, kernel: &DrawnDrive, columns: &Columns<'_>) {
+        let varying: Set = columns.varying.iter().map(|it| it.0).collect();
+        let split =
+            |all: &[usize], depends: &[Set]| -> (Vec<usize>, Vec<usize>) { all.iter().partition(|&&it| depends[it].meets(varying)) };
+        let (outputs, row_outputs) = split(&kernel.outputs, &self.depends.outputs);
+        let (conditions, row_conditions) = split(&kernel.conditions, &self.depends.conditions);
+        self.of_lanes = Parts { outputs, conditions };
+        self.of_row = Parts { outputs: row_outputs, conditions: row_conditions };
+    }
+
+    /// A statistic of a design after all draws.
+    fn result(&self, kernel: &DrawnDrive, statistic: usize, lane: usize, count: usize) -> Option<f64> {
+        let draws = kernel.draws();
+        match (&self.tracks[statistic], kernel.statistics[statistic].kind) {
+            (Track::Holding(count) | Track::Keeping { count, .. }, _) => Some(count[lane] as f64 / draws as f64),
+            (Track::Sum { sum, .. }, _) => Some(sum[lane] / draws as f64 + 0.0).filter(|it| it.is_finite()),
+            (Track::Worst { worst, present, .. }, _) => (present[lane] != 0).then_some(worst[lane] + 0.0),
+            (Track::All { values, .. }, StatisticKind::Over(asked, over)) => {
+                let own: Vec<f64> = (0..draws).map(|draw| values[draw * count + lane]).collect();
+                over_draws(&asked, over, &own)
+            }
+            (Track::All { .. }, _) => unreachable!("only sd and quantiles need all values"),
+            (Track::Fresh, _) => unreachable!("fresh draws are asked elsewhere"),
+        }
+    }
+
+    /// All draws of some of the designs.
+    fn draw_all(&mut self, kernel: &DrawnDrive, inputs: &[f64], columns: &Columns<'_>, range: &Range<usize>) {
+        let (base, count) = (&kernel.base, range.len());
+        self.begin(kernel, columns, range);
+        let wanted: Set = kernel.outputs.iter().copied().collect();
+        let cases = kernel.cases.rows.len();
+        // What the first stage reads decides how often it must run: for every draw, every case, or once.
+        let reads = self.depends.prepared;
+        let by_draw = reads.meets(kernel.drawn.iter().map(|it| it.0).collect());
+        let by_case = reads.meets(kernel.cases.inputs.iter().collect());
+        self.prepared.resize(if by_case { cases } else { 1 }, Vec::new());
+        self.prepared.iter_mut().for_each(|it| it.resize(base.kernel.prepared_len(), 0.0));
+        let total = kernel.cases.weights.as_ref().map_or(1.0, |it| it.total);
+        for draw in 0..kernel.draws() {
+            self.begin_draw(count);
+            for case in 0..cases {
+                self.turn(kernel, inputs, columns, (draw, case), range);
+                let place = if by_case { case } else { 0 };
+                if (by_draw || draw == 0) && (by_case || case == 0) {
+                    base.kernel.prepare(&self.si, wanted, &mut self.prepared[place]);
+                }
+                if !self.take_case(kernel, (case, place), count) {
+                    break;
+                }
+            }
+            let Self { folds, built, .. } = self;
+            folds.iter_mut().for_each(|fold| fold.end(count, total, built));
+            self.take_draw(draw, count);
+        }
+    }
+
+    fn begin(&mut self, kernel: &DrawnDrive, columns: &Columns<'_>, range: &Range<usize>) {
+        let count = range.len();
+        let padded = count.next_multiple_of(LANES);
+        self.varying.clear();
+        self.varying.extend(columns.varying.iter().map(|(input, values)| (*input, values[range.start..range.start + padded].to_vec())));
+        self.results.resize(self.of_lanes.outputs.len() + self.of_lanes.conditions.len(), Vec::new());
+        let fit = |column: &mut Vec<f64>| column.resize(padded.max(column.len()), 0.0);
+        self.results.iter_mut().for_each(fit);
+        fit(&mut self.same);
+        self.built.resize(padded, 0);
+        self.holds.resize(padded, 0);
+        for fold in &mut self.folds {
+            fold.present.resize(padded, 0);
+            fold.result.resize(padded, 0.0);
+            fold.sums.iter_mut().for_each(|sum| sum.resize(padded, 0.0));
+        }
+        let zero = |counts: &mut Vec<u64>| {
+            counts.clear();
+            counts.resize(padded, 0);
+        };
+        for (track, statistic) in self.tracks.iter_mut().zip(&kernel.statistics) {
+            match track {
+                Track::Holding(count) => zero(count),
+                Track::Keeping { kept, count, .. } => {
+                    zero(kept);
+                    zero(count);
+                }
+                Track::Sum { sum, .. } => {
+                    sum.clear();
+                    sum.resize(padded, 0.0);
+                }
+                Track::Worst { worst, present, in_any, .. } => {
+                    worst.clear();
+                    worst.resize(padded, statistic.kind.asked().map_or(0.0, |it| it.worse.least_bad()));
+                    // A statistic needs a value in every draw, a quantity that does not depend on them in one.
+                    present.clear();
+                    present.resize(padded, if *in_any { 0 } else { IN });
+                }
+                Track::All { values, .. } => values.resize(kernel.draws() * count, 0.0),
+                Track::Fresh => {}
+            }
+        }
+    }
+
+    fn begin_draw(&mut self, count: usize) {
+        self.built[..count].fill(IN);
+        self.holds[..count].fill(IN);
+        self.folds.iter_mut().for_each(|fold| fold.begin(count));
+        for track in &mut self.tracks {
+            if let Track::Keeping { kept, .. } = track {
+                kept[..count].fill(IN);
+            }
+        }
+    }
+
+    /// Turns the inputs to a draw in a case.
+    fn turn(&mut self, kernel: &DrawnDrive, inputs: &[f64], columns: &Columns<'_>, (draw, case): (usize, usize), range: &Range<usize>) {
+        self.si.copy_from_slice(inputs);
+        for (&input, &value) in kernel.cases.inputs.iter().zip(&kernel.cases.rows[case]) {
+            self.si[input] = input_to_si(&kernel.base.inputs[input], value);
+        }
+        for (&(input, effect), column) in kernel.drawn.iter().zip(&kernel.columns) {
+            let drawn = column[draw];
+            match columns.varying.iter().position(|it| it.0 == input) {
+                None => {
+                    self.si[input] = kernel.actual((input, effect), self.si[input], drawn);
+                    if !kernel.fits(input, self.si[input]) {
+                        self.built[..range.len()].fill(0);
+                    }
+                }
+                // What the design says is the same in every case.
+                Some(_) if case > 0 => {}
+                Some(at) => {
+                    let nominal = &columns.varying[at].1[range.start..];
+                    for (lane, value) in self.varying[at].1.iter_mut().enumerate() {
+                        *value = kernel.actual((input, effect), nominal[lane], drawn);
+                        if lane < range.len() && !kernel.fits(input, *value) {
+                            self.built[lane] = 0;
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Computes the drive in a case and takes it in; false if nothing of the draw is open any more.
+    fn take_case(&mut self, kernel: &DrawnDrive, (case, place): (usize, usize), count: usize) -> bool {
+        let base = &kernel.base;
+        let prepared = &self.prepared[place];
+        if !self.of_row.outputs.is_empty() {
+            base.kernel.finish(prepared, &self.si, self.of_row.outputs.iter().collect(), &mut self.row_outputs);
+        }
+        if !self.of_row.conditions.is_empty() {
+            base.kernel.conditions(prepared, &self.si, &mut self.row_margins);
+        }
+        if !self.results.is_empty() {
+            let Parts { outputs, conditions } = &self.of_lanes;
+            let asked = Columns { count, varying: &self.varying, outputs, conditions };
+            base.kernel.finish_columns(prepared, &self.si, &asked, &mut self.scratch, &mut self.results);
+            asked.to_units(&base.outputs, &mut self.results);
+        }
+        let Self { of_lanes, of_row, results, row_outputs, row_margins, holds, folds, tracks, same, varying, si, .. } = self;
+        let (outputs, margins) = results.split_at(of_lanes.outputs.len());
+        // A condition takes away the status, and outputs.
+        let mut fail = |number: usize, keep: &dyn Fn(&mut [u64])| {
+            let condition = &base.conditions[number];
+            if !condition.quiet {
+                keep(&mut holds[..count]);
+            }
+            let takes =
+                |quantity: Quantity| quantity.output().is_some_and(|output| condition.invalidates.contains(&base.outputs[output].name));
+            folds.iter_mut().filter(|it| takes(it.asked.quantity)).for_each(|it| keep(&mut it.present[..count]));
+            for constraint in kernel.holds.iter().filter(|it| takes(it.quantity)) {
+                debug_assert!(constraint.low.is_some() || constraint.high.is_some());
+                keep(&mut holds[..count]);
+            }
+            for track in tracks.iter_mut() {
+                if let Track::Keeping { constraint, kept, .. } = track
+                    && takes(constraint.quantity)
+                {
+                    keep(&mut kept[..count]);
+                }
+            }
+        };
+        for (&number, margins) in of_lanes.conditions.iter().zip(margins) {
+            fail(number, &|mask| keep_margin(mask, margins, base.conditions[number].strict));
+        }
+        for &number in &of_row.conditions {
+            let margin = row_margins[number];
+            if !(margin > 0.0 || (margin == 0.0 && !base.conditions[number].strict)) {
+                fail(number, &|mask| mask.fill(0));
+            }
+        }
+        // The values of a quantity, as a column.
+        let mut with_values = |quantity: Quantity, take: &mut dyn FnMut(&[f64])| {
+            let shared = match quantity {
+                Quantity::Output(output) => match of_lanes.outputs.iter().position(|it| *it == output) {
+                    Some(at) => return take(&outputs[at][..count]),
+                    None => base.outputs[output].unit.from_si(row_outputs[output]),
+                },
+                Quantity::Input(input) => {
+                    let unit = base.inputs[input].unit;
+                    if let Some((_, column)) = varying.iter().find(|it| it.0 == input) {
+                        same.iter_mut().zip(column).for_each(|(to, value)| *to = unit.from_si(*value));
+                        return take(&same[..count]);
+                    }
+                    unit.from_si(si[input])
+                }
+            };
+            same[..count].fill(shared);
+            take(&same[..count]);
+        };
+        for constraint in kernel.holds.iter().filter(|it| it.over.is_worst()) {
+            let (low, high) = constraint.ends();
+            with_values(constraint.quantity, &mut |values| keep_between(&mut holds[..count], values, low, high));
+        }
+        for track in tracks.iter_mut() {
+            if let Track::Keeping { constraint, kept, folds: None, .. } = track {
+                let (low, high) = constraint.ends();
+                with_values(constraint.quantity, &mut |values| keep_between(&mut kept[..count], values, low, high));
+            }
+        }
+        let place = kernel.cases.weights.as_ref().map(|it| it.places[case]);
+        for fold in folds.iter_mut() {
+            let place = place.filter(|_| !fold.asked.over.is_worst());
+            with_values(fold.asked.quantity, &mut |values| fold.take(values, place));
+        }
+        let is_open = |track: &Track| match track {
+            Track::Holding(_) => any(&holds[..count]),
+            Track::Keeping { kept, .. } => any(&kept[..count]),
+            Track::Fresh => false,
+            Track::Sum { .. } | Track::Worst { .. } | Track::All { .. } => true,
+        };
+        tracks.iter().any(is_open)
+    }
+
+    /// Takes in a draw, all cases of which are known.
+    fn take_draw(&mut self, draw: usize, count: usize) {
+        let Self { built, holds, of_spectrum, folds, tracks, .. } = self;
+        holds.iter_mut().zip(&*built).for_each(|(holds, built)| *holds &= built);
+        for (constraint, ends) in of_spectrum {
+            keep_folds(&mut holds[..count], constraint, *ends, folds);
+        }
+        let add = |counts: &mut [u64], mask: &[u64]| counts.iter_mut().zip(mask).for_each(|(count, mask)| *count += mask & 1);
+        for track in tracks {
+            match track {
+                Track::Holding(counts) => add(counts, &holds[..count]),
+                Track::Keeping { constraint, kept, folds: ends, count: counts } => {
+                    kept.iter_mut().zip(&*built).for_each(|(kept, built)| *kept &= built);
+                    if let Some(ends) = ends {
+                        keep_folds(&mut kept[..count], constraint, *ends, folds);
+                    }
+                    add(counts, &kept[..count]);
+                }
+                Track::Sum { fold, sum } => {
+                    let CaseFold { present, result, .. } = &folds[*fold];
+                    for ((sum, value), present) in sum.iter_mut().zip(&result[..count]).zip(present) {
+                        *sum += if *present == 0 { f64::NAN } else { *value };
+                    }
+                }
+                Track::Worst { fold, worst, present: all, in_any } => {
+                    let CaseFold { asked, present, result, .. } = &folds[*fold];
+                    for lane in 0..count {
+                        if present[lane] != 0 {
+                            worst[lane] = worse_of(asked.worse, worst[lane], result[lane]);
+                        }
+                        all[lane] = if *in_any { all[lane] | present[lane] } else { all[lane] & present[lane] };
+                    }
+                }
+                Track::All { fold, values } => {
+                    let CaseFold { present, result, .. } = &folds[*fold];
+                    for ((to, value), present) in values[draw * count..].iter_mut().zip(&result[..count]).zip(present) {
+                        *to = if *present == 0 { f64::NAN } else { *value };
+                    }
+                }
+                Track::Fresh => {}
+            }
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! The model whose outputs are yields and statistics over the draws.
+
+use super::super::spectrum::{OverScenarios, unit_over};
+use super::cases::OperatingCases;
+use super::confirm::FreshDraws;
+use super::drive::{Asking, DrawnDrive, Requirements};
+use super::kernel::DrawnKernel;
+use super::probability::{Drive, Probability};
+use super::statistic::{AskedQuantity, ConfirmedEnd, Statistic, StatisticKind};
+use crate::models::{Condition, Model, Output, Worse, interned};
+use crate::units::{NONE, Unit};
+use std::sync::Arc;
+
+/// Evaluations that counting the reasons of infeasible designs may take, and the least number of designs that are looked at.
+const SAMPLE_EVALUATIONS: u64 = 20_000_000;
+const LEAST_SAMPLE: u64 = 64;
+
+impl Probability {
+    /// The model whose outputs are what the study asks of the draws.
+    pub(in super::super) fn model(&self) -> Result<Model, String> {
+        if let Some(flaw) = self.flaw() {
+            return Err(flaw);
+        }
+        let draws = self.choosing().map_err(|problem| problem.to_string())?;
+        let Drive { model: base, operation, spectrum, constraints } = &self.drive;
+        let drawn = self.inputs.iter().map(|it| (it.input, it.effect)).collect();
+        let fresh = FreshDraws::new(self.confirming().map_err(|problem| problem.to_string())?, self.inputs.len(), self.levels);
+        let drive = DrawnDrive::new(
+            base.clone(),
+            drawn,
+            draws.columns(0..draws.count()),
+            OperatingCases::new(operation, spectrum.as_ref()),
+            Requirements(constraints.clone()),
+            Asking(self.statistics.clone(), Some(fresh)),
+        );
+        Ok(model(self, DrawnKernel::new(drive)))
+    }
+}
+
+/// The model of a study's draws.
+fn model(probability: &Probability, kernel: DrawnKernel) -> Model {
+    let base = &probability.drive.model;
+    let evaluations = (kernel.draws() * kernel.cases.rows.len()).max(1) as u64;
+    let outputs: Vec<Output> = probability.statistics.iter().map(|it| output(probability, it)).collect();
+    let absent = |statistic: &Statistic| {
+        let (reason, doc) = match statistic.kind {
+            StatisticKind::Plain(_) => ("no value in any draw", "There is a draw in which the quantity has a value."),
+            _ => ("no value in some draw", "The quantity has a value in every draw that the statistic needs."),
+        };
+        Condition::new(reason, false, &[&statistic.name], doc).quiet()
+    };
+    let conditions = probability.statistics.iter().filter(|it| it.kind.may_be_absent()).map(absent).collect();
+    Model {
+        outputs,
+        conditions,
+        effort: kernel.effort(),
+        sample: base.sample.min((SAMPLE_EVALUATIONS / evaluations).max(LEAST_SAMPLE)),
+        on_gpu: false,
+        kernel: Arc::new(kernel),
+        notes: None,
+        doubts: None,
+        ..(**base).clone()
+    }
+}
+
+fn output(probability: &Probability, statistic: &Statistic) -> Output {
+    let drive = &probability.drive;
+    let of = |asked: &AskedQuantity, doc: String| {
+        let unit = unit_over(asked.quantity, asked.over, &drive.model, drive.spectrum.as_ref());
+        let over = match asked.over {
+            OverScenarios::Worst if drive.operation.is_empty() => String::new(),
+            OverScenarios::Worst => format!(" In each draw the {} of the operating cases.", asked.worse.word()),
+            over => format!(" In each draw the {} over the operating cases.", over.word()),
+        };
+        let doc = format!("{}{doc}{over}", asked.quantity.doc(&drive.model));
+        Output::new(&statistic.name, "", Unit::of_formulas(interned(&unit), (1.0, 1.0)), asked.worse, "the draws", doc)
+    };
+    let share = |doc: String| Output::new(&statistic.name, "", NONE, Worse::Lower, "the draws", doc);
+    match &statistic.kind {
+        StatisticKind::Yield => {
+            share("Share of the draws that hold: in all operating cases the status is ok and every constraint is kept.".to_owned())
+        }
+        StatisticKind::Confirmed(ConfirmedEnd::Share) => share(format!("Share of {} fresh draws that hold.", probability.confirm)),
+        StatisticKind::Confirmed(ConfirmedEnd::Low) => {
+            share("Lower end of the interval of the yield after Clopper and Pearson, 95 %, from the fresh draws.".to_owned())
+        }
+        StatisticKind::Confirmed(ConfirmedEnd::High) => {
+            share("Upper end of the interval of the yield after Clopper and Pearson, 95 %, from the fresh draws.".to_owned())
+        }
+        StatisticKind::YieldOf(constraint) => {
+            share(format!("Share of the draws that keep the bounds of {} in all operating cases.", constraint.name(&drive.model)))
+        }
+        StatisticKind::Plain(asked) => of(asked, String::new()),
+        StatisticKind::Over(asked, over) => of(asked, format!(" The {}.", over.words())),
+    }
+}

@@ -1,0 +1,120 @@
+//! What a study says of its draws.
+
+use super::super::axis::Axis;
+use super::super::resolved::Constraint;
+use super::super::spectrum::Spectrum;
+use super::confirm::FreshDraws;
+use super::lanes::most_kept;
+use super::law::LawText;
+use super::statistic::{OverDraws, Statistic, StatisticKind};
+use crate::models::Model;
+use crate::probability::{Distribution, Draws, Effect, ProbabilityProblem, Sampling};
+use std::sync::Arc;
+
+/// Replicates of a Latin hypercube or of Sobol points: their differences give the standard error.
+pub const REPLICATES: u64 = 16;
+/// Most draws that choose, most that judge, and most operating cases of a draw.
+pub const MOST_DRAWS: u64 = 10_000_000;
+pub const MOST_CONFIRM: u64 = 1_000_000_000;
+pub const MOST_CASES: u64 = 100_000;
+
+/// Uncertain inputs of a study, how they are drawn, and what is asked of the draws.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Probability {
+    /// Inputs with a distribution, in file order.
+    pub inputs: Vec<UncertainInput>,
+    /// Correlations of pairs of them, by position.
+    pub correlation: Vec<(usize, usize, f64)>,
+    /// Draws that choose designs.
+    pub draws: u64,
+    /// Fresh draws that judge what is reported.
+    pub confirm: u64,
+    /// Seed of both.
+    pub seed: u64,
+    /// How the draws that choose are spread.
+    pub sampling: Sampling,
+    /// Uncertainty levels, at each of which all draws are judged.
+    pub levels: u64,
+    /// Are bounds of the yield to be proven?
+    pub enclosure: bool,
+    /// The drive that is drawn.
+    pub drive: Drive,
+    /// The outputs of the study, in their order.
+    pub statistics: Vec<Statistic>,
+}
+
+/// An input with a distribution.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UncertainInput {
+    /// Number of the input.
+    pub input: usize,
+    /// Its name.
+    pub name: String,
+    /// What a drawn number does to the value that the design says.
+    pub effect: Effect,
+    /// The distribution as it is written.
+    pub law: LawText,
+    /// The distribution.
+    pub distribution: Distribution,
+}
+
+/// The drive of a single draw: an ordinary study but for its objectives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drive {
+    /// Its model.
+    pub model: Arc<Model>,
+    /// Operating cases, all of which a draw must survive.
+    pub operation: Vec<Axis>,
+    /// The operation axis that has weights, if one has.
+    pub spectrum: Option<Spectrum>,
+    /// Constraints that a draw must keep to hold.
+    pub constraints: Vec<Constraint>,
+}
+
+impl Probability {
+    /// What a study file could not have said.
+    pub(super) fn flaw(&self) -> Option<String> {
+        let Drive { operation, spectrum, .. } = &self.drive;
+        if self.draws > MOST_DRAWS || self.confirm > MOST_CONFIRM {
+            return Some(format!("there are {} and {} draws, at most {MOST_DRAWS} and {MOST_CONFIRM}", self.draws, self.confirm));
+        }
+        let cases = operation.iter().map(Axis::count).try_fold(1, u64::checked_mul);
+        if cases.is_none_or(|cases| cases > MOST_CASES) {
+            return Some(format!("a draw has more than {MOST_CASES} operating cases"));
+        }
+        let fits = |it: &Spectrum| operation.get(it.axis).is_some_and(|axis| axis.count() == it.weights.len() as u64);
+        spectrum.as_ref().is_some_and(|it| !fits(it)).then(|| "the weights do not fit the operating cases".to_owned())
+    }
+
+    /// Evaluations of the drive for one design at one level.
+    pub fn evaluations(&self) -> u64 {
+        self.drive.operation.iter().map(Axis::count).fold(self.draws, u64::saturating_mul)
+    }
+
+    /// Bytes that the draws take on so many threads, which judge so many designs at a time.
+    pub(crate) fn bytes(&self, threads: u64, designs: u64) -> u64 {
+        let inputs = self.inputs.len() as u64;
+        let own = 8 * inputs * (self.draws + FreshDraws::kept(self.confirm, inputs));
+        let needs_all = |it: &&Statistic| matches!(it.kind, StatisticKind::Over(_, OverDraws::Sd | OverDraws::Quantile(_)));
+        let all = self.statistics.iter().filter(needs_all).count() as u64;
+        own + threads * 8 * most_kept(self.draws, all, designs)
+    }
+
+    /// The draws that choose.
+    ///
+    /// # Errors
+    /// As [`Draws::new`] and [`Draws::correlated`].
+    pub fn choosing(&self) -> Result<Draws, ProbabilityProblem> {
+        let inputs: Vec<_> = self.inputs.iter().map(|it| (it.name.as_str(), it.distribution.clone())).collect();
+        let pairs: Vec<_> = self.correlation.iter().map(|&(a, b, value)| (inputs[a].0, inputs[b].0, value)).collect();
+        Draws::new(&inputs, self.draws, self.sampling, self.seed)?.correlated(&pairs)
+    }
+
+    /// Fresh draws that judge what the others have chosen.
+    ///
+    /// # Errors
+    /// As [`Probability::choosing`].
+    pub fn confirming(&self) -> Result<Draws, ProbabilityProblem> {
+        self.choosing()?.confirming(self.confirm)
+    }
+}

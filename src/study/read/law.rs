@@ -1,0 +1,228 @@
+//! Distributions of `[uncertainty]`.
+
+use super::super::drawn::{LawText, NamedLaw, UncertainInput};
+use super::csv_file::{csv_builder, csv_text};
+use super::roles::{AxisClaim, AxisRole};
+use super::table::{Entry, TomlNode, TomlTable, list, shortened};
+use super::value::measured;
+use super::{Reader, text};
+use crate::probability::Effect;
+use crate::units::{NONE, Unit};
+
+/// The distributions as they are written.
+const LAWS: [&str; 10] =
+    ["uniform", "normal", "lognormal", "triangular", "beta", "weibull", "gumbel", "exponential", "discrete", "empirical"];
+/// What a drawn number may do to what the design says.
+const EFFECTS: [(&str, Effect); 2] = [("times", Effect::Times), ("plus", Effect::Plus)];
+
+/// Does an entry of `[uncertainty]` give a distribution?
+pub(super) fn is_law(entry: &Entry<'_>) -> bool {
+    let has = |table: &TomlTable<'_>| LAWS.iter().copied().chain(EFFECTS.iter().map(|it| it.0)).any(|name| table.get(name).is_some());
+    entry.node.table().is_some_and(|table| has(&table))
+}
+
+/// Parameters of a distribution, with their units.
+struct LawParameters<'r, 't> {
+    reader: &'r Reader<'r>,
+    label: String,
+    unit: Unit,
+    table: Option<TomlTable<'t>>,
+    numbers: Vec<f64>,
+    at: usize,
+}
+
+impl Reader<'_> {
+    /// Reads an input with a distribution.
+    pub(super) fn uncertain(&self, entry: &Entry<'_>) {
+        let label = format!("input \"{}\"", shortened(entry.key));
+        let Some(table) = entry.node.table() else { return };
+        let Some(number) = self.input(entry.key, entry.key_at, &label) else { return };
+        let input = &self.model.inputs[number];
+        let wrong = |at: usize, message: String| self.problems.add(at, format!("{label}: {message}"));
+        if input.is_enumeration() || input.integer {
+            let what = if input.integer { "whole numbers" } else { "words" };
+            wrong(entry.node.at, format!("it takes {what}, which have no distribution; list its levels"));
+            return;
+        }
+        let effect = EFFECTS.iter().find_map(|(name, effect)| Some((name, *effect, table.get(name)?)));
+        let (effect, unit, body) = match effect {
+            None => (Effect::Is, input.unit, table),
+            Some((name, effect, inner)) => {
+                table.check_keys(self.problems, &label, &[name]);
+                let Some(body) = inner.node.table() else {
+                    let remedy =
+                        "wanted a distribution such as { uniform = [0.9, 1.1] }; levels of a tolerance are levels of the input itself";
+                    wrong(inner.node.at, format!("{name}: found {}, {remedy}", inner.node.found()));
+                    return;
+                };
+                (effect, if effect == Effect::Times { NONE } else { input.unit }, body)
+            }
+        };
+        let Some(law) = self.law(&body, &label, unit) else { return };
+        let distribution = match law.distribution() {
+            Ok(distribution) => distribution,
+            Err(problem) => return wrong(body.at, problem.to_string()),
+        };
+        if effect == Effect::Is {
+            let median = distribution.quantile(0.5).unwrap_or(f64::NAN);
+            if !input.accepts(median) {
+                return wrong(body.at, format!("the median {median} is out of range; it must be {}", input.valid.in_words()));
+            }
+            self.claims.borrow_mut().push(AxisClaim {
+                input: number,
+                role: AxisRole::Uncertainty,
+                at: entry.key_at,
+                single: true,
+                word: None,
+            });
+        }
+        let uncertain = UncertainInput { input: number, name: input.name.clone(), effect, law, distribution };
+        self.uncertain.borrow_mut().push((uncertain, entry.key_at));
+    }
+
+    fn law(&self, body: &TomlTable<'_>, label: &str, unit: Unit) -> Option<LawText> {
+        let before = self.problems.count();
+        let named: Vec<_> = LAWS.iter().filter_map(|name| Some((*name, body.get(name)?))).collect();
+        let [(name, entry)] = named[..] else {
+            let found =
+                if named.is_empty() { "there is no distribution".to_owned() } else { format!("there are {} distributions", named.len()) };
+            self.problems.add(body.at, format!("{label}: {found}; give one of {}", list(LAWS)));
+            return None;
+        };
+        body.check_keys(self.problems, label, &[name, "from", "to"]);
+        let label = format!("{label}: {name}");
+        let number = |node: TomlNode<'_>, unit: Unit, what: &str| {
+            measured(node, unit).map_err(|error| self.problems.add(node.at, format!("{label}: {what}: {error}"))).ok()
+        };
+        let numbers = |node: TomlNode<'_>, unit: Unit| -> Option<Vec<f64>> {
+            let Some(nodes) = node.list() else {
+                self.problems.add(node.at, format!("{label}: found {}, wanted a list of numbers", node.found()));
+                return None;
+            };
+            let values: Vec<f64> = nodes.clone().filter_map(|it| number(it, unit, "value")).collect();
+            (values.len() == nodes.len()).then_some(values)
+        };
+        let as_list =
+            if matches!(name, "uniform" | "triangular") { entry.node.list().and_then(|_| numbers(entry.node, unit)) } else { None };
+        let parameters = LawParameters {
+            reader: self,
+            label: label.clone(),
+            unit,
+            table: entry.node.table(),
+            numbers: as_list.unwrap_or_default(),
+            at: entry.node.at,
+        };
+        let law = match name {
+            "uniform" => parameters.read(&["from", "to"], |it| NamedLaw::Uniform { from: it[0], to: it[1] }),
+            "normal" => parameters.read(&["mean", "sd"], |it| NamedLaw::Normal { mean: it[0], sd: it[1] }),
+            "lognormal" => parameters.read(&["mean", "sd"], |it| NamedLaw::Lognormal { mean: it[0], sd: it[1] }),
+            "triangular" => parameters.read(&["from", "mode", "to"], |it| NamedLaw::Triangular { from: it[0], mode: it[1], to: it[2] }),
+            "beta" => {
+                parameters.read(&["alpha", "beta", "from", "to"], |it| NamedLaw::Beta { alpha: it[0], beta: it[1], from: it[2], to: it[3] })
+            }
+            "weibull" => parameters.read(&["shape", "scale", "from"], |it| NamedLaw::Weibull { shape: it[0], scale: it[1], from: it[2] }),
+            "gumbel" => parameters.read(&["mode", "scale"], |it| NamedLaw::Gumbel { mode: it[0], scale: it[1] }),
+            "exponential" => parameters.read(&["mean"], |it| NamedLaw::Exponential { mean: it[0] }),
+            "discrete" => self.table_of_law(entry, &label, "{ values = [...], weights = [...] }").and_then(|table| {
+                table.check_keys(self.problems, &label, &["values", "weights"]);
+                let part = |key: &str| {
+                    let found = table.get(key);
+                    if found.is_none() {
+                        self.problems.add(table.at, format!("{label}: \"{key}\" is missing; write {{ values = [...], weights = [...] }}"));
+                    }
+                    found
+                };
+                let (values, weights) = (part("values"), part("weights"));
+                Some(NamedLaw::Discrete { values: numbers(values?.node, unit)?, weights: numbers(weights?.node, NONE)? })
+            }),
+            _ => self.measured_values(entry, &label, unit, &numbers).map(|values| NamedLaw::Empirical { values }),
+        };
+        let end = |key: &str| body.get(key).and_then(|entry| number(entry.node, unit, key));
+        let law = LawText { law: law?, from: end("from"), to: end("to") };
+        (self.problems.count() == before).then_some(law)
+    }
+
+    fn table_of_law<'n>(&self, entry: &Entry<'n>, label: &str, example: &str) -> Option<TomlTable<'n>> {
+        let table = entry.node.table();
+        if table.is_none() {
+            self.problems.add(entry.node.at, format!("{label}: found {}, wanted {example}", entry.node.found()));
+        }
+        table
+    }
+
+    /// Measured values: a list, or a column of a CSV file.
+    fn measured_values(
+        &self,
+        entry: &Entry<'_>,
+        label: &str,
+        unit: Unit,
+        numbers: &impl Fn(TomlNode<'_>, Unit) -> Option<Vec<f64>>,
+    ) -> Option<Vec<f64>> {
+        if entry.node.list().is_some() {
+            return numbers(entry.node, unit);
+        }
+        let example = "a list of values, or { csv = \"file.csv\", column = \"...\" }";
+        let table = self.table_of_law(entry, label, example)?;
+        table.check_keys(self.problems, label, &["csv", "column"]);
+        let (Some(file), Some(column)) = (table.get("csv"), table.get("column")) else {
+            self.problems.add(table.at, format!("{label}: wanted {example}"));
+            return None;
+        };
+        let (file, name) = (text(file.node, self.problems, label)?, text(column.node, self.problems, label)?);
+        let content =
+            csv_text(self.folder, &file, "study").map_err(|error| self.problems.add(table.at, format!("{label}: {error}"))).ok()?;
+        let tell = |line: usize, message: String| {
+            self.problems.add_in(table.at, &file, line, 1, format!("{label}: {message}"));
+        };
+        let mut reader = csv_builder().from_reader(content.as_bytes());
+        let header = reader.headers().map_err(|error| tell(1, format!("this is not CSV: {error}"))).ok()?.clone();
+        let Some(place) = header.iter().position(|it| it == name) else {
+            tell(1, format!("there is no column \"{}\"; its columns are {}", shortened(&name), list(header.iter())));
+            return None;
+        };
+        let mut values = Vec::new();
+        for record in reader.records() {
+            let record = record.map_err(|error| tell(1, format!("this is not CSV: {error}"))).ok()?;
+            let line = record.position().map_or(1, |position| position.line() as usize);
+            match record[place].parse::<f64>() {
+                Ok(value) if value.is_finite() => values.push(value + 0.0),
+                _ => {
+                    tell(line, format!("\"{}\" in column \"{}\" is no number", shortened(&record[place]), shortened(&name)));
+                    return None;
+                }
+            }
+        }
+        Some(values)
+    }
+}
+
+impl LawParameters<'_, '_> {
+    /// The parameters of these names, from a table or, in this order, from a list. The first of a Weibull distribution's values is 0
+    /// unless it is given.
+    fn read(&self, names: &[&str], law: impl Fn(&[f64]) -> NamedLaw) -> Option<NamedLaw> {
+        let problems = self.reader.problems;
+        let Some(table) = &self.table else {
+            if self.numbers.len() == names.len() {
+                return Some(law(&self.numbers));
+            }
+            let example = names.iter().map(|name| format!("{name} = ...")).collect::<Vec<_>>().join(", ");
+            problems.add(self.at, format!("{}: wanted {{ {example} }}", self.label));
+            return None;
+        };
+        table.check_keys(problems, &self.label, names);
+        let value = |name: &&str| {
+            let Some(entry) = table.get(name) else {
+                if *name == "from" && names[0] == "shape" {
+                    return Some(0.0);
+                }
+                problems.add(table.at, format!("{}: \"{name}\" is missing", self.label));
+                return None;
+            };
+            let unit = if matches!(*name, "alpha" | "shape") || (*name == "beta" && names.len() == 4) { NONE } else { self.unit };
+            let value = measured(entry.node, unit);
+            value.map_err(|error| problems.add(entry.node.at, format!("{}: {name}: {error}", self.label))).ok()
+        };
+        let values: Vec<Option<f64>> = names.iter().map(value).collect();
+        values.into_iter().collect::<Option<Vec<f64>>>().map(|values| law(&values))
+    }
+}

@@ -1,0 +1,77 @@
+//! Results of a list over many designs, a chunk at a time.
+
+use super::{CHUNK, ColumnValue, List, Node, NodeColumns, Operation};
+
+/// A list over a block of designs: which operations are needed, and which have a number per design.
+#[derive(Debug)]
+pub struct ListColumns {
+    numbers: NodeColumns,
+    needed: Vec<Node>,
+    each: Vec<bool>,
+}
+
+impl ListColumns {
+    /// Room for a list.
+    pub fn new(list: &List) -> Self {
+        Self { numbers: NodeColumns::new(list), needed: Vec::new(), each: Vec::new() }
+    }
+
+    /// Turns to these results, where these inputs of the list differ between designs.
+    pub fn turn_to(&mut self, list: &List, results: impl Iterator<Item = usize>, varying: impl Fn(u16) -> bool) {
+        let nodes: Vec<Node> = results.filter_map(|result| list.results[result]).collect();
+        self.needed = list.needed_by(&nodes);
+        self.each = list.dependencies(|input| Bits(varying(input))).into_iter().map(|it| it.0).collect();
+    }
+
+    /// Computes `count` designs, a chunk at a time; `input` gives the list's inputs, `take` is given every chunk.
+    pub fn run<'c>(
+        &mut self,
+        list: &List,
+        count: usize,
+        input: impl Fn(u16) -> ColumnValue<'c>,
+        mut take: impl FnMut(&Self, usize, usize),
+    ) {
+        for first in (0..count).step_by(CHUNK) {
+            let length = CHUNK.min(count - first);
+            self.numbers.begin(length);
+            let Self { numbers, needed, each } = self;
+            for &node in &*needed {
+                match list.operations[node as usize] {
+                    Operation::Input(number) => match input(number) {
+                        ColumnValue::One(value) => numbers.slots[node as usize] = value,
+                        ColumnValue::Each(column) => numbers.fill(node, |to| to.copy_from_slice(&column[first..first + length])),
+                    },
+                    _ if each[node as usize] => numbers.compute(list, node, |node| each[node as usize]),
+                    _ => list.compute(node, &mut numbers.slots),
+                }
+            }
+            take(self, first, length);
+        }
+    }
+
+    /// The operations that are computed, operands first.
+    pub fn needed(&self) -> &[Node] {
+        &self.needed
+    }
+
+    /// Has an operation a number of its own for each design?
+    pub fn differs(&self, node: Node) -> bool {
+        self.each[node as usize]
+    }
+
+    /// A result of the list over the current chunk.
+    pub fn result(&self, list: &List, result: usize) -> ColumnValue<'_> {
+        let node = list.results[result].expect("every result is asked for");
+        self.numbers.value(node, |node| self.each[node as usize])
+    }
+}
+
+/// One bit, to be joined over what a number depends on.
+#[derive(Clone, Copy, Default)]
+struct Bits(bool);
+
+impl std::ops::BitOrAssign for Bits {
+    fn bitor_assign(&mut self, other: Self) {
+        self.0 |= other.0;
+    }
+}

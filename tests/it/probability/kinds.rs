@@ -1,0 +1,117 @@
+//! What random studies are made of, model by model.
+
+/// Axes, distributions and quantities of one model.
+pub struct Kind {
+    pub label: &'static str,
+    pub model: &'static str,
+    /// Whatever must stand before the sections, and behind them.
+    pub head: &'static str,
+    pub tail: &'static str,
+    pub design: &'static [&'static str],
+    /// Two inputs of operating cases, with ends.
+    pub cases: [(&'static str, f64, f64); 2],
+    pub levels: &'static [&'static str],
+    /// Inputs that are drawn, with ends.
+    pub drawn: &'static [(&'static str, f64, f64)],
+    /// Must the first of them be drawn, because nothing else gives it?
+    pub first_is_needed: bool,
+    /// Inputs with tolerances, and the largest addend.
+    pub toleranced: &'static [(&'static str, f64)],
+    pub outputs: &'static [&'static str],
+}
+
+/// All of them.
+pub static KINDS: [Kind; 7] = [
+    Kind {
+        label: "metal-cvt",
+        model: "metal-cvt",
+        head: "",
+        tail: "",
+        design: &["clamping_force_N = [8000, 14000, 20000, 26000]", "band_thickness_mm = [0.12, 0.18, 0.24]", "band_count = [8, 12]"],
+        cases: [("ratio", 0.5, 2.0), ("torque_Nm", 40.0, 120.0)],
+        levels: &["groove_angle_deg = [21, 23.5]", "driver_speed_rpm = { from = 0, to = 4000, count = 2 }"],
+        drawn: &[("friction", 0.06, 0.11), ("elastic_modulus_MPa", 190_000.0, 220_000.0), ("strength_MPa", 500.0, 1000.0)],
+        first_is_needed: false,
+        toleranced: &[("clamping_force_N", 900.0), ("torque_Nm", 15.0), ("band_thickness_mm", 0.02)],
+        outputs: &["slip_margin", "stress_margin", "axial_force_N", "clamping_safety", "max_stress_MPa", "torque_capacity_Nm"],
+    },
+    Kind {
+        label: "rubber-cvt",
+        model: "rubber-cvt",
+        head: "",
+        tail: "",
+        design: &["traction = [0.4, 0.6, 0.75, 0.9]", "belt_thickness_mm = [8, 10, 12]", "belt_width_mm = [40, 50]"],
+        cases: [("ratio", 0.6, 1.8), ("torque_Nm", 20.0, 80.0)],
+        levels: &["groove_angle_deg = [28, 32]"],
+        drawn: &[("friction", 0.3, 0.5), ("elastic_modulus_MPa", 450.0, 700.0), ("strength_MPa", 10.0, 24.0)],
+        first_is_needed: false,
+        toleranced: &[("traction", 0.05), ("belt_thickness_mm", 0.6), ("torque_Nm", 5.0)],
+        outputs: &["slip_margin", "stress_margin", "axial_force_N", "flank_pressure_MPa", "max_stress_MPa", "torque_capacity_Nm"],
+    },
+    Kind {
+        label: "pulley-load",
+        model: "pulley-load",
+        head: "",
+        tail: "",
+        design: &["slack_tension_N = [200, 400, 700, 1000]", "mean_radius_mm = [50, 60, 70]", "groove_count = [1, 2]"],
+        cases: [("power_kW", 1.0, 5.0), ("speed_rpm", 1500.0, 4000.0)],
+        levels: &["groove_angle_deg = [34, 38]"],
+        drawn: &[("friction_limit", 0.2, 0.4), ("wrap_angle_deg", 70.0, 120.0), ("belt_mass_kg_per_m", 0.1, 0.15)],
+        first_is_needed: false,
+        toleranced: &[("slack_tension_N", 60.0), ("mean_radius_mm", 1.5), ("power_kW", 0.4)],
+        outputs: &["friction_margin", "resultant_force_N", "tight_tension_N", "friction_used", "tight_end_line_force_N_per_mm"],
+    },
+    Kind {
+        label: "timing-belt",
+        model: "timing-belt",
+        head: "",
+        tail: "",
+        design: &["teeth_in_mesh = [11, 17, 23]", "tooth_compliance_um_per_N = [2, 3]"],
+        cases: [("pulley_speed_rpm", 2000.0, 7000.0), ("tight_tension_N", 120.0, 250.0)],
+        levels: &["tight_span_angle_deg = [4, 8]"],
+        drawn: &[("friction", 0.3, 0.55), ("pitch_mass_g", 0.3, 0.6), ("cord_modulus_GPa", 60.0, 90.0)],
+        first_is_needed: false,
+        toleranced: &[("tip_radius_mm", 0.5), ("tight_tension_N", 12.0)],
+        outputs: &["peak_tooth_load_N", "lift_speed_rpm", "incomplete_teeth", "boundary_tension_N", "effective_tension_N", "torque_Nm"],
+    },
+    Kind {
+        label: "flat-belt",
+        model: "flat-belt",
+        head: "",
+        tail: "",
+        design: &["belt_width_mm = [100, 150, 200]", "tension_per_width_N_per_mm = [8, 12, 16, 20]", "driver_diameter_mm = [120, 160]"],
+        cases: [("power_kW", 5.0, 25.0), ("driver_speed_rpm", 1000.0, 2500.0)],
+        levels: &["centre_distance_mm = [2000, 2600]"],
+        drawn: &[("friction", 0.3, 0.9), ("belt_density_kg_per_m3", 1000.0, 1250.0), ("belt_thickness_mm", 3.0, 3.6)],
+        first_is_needed: false,
+        toleranced: &[("tension_per_width_N_per_mm", 1.0), ("driver_diameter_mm", 2.0), ("power_kW", 1.0)],
+        outputs: &["slip_margin", "shaft_load_N", "belt_stress_MPa", "power_capacity_kW", "tight_tension_N"],
+    },
+    Kind {
+        label: "formulas around a model",
+        model: "flat-belt",
+        head: "units = [\"EUR\"]",
+        tail: "[fixed]\nprice_EUR_per_m = 4\n[formulas]\nfriction = \"0.6 * wear\"\n\
+               cost_EUR = \"price_EUR_per_m * belt_length_mm * (1 + wear)\"\nreserve_N = \"900[N] - shaft_load_N / wear\"\n",
+        design: &["belt_width_mm = [100, 150, 200]", "tension_per_width_N_per_mm = [8, 12, 16]"],
+        cases: [("power_kW", 5.0, 25.0), ("driver_speed_rpm", 1000.0, 2500.0)],
+        levels: &["centre_distance_mm = [2000, 2600]"],
+        drawn: &[("wear", 0.7, 1.4), ("belt_density_kg_per_m3", 1000.0, 1250.0)],
+        first_is_needed: true,
+        toleranced: &[("driven_diameter_mm", 4.0), ("price_EUR_per_m", 0.5)],
+        outputs: &["slip_margin", "cost_EUR", "reserve_N", "shaft_load_N"],
+    },
+    Kind {
+        label: "model in a file",
+        model: "band-brake.toml",
+        head: "",
+        tail: "",
+        design: &["drum_radius_mm = [55, 80, 110, 140]", "wrap_deg = [120, 180, 240, 300]", "rows = [1, 2, 3]"],
+        cases: [("speed_rpm", 100.0, 1700.0), ("pull_N", 100.0, 500.0)],
+        levels: &["surface = [\"smooth\", \"rough\"]"],
+        drawn: &[("friction", 0.1, 0.3)],
+        first_is_needed: false,
+        toleranced: &[("pull_N", 40.0), ("wrap_deg", 10.0), ("drum_radius_mm", 2.0)],
+        outputs: &["torque_Nm", "tight_N", "rivets", "cost_EUR", "gain"],
+    },
+];

@@ -1,0 +1,7 @@
+//! Studies with distributions, against brute force and closed forms.
+
+mod brute;
+mod draft;
+mod kinds;
+mod laws;
+mod random;

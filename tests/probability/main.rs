@@ -1,0 +1,12 @@
+//! Distributions, draws and statements about them: against SciPy, closed forms and simulations.
+
+/// Distributions against SciPy and identities, and the messages of wrong ones.
+mod distributions;
+/// Draws: their distributions, correlations, and what they depend on.
+mod draws;
+/// Proven bounds of yields against closed forms and draws.
+mod enclosure;
+/// The numbers of SciPy.
+mod golden;
+/// Statistics and confidence intervals against SciPy, closed forms and simulations.
+mod statistics;
