@@ -270,6 +270,11 @@ impl Plan {
         self.space.scenarios.count()
     }
 
+    /// Evaluations of the model that a design takes: its scenarios, and the draws and operating cases in each.
+    pub fn evaluations(&self) -> u64 {
+        self.scenarios().saturating_mul(self.study.probability.as_ref().map_or(1, |it| it.evaluations()))
+    }
+
     /// Seconds that a thread takes over all scenarios, by the model's own figures: for the first stage of a row and the second of a design.
     #[allow(clippy::cast_precision_loss, reason = "an estimate")]
     pub fn effort(&self) -> Effort {

@@ -180,7 +180,8 @@ struct Search {
     done: bool,
 }
 
-const NEWTON_STEPS: i32 = 40;
+// NEWTON_STEPS, how many steps a search may take, is declared where a kernel is put together: what a search that was ended early missed
+// stands in the bound of its root.
 // Steps so small, relative to the place, are at the level of rounding: they end when they no longer shrink.
 const AT_ROUNDING: f32 = 1.2e-3;
 

@@ -5,9 +5,18 @@ use crate::models::{Fields, Model, Set};
 use crate::tape::{Recordable, StageLists, wgsl};
 use std::fmt::Write;
 
+/// Most steps of the search for a root, as on the CPU.
+const NEWTON_STEPS: u32 = 40;
+
 /// Numbers, own functions and decisions, for every kernel.
 pub fn common() -> String {
+    common_with(NEWTON_STEPS)
+}
+
+/// The same for a kernel that searches for so many roots that each may take a few steps only.
+pub fn common_with(newton_steps: u32) -> String {
     [
+        &format!("const NEWTON_STEPS: i32 = {newton_steps};\n"),
         &common_constants(),
         include_str!("../../shaders/common/numbers.wgsl"),
         include_str!("../../shaders/common/functions.wgsl"),
@@ -24,11 +33,11 @@ pub fn model_source(model: &Model, formula: &dyn Recordable) -> String {
 /// The same from lists of its formula.
 pub fn stages_source(model: &Model, fields: &Fields, lists: &StageLists) -> String {
     let equations: Vec<_> = model.outputs.iter().map(|output| output.source.as_str()).collect();
-    wgsl::stages_text(fields, lists, &equations)
+    wgsl::stages_text(&wgsl::OWN, fields, lists, &equations)
 }
 
 /// A structure of `Real`s.
-fn structure(text: &mut String, name: &str, fields: &[&str]) {
+pub fn structure(text: &mut String, name: &str, fields: &[&str]) {
     let members: String = fields.iter().map(|field| format!("    {field}: Real,\n")).collect();
     write!(text, "struct {name} {{\n{members}}}\n\n").expect("a text takes everything");
 }

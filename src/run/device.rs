@@ -60,11 +60,9 @@ pub fn choose(plan: &Plan, engine: Engine, adapter: Option<&str>, wrong: Wrong, 
         return Err(Error::Request("--perturb makes a GPU's kernel wrong on purpose: it needs --engine gpu".to_owned()));
     }
     let insists = engine == Engine::Gpu || (engine == Engine::Auto && adapter.is_some());
-    if insists && plan.study.probability.is_some() {
-        return Err(Error::NotOnDevice { why: "yields are counted draw by draw, on the CPU".to_owned() });
-    }
     if insists {
-        refuse_cpu_only(&plan.study.model, "use --engine cpu, or leave --engine and --adapter out")?;
+        let drive = plan.study.probability.as_ref().map(|it| &*it.drive.model);
+        refuse_cpu_only(drive.unwrap_or(&plan.study.model), "use --engine cpu, or leave --engine and --adapter out")?;
     }
     match engine {
         Engine::Cpu if adapter.is_some() => Err(Error::Request("--adapter names a GPU, but --engine cpu was asked for".to_owned())),
@@ -120,7 +118,7 @@ pub fn about(cpu: Speed) -> Speed {
 
 #[allow(clippy::cast_precision_loss, reason = "an estimate")]
 fn is_worth_a_device(plan: &Plan) -> bool {
-    plan.study.model.on_gpu && !plan.study.decides_by_spectrum() && (plan.designs() as f64) * (plan.scenarios() as f64) >= WORTH_A_DEVICE
+    plan.study.model.on_gpu && !plan.study.decides_by_spectrum() && (plan.designs() as f64) * (plan.evaluations() as f64) >= WORTH_A_DEVICE
 }
 
 /// A hardware adapter for a study that is large enough; whatever is wrong with it is a remark.

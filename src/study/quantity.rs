@@ -22,6 +22,11 @@ impl Quantity {
         }
     }
 
+    /// Its number, if it is an input.
+    pub fn input(self) -> Option<usize> {
+        if let Self::Input(input) = self { Some(input) } else { None }
+    }
+
     /// Its number, if it is an output.
     pub fn output(self) -> Option<usize> {
         if let Self::Output(output) = self { Some(output) } else { None }

@@ -19,6 +19,8 @@ use std::ops::Range;
 pub const LEAST_DESIGNS: u64 = 100_000;
 /// Tiles that these are in.
 const TILES: u64 = 8;
+/// Evaluations that a thread makes one by one to compare outputs in a single scenario.
+const MOST_ALONE: u64 = 1 << 20;
 
 /// What the comparison of whole tiles found.
 #[derive(Clone, Debug, Default)]
@@ -86,10 +88,12 @@ pub struct Recheckable {
 /// Tiles spread over a range: all of it if it is small.
 fn tiles(plan: &Plan, whole: &Range<u64>) -> Vec<Range<u64>> {
     let designs = whole.end - whole.start;
-    if designs <= LEAST_DESIGNS {
+    // A design with draws takes as long as many without.
+    let least = if plan.study.probability.is_some() { LEAST_DESIGNS.min(plan.study.model.sample) } else { LEAST_DESIGNS };
+    if designs <= least {
         return if designs == 0 { Vec::new() } else { vec![whole.clone()] };
     }
-    let size = LEAST_DESIGNS.div_ceil(TILES);
+    let size = least.div_ceil(TILES);
     let stratum = designs / TILES;
     // Another run of another study looks elsewhere; the same study is compared at the same places.
     let seed = plan.study.hash().bytes().fold(0, |seed, byte| mix(seed ^ u64::from(byte)));
@@ -207,31 +211,13 @@ fn compare(
     if let Some(broken) = broken {
         return Err(broken);
     }
+    let each = plan.evaluations() / plan.scenarios();
+    let step = (checked.len() as u64).saturating_mul(each).div_ceil(MOST_ALONE) as usize;
     for (at, (checked, &feasible)) in checked.iter().zip(&feasible).enumerate() {
         report.unsure += u64::from(checked.verdict == Decision::Unsure);
         let design = plan.design_at(start + at as u64);
-        let scenario = plan.slow_scenarios.source_index(checked.scenario.0) + plan.fast_scenarios.source_index(checked.scenario.1);
-        let inputs = plan.space.inputs(design, scenario);
-        let si = to_si(model, &inputs);
-        let prepared = model.kernel.prepared(&si);
-        let (_, present) = judge(model, &model.kernel.margins(&prepared, &si));
-        let outputs = model.kernel.outputs(&prepared, &si, used.iter().collect());
-        for (number, &output) in used.iter().enumerate() {
-            if checked.asked.is_empty() || !present.contains(output) || !outputs[output].is_finite() {
-                continue;
-            }
-            let slot = plan.tracked.len() + number;
-            let name = format!("{} in one scenario", model.outputs[output].name);
-            if let Err(found) = report.compare(slot, &name, checked.asked[number], outputs[output]) {
-                return Err(broken_bound(
-                    plan,
-                    Quantity::Output(output),
-                    design,
-                    found,
-                    outputs[output],
-                    &format!("in scenario {scenario}"),
-                ));
-            }
+        if at % step.max(1) == 0 {
+            compare_alone(plan, used, design, checked, &mut report)?;
         }
         if (checked.verdict == Decision::Yes) != feasible && checked.verdict != Decision::Unsure {
             let (gpu, f64s) = if feasible { ("infeasible", "feasible") } else { ("feasible", "infeasible") };
@@ -239,6 +225,28 @@ fn compare(
         }
     }
     Ok((report, reducers.state()))
+}
+
+/// Compares the outputs of a design in one scenario.
+fn compare_alone(plan: &Plan, used: &[usize], design: u64, checked: &Checked, report: &mut Recheck) -> Result<()> {
+    let model = &plan.study.model;
+    let scenario = plan.slow_scenarios.source_index(checked.scenario.0) + plan.fast_scenarios.source_index(checked.scenario.1);
+    let inputs = plan.space.inputs(design, scenario);
+    let si = to_si(model, &inputs);
+    let prepared = model.kernel.prepared(&si);
+    let (_, present) = judge(model, &model.kernel.margins(&prepared, &si));
+    let outputs = model.kernel.outputs(&prepared, &si, used.iter().collect());
+    for (number, &output) in used.iter().enumerate() {
+        if checked.asked.is_empty() || !present.contains(output) || !outputs[output].is_finite() {
+            continue;
+        }
+        let slot = plan.tracked.len() + number;
+        let name = format!("{} in one scenario", model.outputs[output].name);
+        if let Err(found) = report.compare(slot, &name, checked.asked[number], outputs[output]) {
+            return Err(broken_bound(plan, Quantity::Output(output), design, found, outputs[output], &format!("in scenario {scenario}")));
+        }
+    }
+    Ok(())
 }
 
 /// The error for a value that is farther from f64 than its error bound.

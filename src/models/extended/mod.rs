@@ -20,7 +20,7 @@ use crate::formula::{
 };
 use crate::units::Unit;
 use first::FirstStage;
-pub use interned::interned;
+pub use interned::{interned, interned_list};
 use kernel::Extended;
 pub use nothing::nothing;
 use std::sync::Arc;

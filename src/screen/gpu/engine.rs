@@ -298,7 +298,7 @@ impl<'p> GpuEngine<'p> {
 
     /// Designs of a first dispatch, of whose speed nothing is known yet: it must not look hung.
     pub fn at_once(&self) -> u64 {
-        (FIRST_EVALUATIONS / self.plan.scenarios()).max(1)
+        (FIRST_EVALUATIONS / self.plan.evaluations()).max(1)
     }
 
     /// The longest tile that starts at `range.start`, lies within `range` and has about `designs` designs.

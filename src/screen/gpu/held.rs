@@ -9,7 +9,7 @@ use crate::study::{Axis, Levels, Quantity};
 const FINEST: f64 = 1.0 / (1u64 << 53) as f64;
 
 /// Is a number zero or among the normal numbers of f32? Devices take what is smaller for zero, and what is larger for infinity.
-fn holds(value: f64) -> bool {
+pub fn holds(value: f64) -> bool {
     value == 0.0 || (f64::from(f32::MIN_POSITIVE)..=f64::from(f32::MAX)).contains(&value.abs())
 }
 

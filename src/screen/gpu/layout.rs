@@ -2,6 +2,7 @@
 //! cut into invocations.
 
 use super::constants::LANE_BITS;
+use super::drawn::DrawnOnDevice;
 use super::held::beyond_f32;
 use crate::error::{Error, Result};
 use crate::models::{Fields, Set, Worse, input_to_si};
@@ -141,6 +142,9 @@ pub struct KernelLayout {
     pub fields: Fields,
     /// The stages where formulas of a study or a file are in them: these ask much that the ranges of the study settle.
     pub settled: Option<SettledStages>,
+    /// The draws of a study with distributions, and the place of their first entry in the steady table.
+    pub drawn: Option<DrawnOnDevice>,
+    pub first_case: u32,
     /// What passes from the first stage to the second.
     pub prepared: Vec<Passed>,
     /// Slow dimensions, outermost first.
@@ -174,8 +178,11 @@ impl KernelLayout {
     /// [`Error::NotOnDevice`] if it cannot be screened on a device, and why.
     pub fn new(plan: &Plan, limited_loops: bool, grouped: bool) -> Result<Self> {
         let model = &plan.study.model;
-        let formula = model.on_device()?;
-        let fields = formula.fields();
+        let drawn = DrawnOnDevice::new(plan)?;
+        let fields = match &drawn {
+            Some(drawn) => drawn.fields,
+            None => model.on_device()?.fields(),
+        };
         let scenarios = [&plan.slow_scenarios, &plan.fast_scenarios].map(Product::count);
         let iterations = scenarios[0].saturating_mul(scenarios[1] + 1).saturating_mul(1 + fields.iterations);
         if iterations > MOST_ITERATIONS && (limited_loops || iterations > u64::from(u32::MAX) / 4) {
@@ -203,11 +210,18 @@ impl KernelLayout {
         }
         let used = plan.used_outputs();
         let known = knowns(&plan.study, &plan.space);
-        let settled = model.origin.is_some().then(|| {
-            let asked = plan.row_conditions.iter().chain(&plan.lane_conditions);
-            SettledStages::new(formula, &known, used, &asked.map(|&it| (it, model.conditions[it].strict)).collect::<Vec<_>>())
-        });
-        let reads = settled.as_ref().map_or_else(|| Reads::of(formula, &known, used), |it| it.reads);
+        let (settled, reads) = match &drawn {
+            Some(drawn) => (None, drawn.reads),
+            None => {
+                let formula = model.on_device()?;
+                let settled = model.origin.is_some().then(|| {
+                    let asked = plan.row_conditions.iter().chain(&plan.lane_conditions);
+                    SettledStages::new(formula, &known, used, &asked.map(|&it| (it, model.conditions[it].strict)).collect::<Vec<_>>())
+                });
+                let reads = settled.as_ref().map_or_else(|| Reads::of(formula, &known, used), |it| it.reads);
+                (settled, reads)
+            }
+        };
 
         let mut steady = Vec::new();
         let slow_scenarios = scenario_table(plan, &plan.slow_scenarios, &mut steady);
@@ -241,6 +255,8 @@ impl KernelLayout {
             fast.push(FastDimension { inputs, count: dimension.count(), lane_stride, stride, values });
         }
 
+        let first_case = steady.len() as u32;
+        steady.extend(drawn.iter().flat_map(|it| &it.entries));
         if steady.len() as u64 > WINDOW {
             return Err(refuse(format!("its rows of {} designs and its scenarios have {} values", plan.fast.count(), steady.len())));
         }
@@ -265,6 +281,8 @@ impl KernelLayout {
         Ok(Self {
             fields,
             settled,
+            drawn,
+            first_case,
             prepared: passed(&fields, reads.prepared),
             row_inputs: (reads.inputs & slow_inputs).iter().collect(),
             slow,
@@ -283,6 +301,11 @@ impl KernelLayout {
     /// Is this condition to be asked? Not if it surely holds.
     pub fn asks(&self, condition: usize) -> bool {
         self.settled.as_ref().is_none_or(|it| it.open.contains(condition))
+    }
+
+    /// Is this output a count, or the share that one is of all draws?
+    pub fn counts(&self, output: usize) -> bool {
+        self.drawn.as_ref().is_some_and(|it| it.counts.contains(output))
     }
 
     /// Do the steady entries fit a uniform buffer? A storage buffer serves too, at twice the price of a load.

@@ -1,13 +1,13 @@
 //! Many draws of one design at once, by the recorded formula of the drive: how many of them hold.
 
 use super::super::quantity::Quantity;
-use super::drive::DrawnDrive;
+use super::drive::{DrawnDrive, needs};
 use crate::masks::{count, keep_between, keep_margin};
 use crate::models::input_to_si;
 use crate::probability::Effect;
 use crate::tape::{CHUNK, ColumnValue, Known, List, ListColumns, Set};
 
-/// Most operations of a formula: each has a column of its own, and loops are written out.
+/// Most operations of a formula: each has a column of its own.
 const MOST_OPERATIONS: usize = 1000;
 
 /// What a draw must keep, as a list of operations.
@@ -29,12 +29,11 @@ impl DrawCounting {
         }
         let base = &kernel.base;
         let formula = base.kernel.formula()?;
-        let asked: Set = kernel.holds.iter().filter_map(|it| it.quantity.output()).collect();
-        let takes = |number: usize| {
-            let condition = &base.conditions[number];
-            !condition.quiet || asked.iter().any(|output| condition.invalidates.contains(&base.outputs[output].name))
-        };
-        let conditions: Set = (0..base.conditions.len()).filter(|&it| takes(it)).collect();
+        // Written out, the loops that fill tables are a hundred thousand operations: recording them takes 40 MB.
+        if !formula.fields().tables.is_empty() {
+            return None;
+        }
+        let (asked, conditions) = needs(base, kernel.holds.iter().map(|it| it.quantity));
         let known = vec![Known::ANY; base.inputs.len()];
         let whole = formula.whole(&known, asked, conditions);
         let list = whole.list(asked, conditions);

@@ -4,7 +4,7 @@ use super::super::quantity::Quantity;
 use super::super::resolved::Constraint;
 use super::cases::OperatingCases;
 use super::confirm::FreshDraws;
-use super::statistic::{Statistic, StatisticKind};
+use super::statistic::Statistic;
 use crate::models::{Effort, Model, input_to_si};
 use crate::probability::Effect;
 use crate::tape::Set;
@@ -17,14 +17,14 @@ pub struct Asking(pub Vec<Statistic>, pub Option<FreshDraws>);
 
 /// A drive drawn many times.
 pub struct DrawnDrive {
-    pub(super) base: Arc<Model>,
+    pub base: Arc<Model>,
     /// Inputs that are drawn, and what a drawn number does to them.
-    pub(super) drawn: Vec<(usize, Effect)>,
+    pub drawn: Vec<(usize, Effect)>,
     /// Of each of them: its draws, in its unit or as factors.
-    pub(super) columns: Vec<Vec<f64>>,
-    pub(super) cases: OperatingCases,
-    pub(super) holds: Vec<Constraint>,
-    pub(super) statistics: Vec<Statistic>,
+    pub columns: Vec<Vec<f64>>,
+    pub cases: OperatingCases,
+    pub holds: Vec<Constraint>,
+    pub statistics: Vec<Statistic>,
     /// Draws that judge what these have chosen.
     pub(super) fresh: Option<FreshDraws>,
     /// Outputs of the drive that are computed, and conditions that matter for them or for the status.
@@ -42,18 +42,9 @@ impl DrawnDrive {
         Requirements(holds): Requirements,
         Asking(statistics, fresh): Asking,
     ) -> Self {
-        let own = statistics.iter().flat_map(|it| match it.kind {
-            StatisticKind::Yield | StatisticKind::Confirmed(_) => Vec::new(),
-            StatisticKind::YieldOf(constraint) => vec![constraint.quantity],
-            StatisticKind::Plain(asked) | StatisticKind::Over(asked, _) => vec![asked.quantity],
-        });
-        let asked: Set = holds.iter().map(|it| it.quantity).chain(own).filter_map(Quantity::output).collect();
-        let matters = |number: &usize| {
-            let condition = &base.conditions[*number];
-            !condition.quiet || condition.invalidates.iter().filter_map(|name| base.output(name)).any(|output| asked.contains(output))
-        };
-        let conditions = (0..base.conditions.len()).filter(matters).collect();
-        let outputs = asked.iter().collect();
+        let own = statistics.iter().filter_map(|it| it.kind.of());
+        let (outputs, conditions) = needs(&base, holds.iter().map(|it| it.quantity).chain(own));
+        let (outputs, conditions) = (outputs.iter().collect(), conditions.iter().collect());
         Self { drawn, columns, cases, holds, statistics, fresh, outputs, conditions, base }
     }
 
@@ -93,15 +84,25 @@ impl DrawnDrive {
     }
 
     /// Can the input have this value, in SI units?
-    pub(super) fn fits(&self, input: usize, si: f64) -> bool {
+    pub fn fits(&self, input: usize, si: f64) -> bool {
         let input = &self.base.inputs[input];
         input.valid.contains(input.unit.from_si(si))
     }
 
     /// Statistics that may have no value, each of which has a condition.
-    pub(super) fn absentees(&self) -> impl Iterator<Item = usize> {
+    pub fn absentees(&self) -> impl Iterator<Item = usize> {
         (0..self.statistics.len()).filter(|&it| self.statistics[it].kind.may_be_absent())
     }
+}
+
+/// The outputs of a drive that are needed to know these quantities and the status, and the conditions that matter for either.
+pub fn needs(base: &Model, quantities: impl Iterator<Item = Quantity>) -> (Set, Set) {
+    let asked: Set = quantities.filter_map(Quantity::output).collect();
+    let matters = |number: &usize| {
+        let condition = &base.conditions[*number];
+        !condition.quiet || condition.invalidates.iter().filter_map(|name| base.output(name)).any(|output| asked.contains(output))
+    };
+    (asked, (0..base.conditions.len()).filter(matters).collect())
 }
 
 /// The margin of the condition that a statistic has a value.

@@ -58,7 +58,9 @@ impl DrawnKernel {
     pub fn results(&self, design: &[f64], wanted: Set) -> Vec<Option<f64>> {
         let key: Vec<u64> = design.iter().map(|it| it.to_bits()).collect();
         let known = LAST.with_borrow(|last| {
-            let serves = |it: &&LastDesign| it.0 == self.id && it.1 == key && (wanted - it.2).is_empty();
+            // Only the fresh draws wait until they are asked for.
+            let asked = wanted.iter().filter(|&it| self.is_confirmed(it)).all(|it| last.as_ref().is_some_and(|last| last.2.contains(it)));
+            let serves = |it: &&LastDesign| it.0 == self.id && it.1 == key && asked;
             last.as_ref().filter(serves).map(|it| it.3.clone())
         });
         known.unwrap_or_else(|| {
@@ -86,15 +88,19 @@ impl DrawnKernel {
                 }
             }
         }
-        let is_confirmed = |it: usize| matches!(self.statistics[it].kind, StatisticKind::Confirmed(_));
-        let holding = (0..self.statistics.len()).any(|it| wanted.contains(it) && is_confirmed(it)).then(|| self.holding(design));
+        let holding = (0..self.statistics.len()).any(|it| wanted.contains(it) && self.is_confirmed(it)).then(|| self.holding(design));
         let result = |(number, statistic): (usize, &Statistic)| match statistic.kind {
-            StatisticKind::Yield | StatisticKind::YieldOf(_) => Some(counts[number] as f64 / draws as f64),
+            StatisticKind::Yield | StatisticKind::YieldOf(_) => Some(counts[number] as f64),
             StatisticKind::Plain(asked) => of_any(&asked, &values[number]),
             StatisticKind::Over(asked, over) => over_draws(&asked, over, &values[number]),
             StatisticKind::Confirmed(end) => self.fresh.as_ref().zip(holding).map(|(fresh, holding)| fresh.told(end, holding)),
         };
         self.statistics.iter().enumerate().map(result).collect()
+    }
+
+    /// Is a statistic told by the fresh draws?
+    fn is_confirmed(&self, statistic: usize) -> bool {
+        matches!(self.statistics[statistic].kind, StatisticKind::Confirmed(_))
     }
 
     /// How many of the fresh draws hold.

@@ -246,7 +246,7 @@ impl DrawnLanes {
     fn result(&self, kernel: &DrawnDrive, statistic: usize, lane: usize, count: usize) -> Option<f64> {
         let draws = kernel.draws();
         match (&self.tracks[statistic], kernel.statistics[statistic].kind) {
-            (Track::Holding(count) | Track::Keeping { count, .. }, _) => Some(count[lane] as f64 / draws as f64),
+            (Track::Holding(count) | Track::Keeping { count, .. }, _) => Some(count[lane] as f64),
             (Track::Sum { sum, .. }, _) => Some(sum[lane] / draws as f64 + 0.0).filter(|it| it.is_finite()),
             (Track::Worst { worst, present, .. }, _) => (present[lane] != 0).then_some(worst[lane] + 0.0),
             (Track::All { values, .. }, StatisticKind::Over(asked, over)) => {

@@ -17,6 +17,7 @@ mod model;
 mod probability;
 mod statistic;
 
+pub(crate) use drive::{DrawnDrive, needs};
 pub use law::{LawText, NamedLaw};
 pub use probability::{Drive, MOST_CASES, MOST_CONFIRM, MOST_DRAWS, Probability, REPLICATES, UncertainInput};
 pub use statistic::{AskedQuantity, ConfirmedEnd, OVER_DRAWS, OverDraws, SCREENED, Statistic, StatisticKind, YIELD};

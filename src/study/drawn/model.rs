@@ -8,6 +8,7 @@ use super::kernel::DrawnKernel;
 use super::probability::{Drive, Probability};
 use super::statistic::{AskedQuantity, ConfirmedEnd, Statistic, StatisticKind};
 use crate::models::{Condition, Model, Output, Worse, interned};
+use crate::probability::ProbabilityProblem;
 use crate::units::{NONE, Unit};
 use std::sync::Arc;
 
@@ -21,19 +22,24 @@ impl Probability {
         if let Some(flaw) = self.flaw() {
             return Err(flaw);
         }
-        let draws = self.choosing().map_err(|problem| problem.to_string())?;
+        let problem = |problem: ProbabilityProblem| problem.to_string();
+        let fresh = FreshDraws::new(self.confirming().map_err(problem)?, self.inputs.len(), self.levels);
+        Ok(model(self, DrawnKernel::new(self.drawn(Some(fresh)).map_err(problem)?)))
+    }
+
+    /// The drive with the draws that choose designs, and those that judge what they have chosen.
+    pub(crate) fn drawn(&self, fresh: Option<FreshDraws>) -> Result<DrawnDrive, ProbabilityProblem> {
+        let draws = self.choosing()?;
         let Drive { model: base, operation, spectrum, constraints } = &self.drive;
         let drawn = self.inputs.iter().map(|it| (it.input, it.effect)).collect();
-        let fresh = FreshDraws::new(self.confirming().map_err(|problem| problem.to_string())?, self.inputs.len(), self.levels);
-        let drive = DrawnDrive::new(
+        Ok(DrawnDrive::new(
             base.clone(),
             drawn,
             draws.columns(0..draws.count()),
             OperatingCases::new(operation, spectrum.as_ref()),
             Requirements(constraints.clone()),
-            Asking(self.statistics.clone(), Some(fresh)),
-        );
-        Ok(model(self, DrawnKernel::new(drive)))
+            Asking(self.statistics.clone(), fresh),
+        ))
     }
 }
 
@@ -55,7 +61,7 @@ fn model(probability: &Probability, kernel: DrawnKernel) -> Model {
         conditions,
         effort: kernel.effort(),
         sample: base.sample.min((SAMPLE_EVALUATIONS / evaluations).max(LEAST_SAMPLE)),
-        on_gpu: false,
+        on_gpu: base.on_gpu,
         kernel: Arc::new(kernel),
         notes: None,
         doubts: None,
@@ -76,9 +82,11 @@ fn output(probability: &Probability, statistic: &Statistic) -> Output {
         Output::new(&statistic.name, "", Unit::of_formulas(interned(&unit), (1.0, 1.0)), asked.worse, "the draws", doc)
     };
     let share = |doc: String| Output::new(&statistic.name, "", NONE, Worse::Lower, "the draws", doc);
+    // A device counts: of what it has, the share is counted in draws.
+    let counted = |doc: String| Output { unit: Unit::of_formulas("", (probability.draws as f64, 1.0)), ..share(doc) };
     match &statistic.kind {
         StatisticKind::Yield => {
-            share("Share of the draws that hold: in all operating cases the status is ok and every constraint is kept.".to_owned())
+            counted("Share of the draws that hold: in all operating cases the status is ok and every constraint is kept.".to_owned())
         }
         StatisticKind::Confirmed(ConfirmedEnd::Share) => share(format!("Share of {} fresh draws that hold.", probability.confirm)),
         StatisticKind::Confirmed(ConfirmedEnd::Low) => {
@@ -88,7 +96,7 @@ fn output(probability: &Probability, statistic: &Statistic) -> Output {
             share("Upper end of the interval of the yield after Clopper and Pearson, 95 %, from the fresh draws.".to_owned())
         }
         StatisticKind::YieldOf(constraint) => {
-            share(format!("Share of the draws that keep the bounds of {} in all operating cases.", constraint.name(&drive.model)))
+            counted(format!("Share of the draws that keep the bounds of {} in all operating cases.", constraint.name(&drive.model)))
         }
         StatisticKind::Plain(asked) => of(asked, String::new()),
         StatisticKind::Over(asked, over) => of(asked, format!(" The {}.", over.words())),

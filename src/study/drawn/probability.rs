@@ -18,6 +18,9 @@ pub const MOST_DRAWS: u64 = 10_000_000;
 pub const MOST_CONFIRM: u64 = 1_000_000_000;
 pub const MOST_CASES: u64 = 100_000;
 
+/// Bytes that it takes to record what depends on what in a formula that fills tables, its loops written out.
+const WRITTEN_OUT: u64 = 40_000_000;
+
 /// Uncertain inputs of a study, how they are drawn, and what is asked of the draws.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Probability {
@@ -97,7 +100,8 @@ impl Probability {
         let own = 8 * inputs * (self.draws + FreshDraws::kept(self.confirm, inputs));
         let needs_all = |it: &&Statistic| matches!(it.kind, StatisticKind::Over(_, OverDraws::Sd | OverDraws::Quantile(_)));
         let all = self.statistics.iter().filter(needs_all).count() as u64;
-        own + threads * 8 * most_kept(self.draws, all, designs)
+        let has_tables = self.drive.model.kernel.formula().is_some_and(|it| !it.fields().tables.is_empty());
+        own + threads * 8 * most_kept(self.draws, all, designs) + if has_tables { WRITTEN_OUT } else { 0 }
     }
 
     /// The draws that choose.

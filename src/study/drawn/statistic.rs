@@ -138,6 +138,14 @@ impl StatisticKind {
         }
     }
 
+    /// The quantity of the drive that it reads; whether a draw holds is not one.
+    pub fn of(&self) -> Option<Quantity> {
+        match *self {
+            Self::YieldOf(constraint) => Some(constraint.quantity),
+            _ => self.asked().map(|it| it.quantity),
+        }
+    }
+
     /// Must there be a value in every draw, or in one at least, for it to have a value? A share always has one.
     pub fn may_be_absent(&self) -> bool {
         self.asked().is_some()

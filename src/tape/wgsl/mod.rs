@@ -75,27 +75,56 @@ enum Arithmetic {
 
 /// The text of a model's formula with so many conditions; `equations` has where each output comes from, as far as that is known.
 pub fn text(formula: &dyn Recordable, conditions: usize, equations: &[&str]) -> String {
-    stages_text(&formula.fields(), &StageLists::whole(formula, conditions), equations)
+    stages_text(&OWN, &formula.fields(), &StageLists::whole(formula, conditions), equations)
 }
+
+/// What the functions and structures of a formula are called in a kernel.
+#[derive(Clone, Copy, Debug)]
+pub struct StageNames {
+    /// The function of the first stage.
+    pub prepare: &'static str,
+    /// What it gives.
+    pub prepared: &'static str,
+    /// The function of the conditions' margins.
+    pub conditions: &'static str,
+    /// The number of these.
+    pub count: &'static str,
+    /// The function of the second stage.
+    pub finish: &'static str,
+    /// What it gives.
+    pub outputs: &'static str,
+}
+
+/// The names of a kernel's own formula.
+pub const OWN: StageNames = StageNames {
+    prepare: "prepare",
+    prepared: "Prepared",
+    conditions: "conditions",
+    count: "CONDITIONS",
+    finish: "finish",
+    outputs: "Outputs",
+};
 
 /// The same of a formula's lists.
-pub fn stages_text(fields: &Fields, lists: &StageLists, equations: &[&str]) -> String {
-    first_stage(fields, &lists.first) + &second_stage(fields, lists, equations)
+pub fn stages_text(names: &StageNames, fields: &Fields, lists: &StageLists, equations: &[&str]) -> String {
+    first_stage(names, fields, &lists.first) + &second_stage(names, fields, lists, equations)
 }
 
-fn first_stage(fields: &Fields, list: &List) -> String {
+fn first_stage(names: &StageNames, fields: &Fields, list: &List) -> String {
     let leaf = |input: usize, _: &str| format!("i.{}", fields.inputs[input]);
     let results: Vec<Assignment> =
         fields.prepared.iter().map(|field| Assignment { to: format!("p.{field}"), name: field, equation: "" }).collect();
-    let mut writer = Writer::new("prepare", fields, list, &leaf, &results);
+    let StageNames { prepare, prepared, .. } = names;
+    let mut writer = Writer::new(prepare, fields, list, &leaf, &results);
     for (&result, (table, _)) in list.results[results.len()..].iter().flatten().zip(fields.tables) {
         writer.tables.insert(list.table(result), table);
     }
-    writer.function("prepare(i: Inputs) -> Prepared", "var p: Prepared;", &results, "return p;");
+    writer.function(&format!("{prepare}(i: Inputs) -> {prepared}"), &format!("var p: {prepared};"), &results, "return p;");
     writer.text()
 }
 
-fn second_stage(fields: &Fields, lists: &StageLists, equations: &[&str]) -> String {
+fn second_stage(names: &StageNames, fields: &Fields, lists: &StageLists, equations: &[&str]) -> String {
+    let StageNames { prepared, conditions: of_conditions, count, finish: of_finish, outputs, .. } = names;
     let inputs = fields.inputs.len();
     let fields_passed: Vec<(usize, usize)> = fields.places().collect();
     // A number of a table by what is to be added to its first place.
@@ -113,17 +142,19 @@ fn second_stage(fields: &Fields, lists: &StageLists, equations: &[&str]) -> Stri
     };
     let margin = |number: usize| Assignment { to: format!("margins[{number}]"), name: "", equation: "" };
     let lines: Vec<Assignment> = (0..lists.conditions.results.len()).map(margin).collect();
-    let mut conditions = Writer::new("conditions", fields, &lists.conditions, &leaf, &lines);
-    let margins = "var margins: array<Real, CONDITIONS>;";
-    conditions.function("conditions(p: Prepared, i: Inputs) -> array<Real, CONDITIONS>", margins, &lines, "return margins;");
+    let mut conditions = Writer::new(of_conditions, fields, &lists.conditions, &leaf, &lines);
+    let margins = format!("array<Real, {count}>");
+    let head = format!("{of_conditions}(p: {prepared}, i: Inputs) -> {margins}");
+    conditions.function(&head, &format!("var margins: {margins};"), &lines, "return margins;");
     let line = |(number, field): (usize, &&'static str)| Assignment {
         to: format!("out.{field}"),
         name: field,
         equation: equations.get(number).copied().unwrap_or_default(),
     };
     let lines: Vec<Assignment> = fields.outputs.iter().enumerate().map(line).collect();
-    let mut finish = Writer::new("finish", fields, &lists.finish, &leaf, &lines);
-    finish.function("finish(p: Prepared, i: Inputs) -> Outputs", "var out: Outputs;", &lines, "return out;");
+    let mut finish = Writer::new(of_finish, fields, &lists.finish, &leaf, &lines);
+    let head = format!("{of_finish}(p: {prepared}, i: Inputs) -> {outputs}");
+    finish.function(&head, &format!("var out: {outputs};"), &lines, "return out;");
     conditions.text() + &finish.text()
 }
 

@@ -3,6 +3,7 @@
 mod accuracy;
 mod bites;
 mod commands;
+mod draws;
 mod engines;
 mod hardware;
 mod predicted;
@@ -105,9 +106,13 @@ const NOT_ON_A_DEVICE: [(&str, &str); 5] = [
     ("pulley-design", "pulley is computed in f64 on the CPU only"),
     ("pulley-thickness", "pulley is computed in f64 on the CPU only"),
     ("pulley-types", "pulley is computed in f64 on the CPU only"),
-    ("push-belt-yield", "yields are counted draw by draw, on the CPU"),
-    ("timing-tension", "yields are counted draw by draw, on the CPU"),
+    // On a driver that does not end long loops it is served.
+    (LONG_LOOPS, "loop iterations over its scenarios are more than"),
+    ("timing-tension", "draws of timing-belt need its tables by the draw, which the CPU computes"),
 ];
+
+/// The shipped study whose draws take more loop iterations than some drivers give.
+const LONG_LOOPS: &str = "push-belt-yield";
 
 /// The studies that come with the program, but for those.
 fn shipped() -> Vec<PathBuf> {

@@ -7,6 +7,7 @@ use crate::pipeline::naive::Evaluated;
 use crate::pipeline::{Coverage, Thorough, check_ways, full};
 use crate::random::Random;
 use beltspace::plan::Plan;
+use beltspace::screen::gpu::supports;
 use beltspace::study::{Quantity, Study};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -127,10 +128,14 @@ fn check(seed: u64, text: &mut String, coverage: &mut Coverage) {
     let again = Study::from_description(&study.describe()).expect("it is a description");
     assert_eq!((again.hash(), &again.describe()), (study.hash(), &study.describe()), "seed {seed}");
     let plan = Plan::new(study);
-    let thorough = Thorough { on_gpu: false, write_all: full() };
+    let on_gpu = supports(&plan, crate::gpu::device().limited_loops).is_ok();
+    let thorough = Thorough { on_gpu, write_all: full() };
     check_ways(seed, text, &plan, thorough, |found| expected.answer.difference_beyond(ROUNDING, found));
     let mut note = |feature: &str| *coverage.entry(feature.to_owned()).or_default() += 1;
     draft.features.iter().for_each(|it| note(it));
+    if on_gpu {
+        note("on a device");
+    }
     note(match expected.feasible.len() as u64 {
         0 => "nothing feasible",
         all if all == found.designs => "all feasible",
@@ -186,4 +191,5 @@ const EVERY_FEATURE: &[&str] = &[
     "front of at least 3 points",
     "statistic without a value",
     "yield between 0 and 1",
+    "on a device",
 ];

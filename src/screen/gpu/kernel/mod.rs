@@ -16,8 +16,11 @@ mod lanes;
 mod report;
 mod rows;
 
+pub use judging::keep_between;
+
 use super::constants::DOMINATORS;
 use super::constants::{FIRST_REPORTED, SURVIVOR_HEAD, sweep_constants};
+use super::drawn::NEWTON_STEPS_OF_DRAWS;
 use super::held::on_device;
 use super::layout::{BINS, KernelLayout, LIST, Values, row_dominators, scenario_worst, sign};
 use crate::gpu::constants::declare;
@@ -39,7 +42,7 @@ pub enum Coordinate {
     Plain,
     /// Steps of the resolution.
     Stepped,
-    /// An input whose values f32 tells apart, or a whole-number output.
+    /// An input whose values f32 tells apart, or an output that is a whole number or a share that is counted.
     Exact,
 }
 
@@ -53,7 +56,7 @@ pub fn coordinates(plan: &Plan, layout: &KernelLayout) -> Vec<Coordinate> {
     let kind = |objective: &Objective| match objective.quantity {
         _ if objective.resolution.is_some() => Coordinate::Stepped,
         Quantity::Input(input) if is_exact(plan, layout, input) => Coordinate::Exact,
-        Quantity::Output(output) if plan.study.model.outputs[output].integer => Coordinate::Exact,
+        Quantity::Output(output) if plan.study.model.outputs[output].integer || layout.counts(output) => Coordinate::Exact,
         _ => Coordinate::Plain,
     };
     plan.study.objectives.iter().map(kind).collect()
@@ -88,7 +91,7 @@ pub fn check_words(plan: &Plan) -> usize {
 }
 
 /// A number of the kernel's text that reads back as the same f32.
-fn literal(value: f32) -> String {
+pub fn literal(value: f32) -> String {
     if value.is_finite() {
         format!("f32({value:?})")
     } else if value > 0.0 {
@@ -119,12 +122,13 @@ pub fn text(plan: &Plan, layout: &KernelLayout, perturb: &[(usize, f64)]) -> Str
     let conditions = plan.row_conditions.iter().chain(&plan.lane_conditions).copied();
     let asked: Vec<usize> = conditions.filter(|&number| layout.asks(number)).collect();
     let model = &plan.study.model;
-    let of_model = match &layout.settled {
-        Some(settled) => stages_source(model, &layout.fields, &settled.lists),
-        None => model_source(model, model.on_device().expect("a layout is for a device")),
+    let of_model = match (&layout.drawn, &layout.settled) {
+        (Some(drawn), _) => drawn.text.clone(),
+        (None, Some(settled)) => stages_source(model, &layout.fields, &settled.lists),
+        (None, None) => model_source(model, model.on_device().expect("a layout is for a device")),
     };
     [
-        &source::common(),
+        &if layout.drawn.is_some() { source::common_with(NEWTON_STEPS_OF_DRAWS) } else { source::common() },
         &sweep_constants(),
         include_str!("../../../../shaders/common/wide.wgsl"),
         &model_prelude(&layout.fields, model.conditions.len(), plan.used_outputs(), &asked),
@@ -200,6 +204,7 @@ impl Prelude<'_> {
             ("SURVIVOR_WORDS", survivor_words(plan) as u64),
             ("CHECK_WORDS", check_words(plan) as u64),
             ("WORST_WORDS", 2 * plan.tracked.len() as u64),
+            ("FIRST_CASE", layout.first_case.into()),
         ] {
             declare(&mut self.text, name, u32::try_from(value).expect("the layout is cut to 32-bit numbers"));
         }
@@ -208,13 +213,13 @@ impl Prelude<'_> {
         }
         self.text.push('\n');
         let space = if layout.steady_is_uniform() { "uniform" } else { "storage, read" };
-        put!(self, "// Levels that never change: scenarios, then fast design axes.");
+        put!(self, "// Levels that never change: scenarios, then fast design axes, then what is drawn.");
         put!(self, "@group(0) @binding(2) var<{space}> steady: array<vec4<f32>, {}>;\n", layout.steady.len().max(1));
     }
 }
 
 /// The value that every other one is worse than; its bound is the least.
-fn least_bad(worse: Worse) -> String {
+pub fn least_bad(worse: Worse) -> String {
     if worse == Worse::Higher { "Real(-infinity(), 0.0)".to_owned() } else { "Real(infinity(), 0.0)".to_owned() }
 }
 
@@ -236,8 +241,8 @@ pub fn threshold(plan: &Plan, objective: &Objective, coordinate: Coordinate, key
     match coordinate {
         // Steps are whole numbers.
         Coordinate::Stepped => round_up(key),
-        // The very rounding that the levels had.
-        Coordinate::Exact => key as f32,
+        // The very rounding that the levels had; a share becomes the count that it is of.
+        Coordinate::Exact => (sign(objective.goal) * on_device(plan, objective.quantity, sign(objective.goal) * key)) as f32,
         Coordinate::Plain => {
             let value = sign(objective.goal) * on_device(plan, objective.quantity, sign(objective.goal) * key);
             round_up(value).next_up()
