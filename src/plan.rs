@@ -270,6 +270,12 @@ impl Plan {
         self.space.scenarios.count()
     }
 
+    /// Outputs with the least value that a constraint on their worst asks for, and whether that is itself too little.
+    pub(crate) fn least_values(&self) -> Vec<(usize, f64, bool)> {
+        let constraints = self.study.constraints.iter().filter(|it| it.over.is_worst());
+        constraints.filter_map(|it| it.quantity.output().zip(it.low)).map(|(output, (value, strict))| (output, value, strict)).collect()
+    }
+
     /// Evaluations of the model that a design takes: its scenarios, and the draws and operating cases in each.
     pub fn evaluations(&self) -> u64 {
         self.scenarios().saturating_mul(self.study.probability.as_ref().map_or(1, |it| it.evaluations()))

@@ -69,6 +69,10 @@ pub struct Scratch {
     inputs: Vec<Lanes>,
     outputs: Vec<Lanes>,
     margins: Vec<Lanes>,
+    /// Outputs with the least value that a design must have to be feasible, and whether that is itself too little. Of a design that surely
+    /// has less a kernel may leave values unfinished, if it is infeasible with those too. Empty where the values of infeasible designs
+    /// matter.
+    pub(crate) least: Vec<(usize, f64, bool)>,
     /// What a kernel keeps that needs more than that.
     pub(crate) own: Option<Box<dyn Any + Send>>,
 }
@@ -78,7 +82,12 @@ impl Scratch {
     pub fn new(inputs: usize, kernel: &dyn Kernel) -> Self {
         let Sizes { outputs, conditions, .. } = kernel.sizes();
         let [inputs, outputs, margins] = [inputs, outputs, conditions].map(|length| vec![Lanes::splat(0.0); length]);
-        Self { inputs, outputs, margins, own: None }
+        Self { inputs, outputs, margins, least: Vec::new(), own: None }
+    }
+
+    /// The same where these outputs must have at least these values.
+    pub(crate) fn asking_for(self, least: Vec<(usize, f64, bool)>) -> Self {
+        Self { least, ..self }
     }
 }
 

@@ -74,6 +74,13 @@ impl<'p> CpuEngine<'p> {
         Self { stop: Some(stop), ..self }
     }
 
+    /// The same engine where the values of infeasible designs matter too.
+    #[must_use]
+    pub fn with_all_values(mut self) -> Self {
+        self.scratch = self.scratch.asking_for(Vec::new());
+        self
+    }
+
     /// Bytes of prepared numbers and sums under way that an engine for this plan keeps.
     pub fn prepared_bytes(plan: &Plan) -> u64 {
         8 * plan.study.model.kernel.prepared_len() as u64 * (plan.kept_scenarios() + 1) + CaseSums::bytes(plan, BLOCK)
@@ -105,7 +112,7 @@ impl<'p> CpuEngine<'p> {
             row_sums: CaseSums::new(plan, 1),
             lane_sums: CaseSums::new(plan, BLOCK),
             scenario: (0, 0),
-            scratch: Scratch::new(plan.study.model.inputs.len(), &*plan.study.model.kernel),
+            scratch: Scratch::new(plan.study.model.inputs.len(), &*plan.study.model.kernel).asking_for(plan.least_values()),
             row_margins: vec![0.0; conditions],
             row_outputs: vec![0.0; outputs],
             kept_rows: KeptRows::new(plan),

@@ -180,7 +180,7 @@ struct Counter<'p> {
 
 impl<'p> Counter<'p> {
     fn new(plan: &'p Plan, tables: &'p Tables, control: &'p Control) -> Self {
-        Self { plan, engine: CpuEngine::new(plan, tables).stopping_on(&control.stop), control, tally: Tally::empty(plan) }
+        Self { plan, engine: CpuEngine::new(plan, tables).stopping_on(&control.stop).with_all_values(), control, tally: Tally::empty(plan) }
     }
 
     fn count(mut self, positions: &[u64]) -> Tally {

@@ -12,7 +12,7 @@ use crate::gpu::structure;
 use crate::models::{CONDITION_BOUND_FACTOR, Worse, input_to_si, interned, interned_list};
 use crate::plan::{Plan, knowns};
 use crate::probability::Effect;
-use crate::study::{AskedQuantity, Constraint, DrawnDrive, OverDraws, Quantity, StatisticKind, needs};
+use crate::study::{AskedQuantity, Constraint, DrawnDrive, LeastCount, OverDraws, Quantity, StatisticKind, least_counts, needs};
 use crate::tape::wgsl::StageNames;
 use crate::tape::{Fields, Known, List, Operation, Reads, Set, SettledStages, nearest_f32, wgsl};
 use std::fmt::Write;
@@ -97,7 +97,8 @@ impl DrawnOnDevice {
         let is_count = |number: &usize| matches!(drive.statistics[*number].kind, StatisticKind::Yield | StatisticKind::YieldOf(_));
         let counts = (0..drive.statistics.len()).filter(is_count).collect();
         let mut text = String::new();
-        DrawnText { drive, used: &used, conditions, stages: &stages, own: &own, held, text: &mut text }.write();
+        let least = least_counts(drive, &plan.least_values());
+        DrawnText { drive, used: &used, conditions, stages: &stages, own: &own, least, held, text: &mut text }.write();
         Ok(Some(Self { fields, reads: Reads { prepared: Set::EMPTY, inputs }, counts, entries, text }))
     }
 }
@@ -181,6 +182,8 @@ struct DrawnText<'a> {
     stages: &'a SettledStages,
     /// The names of the drive's values.
     own: &'a Fields,
+    /// Counts without which a design is infeasible.
+    least: Vec<LeastCount>,
     /// For how many cases the first stage is held.
     held: Option<usize>,
     text: &'a mut String,
@@ -200,6 +203,8 @@ struct Lines {
     /// Verdicts on a draw: where all are no, its other cases need not be computed, unless values are followed over all of them.
     open: Vec<String>,
     follows: bool,
+    /// When the draws that remain cannot make a design feasible any more.
+    ends: Vec<String>,
 }
 
 impl DrawnText<'_> {
@@ -339,6 +344,8 @@ impl DrawnText<'_> {
             all.extend(indented(&own, 4));
             all.push("}".to_owned());
         }
+        all.push("// Draws that were left out because they decide nothing: each may count or not.".to_owned());
+        all.push("var rest = 0u;".to_owned());
         all.extend(lines.begin);
         all.push("for (var draw = 0u; draw < DRAWS; draw++) {".to_owned());
         all.push("    var built = YES;".to_owned());
@@ -362,6 +369,9 @@ impl DrawnText<'_> {
             all.push(format!("    if (draw + 1u) % {ADDED}u == 0u || draw + 1u == DRAWS {{"));
             all.extend(indented(&lines.added, 8));
             all.push("    }".to_owned());
+        }
+        if let Some(ends) = lines.ends.into_iter().reduce(|a, b| format!("{a} || {b}")) {
+            all.push(format!("    if {ends} {{ rest = DRAWS - draw - 1u; break; }}"));
         }
         all.push("}".to_owned());
         all.extend(lines.end);
@@ -391,8 +401,11 @@ impl DrawnText<'_> {
         lines.drawn.push(format!("{verdict} = min({verdict}, built);"));
         lines.drawn.push(format!("surely{number} += select(0u, 1u, {verdict} == YES);"));
         lines.drawn.push(format!("possibly{number} += select(0u, 1u, {verdict} != NO);"));
+        if let Some(least) = self.least.iter().find(|it| it.statistic == number) {
+            lines.ends.push(format!("possibly{number} + (DRAWS - draw - 1u) < {}u", least.count));
+        }
         lines.end.push(format!(
-            "out.s{number} = Real(f32(surely{number} + possibly{number}) * 0.5, f32(possibly{number} - surely{number}) * 0.5);"
+            "out.s{number} = Real(f32(surely{number} + possibly{number} + rest) * 0.5, f32(possibly{number} - surely{number} + rest) * 0.5);"
         ));
     }
 
@@ -417,6 +430,7 @@ impl DrawnText<'_> {
         };
         let (multiply, divide) = unit.factors();
         let factor = divide / multiply * part;
+        lines.end.push(format!("if rest > 0u {{ a{number} = UNSURE; }}"));
         let value = format!("if_known(a{number} == YES, t{number})");
         // The factor is rounded in f64 too.
         let scaled = if factor == 1.0 { value } else { format!("mul({value}, near({}))", literal(nearest_f32(factor).0)) };

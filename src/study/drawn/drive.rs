@@ -5,10 +5,10 @@ use super::super::resolved::Constraint;
 use super::cases::OperatingCases;
 use super::confirm::FreshDraws;
 use super::statistic::Statistic;
-use crate::models::{Effort, Model, input_to_si};
+use crate::models::{Dependencies, Effort, Model, input_to_si};
 use crate::probability::Effect;
-use crate::tape::Set;
-use std::sync::Arc;
+use crate::tape::{Known, Set};
+use std::sync::{Arc, OnceLock};
 
 /// What a draw must keep to hold.
 pub struct Requirements(pub Vec<Constraint>);
@@ -27,6 +27,7 @@ pub struct DrawnDrive {
     pub statistics: Vec<Statistic>,
     /// Draws that judge what these have chosen.
     pub(super) fresh: Option<FreshDraws>,
+    depends: OnceLock<Dependencies>,
     /// Outputs of the drive that are computed, and conditions that matter for them or for the status.
     pub(super) outputs: Vec<usize>,
     pub(super) conditions: Vec<usize>,
@@ -45,7 +46,13 @@ impl DrawnDrive {
         let own = statistics.iter().filter_map(|it| it.kind.of());
         let (outputs, conditions) = needs(&base, holds.iter().map(|it| it.quantity).chain(own));
         let (outputs, conditions) = (outputs.iter().collect(), conditions.iter().collect());
-        Self { drawn, columns, cases, holds, statistics, fresh, outputs, conditions, base }
+        let depends = OnceLock::new();
+        Self { drawn, columns, cases, holds, statistics, fresh, depends, outputs, conditions, base }
+    }
+
+    /// What depends on what in the drive, whatever its inputs.
+    pub fn depends(&self) -> &Dependencies {
+        self.depends.get_or_init(|| self.base.kernel.dependencies(&vec![Known::ANY; self.base.inputs.len()]))
     }
 
     /// Number of draws.

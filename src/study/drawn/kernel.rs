@@ -4,6 +4,7 @@ use super::super::quantity::Quantity;
 use super::super::resolved::Constraint;
 use super::counting::DrawCounting;
 use super::drive::{DrawnDrive, margin_of};
+use super::early::least_counts;
 use super::fold::{of_any, over_cases, over_draws};
 use super::lanes::DrawnLanes;
 use super::statistic::{AskedQuantity, Statistic, StatisticKind};
@@ -197,9 +198,16 @@ impl Kernel for DrawnKernel {
     }
 
     fn finish_columns(&self, _prepared: &[f64], inputs: &[f64], columns: &Columns<'_>, scratch: &mut Scratch, results: &mut [Vec<f64>]) {
-        let own = scratch.own.get_or_insert_with(|| Box::new(DrawnLanes::new(&self.drive)));
+        let absentees: Vec<usize> = self.absentees().collect();
+        let wanted: Set = columns.outputs.iter().copied().chain(columns.conditions.iter().map(|&it| absentees[it])).collect();
+        let least = least_counts(&self.drive, &scratch.least);
+        let own = scratch.own.get_or_insert_with(|| Box::new(DrawnLanes::new(&self.drive, wanted)));
+        let lanes = own.downcast_mut::<DrawnLanes>().expect("scratch serves one model");
+        if !lanes.serves(wanted) {
+            *lanes = DrawnLanes::new(&self.drive, wanted);
+        }
         let fresh = |design: &[f64], statistic: usize| self.results(design, Set::one(statistic))[statistic];
-        own.downcast_mut::<DrawnLanes>().expect("scratch serves one model").run(&self.drive, inputs, columns, results, &fresh);
+        lanes.run(&self.drive, inputs, columns, results, (least, &fresh));
     }
 
     fn dependencies(&self, inputs: &[Known]) -> Dependencies {

@@ -2,18 +2,22 @@
 
 use super::super::quantity::Quantity;
 use super::super::resolved::Constraint;
-use super::super::spectrum::OverScenarios;
-use super::drive::{DrawnDrive, margin_of};
+use super::drive::{DrawnDrive, margin_of, needs};
+use super::early::{LeastCount, decided};
 use super::fold::{over_draws, worse_of};
 use super::statistic::{AskedQuantity, OverDraws, StatisticKind};
-use crate::masks::{any, keep_between, keep_finite, keep_margin, lower, raise};
-use crate::models::{Columns, Dependencies, LANES, Scratch, Worse, input_to_si};
-use crate::tape::{Known, Set};
+use super::tracks::{CaseFold, IN, Track, keep, keep_folds};
+use crate::masks::{any, keep_between, keep_margin};
+use crate::models::{Columns, LANES, Scratch, Worse, input_to_si};
+use crate::tape::Set;
 use std::ops::Range;
 
 /// Most values of draws that are kept at a time, and most designs that are given at once.
 const MOST_KEPT: usize = 1 << 21;
 const MOST_LANES: u64 = 512;
+/// Draws between two looks at which designs can still be feasible.
+const LOOK: usize = 16;
+
 /// Designs whose values of all draws are kept at a time, of so many statistics that need them.
 fn lanes_at_a_time(draws: usize, statistics: usize) -> usize {
     (MOST_KEPT / (draws * statistics).max(1) / LANES * LANES).max(LANES)
@@ -25,18 +29,23 @@ pub fn most_kept(draws: u64, statistics: u64, designs: u64) -> u64 {
     lanes.min(MOST_LANES).min(designs) * draws.saturating_mul(statistics)
 }
 
-/// A mask of a design that is in.
-const IN: u64 = u64::MAX;
-
 /// Room for designs under way; one per thread.
 pub struct DrawnLanes {
     scratch: Scratch,
-    /// What depends on what in the drive.
-    depends: Dependencies,
+    /// The statistics that are asked for, is the yield one of them, and what of the drive they need.
+    wanted: Set,
+    counts: bool,
+    outputs: Vec<usize>,
+    conditions: Vec<usize>,
+    /// Least counts without which a design is surely infeasible.
+    least: Vec<LeastCount>,
     prepared: Vec<Vec<f64>>,
     si: Vec<f64>,
-    /// Inputs that differ between the designs, as the draw changes them.
+    /// Inputs that differ between the designs that are still open: as the designs have them, and as the draw changes them.
+    nominal: Vec<(usize, Vec<f64>)>,
     varying: Vec<(usize, Vec<f64>)>,
+    /// Where these designs stand among those that were asked for.
+    places: Vec<usize>,
     /// What of the drive differs between the designs, and what is the same for all: outputs and conditions.
     of_lanes: Parts,
     of_row: Parts,
@@ -63,80 +72,14 @@ struct Parts {
     conditions: Vec<usize>,
 }
 
-/// A quantity over the cases of one draw, for each design.
-struct CaseFold {
-    asked: AskedQuantity,
-    present: Vec<u64>,
-    result: Vec<f64>,
-    sums: Vec<Vec<f64>>,
-}
-
-/// What becomes of the draws, for each design.
-enum Track {
-    /// Draws that hold.
-    Holding(Vec<u64>),
-    /// Draws that keep one constraint, with its mask in the current draw and the folds of both ends if it is of a mean or sum.
-    Keeping { constraint: Constraint, kept: Vec<u64>, folds: Option<[usize; 2]>, count: Vec<u64> },
-    /// The sum of a fold, NaN where a draw has no value.
-    Sum { fold: usize, sum: Vec<f64> },
-    /// The worst of a fold, and whether there is a value: in all draws, or in any.
-    Worst { fold: usize, worst: Vec<f64>, present: Vec<u64>, in_any: bool },
-    /// All values of a fold, draw by draw.
-    All { fold: usize, values: Vec<f64> },
-    /// Of fresh draws.
-    Fresh,
-}
-
-impl CaseFold {
-    fn begin(&mut self, count: usize) {
-        self.present[..count].fill(IN);
-        self.result[..count].fill(self.asked.worse.least_bad());
-        self.sums.iter_mut().for_each(|sum| sum[..count].fill(0.0));
-    }
-
-    /// Takes in the values of a case; absent are those that are no finite numbers.
-    fn take(&mut self, values: &[f64], place: Option<(usize, f64)>) {
-        keep_finite(&mut self.present[..values.len()], values);
-        match place {
-            None => worsen(self.asked.worse, &mut self.result[..values.len()], values),
-            Some((sum, weight)) => self.sums[sum].iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value),
-        }
-    }
-
-    /// After the last case.
-    fn end(&mut self, count: usize, total: f64, built: &[u64]) {
-        let Self { asked, present, result, sums } = self;
-        for sum in sums {
-            if asked.over == OverScenarios::Mean {
-                sum[..count].iter_mut().for_each(|it| *it /= total);
-            }
-            worsen(asked.worse, &mut result[..count], &sum[..count]);
-        }
-        keep_finite(&mut present[..count], &result[..count]);
-        present.iter_mut().zip(&built[..count]).for_each(|(present, built)| *present &= built);
-    }
-}
-
-fn worsen(worse: Worse, worst: &mut [f64], values: &[f64]) {
-    match worse {
-        Worse::Higher => raise(worst, values),
-        Worse::Lower => lower(worst, values),
-    }
-}
-
-/// Keeps what is built and, at both ends of a mean or sum, satisfies the constraint.
-fn keep_folds(alive: &mut [u64], constraint: &Constraint, ends: [usize; 2], folds: &[CaseFold]) {
-    let (low, high) = constraint.ends();
-    for fold in ends.map(|end| &folds[end]) {
-        keep_between(alive, &fold.result[..alive.len()], low, high);
-        alive.iter_mut().zip(&fold.present).for_each(|(alive, present)| *alive &= present);
-    }
-}
-
 impl DrawnLanes {
-    /// Room for a kernel.
-    pub fn new(kernel: &DrawnDrive) -> Self {
+    /// Room for the statistics of a kernel that are asked for.
+    pub fn new(kernel: &DrawnDrive, wanted: Set) -> Self {
         let base = &kernel.base;
+        let asked = || kernel.statistics.iter().enumerate().filter(|(number, _)| wanted.contains(*number)).map(|(_, it)| it.kind);
+        let counts = asked().any(|kind| kind == StatisticKind::Yield);
+        let holds = kernel.holds.iter().filter(|_| counts).map(|it| it.quantity);
+        let (outputs, conditions) = needs(base, holds.chain(asked().filter_map(|kind| kind.of())));
         let mut folds: Vec<CaseFold> = Vec::new();
         let sums = kernel.cases.weights.as_ref().map_or(0, |it| it.sums);
         let mut fold = |asked: AskedQuantity| {
@@ -149,7 +92,7 @@ impl DrawnLanes {
         let mut ends = |constraint: &Constraint| {
             [Worse::Lower, Worse::Higher].map(|worse| fold(AskedQuantity { quantity: constraint.quantity, over: constraint.over, worse }))
         };
-        let of_spectrum = kernel.holds.iter().filter(|it| !it.over.is_worst()).map(|it| (*it, ends(it))).collect();
+        let of_spectrum = kernel.holds.iter().filter(|it| counts && !it.over.is_worst()).map(|it| (*it, ends(it))).collect();
         let mut keeping = |constraint: Constraint| {
             let folds = (!constraint.over.is_worst()).then(|| ends(&constraint));
             Track::Keeping { constraint, kept: Vec::new(), folds, count: Vec::new() }
@@ -157,7 +100,9 @@ impl DrawnLanes {
         let shares: Vec<Option<Track>> = kernel
             .statistics
             .iter()
-            .map(|it| match it.kind {
+            .enumerate()
+            .map(|(number, it)| match it.kind {
+                _ if !wanted.contains(number) => Some(Track::Idle),
                 StatisticKind::Yield => Some(Track::Holding(Vec::new())),
                 StatisticKind::YieldOf(constraint) => Some(keeping(constraint)),
                 StatisticKind::Confirmed(_) => Some(Track::Fresh),
@@ -178,10 +123,16 @@ impl DrawnLanes {
         let tracks = tracks.collect();
         Self {
             scratch: Scratch::new(base.inputs.len(), &*base.kernel),
-            depends: base.kernel.dependencies(&vec![Known::ANY; base.inputs.len()]),
+            wanted,
+            counts,
+            outputs: outputs.iter().collect(),
+            conditions: conditions.iter().collect(),
+            least: Vec::new(),
             prepared: Vec::new(),
             si: vec![0.0; base.inputs.len()],
+            nominal: Vec::new(),
             varying: Vec::new(),
+            places: Vec::new(),
             of_lanes: Parts::default(),
             of_row: Parts::default(),
             results: Vec::new(),
@@ -196,7 +147,13 @@ impl DrawnLanes {
         }
     }
 
-    /// The statistics and conditions asked for, of designs that share the inputs that do not vary.
+    /// Does this room serve these statistics?
+    pub fn serves(&self, wanted: Set) -> bool {
+        self.wanted == wanted
+    }
+
+    /// The statistics and conditions asked for, of designs that share the inputs that do not vary; of a design that has not one of the
+    /// `least` counts only what shows that.
     /// `fresh` is asked for what fresh draws say of a design, by its inputs and the number of the statistic.
     pub fn run(
         &mut self,
@@ -204,30 +161,31 @@ impl DrawnLanes {
         inputs: &[f64],
         columns: &Columns<'_>,
         results: &mut [Vec<f64>],
-        fresh: &dyn Fn(&[f64], usize) -> Option<f64>,
+        (least, fresh): (Vec<LeastCount>, &dyn Fn(&[f64], usize) -> Option<f64>),
     ) {
+        self.least = least;
         let kept = self.tracks.iter().filter(|it| matches!(it, Track::All { .. })).count();
         let most = if kept == 0 { columns.count.next_multiple_of(LANES) } else { lanes_at_a_time(kernel.draws(), kept) };
         self.divide(kernel, columns);
         let absentees: Vec<usize> = kernel.absentees().collect();
         for first in (0..columns.count).step_by(most) {
             let range = first..columns.count.min(first + most);
-            self.draw_all(kernel, inputs, columns, &range);
-            for lane in 0..range.len() {
+            self.draw_all(kernel, inputs, columns, &range, &mut |lanes, at, place| {
+                let lane = first + place;
                 let mut design = inputs.to_vec();
-                columns.varying.iter().for_each(|(input, values)| design[*input] = values[first + lane]);
+                columns.varying.iter().for_each(|(input, values)| design[*input] = values[lane]);
                 for (&output, result) in columns.outputs.iter().zip(&mut *results) {
-                    result[first + lane] = if matches!(self.tracks[output], Track::Fresh) {
+                    result[lane] = if matches!(lanes.tracks[output], Track::Fresh) {
                         fresh(&design, output).unwrap_or(f64::NAN)
                     } else {
-                        self.result(kernel, output, lane, range.len()).unwrap_or(f64::NAN)
+                        lanes.result(kernel, output, at, range.len()).unwrap_or(f64::NAN)
                     };
                 }
                 for (&condition, result) in columns.conditions.iter().zip(&mut results[columns.outputs.len()..]) {
                     let statistic = absentees[condition];
-                    result[first + lane] = margin_of(self.result(kernel, statistic, lane, range.len()).is_some());
+                    result[lane] = margin_of(lanes.result(kernel, statistic, at, range.len()).is_some());
                 }
-            }
+            });
         }
     }
 
@@ -236,8 +194,8 @@ impl DrawnLanes {
         let varying: Set = columns.varying.iter().map(|it| it.0).collect();
         let split =
             |all: &[usize], depends: &[Set]| -> (Vec<usize>, Vec<usize>) { all.iter().partition(|&&it| depends[it].meets(varying)) };
-        let (outputs, row_outputs) = split(&kernel.outputs, &self.depends.outputs);
-        let (conditions, row_conditions) = split(&kernel.conditions, &self.depends.conditions);
+        let (outputs, row_outputs) = split(&self.outputs, &kernel.depends().outputs);
+        let (conditions, row_conditions) = split(&self.conditions, &kernel.depends().conditions);
         self.of_lanes = Parts { outputs, conditions };
         self.of_row = Parts { outputs: row_outputs, conditions: row_conditions };
     }
@@ -254,30 +212,41 @@ impl DrawnLanes {
                 over_draws(&asked, over, &own)
             }
             (Track::All { .. }, _) => unreachable!("only sd and quantiles need all values"),
-            (Track::Fresh, _) => unreachable!("fresh draws are asked elsewhere"),
+            (Track::Fresh | Track::Idle, _) => unreachable!("fresh draws are asked elsewhere, and others that nobody wants not at all"),
         }
     }
 
-    /// All draws of some of the designs.
-    fn draw_all(&mut self, kernel: &DrawnDrive, inputs: &[f64], columns: &Columns<'_>, range: &Range<usize>) {
-        let (base, count) = (&kernel.base, range.len());
+    /// All draws of some of the designs. `tell` is given each of them when it is done: where it stands now, and where it stood in the range.
+    fn draw_all(
+        &mut self,
+        kernel: &DrawnDrive,
+        inputs: &[f64],
+        columns: &Columns<'_>,
+        range: &Range<usize>,
+        tell: &mut dyn FnMut(&Self, usize, usize),
+    ) {
+        let base = &kernel.base;
         self.begin(kernel, columns, range);
-        let wanted: Set = kernel.outputs.iter().copied().collect();
+        let wanted = Set::of(&self.outputs);
         let cases = kernel.cases.rows.len();
         // What the first stage reads decides how often it must run: for every draw, every case, or once.
-        let reads = self.depends.prepared;
+        let reads = kernel.depends().prepared;
         let by_draw = reads.meets(kernel.drawn.iter().map(|it| it.0).collect());
         let by_case = reads.meets(kernel.cases.inputs.iter().collect());
         self.prepared.resize(if by_case { cases } else { 1 }, Vec::new());
         self.prepared.iter_mut().for_each(|it| it.resize(base.kernel.prepared_len(), 0.0));
         let total = kernel.cases.weights.as_ref().map_or(1.0, |it| it.total);
+        // The first cases for which the first stage has run; a draw that nothing survives leaves the rest to later ones.
+        let mut ready = 0;
         for draw in 0..kernel.draws() {
+            let count = self.places.len();
             self.begin_draw(count);
             for case in 0..cases {
-                self.turn(kernel, inputs, columns, (draw, case), range);
+                self.turn(kernel, inputs, (draw, case));
                 let place = if by_case { case } else { 0 };
-                if (by_draw || draw == 0) && (by_case || case == 0) {
+                if (by_draw && (by_case || case == 0)) || place >= ready {
                     base.kernel.prepare(&self.si, wanted, &mut self.prepared[place]);
+                    ready = ready.max(place + 1);
                 }
                 if !self.take_case(kernel, (case, place), count) {
                     break;
@@ -286,14 +255,50 @@ impl DrawnLanes {
             let Self { folds, built, .. } = self;
             folds.iter_mut().for_each(|fold| fold.end(count, total, built));
             self.take_draw(draw, count);
+            if (draw + 1) % LOOK == 0 && draw + 1 < kernel.draws() && !self.leave_out((kernel.draws() - draw - 1) as u64, tell) {
+                return;
+            }
         }
+        (0..self.places.len()).for_each(|at| tell(self, at, self.places[at]));
+    }
+
+    /// Tells of designs that are surely infeasible whatever the draws that remain, and leaves them out; false if none is left.
+    fn leave_out(&mut self, remain: u64, tell: &mut dyn FnMut(&Self, usize, usize)) -> bool {
+        let count = self.places.len();
+        let open: Vec<usize> = (0..count).filter(|&at| !decided(&self.least, &self.tracks, at, remain)).collect();
+        let stays = self.tracks.iter().any(|it| matches!(it, Track::All { .. }));
+        // Moving the others costs as much as a draw or so: it must pay.
+        if !open.is_empty() && (stays || 4 * open.len() > 3 * count) {
+            return true;
+        }
+        let mut next = open.iter().copied().peekable();
+        for at in 0..count {
+            if next.next_if_eq(&at).is_none() {
+                tell(self, at, self.places[at]);
+            }
+        }
+        if open.is_empty() {
+            return false;
+        }
+        let Self { nominal, varying, places, tracks, .. } = self;
+        keep(places, &open);
+        places.truncate(open.len());
+        let padded = open.len().next_multiple_of(LANES);
+        for column in nominal.iter_mut().chain(varying).map(|it| &mut it.1) {
+            keep(column, &open);
+            column.truncate(padded);
+        }
+        tracks.iter_mut().for_each(|track| track.keep(&open));
+        true
     }
 
     fn begin(&mut self, kernel: &DrawnDrive, columns: &Columns<'_>, range: &Range<usize>) {
         let count = range.len();
         let padded = count.next_multiple_of(LANES);
-        self.varying.clear();
-        self.varying.extend(columns.varying.iter().map(|(input, values)| (*input, values[range.start..range.start + padded].to_vec())));
+        self.places = (0..count).collect();
+        self.nominal.clear();
+        self.nominal.extend(columns.varying.iter().map(|(input, values)| (*input, values[range.start..range.start + padded].to_vec())));
+        self.varying.clone_from(&self.nominal);
         self.results.resize(self.of_lanes.outputs.len() + self.of_lanes.conditions.len(), Vec::new());
         let fit = |column: &mut Vec<f64>| column.resize(padded.max(column.len()), 0.0);
         self.results.iter_mut().for_each(fit);
@@ -305,31 +310,8 @@ impl DrawnLanes {
             fold.result.resize(padded, 0.0);
             fold.sums.iter_mut().for_each(|sum| sum.resize(padded, 0.0));
         }
-        let zero = |counts: &mut Vec<u64>| {
-            counts.clear();
-            counts.resize(padded, 0);
-        };
         for (track, statistic) in self.tracks.iter_mut().zip(&kernel.statistics) {
-            match track {
-                Track::Holding(count) => zero(count),
-                Track::Keeping { kept, count, .. } => {
-                    zero(kept);
-                    zero(count);
-                }
-                Track::Sum { sum, .. } => {
-                    sum.clear();
-                    sum.resize(padded, 0.0);
-                }
-                Track::Worst { worst, present, in_any, .. } => {
-                    worst.clear();
-                    worst.resize(padded, statistic.kind.asked().map_or(0.0, |it| it.worse.least_bad()));
-                    // A statistic needs a value in every draw, a quantity that does not depend on them in one.
-                    present.clear();
-                    present.resize(padded, if *in_any { 0 } else { IN });
-                }
-                Track::All { values, .. } => values.resize(kernel.draws() * count, 0.0),
-                Track::Fresh => {}
-            }
+            track.begin(statistic, (kernel.draws(), count, padded));
         }
     }
 
@@ -345,27 +327,28 @@ impl DrawnLanes {
     }
 
     /// Turns the inputs to a draw in a case.
-    fn turn(&mut self, kernel: &DrawnDrive, inputs: &[f64], columns: &Columns<'_>, (draw, case): (usize, usize), range: &Range<usize>) {
+    fn turn(&mut self, kernel: &DrawnDrive, inputs: &[f64], (draw, case): (usize, usize)) {
+        let count = self.places.len();
         self.si.copy_from_slice(inputs);
         for (&input, &value) in kernel.cases.inputs.iter().zip(&kernel.cases.rows[case]) {
             self.si[input] = input_to_si(&kernel.base.inputs[input], value);
         }
         for (&(input, effect), column) in kernel.drawn.iter().zip(&kernel.columns) {
             let drawn = column[draw];
-            match columns.varying.iter().position(|it| it.0 == input) {
+            match self.nominal.iter().position(|it| it.0 == input) {
                 None => {
                     self.si[input] = kernel.actual((input, effect), self.si[input], drawn);
                     if !kernel.fits(input, self.si[input]) {
-                        self.built[..range.len()].fill(0);
+                        self.built[..count].fill(0);
                     }
                 }
                 // What the design says is the same in every case.
                 Some(_) if case > 0 => {}
                 Some(at) => {
-                    let nominal = &columns.varying[at].1[range.start..];
+                    let nominal = &self.nominal[at].1;
                     for (lane, value) in self.varying[at].1.iter_mut().enumerate() {
                         *value = kernel.actual((input, effect), nominal[lane], drawn);
-                        if lane < range.len() && !kernel.fits(input, *value) {
+                        if lane < count && !kernel.fits(input, *value) {
                             self.built[lane] = 0;
                         }
                     }
@@ -391,6 +374,7 @@ impl DrawnLanes {
             asked.to_units(&base.outputs, &mut self.results);
         }
         let Self { of_lanes, of_row, results, row_outputs, row_margins, holds, folds, tracks, same, varying, si, .. } = self;
+        let counts = self.counts;
         let (outputs, margins) = results.split_at(of_lanes.outputs.len());
         // A condition takes away the status, and outputs.
         let mut fail = |number: usize, keep: &dyn Fn(&mut [u64])| {
@@ -401,7 +385,7 @@ impl DrawnLanes {
             let takes =
                 |quantity: Quantity| quantity.output().is_some_and(|output| condition.invalidates.contains(&base.outputs[output].name));
             folds.iter_mut().filter(|it| takes(it.asked.quantity)).for_each(|it| keep(&mut it.present[..count]));
-            for constraint in kernel.holds.iter().filter(|it| takes(it.quantity)) {
+            for constraint in kernel.holds.iter().filter(|it| counts && takes(it.quantity)) {
                 debug_assert!(constraint.low.is_some() || constraint.high.is_some());
                 keep(&mut holds[..count]);
             }
@@ -441,7 +425,7 @@ impl DrawnLanes {
             same[..count].fill(shared);
             take(&same[..count]);
         };
-        for constraint in kernel.holds.iter().filter(|it| it.over.is_worst()) {
+        for constraint in kernel.holds.iter().filter(|it| counts && it.over.is_worst()) {
             let (low, high) = constraint.ends();
             with_values(constraint.quantity, &mut |values| keep_between(&mut holds[..count], values, low, high));
         }
@@ -459,7 +443,7 @@ impl DrawnLanes {
         let is_open = |track: &Track| match track {
             Track::Holding(_) => any(&holds[..count]),
             Track::Keeping { kept, .. } => any(&kept[..count]),
-            Track::Fresh => false,
+            Track::Fresh | Track::Idle => false,
             Track::Sum { .. } | Track::Worst { .. } | Track::All { .. } => true,
         };
         tracks.iter().any(is_open)
@@ -504,7 +488,7 @@ impl DrawnLanes {
                         *to = if *present == 0 { f64::NAN } else { *value };
                     }
                 }
-                Track::Fresh => {}
+                Track::Fresh | Track::Idle => {}
             }
         }
     }

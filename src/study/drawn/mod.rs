@@ -9,6 +9,7 @@ mod cases;
 mod confirm;
 mod counting;
 mod drive;
+mod early;
 mod fold;
 mod kernel;
 mod lanes;
@@ -16,8 +17,10 @@ mod law;
 mod model;
 mod probability;
 mod statistic;
+mod tracks;
 
 pub(crate) use drive::{DrawnDrive, needs};
+pub(crate) use early::{LeastCount, least_counts};
 pub use law::{LawText, NamedLaw};
 pub use probability::{Drive, MOST_CASES, MOST_CONFIRM, MOST_DRAWS, Probability, REPLICATES, UncertainInput};
 pub use statistic::{AskedQuantity, ConfirmedEnd, OVER_DRAWS, OverDraws, SCREENED, Statistic, StatisticKind, YIELD};

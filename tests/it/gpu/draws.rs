@@ -94,6 +94,8 @@ fn a_device_that_draws_or_counts_otherwise_is_noticed() {
     };
     for (piece, other) in [
         ("for (var draw = 0u; draw < DRAWS; draw++) {", "for (var draw = 1u; draw < DRAWS; draw++) {"),
+        // Designs that could still become feasible are left alone.
+        ("+ (DRAWS - draw - 1u) <", "<"),
         ("number < CASES; number++) {", "number + 1u < CASES; number++) {"),
         ("const FIRST_DRAW: u32 = FIRST_CASE + 8u;", "const FIRST_DRAW: u32 = FIRST_CASE + 7u;"),
         (
