@@ -207,7 +207,8 @@ impl Kernel for DrawnKernel {
             *lanes = DrawnLanes::new(&self.drive, wanted);
         }
         let fresh = |design: &[f64], statistic: usize| self.results(design, Set::one(statistic))[statistic];
-        lanes.run(&self.drive, inputs, columns, results, (least, &fresh));
+        lanes.ask_for(least);
+        lanes.run(&self.drive, inputs, columns, results, &fresh);
     }
 
     fn dependencies(&self, inputs: &[Known]) -> Dependencies {

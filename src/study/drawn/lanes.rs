@@ -29,6 +29,9 @@ pub fn most_kept(draws: u64, statistics: u64, designs: u64) -> u64 {
     lanes.min(MOST_LANES).min(designs) * draws.saturating_mul(statistics)
 }
 
+/// What fresh draws say of a design, given its inputs and the number of the statistic.
+pub type FreshOf<'a> = &'a dyn Fn(&[f64], usize) -> Option<f64>;
+
 /// Room for designs under way; one per thread.
 pub struct DrawnLanes {
     scratch: Scratch,
@@ -152,18 +155,15 @@ impl DrawnLanes {
         self.wanted == wanted
     }
 
-    /// The statistics and conditions asked for, of designs that share the inputs that do not vary; of a design that has not one of the
-    /// `least` counts only what shows that.
-    /// `fresh` is asked for what fresh draws say of a design, by its inputs and the number of the statistic.
-    pub fn run(
-        &mut self,
-        kernel: &DrawnDrive,
-        inputs: &[f64],
-        columns: &Columns<'_>,
-        results: &mut [Vec<f64>],
-        (least, fresh): (Vec<LeastCount>, &dyn Fn(&[f64], usize) -> Option<f64>),
-    ) {
+    /// From now on designs that have not one of these counts are left alone.
+    pub fn ask_for(&mut self, least: Vec<LeastCount>) {
         self.least = least;
+    }
+
+    /// The statistics and conditions asked for, of designs that share the inputs that do not vary; of a design that is left
+    /// alone only what shows that.
+    /// `fresh` is asked for what fresh draws say of a design, by its inputs and the number of the statistic.
+    pub fn run(&mut self, kernel: &DrawnDrive, inputs: &[f64], columns: &Columns<'_>, results: &mut [Vec<f64>], fresh: FreshOf<'_>) {
         let kept = self.tracks.iter().filter(|it| matches!(it, Track::All { .. })).count();
         let most = if kept == 0 { columns.count.next_multiple_of(LANES) } else { lanes_at_a_time(kernel.draws(), kept) };
         self.divide(kernel, columns);
