@@ -1,5 +1,7 @@
 //! Distributions, draws and statements about them: against SciPy, closed forms and simulations.
 
+/// How often intervals hold the yield of what was chosen as best.
+mod coverage;
 /// Distributions against SciPy and identities, and the messages of wrong ones.
 mod distributions;
 /// Draws: their distributions, correlations, and what they depend on.

@@ -191,7 +191,7 @@ struct DrawnText<'a> {
 
 /// Which of the lines of the loops a statement belongs to.
 #[derive(Default)]
-struct Lines {
+struct KernelLines {
     /// Before the draws, before the cases of a draw, in a case, after the cases, after the draws.
     begin: Vec<String>,
     draw: Vec<String>,
@@ -300,7 +300,7 @@ impl DrawnText<'_> {
     /// The function that counts.
     fn count(&mut self) {
         let base = &self.drive.base;
-        let mut lines = Lines::default();
+        let mut lines = KernelLines::default();
         for number in self.conditions.iter() {
             let question = if base.conditions[number].strict { "above_zero" } else { "at_least_zero" };
             let factor = literal(CONDITION_BOUND_FACTOR as f32);
@@ -384,7 +384,7 @@ impl DrawnText<'_> {
     }
 
     /// Draws that keep constraints, and those that have a result too if the `status` is asked.
-    fn counted(&self, number: usize, constraints: &[Constraint], status: bool, lines: &mut Lines) {
+    fn counted(&self, number: usize, constraints: &[Constraint], status: bool, lines: &mut KernelLines) {
         let verdict = format!("v{number}");
         lines.begin.push(format!("var surely{number} = 0u;"));
         lines.begin.push(format!("var possibly{number} = 0u;"));
@@ -410,7 +410,7 @@ impl DrawnText<'_> {
     }
 
     /// The worst value of a quantity over the cases of a draw, `f`, and whether it has one in all of them, `h`.
-    fn fold(&self, number: usize, asked: &AskedQuantity, lines: &mut Lines) {
+    fn fold(&self, number: usize, asked: &AskedQuantity, lines: &mut KernelLines) {
         lines.follows = true;
         lines.draw.push(format!("var f{number} = {};", least_bad(asked.worse)));
         lines.draw.push(format!("var h{number} = YES;"));
@@ -422,7 +422,7 @@ impl DrawnText<'_> {
     }
 
     /// What a value of the drive, in SI units, becomes in the unit of the statistic times `part`, and what its condition says.
-    fn told(&self, (number, margin): (usize, usize), asked: &AskedQuantity, part: f64, lines: &mut Lines) {
+    fn told(&self, (number, margin): (usize, usize), asked: &AskedQuantity, part: f64, lines: &mut KernelLines) {
         let base = &self.drive.base;
         let unit = match asked.quantity {
             Quantity::Input(input) => base.inputs[input].unit,
@@ -439,7 +439,7 @@ impl DrawnText<'_> {
     }
 
     /// A quantity that does not depend on the draws, from all that have a value.
-    fn plain(&self, number: usize, margin: usize, asked: &AskedQuantity, lines: &mut Lines) {
+    fn plain(&self, number: usize, margin: usize, asked: &AskedQuantity, lines: &mut KernelLines) {
         self.fold(number, asked, lines);
         lines.begin.push(format!("var t{number} = {};", least_bad(asked.worse)));
         lines.begin.push(format!("var a{number} = NO;"));
@@ -453,7 +453,7 @@ impl DrawnText<'_> {
     }
 
     /// The mean or the worst over all draws, each of which must have a value.
-    fn over(&self, (number, margin): (usize, usize), asked: &AskedQuantity, over: OverDraws, lines: &mut Lines) {
+    fn over(&self, (number, margin): (usize, usize), asked: &AskedQuantity, over: OverDraws, lines: &mut KernelLines) {
         self.fold(number, asked, lines);
         lines.begin.push(format!("var a{number} = YES;"));
         lines.drawn.push(format!("a{number} = min(a{number}, h{number});"));

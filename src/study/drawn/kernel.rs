@@ -99,9 +99,9 @@ impl DrawnKernel {
         self.statistics.iter().enumerate().map(result).collect()
     }
 
-    /// Is a statistic told by the fresh draws?
-    fn is_confirmed(&self, statistic: usize) -> bool {
-        matches!(self.statistics[statistic].kind, StatisticKind::Confirmed(_))
+    /// Is it a statistic that the fresh draws tell? Formulas of statistics have numbers behind those of all statistics.
+    fn is_confirmed(&self, output: usize) -> bool {
+        self.statistics.get(output).is_some_and(|it| matches!(it.kind, StatisticKind::Confirmed(_)))
     }
 
     /// How many of the fresh draws hold.

@@ -286,7 +286,8 @@ fn files_of_kind(folder: &Path, extension: &str) -> usize {
 
 #[test]
 fn two_runs_cannot_share_a_folder() {
-    let folder = folder_with("large.toml", &large());
+    // It must outlast five commands on a busy machine.
+    let folder = folder_with("large.toml", &larger(401));
     let manifest = folder.path().join("out/checkpoint/manifest.json");
     let mut child = start(folder.path(), "sweep large.toml --out out --threads 1");
     assert!(wait_until(&mut child, || manifest.exists()), "it ended before it could be disturbed");
