@@ -246,7 +246,7 @@ def main():
         if judged(compared({"mu_star": ours}, {"mu_star": theirs[1:] + theirs[:1]})) is None:
             wrong.append("screening: effects of other inputs are not noticed")
     if request.out:
-        request.out.write_text(json.dumps(record, indent=2) + "\n")
+        request.out.write_text(json.dumps(record, indent=2, default=float) + "\n")
     sys.exit("; ".join(wrong) or 0)
 
 

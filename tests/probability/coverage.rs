@@ -137,7 +137,9 @@ fn fresh_draws_judge_the_design_that_was_chosen_as_best_as_they_say_and_those_th
     let repetitions: Vec<_> = (1..=REPETITIONS).map(|seed| repetition(&designs, seed)).collect();
     let fresh = coverage(&designs, &repetitions, Judges::Fresh);
     let chosen = coverage(&designs, &repetitions, Judges::Choosing);
-    println!("{REPETITIONS} repetitions, best of {DESIGNS} designs by {DRAWS} draws\nby {CONFIRM} fresh draws {fresh:?}\nby those that chose {chosen:?}");
+    println!(
+        "{REPETITIONS} repetitions, best of {DESIGNS} designs by {DRAWS} draws\nby {CONFIRM} fresh draws {fresh:?}\nby those that chose {chosen:?}"
+    );
     assert!(is_covered(&fresh), "{fresh:?}");
     // Without fresh draws the same test fails, and by far.
     assert!(!is_covered(&chosen) && chosen.best < 0.935 && chosen.all < 0.98, "{chosen:?}");

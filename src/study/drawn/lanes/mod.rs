@@ -1,13 +1,13 @@
 //! Many designs at once: the same bits as for single designs, draw by draw.
 
-use super::super::quantity::Quantity;
+mod case;
+
 use super::super::resolved::Constraint;
 use super::drive::{DrawnDrive, margin_of, needs};
 use super::early::{LeastCount, decided};
 use super::fold::{over_draws, worse_of};
 use super::statistic::{AskedQuantity, OverDraws, StatisticKind};
 use super::tracks::{CaseFold, IN, Track, keep, keep_folds};
-use crate::masks::{any, keep_between, keep_margin};
 use crate::models::{Columns, LANES, Scratch, Worse, input_to_si};
 use crate::tape::Set;
 use std::ops::Range;
@@ -355,98 +355,6 @@ impl DrawnLanes {
                 }
             }
         }
-    }
-
-    /// Computes the drive in a case and takes it in; false if nothing of the draw is open any more.
-    fn take_case(&mut self, kernel: &DrawnDrive, (case, place): (usize, usize), count: usize) -> bool {
-        let base = &kernel.base;
-        let prepared = &self.prepared[place];
-        if !self.of_row.outputs.is_empty() {
-            base.kernel.finish(prepared, &self.si, self.of_row.outputs.iter().collect(), &mut self.row_outputs);
-        }
-        if !self.of_row.conditions.is_empty() {
-            base.kernel.conditions(prepared, &self.si, &mut self.row_margins);
-        }
-        if !self.results.is_empty() {
-            let Parts { outputs, conditions } = &self.of_lanes;
-            let asked = Columns { count, varying: &self.varying, outputs, conditions };
-            base.kernel.finish_columns(prepared, &self.si, &asked, &mut self.scratch, &mut self.results);
-            asked.to_units(&base.outputs, &mut self.results);
-        }
-        let Self { of_lanes, of_row, results, row_outputs, row_margins, holds, folds, tracks, same, varying, si, .. } = self;
-        let counts = self.counts;
-        let (outputs, margins) = results.split_at(of_lanes.outputs.len());
-        // A condition takes away the status, and outputs.
-        let mut fail = |number: usize, keep: &dyn Fn(&mut [u64])| {
-            let condition = &base.conditions[number];
-            if !condition.quiet {
-                keep(&mut holds[..count]);
-            }
-            let takes =
-                |quantity: Quantity| quantity.output().is_some_and(|output| condition.invalidates.contains(&base.outputs[output].name));
-            folds.iter_mut().filter(|it| takes(it.asked.quantity)).for_each(|it| keep(&mut it.present[..count]));
-            for constraint in kernel.holds.iter().filter(|it| counts && takes(it.quantity)) {
-                debug_assert!(constraint.low.is_some() || constraint.high.is_some());
-                keep(&mut holds[..count]);
-            }
-            for track in tracks.iter_mut() {
-                if let Track::Keeping { constraint, kept, .. } = track
-                    && takes(constraint.quantity)
-                {
-                    keep(&mut kept[..count]);
-                }
-            }
-        };
-        for (&number, margins) in of_lanes.conditions.iter().zip(margins) {
-            fail(number, &|mask| keep_margin(mask, margins, base.conditions[number].strict));
-        }
-        for &number in &of_row.conditions {
-            let margin = row_margins[number];
-            if !(margin > 0.0 || (margin == 0.0 && !base.conditions[number].strict)) {
-                fail(number, &|mask| mask.fill(0));
-            }
-        }
-        // The values of a quantity, as a column.
-        let mut with_values = |quantity: Quantity, take: &mut dyn FnMut(&[f64])| {
-            let shared = match quantity {
-                Quantity::Output(output) => match of_lanes.outputs.iter().position(|it| *it == output) {
-                    Some(at) => return take(&outputs[at][..count]),
-                    None => base.outputs[output].unit.from_si(row_outputs[output]),
-                },
-                Quantity::Input(input) => {
-                    let unit = base.inputs[input].unit;
-                    if let Some((_, column)) = varying.iter().find(|it| it.0 == input) {
-                        same.iter_mut().zip(column).for_each(|(to, value)| *to = unit.from_si(*value));
-                        return take(&same[..count]);
-                    }
-                    unit.from_si(si[input])
-                }
-            };
-            same[..count].fill(shared);
-            take(&same[..count]);
-        };
-        for constraint in kernel.holds.iter().filter(|it| counts && it.over.is_worst()) {
-            let (low, high) = constraint.ends();
-            with_values(constraint.quantity, &mut |values| keep_between(&mut holds[..count], values, low, high));
-        }
-        for track in tracks.iter_mut() {
-            if let Track::Keeping { constraint, kept, folds: None, .. } = track {
-                let (low, high) = constraint.ends();
-                with_values(constraint.quantity, &mut |values| keep_between(&mut kept[..count], values, low, high));
-            }
-        }
-        let place = kernel.cases.weights.as_ref().map(|it| it.places[case]);
-        for fold in folds.iter_mut() {
-            let place = place.filter(|_| !fold.asked.over.is_worst());
-            with_values(fold.asked.quantity, &mut |values| fold.take(values, place));
-        }
-        let is_open = |track: &Track| match track {
-            Track::Holding(_) => any(&holds[..count]),
-            Track::Keeping { kept, .. } => any(&kept[..count]),
-            Track::Fresh | Track::Idle => false,
-            Track::Sum { .. } | Track::Worst { .. } | Track::All { .. } => true,
-        };
-        tracks.iter().any(is_open)
     }
 
     /// Takes in a draw, all cases of which are known.
