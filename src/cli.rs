@@ -1,7 +1,7 @@
 //! Every option of the command line.
 
-use beltspace::influence::InfluenceOver;
 use beltspace::run::{Engine, Judging};
+use beltspace::study::{InfluenceOver, SensitivitySpec};
 use beltspace::tiles::Shard;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
@@ -240,7 +240,8 @@ pub struct SensitivityArgs {
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Draws of each set, 16 times a power of two, where there are too many combinations to look at all
-    #[arg(long, value_name = "N", default_value_t = 4096, value_parser = clap::value_parser!(u64).range(16..=1 << 24))]
+    #[arg(long, value_name = "N", default_value_t = SensitivitySpec::DRAWS,
+          value_parser = clap::value_parser!(u64).range(SensitivitySpec::DRAWS_FROM..=SensitivitySpec::DRAWS_TO))]
     pub draws: u64,
     /// Seed of the draws [default: that of the study's draws, else 1]
     #[arg(long, value_name = "S")]

@@ -1,6 +1,7 @@
 //! Which files a result has.
 
 use crate::files::was_to_become;
+use crate::influence::{InfluenceSubject, files_of, is_influence_file};
 use crate::names::{CHECKPOINT, KNEE_PICTURES, MARK, PAGE, RUN, knee_name};
 use crate::reduce::Reported;
 use crate::study::Study;
@@ -22,6 +23,7 @@ pub fn result_files(study: &Study) -> Vec<String> {
     if study.model.pulley.is_some() {
         names.extend(KNEE_PICTURES.map(knee_name));
     }
+    names.extend(InfluenceSubject::of_report(study, 0).ok().flatten().iter().flat_map(files_of));
     names.extend([RUN, PAGE, MARK].map(str::to_owned));
     names.retain(|name| is_written(name));
     names
@@ -36,7 +38,7 @@ fn is_written(name: &str) -> bool {
 pub fn is_ours(name: &str) -> bool {
     let (stem, extension) = name.rsplit_once('.').unwrap_or((name, ""));
     let knee = extension == "svg" && stem.strip_prefix("knee-").is_some_and(|it| KNEE_PICTURES.contains(&it));
-    knee || FIXED.contains(&name) || Reported::is_file(name)
+    knee || FIXED.contains(&name) || Reported::is_file(name) || is_influence_file(name)
 }
 
 /// Is this the temporary name of such a file while it is written, or of the checkpoint while it is made or removed?

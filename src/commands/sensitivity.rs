@@ -3,20 +3,25 @@
 use super::{read_study_with, threads};
 use crate::cli;
 use crate::terminal::{self, TextGrid, bold, grouped, scaled, short, span};
-use beltspace::error::Result;
+use beltspace::directory::Contents;
+use beltspace::error::{Error, Result};
 use beltspace::influence::{
-    Estimate, InfluenceMethod, InfluenceOver, InfluenceReport, InfluenceSubject, InputReport, QuantityReport, QuantityVerdict,
-    TornadoReport, write,
+    Estimate, InfluenceMethod, InfluenceReport, InfluenceSubject, InputReport, QuantityReport, QuantityVerdict,
+    TornadoReport, is_influence_file, write,
 };
-use beltspace::study::{Study, StudyEdits};
+use beltspace::study::StudyEdits;
+use std::path::Path;
 
 /// Seconds of work that are told before it begins.
 const TOLD: f64 = 1.0;
 
 pub fn run(request: &cli::SensitivityArgs) -> Result<()> {
     let (study, _) = read_study_with(&request.study, StudyEdits { set: &request.set, feasible: false })?;
-    let over = request.over.unwrap_or_else(|| default_over(&study));
-    let seed = request.seed.or(study.probability.as_ref().map(|it| it.seed)).unwrap_or(1);
+    if let Some(out) = &request.out {
+        refuse_a_results(out)?;
+    }
+    let over = request.over.unwrap_or_else(|| study.influence_over());
+    let seed = request.seed.unwrap_or_else(|| InfluenceSubject::seed_of(&study));
     let subject = InfluenceSubject::new(&study, over, request.design, &request.of, request.draws, seed)?;
     let threads = threads(request.threads);
     if !request.quiet {
@@ -48,14 +53,17 @@ pub fn run(request: &cli::SensitivityArgs) -> Result<()> {
     terminal::print(&text)
 }
 
-/// What is uncertain, if anything is.
-fn default_over(study: &Study) -> InfluenceOver {
-    if study.uncertainty.is_empty() && study.probability.is_none() { InfluenceOver::Design } else { InfluenceOver::Uncertainty }
+/// The files that `[report]` asked for belong to their result, whose page shows them.
+fn refuse_a_results(out: &Path) -> Result<()> {
+    let own = Contents::of(out).and_then(|it| it.own_files()).unwrap_or_default();
+    let Some(name) = own.iter().find(|name| is_influence_file(name)) else { return Ok(()) };
+    let message = format!("{} belongs to the result there, which [report] asked for it; name another --out", out.join(name).display());
+    Err(Error::Request(message))
 }
 
 /// Tells how long it will take, if that is long.
 #[allow(clippy::cast_precision_loss, reason = "an estimate for people")]
-fn tell_cost(subject: &InfluenceSubject, threads: usize) -> Result<()> {
+pub fn tell_cost(subject: &InfluenceSubject, threads: usize) -> Result<()> {
     let work = subject.work()?;
     let seconds = subject.seconds_each()? * work.combinations as f64 / threads as f64;
     if seconds < TOLD {

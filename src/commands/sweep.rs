@@ -1,13 +1,14 @@
 //! `beltspace sweep`: judges every design of a study and writes the result.
 
 use super::check::feasible_file;
-use super::{engine, read_study_with, report as page, threads};
+use super::{engine, read_study_with, report as page, sensitivity, threads};
 use crate::cli;
 use crate::terminal::{self, progress::Bar, report};
 use beltspace::checkpoint::{Checkpoint, Saved};
 use beltspace::directory::{self, Contents};
 use beltspace::error::{Error, Kept, Result};
 use beltspace::export::RunRecord;
+use beltspace::influence::InfluenceSubject;
 use beltspace::names::{CHECKPOINT, PAGE};
 use beltspace::plan::Plan;
 use beltspace::result_files::result_files;
@@ -66,6 +67,9 @@ pub fn run(request: &cli::SweepArgs) -> Result<()> {
     let resumed = checkpoint.saved().has_progress();
     if let Some(size) = feasible_file(&plan).filter(|_| !request.quiet) {
         terminal::remark("note", &size);
+    }
+    if let Some(subject) = InfluenceSubject::of_report(&plan.study, 0)?.filter(|_| request.shard.is_none() && !request.quiet) {
+        sensitivity::tell_cost(&subject, threads)?;
     }
     let front_bytes = request.front_memory << 20;
     let settings = Settings { threads, tile: request.tile, shard, front_bytes, ..Settings::default() };

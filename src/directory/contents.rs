@@ -3,6 +3,7 @@
 use crate::checkpoint::{Found, foreign, found};
 use crate::error::{Error, Occupant, Result};
 use crate::files::{MOVE, is_regular, is_there, read_at_most, refuse_foreign};
+use crate::influence::is_influence_file;
 use crate::names::{CHECKPOINT, MARK, PAGE, RUN, is_page};
 use crate::result_files::is_ours;
 use crate::study::Study;
@@ -100,8 +101,12 @@ impl Contents {
         for entry in self.path.read_dir().map_err(Error::io(&self.path))? {
             let entry = entry.map_err(Error::io(&self.path))?;
             let name = entry.file_name().to_string_lossy().into_owned();
-            // Older results do not list their files: then every file counts that has the name of a result's file.
-            let listed = written.as_ref().is_none_or(|written| written.contains(&name) || name == RUN || name == MARK);
+            // Older results do not list their files: then every file counts that has the name of a result's file. They have none of the
+            // sensitivity, and the command `sensitivity` writes such files too.
+            let listed = match &written {
+                None => !is_influence_file(&name),
+                Some(written) => written.contains(&name) || name == RUN || name == MARK,
+            };
             let own = match name.as_str() {
                 PAGE => refuse_foreign(&entry.path(), MOVE, is_page).is_ok(),
                 _ => is_ours(&name) && listed,

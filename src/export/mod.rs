@@ -5,6 +5,7 @@
 
 mod confirmed;
 pub(crate) mod feasible;
+mod influence;
 #[cfg(feature = "pictures")]
 mod pictures;
 #[cfg(feature = "pictures")]
@@ -22,6 +23,7 @@ use crate::checkpoint::Checkpoint;
 use crate::directory::Contents;
 use crate::error::{Error, Result};
 use crate::findings::Findings;
+use crate::influence::{InfluenceReport, files as influence_files};
 #[cfg(feature = "pictures")]
 use crate::names::knee_name;
 use crate::names::{MARK, RUN};
@@ -54,6 +56,8 @@ pub struct Certified<'p> {
     pub variants: Vec<Row>,
     /// What a person should know of it besides.
     pub findings: Findings,
+    /// Which input matters, if the study asks for it and there is a design to look at.
+    pub influence: Option<InfluenceReport>,
 }
 
 impl<'p> Certified<'p> {
@@ -88,7 +92,9 @@ impl<'p> Certified<'p> {
             return Err(Error::Disagreement(format!("the sweep counted {seen} feasible designs, the f64 reference finds {feasible}")));
         }
         let findings = Findings::of(plan, state.feasible, &front, threads, control)?;
-        Ok(Self { plan, state, tally, columns, front, named, variants, findings })
+        let mut outcome = Self { plan, state, tally, columns, front, named, variants, findings, influence: None };
+        outcome.influence = outcome.look_at_influence(threads, control)?;
+        Ok(outcome)
     }
 
     /// Number of reported designs that were certified, without those of a list of all designs; one that is in two lists counts twice.
@@ -125,6 +131,9 @@ impl<'p> Certified<'p> {
         }
         if study.report.variants {
             put("variants.csv", csv(&tables::variants(self, &self.variants)))?;
+        }
+        for (name, bytes) in self.influence.iter().flat_map(influence_files) {
+            put(&name, Part::Bytes(bytes))?;
         }
         #[cfg(feature = "pictures")]
         for (name, text) in self.knee_pictures() {

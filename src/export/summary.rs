@@ -124,6 +124,9 @@ impl<'a> Summary<'a> {
         if let Some(confirmed) = Confirmed::of(self.outcome) {
             summary["confirmed"] = confirmed.to_json();
         }
+        if let Some(influence) = self.outcome.influence_in_brief() {
+            summary["sensitivity"] = influence;
+        }
         let findings = &self.outcome.findings;
         if !findings.is_empty() {
             summary["findings"] = findings.to_json(study);

@@ -1,19 +1,18 @@
 //! The pictures of an analysis.
 
 use super::results::{Estimate, InfluenceMethod, InfluenceReport, InputReport, QuantityReport, TornadoReport};
-use super::subject::InfluenceOver;
 use crate::pictures::{BarGroup, PlotBar, PlotQuantity, Swing, bars, tornado};
+use crate::study::InfluenceOver;
 
 /// Names and texts of the pictures: one of the shares of each quantity that has some, and a tornado.
 pub(super) fn pictures(report: &InfluenceReport) -> Vec<(String, String)> {
     let mut pictures = Vec::new();
     for quantity in &report.quantities {
-        let name = &quantity.asked.name;
         if let Some(svg) = shares(report, quantity) {
-            pictures.push((format!("sensitivity-{name}.svg"), svg));
+            pictures.push((quantity.asked.shares_file(), svg));
         }
-        if let Some(found) = &quantity.tornado {
-            pictures.push((format!("tornado-{name}.svg"), swings(report, quantity, found)));
+        if let Some(found) = quantity.tornado.as_ref().filter(|it| it.moves()) {
+            pictures.push((quantity.asked.tornado_file(), swings(report, quantity, found)));
         }
     }
     pictures

@@ -5,6 +5,7 @@ use super::results::{Estimate, InfluenceMethod, InfluenceReport, QuantityVerdict
 use super::subject::{InfluenceSubject, WALKS};
 use crate::error::Result;
 use crate::probability::{Distribution, PairedDraws, ProbabilityProblem};
+use crate::screen::Control;
 use crate::sensitivity::{MorrisWalks, PairedValues, ShapleySets, all_but, all_of};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -21,12 +22,12 @@ struct Gathered {
 
 impl InfluenceSubject {
     /// Estimates the shares from draws.
-    pub(super) fn by_draws(&self, threads: usize, report: &mut InfluenceReport) -> Result<()> {
+    pub(super) fn by_draws(&self, threads: usize, control: &Control, report: &mut InfluenceReport) -> Result<()> {
         let laws =
             self.factors.iter().map(|it| Ok((it.name.as_str(), it.distribution()?))).collect::<Result<Vec<(&str, Distribution)>>>()?;
         let draws = PairedDraws::new(&laws, &self.correlation, self.draws, self.seed)?;
         let (sets, orders, count) = (self.sets()?, self.shapley_sets()?, self.factors.len());
-        let at = |kept: u64| -> Result<QuantityColumns> { self.at_drawn(&draws.columns(kept)?, threads) };
+        let at = |kept: u64| -> Result<QuantityColumns> { self.at_drawn(&draws.columns(kept)?, threads, control) };
         let missing = |values: &[f64]| values.iter().filter(|it| it.is_nan()).count() as u64;
         let mut gathered = Vec::new();
         for ((first, second), quantity) in at(all_of(count))?.into_iter().zip(at(0)?).zip(&mut report.quantities) {
@@ -80,7 +81,7 @@ impl InfluenceSubject {
     }
 
     /// Screens the factors by walks.
-    pub(super) fn by_walks(&self, threads: usize, report: &mut InfluenceReport) -> Result<()> {
+    pub(super) fn by_walks(&self, threads: usize, control: &Control, report: &mut InfluenceReport) -> Result<()> {
         let names: Vec<&str> = self.factors.iter().map(|it| it.name.as_str()).collect();
         let walks = MorrisWalks::new(&names, WALKS, self.seed)?;
         let points = walks.points();
@@ -88,7 +89,7 @@ impl InfluenceSubject {
             points.iter().map(|point| Ok(self.factors[factor].at(point[factor])?.drawn)).collect::<Result<Vec<f64>>>()
         };
         let columns = (0..self.factors.len()).map(column).collect::<Result<Vec<_>>>()?;
-        let values = self.at_drawn(&columns, threads)?;
+        let values = self.at_drawn(&columns, threads, control)?;
         for (quantity, values) in report.quantities.iter_mut().zip(values) {
             let place = |factor: usize, place: f64| self.factors[factor].at(place).map_or(f64::NAN, |it| it.place);
             // Without a value on some walk there is no effect to tell.

@@ -20,7 +20,7 @@ impl InfluenceSubject {
     }
 
     /// Values at drawn numbers: one column for each factor.
-    pub(super) fn at_drawn(&self, columns: &[Vec<f64>], threads: usize) -> Result<QuantityColumns> {
+    pub(super) fn at_drawn(&self, columns: &[Vec<f64>], threads: usize, control: &Control) -> Result<QuantityColumns> {
         let inputs: Vec<usize> = self.factors.iter().flat_map(|it| it.inputs()).copied().collect();
         let count = columns.first().map_or(0, Vec::len);
         let mut values: QuantityColumns = vec![Vec::with_capacity(count); self.quantities.len()];
@@ -37,7 +37,7 @@ impl InfluenceSubject {
             if !valid.is_empty() {
                 let designs: Vec<u64> = (0..valid.len() as u64).collect();
                 let plan = self.with_axes(vec![Axis::Joint { inputs: inputs.clone(), rows: valid }]);
-                found = certify::rows(&plan, &self.columns, &designs, threads, &Control::default())?;
+                found = certify::rows(&plan, &self.columns, &designs, threads, control)?;
             }
             let mut found = found.iter();
             for row in rows {
@@ -60,11 +60,17 @@ impl InfluenceSubject {
     }
 
     /// Values of these designs of a plan, and which of them hold.
-    pub(super) fn of_designs(&self, plan: &Plan, designs: &[u64], threads: usize) -> Result<(QuantityColumns, Vec<bool>)> {
+    pub(super) fn of_designs(
+        &self,
+        plan: &Plan,
+        designs: &[u64],
+        threads: usize,
+        control: &Control,
+    ) -> Result<(QuantityColumns, Vec<bool>)> {
         let mut values: QuantityColumns = vec![Vec::with_capacity(designs.len()); self.quantities.len()];
         let mut holding = Vec::with_capacity(designs.len());
         for block in designs.chunks(BLOCK) {
-            for row in certify::rows(plan, &self.columns, block, threads, &Control::default())? {
+            for row in certify::rows(plan, &self.columns, block, threads, control)? {
                 holding.push(row.feasible);
                 self.take(Some(&row), &mut values);
             }

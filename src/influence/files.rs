@@ -1,10 +1,10 @@
 //! The files of an analysis: tables with the columns of SALib, JSON, pictures.
 
 use super::results::{Estimate, InfluenceMethod, InfluenceReport, InputReport, QuantityReport, QuantityVerdict};
-use super::subject::InfluenceOver;
+use super::subject::InfluenceSubject;
 use crate::error::{Error, Result};
 use crate::files::{Claim, MOVE, refuse_foreign, remove_if_there, replace, was_to_become};
-use crate::study::number;
+use crate::study::{InfluenceOver, number};
 use crate::table::{Data, Table, TableColumn, csv_text};
 use serde_json::{Map, Value, json};
 use std::path::Path;
@@ -77,8 +77,7 @@ pub fn json(report: &InfluenceReport) -> Value {
     let mut all = Map::new();
     all.insert("beltspace_sensitivity".to_owned(), json!(env!("CARGO_PKG_VERSION")));
     all.insert("title".to_owned(), json!(report.title));
-    let over = if report.over == InfluenceOver::Design { "design" } else { "uncertainty" };
-    all.insert("over".to_owned(), json!(over));
+    all.insert("over".to_owned(), json!(report.over.word()));
     all.insert("design".to_owned(), json!(report.design));
     all.insert("scenarios".to_owned(), json!(report.scenarios));
     all.insert("method".to_owned(), method);
@@ -91,8 +90,22 @@ pub fn json(report: &InfluenceReport) -> Value {
     Value::Object(all)
 }
 
+/// A share with its interval; nothing where there is none.
+pub(super) fn share(it: Option<Estimate>) -> Value {
+    it.map_or(Value::Null, |it| json!({ "value": number(it.value), "confidence": it.confidence.map(number) }))
+}
+
+/// What is said of a quantity, in words.
+pub(super) fn verdict(it: &QuantityReport, over: InfluenceOver) -> String {
+    match it.verdict {
+        QuantityVerdict::Shares => "varies".to_owned(),
+        QuantityVerdict::Constant { .. } => "does not vary".to_owned(),
+        QuantityVerdict::Absent { .. } => it.refusal(over),
+        QuantityVerdict::None => "only screened".to_owned(),
+    }
+}
+
 fn of_quantity(it: &QuantityReport, over: InfluenceOver) -> Value {
-    let share = |it: Option<Estimate>| it.map(|it| json!({ "value": number(it.value), "confidence": it.confidence.map(number) }));
     let input = |input: &InputReport| {
         let screening = input.screening.as_ref();
         let screening = screening.map(|it| json!({ "mu": number(it.mean), "mu_star": number(it.mean_absolute), "sigma": number(it.sd) }));
@@ -101,12 +114,6 @@ fn of_quantity(it: &QuantityReport, over: InfluenceOver) -> Value {
             "shapley_holds": share(input.within), "screening": screening,
         })
     };
-    let verdict = match it.verdict {
-        QuantityVerdict::Shares => json!("varies"),
-        QuantityVerdict::Constant { .. } => json!("does not vary"),
-        QuantityVerdict::Absent { .. } => json!(it.refusal(over)),
-        QuantityVerdict::None => json!("only screened"),
-    };
     let tornado = it.tornado.as_ref().map(|tornado| {
         let bars = tornado.bars.iter().map(|bar| {
             json!({ "name": bar.name, "low": bar.low, "high": bar.high, "at_low": bar.at_low.map(number), "at_high": bar.at_high.map(number) })
@@ -114,7 +121,7 @@ fn of_quantity(it: &QuantityReport, over: InfluenceOver) -> Value {
         json!({ "middle": tornado.middle.map(number), "bars": bars.collect::<Vec<_>>() })
     });
     json!({
-        "name": it.asked.name, "unit": it.asked.unit, "description": it.asked.doc, "verdict": verdict,
+        "name": it.asked.name, "unit": it.asked.unit, "description": it.asked.doc, "verdict": verdict(it, over),
         "mean": it.mean.map(number), "standard_deviation": it.sd.map(number),
         "over_designs_that_hold": it.within.map(|it| json!({ "mean": number(it.mean), "standard_deviation": number(it.sd) })),
         "inputs": it.inputs.iter().map(input).collect::<Vec<_>>(), "tornado": tornado,
@@ -137,13 +144,8 @@ fn is_own(name: &str, head: &str) -> bool {
     }
 }
 
-/// Writes the files into a directory, which is made if it is not there, and removes those of an earlier analysis that this one does not have.
-/// Other files are left alone. Gives the names of the files.
-///
-/// # Errors
-/// [`Error::Request`] if a file is in the way that this program did not write; then nothing is written.
-pub fn write(report: &InfluenceReport, folder: &Path, task: &str) -> Result<Vec<String>> {
-    let _claim = Claim::new(folder, task)?;
+/// The files, with their names.
+pub fn files(report: &InfluenceReport) -> Vec<(String, Vec<u8>)> {
     let mut files: Vec<(String, Vec<u8>)> = vec![(TABLE.to_owned(), csv_text(&table(report)))];
     files.push((JSON.to_owned(), format!("{:#}\n", json(report)).into_bytes()));
     if let Some(tornado) = tornado_table(report) {
@@ -151,6 +153,33 @@ pub fn write(report: &InfluenceReport, folder: &Path, task: &str) -> Result<Vec<
     }
     #[cfg(feature = "pictures")]
     files.extend(super::drawings::pictures(report).into_iter().map(|(name, text)| (name, text.into_bytes())));
+    files
+}
+
+/// The names that the files of this subject may have, those of pictures last: of each quantity that of its shares, then its tornado.
+pub fn files_of(subject: &InfluenceSubject) -> Vec<String> {
+    let of_one_design = subject.over == InfluenceOver::Uncertainty;
+    let mut names = vec![TABLE.to_owned(), JSON.to_owned()];
+    if of_one_design {
+        names.push(TORNADO.to_owned());
+    }
+    for quantity in &subject.quantities {
+        names.push(quantity.shares_file());
+        if of_one_design {
+            names.push(quantity.tornado_file());
+        }
+    }
+    names
+}
+
+/// Writes the files into a directory, which is made if it is not there, and removes those of an earlier analysis that this one does not have.
+/// Other files are left alone. Gives the names of the files.
+///
+/// # Errors
+/// [`Error::Request`] if a file is in the way that this program did not write; then nothing is written.
+pub fn write(report: &InfluenceReport, folder: &Path, task: &str) -> Result<Vec<String>> {
+    let _claim = Claim::new(folder, task)?;
+    let files = files(report);
     let mut older = Vec::new();
     for entry in folder.read_dir().map_err(Error::io(folder))? {
         let name = entry.map_err(Error::io(folder))?.file_name().to_string_lossy().into_owned();

@@ -6,7 +6,9 @@ use super::subject::InfluenceSubject;
 use crate::error::Result;
 use crate::parallel::on_threads;
 use crate::plan::Plan;
+use crate::screen::Control;
 use crate::sensitivity::{GridTally, all_but};
+use crate::study::InfluenceOver;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Levels of a range, of which a coarser grid takes some.
@@ -15,17 +17,17 @@ const LEVELS_OF_RANGE: u64 = 1001;
 impl InfluenceSubject {
     /// Looks at the combinations of all levels, at most `limit`. If these are all, they give exact shares; in any case they tell of the designs
     /// that hold.
-    pub(super) fn on_grid(&self, limit: u64, threads: usize, report: &mut InfluenceReport) -> Result<()> {
+    pub(super) fn on_grid(&self, limit: u64, threads: usize, control: &Control, report: &mut InfluenceReport) -> Result<()> {
         let Some(axes) = self.factors.iter().map(|it| it.as_levels(LEVELS_OF_RANGE)).collect::<Option<Vec<_>>>() else { return Ok(()) };
         let plan = self.with_axes(axes);
         let designs = plan.space.designs.coarse(limit);
         let levels = self.levels_of(&plan, &designs);
-        let (values, holding) = self.of_designs(&plan, &designs, threads)?;
+        let (values, holding) = self.of_designs(&plan, &designs, threads, control)?;
         if self.grid_of_all().is_some() {
             report.method = InfluenceMethod::Grid { combinations: designs.len() as u64 };
             self.of_all(&levels, &values, threads, report)?;
         }
-        if self.over == super::InfluenceOver::Design {
+        if self.over == InfluenceOver::Design {
             report.held_grid = Some((designs.len() as u64, holding.iter().filter(|it| **it).count() as u64));
             self.of_holding(&levels, (&values, &holding), threads, report)?;
         }

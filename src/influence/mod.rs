@@ -9,6 +9,7 @@
 //!
 //! Nothing here depends on the number of threads.
 
+mod brief;
 #[cfg(feature = "pictures")]
 mod drawings;
 mod drawn;
@@ -21,9 +22,11 @@ mod results;
 mod subject;
 mod tornado;
 
+pub use brief::brief;
 pub use factor::InputFactor;
-pub use files::{is_influence_file, json, table, tornado_table, write};
+pub use files::{files, files_of, is_influence_file, json, table, tornado_table, write};
 pub use results::{
     Estimate, InfluenceMethod, InfluenceReport, InputReport, QuantityReport, QuantityVerdict, TornadoBar, TornadoReport, WithinHolding,
 };
-pub use subject::{HOLDS, InfluenceOver, InfluenceSubject, InfluenceWork, QuantityAsked};
+pub use crate::study::{HOLDS, InfluenceOver};
+pub use subject::{InfluenceSubject, InfluenceWork, QuantityAsked};

@@ -1,10 +1,11 @@
 //! What was found: shares of the variance, effects, a tornado.
 
 use super::factor::TOGETHER;
-use super::subject::{InfluenceOver, InfluenceSubject, QuantityAsked};
+use super::subject::{InfluenceSubject, QuantityAsked};
 use crate::error::Result;
 use crate::probability::{Replicated, replicated};
 use crate::sensitivity::Effects;
+use crate::study::InfluenceOver;
 use crate::table::short;
 
 /// Standard errors on either side of an estimate that hold the truth with 95 %, if its error comes from 16 replicates: the 0.975 quantile
@@ -207,6 +208,11 @@ impl TornadoReport {
         let mut bars: Vec<&TornadoBar> = self.bars.iter().collect();
         bars.sort_by(|a, b| b.width().total_cmp(&a.width()));
         bars
+    }
+
+    /// Does any factor move the quantity?
+    pub fn moves(&self) -> bool {
+        self.bars.iter().any(|it| it.width() > 0.0)
     }
 }
 

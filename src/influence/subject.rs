@@ -5,9 +5,10 @@ use crate::certify::{self, Column};
 use crate::error::{Error, Result};
 use crate::likeness::remedy;
 use crate::models::Worse;
+use crate::screen::Control;
 use crate::sensitivity::ShapleySets;
 use crate::space::Space;
-use crate::study::{Axis, Quantity, ReportColumn, StatisticKind, Study};
+use crate::study::{Axis, HOLDS, InfluenceOver, Quantity, ReportColumn, SensitivitySpec, StatisticKind, Study};
 use std::collections::BTreeSet;
 use std::time::Instant;
 
@@ -22,18 +23,6 @@ const SCREENED: usize = 10;
 const MOST_DRAWN: usize = 50;
 /// Walks of a screening.
 pub(super) const WALKS: u64 = 20;
-/// The quantity that tells whether all constraints are kept.
-pub const HOLDS: &str = "holds";
-
-/// Which inputs vary.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
-pub enum InfluenceOver {
-    /// The design axes: which choice matters, over all designs
-    Design,
-    /// What is uncertain about one design
-    Uncertainty,
-}
 
 /// A quantity that is asked about.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,6 +35,18 @@ pub struct QuantityAsked {
     pub doc: String,
     /// Position of its column; `None`: whether the design holds.
     pub(super) column: Option<usize>,
+}
+
+impl QuantityAsked {
+    /// File of the picture of its shares.
+    pub fn shares_file(&self) -> String {
+        format!("sensitivity-{}.svg", self.name)
+    }
+
+    /// File of its tornado.
+    pub fn tornado_file(&self) -> String {
+        format!("tornado-{}.svg", self.name)
+    }
 }
 
 /// Inputs that vary, and quantities that are asked about.
@@ -145,6 +146,21 @@ impl InfluenceSubject {
         Ok(Self { over, design, factors, quantities, draws, seed, correlation, base, columns, evaluations, is_chosen, scenarios })
     }
 
+    /// What the study's report asks for, of this design where one design is looked at; `None` if it asks for nothing.
+    ///
+    /// # Errors
+    /// As [`InfluenceSubject::new`], for a design that the study does not have.
+    pub fn of_report(study: &Study, design: u64) -> Result<Option<Self>> {
+        let Some(SensitivitySpec { over, of, draws }) = &study.report.sensitivity else { return Ok(None) };
+        let design = (*over == InfluenceOver::Uncertainty).then_some(design);
+        Self::new(study, *over, design, of, *draws, Self::seed_of(study)).map(Some)
+    }
+
+    /// The seed unless another one is asked for: that of the study's draws.
+    pub fn seed_of(study: &Study) -> u64 {
+        study.probability.as_ref().map_or(1, |it| it.seed)
+    }
+
     /// Do inputs have correlations, so that Sobol indices have no meaning?
     pub fn is_correlated(&self) -> bool {
         !self.correlation.is_empty()
@@ -234,9 +250,9 @@ impl InfluenceSubject {
         let places = [0.1, 0.4, 0.6, 0.9];
         let column = |it: &InputFactor| places.iter().map(|&place| Ok(it.at(place)?.drawn)).collect::<Result<Vec<f64>>>();
         let columns = self.factors.iter().map(column).collect::<Result<Vec<_>>>()?;
-        self.at_drawn(&columns, 1)?;
+        self.at_drawn(&columns, 1, &Control::default())?;
         let start = Instant::now();
-        self.at_drawn(&columns, 1)?;
+        self.at_drawn(&columns, 1, &Control::default())?;
         Ok(start.elapsed().as_secs_f64() / places.len() as f64)
     }
 }
@@ -256,12 +272,8 @@ fn of_designs(study: &Study, design: Option<u64>) -> Result<Varied> {
         return Err(Error::Request("--design is of one design, and --over design looks at all of them; use one of the two".to_owned()));
     }
     let mut base = Study { design: Vec::new(), labels: Vec::new(), sample: None, ..study.clone() };
-    if let Some(probability) = &study.probability {
-        // Fresh draws judge designs that were chosen. Here nothing is chosen, and they would take long.
-        let is_fresh = |it: &StatisticKind| matches!(it, StatisticKind::Confirmed(_));
-        let fresh = |it: &ReportColumn| it.of.output().is_some_and(|output| is_fresh(&probability.statistics[output].kind));
-        base.report.columns.retain(|it| !fresh(it));
-    }
+    // Fresh draws judge designs that were chosen. Here nothing is chosen, and they would take long.
+    base.report.columns.retain(|it| !study.is_confirmed(it.of));
     Ok(Varied { base, axes: study.design.clone(), drawn: Vec::new(), correlation: Vec::new(), design: None })
 }
 

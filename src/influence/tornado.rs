@@ -3,10 +3,11 @@
 use super::results::{InfluenceReport, TornadoBar, TornadoReport};
 use super::subject::InfluenceSubject;
 use crate::error::Result;
+use crate::screen::Control;
 
 impl InfluenceSubject {
     /// Every quantity at both ends of every factor.
-    pub(super) fn tornado(&self, threads: usize, report: &mut InfluenceReport) -> Result<()> {
+    pub(super) fn tornado(&self, threads: usize, control: &Control, report: &mut InfluenceReport) -> Result<()> {
         let places = |place: f64| self.factors.iter().map(|it| Ok(it.at(place)?.drawn)).collect::<Result<Vec<f64>>>();
         let (low, middle, high) = (places(0.0)?, places(0.5)?, places(1.0)?);
         // The middle, then of each factor its low and its high end.
@@ -14,7 +15,7 @@ impl InfluenceSubject {
         for (factor, column) in columns.iter_mut().enumerate() {
             (column[2 * factor + 1], column[2 * factor + 2]) = (low[factor], high[factor]);
         }
-        let values = self.at_drawn(&columns, threads)?;
+        let values = self.at_drawn(&columns, threads, control)?;
         let model = &self.base.model;
         let present = |value: f64| value.is_finite().then_some(value);
         for (quantity, values) in report.quantities.iter_mut().zip(values) {

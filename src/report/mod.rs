@@ -4,6 +4,7 @@
 //! against the study, and every other output at its worst scenario.
 
 mod front;
+mod influence;
 mod page;
 mod papers;
 mod summary;
@@ -120,6 +121,8 @@ pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
         }
         constraint
     });
+    let influence = influence::read(folder, plan, &summary)?;
+    let figures = [figures(folder)?, influence.figures].concat();
     let mut data = json!({
         "program": concat!("beltspace ", env!("CARGO_PKG_VERSION")),
         "kind": "result",
@@ -140,7 +143,9 @@ pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
         "extremes": summary["extremes"],
         "findings": summary["findings"]["in_words"],
         "notes": summary["notes"],
-        "figures": figures(folder)?,
+        "figures": figures,
+        "tables": influence.tables,
+        "sensitivity": influence.none,
         "variants": variants(folder, plan)?,
     });
     Reported::page(&Folder { path: folder, plan, feasible }, data.as_object_mut().expect("it is one"))?;

@@ -37,6 +37,9 @@ impl Study {
         let lists = top.is_some() || sample.is_some() || *variants || *feasible;
         let asks = !self.objectives.is_empty() || lists || !histograms.is_empty() || !maps.is_empty();
         require(asks, || "the study asks for nothing".to_owned())?;
+        if let Some(flaw) = self.report.sensitivity.as_ref().and_then(|spec| self.flaws_of_sensitivity(spec).into_iter().next()) {
+            return Err(flaw.message);
+        }
         // The drive of a draw is asked nothing of its own.
         if self.probability.is_some() { self.of_one_draw().check_parts() } else { Ok(()) }
     }

@@ -71,6 +71,9 @@ impl Study {
         if report.feasible {
             described["feasible"] = true.into();
         }
+        if let Some(it) = &report.sensitivity {
+            described["sensitivity"] = json!({ "over": it.over, "of": it.of, "draws": it.draws });
+        }
         let mut part = model.origin.as_ref();
         while let Some(origin) = part {
             match &origin.extension.file {

@@ -4,7 +4,7 @@ use super::drawn::{AskedQuantity, Drive, LawText, OverDraws, Probability, REPLIC
 use super::read::{CurvePoints, ModelText, read_model_text};
 use super::{
     Axis, Best, Constraint, ContourSpec, Goal, HistogramSpec, Label, Levels, MapSpec, Objective, OverScenarios, Quantity, Report,
-    ReportColumn, SampleSpec, Spectrum, Study, Thresholds, TopSpec,
+    ReportColumn, SampleSpec, SensitivitySpec, Spectrum, Study, Thresholds, TopSpec,
 };
 use crate::models::{CurveSource, Extension, FormulaSource, Model, Models, Worse, extended};
 use crate::probability::{Effect, Sampling};
@@ -202,6 +202,10 @@ fn report_of(study: &Study, described: &Value) -> Restored<Report> {
         Value::Null => None,
         sample => Some(SampleSpec { count: plain(&sample["count"], "count")?, seed: plain(&sample["seed"], "seed")? }),
     };
+    let sensitivity = match &described["sensitivity"] {
+        Value::Null => None,
+        it => Some(SensitivitySpec { over: plain(&it["over"], "over")?, of: plain(&it["of"], "of")?, draws: plain(&it["draws"], "draws")? }),
+    };
     Ok(Report {
         columns: each(described, "columns", |it| column_of(model, it))?,
         top,
@@ -211,6 +215,7 @@ fn report_of(study: &Study, described: &Value) -> Restored<Report> {
         front_budget: plain(&described["front_budget"], "front_budget")?,
         variants: described["variants"] == true,
         feasible: described["feasible"] == true,
+        sensitivity,
     })
 }
 

@@ -14,6 +14,8 @@ mod limits;
 mod quantity;
 mod read;
 mod resolved;
+mod sensitivity;
+mod sensitivity_flaws;
 mod spectrum;
 
 pub use axis::{Axis, Levels, Method, Sample};
@@ -34,4 +36,5 @@ pub use resolved::{
 };
 #[doc(hidden)]
 pub use resolved::{worst_end, worst_end_over};
+pub use sensitivity::{HOLDS, InfluenceOver, SensitivitySpec};
 pub use spectrum::{OverScenarios, Spectrum};

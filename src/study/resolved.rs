@@ -4,6 +4,7 @@ use super::axis::{Axis, Sample};
 use super::drawn::{Drive, Probability};
 use super::label::Label;
 use super::quantity::Quantity;
+use super::sensitivity::SensitivitySpec;
 use super::spectrum::{OverScenarios, Spectrum, unit_over};
 use crate::models::{Model, Worse};
 use serde::{Deserialize, Serialize};
@@ -207,6 +208,9 @@ pub struct Report {
     /// Are all feasible designs to be written?
     #[serde(default)]
     pub feasible: bool,
+    /// Which input matters, if that is asked.
+    #[serde(default)]
+    pub sensitivity: Option<SensitivitySpec>,
 }
 
 impl Report {

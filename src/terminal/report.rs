@@ -3,6 +3,7 @@
 use super::{TextGrid, bold, dim, grouped, scaled, short, span, width};
 use beltspace::certify::Row;
 use beltspace::export::{Certified, Confirmed, RunRecord, Summary};
+use beltspace::influence::{InfluenceMethod, InfluenceReport, QuantityVerdict};
 use beltspace::models::OVERFLOW;
 use beltspace::study::{Axis, Goal};
 use std::path::{Path, PathBuf};
@@ -78,6 +79,7 @@ pub fn summary(outcome: &Certified<'_>, record: &RunRecord, out: &Path, page: Op
         text.push_str(&front(outcome));
         text.push_str(&plot(outcome));
     }
+    text.push_str(&influence(outcome));
     for finding in outcome.findings.in_words(study) {
         text.push_str(&format!("\n{} {finding}", bold("finding")));
     }
@@ -174,6 +176,41 @@ fn front(outcome: &Certified<'_>) -> String {
         format!("\n{} {} (design {})\n", bold("knee:"), labels.chain(each).collect::<Vec<_>>().join(", "), knee.index)
     });
     format!("\n{}\n{}{more}{inputs}", bold("front"), grid.indented(2))
+}
+
+/// Of each quantity the inputs that matter most, and in which file more stands.
+fn influence(outcome: &Certified<'_>) -> String {
+    let head = bold("what matters");
+    if let Some(why) = outcome.lacks_influence() {
+        return format!("\n{head}: {why}\n");
+    }
+    let Some(report) = &outcome.influence else { return String::new() };
+    let is_screened = report.method == InfluenceMethod::Screening;
+    // A share in three digits.
+    let shown = |value: f64| short(if is_screened { value } else { (value * 1e3).round() / 1e3 + 0.0 });
+    let mut grid = TextGrid::default();
+    for quantity in &report.quantities {
+        let each = quantity.leading().into_iter().map(|it| format!("{} {}", it.name, it.weight().map_or(String::new(), shown)));
+        let each = each.collect::<Vec<_>>().join(", ");
+        let said = match quantity.verdict {
+            QuantityVerdict::Constant { .. } => "always the same".to_owned(),
+            QuantityVerdict::Absent { absent, of } if each.is_empty() => format!("no value in {} of {}", grouped(absent), grouped(of)),
+            QuantityVerdict::Shares if each.is_empty() => "no share is larger than its interval; more draws tell".to_owned(),
+            _ => each,
+        };
+        grid.row([quantity.asked.name.clone(), said]);
+    }
+    let over = report.design.map_or("over the design".to_owned(), |design| format!("of what is uncertain about design {design}"));
+    format!("\n{head} {over}, by {}: sensitivity.csv\n{}", ranking(report), grid.indented(2))
+}
+
+/// What the inputs are ranked by.
+fn ranking(report: &InfluenceReport) -> &'static str {
+    match report.method {
+        InfluenceMethod::Draws { correlated: true, .. } => "Shapley effects",
+        InfluenceMethod::Grid { .. } | InfluenceMethod::Draws { .. } => "total indices",
+        InfluenceMethod::Screening => "mean absolute effects",
+    }
 }
 
 /// A front of two objectives as a picture of characters, where the terminal is wide enough.

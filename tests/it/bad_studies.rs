@@ -455,6 +455,7 @@ fn the_example_means_what_it_says() {
             maps: vec![MapSpec { x: 1, y: 0, value: Best::Value(force, Goal::Min), contours: Vec::new() }],
             sample: None,
             front_budget: 1_000_000,
+            sensitivity: None,
         }
     );
 }

@@ -56,6 +56,7 @@
       model && model.limits ? page.element("details", { class: "limits" }, page.element("summary", {}, "Limits of the model"), page.element("p", {}, model.limits), model.source ? page.element("p", { class: "source" }, `Source: ${model.source}.`) : null) : "",
       page.element("dl", { class: "facts" }, facts.filter(Boolean)),
       data.feasible_file ? page.element("p", { class: "hint", "data-testid": "feasible-file" }, `All feasible designs are in ${data.feasible_file} beside this page's result.`) : "",
+      data.sensitivity ? page.element("p", { class: "notice" }, `Which input matters: ${data.sensitivity}.`) : "",
       (data.notes || []).map((note) => page.element("p", { class: "notice" }, note)),
       front && front.rows && front.objectives.length ? page.element("div", { class: "goals" }, objectives(), openKnee) : "",
     ];

@@ -17,6 +17,7 @@
 //! | `model_file.rs` | the file of a model, and in `model_inputs.rs` its inputs |
 //! | `quantities.rs` | `[constraints]`, `[objectives]`                    |
 //! | `report.rs`     | `[report]`                                         |
+//! | `sensitivity.rs` | its key `sensitivity`                          |
 //! | `contours.rs`   | the contours of its maps                           |
 //! | `law.rs`        | distributions of `[uncertainty]`                    |
 //! | `drawn.rs`      | `[probability]`, and what is asked of draws         |
@@ -37,6 +38,7 @@ mod quantities;
 mod range;
 mod report;
 mod roles;
+mod sensitivity;
 mod set;
 mod spectrum;
 mod syntax;
@@ -304,13 +306,17 @@ fn read_study_of(model: Option<Arc<Model>>, top: &TomlTable<'_>, problems: &Prob
     reader.check_sizes(top, &design, &[&operation, &uncertainty]);
 
     let title = title.unwrap_or_else(|| model.summary.to_owned());
+    let checked = |study: Study| {
+        sensitivity::check(&study, top, problems);
+        Some(study)
+    };
     if !reader.has_laws.get() {
         reader.probability(top, &drawn::DriveParts { operation: &operation, uncertainty: &uncertainty, fixed: &fixed });
         let (constraints, objectives, report) = reader.asked_of_designs(top, &design, &fixed);
         let spectrum = reader.spectrum.take();
         let (labels, left_out) = (reader.labels.take(), reader.left_out.take());
         let probability = None;
-        return Some(Study {
+        return checked(Study {
             model,
             title,
             design,
@@ -343,7 +349,7 @@ fn read_study_of(model: Option<Arc<Model>>, top: &TomlTable<'_>, problems: &Prob
     drop(reader);
     let probability = Some(Arc::new(probability));
     let (operation, spectrum) = (Vec::new(), None);
-    Some(Study {
+    checked(Study {
         model: outer,
         title,
         design,

@@ -61,7 +61,7 @@ impl Reader<'_> {
         table.check_keys(
             self.problems,
             "[report]",
-            &["columns", "top", "histograms", "maps", "sample", "front_budget", "variants", "feasible"],
+            &["columns", "top", "histograms", "maps", "sample", "front_budget", "variants", "feasible", "sensitivity"],
         );
         if let Some(entry) = table.get("columns") {
             report.columns = self.columns_of_report(entry, &known);
@@ -80,6 +80,7 @@ impl Reader<'_> {
         }
         report.variants = table.get("variants").is_some_and(|entry| self.variants(entry, design));
         report.feasible = table.get("feasible").is_some_and(|entry| self.feasible(entry, design));
+        report.sensitivity = table.get("sensitivity").and_then(|entry| self.sensitivity(entry));
         report
     }
 
