@@ -3,13 +3,14 @@
 //! The reference evaluates every scenario of a design, so it also finds the worst scenario for each column. If it finds a design
 //! infeasible, or its objectives differ from those of the sweep, the program stops.
 
+use crate::bounds::yields::{EnclosureProblem, YieldBounds};
 use crate::error::{Error, Result};
 use crate::keys::{KeyRule, Points};
 use crate::models::{Latest, Set, Sizes, Status, Worse, fill_si, judge, shown};
 use crate::parallel::on_threads;
 use crate::plan::Plan;
 use crate::screen::Control;
-use crate::study::{Axis, Constraint, OverScenarios, Quantity, ReportColumn, Study, worst_end_over};
+use crate::study::{Axis, ConfirmedEnd, Constraint, OverScenarios, Quantity, ReportColumn, Study, worst_end_over};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Why a column is in the tables.
@@ -243,7 +244,33 @@ pub fn rows(plan: &Plan, columns: &[Column], designs: &[u64], threads: usize, co
         return Err(Error::Stopped { kept: None });
     }
     rows.sort_unstable_by_key(|(at, _)| *at);
-    Ok(rows.into_iter().map(|(_, row)| row).collect())
+    let mut rows: Vec<Row> = rows.into_iter().map(|(_, row)| row).collect();
+    prove(plan, columns, &mut rows, threads, control)?;
+    Ok(rows)
+}
+
+/// Fills in proven bounds of the yield, if they are among the columns.
+fn prove(plan: &Plan, columns: &[Column], rows: &mut [Row], threads: usize, control: &Control) -> Result<()> {
+    let study = &plan.study;
+    let asked = columns.iter().enumerate().filter_map(|(at, it)| Some((at, study.confirmed(it.quantity).filter(|it| it.is_proven())?)));
+    let asked: Vec<(usize, ConfirmedEnd)> = asked.collect();
+    let refused = |problem: EnclosureProblem| Error::Request(problem.to_string());
+    let Some(bounds) = YieldBounds::asked(study).map_err(refused)?.filter(|_| !asked.is_empty()) else { return Ok(()) };
+    let share = rows.len().div_ceil(threads.max(1)).max(1);
+    let parts = on_threads(rows.chunks_mut(share), |part| {
+        for row in part {
+            if control.stop.load(Ordering::Relaxed) {
+                return Err(Error::Stopped { kept: None });
+            }
+            let found = bounds.of(row.index, bounds.width(), YieldBounds::BOXES).map_err(refused)?;
+            for &(column, end) in &asked {
+                let value = if end == ConfirmedEnd::AtLeast { found.at_least } else { found.at_most };
+                (row.columns[column], row.complete[column]) = (AtWorst { value: Some(value), scenario: 0 }, true);
+            }
+        }
+        Ok(())
+    });
+    parts.into_iter().collect()
 }
 
 /// Computes the rows of the front and compares each with the values of the sweep; sorted by the objectives, best first, then by index.

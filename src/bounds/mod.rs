@@ -20,7 +20,7 @@ mod staircase;
 mod study_tape;
 #[cfg(test)]
 mod tests;
-mod yields;
+pub(crate) mod yields;
 
 pub use count::{BoxCounter, Settled};
 pub use search::{Searched, Sought, Worker};

@@ -12,7 +12,7 @@ use crate::probability::{
     enclose,
 };
 use crate::real::Real;
-use crate::study::{Quantity, Study};
+use crate::study::{Constraint, Quantity, StatisticKind, Study};
 use crate::tape::{Dual, Interval, Known, List, Node, Operation, Set};
 use crate::units::Unit;
 use std::rc::Rc;
@@ -73,9 +73,22 @@ pub struct YieldBounds {
     plan: Plan,
     inputs: Vec<YieldInput>,
     correlation: Vec<(usize, usize, f64)>,
+    width: f64,
 }
 
 impl YieldBounds {
+    /// Boxes that the proof of a design's yield may take: some seconds.
+    pub const BOXES: u64 = 200_000;
+
+    /// Lays out a study that asks for bounds; `None` if it does not.
+    ///
+    /// # Errors
+    /// What stands in the way, see [`EnclosureProblem`].
+    pub fn asked(study: &Study) -> Result<Option<Self>, EnclosureProblem> {
+        let asks = study.probability.as_ref().is_some_and(|it| it.enclosure);
+        asks.then(|| Self::new(study)).transpose()
+    }
+
     /// Lays out a study.
     ///
     /// # Errors
@@ -85,7 +98,15 @@ impl YieldBounds {
         let inputs: Vec<YieldInput> = probability.inputs.iter().map(|it| (it.input, it.effect, it.distribution.clone())).collect();
         let plan = Plan::new(study.of_one_draw());
         check(&plan, &inputs)?;
-        Ok(Self { plan, inputs, correlation: probability.correlation.clone() })
+        // A tenth of what may miss the wanted yield, or of one in a thousand.
+        let is_yield = |it: &&Constraint| it.quantity.output().is_some_and(|it| probability.statistics[it].kind == StatisticKind::Yield);
+        let wanted = study.constraints.iter().find(is_yield).and_then(|it| Some(it.low?.0)).filter(|it| *it < 1.0).unwrap_or(0.999);
+        Ok(Self { plan, inputs, correlation: probability.correlation.clone(), width: 0.1 * (1.0 - wanted) })
+    }
+
+    /// How far apart the bounds should be, for the yield that the study asks for.
+    pub fn width(&self) -> f64 {
+        self.width
     }
 
     /// Bounds of the yield of a design.

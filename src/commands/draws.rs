@@ -131,18 +131,12 @@ pub fn drive(plan: &Plan, design: u64, request: &cli::EvalArgs) -> Result<(Plan,
     Ok((one, scenario, inputs))
 }
 
-/// Boxes that the proof of a design's yield may take: some seconds.
-const BOXES: u64 = 200_000;
-
 /// Proven bounds of a design's yield, if the study asks for them, in words.
 pub fn enclosed(study: &Study, design: u64) -> Result<Option<(Enclosure, String)>> {
-    let Some(probability) = study.probability.as_ref().filter(|it| it.enclosure) else { return Ok(None) };
-    // A tenth of what may miss the wanted yield, or of one in a thousand.
-    let is_yield = |it: &&Constraint| it.quantity.output().is_some_and(|it| probability.statistics[it].kind == StatisticKind::Yield);
-    let wanted = study.constraints.iter().find(is_yield).and_then(|it| Some(it.low?.0)).filter(|it| *it < 1.0).unwrap_or(0.999);
-    let width = 0.1 * (1.0 - wanted);
     let refused = |problem: EnclosureProblem| Error::Request(problem.to_string());
-    let found = YieldBounds::new(study).and_then(|bounds| bounds.of(design, width, BOXES)).map_err(refused)?;
+    let Some(bounds) = YieldBounds::asked(study).map_err(refused)? else { return Ok(None) };
+    let width = bounds.width();
+    let found = bounds.of(design, width, YieldBounds::BOXES).map_err(refused)?;
     let reached = if found.width() <= width { String::new() } else { format!(", where {} was wanted: the budget is spent", short(width)) };
     let words = format!("{} boxes, {} apart{reached}", grouped(found.boxes), short(found.width()));
     Ok(Some((found, words)))

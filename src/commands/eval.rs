@@ -266,6 +266,8 @@ fn print_worst(plan: &Plan, design: u64, number_of: u64, request: &cli::EvalArgs
     let mut everything = Study::clone(study);
     let further = study.report.columns.iter().copied().filter(|it| *it != ReportColumn::from(it.of));
     everything.report.columns = (0..model.outputs.len()).map(|output| Quantity::Output(output).into()).chain(further).collect();
+    // Proven bounds are told with what they took.
+    everything.report.columns.retain(|it| !study.is_proven(it.of));
     let columns = certify::columns(&everything);
     let row = certify::rows(plan, &columns, &[design], 1, &Control::default())?.remove(0);
     let mut evaluator = Evaluator::new(model);

@@ -6,8 +6,8 @@ use crate::terminal::{self, TextGrid, bold, grouped, scaled, short, span};
 use beltspace::directory::Contents;
 use beltspace::error::{Error, Result};
 use beltspace::influence::{
-    Estimate, InfluenceMethod, InfluenceReport, InfluenceSubject, InputReport, QuantityReport, QuantityVerdict,
-    TornadoReport, is_influence_file, write,
+    Estimate, InfluenceMethod, InfluenceReport, InfluenceSubject, InputReport, QuantityReport, QuantityVerdict, TornadoReport,
+    is_influence_file, write,
 };
 use beltspace::study::StudyEdits;
 use std::path::Path;

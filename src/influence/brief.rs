@@ -22,7 +22,7 @@ impl QuantityReport {
     pub fn leading(&self) -> Vec<&InputReport> {
         let is_told = |it: &&InputReport| {
             let share = it.total.or(it.shapley);
-            share.is_none_or(|it| it.confidence.is_none_or(|confidence| it.value > confidence))
+            share.is_none_or(|it| it.value > it.confidence.unwrap_or(0.0))
         };
         let told = self.inputs.iter().filter(is_told);
         let mut ranked: Vec<(f64, &InputReport)> = told.filter_map(|it| Some((it.weight()?, it))).collect();

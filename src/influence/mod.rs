@@ -22,11 +22,11 @@ mod results;
 mod subject;
 mod tornado;
 
+pub use crate::study::{HOLDS, InfluenceOver};
 pub use brief::brief;
 pub use factor::InputFactor;
 pub use files::{files, files_of, is_influence_file, json, table, tornado_table, write};
 pub use results::{
     Estimate, InfluenceMethod, InfluenceReport, InputReport, QuantityReport, QuantityVerdict, TornadoBar, TornadoReport, WithinHolding,
 };
-pub use crate::study::{HOLDS, InfluenceOver};
 pub use subject::{InfluenceSubject, InfluenceWork, QuantityAsked};

@@ -273,7 +273,7 @@ fn of_designs(study: &Study, design: Option<u64>) -> Result<Varied> {
     }
     let mut base = Study { design: Vec::new(), labels: Vec::new(), sample: None, ..study.clone() };
     // Fresh draws judge designs that were chosen. Here nothing is chosen, and they would take long.
-    base.report.columns.retain(|it| !study.is_confirmed(it.of));
+    base.report.columns.retain(|it| study.confirmed(it.of).is_none());
     Ok(Varied { base, axes: study.design.clone(), drawn: Vec::new(), correlation: Vec::new(), design: None })
 }
 

@@ -60,9 +60,10 @@ pub fn read(folder: &Path, plan: &Plan, summary: &Value) -> Result<ShownInfluenc
         }
     }
     let (columns, rows) = without_empty(&rows);
-    let mut caption = "Shares of the variance of each quantity: of an input alone (first order), with all that it does together with others \
+    let mut caption =
+        "Shares of the variance of each quantity: of an input alone (first order), with all that it does together with others \
                        (total), and shared out fairly (Shapley). With ± they are estimated, at a confidence of 95 %."
-        .to_owned();
+            .to_owned();
     if columns.contains(&"mu*") {
         caption.push_str(" mu* is the mean absolute effect of an input over its range.");
     }

@@ -1,7 +1,7 @@
 //! The choice between judging every design and bounding boxes of them.
 
 use super::{Engine, Judging};
-use crate::bounds::refusal;
+use crate::bounds::{YieldBounds, refusal};
 use crate::error::{Error, Result};
 use crate::plan::Plan;
 use crate::sweep::costs::{Speed, span, why_every_design};
@@ -24,10 +24,10 @@ impl Chosen {
     }
 }
 
-/// Chooses the method. `speed` measures how fast this many threads judge designs.
+/// Chooses the method, and finds out whether yields can be proven, if that is asked. `speed` measures how fast this many threads judge designs.
 ///
 /// # Errors
-/// [`Error::Request`] if the method that was asked for cannot be used.
+/// [`Error::Request`] if the method that was asked for cannot be used, or if the yields of the study cannot be proven.
 pub fn choose(
     plan: &Plan,
     method: Judging,
@@ -36,6 +36,7 @@ pub fn choose(
     threads: usize,
     speed: impl FnOnce() -> Speed,
 ) -> Result<Chosen> {
+    YieldBounds::asked(&plan.study).map_err(|problem| Error::Request(problem.to_string()))?;
     let exhaustive = |why: String| Ok(Chosen { bounds: false, leaves: None, why });
     let wants_a_gpu = engine == Engine::Gpu || adapter.is_some();
     match method {

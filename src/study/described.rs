@@ -204,7 +204,9 @@ fn report_of(study: &Study, described: &Value) -> Restored<Report> {
     };
     let sensitivity = match &described["sensitivity"] {
         Value::Null => None,
-        it => Some(SensitivitySpec { over: plain(&it["over"], "over")?, of: plain(&it["of"], "of")?, draws: plain(&it["draws"], "draws")? }),
+        it => {
+            Some(SensitivitySpec { over: plain(&it["over"], "over")?, of: plain(&it["of"], "of")?, draws: plain(&it["draws"], "draws")? })
+        }
     };
     Ok(Report {
         columns: each(described, "columns", |it| column_of(model, it))?,

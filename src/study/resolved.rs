@@ -1,7 +1,7 @@
 //! The resolved study.
 
 use super::axis::{Axis, Sample};
-use super::drawn::{Drive, Probability};
+use super::drawn::{ConfirmedEnd, Drive, Probability};
 use super::label::Label;
 use super::quantity::Quantity;
 use super::sensitivity::SensitivitySpec;
@@ -282,6 +282,16 @@ impl Study {
     /// The unit of a quantity's value over the scenarios, as text: that of a sum is multiplied by that of the weights.
     pub fn unit_over(&self, quantity: Quantity, over: OverScenarios) -> String {
         unit_over(quantity, over, &self.model, self.spectrum.as_ref())
+    }
+
+    /// What is told of chosen designs by this quantity, if it is of that kind.
+    pub fn confirmed(&self, quantity: Quantity) -> Option<ConfirmedEnd> {
+        self.probability.as_ref()?.confirmed(quantity)
+    }
+
+    /// Is it a proven bound of a yield?
+    pub fn is_proven(&self, quantity: Quantity) -> bool {
+        self.confirmed(quantity).is_some_and(ConfirmedEnd::is_proven)
     }
 
     /// The study of a single draw: the drive in its operating cases with the constraints that a draw must keep, and without objectives.

@@ -23,12 +23,6 @@ impl Study {
         if self.uncertainty.is_empty() && self.probability.is_none() { InfluenceOver::Design } else { InfluenceOver::Uncertainty }
     }
 
-    /// Is it what fresh draws say of designs that were chosen?
-    pub(crate) fn is_confirmed(&self, quantity: Quantity) -> bool {
-        let statistics = self.probability.as_ref().map(|it| &it.statistics);
-        statistics.zip(quantity.output()).is_some_and(|(all, output)| matches!(all[output].kind, StatisticKind::Confirmed(_)))
-    }
-
     /// What is wrong with this request to the study, which has no other flaws.
     pub(super) fn flaws_of_sensitivity(&self, spec: &SensitivitySpec) -> Vec<SensitivityFlaw> {
         let whole = |message: &str| vec![SensitivityFlaw { name: None, message: format!("sensitivity: {message}") }];
@@ -62,7 +56,7 @@ impl Study {
             if spec.of[..number].contains(name) {
                 return flaw(format!("sensitivity: \"{name}\" is listed twice; drop one"));
             }
-            if model.output(name).is_some_and(|it| self.is_confirmed(Quantity::Output(it))) && over == InfluenceOver::Design {
+            if model.output(name).is_some_and(|it| self.confirmed(Quantity::Output(it)).is_some()) && over == InfluenceOver::Design {
                 return flaw(format!(
                     "sensitivity: \"{name}\" is of fresh draws, which judge only designs that were chosen; write \"{SCREENED}\""
                 ));
@@ -100,7 +94,7 @@ impl Study {
         }
         self.objectives.iter().for_each(|it| add(it.name(&self.model)));
         self.constraints.iter().for_each(|it| add(it.name(&self.model)));
-        self.report.columns.iter().filter(|it| !self.is_confirmed(it.of)).for_each(|it| add(it.over.column(it.of, &self.model)));
+        self.report.columns.iter().filter(|it| self.confirmed(it.of).is_none()).for_each(|it| add(it.over.column(it.of, &self.model)));
         (&self.model, columns)
     }
 }

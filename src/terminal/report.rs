@@ -70,7 +70,8 @@ pub fn summary(outcome: &Certified<'_>, record: &RunRecord, out: &Path, page: Op
         let kept = wanted.map_or(String::new(), |(wanted, kept)| {
             format!("{} of {} designs keep a yield of {wanted} in ", grouped(kept), grouped(designs))
         });
-        let all = format!("all {} have {} or more with 99 % confidence", grouped(designs), short(together));
+        let have = if designs == 1 { "it has".to_owned() } else { format!("all {} have", grouped(designs)) };
+        let all = format!("{have} {} or more with 99 % confidence", short(together));
         fact("confirmed", format!("{kept}{} fresh draws; {all}", grouped(draws)));
     }
     let mut text = format!("{}\n\n{}", bold(&super::told(&study.title)), facts.indented(0));
@@ -190,8 +191,8 @@ fn influence(outcome: &Certified<'_>) -> String {
     let shown = |value: f64| short(if is_screened { value } else { (value * 1e3).round() / 1e3 + 0.0 });
     let mut grid = TextGrid::default();
     for quantity in &report.quantities {
-        let each = quantity.leading().into_iter().map(|it| format!("{} {}", it.name, it.weight().map_or(String::new(), shown)));
-        let each = each.collect::<Vec<_>>().join(", ");
+        let weights = quantity.leading().into_iter().filter_map(|it| Some((&it.name, shown(it.weight()?))));
+        let each = weights.filter(|it| it.1 != "0").map(|(name, weight)| format!("{name} {weight}")).collect::<Vec<_>>().join(", ");
         let said = match quantity.verdict {
             QuantityVerdict::Constant { .. } => "always the same".to_owned(),
             QuantityVerdict::Absent { absent, of } if each.is_empty() => format!("no value in {} of {}", grouped(absent), grouped(of)),

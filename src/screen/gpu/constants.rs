@@ -6,6 +6,15 @@ use crate::reduce::MOST_OBJECTIVES;
 /// Most dominators that every design is compared with.
 pub const DOMINATORS: usize = 8;
 
+/// Most levels of one dimension that are kept on the device at a time.
+pub const WINDOW: u64 = 1 << 20;
+/// Most steps of the search for a root in a draw. Newton's method takes about five; what a search misses that needs more stands in the
+/// bound of its root, and the draw is left to f64.
+pub const NEWTON_STEPS_OF_DRAWS: u32 = 8;
+
+/// A device's entry of one level of one input: value and bound in SI, value in its unit, 1 if constraints on inputs allow it.
+pub type Level = [f32; 4];
+
 shared_constants! {
     /// What `shaders/sweep` relies on.
     fn sweep_constants;

@@ -3,9 +3,9 @@
 //! To the rest of the kernel this is a formula like others. What it says of a yield is how many draws surely hold and how many possibly do,
 //! as the middle between the two and its distance from either; both are whole numbers, so where no draw is unsure the count is exact.
 
-use super::held::holds;
-use super::kernel::{keep_between, least_bad, literal};
-use super::layout::{Level, WINDOW, refuse};
+use super::constants::{Level, NEWTON_STEPS_OF_DRAWS, WINDOW};
+use super::held::{holds, refuse};
+use super::texts::{keep_between, least_bad, literal};
 use crate::error::Result;
 use crate::gpu::constants::declare;
 use crate::gpu::structure;
@@ -28,9 +28,6 @@ const DRIVE: StageNames = StageNames {
 };
 /// Operating cases of which the results of the drive's first stage are held for all draws.
 const MOST_HELD: usize = 64;
-/// Most steps of the search for a root in a draw. Newton's method takes about five; what a search misses that needs more stands in the
-/// bound of its root, and the draw is left to f64.
-pub const NEWTON_STEPS_OF_DRAWS: u32 = 8;
 /// Draws whose values are added up before they go to the sum of all: what f32 loses of a sum grows with its length.
 const ADDED: usize = 64;
 

@@ -1,13 +1,15 @@
 //! The device's side of a sweep: buffers, tiles in flight, and what comes back.
 
+use super::constants::Level;
 use super::constants::{
     APPENDED, DIGIT_VECTORS, FIRST_REPORTED, IS_UNSURE, LANE_BITS, MAY_BE_END, MAY_BE_FRONT, MAY_BE_IN_MAP, SCENARIO_PER_LANE,
     SCENARIO_PER_ROW, SURE, SURVIVOR_HEAD, UNDECIDED,
 };
 use super::held::histogram_beyond_f32;
+use super::held::refuse;
 use super::kernel::{self, Coordinate, ENTRIES, check_words, coordinates, survivor_words, text};
 use super::known::{self, KnownUniform};
-use super::layout::{KernelLayout, Level, MOST_GROUPS, push_level, refuse};
+use super::layout::{KernelLayout, MOST_GROUPS, push_level};
 use crate::decision::Decision;
 use crate::error::Result;
 use crate::gpu::constants::{UNSURE, YES};

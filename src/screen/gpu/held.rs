@@ -1,5 +1,6 @@
 //! What f32 does not hold: a study with such numbers is not for a device.
 
+use crate::error::Error;
 use crate::models::input_to_si;
 use crate::plan::Plan;
 use crate::space::{Product, SpaceDimension};
@@ -7,6 +8,11 @@ use crate::study::{Axis, Levels, Quantity};
 
 /// Random numbers are multiples of this fraction of their range.
 const FINEST: f64 = 1.0 / (1u64 << 53) as f64;
+
+/// The error of a study that a device cannot serve.
+pub fn refuse(why: String) -> Error {
+    Error::NotOnDevice { why }
+}
 
 /// Is a number zero or among the normal numbers of f32? Devices take what is smaller for zero, and what is larger for infinity.
 pub fn holds(value: f64) -> bool {

@@ -1,10 +1,10 @@
 //! How a study lies on the device: which values pass between the stages, where the levels of every axis stand, how the work is
 //! cut into invocations.
 
-use super::constants::LANE_BITS;
+use super::constants::{LANE_BITS, Level, WINDOW};
 use super::drawn::DrawnOnDevice;
-use super::held::beyond_f32;
-use crate::error::{Error, Result};
+use super::held::{beyond_f32, refuse};
+use crate::error::Result;
 use crate::models::{Fields, Set, Worse, input_to_si};
 use crate::plan::{Plan, Source, knowns};
 use crate::space::{Product, SpaceDimension};
@@ -23,17 +23,12 @@ const MANY_LANES: u64 = 256;
 const GROUP: [u64; 2] = [4, 2];
 /// Evaluations of a small study.
 const SMALL: u64 = 20_000_000;
-/// Most levels of one dimension that are kept on the device at a time.
-pub const WINDOW: u64 = 1 << 20;
 /// Points in the list that the closer look compares with, where no table serves.
 pub const LIST: usize = 64;
 /// Bins of the look-up table along its one or two coordinates.
 pub const BINS: [u64; 2] = [16_384, 256];
 /// Entries of a uniform buffer that every device has.
 const UNIFORM_ENTRIES: usize = 4096;
-
-/// A device's entry of one level of one input: value and bound in SI, value in its unit, 1 if constraints on inputs allow it.
-pub type Level = [f32; 4];
 
 /// A slow dimension: its levels stand in the table of levels, those of the outermost one as a window of them.
 #[derive(Clone, Debug)]
@@ -128,11 +123,6 @@ fn passed(fields: &Fields, read: Set) -> Vec<Passed> {
             Passed { field, offset: next - length, length }
         })
         .collect()
-}
-
-/// The error of a study that a device cannot serve.
-pub fn refuse(why: String) -> Error {
-    Error::NotOnDevice { why }
 }
 
 /// A study as a device sees it.

@@ -10,6 +10,7 @@ mod held;
 mod kernel;
 mod known;
 mod layout;
+mod texts;
 
 pub use crate::reduce::Answers;
 pub use engine::{Checked, GpuEngine, InFlight, Survivor, Survivors, TileCounts, Wrong, kernel_of, supports, supports_histograms};

@@ -95,6 +95,12 @@ fn output(probability: &Probability, statistic: &Statistic) -> Output {
         StatisticKind::Confirmed(ConfirmedEnd::High) => {
             share("Upper end of the interval of the yield after Clopper and Pearson, 95 %, from the fresh draws.".to_owned())
         }
+        StatisticKind::Confirmed(ConfirmedEnd::AtLeast) => {
+            share("Proven lower bound of the yield, for the distributions themselves and not for draws of them.".to_owned())
+        }
+        StatisticKind::Confirmed(ConfirmedEnd::AtMost) => {
+            share("Proven upper bound of the yield, for the distributions themselves and not for draws of them.".to_owned())
+        }
         StatisticKind::YieldOf(constraint) => {
             counted(format!("Share of the draws that keep the bounds of {} in all operating cases.", constraint.name(&drive.model)))
         }

@@ -1,12 +1,13 @@
 //! What a study says of its draws.
 
 use super::super::axis::Axis;
+use super::super::quantity::Quantity;
 use super::super::resolved::Constraint;
 use super::super::spectrum::Spectrum;
 use super::confirm::FreshDraws;
 use super::lanes::most_kept;
 use super::law::LawText;
-use super::statistic::{OverDraws, Statistic, StatisticKind};
+use super::statistic::{ConfirmedEnd, OverDraws, Statistic, StatisticKind};
 use crate::models::Model;
 use crate::probability::{Distribution, Draws, Effect, ProbabilityProblem, Sampling};
 use std::sync::Arc;
@@ -87,6 +88,14 @@ impl Probability {
         }
         let fits = |it: &Spectrum| operation.get(it.axis).is_some_and(|axis| axis.count() == it.weights.len() as u64);
         spectrum.as_ref().is_some_and(|it| !fits(it)).then(|| "the weights do not fit the operating cases".to_owned())
+    }
+
+    /// What is told of chosen designs by this output, if it is of that kind.
+    pub fn confirmed(&self, quantity: Quantity) -> Option<ConfirmedEnd> {
+        match self.statistics.get(quantity.output()?)?.kind {
+            StatisticKind::Confirmed(end) => Some(end),
+            _ => None,
+        }
     }
 
     /// Evaluations of the drive for one design at one level.

@@ -76,7 +76,7 @@ pub struct Statistic {
 pub enum StatisticKind {
     /// The share of draws that hold, of those that choose designs.
     Yield,
-    /// The same of fresh draws, which judge what is reported.
+    /// What is told of chosen designs: by fresh draws, or proven.
     Confirmed(ConfirmedEnd),
     /// The share of draws that keep this constraint in all cases.
     YieldOf(Constraint),
@@ -86,7 +86,7 @@ pub enum StatisticKind {
     Over(AskedQuantity, OverDraws),
 }
 
-/// What is told of the fresh draws.
+/// What is told of the yield of designs that were chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ConfirmedEnd {
@@ -96,11 +96,20 @@ pub enum ConfirmedEnd {
     Low,
     /// The upper end.
     High,
+    /// The lower one of two proven bounds of the yield, which no draws have a part in.
+    AtLeast,
+    /// The upper one.
+    AtMost,
 }
 
 impl ConfirmedEnd {
     /// All of it, in the order of the columns.
-    pub const ALL: [Self; 3] = [Self::Share, Self::Low, Self::High];
+    pub const ALL: [Self; 5] = [Self::Share, Self::Low, Self::High, Self::AtLeast, Self::AtMost];
+
+    /// Is it proven instead of drawn?
+    pub fn is_proven(self) -> bool {
+        matches!(self, Self::AtLeast | Self::AtMost)
+    }
 
     /// Name of the column.
     pub fn name(self) -> &'static str {
@@ -108,6 +117,8 @@ impl ConfirmedEnd {
             Self::Share => YIELD,
             Self::Low => "yield_low",
             Self::High => "yield_high",
+            Self::AtLeast => "yield_at_least",
+            Self::AtMost => "yield_at_most",
         }
     }
 }

@@ -85,7 +85,7 @@ impl Reader<'_> {
         asks.report(section(top, "report", problems).as_ref());
         let (mut statistics, meanings) = (asks.statistics.take(), asks.meanings.take());
         let told = |end: ConfirmedEnd| Statistic { name: end.name().to_owned(), kind: StatisticKind::Confirmed(end) };
-        statistics.extend(ConfirmedEnd::ALL.map(told));
+        statistics.extend(ConfirmedEnd::ALL.into_iter().filter(|it| probability.enclosure || !it.is_proven()).map(told));
         if !statistics.iter().any(|it| it.kind == StatisticKind::Yield) {
             let remedy = "write yield = { min = 0.999 } in [constraints] or yield = \"max\" in [objectives]";
             let message = format!("inputs have distributions, but nothing is asked of the yield; {remedy}");

@@ -42,8 +42,7 @@ impl Reader<'_> {
     fn asked_names(&self, entry: &Entry<'_>) -> Option<Vec<String>> {
         let Some(nodes) = entry.node.list().filter(|nodes| nodes.len() > 0) else {
             let found = if entry.node.list().is_some() { "an empty list".to_owned() } else { entry.node.found() };
-            let example = self.some_output();
-            let message = format!("{LABEL}: of: found {found}, wanted a list of names such as [\"{example}\", \"holds\"]; drop it for all");
+            let message = format!("{LABEL}: of: found {found}, wanted a list of names such as [\"holds\"]; drop it for all");
             self.problems.add(entry.node.at, message);
             return None;
         };

@@ -30,6 +30,8 @@ mod report;
 mod rows;
 /// A sample of the feasible designs.
 mod sample;
+/// `sensitivity` in `[report]`.
+mod sensitivity;
 /// Values in place of what a study says.
 mod set;
 /// Scripts for a cluster, run by programs that imitate its scheduler.

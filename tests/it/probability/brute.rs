@@ -189,6 +189,7 @@ impl<'s> Brute<'s> {
             ConfirmedEnd::Low => clopper_pearson(holding, fresh as u64, 0.95).expect("these are counts").low,
             // Which level is the worst is not known either.
             ConfirmedEnd::High => simultaneous(holding, fresh as u64, 0.95, self.probability.levels).expect("these are counts").high,
+            ConfirmedEnd::AtLeast | ConfirmedEnd::AtMost => unreachable!("nothing is proven in these studies"),
         };
         let holding = (0..fresh).filter(|&draw| self.holds(&self.in_cases(design, &self.confirming, draw))).count() as u64;
         let result = |kind: &StatisticKind| match kind {

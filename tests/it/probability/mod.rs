@@ -4,4 +4,5 @@ mod brute;
 mod draft;
 mod kinds;
 mod laws;
+mod proven;
 mod random;

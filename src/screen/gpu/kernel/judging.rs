@@ -146,23 +146,3 @@ fn keep(plan: &Plan, constraint: &Constraint) -> Vec<String> {
     let plain = matches!(constraint.quantity, Quantity::Output(output) if plan.study.model.outputs[output].unit.is_si());
     keep_between([constraint.low, constraint.high], plain, |bound| on_device(plan, constraint.quantity, bound))
 }
-
-/// The lines of a function that asks whether `number` keeps to these ends, of each of which is told whether it is itself excluded. On the
-/// device stands what `on_device` makes of them, with what f32 loses of it; `plain` if that is the end itself.
-pub fn keep_between(ends: [Option<(f64, bool)>; 2], plain: bool, on_device: impl Fn(f64) -> f64) -> Vec<String> {
-    let mut lines = vec!["var answer = YES;".to_owned()];
-    for (bound, towards) in ends.into_iter().zip([1.0, -1.0]) {
-        let Some((bound, strict)) = bound else { continue };
-        let (value, lost) = nearest_f32(on_device(bound));
-        // Zero stays zero in any unit.
-        let lost = if value == 0.0 || plain { lost } else { lost + value.abs() * 1e-12 };
-        let question = if strict { "above_zero" } else { "at_least_zero" };
-        let difference =
-            if towards > 0.0 { format!("number.value - {}", literal(value)) } else { format!("{} - number.value", literal(value)) };
-        lines.push(format!("{{ let margin = {difference};"));
-        lines
-            .push(format!("answer = min(answer, {question}(Real(margin, number.bound + {} + abs(margin) * ROUNDING))); }}", literal(lost)));
-    }
-    lines.push("return answer;".to_owned());
-    lines
-}

@@ -16,13 +16,10 @@ mod lanes;
 mod report;
 mod rows;
 
-pub use judging::keep_between;
-
-use super::constants::DOMINATORS;
-use super::constants::{FIRST_REPORTED, SURVIVOR_HEAD, sweep_constants};
-use super::drawn::NEWTON_STEPS_OF_DRAWS;
+use super::constants::{DOMINATORS, FIRST_REPORTED, NEWTON_STEPS_OF_DRAWS, SURVIVOR_HEAD, sweep_constants};
 use super::held::on_device;
 use super::layout::{BINS, KernelLayout, LIST, Values, row_dominators, scenario_worst, sign};
+use super::texts::{keep_between, least_bad, literal};
 use crate::gpu::constants::declare;
 use crate::gpu::{model_prelude, model_source, source, stages_source, tables};
 use crate::models::{CONDITION_BOUND_FACTOR, Worse};
@@ -88,17 +85,6 @@ pub fn value_maps(plan: &Plan) -> impl Iterator<Item = (&MapSpec, usize, Goal)> 
 /// The words of a check record: verdict, then value and bound per tracked quantity, then per used output.
 pub fn check_words(plan: &Plan) -> usize {
     1 + 2 * plan.tracked.len() + 2 * plan.used_outputs().len()
-}
-
-/// A number of the kernel's text that reads back as the same f32.
-pub fn literal(value: f32) -> String {
-    if value.is_finite() {
-        format!("f32({value:?})")
-    } else if value > 0.0 {
-        "infinity()".to_owned()
-    } else {
-        "(-infinity())".to_owned()
-    }
 }
 
 /// A number with what f32 loses of it.
@@ -216,11 +202,6 @@ impl Prelude<'_> {
         put!(self, "// Levels that never change: scenarios, then fast design axes, then what is drawn.");
         put!(self, "@group(0) @binding(2) var<{space}> steady: array<vec4<f32>, {}>;\n", layout.steady.len().max(1));
     }
-}
-
-/// The value that every other one is worse than; its bound is the least.
-pub fn least_bad(worse: Worse) -> String {
-    if worse == Worse::Higher { "Real(-infinity(), 0.0)".to_owned() } else { "Real(infinity(), 0.0)".to_owned() }
 }
 
 /// Constants of the histograms, whose ranges are known only when the study has been sampled.
