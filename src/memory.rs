@@ -32,7 +32,7 @@ const CELL_WRITTEN: u64 = 20;
 const CASE: u64 = 30;
 const CASE_DESCRIBED: u64 = 680;
 /// Bytes of a row of a table of designs, of each of its columns (a quantity that no design axis sets has two), and of each input.
-const ROW: u64 = 280;
+const ROW: u64 = 290;
 const ROW_COLUMN: u64 = 140;
 const ROW_INPUT: u64 = 50;
 /// Bytes of a label of such a row, a text of some twenty characters: held, as text and in Parquet.
@@ -155,7 +155,7 @@ impl Needs {
             8 * sizes.bins * (threads + 2),
             times(sizes.indices, INDICES * 8 * (threads + 2)),
             times(sizes.packed, PACKED_COPIES),
-            plan.study.probability.as_ref().map_or(0, |it| it.bytes(threads, plan.fast.count())),
+            plan.study.probability.as_ref().map_or(0, |it| it.bytes(threads, plan.fast.count(), plan.used_outputs())),
         ]);
         let met = times(sizes.cells.min(MET), CELL_MET);
         let points = times(front, POINT_COPIES * 8 * (sizes.objectives + 1));

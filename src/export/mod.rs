@@ -4,6 +4,7 @@
 //! as `front.parquet`, and maps of any size are CSV. All other files have the same bytes.
 
 mod confirmed;
+mod drawn_tally;
 pub(crate) mod feasible;
 mod influence;
 #[cfg(feature = "pictures")]
@@ -16,6 +17,7 @@ pub(crate) mod tables;
 mod tests;
 
 pub use confirmed::Confirmed;
+pub use drawn_tally::DrawnTally;
 pub use summary::{Knee, MethodRecord, RunRecord, Summary};
 
 use crate::certify::{self, Column, Row};
@@ -56,6 +58,8 @@ pub struct Certified<'p> {
     pub variants: Vec<Row>,
     /// What a person should know of it besides.
     pub findings: Findings,
+    /// Why draws fail, if the study has distributions.
+    pub drawn: Option<DrawnTally>,
     /// Which input matters, if the study asks for it and there is a design to look at.
     pub influence: Option<InfluenceReport>,
 }
@@ -92,7 +96,8 @@ impl<'p> Certified<'p> {
             return Err(Error::Disagreement(format!("the sweep counted {seen} feasible designs, the f64 reference finds {feasible}")));
         }
         let findings = Findings::of(plan, state.feasible, &front, threads, control)?;
-        let mut outcome = Self { plan, state, tally, columns, front, named, variants, findings, influence: None };
+        let mut outcome = Self { plan, state, tally, columns, front, named, variants, findings, drawn: None, influence: None };
+        outcome.drawn = DrawnTally::new(plan, threads, control)?;
         outcome.influence = outcome.look_at_influence(threads, control)?;
         Ok(outcome)
     }

@@ -121,6 +121,9 @@ impl<'a> Summary<'a> {
                 "constraints": constraints.collect::<Vec<_>>(),
             },
         });
+        if let Some(drawn) = &self.outcome.drawn {
+            summary["draws"] = drawn.to_json(plan);
+        }
         if let Some(confirmed) = Confirmed::of(self.outcome) {
             summary["confirmed"] = confirmed.to_json();
         }

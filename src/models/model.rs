@@ -101,6 +101,12 @@ impl Model {
         self.origin.as_ref().is_some_and(|origin| origin.extension.hides(name) || origin.base.hides(name))
     }
 
+    /// The first condition with the same reason as this one: both ends of an input's valid range have the same.
+    pub fn first_of_reason(&self, condition: usize) -> usize {
+        let reason = &self.conditions[condition].reason;
+        self.conditions.iter().position(|it| it.reason == *reason).unwrap_or(condition)
+    }
+
     /// Number of the output of that name.
     pub fn output(&self, name: &str) -> Option<usize> {
         self.outputs.iter().position(|output| output.name == name)

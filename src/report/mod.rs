@@ -140,6 +140,7 @@ pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
         "scenarios": scenarios.map(|numbers| scenario_inputs(plan, numbers)),
         "evaluate": evaluate,
         "tally": summary["tally"],
+        "draws": summary["draws"],
         "extremes": summary["extremes"],
         "findings": summary["findings"]["in_words"],
         "notes": summary["notes"],

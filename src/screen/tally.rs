@@ -116,7 +116,7 @@ impl Tally {
     pub fn statuses<'m>(&self, model: &'m Model) -> Vec<(&'m str, u64)> {
         let mut statuses: Vec<(&str, u64)> = Vec::new();
         for (number, condition) in model.conditions.iter().enumerate().filter(|(_, condition)| !condition.quiet) {
-            if first_of_reason(model, number) == number {
+            if model.first_of_reason(number) == number {
                 statuses.push((&condition.reason, self.conditions[number]));
             }
         }
@@ -152,12 +152,6 @@ impl Tally {
             *only += u64::from(failures == Failures { constraints: Set::one(number), ..Failures::NONE });
         }
     }
-}
-
-/// The first condition with the same reason as this one.
-fn first_of_reason(model: &Model, condition: usize) -> usize {
-    let reason = &model.conditions[condition].reason;
-    model.conditions.iter().position(|it| it.reason == *reason).unwrap_or(condition)
 }
 
 /// The design indices of the sample: one in each of `most` equal strata.
@@ -224,7 +218,7 @@ impl<'p> Counter<'p> {
                     // The first condition that fails is the status; what comes after it may have lost its meaning.
                     match failed.map(|(number, _)| number).chain(of_row).min() {
                         Some(&first) => {
-                            failures.conditions.insert(first_of_reason(&plan.study.model, first));
+                            failures.conditions.insert(plan.study.model.first_of_reason(first));
                             has_failed[lane] = true;
                         }
                         None => self.violated(lane, &fast, failures),

@@ -98,7 +98,6 @@ pub fn summary(outcome: &Certified<'_>, record: &RunRecord, out: &Path, page: Op
 }
 
 /// What limits feasibility, worst first.
-#[allow(clippy::cast_precision_loss, reason = "shares for people")]
 fn limits(outcome: &Certified<'_>) -> String {
     let tally = &outcome.tally;
     let study = &outcome.plan.study;
@@ -110,23 +109,43 @@ fn limits(outcome: &Certified<'_>) -> String {
         let unit = study.unit_over(constraint.quantity, constraint.over);
         reasons.push((violated, only, format!("{} {} {unit}", constraint.name(model), constraint.in_words()).trim_end().to_owned()));
     }
-    reasons.retain(|(count, ..)| *count > 0);
-    reasons.sort_by_key(|(count, ..)| std::cmp::Reverse(*count));
-    if reasons.is_empty() {
-        return String::new();
-    }
-    let percent = |count: u64| format!("{:.1} %", 100.0 * count as f64 / tally.sampled as f64);
-    let mut grid = TextGrid::default();
-    for (count, only, reason) in reasons {
-        let alone = if only > 0 { dim(&format!("(alone: {})", percent(only))) } else { String::new() };
-        grid.row([reason, format!("fails {}", percent(count)), alone]);
-    }
     let what = if tally.sampled == outcome.plan.designs() {
         "of all designs".to_owned()
     } else {
         format!("of a sample of {} designs", grouped(tally.sampled))
     };
-    format!("\n{} {what}\n{}", bold("what limits feasibility,"), grid.indented(2))
+    listed(&format!("{} {what}", bold("what limits feasibility,")), reasons, tally.sampled) + &draw_limits(outcome)
+}
+
+/// What draws fail at, worst first.
+fn draw_limits(outcome: &Certified<'_>) -> String {
+    let Some((drawn, probability)) = outcome.drawn.as_ref().zip(outcome.plan.study.probability.as_ref()) else { return String::new() };
+    let drive = &probability.drive;
+    let mut reasons: Vec<(u64, u64, String)> = drawn.statuses.iter().map(|(reason, count)| (*count, 0, reason.clone())).collect();
+    for (constraint, &(violated, only)) in drive.constraints.iter().zip(&drawn.constraints) {
+        let unit = drive.unit_of(constraint);
+        reasons.push((violated, only, format!("{} {} {unit}", constraint.name(&drive.model), constraint.in_words()).trim_end().to_owned()));
+    }
+    let what =
+        if drawn.sampled == drawn.of { "of all draws".to_owned() } else { format!("of a sample of {} draws", grouped(drawn.sampled)) };
+    listed(&format!("{} {what}", bold("what draws fail at,")), reasons, drawn.sampled)
+}
+
+/// Reasons with how many of `all` fail for them, and how many for nothing else, worst first.
+#[allow(clippy::cast_precision_loss, reason = "shares for people")]
+fn listed(head: &str, mut reasons: Vec<(u64, u64, String)>, all: u64) -> String {
+    reasons.retain(|(count, ..)| *count > 0);
+    reasons.sort_by_key(|(count, ..)| std::cmp::Reverse(*count));
+    if reasons.is_empty() {
+        return String::new();
+    }
+    let percent = |count: u64| format!("{:.1} %", 100.0 * count as f64 / all as f64);
+    let mut grid = TextGrid::default();
+    for (count, only, reason) in reasons {
+        let alone = if only > 0 { dim(&format!("(alone: {})", percent(only))) } else { String::new() };
+        grid.row([reason, format!("fails {}", percent(count)), alone]);
+    }
+    format!("\n{head}\n{}", grid.indented(2))
 }
 
 /// A label as it is listed: a long one is cut off, and the tables have all of it.

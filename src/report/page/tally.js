@@ -7,7 +7,8 @@
     return [...states, ...bounds].sort((a, b) => b.failed - a.failed);
   };
 
-  const drawTally = (tally) => {
+  // What is counted: designs or draws, how it is introduced, and how many there are in all.
+  const drawTally = (tally, { one, title, id, all: whole, good }) => {
     const section = page.byId("tally");
     section.hidden = false;
     const { sampled } = tally;
@@ -27,10 +28,10 @@
     const head = [["reason", ""], ["kind", ""], ["", ""], ["fails", "number"], ["alone", "number"]].map(([name, kind]) => page.element("th", { scope: "col", class: kind }, name));
     const table = page.element("table", { class: "tally" }, page.element("thead", {}, page.element("tr", {}, head)), page.element("tbody", {}, shown.map(line)));
     section.append(
-      page.element("h2", { id: "tally-title" }, "What limits feasibility"),
-      page.element("p", { class: "hint" }, `Of ${page.data.study && page.data.study.designs === sampled ? "all" : "a fixed sample of"} ${page.count(sampled)} designs, ${page.count(tally.feasible)} (${page.percent(tally.feasible, sampled)}) are feasible. One design may fail for several reasons; “alone” counts those that fail this constraint and nothing else.`),
-      shown.length ? table : page.element("p", {}, "No design fails."),
-      never.length ? page.element("p", { class: "hint" }, `No design fails: ${never.join(", ")}.`) : "",
+      page.element("h2", { id }, title),
+      page.element("p", { class: "hint" }, `Of ${whole === sampled ? "all" : "a fixed sample of"} ${page.count(sampled)} ${one}s, ${page.count(tally.feasible)} (${page.percent(tally.feasible, sampled)}) ${good}. One ${one} may fail for several reasons; “alone” counts those that fail this constraint and nothing else.`),
+      shown.length ? table : page.element("p", {}, `No ${one} fails.`),
+      never.length ? page.element("p", { class: "hint" }, `No ${one} fails: ${never.join(", ")}.`) : "",
     );
   };
 
@@ -56,7 +57,8 @@
   page.startTally = () => {
     const { data, front } = page;
     const { tally, study, findings } = data;
-    if (tally) drawTally(tally);
+    if (tally) drawTally(tally, { one: "design", title: "What limits feasibility", id: "tally-title", all: study && study.designs, good: "are feasible" });
+    if (data.draws) drawTally(data.draws, { one: "draw", title: "What draws fail at", id: "draws-title", all: data.draws.draws, good: "hold" });
     const none = study && (study.feasible === 0 || (front && front.rows === 0 && front.objectives.length));
     if (findings && !none) drawFindings(page.byId("overview"), findings);
     if (!none) return;

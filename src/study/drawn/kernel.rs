@@ -77,7 +77,7 @@ impl DrawnKernel {
         let mut values: Vec<Vec<f64>> =
             self.statistics.iter().map(|it| Vec::with_capacity(if it.kind.may_be_absent() { draws } else { 0 })).collect();
         for draw in 0..draws {
-            let cases = self.cases_of(&|input| self.columns[input][draw], design);
+            let cases = self.drawn_cases(design, draw);
             for (number, statistic) in self.statistics.iter().enumerate() {
                 match statistic.kind {
                     StatisticKind::Yield => counts[number] += u64::from(self.draw_holds(&cases)),
@@ -117,6 +117,11 @@ impl DrawnKernel {
         self.fresh.as_ref().map_or(0, |fresh| fresh.holding(&mut count))
     }
 
+    /// One of the draws that choose, in all cases.
+    pub(super) fn drawn_cases(&self, design: &[f64], draw: usize) -> Vec<CaseOfDraw> {
+        self.cases_of(&|input| self.columns[input][draw], design)
+    }
+
     /// One draw of a design in all cases.
     fn cases_of(&self, drawn: &dyn Fn(usize) -> f64, design: &[f64]) -> Vec<CaseOfDraw> {
         let (base, kernel) = (&self.base, &*self.base.kernel);
@@ -124,23 +129,23 @@ impl DrawnKernel {
         let mut si = vec![0.0; design.len()];
         let case = |case: usize| {
             if !self.turn(drawn, case, design, &mut si) {
-                return CaseOfDraw { is_ok: false, si: si.clone(), outputs: Vec::new(), present: Set::EMPTY };
+                return CaseOfDraw { status: None, si: si.clone(), outputs: Vec::new(), present: Set::EMPTY };
             }
             let mut prepared = vec![0.0; kernel.prepared_len()];
             kernel.prepare(&si, wanted, &mut prepared);
             let outputs = kernel.outputs(&prepared, &si, wanted);
             let (status, present) = judge(base, &kernel.margins(&prepared, &si));
-            CaseOfDraw { is_ok: status == Status::Ok, si: si.clone(), outputs, present }
+            CaseOfDraw { status: Some(status), si: si.clone(), outputs, present }
         };
         (0..self.cases.rows.len()).map(case).collect()
     }
 
     fn draw_holds(&self, cases: &[CaseOfDraw]) -> bool {
-        cases.iter().all(|it| it.is_ok) && self.holds.iter().all(|constraint| self.keeps(constraint, cases))
+        cases.iter().all(|it| it.status == Some(Status::Ok)) && self.holds.iter().all(|constraint| self.keeps(constraint, cases))
     }
 
     /// Does a draw keep a constraint in all cases?
-    fn keeps(&self, constraint: &Constraint, cases: &[CaseOfDraw]) -> bool {
+    pub(super) fn keeps(&self, constraint: &Constraint, cases: &[CaseOfDraw]) -> bool {
         if constraint.over.is_worst() {
             return cases.iter().all(|it| {
                 let value = self.in_case(constraint.quantity, it);
@@ -158,9 +163,10 @@ impl DrawnKernel {
         over_cases(asked, &self.cases, &values)
     }
 
-    fn in_case(&self, quantity: Quantity, case: &CaseOfDraw) -> f64 {
+    /// The value of a quantity in a case; NaN if it has none.
+    pub(super) fn in_case(&self, quantity: Quantity, case: &CaseOfDraw) -> f64 {
         // Of a draw that cannot be built nothing has a value.
-        if case.outputs.is_empty() && !self.outputs.is_empty() {
+        if case.status.is_none() {
             return f64::NAN;
         }
         self.value(quantity, &case.si, &case.outputs, case.present)
@@ -168,10 +174,10 @@ impl DrawnKernel {
 }
 
 /// A draw in one case.
-struct CaseOfDraw {
-    is_ok: bool,
+pub(super) struct CaseOfDraw {
+    /// `None` where a drawn value is none that its input can have.
+    pub(super) status: Option<Status>,
     si: Vec<f64>,
-    /// Empty where a drawn value is none that its input can have.
     outputs: Vec<f64>,
     present: Set,
 }

@@ -10,6 +10,7 @@ mod confirm;
 mod counting;
 mod drive;
 mod early;
+mod failures;
 mod fold;
 mod kernel;
 mod lanes;
@@ -21,6 +22,8 @@ mod tracks;
 
 pub(crate) use drive::{DrawnDrive, needs};
 pub(crate) use early::{LeastCount, least_counts};
+pub(crate) use failures::{DrawFailures, NO_SUCH_DRIVE};
+pub(crate) use kernel::DrawnKernel;
 pub use law::{LawText, NamedLaw};
 pub use probability::{Drive, MOST_CASES, MOST_CONFIRM, MOST_DRAWS, Probability, REPLICATES, UncertainInput};
 pub use statistic::{AskedQuantity, ConfirmedEnd, OVER_DRAWS, OverDraws, SCREENED, Statistic, StatisticKind, YIELD};

@@ -3,13 +3,14 @@
 use super::super::axis::Axis;
 use super::super::quantity::Quantity;
 use super::super::resolved::Constraint;
-use super::super::spectrum::Spectrum;
+use super::super::spectrum::{Spectrum, unit_over};
 use super::confirm::FreshDraws;
 use super::lanes::most_kept;
 use super::law::LawText;
 use super::statistic::{ConfirmedEnd, OverDraws, Statistic, StatisticKind};
 use crate::models::Model;
 use crate::probability::{Distribution, Draws, Effect, ProbabilityProblem, Sampling};
+use crate::tape::Set;
 use std::sync::Arc;
 
 /// Replicates of a Latin hypercube or of Sobol points: their differences give the standard error.
@@ -20,7 +21,7 @@ pub const MOST_CONFIRM: u64 = 1_000_000_000;
 pub const MOST_CASES: u64 = 100_000;
 
 /// Bytes that it takes to record what depends on what in a formula that fills tables, its loops written out.
-const WRITTEN_OUT: u64 = 40_000_000;
+const WRITTEN_OUT: u64 = 22_000_000;
 
 /// Uncertain inputs of a study, how they are drawn, and what is asked of the draws.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,6 +76,13 @@ pub struct Drive {
     pub constraints: Vec<Constraint>,
 }
 
+impl Drive {
+    /// The unit of what a constraint is on, as text.
+    pub fn unit_of(&self, constraint: &Constraint) -> String {
+        unit_over(constraint.quantity, constraint.over, &self.model, self.spectrum.as_ref())
+    }
+}
+
 impl Probability {
     /// What a study file could not have said.
     pub(super) fn flaw(&self) -> Option<String> {
@@ -103,12 +111,12 @@ impl Probability {
         self.drive.operation.iter().map(Axis::count).fold(self.draws, u64::saturating_mul)
     }
 
-    /// Bytes that the draws take on so many threads, which judge so many designs at a time.
-    pub(crate) fn bytes(&self, threads: u64, designs: u64) -> u64 {
+    /// Bytes that the draws take on so many threads, which judge so many designs at a time by these of the statistics.
+    pub(crate) fn bytes(&self, threads: u64, designs: u64, used: Set) -> u64 {
         let inputs = self.inputs.len() as u64;
         let own = 8 * inputs * (self.draws + FreshDraws::kept(self.confirm, inputs));
-        let needs_all = |it: &&Statistic| matches!(it.kind, StatisticKind::Over(_, OverDraws::Sd | OverDraws::Quantile(_)));
-        let all = self.statistics.iter().filter(needs_all).count() as u64;
+        let needs_all = |it: &Statistic| matches!(it.kind, StatisticKind::Over(_, OverDraws::Sd | OverDraws::Quantile(_)));
+        let all = self.statistics.iter().enumerate().filter(|(number, it)| used.contains(*number) && needs_all(it)).count() as u64;
         let has_tables = self.drive.model.kernel.formula().is_some_and(|it| !it.fields().tables.is_empty());
         own + threads * 8 * most_kept(self.draws, all, designs) + if has_tables { WRITTEN_OUT } else { 0 }
     }

@@ -34,6 +34,14 @@ impl DrawnCase {
         }
     }
 
+    /// Why it has no result, in words; `None` if it has one.
+    pub fn reason(&self, model: &Model) -> Option<String> {
+        match &self.evaluation {
+            None => Some("a drawn value that its input cannot have".to_owned()),
+            Some(it) => matches!(it.status, Status::Failed(_)).then(|| it.status.reason(model).to_owned()),
+        }
+    }
+
     /// Has the drive a result?
     fn is_ok(&self) -> bool {
         // What is too large for a number is absent: that matters where it is asked for.
@@ -145,7 +153,7 @@ impl<'s> Brute<'s> {
         results.iter().all(|it| it.is_finite()).then(|| worst(results, worse))
     }
 
-    fn keeps(&self, constraint: &Constraint, cases: &[DrawnCase]) -> bool {
+    pub fn keeps(&self, constraint: &Constraint, cases: &[DrawnCase]) -> bool {
         if constraint.over == OverScenarios::Worst {
             return cases.iter().all(|it| it.value(constraint.quantity).is_some_and(|value| satisfied(constraint, value)));
         }
@@ -154,7 +162,7 @@ impl<'s> Brute<'s> {
         })
     }
 
-    fn holds(&self, cases: &[DrawnCase]) -> bool {
+    pub fn holds(&self, cases: &[DrawnCase]) -> bool {
         cases.iter().all(DrawnCase::is_ok) && self.probability.drive.constraints.iter().all(|it| self.keeps(it, cases))
     }
 

@@ -2,6 +2,7 @@
 
 mod brute;
 mod draft;
+mod failing;
 mod kinds;
 mod laws;
 mod proven;
