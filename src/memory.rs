@@ -11,12 +11,12 @@ use crate::parallel::on_threads;
 use crate::plan::Plan;
 use crate::reduce::{Reduction, Reported};
 use crate::screen::{CpuEngine, Tables};
-use crate::study::{Axis, Levels};
+use crate::study::{Axis, InfluenceOver, Levels};
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
 /// The program itself, with a small study.
-const PROGRAM: u64 = 12_500_000;
+const PROGRAM: u64 = 13_000_000;
 /// A thread with its blocks.
 const THREAD: u64 = 350_000;
 /// Bytes of a cell of a map in the state, and with the copy and the serialised bytes while a checkpoint is saved.
@@ -46,6 +46,8 @@ const PAGE_OUTPUT: u64 = 50;
 const PAGE_VARIANT: u64 = 1_400;
 /// Bytes of an objective of a design that is a dot on the page: packed, and as text.
 const DOT: u64 = 24;
+/// Bytes of a combination of inputs whose sensitivity is looked at.
+const COMPARED: u64 = 1_000;
 /// Indices kept per design of a sample: up to twice as many as are wanted may wait.
 const INDICES: u64 = 2;
 /// Copies of packed numbers: those that are kept, and while a checkpoint is saved a copy and its bytes.
@@ -162,7 +164,7 @@ impl Needs {
         let shard = sum(&[program, times(sizes.cells, CELL_SAVED), points]);
         let state = sum(&[program, times(sizes.cells, CELL), met]);
         let rows = times(front + sizes.rows, sizes.row);
-        let tables = sum(&[state, times(sizes.cases, CASE_DESCRIBED), rows, sizes.table]);
+        let tables = sum(&[state, times(sizes.cases, CASE_DESCRIBED), rows, sizes.table, times(compared(plan), COMPARED)]);
         let on_page = [
             times(front.min(MOST_ON_PAGE as u64), PAGE_ROW + PAGE_OUTPUT * sizes.outputs),
             times(sizes.variants, PAGE_VARIANT),
@@ -179,6 +181,15 @@ impl Needs {
             merge: with_margin(merged.max(tables).max(page)),
         }
     }
+}
+
+/// Combinations of which the sensitivity has all numbers in memory at a time.
+fn compared(plan: &Plan) -> u64 {
+    const MOST: u64 = 1 << 14;
+    plan.study.report.sensitivity.as_ref().map_or(0, |it| match it.over {
+        InfluenceOver::Design => plan.designs().max(it.draws).min(MOST),
+        InfluenceOver::Uncertainty => it.draws.min(MOST),
+    })
 }
 
 /// Bytes that this many threads need to solve designs: the most of some designs from all over the study.

@@ -59,7 +59,7 @@ fn finite(of: &'static str, name: &'static str, value: f64) -> Result<(), Probab
 }
 
 fn positive(of: &'static str, name: &'static str, value: f64) -> Result<(), ProbabilityProblem> {
-    parameter(of, name, value, (1e-150..=1e150).contains(&value), "between 1e-150 and 1e150")
+    parameter(of, name, value, (1e-150..=1e150).contains(&value), "above 0 (1e-150 to 1e150)")
 }
 
 fn ordered(of: &'static str, (lower, below): (&'static str, f64), (upper, above): (&'static str, f64)) -> Result<(), ProbabilityProblem> {

@@ -113,7 +113,7 @@ pub enum ProbabilityProblem {
     },
     /// Correlations that no set of numbers can have, at least not all of them.
     #[error(
-        "correlation: {first} and {second} have {}, and must have a correlation between {} and {}{}",
+        "correlation: {first} and {second} have {}, and it must be between {} and {}{}",
         plain(*.value), short(*.low), short(*.high), if *.low > -1.0 || *.high < 1.0 { ", given the others" } else { "" }
     )]
     Correlation {

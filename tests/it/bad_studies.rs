@@ -46,9 +46,9 @@ fn problems(text: &str) -> Vec<String> {
     errors.to_string().lines().map(|line| line.strip_prefix("study.toml:").unwrap_or(line).to_owned()).collect()
 }
 
-/// The example with other lines: `N| text` puts `text` in place of line N; a second one for the same N goes below.
-fn edited(edits: &[(usize, &str)]) -> String {
-    let mut lines: Vec<Vec<&str>> = EXAMPLE.lines().map(|line| vec![line]).collect();
+/// A study with other lines: `N| text` puts `text` in place of line N; a second one for the same N goes below.
+fn edited(study: &str, edits: &[(usize, &str)]) -> String {
+    let mut lines: Vec<Vec<&str>> = study.lines().map(|line| vec![line]).collect();
     for (index, &(number, text)) in edits.iter().enumerate() {
         let line = &mut lines[number - 1];
         if edits[..index].iter().all(|&(other, _)| other != number) {
@@ -69,9 +69,20 @@ fn reads_as(problem: &str, expected: &str) -> bool {
 
 #[test]
 fn every_broken_study_is_refused_at_its_place_with_a_remedy() {
+    refused(EXAMPLE, BROKEN, 50);
+}
+
+#[test]
+fn every_wrong_distribution_is_refused_at_its_place_with_a_remedy() {
+    assert_eq!(problems(DRAWN), Vec::<String>::new());
+    refused(DRAWN, WRONG_DISTRIBUTIONS, 50);
+}
+
+/// Each block of `broken` has lines in place of those of the study, then the problems that this must give. There are so many blocks at least.
+fn refused(study: &str, broken: &'static str, least: usize) {
     let mut tried = 0;
     let mut wrong = String::new();
-    for block in BROKEN.split("\n\n") {
+    for block in broken.split("\n\n") {
         let lines = block.lines().filter(|line| !line.is_empty() && !line.starts_with('#'));
         let edit = |line: &'static str| {
             let (number, text) = line.split_once('|')?;
@@ -79,7 +90,7 @@ fn every_broken_study_is_refused_at_its_place_with_a_remedy() {
         };
         let (edits, expected): (Vec<_>, Vec<_>) = lines.partition(|line| edit(line).is_some());
         let edits: Vec<_> = edits.into_iter().filter_map(edit).collect();
-        let found = problems(&edited(&edits));
+        let found = problems(&edited(study, &edits));
         if found.len() != expected.len() || !found.iter().zip(&expected).all(|(found, expected)| reads_as(found, expected)) {
             wrong += &format!("{block}\n  but it says\n{}\n\n", found.join("\n"));
         }
@@ -93,7 +104,7 @@ fn every_broken_study_is_refused_at_its_place_with_a_remedy() {
         tried += 1;
     }
     assert!(wrong.is_empty(), "{wrong}");
-    assert!(tried >= 50, "{tried}");
+    assert!(tried >= least, "{tried}");
 }
 
 #[test]
@@ -115,21 +126,24 @@ fn a_preset_is_the_base_and_what_is_fixed_goes_before_it() {
 
 #[test]
 fn all_problems_of_a_file_are_reported_in_file_order() {
-    let text = edited(&[
-        (2, "titel = \"x\""),
-        (4, "groove_angel_deg = 20"),
-        (5, "band_thickness_mm = { from = 0.10, to = \"0.3 N\", step = 0 }"),
-        (6, "band_count = [6, 6.5, 7, 7]"),
-        (9, "ratio = { from = 0.5, to = 2.0 }"),
-        (10, "torque_Nm ="),
-        (12, "friction = [0.08, -1, nan]"),
-        (14, "traction = 0.4"),
-        (16, "slip_margin = { min = 1, max = 0, least = 3 }"),
-        (19, "axial_force_N = \"less\""),
-        (24, "columns = [\"band_count\", \"x\"]"),
-        (25, "top = { count = 0 }"),
-        (26, "histograms = [{ of = \"axial_force_N\", to = 3 }, 7]"),
-    ]);
+    let text = edited(
+        EXAMPLE,
+        &[
+            (2, "titel = \"x\""),
+            (4, "groove_angel_deg = 20"),
+            (5, "band_thickness_mm = { from = 0.10, to = \"0.3 N\", step = 0 }"),
+            (6, "band_count = [6, 6.5, 7, 7]"),
+            (9, "ratio = { from = 0.5, to = 2.0 }"),
+            (10, "torque_Nm ="),
+            (12, "friction = [0.08, -1, nan]"),
+            (14, "traction = 0.4"),
+            (16, "slip_margin = { min = 1, max = 0, least = 3 }"),
+            (19, "axial_force_N = \"less\""),
+            (24, "columns = [\"band_count\", \"x\"]"),
+            (25, "top = { count = 0 }"),
+            (26, "histograms = [{ of = \"axial_force_N\", to = 3 }, 7]"),
+        ],
+    );
     let found = problems(&text);
     let expected = [
         "2:1: unknown key \"titel\"",
@@ -172,7 +186,7 @@ fn a_study_that_cannot_be_read_says_so() {
 #[test]
 fn problems_of_a_csv_file_name_its_line_and_field() {
     let folder = tempfile::tempdir().unwrap();
-    let text = edited(&[(9, "cases = { csv = \"belts.csv\" }"), (10, "")]);
+    let text = edited(EXAMPLE, &[(9, "cases = { csv = \"belts.csv\" }"), (10, "")]);
     let cases: &[(&str, &[&str])] = &[
         ("", &["1:1: there are no rows; the first line names inputs, such as [..]"]),
         ("ratio,torque_Nm\n", &["1:1: there are no rows; [..]"]),
@@ -341,15 +355,18 @@ fn mutated(text: &str, random: &mut SplitMix64) -> String {
 
 #[test]
 fn no_mutation_of_a_study_makes_the_reader_fail() {
-    let sampled = edited(&[
-        (1, "model = \"metal-cvt\"\n[sample]\nmethod = \"latin-hypercube\"\ncount = 1000\nseed = 7"),
-        (2, ""),
-        (4, "groove_angle_deg = { from = 18, to = 30 }"),
-        (9, "cases = [{ ratio = 2, torque_Nm = 150 }, { ratio = 0.5, torque_Nm = \"60 Nm\" }]"),
-        (10, "cases_2 = { csv = \"belts.csv\" }"),
-        (19, "axial_force_N = { goal = \"min\", resolution = \"10 N\" }"),
-        (27, ""),
-    ]);
+    let sampled = edited(
+        EXAMPLE,
+        &[
+            (1, "model = \"metal-cvt\"\n[sample]\nmethod = \"latin-hypercube\"\ncount = 1000\nseed = 7"),
+            (2, ""),
+            (4, "groove_angle_deg = { from = 18, to = 30 }"),
+            (9, "cases = [{ ratio = 2, torque_Nm = 150 }, { ratio = 0.5, torque_Nm = \"60 Nm\" }]"),
+            (10, "cases_2 = { csv = \"belts.csv\" }"),
+            (19, "axial_force_N = { goal = \"min\", resolution = \"10 N\" }"),
+            (27, ""),
+        ],
+    );
     for seed in 0..20_000 {
         let mut random = SplitMix64(seed);
         let base = if random.below(4) == 0 { &sampled } else { EXAMPLE };
@@ -398,7 +415,7 @@ fn sizes_beyond_all_bounds_are_refused_at_once() {
         "{ from = 1, to = 2, count = 99999999999999999999999999 }",
         "{ from = 1e307, to = 1e308, count = 9007199254740992 }",
     ] {
-        let found = problems(&edited(&[(5, &format!("band_thickness_mm = {range}"))]));
+        let found = problems(&edited(EXAMPLE, &[(5, &format!("band_thickness_mm = {range}"))]));
         assert!(!found.is_empty() && found[0].starts_with("5:"), "{range}: {found:?}");
     }
     let deep = format!("model = {}", "[".repeat(100_000));
@@ -575,3 +592,7 @@ fn constraints_objectives_and_reports_are_understood() {
 /// Broken studies. A block has the lines of the example that are changed (see [`edited`]) and then, one per line, every
 /// problem with its position: `line:column: message`. `[..]` stands for anything.
 const BROKEN: &str = include_str!("bad_studies/broken.txt");
+
+/// A study with distributions, and wrong lines of it in the same form.
+const DRAWN: &str = include_str!("bad_studies/drawn.toml");
+const WRONG_DISTRIBUTIONS: &str = include_str!("bad_studies/drawn.txt");

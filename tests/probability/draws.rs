@@ -239,18 +239,18 @@ fn wrong_draws_are_named_with_the_limit_and_the_remedy() {
             tied(&[("wear", "load_N", 0.1), ("load_N", "wear", 0.1)]),
             "correlation: load_N and wear stand there twice; give them one correlation",
         ),
-        (tied(&[("wear", "load_N", 1.2)]), "correlation: wear and load_N have 1.2, and must have a correlation between -1 and 1"),
-        (tied(&[("wear", "load_N", -1.0)]), "correlation: wear and load_N have -1, and must have a correlation between -1 and 1"),
-        (tied(&[("wear", "load_N", f64::NAN)]), "correlation: wear and load_N have NaN, and must have a correlation between -1 and 1"),
+        (tied(&[("wear", "load_N", 1.2)]), "correlation: wear and load_N have 1.2, and it must be between -1 and 1"),
+        (tied(&[("wear", "load_N", -1.0)]), "correlation: wear and load_N have -1, and it must be between -1 and 1"),
+        (tied(&[("wear", "load_N", f64::NAN)]), "correlation: wear and load_N have NaN, and it must be between -1 and 1"),
         // The first may be 0.54 +- sqrt(0.19 x 0.64): 0.0113 is less to change than the 0.02 by which the last is below 0.81 - 0.19.
         (
             tied(&[("friction", "load_N", 0.9), ("load_N", "wear", 0.9), ("friction", "wear", 0.6)]),
-            "correlation: friction and load_N have 0.9, and must have a correlation between 0.191288 and 0.888712, given the others",
+            "correlation: friction and load_N have 0.9, and it must be between 0.191288 and 0.888712, given the others",
         ),
         // The last may be -0.4 +- sqrt(0.36 x 0.75), and is the nearest to what it may be.
         (
             tied(&[("friction", "load_N", -0.8), ("load_N", "wear", 0.5), ("friction", "wear", 0.9)]),
-            "correlation: friction and wear have 0.9, and must have a correlation between -0.919615 and 0.119615, given the others",
+            "correlation: friction and wear have 0.9, and it must be between -0.919615 and 0.119615, given the others",
         ),
     ];
     for (made, message) in cases {

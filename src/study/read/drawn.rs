@@ -11,6 +11,7 @@ use super::super::drawn::{
 use super::super::quantity::Quantity;
 use super::super::resolved::{Constraint, Goal, ReportColumn};
 use super::super::spectrum::OverScenarios;
+use super::law::is_law;
 use super::quantities::GOALS;
 use super::table::{Entry, TomlNode, TomlTable, shortened};
 use super::value::{number, truth, whole};
@@ -73,7 +74,7 @@ impl Reader<'_> {
                 format!("[operation]: a draw is judged in all operating cases, and there are more than {MOST_CASES}; use fewer levels"),
             );
         }
-        let mut probability = self.settings(table.as_ref(), &inputs)?;
+        let mut probability = self.settings(table.as_ref(), &inputs, section(top, "uncertainty", problems).as_ref())?;
         let asks = Asks::new(self, &inputs, parts.fixed);
         let drive = Drive {
             model: self.model.clone(),
@@ -116,7 +117,12 @@ impl Reader<'_> {
     }
 
     /// The `[probability]` table.
-    fn settings(&self, table: Option<&TomlTable<'_>>, inputs: &[(UncertainInput, usize)]) -> Option<Probability> {
+    fn settings(
+        &self,
+        table: Option<&TomlTable<'_>>,
+        inputs: &[(UncertainInput, usize)],
+        uncertainty: Option<&TomlTable<'_>>,
+    ) -> Option<Probability> {
         let (problems, label) = (self.problems, "[probability]");
         let before = problems.count();
         let part = |key: &str| table.and_then(|table| table.get(key));
@@ -133,7 +139,7 @@ impl Reader<'_> {
         ];
         let sampling = part("method").map_or(Some(Sampling::Random), |entry| choice(entry, problems, label, &methods));
         let enclosure = part("enclosure").map_or(Some(false), |entry| truth(entry, problems, label));
-        let correlation = part("correlation").map_or_else(Vec::new, |entry| self.correlations(entry.node, inputs));
+        let correlation = part("correlation").map_or_else(Vec::new, |entry| self.correlations(entry.node, inputs, uncertainty));
         let (draws, confirm, seed, sampling, enclosure) = (draws?, confirm?, seed?, sampling?, enclosure?);
         let drive = Drive { model: self.model.clone(), operation: Vec::new(), spectrum: None, constraints: Vec::new() };
         let inputs = inputs.iter().map(|it| it.0.clone()).collect();
@@ -142,7 +148,12 @@ impl Reader<'_> {
         (problems.count() == before).then_some(probability)
     }
 
-    fn correlations(&self, node: TomlNode<'_>, inputs: &[(UncertainInput, usize)]) -> Vec<(usize, usize, f64)> {
+    fn correlations(
+        &self,
+        node: TomlNode<'_>,
+        inputs: &[(UncertainInput, usize)],
+        uncertainty: Option<&TomlTable<'_>>,
+    ) -> Vec<(usize, usize, f64)> {
         let problems = self.problems;
         let example = "[[\"friction\", \"tight_tension_N\", -0.3]]";
         let Some(pairs) = node.list() else {
@@ -158,7 +169,8 @@ impl Reader<'_> {
             let place = |node: TomlNode<'_>| {
                 let name = text(node, problems, "correlation")?;
                 let found = inputs.iter().position(|it| it.0.name == name);
-                if found.is_none() {
+                // One whose distribution is wrong has been told of.
+                if found.is_none() && uncertainty.is_none_or(|it| it.get(&name).is_none_or(|it| !is_law(it))) {
                     let known: Vec<_> = inputs.iter().map(|it| it.0.name.as_str()).collect();
                     let message = format!("correlation: {} has no distribution; these have: {}", shortened(&name), known.join(", "));
                     problems.add(node.at, message);
@@ -327,6 +339,10 @@ impl<'r, 'a> Asks<'r, 'a> {
             if name == YIELD {
                 self.ask(table.as_ref(), (&name, at), &label, None);
                 self.check_share(table.as_ref(), &["min", "above"], &label);
+            } else if has(OVER_DRAWS) && has(YIELD) {
+                let remedy = "a yield of its own counts draws, over_draws asks for a number over all of them; drop one of the two";
+                problems.add(entry.key_at, format!("{label}: {remedy}"));
+                self.means(at, None);
             } else if has(OVER_DRAWS) {
                 let bounded = |keys: [&str; 2]| keys.iter().any(|key| has(key));
                 let end = match (bounded(["min", "above"]), bounded(["max", "below"])) {

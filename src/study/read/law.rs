@@ -6,6 +6,7 @@ use super::roles::{AxisClaim, AxisRole};
 use super::table::{Entry, TomlNode, TomlTable, list, shortened};
 use super::value::measured;
 use super::{Reader, text};
+use crate::likeness::closest;
 use crate::probability::Effect;
 use crate::units::{NONE, Unit};
 
@@ -19,6 +20,11 @@ const EFFECTS: [(&str, Effect); 2] = [("times", Effect::Times), ("plus", Effect:
 pub(super) fn is_law(entry: &Entry<'_>) -> bool {
     let has = |table: &TomlTable<'_>| LAWS.iter().copied().chain(EFFECTS.iter().map(|it| it.0)).any(|name| table.get(name).is_some());
     entry.node.table().is_some_and(|table| has(&table))
+}
+
+/// The distribution that was probably meant.
+pub(super) fn likely_law(key: &str) -> Option<&'static str> {
+    closest(key, &LAWS)
 }
 
 /// Parameters of a distribution, with their units.
@@ -48,6 +54,11 @@ impl Reader<'_> {
         let (effect, unit, body) = match effect {
             None => (Effect::Is, input.unit, table),
             Some((name, effect, inner)) => {
+                let other = EFFECTS.iter().filter(|it| it.0 != *name).find_map(|it| table.get(it.0));
+                if let Some(other) = other {
+                    wrong(other.key_at, format!("a tolerance is {} or {}, not both; drop one of the two", EFFECTS[0].0, EFFECTS[1].0));
+                    return;
+                }
                 table.check_keys(self.problems, &label, &[name]);
                 let Some(body) = inner.node.table() else {
                     let remedy =
@@ -201,12 +212,12 @@ impl LawParameters<'_, '_> {
     /// unless it is given.
     fn read(&self, names: &[&str], law: impl Fn(&[f64]) -> NamedLaw) -> Option<NamedLaw> {
         let problems = self.reader.problems;
+        let example = || names.iter().map(|name| format!("{name} = ...")).collect::<Vec<_>>().join(", ");
         let Some(table) = &self.table else {
             if self.numbers.len() == names.len() {
                 return Some(law(&self.numbers));
             }
-            let example = names.iter().map(|name| format!("{name} = ...")).collect::<Vec<_>>().join(", ");
-            problems.add(self.at, format!("{}: wanted {{ {example} }}", self.label));
+            problems.add(self.at, format!("{}: wanted {{ {} }}", self.label, example()));
             return None;
         };
         table.check_keys(problems, &self.label, names);
@@ -215,7 +226,7 @@ impl LawParameters<'_, '_> {
                 if *name == "from" && names[0] == "shape" {
                     return Some(0.0);
                 }
-                problems.add(table.at, format!("{}: \"{name}\" is missing", self.label));
+                problems.add(table.at, format!("{}: \"{name}\" is missing; write {{ {} }}", self.label, example()));
                 return None;
             };
             let unit = if matches!(*name, "alpha" | "shape") || (*name == "beta" && names.len() == 4) { NONE } else { self.unit };
