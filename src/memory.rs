@@ -32,7 +32,7 @@ const CELL_WRITTEN: u64 = 20;
 const CASE: u64 = 30;
 const CASE_DESCRIBED: u64 = 680;
 /// Bytes of a row of a table of designs, of each of its columns (a quantity that no design axis sets has two), and of each input.
-const ROW: u64 = 290;
+const ROW: u64 = 310;
 const ROW_COLUMN: u64 = 140;
 const ROW_INPUT: u64 = 50;
 /// Bytes of a label of such a row, a text of some twenty characters: held, as text and in Parquet.
@@ -47,7 +47,7 @@ const PAGE_VARIANT: u64 = 1_400;
 /// Bytes of an objective of a design that is a dot on the page: packed, and as text.
 const DOT: u64 = 24;
 /// Bytes of a combination of inputs whose sensitivity is looked at.
-const COMPARED: u64 = 1_000;
+const COMPARED: u64 = 1_500;
 /// Indices kept per design of a sample: up to twice as many as are wanted may wait.
 const INDICES: u64 = 2;
 /// Copies of packed numbers: those that are kept, and while a checkpoint is saved a copy and its bytes.
