@@ -203,6 +203,29 @@ fn the_scale_is_what_the_record_says() {
 }
 
 #[test]
+fn the_yields_are_what_the_record_says() {
+    let text = std::fs::read_to_string(root().join("results/bench/probability.json")).expect("the record is committed");
+    let record: Value = serde_json::from_str(&text).expect("JSON");
+    let all = &record["all"];
+    let number = |value: &Value| value.as_f64().expect("a number");
+    let slowest = |inputs: u64| {
+        let rows = record["enclosures"].as_array().expect("rows").iter().filter(|it| it["inputs"] == inputs);
+        rows.map(|it| 1e3 * number(&it["seconds"])).fold(0.0, f64::max)
+    };
+    let page = readme();
+    let paragraph =
+        page.split("\n\n").find(|it| it.contains("bench/probability.json")).expect("the README has the times").replace('\n', " ");
+    assert_eq!((&all["designs"], &all["draws"], &all["cases"]), (&100_000.into(), &4096.into(), &4.into()));
+    for said in [
+        format!("took {:.2} s on the two cores, numpy on one of them {:.1} s", number(&all["seconds"]), number(&all["numpy"]["seconds"])),
+        format!("the peak memory was {:.0} MB", number(&all["peak_MB"])),
+        format!("took up to {:.0}, {:.0} and {:.0} ms", slowest(2), slowest(3), slowest(4)),
+    ] {
+        assert!(paragraph.contains(&said), "the README does not say \"{said}\"");
+    }
+}
+
+#[test]
 fn the_runs_on_a_gpu_are_what_the_record_says() {
     let text = std::fs::read_to_string(root().join("results/bench/gpu-h100.json")).expect("the record is committed");
     let record: Value = serde_json::from_str(&text).expect("JSON");

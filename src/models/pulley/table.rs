@@ -235,8 +235,9 @@ fn inputs(belt: Vec<Input>) -> Vec<Input> {
         place_z("point_2_z_mm", "P2"),
     ];
     let mut inputs = [belt, own].concat();
+    let kinds = SectionKind::ALL.map(|kind| (kind.name(), read_by(kind)));
     for (number, input) in inputs.iter_mut().enumerate() {
-        let readers: Vec<_> = SectionKind::ALL.into_iter().filter(|&kind| read_by(kind).contains(number)).map(SectionKind::name).collect();
+        let readers: Vec<_> = kinds.iter().filter(|(_, read)| read.contains(number)).map(|(name, _)| *name).collect();
         if (1..SectionKind::ALL.len()).contains(&readers.len()) {
             *input = input.clone().read_only_for("section", &readers);
         }

@@ -51,7 +51,11 @@
     if (Number.isFinite(low) && high > low) {
       const scale = d3.scaleLinear([low, high], [0, width]);
       const svg = d3.create("svg").attr("width", width).attr("height", 20).attr("aria-hidden", "true");
-      svg.append("g").attr("class", "tick-axis").call(d3.axisBottom(scale).ticks(4).tickSizeOuter(0).tickSize(4).tickFormat(page.tick(scale, 4)));
+      // As many numbers as have room: one at an end lies beside its place, not below it.
+      const labels = (count) => scale.ticks(count).map(page.tick(scale, count));
+      const fits = (count) => width / Math.max(1, labels(count).length - 1) >= 1.5 * 7 * Math.max(...labels(count).map((text) => text.length));
+      const count = [4, 3, 2].find(fits) || 1;
+      svg.append("g").attr("class", "tick-axis").call(d3.axisBottom(scale).ticks(count).tickSizeOuter(0).tickSize(4).tickFormat(page.tick(scale, count)));
       // Numbers at the ends stay within the bar: cut off, they would look like other numbers.
       const anchor = (value) => (scale(value) < 26 ? "start" : scale(value) > width - 26 ? "end" : "middle");
       svg.selectAll(".tick text").attr("text-anchor", anchor);
