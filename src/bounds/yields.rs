@@ -95,7 +95,7 @@ impl YieldBounds {
     /// What stands in the way, see [`EnclosureProblem`].
     pub fn new(study: &Study) -> Result<Self, EnclosureProblem> {
         let probability = study.probability.as_ref().ok_or(EnclosureProblem::NothingDrawn)?;
-        let inputs: Vec<YieldInput> = probability.inputs.iter().map(|it| (it.input, it.effect, it.distribution.clone())).collect();
+        let inputs: Vec<YieldInput> = probability.inputs.iter().map(|it| (it.input, it.acts(), it.distribution.clone())).collect();
         let plan = Plan::new(study.of_one_draw());
         check(&plan, &inputs)?;
         // A tenth of what may miss the wanted yield, or of one in a thousand.

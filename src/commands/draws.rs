@@ -125,7 +125,7 @@ pub fn drive(plan: &Plan, design: u64, request: &cli::EvalArgs) -> Result<(Plan,
         }
         let drawn = probability.choosing()?.columns(draw..draw + 1);
         for (it, drawn) in probability.inputs.iter().zip(drawn) {
-            inputs[it.input] = it.effect.of(inputs[it.input], drawn[0]);
+            inputs[it.input] = it.acts().of(inputs[it.input], drawn[0]);
         }
     }
     Ok((one, scenario, inputs))

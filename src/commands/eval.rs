@@ -279,7 +279,7 @@ fn print_worst(plan: &Plan, design: u64, number_of: u64, request: &cli::EvalArgs
     let mut varied: Vec<usize> = study.operation.iter().chain(&study.uncertainty).flat_map(|axis| axis.inputs()).copied().collect();
     if let Some(probability) = &study.probability {
         varied.extend(probability.drive.operation.iter().flat_map(|axis| axis.inputs()));
-        varied.extend(probability.inputs.iter().filter(|it| it.effect == Effect::Is).map(|it| it.input));
+        varied.extend(probability.inputs.iter().filter(|it| it.acts() == Effect::Is).map(|it| it.input));
     }
     let inputs = (0..model.inputs.len()).filter(|input| !varied.contains(input));
     let enclosed = draws::enclosed(study, design)?;

@@ -140,21 +140,31 @@ impl Expression {
     /// it prints need not be a formula.
     #[must_use]
     pub fn renamed(&self, name: &dyn Fn(&str) -> Option<String>) -> Self {
-        let renamed = |part: &Self| part.renamed(name);
-        let boxed = |part: &Self| Box::new(renamed(part));
+        self.replaced(&|part| match &part.node {
+            ExpressionNode::Name(own) => name(own).map(ExpressionNode::Name),
+            _ => None,
+        })
+    }
+
+    /// The same formula with other parts, where there are such.
+    pub(super) fn replaced(&self, other: &dyn Fn(&Self) -> Option<ExpressionNode>) -> Self {
+        if let Some(node) = other(self) {
+            return Self { node, ..self.clone() };
+        }
+        let replaced = |part: &Self| part.replaced(other);
+        let boxed = |part: &Self| Box::new(replaced(part));
         let node = match &self.node {
-            ExpressionNode::Name(own) => ExpressionNode::Name(name(own).unwrap_or_else(|| own.clone())),
-            ExpressionNode::Number(..) | ExpressionNode::Word(_) => self.node.clone(),
+            ExpressionNode::Name(_) | ExpressionNode::Number(..) | ExpressionNode::Word(_) => self.node.clone(),
             ExpressionNode::Negative(of) => ExpressionNode::Negative(boxed(of)),
             ExpressionNode::Binary(operator, left, right) => ExpressionNode::Binary(*operator, boxed(left), boxed(right)),
             ExpressionNode::If(comparison, parts) => {
-                ExpressionNode::If(*comparison, Box::new(std::array::from_fn(|part| renamed(&parts[part]))))
+                ExpressionNode::If(*comparison, Box::new(std::array::from_fn(|part| replaced(&parts[part]))))
             }
             ExpressionNode::Root(unknown, parts, start) => {
-                let parts = Box::new(std::array::from_fn(|part| renamed(&parts[part])));
+                let parts = Box::new(std::array::from_fn(|part| replaced(&parts[part])));
                 ExpressionNode::Root(unknown.clone(), parts, start.as_deref().map(boxed))
             }
-            ExpressionNode::Call(function, arguments) => ExpressionNode::Call(function.clone(), arguments.iter().map(renamed).collect()),
+            ExpressionNode::Call(function, arguments) => ExpressionNode::Call(function.clone(), arguments.iter().map(replaced).collect()),
         };
         Self { node, ..self.clone() }
     }

@@ -1,5 +1,7 @@
-//! In which order formulas are evaluated, and which read each other in a circle.
+//! What formulas read, in which order they are evaluated, and which read each other in a circle.
 
+use super::check::SlotType;
+use super::expression::Expression;
 use std::collections::BTreeSet;
 
 /// Numbers of formulas in order of dependence and then of the file, and every circle with its members in the order in which one reads
@@ -37,4 +39,42 @@ pub(super) fn order(reads: &[Vec<usize>]) -> (Vec<usize>, Vec<Vec<usize>>) {
         }
     }
     (order, circles)
+}
+
+/// Slots that an expression reads, each once, in the order of the text.
+pub(super) fn slots_read(expression: Option<&Expression>, slots: &[SlotType]) -> Vec<usize> {
+    let mut read = Vec::new();
+    for (name, _) in expression.map(Expression::names).unwrap_or_default() {
+        let slot = slots.iter().position(|slot| slot.name == name);
+        read.extend(slot.filter(|slot| !read.contains(slot)));
+    }
+    read
+}
+
+/// Where an expression reads a name.
+pub(super) fn place_of(expression: Option<&Expression>, name: &str) -> usize {
+    let names = expression.map(Expression::names).unwrap_or_default();
+    names.iter().find(|(read, _)| *read == name).map_or(0, |&(_, at)| at)
+}
+
+/// The slots on the shortest way from a formula to an output.
+pub(super) fn path_to_output(
+    formula: usize,
+    reads: &[Vec<usize>],
+    giver: impl Fn(usize) -> Option<usize>,
+    is_output: impl Fn(usize) -> bool,
+) -> Vec<usize> {
+    let mut seen = BTreeSet::from([formula]);
+    let mut open = std::collections::VecDeque::from([(formula, Vec::new())]);
+    while let Some((formula, path)) = open.pop_front() {
+        for &slot in &reads[formula] {
+            let path = [&path[..], &[slot]].concat();
+            match giver(slot) {
+                None if is_output(slot) => return path,
+                Some(next) if seen.insert(next) => open.push_back((next, path)),
+                _ => {}
+            }
+        }
+    }
+    Vec::new()
 }

@@ -5,7 +5,8 @@ use super::dimension::QuantityDimension;
 use super::evaluate::{SlotValues, evaluate};
 use super::expression::Expression;
 use super::function::is_reserved;
-use super::order::order;
+use super::nominal::{nominal_of, own_name, with_nominal_names};
+use super::order::{order, path_to_output, place_of, slots_read};
 use super::parse::parse;
 use super::problem::{Fault, FormulaProblem};
 use super::scope::{MeasuredCurve, NameRole, Scope};
@@ -56,7 +57,11 @@ pub struct StudyFormula {
 impl StudyFormula {
     /// The status of a design in which it has no value for this reason.
     fn status(&self, reason: &str) -> String {
-        if self.kind == FormulaKind::Margin { format!("{}: {reason}", self.name) } else { format!("formula {}: {reason}", self.name) }
+        if self.kind == FormulaKind::Margin {
+            format!("{}: {reason}", self.name)
+        } else {
+            format!("formula {}: {reason}", own_name(&self.name))
+        }
     }
 }
 
@@ -229,8 +234,11 @@ impl<'s> Builder<'s> {
         }
         self.check_curves();
         let mut heads = self.heads();
-        let expressions: Vec<Option<Expression>> =
-            (0..sources.len()).map(|formula| parse(&sources[formula].text).map_err(|fault| self.add(formula, fault)).ok()).collect();
+        let is_known = |name: &str| heads.slots.iter().any(|slot| slot.name == name);
+        let expressions: Vec<Option<Expression>> = (0..sources.len())
+            .map(|formula| parse(&sources[formula].text).map_err(|fault| self.add(formula, fault)).ok())
+            .map(|parsed| parsed.map(|expression| with_nominal_names(&expression, &is_known)))
+            .collect();
         let reads: Vec<Vec<usize>> = expressions.iter().map(|expression| slots_read(expression.as_ref(), &heads.slots)).collect();
         let giver = |slot: usize| heads.of.iter().position(|&own| own == slot);
         let formulas_read: Vec<Vec<usize>> = reads.iter().map(|slots| slots.iter().filter_map(|&slot| giver(slot)).collect()).collect();
@@ -315,10 +323,12 @@ impl<'s> Builder<'s> {
         let mut heads = Heads { slots, measures: Vec::new(), of: Vec::new(), gives_input: Vec::new() };
         for (formula, WrittenFormula { name, kind, .. }) in self.sources.iter().enumerate() {
             let is_margin = *kind == FormulaKind::Margin;
+            // What a formula gives before the tolerance of what it gives.
+            let nominal = nominal_of(name).filter(|of| self.sources.iter().any(|other| other.name == *of));
             let known = scope.slot(name);
             let is_input = known.is_some_and(|slot| scope.names[slot].role == NameRole::Input);
             let fault = |builder: &mut Self, message: String| builder.add(formula, Fault::new(0, message));
-            if is_margin {
+            if is_margin || nominal.is_some() {
                 // Its name is none that a formula could have.
             } else if let Some(message) = unfit_name(name) {
                 fault(self, message);
@@ -342,7 +352,11 @@ impl<'s> Builder<'s> {
                 heads.of.push(slot);
                 heads.measures.push(scope.names[slot].measure);
             } else {
-                let named = if is_margin { Ok(QuantityUnit::NONE) } else { scope.units.of_name(name) };
+                let named = match nominal.map(|of| (of, scope.slot(of))) {
+                    _ if is_margin => Ok(QuantityUnit::NONE),
+                    Some((_, Some(slot))) => Ok(scope.names[slot].measure),
+                    of => scope.units.of_name(of.map_or(name, |it| it.0)),
+                };
                 let measure = named.unwrap_or_else(|message| {
                     fault(self, message);
                     QuantityUnit::NONE
@@ -384,23 +398,28 @@ impl<'s> Builder<'s> {
     fn circle(&mut self, circle: &[usize], expression: Option<&Expression>) {
         let name = |formula: &usize| self.sources[*formula].name.as_str();
         let path: Vec<&str> = circle.iter().chain(&circle[..1]).map(name).collect();
-        let message = match circle {
-            [_] => format!("{} reads itself", path[0]),
+        let at = place_of(expression, path[1]);
+        let mut path: Vec<&str> = path.into_iter().map(own_name).collect();
+        path.dedup();
+        let message = match path[..] {
+            [own] | [own, _] => format!("{own} reads itself"),
             _ => format!("these formulas read each other in a circle: {}", path.join(" -> ")),
         };
-        let at = place_of(expression, path[1]);
         self.add(circle[0], Fault::new(at, message));
     }
 
     fn reads_output(&mut self, formula: usize, path: &[usize], slots: &[SlotType], expression: &Expression) {
-        let names: Vec<&str> = path.iter().map(|&slot| slots[slot].name.as_str()).collect();
         let name = self.sources[formula].name.as_str();
+        let first = path.first().map_or("", |&slot| slots[slot].name.as_str());
+        let mut names: Vec<&str> = path.iter().map(|&slot| own_name(&slots[slot].name)).collect();
+        names.dedup();
+        names.retain(|it| *it != name);
         let output = names.last().copied().unwrap_or_default();
         let through = if names.len() > 1 { format!(" ({name} -> {})", names.join(" -> ")) } else { String::new() };
         let message = format!(
             "{name} is an input of the model, so it cannot depend on {output}, which is an output{through}: the model is evaluated once"
         );
-        let at = place_of(Some(expression), names.first().copied().unwrap_or_default());
+        let at = place_of(Some(expression), first);
         self.add(formula, Fault::new(at, message));
     }
 
@@ -417,14 +436,15 @@ impl<'s> Builder<'s> {
             QuantityType::Broken => return None,
         };
         let units = &self.scope.units;
+        let own = own_name(name);
         if given != wanted {
             let (given, said) = (units.in_words(given), units.in_words(wanted));
-            let hint = if wanted == QuantityDimension::NONE && !heads.gives_input[formula] {
+            let hint = if wanted == QuantityDimension::NONE && !heads.gives_input[formula] && own == name {
                 "; end the name in the unit, as belt_mass_kg does, or divide by one"
             } else {
                 ""
             };
-            return Some(Fault::new(0, format!("the formula gives {given}, but {name} is {said}{hint}")));
+            return Some(Fault::new(0, format!("the formula gives {given}, but {own} is {said}{hint}")));
         }
         let must_be_whole = heads.gives_input[formula] && self.scope.names[heads.of[formula]].whole;
         if must_be_whole && !checked.whole {
@@ -466,44 +486,6 @@ fn unfit_name(name: &str) -> Option<String> {
     } else {
         None
     }
-}
-
-/// Slots that an expression reads, each once, in the order of the text.
-fn slots_read(expression: Option<&Expression>, slots: &[SlotType]) -> Vec<usize> {
-    let mut read = Vec::new();
-    for (name, _) in expression.map(Expression::names).unwrap_or_default() {
-        let slot = slots.iter().position(|slot| slot.name == name);
-        read.extend(slot.filter(|slot| !read.contains(slot)));
-    }
-    read
-}
-
-/// Where an expression reads a name.
-fn place_of(expression: Option<&Expression>, name: &str) -> usize {
-    let names = expression.map(Expression::names).unwrap_or_default();
-    names.iter().find(|(read, _)| *read == name).map_or(0, |&(_, at)| at)
-}
-
-/// The slots on the shortest way from a formula to an output.
-fn path_to_output(
-    formula: usize,
-    reads: &[Vec<usize>],
-    giver: impl Fn(usize) -> Option<usize>,
-    is_output: impl Fn(usize) -> bool,
-) -> Vec<usize> {
-    let mut seen = BTreeSet::from([formula]);
-    let mut open = std::collections::VecDeque::from([(formula, Vec::new())]);
-    while let Some((formula, path)) = open.pop_front() {
-        for &slot in &reads[formula] {
-            let path = [&path[..], &[slot]].concat();
-            match giver(slot) {
-                None if is_output(slot) => return path,
-                Some(next) if seen.insert(next) => open.push_back((next, path)),
-                _ => {}
-            }
-        }
-    }
-    Vec::new()
 }
 
 /// The name most like `name` among what a set of formulas reads without knowing it: what a name that nothing reads was meant to be.

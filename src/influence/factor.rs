@@ -61,7 +61,7 @@ impl InputFactor {
     /// Of an input with a distribution, whose value would be `nominal` without it.
     pub(super) fn of_drawn(it: &UncertainInput, model: &Model, nominal: f64) -> Self {
         let valid = model.inputs[it.input].valid;
-        let (effect, distribution) = (it.effect, it.distribution.clone());
+        let (effect, distribution) = (it.acts(), it.distribution.clone());
         Self { name: it.name.clone(), kind: FactorKind::Drawn { input: it.input, valid, effect, distribution, nominal } }
     }
 

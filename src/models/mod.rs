@@ -27,6 +27,7 @@ mod rubber_cvt;
 mod source;
 mod status;
 mod timing_belt;
+mod tolerance;
 
 pub use crate::pulley::Design;
 pub(crate) use crate::real::LANES;
@@ -48,6 +49,7 @@ pub use pulley::CHECK_POINT_STRESSES;
 pub(crate) use source::{ConditionSource, CurveSource, Extension, FileSource, FormulaSource};
 pub use status::{Evaluation, OVERFLOW, Status};
 use std::sync::{Arc, LazyLock};
+pub(crate) use tolerance::ModelTolerance;
 
 /// The models that come with the program: each is a module with its tables in `model()`.
 macro_rules! models {

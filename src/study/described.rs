@@ -6,7 +6,7 @@ use super::{
     Axis, Best, Constraint, ContourSpec, Goal, HistogramSpec, Label, Levels, MapSpec, Objective, OverScenarios, Quantity, Report,
     ReportColumn, SampleSpec, SensitivitySpec, Spectrum, Study, Thresholds, TopSpec,
 };
-use crate::models::{CurveSource, Extension, FormulaSource, Model, Models, Worse, extended};
+use crate::models::{CurveSource, Extension, FormulaSource, Model, ModelTolerance, Models, Worse, extended};
 use crate::probability::{Effect, Sampling};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -101,7 +101,10 @@ fn probability_of(model: &Arc<Model>, described: &Value) -> Restored<Probability
         };
         let law: LawText = plain(&it["distribution"], "distribution")?;
         let distribution = law.distribution().map_err(|problem| format!("{name}: {problem}"))?;
-        Ok(UncertainInput { input: input_of(model, name)?, name: name.to_owned(), effect, law, distribution })
+        let change = ModelTolerance { of: name, effect }.change();
+        let in_model = effect != Effect::Is && model.origin.as_ref().is_some_and(|it| it.extension.has_nominal(name));
+        let input = input_of(model, if in_model { &change } else { name })?;
+        Ok(UncertainInput { input, name: name.to_owned(), effect, in_model, law, distribution })
     };
     let inputs = each(described, "inputs", input)?;
     let pair = |it: &Value| {

@@ -3,6 +3,7 @@
 use super::super::dimension::QuantityDimension;
 use super::super::expression::{Expression, ExpressionNode};
 use super::super::function::{FUNCTIONS, Function, Kind};
+use super::super::nominal::NOMINAL;
 use super::super::typed::Typed;
 use super::{CheckedTree, Checker, QuantityType, reason};
 use crate::likeness::remedy;
@@ -10,8 +11,8 @@ use crate::likeness::remedy;
 impl<'e> Checker<'_, 'e> {
     /// A call of whatever has this name.
     pub(super) fn call(&mut self, name: &'e str, parts: &'e [Expression], at: usize) -> CheckedTree {
-        if name == "nominal" {
-            return self.fault(at, "nominal(...) is reserved: there are no tolerances yet that it could leave out");
+        if name == NOMINAL {
+            return self.no_nominal(parts, at);
         }
         let arguments: Vec<CheckedTree> = parts.iter().map(|part| self.check(part)).collect();
         if let Some(curve) = self.scope.curves.iter().position(|curve| curve.name == name) {
@@ -60,6 +61,21 @@ impl<'e> Checker<'_, 'e> {
             return CheckedTree { absent, ..checked };
         }
         checked
+    }
+
+    /// A call of `nominal` that asks for nothing that there is.
+    fn no_nominal(&mut self, parts: &'e [Expression], at: usize) -> CheckedTree {
+        let message = match parts {
+            [Expression { node: ExpressionNode::Name(name), span, .. }] => {
+                if !self.slots.iter().any(|slot| slot.name == *name) {
+                    let message = self.unknown_name(name);
+                    return self.fault(span.start, message);
+                }
+                format!("{name} has no tolerance that nominal could leave out; write {name} itself")
+            }
+            _ => "nominal takes the name of an input with a tolerance; write nominal(NAME)".to_owned(),
+        };
+        self.fault(at, message)
     }
 
     /// What a function's value measures.

@@ -10,14 +10,18 @@ mod interned;
 mod kernel;
 mod nothing;
 mod surroundings;
+mod tables;
 
-use super::description::{CONDITION_BOUND_FACTOR, Condition, Input, Output, Preset, Range, Worse};
+use super::description::{Input, Range};
 use super::model::{Model, Origin};
-use super::source::{ConditionSource, CurveSource, Extension, FileSource};
+use super::source::{CurveSource, Extension, FileSource};
 use super::status::{Evaluation, Status};
+use super::tolerance::ModelTolerance;
 use crate::formula::{
-    Expression, FormulaKind, FormulaProblem, Formulas, MOST_ROOTS, MeasuredCurve, NameRole, QuantityUnit, Scope, ScopeName, Units,
+    Expression, FormulaProblem, Formulas, MOST_ROOTS, MeasuredCurve, NameRole, QuantityUnit, Scope, ScopeName, Units, nominal_name,
+    nominal_of,
 };
+use crate::probability::Effect;
 use crate::units::Unit;
 use first::FirstStage;
 pub use interned::{interned, interned_list};
@@ -25,6 +29,7 @@ use kernel::Extended;
 pub use nothing::nothing;
 use std::sync::Arc;
 use surroundings::{ConditionPlace, ReadOutputs, Surroundings};
+use tables::{ExtendedTables, presets};
 
 /// What is wrong with an extension.
 #[derive(Clone, Debug, PartialEq)]
@@ -133,7 +138,15 @@ fn scope(base: &Model, extension: &Extension) -> Result<Scope, Vec<ExtensionProb
         ScopeName { role: NameRole::Variable, ..name_of_input(input, measure) }
     }));
     for variable in &extension.variables {
-        match units.of_name(variable) {
+        let nominal = nominal_of(variable);
+        let measure = match (nominal, extension.tolerance_of(variable)) {
+            (None, None) => units.of_name(variable),
+            (None, Some(it)) if it.effect == Effect::Times => Ok(QuantityUnit::NONE),
+            (Some(of), _) | (None, Some(ModelTolerance { of, .. })) => {
+                base.input(of).map_or_else(|| units.of_name(of), |input| Ok(measure(of, base.inputs[input].unit)))
+            }
+        };
+        match measure {
             Ok(measure) => names.push(ScopeName::new(variable, NameRole::Variable, measure)),
             Err(message) => problems.push(ExtensionProblem::Variable(variable.clone(), message)),
         }
@@ -198,10 +211,18 @@ fn surroundings(base: &Arc<Model>, extension: &Extension, formulas: Formulas) ->
     let given: Vec<usize> = formulas.order().iter().map(|&it| &formulas.all()[it]).filter(|it| it.gives_input).map(|it| it.slot).collect();
     let ends = given.iter().flat_map(|&slot| ends(&base.inputs[slot], slot)).map(|(end, _)| end).collect();
     let first_variable = inputs + extension.inputs().len();
+    // What the design says of an input stands where the input stands.
+    let designed = |slot: usize| {
+        let nominal = nominal_name(&base.inputs[slot].name);
+        Some(first_variable + extension.variables.iter().position(|it| *it == nominal)?)
+    };
     let first_output = first_variable + extension.variables.len();
     let before: Vec<usize> = formulas.before_model().collect();
+    let own_inputs: Vec<usize> =
+        (0..inputs).filter_map(|slot| designed(slot).or_else(|| (!given.contains(&slot)).then_some(slot))).collect();
+    let rest: Vec<usize> = (inputs..first_output).filter(|slot| !own_inputs.contains(slot)).collect();
     let mut around = Surroundings {
-        inputs: (0..inputs).filter(|slot| !given.contains(slot)).chain(inputs..first_output).collect(),
+        inputs: own_inputs.into_iter().chain(rest).collect(),
         inputs_of_file: inputs..first_variable,
         first_output,
         after: formulas.after_model().collect(),
@@ -267,108 +288,6 @@ pub fn unit_of_name(units: &Units, name: &str) -> Result<Unit, String> {
 fn unit_of_measure(units: &Units, name: &str, measure: QuantityUnit) -> Unit {
     let symbol = units.symbol_of_name(name).unwrap_or_default().replace('2', "²").replace('3', "³");
     Unit::of_formulas(interned(&symbol), measure.factors())
-}
-
-/// The tables of an extended model.
-struct ExtendedTables {
-    inputs: Vec<Input>,
-    outputs: Vec<Output>,
-    conditions: Vec<Condition>,
-}
-
-impl ExtendedTables {
-    fn new(around: &Surroundings, extension: &Extension) -> Self {
-        let base = &around.base;
-        let units = Units::new(&names_of_units(&all_units(base, extension))).unwrap_or_default();
-        let unit = |name: &str, measure: QuantityUnit| unit_of_measure(&units, name, measure);
-        let inputs = around.inputs.iter().map(|&slot| match slot.checked_sub(base.inputs.len()) {
-            None => base.inputs[slot].clone(),
-            Some(input) if around.inputs_of_file.contains(&slot) => extension.inputs()[input].clone(),
-            Some(beyond) => {
-                let variable = beyond - around.inputs_of_file.len();
-                let name = &extension.variables[variable];
-                let measure = units.of_name(name).unwrap_or(QuantityUnit::NONE);
-                let all = Range::between(f64::NEG_INFINITY, f64::INFINITY);
-                Input::new(name, "", unit(name, measure), 0.0, (f64::MIN, f64::MAX), "A variable of the study.", "the study").valid(all)
-            }
-        });
-        let whose = if extension.file.is_some() { "model" } else { "study" };
-        let said = |own: &String, otherwise: String| if own.is_empty() { otherwise } else { own.clone() };
-        let own = around.shown.iter().map(|&number| {
-            let (formula, of) = (&around.formulas.all()[number], &extension.formulas[number]);
-            let (symbol, unit, doc) = if formula.gives_input {
-                let input = &base.inputs[formula.slot];
-                (input.symbol.clone(), input.unit, format!("{} Given by a formula of the {whose}.", input.doc))
-            } else {
-                (String::new(), unit(&formula.name, formula.measure), format!("A formula of the {whose}."))
-            };
-            let (symbol, source, doc) = (said(&of.symbol, symbol), said(&of.source, formula.text.clone()), said(&of.doc, doc));
-            let output = Output::new(&formula.name, symbol, unit, of.worst.unwrap_or(Worse::Higher), source, doc);
-            if formula.whole && !formula.gives_input { output.whole() } else { output }
-        });
-        let outputs: Vec<Output> = base.outputs.iter().cloned().chain(own.map(|it| it.with_bound_factor(CONDITION_BOUND_FACTOR))).collect();
-        Self { inputs: inputs.collect(), conditions: conditions(around, extension, &outputs[base.outputs.len()..]), outputs }
-    }
-}
-
-/// The conditions of an extended model, in the order of its margins.
-fn conditions(around: &Surroundings, extension: &Extension, own: &[Output]) -> Vec<Condition> {
-    let base = &around.base;
-    let everything: Vec<&str> = base.outputs.iter().chain(own).map(|it| it.name.as_str()).collect();
-    let formulas = around.formulas.all();
-    let need = |number: usize| {
-        let requirement = &around.formulas.requirements()[number];
-        let formula = &formulas[requirement.formula];
-        let dependents = around.formulas.dependents(requirement.formula);
-        let gives_input = dependents.iter().any(|&it| formulas[it].gives_input);
-        let is_taken = |name: &&str| dependents.iter().any(|&it| formulas[it].name == *name);
-        let names: Vec<&str> = own.iter().map(|it| it.name.as_str()).filter(is_taken).collect();
-        let taken = if gives_input { &everything[..] } else { &names[..] };
-        let whose = if formula.kind == FormulaKind::Margin { String::new() } else { "formula ".to_owned() };
-        Condition::new(requirement.status.clone(), requirement.strict, taken, format!("The {whose}{} has a value.", formula.name))
-    };
-    let ranges: Vec<(&Input, bool)> = around
-        .given
-        .iter()
-        .flat_map(|&slot| ends(&base.inputs[slot], slot).into_iter().map(move |(_, strict)| (&base.inputs[slot], strict)))
-        .collect();
-    let condition = |&place: &ConditionPlace| match place {
-        ConditionPlace::Need(number) => need(number),
-        ConditionPlace::End(number) => {
-            let (input, strict) = ranges[number];
-            let doc = format!("{} is {}, as the model needs it.", input.name, input.valid.in_words());
-            Condition::new(format!("input {} out of range", input.name), strict, &everything, doc)
-        }
-        ConditionPlace::Base(number) => base.conditions[number].clone(),
-        ConditionPlace::Margin(formula) => {
-            let ConditionSource { reason, margin, strict, quiet, invalidates, doc } =
-                &extension.conditions()[formula - extension.formulas.len()];
-            let taken: Vec<&str> = invalidates.iter().map(String::as_str).collect();
-            let doc =
-                if doc.is_empty() { format!("{margin} is {} 0.", if *strict { "greater than" } else { "at least" }) } else { doc.clone() };
-            let condition = Condition::new(reason, *strict, &taken, doc);
-            if *quiet { condition.quiet() } else { condition }
-        }
-        ConditionPlace::Absent(formula) => {
-            let name = &formulas[formula].name;
-            let doc = format!("What {name} is computed from has a value.");
-            Condition::new(format!("formula {name}: no value"), false, &[name], doc).quiet()
-        }
-    };
-    around.conditions.iter().map(condition).collect()
-}
-
-/// Presets of the model, without what formulas give, and of a file.
-fn presets(around: &Surroundings, extension: &Extension) -> Vec<Preset> {
-    let own = extension.file.as_ref().map_or(&[][..], |file| &file.presets);
-    let base = &around.base;
-    let is_given = |name: &String| base.input(name).is_some_and(|slot| around.given.contains(&slot));
-    let without = |preset: &Preset| {
-        let mut preset = preset.clone();
-        preset.changes.retain(|(name, _)| !is_given(name));
-        preset
-    };
-    base.presets.iter().map(without).chain(own.iter().cloned()).collect()
 }
 
 impl Surroundings {

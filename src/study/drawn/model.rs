@@ -31,7 +31,7 @@ impl Probability {
     pub(crate) fn drawn(&self, fresh: Option<FreshDraws>) -> Result<DrawnDrive, ProbabilityProblem> {
         let draws = self.choosing()?;
         let Drive { model: base, operation, spectrum, constraints } = &self.drive;
-        let drawn = self.inputs.iter().map(|it| (it.input, it.effect)).collect();
+        let drawn = self.inputs.iter().map(|it| (it.input, it.acts())).collect();
         Ok(DrawnDrive::new(
             base.clone(),
             drawn,

@@ -57,10 +57,19 @@ pub struct UncertainInput {
     pub name: String,
     /// What a drawn number does to the value that the design says.
     pub effect: Effect,
+    /// Is the tolerance a part of the model? Then `input` is its factor or addend.
+    pub in_model: bool,
     /// The distribution as it is written.
     pub law: LawText,
     /// The distribution.
     pub distribution: Distribution,
+}
+
+impl UncertainInput {
+    /// What a drawn number does to the value of `input`.
+    pub fn acts(&self) -> Effect {
+        if self.in_model { Effect::Is } else { self.effect }
+    }
 }
 
 /// The drive of a single draw: an ordinary study but for its objectives.

@@ -5,6 +5,7 @@ use super::Reader;
 use super::law::is_law;
 use super::roles::{AxisClaim, AxisRole, PRESET};
 use super::table::{Entry, TOP_LEVEL_REMEDY, TomlNode, TomlTable, is_top_level, shortened};
+use super::tolerance::has_levels;
 use super::value::{input_value, shown};
 use super::weights::weighted_cases;
 use crate::likeness::remedy;
@@ -21,6 +22,10 @@ impl Reader<'_> {
         }
         let mut axes = Vec::new();
         for entry in table.entries.iter().take(most).take_while(|_| !self.problems.is_full()) {
+            if role == AxisRole::Uncertainty && has_levels(entry) {
+                axes.extend(self.levels_of_tolerance(entry));
+                continue;
+            }
             if role == AxisRole::Uncertainty && is_law(entry) {
                 self.has_laws.set(true);
                 self.uncertain(entry);
@@ -123,7 +128,7 @@ impl Reader<'_> {
     }
 
     /// Levels as listed.
-    fn list(&self, node: TomlNode<'_>, number: usize, label: &str) -> Option<Levels> {
+    pub(super) fn list(&self, node: TomlNode<'_>, number: usize, label: &str) -> Option<Levels> {
         let nodes = node.list()?;
         if nodes.len() == 0 {
             self.problems.add(node.at, format!("{label}: the list is empty; give at least one value"));

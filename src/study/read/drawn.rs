@@ -64,7 +64,7 @@ impl Reader<'_> {
         }
         let before = problems.count();
         for (it, at) in inputs.iter().filter(|(it, _)| it.effect != Effect::Is) {
-            self.check_toleranced(it, *at, parts.fixed);
+            self.check_toleranced(&it.name, *at, parts.fixed);
         }
         let cases = parts.operation.iter().map(Axis::count).try_fold(1, u64::checked_mul);
         if cases.is_none_or(|cases| cases > MOST_CASES) {
@@ -99,21 +99,6 @@ impl Reader<'_> {
             problems.add(at, format!("[probability]: {problem}"));
         });
         (problems.count() == before && drawn.is_ok()).then_some((probability, meanings))
-    }
-
-    /// A tolerance is about a number that the design has.
-    fn check_toleranced(&self, it: &UncertainInput, at: usize, fixed: &[f64]) {
-        let name = &it.name;
-        let claims = self.claims.borrow();
-        let mut own = claims.iter().filter(|claim| claim.input == it.input).peekable();
-        let word = match own.peek() {
-            None => self.model.inputs[it.input].word_for(fixed[it.input]).map(str::to_owned),
-            Some(_) => own.find_map(|claim| claim.word.clone()),
-        };
-        if let Some(word) = word {
-            let message = format!("input \"{name}\": its value may be the word \"{word}\", which has no tolerance; give it numbers only");
-            self.problems.add(at, message);
-        }
     }
 
     /// The `[probability]` table.

@@ -6,10 +6,11 @@ use super::csv_file::{csv_builder, csv_text};
 use super::labels::DeclaredLabel;
 use super::roles::PRESET;
 use super::table::{Entry, Problems, TomlNode, TomlTable, list, shortened};
+use super::tolerance::{ModelToleranceEntry, tolerances};
 use super::value::truth;
 use super::weights::weighted_cases;
 use super::{choice, section, text};
-use crate::formula::{Expression, meant};
+use crate::formula::{Expression, meant, nominal_of};
 use crate::models::{CurveSource, Extension, ExtensionProblem, FormulaSource, Model, Worse, extended};
 use crate::names::column_of_tables;
 use std::collections::BTreeSet;
@@ -61,16 +62,27 @@ pub(super) fn with_formulas(
     if problems.count() > before {
         return None;
     }
-    if extension == Extension::default() {
+    if extension != Extension::default() {
+        extension.variables = variables(&model, &extension, labels, top, folder);
+    }
+    let tolerances = tolerances(&model, &extension, top, problems);
+    if problems.count() > before {
+        return None;
+    }
+    if extension == Extension::default() && tolerances.is_empty() {
         return Some(model);
     }
-    extension.variables = variables(&model, &extension, labels, top, folder);
     if are_labels_read(&extension, labels, problems) {
         return None;
     }
-    refuse_twice_given(&model, &extension, top, problems);
+    refuse_twice_given(&model, &extension, &tolerances, top, problems);
     refuse_names_of_columns(&model, &extension, top, problems);
     let unread = extension.clone();
+    for it in &tolerances {
+        let of_formula = extension.formulas.iter().position(|formula| formula.name == it.name);
+        places.formulas.push(of_formula.map_or((it.at, true), |formula| places.formulas[formula]));
+        extension.add_tolerance(it.tolerance());
+    }
     match extended(&model, extension) {
         Ok(model) if problems.count() == before => Some(Arc::new(model)),
         Ok(_) => None,
@@ -307,9 +319,17 @@ fn report_unused(
 }
 
 /// Reports inputs that a formula gives and an axis or a fixed value too.
-fn refuse_twice_given(model: &Model, extension: &Extension, top: &TomlTable<'_>, problems: &Problems<'_>) {
+fn refuse_twice_given(
+    model: &Model,
+    extension: &Extension,
+    tolerances: &[ModelToleranceEntry],
+    top: &TomlTable<'_>,
+    problems: &Problems<'_>,
+) {
     for table in GIVING.iter().filter_map(|name| top.get(name)).filter_map(|entry| entry.node.table()) {
-        for entry in table.entries.iter().filter(|entry| extension.formulas.iter().any(|it| it.name == entry.key)) {
+        let is_given = |name: &str| extension.formulas.iter().any(|it| it.name == name);
+        let is_tolerance = |at: usize| tolerances.iter().any(|it| it.at == at);
+        for entry in table.entries.iter().filter(|entry| is_given(entry.key) && !is_tolerance(entry.key_at)) {
             let what = if model.input(entry.key).is_some() { "input" } else { "name" };
             problems.add(entry.key_at, format!("the {what} \"{}\" is given by a formula; drop one of the two", shortened(entry.key)));
         }
@@ -353,7 +373,7 @@ pub(super) fn tell(problem: ExtensionProblem, places: &ExtensionPlaces, top: &To
                 let place = if plain { String::new() } else { format!(" (line {}, column {} of its text)", problem.line, problem.column) };
                 let at = if plain { at + problem.at } else { at };
                 // What conditions call their margins is no name.
-                let label = shortened(&problem.name);
+                let label = shortened(nominal_of(&problem.name).unwrap_or(&problem.name));
                 let label = if label.starts_with("condition ") { label } else { format!("formula \"{label}\"") };
                 problems.add(at, format!("{label}{place}: {}", problem.message));
             }

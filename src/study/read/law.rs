@@ -4,6 +4,7 @@ use super::super::drawn::{LawText, NamedLaw, UncertainInput};
 use super::csv_file::{csv_builder, csv_text};
 use super::roles::{AxisClaim, AxisRole};
 use super::table::{Entry, TomlNode, TomlTable, list, shortened};
+use super::tolerance::has_levels;
 use super::value::measured;
 use super::{Reader, text};
 use crate::likeness::closest;
@@ -11,15 +12,20 @@ use crate::probability::Effect;
 use crate::units::{NONE, Unit};
 
 /// The distributions as they are written.
-const LAWS: [&str; 10] =
+pub(super) const LAWS: [&str; 10] =
     ["uniform", "normal", "lognormal", "triangular", "beta", "weibull", "gumbel", "exponential", "discrete", "empirical"];
 /// What a drawn number may do to what the design says.
 const EFFECTS: [(&str, Effect); 2] = [("times", Effect::Times), ("plus", Effect::Plus)];
 
 /// Does an entry of `[uncertainty]` give a distribution?
 pub(super) fn is_law(entry: &Entry<'_>) -> bool {
-    let has = |table: &TomlTable<'_>| LAWS.iter().copied().chain(EFFECTS.iter().map(|it| it.0)).any(|name| table.get(name).is_some());
-    entry.node.table().is_some_and(|table| has(&table))
+    let has = |table: &TomlTable<'_>| LAWS.iter().any(|name| table.get(name).is_some()) || tolerance(table).is_some();
+    entry.node.table().is_some_and(|table| has(&table)) && !has_levels(entry)
+}
+
+/// What an entry says of a tolerance, if it is about one: the key, what it means, and what stands behind it.
+pub(super) fn tolerance<'t>(table: &TomlTable<'t>) -> Option<(&'static str, Effect, TomlNode<'t>)> {
+    EFFECTS.iter().find_map(|&(name, effect)| Some((name, effect, table.get(name)?.node)))
 }
 
 /// The distribution that was probably meant.
@@ -42,7 +48,9 @@ impl Reader<'_> {
     pub(super) fn uncertain(&self, entry: &Entry<'_>) {
         let label = format!("input \"{}\"", shortened(entry.key));
         let Some(table) = entry.node.table() else { return };
-        let Some(number) = self.input(entry.key, entry.key_at, &label) else { return };
+        let effect = tolerance(&table);
+        let change = effect.as_ref().and_then(|(_, effect, _)| self.change_of(entry.key, *effect));
+        let Some(number) = change.or_else(|| self.input(entry.key, entry.key_at, &label)) else { return };
         let input = &self.model.inputs[number];
         let wrong = |at: usize, message: String| self.problems.add(at, format!("{label}: {message}"));
         if input.is_enumeration() || input.integer {
@@ -50,20 +58,19 @@ impl Reader<'_> {
             wrong(entry.node.at, format!("it takes {what}, which have no distribution; list its levels"));
             return;
         }
-        let effect = EFFECTS.iter().find_map(|(name, effect)| Some((name, *effect, table.get(name)?)));
         let (effect, unit, body) = match effect {
             None => (Effect::Is, input.unit, table),
             Some((name, effect, inner)) => {
-                let other = EFFECTS.iter().filter(|it| it.0 != *name).find_map(|it| table.get(it.0));
+                let other = EFFECTS.iter().filter(|it| it.0 != name).find_map(|it| table.get(it.0));
                 if let Some(other) = other {
                     wrong(other.key_at, format!("a tolerance is {} or {}, not both; drop one of the two", EFFECTS[0].0, EFFECTS[1].0));
                     return;
                 }
                 table.check_keys(self.problems, &label, &[name]);
-                let Some(body) = inner.node.table() else {
-                    let remedy =
-                        "wanted a distribution such as { uniform = [0.9, 1.1] }; levels of a tolerance are levels of the input itself";
-                    wrong(inner.node.at, format!("{name}: found {}, {remedy}", inner.node.found()));
+                let Some(body) = inner.table() else {
+                    let example = if effect == Effect::Times { "[0.9, 1.1]" } else { "[-0.1, 0.1]" };
+                    let wanted = format!("wanted a distribution such as {{ uniform = {example} }}, or levels such as {example}");
+                    wrong(inner.at, format!("{name}: found {}, {wanted}", inner.found()));
                     return;
                 };
                 (effect, if effect == Effect::Times { NONE } else { input.unit }, body)
@@ -74,6 +81,11 @@ impl Reader<'_> {
             Ok(distribution) => distribution,
             Err(problem) => return wrong(body.at, problem.to_string()),
         };
+        let in_model = change.is_some();
+        if in_model {
+            let at = entry.key_at;
+            self.claims.borrow_mut().push(AxisClaim { input: number, role: AxisRole::Uncertainty, at, single: true, word: None });
+        }
         if effect == Effect::Is {
             let median = distribution.quantile(0.5).unwrap_or(f64::NAN);
             if !input.accepts(median) {
@@ -87,7 +99,7 @@ impl Reader<'_> {
                 word: None,
             });
         }
-        let uncertain = UncertainInput { input: number, name: input.name.clone(), effect, law, distribution };
+        let uncertain = UncertainInput { input: number, name: entry.key.to_owned(), effect, in_model, law, distribution };
         self.uncertain.borrow_mut().push((uncertain, entry.key_at));
     }
 

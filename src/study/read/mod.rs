@@ -20,6 +20,7 @@
 //! | `sensitivity.rs` | its key `sensitivity`                          |
 //! | `contours.rs`   | the contours of its maps                           |
 //! | `law.rs`        | distributions of `[uncertainty]`                    |
+//! | `tolerance.rs`  | tolerances that become a part of the model          |
 //! | `drawn.rs`      | `[probability]`, and what is asked of draws         |
 //! | `set.rs`        | values in place of what a study says               |
 
@@ -45,6 +46,7 @@ mod syntax;
 mod table;
 #[cfg(test)]
 pub(crate) mod tests;
+mod tolerance;
 mod value;
 mod weights;
 
@@ -254,6 +256,8 @@ struct Reader<'a> {
     has_laws: Cell<bool>,
     /// Inputs with distributions, with their places.
     uncertain: RefCell<Vec<(UncertainInput, usize)>>,
+    /// Inputs with levels of a tolerance, with their places.
+    toleranced: RefCell<Vec<(String, usize)>>,
     /// What names mean where something is asked of draws, and the drive of which that is.
     meanings: Option<(drawn::Meanings, &'a Probability)>,
     /// The whole file.
@@ -293,6 +297,7 @@ fn read_study_of(model: Option<Arc<Model>>, top: &TomlTable<'_>, problems: &Prob
         unread: Cell::default(),
         has_laws: Cell::default(),
         uncertain: RefCell::default(),
+        toleranced: RefCell::default(),
         meanings: None,
         top,
         left_out: RefCell::default(),
@@ -301,6 +306,7 @@ fn read_study_of(model: Option<Arc<Model>>, top: &TomlTable<'_>, problems: &Prob
     let (design, operation, uncertainty) = (axes(AxisRole::Design), axes(AxisRole::Operation), axes(AxisRole::Uncertainty));
     let mut fixed = reader.fixed(section(top, "fixed", problems).as_ref());
     reader.check_claims();
+    reader.toleranced.borrow().iter().for_each(|(name, at)| reader.check_toleranced(name, *at, &fixed));
     reader.check_replaced([&design, &operation, &uncertainty], &fixed, top);
     reader.check_labels();
     reader.check_sizes(top, &design, &[&operation, &uncertainty]);

@@ -74,7 +74,8 @@ impl Reader<'_> {
             self.problems.add(at, format!("{label}: \"{name}\" takes \"{word}\" in {place}, which is no number; give it numbers only"));
             return None;
         }
-        Some(quantity)
+        // Of what is chosen it is what the design says that is told.
+        Some(if self.is_chosen(number) { quantity } else { self.as_built(quantity) })
     }
 
     /// The quantity that an entry of `[constraints]` or `[objectives]` is about: its key, or what stands behind `of`.
@@ -166,7 +167,7 @@ impl Reader<'_> {
     pub(super) fn constraint(&self, entry: &Entry<'_>, fixed: &[f64]) -> Option<Constraint> {
         let problems = self.problems;
         let label = format!("constraint \"{}\"", shortened(entry.key));
-        let quantity = self.asked(entry, &label, fixed)?;
+        let quantity = self.as_built(self.asked(entry, &label, fixed)?);
         let Some(table) = entry.node.table() else {
             let found = entry.node.found();
             problems.add(entry.node.at, format!("{label}: found {found}, wanted bounds such as {{ min = 0 }}"));

@@ -142,7 +142,7 @@ impl Reader<'_> {
 
     /// Is this a variable without a unit that goes from one whole number to another, where all designs are judged? Then it counts.
     fn counts(&self, RangeEnds { from, to, log }: RangeEnds, input: &Input) -> bool {
-        let is_variable = self.model.origin.as_ref().is_some_and(|it| it.extension.variables.contains(&input.name));
+        let is_variable = self.is_variable(&input.name);
         is_variable && input.unit == NONE && from.fract() == 0.0 && to.fract() == 0.0 && !log && !self.sampled
     }
 

@@ -6,6 +6,7 @@
 
 use super::csv_file::csv_text;
 use super::formulas::GIVING;
+use super::law::tolerance;
 use super::table::{Entry, Lines, TomlTable, shortened};
 use super::{Problem, StudyErrors};
 use crate::error::{Error, Result};
@@ -195,7 +196,9 @@ fn edited(settings: &[StudySetting], top: &TomlTable<'_>, text: &str, models: &M
             continue;
         }
         for table in ["design", "operation", "uncertainty", "formulas"] {
-            edits.extend(entry(table).map(|entry| Edit { writes: None, ..left_out(&entry, text) }));
+            // What is set is what the design says, and a tolerance is about that.
+            let values = entry(table).filter(|entry| !is_tolerance(entry));
+            edits.extend(values.map(|entry| Edit { writes: None, ..left_out(&entry, text) }));
         }
         match entry("fixed") {
             Some(entry) => edits.push(in_place(entry)),
@@ -330,7 +333,10 @@ fn is_as_meant(text: &str, top: &TomlTable<'_>, settings: &[StudySetting]) -> bo
         entries.iter().filter(|entry| !is_set(entry.key)).map(|entry| (entry.key.to_owned(), unplaced(entry.node.value))).collect()
     };
     let edited = |name: &str| GIVING.contains(&name) || ["formulas", "report"].contains(&name);
-    let value = |name: &str, table: &str| own.get(table)?.node.table()?.get(name).map(|entry| unplaced(entry.node.value));
+    let value = |name: &str, table: &str| {
+        let table = own.get(table)?.node.table()?;
+        table.get(name).filter(|entry| !is_tolerance(entry)).map(|entry| unplaced(entry.node.value))
+    };
     // It has one place, whichever that is.
     let placed = |it: &StudySetting| {
         let found: Vec<_> = if it.is_of_report() {
@@ -344,6 +350,11 @@ fn is_as_meant(text: &str, top: &TomlTable<'_>, settings: &[StudySetting]) -> bo
         if edited(entry.key) { others(top, entry.key) == others(&own, entry.key) } else { same(Some(entry), own.get(entry.key)) }
     }) && own.entries.iter().all(|entry| ["fixed", "report"].contains(&entry.key) || top.get(entry.key).is_some())
         && settings.iter().all(placed)
+}
+
+/// Is it about what the design says, rather than a value?
+fn is_tolerance(entry: &Entry<'_>) -> bool {
+    entry.node.table().is_some_and(|table| tolerance(&table).is_some())
 }
 
 /// A value without its place.

@@ -77,7 +77,11 @@ impl Reader<'_> {
 
     /// Is it an input only because a formula of the study reads it?
     pub(super) fn is_variable(&self, name: &str) -> bool {
-        self.model.origin.as_ref().is_some_and(|origin| origin.extension.variables.iter().any(|it| it == name))
+        self.model.origin.as_ref().is_some_and(|origin| {
+            let own = &origin.extension;
+            let is_designed = own.is_nominal_set(name) && origin.base.input(name).is_none();
+            own.tolerance_of(name).is_none() && (is_designed || own.variables.iter().any(|it| it == name))
+        })
     }
 
     /// What becomes of a quantity over the scenarios, as a table says it.

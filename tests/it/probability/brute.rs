@@ -120,7 +120,7 @@ impl<'s> Brute<'s> {
             let mut fits = true;
             for (uncertain, column) in self.probability.inputs.iter().zip(columns) {
                 let value = &mut inputs[uncertain.input];
-                *value = match uncertain.effect {
+                *value = match uncertain.acts() {
                     Effect::Is => column[draw],
                     Effect::Times => *value * column[draw],
                     Effect::Plus => *value + column[draw],

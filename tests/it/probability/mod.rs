@@ -7,3 +7,4 @@ mod kinds;
 mod laws;
 mod proven;
 mod random;
+pub mod tolerances;
