@@ -186,18 +186,20 @@ const METAL: &str = "model = \"metal-cvt\"\n[design]\nclamping_force_N = [22000,
     [constraints]\nslip_margin = { min = 0 }\nstress_margin = { min = 0.222 }\n[objectives]\nyield = \"max\"\n";
 
 #[test]
-fn bounds_for_a_variator_hold_what_a_million_draws_say() {
+fn bounds_for_a_variator_hold_what_many_draws_say() {
+    // A million take long.
+    let draws = if std::env::var("BELTSPACE_FULL").is_ok_and(|value| value == "1") { 1_000_000 } else { 100_000 };
     let study = |draws: u64, correlation: &str| {
         let text = format!("{METAL}[probability]\ndraws = {draws}\n{correlation}\n");
         Study::parse(&text).unwrap_or_else(|errors| panic!("{errors}"))
     };
     for correlation in ["", "correlation = [[\"friction\", \"band_thickness_mm\", -0.4]]"] {
-        let outcome = study(1_000_000, correlation).sweep(Options::default()).expect("it is swept");
+        let outcome = study(draws, correlation).sweep(Options::default()).expect("it is swept");
         let best = outcome.front.number("yield_screened", 0).expect("there is a front");
         let bounds = YieldBounds::new(&study(1, correlation)).expect("it can be bounded");
         let found = [0, 1].map(|design| bounds.of(design, 1e-4, 200_000).expect("it is bounded"));
         assert!(found.iter().all(|it| it.width() <= 1e-4), "{found:?}");
-        let interval = clopper_pearson((best * 1e6).round() as u64, 1_000_000, 0.9999).expect("a count");
+        let interval = clopper_pearson((best * draws as f64).round() as u64, draws, 0.9999).expect("a count");
         let best = if found[1].at_least > found[0].at_least { found[1] } else { found[0] };
         assert!(best.at_least <= interval.high && interval.low <= best.at_most, "{best:?} and {interval:?} with {correlation:?}");
         assert!(best.at_least > 0.01 && best.at_most < 0.999, "{best:?}: a study that tells nothing");
