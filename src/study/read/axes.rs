@@ -2,10 +2,9 @@
 
 use super::super::axis::{Axis, Levels};
 use super::Reader;
-use super::law::is_law;
+use super::law::{has_levels, is_law};
 use super::roles::{AxisClaim, AxisRole, PRESET};
 use super::table::{Entry, TOP_LEVEL_REMEDY, TomlNode, TomlTable, is_top_level, shortened};
-use super::tolerance::has_levels;
 use super::value::{input_value, shown};
 use super::weights::weighted_cases;
 use crate::likeness::remedy;

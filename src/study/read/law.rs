@@ -4,7 +4,6 @@ use super::super::drawn::{LawText, NamedLaw, UncertainInput};
 use super::csv_file::{csv_builder, csv_text};
 use super::roles::{AxisClaim, AxisRole};
 use super::table::{Entry, TomlNode, TomlTable, list, shortened};
-use super::tolerance::has_levels;
 use super::value::measured;
 use super::{Reader, text};
 use crate::likeness::closest;
@@ -12,7 +11,7 @@ use crate::probability::Effect;
 use crate::units::{NONE, Unit};
 
 /// The distributions as they are written.
-pub(super) const LAWS: [&str; 10] =
+const LAWS: [&str; 10] =
     ["uniform", "normal", "lognormal", "triangular", "beta", "weibull", "gumbel", "exponential", "discrete", "empirical"];
 /// What a drawn number may do to what the design says.
 const EFFECTS: [(&str, Effect); 2] = [("times", Effect::Times), ("plus", Effect::Plus)];
@@ -21,6 +20,20 @@ const EFFECTS: [(&str, Effect); 2] = [("times", Effect::Times), ("plus", Effect:
 pub(super) fn is_law(entry: &Entry<'_>) -> bool {
     let has = |table: &TomlTable<'_>| LAWS.iter().any(|name| table.get(name).is_some()) || tolerance(table).is_some();
     entry.node.table().is_some_and(|table| has(&table)) && !has_levels(entry)
+}
+
+/// Keys of a range, as which levels may be given.
+const OF_RANGES: [&str; 4] = ["from", "to", "count", "step"];
+
+/// Does an entry of `[uncertainty]` give levels of a tolerance?
+pub(super) fn has_levels(entry: &Entry<'_>) -> bool {
+    let Some(table) = entry.node.table() else { return false };
+    let Some((_, _, inner)) = tolerance(&table) else { return false };
+    let is_range = |body: TomlTable<'_>| {
+        let has = |names: &[&str]| names.iter().any(|name| body.get(name).is_some());
+        has(&OF_RANGES) && !has(&LAWS)
+    };
+    inner.list().is_some() || inner.table().is_some_and(is_range)
 }
 
 /// What an entry says of a tolerance, if it is about one: the key, what it means, and what stands behind it.

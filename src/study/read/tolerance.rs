@@ -4,26 +4,12 @@
 use super::super::axis::{Axis, Levels};
 use super::super::quantity::Quantity;
 use super::Reader;
-use super::law::{LAWS, tolerance};
+use super::law::{has_levels, tolerance};
 use super::roles::{AxisClaim, AxisRole};
 use super::table::{Entry, Problems, TomlTable, shortened};
 use crate::formula::{Expression, nominals_in};
 use crate::models::{Extension, Model, ModelTolerance};
 use crate::probability::Effect;
-
-/// Keys of a range, as which levels may be given.
-const OF_RANGES: [&str; 4] = ["from", "to", "count", "step"];
-
-/// Does an entry of `[uncertainty]` give levels of a tolerance?
-pub(super) fn has_levels(entry: &Entry<'_>) -> bool {
-    let Some(table) = entry.node.table() else { return false };
-    let Some((_, _, inner)) = tolerance(&table) else { return false };
-    let is_range = |body: TomlTable<'_>| {
-        let has = |names: &[&str]| names.iter().any(|name| body.get(name).is_some());
-        has(&OF_RANGES) && !has(&LAWS)
-    };
-    inner.list().is_some() || inner.table().is_some_and(is_range)
-}
 
 /// A tolerance that becomes a part of the model.
 pub(super) struct ModelToleranceEntry {
