@@ -22,7 +22,9 @@ pub use axis::{Axis, Levels, Method, Sample};
 #[doc(hidden)]
 pub use describe::{differences, number, value_of};
 pub use drawn::{AskedQuantity, ConfirmedEnd, Drive, LawText, NamedLaw, OverDraws, Probability, Statistic, StatisticKind, UncertainInput};
-pub(crate) use drawn::{DrawFailures, DrawnDrive, DrawnKernel, LeastCount, NO_SUCH_DRIVE, least_counts, needs};
+pub(crate) use drawn::{DrawFailures, DrawnKernel, NO_SUCH_DRIVE};
+#[cfg(feature = "gpu")]
+pub(crate) use drawn::{DrawnDrive, LeastCount, least_counts, needs};
 pub use label::Label;
 pub use quantity::Quantity;
 #[doc(hidden)]

@@ -24,7 +24,9 @@ use crate::formula::{
 use crate::probability::Effect;
 use crate::units::Unit;
 use first::FirstStage;
-pub use interned::{interned, interned_list};
+pub use interned::interned;
+#[cfg(feature = "gpu")]
+pub use interned::interned_list;
 use kernel::Extended;
 pub use nothing::nothing;
 use std::sync::Arc;

@@ -20,7 +20,9 @@ mod probability;
 mod statistic;
 mod tracks;
 
+#[cfg(feature = "gpu")]
 pub(crate) use drive::{DrawnDrive, needs};
+#[cfg(feature = "gpu")]
 pub(crate) use early::{LeastCount, least_counts};
 pub(crate) use failures::{DrawFailures, NO_SUCH_DRIVE};
 pub(crate) use kernel::DrawnKernel;
