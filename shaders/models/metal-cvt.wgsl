@@ -57,18 +57,18 @@ fn prepare_driver_radius_root(
 }
 
 fn prepare_slack_near(
-    n87: f32,
+    given_0: f32,
     given_1: f32,
     highest_slack: f32,
-    n86: f32,
+    n87: f32,
     effective_friction: f32,
     driven_wrap: f32,
     aim: f32,
 ) -> f32 {
-    var search = begin_search(n87, given_1, highest_slack);
+    var search = begin_search(given_0, given_1, highest_slack);
     for (var i = 0; i < NEWTON_STEPS && !search.done; i++) {
         let x = search.x;
-        let gain = (n86 / max(x, 1e-30)); // F1/F2 - 1
+        let gain = (n87 / max(x, 1e-30)); // F1/F2 - 1
         let idle = (driven_wrap - (ln_1p(gain) / effective_friction)); // theta_driven - theta_a
         search = newton_step(search, ((x * idle) - aim), (idle + ((gain / (1.0 + gain)) / effective_friction)));
     }
@@ -76,26 +76,26 @@ fn prepare_slack_near(
 }
 
 fn prepare_slack_root(
-    n87: Real,
+    given_0: Real,
     given_1: Real,
     highest_slack: Real,
-    n86: Real,
+    n87: Real,
     effective_friction: Real,
     driven_wrap: Real,
     aim: Real,
 ) -> Real {
     let x = constant(
         prepare_slack_near(
-            n87.value,
+            given_0.value,
             given_1.value,
             highest_slack.value,
-            n86.value,
+            n87.value,
             effective_friction.value,
             driven_wrap.value,
             aim.value,
         ),
     );
-    let gain = div(n86, max_(x, Real(1e-30, 3.171078e-39))); // F1/F2 - 1
+    let gain = div(n87, max_(x, Real(1e-30, 3.171078e-39))); // F1/F2 - 1
     let idle = sub(driven_wrap, div(ln_1p_(gain), effective_friction)); // theta_driven - theta_a
     return root(
         x.value,
@@ -147,16 +147,16 @@ fn prepare(i: Inputs) -> Prepared {
     let slip_force = div(mul(belt_force, groove_cosine), n79); // P cos(a/2)/(2 mu)
     let to_hold = sub(i.clamping_force, slip_force);
     let held = div(to_hold, i.clamping_force);
-    let aim = div(scaled_(to_hold, 4.0), max_(wedge, Real(1e-9, 2.8281934e-17)));
-    let n86 = twice(belt_force);
-    let n87 = div(n86, driven_pull);
-    let asymptote = div(add(aim, div(n86, effective_friction)), driven_wrap);
-    let highest_slack = max_(asymptote, n87);
+    let aim = max_(div(scaled_(to_hold, 4.0), max_(wedge, Real(1e-9, 2.8281934e-17))), constant(0.0));
+    let n87 = twice(belt_force);
+    let n88 = div(n87, driven_pull);
+    let asymptote = div(add(aim, div(n87, effective_friction)), driven_wrap);
+    let highest_slack = max_(asymptote, n88);
     let slack = prepare_slack_root(
-        n87,
+        half(n88),
         twice(highest_slack),
         highest_slack,
-        n86,
+        n87,
         effective_friction,
         driven_wrap,
         aim,
@@ -169,11 +169,11 @@ fn prepare(i: Inputs) -> Prepared {
     let smaller_radius = min_(driver_radius, driven_radius);
     let free_radius = div(i.belt_length, Real(6.2831855, 1.7484557e-7)); // r0
     let active_part = mul(div(traction, n79), groove_cosine);
-    let n127 = add(constant(1.0), traction);
-    let n129 = mul(scaled_(n127, 0.25), driver_wrap);
-    let driver_axial_coefficient = mul(n129, wedge);
-    let n132 = mul(scaled_(slack_share, 0.25), sub(driven_wrap, active_arc));
-    let driven_axial_coefficient = add(mul(n132, wedge), active_part);
+    let n129 = add(constant(1.0), traction);
+    let n131 = mul(scaled_(n129, 0.25), driver_wrap);
+    let driver_axial_coefficient = mul(n131, wedge);
+    let n134 = mul(scaled_(slack_share, 0.25), sub(driven_wrap, active_arc));
+    let driven_axial_coefficient = add(mul(n134, wedge), active_part);
     let unsupported = div(groove_cosine, groove_sine); // 1/tan(a/2)
     let belt_speed = mul(driver_radius, i.driver_speed);
     var p: Prepared;
@@ -189,8 +189,8 @@ fn prepare(i: Inputs) -> Prepared {
     p.active_arc = active_arc;
     p.driver_axial_coefficient = driver_axial_coefficient;
     p.driven_axial_coefficient = driven_axial_coefficient;
-    p.driver_upper_coefficient = mul(n129, unsupported);
-    p.driven_upper_coefficient = add(mul(n132, unsupported), active_part);
+    p.driver_upper_coefficient = mul(n131, unsupported);
+    p.driven_upper_coefficient = add(mul(n134, unsupported), active_part);
     p.thrust_ratio = div(driver_axial_coefficient, driven_axial_coefficient);
     p.utilisation = select_(
         i.clamping_force,
@@ -204,7 +204,7 @@ fn prepare(i: Inputs) -> Prepared {
     p.curvature = sub(div(constant(1.0), smaller_radius), div(constant(1.0), free_radius));
     p.smaller_radius = smaller_radius;
     p.free_ratio = div(free_radius, sub(free_radius, smaller_radius));
-    p.printed_pull = mul(div(slack_share, n127), driven_pull);
+    p.printed_pull = mul(div(slack_share, n129), driven_pull);
     p.entry_compression = div(
         mul(sub(traction, driven_traction_limit), n67),
         twice(select_(neg(traction), constant(1.0), traction)),
@@ -220,7 +220,7 @@ fn prepare(i: Inputs) -> Prepared {
     p.wedge_margin = wedge_margin;
     p.driven_slip_margin = select_(
         i.clamping_force,
-        select_(neg(held), sub(held, constant(1.0)), held),
+        sub(held, Real(1e-37, 3e-45)),
         select_(i.traction, sub(driven_traction_limit, i.traction), constant(0.0)),
     );
     p.driver_slip_margin = select_(

@@ -445,7 +445,8 @@ impl<const N: usize> Judge for DrawJudge<'_, N> {
         let over = drawn_over.map(|DrawnPoint { value, slopes }| Dual { value, slopes });
         let middles: [Option<u64>; N] = std::array::from_fn(|axis| self.cells.middle(cell, axis));
         let within = std::array::from_fn(|axis| middles[axis].map_or(0.5, |place| cell.within(axis, place)));
-        let mut slabs = Slabs::<N>::new(within);
+        let sides = std::array::from_fn(|axis| cell.side(axis));
+        let mut slabs = Slabs::<N>::new(within, sides);
         let mut reference: Option<[Interval; N]> = None;
         let (mut slots, mut points) = (take(&mut self.over), take(&mut self.at));
         let mut left: OpenRequirements = Vec::new();

@@ -43,6 +43,12 @@ impl DrawCell {
         (place - low) as f64 / (high - low) as f64
     }
 
+    /// Its share of all draws along an axis.
+    pub fn side(&self, axis: usize) -> f64 {
+        let (low, high) = self.sides[axis];
+        (high - low) as f64 * UNIT
+    }
+
     /// Its probability, rounded down.
     pub fn probability(&self) -> f64 {
         // An integer of 64 bits as f64 may round up, and each product too.

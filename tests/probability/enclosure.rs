@@ -1,6 +1,7 @@
 //! Proven bounds of yields against closed forms and against draws. The functions of closed forms are those of `libm`.
 
 use beltspace::bounds::{EnclosureProblem, YieldBounds};
+use beltspace::models::{evaluate, find};
 use beltspace::probability::{Enclosure, clopper_pearson};
 use beltspace::{Options, Study};
 use std::f64::consts::SQRT_2;
@@ -204,6 +205,28 @@ fn bounds_for_a_variator_hold_what_many_draws_say() {
         assert!(best.at_least <= interval.high && interval.low <= best.at_most, "{best:?} and {interval:?} with {correlation:?}");
         assert!(best.at_least > 0.01 && best.at_most < 0.999, "{best:?}: a study that tells nothing");
     }
+}
+
+#[test]
+fn bounds_come_close_where_slip_depends_on_friction_and_clamping_force() {
+    // The driver wraps more of the belt, so the driven pulley slips first: where the clamping force is no more than P cos(a/2)/(2 mu).
+    let text = "model = \"metal-cvt\"\n[design]\nclamping_force_N = [10000]\n[fixed]\nratio = 0.5\n\
+        [uncertainty]\nfriction = { normal = { mean = 0.08, sd = 0.005 } }\nclamping_force_N = { times = { uniform = [0.85, 1.15] } }\n\
+        [probability]\ndraws = 1\n[objectives]\nyield = \"max\"\n";
+    let (model, mut inputs) = (find("metal-cvt").expect("a model"), find("metal-cvt").expect("a model").defaults());
+    inputs[model.input("ratio").expect("an input")] = 0.5;
+    let radius = evaluate(&model, &inputs).outputs[model.output("driver_radius_mm").expect("an output")].expect("there is geometry");
+    // With the default torque and angle: friction times share of the force.
+    let limit = 100e3 / radius * 11f64.to_radians().cos() / 2.0 / 10_000.0;
+    let (parts, mut held) = (20_000, 0.0);
+    for part in 0..parts {
+        let share = 0.85 + 0.3 * (f64::from(part) + 0.5) / f64::from(parts);
+        held += below((0.08 - limit / share) / 0.005) / f64::from(parts);
+    }
+    let found = enclosed(&Study::parse(text).expect("a study"), 1e-4, 10_000);
+    assert!(found.width() <= 1e-4, "{found:?}");
+    assert!(found.at_least - 1e-7 <= held && held <= found.at_most + 1e-7, "{found:?} and {held}");
+    assert!((0.01..0.99).contains(&held), "{held}: a drive that tells nothing");
 }
 
 #[test]

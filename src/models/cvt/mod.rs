@@ -150,12 +150,13 @@ fn driver_radius<R: Real>(belt: &Drive<R>) -> R {
 ///
 /// `target` is `4 (clamping_force - P cos(a/2)/(2 mu))/k`, `least` the v at which the whole wrap is active. The left side is increasing
 /// and convex in v and lies above its asymptote, at whose root the search starts: Newton's steps never overshoot. Without a torque that
-/// start is the root, so the bracket goes beyond it. Unlike F1 + F2, v keeps its digits where the slack side is nearly free of force.
+/// start is the root, so the bracket goes beyond it; it also begins below the root of a belt that just holds, so that boxes of designs next
+/// to slip surely have one. Unlike F1 + F2, v keeps its digits where the slack side is nearly free of force.
 fn clamped_slack<R: Real>(belt_force: R, target: R, driven_wrap: R, effective_friction: R, least: R) -> R {
     let two = R::constant(2.0);
     let asymptote = ((target + two * belt_force / effective_friction) / driven_wrap).named("asymptote", "");
     let highest = asymptote.max(least).named("highest_slack", "");
-    R::monotone_root((least, two * highest), highest, [belt_force, target, driven_wrap, effective_friction], |parameters, slack| {
+    R::monotone_root((least / two, two * highest), highest, [belt_force, target, driven_wrap, effective_friction], |parameters, slack| {
         let [one, two] = [1.0, 2.0].map(R::constant);
         let [belt_force, target, driven_wrap, effective_friction] = parameters;
         // Without a torque nothing is pulled; the quotient must not be 0/0 there.
@@ -199,7 +200,7 @@ fn prepare<R: Real>(belt: &Drive<R>) -> Prepared<R> {
         one
     } else {
         // Friction beyond the wedge has a status of its own.
-        let target = (four * to_hold / wedge.max(R::constant(1e-9))).named("aim", "");
+        let target = (four * to_hold / wedge.max(R::constant(1e-9))).max(R::constant(0.0)).named("aim", "");
         clamped_slack(belt_force, target, driven_wrap, effective_friction, two * belt_force / driven_pull).named("slack", "2 F2")
     };
     // Where a traction is given nothing of it may hang on the torque, so that a row of torques is prepared once.
@@ -258,8 +259,9 @@ fn prepare<R: Real>(belt: &Drive<R>) -> Prepared<R> {
         root_margin: two * pi * centre_distance * ratio.max(one) - belt_length * (ratio - one).abs(),
         overlap_margin: centre_distance - driver_radius - driven_radius,
         wedge_margin,
-        // A clamping force that is just the slip force slips: the margin has to be below zero there.
-        driven_slip_margin: R::select(clamped, R::select(-held, held - one, held), left(driven_traction_limit)),
+        // A clamping force that is just the slip force slips: the margin has to be below zero there. Any other share is a multiple of
+        // 2^-53, from which this takes nothing.
+        driven_slip_margin: R::select(clamped, held - R::constant(1e-37), left(driven_traction_limit)),
         driver_slip_margin: R::select(clamped, driver_traction_limit - traction, left(driver_traction_limit)),
         clamp_margin: R::select(clamped, held.min(wedge_margin), one),
     }
