@@ -30,6 +30,34 @@ pub fn keep_between(alive: &mut [u64], values: &[f64], low: f64, high: f64) {
     }
 }
 
+/// Of the designs that are ok: marks those whose value is not between two ends, which are ok no longer.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+pub fn mark_outside(ok: &mut [u64], marks: &mut [u64], values: &[f64], (low, high): (f64, f64)) {
+    for ((ok, mark), &value) in ok.iter_mut().zip(marks).zip(values) {
+        let inside = mask(value >= low) & mask(value <= high);
+        *mark |= *ok & !inside;
+        *ok &= inside;
+    }
+}
+
+/// Of the designs that are ok: marks those whose finite value is not between two ends, and those whose value is not finite.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+pub fn mark_violations(ok: &[u64], marks: &mut [u64], overflow: &mut [u64], values: &[f64], (low, high): (f64, f64)) {
+    for (((&ok, mark), overflow), &value) in ok.iter().zip(marks).zip(overflow).zip(values) {
+        let is_finite = mask(value >= f64::MIN) & mask(value <= f64::MAX);
+        *mark |= ok & is_finite & !(mask(value >= low) & mask(value <= high));
+        *overflow |= ok & !is_finite;
+    }
+}
+
+/// Of the designs that are ok: marks those whose value is not finite.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+pub fn mark_overflow(ok: &[u64], overflow: &mut [u64], values: &[f64]) {
+    for ((&ok, overflow), &value) in ok.iter().zip(overflow).zip(values) {
+        *overflow |= ok & !(mask(value >= f64::MIN) & mask(value <= f64::MAX));
+    }
+}
+
 /// Lowers each worst value to the new one where that is less.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
 pub fn lower(worst: &mut [f64], values: &[f64]) {

@@ -164,6 +164,114 @@ pub(crate) fn sample(designs: u64, most: u64) -> impl Iterator<Item = u64> {
     })
 }
 
+/// What the designs of a block fail at in some scenario, a mask per design and failure.
+struct Marks {
+    /// Where no condition has failed in the current scenario.
+    ok: Vec<u64>,
+    /// Of each lane condition, and of each constraint.
+    conditions: Vec<Vec<u64>>,
+    constraints: Vec<Vec<u64>>,
+    overflow: Vec<u64>,
+    /// Conditions that are the same for the whole row: that all designs fail at, and those whose designs are marked.
+    of_all: Set,
+    of_row: Vec<(usize, Vec<u64>)>,
+}
+
+impl Marks {
+    fn new(plan: &Plan, designs: usize) -> Self {
+        let none = || vec![0; designs];
+        Self {
+            ok: none(),
+            conditions: plan.lane_conditions.iter().map(|_| none()).collect(),
+            constraints: plan.constraints.iter().map(|_| none()).collect(),
+            overflow: none(),
+            of_all: Set::EMPTY,
+            of_row: Vec::new(),
+        }
+    }
+
+    /// Marks what fails in the current scenario; `of_row` is the first condition that the whole row fails at.
+    fn scenario(&mut self, counter: &Counter<'_>, fast: &FastBlock, of_row: Option<usize>) {
+        let (plan, engine) = (counter.plan, &counter.engine);
+        self.ok.fill(u64::MAX);
+        // The first condition that fails is the status; what comes after it may have lost its meaning.
+        let lane_margins = plan.lane_conditions.iter().zip(&engine.results[plan.lane_outputs.len()..]);
+        for ((&number, margins), marks) in lane_margins.zip(&mut self.conditions) {
+            if of_row.is_none_or(|of_row| number < of_row) {
+                let low = if plan.study.model.conditions[number].strict { f64::from_bits(1) } else { 0.0 };
+                masks::mark_outside(&mut self.ok, marks, margins, (low, f64::INFINITY));
+            }
+        }
+        if let Some(number) = of_row {
+            self.mark_row(plan.study.model.first_of_reason(number));
+            return self.ok.fill(0);
+        }
+        for ((constraint, &source), marks) in plan.study.constraints.iter().zip(&plan.constraints).zip(&mut self.constraints) {
+            let ends = if constraint.over.is_worst() { constraint.ends() } else { (f64::NEG_INFINITY, f64::INFINITY) };
+            match counter.values(source, fast) {
+                Values::Each(values) => masks::mark_violations(&self.ok, marks, &mut self.overflow, values, ends),
+                Values::One(value) => {
+                    let marks = if value.is_finite() { marks } else { &mut self.overflow };
+                    if !(value.is_finite() && ends.0 <= value && value <= ends.1) {
+                        marks.iter_mut().zip(&self.ok).for_each(|(mark, ok)| *mark |= ok);
+                    }
+                }
+            }
+        }
+        for &(_, source) in &plan.tracked {
+            match counter.values(source, fast) {
+                Values::Each(values) => masks::mark_overflow(&self.ok, &mut self.overflow, values),
+                Values::One(value) if value.is_finite() => {}
+                Values::One(_) => self.overflow.iter_mut().zip(&self.ok).for_each(|(mark, ok)| *mark |= ok),
+            }
+        }
+    }
+
+    /// Marks the designs that have failed at nothing before the row's condition.
+    fn mark_row(&mut self, number: usize) {
+        if self.of_all.contains(number) {
+            return;
+        }
+        if self.ok.iter().all(|ok| *ok != 0) {
+            return self.of_all.insert(number);
+        }
+        let place = self.of_row.iter().position(|(it, _)| *it == number).unwrap_or_else(|| {
+            self.of_row.push((number, vec![0; self.ok.len()]));
+            self.of_row.len() - 1
+        });
+        self.of_row[place].1.iter_mut().zip(&self.ok).for_each(|(mark, ok)| *mark |= ok);
+    }
+
+    /// Adds what is marked to the designs' failures.
+    fn add_to(&self, plan: &Plan, failures: &mut [Failures]) {
+        for (lane, failures) in failures.iter_mut().enumerate() {
+            failures.overflow |= self.overflow[lane] != 0;
+            failures.conditions |= self.of_all;
+            for (&number, marks) in plan.lane_conditions.iter().zip(&self.conditions) {
+                if marks[lane] != 0 {
+                    failures.conditions.insert(plan.study.model.first_of_reason(number));
+                }
+            }
+            for (number, marks) in &self.of_row {
+                if marks[lane] != 0 {
+                    failures.conditions.insert(*number);
+                }
+            }
+            for (number, marks) in self.constraints.iter().enumerate() {
+                if marks[lane] != 0 {
+                    failures.constraints.insert(number);
+                }
+            }
+        }
+    }
+}
+
+/// What a quantity is over a block in the current scenario.
+enum Values<'a> {
+    One(f64),
+    Each(&'a [f64]),
+}
+
 /// One thread's share of the counting.
 struct Counter<'p> {
     plan: &'p Plan,
@@ -194,8 +302,9 @@ impl<'p> Counter<'p> {
     /// Counts designs of one row, at most [`BLOCK`]; false if it was stopped.
     fn count_block(&mut self, row: u64, designs: &[u64]) -> bool {
         let plan = self.plan;
-        let fast = FastBlock::new(plan, designs.iter().copied());
+        let fast = FastBlock::new(plan, None, designs.iter().copied());
         let mut failures = vec![Failures::NONE; designs.len()];
+        let mut marks = Marks::new(plan, designs.len());
         let mut sums = CaseSums::new(plan, designs.len());
         // Worst values that are sums over cases are found by judging the feasible designs once more.
         let mut worst = vec![vec![0.0; designs.len()]; if plan.spectrum.is_none() { plan.tracked.len() } else { 0 }];
@@ -209,25 +318,15 @@ impl<'p> Counter<'p> {
                 self.engine.set_fast_scenario(t);
                 self.engine.row_values(prepared.clone());
                 let failed = plan.row_conditions.iter().filter(|&&number| !holds(plan, number, self.engine.row_margins[number]));
-                let of_row = failed.min();
+                let of_row = failed.min().copied();
                 self.engine.evaluate(prepared.clone(), &fast);
-                let mut has_failed = vec![false; designs.len()];
-                for (lane, failures) in failures.iter_mut().enumerate() {
-                    let lane_margins = plan.lane_conditions.iter().zip(&self.engine.results[plan.lane_outputs.len()..]);
-                    let failed = lane_margins.filter(|&(&number, margins)| !holds(plan, number, margins[lane]));
-                    // The first condition that fails is the status; what comes after it may have lost its meaning.
-                    match failed.map(|(number, _)| number).chain(of_row).min() {
-                        Some(&first) => {
-                            failures.conditions.insert(plan.study.model.first_of_reason(first));
-                            has_failed[lane] = true;
-                        }
-                        None => self.violated(lane, &fast, failures),
-                    }
-                }
+                marks.scenario(self, &fast, of_row);
+                let has_failed = if plan.spectrum.is_some() { marks.ok.iter().map(|ok| *ok == 0).collect() } else { Vec::new() };
                 self.sum(&mut sums, (q, t), &fast, &has_failed, &mut failures);
                 self.worsen(&mut worst, q == 0 && t == 0, &fast);
             }
         }
+        marks.add_to(plan, &mut failures);
         for &failures in &failures {
             self.tally.count_design(failures);
         }
@@ -260,17 +359,15 @@ impl<'p> Counter<'p> {
         }
     }
 
-    /// Adds the constraints that a design violates in the current scenario, and whether a value is beyond what f64 holds.
-    fn violated(&self, lane: usize, fast: &FastBlock, failures: &mut Failures) {
-        let value = |source| self.value(source, lane, fast);
-        for (number, (constraint, &source)) in self.plan.study.constraints.iter().zip(&self.plan.constraints).enumerate() {
-            match value(source) {
-                value if !value.is_finite() => failures.overflow = true,
-                value if constraint.over.is_worst() && !constraint.holds(value) => failures.constraints.insert(number),
-                _ => {}
+    /// The values of the designs in the current scenario.
+    fn values<'a>(&'a self, source: Source, fast: &'a FastBlock) -> Values<'a> {
+        match source {
+            Source::LaneInput(input) => Values::Each(fast.own(input)),
+            Source::LaneOutput(position) => Values::Each(&self.engine.results[position]),
+            Source::RowInput(_) | Source::RowOutput(_) => {
+                Values::One(row_value(self.plan, source, &self.engine.own, &self.engine.row_outputs))
             }
         }
-        failures.overflow |= self.plan.tracked.iter().any(|&(_, source)| !value(source).is_finite());
     }
 
     /// The value of a design in the current scenario.
