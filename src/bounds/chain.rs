@@ -1,24 +1,12 @@
 //! A number that reaches an output along one chain of operations, each of which rounds correctly and so keeps the order of numbers.
 //!
 //! If half of a box's axes act on an output through one such number v alone, and the others only on what v is combined with on its
-//! way, then for fixed others the output in f64 rises or falls with v, rounding and all: sums, differences, products, quotients, roots,
-//! minima and maxima that IEEE 754 rounds never swap the order of two numbers. No derivative and no margin for errors is needed.
+//! way, then for fixed others the output in f64 rises or falls with v, see [`Steps`]. No derivative and no margin for errors is needed.
 
 use super::box_columns::BoxColumns;
 use super::requirement::NumberSource;
 use super::study_tape::StudyTape;
-use crate::tape::{Binary, Node, Operation, Unary};
-
-/// One operation on the way.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Step {
-    /// An operation on the number alone: a change of sign or a square root.
-    Alone(Unary),
-    /// The number, then the other.
-    First(Binary, usize),
-    /// The other, then the number.
-    Second(Binary, usize),
-}
+use crate::tape::{Node, Operation, Step, Steps, Unary};
 
 /// A chain from a number to an output.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,7 +14,7 @@ pub struct Chain {
     /// The number that it starts from.
     pub channel: Node,
     /// The operations, in order.
-    pub steps: Vec<Step>,
+    pub steps: Steps,
     /// What the number is combined with.
     pub others: Vec<Node>,
     /// Axes that the others depend on, as a bit set.
@@ -46,14 +34,14 @@ impl Chain {
         let mut looked = 0;
         if let NumberSource::Node(node, _) = source {
             follow(tape, node, varying, &mut Vec::new(), &mut looked, &mut |channel, path| {
-                let mut chain = Self { channel, steps: Vec::new(), others: Vec::new(), other_axes: 0, source };
+                let mut chain = Self { channel, steps: Steps::default(), others: Vec::new(), other_axes: 0, source };
                 for (step, other) in path.iter().rev() {
                     let step = match *step {
                         Step::Alone(unary) => Step::Alone(unary),
                         Step::First(binary, _) => Step::First(binary, chain.others.len()),
                         Step::Second(binary, _) => Step::Second(binary, chain.others.len()),
                     };
-                    chain.steps.push(step);
+                    chain.steps.0.push(step);
                     if let Some(other) = *other {
                         chain.others.push(other);
                         chain.other_axes |= tape.axes[other as usize];
@@ -68,41 +56,19 @@ impl Chain {
     /// The output, in its unit, for a number at the start; `others` in the order of [`Chain::others`].
     #[inline(always)]
     pub fn value(&self, start: f64, others: &[f64]) -> f64 {
-        let last = self.steps.iter().fold(start, |value, step| apply(*step, value, others));
-        self.source.shown(last)
+        self.source.shown(self.steps.value(start, others))
     }
 
-    /// The output at two starts, between which it rises or falls all the way; `None` where that is not sure: something on the way is not
-    /// finite, or a divisor changes its sign.
+    /// The output at two starts, between which it rises or falls all the way; see [`Steps::ends`].
     #[inline]
     pub fn ends(&self, low: f64, high: f64, others: &[f64]) -> Option<(f64, f64)> {
-        let (mut a, mut b) = (low, high);
-        for step in &self.steps {
-            if let Step::Second(Binary::Div, _) = step
-                && !(a > 0.0 && b > 0.0 || a < 0.0 && b < 0.0)
-            {
-                return None;
-            }
-            (a, b) = (apply(*step, a, others), apply(*step, b, others));
-            if !a.is_finite() || !b.is_finite() {
-                return None;
-            }
-        }
+        let (a, b) = self.steps.ends(low, high, others)?;
         Some((self.source.shown(a), self.source.shown(b)))
     }
 
     /// The others of one design of the box that columns were computed for.
     pub fn others_at<'a>(&'a self, columns: &'a BoxColumns<'_>, lane: usize) -> impl Iterator<Item = f64> + 'a {
         self.others.iter().map(move |&other| columns.value(other).at(lane))
-    }
-}
-
-#[inline(always)]
-fn apply(step: Step, value: f64, others: &[f64]) -> f64 {
-    match step {
-        Step::Alone(unary) => unary.of(value),
-        Step::First(binary, other) => binary.of(value, others[other]),
-        Step::Second(binary, other) => binary.of(others[other], value),
     }
 }
 

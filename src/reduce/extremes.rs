@@ -56,6 +56,14 @@ impl Extremes {
         }
     }
 
+    /// Might a design with this value of an objective, and no lower an index than this, be an extreme?
+    pub fn may_take(&self, objective: usize, value: f64, least_index: u64) -> bool {
+        let takes = |held: &Option<Extreme>, further: fn(f64, f64) -> bool| {
+            held.is_none_or(|held| further(value, held.value) || value == held.value && least_index < held.index)
+        };
+        takes(&self.least[objective], |a, b| a < b) || takes(&self.largest[objective], |a, b| a > b)
+    }
+
     /// Can these be the extremes of so many designs under so many objectives?
     pub(super) fn fits(&self, objectives: usize, designs: u64) -> bool {
         let good = |ends: &[Option<Extreme>]| {

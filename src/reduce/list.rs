@@ -35,6 +35,11 @@ macro_rules! reducers {
                 Self { $($field: <$kind>::asked(plan, ranges),)* }
             }
 
+            /// Is nothing asked for?
+            pub fn is_empty(&self) -> bool {
+                true $(&& self.$field.is_empty())*
+            }
+
             /// What a report needs, kind after kind.
             pub fn needs(report: &Report) -> Vec<ReducerNeeds> {
                 [$(<$kind>::needs(report),)*].into_iter().flatten().collect()

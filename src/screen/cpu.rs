@@ -4,13 +4,17 @@
 //! whole row, then run the inner loop over blocks of the fast design axes, scenario by scenario, until no design is left.
 
 use super::Block;
+use super::decisive::Decisive;
 use super::kept_rows::KeptRows;
+use super::lane_list::{LaneList, LaneNumbers};
+use super::ordered::{OrderedNumbers, OrderedRow};
 use super::spectrum::CaseSums;
 use super::tables::{BLOCK, FastBlock, Setting, Tables, setting};
 use crate::decision::Decision;
 use crate::masks::{self, any, keep_between, keep_finite, keep_margin};
 use crate::models::{self, Columns, Latest, Scratch, Set, Sizes, Worse};
 use crate::plan::{Plan, Source};
+use crate::reduce::{Reducers, Reduction};
 use crate::space::Product;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -22,6 +26,10 @@ pub struct CpuEngine<'p> {
     tables: &'p Tables,
     /// Inputs of design 0 in scenario 0, in their units.
     first: Vec<f64>,
+    /// Slow inputs that the first stage reads.
+    slow_reads: Set,
+    /// Room for the inputs of the row before.
+    before: Vec<f64>,
     /// Inputs of the current row and scenario, in their units and in SI.
     pub(super) own: Vec<f64>,
     si: Vec<f64>,
@@ -60,6 +68,9 @@ pub struct CpuEngine<'p> {
     stop: Option<&'p AtomicBool>,
     /// The only scenarios, slow and fast, that are looked at; none means all.
     chosen: Vec<(u64, u64)>,
+    /// Room for the second stage as a list, and which scenarios of the current row it is run in.
+    pub(super) numbers: Option<(LaneNumbers, Decisive)>,
+    ordered_numbers: OrderedNumbers,
 }
 
 impl<'p> CpuEngine<'p> {
@@ -83,7 +94,8 @@ impl<'p> CpuEngine<'p> {
 
     /// Bytes of prepared numbers and sums under way that an engine for this plan keeps.
     pub fn prepared_bytes(plan: &Plan) -> u64 {
-        8 * plan.study.model.kernel.prepared_len() as u64 * (plan.kept_scenarios() + 1) + CaseSums::bytes(plan, BLOCK)
+        let prepared = 8 * plan.study.model.kernel.prepared_len() as u64 * (plan.kept_scenarios() + 1);
+        prepared + CaseSums::bytes(plan, BLOCK) + LaneList::new(plan).map_or(0, |list| list.bytes() + Decisive::bytes(plan, &list))
     }
 
     /// An engine that keeps the prepared numbers of that many slow scenarios.
@@ -94,6 +106,8 @@ impl<'p> CpuEngine<'p> {
         Self {
             plan,
             tables,
+            slow_reads: plan.dependencies.prepared & plan.slow.inputs(),
+            before: first.clone(),
             own: first.clone(),
             first,
             si: vec![0.0; plan.study.model.inputs.len()],
@@ -119,6 +133,8 @@ impl<'p> CpuEngine<'p> {
             latest: Latest::new(&plan.study.model),
             stop: None,
             chosen: Vec::new(),
+            ordered_numbers: OrderedNumbers::default(),
+            numbers: tables.lanes.as_ref().and_then(|list| Some((list.numbers(), Decisive::new(plan, list)?))),
         }
     }
 
@@ -144,6 +160,54 @@ impl<'p> CpuEngine<'p> {
             }
         }
         position
+    }
+
+    /// Judges the designs at `positions` for reducers; returns what [`CpuEngine::screen`] does. Whole rows whose designs stand in one order
+    /// are judged at once where only the front is asked for.
+    pub fn screen_for(&mut self, positions: Range<u64>, reduction: &Reduction, reducers: &mut Reducers) -> u64 {
+        let width = self.plan.fast.count();
+        let mut position = positions.start;
+        if reduction.is_front_only() && self.tables.ordered.is_some() {
+            let first = position.next_multiple_of(width);
+            let last = positions.end / width;
+            if first / width < last {
+                position = self.screen(position..first, |block| reduction.absorb(reducers, block));
+                while position >= first && position < last * width {
+                    if !self.enter_row(position / width) {
+                        return position;
+                    }
+                    let judged = if self.judge_ordered(reduction, reducers) {
+                        position + width
+                    } else {
+                        self.screen(position..position + width, |block| reduction.absorb(reducers, block))
+                    };
+                    if judged < position + width {
+                        return judged;
+                    }
+                    position = judged;
+                }
+            }
+        }
+        self.screen(position..positions.end, |block| reduction.absorb(reducers, block))
+    }
+
+    /// Judges the current row at once; false if that cannot be done.
+    fn judge_ordered(&mut self, reduction: &Reduction, reducers: &mut Reducers) -> bool {
+        let (Some(ordered), Some(list)) = (&self.tables.ordered, &self.tables.lanes) else { return false };
+        let Some((numbers, _)) = &self.numbers else { return false };
+        if !self.row_feasible {
+            return true;
+        }
+        let row = OrderedRow {
+            plan: self.plan,
+            list,
+            blocks: &self.tables.blocks,
+            row: self.row.expect("the row has been entered"),
+            row_index: self.row_index,
+            row_worst: &self.row_worst,
+            numbers: numbers.row(),
+        };
+        row.judge(ordered, &mut self.ordered_numbers, reduction, reducers)
     }
 
     /// Judges single designs, given by their sorted positions, and hands each block with a feasible design to `absorb`.
@@ -194,7 +258,7 @@ impl<'p> CpuEngine<'p> {
                 _ => {
                     let to_grid = BLOCK as u64 - first % BLOCK as u64;
                     let last = fast.end.min(first + to_grid);
-                    (last, self.screen_block(&FastBlock::new(self.plan, first..last), absorb))
+                    (last, self.screen_block(&FastBlock::new(self.plan, self.tables.lanes.as_ref(), first..last), absorb))
                 }
             };
             if !done {
@@ -216,14 +280,32 @@ impl<'p> CpuEngine<'p> {
         for (worst, (tracked, _)) in self.row_worst.iter_mut().zip(&self.plan.tracked) {
             *worst = tracked.worse.least_bad();
         }
+        if let Some((_, decisive)) = &mut self.numbers {
+            decisive.begin();
+        }
+        let mut scenarios = 0;
         let done = self.each_scenario(|engine, prepared, _, _| {
-            engine.row_feasible &= engine.judge_row_scenario(prepared);
+            engine.row_feasible &= engine.judge_row_scenario(prepared.clone());
+            if engine.row_feasible {
+                engine.add_scenario(prepared);
+                scenarios += 1;
+            }
             engine.row_feasible
         });
         if !done {
             self.row = None;
+        } else if let (true, Some((_, decisive)), Some(list)) = (self.row_feasible, &mut self.numbers, &self.tables.lanes) {
+            decisive.settle(list, scenarios);
         }
         done
+    }
+
+    /// Keeps what the designs of the row need of the current scenario.
+    fn add_scenario(&mut self, prepared: Range<usize>) {
+        if let (Some((numbers, decisive)), Some(list)) = (&mut self.numbers, &self.tables.lanes) {
+            list.enter(numbers, &self.prepared[prepared], &self.si);
+            decisive.add(numbers.scalars(list));
+        }
     }
 
     /// Turns to one scenario after the other, as long as `judge` wants to go on; false if it was stopped before that. `judge` is told
@@ -265,17 +347,18 @@ impl<'p> CpuEngine<'p> {
     pub(super) fn set_row(&mut self, row: u64) {
         // What a part of the formula does not depend on may still decide a selection the same way for every value of its axis:
         // every input must have one of its own values, not the default.
-        let before = self.own.clone();
+        let mut before = std::mem::take(&mut self.before);
+        before.clone_from(&self.own);
         self.own.copy_from_slice(&self.first);
         self.plan.slow.set(row, &mut self.own);
         models::fill_si(&self.plan.study.model, &self.own, &mut self.si);
         self.row_index = self.plan.slow.source_index(row);
         self.kept_rows.turn(&before, &self.own);
         // The outer of the axes that the first stage does not read is walked with the slow ones: rows along it share what is prepared.
-        let read = self.plan.dependencies.prepared & self.plan.slow.inputs();
-        if (0..self.own.len()).any(|input| read.contains(input) && self.own[input] != before[input]) {
+        if (0..self.own.len()).any(|input| self.slow_reads.contains(input) && self.own[input] != before[input]) {
             self.kept = 0;
         }
+        self.before = before;
     }
 
     /// Conditions, constraints and worst values of a row in the current scenario; false if the whole row is out.
@@ -339,20 +422,39 @@ impl<'p> CpuEngine<'p> {
                 Source::RowInput(_) | Source::RowOutput(_) => column[..count].fill(worst),
             }
         }
-        if !self.results.is_empty() {
-            let done = self.each_scenario(|engine, prepared, is_first, is_last| {
-                engine.evaluate(prepared, fast);
-                engine.judge_block_scenario(is_first);
-                !is_last || any(&engine.alive)
-            });
-            if !done {
-                return false;
-            }
+        if !self.results.is_empty() && !self.judge_block(fast) {
+            return false;
         }
         let feasible = masks::count(&self.alive);
         if feasible > 0 {
             let (row_index, offsets) = (self.row_index, &fast.offsets);
             absorb(&Block { row_index, offsets, feasible_count: feasible, alive: &self.alive, values: &self.values });
+        }
+        true
+    }
+
+    /// Judges the block in every scenario that may decide; false if it was stopped before it had.
+    fn judge_block(&mut self, fast: &FastBlock) -> bool {
+        let (Some(list), true) = (&self.tables.lanes, self.numbers.is_some()) else {
+            return self.each_scenario(|engine, prepared, is_first, is_last| {
+                engine.evaluate(prepared, fast);
+                engine.judge_block_scenario(is_first, engine.plan.scenarios() == 1);
+                !is_last || any(&engine.alive)
+            });
+        };
+        let count = self.numbers.as_ref().map_or(0, |(_, decisive)| decisive.count());
+        for number in 0..count {
+            if self.stopped() {
+                return false;
+            }
+            if let Some((numbers, decisive)) = &mut self.numbers {
+                numbers.set_scalars(list, decisive.scalars(number));
+                list.run(numbers, (&fast.shared, fast.count), &mut self.results);
+            }
+            self.judge_block_scenario(number == 0, count == 1);
+            if !any(&self.alive) {
+                break;
+            }
         }
         true
     }
@@ -366,9 +468,8 @@ impl<'p> CpuEngine<'p> {
         columns.to_units(&plan.study.model.outputs, &mut self.results);
     }
 
-    fn judge_block_scenario(&mut self, first: bool) {
+    fn judge_block_scenario(&mut self, first: bool, only: bool) {
         let plan = self.plan;
-        let only = first && plan.space.scenarios.count() == 1;
         let (outputs, margins) = self.results.split_at_mut(plan.lane_outputs.len());
         let alive = &mut self.alive;
         for (&number, margins) in plan.lane_conditions.iter().zip(&*margins) {

@@ -3,9 +3,12 @@
 //! An engine turns a range of positions into [`Block`]s; the reducers absorb them and never know where they came from.
 
 mod cpu;
+mod decisive;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 mod kept_rows;
+mod lane_list;
+mod ordered;
 mod spectrum;
 mod tables;
 mod tally;

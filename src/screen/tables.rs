@@ -1,5 +1,7 @@
 //! What the threads of the CPU engine share: settings of scenarios, and the designs of the fast axes by blocks.
 
+use super::lane_list::LaneList;
+use super::ordered::{OrderedRows, sorted_bytes};
 use crate::models::{self, LANES};
 use crate::plan::{FAST_DESIGNS, Plan};
 use crate::space::Product;
@@ -14,7 +16,7 @@ const TABLE: u64 = 1 << 15;
 pub(super) type Setting = Vec<(usize, f64, f64)>;
 
 /// Values of the designs of a block, by input number.
-type InputColumns = Vec<(usize, Vec<f64>)>;
+pub(super) type InputColumns = Vec<(usize, Vec<f64>)>;
 
 /// The inputs of the designs of one block that the fast axes set.
 #[derive(Debug)]
@@ -25,6 +27,8 @@ pub(super) struct FastBlock {
     pub(super) si: InputColumns,
     /// By input number, in the input's unit, where the plan tracks or constrains the input itself.
     pub(super) own: InputColumns,
+    /// What the list of [`Tables::lanes`] has in common over all rows.
+    pub(super) shared: Vec<Vec<f64>>,
 }
 
 /// What all threads of an engine share: made once per plan.
@@ -35,6 +39,10 @@ pub struct Tables {
     pub(super) fast_scenarios: Vec<Setting>,
     /// Blocks of the fast design axes, while they are few.
     pub(super) blocks: Vec<FastBlock>,
+    /// The second stage as operations over columns, where that serves.
+    pub(super) lanes: Option<LaneList>,
+    /// Rows whose designs stand in one order, if they are of that kind.
+    pub(super) ordered: Option<OrderedRows>,
 }
 
 impl Tables {
@@ -45,8 +53,11 @@ impl Tables {
             (0..kept).map(|index| setting(plan, product, index)).collect()
         };
         let kept = if plan.fast.count() <= FAST_DESIGNS { plan.fast.count() } else { 0 };
-        let blocks = (0..kept).step_by(BLOCK).map(|first| FastBlock::new(plan, first..kept.min(first + BLOCK as u64))).collect();
-        Self { slow_scenarios: settings(&plan.slow_scenarios), fast_scenarios: settings(&plan.fast_scenarios), blocks }
+        let lanes = LaneList::new(plan);
+        let block = |first: u64| FastBlock::new(plan, lanes.as_ref(), first..kept.min(first + BLOCK as u64));
+        let blocks = (0..kept).step_by(BLOCK).map(block).collect();
+        let ordered = lanes.as_ref().filter(|_| kept > 0).and_then(|list| OrderedRows::new(plan, list));
+        Self { slow_scenarios: settings(&plan.slow_scenarios), fast_scenarios: settings(&plan.fast_scenarios), blocks, lanes, ordered }
     }
 
     /// About how many bytes the tables of a plan take.
@@ -55,15 +66,16 @@ impl Tables {
             let one = size_of::<Setting>() + product.inputs().len() * size_of::<(usize, f64, f64)>();
             if product.count() <= TABLE { product.count() * one as u64 } else { 0 }
         };
-        let numbers = 1 + 2 * plan.fast.inputs().len() as u64;
+        let shared = LaneList::new(plan).map_or(0, |list| list.kept());
+        let numbers = 1 + (2 * plan.fast.inputs().len() + shared) as u64;
         let blocks = if plan.fast.count() <= FAST_DESIGNS { plan.fast.count() * 8 * numbers } else { 0 };
-        settings(&plan.slow_scenarios) + settings(&plan.fast_scenarios) + blocks
+        settings(&plan.slow_scenarios) + settings(&plan.fast_scenarios) + blocks + sorted_bytes(plan)
     }
 }
 
 impl FastBlock {
     /// The given designs of the fast axes, at most [`BLOCK`].
-    pub(super) fn new(plan: &Plan, designs: impl Iterator<Item = u64>) -> Self {
+    pub(super) fn new(plan: &Plan, lanes: Option<&LaneList>, designs: impl Iterator<Item = u64>) -> Self {
         let model = &plan.study.model;
         let set = plan.fast.inputs();
         let mut columns: InputColumns =
@@ -86,29 +98,35 @@ impl FastBlock {
             let input_table = &model.inputs[*input];
             (*input, column.iter().map(|&value| models::input_to_si(input_table, value)).collect())
         });
-        Self { count, offsets, si: si.collect(), own: columns }
+        let si = si.collect();
+        let shared = lanes.map_or_else(Vec::new, |lanes| lanes.shared_columns(&si));
+        Self { count, offsets, si, own: columns, shared }
     }
 
     /// The same, out of the blocks that are kept.
     pub(super) fn picked(plan: &Plan, tables: &Tables, designs: &[u64]) -> Self {
-        let Some(first) = tables.blocks.first() else { return Self::new(plan, designs.iter().copied()) };
+        let Some(first) = tables.blocks.first() else { return Self::new(plan, tables.lanes.as_ref(), designs.iter().copied()) };
         let room = designs.len().next_multiple_of(LANES);
+        let picked = |of: &dyn Fn(&Self) -> &[f64]| {
+            let mut column = Vec::with_capacity(room);
+            column.extend(designs.iter().map(|&design| of(&tables.blocks[design as usize / BLOCK])[design as usize % BLOCK]));
+            column.resize(room, *column.last().expect("a block has a design"));
+            column
+        };
         let columns = |of: fn(&Self) -> &InputColumns| -> InputColumns {
-            let column = |number: usize| {
-                let at = |&design: &u64| of(&tables.blocks[design as usize / BLOCK])[number].1[design as usize % BLOCK];
-                let mut column = Vec::with_capacity(room);
-                column.extend(designs.iter().map(at));
-                column.resize(room, *column.last().expect("a block has a design"));
-                column
-            };
-            of(first).iter().enumerate().map(|(number, (input, _))| (*input, column(number))).collect()
+            of(first).iter().enumerate().map(|(number, (input, _))| (*input, picked(&|block| &of(block)[number].1))).collect()
         };
         Self {
             count: designs.len(),
             offsets: designs.iter().map(|&design| tables.blocks[design as usize / BLOCK].offsets[design as usize % BLOCK]).collect(),
             si: columns(|it| &it.si),
             own: columns(|it| &it.own),
+            shared: (0..first.shared.len()).map(|number| picked(&|block| &block.shared[number])).collect(),
         }
+    }
+
+    pub(super) fn si(&self, input: usize) -> &[f64] {
+        &self.si.iter().find(|(it, _)| *it == input).expect("a lane input is set by a fast axis").1
     }
 
     pub(super) fn own(&self, input: usize) -> &[f64] {

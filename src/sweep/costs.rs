@@ -1,5 +1,6 @@
 //! What judging every design takes here, and whether bounds pay: one estimate for `check`, `--method auto` and the jobs of a cluster.
 
+use super::tile_end;
 use crate::bounds::refusal;
 use crate::models::Effort;
 use crate::parallel::on_threads;
@@ -99,8 +100,8 @@ fn trial(plan: &Plan, tables: &Tables, thread: u64, threads: u64, time: Duration
         let (first, last) = (edge(place), edge(place + 1));
         let (start, mut at, mut rows) = (Instant::now(), first, 0u64);
         while at < last && (at == first || start.elapsed() < moment) {
-            let end = last.min(at + piece);
-            engine.screen(at..end, |block| reduction.absorb(&mut reducers, block));
+            let end = last.min(tile_end(at, piece, row));
+            engine.screen_for(at..end, &reduction, &mut reducers);
             rows += (end - 1) / row - at / row + 1;
             at = end;
         }

@@ -289,12 +289,19 @@ fn head_start(reduction: &Reduction, seen: &mut Reducers) -> State {
     state
 }
 
+/// Where a tile that begins at `position` ends: at the end of a row, if it is longer than one.
+fn tile_end(position: u64, tile: u64, row: u64) -> u64 {
+    let end = position.saturating_add(tile);
+    if tile > row { end.checked_next_multiple_of(row).unwrap_or(end) } else { end }
+}
+
 fn run_thread(job: SweepJob<'_>, work: &Mutex<SweepWork<'_>>) {
     let SweepJob { plan, tables, reduction, options, control } = job;
     let mut engine = CpuEngine::new(plan, tables).stopping_on(&control.stop);
     // Work is cut by time: a tile of a slow model may be a single design.
     let tile_at = |rate: f64| ((rate * TILE_TIME.as_secs_f64()) as u64).clamp(1, options.tile);
     let lock = || work.lock().unwrap_or_else(PoisonError::into_inner);
+    let row = plan.fast.count();
     loop {
         let (chunk, known, planned, mut tile) = {
             let mut work = lock();
@@ -313,7 +320,7 @@ fn run_thread(job: SweepJob<'_>, work: &Mutex<SweepWork<'_>>) {
             if control.stop.load(Ordering::Relaxed) || work.failure.is_some() {
                 return;
             }
-            match work.todo.take(size) {
+            match work.todo.take(if size > row { size.next_multiple_of(row) } else { size }) {
                 Some(chunk) => (chunk, Arc::clone(&work.known), seconds, tile),
                 None => return,
             }
@@ -323,8 +330,8 @@ fn run_thread(job: SweepJob<'_>, work: &Mutex<SweepWork<'_>>) {
         drop(known);
         let mut position = chunk.start;
         while position < chunk.end && !control.stop.load(Ordering::Relaxed) {
-            let end = chunk.end.min(position.saturating_add(tile));
-            let judged = engine.screen(position..end, |block| reduction.absorb(&mut reducers, block));
+            let end = chunk.end.min(tile_end(position, tile, row));
+            let judged = engine.screen_for(position..end, reduction, &mut reducers);
             control.done.fetch_add(judged - position, Ordering::Relaxed);
             position = judged;
             let seconds = start.elapsed().as_secs_f64();

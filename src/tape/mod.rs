@@ -18,6 +18,7 @@ mod rolled;
 mod set;
 mod settled;
 mod stages;
+mod steps;
 #[cfg(test)]
 mod tests;
 pub mod wgsl;
@@ -34,6 +35,7 @@ pub use rolled::{FormulaTable, ListLoop, Rolled, RolledLoop, Store};
 pub use set::Set;
 pub use settled::{SettledStages, StageLists};
 pub use stages::{Fields, First, Reads, Recordable, Second, Whole};
+pub use steps::{Step, Steps};
 
 use crate::real::Real;
 

@@ -5,7 +5,7 @@ use crate::reduce::Dominance;
 use multiversion::multiversion;
 
 /// Bins of the two-objective table.
-const BINS: usize = 8192;
+pub(super) const BINS: usize = 8192;
 
 /// What a front compares with first.
 #[derive(Debug)]
@@ -63,6 +63,22 @@ impl BinTable {
             table.best[bin] = table.best[bin].min(table.best[bin - 1]);
         }
         table
+    }
+
+    /// The least first coordinate of the front, and bins per coordinate: a coordinate belongs to the bin nearest to
+    /// `(coordinate - low) * scale + 1`.
+    pub(super) fn line(&self) -> (f64, f64) {
+        (self.low, self.scale)
+    }
+
+    /// The second coordinate from which on what is in a bin is surely beaten.
+    pub(super) fn best(&self, bin: usize) -> f64 {
+        self.best[bin]
+    }
+
+    /// Is what has these coordinates, or more, surely beaten?
+    pub(super) fn beats(&self, first: f64, second: f64) -> bool {
+        second >= self.best[self.bin(first)]
     }
 
     /// A monotone function of the coordinate: all that the table relies on. What lies below the front's range shares bin 0

@@ -1,0 +1,454 @@
+//! The inner loop as a list of operations, each over the column of a block.
+//!
+//! Of the operations of the second stage some read inputs of the fast axes only: their columns are the same for all rows and are made once
+//! for each block. Some read none of these: they are one number for the whole row. What is left is computed for every design, operation by
+//! operation, and is often a small part. The bits are those of the formula.
+
+use super::tables::{BLOCK, InputColumns};
+use crate::plan::{Plan, knowns};
+use crate::real::{LANES, Real};
+use crate::tape::{Binary, EVERYTHING, Interval, Known, List, Node, Operation, Set, Unary};
+use multiversion::multiversion;
+use std::mem::take;
+
+/// Most operations for every design: a longer list would not gain by what it shares.
+const MOST_STEPS: usize = 512;
+
+/// A number that an operation reads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Operand {
+    /// The same for the row: an operation of the list, or a factor of a unit after them.
+    Row(usize),
+    /// The same for all rows: a column of the block.
+    Shared(usize),
+    /// A column of the thread.
+    Own(usize),
+}
+
+/// An operation over a column.
+#[derive(Clone, Copy, Debug)]
+enum StepKind {
+    Unary(Unary, Operand),
+    Binary(Binary, Operand, Operand),
+    Select(Operand, Operand, Operand),
+}
+
+/// An operation and the column that it writes.
+#[derive(Clone, Copy, Debug)]
+struct ColumnStep {
+    kind: StepKind,
+    to: usize,
+}
+
+/// What the designs of a plan are asked for, laid out for its rows and blocks.
+#[derive(Debug)]
+pub(super) struct LaneList {
+    list: List,
+    /// The list's inputs below this are the model's; the others are what the first stage passes on.
+    inputs: usize,
+    /// Inputs of the list that are the same for a row: of the list, and where they stand.
+    row_inputs: Vec<(Node, usize)>,
+    /// Operations that are the same for a row, operands first.
+    row: Vec<Node>,
+    /// Constants, and then factors of units.
+    constants: Vec<(usize, f64)>,
+    slots: usize,
+    /// Operations that are the same for all rows, operands first, and those of them that have a column in every block.
+    shared: Vec<Node>,
+    kept: Vec<Node>,
+    steps: Vec<ColumnStep>,
+    columns: usize,
+    results: Vec<Operand>,
+    /// Operations for every design and row, operands first, and what each result is before it is turned into its unit.
+    each: Vec<Node>,
+    asked: Vec<Node>,
+    /// What the operations for every design read of the row, without constants.
+    scalars: Vec<Node>,
+    /// Of every operation that no row has to do with: all its values.
+    ranges: Vec<Interval>,
+}
+
+/// What an operation depends on.
+#[derive(Clone, Copy, Default, PartialEq)]
+struct Varies {
+    over_lanes: bool,
+    over_rows: bool,
+}
+
+impl std::ops::BitOrAssign for Varies {
+    fn bitor_assign(&mut self, other: Self) {
+        self.over_lanes |= other.over_lanes;
+        self.over_rows |= other.over_rows;
+    }
+}
+
+/// Numbers of one thread.
+#[derive(Debug)]
+pub(super) struct LaneNumbers {
+    row: Vec<f64>,
+    columns: Vec<Vec<f64>>,
+}
+
+impl LaneNumbers {
+    /// What the operations for every design read of the row that was entered last.
+    pub(super) fn scalars<'n>(&'n self, list: &'n LaneList) -> impl Iterator<Item = f64> + 'n {
+        list.scalars.iter().map(|&node| self.row[node as usize])
+    }
+
+    /// All numbers of the row that was entered last, by operation.
+    pub(super) fn row(&self) -> &[f64] {
+        &self.row
+    }
+
+    /// Enters a row by these.
+    pub(super) fn set_scalars(&mut self, list: &LaneList, scalars: &[f64]) {
+        list.scalars.iter().zip(scalars).for_each(|(&node, &scalar)| self.row[node as usize] = scalar);
+    }
+}
+
+impl LaneList {
+    /// `None` where there is nothing to compute for every design, or the formula's own loop is as good: where it cannot be recorded, or
+    /// has loops or roots for every design.
+    pub(super) fn new(plan: &Plan) -> Option<Self> {
+        let model = &plan.study.model;
+        let formula = model.kernel.formula()?;
+        let inputs = formula.fields().inputs.len();
+        if plan.lane_outputs.len() + plan.lane_conditions.len() == 0 || formula.fields().iterations > 0 {
+            return None;
+        }
+        let known = knowns(&plan.study, &plan.space);
+        let second = formula.second(&known[..inputs], Set::of(&plan.lane_outputs), Set::of(&plan.lane_conditions));
+        let outputs = plan.lane_outputs.iter().map(|&it| Some(second.outputs[it]));
+        let asked: Vec<Option<Node>> = outputs.chain(plan.lane_conditions.iter().map(|&it| Some(second.conditions[it]))).collect();
+        let list = List::cut(&second.recording, &asked);
+        let lane_inputs = plan.fast.inputs();
+        let varies = list.dependencies(|input| {
+            let over_lanes = lane_inputs.contains(input.into()) && usize::from(input) < inputs;
+            Varies { over_lanes, over_rows: !over_lanes }
+        });
+        let asked: Vec<Node> = list.results.iter().flatten().copied().collect();
+        let needed = list.needed_by(&asked);
+        let is_each = |node: Node| varies[node as usize] == Varies { over_lanes: true, over_rows: true };
+        let is_shared = |node: Node| varies[node as usize] == Varies { over_lanes: true, over_rows: false };
+        let is_plain = |&node: &Node| {
+            use Operation::{Binary, Constant, Input, Select, Unary};
+            matches!(list.operations[node as usize], Unary(..) | Binary(..) | Select(..) | Input(_) | Constant(_))
+        };
+        let each: Vec<Node> = needed.iter().copied().filter(|&node| is_each(node)).collect();
+        let shared: Vec<Node> = needed.iter().copied().filter(|&node| is_shared(node)).collect();
+        if each.len() > MOST_STEPS || !each.iter().chain(&shared).all(is_plain) {
+            return None;
+        }
+        let mut laid = Self {
+            inputs,
+            row_inputs: Vec::new(),
+            row: Vec::new(),
+            constants: Vec::new(),
+            slots: list.operations.len(),
+            shared,
+            kept: Vec::new(),
+            steps: Vec::new(),
+            columns: 0,
+            results: Vec::new(),
+            scalars: Vec::new(),
+            ranges: Vec::new(),
+            each,
+            asked,
+            list,
+        };
+        for &node in needed.iter().filter(|&&node| !varies[node as usize].over_lanes) {
+            match laid.list.operations[node as usize] {
+                Operation::Input(input) => laid.row_inputs.push((node, input.into())),
+                Operation::Constant(bits) => laid.constants.push((node as usize, f64::from_bits(bits))),
+                _ => laid.row.push(node),
+            }
+        }
+        laid.lay_out(&varies);
+        laid.ranges = laid.ranges_of_shared(&known);
+        laid.add_units(plan);
+        Some(laid)
+    }
+
+    /// All values of what is the same for all rows.
+    fn ranges_of_shared(&self, known: &[Known]) -> Vec<Interval> {
+        let mut slots = vec![EVERYTHING; self.list.operations.len()];
+        for (slot, &operation) in slots.iter_mut().zip(&self.list.operations) {
+            match operation {
+                Operation::Constant(bits) => *slot = Interval::point(f64::from_bits(bits)),
+                Operation::Input(input) if usize::from(input) < self.inputs => {
+                    *slot = match known[usize::from(input)] {
+                        Known::Fixed(value) => Interval::point(value),
+                        Known::Within(least, largest) => Interval::new(least, largest),
+                    };
+                }
+                _ => {}
+            }
+        }
+        self.shared.iter().for_each(|&node| self.list.compute(node, &mut slots));
+        slots
+    }
+
+    /// Gives every operation of `each` a column, which is free again after it was last read.
+    fn lay_out(&mut self, varies: &[Varies]) {
+        let (each, asked) = (self.each.clone(), self.asked.clone());
+        let mut last_read = vec![usize::MAX; self.list.operations.len()];
+        for (step, &node) in each.iter().enumerate() {
+            self.list.operations[node as usize].operands(|operand| last_read[operand as usize] = step);
+        }
+        asked.iter().for_each(|&node| last_read[node as usize] = usize::MAX);
+        let mut column_of = vec![0; self.list.operations.len()];
+        let mut free: Vec<usize> = Vec::new();
+        for (step, &node) in each.iter().enumerate() {
+            let operation = self.list.operations[node as usize];
+            let mut operand = |node: Node| self.operand(node, varies, &column_of);
+            let kind = match operation {
+                Operation::Unary(kind, a) => StepKind::Unary(kind, operand(a)),
+                Operation::Binary(kind, a, b) => StepKind::Binary(kind, operand(a), operand(b)),
+                Operation::Select(margin, a, b) => StepKind::Select(operand(margin), operand(a), operand(b)),
+                other => unreachable!("{other:?} does not differ both between rows and between designs of a row"),
+            };
+            // Before the operands are free: no operation writes what it reads.
+            let to = free.pop().unwrap_or_else(|| {
+                self.columns += 1;
+                self.columns - 1
+            });
+            column_of[node as usize] = to;
+            self.steps.push(ColumnStep { kind, to });
+            let mut ended: Vec<usize> = Vec::new();
+            operation.operands(|operand| {
+                let varies = varies[operand as usize];
+                if last_read[operand as usize] == step && varies.over_lanes && varies.over_rows {
+                    ended.push(column_of[operand as usize]);
+                }
+            });
+            ended.sort_unstable();
+            ended.dedup();
+            free.extend(ended);
+        }
+        self.results = asked.iter().map(|&node| self.operand(node, varies, &column_of)).collect();
+    }
+
+    fn operand(&mut self, node: Node, varies: &[Varies], column_of: &[usize]) -> Operand {
+        match varies[node as usize] {
+            Varies { over_lanes: false, .. } => {
+                let is_constant = matches!(self.list.operations[node as usize], Operation::Constant(_));
+                if !is_constant && !self.scalars.contains(&node) {
+                    self.scalars.push(node);
+                }
+                Operand::Row(node as usize)
+            }
+            Varies { over_rows: true, .. } => Operand::Own(column_of[node as usize]),
+            Varies { .. } => Operand::Shared(self.kept.iter().position(|&it| it == node).unwrap_or_else(|| {
+                self.kept.push(node);
+                self.kept.len() - 1
+            })),
+        }
+    }
+
+    /// Outputs are turned into their units as [`crate::units::Unit::from_si`] does it.
+    fn add_units(&mut self, plan: &Plan) {
+        for (result, &output) in plan.lane_outputs.iter().enumerate() {
+            let (multiply, divide) = plan.study.model.outputs[output].unit.factors();
+            for (kind, factor) in [(Binary::Mul, divide), (Binary::Div, multiply)] {
+                if factor != 1.0 {
+                    self.constants.push((self.slots, factor));
+                    self.steps.push(ColumnStep {
+                        kind: StepKind::Binary(kind, self.results[result], Operand::Row(self.slots)),
+                        to: self.columns,
+                    });
+                    self.results[result] = Operand::Own(self.columns);
+                    (self.slots, self.columns) = (self.slots + 1, self.columns + 1);
+                }
+            }
+        }
+    }
+
+    /// Columns that every block has of it.
+    pub(super) fn kept(&self) -> usize {
+        self.kept.len()
+    }
+
+    /// All operations.
+    pub(super) fn list(&self) -> &List {
+        &self.list
+    }
+
+    /// Is an input of the list one of the model?
+    pub(super) fn is_input(&self, input: u16) -> bool {
+        usize::from(input) < self.inputs
+    }
+
+    /// Which number of those that the first stage passes on an input of the list is.
+    pub(super) fn passed_on(&self, input: u16) -> Option<usize> {
+        usize::from(input).checked_sub(self.inputs)
+    }
+
+    /// Those that are computed for every design, operands first.
+    pub(super) fn each(&self) -> &[Node] {
+        &self.each
+    }
+
+    /// What is asked of the list, before it is turned into its unit: outputs, then margins.
+    pub(super) fn asked(&self) -> &[Node] {
+        &self.asked
+    }
+
+    /// What the operations for every design read of the row.
+    pub(super) fn scalars(&self) -> &[Node] {
+        &self.scalars
+    }
+
+    /// Of every operation that no row has to do with: all its values.
+    pub(super) fn ranges(&self) -> &[Interval] {
+        &self.ranges
+    }
+
+    /// Numbers that a block of designs has in common with the same block of other rows, of its inputs in SI units, with idle lanes.
+    pub(super) fn shared_columns(&self, si: &InputColumns) -> Vec<Vec<f64>> {
+        let count = si.first().map_or(0, |(_, column)| column.len());
+        let column = |input: usize| &si.iter().find(|(it, _)| *it == input).expect("a lane input is set by a fast axis").1;
+        let mut slots = vec![0.0; self.list.operations.len()];
+        for &(slot, value) in &self.constants {
+            if let Some(it) = slots.get_mut(slot) {
+                *it = value;
+            }
+        }
+        let mut columns: Vec<Vec<f64>> = self.kept.iter().map(|_| Vec::with_capacity(count)).collect();
+        if columns.is_empty() {
+            return columns;
+        }
+        for lane in 0..count {
+            for &node in &self.shared {
+                match self.list.operations[node as usize] {
+                    Operation::Input(input) => slots[node as usize] = column(input.into())[lane],
+                    _ => self.list.compute(node, &mut slots),
+                }
+            }
+            for (column, &node) in columns.iter_mut().zip(&self.kept) {
+                column.push(slots[node as usize]);
+            }
+        }
+        columns
+    }
+
+    /// Room for a thread.
+    pub(super) fn numbers(&self) -> LaneNumbers {
+        let mut row = vec![0.0; self.slots];
+        for &(slot, value) in &self.constants {
+            row[slot] = value;
+        }
+        LaneNumbers { row, columns: vec![vec![0.0; BLOCK]; self.columns] }
+    }
+
+    /// Bytes of it, without what is allocated besides.
+    pub(super) fn bytes(&self) -> u64 {
+        8 * (self.slots + BLOCK * self.columns) as u64
+    }
+
+    /// Computes what the operations for every design read of a row, given its prepared numbers and inputs (SI).
+    pub(super) fn enter(&self, numbers: &mut LaneNumbers, prepared: &[f64], inputs: &[f64]) {
+        for &(node, input) in &self.row_inputs {
+            numbers.row[node as usize] = input.checked_sub(self.inputs).map_or_else(|| inputs[input], |passed| prepared[passed]);
+        }
+        for &node in &self.row {
+            self.list.compute(node, &mut numbers.row);
+        }
+    }
+
+    /// Computes the block's outputs, in their units, and condition margins, for the row that was entered last.
+    pub(super) fn run(&self, numbers: &mut LaneNumbers, (shared, count): (&[Vec<f64>], usize), results: &mut [Vec<f64>]) {
+        let room = count.next_multiple_of(LANES);
+        run_steps(&self.steps, &numbers.row, shared, &mut numbers.columns, room);
+        for (number, (result, &from)) in results.iter_mut().zip(&self.results).enumerate() {
+            match from {
+                Operand::Row(slot) => result[..room].fill(numbers.row[slot]),
+                Operand::Shared(column) => result[..room].copy_from_slice(&shared[column][..room]),
+                // The last result that asks for a column gets it without a copy.
+                Operand::Own(column) if self.results[number + 1..].contains(&from) => {
+                    result[..room].copy_from_slice(&numbers.columns[column][..room]);
+                }
+                Operand::Own(column) => std::mem::swap(result, &mut numbers.columns[column]),
+            }
+        }
+    }
+}
+
+/// A number for all designs, or one for each.
+#[derive(Clone, Copy)]
+enum Numbers<'a> {
+    One(f64),
+    Each(&'a [f64]),
+}
+
+impl Numbers<'_> {
+    #[inline(always)]
+    fn at(self, lane: usize) -> f64 {
+        match self {
+            Self::One(value) => value,
+            Self::Each(values) => values[lane],
+        }
+    }
+}
+
+/// Only operations that round alike on every instruction set are vectorised, and nothing contracts a product and a sum.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+fn run_steps(steps: &[ColumnStep], row: &[f64], shared: &[Vec<f64>], columns: &mut [Vec<f64>], room: usize) {
+    for step in steps {
+        let mut column = take(&mut columns[step.to]);
+        let to = &mut column[..room];
+        let of = |operand| match operand {
+            Operand::Row(slot) => Numbers::One(row[slot]),
+            Operand::Shared(column) => Numbers::Each(&shared[column][..room]),
+            Operand::Own(column) => Numbers::Each(&columns[column][..room]),
+        };
+        // Written out, so that every combination becomes one loop of vector instructions.
+        macro_rules! binary {
+            ($kind:expr, $a:expr, $b:expr, $($name:ident),*) => {
+                match ($kind, $a, $b) {
+                    $(
+                        (Binary::$name, Numbers::Each(a), Numbers::Each(b)) => {
+                            to.iter_mut().zip(a).zip(b).for_each(|((it, &a), &b)| *it = Binary::$name.of(a, b));
+                        }
+                        (Binary::$name, Numbers::Each(a), Numbers::One(b)) => to.iter_mut().zip(a).for_each(|(it, &a)| *it = Binary::$name.of(a, b)),
+                        (Binary::$name, Numbers::One(a), Numbers::Each(b)) => to.iter_mut().zip(b).for_each(|(it, &b)| *it = Binary::$name.of(a, b)),
+                    )*
+                    (kind, Numbers::One(a), Numbers::One(b)) => to.fill(kind.of(a, b)),
+                }
+            };
+        }
+        macro_rules! unary {
+            ($kind:expr, $a:expr, $($name:ident),*) => {
+                match ($kind, $a) {
+                    (kind, Numbers::One(a)) => to.fill(kind.of(a)),
+                    $((Unary::$name, Numbers::Each(a)) => to.iter_mut().zip(a).for_each(|(it, &a)| *it = Unary::$name.of(a)),)*
+                    (kind, Numbers::Each(a)) => to.iter_mut().zip(a).for_each(|(it, &a)| *it = kind.of(a)),
+                }
+            };
+        }
+        match step.kind {
+            StepKind::Unary(kind, a) => unary!(kind, of(a), Neg, Sqrt, Abs, Floor),
+            StepKind::Binary(kind, a, b) => binary!(kind, of(a), of(b), Add, Sub, Mul, Div, Min, Max, PlusWhole),
+            StepKind::Select(margin, a, b) => select(of(margin), of(a), of(b), to),
+        }
+        columns[step.to] = column;
+    }
+}
+
+#[inline(always)]
+fn select(margin: Numbers<'_>, a: Numbers<'_>, b: Numbers<'_>, to: &mut [f64]) {
+    match (margin, a, b) {
+        (Numbers::One(margin), Numbers::Each(a), _) if margin >= 0.0 => to.copy_from_slice(a),
+        (Numbers::Each(margin), Numbers::Each(a), Numbers::Each(b)) => {
+            for (((it, &margin), &a), &b) in to.iter_mut().zip(margin).zip(a).zip(b) {
+                *it = f64::select(margin, a, b);
+            }
+        }
+        (Numbers::Each(margin), Numbers::Each(a), Numbers::One(b)) => {
+            to.iter_mut().zip(margin).zip(a).for_each(|((it, &margin), &a)| *it = f64::select(margin, a, b));
+        }
+        (Numbers::Each(margin), Numbers::One(a), Numbers::Each(b)) => {
+            to.iter_mut().zip(margin).zip(b).for_each(|((it, &margin), &b)| *it = f64::select(margin, a, b));
+        }
+        _ => to.iter_mut().enumerate().for_each(|(lane, it)| *it = f64::select(margin.at(lane), a.at(lane), b.at(lane))),
+    }
+}
