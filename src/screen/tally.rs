@@ -321,7 +321,12 @@ impl<'p> Counter<'p> {
                 let of_row = failed.min().copied();
                 self.engine.evaluate(prepared.clone(), &fast);
                 marks.scenario(self, &fast, of_row);
-                let has_failed = if plan.spectrum.is_some() { marks.ok.iter().map(|ok| *ok == 0).collect() } else { Vec::new() };
+                let mut has_failed = Vec::new();
+                if plan.spectrum.is_some() {
+                    // Whether a sum has a meaning depends on what has failed before.
+                    marks.add_to(plan, &mut failures);
+                    has_failed.extend(marks.ok.iter().map(|ok| *ok == 0));
+                }
                 self.sum(&mut sums, (q, t), &fast, &has_failed, &mut failures);
                 self.worsen(&mut worst, q == 0 && t == 0, &fast);
             }
