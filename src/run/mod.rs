@@ -14,6 +14,8 @@ mod options;
 mod outcome;
 mod stored;
 
+#[cfg(feature = "pictures")]
+pub use crate::export::FrontPicture;
 pub use crate::export::Knee;
 pub use crate::reduce::Extreme;
 pub use crate::screen::Control;

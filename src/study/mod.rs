@@ -31,7 +31,7 @@ pub use quantity::Quantity;
 pub use read::StudyEdits;
 #[cfg(test)]
 pub(crate) use read::tests::study_of;
-pub use read::{FileKind, Problem, StudyErrors, file_kind, read_model};
+pub use read::{FileKind, Problem, StudyErrors, file_kind, parse_model, read_model};
 pub(crate) use read::{input_text, input_value_checked};
 pub use resolved::{
     Best, Constraint, ContourSpec, Goal, HistogramSpec, MapSpec, Objective, Report, ReportColumn, SampleSpec, Study, Thresholds, TopSpec,

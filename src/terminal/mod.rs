@@ -132,7 +132,7 @@ pub fn quoted_word(text: &str) -> String {
 /// The command that is running, as a shell reads it; a long one is cut off.
 pub fn command_line() -> String {
     const MOST: usize = 200;
-    let words = std::env::args_os().skip(1).map(|word| quoted_word(&word.to_string_lossy()));
+    let words = beltspace::program::words().into_iter().skip(1).map(|word| quoted_word(&word.to_string_lossy()));
     let line = std::iter::once("beltspace".to_owned()).chain(words).collect::<Vec<_>>().join(" ");
     if line.chars().count() > MOST { line.chars().take(MOST).chain(" ...".chars()).collect() } else { line }
 }

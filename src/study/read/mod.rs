@@ -51,7 +51,7 @@ mod value;
 mod weights;
 
 pub(super) use formulas::CurvePoints;
-pub use model_file::{FileKind, file_kind, read_model};
+pub use model_file::{FileKind, file_kind, parse_model, read_model};
 pub(super) use model_file::{ModelText, read_model_text};
 pub(super) use quantities::MOST_OBJECTIVES;
 pub(super) use range::check_levels;

@@ -38,6 +38,16 @@ pub fn read_model(path: &Path) -> Result<Arc<Model>> {
     read_model_text(&Models::new(), source).map_err(|problems| StudyErrors { problems }.into())
 }
 
+/// Checks a model given as text in the form of a model's file. `name` becomes its name, `file` is what messages call the text, and `folder`
+/// what paths of CSV files are relative to; it may be based on any of `models`.
+///
+/// # Errors
+/// Everything that is wrong, in the order of the text.
+pub fn parse_model(models: &Models, name: &str, text: &str, file: &str, folder: &Path) -> std::result::Result<Arc<Model>, StudyErrors> {
+    let source = ModelText { name, text, file, curves: CurvePoints::Folder(folder, "model") };
+    read_model_text(models, source).map_err(|problems| StudyErrors { problems })
+}
+
 /// What a file is, by the keys at its top level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileKind {
