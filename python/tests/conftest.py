@@ -19,7 +19,7 @@ band_count = { from = 6, to = 14 }
 
 [operation]
 ratio = { from = 0.5, to = 2.0, count = 7, spacing = "log" }
-torque_Nm = [50, 150]
+torque_Nm = [40, 100]
 
 [constraints]
 stress_margin = { min = 0 }

@@ -84,8 +84,8 @@ def test_polars_and_back(result: beltspace.Result, study: beltspace.Study) -> No
 def test_duckdb_reads_a_table(result: beltspace.Result) -> None:
     duckdb = pytest.importorskip("duckdb")
     front = result.front.to_pyarrow()
-    least = duckdb.sql("select min(axial_force_upper_N) from front").fetchone()
-    assert front.num_rows > 0 and least == (result.front["axial_force_upper_N"].min(),)
+    least = duckdb.sql("select min(axial_force_upper_N) from front").fetchall()
+    assert front.num_rows > 0 and least == [(result.front["axial_force_upper_N"].min(),)]
 
 
 def test_absent_values_are_nan_in_numpy_and_null_in_arrow() -> None:

@@ -1,7 +1,7 @@
 //! What rows are evaluated by: a model, or a study.
 
 use super::refusal;
-use crate::certify::{self, Column, Row};
+use crate::certify::{self, Column, DesignColumns, Row};
 use crate::error::Result;
 use crate::export::tables::{input_column, of_rows};
 use crate::likeness::remedy;
@@ -11,6 +11,9 @@ use crate::screen::Control;
 use crate::study::{Axis, Constraint, Study};
 use crate::table::{Data, TableColumn};
 use std::sync::Arc;
+
+/// Evaluations from which on recording the formula takes less time than it saves.
+const TOGETHER: u64 = 2000;
 
 /// What rows are evaluated by.
 #[derive(Debug)]
@@ -219,8 +222,12 @@ fn by_study(
     let found = if count == 0 {
         Vec::new()
     } else {
-        let designs: Vec<u64> = (0..count as u64).collect();
-        certify::rows(&Plan::new(own.clone()), columns, &designs, threads, control)?
+        let plan = Plan::new(own.clone());
+        let together = || certify::rows_of_columns(&plan, columns, DesignColumns { inputs: given, values }, threads, control);
+        match (count as u64 * plan.scenarios() >= TOGETHER).then(together).flatten() {
+            Some(rows) => rows?,
+            None => certify::rows(&plan, columns, &(0..count as u64).collect::<Vec<_>>(), threads, control)?,
+        }
     };
     let mut table = of_rows(&own, &|_| Vec::new(), columns, &found, has_words).columns;
     // The rows have no number in the study.

@@ -1,8 +1,8 @@
 //! A model over columns of its inputs: its recorded formula, a chunk of rows at a time.
 
+use super::judge::ColumnJudge;
 use super::{Asked, ResultPart, input_to_si};
-use crate::decision::Decision;
-use crate::models::{Model, Status, holds};
+use crate::models::Model;
 use crate::tape::{CHUNK, ColumnValue, Known, List, ListColumns, Set};
 
 /// Formulas with more operations than this are evaluated one by one: their columns would not fit the caches.
@@ -11,12 +11,8 @@ const MOST_OPERATIONS: usize = 4096;
 /// The formula with what is known of the inputs.
 pub struct RecordedColumns {
     list: List,
-    /// Of each output asked for: the conditions that take it away where they fail.
-    takers: Vec<Vec<usize>>,
+    judge: ColumnJudge,
 }
-
-/// Which rows of a chunk fail a condition.
-type FailedRows = Box<[bool]>;
 
 /// What is known of a column in SI units: its ends, unless a value is no number.
 fn known(model: &Model, input: usize, values: &[f64]) -> Known {
@@ -44,11 +40,8 @@ impl RecordedColumns {
         let whole = formula.whole(&of_inputs, wanted, Set::of(&conditions));
         let results = outputs.iter().map(|&output| whole.outputs[output]).chain(conditions.iter().map(|&it| whole.conditions[it]));
         let list = List::cut(&whole.recording, &results.map(Some).collect::<Vec<_>>());
-        let takes = |condition: usize, output: usize| {
-            model.conditions[condition].invalidates.iter().any(|name| *name == model.outputs[output].name)
-        };
-        let takers = outputs.iter().map(|&output| conditions.iter().copied().filter(|&it| takes(it, output)).collect()).collect();
-        (list.operations.len() <= MOST_OPERATIONS).then_some(Self { list, takers })
+        let judge = ColumnJudge::new(model, outputs, |_| true);
+        (list.operations.len() <= MOST_OPERATIONS).then_some(Self { list, judge })
     }
 
     /// Fills some rows of the result.
@@ -75,57 +68,9 @@ impl RecordedColumns {
             columns.run(list, count, input, |columns, _, _| {
                 let statuses = &mut statuses[start..start + count];
                 let margin = |condition: usize| columns.result(list, wanted.len() + condition);
-                let failed: Vec<Option<FailedRows>> =
-                    (0..model.conditions.len()).map(|condition| failures(model, condition, margin(condition), count)).collect();
-                for (number, (condition, failed)) in model.conditions.iter().zip(&failed).enumerate() {
-                    let Some(failed) = failed.as_ref().filter(|_| !condition.quiet) else { continue };
-                    for (status, _) in statuses.iter_mut().zip(failed).filter(|(status, failed)| **failed && **status == Status::Ok) {
-                        *status = Status::Failed(number);
-                    }
-                }
-                for (place, (column, &output)) in outputs.iter_mut().zip(wanted).enumerate() {
-                    let unit = model.outputs[output].unit;
-                    let column = &mut column[start..start + count];
-                    match columns.result(list, place) {
-                        ColumnValue::One(value) => column.fill(unit.from_si(value)),
-                        ColumnValue::Each(values) => column.iter_mut().zip(values).for_each(|(to, &value)| *to = unit.from_si(value)),
-                    }
-                    let takers: Vec<&FailedRows> = self.takers[place].iter().filter_map(|&it| failed[it].as_ref()).collect();
-                    clear(column, &takers, statuses);
-                }
+                let mut outputs: Vec<&mut [f64]> = outputs.iter_mut().map(|column| &mut column[start..start + count]).collect();
+                self.judge.judge(model, margin, |place| columns.result(list, place), statuses, &mut outputs);
             });
-        }
-    }
-}
-
-/// The rows in which a condition fails; `None` if it holds in all.
-fn failures(model: &Model, condition: usize, margins: ColumnValue<'_>, count: usize) -> Option<FailedRows> {
-    let fails = |margin: f64| holds(model, condition, margin, 0.0) != Decision::Yes;
-    match margins {
-        ColumnValue::One(margin) => fails(margin).then(|| vec![true; count].into()),
-        ColumnValue::Each(margins) => {
-            let strict = model.conditions[condition].strict;
-            // What most rows pass is asked in a way that is quick.
-            let surely = if strict { margins.iter().all(|&it| it > 0.0) } else { margins.iter().all(|&it| it >= 0.0) };
-            (!surely).then(|| margins.iter().map(|&margin| fails(margin)).collect())
-        }
-    }
-}
-
-/// Takes away what has no meaning: values that failed conditions take, and those that overflowed, which is a status of its own where no
-/// condition fails.
-fn clear(column: &mut [f64], takers: &[&FailedRows], statuses: &mut [Status]) {
-    if takers.is_empty() && column.iter().fold(true, |all, value| all & value.is_finite()) {
-        return;
-    }
-    for (row, (value, status)) in column.iter_mut().zip(statuses).enumerate() {
-        if takers.iter().any(|failed| failed[row]) {
-            *value = f64::NAN;
-        } else if !value.is_finite() {
-            *value = f64::NAN;
-            if *status == Status::Ok {
-                *status = Status::Overflow;
-            }
         }
     }
 }

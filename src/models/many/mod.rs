@@ -1,6 +1,7 @@
 //! Many designs of a model, evaluated in f64: operation by operation over columns where the formula can be recorded, else one by one.
 
 mod columns;
+mod judge;
 
 use super::{Evaluation, Model, Status, evaluate, evaluate_asked, input_to_si};
 use crate::error::{Error, Result};
@@ -8,6 +9,7 @@ use crate::likeness::closest;
 use crate::parallel::on_threads;
 use crate::tape::Set;
 use columns::RecordedColumns;
+pub(crate) use judge::ColumnJudge;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Rows that a thread is started for at least.
