@@ -93,7 +93,8 @@ fn exp_m1_of(x: f64) -> f64 {
     let unscaled = r - (r * e - hxs);
     let e = r * (e - c) - c - hxs;
     let power = |k: i32| f64::from_bits(((0x3ff + i64::from(k)) as u64) << 52);
-    let (twopk, uf) = (power(k), power(-k));
+    // Lanes in which this overflows are rare ones, whose value is not kept.
+    let (twopk, uf) = (power(k), power(k.wrapping_neg()));
     let below = 0.5 * (r - e) - 0.5;
     let above = if r < -0.25 { -2.0 * (e - (r + 0.5)) } else { 1.0 + 2.0 * (r - e) };
     let negative = (r - e + 1.0) * twopk - 1.0;

@@ -87,7 +87,7 @@ impl NodeColumns {
             Operation::Root(number) if self.roots.is_some() && serves(list, number) => {
                 let mut roots = self.roots.take();
                 if let Some(roots) = &mut roots {
-                    roots.find(list, number, |node| self.value(node, &each), room);
+                    roots.find(list, number, &|node| self.value(node, &each), room);
                 }
                 self.roots = roots;
             }

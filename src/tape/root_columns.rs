@@ -61,7 +61,7 @@ impl RootColumns {
     }
 
     /// The roots of a chunk; `of` gives what the function reads from outside.
-    pub fn find<'c>(&mut self, list: &List, number: u8, of: impl Fn(Node) -> ColumnValue<'c>, column: &mut [f64]) {
+    pub fn find<'c>(&mut self, list: &List, number: u8, of: &dyn Fn(Node) -> ColumnValue<'c>, column: &mut [f64]) {
         let Self { numbers, lanes } = self;
         let ListRoot { root, inner } = &list.roots[number as usize];
         let (low, high, start) = (of(root.bracket.0), of(root.bracket.1), of(root.start));
@@ -84,7 +84,7 @@ impl RootColumns {
         // What has a number of its own in each lane: what the function reads of that kind, and all that it computes.
         let mut each = vec![false; list.operations.len()];
         differs.iter().chain(inner).chain([&root.argument]).for_each(|&node| each[node as usize] = true);
-        let each = |node: Node| each[node as usize];
+        let each: &dyn Fn(Node) -> bool = &|node| each[node as usize];
         let mut gathered = 0;
         for _ in 0..MOST_STEPS {
             numbers.begin(lanes.len());
