@@ -160,6 +160,24 @@ impl Study {
         inputs.map(|&input| self.study.model.inputs[input].name.as_str()).collect()
     }
 
+    /// What is known of the study before it runs.
+    #[pyo3(signature = (*, threads = None))]
+    fn check<'py>(&self, py: Python<'py>, threads: Option<usize>) -> PyResult<Bound<'py, PyDict>> {
+        let threads = threads.unwrap_or_else(cores);
+        let outlook = supervised(py, || {}, |_| Ok(()), || self.study.outlook(threads))?;
+        let told = PyDict::new(py);
+        told.set_item("designs", outlook.designs)?;
+        told.set_item("scenarios", outlook.scenarios)?;
+        told.set_item("evaluations", outlook.evaluations)?;
+        told.set_item("seconds", outlook.seconds)?;
+        let why = outlook.why_every_design.map_or("bounds, then every design".to_owned(), |why| format!("every design: {why}"));
+        told.set_item("method", why)?;
+        told.set_item("memory_MB", outlook.memory.div_ceil(1_000_000))?;
+        told.set_item("front", outlook.front)?;
+        told.set_item("warnings", outlook.warnings)?;
+        Ok(told)
+    }
+
     /// Judges every design in every scenario.
     #[pyo3(signature = (*, progress = None, threads = None, engine = "auto", method = "auto", adapter = None, feasible = false))]
     #[allow(clippy::too_many_arguments, reason = "each has a name in Python")]

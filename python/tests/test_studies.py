@@ -161,3 +161,13 @@ def test_a_hundred_sweeps_leak_nothing(study: beltspace.Study) -> None:
     grown = resident() - before
     assert len(sums) == 1
     assert grown < 4 << 20, f"100 sweeps left {grown} bytes"
+
+
+def test_a_study_is_checked_without_running(root: Path) -> None:
+    study = beltspace.Study.from_file(root / "studies" / "metal-cvt.toml")
+    told = study.check()
+    assert (told["designs"], told["scenarios"], told["evaluations"]) == (247_599, 434, 247_599 * 434)
+    assert 0.001 < told["seconds"] < 600 and told["memory_MB"] > 0 and told["front"] > 0
+    assert told["method"].startswith(("every design", "bounds"))
+    beyond = study.with_values(strength_MPa=5000).check()["warnings"]
+    assert any("strength_MPa = 5000 lies outside" in it for it in beyond), beyond

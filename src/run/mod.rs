@@ -12,6 +12,7 @@ pub mod judge;
 pub mod method;
 mod options;
 mod outcome;
+mod outlook;
 mod stored;
 
 #[cfg(feature = "pictures")]
@@ -21,4 +22,7 @@ pub use crate::reduce::Extreme;
 pub use crate::screen::Control;
 pub use options::{Engine, Judging, Options};
 pub use outcome::{Counts, Course, Highlights, Limit, Named, Outcome, Spread};
+pub use outlook::Outlook;
+#[doc(hidden)]
+pub use outlook::warnings;
 pub use stored::Stored;

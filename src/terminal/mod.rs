@@ -5,7 +5,7 @@ pub mod report;
 
 use beltspace::error::{Error, Result};
 pub use beltspace::sweep::costs::span;
-pub use beltspace::table::short;
+pub use beltspace::table::{grouped, short};
 use console::Style;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
@@ -77,19 +77,6 @@ pub fn dim(text: &str) -> String {
 /// Width of standard output in characters, if it is a terminal.
 pub fn width() -> Option<usize> {
     std::io::stdout().is_terminal().then(|| usize::from(console::Term::stdout().size().1))
-}
-
-/// A large number in groups of three digits: 20 615 771.
-pub fn grouped(number: u64) -> String {
-    let digits = number.to_string();
-    let mut text = String::new();
-    for (at, digit) in digits.chars().enumerate() {
-        if at > 0 && (digits.len() - at).is_multiple_of(3) && digits.len() > 4 {
-            text.push(' ');
-        }
-        text.push(digit);
-    }
-    text
 }
 
 /// A rate or a size in three digits: 1.23e9 becomes `1.23 G`.
