@@ -14,6 +14,7 @@ mod limits;
 mod quantity;
 mod read;
 mod resolved;
+mod schema;
 mod sensitivity;
 mod sensitivity_flaws;
 mod spectrum;
@@ -38,5 +39,6 @@ pub use resolved::{
 };
 #[doc(hidden)]
 pub use resolved::{worst_end, worst_end_over};
+pub use schema::{study_reference, study_schema};
 pub use sensitivity::{HOLDS, InfluenceOver, SensitivitySpec};
 pub use spectrum::{OverScenarios, Spectrum};

@@ -239,7 +239,7 @@ impl ModelReader<'_> {
                 problems.add(*key_at, format!("{label}: the formula is hidden; drop that, or this line"));
             }
             if let Some(parts) = node.table() {
-                parts.check_keys(problems, &label, &["worst", "symbol", "doc", "source"]);
+                parts.check_keys(problems, &label, super::keys::OUTPUT);
                 *formula = words_of(&parts, problems, &label, std::mem::take(formula));
             } else if let Some(doc) = node.value.as_str() {
                 doc.clone_into(&mut formula.doc);
@@ -274,7 +274,7 @@ impl ModelReader<'_> {
                 problems.add(entry.node.at, format!("{label}: found {found}, wanted {{ margin = \"...\", doc = \"...\" }}"));
                 return None;
             };
-            parts.check_keys(problems, &label, &["margin", "strict", "quiet", "invalidates", "doc"]);
+            parts.check_keys(problems, &label, super::keys::CONDITION);
             let [strict, quiet] = ["strict", "quiet"].map(|key| parts.get(key).and_then(|it| truth(it, problems, &label)).unwrap_or(false));
             let invalidates = parts.get("invalidates").map_or_else(Vec::new, |it| self.names(it, &label, &outputs, formulas));
             if quiet && parts.get("invalidates").is_none() {
