@@ -3,6 +3,10 @@
 //! The reference evaluates every scenario of a design, so it also finds the worst scenario for each column. If it finds a design
 //! infeasible, or its objectives differ from those of the sweep, the program stops.
 
+mod worst_columns;
+
+pub use worst_columns::{DesignColumns, rows_of_columns};
+
 use crate::bounds::yields::{EnclosureProblem, YieldBounds};
 use crate::error::{Error, Result};
 use crate::keys::{KeyRule, Points};

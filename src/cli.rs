@@ -49,6 +49,18 @@ pub enum Command {
     },
     /// Compute the papers' tables and figures again, and say what agrees or differs and why
     Reproduce(ReproduceArgs),
+    /// Print the form of study files for editors, as JSON Schema
+    Schema {
+        /// Print every key as a page in Markdown instead
+        #[arg(long)]
+        markdown: bool,
+    },
+    /// Print the man page, or write one per command into a directory
+    Man {
+        /// Directory for the pages of all commands
+        #[arg(value_name = "DIR")]
+        dir: Option<PathBuf>,
+    },
     /// Print a completion script for a shell
     Completions {
         /// Shell

@@ -63,6 +63,9 @@
 //!
 //! These modules are public for the program and its tests only: they are not shown here, and may change with every version.
 
+// The program is written as a user of the library.
+extern crate self as beltspace;
+
 #[doc(hidden)]
 pub mod batch;
 #[doc(hidden)]
@@ -71,6 +74,10 @@ pub mod bounds;
 pub mod certify;
 #[doc(hidden)]
 pub mod checkpoint;
+#[cfg(feature = "cli")]
+mod cli;
+#[cfg(feature = "cli")]
+mod commands;
 #[doc(hidden)]
 pub mod contours;
 mod decimal;
@@ -114,6 +121,9 @@ pub mod pictures;
 #[doc(hidden)]
 pub mod plan;
 pub mod probability;
+#[cfg(feature = "cli")]
+#[doc(hidden)]
+pub mod program;
 #[doc(hidden)]
 pub mod pulley;
 #[cfg(feature = "pictures")]
@@ -140,6 +150,8 @@ pub mod sweep;
 #[doc(hidden)]
 pub mod table;
 pub mod tape;
+#[cfg(feature = "cli")]
+mod terminal;
 #[doc(hidden)]
 pub mod tiles;
 pub mod units;

@@ -2,9 +2,11 @@
 //!
 //! Rows are read, evaluated on every core and written block by block, so that no table is too long.
 
+mod columns;
 mod rows;
 mod target;
 
+pub use columns::{ColumnCells, GivenColumns};
 pub use rows::{RawBlock, RowCell, RowReader};
 pub use target::BatchTarget;
 

@@ -1,17 +1,19 @@
 //! What rows are evaluated by: a model, or a study.
 
 use super::refusal;
-use crate::certify::{self, Column, Row};
+use crate::certify::{self, Column, DesignColumns, Row};
 use crate::error::Result;
 use crate::export::tables::{input_column, of_rows};
 use crate::likeness::remedy;
-use crate::models::{Evaluation, Model, evaluate};
-use crate::parallel::on_threads;
+use crate::models::{EvaluatedColumns, ManyOptions, Model, evaluate_columns};
 use crate::plan::Plan;
 use crate::screen::Control;
 use crate::study::{Axis, Constraint, Study};
 use crate::table::{Data, TableColumn};
 use std::sync::Arc;
+
+/// Evaluations from which on recording the formula takes less time than it saves.
+const TOGETHER: u64 = 2000;
 
 /// What rows are evaluated by.
 #[derive(Debug)]
@@ -112,13 +114,34 @@ impl BatchTarget {
     ) -> Result<RowColumns> {
         self.refuse_replaced(given, values)?;
         match &self.kind {
-            BatchKind::Model(inputs) => Ok(self.by_model(inputs, given, values, has_words, threads)),
-            BatchKind::Study(study, columns) => by_study(study, columns, given, values, has_words, threads),
+            BatchKind::Model(inputs) => self.by_model(inputs, given, values, has_words, threads),
+            BatchKind::Study(..) => self.by_study(given, values, has_words, threads, &Control::default()),
         }
     }
 
+    /// Values of the inputs that have no column, if this is a model.
+    pub(super) fn base(&self) -> Option<&[f64]> {
+        match &self.kind {
+            BatchKind::Model(inputs) => Some(inputs),
+            BatchKind::Study(..) => None,
+        }
+    }
+
+    /// The worst of rows over the scenarios of the study that this must be.
+    pub(super) fn by_study(
+        &self,
+        given: &[usize],
+        values: &[Vec<f64>],
+        has_words: &dyn Fn(usize) -> bool,
+        threads: usize,
+        control: &Control,
+    ) -> Result<RowColumns> {
+        let BatchKind::Study(study, columns) = &self.kind else { panic!("this is a model, no study") };
+        by_study(study, columns, given, values, has_words, threads, control)
+    }
+
     /// Refuses rows that give an input although a number of another one takes its place.
-    fn refuse_replaced(&self, given: &[usize], values: &[Vec<f64>]) -> Result<()> {
+    pub(super) fn refuse_replaced(&self, given: &[usize], values: &[Vec<f64>]) -> Result<()> {
         let model = &self.model;
         let fixed = match &self.kind {
             BatchKind::Model(inputs) => inputs,
@@ -152,29 +175,26 @@ impl BatchTarget {
         values: &[Vec<f64>],
         has_words: &dyn Fn(usize) -> bool,
         threads: usize,
-    ) -> RowColumns {
+    ) -> Result<RowColumns> {
         let model = &self.model;
-        let rows = values[0].len();
-        let evaluated = |rows: std::ops::Range<usize>| -> Vec<Evaluation> {
-            let mut inputs = base.to_vec();
-            let row = |row: usize| {
-                given.iter().zip(values).for_each(|(&input, values)| inputs[input] = values[row]);
-                evaluate(model, &inputs)
-            };
-            rows.map(row).collect()
-        };
-        let share = rows.div_ceil(threads.max(1)).max(1);
-        let parts = on_threads((0..rows).step_by(share).map(|first| first..rows.min(first + share)), evaluated);
-        let evaluations: Vec<Evaluation> = parts.into_iter().flatten().collect();
+        let names = given.iter().map(|&input| model.inputs[input].name.as_str());
+        let columns: Vec<(&str, &[f64])> = names.zip(values.iter().map(Vec::as_slice)).collect();
+        let options = ManyOptions::default().inputs(base).threads(threads);
+        let EvaluatedColumns { statuses, outputs } = evaluate_columns(model, &columns, &options)?;
         let inputs =
             given.iter().zip(values).map(|(&input, values)| input_column(&model.inputs[input], values.iter().copied(), has_words(input)));
-        let outputs = model.outputs.iter().enumerate().map(|(number, output)| TableColumn {
+        let columns = model.outputs.iter().enumerate().map(|(number, output)| TableColumn {
             unit: output.unit.symbol.to_owned(),
-            ..TableColumn::new(&output.name, "output", &output.doc, Data::Number(evaluations.iter().map(|it| it.outputs[number]).collect()))
+            ..TableColumn::new(
+                &output.name,
+                "output",
+                &output.doc,
+                Data::Number(outputs[number].iter().map(|&value| (!value.is_nan()).then_some(value)).collect()),
+            )
         });
-        let status = evaluations.iter().map(|it| it.status.reason(model).to_owned());
-        let results = outputs.chain([status_column("Is it ok, and if not, why?", status)]).collect();
-        (inputs.collect(), results)
+        let status = statuses.iter().map(|it| it.reason(model).to_owned());
+        let results = columns.chain([status_column("Is it ok, and if not, why?", status)]).collect();
+        Ok((inputs.collect(), results))
     }
 }
 
@@ -190,6 +210,7 @@ fn by_study(
     values: &[Vec<f64>],
     has_words: &dyn Fn(usize) -> bool,
     threads: usize,
+    control: &Control,
 ) -> Result<RowColumns> {
     let model = &study.model;
     let count = values[0].len();
@@ -201,8 +222,12 @@ fn by_study(
     let found = if count == 0 {
         Vec::new()
     } else {
-        let designs: Vec<u64> = (0..count as u64).collect();
-        certify::rows(&Plan::new(own.clone()), columns, &designs, threads, &Control::default())?
+        let plan = Plan::new(own.clone());
+        let together = || certify::rows_of_columns(&plan, columns, DesignColumns { inputs: given, values }, threads, control);
+        match (count as u64 * plan.scenarios() >= TOGETHER).then(together).flatten() {
+            Some(rows) => rows?,
+            None => certify::rows(&plan, columns, &(0..count as u64).collect::<Vec<_>>(), threads, control)?,
+        }
     };
     let mut table = of_rows(&own, &|_| Vec::new(), columns, &found, has_words).columns;
     // The rows have no number in the study.

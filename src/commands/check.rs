@@ -5,9 +5,9 @@ use crate::cli;
 use crate::terminal::{self, TextGrid, bold, grouped, scaled, span};
 use beltspace::error::{Error, Result};
 use beltspace::memory::{Needs, large_files, most_feasible};
-use beltspace::models::Set;
 use beltspace::plan::Plan;
 use beltspace::reduce::FEASIBLE_FILE;
+use beltspace::run::warnings;
 use beltspace::study::{Axis, StudyEdits};
 use beltspace::sweep::costs::{PATIENCE, Speed, why_every_design};
 use beltspace::sweep::{BoundsTrial, try_bounds};
@@ -17,10 +17,6 @@ use std::time::Duration;
 const TRIAL: Duration = Duration::from_millis(300);
 /// And how long bounds are tried, where the sweep would begin by them.
 const TRIAL_OF_BOUNDS: Duration = Duration::from_millis(1500);
-
-/// Designs, and scenarios of each, in which contradictions of the inputs are looked for.
-const DOUBTED_DESIGNS: u64 = 4096;
-const DOUBTED_SCENARIOS: u64 = 4;
 
 pub fn run(request: &cli::CheckArgs) -> Result<()> {
     let (study, _) = read_study_with(&request.study, StudyEdits { set: &request.set, feasible: request.feasible })?;
@@ -99,7 +95,7 @@ pub fn run(request: &cli::CheckArgs) -> Result<()> {
         text.push_str(&format!("{}\n", formulas.indented(2)));
     }
     text.push_str(&facts.indented(0));
-    for warning in warnings(&plan, &name) {
+    for warning in warnings(&plan) {
         text.push_str(&format!("{} {warning}\n", bold("warning:")));
     }
     terminal::print(&text)
@@ -143,63 +139,4 @@ fn ends(plan: &Plan, axis: &Axis, column: usize, input: usize) -> String {
     }
     let (low, high) = axis.ends(column);
     if low == high { text(low) } else { format!("{} to {}", text(low), text(high)) }
-}
-
-fn warnings(plan: &Plan, name: &impl Fn(&Axis) -> String) -> Vec<String> {
-    let study = &plan.study;
-    let mut warnings = study.left_out.clone();
-    for axis in plan.inert_axes() {
-        let axis = &study.design[axis];
-        warnings.push(format!(
-            "{} changes nothing that the study asks for: its {} levels only multiply the work and add equal designs",
-            name(axis),
-            grouped(axis.count())
-        ));
-    }
-    let roles = study.design.iter().chain(&study.operation).chain(&study.uncertainty);
-    let mut set = Set::EMPTY;
-    for axis in roles {
-        for (column, &input) in axis.inputs().iter().enumerate() {
-            set.insert(input);
-            unusual(plan, input, axis.ends(column), &mut warnings);
-        }
-    }
-    for (input, &value) in study.fixed.iter().enumerate().filter(|&(input, _)| !set.contains(input)) {
-        unusual(plan, input, (value, value), &mut warnings);
-    }
-    let known = |input: usize| (!set.contains(input)).then_some(study.fixed[input]);
-    let is_set = |input: &usize| known(*input) != Some(study.model.inputs[*input].default);
-    warnings.extend((0..study.fixed.len()).filter(is_set).filter_map(|input| study.model.unread(input, known)));
-    warnings.extend(draws::warnings(study));
-    warnings.extend(contradiction(plan));
-    if study.constraints.is_empty() {
-        warnings.push(match study.probability {
-            None => "there are no constraints: every design with status ok is feasible".to_owned(),
-            Some(_) => "no yield is asked for in [constraints]: a design is feasible even if no draw of it holds".to_owned(),
-        });
-    }
-    warnings
-}
-
-/// Inputs that contradict each other, in the first design of those looked at where they do.
-fn contradiction(plan: &Plan) -> Option<String> {
-    let (designs, scenarios) = (plan.space.designs.coarse(DOUBTED_DESIGNS), plan.space.scenarios.coarse(DOUBTED_SCENARIOS));
-    let mut found = designs.iter().filter_map(|&design| {
-        let doubts = |&scenario: &u64| plan.study.model.doubts_on(&plan.space.inputs(design, scenario));
-        scenarios.iter().find_map(|scenario| doubts(scenario).into_iter().next()).map(|doubt| (design, doubt))
-    });
-    let (design, doubt) = found.next()?;
-    let others = found.count();
-    let more = if others == 0 { String::new() } else { format!(" and {} more", grouped(others as u64)) };
-    Some(format!("{doubt} (design {design}{more}, of {} looked at)", grouped(designs.len() as u64)))
-}
-
-fn unusual(plan: &Plan, input: usize, (low, high): (f64, f64), warnings: &mut Vec<String>) {
-    let table = &plan.study.model.inputs[input];
-    let outside = |value: f64| table.word_for(value).is_none() && !(table.usual.0..=table.usual.1).contains(&value);
-    if outside(low) || outside(high) {
-        let value = if low == high { terminal::short(low) } else { format!("{} to {}", terminal::short(low), terminal::short(high)) };
-        warnings
-            .push(format!("{} = {value} lies outside {} to {}, which the model's source covers", table.name, table.usual.0, table.usual.1));
-    }
 }

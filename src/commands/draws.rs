@@ -7,14 +7,12 @@ use beltspace::error::{Error, Result};
 use beltspace::files::{MOVE, refuse_foreign, replace};
 use beltspace::plan::Plan;
 use beltspace::probability::{Effect, Enclosure, pearson, spearman};
-use beltspace::study::{Axis, Constraint, Probability, StatisticKind, Study, UncertainInput};
+use beltspace::study::{Axis, Probability, Study, UncertainInput};
 use beltspace::table::{Data, Table, TableColumn, csv_text};
 use std::path::Path;
 
 /// Most draws that correlations are shown of.
 const SHOWN: u64 = 1 << 16;
-/// Draws of which this many are expected to miss the wanted yield tell little of it.
-const FEW: f64 = 10.0;
 
 /// A mean that is this small beside the standard deviation is what rounding leaves of zero.
 const ROUNDING: f64 = 1e-12;
@@ -65,27 +63,6 @@ pub fn facts(probability: &Probability, mut fact: impl FnMut(&str, String)) -> R
         }
     }
     Ok(())
-}
-
-/// Wanted yields of which so few draws tell little.
-pub fn warnings(study: &Study) -> Vec<String> {
-    let Some(probability) = &study.probability else { return Vec::new() };
-    let warning = |constraint: &Constraint| {
-        let name = constraint.name(&study.model);
-        let kind = probability.statistics[constraint.quantity.output()?].kind;
-        let wanted = constraint.low.map(|it| it.0).filter(|_| matches!(kind, StatisticKind::Yield | StatisticKind::YieldOf(_)))?;
-        let misses = probability.draws as f64 * (1.0 - wanted);
-        if wanted >= 1.0 || misses >= FEW {
-            return None;
-        }
-        let draws = grouped((FEW / (1.0 - wanted)).ceil() as u64);
-        Some(format!(
-            "{name} at least {wanted}: only {} of {} draws may miss it, which tells little; use {draws} draws or more",
-            short(misses.floor()),
-            grouped(probability.draws)
-        ))
-    };
-    study.constraints.iter().filter_map(warning).collect()
 }
 
 /// Writes the draws that choose designs as CSV, replacing such a file only.

@@ -8,6 +8,7 @@ mod draws;
 mod engine;
 mod eval;
 mod export;
+mod man;
 mod merge;
 mod models;
 mod report;
@@ -47,6 +48,9 @@ pub fn run(command: Command) -> Result<()> {
         Command::Reproduce(request) => reproduce::run(&request),
         #[cfg(feature = "gpu")]
         Command::Adapters { json } => adapters::run(json),
+        Command::Schema { markdown: true } => terminal::print(&beltspace::study::study_reference()),
+        Command::Schema { markdown: false } => terminal::print(&format!("{:#}\n", beltspace::study::study_schema())),
+        Command::Man { dir } => man::run(dir.as_deref()),
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "beltspace", &mut script);

@@ -18,6 +18,8 @@ mod tests;
 
 pub use confirmed::Confirmed;
 pub use drawn_tally::DrawnTally;
+#[cfg(feature = "pictures")]
+pub use pictures::FrontPicture;
 pub use summary::{Knee, MethodRecord, RunRecord, Summary};
 
 use crate::certify::{self, Column, Row};
@@ -127,7 +129,9 @@ impl<'p> Certified<'p> {
             #[cfg(feature = "parquet")]
             put("front.parquet", Part::Bytes(parquet::write(&table)?))?;
             #[cfg(feature = "pictures")]
-            put("front.svg", svg(pictures::front(self)))?;
+            if let Some(picture) = FrontPicture::new(self).svg() {
+                put("front.svg", svg(picture))?;
+            }
         }
         let table = |place: usize| tables::designs(self, &self.named[place]);
         self.state.reported.write(self.plan, threads, &table, &mut |name, bytes| put(name, Part::Bytes(bytes)))?;

@@ -45,7 +45,8 @@ pub use formula::{Columns, Dependencies, Footprint, Formula, Kernel, Scratch, Si
 pub use known::Models;
 pub(crate) use known::is_name;
 pub use latest::{Evaluator, Latest};
-pub use many::{Evaluations, evaluate_many};
+pub(crate) use many::ColumnJudge;
+pub use many::{EvaluatedColumns, Evaluations, ManyOptions, evaluate_columns, evaluate_many};
 pub use model::{AlongTheBelt, Doubts, Model, Notes, PulleyOf, Remarks};
 pub use pulley::CHECK_POINT_STRESSES;
 pub(crate) use source::{ConditionSource, CurveSource, Extension, FileSource, FormulaSource};

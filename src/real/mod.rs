@@ -10,6 +10,7 @@ mod float;
 pub mod functions;
 mod lanes;
 mod loops;
+pub(crate) mod wide;
 
 pub use functions::FUNCTION_ULP;
 pub use lanes::{LANES, Lanes};

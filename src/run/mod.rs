@@ -12,11 +12,17 @@ pub mod judge;
 pub mod method;
 mod options;
 mod outcome;
+mod outlook;
 mod stored;
 
+#[cfg(feature = "pictures")]
+pub use crate::export::FrontPicture;
 pub use crate::export::Knee;
 pub use crate::reduce::Extreme;
 pub use crate::screen::Control;
 pub use options::{Engine, Judging, Options};
 pub use outcome::{Counts, Course, Highlights, Limit, Named, Outcome, Spread};
+pub use outlook::Outlook;
+#[doc(hidden)]
+pub use outlook::warnings;
 pub use stored::Stored;

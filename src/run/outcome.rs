@@ -5,6 +5,8 @@ use super::judge::{How, Judged, judge, record_of};
 use super::{Engine, Options, method};
 use crate::contours::contours as lines_over;
 use crate::error::Result;
+#[cfg(feature = "pictures")]
+use crate::export::FrontPicture;
 use crate::export::{Certified, Knee, Summary, feasible, tables};
 use crate::models::OVERFLOW;
 use crate::parallel::to_be_had;
@@ -47,6 +49,11 @@ pub struct Outcome {
     pub contours: Vec<(String, Table)>,
     /// Highlights.
     pub summary: Highlights,
+    /// The same in more detail: the text of `summary.json`, one JSON object.
+    pub summary_json: String,
+    /// The front over its objectives, as `front.svg` shows it.
+    #[cfg(feature = "pictures")]
+    pub front_picture: FrontPicture,
     /// How the designs were judged.
     pub course: Course,
 }
@@ -202,6 +209,9 @@ impl Outcome {
                 of_maps.iter().cloned().zip(cells).collect()
             },
             summary: Highlights::new(certified),
+            summary_json: format!("{:#}\n", Summary::new(certified).to_json()),
+            #[cfg(feature = "pictures")]
+            front_picture: FrontPicture::new(certified),
             course,
             study: study.clone(),
         })

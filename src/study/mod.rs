@@ -14,6 +14,7 @@ mod limits;
 mod quantity;
 mod read;
 mod resolved;
+mod schema;
 mod sensitivity;
 mod sensitivity_flaws;
 mod spectrum;
@@ -31,12 +32,13 @@ pub use quantity::Quantity;
 pub use read::StudyEdits;
 #[cfg(test)]
 pub(crate) use read::tests::study_of;
-pub use read::{FileKind, Problem, StudyErrors, file_kind, read_model};
+pub use read::{FileKind, Problem, StudyErrors, file_kind, parse_model, read_model};
 pub(crate) use read::{input_text, input_value_checked};
 pub use resolved::{
     Best, Constraint, ContourSpec, Goal, HistogramSpec, MapSpec, Objective, Report, ReportColumn, SampleSpec, Study, Thresholds, TopSpec,
 };
 #[doc(hidden)]
 pub use resolved::{worst_end, worst_end_over};
+pub use schema::{study_reference, study_schema};
 pub use sensitivity::{HOLDS, InfluenceOver, SensitivitySpec};
 pub use spectrum::{OverScenarios, Spectrum};

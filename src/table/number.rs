@@ -7,3 +7,16 @@ use crate::models::Input;
 pub fn written(input: &Input, value: f64) -> String {
     input.word_for(value).map_or_else(|| plain(value), str::to_owned)
 }
+
+/// A large number in groups of three digits: 20 615 771.
+pub fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (at, digit) in digits.chars().enumerate() {
+        if at > 0 && (digits.len() - at).is_multiple_of(3) && digits.len() > 4 {
+            text.push(' ');
+        }
+        text.push(digit);
+    }
+    text
+}

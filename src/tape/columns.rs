@@ -1,7 +1,8 @@
 //! A list in f64 over many designs at once, operation by operation: the same bits as the formula itself.
 
+use super::root_columns::{RootColumns, serves};
 use super::{Binary, List, Node, Operation, Unary};
-use crate::real::Real;
+use crate::real::{Real, wide};
 use multiversion::multiversion;
 
 /// Most designs in a chunk: a column fits the first-level cache.
@@ -36,13 +37,21 @@ pub struct NodeColumns {
     pub slots: Vec<f64>,
     columns: Vec<Vec<f64>>,
     count: usize,
+    /// Where roots are found; none while they are, as none stands within another.
+    roots: Option<Box<RootColumns>>,
 }
 
 impl NodeColumns {
     /// Room for a list.
     pub fn new(list: &List) -> Self {
+        let roots = (!list.roots.is_empty()).then(|| Box::new(RootColumns::new(list)));
+        Self { roots, ..Self::plain(list) }
+    }
+
+    /// The same where no root is found.
+    pub(super) fn plain(list: &List) -> Self {
         let operations = list.operations.len();
-        Self { slots: vec![0.0; operations], columns: vec![Vec::new(); operations], count: 0 }
+        Self { slots: vec![0.0; operations], columns: vec![Vec::new(); operations], count: 0, roots: None }
     }
 
     /// Begins a chunk of that many designs, at most [`CHUNK`].
@@ -73,10 +82,14 @@ impl NodeColumns {
             Operation::Unary(operation, a) => unary(operation, of(a), room),
             Operation::Binary(operation, a, b) => binary(operation, of(a), of(b), room),
             Operation::Select(margin, a, b) => {
-                let (margin, a, b) = (of(margin), of(a), of(b));
-                for (lane, it) in room.iter_mut().enumerate() {
-                    *it = f64::select(margin.at(lane), a.at(lane), b.at(lane));
+                select(of(margin), of(a), of(b), room);
+            }
+            Operation::Root(number) if self.roots.is_some() && serves(list, number) => {
+                let mut roots = self.roots.take();
+                if let Some(roots) = &mut roots {
+                    roots.find(list, number, &|node| self.value(node, &each), room);
                 }
+                self.roots = roots;
             }
             Operation::Root(number) => {
                 let mut reads = Vec::new();
@@ -95,11 +108,38 @@ impl NodeColumns {
     }
 }
 
+fn select(margin: ColumnValue<'_>, a: ColumnValue<'_>, b: ColumnValue<'_>, column: &mut [f64]) {
+    match (margin, a, b) {
+        (ColumnValue::One(margin), a, b) => match if margin >= 0.0 { a } else { b } {
+            ColumnValue::One(value) => column.fill(value),
+            ColumnValue::Each(values) => column.copy_from_slice(values),
+        },
+        (ColumnValue::Each(margin), ColumnValue::Each(a), ColumnValue::Each(b)) => selected(margin, a, b, column),
+        (ColumnValue::Each(margin), a, b) => {
+            for (lane, it) in column.iter_mut().enumerate() {
+                *it = f64::select(margin[lane], a.at(lane), b.at(lane));
+            }
+        }
+    }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+fn selected(margin: &[f64], a: &[f64], b: &[f64], column: &mut [f64]) {
+    column.iter_mut().zip(margin).zip(a).zip(b).for_each(|(((it, &margin), &a), &b)| *it = f64::select(margin, a, b));
+}
+
 fn unary(operation: Unary, a: ColumnValue<'_>, column: &mut [f64]) {
     let ColumnValue::Each(a) = a else { return column.fill(operation.of(a.at(0))) };
     match operation {
         Unary::Neg => negated(a, column),
+        Unary::Abs => magnitudes(a, column),
+        Unary::Scale(power) => scaled(a, power, column),
         Unary::Sqrt => roots(a, column),
+        Unary::ExpM1 => wide::exp_m1(a, column),
+        Unary::Ln1p => wide::ln_1p(a, column),
+        Unary::Sin => wide::sin(a, column),
+        Unary::Cos => wide::cos(a, column),
+        Unary::Asin => wide::asin(a, column),
         _ => column.iter_mut().zip(a).for_each(|(it, &a)| *it = operation.of(a)),
     }
 }
@@ -107,6 +147,16 @@ fn unary(operation: Unary, a: ColumnValue<'_>, column: &mut [f64]) {
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
 fn negated(a: &[f64], column: &mut [f64]) {
     column.iter_mut().zip(a).for_each(|(it, &a)| *it = -a);
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+fn magnitudes(a: &[f64], column: &mut [f64]) {
+    column.iter_mut().zip(a).for_each(|(it, &a)| *it = a.abs());
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+fn scaled(a: &[f64], power: i16, column: &mut [f64]) {
+    column.iter_mut().zip(a).for_each(|(it, &a)| *it = Real::scaled(a, power));
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]

@@ -15,6 +15,7 @@ mod list;
 mod list_columns;
 mod record;
 mod rolled;
+mod root_columns;
 mod set;
 mod settled;
 mod stages;

@@ -5,7 +5,7 @@ pub mod report;
 
 use beltspace::error::{Error, Result};
 pub use beltspace::sweep::costs::span;
-pub use beltspace::table::short;
+pub use beltspace::table::{grouped, short};
 use console::Style;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
@@ -79,19 +79,6 @@ pub fn width() -> Option<usize> {
     std::io::stdout().is_terminal().then(|| usize::from(console::Term::stdout().size().1))
 }
 
-/// A large number in groups of three digits: 20 615 771.
-pub fn grouped(number: u64) -> String {
-    let digits = number.to_string();
-    let mut text = String::new();
-    for (at, digit) in digits.chars().enumerate() {
-        if at > 0 && (digits.len() - at).is_multiple_of(3) && digits.len() > 4 {
-            text.push(' ');
-        }
-        text.push(digit);
-    }
-    text
-}
-
 /// A rate or a size in three digits: 1.23e9 becomes `1.23 G`.
 pub fn scaled(value: f64) -> String {
     let prefixes = [(1e12, " T"), (1e9, " G"), (1e6, " M"), (1e3, " k")];
@@ -132,7 +119,7 @@ pub fn quoted_word(text: &str) -> String {
 /// The command that is running, as a shell reads it; a long one is cut off.
 pub fn command_line() -> String {
     const MOST: usize = 200;
-    let words = std::env::args_os().skip(1).map(|word| quoted_word(&word.to_string_lossy()));
+    let words = beltspace::program::words().into_iter().skip(1).map(|word| quoted_word(&word.to_string_lossy()));
     let line = std::iter::once("beltspace".to_owned()).chain(words).collect::<Vec<_>>().join(" ");
     if line.chars().count() > MOST { line.chars().take(MOST).chain(" ...".chars()).collect() } else { line }
 }

@@ -229,7 +229,7 @@ fn one_line(option: &str) -> Result<String> {
 /// The path of beltspace on the nodes. A name without a directory is kept, for the nodes to find in their PATH.
 fn program(asked: Option<&Path>) -> Result<PathBuf> {
     match asked {
-        None => std::env::current_exe()
+        None => beltspace::program::path()
             .map_err(|error| Error::Request(format!("cannot find the path of this program ({error}); give it with --program"))),
         Some(name) if name.components().count() == 1 => Ok(name.to_owned()),
         Some(path) => absolute(path),

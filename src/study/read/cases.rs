@@ -275,7 +275,7 @@ impl Reader<'_> {
     fn csv(&self, place: CasesPlace<'_>, table: &TomlTable<'_>, label: &str) -> Option<Axis> {
         let problems = self.problems;
         let before = problems.count();
-        let known = table.check_keys(problems, label, &["csv", "unused"]);
+        let known = table.check_keys(problems, label, super::keys::CSV_ROWS);
         // A key that is wrong is told once, and not again by every column that it was meant for.
         let leaves_out = table.get("unused").map(|entry| choice(entry, problems, label, &[("ok", ())])).is_some() || !known;
         let Some(entry) = table.get("csv") else {

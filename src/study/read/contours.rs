@@ -97,7 +97,7 @@ impl Reader<'_> {
 
     /// `{ of, at }`.
     fn contours_of_table(&self, node: TomlNode<'_>, table: &TomlTable<'_>, plane: &Plane<'_>, asked: &mut Vec<ContourSpec>) {
-        table.check_keys(self.problems, LABEL, &["of", "at"]);
+        table.check_keys(self.problems, LABEL, super::keys::CONTOURS);
         let Some(of) = table.get("of") else {
             let example = format!("{{ of = \"{}\", at = [0.1] }}", self.some_output());
             self.problems.add(table.at, format!("{LABEL}: \"of\" is missing; write {example}"));

@@ -112,7 +112,7 @@ impl Reader<'_> {
         let before = problems.count();
         let part = |key: &str| table.and_then(|table| table.get(key));
         if let Some(table) = table {
-            table.check_keys(problems, label, &["draws", "confirm", "seed", "method", "correlation", "enclosure"]);
+            table.check_keys(problems, label, super::keys::PROBABILITY);
         }
         let count = |key: &str, (default, most): (u64, u64)| part(key).map_or(Some(default), |it| whole(it, problems, label, 1, most));
         let (draws, confirm) = (count("draws", DRAWS), count("confirm", CONFIRM));
@@ -289,7 +289,7 @@ impl<'r, 'a> Asks<'r, 'a> {
             let words = [("mean", OverDraws::Mean), ("sd", OverDraws::Sd), ("worst", OverDraws::Worst)];
             return choice(entry, problems, label, &words);
         };
-        table.check_keys(problems, label, &["quantile"]);
+        table.check_keys(problems, label, super::keys::QUANTILE);
         let Some(share) = table.get("quantile") else {
             problems.add(table.at, format!("{label}: {OVER_DRAWS}: \"quantile\" is missing; write {{ quantile = 0.95 }}"));
             return None;

@@ -117,7 +117,7 @@ pub(super) fn read_formulas(top: &TomlTable<'_>, problems: &Problems<'_>, places
         let Some(parts) = entry.node.table() else {
             return Some(FormulaSource::plain(entry.key, formula_text(entry.node, problems, &label, places)?));
         };
-        parts.check_keys(problems, &label, &["is", "worst", "integer", "hidden", "symbol", "doc", "source"]);
+        parts.check_keys(problems, &label, super::keys::FORMULA);
         let Some(is) = parts.get("is") else {
             problems.add_if_complete(parts.at, format!("{label}: \"is\" is missing; write {{ is = \"...\", doc = \"...\" }}"));
             return None;
@@ -166,7 +166,7 @@ pub(super) fn read_curves(
             problems.add(entry.node.at, format!("{label}: found {found}, wanted {{ csv = \"file.csv\", x = \"...\", y = \"...\" }}"));
             return None;
         };
-        parts.check_keys(problems, &label, &["csv", "x", "y"]);
+        parts.check_keys(problems, &label, super::keys::CURVE);
         let part = |key: &str| {
             let Some(entry) = parts.get(key) else {
                 problems.add(parts.at, format!("{label}: \"{key}\" is missing; write {{ csv = \"file.csv\", x = \"...\", y = \"...\" }}"));

@@ -11,7 +11,7 @@ use crate::probability::Effect;
 use crate::units::{NONE, Unit};
 
 /// The distributions as they are written.
-const LAWS: [&str; 10] =
+pub(in super::super) const LAWS: [&str; 10] =
     ["uniform", "normal", "lognormal", "triangular", "beta", "weibull", "gumbel", "exponential", "discrete", "empirical"];
 /// What a drawn number may do to what the design says.
 const EFFECTS: [(&str, Effect); 2] = [("times", Effect::Times), ("plus", Effect::Plus)];
@@ -199,7 +199,7 @@ impl Reader<'_> {
         }
         let example = "a list of values, or { csv = \"file.csv\", column = \"...\" }";
         let table = self.table_of_law(entry, label, example)?;
-        table.check_keys(self.problems, label, &["csv", "column"]);
+        table.check_keys(self.problems, label, super::keys::MEASURED);
         let (Some(file), Some(column)) = (table.get("csv"), table.get("column")) else {
             self.problems.add(table.at, format!("{label}: wanted {example}"));
             return None;

@@ -30,6 +30,7 @@ mod contours;
 mod csv_file;
 mod drawn;
 mod formulas;
+pub(super) mod keys;
 mod labels;
 mod law;
 mod model_file;
@@ -51,7 +52,8 @@ mod value;
 mod weights;
 
 pub(super) use formulas::CurvePoints;
-pub use model_file::{FileKind, file_kind, read_model};
+pub(super) use law::LAWS;
+pub use model_file::{FileKind, file_kind, parse_model, read_model};
 pub(super) use model_file::{ModelText, read_model_text};
 pub(super) use quantities::MOST_OBJECTIVES;
 pub(super) use range::check_levels;
@@ -83,7 +85,7 @@ pub(super) const MOST_LEVELS: u64 = 1 << 53;
 /// Most scenarios of a study.
 pub(super) const MOST_SCENARIOS: u64 = 1 << 32;
 /// Keys and tables at the top level of a study file.
-const TOP_LEVEL: &[&str] = &[
+pub(super) const TOP_LEVEL: &[&str] = &[
     "model",
     "preset",
     "title",
@@ -455,7 +457,7 @@ fn choice<T: Copy>(entry: &Entry<'_>, problems: &Problems<'_>, what: &str, choic
 /// The `[sample]` table.
 fn read_sample(table: &TomlTable<'_>, problems: &Problems<'_>) -> Option<Sample> {
     let methods = [("sobol", Method::Sobol), ("latin-hypercube", Method::LatinHypercube), ("random", Method::Random)];
-    table.check_keys(problems, "[sample]", &["method", "count", "seed"]);
+    table.check_keys(problems, "[sample]", keys::SAMPLE);
     let needed = |key: &str, example: &str| {
         let entry = table.get(key);
         if entry.is_none() {

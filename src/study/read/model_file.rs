@@ -38,6 +38,16 @@ pub fn read_model(path: &Path) -> Result<Arc<Model>> {
     read_model_text(&Models::new(), source).map_err(|problems| StudyErrors { problems }.into())
 }
 
+/// Checks a model given as text in the form of a model's file. `name` becomes its name, `file` is what messages call the text, and `folder`
+/// what paths of CSV files are relative to; it may be based on any of `models`.
+///
+/// # Errors
+/// Everything that is wrong, in the order of the text.
+pub fn parse_model(models: &Models, name: &str, text: &str, file: &str, folder: &Path) -> std::result::Result<Arc<Model>, StudyErrors> {
+    let source = ModelText { name, text, file, curves: CurvePoints::Folder(folder, "model") };
+    read_model_text(models, source).map_err(|problems| StudyErrors { problems })
+}
+
 /// What a file is, by the keys at its top level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileKind {
@@ -229,7 +239,7 @@ impl ModelReader<'_> {
                 problems.add(*key_at, format!("{label}: the formula is hidden; drop that, or this line"));
             }
             if let Some(parts) = node.table() {
-                parts.check_keys(problems, &label, &["worst", "symbol", "doc", "source"]);
+                parts.check_keys(problems, &label, super::keys::OUTPUT);
                 *formula = words_of(&parts, problems, &label, std::mem::take(formula));
             } else if let Some(doc) = node.value.as_str() {
                 doc.clone_into(&mut formula.doc);
@@ -264,7 +274,7 @@ impl ModelReader<'_> {
                 problems.add(entry.node.at, format!("{label}: found {found}, wanted {{ margin = \"...\", doc = \"...\" }}"));
                 return None;
             };
-            parts.check_keys(problems, &label, &["margin", "strict", "quiet", "invalidates", "doc"]);
+            parts.check_keys(problems, &label, super::keys::CONDITION);
             let [strict, quiet] = ["strict", "quiet"].map(|key| parts.get(key).and_then(|it| truth(it, problems, &label)).unwrap_or(false));
             let invalidates = parts.get("invalidates").map_or_else(Vec::new, |it| self.names(it, &label, &outputs, formulas));
             if quiet && parts.get("invalidates").is_none() {

@@ -9,8 +9,6 @@ use crate::models::{Input, Model, OnlyFor, Range, is_name, unit_of_name};
 use crate::units::Unit;
 use std::collections::HashSet;
 
-const KEYS: [&str; 11] = ["default", "valid", "usual", "integer", "words", "only_for", "follows", "instead_of", "symbol", "doc", "source"];
-
 impl ModelReader<'_> {
     /// The inputs of the file, in its order.
     pub(super) fn inputs(&self, units: &[String], base: &Model) -> Vec<Input> {
@@ -47,7 +45,7 @@ impl ModelReader<'_> {
             problems.add(entry.node.at, format!("{label}: found {found}, wanted {{ default = 1, valid = [0, 2], doc = \"...\" }}"));
             return None;
         };
-        parts.check_keys(problems, &label, &KEYS);
+        parts.check_keys(problems, &label, super::keys::INPUT);
         let words = self.word_list(&parts, "words", &label)?;
         let says_nothing = Range { low: f64::NEG_INFINITY, high: f64::INFINITY, includes_low: false, includes_high: false };
         let valid = match parts.get("valid") {
@@ -164,7 +162,7 @@ impl ModelReader<'_> {
         let problems = self.problems;
         let label = format!("{label}: valid");
         let range = if let Some(parts) = node.table() {
-            parts.check_keys(problems, &label, &["min", "above", "max", "below"]);
+            parts.check_keys(problems, &label, super::keys::VALID);
             let end = |inclusive: &str, exclusive: &str, none: f64| -> Option<(f64, bool)> {
                 let (inclusive, exclusive) = (parts.get(inclusive), parts.get(exclusive));
                 if let (Some(one), Some(other)) = (inclusive, exclusive) {

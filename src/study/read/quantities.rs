@@ -173,8 +173,7 @@ impl Reader<'_> {
             problems.add(entry.node.at, format!("{label}: found {found}, wanted bounds such as {{ min = 0 }}"));
             return None;
         };
-        let known =
-            table.check_keys(problems, &label, &self.with_draws(&["min", "max", "above", "below", "of", "over_scenarios"], &[YIELD]));
+        let known = table.check_keys(problems, &label, &self.with_draws(super::keys::CONSTRAINT, &[YIELD]));
         let over = self.over(&table, quantity, &label)?;
         let is_bounded = ["min", "max", "above", "below"].iter().any(|key| table.get(key).is_some());
         if !is_bounded && known {
@@ -247,7 +246,7 @@ impl Reader<'_> {
             }
             return Some(Objective { goal: goal_of(entry)?, quantity: quantity?, resolution: None, over: OverScenarios::Worst });
         };
-        let known = table.check_keys(problems, &label, &self.with_draws(&["goal", "resolution", "of", "over_scenarios"], &[]));
+        let known = table.check_keys(problems, &label, &self.with_draws(super::keys::OBJECTIVE, &[]));
         let goal = match table.get("goal") {
             Some(entry) => goal_of(entry),
             None => {

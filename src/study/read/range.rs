@@ -89,13 +89,13 @@ impl Reader<'_> {
     /// The levels of a range. Reports what is wrong with it.
     pub(super) fn range(&self, table: &TomlTable<'_>, input: &Input, label: &str, role: AxisRole) -> Option<Levels> {
         let problems = self.problems;
-        const KEYS: [&str; 5] = ["from", "to", "count", "step", "spacing"];
+        const KEYS: &[&str] = super::keys::RANGE;
         let misspelt = table.entries.iter().filter(|it| !KEYS.contains(&it.key)).find_map(|it| Some((it, likely_law(it.key)?)));
         if let Some((entry, law)) = misspelt.filter(|_| role == AxisRole::Uncertainty) {
             problems.add(entry.key_at, format!("{label}: unknown key \"{}\"; did you mean the distribution \"{law}\"?", entry.key));
             return None;
         }
-        let known = table.check_keys(problems, label, &KEYS);
+        let known = table.check_keys(problems, label, KEYS);
         let end = |key: &str| match table.get(key) {
             Some(entry) => {
                 let value = input_number(entry.node, input);

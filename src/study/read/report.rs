@@ -58,11 +58,7 @@ impl Reader<'_> {
         let mut report = Report { front_budget: FRONT_BUDGET.0, ..Report::default() };
         let Some(table) = table else { return report };
         let known = ReportContext { named, objectives, design, fixed };
-        table.check_keys(
-            self.problems,
-            "[report]",
-            &["columns", "top", "histograms", "maps", "sample", "front_budget", "variants", "feasible", "sensitivity"],
-        );
+        table.check_keys(self.problems, "[report]", super::keys::REPORT);
         if let Some(entry) = table.get("columns") {
             report.columns = self.columns_of_report(entry, &known);
         }
@@ -96,7 +92,7 @@ impl Reader<'_> {
             let count = whole(entry, self.problems, "[report]", 1, MOST_SAMPLE)?;
             return Some(SampleSpec { count: usize::try_from(count).ok()?, seed: SEED });
         };
-        let good = table.check_keys(self.problems, label, &["count", "seed"]);
+        let good = table.check_keys(self.problems, label, super::keys::REPORT_SAMPLE);
         let count = self.needed(&table, "count", label, example).and_then(|it| whole(it, self.problems, label, 1, MOST_SAMPLE));
         let seed = table.get("seed").map_or(Some(SEED), |it| whole(it, self.problems, label, 0, u64::MAX));
         let (count, seed) = (count?, seed?);
@@ -211,7 +207,7 @@ impl Reader<'_> {
             let name = text(node, self.problems, label)?;
             return self.numeric(&name, node.at, label, known.fixed).map(ReportColumn::from);
         };
-        let good = table.check_keys(self.problems, label, &self.with_draws(&["of", "worst", "over_scenarios"], &[]));
+        let good = table.check_keys(self.problems, label, &self.with_draws(super::keys::REPORT_COLUMN, &[]));
         let example = format!("{{ of = \"{}\", worst = \"lowest\" }}", self.some_output());
         let of = self.needed(&table, "of", label, &example).and_then(|entry| self.named(entry, label, known))?;
         let over = self.over(&table, of, label)?;
@@ -241,7 +237,7 @@ impl Reader<'_> {
         if !self.is_of_worst(table, "top") {
             return None;
         }
-        let good = table.check_keys(self.problems, "top", &self.with_draws(&["by", "count", "goal"], &[]));
+        let good = table.check_keys(self.problems, "top", &self.with_draws(super::keys::TOP, &[]));
         let example = format!("top = {{ by = \"{}\", count = 20 }}", self.some_output());
         let by = self.needed(table, "by", "top", &example).and_then(|entry| self.named(entry, "top", known));
         let count = self.needed(table, "count", "top", &example).and_then(|entry| whole(entry, self.problems, "top", 1, MOST_TOP));
@@ -260,7 +256,7 @@ impl Reader<'_> {
         if !self.is_of_worst(table, label) {
             return None;
         }
-        let good = table.check_keys(self.problems, label, &self.with_draws(&["of", "bins", "from", "to"], &[]));
+        let good = table.check_keys(self.problems, label, &self.with_draws(super::keys::HISTOGRAM, &[]));
         let example = format!("{{ of = \"{}\", bins = 50 }}", self.some_output());
         let of = self.needed(table, "of", label, &example).and_then(|entry| self.named(entry, label, known));
         let bins = match table.get("bins") {
@@ -297,7 +293,7 @@ impl Reader<'_> {
         if !self.is_of_worst(table, label) {
             return None;
         }
-        let good = table.check_keys(problems, label, &self.with_draws(&["x", "y", "value", "best", "contours"], &[]));
+        let good = table.check_keys(problems, label, &self.with_draws(super::keys::MAP, &[]));
         if self.sampled {
             problems.add(table.at, format!("{label}: sampled designs lie on no grid, so there is no map; drop it or [sample]"));
             return None;

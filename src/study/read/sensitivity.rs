@@ -29,7 +29,7 @@ impl Reader<'_> {
             problems.add(entry.node.at, format!("{LABEL}: found {}, wanted true, false or a table, such as {EXAMPLE}", entry.node.found()));
             return None;
         };
-        let good = table.check_keys(problems, LABEL, &["over", "of", "draws"]);
+        let good = table.check_keys(problems, LABEL, super::keys::SENSITIVITY);
         let over = table.get("over").map_or(Some(default), |it| choice(it, problems, LABEL, OVER));
         let of = table.get("of").map_or(Some(Vec::new()), |it| self.asked_names(it));
         let ends = (SensitivitySpec::DRAWS_FROM, SensitivitySpec::DRAWS_TO);

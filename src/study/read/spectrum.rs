@@ -33,7 +33,7 @@ impl Reader<'_> {
             problems.add(entry.key_at, format!("{label}: the axis in line {line} has weights already; only one axis of a study may"));
             return None;
         }
-        let known = table.check_keys(problems, &label, &["cases", "weight"]);
+        let known = table.check_keys(problems, &label, super::keys::SPECTRUM);
         let part = |key: &str| {
             let found = table.get(key);
             if found.is_none() && known {

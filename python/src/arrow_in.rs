@@ -1,0 +1,134 @@
+//! Tables of others by the Arrow PyCapsule interface.
+
+use arrow_array::cast::AsArray;
+use arrow_array::ffi::{FFI_ArrowArray, from_ffi};
+use arrow_array::ffi_stream::{FFI_ArrowArrayStream, RecordBatchStreamReader};
+use arrow_array::types::{
+    ArrowPrimitiveType, Float32Type, Float64Type, Int8Type, Int16Type, Int32Type, Int64Type, UInt8Type, UInt16Type, UInt32Type, UInt64Type,
+};
+use arrow_array::{Array, RecordBatch, StructArray};
+use arrow_schema::ffi::FFI_ArrowSchema;
+use arrow_schema::{ArrowError, DataType, Schema};
+use beltspace::batch::ColumnCells;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyCapsule;
+use std::ffi::CStr;
+
+fn failed(error: ArrowError) -> PyErr {
+    PyValueError::new_err(format!("the table cannot be read as Arrow: {error}"))
+}
+
+/// What a capsule of that name holds, taken out of it: what is left is marked as released.
+///
+/// # Safety
+/// A capsule of that name must hold a `T` that may be moved out once `empty` is put in its place, as the Arrow interface says of its names.
+unsafe fn taken<T>(capsule: &Bound<'_, PyCapsule>, name: &'static CStr, empty: T) -> PyResult<T> {
+    let place = capsule.pointer_checked(Some(name))?.cast::<T>();
+    // SAFETY: the caller's.
+    Ok(unsafe { place.replace(empty) })
+}
+
+/// The columns of an object that speaks Arrow; `None` if it does not.
+pub fn columns(table: &Bound<'_, PyAny>) -> PyResult<Option<Vec<(String, ColumnCells)>>> {
+    if table.hasattr("__arrow_c_stream__")? {
+        let capsule = table.call_method0("__arrow_c_stream__")?.cast_into::<PyCapsule>()?;
+        // SAFETY: the interface says that a capsule of this name holds such a stream, which the consumer moves out.
+        let stream = unsafe { taken(&capsule, c"arrow_array_stream", FFI_ArrowArrayStream::empty())? };
+        let mut reader = RecordBatchStreamReader::try_new(stream).map_err(failed)?;
+        let schema = arrow_array::RecordBatchReader::schema(&reader);
+        let mut columns = empty_columns(&schema)?;
+        let mut first_row = 0;
+        for batch in &mut reader {
+            let batch = batch.map_err(failed)?;
+            append(&mut columns, &batch, first_row)?;
+            first_row += batch.num_rows();
+        }
+        return Ok(Some(columns));
+    }
+    if table.hasattr("__arrow_c_array__")? {
+        let (schema, array): (Bound<'_, PyCapsule>, Bound<'_, PyCapsule>) = table.call_method0("__arrow_c_array__")?.extract()?;
+        // SAFETY: as above, of the two capsules of an array.
+        let (schema, array) = unsafe {
+            (taken(&schema, c"arrow_schema", FFI_ArrowSchema::empty())?, taken(&array, c"arrow_array", FFI_ArrowArray::empty())?)
+        };
+        // SAFETY: both come from one producer, who promises that they belong together.
+        let data = unsafe { from_ffi(array, &schema) }.map_err(failed)?;
+        if !matches!(data.data_type(), DataType::Struct(_)) {
+            return Err(PyValueError::new_err("this is an Arrow array and no table; give a table, whose columns are named like inputs"));
+        }
+        let batch = RecordBatch::from(StructArray::from(data));
+        let mut columns = empty_columns(&batch.schema())?;
+        append(&mut columns, &batch, 0)?;
+        return Ok(Some(columns));
+    }
+    Ok(None)
+}
+
+fn is_text(kind: &DataType) -> bool {
+    match kind {
+        DataType::Utf8 | DataType::LargeUtf8 | DataType::Utf8View => true,
+        DataType::Dictionary(_, values) => is_text(values),
+        _ => false,
+    }
+}
+
+fn empty_columns(schema: &Schema) -> PyResult<Vec<(String, ColumnCells)>> {
+    let cells = |kind: &DataType| if is_text(kind) { ColumnCells::Texts(Vec::new()) } else { ColumnCells::Numbers(Vec::new()) };
+    Ok(schema.fields().iter().map(|field| (field.name().clone(), cells(field.data_type()))).collect())
+}
+
+fn append(columns: &mut [(String, ColumnCells)], batch: &RecordBatch, first_row: usize) -> PyResult<()> {
+    for ((name, cells), array) in columns.iter_mut().zip(batch.columns()) {
+        // NaN stands for absent too, and is refused with its place where an input is wanted.
+        if array.logical_null_count() > 0 {
+            let row = (0..array.len()).find(|&row| array.logical_nulls().is_some_and(|nulls| nulls.is_null(row))).unwrap_or(0);
+            return Err(PyValueError::new_err(format!("row {}, column \"{name}\": the cell is empty; give a value", first_row + row)));
+        }
+        match cells {
+            ColumnCells::Texts(texts) => texts.extend(texts_of(array)),
+            ColumnCells::Numbers(numbers) => {
+                let found = numbers_of(array).ok_or_else(|| {
+                    PyValueError::new_err(format!("column \"{name}\": {} is neither a number nor a text", array.data_type()))
+                })?;
+                numbers.extend(found);
+            }
+            ColumnCells::Same(_) => {}
+        }
+    }
+    Ok(())
+}
+
+fn texts_of(array: &dyn Array) -> Vec<String> {
+    let owned = |text: Option<&str>| text.unwrap_or_default().to_owned();
+    match array.data_type() {
+        DataType::Utf8 => array.as_string::<i32>().iter().map(owned).collect(),
+        DataType::LargeUtf8 => array.as_string::<i64>().iter().map(owned).collect(),
+        DataType::Utf8View => array.as_string_view().iter().map(owned).collect(),
+        _ => {
+            let dictionary = array.as_any_dictionary();
+            let words = texts_of(dictionary.values());
+            dictionary.normalized_keys().into_iter().map(|key| words[key].clone()).collect()
+        }
+    }
+}
+
+#[allow(clippy::cast_precision_loss, reason = "an integer that is no f64 is rounded, as in a study")]
+fn numbers_of(array: &dyn Array) -> Option<Vec<f64>> {
+    fn of<T: ArrowPrimitiveType>(array: &dyn Array, number: impl Fn(T::Native) -> f64) -> Vec<f64> {
+        array.as_primitive::<T>().values().iter().map(|&value| number(value)).collect()
+    }
+    Some(match array.data_type() {
+        DataType::Float64 => array.as_primitive::<Float64Type>().values().to_vec(),
+        DataType::Float32 => of::<Float32Type>(array, f64::from),
+        DataType::Int8 => of::<Int8Type>(array, f64::from),
+        DataType::Int16 => of::<Int16Type>(array, f64::from),
+        DataType::Int32 => of::<Int32Type>(array, f64::from),
+        DataType::Int64 => of::<Int64Type>(array, |it| it as f64),
+        DataType::UInt8 => of::<UInt8Type>(array, f64::from),
+        DataType::UInt16 => of::<UInt16Type>(array, f64::from),
+        DataType::UInt32 => of::<UInt32Type>(array, f64::from),
+        DataType::UInt64 => of::<UInt64Type>(array, |it| it as f64),
+        _ => return None,
+    })
+}

@@ -1,0 +1,243 @@
+//! Studies.
+
+use crate::errors::{raised, request};
+use crate::model::{Model, cores};
+use crate::result::SweepResult;
+use crate::rows::columns;
+use crate::table::Table;
+use crate::waiting::{stage, supervised};
+use beltspace::batch::{BatchTarget, GivenColumns};
+use beltspace::models::Models;
+use beltspace::plan::Plan;
+use beltspace::{Control, Engine, Judging, Options, Study as BeltStudy};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyMapping};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+
+/// A study: what is chosen, what must be survived, what nobody knows exactly, what is asked.
+#[pyclass(module = "beltspace", frozen)]
+pub struct Study {
+    study: BeltStudy,
+    designs: u64,
+    scenarios: u64,
+    text: String,
+    source: Source,
+}
+
+/// Where a study comes from.
+#[derive(Clone)]
+struct Source {
+    /// What messages call it.
+    file: String,
+    /// What paths of other files are relative to.
+    folder: PathBuf,
+    models: Models,
+}
+
+impl Study {
+    fn parsed(py: Python<'_>, text: &str, source: Source, set: &[String]) -> PyResult<Self> {
+        let Source { file, folder, models } = &source;
+        let (study, text) = BeltStudy::parse_set(models, text, file, folder, set).map_err(|error| raised(py, error))?;
+        let plan = Plan::new(study.clone());
+        Ok(Self { study, designs: plan.designs(), scenarios: plan.scenarios(), text, source })
+    }
+}
+
+/// The models of one's own that a study may name.
+fn own_models(py: Python<'_>, models: Option<Vec<PyRef<'_, Model>>>) -> PyResult<Models> {
+    models.into_iter().flatten().try_fold(Models::new(), |known, model| known.with(model.model.clone())).map_err(|error| raised(py, error))
+}
+
+/// One of a few words.
+fn word<T: Copy>(py: Python<'_>, what: &str, given: &str, words: &[(&str, T)]) -> PyResult<T> {
+    words.iter().find(|(word, _)| *word == given).map(|&(_, it)| it).ok_or_else(|| {
+        let words: Vec<_> = words.iter().map(|(word, _)| format!("\"{word}\"")).collect();
+        request(py, format!("{what}: unknown word \"{given}\"; write {}", words.join(" or ")))
+    })
+}
+
+#[pymethods]
+impl Study {
+    /// Reads a study file.
+    #[staticmethod]
+    #[pyo3(signature = (path, *, models = None))]
+    fn from_file(py: Python<'_>, path: PathBuf, models: Option<Vec<PyRef<'_, Model>>>) -> PyResult<Self> {
+        // What cannot be read is told as of any study.
+        let text = match std::fs::read(&path).map(String::from_utf8) {
+            Ok(Ok(text)) => text,
+            _ => return BeltStudy::read(&path).map_err(|error| raised(py, error)).map(|_| unreachable!("it could not be read")),
+        };
+        let folder = path.parent().map(PathBuf::from).unwrap_or_default();
+        let source = Source { file: path.display().to_string(), folder, models: own_models(py, models)? };
+        Self::parsed(py, &text, source, &[])
+    }
+
+    /// Reads a study from the text of a file; `folder` is what paths of other files are relative to.
+    #[staticmethod]
+    #[pyo3(signature = (text, *, folder = None, models = None))]
+    fn from_toml(py: Python<'_>, text: &str, folder: Option<PathBuf>, models: Option<Vec<PyRef<'_, Model>>>) -> PyResult<Self> {
+        let folder = folder.unwrap_or_else(|| PathBuf::from("."));
+        let source = Source { file: "study".to_owned(), folder, models: own_models(py, models)? };
+        Self::parsed(py, text, source, &[])
+    }
+
+    /// Reads a study from a dictionary with the tables and keys of a study file; its model may be a `Model`.
+    #[staticmethod]
+    #[pyo3(signature = (study, *, folder = None, models = None))]
+    fn from_dict(
+        py: Python<'_>,
+        study: &Bound<'_, PyMapping>,
+        folder: Option<PathBuf>,
+        models: Option<Vec<PyRef<'_, Model>>>,
+    ) -> PyResult<Self> {
+        let mut models = models.unwrap_or_default();
+        let study = py.import("builtins")?.getattr("dict")?.call1((study,))?.cast_into::<PyDict>()?;
+        if let Some(model) = study.get_item("model")?
+            && let Ok(model) = model.cast::<Model>()
+        {
+            let model = model.borrow();
+            study.set_item("model", &model.model.name)?;
+            if beltspace::models::find(&model.model.name).is_none() {
+                models.push(model);
+            }
+        }
+        let text: String = py.import("beltspace._toml")?.call_method1("text_of_study", (study,))?.extract()?;
+        Self::from_toml(py, &text, folder, Some(models))
+    }
+
+    /// The same study with values in place of what gives some inputs: an axis, a fixed value or a formula.
+    #[pyo3(signature = (**values))]
+    fn with_values(&self, py: Python<'_>, values: Option<Bound<'_, PyDict>>) -> PyResult<Self> {
+        let mut set = Vec::new();
+        for (name, value) in values.iter().flatten() {
+            set.push(format!("{name}={}", value.str()?));
+        }
+        Self::parsed(py, &self.text, self.source.clone(), &set)
+    }
+
+    /// Its title.
+    #[getter]
+    fn title(&self) -> &str {
+        &self.study.title
+    }
+
+    /// Its text: a study file.
+    #[getter]
+    fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The hash of its content, as in the files of a result.
+    #[getter]
+    fn hash(&self) -> String {
+        self.study.hash()
+    }
+
+    /// Its model.
+    #[getter]
+    fn model(&self, py: Python<'_>) -> PyResult<Py<Model>> {
+        Py::new(py, Model::from(self.study.model.clone()))
+    }
+
+    /// How many designs it has.
+    #[getter]
+    fn designs(&self) -> u64 {
+        self.designs
+    }
+
+    /// In how many scenarios each is judged.
+    #[getter]
+    fn scenarios(&self) -> u64 {
+        self.scenarios
+    }
+
+    /// Names of the inputs that are chosen.
+    #[getter]
+    fn design(&self) -> Vec<&str> {
+        let inputs = self.study.design.iter().flat_map(|axis| axis.inputs());
+        inputs.map(|&input| self.study.model.inputs[input].name.as_str()).collect()
+    }
+
+    /// What is known of the study before it runs.
+    #[pyo3(signature = (*, threads = None))]
+    fn check<'py>(&self, py: Python<'py>, threads: Option<usize>) -> PyResult<Bound<'py, PyDict>> {
+        let threads = threads.unwrap_or_else(cores);
+        let outlook = supervised(py, || {}, |_| Ok(()), || self.study.outlook(threads))?;
+        let told = PyDict::new(py);
+        told.set_item("designs", outlook.designs)?;
+        told.set_item("scenarios", outlook.scenarios)?;
+        told.set_item("evaluations", outlook.evaluations)?;
+        told.set_item("seconds", outlook.seconds)?;
+        let why = outlook.why_every_design.map_or("bounds, then every design".to_owned(), |why| format!("every design: {why}"));
+        told.set_item("method", why)?;
+        told.set_item("memory_MB", outlook.memory.div_ceil(1_000_000))?;
+        told.set_item("front", outlook.front)?;
+        told.set_item("warnings", outlook.warnings)?;
+        Ok(told)
+    }
+
+    /// Judges every design in every scenario.
+    #[pyo3(signature = (*, progress = None, threads = None, engine = "auto", method = "auto", adapter = None, feasible = false))]
+    #[allow(clippy::too_many_arguments, reason = "each has a name in Python")]
+    fn sweep(
+        &self,
+        py: Python<'_>,
+        progress: Option<Bound<'_, PyAny>>,
+        threads: Option<usize>,
+        engine: &str,
+        method: &str,
+        adapter: Option<String>,
+        feasible: bool,
+    ) -> PyResult<SweepResult> {
+        let engine = word(py, "engine", engine, &[("auto", Engine::Auto), ("cpu", Engine::Cpu), ("gpu", Engine::Gpu)])?;
+        let methods = [("auto", Judging::Auto), ("exhaustive", Judging::Exhaustive), ("bounds", Judging::Bounds)];
+        let method = word(py, "method", method, &methods)?;
+        let control = Arc::new(Control::default());
+        let mut options = Options::default().engine(engine).judging(method).threads(threads.unwrap_or_else(cores)).control(control.clone());
+        options.adapter = adapter;
+        let study = if feasible && !self.study.report.feasible {
+            let mut study = self.study.clone();
+            study.report.feasible = true;
+            study.check().map_err(|problem| request(py, format!("feasible = True: {problem}")))?;
+            study
+        } else {
+            self.study.clone()
+        };
+        let designs = self.designs;
+        let follower = py.import("beltspace._progress")?.call_method1("follower", (progress,))?;
+        let tell = |py: Python<'_>| {
+            if follower.is_none() {
+                return Ok(());
+            }
+            let (what, done, total) = stage(&control, designs);
+            follower.call1((what, done, total)).map(drop)
+        };
+        let stop = || control.stop.store(true, Ordering::Relaxed);
+        let swept = supervised(py, stop, tell, || study.sweep(options));
+        if !follower.is_none() {
+            follower.call_method0("close")?;
+        }
+        SweepResult::new(py, swept?.map_err(|error| raised(py, error))?)
+    }
+
+    /// The worst of every row of a table over the scenarios of the study; a row is a design.
+    #[pyo3(signature = (table, *, threads = None))]
+    fn worst(&self, py: Python<'_>, table: &Bound<'_, PyAny>, threads: Option<usize>) -> PyResult<Table> {
+        let columns = columns(table)?;
+        let control = Control::default();
+        let threads = threads.unwrap_or_else(cores);
+        let work = || {
+            let mut target = BatchTarget::of_study(self.study.clone(), Vec::new());
+            let given = GivenColumns::new(&mut target, &columns)?;
+            target.worst_of_each(&given, threads, &control)
+        };
+        let found = supervised(py, || control.stop.store(true, Ordering::Relaxed), |_| Ok(()), work)?;
+        Table::new(py, found.map_err(|error| raised(py, error))?)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<beltspace.Study \"{}\": {} designs, {} scenarios>", self.study.title, self.designs, self.scenarios)
+    }
+}

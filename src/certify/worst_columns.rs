@@ -1,0 +1,437 @@
+//! Rows of many designs at once: the formula over a chunk of designs, scenario after scenario. The same bits as one by one.
+
+use super::{AtWorst, Column, Row, Worst};
+use crate::error::{Error, Result};
+use crate::models::{ColumnJudge, Status, Worse, input_to_si};
+use crate::parallel::on_threads;
+use crate::plan::Plan;
+use crate::screen::Control;
+use crate::study::{Axis, Quantity, Study};
+use crate::tape::{ColumnValue, Known, List, Node, NodeColumns, Operation, Set};
+use std::sync::atomic::Ordering;
+
+/// Designs of a chunk: what the formula computes of them stays in the second-level cache.
+const DESIGNS: usize = 256;
+/// Formulas with more operations than this are evaluated one by one.
+const MOST_OPERATIONS: usize = 4096;
+/// Scenarios with more axes than this likewise.
+const MOST_AXES: usize = 32;
+
+/// Inputs that differ from design to design, with a value of each.
+#[derive(Clone, Copy, Debug)]
+pub struct DesignColumns<'a> {
+    /// The inputs, by number.
+    pub inputs: &'a [usize],
+    /// Of each: one value per design, in its unit.
+    pub values: &'a [Vec<f64>],
+}
+
+/// A number of a set of axes.
+#[derive(Clone, Copy, Default)]
+struct AxisSet {
+    axes: u32,
+    designs: bool,
+}
+
+impl std::ops::BitOrAssign for AxisSet {
+    fn bitor_assign(&mut self, other: Self) {
+        self.axes |= other.axes;
+        self.designs |= other.designs;
+    }
+}
+
+/// What is computed in every scenario, and what only where an axis turns.
+struct WorstColumns<'p> {
+    plan: &'p Plan,
+    columns: &'p [Column],
+    designs: DesignColumns<'p>,
+    /// The axes of scenarios, the innermost last, each with the distance of two levels in the study's order.
+    axes: Vec<(&'p Axis, u64)>,
+    /// Outputs that are computed, by number.
+    outputs: Vec<usize>,
+    judge: ColumnJudge,
+    list: List,
+    each: Vec<bool>,
+    /// Of each axis: the operations that change when it or one further inside turns; and those that must be computed once.
+    turns: Vec<Vec<Node>>,
+    once: Vec<Node>,
+}
+
+impl<'p> WorstColumns<'p> {
+    /// For these designs; `None` where the formula cannot be recorded, or the study asks for more than the worst scenario.
+    fn new(plan: &'p Plan, columns: &'p [Column], designs: DesignColumns<'p>) -> Option<Self> {
+        let study = &plan.study;
+        let model = &study.model;
+        if study.spectrum.is_some() || study.probability.is_some() {
+            return None;
+        }
+        let formula = model.kernel.formula()?;
+        let asked = columns.iter().map(|it| it.quantity).chain(study.constraints.iter().map(|it| it.quantity));
+        let asked: Set = asked.chain(plan.tracked.iter().map(|(it, _)| it.quantity)).filter_map(Quantity::output).collect();
+        let outputs: Vec<usize> = (0..model.outputs.len()).filter(|&it| asked.contains(it) || plan.used_outputs().contains(it)).collect();
+        let of_study = axes(study);
+        if of_study.len() > MOST_AXES {
+            return None;
+        }
+        let known = known(study, designs, &of_study);
+        let conditions: Vec<usize> = (0..model.conditions.len()).collect();
+        let whole = formula.whole(&known, Set::of(&outputs), Set::of(&conditions));
+        let results = outputs.iter().map(|&it| whole.outputs[it]).chain(conditions.iter().map(|&it| whole.conditions[it]));
+        let list = List::cut(&whole.recording, &results.map(Some).collect::<Vec<_>>());
+        if list.operations.len() > MOST_OPERATIONS {
+            return None;
+        }
+        let axes = ordered(&list, of_study);
+        let sets = dependencies(&list, &axes, designs);
+        let nodes: Vec<Node> = list.results.iter().flatten().copied().collect();
+        let needed = list.needed_by(&nodes);
+        let reads = |node: &Node, from: usize| sets[*node as usize].axes >> from != 0;
+        let turns = (0..axes.len()).map(|axis| needed.iter().copied().filter(|node| reads(node, axis)).collect()).collect();
+        let once = needed.iter().copied().filter(|node| !reads(node, 0)).collect();
+        let each = sets.iter().map(|it| it.designs).collect();
+        let judge = ColumnJudge::new(model, &outputs, |output| plan.used_outputs().contains(output));
+        Some(Self { plan, columns, designs, axes, outputs, judge, list, each, turns, once })
+    }
+
+    /// The rows of a chunk of designs, from the first; `None` if it was stopped.
+    fn rows(&self, first: usize, count: usize, numbers: &mut NodeColumns, control: &Control) -> Option<Vec<Row>> {
+        let (plan, model) = (self.plan, &self.plan.study.model);
+        let conditions = self.outputs.len();
+        let mut digits = vec![0_u64; self.axes.len()];
+        let mut inputs = plan.study.fixed.clone();
+        self.axes.iter().for_each(|(axis, _)| set(&mut inputs, axis, 0));
+        numbers.begin(count);
+        self.compute(&self.once, numbers, first, count, &inputs);
+        let mut found = Found::new(self.columns, count);
+        let mut statuses = vec![Status::Ok; count];
+        let mut outputs = vec![vec![0.0; count]; self.outputs.len()];
+        let mut turned = 0;
+        loop {
+            if control.stop.load(Ordering::Relaxed) {
+                return None;
+            }
+            if let Some(nodes) = self.turns.get(turned) {
+                self.compute(nodes, numbers, first, count, &inputs);
+            }
+            let result = |place: usize| {
+                let node = self.list.results[place].expect("every result is asked for");
+                numbers.value(node, |node| self.each[node as usize])
+            };
+            statuses.fill(Status::Ok);
+            let mut places: Vec<&mut [f64]> = outputs.iter_mut().map(Vec::as_mut_slice).collect();
+            self.judge.judge(model, |condition| result(conditions + condition), result, &mut statuses, &mut places);
+            let scenario = digits.iter().zip(&self.axes).map(|(digit, (_, stride))| digit * stride).sum();
+            let value = |quantity: Quantity| match quantity {
+                Quantity::Output(output) => {
+                    let place = self.outputs.iter().position(|&it| it == output).expect("it is computed");
+                    ColumnValue::Each(&outputs[place])
+                }
+                Quantity::Input(input) => match self.designs.inputs.iter().position(|&it| it == input) {
+                    Some(column) => ColumnValue::Each(&self.designs.values[column][first..first + count]),
+                    None => ColumnValue::One(inputs[input]),
+                },
+            };
+            found.take(plan, self.columns, scenario, &statuses, value);
+            // The next scenario: the innermost axis turns fastest.
+            let Some(axis) = (0..digits.len()).rev().find(|&axis| digits[axis] + 1 < self.axes[axis].0.count()) else { break };
+            digits[axis] += 1;
+            digits[axis + 1..].fill(0);
+            (axis..digits.len()).for_each(|axis| set(&mut inputs, self.axes[axis].0, digits[axis]));
+            turned = axis;
+        }
+        control.certified.fetch_add(count as u64, Ordering::Relaxed);
+        let mut of_first = plan.study.fixed.clone();
+        axes(&plan.study).iter().for_each(|(axis, _)| set(&mut of_first, axis, 0));
+        let inputs_of = |lane: usize| {
+            let mut inputs = of_first.clone();
+            self.designs.inputs.iter().zip(self.designs.values).for_each(|(&input, values)| inputs[input] = values[first + lane]);
+            inputs
+        };
+        Some(found.into_rows(first, inputs_of))
+    }
+
+    fn compute(&self, nodes: &[Node], numbers: &mut NodeColumns, first: usize, count: usize, inputs: &[f64]) {
+        let model = &self.plan.study.model;
+        for &node in nodes {
+            match self.list.operations[node as usize] {
+                Operation::Input(number) => {
+                    let number = usize::from(number);
+                    let input = &model.inputs[number];
+                    match self.designs.inputs.iter().position(|&it| it == number) {
+                        Some(column) => {
+                            let values = &self.designs.values[column][first..first + count];
+                            numbers.fill(node, |to| to.iter_mut().zip(values).for_each(|(to, &value)| *to = input_to_si(input, value)));
+                        }
+                        None => numbers.slots[node as usize] = input_to_si(input, inputs[number]),
+                    }
+                }
+                _ if self.each[node as usize] => numbers.compute(&self.list, node, |node| self.each[node as usize]),
+                _ => self.list.compute(node, &mut numbers.slots),
+            }
+        }
+    }
+}
+
+/// The axes of scenarios in the study's order, with the distance of two levels of each.
+fn axes(study: &Study) -> Vec<(&Axis, u64)> {
+    let mut stride = 1;
+    let mut axes: Vec<(&Axis, u64)> = Vec::new();
+    for axis in study.operation.iter().chain(&study.uncertainty).rev() {
+        axes.push((axis, stride));
+        stride *= axis.count();
+    }
+    axes.reverse();
+    axes
+}
+
+fn set(inputs: &mut [f64], axis: &Axis, level: u64) {
+    axis.inputs().iter().enumerate().for_each(|(column, &input)| inputs[input] = axis.value(column, level));
+}
+
+/// What is known of every input, in SI units.
+fn known(study: &Study, designs: DesignColumns<'_>, axes: &[(&Axis, u64)]) -> Vec<Known> {
+    let model = &study.model;
+    let si = |input: usize, value: f64| input_to_si(&model.inputs[input], value);
+    let mut known: Vec<Known> = study.fixed.iter().enumerate().map(|(input, &value)| Known::Fixed(si(input, value))).collect();
+    let within = |input: usize, values: &mut dyn Iterator<Item = f64>| {
+        let ends =
+            values.map(|value| si(input, value)).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), it| (low.min(it), high.max(it)));
+        Known::Within(ends.0, ends.1)
+    };
+    for (&input, values) in designs.inputs.iter().zip(designs.values) {
+        known[input] = within(input, &mut values.iter().copied());
+    }
+    for (axis, _) in axes {
+        for (column, &input) in axis.inputs().iter().enumerate() {
+            known[input] = within(input, &mut (0..axis.count()).map(|level| axis.value(column, level)));
+        }
+    }
+    known
+}
+
+/// Of every operation: the axes that it depends on, and whether it differs from design to design.
+fn dependencies(list: &List, axes: &[(&Axis, u64)], designs: DesignColumns<'_>) -> Vec<AxisSet> {
+    list.dependencies(|input| {
+        let input = usize::from(input);
+        let axis = axes.iter().position(|(axis, _)| axis.inputs().contains(&input));
+        AxisSet { axes: axis.map_or(0, |axis| 1 << axis), designs: designs.inputs.contains(&input) }
+    })
+}
+
+/// The axes with that one innermost on which the least work depends, and so on outwards.
+fn ordered<'a>(list: &List, mut axes: Vec<(&'a Axis, u64)>) -> Vec<(&'a Axis, u64)> {
+    let none = DesignColumns { inputs: &[], values: &[] };
+    let sets = dependencies(list, &axes, none);
+    let effort = |operation: &Operation| match operation {
+        Operation::Root(_) => 100,
+        Operation::Unary(..) => 8,
+        Operation::Input(_) | Operation::Constant(_) => 0,
+        _ => 1,
+    };
+    let work = |axis: usize| -> u64 {
+        list.operations.iter().zip(&sets).filter(|(_, set)| set.axes >> axis & 1 == 1).map(|(it, _)| effort(it)).sum()
+    };
+    let mut work: Vec<u64> = (0..axes.len()).map(work).collect();
+    for place in (1..axes.len()).rev() {
+        let least = (0..=place).rev().min_by_key(|&axis| work[axis]).unwrap_or(place);
+        axes[least..=place].rotate_left(1);
+        work[least..=place].rotate_left(1);
+    }
+    axes
+}
+
+/// What is known of a chunk of designs after some scenarios.
+struct Found {
+    feasible: Vec<bool>,
+    without_result: Vec<u64>,
+    not_ok: Vec<(u64, Status)>,
+    /// Of each column.
+    worst: Vec<WorstLanes>,
+}
+
+/// The worst of one column.
+struct WorstLanes {
+    badness: Vec<f64>,
+    /// NaN as long as there is none.
+    value: Vec<f64>,
+    scenario: Vec<u64>,
+    complete: Vec<bool>,
+}
+
+impl Found {
+    fn new(columns: &[Column], count: usize) -> Self {
+        let lanes = |_: &Column| WorstLanes {
+            badness: vec![f64::NEG_INFINITY; count],
+            value: vec![f64::NAN; count],
+            scenario: vec![0; count],
+            complete: vec![true; count],
+        };
+        Self {
+            feasible: vec![true; count],
+            without_result: vec![0; count],
+            not_ok: vec![(u64::MAX, Status::Ok); count],
+            worst: columns.iter().map(lanes).collect(),
+        }
+    }
+
+    /// Takes in a scenario.
+    fn take<'c>(
+        &mut self,
+        plan: &Plan,
+        columns: &[Column],
+        scenario: u64,
+        statuses: &[Status],
+        value: impl Fn(Quantity) -> ColumnValue<'c>,
+    ) {
+        // An overflow takes a value away, and counts as a result that is missing only where the value is asked for.
+        let mut has_result: Vec<bool> = statuses.iter().map(|status| matches!(status, Status::Ok | Status::Overflow)).collect();
+        let asked = plan.tracked.iter().map(|(it, _)| it.quantity).chain(plan.study.constraints.iter().map(|it| it.quantity));
+        for quantity in asked {
+            if let ColumnValue::Each(values) = value(quantity) {
+                has_result.iter_mut().zip(values).for_each(|(has, value)| *has &= !value.is_nan());
+            }
+        }
+        for (lane, has) in has_result.iter().enumerate() {
+            self.without_result[lane] += u64::from(!has);
+            self.feasible[lane] &= has;
+        }
+        for constraint in &plan.study.constraints {
+            let values = value(constraint.quantity);
+            self.feasible.iter_mut().enumerate().for_each(|(lane, feasible)| *feasible &= constraint.holds(values.at(lane)));
+        }
+        for (not_ok, &status) in self.not_ok.iter_mut().zip(statuses) {
+            if status != Status::Ok && scenario < not_ok.0 {
+                *not_ok = (scenario, status);
+            }
+        }
+        for (column, lanes) in columns.iter().zip(&mut self.worst) {
+            lanes.take(column.worst, value(column.quantity), scenario);
+        }
+    }
+
+    fn into_rows(self, first: usize, inputs: impl Fn(usize) -> Vec<f64>) -> Vec<Row> {
+        let row = |lane: usize| Row {
+            index: (first + lane) as u64,
+            feasible: self.feasible[lane],
+            without_result: self.without_result[lane],
+            status: self.not_ok[lane].1,
+            inputs: inputs(lane),
+            columns: self.worst.iter().map(|it| it.at(lane)).collect(),
+            complete: self.worst.iter().map(|it| it.complete[lane]).collect(),
+        };
+        (0..self.feasible.len()).map(row).collect()
+    }
+}
+
+impl WorstLanes {
+    fn take(&mut self, worst: Worst, values: ColumnValue<'_>, scenario: u64) {
+        match worst {
+            Worst::End(Worse::Higher) => self.take_by(|value| value, values, scenario),
+            Worst::End(Worse::Lower) => self.take_by(|value| -value, values, scenario),
+            Worst::Margin(constraint) => self.take_by(|value| -constraint.margin(value), values, scenario),
+        }
+    }
+
+    #[inline(always)]
+    fn take_by(&mut self, badness: impl Fn(f64) -> f64, values: ColumnValue<'_>, scenario: u64) {
+        for lane in 0..self.value.len() {
+            let value = values.at(lane);
+            let this = badness(value);
+            let (held, since) = (self.badness[lane], self.scenario[lane]);
+            let is_worse = this > held || (this == held && scenario < since) || self.value[lane].is_nan();
+            let takes = is_worse && !value.is_nan();
+            self.badness[lane] = if takes { this } else { held };
+            self.value[lane] = if takes { value + 0.0 } else { self.value[lane] };
+            self.scenario[lane] = if takes { scenario } else { since };
+            self.complete[lane] &= !value.is_nan();
+        }
+    }
+
+    fn at(&self, lane: usize) -> AtWorst {
+        let value = self.value[lane];
+        AtWorst { value: (!value.is_nan()).then_some(value), scenario: self.scenario[lane] }
+    }
+}
+
+/// The rows of designs of a study whose only design axis is these columns; `None` where they must be computed one by one.
+///
+/// # Errors
+/// [`Error::Stopped`] after `control.stop`.
+pub fn rows_of_columns(
+    plan: &Plan,
+    columns: &[Column],
+    designs: DesignColumns<'_>,
+    threads: usize,
+    control: &Control,
+) -> Option<Result<Vec<Row>>> {
+    let found = WorstColumns::new(plan, columns, designs)?;
+    let count = designs.values.first().map_or(0, Vec::len);
+    let share = count.div_ceil(threads.max(1)).max(1);
+    let parts = on_threads((0..count).step_by(share).map(|first| first..count.min(first + share)), |part| {
+        let mut numbers = NodeColumns::new(&found.list);
+        let chunks = part.clone().step_by(DESIGNS).map(|first| (first, DESIGNS.min(part.end - first)));
+        let rows: Option<Vec<Vec<Row>>> = chunks.map(|(first, count)| found.rows(first, count, &mut numbers, control)).collect();
+        rows
+    });
+    let rows: Option<Vec<Row>> = parts.into_iter().collect::<Option<Vec<_>>>().map(|parts| parts.into_iter().flatten().flatten().collect());
+    Some(rows.ok_or(Error::Stopped { kept: None }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::certify;
+    use std::path::Path;
+
+    #[test]
+    fn designs_in_columns_have_the_rows_that_each_has_alone() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("studies");
+        let mut served = Vec::new();
+        for name in [
+            "metal-cvt",
+            "rubber-cvt",
+            "scooter-variator",
+            "camshaft-torque",
+            "timing-tension",
+            "flat-belt",
+            "pulley-load",
+            "catalogue-v-belts",
+        ] {
+            let (mut study, _) = Study::read(&folder.join(format!("{name}.toml"))).expect("it is right");
+            let plan = Plan::new(study.clone());
+            let inputs: Vec<usize> = study.design.iter().flat_map(|axis| axis.inputs().to_vec()).collect();
+            // Designs from one end of the space to the other, more than one chunk of them.
+            let designs = plan.space.designs.coarse(700);
+            let rows: Vec<Vec<f64>> = designs
+                .iter()
+                .map(|&design| {
+                    let of_design = plan.space.inputs(design, 0);
+                    inputs.iter().map(|&input| of_design[input]).collect()
+                })
+                .collect();
+            let values: Vec<Vec<f64>> = (0..inputs.len()).map(|column| rows.iter().map(|row| row[column]).collect()).collect();
+            study.labels.clear();
+            study.sample = None;
+            study.design = vec![Axis::Joint { inputs: inputs.clone(), rows }];
+            let plan = Plan::new(study);
+            let columns = certify::columns(&plan.study);
+            let control = Control::default();
+            let designs = DesignColumns { inputs: &inputs, values: &values };
+            let Some(together) = rows_of_columns(&plan, &columns, designs, 3, &control) else { continue };
+            let numbers: Vec<u64> = (0..values[0].len() as u64).collect();
+            let alone = certify::rows(&plan, &columns, &numbers, 2, &control).expect("nobody stops it");
+            let together = together.expect("nobody stops it");
+            assert_eq!(together.len(), alone.len());
+            for (together, alone) in together.iter().zip(&alone) {
+                assert_eq!(together, alone, "{name}");
+            }
+            let feasible = alone.iter().filter(|it| it.feasible).count();
+            served.push((name, feasible > 0 && feasible < alone.len()));
+            control.stop.store(true, Ordering::Relaxed);
+            let stopped = rows_of_columns(&plan, &columns, designs, 2, &control).expect("it is served");
+            assert!(matches!(stopped, Err(Error::Stopped { kept: None })));
+        }
+        assert!(served.len() >= 6, "{served:?}");
+        assert!(served.iter().filter(|it| it.1).count() >= 4, "some hold and some do not: {served:?}");
+    }
+}

@@ -1,0 +1,76 @@
+//! A model over columns of its inputs: its recorded formula, a chunk of rows at a time.
+
+use super::judge::ColumnJudge;
+use super::{Asked, ResultPart, input_to_si};
+use crate::models::Model;
+use crate::tape::{CHUNK, ColumnValue, Known, List, ListColumns, Set};
+
+/// Formulas with more operations than this are evaluated one by one: their columns would not fit the caches.
+const MOST_OPERATIONS: usize = 4096;
+
+/// The formula with what is known of the inputs.
+pub struct RecordedColumns {
+    list: List,
+    judge: ColumnJudge,
+}
+
+/// What is known of a column in SI units: its ends, unless a value is no number.
+fn known(model: &Model, input: usize, values: &[f64]) -> Known {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for &value in values {
+        let value = input_to_si(&model.inputs[input], value);
+        if value.is_nan() {
+            return Known::ANY;
+        }
+        (low, high) = (low.min(value), high.max(value));
+    }
+    Known::Within(low, high)
+}
+
+impl RecordedColumns {
+    /// Records a formula; `None` if that cannot be, or does not pay.
+    pub fn new(asked: &Asked<'_>) -> Option<Self> {
+        let Asked { model, given, inputs, outputs, .. } = *asked;
+        let formula = model.kernel.formula()?;
+        let mut of_inputs: Vec<Known> =
+            model.inputs.iter().zip(inputs).map(|(input, &value)| Known::Fixed(input_to_si(input, value))).collect();
+        given.iter().for_each(|&(input, values)| of_inputs[input] = known(model, input, values));
+        let wanted = Set::of(outputs);
+        let conditions: Vec<usize> = (0..model.conditions.len()).collect();
+        let whole = formula.whole(&of_inputs, wanted, Set::of(&conditions));
+        let results = outputs.iter().map(|&output| whole.outputs[output]).chain(conditions.iter().map(|&it| whole.conditions[it]));
+        let list = List::cut(&whole.recording, &results.map(Some).collect::<Vec<_>>());
+        let judge = ColumnJudge::new(model, outputs, |_| true);
+        (list.operations.len() <= MOST_OPERATIONS).then_some(Self { list, judge })
+    }
+
+    /// Fills some rows of the result.
+    pub fn evaluate(&self, asked: &Asked<'_>, part: ResultPart<'_>) {
+        let Asked { model, given, outputs: wanted, options, .. } = *asked;
+        let ResultPart { first, statuses, mut outputs } = part;
+        let list = &self.list;
+        let mut columns = ListColumns::new(list);
+        columns.turn_to(list, 0..list.results.len(), |_| true);
+        let mut si: Vec<(usize, Vec<f64>)> = given.iter().map(|&(input, _)| (input, vec![0.0; CHUNK])).collect();
+        for start in (0..statuses.len()).step_by(CHUNK) {
+            if options.is_stopped() {
+                return;
+            }
+            let count = CHUNK.min(statuses.len() - start);
+            for ((input, column), (_, values)) in si.iter_mut().zip(given) {
+                let (input, values) = (&model.inputs[*input], &values[first + start..][..count]);
+                column.iter_mut().zip(values).for_each(|(si, &value)| *si = input_to_si(input, value));
+            }
+            let input = |number: u16| {
+                let column = si.iter().find(|(input, _)| *input == usize::from(number));
+                column.map_or(ColumnValue::One(f64::NAN), |(_, column)| ColumnValue::Each(&column[..count]))
+            };
+            columns.run(list, count, input, |columns, _, _| {
+                let statuses = &mut statuses[start..start + count];
+                let margin = |condition: usize| columns.result(list, wanted.len() + condition);
+                let mut outputs: Vec<&mut [f64]> = outputs.iter_mut().map(|column| &mut column[start..start + count]).collect();
+                self.judge.judge(model, margin, |place| columns.result(list, place), statuses, &mut outputs);
+            });
+        }
+    }
+}
