@@ -7,6 +7,7 @@ mod draws;
 mod engines;
 mod hardware;
 mod predicted;
+mod rooted;
 mod tolerances;
 
 use beltspace::gpu::{Adapter, adapters, self_test};
