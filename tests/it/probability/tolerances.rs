@@ -237,7 +237,7 @@ fn every_draw_is_a_drive_with_a_factor_in_its_formula() {
             assert_eq!(told[of("stress_margin_yield")], share_of(stressed), "design {design}");
             let forces: Option<Vec<f64>> = forces.into_iter().collect();
             let mean = forces.map(|it| it.iter().sum::<f64>() / it.len() as f64);
-            match (told[of("axial_force_N_mean")], mean) {
+            match (told[of("axial_force_N_draw_mean")], mean) {
                 (Some(told), Some(mean)) => assert!((told / mean - 1.0).abs() < 1e-13, "design {design}: {told} and {mean}"),
                 (told, mean) => assert_eq!(told, mean, "design {design}"),
             }
