@@ -173,10 +173,7 @@ fn warnings(plan: &Plan, name: &impl Fn(&Axis) -> String) -> Vec<String> {
     warnings.extend(draws::warnings(study));
     warnings.extend(contradiction(plan));
     if study.constraints.is_empty() {
-        warnings.push(match study.probability {
-            None => "there are no constraints: every design with status ok is feasible".to_owned(),
-            Some(_) => "no yield is asked for in [constraints]: a design is feasible even if no draw of it holds".to_owned(),
-        });
+        warnings.push("there are no constraints: every design with status ok is feasible".to_owned());
     }
     warnings
 }

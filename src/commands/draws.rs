@@ -73,7 +73,8 @@ pub fn warnings(study: &Study) -> Vec<String> {
     let warning = |constraint: &Constraint| {
         let name = constraint.name(&study.model);
         let kind = probability.statistics[constraint.quantity.output()?].kind;
-        let wanted = constraint.low.map(|it| it.0).filter(|_| matches!(kind, StatisticKind::Yield | StatisticKind::YieldOf(_)))?;
+        let is_share = matches!(kind, StatisticKind::Yield | StatisticKind::YieldOf(_));
+        let wanted = constraint.low.map(|it| it.0).filter(|it| is_share && *it > 0.0)?;
         let misses = probability.draws as f64 * (1.0 - wanted);
         if wanted >= 1.0 || misses >= FEW {
             return None;

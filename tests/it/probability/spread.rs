@@ -103,3 +103,16 @@ fn a_mean_over_cases_and_one_over_draws_have_names_of_their_own() {
     ];
     assert_eq!(names, expected);
 }
+
+#[test]
+fn where_the_yield_is_an_objective_alone_one_draw_that_holds_makes_a_design_feasible() {
+    let text = "model = \"metal-cvt\"\n[design]\nclamping_force_N = [10000, 22000, 30000]\n[operation]\nratio = [0.5, 2]\n\
+        [uncertainty]\nfriction = { uniform = [0.07, 0.09] }\n[probability]\ndraws = 64\nconfirm = 1\n\
+        [constraints]\nslip_margin = { min = 0 }\n[objectives]\nyield = \"max\"\n";
+    let plan = Plan::new(parse(text));
+    let held = columns(&plan.study);
+    let told = rows(&plan, &held, &[0, 1, 2], 1, &Control::default()).expect("nobody stops it");
+    let shares: Vec<f64> = told.iter().map(|it| it.columns[0].value.expect("a share is always known")).collect();
+    assert!(held[0].name == "yield_screened" && shares[0] == 0.0 && shares[1] > 0.0 && shares[1] < 1.0 && shares[2] == 1.0, "{shares:?}");
+    assert_eq!(told.iter().map(|it| it.feasible).collect::<Vec<_>>(), [false, true, true]);
+}
