@@ -21,14 +21,20 @@ pub const MOST_DOTS: u64 = 20_000;
 
 /// Columns that tables have besides quantities: nothing that a study names may be called so.
 const COLUMNS: [&str; 10] = ["design_index", "scenario", "feasible", "feasible_share", "status", "of", "at", "line", "bracket", "along"];
+/// What is told of the draws of a study with distributions. `yield` means the same in every study.
+pub const YIELDS: [&str; 7] =
+    ["yield", "yield_screened", "yield_screened_standard_error", "yield_low", "yield_high", "yield_at_least", "yield_at_most"];
 /// What is added to the name of a quantity where it has a further column.
-const ADDED: [&str; 4] = ["_scenario", "_constrained", "_constrained_scenario", "_value"];
+const ADDED: [&str; 6] = ["_scenario", "_constrained", "_constrained_scenario", "_value", "_lowest", "_highest"];
 
 /// What a table's column of this name holds besides a quantity of this name, if some table may have such; `is_known` knows the names of
 /// the study's quantities. Two columns of one name cannot be told apart, and most readers of tables drop one.
 pub fn column_of_tables(name: &str, is_known: impl Fn(&str) -> bool) -> Option<String> {
     if COLUMNS.contains(&name) {
         return Some("in tables of results".to_owned());
+    }
+    if YIELDS.contains(&name) {
+        return Some("that tells the share of draws that hold".to_owned());
     }
     let of = ADDED.iter().filter_map(|added| name.strip_suffix(added)).find(|of| is_known(of));
     of.map(|of| format!("that tables of results have beside \"{of}\""))

@@ -126,11 +126,14 @@ fn select_(margin: Real, at_least_zero: Real, below_zero: Real) -> Real {
     return Real(value, select(own + abs(at_least_zero.value - below_zero.value) + other, own, sure));
 }
 
+// What a square root and a division may be off by together, where they make a bound that holds with nothing to spare.
+const ROOTED: f32 = 1.000002;
+
 // |sqrt(a) - sqrt(x)| <= |a - x| / sqrt(x), and never more than sqrt(|a - x|).
 fn sqrt_(a: Real) -> Real {
     let root = sqrt(max(a.value, 0.0));
     let steep = select(a.bound / root, infinity(), root == 0.0);
-    return rounded(root, min(sqrt(a.bound), steep), SQUARE_ROOT);
+    return rounded(root, ROOTED * min(sqrt(a.bound), steep), SQUARE_ROOT);
 }
 
 fn exp_m1_(a: Real) -> Real {
@@ -153,12 +156,21 @@ fn cos_(a: Real) -> Real {
     return rounded(cosine(a.value), a.bound, FUNCTION);
 }
 
-// The slope is taken at the end of the argument's range that lies nearer to one; there it is never steeper than a root.
+// The slope is taken at the end of the argument's range that lies nearer to one. That end is rounded away from zero: beside one, half an
+// ULP is a large part of what is left. And two arc sines are never farther apart than those of 1 and 1 - d, where d is the distance of
+// their arguments: pi/2 sqrt(d) for d up to 1, pi/sqrt(2) sqrt(d) for d up to 2.
 fn asin_(a: Real) -> Real {
-    let end = abs(a.value) + a.bound;
+    let end = (abs(a.value) + a.bound) * 1.00000024;
     let steep = a.bound / sqrt((1.0 - end) * (1.0 + end));
-    let inherited = min(select(infinity(), steep, end < 1.0), 1.5708 * sqrt(a.bound));
-    return rounded(arc_sine(a.value), inherited, FUNCTION);
+    let anywhere = select(2.2215, 1.5708, a.bound <= 1.0) * sqrt(a.bound);
+    let inherited = ROOTED * min(select(infinity(), steep, end < 1.0), anywhere);
+    let value = arc_sine(a.value);
+    return rounded(value, inherited + rooted_arc(a.value, value), FUNCTION);
+}
+
+// Beyond one half `arc_sine` takes a square root: what WGSL lets that be off by is 1.11 times as much, at most, of the angle to pi/2.
+fn rooted_arc(at: f32, value: f32) -> f32 {
+    return select(0.0, 1.11 * SQUARE_ROOT * (1.5708 - abs(value)), abs(at) > 0.5);
 }
 
 // Exact unless a whole number lies within the bound; then as many whole numbers off as the bound reaches over. Below zero the distance from

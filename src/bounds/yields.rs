@@ -100,7 +100,8 @@ impl YieldBounds {
         check(&plan, &inputs)?;
         // A tenth of what may miss the wanted yield, or of one in a thousand.
         let is_yield = |it: &&Constraint| it.quantity.output().is_some_and(|it| probability.statistics[it].kind == StatisticKind::Yield);
-        let wanted = study.constraints.iter().find(is_yield).and_then(|it| Some(it.low?.0)).filter(|it| *it < 1.0).unwrap_or(0.999);
+        let wanted =
+            study.constraints.iter().find(is_yield).and_then(|it| Some(it.low?.0)).filter(|it| *it > 0.0 && *it < 1.0).unwrap_or(0.999);
         Ok(Self { plan, inputs, correlation: probability.correlation.clone(), width: 0.1 * (1.0 - wanted) })
     }
 

@@ -92,7 +92,7 @@ impl<'a> Summary<'a> {
             let end = |it: &crate::reduce::Extreme| json!({ "value": number(it.value), "design_index": it.index });
             Some((name.clone(), json!({ "least": end(least.as_ref()?), "largest": end(largest.as_ref()?) })))
         });
-        let statuses = tally.statuses(model);
+        let statuses = tally.statuses(&self.outcome.plan.study);
         let mut status: Map<_, Value> = statuses.into_iter().map(|(reason, count)| (reason.to_owned(), count.into())).collect();
         // So rare that most summaries do not have it.
         if tally.overflow > 0 {

@@ -230,7 +230,7 @@ impl Highlights {
             Some(Spread { name, least: (*least)?, largest: (*largest)? })
         };
         let failed = |what: &str, designs: u64, only| Limit { what: what.to_owned(), designs, only };
-        let mut limits: Vec<_> = tally.statuses(model).into_iter().map(|(reason, count)| failed(reason, count, None)).collect();
+        let mut limits: Vec<_> = tally.statuses(study).into_iter().map(|(reason, count)| failed(reason, count, None)).collect();
         limits.extend((tally.overflow > 0).then(|| failed(OVERFLOW, tally.overflow, None)));
         limits.extend(study.constraints.iter().zip(tally.constraints.iter().zip(&tally.only)).map(|(constraint, (&designs, &only))| {
             failed(&format!("{} {}", constraint.name(model), constraint.in_words()), designs, Some(only))

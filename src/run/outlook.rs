@@ -95,10 +95,7 @@ pub fn warnings(plan: &Plan) -> Vec<String> {
     warnings.extend(few_draws(study));
     warnings.extend(contradiction(plan));
     if study.constraints.is_empty() {
-        warnings.push(match study.probability {
-            None => "there are no constraints: every design with status ok is feasible".to_owned(),
-            Some(_) => "no yield is asked for in [constraints]: a design is feasible even if no draw of it holds".to_owned(),
-        });
+        warnings.push("there are no constraints: every design with status ok is feasible".to_owned());
     }
     warnings
 }
@@ -132,7 +129,8 @@ fn few_draws(study: &Study) -> Vec<String> {
     let warning = |constraint: &Constraint| {
         let name = constraint.name(&study.model);
         let kind = probability.statistics[constraint.quantity.output()?].kind;
-        let wanted = constraint.low.map(|it| it.0).filter(|_| matches!(kind, StatisticKind::Yield | StatisticKind::YieldOf(_)))?;
+        let is_share = matches!(kind, StatisticKind::Yield | StatisticKind::YieldOf(_));
+        let wanted = constraint.low.map(|it| it.0).filter(|it| is_share && *it > 0.0)?;
         let misses = probability.draws as f64 * (1.0 - wanted);
         if wanted >= 1.0 || misses >= FEW {
             return None;

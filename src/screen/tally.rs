@@ -10,10 +10,11 @@ use super::spectrum::CaseSums;
 use super::tables::{BLOCK, FastBlock, Tables};
 use crate::error::{Error, Result};
 use crate::masks;
-use crate::models::{Model, Set};
+use crate::models::Set;
 use crate::parallel::on_threads;
 use crate::plan::{Plan, Source, Tracked, worst_end};
 use crate::sample::mix;
+use crate::study::Study;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::Ordering;
 
@@ -112,15 +113,15 @@ impl Tally {
         }
     }
 
-    /// How many designs have each status in some scenario, by its reason. Both ends of an input's valid range have the same.
-    pub fn statuses<'m>(&self, model: &'m Model) -> Vec<(&'m str, u64)> {
-        let mut statuses: Vec<(&str, u64)> = Vec::new();
-        for (number, condition) in model.conditions.iter().enumerate().filter(|(_, condition)| !condition.quiet) {
-            if model.first_of_reason(number) == number {
-                statuses.push((&condition.reason, self.conditions[number]));
-            }
-        }
-        statuses
+    /// How many designs have each status in some scenario, by its reason. Both ends of an input's valid range have the same. Of a study with
+    /// distributions also how many lack a statistic that the study asks for, where there are such.
+    pub fn statuses<'s>(&self, study: &'s Study) -> Vec<(&'s str, u64)> {
+        let model = &study.model;
+        let counted = model.conditions.iter().zip(&self.conditions).enumerate();
+        let is_told = |number: usize, quiet: bool, count: u64| {
+            model.first_of_reason(number) == number && (!quiet || (study.probability.is_some() && count > 0))
+        };
+        counted.filter(|&(number, (it, &count))| is_told(number, it.quiet, count)).map(|(_, (it, &count))| (&*it.reason, count)).collect()
     }
 
     fn merge(mut self, other: Self) -> Self {

@@ -1,14 +1,15 @@
 //! Labels: text columns of catalogues, carried along with the designs and read by no formula.
 
 use crate::models::Model;
+use crate::names::YIELDS;
 
 /// Most characters of a label's text.
 pub const MOST_LABEL_CHARACTERS: usize = 200;
 /// Most labels of a study.
 pub const MOST_LABELS: usize = 20;
 /// Names that tables of designs use themselves, and endings of such names.
-const TAKEN: [&str; 2] = ["design_index", "feasible"];
-const TAKEN_ENDINGS: [&str; 6] = ["_scenario", "_constrained", "_mean", "_sum", "_value", "_index"];
+const TAKEN: [&str; 4] = ["design_index", "feasible", "scenario", "status"];
+const TAKEN_ENDINGS: [&str; 8] = ["_scenario", "_constrained", "_mean", "_sum", "_value", "_index", "_lowest", "_highest"];
 
 /// A text for every row of a joint design axis, such as part numbers of a catalogue.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -31,7 +32,8 @@ pub fn flaw_of_name(name: &str, model: &Model) -> Option<String> {
     if !is_plain(name) {
         return Some("a label's name has letters, digits and _, begins with a letter and is no longer than 80; rename it".to_owned());
     }
-    if TAKEN.contains(&name) || TAKEN_ENDINGS.iter().any(|ending| name.ends_with(ending)) {
+    let is_taken = TAKEN.contains(&name) || YIELDS.contains(&name);
+    if is_taken || TAKEN_ENDINGS.iter().any(|ending| name.ends_with(ending)) {
         return Some("tables have columns of such names themselves; rename it".to_owned());
     }
     let is_formula = model.formulas().iter().any(|(formula, _)| *formula == name);

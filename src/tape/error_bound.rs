@@ -164,7 +164,11 @@ impl Real for RunningError {
         Self::rounded(Real::cos(self.value), self.bound, FUNCTION)
     }
     fn asin(self) -> Self {
-        self.monotone(Real::asin(self.value), |x| libm::asin(x.clamp(-1.0, 1.0)), FUNCTION)
+        let arc = self.monotone(Real::asin(self.value), |x| libm::asin(x.clamp(-1.0, 1.0)), FUNCTION);
+        // Beyond one half it takes a square root: what that may be off by is 1.11 times as much, at most, of the angle to pi/2.
+        let rest = (std::f64::consts::FRAC_PI_2 - f64::from(arc.value).abs()).max(0.0);
+        let rooted = if f32::abs(self.value) > 0.5 { 1.11 * SQUARE_ROOT * rest } else { 0.0 };
+        Self { bound: arc.bound + rooted, ..arc }
     }
     /// Exact unless a whole number lies within the bound; then as many whole numbers off as the bound reaches over.
     fn floor(self) -> Self {

@@ -27,10 +27,14 @@ pub fn summary(outcome: &Certified<'_>, record: &RunRecord, out: &Path, page: Op
         match plan.scenarios() {
             1 if record.designs == 0 => format!("{designs}, all judged before this run"),
             scenarios if record.designs == 0 => format!("{designs} x {} scenarios, all judged before this run", grouped(scenarios)),
-            1 => format!("{designs} in {time}, {}designs/s", scaled(rate)),
             scenarios => {
-                let judged = scaled(rate * scenarios as f64);
-                format!("{designs} x {} scenarios in {time}, {}designs/s, up to {judged}evaluations/s", grouped(scenarios), scaled(rate))
+                let of = if scenarios == 1 { String::new() } else { format!(" x {} scenarios", grouped(scenarios)) };
+                // Draws and operating cases are evaluations too.
+                let judged = match plan.evaluations() {
+                    1 => String::new(),
+                    evaluations => format!(", up to {}evaluations/s", scaled(rate * evaluations as f64)),
+                };
+                format!("{designs}{of} in {time}, {}designs/s{judged}", scaled(rate))
             }
         },
     );
@@ -66,7 +70,8 @@ pub fn summary(outcome: &Certified<'_>, record: &RunRecord, out: &Path, page: Op
         let certified = if outcome.front.is_empty() { "" } else { " certified in f64 over every scenario" };
         fact("front", format!("{designs}{certified}"));
     }
-    if let Some(Confirmed { draws, designs, wanted, together }) = Confirmed::of(outcome) {
+    let confirmed = Confirmed::of(outcome);
+    if let Some(Confirmed { draws, designs, wanted, together, .. }) = confirmed {
         let kept = wanted.map_or(String::new(), |(wanted, kept)| {
             format!("{} of {} designs keep a yield of {wanted} in ", grouped(kept), grouped(designs))
         });
@@ -77,7 +82,7 @@ pub fn summary(outcome: &Certified<'_>, record: &RunRecord, out: &Path, page: Op
     let mut text = format!("{}\n\n{}", bold(&super::told(&study.title)), facts.indented(0));
     text.push_str(&limits(outcome));
     if !outcome.front.is_empty() {
-        text.push_str(&front(outcome));
+        text.push_str(&front(outcome, confirmed.as_ref()));
         text.push_str(&plot(outcome));
     }
     text.push_str(&influence(outcome));
@@ -102,7 +107,7 @@ fn limits(outcome: &Certified<'_>) -> String {
     let tally = &outcome.tally;
     let study = &outcome.plan.study;
     let model = &study.model;
-    let statuses = tally.statuses(model).into_iter();
+    let statuses = tally.statuses(study).into_iter();
     let mut reasons: Vec<(u64, u64, String)> = statuses.map(|(reason, count)| (count, 0, reason.to_owned())).collect();
     reasons.push((tally.overflow, 0, OVERFLOW.to_owned()));
     for (constraint, (&violated, &only)) in study.constraints.iter().zip(tally.constraints.iter().zip(&tally.only)) {
@@ -156,7 +161,7 @@ fn shown_label(text: &str) -> String {
 }
 
 /// Ideal, knee and the best designs by the first objective, and what the knee is made of.
-fn front(outcome: &Certified<'_>) -> String {
+fn front(outcome: &Certified<'_>, confirmed: Option<&Confirmed>) -> String {
     let study = &outcome.plan.study;
     let model = &study.model;
     let summary = Summary::new(outcome);
@@ -164,14 +169,17 @@ fn front(outcome: &Certified<'_>) -> String {
     let goals = study.objectives.iter().map(|it| format!("{} ({})", it.name(model), if it.goal == Goal::Min { "min" } else { "max" }));
     let mut grid = TextGrid::default();
     let labels = study.labels.iter().map(|it| it.name.clone());
-    grid.row(std::iter::once(String::new()).chain(goals.chain(["design".to_owned()]).chain(labels).map(|head| bold(&head))));
+    let missing = confirmed.map_or(&[][..], |it| &it.missing);
+    let fresh = (!missing.is_empty()).then(|| "in fresh draws".to_owned());
+    grid.row(std::iter::once(String::new()).chain(goals.chain(["design".to_owned()]).chain(labels).chain(fresh).map(|head| bold(&head))));
     if let Some(ideal) = &summary.ideal {
         grid.row(std::iter::once("ideal".to_owned()).chain(ideal.iter().map(|&value| short(value))));
     }
     let mut row = |label: &str, row: &Row| {
         let objectives = columns.iter().map(|&column| row.columns[column].value.map_or(String::new(), short));
         let labels = outcome.plan.labels(row.index).map(shown_label);
-        grid.row(std::iter::once(label.to_owned()).chain(objectives).chain([row.index.to_string()]).chain(labels));
+        let missed = missing.iter().find(|it| it.0 == row.index).map(|it| format!("{}, too few", short(it.1)));
+        grid.row(std::iter::once(label.to_owned()).chain(objectives).chain([row.index.to_string()]).chain(labels).chain(missed));
     };
     let knee = summary.knee.map(|knee| &outcome.front[knee.row]);
     if let Some(knee) = knee {

@@ -82,7 +82,11 @@
 
   const margins = (row) => {
     const { front } = page;
-    const lines = front.constraints.flatMap((constraint) =>
+    // What chosen designs have in the fresh draws is measured by the bound that the draws which chose them had to keep.
+    const wanted = front.constraints.find(({ column }) => column.name === "yield_screened");
+    const fresh = front.shown.find((column) => column.name === "yield");
+    const constraints = wanted && fresh ? [...front.constraints, { ...wanted, column: fresh }] : front.constraints;
+    const lines = constraints.flatMap((constraint) =>
       marginsOf(constraint).map(({ text, margin }) => {
         const { column } = constraint;
         const largest = Math.max(margin(rowOfExtreme(column, "low")), margin(rowOfExtreme(column, "high")));

@@ -46,8 +46,8 @@ impl FreshDraws {
             ConfirmedEnd::Low => clopper_pearson(holds, draws, CONFIDENCE).map(|it| it.low),
             // Any of the levels may be the one whose upper end is the least.
             ConfirmedEnd::High => simultaneous(holds, draws, CONFIDENCE, self.levels).map(|it| it.high),
-            // Draws prove nothing: whoever certifies a design fills these in.
-            ConfirmedEnd::AtLeast | ConfirmedEnd::AtMost => return f64::NAN,
+            // Draws prove nothing: whoever certifies a design fills these in. And the standard error is not theirs.
+            ConfirmedEnd::AtLeast | ConfirmedEnd::AtMost | ConfirmedEnd::StandardError => return f64::NAN,
         };
         interval.unwrap_or(f64::NAN)
     }

@@ -7,9 +7,9 @@ use super::drive::{DrawnDrive, margin_of};
 use super::early::least_counts;
 use super::fold::{of_any, over_cases, over_draws};
 use super::lanes::DrawnLanes;
-use super::statistic::{AskedQuantity, Statistic, StatisticKind};
+use super::statistic::{AskedQuantity, ConfirmedEnd, Statistic, StatisticKind};
 use crate::models::{Columns, Dependencies, Kernel, Scratch, Sizes, Status, Worse, judge, shown};
-use crate::probability::Effect;
+use crate::probability::{Effect, REPLICATES, replicated};
 use crate::tape::{Known, Set};
 use std::cell::RefCell;
 use std::sync::OnceLock;
@@ -74,6 +74,9 @@ impl DrawnKernel {
     fn computed(&self, design: &[f64], wanted: Set) -> Vec<Option<f64>> {
         let draws = self.draws();
         let mut counts = vec![0u64; self.statistics.len()];
+        // Of each replicate, if there are such.
+        let replicates = self.statistics.iter().any(|it| it.kind == StatisticKind::Confirmed(ConfirmedEnd::StandardError));
+        let mut held = vec![0u64; if replicates { REPLICATES as usize } else { 0 }];
         let mut values: Vec<Vec<f64>> =
             self.statistics.iter().map(|it| Vec::with_capacity(if it.kind.may_be_absent() { draws } else { 0 })).collect();
         for draw in 0..draws {
@@ -85,6 +88,9 @@ impl DrawnKernel {
                     StatisticKind::Plain(asked) | StatisticKind::Over(asked, _) => {
                         values[number].push(self.over_cases(&asked, &cases).unwrap_or(f64::NAN));
                     }
+                    StatisticKind::Confirmed(ConfirmedEnd::StandardError) => {
+                        held[draw * REPLICATES as usize / draws] += u64::from(self.draw_holds(&cases));
+                    }
                     StatisticKind::Confirmed(_) => {}
                 }
             }
@@ -94,6 +100,10 @@ impl DrawnKernel {
             StatisticKind::Yield | StatisticKind::YieldOf(_) => Some(counts[number] as f64),
             StatisticKind::Plain(asked) => of_any(&asked, &values[number]),
             StatisticKind::Over(asked, over) => over_draws(&asked, over, &values[number]),
+            StatisticKind::Confirmed(ConfirmedEnd::StandardError) => {
+                let shares: Vec<f64> = held.iter().map(|it| *it as f64 * REPLICATES as f64 / draws as f64).collect();
+                replicated(&shares).ok()?.standard_error
+            }
             StatisticKind::Confirmed(end) => self.fresh.as_ref().zip(holding).map(|(fresh, holding)| fresh.told(end, holding)),
         };
         self.statistics.iter().enumerate().map(result).collect()

@@ -6,9 +6,9 @@ use super::confirm::FreshDraws;
 use super::drive::{Asking, DrawnDrive, Requirements};
 use super::kernel::DrawnKernel;
 use super::probability::{Drive, Probability};
-use super::statistic::{AskedQuantity, ConfirmedEnd, Statistic, StatisticKind};
+use super::statistic::{AskedQuantity, ConfirmedEnd, SCREENED, Statistic, StatisticKind};
 use crate::models::{Condition, Model, Output, Worse, interned};
-use crate::probability::ProbabilityProblem;
+use crate::probability::{ProbabilityProblem, REPLICATES};
 use crate::units::{NONE, Unit};
 use std::sync::Arc;
 
@@ -71,7 +71,7 @@ fn model(probability: &Probability, kernel: DrawnKernel) -> Model {
 
 fn output(probability: &Probability, statistic: &Statistic) -> Output {
     let drive = &probability.drive;
-    let of = |asked: &AskedQuantity, doc: String| {
+    let of = |asked: &AskedQuantity, worse: Worse, doc: String| {
         let unit = unit_over(asked.quantity, asked.over, &drive.model, drive.spectrum.as_ref());
         let over = match asked.over {
             OverScenarios::Worst if drive.operation.is_empty() => String::new(),
@@ -79,7 +79,7 @@ fn output(probability: &Probability, statistic: &Statistic) -> Output {
             over => format!(" In each draw the {} over the operating cases.", over.word()),
         };
         let doc = format!("{}{doc}{over}", asked.quantity.doc(&drive.model));
-        Output::new(&statistic.name, "", Unit::of_formulas(interned(&unit), (1.0, 1.0)), asked.worse, "the draws", doc)
+        Output::new(&statistic.name, "", Unit::of_formulas(interned(&unit), (1.0, 1.0)), worse, "the draws", doc)
     };
     let share = |doc: String| Output::new(&statistic.name, "", NONE, Worse::Lower, "the draws", doc);
     // A device counts: of what it has, the share is counted in draws.
@@ -101,10 +101,14 @@ fn output(probability: &Probability, statistic: &Statistic) -> Output {
         StatisticKind::Confirmed(ConfirmedEnd::AtMost) => {
             share("Proven upper bound of the yield, for the distributions themselves and not for draws of them.".to_owned())
         }
+        StatisticKind::Confirmed(ConfirmedEnd::StandardError) => {
+            let doc = format!("Standard error of {SCREENED}, from {REPLICATES} independent sets of its draws; none where all sets agree.");
+            Output { worse: Worse::Higher, ..share(doc) }
+        }
         StatisticKind::YieldOf(constraint) => {
             counted(format!("Share of the draws that keep the bounds of {} in all operating cases.", constraint.name(&drive.model)))
         }
-        StatisticKind::Plain(asked) => of(asked, String::new()),
-        StatisticKind::Over(asked, over) => of(asked, format!(" The {}.", over.words())),
+        StatisticKind::Plain(asked) => of(asked, asked.worse, String::new()),
+        StatisticKind::Over(asked, over) => of(asked, over.worse(asked.worse), format!(" The {}.", over.words())),
     }
 }

@@ -21,14 +21,19 @@ pub enum OverDraws {
 }
 
 impl OverDraws {
-    /// As a part of a name: `q99_9` for the quantile 0.999.
+    /// The end of a column's name: `_draw_q99_9` for the quantile 0.999.
     pub fn suffix(self) -> String {
         match self {
-            Self::Mean => "mean".to_owned(),
-            Self::Sd => "sd".to_owned(),
-            Self::Worst => "worst".to_owned(),
-            Self::Quantile(share) => format!("q{}", percent(share).replace('.', "_")),
+            Self::Mean => "_draw_mean".to_owned(),
+            Self::Sd => "_draw_sd".to_owned(),
+            Self::Worst => "_draw_worst".to_owned(),
+            Self::Quantile(share) => format!("_draw_q{}", percent(share).replace('.', "_")),
         }
+    }
+
+    /// The worse end of the statistic of a quantity with this worse end: of levels, the worst is the one whose draws differ most.
+    pub fn worse(self, of_quantity: Worse) -> Worse {
+        if self == Self::Sd { Worse::Higher } else { of_quantity }
     }
 
     /// In words.
@@ -100,11 +105,14 @@ pub enum ConfirmedEnd {
     AtLeast,
     /// The upper one.
     AtMost,
+    /// The standard error of the share of the draws that choose, from replicates of a Latin hypercube or of Sobol points; none where all
+    /// replicates agree.
+    StandardError,
 }
 
 impl ConfirmedEnd {
     /// All of it, in the order of the columns.
-    pub const ALL: [Self; 5] = [Self::Share, Self::Low, Self::High, Self::AtLeast, Self::AtMost];
+    pub const ALL: [Self; 6] = [Self::StandardError, Self::Share, Self::Low, Self::High, Self::AtLeast, Self::AtMost];
 
     /// Is it proven instead of drawn?
     pub fn is_proven(self) -> bool {
@@ -119,6 +127,7 @@ impl ConfirmedEnd {
             Self::High => "yield_high",
             Self::AtLeast => "yield_at_least",
             Self::AtMost => "yield_at_most",
+            Self::StandardError => "yield_screened_standard_error",
         }
     }
 }
@@ -133,10 +142,10 @@ pub const SCREENED: &str = "yield_screened";
 pub const CONFIDENCE: f64 = 0.95;
 
 impl AskedQuantity {
-    /// The name of a statistic of it: `axial_force_N_mean`.
+    /// The name of a statistic of it: `axial_force_N_draw_mean`.
     pub fn name(&self, draws: Option<OverDraws>, model: &Model) -> String {
         let over = self.over.column(self.quantity, model);
-        draws.map_or(over.clone(), |draws| format!("{over}_{}", draws.suffix()))
+        draws.map_or(over.clone(), |draws| over + &draws.suffix())
     }
 }
 

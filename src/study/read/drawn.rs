@@ -86,7 +86,11 @@ impl Reader<'_> {
         asks.report(section(top, "report", problems).as_ref());
         let (mut statistics, meanings) = (asks.statistics.take(), asks.meanings.take());
         let told = |end: ConfirmedEnd| Statistic { name: end.name().to_owned(), kind: StatisticKind::Confirmed(end) };
-        statistics.extend(ConfirmedEnd::ALL.into_iter().filter(|it| probability.enclosure || !it.is_proven()).map(told));
+        let is_told = |end: &ConfirmedEnd| match end {
+            ConfirmedEnd::StandardError => probability.sampling != Sampling::Random,
+            _ => probability.enclosure || !end.is_proven(),
+        };
+        statistics.extend(ConfirmedEnd::ALL.into_iter().filter(is_told).map(told));
         if !statistics.iter().any(|it| it.kind == StatisticKind::Yield) {
             let remedy = "write yield = { min = 0.999 } in [constraints] or yield = \"max\" in [objectives]";
             let message = format!("inputs have distributions, but nothing is asked of the yield; {remedy}");
@@ -267,6 +271,8 @@ impl<'r, 'a> Asks<'r, 'a> {
             }
             return Some(Err(quantity));
         }
+        // A bound or goal of a standard deviation is about how much the values differ, and says nothing of which case is the worst.
+        let end = end.filter(|_| !matches!(draws, Some((OverDraws::Sd, _))));
         let asked = AskedQuantity { quantity, over, worse: end.unwrap_or_else(|| quantity.worse(reader.model)) };
         if let Some((draws, _)) = draws {
             return Some(Ok(StatisticKind::Over(asked, draws)));

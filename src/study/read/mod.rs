@@ -475,7 +475,8 @@ impl Reader<'_> {
     /// `[constraints]`, `[objectives]` and `[report]`.
     fn asked_of_designs(&self, top: &TomlTable<'_>, design: &[Axis], fixed: &[f64]) -> (Vec<Constraint>, Vec<Objective>, Report) {
         let problems = self.problems;
-        let constraints = section(top, "constraints", problems).map_or_else(Vec::new, |table| self.constraints(&table, fixed));
+        let mut constraints = section(top, "constraints", problems).map_or_else(Vec::new, |table| self.constraints(&table, fixed));
+        constraints.extend(self.one_draw_at_least(&constraints));
         let objectives_table = section(top, "objectives", problems);
         let objectives = objectives_table.as_ref().map_or_else(Vec::new, |table| self.objectives(table, fixed));
         let report_table = section(top, "report", problems);

@@ -8,6 +8,7 @@ use crate::error::Result;
 use crate::files::{STUDY_BYTES, read_bytes};
 use crate::likeness::remedy;
 use crate::models::{ConditionSource, Extension, FileSource, FormulaSource, Input, Model, Models, OVERFLOW, Preset, extended, nothing};
+use crate::names::column_of_tables;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -150,6 +151,7 @@ impl ModelReader<'_> {
         for (name, at) in self.keys("formulas").into_iter().filter(|(name, _)| inputs.iter().any(|input| input.name == *name)) {
             problems.add(at, format!("{} is an input of this model already; choose another name", shortened(name)));
         }
+        self.refuse_names_of_columns(&base);
         let known = problems.count() == before && !problems.is_incomplete();
         let outputs = self.outputs(&mut formulas);
         let conditions = self.conditions(&base, &formulas, outputs.as_deref(), &mut places);
@@ -185,6 +187,17 @@ impl ModelReader<'_> {
             self.problems.add(0, message);
         } else if self.models.find(name).is_some() {
             self.problems.add(0, format!("there is a model \"{name}\" already; choose another name for the file"));
+        }
+    }
+
+    /// Reports inputs and formulas whose column in a table of a result would have the name of another one.
+    fn refuse_names_of_columns(&self, base: &Model) {
+        let own: Vec<(&str, usize)> = ["inputs", "formulas"].into_iter().flat_map(|table| self.keys(table)).collect();
+        let is_known = |name: &str| base.input(name).is_some() || base.output(name).is_some() || own.iter().any(|it| it.0 == name);
+        for &(name, at) in &own {
+            if let Some(column) = column_of_tables(name, is_known) {
+                self.problems.add(at, format!("\"{}\" is the name of a column {column}; choose another name", shortened(name)));
+            }
         }
     }
 

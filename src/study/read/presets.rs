@@ -4,12 +4,20 @@ use super::super::axis::Axis;
 use super::super::label::Label;
 use super::Reader;
 use super::formulas::given;
+use super::law::tolerance;
 use super::roles::{AxisClaim, AxisRole, PRESET};
 use super::table::{Entry, list, shortened};
 use super::text;
 use std::collections::{HashMap, HashSet};
 
 impl Reader<'_> {
+    /// The places of tolerances in `[uncertainty]`.
+    fn tolerances_at(&self) -> HashSet<usize> {
+        let table = self.top.get("uncertainty").and_then(|entry| entry.node.table());
+        let is_tolerance = |entry: &Entry<'_>| entry.node.table().is_some_and(|table| tolerance(&table).is_some());
+        table.into_iter().flat_map(|table| table.entries).filter(is_tolerance).map(|entry| entry.key_at).collect()
+    }
+
     /// The axis over the presets that the entry lists; `number` is its position among the design axes. What axes and `[fixed]` give goes
     /// over the presets; what a preset does not set has the value that it has without one.
     pub(super) fn preset_axis(&self, role: AxisRole, entry: &Entry<'_>, number: usize) -> Option<Axis> {
@@ -42,7 +50,10 @@ impl Reader<'_> {
         let presets: Vec<_> = names.iter().filter_map(|name| self.model.presets.iter().find(|it| it.name == *name)).collect();
         let set = |name: &str| presets.iter().any(|it| it.changes.iter().any(|(changed, _)| changed == name));
         let all = &self.model.inputs;
-        let given: HashSet<String> = given(self.top, self.folder).into_iter().map(|(name, _)| name).collect();
+        // A tolerance is about what the presets say, and goes over nothing.
+        let tolerances: HashSet<usize> = self.tolerances_at();
+        let given = given(self.top, self.folder).into_iter().filter(|(_, at)| !tolerances.contains(at));
+        let given: HashSet<String> = given.map(|(name, _)| name).collect();
         let inputs: Vec<usize> = (0..all.len()).filter(|&it| set(&all[it].name) && !given.contains(&all[it].name)).collect();
         if inputs.is_empty() {
             let message = "axis \"preset\": everything that these presets set is set elsewhere in the study; drop the axis";

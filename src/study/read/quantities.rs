@@ -1,6 +1,6 @@
 //! Inputs and outputs that a study is about: constraints and objectives.
 
-use super::super::drawn::{OVER_DRAWS, YIELD};
+use super::super::drawn::{OVER_DRAWS, SCREENED, YIELD};
 use super::super::quantity::Quantity;
 use super::super::resolved::{Constraint, Goal, Objective};
 use super::super::spectrum::OverScenarios;
@@ -161,6 +161,14 @@ impl Reader<'_> {
             }
             None => self.constraint(entry, fixed),
         }
+    }
+
+    /// Of a study with distributions that has the yield as an objective only: one draw that holds makes a design feasible.
+    pub(super) fn one_draw_at_least(&self, constraints: &[Constraint]) -> Option<Constraint> {
+        self.meanings.as_ref()?;
+        let quantity = Quantity::Output(self.model.output(SCREENED)?);
+        let is_asked = constraints.iter().any(|it| it.quantity == quantity);
+        (!is_asked).then_some(Constraint { quantity, low: Some((0.0, true)), high: None, over: OverScenarios::Worst })
     }
 
     /// A constraint as it is written.

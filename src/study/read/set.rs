@@ -216,12 +216,29 @@ fn edited(settings: &[StudySetting], top: &TomlTable<'_>, text: &str, models: &M
             edits.push(Edit { range: at..at, with: format!("{before}{}{after}", line_of(&settings[number])), writes: Some(number) });
         }
     }
+    let unread = unread(settings, top, text, &is_input);
+    edits.extend(unread.iter().map(|entry| Edit { writes: None, ..left_out(entry, text) }));
     let edited = applied(edits, text, settings.len());
-    if is_as_meant(&edited.text, top, settings) {
+    let gone: Vec<&str> = unread.iter().map(|entry| entry.key).collect();
+    if is_as_meant(&edited.text, top, settings, &gone) {
         return Ok(edited);
     }
     let told = settings.iter().map(StudySetting::told).collect::<Vec<_>>().join(" ");
     Err(refusal(vec![format!("{told}: the study is written in a way that cannot be edited; give the value in its [fixed]")]))
+}
+
+/// Fixed variables that nothing reads but formulas which a setting replaces: they go with these.
+fn unread<'n>(settings: &[StudySetting], top: &TomlTable<'n>, text: &str, is_input: &dyn Fn(&str) -> bool) -> Vec<Entry<'n>> {
+    let entries = |table: &str| top.get(table).and_then(|entry| entry.node.table()).map_or_else(Vec::new, |table| table.entries);
+    let is_set = |entry: &Entry<'_>| settings.iter().any(|it| it.name == entry.key);
+    let replaced: Vec<&str> = entries("formulas").iter().filter(|entry| is_set(entry)).map(|entry| &text[span(entry)]).collect();
+    let count = |name: &str, text: &str| text.split(|it: char| !it.is_ascii_alphanumeric() && it != '_').filter(|it| *it == name).count();
+    let is_unread = |entry: &Entry<'_>| {
+        let of_replaced: usize = replaced.iter().map(|text| count(entry.key, text)).sum();
+        let elsewhere = count(entry.key, text) - count(entry.key, &text[span(entry)]);
+        of_replaced > 0 && of_replaced == elsewhere && !is_set(entry) && !is_input(entry.key)
+    };
+    entries("fixed").into_iter().filter(is_unread).collect()
 }
 
 fn line_of(setting: &StudySetting) -> String {
@@ -322,15 +339,16 @@ fn applied(mut edits: Vec<Edit>, text: &str, settings: usize) -> EditedText {
     edited
 }
 
-/// Does the edited text say what the other said, but for the settings?
-fn is_as_meant(text: &str, top: &TomlTable<'_>, settings: &[StudySetting]) -> bool {
+/// Does the edited text say what the other said, but for the settings and fixed values that are gone?
+fn is_as_meant(text: &str, top: &TomlTable<'_>, settings: &[StudySetting], gone: &[&str]) -> bool {
     let Ok(tree) = DeTable::parse(text) else { return false };
     let own = TomlTable::new(tree.get_ref(), 0);
     let is_set = |key: &str| settings.iter().any(|it| it.name == key);
     let same = |a: Option<&Entry<'_>>, b: Option<&Entry<'_>>| a.map(|it| unplaced(it.node.value)) == b.map(|it| unplaced(it.node.value));
     let others = |table: &TomlTable<'_>, name: &str| -> Vec<(String, Value)> {
         let entries = table.get(name).and_then(|entry| entry.node.table()).map_or(Vec::new(), |table| table.entries);
-        entries.iter().filter(|entry| !is_set(entry.key)).map(|entry| (entry.key.to_owned(), unplaced(entry.node.value))).collect()
+        let stays = |entry: &&Entry<'_>| !is_set(entry.key) && !(name == "fixed" && gone.contains(&entry.key));
+        entries.iter().filter(stays).map(|entry| (entry.key.to_owned(), unplaced(entry.node.value))).collect()
     };
     let edited = |name: &str| GIVING.contains(&name) || ["formulas", "report"].contains(&name);
     let value = |name: &str, table: &str| {

@@ -243,7 +243,7 @@ fn rows_of_the_study_have_labels_too_and_a_study_without_labels_is_described_as_
 }
 
 /// Edits of the study and of the catalogue, and what is said of them.
-const BROKEN: [(&str, &str, &str, &str, &str); 22] = [
+const BROKEN: [(&str, &str, &str, &str, &str); 24] = [
     ("", "", "colour", "", "bands.csv:3:6: the column has no name; name the input whose values it holds"),
     (
         ", unused = \"ok\"",
@@ -328,6 +328,20 @@ const BROKEN: [(&str, &str, &str, &str, &str); 22] = [
         "part_no",
         "design_index",
         "study.toml:4:11: label \"design_index\": tables have columns of such names themselves; rename it",
+    ),
+    (
+        "labels = [\"part_no\"",
+        "labels = [\"axial_force_N_lowest\"",
+        "part_no",
+        "axial_force_N_lowest",
+        "study.toml:4:11: label \"axial_force_N_lowest\": tables have columns of such names themselves; rename it",
+    ),
+    (
+        "labels = [\"part_no\"",
+        "labels = [\"yield_low\"",
+        "part_no",
+        "yield_low",
+        "study.toml:4:11: label \"yield_low\": tables have columns of such names themselves; rename it",
     ),
     (
         "labels = [\"part_no\"",

@@ -53,7 +53,17 @@ fn another_formula_is_another_study() {
 }
 
 /// Edits of a right study, and what is said of each: line and column in the study, and the sentence.
-const BROKEN: [(&str, &str, &str); 16] = [
+const BROKEN: [(&str, &str, &str); 18] = [
+    (
+        "cost_EUR = \"belt",
+        "axial_force_N_lowest = \"1\"\ncost_EUR = \"belt",
+        r#"study.toml:21:1: "axial_force_N_lowest" is the name of a column that tables of results have beside "axial_force_N"; choose another name"#,
+    ),
+    (
+        "cost_EUR = \"belt",
+        "yield = \"1\"\ncost_EUR = \"belt",
+        r#"study.toml:21:1: "yield" is the name of a column that tells the share of draws that hold; choose another name"#,
+    ),
     (
         "cost_EUR = \"belt",
         "scenario = \"1\"\ncost_EUR = \"belt",

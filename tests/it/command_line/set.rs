@@ -92,6 +92,23 @@ fn a_formula_that_gives_an_input_goes_and_a_variable_stays_one() {
     assert_eq!(said, "error: --set cost_EUR=3: cost_EUR is what a formula gives; only inputs and variables can be set\n");
 }
 
+#[test]
+fn what_only_a_formula_read_goes_with_it() {
+    let study = |fixed: &str, formulas: &str| {
+        format!(
+            "model = \"metal-cvt\"\n[design]\nband_count = [8, 9]\n{fixed}[formulas]\n{formulas}[objectives]\naxial_force_N = \"min\"\n"
+        )
+    };
+    let folder = folder_with("study.toml", &study("[fixed]\nshare = 2 # of it\nstrength_MPa = 700\n", "torque_Nm = \"20[N m] * share\"\n"));
+    let own = described(folder.path(), &["--set", "torque_Nm=50"]);
+    write(folder.path(), "study.toml", &study("[fixed]\nstrength_MPa = 700\ntorque_Nm = 50\n", ""));
+    assert_eq!(own, described(folder.path(), &[]));
+    // What another formula reads stays.
+    let formulas = "torque_Nm = \"20[N m] * share\"\nlost_W = \"share * 3[W]\"\n";
+    write(folder.path(), "study.toml", &study("[fixed]\nshare = 2\n", formulas));
+    assert!(described(folder.path(), &["--set", "torque_Nm=50"]).contains("\"share\": 2"));
+}
+
 /// What is set in [`SMALL`], and all that is said of it.
 const WRONG: [(&str, &str); 11] = [
     ("ratio", "--set \"ratio\": write NAME=VALUE"),

@@ -6,7 +6,22 @@ const MODEL: &str = include_str!("models/band-brake.toml");
 const GRIP: &str = include_str!("models/grip.csv");
 
 /// Edits of a right model, and what is said of each: line and column, and the sentence.
-const BROKEN: [(&str, &str, &str); 51] = [
+const BROKEN: [(&str, &str, &str); 54] = [
+    (
+        r#"gain         = "tight_N"#,
+        "tight_N_scenario = \"tight_N\"\ngain         = \"tight_N",
+        r#"26:1: "tight_N_scenario" is the name of a column that tables of results have beside "tight_N"; choose another name"#,
+    ),
+    (
+        r#"rows           = {"#,
+        "status = { default = 1, valid = [0, 2], doc = \"A state.\" }\nrows           = {",
+        r#"13:1: "status" is the name of a column in tables of results; choose another name"#,
+    ),
+    (
+        r#"gain         = "tight_N"#,
+        "yield = \"2\"\ngain         = \"tight_N",
+        r#"26:1: "yield" is the name of a column that tells the share of draws that hold; choose another name"#,
+    ),
     (r#"summary = "Band"#, "summary = 7 #", "1:11: summary: found the number 7, wanted a text in quotes"),
     ("limits = ", "limit = ", r#"3:1: unknown key "limit"; did you mean "limits"?"#),
     (

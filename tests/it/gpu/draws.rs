@@ -62,12 +62,12 @@ fn what_of_draws_is_not_for_a_device_is_named() {
         (
             "over_draws = \"worst\" }\nyield         = \"max\"",
             "over_draws = \"sd\" }\nyield         = \"max\"",
-            "stress_margin_sd is a standard deviation over the draws, which the CPU computes",
+            "stress_margin_draw_sd is a standard deviation over the draws, which the CPU computes",
         ),
         (
             "over_draws = \"worst\" }\nyield         = \"max\"",
             "over_draws = { quantile = 0.9 } }\nyield         = \"max\"",
-            "stress_margin_q90 is a quantile over the draws, which the CPU computes",
+            "stress_margin_draw_q90 is a quantile over the draws, which the CPU computes",
         ),
         ("draws = 40", "draws = 20000", "loop iterations over its scenarios are more than the 55000 that this driver can be trusted with"),
     ] {

@@ -7,6 +7,7 @@ mod draws;
 mod engines;
 mod hardware;
 mod predicted;
+mod rooted;
 mod tolerances;
 
 use beltspace::gpu::{Adapter, adapters, self_test};
@@ -109,7 +110,7 @@ const NOT_ON_A_DEVICE: [(&str, &str); 5] = [
     ("pulley-types", "pulley is computed in f64 on the CPU only"),
     // On a driver that does not end long loops it is served.
     (LONG_LOOPS, "loop iterations over its scenarios are more than"),
-    ("timing-tension", "peak_tooth_load_N_q99 is a quantile over the draws, which the CPU computes"),
+    ("timing-tension", "peak_tooth_load_N_draw_q99 is a quantile over the draws, which the CPU computes"),
 ];
 
 /// The shipped study whose draws take more loop iterations than some drivers give.

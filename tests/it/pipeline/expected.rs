@@ -1,10 +1,10 @@
 //! What a result directory must contain, by brute force.
 
 use super::answer::{Answer, Cell, Table, whole};
-use super::naive::{Evaluated, Failures, front, key, worst_end, worst_end_over};
+use super::naive::{Evaluated, Failures, front, key, needed, worst_end, worst_end_over};
 use beltspace::models::Worse;
 use beltspace::study::{Axis, Best, Goal, Objective, OverScenarios, Quantity, Study};
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 /// A column of the design tables.
 struct Column {
@@ -267,6 +267,9 @@ impl Expected {
             let failed = self.failures.iter().filter(|it| it.statuses.iter().any(says_so)).count();
             put(&format!("tally.status.{}", condition.reason), whole(failed as u64));
         }
+        for (reason, count) in lacking(study, evaluated) {
+            put(&format!("tally.status.{reason}"), whole(count));
+        }
         for number in 0..study.constraints.len() {
             let violated = self.failures.iter().filter(|it| it.constraints.contains(&number)).count();
             let alone = |it: &&Failures| it.statuses.is_empty() && !it.meaningless && it.constraints == [number];
@@ -360,4 +363,28 @@ fn histogram(values: &[f64], range: Option<(f64, f64)>, bins: usize) -> Table {
     }
     rows.push(vec![Cell::number(to), Cell::Absent, count(&|value| value > to)]);
     Table { header: ["from", "to", "designs"].map(str::to_owned).to_vec(), rows }
+}
+
+/// Of a study with distributions: how many designs lack a statistic that the study needs, by the reason of the first that is missing.
+fn lacking(study: &Study, evaluated: &Evaluated) -> BTreeMap<String, u64> {
+    let mut found = BTreeMap::new();
+    if study.probability.is_none() {
+        return found;
+    }
+    let model = &study.model;
+    let needed = needed(study);
+    for design in 0..evaluated.designs {
+        let reasons = evaluated.cases(design).iter().filter_map(|case| {
+            let is_missing = |name: &String| {
+                let quantity = Quantity::Output(model.output(name).expect("it is an output"));
+                needed.contains(&quantity) && case.value(quantity).is_none()
+            };
+            model.conditions.iter().find(|it| it.invalidates.iter().any(is_missing)).map(|it| it.reason.clone())
+        });
+        // Each counts once, whatever the level.
+        for reason in reasons.collect::<BTreeSet<_>>() {
+            *found.entry(reason).or_default() += 1;
+        }
+    }
+    found
 }

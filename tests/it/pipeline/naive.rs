@@ -196,7 +196,7 @@ pub fn worst_end_over(study: &Study, quantity: Quantity, over: OverScenarios) ->
 }
 
 /// Everything whose value decides what is reported: without a meaning in some scenario the design is out.
-fn needed(study: &Study) -> Vec<Quantity> {
+pub fn needed(study: &Study) -> Vec<Quantity> {
     let report = &study.report;
     let maps = report.maps.iter().filter_map(|map| match map.value {
         Best::Value(quantity, _) => Some(quantity),

@@ -198,11 +198,21 @@ impl<'s> Brute<'s> {
             // Which level is the worst is not known either.
             ConfirmedEnd::High => simultaneous(holding, fresh as u64, 0.95, self.probability.levels).expect("these are counts").high,
             ConfirmedEnd::AtLeast | ConfirmedEnd::AtMost => unreachable!("nothing is proven in these studies"),
+            ConfirmedEnd::StandardError => unreachable!("it is of the draws that choose"),
         };
         let holding = (0..fresh).filter(|&draw| self.holds(&self.in_cases(design, &self.confirming, draw))).count() as u64;
         let result = |kind: &StatisticKind| match kind {
             StatisticKind::Yield => share(draws.iter().filter(|it| self.holds(it)).count(), draws.len()),
             StatisticKind::YieldOf(constraint) => share(draws.iter().filter(|it| self.keeps(constraint, it)).count(), draws.len()),
+            StatisticKind::Confirmed(ConfirmedEnd::StandardError) => {
+                // Sixteen sets one behind the other.
+                let sets =
+                    draws.chunks(draws.len() / 16).map(|set| set.iter().filter(|it| self.holds(it)).count() as f64 / set.len() as f64);
+                let shares: Vec<f64> = sets.collect();
+                let mean = shares.iter().sum::<f64>() / 16.0;
+                let squares: f64 = shares.iter().map(|it| (it - mean) * (it - mean)).sum();
+                (shares.iter().any(|it| *it != shares[0])).then(|| (squares / 15.0 / 16.0).sqrt())
+            }
             StatisticKind::Confirmed(end) => Some(told(*end, holding)),
             StatisticKind::Over(asked, over) => self.over_draws(asked, *over, &draws),
             StatisticKind::Plain(asked) => {

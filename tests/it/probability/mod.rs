@@ -7,4 +7,5 @@ mod kinds;
 mod laws;
 mod proven;
 mod random;
+mod spread;
 pub mod tolerances;

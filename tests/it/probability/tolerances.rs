@@ -237,7 +237,7 @@ fn every_draw_is_a_drive_with_a_factor_in_its_formula() {
             assert_eq!(told[of("stress_margin_yield")], share_of(stressed), "design {design}");
             let forces: Option<Vec<f64>> = forces.into_iter().collect();
             let mean = forces.map(|it| it.iter().sum::<f64>() / it.len() as f64);
-            match (told[of("axial_force_N_mean")], mean) {
+            match (told[of("axial_force_N_draw_mean")], mean) {
                 (Some(told), Some(mean)) => assert!((told / mean - 1.0).abs() < 1e-13, "design {design}: {told} and {mean}"),
                 (told, mean) => assert_eq!(told, mean, "design {design}"),
             }
@@ -322,5 +322,23 @@ fn a_set_value_is_what_the_design_says() {
     for study in file(&DRAWN[0].texts()[1]) {
         let probability = study.probability.expect("it has distributions");
         assert!(probability.inputs.iter().any(|it| it.name == "clamping_force_N" && !it.in_model));
+    }
+}
+
+#[test]
+fn a_tolerance_is_about_what_a_preset_of_the_design_says() {
+    for (tolerance, more) in [("times = [0.9, 1.1]", ""), ("times = { uniform = [0.9, 1.1] }", "[probability]\ndraws = 16\nconfirm = 1\n")]
+    {
+        let text = format!(
+            "model = \"timing-belt\"\n[design]\npreset = [\"ohc-driven\", \"car-belt\"]\n{more}[uncertainty]\ntip_radius_mm = {{ {tolerance} }}\n\
+             [constraints]\nboundary_tooth = {{ min = 5 }}\n[objectives]\n{} = \"max\"\n",
+            if more.is_empty() { "boundary_tooth" } else { "yield" }
+        );
+        let plan = Plan::new(parse(&text));
+        let radius = plan.study.model.input("tip_radius_mm").expect("it is an input");
+        assert_eq!([0, 1].map(|design| plan.space.inputs(design, 0)[radius]), [66.32, 66.02], "{text}");
+        // A word has no tolerance, also if a preset says it.
+        let error = Study::parse_in(&text.replace("tip_radius_mm", "pitch_mass_g"), "s.toml", ".".as_ref()).expect_err("it is wrong");
+        assert!(error.to_string().contains("its value may be the word \"from-belt\", which has no tolerance"), "{error}");
     }
 }
