@@ -463,6 +463,10 @@ impl<'p> CpuEngine<'p> {
     pub(super) fn evaluate(&mut self, prepared: Range<usize>, fast: &FastBlock) {
         let plan = self.plan;
         let prepared = &self.prepared[prepared];
+        if let (Some(list), Some((numbers, _))) = (&self.tables.lanes, &mut self.numbers) {
+            list.enter(numbers, prepared, &self.si);
+            return list.run(numbers, (&fast.shared, fast.count), &mut self.results);
+        }
         let columns = Columns { count: fast.count, varying: &fast.si, outputs: &plan.lane_outputs, conditions: &plan.lane_conditions };
         plan.study.model.kernel.finish_columns(prepared, &self.si, &columns, &mut self.scratch, &mut self.results);
         columns.to_units(&plan.study.model.outputs, &mut self.results);

@@ -277,13 +277,20 @@ enum Values<'a> {
 struct Counter<'p> {
     plan: &'p Plan,
     engine: CpuEngine<'p>,
+    tables: &'p Tables,
     control: &'p Control,
     tally: Tally,
 }
 
 impl<'p> Counter<'p> {
     fn new(plan: &'p Plan, tables: &'p Tables, control: &'p Control) -> Self {
-        Self { plan, engine: CpuEngine::new(plan, tables).stopping_on(&control.stop).with_all_values(), control, tally: Tally::empty(plan) }
+        Self {
+            plan,
+            tables,
+            engine: CpuEngine::new(plan, tables).stopping_on(&control.stop).with_all_values(),
+            control,
+            tally: Tally::empty(plan),
+        }
     }
 
     fn count(mut self, positions: &[u64]) -> Tally {
@@ -303,7 +310,7 @@ impl<'p> Counter<'p> {
     /// Counts designs of one row, at most [`BLOCK`]; false if it was stopped.
     fn count_block(&mut self, row: u64, designs: &[u64]) -> bool {
         let plan = self.plan;
-        let fast = FastBlock::new(plan, None, designs.iter().copied());
+        let fast = FastBlock::new(plan, self.tables.lanes.as_ref(), designs.iter().copied());
         let mut failures = vec![Failures::NONE; designs.len()];
         let mut marks = Marks::new(plan, designs.len());
         let mut sums = CaseSums::new(plan, designs.len());

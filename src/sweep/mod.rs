@@ -266,7 +266,8 @@ fn judge(job: SweepJob<'_>, work: SweepWork<'_>) -> Result<State> {
     Ok(state)
 }
 
-/// What remains of a few designs from all over a range, so that the first chunks have something to compare with.
+/// What remains of a few designs from all over a range, so that the first chunks have something to compare with: stretches of neighbours,
+/// and a coarser grid, which has the ends of every axis, where fronts often are.
 ///
 /// They are designs like any other, judged in f64: the sweep will meet them again and finds those of the front there already.
 fn look_around(job: SweepJob<'_>, whole: &std::ops::Range<u64>) -> Reducers {
@@ -274,12 +275,30 @@ fn look_around(job: SweepJob<'_>, whole: &std::ops::Range<u64>) -> Reducers {
     let mut seen = reduction.start();
     let mut engine = CpuEngine::new(plan, tables).stopping_on(&control.stop);
     let designs = whole.end - whole.start;
-    let affordable = (HEAD_START_TIME / (plan.seconds_per_design() * BLOCK as f64)) as u64;
-    for step in 0..(designs / HEAD_START_SHARE / BLOCK as u64).min(HEAD_START).min(affordable) {
+    let affordable = (HEAD_START_TIME / 2.0 / (plan.seconds_per_design() * BLOCK as f64)) as u64;
+    for step in 0..(designs / HEAD_START_SHARE / BLOCK as u64).min(HEAD_START / 2).min(affordable) {
         let first = whole.start + ((u128::from(plan.spread(step)) * u128::from(designs)) / u128::from(plan.designs())) as u64;
         engine.screen(first..whole.end.min(first + BLOCK as u64), |block| reduction.absorb(&mut seen, block));
     }
+    engine.screen_some(&coarse_grid(plan, whole), |block| reduction.absorb(&mut seen, block));
     seen
+}
+
+/// The positions of a coarser grid in a range, as many as the head start affords.
+fn coarse_grid(plan: &Plan, whole: &std::ops::Range<u64>) -> Vec<u64> {
+    let (effort, width) = (plan.effort(), plan.fast.count());
+    let mut most = ((whole.end - whole.start) / HEAD_START_SHARE).min(HEAD_START / 2 * BLOCK as u64);
+    while most > 0 {
+        let mut positions: Vec<u64> = plan.space.designs.coarse(most).iter().map(|&design| plan.position_of(design)).collect();
+        positions.retain(|position| whole.contains(position));
+        positions.sort_unstable();
+        let rows = positions.chunk_by(|a, b| a / width == b / width).count();
+        if rows as f64 * effort.prepare + positions.len() as f64 * effort.finish < HEAD_START_TIME / 2.0 {
+            return positions;
+        }
+        most /= 4;
+    }
+    Vec::new()
 }
 
 /// The state of a sweep that has counted nothing, but knows the front of what was seen.
