@@ -317,9 +317,9 @@ impl Plan {
         self.slow.index_of(design) * self.fast.count() + self.fast.index_of(design)
     }
 
-    /// A position for every step, spread evenly over the study after any number of steps: multiples of the golden section.
+    /// A position for every step, spread evenly over the study after any number of steps.
     pub fn spread(&self, step: u64) -> u64 {
-        ((u128::from(self.designs()) * u128::from(step.wrapping_mul(0x9e37_79b9_7f4a_7c15))) >> 64) as u64
+        spread(self.designs(), step)
     }
 
     /// Positions of the design axes that affect nothing that the study asks for.
@@ -337,6 +337,11 @@ impl Plan {
         let inert = |axis: &usize| study.design[*axis].inputs().iter().all(|&input| !mattering.contains(input));
         (0..study.design.len()).filter(inert).filter(|axis| !shown.contains(axis)).collect()
     }
+}
+
+/// A place among `count` for every step, spread evenly after any number of steps: multiples of the golden section.
+pub fn spread(count: u64, step: u64) -> u64 {
+    ((u128::from(count) * u128::from(step.wrapping_mul(0x9e37_79b9_7f4a_7c15))) >> 64) as u64
 }
 
 /// Most sums of one value over the cases of a spectrum that are under way at a time.

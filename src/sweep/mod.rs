@@ -32,7 +32,7 @@ pub use watch::Leaving;
 use crate::checkpoint::{Checkpoint, Progress};
 use crate::error::{Error, Result};
 use crate::parallel::on_threads;
-use crate::plan::Plan;
+use crate::plan::{Plan, spread};
 use crate::reduce::{FRONT_BYTES, Points, Reducers, Reduction, State, most_points};
 use crate::screen::{BLOCK, CpuEngine, Tables};
 use crate::tiles::{Ranges, Shard};
@@ -267,7 +267,7 @@ fn judge(job: SweepJob<'_>, work: SweepWork<'_>) -> Result<State> {
 }
 
 /// What remains of a few designs from all over a range, so that the first chunks have something to compare with: stretches of neighbours,
-/// and a coarser grid, which has the ends of every axis, where fronts often are.
+/// and whole rows of a coarser grid, which has the ends of every slow axis, where fronts often are.
 ///
 /// They are designs like any other, judged in f64: the sweep will meet them again and finds those of the front there already.
 fn look_around(job: SweepJob<'_>, whole: &std::ops::Range<u64>) -> Reducers {
@@ -275,30 +275,27 @@ fn look_around(job: SweepJob<'_>, whole: &std::ops::Range<u64>) -> Reducers {
     let mut seen = reduction.start();
     let mut engine = CpuEngine::new(plan, tables).stopping_on(&control.stop);
     let designs = whole.end - whole.start;
-    let affordable = (HEAD_START_TIME / 2.0 / (plan.seconds_per_design() * BLOCK as f64)) as u64;
-    for step in 0..(designs / HEAD_START_SHARE / BLOCK as u64).min(HEAD_START / 2).min(affordable) {
+    let affordable = (HEAD_START_TIME / (plan.seconds_per_design() * BLOCK as f64)) as u64;
+    for step in 0..(designs / HEAD_START_SHARE / BLOCK as u64).min(HEAD_START).min(affordable) {
         let first = whole.start + ((u128::from(plan.spread(step)) * u128::from(designs)) / u128::from(plan.designs())) as u64;
         engine.screen(first..whole.end.min(first + BLOCK as u64), |block| reduction.absorb(&mut seen, block));
     }
-    engine.screen_some(&coarse_grid(plan, whole), |block| reduction.absorb(&mut seen, block));
-    seen
-}
-
-/// The positions of a coarser grid in a range, as many as the head start affords.
-fn coarse_grid(plan: &Plan, whole: &std::ops::Range<u64>) -> Vec<u64> {
-    let (effort, width) = (plan.effort(), plan.fast.count());
-    let mut most = ((whole.end - whole.start) / HEAD_START_SHARE).min(HEAD_START / 2 * BLOCK as u64);
-    while most > 0 {
-        let mut positions: Vec<u64> = plan.space.designs.coarse(most).iter().map(|&design| plan.position_of(design)).collect();
-        positions.retain(|position| whole.contains(position));
-        positions.sort_unstable();
-        let rows = positions.chunk_by(|a, b| a / width == b / width).count();
-        if rows as f64 * effort.prepare + positions.len() as f64 * effort.finish < HEAD_START_TIME / 2.0 {
-            return positions;
+    let (start, width) = (Instant::now(), plan.fast.count());
+    let most = plan.slow.count() / HEAD_START_SHARE;
+    if most > 0 && plan.seconds_per_design() * (width as f64) < HEAD_START_TIME / 4.0 {
+        let rows = plan.slow.coarse(most);
+        for step in 0..rows.len() as u64 {
+            // All over them from the beginning: there may be no time for all.
+            let row = rows[spread(rows.len() as u64, step) as usize] * width;
+            if whole.contains(&row) && whole.contains(&(row + width - 1)) {
+                engine.screen_for(row..row + width, reduction, &mut seen);
+            }
+            if start.elapsed().as_secs_f64() > HEAD_START_TIME / 2.0 {
+                break;
+            }
         }
-        most /= 4;
     }
-    Vec::new()
+    seen
 }
 
 /// The state of a sweep that has counted nothing, but knows the front of what was seen.
