@@ -127,6 +127,8 @@ const LEAST_CHUNK: Duration = Duration::from_millis(50);
 /// Most blocks of the head start. It also takes at most one in `HEAD_START_SHARE` of all designs.
 const HEAD_START: u64 = 256;
 const HEAD_START_SHARE: u64 = 64;
+/// Most rows of the coarser grid.
+const HEAD_START_ROWS: u64 = 1 << 16;
 /// Most seconds of the head start, estimated from the cost that the model states.
 const HEAD_START_TIME: f64 = 0.3;
 
@@ -281,7 +283,7 @@ fn look_around(job: SweepJob<'_>, whole: &std::ops::Range<u64>) -> Reducers {
         engine.screen(first..whole.end.min(first + BLOCK as u64), |block| reduction.absorb(&mut seen, block));
     }
     let (start, width) = (Instant::now(), plan.fast.count());
-    let most = plan.slow.count() / HEAD_START_SHARE;
+    let most = (plan.slow.count() / HEAD_START_SHARE).min(HEAD_START_ROWS);
     if most > 0 && plan.seconds_per_design() * (width as f64) < HEAD_START_TIME / 4.0 {
         let rows = plan.slow.coarse(most);
         for step in 0..rows.len() as u64 {
