@@ -347,8 +347,8 @@ fn is_as_meant(text: &str, top: &TomlTable<'_>, settings: &[StudySetting], gone:
     let same = |a: Option<&Entry<'_>>, b: Option<&Entry<'_>>| a.map(|it| unplaced(it.node.value)) == b.map(|it| unplaced(it.node.value));
     let others = |table: &TomlTable<'_>, name: &str| -> Vec<(String, Value)> {
         let entries = table.get(name).and_then(|entry| entry.node.table()).map_or(Vec::new(), |table| table.entries);
-        let stays = |entry: &&Entry<'_>| !is_set(entry.key) && !(name == "fixed" && gone.contains(&entry.key));
-        entries.iter().filter(stays).map(|entry| (entry.key.to_owned(), unplaced(entry.node.value))).collect()
+        let goes = |key: &str| is_set(key) || (name == "fixed" && gone.contains(&key));
+        entries.iter().filter(|entry| !goes(entry.key)).map(|entry| (entry.key.to_owned(), unplaced(entry.node.value))).collect()
     };
     let edited = |name: &str| GIVING.contains(&name) || ["formulas", "report"].contains(&name);
     let value = |name: &str, table: &str| {
