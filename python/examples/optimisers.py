@@ -21,12 +21,12 @@ STUDY = {
     },
     "operation": {"ratio": {"from": 0.5, "to": 2.0, "count": 7, "spacing": "log"}, "torque_Nm": [50, 100]},
     "constraints": {"slip_margin": {"min": 0}, "stress_margin": {"min": 0}},
-    "objectives": {"axial_force_N": "min", "stress_margin": "max"},
+    "objectives": {"axial_force_upper_N": "min", "slip_margin": "max"},
 }
 
 
 def with_pymoo(study: beltspace.Study, evaluations: int) -> np.ndarray:
-    """The front that NSGA-II finds: force in N and stress margin. Each generation is one call."""
+    """The front that NSGA-II finds: force in N and margin against slip. Each generation is one call."""
     from pymoo.algorithms.moo.nsga2 import NSGA2
     from pymoo.core.problem import Problem
     from pymoo.optimize import minimize
@@ -39,10 +39,10 @@ def with_pymoo(study: beltspace.Study, evaluations: int) -> np.ndarray:
             rows = dict(zip(study.design, x.T, strict=True))
             found = study.worst(rows | {"band_count": np.round(rows["band_count"])})
             # Where a value has no meaning the design is far from feasible.
-            force, margin = np.nan_to_num(found["axial_force_N"], nan=1e9), np.nan_to_num(found["stress_margin"], nan=-10)
-            slip = np.nan_to_num(found["slip_margin_margin"], nan=-10)
-            out["F"] = np.column_stack([force, -margin])
-            out["G"] = np.column_stack([-slip, -margin])
+            force, slip = np.nan_to_num(found["axial_force_upper_N"], nan=1e9), np.nan_to_num(found["slip_margin"], nan=-10)
+            stress = np.nan_to_num(found["stress_margin_margin"], nan=-10)
+            out["F"] = np.column_stack([force, -slip])
+            out["G"] = np.column_stack([-slip, -stress])
 
     found = minimize(Belt(), NSGA2(pop_size=100), ("n_eval", evaluations), seed=1)
     return np.column_stack([found.F[:, 0], -found.F[:, 1]])
@@ -64,7 +64,7 @@ def with_optuna(study: beltspace.Study, evaluations: int) -> np.ndarray:
         row = study.worst(rows).row(0)
         if row["feasible"] != "yes":
             raise optuna.TrialPruned
-        return float(row["axial_force_N"]), float(row["stress_margin"])  # type: ignore[arg-type]
+        return float(row["axial_force_upper_N"]), float(row["slip_margin"])  # type: ignore[arg-type]
 
     search = optuna.create_study(directions=["minimize", "maximize"], sampler=optuna.samplers.NSGAIISampler(seed=1))
     search.optimize(objective, n_trials=evaluations)
@@ -87,7 +87,7 @@ def main() -> None:
     figure = next((Path(it) for it in words if not it.startswith("-")), None)
     study = beltspace.Study.from_dict(STUDY)
     result = study.sweep()
-    exact = np.column_stack([result.front["axial_force_N"], result.front["stress_margin"]])
+    exact = np.column_stack([result.front["axial_force_upper_N"], result.front["slip_margin"]])
     corner = (float(exact[:, 0].max()), 0.0)
     fronts = {"exact, by sweep": exact, "pymoo, NSGA-II": with_pymoo(study, 500 if short else 5000)}
     fronts["Optuna, NSGA-II"] = with_optuna(study, 100 if short else 2000)
@@ -103,7 +103,7 @@ def main() -> None:
         drawing, axes = plt.subplots(figsize=(7, 4.5))
         for (name, points), size in zip(fronts.items(), (5, 14, 14), strict=True):
             axes.scatter(points[:, 0] / 1e3, points[:, 1], s=size, label=name)
-        axes.set(xlabel="axial force (kN), to be small", ylabel="stress margin, to be large")
+        axes.set(xlabel="axial force (kN), to be small", ylabel="margin against slip, to be large")
         axes.legend()
         drawing.savefig(figure, dpi=120, bbox_inches="tight")
 

@@ -34,7 +34,7 @@ def test_optimisers_find_less_than_the_exact_front(tmp_path: Path) -> None:
     shares = [float(it) for it in re.findall(r"([\d.]+)% of the exact", told)]
     assert len(shares) == 3 and shares[0] == 100.0
     # Between the levels of the sweep an optimiser may gain a little, never much.
-    assert all(10 < share < 103 for share in shares[1:]), told
+    assert all(0 <= share < 103 for share in shares[1:]), told
     assert (tmp_path / "missed.png").stat().st_size > 10_000
 
 
