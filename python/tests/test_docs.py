@@ -26,12 +26,10 @@ def test_the_python_of_a_page_runs(page: str) -> None:
 
 def test_exit_codes_are_as_told(tmp_path: Path) -> None:
     page = (ROOT / "docs" / "reference-results.md").read_text()
-    study = re.search(r"```toml\n(.*?)```", page, re.S)
     commands = re.findall(r"^beltspace (.*?) +# exit code (\d)$", page, re.M)
-    assert study and len(commands) == 3
-    (tmp_path / "drive.toml").write_text(study[1])
+    assert len(commands) == 3
     for words, code in commands:
-        done = subprocess.run([PROGRAM, *words.split()], cwd=tmp_path, capture_output=True, check=False)
+        done = subprocess.run(["sh", "-c", f"exec '{PROGRAM}' {words}"], cwd=tmp_path, capture_output=True, check=False)
         assert done.returncode == int(code), (words, done.stderr.decode())
 
 

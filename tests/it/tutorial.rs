@@ -274,9 +274,19 @@ fn pages() -> Vec<(String, String)> {
     pages
 }
 
+/// A page that the program prints.
+const PRINTED: &str = "reference-study.md";
+
+#[test]
+fn the_reference_is_what_the_program_prints() {
+    let page = std::fs::read_to_string(docs().join(PRINTED)).expect("there is a reference");
+    assert!(page == beltspace::study::study_reference(), "beltspace schema --markdown > docs/{PRINTED} writes it");
+}
+
 #[test]
 fn tutorials_say_what_the_program_prints() {
-    let pages = pages();
+    let mut pages = pages();
+    pages.retain(|(name, _)| name != PRINTED);
     let outcomes: Vec<_> = std::thread::scope(|scope| {
         let threads: Vec<_> = pages.iter().map(|(_, page)| scope.spawn(move || check(page, &docs()))).collect();
         threads.into_iter().map(|thread| thread.join().expect("a check that ends")).collect()
