@@ -128,5 +128,5 @@ def test_a_model_that_is_wrong_says_where() -> None:
     assert "force_N" in str(raised.value) and raised.value.line > 1
     with pytest.raises(beltspace.RequestError, match="unknown model"):
         beltspace.Model("no-such-model")
-    assert beltspace.Model("metal-cvt").inputs["torque_Nm"]["unit"] == "N m"
+    assert beltspace.Model("metal-cvt").inputs["torque_Nm"]["unit"] == "Nm"
     assert beltspace.models()[:2] == ["rubber-cvt", "metal-cvt"]

@@ -114,8 +114,8 @@ fn definitions() -> Value {
             "properties": {
                 "times": { "type": ["object", "array"], "description": "A factor." },
                 "plus": { "type": ["object", "array"], "description": "An addend, in the unit of the name." },
-                "from": of("value"),
-                "to": of("value"),
+                "from": { "$ref": "#/$defs/value", "description": "Draws below this are left out." },
+                "to": { "$ref": "#/$defs/value", "description": "Draws above this are left out." },
             },
             "anyOf": [
                 { "required": ["times"] },
@@ -267,7 +267,7 @@ pub fn study_schema() -> Value {
     schema
 }
 
-/// Tables of the page, in its order: heading, place in the schema, and what to say first.
+/// Tables of the page, in its order: heading, and place in the schema.
 const PAGES: &[(&str, &str)] = &[
     ("Ranges: `{ from, to, ... }`", "range"),
     ("Distributions and tolerances in `[uncertainty]`", "uncertain"),
@@ -321,8 +321,9 @@ fn kind(schema: &Value) -> String {
 }
 
 fn rows(schema: &Value, page: &mut String) {
-    let tables =
-        schema["anyOf"].as_array().map_or_else(|| vec![schema], |kinds| kinds.iter().filter(|it| it["properties"].is_object()).collect());
+    let is_table = |it: &&Value| it["properties"].is_object();
+    let kinds = schema["anyOf"].as_array().filter(|_| !is_table(&schema));
+    let tables = kinds.map_or_else(|| vec![schema], |kinds| kinds.iter().filter(is_table).collect());
     for table in tables {
         page.push_str("| key | value | meaning |\n|---|---|---|\n");
         let needed: Vec<&str> = table["required"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
@@ -352,7 +353,7 @@ pub fn study_reference() -> String {
         if let Some(doc) = definition["description"].as_str() {
             page.push_str(&format!("{doc}\n\n"));
         }
-        if let Some(short) = definition["anyOf"].as_array() {
+        if let Some(short) = definition["anyOf"].as_array().filter(|_| !definition["properties"].is_object()) {
             let short: Vec<String> = short.iter().filter(|it| !it["properties"].is_object()).map(kind).collect();
             page.push_str(&format!("In short {}, else a table:\n\n", short.join(" or ")));
         }

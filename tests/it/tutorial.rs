@@ -6,6 +6,7 @@
 //! - A block ```` ```console ```` has commands, lines that start with `$ `, each followed by what it prints: its output, then its notes.
 //!   A line `...` stands for any lines, `...` at the end of a line for the rest of it; all else must be equal.
 //! - A block ```` ```rust ```` under a line that ends in `` `FILE.rs`: `` stands in that file of the repository, but for lines `...`.
+//! - A block ```` ```python ```` or ```` ```sh ```` is run by `python/tests/test_docs.py` or `python/run`; its numbers count as shown.
 //! - A number of the prose must stand in a block, or in the section "The requirement"; with three digits or more it may be rounded.
 //! - A file name in inline code must be a file that the page made, and a link must lead to a file.
 
@@ -23,6 +24,8 @@ enum Part<'a> {
     File { name: &'a str, content: String },
     /// A part of a source file of this repository.
     Source { name: &'a str, shown: Vec<&'a str> },
+    /// What another test runs.
+    Elsewhere { shown: Vec<&'a str> },
     /// A command and what it prints.
     Session { command: &'a str, printed: Vec<&'a str> },
 }
@@ -54,6 +57,7 @@ fn parts(page: &str) -> Result<Vec<Part<'_>>, String> {
                 let name = name.ok_or_else(|| format!("a file without a name, after: {before}"))?;
                 parts.push(Part::File { name, content: block.join("\n") + "\n" });
             }
+            "python" | "sh" => parts.push(Part::Elsewhere { shown: block }),
             "rust" => {
                 let name = before.strip_suffix("`:").and_then(|line| line.rsplit('`').next()).filter(|name| name.ends_with(".rs"));
                 let name = name.ok_or_else(|| format!("source without the name of its file, after: {before}"))?;
@@ -222,6 +226,7 @@ fn check(page: &str, home: &Path) -> Result<Checked, String> {
                 }
                 shown.extend(lines.iter().flat_map(|line| numbers(line, true)));
             }
+            Part::Elsewhere { shown: lines } => shown.extend(lines.iter().flat_map(|line| numbers(line, true))),
             Part::Session { command, printed } => {
                 let end = printed.iter().rposition(|line| !line.is_empty()).map_or(0, |last| last + 1);
                 run(command, &printed[..end], folder.path())?;
@@ -269,9 +274,19 @@ fn pages() -> Vec<(String, String)> {
     pages
 }
 
+/// A page that the program prints.
+const PRINTED: &str = "reference-study.md";
+
+#[test]
+fn the_reference_is_what_the_program_prints() {
+    let page = std::fs::read_to_string(docs().join(PRINTED)).expect("there is a reference");
+    assert!(page == beltspace::study::study_reference(), "beltspace schema --markdown > docs/{PRINTED} writes it");
+}
+
 #[test]
 fn tutorials_say_what_the_program_prints() {
-    let pages = pages();
+    let mut pages = pages();
+    pages.retain(|(name, _)| name != PRINTED);
     let outcomes: Vec<_> = std::thread::scope(|scope| {
         let threads: Vec<_> = pages.iter().map(|(_, page)| scope.spawn(move || check(page, &docs()))).collect();
         threads.into_iter().map(|thread| thread.join().expect("a check that ends")).collect()
