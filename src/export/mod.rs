@@ -18,6 +18,8 @@ mod tests;
 
 pub use confirmed::Confirmed;
 pub use drawn_tally::DrawnTally;
+#[cfg(feature = "cli")]
+pub(crate) use summary::ideal_and_knee;
 pub use summary::{Knee, MethodRecord, RunRecord, Summary};
 
 use crate::certify::{self, Column, Row};

@@ -32,6 +32,8 @@ pub use read::StudyEdits;
 #[cfg(test)]
 pub(crate) use read::tests::study_of;
 pub use read::{FileKind, Problem, StudyErrors, file_kind, read_model};
+#[cfg(feature = "cli")]
+pub(crate) use read::entry_names;
 pub(crate) use read::{input_text, input_value_checked};
 pub use resolved::{
     Best, Constraint, ContourSpec, Goal, HistogramSpec, MapSpec, Objective, Report, ReportColumn, SampleSpec, Study, Thresholds, TopSpec,

@@ -52,6 +52,14 @@
     );
     update();
     page.events.on("selection.bar", () => page.schedule("bar", update));
+    page.events.on("front.bar", () => {
+      if (!page.front.byName.has(colour.value) || colour.dataset.columns !== page.state.columns) {
+        colour.replaceChildren();
+        page.columnOptions(colour, page.state.colour);
+        colour.dataset.columns = page.state.columns;
+      }
+      page.schedule("bar", update);
+    });
     page.events.on("colour.bar", () => (colour.value = page.state.colour));
   };
 }

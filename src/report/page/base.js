@@ -6,7 +6,8 @@ const page = {
   front: null, // decoded columns, see decode.js
   timings: {}, // ms from the start of navigation
   // selection: brushes changed; columns: axes chosen, moved or reversed; current: the point under the pointer
-  events: d3.dispatch("selection", "columns", "colour", "current", "card", "theme", "layout"),
+  // front: another front in place of the one before; changes: what is changed in the study
+  events: d3.dispatch("selection", "columns", "colour", "current", "card", "theme", "layout", "front", "changes", "pins"),
 };
 
 // Numbers are shown to six significant digits, as the program prints them.

@@ -116,13 +116,13 @@
   const command = (label, text, id) => {
     const said = page.element("span", { class: "copied", role: "status" });
     const copy = async () => {
-      said.textContent = (await copyText(text)) ? "copied" : "select the text to copy it";
+      said.textContent = (await page.copyText(text)) ? "copied" : "select the text to copy it";
     };
     return page.element("div", { class: "command" }, page.element("div", { class: "muted" }, label), page.element("code", { id, "data-testid": id, tabindex: 0 }, text), page.element("button", { type: "button", class: "no-print", "aria-label": `Copy: ${label}`, click: copy }, "Copy"), said);
   };
 
   // In local files there may be no clipboard interface; the old way still works in a click.
-  const copyText = async (text) => {
+  page.copyText = async (text) => {
     try {
       await navigator.clipboard.writeText(text);
       return true;
@@ -158,8 +158,9 @@
     };
     const title = page.element("h2", { id: "card-title" }, `Design ${page.full(page.designOf(row))}`, row === front.knee ? page.element("span", { class: "mark" }, " knee") : null);
     const place = page.element("p", { class: "muted" }, `row ${page.count(row + 1)} of ${page.count(front.rows)} of the front`, page.mask[row] ? "" : ", not selected");
-    const buttons = page.element("div", { class: "card-buttons no-print" }, button("card-previous", "Previous design (left arrow)", "‹", () => step(-1), !any(-1)), button("card-next", "Next design (right arrow)", "›", () => step(1), !any(1)), button("card-close", "Close (Esc)", "×", page.closeCard));
-    return [page.element("div", { class: "card-head" }, page.element("div", {}, title, place), buttons), objectives(row), margins(row), inputs(row), outputs(row), commands(row)].filter(Boolean);
+    const pinned = page.isPinned(row);
+    const buttons = page.element("div", { class: "card-buttons no-print" }, button("card-pin", pinned ? "Unpin this design (p)" : "Pin this design, to compare it (p)", pinned ? "Unpin" : "Pin", () => page.pin(row), !pinned && page.pins().length >= 6), button("card-print", "Print a data sheet of this design", "Print", () => page.printSheet()), button("card-previous", "Previous design (left arrow)", "‹", () => step(-1), !any(-1)), button("card-next", "Next design (right arrow)", "›", () => step(1), !any(1)), button("card-close", "Close (Esc)", "×", page.closeCard));
+    return [page.element("div", { class: "card-head" }, page.element("div", {}, title, place), buttons), objectives(row), margins(row), inputs(row), outputs(row), page.data.kind === "live" ? page.element("section", { id: "all-outputs" }) : null, commands(row)].filter(Boolean);
   };
 
   // In a wide window the card takes room from the plots.
@@ -206,10 +207,33 @@
     returnFocus();
   };
 
+  // Its design is not on the front any more.
+  page.closeLostCard = () => {
+    page.byId("card").hidden = true;
+    document.body.classList.remove("with-card");
+    page.events.call("card");
+  };
+
+  // The card alone, on paper.
+  page.printSheet = () => {
+    document.body.classList.add("sheet");
+    window.print();
+    document.body.classList.remove("sheet");
+  };
+
   page.startCard = () => {
+    const again = () => {
+      const focused = document.activeElement && document.activeElement.id;
+      if (page.state.card === null) return;
+      page.byId("card").replaceChildren(...build(page.state.card));
+      if (focused && focused.startsWith("card-")) page.byId(focused)?.focus();
+    };
+    page.events.on("pins.card", again);
+    page.events.on("front.card", again);
     document.addEventListener("keydown", (event) => {
       if (page.state.card === null || event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
       if (event.key === "Escape") page.closeCard();
+      else if (event.key === "p" && page.byId("card").contains(event.target)) page.pin(page.state.card);
       else if (!page.byId("card").contains(event.target)) return;
       else if (event.target.tagName !== "CODE" && (event.key === "ArrowRight" || event.key === "ArrowLeft")) step(event.key === "ArrowRight" ? 1 : -1);
       else return;

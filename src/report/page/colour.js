@@ -1,8 +1,10 @@
 // The colour of every point, by the chosen column, and its colour bar.
 {
   const STEPS = 256;
-  // Viridis without the end that is invisible on the background.
-  const rampOf = () => (page.dark() ? (t) => d3.interpolateViridis(0.22 + 0.78 * t) : (t) => d3.interpolateViridis(0.9 * t));
+  // Plasma without the end that is hard to see on the background: marks have a contrast of 3 at least.
+  const rampOf = () => (page.dark() ? (t) => d3.interpolatePlasma(0.42 + 0.58 * t) : (t) => d3.interpolatePlasma(0.61 * t));
+  // Areas need no such contrast: they have more of the scale.
+  page.areaRamp = () => (page.dark() ? (t) => d3.interpolateViridis(0.22 + 0.78 * t) : (t) => d3.interpolateViridis(0.9 * t));
 
   page.ramp = rampOf;
   page.rampPixels = (ramp) => Uint32Array.from({ length: STEPS }, (_, i) => page.pixel(ramp(i / (STEPS - 1))));
@@ -15,11 +17,11 @@
   };
 
   // Pixel colours of all rows, computed again when the column or the theme changes.
-  let cache = { key: null, pixels: null };
+  let cache = { key: null, pixels: null, front: null };
   page.colours = () => {
     const { front, state } = page;
     const key = `${state.colour} ${page.dark()}`;
-    if (cache.key === key) return cache.pixels;
+    if (cache.key === key && cache.front === front) return cache.pixels;
     const none = page.pixel(page.variable("--muted"));
     const pixels = new Uint32Array(front.rows);
     const column = front.byName.get(state.colour);
@@ -32,7 +34,7 @@
         pixels[i] = t >= 0 ? table[Math.min(STEPS - 1, Math.round(t * (STEPS - 1)))] : none;
       }
     }
-    cache = { key, pixels };
+    cache = { key, pixels, front };
     return pixels;
   };
 

@@ -43,7 +43,8 @@
     if (study) {
       facts.push(fact("designs", page.count(study.designs), "designs"));
       facts.push(fact("scenarios each", page.count(study.scenarios), "scenarios"));
-      facts.push(fact("feasible in all", `${page.count(study.feasible)} (${page.percent(study.feasible, study.designs)})`, "feasible"));
+      const known = study.feasible !== null && study.feasible !== undefined;
+      facts.push(fact("feasible in all", known ? `${page.count(study.feasible)} (${page.percent(study.feasible, study.designs)})` : "…", "feasible", known ? null : "counted once nothing is changed for a moment"));
     }
     if (front) facts.push(fact(front.of > front.rows ? `shown, of ${page.count(front.of)} on the Pareto front` : "on the Pareto front", page.count(front.rows), "front-size"));
     if (run) facts.push(fact("computed in", runText(run), "run", `${run.platform || ""} ${run.origin || ""}`.trim()));
@@ -60,7 +61,7 @@
       (data.notes || []).map((note) => page.element("p", { class: "notice" }, note)),
       front && front.rows && front.objectives.length ? page.element("div", { class: "goals" }, objectives(), openKnee) : "",
     ];
-    page.byId("overview").append(...parts.flat());
+    page.byId("overview").replaceChildren(...parts.flat().filter((part) => part !== ""));
   };
 
   page.startStudy = () => {
@@ -68,7 +69,7 @@
     if (!study || !study.text) return;
     const section = page.byId("study");
     section.hidden = false;
-    section.append(
+    section.replaceChildren(
       page.element("h2", { id: "study-title" }, "Study"),
       page.element("details", {}, page.element("summary", {}, `${study.file || "study.toml"}`, study.hash ? page.element("span", { class: "muted" }, ` hash ${study.hash.slice(0, 16)}…`) : ""), page.element("pre", { tabindex: 0 }, study.text)),
       inputs && inputs.length ? page.element("details", {}, page.element("summary", {}, "Inputs of the model"), inputTable(inputs)) : "",

@@ -170,6 +170,13 @@
     layout();
     page.events.on("columns.parallel", layout);
     page.events.on("layout.parallel", layout);
+    // Thousands of lines take longer than the points: not while a slider moves.
+    let waiting = 0;
+    page.events.on("front.parallel", () => {
+      clearTimeout(waiting);
+      page.layoutLines(null);
+      waiting = setTimeout(layout, 140);
+    });
     page.events.on("selection.parallel", () => {
       syncBrushes();
       page.redrawLines("brush");

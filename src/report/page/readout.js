@@ -42,7 +42,7 @@
 
   page.startReadout = () => {
     page.showReadout();
-    for (const event of ["current", "card", "colour", "theme"]) page.events.on(`${event}.readout`, () => page.schedule("readout", page.showReadout));
+    for (const event of ["current", "card", "colour", "theme", "front"]) page.events.on(`${event}.readout`, () => page.schedule("readout", page.showReadout));
     page.events.on("columns.readout", () => page.schedule("readout", page.showReadout));
   };
 }

@@ -105,6 +105,7 @@
     };
     page.events.on("selection.table", later);
     page.events.on("columns.table", later);
+    page.events.on("front.table", later);
     page.events.on("current.table", markCurrent);
     page.events.on("card.table", markCurrent);
   };

@@ -23,6 +23,8 @@
 //! | `tolerance.rs`  | tolerances that become a part of the model          |
 //! | `drawn.rs`      | `[probability]`, and what is asked of draws         |
 //! | `set.rs`        | values in place of what a study says               |
+//! | `part.rs`       | parts of a study that are given another value      |
+//! | `place.rs`      | where in its text they are written                 |
 
 mod axes;
 mod cases;
@@ -34,6 +36,8 @@ mod labels;
 mod law;
 mod model_file;
 mod model_inputs;
+mod part;
+mod place;
 mod presets;
 mod quantities;
 mod range;
@@ -51,6 +55,8 @@ mod value;
 mod weights;
 
 pub(super) use formulas::CurvePoints;
+#[cfg(feature = "cli")]
+pub(crate) use part::entry_names;
 pub use model_file::{FileKind, file_kind, read_model};
 pub(super) use model_file::{ModelText, read_model_text};
 pub(super) use quantities::MOST_OBJECTIVES;
