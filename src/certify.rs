@@ -92,6 +92,17 @@ impl Column {
         worse.into_iter().map(|worse| Tracked { quantity: self.quantity, worse, over: self.over }).collect()
     }
 
+    /// Before any value was taken in.
+    pub(crate) fn nothing() -> (f64, AtWorst) {
+        (f64::NEG_INFINITY, AtWorst { value: None, scenario: 0 })
+    }
+
+    /// Takes the value of a scenario into the worst so far.
+    #[inline]
+    pub(crate) fn take(&self, worst: &mut (f64, AtWorst), value: f64, scenario: u64) {
+        self.worst.take(worst, Some(value), scenario);
+    }
+
     /// The value out of these.
     pub(crate) fn worst_of(&self, values: impl Iterator<Item = f64>) -> Option<f64> {
         values.max_by(|&a, &b| self.worst.badness(a).total_cmp(&self.worst.badness(b)))
@@ -130,6 +141,7 @@ impl Worst {
     }
 
     /// Takes in a value, if there is one; of equally bad ones that of the first scenario stays.
+    #[inline]
     fn take(self, (badness, at): &mut (f64, AtWorst), value: Option<f64>, scenario: u64) {
         let Some(value) = value else { return };
         let this = self.badness(value);
@@ -328,7 +340,8 @@ pub fn front(plan: &Plan, columns: &[Column], points: &Points, threads: usize, c
 
 /// Among the columns, that of each objective: they are the first ones, unless two objectives share a quantity.
 pub(crate) fn objective_columns(study: &Study, columns: &[Column]) -> Vec<usize> {
-    let column = |it: &Objective| columns.iter().position(|column| column.is_of(it.quantity, it.over)).expect("every objective has a column");
+    let column =
+        |it: &Objective| columns.iter().position(|column| column.is_of(it.quantity, it.over)).expect("every objective has a column");
     study.objectives.iter().map(column).collect()
 }
 

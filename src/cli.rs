@@ -76,7 +76,7 @@ pub struct ModelsArgs {
 pub struct CheckArgs {
     /// Study file
     pub study: PathBuf,
-    /// Set an input in place of its axis, fixed value or formula; a unit may follow the number. May be repeated
+    /// Set an input in place of its axis, fixed value or formula, or a part of the study such as constraints.NAME.max; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     pub set: Vec<String>,
     /// As with sweep --feasible: also says how large the file of all feasible designs may become
@@ -165,7 +165,7 @@ pub struct EvalArgs {
 pub struct SweepArgs {
     /// Study file
     pub study: PathBuf,
-    /// Set an input in place of its axis, fixed value or formula; a unit may follow the number. May be repeated
+    /// Set an input in place of its axis, fixed value or formula, or a part of the study such as constraints.NAME.max; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     pub set: Vec<String>,
     /// Write every feasible design into feasible.parquet
@@ -247,7 +247,7 @@ pub struct ExploreArgs {
 pub struct SensitivityArgs {
     /// Study file
     pub study: PathBuf,
-    /// Set an input in place of its axis, fixed value or formula; a unit may follow the number. May be repeated
+    /// Set an input in place of its axis, fixed value or formula, or a part of the study such as constraints.NAME.max; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     pub set: Vec<String>,
     /// Design whose uncertainty is looked at, by its index [default: the only one]

@@ -133,7 +133,8 @@ fn span(control: &mut Value, input: &Input, least: f64, largest: f64) {
         (low, high) = (low.max(least - 2.0 * width), high.min(largest + 2.0 * width).max(largest));
     }
     let inside = |value: f64, towards: f64| if input.valid.contains(value) { value } else { towards };
-    (control["low"], control["high"]) = (finite(inside(low, least.min(usual_low).max(low + 1e-3 * (high - low)))), finite(inside(high, largest)));
+    (control["low"], control["high"]) =
+        (finite(inside(low, least.min(usual_low).max(low + 1e-3 * (high - low)))), finite(inside(high, largest)));
 }
 
 /// Every input that has one value; those that the file gives come first.
@@ -141,7 +142,8 @@ fn fixed(study: &Study, given: &[String]) -> Vec<Value> {
     let model = &study.model;
     let axes = || study.design.iter().chain(&study.operation).chain(&study.uncertainty);
     let drawn = |name: &str| study.probability.as_ref().is_some_and(|it| it.inputs.iter().any(|it| it.name == name));
-    let single = (0..model.inputs.len()).filter(|input| !axes().any(|axis| axis.inputs().contains(input)) && !drawn(&model.inputs[*input].name));
+    let single =
+        (0..model.inputs.len()).filter(|input| !axes().any(|axis| axis.inputs().contains(input)) && !drawn(&model.inputs[*input].name));
     let mut controls: Vec<Value> = single
         .map(|number_of| {
             let input = &model.inputs[number_of];

@@ -60,7 +60,14 @@ impl Gate {
         let lasting = same(token, &self.token);
         let once = same(token, &self.once);
         if !lasting && !(once && !self.used.swap(true, Ordering::Relaxed)) {
-            return Reply::text(403, if once { "this address was used before; open the one that beltspace explore has printed" } else { "this token is not the one of this server; open the address that beltspace explore has printed" });
+            return Reply::text(
+                403,
+                if once {
+                    "this address was used before; open the one that beltspace explore has printed"
+                } else {
+                    "this token is not the one of this server; open the address that beltspace explore has printed"
+                },
+            );
         }
         let cookie = format!("{}={}; HttpOnly; SameSite=Strict; Path=/", self.name, self.cookie);
         Reply { headers: vec![("Location", "/".to_owned()), ("Set-Cookie", cookie)], ..Reply::text(303, "see /") }
@@ -136,7 +143,14 @@ mod tests {
             let asked = Asked { query: format!("token={token}"), cookie: String::new(), ..asked(&gate) };
             gate.look_at(&asked).expect("it is answered")
         };
-        for (token, status) in [("", 403), ("0123", 403), (gate.once.as_str(), 303), (gate.once.as_str(), 403), (gate.token.as_str(), 303), (gate.token.as_str(), 303)] {
+        for (token, status) in [
+            ("", 403),
+            ("0123", 403),
+            (gate.once.as_str(), 303),
+            (gate.once.as_str(), 403),
+            (gate.token.as_str(), 303),
+            (gate.token.as_str(), 303),
+        ] {
             assert_eq!(with(token).status, status);
         }
         let headers = with(&gate.token).headers;

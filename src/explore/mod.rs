@@ -50,7 +50,9 @@ impl Explorer {
     /// # Errors
     /// [`Error::Request`] if the study is wrong or the port is taken.
     pub fn bind(live: Live, port: u16, begin: &[String], words: CommandWords) -> Result<Self> {
-        let wrong = |error: std::io::Error| Error::Request(format!("cannot listen on port {port} of this machine: {error}; name another with --port"));
+        let wrong = |error: std::io::Error| {
+            Error::Request(format!("cannot listen on port {port} of this machine: {error}; name another with --port"))
+        };
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(wrong)?;
         let port = listener.local_addr().map_err(wrong)?.port();
         let gate = Gate::new(port).map_err(Error::io(Path::new("random numbers")))?;

@@ -1,12 +1,12 @@
 //! The fixed addresses of the server.
 
+use super::Explorer;
 use super::controls::controls;
 use super::http::{Asked, Connection, Reply, begin_chunks, write_chunk};
-use super::Explorer;
 use crate::certify::{self, Role};
 use crate::error::{Error, Result};
-use crate::live::around::around;
 use crate::live::LiveAnswer;
+use crate::live::around::around;
 use crate::plan::Plan;
 use crate::report::live as told;
 use crate::screen::Control;
@@ -148,6 +148,7 @@ impl Explorer {
         self.live.answer(&plan, control, &mut |step| {
             let (kind, (mut json, bytes)) = match step {
                 LiveAnswer::Coarse(found) => ("coarse", told::front(&found)),
+                LiveAnswer::Few(found) => ("few", told::front(&found)),
                 LiveAnswer::Exact(found) => ("exact", told::front(&found)),
                 LiveAnswer::Certified(found) => ("certified", told::front(&found)),
                 LiveAnswer::Counted(counted) => ("counted", (told::counted(&plan, &counted), Vec::new())),
@@ -185,7 +186,8 @@ impl Explorer {
             json!({ "name": column.name, "unit": column.unit(&plan.study), "doc": column.doc(&plan.study), "value": value, "scenario": value.as_ref().map(|_| at.scenario) })
         });
         let inputs = plan.study.design.iter().flat_map(Axis::inputs);
-        let inputs: Map<_, _> = inputs.map(|&input| (model.inputs[input].name.clone(), value_of(model, input, row.inputs[input]))).collect();
+        let inputs: Map<_, _> =
+            inputs.map(|&input| (model.inputs[input].name.clone(), value_of(model, input, row.inputs[input]))).collect();
         let scenarios: std::collections::BTreeSet<u64> = row.columns.iter().filter(|it| it.value.is_some()).map(|it| it.scenario).collect();
         let told = json!({
             "kind": "design", "design": design.to_string(), "inputs": inputs, "outputs": named.collect::<Vec<_>>(), "feasible": row.feasible,

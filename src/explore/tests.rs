@@ -87,7 +87,8 @@ impl Client {
     fn send(&mut self, path: &str, body: &str, more: &str) {
         let (host, cookie) = (&self.host, &self.cookie);
         let more = if more.is_empty() { format!("Origin: http://{host}\r\nContent-Type: application/json\r\n") } else { more.to_owned() };
-        let text = format!("POST {path} HTTP/1.1\r\nHost: {host}\r\nCookie: {cookie}\r\n{more}Content-Length: {}\r\n\r\n{body}", body.len());
+        let text =
+            format!("POST {path} HTTP/1.1\r\nHost: {host}\r\nCookie: {cookie}\r\n{more}Content-Length: {}\r\n\r\n{body}", body.len());
         self.stream.write_all(text.as_bytes()).expect("it reads");
     }
 
@@ -140,8 +141,18 @@ fn the_page_comes_with_the_token_and_nothing_else_does() {
         assert_eq!(status(&client.get(path)), "200", "{path}");
     }
     for path in [
-        "/../Cargo.toml", "/..%2fCargo.toml", "//etc/passwd", "/page.js/../../Cargo.toml", "/%2e%2e/", "/page.js%00", "/PAGE.JS", "/.", "/study.toml",
-        "/answer", "http://127.0.0.1/page.js", "*",
+        "/../Cargo.toml",
+        "/..%2fCargo.toml",
+        "//etc/passwd",
+        "/page.js/../../Cargo.toml",
+        "/%2e%2e/",
+        "/page.js%00",
+        "/PAGE.JS",
+        "/.",
+        "/study.toml",
+        "/answer",
+        "http://127.0.0.1/page.js",
+        "*",
     ] {
         assert_eq!(status(&client.get(path)), "404", "{path}");
     }

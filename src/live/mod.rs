@@ -5,6 +5,7 @@
 //! others are not. [`search::FrontSearch`] finds the front without judging every design in every scenario.
 
 pub mod around;
+pub mod lanes;
 pub mod search;
 
 use crate::bounds::refusal;
@@ -19,7 +20,7 @@ use crate::study::Study;
 use crate::sweep::costs::Speed;
 use crate::sweep::{Leaving, Rule, Settings, sweep, sweep_auto};
 use rustc_hash::FxHashMap;
-use search::{FrontSearch, WorkingSet};
+use search::{FrontSearch, JudgedRows, WorkingSet};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::sync::{Mutex, PoisonError};
@@ -47,6 +48,8 @@ pub struct Live {
     threads: usize,
     /// By the numbers of levels of the scenario axes: the scenarios that decided last.
     sets: Mutex<FxHashMap<Vec<u64>, WorkingSet>>,
+    /// Designs of the last front, over all scenarios.
+    judged: Mutex<JudgedRows>,
     /// Seconds that a thread took for one design in one scenario of late, by the name of the model.
     pace: Mutex<Option<f64>>,
 }
@@ -55,6 +58,8 @@ pub struct Live {
 pub enum LiveAnswer<'a> {
     /// The front of a few designs, in a few scenarios: a first idea.
     Coarse(LiveFront<'a>),
+    /// The front of all designs in a few scenarios, most likely the exact one: it is being judged in all of them.
+    Few(LiveFront<'a>),
     /// The exact front, each value over all scenarios.
     Exact(LiveFront<'a>),
     /// The same, computed once more by the f64 reference, which says in which scenario each value is the worst.
@@ -92,7 +97,7 @@ pub struct Counted {
 impl Live {
     /// For a study given as text, as [`Study::parse_in`] reads it.
     pub fn new(text: String, file: String, folder: PathBuf, threads: usize) -> Self {
-        Self { text, file, folder, threads: threads.max(1), sets: Mutex::default(), pace: Mutex::default() }
+        Self { text, file, folder, threads: threads.max(1), sets: Mutex::default(), judged: Mutex::default(), pace: Mutex::default() }
     }
 
     /// The study with changes, and its text.
@@ -102,7 +107,9 @@ impl Live {
     pub fn study(&self, set: &[String]) -> Result<(Study, String)> {
         let (study, text) = Study::parse_set(&Models::new(), &self.text, &self.file, &self.folder, set)?;
         if study.objectives.is_empty() {
-            return Err(Error::Request("the study has no objective, so that there is no front to look at; name one in [objectives]".to_owned()));
+            return Err(Error::Request(
+                "the study has no objective, so that there is no front to look at; name one in [objectives]".to_owned(),
+            ));
         }
         Ok((study, text))
     }
@@ -136,7 +143,8 @@ impl Live {
         let start = Instant::now();
         let shape = shape(&plan.study);
         let held = |it: &Mutex<FxHashMap<Vec<u64>, WorkingSet>>| it.lock().unwrap_or_else(PoisonError::into_inner).get(&shape).cloned();
-        let mut search = FrontSearch::new(plan, self.threads, control);
+        let before = self.judged.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let mut search = FrontSearch::new(plan, self.threads, control, before);
         let set = match held(&self.sets) {
             Some(set) => search.adopted(set)?,
             None => search.first_set()?,
@@ -145,24 +153,31 @@ impl Live {
         if expected > NOTICED.as_secs_f64() {
             self.coarse(&mut search, &set, expected, start, tell)?;
         }
-        let begun = Instant::now();
-        let exact = if expected > LONG && refusal(plan).is_none() { None } else { Some(search.exact(set)?) };
-        let (rows, set) = match exact {
-            Some(found) => found,
+        let designs = plan.designs();
+        let (rows, set) = if expected > LONG && refusal(plan).is_none() {
             // Of very many designs most are settled in boxes.
-            None => (search.feasible_of(&self.by_bounds(plan, control)?)?, WorkingSet::default()),
+            (search.feasible_of(&self.by_bounds(plan, control)?)?, WorkingSet::default())
+        } else {
+            search.exact(set, &mut |search, set, points| {
+                let (rows, scenarios) = (search.in_few(set, points)?, set.count(plan.scenarios()));
+                let front =
+                    LiveFront { plan, columns: search.columns(), rows: &rows, looked_at: designs, scenarios, took: start.elapsed() };
+                tell(LiveAnswer::Few(front))
+            })?
         };
         let scenarios = set.count(plan.scenarios());
         if scenarios > 0 {
-            self.note(plan, scenarios, begun.elapsed());
+            self.note(plan, scenarios, search.swept());
             self.sets.lock().unwrap_or_else(PoisonError::into_inner).insert(shape, set);
         }
-        let front = LiveFront { plan, columns: search.columns(), rows: &rows, looked_at: plan.designs(), scenarios, took: start.elapsed() };
+        let front = LiveFront { plan, columns: search.columns(), rows: &rows, looked_at: designs, scenarios, took: start.elapsed() };
         tell(LiveAnswer::Exact(front))?;
+        *self.judged.lock().unwrap_or_else(PoisonError::into_inner) = search.judged();
         pause(control)?;
         // Now there is time for the reference, which also says in which scenario each value is the worst.
         let certified = search.certified(&rows)?;
-        let front = LiveFront { plan, columns: search.columns(), rows: &certified, looked_at: plan.designs(), scenarios, took: start.elapsed() };
+        let front =
+            LiveFront { plan, columns: search.columns(), rows: &certified, looked_at: plan.designs(), scenarios, took: start.elapsed() };
         tell(LiveAnswer::Certified(front))?;
         self.count(plan, &rows, control, tell)
     }
@@ -185,7 +200,14 @@ impl Live {
         let points = search.coarse(set, most)?;
         let rows = search.feasible_of(&points)?;
         let scenarios = set.count(plan.scenarios());
-        tell(LiveAnswer::Coarse(LiveFront { plan, columns: search.columns(), rows: &rows, looked_at: most, scenarios, took: start.elapsed() }))
+        tell(LiveAnswer::Coarse(LiveFront {
+            plan,
+            columns: search.columns(),
+            rows: &rows,
+            looked_at: most,
+            scenarios,
+            took: start.elapsed(),
+        }))
     }
 
     /// The front by bounds, left where they do not pay.

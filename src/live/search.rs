@@ -6,6 +6,7 @@
 //! the front: it fails in the working set, or one of them beats it there, and over all scenarios it only gets worse. Where one is not, the
 //! scenarios that say so join the working set, and the search goes on.
 
+use super::lanes::ScenarioLanes;
 use crate::certify::{self, AtWorst, Column, Role, Row};
 use crate::error::{Error, Result};
 use crate::keys::KeyRule;
@@ -13,10 +14,11 @@ use crate::parallel::on_threads;
 use crate::plan::{Plan, Tracked};
 use crate::reduce::{Points, Reduction};
 use crate::screen::{Control, CpuEngine, Tables};
+use crate::study::{Constraint, Quantity, Study};
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 /// Scenarios that join a working set at a time: those that most designs ask for.
 const MOST_NEW: usize = 24;
@@ -28,6 +30,10 @@ const SEEDS: u64 = 48;
 const MOST_ASKED: usize = 12;
 /// Stands for a scenario that is not known.
 const UNKNOWN: u64 = u64::MAX;
+/// Designs of a front that others are compared with first.
+const FEW: u64 = 2000;
+/// Most designs that are kept for the next study.
+const MOST_KEPT: usize = 100_000;
 /// Parts that the designs are cut into, per thread.
 const PARTS: usize = 24;
 
@@ -82,10 +88,25 @@ pub struct FrontSearch<'p> {
     control: &'p Control,
     /// What the f64 reference says of designs.
     known: FxHashMap<u64, Row>,
-    /// The plan that also follows what is shown, its tables, and of each column where its values stand.
+    /// The plan that also follows what is shown, without the bounds that a value of one design can be held against later; its tables, and of
+    /// each column where its values stand.
     shown: Plan,
     shown_tables: Tables,
     places: Vec<Vec<usize>>,
+    /// Judges single designs, where the formula allows it.
+    lanes: Option<ScenarioLanes>,
+    /// Designs with their values over all scenarios, whether they keep those bounds or not.
+    judged: FxHashMap<u64, Row>,
+    /// How long the last look at every design took.
+    swept: Duration,
+}
+
+/// Designs that were judged in all scenarios, for the next study that differs in nothing but bounds.
+#[derive(Clone, Debug, Default)]
+pub struct JudgedRows {
+    /// Of the study without these bounds.
+    hash: String,
+    rows: FxHashMap<u64, Row>,
 }
 
 /// Designs to judge: the same places of each row.
@@ -95,19 +116,21 @@ struct Part<'a> {
 }
 
 impl<'p> FrontSearch<'p> {
-    /// For a plan; `control` can stop it.
-    pub fn new(plan: &'p Plan, threads: usize, control: &'p Control) -> Self {
+    /// For a plan; `control` can stop it. What was judged before serves again if it fits.
+    pub fn new(plan: &'p Plan, threads: usize, control: &'p Control, before: JudgedRows) -> Self {
         let columns = certify::columns(&plan.study);
         // What a study confirms with fresh draws is no output of the sweep.
         let is_output = |column: &&Column| plan.study.confirmed(column.quantity).is_none();
         let followed: Vec<Tracked> = columns.iter().filter(is_output).flat_map(Column::followed).collect();
-        let shown = Plan::following(plan.study.clone(), &followed);
+        let shown = Plan::following(without_bounds(&plan.study), &followed);
+        let judged = if before.hash == shown.study.hash() { before.rows } else { FxHashMap::default() };
         let place = |wanted: &Tracked| shown.tracked.iter().position(|(it, _)| it == wanted);
         let places = columns.iter().map(|column| column.followed().iter().filter_map(place).collect()).collect();
         Self {
             plan,
             tables: Tables::new(plan),
             shown_tables: Tables::new(&shown),
+            lanes: ScenarioLanes::new(&shown),
             shown,
             places,
             reduction: Reduction::of_front(plan),
@@ -115,6 +138,8 @@ impl<'p> FrontSearch<'p> {
             threads: threads.max(1),
             control,
             known: FxHashMap::default(),
+            judged,
+            swept: Duration::ZERO,
         }
     }
 
@@ -128,6 +153,17 @@ impl<'p> FrontSearch<'p> {
         &self.columns
     }
 
+    /// What was judged, to be used again.
+    pub fn judged(&self) -> JudgedRows {
+        let rows = if self.judged.len() > MOST_KEPT { FxHashMap::default() } else { self.judged.clone() };
+        JudgedRows { hash: self.shown.study.hash(), rows }
+    }
+
+    /// How long the last look at every design took.
+    pub fn swept(&self) -> Duration {
+        self.swept
+    }
+
     /// The plan.
     pub fn plan(&self) -> &'p Plan {
         self.plan
@@ -137,12 +173,35 @@ impl<'p> FrontSearch<'p> {
     ///
     /// # Errors
     /// [`Error::Stopped`] after `control.stop`.
-    pub fn feasible_of(&self, points: &Points) -> Result<Vec<Row>> {
-        let mut judged = FxHashMap::default();
-        self.judge_in_all(&points.indices, &mut judged)?;
-        let mut rows: Vec<Row> = judged.into_values().collect();
+    pub fn feasible_of(&mut self, points: &Points) -> Result<Vec<Row>> {
+        let mut rows = self.judge_in_all(&points.indices)?;
+        rows.retain(|row| self.holds(row));
         certify::sort_front(self.plan, &self.columns, &mut rows);
         Ok(rows)
+    }
+
+    /// The front in a working set, with the values there.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] after `control.stop`.
+    pub fn in_few(&self, set: &WorkingSet, points: &Points) -> Result<Vec<Row>> {
+        let mut positions: Vec<u64> = points.indices.iter().map(|&design| self.plan.position_of(design)).collect();
+        positions.sort_unstable();
+        let mut rows = self.screened(&self.shown, &self.shown_tables, &set.chosen(self.plan), &positions, &self.places)?;
+        certify::sort_front(self.plan, &self.columns, &mut rows);
+        Ok(rows)
+    }
+
+    /// Does a design keep the bounds of the study?
+    fn holds(&self, row: &Row) -> bool {
+        let place = |it: &Constraint| certify::constraint_column(&self.columns, it, &it.name(&self.plan.study.model));
+        self.plan.study.constraints.iter().all(|it| {
+            let value = match (certify::design_input(&self.plan.study, it.quantity), it.quantity) {
+                (Some(_), Quantity::Input(input)) => Some(row.inputs[input]),
+                _ => place(it).and_then(|place| row.columns[place].value),
+            };
+            value.is_some_and(|value| it.holds(value))
+        })
     }
 
     /// The same rows by the f64 reference, with the scenario of each value.
@@ -224,24 +283,21 @@ impl<'p> FrontSearch<'p> {
     fn front_in(&self, set: &WorkingSet, rows: &[u64], places: &[u64], seen: Points) -> Result<Points> {
         let chosen = set.chosen(self.plan);
         let parts = parts(rows, places, PARTS * self.threads);
-        let (next, merged) = (AtomicUsize::new(0), Mutex::new(self.reduction.start_after(seen)));
-        on_threads(0..self.threads, |_| {
+        let next = AtomicUsize::new(0);
+        let found = on_threads(0..self.threads, |_| {
             let mut engine = CpuEngine::new(self.plan, &self.tables).stopping_on(&self.control.stop);
-            loop {
-                let Some(part) = parts.get(next.fetch_add(1, Ordering::Relaxed)) else { return };
+            let mut own = self.reduction.start_after(seen.clone());
+            while let Some(part) = parts.get(next.fetch_add(1, Ordering::Relaxed)) {
                 if self.control.stop.load(Ordering::Relaxed) {
-                    return;
+                    break;
                 }
-                let known = merged.lock().unwrap_or_else(PoisonError::into_inner).front.points().clone();
-                let mut own = self.reduction.start_after(known);
                 engine.screen_rows(part.rows, part.places, &chosen, |block| self.reduction.absorb(&mut own, block));
-                merged.lock().unwrap_or_else(PoisonError::into_inner).merge(own.into_fresh());
             }
+            own.into_fresh()
         });
-        if self.control.stop.load(Ordering::Relaxed) {
-            return Err(Error::Stopped { kept: None });
-        }
-        let mut merged = merged.into_inner().unwrap_or_else(PoisonError::into_inner);
+        self.go_on()?;
+        let mut merged = self.reduction.start_after(seen);
+        found.into_iter().for_each(|state| merged.merge(state));
         Ok(merged.front.points().clone())
     }
 
@@ -255,26 +311,33 @@ impl<'p> FrontSearch<'p> {
         self.front_in(set, &slow, &fast, Points::default())
     }
 
-    /// The exact front, and the working set that has served to find it. Its values are those of the engine over all scenarios, of which it
+    /// The exact front, and the working set that has served to find it. `few` is told the front in the working set where it must still be
+    /// judged in all scenarios. Its values are those of the engine over all scenarios, of which it
     /// is not known which is the worst.
     ///
     /// # Errors
     /// [`Error::Stopped`] after `control.stop`.
-    pub fn exact(&mut self, mut set: WorkingSet) -> Result<(Vec<Row>, WorkingSet)> {
+    pub fn exact(
+        &mut self,
+        mut set: WorkingSet,
+        few: &mut dyn FnMut(&Self, &WorkingSet, &Points) -> Result<()>,
+    ) -> Result<(Vec<Row>, WorkingSet)> {
         let rows: Vec<u64> = (0..self.plan.slow.count()).collect();
         let places: Vec<u64> = (0..self.plan.fast.count()).collect();
         let of = self.plan.scenarios();
-        let mut judged = FxHashMap::default();
         loop {
-            let t0 = std::time::Instant::now();
-            let points = self.front_in(&set, &rows, &places, Points::default())?;
-            if std::env::var_os("TIMES").is_some() { eprintln!("front_in {:?} {}", t0.elapsed(), set.count(of)); }
-            let t0 = std::time::Instant::now();
-            self.judge_in_all(&points.indices, &mut judged)?;
-            let wrong = self.contradicted(&points, &judged);
-            if std::env::var_os("TIMES").is_some() { eprintln!("judge {:?} wrong {}", t0.elapsed(), wrong.len()); }
+            // What a few designs leave nothing of need not be kept until the end.
+            let begun = Instant::now();
+            let seen = self.coarse(&set, FEW)?;
+            let points = self.front_in(&set, &rows, &places, seen)?;
+            self.swept = begun.elapsed();
+            if points.indices.iter().any(|design| !self.judged.contains_key(design)) {
+                few(self, &set, &points)?;
+            }
+            let mut front = self.judge_in_all(&points.indices)?;
+            front.retain(|row| self.holds(row));
+            let wrong = self.contradicted(&points, &front);
             if wrong.is_empty() {
-                let mut front: Vec<Row> = points.indices.iter().filter_map(|design| judged.remove(design)).collect();
                 certify::sort_front(self.plan, &self.columns, &mut front);
                 return Ok((front, set));
             }
@@ -291,32 +354,51 @@ impl<'p> FrontSearch<'p> {
         }
     }
 
-    /// Judges designs in all scenarios, unless that was done; the feasible ones are put among those that are `judged`.
-    fn judge_in_all(&self, designs: &[u64], judged: &mut FxHashMap<u64, Row>) -> Result<()> {
-        let mut positions: Vec<u64> =
-            designs.iter().filter(|design| !judged.contains_key(design)).map(|&design| self.plan.position_of(design)).collect();
-        positions.sort_unstable();
-        let found = self.screened(&self.shown, &self.shown_tables, &positions, &self.places)?;
-        judged.extend(found.into_iter().map(|row| (row.index, row)));
-        positions.retain(|&position| !judged.contains_key(&self.plan.design_at(position)));
-        if positions.is_empty() {
-            return Ok(());
+    /// Designs with their values over all scenarios, without those that have none in some; of feasible ones all are there.
+    fn judge_in_all(&mut self, designs: &[u64]) -> Result<Vec<Row>> {
+        let new = |judged: &FxHashMap<u64, Row>| -> Vec<u64> {
+            let missing = designs.iter().filter(|design| !judged.contains_key(design));
+            let mut positions: Vec<u64> = missing.map(|&design| self.plan.position_of(design)).collect();
+            positions.sort_unstable();
+            positions
+        };
+        let positions = new(&self.judged);
+        let found = match &self.lanes {
+            Some(lanes) => self.in_lanes(lanes, &positions)?,
+            None => self.screened(&self.shown, &self.shown_tables, &[], &positions, &self.places)?,
+        };
+        self.judged.extend(found.into_iter().map(|row| (row.index, row)));
+        let mut rows: Vec<Row> = designs.iter().filter_map(|design| self.judged.get(design).cloned()).collect();
+        let positions = new(&self.judged);
+        if !positions.is_empty() {
+            // Some columns may have no value for a design that is feasible all the same.
+            let place = |wanted: &Tracked| self.plan.tracked.iter().position(|(it, _)| it == wanted);
+            let places: Vec<Vec<usize>> = self.columns.iter().map(|column| column.followed().iter().filter_map(place).collect()).collect();
+            rows.extend(self.screened(self.plan, &self.tables, &[], &positions, &places)?);
         }
-        // Some columns may have no value for a design that is feasible all the same.
-        let place = |wanted: &Tracked| self.plan.tracked.iter().position(|(it, _)| it == wanted);
-        let places: Vec<Vec<usize>> = self.columns.iter().map(|column| column.followed().iter().filter_map(place).collect()).collect();
-        let found = self.screened(self.plan, &self.tables, &positions, &places)?;
-        judged.extend(found.into_iter().map(|row| (row.index, row)));
-        Ok(())
+        Ok(rows)
+    }
+
+    /// The feasible ones of some designs at these positions, each over all scenarios at once.
+    fn in_lanes(&self, lanes: &ScenarioLanes, positions: &[u64]) -> Result<Vec<Row>> {
+        let designs: Vec<u64> = positions.iter().map(|&position| self.plan.design_at(position)).collect();
+        let share = designs.len().div_ceil(self.threads).max(1);
+        let parts = on_threads(designs.chunks(share), |part| lanes.judge(&self.shown, &self.columns, part, &self.control.stop));
+        self.go_on()?;
+        Ok(parts.into_iter().flatten().collect())
+    }
+
+    fn go_on(&self) -> Result<()> {
+        if self.control.stop.load(Ordering::Relaxed) { Err(Error::Stopped { kept: None }) } else { Ok(()) }
     }
 
     /// The feasible ones of some designs at these sorted positions, with the values that a plan follows.
-    fn screened(&self, plan: &Plan, tables: &Tables, positions: &[u64], places: &[Vec<usize>]) -> Result<Vec<Row>> {
+    fn screened(&self, plan: &Plan, tables: &Tables, chosen: &[(u64, u64)], positions: &[u64], places: &[Vec<usize>]) -> Result<Vec<Row>> {
         let share = positions.len().div_ceil(self.threads).max(1);
         let parts = on_threads(positions.chunks(share), |part| {
             let mut engine = CpuEngine::new(plan, tables).stopping_on(&self.control.stop);
             let mut rows = Vec::with_capacity(part.len());
-            engine.screen_some(part, |block| {
+            engine.screen_some_in(chosen, part, |block| {
                 for lane in block.feasible() {
                     let value = |(column, places): (&Column, &Vec<usize>)| {
                         let values = places.iter().map(|&place| block.column(place)[lane] + 0.0);
@@ -328,14 +410,13 @@ impl<'p> FrontSearch<'p> {
             });
             rows
         });
-        if self.control.stop.load(Ordering::Relaxed) {
-            return Err(Error::Stopped { kept: None });
-        }
+        self.go_on()?;
         Ok(parts.into_iter().flatten().collect())
     }
 
     /// The designs of a front in a working set of which all scenarios say something else.
-    fn contradicted(&self, points: &Points, judged: &FxHashMap<u64, Row>) -> Vec<u64> {
+    fn contradicted(&self, points: &Points, front: &[Row]) -> Vec<u64> {
+        let judged: FxHashMap<u64, &Row> = front.iter().map(|row| (row.index, row)).collect();
         let objectives = &self.plan.study.objectives;
         let rules: Vec<_> = objectives.iter().map(KeyRule::from).collect();
         let places = certify::objective_columns(&self.plan.study, &self.columns);
@@ -344,11 +425,25 @@ impl<'p> FrontSearch<'p> {
                 let mut each = rules.iter().zip(&places).zip(*keys);
                 each.all(|((rule, &place), &seen)| rule.key(row.columns[place].value.unwrap_or(f64::NAN)) == seen)
             };
-            !judged.get(design).is_some_and(same)
+            !judged.get(design).copied().is_some_and(same)
         };
         let all = points.indices.iter().zip(points.keys.chunks(objectives.len().max(1)));
         all.filter(is_wrong).map(|(&design, _)| design).collect()
     }
+}
+
+/// The study without the bounds of constraints that have one: the worst value is the same whatever the bound is, so that designs are held
+/// against it later. Of two bounds the worst value depends on both.
+fn without_bounds(study: &Study) -> Study {
+    let mut free = study.clone();
+    for constraint in free.constraints.iter_mut().filter(|it| it.over.is_worst()) {
+        match (&mut constraint.low, &mut constraint.high) {
+            (Some(low), None) => *low = (f64::MIN, false),
+            (None, Some(high)) => *high = (f64::MAX, false),
+            _ => {}
+        }
+    }
+    free
 }
 
 /// Rows and places cut into about so many parts.

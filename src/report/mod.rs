@@ -151,7 +151,8 @@ fn model_json(study: &Study) -> Value {
 /// The objectives with the positions of their columns.
 fn objectives_json(study: &Study, columns: &[usize]) -> Value {
     let each = study.objectives.iter().zip(columns);
-    each.map(|(it, column)| json!({ "of": it.name(&study.model), "column": column, "goal": it.goal, "resolution": it.resolution })).collect()
+    each.map(|(it, column)| json!({ "of": it.name(&study.model), "column": column, "goal": it.goal, "resolution": it.resolution }))
+        .collect()
 }
 
 /// The constraints with the positions of their columns, if they have some, and their bounds.
@@ -194,11 +195,25 @@ fn inputs(study: &Study) -> Vec<Value> {
         });
         match role(number) {
             "fixed" => described["value"] = value_of(model, number, study.fixed[number]),
-            _ => described["over"] = over(study, number).into(),
+            role => {
+                described["over"] = over(study, number).into();
+                if let Some((least, largest)) = ends(study, number).filter(|_| role == "design") {
+                    (described["least"], described["largest"]) = (least.into(), largest.into());
+                }
+            }
         }
         described
     };
     model.inputs.iter().enumerate().map(described).collect()
+}
+
+/// The least and the largest number that an axis gives an input; `None` for one of words.
+fn ends(study: &Study, input: usize) -> Option<(f64, f64)> {
+    let axes = study.design.iter().chain(&study.operation).chain(&study.uncertainty);
+    let (axis, column) = axes.filter_map(|axis| Some((axis, axis.inputs().iter().position(|&it| it == input)?))).next()?;
+    let table = &study.model.inputs[input];
+    let (least, largest) = axis.ends(column);
+    (!table.is_enumeration() && table.word_for(least).is_none() && table.word_for(largest).is_none()).then_some((least, largest))
 }
 
 /// The values that an axis gives an input, as text: its ends, or its words.

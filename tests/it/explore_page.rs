@@ -238,7 +238,8 @@ fn changes_are_undone_shared_saved_and_compared() {
     let [left, top, width, height] = browser.rectangle(slider);
     browser.evaluate(COUNT);
     let at = |part: f64| [left + part * width, top + height / 2.0];
-    let value: f64 = browser.number(&format!("(() => {{ const e = document.querySelector('{slider}'); return (0 - e.min) / (e.max - e.min); }})()"));
+    let value: f64 =
+        browser.number(&format!("(() => {{ const e = document.querySelector('{slider}'); return (0 - e.min) / (e.max - e.min); }})()"));
     browser.drag(at(value), at((value + 0.25).min(0.95)));
     answered(&mut browser);
     let after = browser.number("beltspace.page.front.rows");
@@ -321,7 +322,11 @@ fn a_billion_designs_answer_coarsely_first() {
         .collect();
     let mut sorted = times.clone();
     sorted.sort_by(f64::total_cmp);
-    eprintln!("{designs:.2e} designs: a coarse front after {:.0} ms in the median, {:.0} ms at most", sorted[sorted.len() / 2], sorted[sorted.len() - 1]);
+    eprintln!(
+        "{designs:.2e} designs: a coarse front after {:.0} ms in the median, {:.0} ms at most",
+        sorted[sorted.len() / 2],
+        sorted[sorted.len() - 1]
+    );
     assert!(sorted[sorted.len() / 2] < 1500.0, "{times:?}");
     browser.picture("explore-coarse");
 }
@@ -336,7 +341,11 @@ fn broken_rules(browser: &mut Browser, axe: &str) -> Vec<String> {
 /// The text of axe-core, from npm; `None` where npm cannot install it, which is told.
 fn axe() -> Option<String> {
     let folder = tempfile::tempdir().expect("there is room");
-    let done = Command::new("npm").args(["install", "--silent", "--no-audit", "--no-fund", "--prefix"]).arg(folder.path()).arg("axe-core@4").status();
+    let done = Command::new("npm")
+        .args(["install", "--silent", "--no-audit", "--no-fund", "--prefix"])
+        .arg(folder.path())
+        .arg("axe-core@4")
+        .status();
     if !done.as_ref().is_ok_and(std::process::ExitStatus::success) {
         eprintln!("axe: NOT RUN, npm cannot install axe-core: {done:?}");
         return None;

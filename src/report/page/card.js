@@ -10,10 +10,15 @@
     return null;
   };
 
-  const valueCell = (name, full, text, unit) =>
-    page.element("td", { class: "number" }, page.element("span", { "data-name": name, "data-value": full, title: full }, text), unit ? page.element("span", { class: "unit" }, ` ${unit}`) : null);
+  const valueCell = (name, full, text, unit, ending = null) =>
+    page.element("td", { class: "number" }, page.element("span", { "data-name": name, "data-value": full, title: full }, text), unit ? page.element("span", { class: "unit" }, ` ${page.unit(unit)}`) : null, ending);
 
-  const columnCell = (column, row) => valueCell(column.name, page.valueText(column, row, page.full), page.valueText(column, row), column.words || Number.isNaN(column.values[row]) ? "" : column.unit);
+  const endMark = (column, row) => {
+    const end = page.endOf(column, row);
+    return end ? page.element("div", { class: "end" }, `${end} end of its range`) : null;
+  };
+
+  const columnCell = (column, row) => valueCell(column.name, page.valueText(column, row, page.full), page.valueText(column, row), column.words || Number.isNaN(column.values[row]) ? "" : column.unit, endMark(column, row));
 
   const scenarioText = (number) => {
     const { scenarios } = page.data;

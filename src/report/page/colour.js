@@ -53,13 +53,19 @@
     if (Number.isFinite(low) && high > low) {
       const scale = d3.scaleLinear([low, high], [0, width]);
       const svg = d3.create("svg").attr("width", width).attr("height", 20).attr("aria-hidden", "true");
-      // As many numbers as have room: one at an end lies beside its place, not below it.
-      const labels = (count) => scale.ticks(count).map(page.tick(scale, count));
-      const fits = (count) => width / Math.max(1, labels(count).length - 1) >= 1.5 * 7 * Math.max(...labels(count).map((text) => text.length));
-      const count = [4, 3, 2].find(fits) || 1;
-      svg.append("g").attr("class", "tick-axis").call(d3.axisBottom(scale).ticks(count).tickSizeOuter(0).tickSize(4).tickFormat(page.tick(scale, count)));
       // Numbers at the ends stay within the bar: cut off, they would look like other numbers.
       const anchor = (value) => (scale(value) < 26 ? "start" : scale(value) > width - 26 ? "end" : "middle");
+      const format = page.tick(scale, 4);
+      // As many numbers as have room beside each other.
+      let taken = -Infinity;
+      const room = scale.ticks(4).filter((value) => {
+        const length = 6.6 * format(value).length;
+        const left = scale(value) - { start: 0, middle: length / 2, end: length }[anchor(value)];
+        if (left < taken + 7) return false;
+        taken = left + length;
+        return true;
+      });
+      svg.append("g").attr("class", "tick-axis").call(d3.axisBottom(scale).tickValues(room).tickSizeOuter(0).tickSize(4).tickFormat(format));
       svg.selectAll(".tick text").attr("text-anchor", anchor);
       bar.append(svg.node());
     } else bar.append(page.element("div", { class: "bar-title" }, Number.isFinite(low) ? `always ${page.short(low)}` : "no values"));

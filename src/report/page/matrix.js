@@ -93,7 +93,7 @@
       hint.textContent = names.length ? "Drag to select a range of values. Click near a design to open its card." : "";
       return page.drawStrip(box, front.byName.get(names[0]));
     }
-    hint.textContent = "Drag in a cell to select; several selections combine. Click a point to open its card. With the keyboard: arrows go from point to point, Enter opens.";
+    hint.textContent = "Drag to select, click a point to open its card; with the keyboard, arrows go from point to point and Enter opens.";
     const width = page.layoutWidth(box);
     const across = names.length - 1;
     size = Math.floor(sizeFor(width, names.length));
@@ -145,7 +145,7 @@
     const axis = orient(scale).tickSizeOuter(0).tickSize(4).tickPadding(4);
     if (column.words) return axis.tickValues(d3.range(column.words.length)).tickFormat((i) => column.words[i]);
     if (Number.isNaN(column.low)) return axis.tickValues([]);
-    if (column.low === column.high) return axis.tickValues([column.low]).tickFormat((value) => page.short(Number(value.toPrecision(4))));
+    if (column.low === column.high) return axis.tickValues([column.low]).tickFormat(page.short);
     const ticks = scale.ticks(count);
     return axis.tickValues(column.whole ? ticks.filter(Number.isInteger) : ticks).tickFormat(page.tick(scale, count));
   };
@@ -203,6 +203,13 @@
     if (front.knee !== null && front.knee !== undefined) {
       const [x, y] = [clip(cell.xScale, cell.x.values[front.knee]), clip(cell.yScale, cell.y.values[front.knee])];
       if (Number.isFinite(x) && Number.isFinite(y)) cell.marks.append("path").attr("class", "knee").attr("d", `M${x},${y - 6}l6,6l-6,6l-6,-6z`);
+    }
+    // Bounds of constraints.
+    for (const [column, scale, path] of [[cell.x, cell.xScale, (at) => `M${at},0V${size}`], [cell.y, cell.yScale, (at) => `M0,${at}H${size}`]]) {
+      for (const limit of page.limitsOf(column)) {
+        const at = clip(scale, limit);
+        if (Number.isFinite(at)) cell.marks.append("path").attr("class", "limit").attr("d", path(at)).append("title").text(`limit of ${column.name}: ${page.short(limit)}`);
+      }
     }
     for (const pin of page.pins()) {
       const [x, y] = [clip(cell.xScale, pin.values.get(cell.x.name)?.value), clip(cell.yScale, pin.values.get(cell.y.name)?.value)];

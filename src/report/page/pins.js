@@ -58,7 +58,7 @@
       const isBest = best !== null && entry.value === best;
       return page.element("td", { class: `number${isBest ? " best" : ""}`, title: page.full(entry.value) }, entry.text, isBest ? page.element("span", { class: "offscreen" }, " best") : null);
     };
-    return page.element("tr", { class: differs ? "differs" : "same" }, page.element("th", { scope: "row" }, page.breakable(name), first.goal ? page.element("span", { class: "unit" }, ` ${first.goal}`) : null), page.element("td", { class: "unit" }, first.words ? "" : first.unit || ""), entries.map(cell));
+    return page.element("tr", { class: differs ? "differs" : "same" }, page.element("th", { scope: "row" }, page.breakable(name), first.goal ? page.element("span", { class: "unit" }, ` ${first.goal}`) : null), page.element("td", { class: "unit" }, first.words ? "" : page.unit(first.unit)), entries.map(cell));
   };
 
   const changed = (pin) => (pin.set.length ? page.element("div", { class: "unit", title: pin.set.join("\n") }, `${pin.set.length} change${pin.set.length > 1 ? "s" : ""}`) : null);

@@ -78,6 +78,27 @@
   };
   page.applySelection = apply;
 
+  // The bounds of the constraints on a column.
+  page.limitsOf = (column) => {
+    const bounds = page.front.constraints.filter((it) => it.column === column).flatMap(({ min, above, max, below }) => [min, above, max, below]);
+    return bounds.filter((it) => it !== null && it !== undefined);
+  };
+
+  // Which end of its axis a design stands on: "lower", "upper" or "".
+  page.endOf = (column, row) => {
+    const input = column.role === "design" && (page.data.inputs || []).find((it) => it.name === column.name);
+    if (!input || !Number.isFinite(input.least) || input.least === input.largest) return "";
+    const value = column.values[row];
+    return value === input.least ? "lower" : value === input.largest ? "upper" : "";
+  };
+
+  // Is the front of the designs in this range the front in this range? Only where it cuts an objective on its worse side: elsewhere designs
+  // that are beaten now would be on it.
+  page.isOfFront = (name, [low, high]) => {
+    const column = page.front.byName.get(name);
+    return Boolean(column.goal) && (column.goal === "min" ? low <= column.low : high >= column.high);
+  };
+
   page.brushed = () => state.axes.size + state.cells.size > 0;
 
   page.brushAxis = (name, range) => {

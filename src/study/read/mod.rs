@@ -55,10 +55,10 @@ mod value;
 mod weights;
 
 pub(super) use formulas::CurvePoints;
-#[cfg(feature = "cli")]
-pub(crate) use part::entry_names;
 pub use model_file::{FileKind, file_kind, read_model};
 pub(super) use model_file::{ModelText, read_model_text};
+#[cfg(feature = "cli")]
+pub(crate) use part::entry_names;
 pub(super) use quantities::MOST_OBJECTIVES;
 pub(super) use range::check_levels;
 pub(super) use report::{BINS, FRONT_BUDGET, MOST_CELLS, MOST_FEASIBLE, MOST_SAMPLE, MOST_TOP, MOST_VARIANTS};

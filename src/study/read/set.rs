@@ -309,7 +309,8 @@ fn is_as_meant(text: &str, top: &TomlTable<'_>, settings: &[StudySetting]) -> bo
         top.entries.iter().map(|entry| (entry.key.to_owned(), unplaced(entry.node.value))).collect()
     };
     let (mut wanted, found) = (whole(top), whole(&own));
-    let tolerances = |name: &str| top.get("uncertainty").and_then(|it| it.node.table()).is_some_and(|it| it.get(name).is_some_and(is_tolerance));
+    let tolerances =
+        |name: &str| top.get("uncertainty").and_then(|it| it.node.table()).is_some_and(|it| it.get(name).is_some_and(is_tolerance));
     for setting in settings {
         if let Some(part) = &setting.part {
             part.put(&setting.value, setting.in_json(), &mut wanted);
@@ -318,7 +319,8 @@ fn is_as_meant(text: &str, top: &TomlTable<'_>, settings: &[StudySetting]) -> bo
         // An input that is set has one place, whichever that is; a tolerance is about that.
         let stays = |table: &str| found.get(table).is_some_and(|it| it.get(&setting.name).is_some_and(|it| *it == setting.in_json()));
         let place = ["design", setting.table].into_iter().find(|it| stays(it)).unwrap_or(setting.table);
-        for table in GIVING.iter().chain(&["formulas"]).filter(|it| **it != place && !(**it == "uncertainty" && tolerances(&setting.name))) {
+        for table in GIVING.iter().chain(&["formulas"]).filter(|it| **it != place && !(**it == "uncertainty" && tolerances(&setting.name)))
+        {
             wanted.get_mut(*table).and_then(Value::as_object_mut).map(|it| it.shift_remove(&setting.name));
         }
         let table = wanted.entry(place).or_insert_with(|| Value::Object(Map::new()));

@@ -68,8 +68,16 @@ impl Browser {
         if let MaybeTlsStream::Plain(stream) = socket.get_ref() {
             stream.set_read_timeout(Some(PATIENCE)).expect("a socket takes a limit");
         }
-        let mut browser =
-            Self { process, socket, session: String::new(), next: 0, complaints: Vec::new(), own: None, opened: Duration::ZERO, _profile: profile };
+        let mut browser = Self {
+            process,
+            socket,
+            session: String::new(),
+            next: 0,
+            complaints: Vec::new(),
+            own: None,
+            opened: Duration::ZERO,
+            _profile: profile,
+        };
         let target = browser.call("Target.createTarget", &json!({ "url": "about:blank" }))["targetId"].clone();
         let attached = browser.call("Target.attachToTarget", &json!({ "targetId": target, "flatten": true }));
         browser.session = attached["sessionId"].as_str().expect("a session has a name").to_owned();

@@ -108,6 +108,13 @@
     }
     put(told, buffer);
     later();
+    if (told.kind === "few") {
+      say(`${page.count(page.front.rows)} designs, judged in the ${page.count(told.in_scenarios)} scenarios that decide; now in all ${page.count(page.data.study.scenarios)} …`, "coarse");
+      page.timings.few = performance.now();
+      const { eventAt } = question;
+      requestAnimationFrame(() => setTimeout(() => page.timings.fews.push(eventAt === null ? null : performance.now() - eventAt)));
+      return;
+    }
     if (told.kind === "coarse") {
       say(`a first idea, of ${page.count(told.looked_at)} designs; the exact front follows …`, "coarse");
       page.timings.coarse = performance.now();
@@ -160,6 +167,7 @@
 
   page.startAnswers = () => {
     page.timings.answers = [];
+    page.timings.fews = [];
     let settled = 0;
     page.events.on("changes.answer", () => {
       // A ghost of what was there before the first of several changes in a row.

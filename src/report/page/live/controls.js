@@ -45,7 +45,7 @@
       else write(Number(text), null);
     });
     const back = page.element("button", { type: "button", class: "back", title: `Back to ${page.short(original)}`, "aria-label": `${name}, ${label}: back to ${page.short(original)}`, click: () => write(original, null) }, "↺");
-    const line = page.element("div", { class: "control" }, page.element("label", { for: id }, label), slider, page.element("span", { class: "entry" }, field, page.element("span", { class: "unit" }, unit || ""), back));
+    const line = page.element("div", { class: "control" }, page.element("label", { for: id }, label), slider, page.element("span", { class: "entry" }, field, page.element("span", { class: "unit" }, page.unit(unit)), back));
     controls.push({
       part,
       sync: () => {
@@ -66,7 +66,7 @@
   const put = (part, value, original, drag) => page.change({ [part]: value === original ? null : value }, drag);
   const valueOf = (part, original) => (page.changedValue(part) === undefined ? original : Number(page.changedValue(part)));
 
-  const heading = ({ name, doc, unit }, ...more) => page.element("div", { class: "control-name", title: doc }, page.element("span", {}, page.breakable(name)), unit ? page.element("span", { class: "unit" }, unit) : null, more);
+  const heading = ({ name, doc, unit }, ...more) => page.element("div", { class: "control-name", title: doc }, page.element("span", {}, page.breakable(name)), unit ? page.element("span", { class: "unit" }, page.unit(unit)) : null, more);
 
   const single = (control, part, original, label, more = {}) =>
     numberControl({
