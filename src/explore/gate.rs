@@ -4,7 +4,7 @@
 //! cannot read the answers, but it could ask, or have its name resolved to this machine. So the name that a request is for must be one of
 //! this machine, a request must come from this very page, and it must bring the cookie that only the token buys.
 
-use super::http::{Asked, Reply};
+use super::http::{HttpRequest, Reply};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Names of this machine. The port is not looked at: with a forwarded port it is another one for the browser.
@@ -32,7 +32,7 @@ impl Gate {
     }
 
     /// Lets a request in: `Ok(None)` for one with the cookie, an answer for one that brings a token or must stay outside.
-    pub fn look_at(&self, asked: &Asked) -> Option<Reply> {
+    pub fn look_at(&self, asked: &HttpRequest) -> Option<Reply> {
         let Some(host) = asked.host.as_deref().filter(|host| is_of_this_machine(host)) else {
             return Some(Reply::text(421, "this server answers to the names 127.0.0.1 and localhost only"));
         };
@@ -98,13 +98,13 @@ fn is_of_this_machine(host: &str) -> bool {
 mod tests {
     use super::*;
 
-    fn asked(gate: &Gate) -> Asked {
-        Asked {
+    fn asked(gate: &Gate) -> HttpRequest {
+        HttpRequest {
             method: "GET".to_owned(),
             path: "/".to_owned(),
             host: Some("127.0.0.1:1234".to_owned()),
             cookie: format!("other=1; {}={};", gate.name, gate.cookie),
-            ..Asked::default()
+            ..HttpRequest::default()
         }
     }
 
@@ -112,7 +112,7 @@ mod tests {
     fn only_the_page_with_the_cookie_is_let_in() {
         let gate = Gate::new(1234).expect("there are random numbers");
         assert!(gate.look_at(&asked(&gate)).is_none());
-        let status = |change: &dyn Fn(&mut Asked)| {
+        let status = |change: &dyn Fn(&mut HttpRequest)| {
             let mut asked = asked(&gate);
             change(&mut asked);
             gate.look_at(&asked).map_or(200, |reply| reply.status)
@@ -124,7 +124,7 @@ mod tests {
             assert_eq!(status(&|it| it.host = Some(name.to_owned())), 421, "{name}");
         }
         assert_eq!(status(&|it| it.host = None), 421);
-        let origin = |text: &'static str| move |it: &mut Asked| it.origin = Some(text.to_owned());
+        let origin = |text: &'static str| move |it: &mut HttpRequest| it.origin = Some(text.to_owned());
         assert_eq!(status(&origin("http://127.0.0.1:1234")), 200);
         for text in ["http://evil.example", "null", "http://127.0.0.1:1235", "https://127.0.0.1:1234", "http://localhost:1234"] {
             assert_eq!(status(&|it| it.origin = Some(text.to_owned())), 403, "{text}");
@@ -140,7 +140,7 @@ mod tests {
     fn a_token_buys_the_cookie_and_that_of_the_browser_does_so_once() {
         let gate = Gate::new(1).expect("there are random numbers");
         let with = |token: &str| {
-            let asked = Asked { query: format!("token={token}"), cookie: String::new(), ..asked(&gate) };
+            let asked = HttpRequest { query: format!("token={token}"), cookie: String::new(), ..asked(&gate) };
             gate.look_at(&asked).expect("it is answered")
         };
         for (token, status) in [

@@ -18,7 +18,7 @@ pub const PATIENCE: Duration = Duration::from_secs(10);
 
 /// A request.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Asked {
+pub struct HttpRequest {
     pub method: String,
     /// The path, without what follows a question mark.
     pub path: String,
@@ -71,7 +71,7 @@ impl Connection {
     ///
     /// # Errors
     /// [`NoRequest`].
-    pub fn next(&mut self) -> Result<Asked, NoRequest> {
+    pub fn next(&mut self) -> Result<HttpRequest, NoRequest> {
         let mut deadline = (!self.read.is_empty()).then(|| Instant::now() + self.patience);
         loop {
             if let Some((mut asked, head, length)) = head_of(&self.read)? {
@@ -128,7 +128,7 @@ fn is_timeout(error: &io::Error) -> bool {
 }
 
 /// The request whose head is complete, the length of the head and that of its body.
-fn head_of(read: &[u8]) -> Result<Option<(Asked, usize, usize)>, NoRequest> {
+fn head_of(read: &[u8]) -> Result<Option<(HttpRequest, usize, usize)>, NoRequest> {
     let mut headers = [httparse::EMPTY_HEADER; MOST_HEADERS];
     let mut request = httparse::Request::new(&mut headers);
     let head = match request.parse(read) {
@@ -140,7 +140,7 @@ fn head_of(read: &[u8]) -> Result<Option<(Asked, usize, usize)>, NoRequest> {
     if head > MOST_HEAD {
         return Err(NoRequest::Wrong(431, "the headers are too long"));
     }
-    let mut asked = Asked { method: request.method.unwrap_or_default().to_owned(), ..Asked::default() };
+    let mut asked = HttpRequest { method: request.method.unwrap_or_default().to_owned(), ..HttpRequest::default() };
     let target = request.path.unwrap_or_default();
     let (path, query) = target.split_once('?').unwrap_or((target, ""));
     (asked.path, asked.query) = (path.to_owned(), query.to_owned());

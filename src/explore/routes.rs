@@ -2,7 +2,7 @@
 
 use super::Explorer;
 use super::controls::controls;
-use super::http::{Asked, Connection, Reply, begin_chunks, write_chunk};
+use super::http::{HttpRequest, Connection, Reply, begin_chunks, write_chunk};
 use crate::certify::{self, Role};
 use crate::error::{Error, Result};
 use crate::live::LiveAnswer;
@@ -44,11 +44,11 @@ struct Question {
 }
 
 /// One part of an answer.
-type Told = (Value, Vec<u8>);
+type ToldPart = (Value, Vec<u8>);
 
 impl Explorer {
     /// Answers a request that was let in.
-    pub(super) fn route(&self, asked: &Asked, connection: &mut Connection) -> io::Result<()> {
+    pub(super) fn route(&self, asked: &HttpRequest, connection: &mut Connection) -> io::Result<()> {
         let closes = asked.closes;
         let mut reply = |reply: Reply| reply.write(&mut connection.stream, closes);
         match (asked.method.as_str(), asked.path.as_str()) {
@@ -88,10 +88,10 @@ impl Explorer {
 
     /// Works on a question beside the connection, which ends the work when the browser goes.
     fn tell(&self, path: &str, question: &Question, control: &Arc<Control>, connection: &mut Connection) -> io::Result<()> {
-        let (sender, parts) = channel::<Told>();
+        let (sender, parts) = channel::<ToldPart>();
         std::thread::scope(|scope| {
             let work = move || {
-                let mut tell = |part: Told| {
+                let mut tell = |part: ToldPart| {
                     // Nobody listens any more: the work is being stopped.
                     let _ = sender.send(part);
                     Ok(())
@@ -127,7 +127,7 @@ impl Explorer {
     }
 
     /// The study as its file has it, and what can be changed in it.
-    fn start(&self, question: &Question, control: &Control, tell: &mut dyn FnMut(Told) -> Result<()>) -> Result<()> {
+    fn start(&self, question: &Question, control: &Control, tell: &mut dyn FnMut(ToldPart) -> Result<()>) -> Result<()> {
         let (study, text) = self.live.study(&[])?;
         let plan = Plan::new(study);
         let mut told = self.described(&plan, &text, &question.set);
@@ -141,7 +141,7 @@ impl Explorer {
         told::study(&self.live, plan, text, &(self.words)("sweep", set), &evaluate)
     }
 
-    fn answer(&self, question: &Question, control: &Control, tell: &mut dyn FnMut(Told) -> Result<()>) -> Result<()> {
+    fn answer(&self, question: &Question, control: &Control, tell: &mut dyn FnMut(ToldPart) -> Result<()>) -> Result<()> {
         let (study, text) = self.live.study(&question.set)?;
         let plan = Plan::new(study);
         let mut study = Some(self.described(&plan, &text, &question.set));
@@ -173,7 +173,7 @@ impl Explorer {
     }
 
     /// Every output of a design at its worst scenario.
-    fn design(&self, question: &Question, control: &Control, tell: &mut dyn FnMut(Told) -> Result<()>) -> Result<()> {
+    fn design(&self, question: &Question, control: &Control, tell: &mut dyn FnMut(ToldPart) -> Result<()>) -> Result<()> {
         let (plan, design) = self.asked_design(question)?;
         let mut everything = plan.study.clone();
         let further = (0..everything.model.outputs.len()).map(|output| ReportColumn::from(Quantity::Output(output)));
@@ -198,7 +198,7 @@ impl Explorer {
     }
 
     /// What is around a design.
-    fn around(&self, question: &Question, control: &Control, tell: &mut dyn FnMut(Told) -> Result<()>) -> Result<()> {
+    fn around(&self, question: &Question, control: &Control, tell: &mut dyn FnMut(ToldPart) -> Result<()>) -> Result<()> {
         let (plan, design) = self.asked_design(question)?;
         let (columns, slices) = around(&plan, design, self.live.threads(), control)?;
         let study = &plan.study;
@@ -223,7 +223,7 @@ impl Explorer {
 }
 
 /// Writes a part as one chunk.
-fn write_part(out: &mut TcpStream, (json, bytes): &Told) -> io::Result<()> {
+fn write_part(out: &mut TcpStream, (json, bytes): &ToldPart) -> io::Result<()> {
     let json = json.to_string();
     let length = |length: usize| u32::try_from(length).map_err(|_| io::Error::from(io::ErrorKind::InvalidData));
     let mut part = Vec::with_capacity(8 + json.len() + bytes.len());

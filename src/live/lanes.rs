@@ -33,7 +33,7 @@ pub struct ScenarioLanes {
 
 /// A number of every scenario.
 #[derive(Clone, Copy)]
-enum Values<'a> {
+enum LaneValues<'a> {
     Column(ColumnValue<'a>),
     /// An input that the scenario sets, in its unit.
     Input(&'a [f64]),
@@ -148,18 +148,18 @@ impl ScenarioLanes {
         }
         let values = |quantity: Quantity| match quantity {
             Quantity::Input(input) => match self.inputs.iter().find(|(it, ..)| *it == input) {
-                Some((_, own, _)) => Values::Input(&own[lanes.clone()]),
-                None => Values::Column(ColumnValue::One(inputs[input])),
+                Some((_, own, _)) => LaneValues::Input(&own[lanes.clone()]),
+                None => LaneValues::Column(ColumnValue::One(inputs[input])),
             },
-            Quantity::Output(output) => Values::Column(result(output)),
+            Quantity::Output(output) => LaneValues::Column(result(output)),
         };
         let in_unit = |quantity: Quantity, value: f64| match quantity {
             Quantity::Input(_) => value,
             Quantity::Output(output) => model.outputs[output].unit.from_si(value),
         };
         let fits = |quantity: Quantity, is: &dyn Fn(f64) -> bool| match values(quantity) {
-            Values::Input(values) => values.iter().all(|&it| is(it)),
-            Values::Column(values) => all(values, &|it| is(in_unit(quantity, it))),
+            LaneValues::Input(values) => values.iter().all(|&it| is(it)),
+            LaneValues::Column(values) => all(values, &|it| is(in_unit(quantity, it))),
         };
         if !plan.study.constraints.iter().all(|it| fits(it.quantity, &|value| value.is_finite() && it.holds(value))) {
             return false;
@@ -177,13 +177,13 @@ impl ScenarioLanes {
             }
             let quantity = column.quantity;
             match values(quantity) {
-                Values::Column(ColumnValue::One(value)) => column.take(worst, in_unit(quantity, value), lanes.start as u64),
-                Values::Column(ColumnValue::Each(values)) => {
+                LaneValues::Column(ColumnValue::One(value)) => column.take(worst, in_unit(quantity, value), lanes.start as u64),
+                LaneValues::Column(ColumnValue::Each(values)) => {
                     for (lane, &value) in values[..count].iter().enumerate() {
                         column.take(worst, in_unit(quantity, value), (lanes.start + lane) as u64);
                     }
                 }
-                Values::Input(values) => {
+                LaneValues::Input(values) => {
                     for (lane, &value) in values.iter().enumerate() {
                         column.take(worst, value, (lanes.start + lane) as u64);
                     }

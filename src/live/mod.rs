@@ -7,6 +7,8 @@
 pub mod around;
 pub mod lanes;
 pub mod search;
+#[cfg(test)]
+mod tests;
 
 use crate::bounds::refusal;
 use crate::certify::{Column, Row};
@@ -65,7 +67,7 @@ pub enum LiveAnswer<'a> {
     /// The same, computed once more by the f64 reference, which says in which scenario each value is the worst.
     Certified(LiveFront<'a>),
     /// What every design says.
-    Counted(Counted),
+    Counted(LiveCounts),
 }
 
 /// Designs of a front.
@@ -85,7 +87,7 @@ pub struct LiveFront<'a> {
 }
 
 /// What is known once every design was judged.
-pub struct Counted {
+pub struct LiveCounts {
     /// Feasible designs; `None` where counting them would take too long.
     pub feasible: Option<u64>,
     /// What the designs of the sample fail at.
@@ -255,7 +257,7 @@ impl Live {
             feasible = Some(state.feasible);
         }
         let findings = Findings::of(plan, feasible.unwrap_or(1), front, self.threads, control)?;
-        tell(LiveAnswer::Counted(Counted { feasible, tally, findings }))
+        tell(LiveAnswer::Counted(LiveCounts { feasible, tally, findings }))
     }
 }
 

@@ -77,6 +77,13 @@ impl WorkingSet {
     }
 }
 
+impl JudgedRows {
+    /// Is there nothing that serves?
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+}
+
 /// Looks for the front of a plan.
 #[derive(Debug)]
 pub struct FrontSearch<'p> {
@@ -110,7 +117,7 @@ pub struct JudgedRows {
 }
 
 /// Designs to judge: the same places of each row.
-struct Part<'a> {
+struct SearchPart<'a> {
     rows: &'a [u64],
     places: &'a [u64],
 }
@@ -240,6 +247,12 @@ impl<'p> FrontSearch<'p> {
         let asked = self.asked_by(&designs)?;
         set.take(&asked, of);
         Ok(set)
+    }
+
+    /// One scenario as the working set.
+    #[cfg(test)]
+    pub(super) fn only(&self, scenario: u64) -> WorkingSet {
+        WorkingSet { scenarios: vec![scenario], is_all: false }
     }
 
     /// A working set that served a plan like this one, or another if it cannot serve this one.
@@ -447,9 +460,9 @@ fn without_bounds(study: &Study) -> Study {
 }
 
 /// Rows and places cut into about so many parts.
-fn parts<'a>(rows: &'a [u64], places: &'a [u64], count: usize) -> Vec<Part<'a>> {
+fn parts<'a>(rows: &'a [u64], places: &'a [u64], count: usize) -> Vec<SearchPart<'a>> {
     let by_rows = rows.len().div_ceil(count).max(1);
     let cuts = count.div_ceil(rows.len().max(1)).max(1);
     let by_places = places.len().div_ceil(cuts).max(1);
-    rows.chunks(by_rows).flat_map(|rows| places.chunks(by_places).map(move |places| Part { rows, places })).collect()
+    rows.chunks(by_rows).flat_map(|rows| places.chunks(by_places).map(move |places| SearchPart { rows, places })).collect()
 }

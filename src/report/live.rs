@@ -4,7 +4,7 @@ use super::front::{ShownFront, of_rows};
 use super::{constraints_json, inputs, model_json, objectives_json, scenario_inputs};
 use crate::certify::objective_columns;
 use crate::export::ideal_and_knee;
-use crate::live::{Counted, Live, LiveFront};
+use crate::live::{LiveCounts, Live, LiveFront};
 use crate::models::OVERFLOW;
 use crate::plan::Plan;
 use crate::study::number;
@@ -64,8 +64,8 @@ pub fn study(live: &Live, plan: &Plan, text: &str, command: &str, evaluate: &str
 }
 
 /// What every design says.
-pub fn counted(plan: &Plan, counted: &Counted) -> Value {
-    let Counted { feasible, tally, findings } = counted;
+pub fn counted(plan: &Plan, counted: &LiveCounts) -> Value {
+    let LiveCounts { feasible, tally, findings } = counted;
     let study = &plan.study;
     let model = &study.model;
     let mut status: Map<_, Value> = tally.statuses(model).into_iter().map(|(reason, count)| (reason.to_owned(), count.into())).collect();

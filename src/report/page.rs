@@ -13,6 +13,7 @@ const SCRIPTS: &[&str] = &[
     include_str!("page/selection.js"),
     include_str!("page/colour.js"),
     include_str!("page/raster.js"),
+    include_str!("page/save.js"),
     include_str!("page/pins.js"),
     include_str!("page/matrix.js"),
     include_str!("page/readout.js"),

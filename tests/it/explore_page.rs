@@ -106,7 +106,7 @@ fn differs(browser: &mut Browser, text: &str, folder: &Path) -> Option<String> {
 
 fn difference(shown: &Value, front: &Table) -> Option<String> {
     let indices = match &front.columns[0].data {
-        Data::Index(indices) => indices.iter().map(|it| it.expect("each has one").to_string()).collect::<Vec<_>>(),
+        Data::Whole(indices) => indices.iter().map(|it| it.expect("each has one").to_string()).collect::<Vec<_>>(),
         other => panic!("the first column is {other:?}"),
     };
     let own: Vec<String> = serde_json::from_value(shown["index"].clone()).expect("texts");

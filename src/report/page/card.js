@@ -42,7 +42,7 @@
     const line = (name, cell, doc) => page.element("tr", {}, page.element("th", { scope: "row", title: doc }, page.breakable(name)), cell);
     const chosen = front.shown.filter((column) => column.role === "label" || column.role === "design").map((column) => line(column.name, columnCell(column, row), column.doc));
     const fixed = (data.inputs || []).filter((input) => input.role === "fixed").map((input) => line(input.name, valueCell(input.name, page.full(input.value), page.short(input.value), typeof input.value === "number" ? input.unit : ""), input.doc));
-    const ranged = (data.inputs || []).filter((input) => input.role === "operation" || input.role === "uncertainty").map((input) => line(input.name, page.element("td", { class: "number" }, input.over || rangeInScenarios(input.name), input.unit ? page.element("span", { class: "unit" }, ` ${input.unit}`) : null), input.doc));
+    const ranged = (data.inputs || []).filter((input) => input.role === "operation" || input.role === "uncertainty").map((input) => line(input.name, page.element("td", { class: "number" }, input.over || rangeInScenarios(input.name), input.unit ? page.element("span", { class: "unit" }, ` ${page.unit(input.unit)}`) : null), input.doc));
     const group = (title, lines) => (lines.length ? [page.element("h4", {}, title), table("values", lines)] : []);
     return section("Inputs", group("chosen", chosen), group("varied over the scenarios", ranged), group("fixed", fixed));
   };

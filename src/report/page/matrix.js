@@ -328,6 +328,7 @@
   };
 
   page.startMatrix = () => {
+    page.saveButtons("matrix-title", "front");
     layout();
     page.events.on("columns.matrix", (what) => what === "order" || layout());
     page.events.on("layout.matrix", layout);

@@ -171,6 +171,7 @@
   };
 
   page.startParallel = () => {
+    page.saveButtons("parallel-title", "designs");
     layout();
     page.events.on("columns.parallel", layout);
     page.events.on("layout.parallel", layout);

@@ -2,7 +2,7 @@
 {
   const WIDTH = 196;
   const HEIGHT = 92;
-  const PAD = { left: 44, right: 8, top: 8, bottom: 20 };
+  const PAD = { left: 44, right: 16, top: 8, bottom: 20 };
   let asking = null;
 
   // How far the input can go from the design's own value before it is infeasible.
@@ -17,7 +17,7 @@
 
   const reachText = (slice) => {
     const found = reach(slice);
-    const unit = slice.unit ? ` ${slice.unit}` : "";
+    const unit = slice.unit ? ` ${page.unit(slice.unit)}` : "";
     if (!found) return "this design is infeasible";
     const end = (isEnd, value) => (isEnd ? `the end of its axis, ${page.short(value)}` : page.short(value));
     return `feasible from ${end(found.lowEnd, found.low)} to ${end(found.highEnd, found.high)}${unit}, all else as it is`;
@@ -96,7 +96,7 @@
       if (page.state.card === null || page.designOf(page.state.card) !== design || !page.byId("all-outputs")) return;
       const known = new Set(page.front.shown.map((column) => column.name));
       const lines = told.outputs.filter((output) => !known.has(output.name)).map((output) =>
-        page.element("tr", {}, page.element("th", { scope: "row", title: output.doc }, page.breakable(output.name)), page.element("td", { class: "number" }, page.element("span", { "data-name": output.name, "data-value": page.full(output.value), title: page.full(output.value) }, page.short(output.value)), page.element("span", { class: "unit" }, output.value === null ? "" : ` ${output.unit || ""}`)), page.element("td", { class: "scenario" }, output.scenario === null ? "" : `#${output.scenario}`)),
+        page.element("tr", {}, page.element("th", { scope: "row", title: output.doc }, page.breakable(output.name)), page.element("td", { class: "number" }, page.element("span", { "data-name": output.name, "data-value": page.full(output.value), title: page.full(output.value) }, page.short(output.value)), page.element("span", { class: "unit" }, output.value === null ? "" : ` ${page.unit(output.unit)}`)), page.element("td", { class: "scenario" }, output.scenario === null ? "" : `#${output.scenario}`)),
       );
       page.byId("all-outputs").replaceChildren(page.element("h3", {}, "All other outputs"), page.element("table", { class: "values" }, page.element("tbody", {}, lines)));
     } catch (error) {

@@ -152,10 +152,10 @@
     const lines = [];
     for (const [key, label] of [["from", "from"], ["to", "to"]]) {
       const step = control.step && !control.integer ? control.step : null;
-      lines.push(single(control, `${part}.${key}`, control[key], label, { step }));
+      lines.push(single(control, `${part}.${key}`, tidy(control[key]), label, { step }));
     }
     if (control.count && !control.step) lines.push(single({ ...control, unit: "", low: 1, high: Math.max(control.count * 2, 41), integer: true }, `${part}.count`, control.count, "levels"));
-    const levels = control.step ? page.element("span", { class: "muted" }, ` in steps of ${page.short(control.step)}`) : control.log ? page.element("span", { class: "muted" }, " log") : null;
+    const levels = control.integer ? null : control.step ? page.element("span", { class: "muted" }, ` in steps of ${page.short(control.step)}`) : control.log ? page.element("span", { class: "muted" }, " log") : null;
     return page.element("div", { class: "block", "data-control": part }, heading(control, levels), lines);
   };
 

@@ -19,7 +19,8 @@
   };
 
   page.startLive = async () => {
-    page.state.theme = null;
+    // Without a front it reads the theme only.
+    page.readAddress();
     page.startTheme();
     document.documentElement.dataset.theme = page.dark() ? "dark" : "light";
     page.data = { ...page.data, ...(await page.askOnce("/start", {})) };
