@@ -2,7 +2,7 @@
 
 use super::Explorer;
 use super::controls::controls;
-use super::http::{HttpRequest, Connection, Reply, begin_chunks, write_chunk};
+use super::http::{Connection, HttpRequest, Reply, begin_chunks, write_chunk};
 use crate::certify::{self, Role};
 use crate::error::{Error, Result};
 use crate::live::LiveAnswer;

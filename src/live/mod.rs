@@ -7,6 +7,7 @@
 pub mod around;
 pub mod lanes;
 pub mod search;
+pub mod table;
 #[cfg(test)]
 mod tests;
 

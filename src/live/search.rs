@@ -7,6 +7,7 @@
 //! scenarios that say so join the working set, and the search goes on.
 
 use super::lanes::ScenarioLanes;
+use super::table::{WorstTable, free_plan, is_kept};
 use crate::certify::{self, AtWorst, Column, Role, Row};
 use crate::error::{Error, Result};
 use crate::keys::KeyRule;
@@ -17,6 +18,7 @@ use crate::screen::{Control, CpuEngine, Tables};
 use crate::study::{Constraint, Quantity, Study};
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
@@ -56,7 +58,7 @@ impl WorkingSet {
     }
 
     /// As slow and fast scenarios of a plan.
-    fn chosen(&self, plan: &Plan) -> Vec<(u64, u64)> {
+    pub(super) fn chosen(&self, plan: &Plan) -> Vec<(u64, u64)> {
         let place = |&scenario: &u64| (plan.slow_scenarios.index_of(scenario), plan.fast_scenarios.index_of(scenario));
         let mut chosen: Vec<_> = self.scenarios.iter().map(place).collect();
         chosen.sort_unstable();
@@ -104,6 +106,9 @@ pub struct FrontSearch<'p> {
     lanes: Option<ScenarioLanes>,
     /// Designs with their values over all scenarios, whether they keep those bounds or not.
     judged: FxHashMap<u64, Row>,
+    /// The plan without bounds, where its table is kept, its tables, and that table.
+    free: Option<(Plan, Tables)>,
+    table: Option<Arc<WorstTable>>,
     /// How long the last look at every design took.
     swept: Duration,
 }
@@ -114,6 +119,8 @@ pub struct JudgedRows {
     /// Of the study without these bounds.
     hash: String,
     rows: FxHashMap<u64, Row>,
+    /// What all designs are worth in the scenarios that decided.
+    table: Option<Arc<WorstTable>>,
 }
 
 /// Designs to judge: the same places of each row.
@@ -130,6 +137,12 @@ impl<'p> FrontSearch<'p> {
         let is_output = |column: &&Column| plan.study.confirmed(column.quantity).is_none();
         let followed: Vec<Tracked> = columns.iter().filter(is_output).flat_map(Column::followed).collect();
         let shown = Plan::following(without_bounds(&plan.study), &followed);
+        let free = Some(free_plan(&plan.study)).filter(|free| Self::allows_working_set(plan) && is_kept(free));
+        let free = free.map(|free| {
+            let tables = Tables::new(&free);
+            (free, tables)
+        });
+        let table = before.table;
         let judged = if before.hash == shown.study.hash() { before.rows } else { FxHashMap::default() };
         let place = |wanted: &Tracked| shown.tracked.iter().position(|(it, _)| it == wanted);
         let places = columns.iter().map(|column| column.followed().iter().filter_map(place).collect()).collect();
@@ -146,6 +159,8 @@ impl<'p> FrontSearch<'p> {
             control,
             known: FxHashMap::default(),
             judged,
+            free,
+            table,
             swept: Duration::ZERO,
         }
     }
@@ -163,7 +178,7 @@ impl<'p> FrontSearch<'p> {
     /// What was judged, to be used again.
     pub fn judged(&self) -> JudgedRows {
         let rows = if self.judged.len() > MOST_KEPT { FxHashMap::default() } else { self.judged.clone() };
-        JudgedRows { hash: self.shown.study.hash(), rows }
+        JudgedRows { hash: self.shown.study.hash(), rows, table: self.table.clone() }
     }
 
     /// How long the last look at every design took.
@@ -339,10 +354,15 @@ impl<'p> FrontSearch<'p> {
         let places: Vec<u64> = (0..self.plan.fast.count()).collect();
         let of = self.plan.scenarios();
         loop {
-            // What a few designs leave nothing of need not be kept until the end.
             let begun = Instant::now();
-            let seen = self.coarse(&set, FEW)?;
-            let points = self.front_in(&set, &rows, &places, seen)?;
+            let points = match self.from_table(&set)? {
+                Some(points) => points,
+                None => {
+                    // What a few designs leave nothing of need not be kept until the end.
+                    let seen = self.coarse(&set, FEW)?;
+                    self.front_in(&set, &rows, &places, seen)?
+                }
+            };
             self.swept = begun.elapsed();
             if points.indices.iter().any(|design| !self.judged.contains_key(design)) {
                 few(self, &set, &points)?;
@@ -365,6 +385,18 @@ impl<'p> FrontSearch<'p> {
                 set = WorkingSet::all();
             }
         }
+    }
+
+    /// The front of all designs in a working set out of the table, which is made if need be; `None` if it would be too large.
+    fn from_table(&mut self, set: &WorkingSet) -> Result<Option<Points>> {
+        let Some((free, tables)) = &self.free else { return Ok(None) };
+        let stop = &self.control.stop;
+        if !self.table.as_ref().is_some_and(|it| it.serves(free, set)) {
+            self.table = WorstTable::new(free, tables, set, self.threads, stop).map(Arc::new);
+        }
+        let points = self.table.as_ref().and_then(|it| it.front(free, &self.plan.study, self.threads, stop));
+        self.go_on()?;
+        Ok(points)
     }
 
     /// Designs with their values over all scenarios, without those that have none in some; of feasible ones all are there.

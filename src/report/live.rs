@@ -4,7 +4,7 @@ use super::front::{ShownFront, of_rows};
 use super::{constraints_json, inputs, model_json, objectives_json, scenario_inputs};
 use crate::certify::objective_columns;
 use crate::export::ideal_and_knee;
-use crate::live::{LiveCounts, Live, LiveFront};
+use crate::live::{Live, LiveCounts, LiveFront};
 use crate::models::OVERFLOW;
 use crate::plan::Plan;
 use crate::study::number;
