@@ -12,9 +12,9 @@ use crate::error::{Error, Result};
 use crate::keys::{KeyRule, Points};
 use crate::models::{Latest, Set, Sizes, Status, Worse, fill_si, judge, shown};
 use crate::parallel::on_threads;
-use crate::plan::Plan;
+use crate::plan::{Plan, Tracked};
 use crate::screen::Control;
-use crate::study::{Axis, ConfirmedEnd, Constraint, OverScenarios, Quantity, ReportColumn, Study, worst_end_over};
+use crate::study::{Axis, ConfirmedEnd, Constraint, Objective, OverScenarios, Quantity, ReportColumn, Study, worst_end_over};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Why a column is in the tables.
@@ -84,6 +84,34 @@ impl Column {
         self.end().map_or("worst", Worse::word)
     }
 
+    /// The worst values that its value comes from: one, or those at both ends if it is the distance to two bounds.
+    pub(crate) fn followed(&self) -> Vec<Tracked> {
+        let worse = match self.worst {
+            Worst::End(worse) => vec![worse],
+            Worst::Margin(Constraint { low, high, .. }) => {
+                let lower = (low.is_some() || high.is_none()).then_some(Worse::Lower);
+                lower.into_iter().chain(high.map(|_| Worse::Higher)).collect()
+            }
+        };
+        worse.into_iter().map(|worse| Tracked { quantity: self.quantity, worse, over: self.over }).collect()
+    }
+
+    /// Before any value was taken in.
+    pub(crate) fn nothing() -> (f64, AtWorst) {
+        (f64::NEG_INFINITY, AtWorst { value: None, scenario: 0 })
+    }
+
+    /// Takes the value of a scenario into the worst so far.
+    #[inline]
+    pub(crate) fn take(&self, worst: &mut (f64, AtWorst), value: f64, scenario: u64) {
+        self.worst.take(worst, Some(value), scenario);
+    }
+
+    /// The value out of these.
+    pub(crate) fn worst_of(&self, values: impl Iterator<Item = f64>) -> Option<f64> {
+        values.max_by(|&a, &b| self.worst.badness(a).total_cmp(&self.worst.badness(b)))
+    }
+
     /// Which end of the scenarios it shows, if that is one end and not the distance to two bounds.
     pub fn end(&self) -> Option<Worse> {
         self.worst.end()
@@ -117,6 +145,7 @@ impl Worst {
     }
 
     /// Takes in a value, if there is one; of equally bad ones that of the first scenario stays.
+    #[inline]
     fn take(self, (badness, at): &mut (f64, AtWorst), value: Option<f64>, scenario: u64) {
         let Some(value) = value else { return };
         let this = self.badness(value);
@@ -216,6 +245,8 @@ pub struct Row {
     pub feasible: bool,
     /// Scenarios in which it has no result: the status is not ok, or a value that the study asks for has no meaning.
     pub without_result: u64,
+    /// The first of these scenarios.
+    pub first_without: Option<u64>,
     /// The status in the first scenario in which it is not ok.
     pub status: Status,
     /// All inputs in their units; those that differ between scenarios have their values of scenario 0.
@@ -224,6 +255,15 @@ pub struct Row {
     pub columns: Vec<AtWorst>,
     /// Of each column: does its quantity have a value in every scenario?
     pub complete: Vec<bool>,
+}
+
+impl Row {
+    /// A feasible design with values that an engine has seen.
+    pub(crate) fn seen(plan: &Plan, index: u64, columns: Vec<AtWorst>) -> Self {
+        let complete = columns.iter().map(|it| it.value.is_some()).collect();
+        let inputs = plan.space.inputs(index, 0);
+        Self { index, feasible: true, without_result: 0, first_without: None, status: Status::Ok, inputs, columns, complete }
+    }
 }
 
 /// Computes the rows of designs, in the order given, on several threads. `control` shows the progress and can stop it.
@@ -284,11 +324,7 @@ fn prove(plan: &Plan, columns: &[Column], rows: &mut [Row], threads: usize, cont
 pub fn front(plan: &Plan, columns: &[Column], points: &Points, threads: usize, control: &Control) -> Result<Vec<Row>> {
     let mut rows = rows(plan, columns, &points.indices, threads, control)?;
     let objectives = &plan.study.objectives;
-    // Objectives are the first columns, unless two objectives share a quantity.
-    let column_of: Vec<usize> = objectives
-        .iter()
-        .map(|it| columns.iter().position(|column| column.is_of(it.quantity, it.over)).expect("every objective has a column"))
-        .collect();
+    let column_of = objective_columns(&plan.study, columns);
     for (row, keys) in rows.iter().zip(points.keys.chunks(objectives.len().max(1))) {
         check_feasible(row)?;
         for ((objective, &column), &seen) in objectives.iter().zip(&column_of).zip(keys) {
@@ -302,6 +338,21 @@ pub fn front(plan: &Plan, columns: &[Column], points: &Points, threads: usize, c
             }
         }
     }
+    sort_front(plan, columns, &mut rows);
+    Ok(rows)
+}
+
+/// Among the columns, that of each objective: they are the first ones, unless two objectives share a quantity.
+pub(crate) fn objective_columns(study: &Study, columns: &[Column]) -> Vec<usize> {
+    let column =
+        |it: &Objective| columns.iter().position(|column| column.is_of(it.quantity, it.over)).expect("every objective has a column");
+    study.objectives.iter().map(column).collect()
+}
+
+/// Sorts the rows of a front by the objectives, best first, then by index.
+pub(crate) fn sort_front(plan: &Plan, columns: &[Column], rows: &mut [Row]) {
+    let objectives = &plan.study.objectives;
+    let column_of = objective_columns(&plan.study, columns);
     rows.sort_by(|a, b| {
         let by_objective = objectives.iter().zip(&column_of).map(|(objective, &column)| {
             let badness = |row: &Row| Worst::End(objective.goal.worse()).badness(row.columns[column].value.unwrap_or(f64::NAN));
@@ -309,7 +360,6 @@ pub fn front(plan: &Plan, columns: &[Column], points: &Points, threads: usize, c
         });
         by_objective.into_iter().find(|ordering| ordering.is_ne()).unwrap_or_else(|| a.index.cmp(&b.index))
     });
-    Ok(rows)
 }
 
 /// The reference must agree that a reported design is feasible.
@@ -375,7 +425,7 @@ impl<'p> Reference<'p> {
         }
         let Sizes { outputs, conditions, .. } = model.kernel.sizes();
         let [mut si, mut outputs, mut margins] = [inputs.len(), outputs, conditions].map(|length| vec![0.0; length]);
-        let (mut feasible, mut without_result) = (true, 0);
+        let (mut feasible, mut without_result, mut first_without) = (true, 0, None);
         let mut first_not_ok = (u64::MAX, Status::Ok);
         let mut worst = vec![(f64::NEG_INFINITY, AtWorst { value: None, scenario: 0 }); self.columns.len()];
         let mut complete = vec![true; self.columns.len()];
@@ -407,7 +457,10 @@ impl<'p> Reference<'p> {
                 // A tracked quantity without a value in some scenario makes a design infeasible, as in the sweep.
                 let mut asked = plan.tracked.iter().map(|(it, _)| it.quantity).chain(plan.study.constraints.iter().map(|it| it.quantity));
                 let has_result = status == Status::Ok && asked.all(|quantity| value(quantity).is_some());
-                without_result += u64::from(!has_result);
+                if !has_result {
+                    without_result += 1;
+                    first_without = first_without.or(Some(scenario));
+                }
                 feasible &= has_result;
                 feasible &=
                     plan.study.constraints.iter().all(|it| value(it.quantity).is_some_and(|value| !it.over.is_worst() || it.holds(value)));
@@ -441,7 +494,7 @@ impl<'p> Reference<'p> {
             }
         }
         let columns = worst.into_iter().map(|(_, at)| at).collect();
-        Some(Row { index, feasible, without_result, status: first_not_ok.1, inputs: first, columns, complete })
+        Some(Row { index, feasible, without_result, first_without, status: first_not_ok.1, inputs: first, columns, complete })
     }
 }
 

@@ -29,6 +29,8 @@ pub enum Command {
     Check(CheckArgs),
     /// Judge every design of a study and write the result directory
     Sweep(SweepArgs),
+    /// Change a study with sliders in a browser, on a page that shows its front at once
+    Explore(ExploreArgs),
     /// Tell which uncertain input or design choice matters for each quantity of a study
     Sensitivity(SensitivityArgs),
     /// Merge the shards of a study into the same result as that of one run
@@ -86,7 +88,7 @@ pub struct ModelsArgs {
 pub struct CheckArgs {
     /// Study file
     pub study: PathBuf,
-    /// Set an input in place of its axis, fixed value or formula; a unit may follow the number. May be repeated
+    /// Set an input in place of its axis, fixed value or formula, or a part of the study such as constraints.NAME.max; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     pub set: Vec<String>,
     /// As with sweep --feasible: also says how large the file of all feasible designs may become
@@ -175,7 +177,7 @@ pub struct EvalArgs {
 pub struct SweepArgs {
     /// Study file
     pub study: PathBuf,
-    /// Set an input in place of its axis, fixed value or formula; a unit may follow the number. May be repeated
+    /// Set an input in place of its axis, fixed value or formula, or a part of the study such as constraints.NAME.max; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     pub set: Vec<String>,
     /// Write every feasible design into feasible.parquet
@@ -225,6 +227,27 @@ pub struct SweepArgs {
     pub perturb: Vec<String>,
 }
 
+/// Options of `explore`.
+#[derive(Debug, Args)]
+#[command(after_help = "The page is served to this machine only, and asks for the token in its address. From another machine: \
+    ssh -L 8000:127.0.0.1:8000 HOST beltspace explore STUDY --no-browser --port 8000")]
+pub struct ExploreArgs {
+    /// Study file
+    pub study: PathBuf,
+    /// Begin with this change. May be repeated
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// Port to listen on [default: any that is free]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub port: u16,
+    /// Print the address instead of opening a browser
+    #[arg(long)]
+    pub no_browser: bool,
+    /// Worker threads [default: one per core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub threads: Option<u16>,
+}
+
 /// Options of `sensitivity`.
 #[derive(Debug, Args)]
 #[command(
@@ -236,7 +259,7 @@ pub struct SweepArgs {
 pub struct SensitivityArgs {
     /// Study file
     pub study: PathBuf,
-    /// Set an input in place of its axis, fixed value or formula; a unit may follow the number. May be repeated
+    /// Set an input in place of its axis, fixed value or formula, or a part of the study such as constraints.NAME.max; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     pub set: Vec<String>,
     /// Design whose uncertainty is looked at, by its index [default: the only one]

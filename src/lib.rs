@@ -86,6 +86,9 @@ pub mod decision;
 #[doc(hidden)]
 pub mod directory;
 pub mod error;
+#[cfg(feature = "cli")]
+#[doc(hidden)]
+pub mod explore;
 #[doc(hidden)]
 pub mod export;
 #[doc(hidden)]
@@ -102,6 +105,8 @@ pub mod influence;
 pub mod keys;
 #[doc(hidden)]
 pub mod likeness;
+#[doc(hidden)]
+pub mod live;
 mod masks;
 #[doc(hidden)]
 pub mod memory;

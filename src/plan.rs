@@ -148,7 +148,7 @@ pub struct Plan {
 }
 
 /// The worst end: that of the objective, else that of the report's use of the quantity, else that of the model.
-fn quantities_to_track(study: &Study) -> Vec<Tracked> {
+fn quantities_to_track(study: &Study, further: &[Tracked]) -> Vec<Tracked> {
     let mut tracked: Vec<Tracked> = Vec::new();
     let mut track = |entry| {
         if !tracked.contains(&entry) {
@@ -161,6 +161,7 @@ fn quantities_to_track(study: &Study) -> Vec<Tracked> {
     for (quantity, worse) in study.report.followed(study) {
         track(Tracked::worst(quantity, worse));
     }
+    further.iter().copied().for_each(track);
     tracked
 }
 
@@ -175,6 +176,11 @@ impl Plan {
 
     /// Plans a study.
     pub fn new(study: Study) -> Self {
+        Self::following(study, &[])
+    }
+
+    /// The same where further values are followed. A design that has none of one of these counts as infeasible.
+    pub(crate) fn following(study: Study, further: &[Tracked]) -> Self {
         let space = Space::new(&study);
         let dependencies = study.model.kernel.dependencies(&knowns(&study, &space));
         let (slow, fast) = space.designs.split(dependencies.prepared);
@@ -204,7 +210,7 @@ impl Plan {
                 }
             }
         };
-        let tracked: Vec<_> = quantities_to_track(&study).into_iter().map(|it| (it, source(it.quantity))).collect();
+        let tracked: Vec<_> = quantities_to_track(&study, further).into_iter().map(|it| (it, source(it.quantity))).collect();
         let constraints: Vec<Source> = study.constraints.iter().map(|constraint| source(constraint.quantity)).collect();
         let spectrum = spectrum_plan(&study, &tracked, &constraints, (&slow_scenarios, &fast_scenarios));
         let objectives = study.objectives.iter().map(|objective| {

@@ -102,7 +102,7 @@ impl<'p> WorstColumns<'p> {
         self.axes.iter().for_each(|(axis, _)| set(&mut inputs, axis, 0));
         numbers.begin(count);
         self.compute(&self.once, numbers, first, count, &inputs);
-        let mut found = Found::new(self.columns, count);
+        let mut found = FoundWorst::new(self.columns, count);
         let mut statuses = vec![Status::Ok; count];
         let mut outputs = vec![vec![0.0; count]; self.outputs.len()];
         let mut turned = 0;
@@ -241,9 +241,10 @@ fn ordered<'a>(list: &List, mut axes: Vec<(&'a Axis, u64)>) -> Vec<(&'a Axis, u6
 }
 
 /// What is known of a chunk of designs after some scenarios.
-struct Found {
+struct FoundWorst {
     feasible: Vec<bool>,
     without_result: Vec<u64>,
+    first_without: Vec<Option<u64>>,
     not_ok: Vec<(u64, Status)>,
     /// Of each column.
     worst: Vec<WorstLanes>,
@@ -258,7 +259,7 @@ struct WorstLanes {
     complete: Vec<bool>,
 }
 
-impl Found {
+impl FoundWorst {
     fn new(columns: &[Column], count: usize) -> Self {
         let lanes = |_: &Column| WorstLanes {
             badness: vec![f64::NEG_INFINITY; count],
@@ -269,6 +270,7 @@ impl Found {
         Self {
             feasible: vec![true; count],
             without_result: vec![0; count],
+            first_without: vec![None; count],
             not_ok: vec![(u64::MAX, Status::Ok); count],
             worst: columns.iter().map(lanes).collect(),
         }
@@ -293,6 +295,10 @@ impl Found {
         }
         for (lane, has) in has_result.iter().enumerate() {
             self.without_result[lane] += u64::from(!has);
+            if !has {
+                let first = &mut self.first_without[lane];
+                *first = Some(first.map_or(scenario, |it| it.min(scenario)));
+            }
             self.feasible[lane] &= has;
         }
         for constraint in &plan.study.constraints {
@@ -314,6 +320,7 @@ impl Found {
             index: (first + lane) as u64,
             feasible: self.feasible[lane],
             without_result: self.without_result[lane],
+            first_without: self.first_without[lane],
             status: self.not_ok[lane].1,
             inputs: inputs(lane),
             columns: self.worst.iter().map(|it| it.at(lane)).collect(),

@@ -7,6 +7,7 @@ mod draws;
 #[cfg_attr(not(feature = "gpu"), path = "no_engine.rs")]
 mod engine;
 mod eval;
+mod explore;
 mod export;
 mod man;
 mod merge;
@@ -39,6 +40,7 @@ pub fn run(command: Command) -> Result<()> {
         Command::Export(request) => export::run(&request),
         Command::Check(request) => check::run(&request),
         Command::Sweep(request) => sweep::run(&request),
+        Command::Explore(request) => explore::run(&request),
         Command::Sensitivity(request) => sensitivity::run(&request),
         Command::Merge(request) => merge::run(&request),
         Command::Slurm(request) => slurm::run(&request),

@@ -20,6 +20,8 @@ pub use confirmed::Confirmed;
 pub use drawn_tally::DrawnTally;
 #[cfg(feature = "pictures")]
 pub use pictures::FrontPicture;
+#[cfg(feature = "cli")]
+pub(crate) use summary::ideal_and_knee;
 pub use summary::{Knee, MethodRecord, RunRecord, Summary};
 
 use crate::certify::{self, Column, Row};

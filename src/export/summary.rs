@@ -31,30 +31,10 @@ impl<'a> Summary<'a> {
     /// Describes an outcome.
     pub fn new(outcome: &'a Certified<'a>) -> Self {
         let mut summary = Self { outcome, ideal: None, knee: None };
-        let points = summary.points();
-        let objectives = &outcome.plan.study.objectives;
-        if points.is_empty() || objectives.is_empty() {
-            return summary;
+        let indices: Vec<u64> = outcome.front.iter().map(|row| row.index).collect();
+        if let Some((ideal, knee)) = ideal_and_knee(&outcome.plan.study.objectives, &summary.points(), &indices) {
+            (summary.ideal, summary.knee) = (Some(ideal), knee);
         }
-        let ends = |objective: usize| {
-            let values = points.iter().map(|point| point[objective]);
-            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
-        };
-        let ends: Vec<_> = (0..objectives.len()).map(ends).collect();
-        let best = |(objective, (low, high)): (&Objective, &(f64, f64))| if objective.goal == Goal::Min { *low } else { *high };
-        let ideal: Vec<f64> = objectives.iter().zip(&ends).map(best).collect();
-        let distance = |point: &[f64]| {
-            let scaled = point.iter().zip(&ideal).zip(&ends).map(
-                |((value, ideal), (low, high))| {
-                    if high > low { (value - ideal) / (high - low) } else { 0.0 }
-                },
-            );
-            scaled.map(|it| it * it).sum::<f64>().sqrt()
-        };
-        let ranked = points.iter().enumerate().map(|(row, point)| Knee { row, distance: distance(point) });
-        let index = |knee: &Knee| outcome.front[knee.row].index;
-        summary.knee = ranked.min_by(|a, b| a.distance.total_cmp(&b.distance).then(index(a).cmp(&index(b))));
-        summary.ideal = Some(ideal);
         summary
     }
 
@@ -140,6 +120,31 @@ impl<'a> Summary<'a> {
         }
         summary
     }
+}
+
+/// The best of each objective on a front, and the design nearest to it; `None` without a front. Of each design its values and its index.
+pub(crate) fn ideal_and_knee(objectives: &[Objective], points: &[Vec<f64>], indices: &[u64]) -> Option<(Vec<f64>, Option<Knee>)> {
+    if points.is_empty() || objectives.is_empty() {
+        return None;
+    }
+    let ends = |objective: usize| {
+        let values = points.iter().map(|point| point[objective]);
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
+    };
+    let ends: Vec<_> = (0..objectives.len()).map(ends).collect();
+    let best = |(objective, (low, high)): (&Objective, &(f64, f64))| if objective.goal == Goal::Min { *low } else { *high };
+    let ideal: Vec<f64> = objectives.iter().zip(&ends).map(best).collect();
+    let distance = |point: &[f64]| {
+        let scaled = point
+            .iter()
+            .zip(&ideal)
+            .zip(&ends)
+            .map(|((value, ideal), (low, high))| if high > low { (value - ideal) / (high - low) } else { 0.0 });
+        scaled.map(|it| it * it).sum::<f64>().sqrt()
+    };
+    let ranked = points.iter().enumerate().map(|(row, point)| Knee { row, distance: distance(point) });
+    let knee = ranked.min_by(|a, b| a.distance.total_cmp(&b.distance).then(indices[a.row].cmp(&indices[b.row])));
+    Some((ideal, knee))
 }
 
 impl Certified<'_> {

@@ -54,6 +54,12 @@ impl Reduction {
         }
     }
 
+    /// Those of the front and the extremes only: nothing that the report asks for is kept.
+    pub(crate) fn of_front(plan: &Plan) -> Self {
+        let rules = plan.study.objectives.iter().map(KeyRule::from).collect();
+        Self { rules, objectives: plan.objectives.clone(), reported: Reported::default() }
+    }
+
     /// The range of every histogram.
     pub fn histogram_ranges(&self) -> Vec<(f64, f64)> {
         self.reported.histograms.iter().map(|histogram| (histogram.from, histogram.to)).collect()

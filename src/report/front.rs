@@ -10,7 +10,7 @@ use crate::reading::designs::{check_header, check_row, header, inputs};
 use crate::reading::packed::{Packed, packed};
 use crate::reading::{changed, table_reader, unreadable};
 use crate::screen::Control;
-use crate::study::{Axis, Goal, OverScenarios, Quantity, ReportColumn, Study};
+use crate::study::{Axis, Constraint, Goal, OverScenarios, Quantity, ReportColumn, Study};
 use crate::table::written;
 use serde_json::{Value, json};
 use std::collections::{BTreeSet, HashSet};
@@ -58,16 +58,7 @@ pub fn read(file: &Path, all: usize, plan: &Plan, threads: usize, patience: Dura
     let columns = certify::columns(study);
     let taken = all.min(MOST_ON_PAGE);
     let (rows, designs) = rows_of(file, plan, &columns, all, taken)?;
-    let mut shown = vec![Shown {
-        name: "design_index".to_owned(),
-        unit: String::new(),
-        doc: "Index of the design in the study.".to_owned(),
-        role: "index",
-        direction: String::new(),
-        words: None,
-        values: Packed::U64(designs.clone()),
-        scenarios: None,
-    }];
+    let mut shown = vec![index_column(&designs)];
     for label in &study.labels {
         let at = shown.len();
         shown.push(label_column(&label.name, rows.iter().map(|row| &row[at])));
@@ -110,17 +101,11 @@ pub fn read(file: &Path, all: usize, plan: &Plan, threads: usize, patience: Dura
             shown.push(Shown { role: "output", ..Shown::of(study, column, Packed::F32(values), scenarios.collect()) });
         }
     }
-    let position = |quantity: Quantity, over: OverScenarios| columns.iter().position(|it| it.is_of(quantity, over)).map(|at| place[at]);
-    let of_constraint = |number: usize| {
-        // If the objective has another worst scenario, the constraint has a column of its own.
-        let own = columns.iter().position(|it| it.role == Role::Constraint(number)).map(|at| place[at]);
-        own.or_else(|| position(study.constraints[number].quantity, study.constraints[number].over))
-    };
     let scenarios = shown.iter().filter_map(|it| it.scenarios.as_ref()).flatten().filter(|&&it| it != NOWHERE);
     Ok(ShownFront {
         designs,
-        objectives: study.objectives.iter().filter_map(|it| position(it.quantity, it.over)).collect(),
-        constraints: (0..study.constraints.len()).filter_map(of_constraint).collect(),
+        objectives: objectives_at(study, &columns, &place),
+        constraints: constraints_at(study, &columns, &place),
         scenarios: scenarios.map(|&it| u64::from(it)).collect::<BTreeSet<_>>().into_iter().take(MOST_SCENARIOS).collect(),
         json: json!({
             "rows": taken,
@@ -130,6 +115,64 @@ pub fn read(file: &Path, all: usize, plan: &Plan, threads: usize, patience: Dura
             "complete": complete.is_some(),
         }),
     })
+}
+
+/// Where the column of each objective stands, if `place` says where those of the tables do.
+fn objectives_at(study: &Study, columns: &[Column], place: &[usize]) -> Vec<usize> {
+    study.objectives.iter().filter_map(|it| position(columns, it.quantity, it.over).map(|at| place[at])).collect()
+}
+
+/// The same of each constraint. If the objective has another worst scenario, the constraint has a column of its own.
+fn constraints_at(study: &Study, columns: &[Column], place: &[usize]) -> Vec<usize> {
+    let of_constraint = |(number, it): (usize, &Constraint)| {
+        let own = columns.iter().position(|it| it.role == Role::Constraint(number));
+        own.or_else(|| position(columns, it.quantity, it.over)).map(|at| place[at])
+    };
+    study.constraints.iter().enumerate().filter_map(of_constraint).collect()
+}
+
+fn position(columns: &[Column], quantity: Quantity, over: OverScenarios) -> Option<usize> {
+    columns.iter().position(|it| it.is_of(quantity, over))
+}
+
+/// The designs of a front that was not read from a file: description and numbers, which stand one column after the other.
+#[cfg(feature = "cli")]
+pub fn of_rows(plan: &Plan, columns: &[Column], rows: &[Row]) -> (ShownFront, Vec<u8>) {
+    let study = &plan.study;
+    let designs: Vec<u64> = rows.iter().map(|row| row.index).collect();
+    let mut shown = vec![index_column(&designs)];
+    for (at, label) in study.labels.iter().enumerate() {
+        let cells: Vec<&str> = designs.iter().map(|&design| plan.labels(design).nth(at).unwrap_or_default()).collect();
+        shown.push(label_column(&label.name, cells.iter().copied()));
+    }
+    let first_input = shown.len();
+    for (axis, column, input) in inputs(study) {
+        let cells: Vec<String> = rows.iter().map(|row| written(&study.model.inputs[input], row.inputs[input])).collect();
+        shown.push(input_column(study, axis, column, input, cells.iter().map(String::as_str)));
+    }
+    let mut place = Vec::new();
+    for (at, column) in columns.iter().enumerate() {
+        if let Some(own) = certify::design_input(study, column.quantity) {
+            place.push(own + first_input);
+            if shown[own + first_input].direction.is_empty() {
+                shown[own + first_input].direction = direction(study, column);
+            }
+            continue;
+        }
+        place.push(shown.len());
+        let values = rows.iter().map(|row| row.columns[at].value.unwrap_or(f64::NAN)).collect();
+        let scenarios = rows.iter().map(|row| row.columns[at].value.map_or(NOWHERE, |_| scenario_number(row.columns[at].scenario)));
+        shown.push(Shown::of(study, column, Packed::F64(values), scenarios.collect()));
+    }
+    let (objectives, constraints) = (objectives_at(study, columns, &place), constraints_at(study, columns, &place));
+    let named = shown.iter().filter_map(|it| it.scenarios.as_ref()).flatten().filter(|&&it| it != NOWHERE);
+    let scenarios = named.map(|&it| u64::from(it)).collect::<BTreeSet<_>>().into_iter().take(MOST_SCENARIOS).collect();
+    let json = json!({
+        "rows": rows.len(), "of": rows.len(), "complete": true, "columns": shown.iter().map(Shown::describe).collect::<Vec<_>>(),
+    });
+    let bytes = shown.iter().flat_map(|it| std::iter::once(it.values.bytes()).chain(it.scenarios.as_deref().map(bytes_of)));
+    let bytes = bytes.flatten().collect();
+    (ShownFront { designs, objectives, constraints, scenarios, json }, bytes)
 }
 
 fn bytes_of(numbers: &[u32]) -> Vec<u8> {
@@ -159,6 +202,19 @@ fn rows_of(file: &Path, plan: &Plan, columns: &[Column], all: usize, taken: usiz
         seen += 1;
     }
     if seen == all { Ok((rows, designs)) } else { Err(changed(file, &format!("it has {seen} designs, and summary.json says {all}"))) }
+}
+
+fn index_column(designs: &[u64]) -> Shown {
+    Shown {
+        name: "design_index".to_owned(),
+        unit: String::new(),
+        doc: "Index of the design in the study.".to_owned(),
+        role: "index",
+        direction: String::new(),
+        words: None,
+        values: Packed::U64(designs.to_vec()),
+        scenarios: None,
+    }
 }
 
 /// A label, with its texts in alphabetic order.

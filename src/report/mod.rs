@@ -5,6 +5,8 @@
 
 mod front;
 mod influence;
+#[cfg(feature = "cli")]
+pub mod live;
 mod page;
 mod papers;
 mod summary;
@@ -93,7 +95,6 @@ pub fn study_of(folder: &Path) -> Result<Study> {
 pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
     let Request { folder, plan, evaluate, threads, patience } = *request;
     let study = &plan.study;
-    let model = &study.model;
     let summary = json_of(folder, MARK)?;
     let feasible = summary["feasible"].as_u64().filter(|&it| it <= plan.designs() && summary["designs"] == plan.designs());
     let feasible = feasible.ok_or_else(|| changed(&folder.join(MARK), "its numbers of designs are not those of the study"))?;
@@ -107,35 +108,23 @@ pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
     };
     let (objectives, constraints, scenarios) =
         front.as_ref().map_or((&[][..], &[][..], None), |it| (&it.objectives[..], &it.constraints[..], Some(&it.scenarios)));
-    let objectives = study
-        .objectives
-        .iter()
-        .zip(objectives)
-        .map(|(it, column)| json!({ "of": it.name(model), "column": column, "goal": it.goal, "resolution": it.resolution }));
-    let constraints = study.constraints.iter().enumerate().map(|(at, it)| {
-        let mut constraint = json!({ "of": it.name(model), "column": constraints.get(at), "bounds": it.in_words() });
-        for (bound, inclusive, exclusive) in [(it.low, "min", "above"), (it.high, "max", "below")] {
-            if let Some((bound, excluded)) = bound {
-                constraint[if excluded { exclusive } else { inclusive }] = number(bound);
-            }
-        }
-        constraint
-    });
+    let objectives = objectives_json(study, objectives);
+    let constraints = constraints_json(study, constraints);
     let influence = influence::read(folder, plan, &summary)?;
     let figures = [figures(folder)?, influence.figures].concat();
     let mut data = json!({
         "program": concat!("beltspace ", env!("CARGO_PKG_VERSION")),
         "kind": "result",
         "title": study.title,
-        "model": { "name": model.name, "summary": model.summary, "source": model.source, "limits": model.limits },
+        "model": model_json(study),
         "study": {
             "file": "study.toml", "text": text_of(folder, "study.toml")?, "hash": summary["study_hash"],
             "designs": plan.designs(), "scenarios": plan.scenarios(), "feasible": feasible,
         },
         "run": json_of(folder, RUN).ok().filter(summary::is_run),
         "inputs": inputs(study),
-        "objectives": objectives.collect::<Vec<_>>(),
-        "constraints": constraints.collect::<Vec<_>>(),
+        "objectives": objectives,
+        "constraints": constraints,
         "front": front.as_ref().map(|it| with_knee(it, &summary)),
         "scenarios": scenarios.map(|numbers| scenario_inputs(plan, numbers)),
         "evaluate": evaluate,
@@ -152,6 +141,32 @@ pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
     Reported::page(&Folder { path: folder, plan, feasible }, data.as_object_mut().expect("it is one"))?;
     let rows = |key: &str| data["front"][key].as_u64().map_or(0, |it| usize::try_from(it).unwrap_or(usize::MAX));
     Ok(Page { html: page::page(&study.title, &data), designs: rows("rows"), of: rows("of"), complete: data["front"]["complete"] != false })
+}
+
+fn model_json(study: &Study) -> Value {
+    let model = &study.model;
+    json!({ "name": model.name, "summary": model.summary, "source": model.source, "limits": model.limits })
+}
+
+/// The objectives with the positions of their columns.
+fn objectives_json(study: &Study, columns: &[usize]) -> Value {
+    let each = study.objectives.iter().zip(columns);
+    each.map(|(it, column)| json!({ "of": it.name(&study.model), "column": column, "goal": it.goal, "resolution": it.resolution }))
+        .collect()
+}
+
+/// The constraints with the positions of their columns, if they have some, and their bounds.
+fn constraints_json(study: &Study, columns: &[usize]) -> Value {
+    let each = study.constraints.iter().enumerate().map(|(at, it)| {
+        let mut constraint = json!({ "of": it.name(&study.model), "column": columns.get(at), "bounds": it.in_words() });
+        for (bound, inclusive, exclusive) in [(it.low, "min", "above"), (it.high, "max", "below")] {
+            if let Some((bound, excluded)) = bound {
+                constraint[if excluded { exclusive } else { inclusive }] = number(bound);
+            }
+        }
+        constraint
+    });
+    each.collect()
 }
 
 /// The row of the knee, found by its design.
@@ -180,11 +195,25 @@ fn inputs(study: &Study) -> Vec<Value> {
         });
         match role(number) {
             "fixed" => described["value"] = value_of(model, number, study.fixed[number]),
-            _ => described["over"] = over(study, number).into(),
+            role => {
+                described["over"] = over(study, number).into();
+                if let Some((least, largest)) = ends(study, number).filter(|_| role == "design") {
+                    (described["least"], described["largest"]) = (least.into(), largest.into());
+                }
+            }
         }
         described
     };
     model.inputs.iter().enumerate().map(described).collect()
+}
+
+/// The least and the largest number that an axis gives an input; `None` for one of words.
+fn ends(study: &Study, input: usize) -> Option<(f64, f64)> {
+    let axes = study.design.iter().chain(&study.operation).chain(&study.uncertainty);
+    let (axis, column) = axes.filter_map(|axis| Some((axis, axis.inputs().iter().position(|&it| it == input)?))).next()?;
+    let table = &study.model.inputs[input];
+    let (least, largest) = axis.ends(column);
+    (!table.is_enumeration() && table.word_for(least).is_none() && table.word_for(largest).is_none()).then_some((least, largest))
 }
 
 /// The values that an axis gives an input, as text: its ends, or its words.

@@ -13,6 +13,8 @@ const SCRIPTS: &[&str] = &[
     include_str!("page/selection.js"),
     include_str!("page/colour.js"),
     include_str!("page/raster.js"),
+    include_str!("page/save.js"),
+    include_str!("page/pins.js"),
     include_str!("page/matrix.js"),
     include_str!("page/readout.js"),
     include_str!("page/strip.js"),
@@ -33,6 +35,47 @@ const SCRIPTS: &[&str] = &[
     include_str!("page/lists.js"),
     include_str!("page/start.js"),
 ];
+
+/// Scripts that the page of a study in work has besides, before the last one.
+#[cfg(feature = "cli")]
+const LIVE_SCRIPTS: &[&str] = &[
+    include_str!("page/live/stream.js"),
+    include_str!("page/live/changes.js"),
+    include_str!("page/live/controls.js"),
+    include_str!("page/live/around.js"),
+    include_str!("page/live/answer.js"),
+    include_str!("page/live/start.js"),
+];
+
+/// What the page of a study in work is made of: address, type, and texts that follow one another.
+#[cfg(feature = "cli")]
+pub const LIVE_FILES: &[(&str, &str, &[&[&str]])] = &[
+    ("/page.css", "text/css; charset=utf-8", &[&[STYLE, include_str!("page/live/live.css")]]),
+    ("/d3.js", "text/javascript; charset=utf-8", &[&[D3]]),
+    ("/page.js", "text/javascript; charset=utf-8", &[SCRIPTS, LIVE_SCRIPTS]),
+];
+
+/// The page of a study in work: the same, with its parts at addresses of their own.
+#[cfg(feature = "cli")]
+pub fn live_page() -> String {
+    let mut page = String::with_capacity(TEMPLATE.len());
+    let mut rest = TEMPLATE;
+    // A policy that the server sends stands in place of the page's own, which allows what stands inside it.
+    for (from, to, with) in [
+        ("<meta http-equiv=", ">\n", ""),
+        ("TITLE", "</title>", "beltspace explore</title>"),
+        ("<style>", "</style>", "<link rel=\"stylesheet\" href=\"/page.css\">"),
+        ("/*DATA*/", "</script>", "{\"kind\": \"live\"}</script>"),
+        ("<script>/*D3*/", "</script>", "<script src=\"/d3.js\"></script>"),
+        ("<script>/*SCRIPT*/", "</script>", "<script src=\"/page.js\"></script>"),
+    ] {
+        let (before, after) = rest.split_once(from).expect("the template has every marker, in this order");
+        page.push_str(before);
+        page.push_str(with);
+        rest = after.split_once(to).expect("each part has an end").1;
+    }
+    page + rest
+}
 
 /// The page that shows some data: one file that needs no other file and no network.
 pub fn page(title: &str, data: &Value) -> String {

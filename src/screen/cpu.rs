@@ -223,6 +223,15 @@ impl<'p> CpuEngine<'p> {
         }
     }
 
+    /// The same in some scenarios only (slow and fast, sorted); none means all.
+    pub fn screen_some_in(&mut self, chosen: &[(u64, u64)], positions: &[u64], absorb: impl FnMut(&Block<'_>)) {
+        self.row = None;
+        self.chosen.extend(chosen);
+        self.screen_some(positions, absorb);
+        self.chosen.clear();
+        self.row = None;
+    }
+
     /// Judges the designs of some rows that stand at the same places of each, and hands each block with a feasible design to `absorb`.
     /// What the rows have in common is made once. If some scenarios are `chosen` (slow and fast, sorted), only they are looked at.
     pub fn screen_rows(&mut self, rows: &[u64], places: &[u64], chosen: &[(u64, u64)], mut absorb: impl FnMut(&Block<'_>)) {

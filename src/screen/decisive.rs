@@ -50,7 +50,7 @@ impl Trend {
 
 /// What is asked of a result: which of its ends matter.
 #[derive(Clone, Copy, Debug)]
-struct Asked {
+struct AskedEnds {
     result: usize,
     low: bool,
     high: bool,
@@ -59,7 +59,7 @@ struct Asked {
 /// Finds the scenarios that decide about a row; one per thread.
 #[derive(Debug)]
 pub(super) struct Decisive {
-    asked: Vec<Asked>,
+    asked: Vec<AskedEnds>,
     /// The scalars of each scenario that was added.
     scalars: Vec<f64>,
     width: usize,
@@ -79,16 +79,16 @@ impl Decisive {
         let mut asked = Vec::new();
         for (constraint, source) in plan.study.constraints.iter().zip(&plan.constraints) {
             if let Source::LaneOutput(result) = *source {
-                asked.push(Asked { result, low: constraint.low.is_some(), high: constraint.high.is_some() });
+                asked.push(AskedEnds { result, low: constraint.low.is_some(), high: constraint.high.is_some() });
             }
         }
         for (tracked, source) in &plan.tracked {
             if let Source::LaneOutput(result) = *source {
-                asked.push(Asked { result, low: tracked.worse == Worse::Lower, high: tracked.worse == Worse::Higher });
+                asked.push(AskedEnds { result, low: tracked.worse == Worse::Lower, high: tracked.worse == Worse::Higher });
             }
         }
         let margins = plan.lane_outputs.len();
-        asked.extend((0..plan.lane_conditions.len()).map(|number| Asked { result: margins + number, low: true, high: false }));
+        asked.extend((0..plan.lane_conditions.len()).map(|number| AskedEnds { result: margins + number, low: true, high: false }));
         Some(Self {
             asked,
             scalars: Vec::new(),
@@ -136,7 +136,7 @@ impl Decisive {
         }
         let mut is_kept = vec![false; count];
         let mut looked_at: Vec<Trend> = Vec::new();
-        for &Asked { result, low, high } in &self.asked {
+        for &AskedEnds { result, low, high } in &self.asked {
             let trend = self.trends[list.asked()[result] as usize];
             // What makes it worse, be it too high or too low.
             for worse in [high.then_some(trend), low.then_some(trend.turned())].into_iter().flatten() {

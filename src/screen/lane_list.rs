@@ -82,7 +82,7 @@ impl std::ops::BitOrAssign for Varies {
     }
 }
 
-/// Numbers of one thread.
+/// RowOrLanes of one thread.
 #[derive(Debug)]
 pub(super) struct LaneNumbers {
     row: Vec<f64>,
@@ -303,7 +303,7 @@ impl LaneList {
         &self.ranges
     }
 
-    /// Numbers that a block of designs has in common with the same block of other rows, of its inputs in SI units, with idle lanes.
+    /// RowOrLanes that a block of designs has in common with the same block of other rows, of its inputs in SI units, with idle lanes.
     pub(super) fn shared_columns(&self, si: &InputColumns) -> Vec<Vec<f64>> {
         let count = si.first().map_or(0, |(_, column)| column.len());
         let column = |input: usize| &si.iter().find(|(it, _)| *it == input).expect("a lane input is set by a fast axis").1;
@@ -375,12 +375,12 @@ impl LaneList {
 
 /// A number for all designs, or one for each.
 #[derive(Clone, Copy)]
-enum Numbers<'a> {
+enum RowOrLanes<'a> {
     One(f64),
     Each(&'a [f64]),
 }
 
-impl Numbers<'_> {
+impl RowOrLanes<'_> {
     #[inline(always)]
     fn at(self, lane: usize) -> f64 {
         match self {
@@ -397,31 +397,31 @@ fn run_steps(steps: &[ColumnStep], row: &[f64], shared: &[Vec<f64>], columns: &m
         let mut column = take(&mut columns[step.to]);
         let to = &mut column[..room];
         let of = |operand| match operand {
-            Operand::Row(slot) => Numbers::One(row[slot]),
-            Operand::Shared(column) => Numbers::Each(&shared[column][..room]),
-            Operand::Own(column) => Numbers::Each(&columns[column][..room]),
+            Operand::Row(slot) => RowOrLanes::One(row[slot]),
+            Operand::Shared(column) => RowOrLanes::Each(&shared[column][..room]),
+            Operand::Own(column) => RowOrLanes::Each(&columns[column][..room]),
         };
         // Written out, so that every combination becomes one loop of vector instructions.
         macro_rules! binary {
             ($kind:expr, $a:expr, $b:expr, $($name:ident),*) => {
                 match ($kind, $a, $b) {
                     $(
-                        (Binary::$name, Numbers::Each(a), Numbers::Each(b)) => {
+                        (Binary::$name, RowOrLanes::Each(a), RowOrLanes::Each(b)) => {
                             to.iter_mut().zip(a).zip(b).for_each(|((it, &a), &b)| *it = Binary::$name.of(a, b));
                         }
-                        (Binary::$name, Numbers::Each(a), Numbers::One(b)) => to.iter_mut().zip(a).for_each(|(it, &a)| *it = Binary::$name.of(a, b)),
-                        (Binary::$name, Numbers::One(a), Numbers::Each(b)) => to.iter_mut().zip(b).for_each(|(it, &b)| *it = Binary::$name.of(a, b)),
+                        (Binary::$name, RowOrLanes::Each(a), RowOrLanes::One(b)) => to.iter_mut().zip(a).for_each(|(it, &a)| *it = Binary::$name.of(a, b)),
+                        (Binary::$name, RowOrLanes::One(a), RowOrLanes::Each(b)) => to.iter_mut().zip(b).for_each(|(it, &b)| *it = Binary::$name.of(a, b)),
                     )*
-                    (kind, Numbers::One(a), Numbers::One(b)) => to.fill(kind.of(a, b)),
+                    (kind, RowOrLanes::One(a), RowOrLanes::One(b)) => to.fill(kind.of(a, b)),
                 }
             };
         }
         macro_rules! unary {
             ($kind:expr, $a:expr, $($name:ident),*) => {
                 match ($kind, $a) {
-                    (kind, Numbers::One(a)) => to.fill(kind.of(a)),
-                    $((Unary::$name, Numbers::Each(a)) => to.iter_mut().zip(a).for_each(|(it, &a)| *it = Unary::$name.of(a)),)*
-                    (kind, Numbers::Each(a)) => to.iter_mut().zip(a).for_each(|(it, &a)| *it = kind.of(a)),
+                    (kind, RowOrLanes::One(a)) => to.fill(kind.of(a)),
+                    $((Unary::$name, RowOrLanes::Each(a)) => to.iter_mut().zip(a).for_each(|(it, &a)| *it = Unary::$name.of(a)),)*
+                    (kind, RowOrLanes::Each(a)) => to.iter_mut().zip(a).for_each(|(it, &a)| *it = kind.of(a)),
                 }
             };
         }
@@ -435,18 +435,18 @@ fn run_steps(steps: &[ColumnStep], row: &[f64], shared: &[Vec<f64>], columns: &m
 }
 
 #[inline(always)]
-fn select(margin: Numbers<'_>, a: Numbers<'_>, b: Numbers<'_>, to: &mut [f64]) {
+fn select(margin: RowOrLanes<'_>, a: RowOrLanes<'_>, b: RowOrLanes<'_>, to: &mut [f64]) {
     match (margin, a, b) {
-        (Numbers::One(margin), Numbers::Each(a), _) if margin >= 0.0 => to.copy_from_slice(a),
-        (Numbers::Each(margin), Numbers::Each(a), Numbers::Each(b)) => {
+        (RowOrLanes::One(margin), RowOrLanes::Each(a), _) if margin >= 0.0 => to.copy_from_slice(a),
+        (RowOrLanes::Each(margin), RowOrLanes::Each(a), RowOrLanes::Each(b)) => {
             for (((it, &margin), &a), &b) in to.iter_mut().zip(margin).zip(a).zip(b) {
                 *it = f64::select(margin, a, b);
             }
         }
-        (Numbers::Each(margin), Numbers::Each(a), Numbers::One(b)) => {
+        (RowOrLanes::Each(margin), RowOrLanes::Each(a), RowOrLanes::One(b)) => {
             to.iter_mut().zip(margin).zip(a).for_each(|((it, &margin), &a)| *it = f64::select(margin, a, b));
         }
-        (Numbers::Each(margin), Numbers::One(a), Numbers::Each(b)) => {
+        (RowOrLanes::Each(margin), RowOrLanes::One(a), RowOrLanes::Each(b)) => {
             to.iter_mut().zip(margin).zip(b).for_each(|((it, &margin), &b)| *it = f64::select(margin, a, b));
         }
         _ => to.iter_mut().enumerate().for_each(|(lane, it)| *it = f64::select(margin.at(lane), a.at(lane), b.at(lane))),

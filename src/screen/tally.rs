@@ -210,8 +210,8 @@ impl Marks {
         for ((constraint, &source), marks) in plan.study.constraints.iter().zip(&plan.constraints).zip(&mut self.constraints) {
             let ends = if constraint.over.is_worst() { constraint.ends() } else { (f64::NEG_INFINITY, f64::INFINITY) };
             match counter.values(source, fast) {
-                Values::Each(values) => masks::mark_violations(&self.ok, marks, &mut self.overflow, values, ends),
-                Values::One(value) => {
+                BlockValues::Each(values) => masks::mark_violations(&self.ok, marks, &mut self.overflow, values, ends),
+                BlockValues::One(value) => {
                     let marks = if value.is_finite() { marks } else { &mut self.overflow };
                     if !(value.is_finite() && ends.0 <= value && value <= ends.1) {
                         marks.iter_mut().zip(&self.ok).for_each(|(mark, ok)| *mark |= ok);
@@ -221,9 +221,9 @@ impl Marks {
         }
         for &(_, source) in &plan.tracked {
             match counter.values(source, fast) {
-                Values::Each(values) => masks::mark_overflow(&self.ok, &mut self.overflow, values),
-                Values::One(value) if value.is_finite() => {}
-                Values::One(_) => self.overflow.iter_mut().zip(&self.ok).for_each(|(mark, ok)| *mark |= ok),
+                BlockValues::Each(values) => masks::mark_overflow(&self.ok, &mut self.overflow, values),
+                BlockValues::One(value) if value.is_finite() => {}
+                BlockValues::One(_) => self.overflow.iter_mut().zip(&self.ok).for_each(|(mark, ok)| *mark |= ok),
             }
         }
     }
@@ -268,7 +268,7 @@ impl Marks {
 }
 
 /// What a quantity is over a block in the current scenario.
-enum Values<'a> {
+enum BlockValues<'a> {
     One(f64),
     Each(&'a [f64]),
 }
@@ -373,12 +373,12 @@ impl<'p> Counter<'p> {
     }
 
     /// The values of the designs in the current scenario.
-    fn values<'a>(&'a self, source: Source, fast: &'a FastBlock) -> Values<'a> {
+    fn values<'a>(&'a self, source: Source, fast: &'a FastBlock) -> BlockValues<'a> {
         match source {
-            Source::LaneInput(input) => Values::Each(fast.own(input)),
-            Source::LaneOutput(position) => Values::Each(&self.engine.results[position]),
+            Source::LaneInput(input) => BlockValues::Each(fast.own(input)),
+            Source::LaneOutput(position) => BlockValues::Each(&self.engine.results[position]),
             Source::RowInput(_) | Source::RowOutput(_) => {
-                Values::One(row_value(self.plan, source, &self.engine.own, &self.engine.row_outputs))
+                BlockValues::One(row_value(self.plan, source, &self.engine.own, &self.engine.row_outputs))
             }
         }
     }

@@ -30,6 +30,8 @@ pub use label::Label;
 pub use quantity::Quantity;
 #[doc(hidden)]
 pub use read::StudyEdits;
+#[cfg(feature = "cli")]
+pub(crate) use read::entry_names;
 #[cfg(test)]
 pub(crate) use read::tests::study_of;
 pub use read::{FileKind, Problem, StudyErrors, file_kind, parse_model, read_model};

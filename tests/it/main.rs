@@ -19,6 +19,8 @@ mod effort;
 mod equations;
 /// A model with all elementary functions.
 mod every_function;
+/// The page of `beltspace explore`, in a browser.
+mod explore_page;
 /// What a result says besides its numbers, by brute force.
 mod findings;
 /// Studies with formulas, by brute force.

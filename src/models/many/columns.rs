@@ -1,7 +1,7 @@
 //! A model over columns of its inputs: its recorded formula, a chunk of rows at a time.
 
 use super::judge::ColumnJudge;
-use super::{Asked, ResultPart, input_to_si};
+use super::{AskedColumns, ResultPart, input_to_si};
 use crate::models::Model;
 use crate::tape::{CHUNK, ColumnValue, Known, List, ListColumns, Set};
 
@@ -29,8 +29,8 @@ fn known(model: &Model, input: usize, values: &[f64]) -> Known {
 
 impl RecordedColumns {
     /// Records a formula; `None` if that cannot be, or does not pay.
-    pub fn new(asked: &Asked<'_>) -> Option<Self> {
-        let Asked { model, given, inputs, outputs, .. } = *asked;
+    pub fn new(asked: &AskedColumns<'_>) -> Option<Self> {
+        let AskedColumns { model, given, inputs, outputs, .. } = *asked;
         let formula = model.kernel.formula()?;
         let mut of_inputs: Vec<Known> =
             model.inputs.iter().zip(inputs).map(|(input, &value)| Known::Fixed(input_to_si(input, value))).collect();
@@ -45,8 +45,8 @@ impl RecordedColumns {
     }
 
     /// Fills some rows of the result.
-    pub fn evaluate(&self, asked: &Asked<'_>, part: ResultPart<'_>) {
-        let Asked { model, given, outputs: wanted, options, .. } = *asked;
+    pub fn evaluate(&self, asked: &AskedColumns<'_>, part: ResultPart<'_>) {
+        let AskedColumns { model, given, outputs: wanted, options, .. } = *asked;
         let ResultPart { first, statuses, mut outputs } = part;
         let list = &self.list;
         let mut columns = ListColumns::new(list);

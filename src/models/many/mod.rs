@@ -156,7 +156,7 @@ pub fn evaluate_columns(model: &Model, columns: &[(&str, &[f64])], options: &Man
         let (there, wanted) = (inputs.len(), model.inputs.len());
         return Err(Error::Request(format!("there are values for {there} inputs, but {} has {wanted}", model.name)));
     }
-    let asked = Asked { model, given: &given, inputs, outputs, options };
+    let asked = AskedColumns { model, given: &given, inputs, outputs, options };
     let recorded = (rows >= ROWS_TO_RECORD).then(|| RecordedColumns::new(&asked)).flatten();
     let mut found = EvaluatedColumns { statuses: vec![Status::Ok; rows], outputs: vec![vec![0.0; rows]; outputs.len()] };
     let share = rows.div_ceil(options.threads.max(1)).max(ROWS_PER_THREAD);
@@ -168,7 +168,7 @@ pub fn evaluate_columns(model: &Model, columns: &[(&str, &[f64])], options: &Man
 }
 
 /// What is asked.
-struct Asked<'a> {
+struct AskedColumns<'a> {
     model: &'a Model,
     /// Inputs with a column.
     given: &'a [(usize, &'a [f64])],
@@ -195,7 +195,7 @@ fn parts(found: &mut EvaluatedColumns, share: usize) -> Vec<ResultPart<'_>> {
     found.statuses.chunks_mut(share).enumerate().map(part).collect()
 }
 
-impl Asked<'_> {
+impl AskedColumns<'_> {
     fn one_by_one(&self, part: ResultPart<'_>) {
         let ResultPart { first, statuses, mut outputs } = part;
         let (asked, mut inputs) = (Set::of(self.outputs), self.inputs.to_vec());

@@ -1,5 +1,6 @@
 // The state of the page, written after "#" in the address, so that a view can be bookmarked or sent to somebody.
 //   c=columns of the matrix   pc=axes in order   inv=reversed axes      col=colour column
+//   p=pinned designs                            s=changes of a live study
 //   b=axis:low..high,...      r=x*y:low..high*low..high,...             d=open design   t=light|dark
 {
   const encode = (name) => encodeURIComponent(name).replace(/\*/g, "%2A");
@@ -22,6 +23,8 @@
       if (state.card !== null) add("d", page.designOf(state.card));
     }
     add("t", state.theme);
+    if (page.front) add("p", page.pinsText());
+    if (page.changesText) add("s", page.changesText());
     const hash = parts.length ? `#${parts.join("&")}` : "";
     if (hash === location.hash || hash === written) return;
     written = hash;
@@ -78,6 +81,7 @@
       const places = [state.matrix.indexOf(x), state.matrix.indexOf(y)];
       if (xRange && yRange && places[0] >= 0 && places[0] < places[1]) state.cells.set(`${x}*${y}`, { x, y, xRange, yRange });
     }
+    page.readPins(given.get("p"));
     const row = given.has("d") ? page.rowOf(given.get("d")) : -1;
     return row >= 0 ? row : null;
   };
@@ -89,12 +93,13 @@
       clearTimeout(waiting);
       waiting = setTimeout(page.writeAddress, 150);
     };
-    for (const event of ["selection", "columns", "colour", "card", "theme"]) page.events.on(`${event}.address`, write);
+    for (const event of ["selection", "columns", "colour", "card", "theme", "changes", "pins"]) page.events.on(`${event}.address`, write);
     window.addEventListener("hashchange", () => {
       if (location.hash === written) return;
       written = location.hash;
       const row = page.readAddress();
       page.applyTheme();
+      if (page.readChanges && page.readChanges()) return;
       if (!page.front) return;
       page.events.call("columns");
       page.events.call("colour");

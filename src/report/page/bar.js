@@ -12,6 +12,36 @@
     return `${name} ${page.short(low)} to ${page.short(high)}${column.unit ? ` ${column.unit}` : ""}`;
   };
 
+  // Ranges within which the front would be another.
+  const doubtfulRanges = () => {
+    const { state } = page;
+    const ranges = [...state.axes, ...[...state.cells.values()].flatMap(({ x, y, xRange, yRange }) => [[x, xRange], [y, yRange]])];
+    return ranges.filter(([name, range]) => !page.front.byName.get(name).words && page.front.byName.get(name).role !== "label" && !page.isOfFront(name, range));
+  };
+
+  // The bounds that such ranges stand for, without those that hold for the whole front.
+  const boundsOf = ([name, [low, high]]) => {
+    const column = page.front.byName.get(name);
+    return { name, ...(low > column.low ? { min: low } : {}), ...(high < column.high ? { max: high } : {}) };
+  };
+
+  const remedy = (doubtful) => {
+    const bounds = doubtful.map(boundsOf).filter((it) => it.min !== undefined || it.max !== undefined);
+    if (!bounds.length) return [];
+    if (page.constrain) {
+      const make = () => {
+        page.clearBrushes();
+        bounds.forEach(({ name, ...ends }) => page.constrain(name, ends));
+      };
+      return [page.element("button", { type: "button", id: "make-constraint", class: "no-print", click: make }, bounds.length > 1 ? "Make them constraints" : "Make it a constraint")];
+    }
+    const { evaluate } = page.data;
+    if (!evaluate) return [];
+    const set = bounds.flatMap(({ name, ...ends }) => Object.entries(ends).map(([key, value]) => ` --set constraints.${name}.${key}=${value}`));
+    const command = evaluate.replace(" eval ", " explore ").replace(" --design {design}", "") + set.join("");
+    return ["With the engine: ", page.element("code", { tabindex: 0 }, command)];
+  };
+
   const update = () => {
     const { state, front } = page;
     page.byId("selected-count").textContent = page.count(page.selectedCount);
@@ -21,6 +51,12 @@
     for (const [name, range] of state.axes) chips.push(chip(rangeText(name, range), () => page.brushAxis(name, null)));
     for (const { x, y, xRange, yRange } of state.cells.values()) chips.push(chip(`${rangeText(x, xRange)} and ${rangeText(y, yRange)}`, () => page.brushCell(x, y, null)));
     page.byId("chips").replaceChildren(...chips);
+    const note = page.byId("brush-note");
+    const doubtful = doubtfulRanges();
+    note.hidden = !doubtful.length;
+    if (!doubtful.length) return;
+    const names = [...new Set(doubtful.map(([name]) => name))].join(", ");
+    note.replaceChildren(`Only designs of the front are here. Within a range of ${names} other designs may be the best, which are beaten now. `, ...remedy(doubtful));
   };
 
   const groups = { label: "Labels", design: "Design inputs", objective: "Objectives", constraint: "Constraints", report: "Report columns", output: "Other outputs" };
@@ -48,10 +84,19 @@
     bar.append(
       page.element("div", { class: "counts", role: "status" }, page.element("strong", { id: "selected-count", "data-testid": "selected-count" }), page.element("span", { id: "selected-share" })),
       page.element("div", { id: "chips" }),
+      page.element("p", { id: "brush-note", "data-testid": "brush-note", class: "hint", hidden: true }),
       page.element("div", { class: "controls no-print" }, page.element("label", {}, "Colour ", colour), columns, page.element("button", { type: "button", id: "clear", "data-testid": "clear", click: page.clearBrushes }, "Clear")),
     );
     update();
     page.events.on("selection.bar", () => page.schedule("bar", update));
+    page.events.on("front.bar", () => {
+      if (!page.front.byName.has(colour.value) || colour.dataset.columns !== page.state.columns) {
+        colour.replaceChildren();
+        page.columnOptions(colour, page.state.colour);
+        colour.dataset.columns = page.state.columns;
+      }
+      page.schedule("bar", update);
+    });
     page.events.on("colour.bar", () => (colour.value = page.state.colour));
   };
 }

@@ -6,16 +6,24 @@ const page = {
   front: null, // decoded columns, see decode.js
   timings: {}, // ms from the start of navigation
   // selection: brushes changed; columns: axes chosen, moved or reversed; current: the point under the pointer
-  events: d3.dispatch("selection", "columns", "colour", "current", "card", "theme", "layout"),
+  // front: another front in place of the one before; changes: what is changed in the study
+  events: d3.dispatch("selection", "columns", "colour", "current", "card", "theme", "layout", "front", "changes", "pins"),
 };
 
-// Numbers are shown to six significant digits, as the program prints them.
+// Four significant digits and all those before the point; thousands apart from 10 000 on. Every digit is where the pointer rests, on cards
+// and in the CSV.
 page.short = (value) => {
   if (typeof value === "string") return value;
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
   if (!Number.isFinite(value)) return value > 0 ? "∞" : "−∞";
-  return String(Number(value.toPrecision(6))).replace(/^-/, "−");
+  const size = Math.abs(value);
+  if (size !== 0 && (size < 1e-4 || size >= 1e9)) return String(Number(value.toPrecision(4))).replace(/^-/, "−").replace("e-", "e−");
+  const text = size >= 1000 ? String(Math.round(size)) : String(Number(size.toPrecision(4)));
+  return (value < 0 ? "−" : "") + (size >= 9999.5 ? page.count(text) : text);
 };
+
+// Units as people write them.
+page.unit = (unit) => ({ Nm: "N m", deg: "°" })[unit] ?? unit ?? "";
 
 // The shortest text that reads back as the same number, in f32 for columns that are stored so.
 page.full = (value, type) => {
@@ -46,7 +54,7 @@ page.seconds = (s) => {
   return s < 7200 ? `${Number((s / 60).toPrecision(3))} min` : `${Number((s / 3600).toPrecision(3))} h`;
 };
 
-page.withUnit = (name, unit) => (unit ? `${name} [${unit}]` : name);
+page.withUnit = (name, unit) => (unit ? `${name} [${page.unit(unit)}]` : name);
 
 // Attributes with null are left out; functions become listeners; strings become text, never markup.
 page.element = (tag, attributes, ...children) => {

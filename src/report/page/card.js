@@ -10,10 +10,15 @@
     return null;
   };
 
-  const valueCell = (name, full, text, unit) =>
-    page.element("td", { class: "number" }, page.element("span", { "data-name": name, "data-value": full, title: full }, text), unit ? page.element("span", { class: "unit" }, ` ${unit}`) : null);
+  const valueCell = (name, full, text, unit, ending = null) =>
+    page.element("td", { class: "number" }, page.element("span", { "data-name": name, "data-value": full, title: full }, text), unit ? page.element("span", { class: "unit" }, ` ${page.unit(unit)}`) : null, ending);
 
-  const columnCell = (column, row) => valueCell(column.name, page.valueText(column, row, page.full), page.valueText(column, row), column.words || Number.isNaN(column.values[row]) ? "" : column.unit);
+  const endMark = (column, row) => {
+    const end = page.endOf(column, row);
+    return end ? page.element("div", { class: "end" }, `${end} end of its range`) : null;
+  };
+
+  const columnCell = (column, row) => valueCell(column.name, page.valueText(column, row, page.full), page.valueText(column, row), column.words || Number.isNaN(column.values[row]) ? "" : column.unit, endMark(column, row));
 
   const scenarioText = (number) => {
     const { scenarios } = page.data;
@@ -37,7 +42,7 @@
     const line = (name, cell, doc) => page.element("tr", {}, page.element("th", { scope: "row", title: doc }, page.breakable(name)), cell);
     const chosen = front.shown.filter((column) => column.role === "label" || column.role === "design").map((column) => line(column.name, columnCell(column, row), column.doc));
     const fixed = (data.inputs || []).filter((input) => input.role === "fixed").map((input) => line(input.name, valueCell(input.name, page.full(input.value), page.short(input.value), typeof input.value === "number" ? input.unit : ""), input.doc));
-    const ranged = (data.inputs || []).filter((input) => input.role === "operation" || input.role === "uncertainty").map((input) => line(input.name, page.element("td", { class: "number" }, input.over || rangeInScenarios(input.name), input.unit ? page.element("span", { class: "unit" }, ` ${input.unit}`) : null), input.doc));
+    const ranged = (data.inputs || []).filter((input) => input.role === "operation" || input.role === "uncertainty").map((input) => line(input.name, page.element("td", { class: "number" }, input.over || rangeInScenarios(input.name), input.unit ? page.element("span", { class: "unit" }, ` ${page.unit(input.unit)}`) : null), input.doc));
     const group = (title, lines) => (lines.length ? [page.element("h4", {}, title), table("values", lines)] : []);
     return section("Inputs", group("chosen", chosen), group("varied over the scenarios", ranged), group("fixed", fixed));
   };
@@ -120,13 +125,13 @@
   const command = (label, text, id) => {
     const said = page.element("span", { class: "copied", role: "status" });
     const copy = async () => {
-      said.textContent = (await copyText(text)) ? "copied" : "select the text to copy it";
+      said.textContent = (await page.copyText(text)) ? "copied" : "select the text to copy it";
     };
     return page.element("div", { class: "command" }, page.element("div", { class: "muted" }, label), page.element("code", { id, "data-testid": id, tabindex: 0 }, text), page.element("button", { type: "button", class: "no-print", "aria-label": `Copy: ${label}`, click: copy }, "Copy"), said);
   };
 
   // In local files there may be no clipboard interface; the old way still works in a click.
-  const copyText = async (text) => {
+  page.copyText = async (text) => {
     try {
       await navigator.clipboard.writeText(text);
       return true;
@@ -162,8 +167,9 @@
     };
     const title = page.element("h2", { id: "card-title" }, `Design ${page.full(page.designOf(row))}`, row === front.knee ? page.element("span", { class: "mark" }, " knee") : null);
     const place = page.element("p", { class: "muted" }, `row ${page.count(row + 1)} of ${page.count(front.rows)} of the front`, page.mask[row] ? "" : ", not selected");
-    const buttons = page.element("div", { class: "card-buttons no-print" }, button("card-previous", "Previous design (left arrow)", "‹", () => step(-1), !any(-1)), button("card-next", "Next design (right arrow)", "›", () => step(1), !any(1)), button("card-close", "Close (Esc)", "×", page.closeCard));
-    return [page.element("div", { class: "card-head" }, page.element("div", {}, title, place), buttons), objectives(row), margins(row), inputs(row), outputs(row), commands(row)].filter(Boolean);
+    const pinned = page.isPinned(row);
+    const buttons = page.element("div", { class: "card-buttons no-print" }, button("card-pin", pinned ? "Unpin this design (p)" : "Pin this design, to compare it (p)", pinned ? "Unpin" : "Pin", () => page.pin(row), !pinned && page.pins().length >= 6), button("card-print", "Print a data sheet of this design", "Print", () => page.printSheet()), button("card-previous", "Previous design (left arrow)", "‹", () => step(-1), !any(-1)), button("card-next", "Next design (right arrow)", "›", () => step(1), !any(1)), button("card-close", "Close (Esc)", "×", page.closeCard));
+    return [page.element("div", { class: "card-head" }, page.element("div", {}, title, place), buttons), objectives(row), margins(row), inputs(row), outputs(row), page.data.kind === "live" ? page.element("section", { id: "all-outputs" }) : null, commands(row)].filter(Boolean);
   };
 
   // In a wide window the card takes room from the plots.
@@ -210,10 +216,33 @@
     returnFocus();
   };
 
+  // Its design is not on the front any more.
+  page.closeLostCard = () => {
+    page.byId("card").hidden = true;
+    document.body.classList.remove("with-card");
+    page.events.call("card");
+  };
+
+  // The card alone, on paper.
+  page.printSheet = () => {
+    document.body.classList.add("sheet");
+    window.print();
+    document.body.classList.remove("sheet");
+  };
+
   page.startCard = () => {
+    const again = () => {
+      const focused = document.activeElement && document.activeElement.id;
+      if (page.state.card === null) return;
+      page.byId("card").replaceChildren(...build(page.state.card));
+      if (focused && focused.startsWith("card-")) page.byId(focused)?.focus();
+    };
+    page.events.on("pins.card", again);
+    page.events.on("front.card", again);
     document.addEventListener("keydown", (event) => {
       if (page.state.card === null || event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
       if (event.key === "Escape") page.closeCard();
+      else if (event.key === "p" && page.byId("card").contains(event.target)) page.pin(page.state.card);
       else if (!page.byId("card").contains(event.target)) return;
       else if (event.target.tagName !== "CODE" && (event.key === "ArrowRight" || event.key === "ArrowLeft")) step(event.key === "ArrowRight" ? 1 : -1);
       else return;

@@ -50,7 +50,7 @@
     inputs.forEach((input) => input.addEventListener("change", () => setRange(column, inputs)));
     const words = (word, i) => page.element("button", { type: "button", class: "word-button", click: () => setWord(column, i), "aria-label": `${column.name}: only ${word}` }, word);
     const range = column.words ? page.element("td", { colspan: 2 }, column.words.map(words)) : inputs.map((input) => page.element("td", {}, input));
-    return page.element("tr", {}, page.element("th", { scope: "row", title: column.doc }, column.name), page.element("td", {}, column.unit || ""), page.element("td", {}, check(column, "matrix")), page.element("td", {}, check(column, "parallel")), range);
+    return page.element("tr", {}, page.element("th", { scope: "row", title: column.doc }, column.name), page.element("td", {}, page.unit(column.unit)), page.element("td", {}, check(column, "matrix")), page.element("td", {}, check(column, "parallel")), range);
   };
 
   const setWord = (column, i) => {

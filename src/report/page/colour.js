@@ -1,8 +1,10 @@
 // The colour of every point, by the chosen column, and its colour bar.
 {
   const STEPS = 256;
-  // Viridis without the end that is invisible on the background.
-  const rampOf = () => (page.dark() ? (t) => d3.interpolateViridis(0.22 + 0.78 * t) : (t) => d3.interpolateViridis(0.9 * t));
+  // Plasma without the end that is hard to see on the background: marks have a contrast of 3 at least.
+  const rampOf = () => (page.dark() ? (t) => d3.interpolatePlasma(0.42 + 0.58 * t) : (t) => d3.interpolatePlasma(0.61 * t));
+  // Areas need no such contrast: they have more of the scale.
+  page.areaRamp = () => (page.dark() ? (t) => d3.interpolateViridis(0.22 + 0.78 * t) : (t) => d3.interpolateViridis(0.9 * t));
 
   page.ramp = rampOf;
   page.rampPixels = (ramp) => Uint32Array.from({ length: STEPS }, (_, i) => page.pixel(ramp(i / (STEPS - 1))));
@@ -15,11 +17,11 @@
   };
 
   // Pixel colours of all rows, computed again when the column or the theme changes.
-  let cache = { key: null, pixels: null };
+  let cache = { key: null, pixels: null, front: null };
   page.colours = () => {
     const { front, state } = page;
     const key = `${state.colour} ${page.dark()}`;
-    if (cache.key === key) return cache.pixels;
+    if (cache.key === key && cache.front === front) return cache.pixels;
     const none = page.pixel(page.variable("--muted"));
     const pixels = new Uint32Array(front.rows);
     const column = front.byName.get(state.colour);
@@ -32,7 +34,7 @@
         pixels[i] = t >= 0 ? table[Math.min(STEPS - 1, Math.round(t * (STEPS - 1)))] : none;
       }
     }
-    cache = { key, pixels };
+    cache = { key, pixels, front };
     return pixels;
   };
 
@@ -51,13 +53,19 @@
     if (Number.isFinite(low) && high > low) {
       const scale = d3.scaleLinear([low, high], [0, width]);
       const svg = d3.create("svg").attr("width", width).attr("height", 20).attr("aria-hidden", "true");
-      // As many numbers as have room: one at an end lies beside its place, not below it.
-      const labels = (count) => scale.ticks(count).map(page.tick(scale, count));
-      const fits = (count) => width / Math.max(1, labels(count).length - 1) >= 1.5 * 7 * Math.max(...labels(count).map((text) => text.length));
-      const count = [4, 3, 2].find(fits) || 1;
-      svg.append("g").attr("class", "tick-axis").call(d3.axisBottom(scale).ticks(count).tickSizeOuter(0).tickSize(4).tickFormat(page.tick(scale, count)));
       // Numbers at the ends stay within the bar: cut off, they would look like other numbers.
       const anchor = (value) => (scale(value) < 26 ? "start" : scale(value) > width - 26 ? "end" : "middle");
+      const format = page.tick(scale, 4);
+      // As many numbers as have room beside each other.
+      let taken = -Infinity;
+      const room = scale.ticks(4).filter((value) => {
+        const length = 6.6 * format(value).length;
+        const left = scale(value) - { start: 0, middle: length / 2, end: length }[anchor(value)];
+        if (left < taken + 7) return false;
+        taken = left + length;
+        return true;
+      });
+      svg.append("g").attr("class", "tick-axis").call(d3.axisBottom(scale).tickValues(room).tickSizeOuter(0).tickSize(4).tickFormat(format));
       svg.selectAll(".tick text").attr("text-anchor", anchor);
       bar.append(svg.node());
     } else bar.append(page.element("div", { class: "bar-title" }, Number.isFinite(low) ? `always ${page.short(low)}` : "no values"));

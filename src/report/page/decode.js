@@ -63,8 +63,7 @@
     return text(value, column.type);
   };
 
-  const decodeFront = async (front) => {
-    const buffer = front.rows ? await page.inflate(front.packed) : new ArrayBuffer(0);
+  const decodeFront = (front, buffer) => {
     const columns = [];
     const byName = new Map();
     let offset = 0;
@@ -97,24 +96,30 @@
     return { ...sample, byName };
   };
 
-  // What an axis of the scatter matrix spans: the front with the sample behind it.
+  // What an axis of the scatter matrix spans: the front with the sample and the old front behind it.
+  page.ghost = null;
   page.wideDomain = (column) => {
-    const behind = page.sample && page.sample.byName.get(column.name);
-    if (!behind || Number.isNaN(behind.low) || Number.isNaN(column.low)) return page.domain(column);
-    return page.domain({ ...column, low: Math.min(column.low, behind.low), high: Math.max(column.high, behind.high) });
+    const behind = [page.sample, page.ghost].map((layer) => layer && layer.byName.get(column.name)).filter((it) => it && !Number.isNaN(it.low));
+    if (!behind.length || column.words || Number.isNaN(column.low)) return page.domain(column);
+    return page.domain({ ...column, low: Math.min(column.low, ...behind.map((it) => it.low)), high: Math.max(column.high, ...behind.map((it) => it.high)) });
+  };
+
+  // A front out of its description and its numbers. `data` says which columns are objectives and constraints.
+  page.frontOf = (data, stored, buffer) => {
+    const front = decodeFront(stored, buffer);
+    front.objectives = (data.objectives || []).map((objective) => ({ ...objective, column: front.columns[objective.column] }));
+    front.constraints = (data.constraints || []).map((bound) => ({ ...bound, column: front.columns[bound.column] }));
+    for (const { column, goal } of front.objectives) column.goal = goal;
+    front.index = front.columns.find((column) => column.role === "index");
+    front.shown = front.columns.filter((column) => column !== front.index);
+    return front;
   };
 
   page.decode = async () => {
     const data = JSON.parse(page.byId("data").textContent);
     page.data = data;
     if (!data.front) return;
-    const front = await decodeFront(data.front);
-    front.objectives = (data.objectives || []).map((objective) => ({ ...objective, column: front.columns[objective.column] }));
-    front.constraints = (data.constraints || []).map((bound) => ({ ...bound, column: front.columns[bound.column] }));
-    for (const { column, goal } of front.objectives) column.goal = goal;
-    front.index = front.columns.find((column) => column.role === "index");
-    front.shown = front.columns.filter((column) => column !== front.index);
-    page.front = front;
+    page.front = page.frontOf(data, data.front, data.front.rows ? await page.inflate(data.front.packed) : new ArrayBuffer(0));
     page.sample = data.sample ? await decodeSample(data.sample) : null;
     page.timings.decoded = performance.now();
   };

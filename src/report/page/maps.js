@@ -39,7 +39,7 @@
     const context = canvas.getContext("2d");
     const image = context.createImageData(canvas.width, canvas.height);
     const pixels = new Uint32Array(image.data.buffer);
-    const table = page.rampPixels(page.ramp());
+    const table = page.rampPixels(page.areaRamp());
     const none = page.pixel(page.variable("--absent"));
     const span = high - low;
     for (let y = 0; y < canvas.height; y++)
@@ -102,7 +102,7 @@
     const legend = page.element("div", { class: "map-legend" });
     const paint = () => {
       fill(canvas, values, columns, xCells, yCells, low, high);
-      legend.replaceChildren(page.colourBar(page.withUnit(map.value.name, map.value.unit), low, high, page.ramp(), 260), ...lines);
+      legend.replaceChildren(page.colourBar(page.withUnit(map.value.name, map.value.unit), low, high, page.areaRamp(), 260), ...lines);
     };
     svg.append("rect").attr("class", "frame").attr("x", MARGIN.left).attr("y", MARGIN.top).attr("width", inner.width).attr("height", inner.height);
     svg.append("g").attr("class", "tick-axis").attr("transform", `translate(0,${HEIGHT - MARGIN.bottom})`).call(ticksFor(d3.axisBottom, map.x, x, 7));

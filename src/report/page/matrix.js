@@ -26,9 +26,48 @@
     return pixels;
   };
 
-  // The pixels of the sample of feasible designs in a cell of two objectives.
-  const sampleOf = (x, y) => {
-    const [across, up] = [x, y].map((column) => page.sample && page.sample.byName.get(column.name));
+  // The scales of a cell and what lies behind its points.
+  const place = (cell, extent) => {
+    cell.behind = layerOf(page.sample, cell.x, cell.y);
+    cell.ghost = layerOf(page.ghost, cell.x, cell.y);
+    cell.ground = cell.behind || cell.ghost ? cell.ground || new Uint32Array(extent * extent) : null;
+    cell.xScale = d3.scaleLinear(page.wideDomain(cell.x), [0, size]);
+    cell.yScale = d3.scaleLinear(page.wideDomain(cell.y), [size, 0]);
+  };
+
+  // Another front of the same columns: the cells stay, with other points and scales.
+  const refresh = () => {
+    const { front, state } = page;
+    const same = cells.length && String(cellNames()) === String(pairs(state.matrix));
+    if (!same || !front.rows) return layout();
+    const extent = Math.round(size * ratio);
+    const pixels = new Map();
+    const pixel = (column, flip) => {
+      const key = `${flip} ${column.name}`;
+      if (!pixels.has(key)) pixels.set(key, pixelsOf(column, flip));
+      return pixels.get(key);
+    };
+    disc = discOf(front.rows);
+    for (const cell of cells) {
+      [cell.x, cell.y] = [cell.x, cell.y].map((column) => front.byName.get(column.name));
+      place(cell, extent);
+      [cell.xs, cell.ys] = [pixel(cell.x, false), pixel(cell.y, true)];
+      drawAxes(cell);
+      cell.marks.selectAll("*").remove();
+      addMarks(cell);
+    }
+    draw(true);
+    nameSample();
+    syncBrushes();
+    showCurrent();
+  };
+
+  const cellNames = () => cells.map((cell) => [cell.x.name, cell.y.name]);
+  const pairs = (names) => names.flatMap((y, row) => names.slice(0, row).map((x) => [x, y]));
+
+  // The pixels of the sample of feasible designs, or of an old front, in a cell of two objectives.
+  const layerOf = (layer, x, y) => {
+    const [across, up] = [x, y].map((column) => layer && layer.byName.get(column.name));
     return across && up ? { xs: pixelsOf(x, false, across.values), ys: pixelsOf(y, true, up.values) } : null;
   };
 
@@ -54,7 +93,7 @@
       hint.textContent = names.length ? "Drag to select a range of values. Click near a design to open its card." : "";
       return page.drawStrip(box, front.byName.get(names[0]));
     }
-    hint.textContent = "Drag in a cell to select; several selections combine. Click a point to open its card. With the keyboard: arrows go from point to point, Enter opens.";
+    hint.textContent = "Drag to select, click a point to open its card; with the keyboard, arrows go from point to point and Enter opens.";
     const width = page.layoutWidth(box);
     const across = names.length - 1;
     size = Math.floor(sizeFor(width, names.length));
@@ -75,15 +114,12 @@
         cell.image = context.createImageData(extent, extent);
         cell.pixels = new Uint32Array(cell.image.data.buffer);
         cell.base = new Uint32Array(extent * extent);
-        cell.behind = sampleOf(cell.x, cell.y);
-        cell.ground = cell.behind ? new Uint32Array(extent * extent) : null;
-        cell.xScale = d3.scaleLinear(page.wideDomain(cell.x), [0, size]);
-        cell.yScale = d3.scaleLinear(page.wideDomain(cell.y), [size, 0]);
+        place(cell, extent);
         addCell(cell, at === 0, row === names.length - 1);
         cells.push(cell);
       }
     dot = page.disc((page.sample && page.sample.rows > 3000 ? 0.7 / ratio : 1.2) * ratio);
-    disc = page.disc((front.rows > 20000 ? 0.7 / ratio : front.rows > 4000 ? 1.6 : front.rows > 300 ? 2.4 : 3.4) * ratio);
+    disc = discOf(front.rows);
     const readout = page.element("div", { id: "readout", "data-testid": "readout" });
     const stage = page.element("div", { class: "stage" }, canvas, svg.node());
     stage.style.width = `${total.width}px`;
@@ -100,6 +136,8 @@
     page.showReadout();
   };
 
+  const discOf = (rows) => page.disc((rows > 20000 ? 0.7 / ratio : rows > 4000 ? 1.6 : rows > 300 ? 2.4 : 3.4) * ratio);
+
   const label = (column) => page.withUnit(column.name, column.unit) + (column.goal ? ` (${column.goal})` : "");
 
   // On an axis of words every word has a tick.
@@ -107,9 +145,21 @@
     const axis = orient(scale).tickSizeOuter(0).tickSize(4).tickPadding(4);
     if (column.words) return axis.tickValues(d3.range(column.words.length)).tickFormat((i) => column.words[i]);
     if (Number.isNaN(column.low)) return axis.tickValues([]);
-    if (column.low === column.high) return axis.tickValues([column.low]).tickFormat((value) => page.short(Number(value.toPrecision(4))));
+    if (column.low === column.high) return axis.tickValues([column.low]).tickFormat(page.short);
     const ticks = scale.ticks(count);
     return axis.tickValues(column.whole ? ticks.filter(Number.isInteger) : ticks).tickFormat(page.tick(scale, count));
+  };
+
+  const drawAxes = (cell) => {
+    const ticks = Math.max(2, Math.floor(size / 62));
+    if (cell.xAxis) {
+      cell.xAxis.call(page.axisOf(d3.axisBottom, cell.x, cell.xScale, ticks));
+      if (cell.x.words) page.tiltWords(cell.xAxis, size / cell.x.words.length);
+    }
+    if (cell.yAxis) {
+      cell.yAxis.call(page.axisOf(d3.axisLeft, cell.y, cell.yScale, ticks));
+      if (cell.y.words) page.shortenWords(cell.yAxis, 9);
+    }
   };
 
   const fit = (text, room) => {
@@ -121,19 +171,17 @@
     group.attr("data-x", cell.x.name).attr("data-y", cell.y.name).attr("tabindex", 0).attr("role", "application");
     group.attr("aria-label", `${label(cell.y)} over ${label(cell.x)}: arrow keys go from design to design, Enter opens the card`);
     group.append("rect").attr("class", "frame").attr("width", size).attr("height", size);
-    const ticks = Math.max(2, Math.floor(size / 62));
     if (last) {
-      const axis = group.append("g").attr("class", "tick-axis").attr("transform", `translate(0,${size})`).call(page.axisOf(d3.axisBottom, cell.x, cell.xScale, ticks));
-      if (cell.x.words) page.tiltWords(axis, size / cell.x.words.length);
+      cell.xAxis = group.append("g").attr("class", "tick-axis").attr("transform", `translate(0,${size})`);
       const title = group.append("text").attr("class", "axis-title").attr("x", size / 2).attr("y", size + 37).attr("text-anchor", "middle").text(label(cell.x));
       fit(title, size + GAP - 4);
     }
     if (first) {
-      const axis = group.append("g").attr("class", "tick-axis").call(page.axisOf(d3.axisLeft, cell.y, cell.yScale, ticks));
-      if (cell.y.words) page.shortenWords(axis, 9);
+      cell.yAxis = group.append("g").attr("class", "tick-axis");
       const title = group.append("text").attr("class", "axis-title").attr("transform", `translate(-60,${size / 2})rotate(-90)`).attr("text-anchor", "middle").text(label(cell.y));
       fit(title, size + GAP - 4);
     }
+    drawAxes(cell);
     cell.marks = group.append("g").attr("class", "marks");
     cell.brush = d3.brush().extent([[0, 0], [size, size]]).handleSize(7);
     cell.group = group.append("g").attr("class", "brush").call(cell.brush);
@@ -155,6 +203,19 @@
     if (front.knee !== null && front.knee !== undefined) {
       const [x, y] = [clip(cell.xScale, cell.x.values[front.knee]), clip(cell.yScale, cell.y.values[front.knee])];
       if (Number.isFinite(x) && Number.isFinite(y)) cell.marks.append("path").attr("class", "knee").attr("d", `M${x},${y - 6}l6,6l-6,6l-6,-6z`);
+    }
+    // Bounds of constraints.
+    for (const [column, scale, path] of [[cell.x, cell.xScale, (at) => `M${at},0V${size}`], [cell.y, cell.yScale, (at) => `M0,${at}H${size}`]]) {
+      for (const limit of page.limitsOf(column)) {
+        const at = clip(scale, limit);
+        if (Number.isFinite(at)) cell.marks.append("path").attr("class", "limit").attr("d", path(at)).append("title").text(`limit of ${column.name}: ${page.short(limit)}`);
+      }
+    }
+    for (const pin of page.pins()) {
+      const [x, y] = [clip(cell.xScale, pin.values.get(cell.x.name)?.value), clip(cell.yScale, pin.values.get(cell.y.name)?.value)];
+      if (!Number.isFinite(x) || !Number.isFinite(y)) continue;
+      cell.marks.append("circle").attr("class", "pin-dot").attr("r", 7).attr("cx", x).attr("cy", y);
+      cell.marks.append("text").attr("class", "pin-text").attr("x", x).attr("y", y + 3.5).attr("text-anchor", "middle").text(pin.letter);
     }
     cell.current = cell.marks.append("circle").attr("class", "current").attr("r", 6).attr("display", "none");
   };
@@ -242,8 +303,9 @@
         cell.base.fill(ground);
         if (cell.behind) {
           page.drawPoints(cell.base, extent, extent, cell.behind.xs, cell.behind.ys, null, null, page.pixel(page.variable("--sample")), dot);
-          cell.ground.set(cell.base);
         }
+        if (cell.ghost) page.drawPoints(cell.base, extent, extent, cell.ghost.xs, cell.ghost.ys, null, null, page.pixel(page.variable("--ghost")), disc);
+        if (cell.ground) cell.ground.set(cell.base);
         page.drawPoints(cell.base, extent, extent, cell.xs, cell.ys, page.mask, null, faint, disc);
       }
       if (everything && cell.ground) cell.pixels.set(cell.ground);
@@ -266,9 +328,18 @@
   };
 
   page.startMatrix = () => {
+    page.saveButtons("matrix-title", "front");
     layout();
     page.events.on("columns.matrix", (what) => what === "order" || layout());
     page.events.on("layout.matrix", layout);
+    page.events.on("front.matrix", refresh);
+    page.events.on("pins.matrix", () => {
+      for (const cell of cells) {
+        cell.marks.selectAll("*").remove();
+        addMarks(cell);
+      }
+      showCurrent();
+    });
     page.events.on("theme.matrix", () => draw(true));
     page.events.on("colour.matrix", () => page.schedule("matrix", () => draw(false)));
     page.events.on("selection.matrix", () => {

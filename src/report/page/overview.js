@@ -35,6 +35,17 @@
     );
   };
 
+  // What is asked: bounds, and what the drive must survive.
+  const question = () => {
+    const { constraints, inputs } = page.data;
+    const bound = ({ of, bounds }) => page.element("tr", {}, page.element("th", { scope: "row" }, page.breakable(of)), page.element("td", {}, bounds));
+    const over = (input) => page.element("tr", {}, page.element("th", { scope: "row", title: input.doc }, page.breakable(input.name)), page.element("td", {}, `${input.over}${input.unit ? ` ${page.unit(input.unit)}` : ""}`));
+    const varied = (inputs || []).filter((input) => ["operation", "uncertainty"].includes(input.role));
+    const body = (title, lines) => (lines.length ? page.element("tbody", {}, page.element("tr", { class: "group" }, page.element("th", { colspan: 2, scope: "rowgroup" }, title)), lines) : null);
+    const parts = [body("must hold", (constraints || []).map(bound)), body("in every scenario of", varied.map(over))].filter(Boolean);
+    return parts.length ? page.element("table", { class: "question", "data-testid": "question" }, parts) : null;
+  };
+
   page.startOverview = () => {
     const { data, front } = page;
     const { study, model, run } = data;
@@ -43,24 +54,25 @@
     if (study) {
       facts.push(fact("designs", page.count(study.designs), "designs"));
       facts.push(fact("scenarios each", page.count(study.scenarios), "scenarios"));
-      facts.push(fact("feasible in all", `${page.count(study.feasible)} (${page.percent(study.feasible, study.designs)})`, "feasible"));
+      const known = study.feasible !== null && study.feasible !== undefined;
+      facts.push(fact("feasible in all", known ? `${page.count(study.feasible)} (${page.percent(study.feasible, study.designs)})` : "…", "feasible", known ? null : "counted once nothing is changed for a moment"));
     }
     if (front) facts.push(fact(front.of > front.rows ? `shown, of ${page.count(front.of)} on the Pareto front` : "on the Pareto front", page.count(front.rows), "front-size"));
     if (run) facts.push(fact("computed in", runText(run), "run", `${run.platform || ""} ${run.origin || ""}`.trim()));
-    facts.push(fact("program", data.program, "program"));
+    if (data.kind !== "live") facts.push(fact("program", data.program, "program"));
     const knee = front && front.rows && front.knee !== null && front.knee !== undefined;
     const openKnee = knee ? page.element("button", { type: "button", id: "open-knee", "data-testid": "open-knee", class: "primary", click: () => page.openCard(front.knee) }, `Open the knee: design ${page.full(page.designOf(front.knee))}`) : null;
     const parts = [
       page.element("div", { class: "title-line" }, page.element("h1", {}, data.title), theme),
-      model ? page.element("p", { class: "model" }, page.element("strong", {}, model.name), `: ${model.summary}.`) : "",
-      model && model.limits ? page.element("details", { class: "limits" }, page.element("summary", {}, "Limits of the model"), page.element("p", {}, model.limits), model.source ? page.element("p", { class: "source" }, `Source: ${model.source}.`) : null) : "",
+      model && !model.limits ? page.element("p", { class: "model" }, page.element("strong", {}, model.name), `: ${model.summary}.`) : "",
+      model && model.limits ? page.element("details", { class: "limits" }, page.element("summary", {}, page.element("strong", {}, model.name), `: ${model.summary}. `, page.element("span", { class: "muted" }, "Its limits")), page.element("p", {}, model.limits), model.source ? page.element("p", { class: "source" }, `Source: ${model.source}.`) : null) : "",
       page.element("dl", { class: "facts" }, facts.filter(Boolean)),
       data.feasible_file ? page.element("p", { class: "hint", "data-testid": "feasible-file" }, `All feasible designs are in ${data.feasible_file} beside this page's result.`) : "",
       data.sensitivity ? page.element("p", { class: "notice" }, `Which input matters: ${data.sensitivity}.`) : "",
       (data.notes || []).map((note) => page.element("p", { class: "notice" }, note)),
-      front && front.rows && front.objectives.length ? page.element("div", { class: "goals" }, objectives(), openKnee) : "",
+      front && front.rows && front.objectives.length ? page.element("div", { class: "goals" }, objectives(), question(), openKnee) : "",
     ];
-    page.byId("overview").append(...parts.flat());
+    page.byId("overview").replaceChildren(...parts.flat().filter((part) => part !== ""));
   };
 
   page.startStudy = () => {
@@ -68,7 +80,7 @@
     if (!study || !study.text) return;
     const section = page.byId("study");
     section.hidden = false;
-    section.append(
+    section.replaceChildren(
       page.element("h2", { id: "study-title" }, "Study"),
       page.element("details", {}, page.element("summary", {}, `${study.file || "study.toml"}`, study.hash ? page.element("span", { class: "muted" }, ` hash ${study.hash.slice(0, 16)}…`) : ""), page.element("pre", { tabindex: 0 }, study.text)),
       inputs && inputs.length ? page.element("details", {}, page.element("summary", {}, "Inputs of the model"), inputTable(inputs)) : "",

@@ -60,6 +60,10 @@
     const side = column.words && page.state.parallel[0] === column.name ? d3.axisRight : d3.axisLeft;
     const ticks = group.append("g").attr("class", "tick-axis halo").call(page.axisOf(side, column, scale, 6));
     if (column.words) page.shortenWords(ticks, 11);
+    for (const limit of page.limitsOf(column)) {
+      const at = scale(limit);
+      if (at >= 0 && at <= HEIGHT) group.append("path").attr("class", "limit").attr("d", `M-9,${at}h18`).append("title").text(`limit of ${column.name}: ${page.short(limit)}`);
+    }
     axis.dot = group.append("circle").attr("class", "current").attr("r", 4).attr("display", "none");
     axis.brush = d3.brushY().extent([[-9, 0], [9, HEIGHT]]).handleSize(8);
     axis.group = group.append("g").attr("class", "brush").call(axis.brush);
@@ -95,7 +99,7 @@
       page.element("button", { type: "button", "aria-label": `${label} ${column.name}`, title: label, disabled, click, "aria-pressed": pressed, "data-focus": `${what} ${column.name}` }, text);
     const role = column.goal ? column.goal : column.role === "design" ? "input" : "";
     const title = page.element("div", { class: "axis-name", title: `${column.doc || column.name}${column.unit ? ` [${column.unit}]` : ""}` }, page.breakable(column.name));
-    const sub = page.element("div", { class: "axis-unit" }, [column.unit ? `[${column.unit}]` : "", role].filter(Boolean).join(" "));
+    const sub = page.element("div", { class: "axis-unit" }, [column.unit ? `[${page.unit(column.unit)}]` : "", role].filter(Boolean).join(" "));
     const buttons = page.element(
       "div",
       { class: "axis-buttons no-print" },
@@ -167,9 +171,17 @@
   };
 
   page.startParallel = () => {
+    page.saveButtons("parallel-title", "designs");
     layout();
     page.events.on("columns.parallel", layout);
     page.events.on("layout.parallel", layout);
+    // Thousands of lines take longer than the points: not while a slider moves.
+    let waiting = 0;
+    page.events.on("front.parallel", () => {
+      clearTimeout(waiting);
+      page.layoutLines(null);
+      waiting = setTimeout(layout, 140);
+    });
     page.events.on("selection.parallel", () => {
       syncBrushes();
       page.redrawLines("brush");

@@ -28,7 +28,8 @@
     const single = typeof colourOf === "number";
     const offsets = disc.map(({ dx, dy }) => dy * width + dx);
     const reach = Math.max(...disc.flatMap(({ dx, dy }) => [Math.abs(dx), Math.abs(dy)]));
-    for (let i = 0; i < xs.length; i++) {
+    // The first rows are the best of the first objective: they are painted last, over the others.
+    for (let i = xs.length - 1; i >= 0; i--) {
       if (wanted !== null && mask[i] !== wanted) continue;
       const x = xs[i];
       const y = ys[i];
@@ -45,7 +46,7 @@
     if (disc.every(({ cover }) => cover >= 256)) return drawSolid(target, width, height, xs, ys, mask, wanted, colourOf, disc);
     for (const { dx, dy, cover } of disc) {
       const offset = dy * width + dx;
-      for (let i = 0; i < xs.length; i++) {
+      for (let i = xs.length - 1; i >= 0; i--) {
         if (wanted !== null && mask[i] !== wanted) continue;
         const x = xs[i];
         const y = ys[i];

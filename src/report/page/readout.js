@@ -30,19 +30,19 @@
       const names = [...new Set([...labels, ...state.matrix, ...state.parallel])].slice(0, 18 + labels.length);
       const entry = (name) => {
         const column = front.byName.get(name);
-        const value = page.element("dd", {}, page.valueText(column, row), column.words || !column.unit || Number.isNaN(column.values[row]) ? "" : ` ${column.unit}`);
+        const value = page.element("dd", {}, page.valueText(column, row), column.words || !column.unit || Number.isNaN(column.values[row]) ? "" : ` ${page.unit(column.unit)}`, page.endOf(column, row) ? page.element("span", { class: "end", title: `at the ${page.endOf(column, row)} end of its range` }, page.endOf(column, row) === "upper" ? " ⤒" : " ⤓") : null);
         return page.element("div", {}, page.element("dt", { title: column.doc }, name), value);
       };
       children.push(page.element("div", { class: "readout-title" }, page.element("strong", {}, `design ${page.full(page.designOf(row))}`), ` (${mark})`));
       children.push(page.element("dl", {}, names.map(entry)));
-      if (front.knee !== null) children.push(page.element("p", { class: "muted key" }, "◇ knee, + ideal"));
+      if (front.knee !== null) children.push(page.element("p", { class: "muted key" }, "◇ knee, + ideal, ⤒ ⤓ at an end of its range"));
     }
     readout.replaceChildren(...children);
   };
 
   page.startReadout = () => {
     page.showReadout();
-    for (const event of ["current", "card", "colour", "theme"]) page.events.on(`${event}.readout`, () => page.schedule("readout", page.showReadout));
+    for (const event of ["current", "card", "colour", "theme", "front"]) page.events.on(`${event}.readout`, () => page.schedule("readout", page.showReadout));
     page.events.on("columns.readout", () => page.schedule("readout", page.showReadout));
   };
 }

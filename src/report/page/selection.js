@@ -11,7 +11,9 @@
     current: null, // row under the pointer or reached by the arrow keys
     card: null, // row of the open card
     theme: null, // "light", "dark" or null: as the system says
+    columns: "", // names of all columns, to know another study by
   };
+  const orders = new Map();
   page.state = state;
   page.mask = new Uint8Array(0);
   page.selectedCount = 0;
@@ -34,12 +36,30 @@
     page.selectedCount = front.rows;
   };
 
+  // Another front is there: what is chosen and brushed stays, as far as it has such columns.
+  page.adoptFront = () => {
+    const { front } = page;
+    orders.clear();
+    const known = (name) => front.byName.has(name);
+    const kept = { matrix: state.matrix.filter(known), parallel: state.parallel.filter(known), inverted: state.inverted, colour: state.colour, axes: state.axes, cells: state.cells };
+    const columns = front.columns.map((column) => column.name).join();
+    const isSame = columns === state.columns;
+    page.startState();
+    state.columns = columns;
+    if (isSame) Object.assign(state, { matrix: kept.matrix, parallel: kept.parallel, colour: known(kept.colour) ? kept.colour : state.colour });
+    state.inverted = kept.inverted;
+    for (const [name, range] of kept.axes) if (known(name) && state.parallel.concat(state.matrix).includes(name)) state.axes.set(name, range);
+    for (const [key, cell] of kept.cells) if (state.matrix.includes(cell.x) && state.matrix.includes(cell.y)) state.cells.set(key, cell);
+    state.current = null;
+    count();
+  };
+
   const keep = (values, [low, high]) => {
     const { mask } = page;
     for (let i = 0; i < mask.length; i++) if (!(values[i] >= low && values[i] <= high)) mask[i] = 0;
   };
 
-  const apply = () => {
+  const count = () => {
     const { mask, front } = page;
     mask.fill(1);
     for (const [name, range] of state.axes) keep(front.byName.get(name).values, range);
@@ -47,12 +67,37 @@
       keep(front.byName.get(x).values, xRange);
       keep(front.byName.get(y).values, yRange);
     }
-    let count = 0;
-    for (let i = 0; i < mask.length; i++) count += mask[i];
-    page.selectedCount = count;
+    let selected = 0;
+    for (let i = 0; i < mask.length; i++) selected += mask[i];
+    page.selectedCount = selected;
+  };
+
+  const apply = () => {
+    count();
     page.events.call("selection");
   };
   page.applySelection = apply;
+
+  // The bounds of the constraints on a column.
+  page.limitsOf = (column) => {
+    const bounds = page.front.constraints.filter((it) => it.column === column).flatMap(({ min, above, max, below }) => [min, above, max, below]);
+    return bounds.filter((it) => it !== null && it !== undefined);
+  };
+
+  // Which end of its axis a design stands on: "lower", "upper" or "".
+  page.endOf = (column, row) => {
+    const input = column.role === "design" && (page.data.inputs || []).find((it) => it.name === column.name);
+    if (!input || !Number.isFinite(input.least) || input.least === input.largest) return "";
+    const value = column.values[row];
+    return value === input.least ? "lower" : value === input.largest ? "upper" : "";
+  };
+
+  // Is the front of the designs in this range the front in this range? Only where it cuts an objective on its worse side: elsewhere designs
+  // that are beaten now would be on it.
+  page.isOfFront = (name, [low, high]) => {
+    const column = page.front.byName.get(name);
+    return Boolean(column.goal) && (column.goal === "min" ? low <= column.low : high >= column.high);
+  };
 
   page.brushed = () => state.axes.size + state.cells.size > 0;
 
@@ -118,7 +163,6 @@
   };
 
   // The next selected row in the order of a column, for the arrow keys.
-  const orders = new Map();
   page.nextInOrder = (name, row, step) => {
     if (!orders.has(name)) {
       const { values } = page.front.byName.get(name);

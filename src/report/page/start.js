@@ -4,6 +4,7 @@
 
   const start = async () => {
     await page.decode();
+    if (page.data.kind === "live") return page.startLive();
     const row = page.readAddress();
     page.startTheme();
     document.documentElement.dataset.theme = page.dark() ? "dark" : "light";
@@ -12,6 +13,7 @@
     if (front && front.rows) {
       page.applySelection();
       page.startBar();
+      page.startPins();
       page.startMatrix();
       page.startStrip();
       page.startReadout();
@@ -68,6 +70,8 @@
     openCard: (row) => page.openCard(row),
     closeCard: () => page.closeCard(),
     csv: () => page.selectedCsv(),
+    change: (parts) => page.change(parts),
+    page,
   };
   window.beltspace.ready = start().catch((error) => {
     const message = `This page could not be shown: ${error.message}. The same results are in the files beside it.`;

@@ -48,7 +48,7 @@
       const direction = sort.name !== column.name ? "none" : sort.down ? "descending" : "ascending";
       const arrow = { none: "", ascending: " ↑", descending: " ↓" }[direction];
       const button = page.element("button", { type: "button", click: () => sortBy(column.name), title: column.doc }, column === page.front.index ? "design" : column.name, arrow);
-      return page.element("th", { scope: "col", "aria-sort": direction, "data-column": column.name, class: column.words ? "" : "number" }, button, column.unit ? page.element("span", { class: "unit" }, column.unit) : null);
+      return page.element("th", { scope: "col", "aria-sort": direction, "data-column": column.name, class: column.words ? "" : "number" }, button, column.unit ? page.element("span", { class: "unit" }, page.unit(column.unit)) : null);
     };
     heads.replaceChildren(...columns.map(head));
     const rows = sortedRows();
@@ -105,6 +105,7 @@
     };
     page.events.on("selection.table", later);
     page.events.on("columns.table", later);
+    page.events.on("front.table", later);
     page.events.on("current.table", markCurrent);
     page.events.on("card.table", markCurrent);
   };

@@ -56,15 +56,17 @@
 
   page.startTally = () => {
     const { data, front } = page;
+    page.byId("tally").replaceChildren();
+    page.byId("tally").hidden = true;
     const { tally, study, findings } = data;
     if (tally) drawTally(tally, { one: "design", title: "What limits feasibility", id: "tally-title", all: study && study.designs, good: "are feasible" });
     if (data.draws) drawTally(data.draws, { one: "draw", title: "What draws fail at", id: "draws-title", all: data.draws.draws, good: "hold" });
     const none = study && (study.feasible === 0 || (front && front.rows === 0 && front.objectives.length));
     if (findings && !none) drawFindings(page.byId("overview"), findings);
-    if (!none) return;
     const lead = page.byId("lead");
-    lead.hidden = false;
-    lead.append(page.element("h2", {}, "No design is feasible: what limits it"), ...(tally ? sentences(tally) : ["The result does not say why."]).map((text) => page.element("p", {}, text)));
+    lead.hidden = !none;
+    if (!none) return;
+    lead.replaceChildren(page.element("h2", {}, "No design is feasible: what limits it"), ...(tally ? sentences(tally) : ["The result does not say why."]).map((text) => page.element("p", {}, text)));
     if (findings) drawFindings(lead, findings);
     if (tally) lead.after(page.byId("tally"));
   };

@@ -23,6 +23,8 @@
 //! | `tolerance.rs`  | tolerances that become a part of the model          |
 //! | `drawn.rs`      | `[probability]`, and what is asked of draws         |
 //! | `set.rs`        | values in place of what a study says               |
+//! | `part.rs`       | parts of a study that are given another value      |
+//! | `place.rs`      | where in its text they are written                 |
 
 mod axes;
 mod cases;
@@ -35,6 +37,8 @@ mod labels;
 mod law;
 mod model_file;
 mod model_inputs;
+mod part;
+mod place;
 mod presets;
 mod quantities;
 mod range;
@@ -55,6 +59,8 @@ pub(super) use formulas::CurvePoints;
 pub(super) use law::LAWS;
 pub use model_file::{FileKind, file_kind, parse_model, read_model};
 pub(super) use model_file::{ModelText, read_model_text};
+#[cfg(feature = "cli")]
+pub(crate) use part::entry_names;
 pub(super) use quantities::MOST_OBJECTIVES;
 pub(super) use range::check_levels;
 pub(super) use report::{BINS, FRONT_BUDGET, MOST_CELLS, MOST_FEASIBLE, MOST_SAMPLE, MOST_TOP, MOST_VARIANTS};

@@ -1,4 +1,4 @@
-//! One value in place of whatever a study gives an input: `--set NAME=VALUE`.
+//! One value in place of whatever a study gives an input, `--set NAME=VALUE`, or of a part of it, `--set TABLE.NAME.KEY=VALUE`.
 //!
 //! The text of the study is edited, and then read like any other: an axis or a formula of that name becomes a comment, the value goes into
 //! `[fixed]`. So the study is the same as one that was written so by hand, and the text that a result keeps says what was judged. Lines
@@ -7,12 +7,14 @@
 use super::csv_file::csv_text;
 use super::formulas::GIVING;
 use super::law::tolerance;
+use super::part::{StudyPart, written};
+use super::place::{Edit, left_out, place_in, span};
 use super::table::{Entry, Lines, TomlTable, shortened};
 use super::{Problem, StudyErrors};
 use crate::error::{Error, Result};
 use crate::models::{Models, is_name};
 use crate::study::Study;
-use serde_json::Value;
+use serde_json::{Map, Value};
 use std::ops::Range;
 use std::path::Path;
 use toml::de::{DeTable, DeValue};
@@ -22,12 +24,14 @@ struct StudySetting {
     table: &'static str,
     name: String,
     value: String,
+    /// Where the value goes, if that is said.
+    part: Option<StudyPart>,
 }
 
 /// What is asked of a study besides what its file says.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StudyEdits<'a> {
-    /// Values in place of what it gives some inputs, each as `NAME=VALUE`.
+    /// Values in place of what it gives some inputs, each as `NAME=VALUE`, or of parts of it, as `TABLE.NAME.KEY=VALUE`.
     pub set: &'a [String],
     /// `feasible = true` in its `[report]`.
     pub feasible: bool,
@@ -37,15 +41,23 @@ impl StudySetting {
     /// Takes `NAME=VALUE` apart.
     fn new(assignment: &str) -> std::result::Result<Self, String> {
         let parts = assignment.split_once('=').map(|(name, value)| (name.trim(), value.trim()));
-        match parts.filter(|(name, value)| !name.is_empty() && !value.is_empty()) {
-            Some((name, value)) => Ok(Self { table: "fixed", name: name.to_owned(), value: value.to_owned() }),
-            None => Err(format!("--set \"{}\": write NAME=VALUE", shortened(assignment))),
+        let Some((name, value)) = parts.filter(|(name, value)| !name.is_empty() && !value.is_empty()) else {
+            return Err(format!("--set \"{}\": write NAME=VALUE", shortened(assignment)));
+        };
+        let mut setting = Self { table: "fixed", name: name.to_owned(), value: value.to_owned(), part: None };
+        if let Some(part) = StudyPart::read(name) {
+            let told = |why| format!("{}: {why}", setting.told());
+            let part = part.map_err(told)?;
+            written(value).map_err(told)?;
+            setting.table = part.table;
+            setting.part = Some(part);
         }
+        Ok(setting)
     }
 
     /// `feasible = true` in `[report]`.
     fn feasible() -> Self {
-        Self { table: "report", name: "feasible".to_owned(), value: "true".to_owned() }
+        Self { table: "report", name: "feasible".to_owned(), value: "true".to_owned(), part: None }
     }
 
     fn is_of_report(&self) -> bool {
@@ -57,10 +69,9 @@ impl StudySetting {
         if self.is_of_report() {
             return self.value.clone();
         }
-        match self.value.parse::<f64>() {
-            Ok(number) if number.is_finite() => format!("{number:?}").trim_end_matches(".0").to_owned(),
-            _ => Value::from(self.value.as_str()).to_string(),
-        }
+        // A list has been looked at when the setting was read; anything else has a form.
+        let plain = || Value::from(self.value.as_str()).to_string();
+        if self.part.is_none() && self.value.starts_with('[') { plain() } else { written(&self.value).unwrap_or_else(|_| plain()) }
     }
 
     /// The same as [`unplaced`] gives it.
@@ -69,7 +80,19 @@ impl StudySetting {
         if self.is_of_report() {
             return Value::from(true);
         }
+        if text.starts_with('[') {
+            let tree = format!("it = {text}");
+            let tree = DeTable::parse(&tree).ok();
+            return tree.and_then(|tree| Some(unplaced(tree.get_ref().get("it")?.get_ref()))).unwrap_or_default();
+        }
         if text.starts_with('"') { Value::from(self.value.as_str()) } else { Value::from(text) }
+    }
+
+    /// Is it the first of those that make one new entry?
+    fn leads(&self, settings: &[Self], new: &[usize]) -> bool {
+        let Some(part) = &self.part else { return true };
+        let first = new.iter().map(|&it| &settings[it]).find(|it| it.part.as_ref().is_some_and(|it| it.is_beside(part)));
+        first.is_some_and(|it| it.name == self.name)
     }
 
     fn told(&self) -> String {
@@ -87,14 +110,6 @@ pub(super) enum SetAxes {
     Go,
     /// It stays with that one value, for what only one design is asked of: maps keep their axes.
     Stay,
-}
-
-/// A part of the text that becomes another.
-struct Edit {
-    range: Range<usize>,
-    with: String,
-    /// Number of the setting that it writes.
-    writes: Option<usize>,
 }
 
 /// The study's text with all settings in it.
@@ -178,6 +193,14 @@ fn edited(settings: &[StudySetting], top: &TomlTable<'_>, text: &str, models: &M
             }
             continue;
         }
+        if let Some(part) = &setting.part {
+            match part.edit(&setting.value, &setting.in_toml(), number, top, text) {
+                Ok(Some(edit)) => edits.push(edit),
+                Ok(None) => new.push(number),
+                Err(why) => problems.push(format!("{}: {why}", setting.told())),
+            }
+            continue;
+        }
         if let Some((table, axis)) = joint_axis(name, top, folder, &is_input) {
             let why = format!("{} is set by the rows of \"{axis}\" in [{table}]", setting.name);
             problems.push(format!("{}: {why}; --set replaces the axis of one input: change the rows", setting.told()));
@@ -208,12 +231,13 @@ fn edited(settings: &[StudySetting], top: &TomlTable<'_>, text: &str, models: &M
     if !problems.is_empty() {
         return Err(refusal(problems));
     }
-    for table in ["fixed", "report"] {
+    for table in ["fixed", "constraints", "objectives", "report"] {
         let (at, before, after) = place_in(table, top, text);
-        let of_table = new.iter().filter(|&&number| settings[number].table == table);
+        let of_table = new.iter().filter(|&&number| settings[number].table == table && settings[number].leads(settings, &new));
         for (count, &number) in of_table.enumerate() {
             let [before, after] = [&before, &after].map(|it| &it[count.min(1)]);
-            edits.push(Edit { range: at..at, with: format!("{before}{}{after}", line_of(&settings[number])), writes: Some(number) });
+            let line = new_line(number, settings, &new);
+            edits.push(Edit { range: at..at, with: format!("{before}{line}{after}"), writes: Some(number) });
         }
     }
     let unread = unread(settings, top, text, &is_input);
@@ -241,6 +265,14 @@ fn unread<'n>(settings: &[StudySetting], top: &TomlTable<'n>, text: &str, is_inp
     entries("fixed").into_iter().filter(is_unread).collect()
 }
 
+/// The line of a new entry, which may have several keys.
+fn new_line(number: usize, settings: &[StudySetting], new: &[usize]) -> String {
+    let Some(part) = &settings[number].part else { return line_of(&settings[number]) };
+    let beside = new.iter().filter_map(|&it| Some((settings[it].part.as_ref()?, &settings[it])));
+    let keys: Vec<_> = beside.filter(|(it, _)| it.is_beside(part)).map(|(it, setting)| (it.key(), setting.in_toml())).collect();
+    part.line(&keys)
+}
+
 fn line_of(setting: &StudySetting) -> String {
     format!("{} = {}", setting.name, setting.in_toml())
 }
@@ -262,59 +294,6 @@ fn joint_axis(name: &str, top: &TomlTable<'_>, folder: &Path, is_input: &dyn Fn(
         let joint = entries.into_iter().find(|it| it.key.starts_with("cases") && !is_input(it.key) && names_it(it));
         joint.map(|entry| (table, entry.key.to_owned()))
     })
-}
-
-/// A key with its value.
-fn span(entry: &Entry<'_>) -> Range<usize> {
-    entry.key_at..entry.node.end
-}
-
-/// An entry that becomes a comment, or blank where others follow on its line.
-fn left_out(entry: &Entry<'_>, text: &str) -> Edit {
-    let mut range = span(entry);
-    // `design.ratio = ...`: the whole key.
-    if text[..range.start].trim_end().ends_with('.') {
-        range.start = text[..range.start].rfind(['\n', '{', ',']).map_or(0, |at| at + 1);
-    }
-    let line = text[..range.start].rfind('\n').map_or(0, |at| at + 1);
-    if text[line..range.start].trim().is_empty() {
-        return Edit { with: format!("# {}", text[range.clone()].replace('\n', "\n# ")), range, writes: None };
-    }
-    // Within braces, with one of the commas around it.
-    let rest = &text[range.end..];
-    if rest.trim_start().starts_with(',') {
-        range.end += rest.len() - rest.trim_start().len() + 1;
-    } else if text[..range.start].trim_end().ends_with(',') {
-        range.start = text[..range.start].trim_end().len() - 1;
-    }
-    let blank = text[range.clone()].chars().map(|it| if it == '\n' { '\n' } else { ' ' }).collect();
-    Edit { range, with: blank, writes: None }
-}
-
-/// Where a further entry of a table goes, and what goes before and after it: the first, and any other.
-fn place_in(name: &str, top: &TomlTable<'_>, text: &str) -> (usize, [String; 2], [String; 2]) {
-    let both = |it: &str| [it.to_owned(), it.to_owned()];
-    let next_line = |at: usize| text[at..].find('\n').map_or((text.len(), "\n"), |end| (at + end + 1, ""));
-    let Some(table) = top.get(name) else {
-        let start = if text.is_empty() || text.ends_with('\n') { "" } else { "\n" };
-        return (text.len(), [format!("{start}\n[{name}]\n"), String::new()], both("\n"));
-    };
-    let header = text[..table.key_at].trim_end().ends_with('[');
-    let entries = table.node.table().map_or(Vec::new(), |table| table.entries);
-    match entries.last() {
-        None if header => {
-            let (at, start) = next_line(table.key_at);
-            (at, [start.to_owned(), String::new()], both("\n"))
-        }
-        // Without a value `fixed = {}` is all there can be.
-        None => (table.node.end.saturating_sub(1), [" ".to_owned(), ", ".to_owned()], both("")),
-        Some(last) if header || text[..last.key_at].trim_end().ends_with('.') => {
-            let (at, start) = next_line(last.node.end);
-            let key = if header { String::new() } else { format!("{name}.") };
-            (at, [format!("{start}{key}"), key], both("\n"))
-        }
-        Some(last) => (last.node.end, both(", "), both("")),
-    }
 }
 
 fn applied(mut edits: Vec<Edit>, text: &str, settings: usize) -> EditedText {
@@ -343,31 +322,32 @@ fn applied(mut edits: Vec<Edit>, text: &str, settings: usize) -> EditedText {
 fn is_as_meant(text: &str, top: &TomlTable<'_>, settings: &[StudySetting], gone: &[&str]) -> bool {
     let Ok(tree) = DeTable::parse(text) else { return false };
     let own = TomlTable::new(tree.get_ref(), 0);
-    let is_set = |key: &str| settings.iter().any(|it| it.name == key);
-    let same = |a: Option<&Entry<'_>>, b: Option<&Entry<'_>>| a.map(|it| unplaced(it.node.value)) == b.map(|it| unplaced(it.node.value));
-    let others = |table: &TomlTable<'_>, name: &str| -> Vec<(String, Value)> {
-        let entries = table.get(name).and_then(|entry| entry.node.table()).map_or(Vec::new(), |table| table.entries);
-        let goes = |key: &str| is_set(key) || (name == "fixed" && gone.contains(&key));
-        entries.iter().filter(|entry| !goes(entry.key)).map(|entry| (entry.key.to_owned(), unplaced(entry.node.value))).collect()
+    let whole = |top: &TomlTable<'_>| -> Map<String, Value> {
+        top.entries.iter().map(|entry| (entry.key.to_owned(), unplaced(entry.node.value))).collect()
     };
-    let edited = |name: &str| GIVING.contains(&name) || ["formulas", "report"].contains(&name);
-    let value = |name: &str, table: &str| {
-        let table = own.get(table)?.node.table()?;
-        table.get(name).filter(|entry| !is_tolerance(entry)).map(|entry| unplaced(entry.node.value))
-    };
-    // It has one place, whichever that is.
-    let placed = |it: &StudySetting| {
-        let found: Vec<_> = if it.is_of_report() {
-            value(&it.name, "report").into_iter().collect()
-        } else {
-            GIVING.iter().chain(&["formulas"]).filter_map(|table| value(&it.name, table)).collect()
-        };
-        found == [it.in_json()]
-    };
-    top.entries.iter().all(|entry| {
-        if edited(entry.key) { others(top, entry.key) == others(&own, entry.key) } else { same(Some(entry), own.get(entry.key)) }
-    }) && own.entries.iter().all(|entry| ["fixed", "report"].contains(&entry.key) || top.get(entry.key).is_some())
-        && settings.iter().all(placed)
+    let (mut wanted, found) = (whole(top), whole(&own));
+    if let Some(fixed) = wanted.get_mut("fixed").and_then(Value::as_object_mut) {
+        gone.iter().for_each(|name| drop(fixed.shift_remove(*name)));
+    }
+    let tolerances =
+        |name: &str| top.get("uncertainty").and_then(|it| it.node.table()).is_some_and(|it| it.get(name).is_some_and(is_tolerance));
+    for setting in settings {
+        if let Some(part) = &setting.part {
+            part.put(&setting.value, setting.in_json(), &mut wanted);
+            continue;
+        }
+        // An input that is set has one place, whichever that is; a tolerance is about that.
+        let stays = |table: &str| found.get(table).is_some_and(|it| it.get(&setting.name).is_some_and(|it| *it == setting.in_json()));
+        let place = ["design", setting.table].into_iter().find(|it| stays(it)).unwrap_or(setting.table);
+        for table in GIVING.iter().chain(&["formulas"]).filter(|it| **it != place && !(**it == "uncertainty" && tolerances(&setting.name)))
+        {
+            wanted.get_mut(*table).and_then(Value::as_object_mut).map(|it| it.shift_remove(&setting.name));
+        }
+        let table = wanted.entry(place).or_insert_with(|| Value::Object(Map::new()));
+        table.as_object_mut().map(|it| it.insert(setting.name.clone(), setting.in_json()));
+    }
+    // Tables and their entries have no order here.
+    wanted == found
 }
 
 /// Is it about what the design says, rather than a value?
@@ -397,7 +377,8 @@ fn explained(errors: StudyErrors, settings: &[StudySetting], edited: &EditedText
     for problem in errors.problems {
         let at = (problem.line, problem.column);
         if let Some(number) = places.iter().position(|(from, to)| (from..=to).contains(&&at)) {
-            let labels = ["fixed input", "axis"].map(|what| format!("{what} \"{}\": ", settings[number].name));
+            let name = settings[number].part.as_ref().map_or(&settings[number].name, |part| &part.entry);
+            let labels = ["fixed input", "axis", "constraint", "objective"].map(|what| format!("{what} \"{name}\": "));
             let labels = labels.iter().map(String::as_str).chain(["feasible: "]);
             let message = labels.into_iter().find_map(|label| problem.message.strip_prefix(label)).unwrap_or(&problem.message);
             of_settings.push(format!("{}: {message}", settings[number].told()));

@@ -20,6 +20,8 @@ pub struct Browser {
     next: u64,
     /// Errors and warnings of the page, and everything that it asked a network for.
     pub complaints: Vec<String>,
+    /// The beginning of addresses that are its own, besides those of files.
+    own: Option<String>,
     /// From starting the program to a page that can be used, of the first page.
     pub opened: Duration,
     _profile: TempDir,
@@ -29,6 +31,23 @@ impl Browser {
     /// Starts `chromium` and opens a file by its `file://` address, `after` being put behind it, such as `#d=5`.
     pub fn open(file: &Path, after: &str) -> Self {
         let start = Instant::now();
+        let mut browser = Self::start();
+        browser.go_to(file, after);
+        browser.opened = start.elapsed();
+        browser
+    }
+
+    /// Starts `chromium` and opens an address of a server on this machine.
+    pub fn open_at(address: &str) -> Self {
+        let start = Instant::now();
+        let mut browser = Self::start();
+        browser.own = address.find("/?").map(|end| address[..=end].to_owned());
+        browser.go_to_address(address);
+        browser.opened = start.elapsed();
+        browser
+    }
+
+    fn start() -> Self {
         let profile = tempfile::tempdir().expect("there is room for a profile");
         let process = Command::new("chromium")
             .args(["--headless=new", "--no-sandbox", "--disable-gpu", "--no-first-run", "--hide-scrollbars", "--remote-debugging-port=0"])
@@ -49,24 +68,39 @@ impl Browser {
         if let MaybeTlsStream::Plain(stream) = socket.get_ref() {
             stream.set_read_timeout(Some(PATIENCE)).expect("a socket takes a limit");
         }
-        let mut browser =
-            Self { process, socket, session: String::new(), next: 0, complaints: Vec::new(), opened: Duration::ZERO, _profile: profile };
+        let mut browser = Self {
+            process,
+            socket,
+            session: String::new(),
+            next: 0,
+            complaints: Vec::new(),
+            own: None,
+            opened: Duration::ZERO,
+            _profile: profile,
+        };
         let target = browser.call("Target.createTarget", &json!({ "url": "about:blank" }))["targetId"].clone();
         let attached = browser.call("Target.attachToTarget", &json!({ "targetId": target, "flatten": true }));
         browser.session = attached["sessionId"].as_str().expect("a session has a name").to_owned();
         for domain in ["Page", "Runtime", "Log", "Network"] {
             browser.call(&format!("{domain}.enable"), &json!({}));
         }
-        let size = json!({ "width": 1400, "height": 1000, "deviceScaleFactor": 1, "mobile": false });
-        browser.call("Emulation.setDeviceMetricsOverride", &size);
-        browser.go_to(file, after);
-        browser.opened = start.elapsed();
+        browser.resize(1400, 1000);
         browser
+    }
+
+    /// Gives the page another size.
+    pub fn resize(&mut self, width: u32, height: u32) {
+        let size = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
+        self.call("Emulation.setDeviceMetricsOverride", &size);
     }
 
     /// Opens another file, or the same anew.
     pub fn go_to(&mut self, file: &Path, after: &str) {
-        let address = format!("file://{}{after}", file.display());
+        self.go_to_address(&format!("file://{}{after}", file.display()));
+    }
+
+    /// Opens an address.
+    pub fn go_to_address(&mut self, address: &str) {
         // An address that differs in its fragment only would not load anything.
         self.call("Page.navigate", &json!({ "url": "about:blank" }));
         self.call("Page.navigate", &json!({ "url": address }));
@@ -214,7 +248,8 @@ impl Browser {
             "Runtime.consoleAPICalled" if parameters["type"] != "log" => self.complaints.push(parameters.to_string()),
             "Network.requestWillBeSent" => {
                 let address = parameters["request"]["url"].as_str().unwrap_or_default();
-                let own = ["file://", "data:", "blob:", "about:"].iter().any(|scheme| address.starts_with(scheme));
+                let own = ["file://", "data:", "blob:", "about:"].into_iter().chain(self.own.as_deref());
+                let own = own.into_iter().any(|scheme| address.starts_with(scheme));
                 if !own {
                     self.complaints.push(format!("asked for {address}"));
                 }

@@ -166,6 +166,75 @@ fn what_cannot_be_set_is_told_by_its_name() {
     assert_eq!(ask(folder.path(), "check study.toml --set torque_Nm=70").refusal(2), format!("error: --set torque_Nm=70: {told}\n"));
 }
 
+/// Parts of the study: what is set, and what a person would write in its place.
+#[test]
+fn a_part_of_a_study_that_is_set_is_as_if_it_was_written_so() {
+    let by_hand = |text: &str| described(folder_with("study.toml", text).path(), &[]);
+    let margins = "stress_margin = { max = 0.95, min = 0 }";
+    for (set, edits) in [
+        (&["constraints.slip_margin.min=0.1"][..], &[("slip_margin   = { min = 0 }", "slip_margin   = { min = 0.1 }")][..]),
+        (
+            &["constraints.stress_margin.max=0.9", "constraints.stress_margin.min=-0.1"],
+            &[(margins, "stress_margin = { max = 0.9, min = -0.1 }")],
+        ),
+        // A key that the entry does not have; an entry that the table does not have, of one key and of two.
+        (&["constraints.slip_margin.max=0.4"], &[("slip_margin   = { min = 0 }", "slip_margin   = { min = 0, max = 0.4 }")]),
+        (&["constraints.max_stress_MPa.max=700"], &[(margins, "stress_margin = { max = 0.95, min = 0 }\nmax_stress_MPa = { max = 700 }")]),
+        (
+            &["constraints.max_stress_MPa.min=100", "constraints.max_stress_MPa.max=700"],
+            &[(margins, "stress_margin = { max = 0.95, min = 0 }\nmax_stress_MPa = { min = 100, max = 700 }")],
+        ),
+        // Without a constraint; an objective turned, taken out and added.
+        (&["constraints.slip_margin=off"], &[("slip_margin   = { min = 0 }\n", "")]),
+        (&["objectives.stress_margin=min"], &[("stress_margin = \"max\"", "stress_margin = \"min\"")]),
+        (&["objectives.band_count=off"], &[("band_count    = \"min\"\n", "")]),
+        (&["objectives.slip_margin=max"], &[("band_count    = \"min\"", "band_count    = \"min\"\nslip_margin = \"max\"")]),
+        // Ends of axes, their levels, and a list of loads.
+        (
+            &["design.groove_angle_deg.to=29", "operation.ratio.count=4"],
+            &[("to = 30", "to = 29"), ("to = 2.0, count = 3", "to = 2.0, count = 4")],
+        ),
+        (&["operation.torque_Nm=[50, 140]"], &[("[50, 150]", "[50, 140]")]),
+        (&["uncertainty.friction=[0.07]", "fixed.strength_MPa=700"], &[("[0.065, 0.095]", "[0.07]"), ("= 800", "= 700")]),
+        // Together with an input.
+        (&["strength_MPa=700", "design.band_count.from=7"], &[("= 800", "= 700"), ("from = 6", "from = 7")]),
+    ] {
+        let folder = folder_with("study.toml", SMALL);
+        let words: Vec<&str> = set.iter().flat_map(|it| ["--set", it]).collect();
+        assert_eq!(described(folder.path(), &words), by_hand(&changed(SMALL, edits)), "{set:?}");
+    }
+}
+
+#[test]
+fn a_part_that_cannot_be_set_is_told_by_its_name() {
+    let folder = folder_with("study.toml", SMALL);
+    for (set, told) in [
+        (
+            "report.top=1",
+            "there is nothing to set in \"report\"; parts of a study begin with one of design, operation, uncertainty, fixed, constraints, objectives",
+        ),
+        ("design.ratio.to=3", "the study has no ratio in [design]"),
+        ("design.band_count.csv=rows.csv", "\"csv\" cannot be set; keys are from, to, count, step, spacing"),
+        ("design.band_count={ csv = \"rows.csv\" }", "\"{ csv = \"rows.csv\" }\" is not a number with a unit; write for example \"12\""),
+        ("operation.torque_Nm=[[1]]", "write a list of numbers or words, such as [50, 150]"),
+        ("operation.torque_Nm=[1], x = [2", "write a list of numbers or words, such as [50, 150]"),
+        ("operation.torque_Nm.from=1", "torque_Nm of [operation] is a list, which has no keys; give all of it a new value"),
+        ("constraints.slip_margin=3", "it must be a table"),
+        ("constraints.axial_force_N=off", "the study has no axial_force_N in [constraints]"),
+        ("constraints.slip_margin.min=x", "\"x\""),
+        ("objectives.stress_margin=up", "unknown goal \"up\""),
+        ("fixed.strength_MPa.min=1", "\"min\" cannot be set; write fixed.strength_MPa=VALUE"),
+    ] {
+        let said = ask_words(folder.path(), &["check", "study.toml", "--set", set]).refusal(2);
+        assert!(said.starts_with(&format!("error: --set {set}: ")) && said.contains(told), "{set}: {said}");
+    }
+    let twice = ask(folder.path(), "check study.toml --set design.band_count.to=9 --set design.band_count.to=10").refusal(2);
+    assert_eq!(twice, "error: --set gives design.band_count.to twice; keep one of the two\n");
+    // A bound that leaves nothing is told where it was set.
+    let said = ask(folder.path(), "check study.toml --set constraints.stress_margin.min=2").refusal(2);
+    assert!(said.contains("--set constraints.stress_margin.min=2: "), "{said}");
+}
+
 #[test]
 fn a_result_says_what_was_set_and_another_setting_is_another_study() {
     let folder = folder_with("study.toml", SMALL);

@@ -1,0 +1,164 @@
+//! What can be changed on the page, and between which ends: constraints, objectives, axes, and single values.
+//!
+//! Each control names the part of the study that it changes, as `--set` takes it.
+
+use crate::certify::{self, margin_columns};
+use crate::error::Result;
+use crate::models::Input;
+use crate::plan::Plan;
+use crate::screen::Control;
+use crate::study::{Axis, Goal, Levels, Study, entry_names, number, value_of};
+use crate::table::written;
+use serde_json::{Map, Value, json};
+
+/// Designs that tell which values a constraint meets.
+const SEEN: u64 = 32;
+/// Most values of a list that have a field each.
+const MOST_VALUES: usize = 8;
+
+/// The controls of a study as its file has it.
+///
+/// # Errors
+/// [`Error::Stopped`](crate::error::Error::Stopped) after `control.stop`.
+pub fn controls(plan: &Plan, text: &str, threads: usize, control: &Control) -> Result<Value> {
+    let study = &plan.study;
+    let axes = |table: &str, axes: &[Axis]| -> Vec<Value> { axes.iter().map(|axis| axis_control(study, table, axis)).collect() };
+    Ok(json!({
+        "constraints": constraints(plan, text, threads, control)?,
+        "objectives": objectives(study, text),
+        "operation": axes("operation", &study.operation),
+        "uncertainty": axes("uncertainty", &study.uncertainty),
+        "design": axes("design", &study.design),
+        "fixed": fixed(study, &entry_names(text, "fixed")),
+        "formulas": entry_names(text, "formulas"),
+        "drawn": study.probability.as_ref().map_or_else(Vec::new, |it| it.inputs.iter().map(|it| it.name.clone()).collect::<Vec<_>>()),
+    }))
+}
+
+/// Each constraint with its bounds, and with what it meets among designs from all over the study.
+fn constraints(plan: &Plan, text: &str, threads: usize, control: &Control) -> Result<Vec<Value>> {
+    let study = &plan.study;
+    let names = entry_names(text, "constraints");
+    // Of a study with distributions some constraints are those of a draw, which are not among these.
+    if names.len() != study.constraints.len() {
+        return Ok(Vec::new());
+    }
+    let designs: Vec<u64> = (0..SEEN.min(plan.designs())).map(|step| plan.design_at(plan.spread(step))).collect();
+    let rows = certify::rows(plan, &margin_columns(study), &designs, threads, control)?;
+    let each = study.constraints.iter().zip(names).enumerate().map(|(at, (constraint, name))| {
+        let values = rows.iter().filter_map(|row| row.columns[at].value).filter(|it| it.is_finite());
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), it| (low.min(it), high.max(it)));
+        let mut bounds = Map::new();
+        for (bound, inclusive, exclusive) in [(constraint.low, "min", "above"), (constraint.high, "max", "below")] {
+            if let Some((bound, excluded)) = bound {
+                bounds.insert(if excluded { exclusive } else { inclusive }.to_owned(), number(bound));
+            }
+        }
+        json!({
+            "part": format!("constraints.{name}"), "name": name, "of": constraint.name(&study.model),
+            "unit": study.unit_over(constraint.quantity, constraint.over), "doc": constraint.quantity.doc(&study.model),
+            "bounds": bounds, "low": finite(low), "high": finite(high),
+        })
+    });
+    Ok(each.collect())
+}
+
+fn finite(value: f64) -> Value {
+    if value.is_finite() { number(value) } else { Value::Null }
+}
+
+fn objectives(study: &Study, text: &str) -> Vec<Value> {
+    let names = entry_names(text, "objectives");
+    let each = study.objectives.iter().zip(names).map(|(it, name)| {
+        json!({
+            "part": format!("objectives.{name}"), "name": name, "goal": if it.goal == Goal::Min { "min" } else { "max" },
+            // What is written as a table has a key for it.
+            "plain": it.resolution.is_none() && it.over.is_worst() && name == it.quantity.name(&study.model),
+            "doc": it.quantity.doc(&study.model), "unit": study.unit_over(it.quantity, it.over),
+        })
+    });
+    each.collect()
+}
+
+fn axis_control(study: &Study, table: &str, axis: &Axis) -> Value {
+    let model = &study.model;
+    let names: Vec<&str> = axis.inputs().iter().map(|&input| model.inputs[input].name.as_str()).collect();
+    let (Axis::Single { input, levels }, false) = (axis, axis.inputs().len() != 1) else {
+        return json!({ "form": "rows", "name": names.join(", "), "rows": axis.count(), "table": table });
+    };
+    let described = &model.inputs[*input];
+    let mut control = described_input(described);
+    control["part"] = format!("{table}.{}", described.name).into();
+    control["table"] = table.into();
+    let (least, largest) = levels.ends();
+    let of_range = |control: &mut Value, from: f64, to: f64, log: bool| {
+        (control["form"], control["from"], control["to"], control["log"]) = ("range".into(), number(from), number(to), log.into());
+    };
+    match levels {
+        Levels::List(values) => {
+            let is_short = values.len() <= MOST_VALUES;
+            control["form"] = if is_short { "list" } else { "rows" }.into();
+            control["rows"] = values.len().into();
+            control["values"] = if is_short { values.iter().map(|&it| value_of(model, *input, it)).collect() } else { Value::Null };
+        }
+        Levels::Even { from, to, count, log } => {
+            of_range(&mut control, *from, *to, *log);
+            control["count"] = (*count).into();
+        }
+        Levels::Step { from, step, count, log } => {
+            of_range(&mut control, *from, levels.value(count - 1), *log);
+            control["count"] = (*count).into();
+            // Steps of a logarithmic axis are factors: its ends move in levels.
+            control["step"] = if *log { Value::Null } else { number(*step) };
+        }
+        Levels::Continuous { from, to, log } => of_range(&mut control, *from, *to, *log),
+    }
+    span(&mut control, described, least, largest);
+    control
+}
+
+fn described_input(input: &Input) -> Value {
+    json!({
+        "name": input.name, "unit": input.unit.symbol, "symbol": input.symbol, "doc": input.doc, "integer": input.integer,
+        "words": input.words.iter().map(|(word, _)| word).collect::<Vec<_>>(), "only_words": input.is_enumeration(),
+    })
+}
+
+/// Between which ends a slider runs: what the source covers and what the study says, within what the formula accepts.
+fn span(control: &mut Value, input: &Input, least: f64, largest: f64) {
+    let (usual_low, usual_high) = input.usual;
+    let width = if input.word_for(least).is_some() || input.word_for(largest).is_some() { 0.0 } else { largest - least };
+    let (mut low, mut high) = (usual_low.min(least), usual_high.max(largest));
+    if width > 0.0 || !usual_low.is_finite() || !usual_high.is_finite() {
+        (low, high) = (low.max(least - 2.0 * width), high.min(largest + 2.0 * width).max(largest));
+    }
+    let inside = |value: f64, towards: f64| if input.valid.contains(value) { value } else { towards };
+    (control["low"], control["high"]) =
+        (finite(inside(low, least.min(usual_low).max(low + 1e-3 * (high - low)))), finite(inside(high, largest)));
+}
+
+/// Every input that has one value; those that the file gives come first.
+fn fixed(study: &Study, given: &[String]) -> Vec<Value> {
+    let model = &study.model;
+    let axes = || study.design.iter().chain(&study.operation).chain(&study.uncertainty);
+    let drawn = |name: &str| study.probability.as_ref().is_some_and(|it| it.inputs.iter().any(|it| it.name == name));
+    let single =
+        (0..model.inputs.len()).filter(|input| !axes().any(|axis| axis.inputs().contains(input)) && !drawn(&model.inputs[*input].name));
+    let mut controls: Vec<Value> = single
+        .map(|number_of| {
+            let input = &model.inputs[number_of];
+            let value = study.fixed[number_of];
+            let mut control = described_input(input);
+            control["part"] = input.name.clone().into();
+            control["form"] = "value".into();
+            control["value"] = value_of(model, number_of, value);
+            control["shown"] = written(input, value).into();
+            control["given"] = given.contains(&input.name).into();
+            let centre = if input.word_for(value).is_some() { input.usual.0 } else { value };
+            span(&mut control, input, centre, centre);
+            control
+        })
+        .collect();
+    controls.sort_by_key(|control| control["given"] != true);
+    controls
+}

@@ -1,0 +1,500 @@
+//! The exact front of a plan, found in a few scenarios and proven in all.
+//!
+//! Most designs fail, or are beaten, in the few scenarios that are the worst for the best designs. So every design is judged in a working
+//! set of scenarios only, and the front of that is computed by the f64 reference in all scenarios. A value over fewer scenarios is never
+//! worse than over all. So where the designs of that front are feasible, with the same values, in all scenarios, no other design can be on
+//! the front: it fails in the working set, or one of them beats it there, and over all scenarios it only gets worse. Where one is not, the
+//! scenarios that say so join the working set, and the search goes on.
+
+use super::lanes::ScenarioLanes;
+use super::table::{WorstTable, free_plan, is_kept};
+use crate::certify::{self, AtWorst, Column, Role, Row};
+use crate::error::{Error, Result};
+use crate::keys::KeyRule;
+use crate::parallel::on_threads;
+use crate::plan::{Plan, Tracked};
+use crate::reduce::{Points, Reduction};
+use crate::screen::{Control, CpuEngine, Tables};
+use crate::study::{Constraint, Quantity, Study};
+use rustc_hash::FxHashMap;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+/// Scenarios that join a working set at a time: those that most designs ask for.
+const MOST_NEW: usize = 24;
+/// A working set larger than this fraction of all scenarios is not worth it.
+const WORTH: f64 = 0.3;
+/// Designs that a first working set is made from.
+const SEEDS: u64 = 48;
+/// Designs that say which scenarios are missing.
+const MOST_ASKED: usize = 12;
+/// Stands for a scenario that is not known.
+const UNKNOWN: u64 = u64::MAX;
+/// Designs of a front that others are compared with first.
+const FEW: u64 = 2000;
+/// Most designs that are kept for the next study.
+const MOST_KEPT: usize = 100_000;
+/// Parts that the designs are cut into, per thread.
+const PARTS: usize = 24;
+
+/// The scenarios in which every design is judged, sorted; none stands for all.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct WorkingSet {
+    scenarios: Vec<u64>,
+    is_all: bool,
+}
+
+impl WorkingSet {
+    /// All scenarios.
+    fn all() -> Self {
+        Self { scenarios: Vec::new(), is_all: true }
+    }
+
+    /// Number of scenarios, of so many.
+    pub fn count(&self, of: u64) -> u64 {
+        if self.is_all { of } else { self.scenarios.len() as u64 }
+    }
+
+    /// As slow and fast scenarios of a plan.
+    pub(super) fn chosen(&self, plan: &Plan) -> Vec<(u64, u64)> {
+        let place = |&scenario: &u64| (plan.slow_scenarios.index_of(scenario), plan.fast_scenarios.index_of(scenario));
+        let mut chosen: Vec<_> = self.scenarios.iter().map(place).collect();
+        chosen.sort_unstable();
+        chosen
+    }
+
+    /// Takes scenarios in; those that are asked for most often, if there are many. Tells whether there was a new one.
+    fn take(&mut self, asked: &BTreeMap<u64, usize>, of: u64) -> bool {
+        let mut new: Vec<_> = asked.iter().filter(|(scenario, _)| !self.scenarios.contains(scenario)).collect();
+        new.sort_by_key(|&(&scenario, &count)| (std::cmp::Reverse(count), scenario));
+        self.scenarios.extend(new.iter().take(MOST_NEW).map(|(scenario, _)| **scenario));
+        self.scenarios.sort_unstable();
+        #[allow(clippy::cast_precision_loss, reason = "a rule of thumb")]
+        if self.scenarios.len() as f64 > WORTH * of as f64 {
+            *self = Self::all();
+        }
+        !new.is_empty()
+    }
+}
+
+impl JudgedRows {
+    /// Is there nothing that serves?
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+}
+
+/// Looks for the front of a plan.
+#[derive(Debug)]
+pub struct FrontSearch<'p> {
+    plan: &'p Plan,
+    tables: Tables,
+    reduction: Reduction,
+    columns: Vec<Column>,
+    threads: usize,
+    control: &'p Control,
+    /// What the f64 reference says of designs.
+    known: FxHashMap<u64, Row>,
+    /// The plan that also follows what is shown, without the bounds that a value of one design can be held against later; its tables, and of
+    /// each column where its values stand.
+    shown: Plan,
+    shown_tables: Tables,
+    places: Vec<Vec<usize>>,
+    /// Judges single designs, where the formula allows it.
+    lanes: Option<ScenarioLanes>,
+    /// Designs with their values over all scenarios, whether they keep those bounds or not.
+    judged: FxHashMap<u64, Row>,
+    /// The plan without bounds, where its table is kept, its tables, and that table.
+    free: Option<(Plan, Tables)>,
+    table: Option<Arc<WorstTable>>,
+    /// How long the last look at every design took.
+    swept: Duration,
+}
+
+/// Designs that were judged in all scenarios, for the next study that differs in nothing but bounds.
+#[derive(Clone, Debug, Default)]
+pub struct JudgedRows {
+    /// Of the study without these bounds.
+    hash: String,
+    rows: FxHashMap<u64, Row>,
+    /// What all designs are worth in the scenarios that decided.
+    table: Option<Arc<WorstTable>>,
+}
+
+/// Designs to judge: the same places of each row.
+struct SearchPart<'a> {
+    rows: &'a [u64],
+    places: &'a [u64],
+}
+
+impl<'p> FrontSearch<'p> {
+    /// For a plan; `control` can stop it. What was judged before serves again if it fits.
+    pub fn new(plan: &'p Plan, threads: usize, control: &'p Control, before: JudgedRows) -> Self {
+        let columns = certify::columns(&plan.study);
+        // What a study confirms with fresh draws is no output of the sweep.
+        let is_output = |column: &&Column| plan.study.confirmed(column.quantity).is_none();
+        let followed: Vec<Tracked> = columns.iter().filter(is_output).flat_map(Column::followed).collect();
+        let shown = Plan::following(without_bounds(&plan.study), &followed);
+        let free = Some(free_plan(&plan.study)).filter(|free| Self::allows_working_set(plan) && is_kept(free));
+        let free = free.map(|free| {
+            let tables = Tables::new(&free);
+            (free, tables)
+        });
+        let table = before.table;
+        let judged = if before.hash == shown.study.hash() { before.rows } else { FxHashMap::default() };
+        let place = |wanted: &Tracked| shown.tracked.iter().position(|(it, _)| it == wanted);
+        let places = columns.iter().map(|column| column.followed().iter().filter_map(place).collect()).collect();
+        Self {
+            plan,
+            tables: Tables::new(plan),
+            shown_tables: Tables::new(&shown),
+            lanes: ScenarioLanes::new(&shown),
+            shown,
+            places,
+            reduction: Reduction::of_front(plan),
+            columns,
+            threads: threads.max(1),
+            control,
+            known: FxHashMap::default(),
+            judged,
+            free,
+            table,
+            swept: Duration::ZERO,
+        }
+    }
+
+    /// Does the front follow from single scenarios? Means, sums and draws need them all.
+    pub fn allows_working_set(plan: &Plan) -> bool {
+        !plan.study.decides_by_spectrum() && plan.study.probability.is_none()
+    }
+
+    /// The columns of the rows that it finds.
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// What was judged, to be used again.
+    pub fn judged(&self) -> JudgedRows {
+        let rows = if self.judged.len() > MOST_KEPT { FxHashMap::default() } else { self.judged.clone() };
+        JudgedRows { hash: self.shown.study.hash(), rows, table: self.table.clone() }
+    }
+
+    /// How long the last look at every design took.
+    pub fn swept(&self) -> Duration {
+        self.swept
+    }
+
+    /// The plan.
+    pub fn plan(&self) -> &'p Plan {
+        self.plan
+    }
+
+    /// The rows of the feasible ones of some designs, as [`FrontSearch::exact`] gives them.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] after `control.stop`.
+    pub fn feasible_of(&mut self, points: &Points) -> Result<Vec<Row>> {
+        let mut rows = self.judge_in_all(&points.indices)?;
+        rows.retain(|row| self.holds(row));
+        certify::sort_front(self.plan, &self.columns, &mut rows);
+        Ok(rows)
+    }
+
+    /// The front in a working set, with the values there.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] after `control.stop`.
+    pub fn in_few(&self, set: &WorkingSet, points: &Points) -> Result<Vec<Row>> {
+        let mut positions: Vec<u64> = points.indices.iter().map(|&design| self.plan.position_of(design)).collect();
+        positions.sort_unstable();
+        let mut rows = self.screened(&self.shown, &self.shown_tables, &set.chosen(self.plan), &positions, &self.places)?;
+        certify::sort_front(self.plan, &self.columns, &mut rows);
+        Ok(rows)
+    }
+
+    /// Does a design keep the bounds of the study?
+    fn holds(&self, row: &Row) -> bool {
+        let place = |it: &Constraint| certify::constraint_column(&self.columns, it, &it.name(&self.plan.study.model));
+        self.plan.study.constraints.iter().all(|it| {
+            let value = match (certify::design_input(&self.plan.study, it.quantity), it.quantity) {
+                (Some(_), Quantity::Input(input)) => Some(row.inputs[input]),
+                _ => place(it).and_then(|place| row.columns[place].value),
+            };
+            value.is_some_and(|value| it.holds(value))
+        })
+    }
+
+    /// The same rows by the f64 reference, with the scenario of each value.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] after `control.stop`; [`Error::Disagreement`] if it finds another value.
+    pub fn certified(&self, rows: &[Row]) -> Result<Vec<Row>> {
+        let designs: Vec<u64> = rows.iter().map(|row| row.index).collect();
+        let certified = certify::rows(self.plan, &self.columns, &designs, self.threads, self.control)?;
+        for (seen, row) in rows.iter().zip(&certified) {
+            certify::check_feasible(row)?;
+            for ((column, seen), at) in self.columns.iter().zip(&seen.columns).zip(&row.columns) {
+                if seen.value.is_some() && seen.value != at.value {
+                    let name = &column.name;
+                    return Err(Error::Disagreement(format!(
+                        "{name} of design {}: the search found {:?}, the f64 reference gives {:?}",
+                        row.index, seen.value, at.value
+                    )));
+                }
+            }
+        }
+        Ok(certified)
+    }
+
+    /// A working set for a plan of which nothing is known: the scenarios that are the worst for some of its designs.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] after `control.stop`.
+    pub fn first_set(&mut self) -> Result<WorkingSet> {
+        let of = self.plan.scenarios();
+        let mut set = WorkingSet::default();
+        if !Self::allows_working_set(self.plan) {
+            return Ok(WorkingSet::all());
+        }
+        let designs: Vec<u64> = (0..SEEDS.min(self.plan.designs())).map(|step| self.plan.design_at(self.plan.spread(step))).collect();
+        let asked = self.asked_by(&designs)?;
+        set.take(&asked, of);
+        Ok(set)
+    }
+
+    /// One scenario as the working set.
+    #[cfg(test)]
+    pub(super) fn only(&self, scenario: u64) -> WorkingSet {
+        WorkingSet { scenarios: vec![scenario], is_all: false }
+    }
+
+    /// A working set that served a plan like this one, or another if it cannot serve this one.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] after `control.stop`.
+    pub fn adopted(&mut self, set: WorkingSet) -> Result<WorkingSet> {
+        let fits = set.scenarios.last().is_some_and(|&last| last < self.plan.scenarios());
+        if fits && Self::allows_working_set(self.plan) { Ok(set) } else { self.first_set() }
+    }
+
+    fn asked_by(&mut self, designs: &[u64]) -> Result<BTreeMap<u64, usize>> {
+        self.look_up(designs)?;
+        let mut asked = BTreeMap::new();
+        for design in designs {
+            self.worst_of(&self.known[design], &mut asked);
+        }
+        Ok(asked)
+    }
+
+    /// The scenarios in which a design is at its worst.
+    fn worst_of(&self, row: &Row, asked: &mut BTreeMap<u64, usize>) {
+        if let Some(scenario) = row.first_without {
+            *asked.entry(scenario).or_default() += 1;
+        }
+        let judged = self.columns.iter().zip(&row.columns).filter(|(column, _)| column.role != Role::Report);
+        for (_, at) in judged.filter(|(_, at)| at.value.is_some()) {
+            *asked.entry(at.scenario).or_default() += 1;
+        }
+    }
+
+    /// Computes designs by the f64 reference, unless that was done.
+    fn look_up(&mut self, designs: &[u64]) -> Result<()> {
+        let new: Vec<u64> = designs.iter().copied().filter(|design| !self.known.contains_key(design)).collect();
+        let rows = certify::rows(self.plan, &self.columns, &new, self.threads, self.control)?;
+        self.known.extend(rows.into_iter().map(|row| (row.index, row)));
+        Ok(())
+    }
+
+    /// The front of some designs in a working set: rows of the slow axes and places of the fast ones; `seen` may be a part of it.
+    fn front_in(&self, set: &WorkingSet, rows: &[u64], places: &[u64], seen: Points) -> Result<Points> {
+        let chosen = set.chosen(self.plan);
+        let parts = parts(rows, places, PARTS * self.threads);
+        let next = AtomicUsize::new(0);
+        let found = on_threads(0..self.threads, |_| {
+            let mut engine = CpuEngine::new(self.plan, &self.tables).stopping_on(&self.control.stop);
+            let mut own = self.reduction.start_after(seen.clone());
+            while let Some(part) = parts.get(next.fetch_add(1, Ordering::Relaxed)) {
+                if self.control.stop.load(Ordering::Relaxed) {
+                    break;
+                }
+                engine.screen_rows(part.rows, part.places, &chosen, |block| self.reduction.absorb(&mut own, block));
+            }
+            own.into_fresh()
+        });
+        self.go_on()?;
+        let mut merged = self.reduction.start_after(seen);
+        found.into_iter().for_each(|state| merged.merge(state));
+        Ok(merged.front.points().clone())
+    }
+
+    /// The front of at most so many designs of a coarser grid in a working set.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] after `control.stop`.
+    pub fn coarse(&self, set: &WorkingSet, most: u64) -> Result<Points> {
+        let fast = self.plan.fast.coarse(most.isqrt().max(most / self.plan.slow.count().max(1)));
+        let slow = self.plan.slow.coarse((most / fast.len().max(1) as u64).max(1));
+        self.front_in(set, &slow, &fast, Points::default())
+    }
+
+    /// The exact front, and the working set that has served to find it. `few` is told the front in the working set where it must still be
+    /// judged in all scenarios. Its values are those of the engine over all scenarios, of which it
+    /// is not known which is the worst.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] after `control.stop`.
+    pub fn exact(
+        &mut self,
+        mut set: WorkingSet,
+        few: &mut dyn FnMut(&Self, &WorkingSet, &Points) -> Result<()>,
+    ) -> Result<(Vec<Row>, WorkingSet)> {
+        let rows: Vec<u64> = (0..self.plan.slow.count()).collect();
+        let places: Vec<u64> = (0..self.plan.fast.count()).collect();
+        let of = self.plan.scenarios();
+        loop {
+            let begun = Instant::now();
+            let points = match self.from_table(&set)? {
+                Some(points) => points,
+                None => {
+                    // What a few designs leave nothing of need not be kept until the end.
+                    let seen = self.coarse(&set, FEW)?;
+                    self.front_in(&set, &rows, &places, seen)?
+                }
+            };
+            self.swept = begun.elapsed();
+            if points.indices.iter().any(|design| !self.judged.contains_key(design)) {
+                few(self, &set, &points)?;
+            }
+            let mut front = self.judge_in_all(&points.indices)?;
+            front.retain(|row| self.holds(row));
+            let wrong = self.contradicted(&points, &front);
+            if wrong.is_empty() {
+                certify::sort_front(self.plan, &self.columns, &mut front);
+                return Ok((front, set));
+            }
+            if set.is_all {
+                let problem = format!("{} designs of the front have other values when they are judged alone", wrong.len());
+                return Err(Error::Disagreement(problem));
+            }
+            // A few of them say which scenarios are missing.
+            let step = wrong.len().div_ceil(MOST_ASKED);
+            let some: Vec<u64> = wrong.into_iter().step_by(step).collect();
+            if !set.take(&self.asked_by(&some)?, of) {
+                set = WorkingSet::all();
+            }
+        }
+    }
+
+    /// The front of all designs in a working set out of the table, which is made if need be; `None` if it would be too large.
+    fn from_table(&mut self, set: &WorkingSet) -> Result<Option<Points>> {
+        let Some((free, tables)) = &self.free else { return Ok(None) };
+        let stop = &self.control.stop;
+        if !self.table.as_ref().is_some_and(|it| it.serves(free, set)) {
+            self.table = WorstTable::new(free, tables, set, self.threads, stop).map(Arc::new);
+        }
+        let points = self.table.as_ref().and_then(|it| it.front(free, &self.plan.study, self.threads, stop));
+        self.go_on()?;
+        Ok(points)
+    }
+
+    /// Designs with their values over all scenarios, without those that have none in some; of feasible ones all are there.
+    fn judge_in_all(&mut self, designs: &[u64]) -> Result<Vec<Row>> {
+        let new = |judged: &FxHashMap<u64, Row>| -> Vec<u64> {
+            let missing = designs.iter().filter(|design| !judged.contains_key(design));
+            let mut positions: Vec<u64> = missing.map(|&design| self.plan.position_of(design)).collect();
+            positions.sort_unstable();
+            positions
+        };
+        let positions = new(&self.judged);
+        let found = match &self.lanes {
+            Some(lanes) => self.in_lanes(lanes, &positions)?,
+            None => self.screened(&self.shown, &self.shown_tables, &[], &positions, &self.places)?,
+        };
+        self.judged.extend(found.into_iter().map(|row| (row.index, row)));
+        let mut rows: Vec<Row> = designs.iter().filter_map(|design| self.judged.get(design).cloned()).collect();
+        let positions = new(&self.judged);
+        if !positions.is_empty() {
+            // Some columns may have no value for a design that is feasible all the same.
+            let place = |wanted: &Tracked| self.plan.tracked.iter().position(|(it, _)| it == wanted);
+            let places: Vec<Vec<usize>> = self.columns.iter().map(|column| column.followed().iter().filter_map(place).collect()).collect();
+            rows.extend(self.screened(self.plan, &self.tables, &[], &positions, &places)?);
+        }
+        Ok(rows)
+    }
+
+    /// The feasible ones of some designs at these positions, each over all scenarios at once.
+    fn in_lanes(&self, lanes: &ScenarioLanes, positions: &[u64]) -> Result<Vec<Row>> {
+        let designs: Vec<u64> = positions.iter().map(|&position| self.plan.design_at(position)).collect();
+        let share = designs.len().div_ceil(self.threads).max(1);
+        let parts = on_threads(designs.chunks(share), |part| lanes.judge(&self.shown, &self.columns, part, &self.control.stop));
+        self.go_on()?;
+        Ok(parts.into_iter().flatten().collect())
+    }
+
+    fn go_on(&self) -> Result<()> {
+        if self.control.stop.load(Ordering::Relaxed) { Err(Error::Stopped { kept: None }) } else { Ok(()) }
+    }
+
+    /// The feasible ones of some designs at these sorted positions, with the values that a plan follows.
+    fn screened(&self, plan: &Plan, tables: &Tables, chosen: &[(u64, u64)], positions: &[u64], places: &[Vec<usize>]) -> Result<Vec<Row>> {
+        let share = positions.len().div_ceil(self.threads).max(1);
+        let parts = on_threads(positions.chunks(share), |part| {
+            let mut engine = CpuEngine::new(plan, tables).stopping_on(&self.control.stop);
+            let mut rows = Vec::with_capacity(part.len());
+            engine.screen_some_in(chosen, part, |block| {
+                for lane in block.feasible() {
+                    let value = |(column, places): (&Column, &Vec<usize>)| {
+                        let values = places.iter().map(|&place| block.column(place)[lane] + 0.0);
+                        AtWorst { value: column.worst_of(values), scenario: UNKNOWN }
+                    };
+                    let columns: Vec<_> = self.columns.iter().zip(places).map(value).collect();
+                    rows.push(Row::seen(plan, block.index(lane), columns));
+                }
+            });
+            rows
+        });
+        self.go_on()?;
+        Ok(parts.into_iter().flatten().collect())
+    }
+
+    /// The designs of a front in a working set of which all scenarios say something else.
+    fn contradicted(&self, points: &Points, front: &[Row]) -> Vec<u64> {
+        let judged: FxHashMap<u64, &Row> = front.iter().map(|row| (row.index, row)).collect();
+        let objectives = &self.plan.study.objectives;
+        let rules: Vec<_> = objectives.iter().map(KeyRule::from).collect();
+        let places = certify::objective_columns(&self.plan.study, &self.columns);
+        let is_wrong = |(design, keys): &(&u64, &[f64])| {
+            let same = |row: &Row| {
+                let mut each = rules.iter().zip(&places).zip(*keys);
+                each.all(|((rule, &place), &seen)| rule.key(row.columns[place].value.unwrap_or(f64::NAN)) == seen)
+            };
+            !judged.get(design).copied().is_some_and(same)
+        };
+        let all = points.indices.iter().zip(points.keys.chunks(objectives.len().max(1)));
+        all.filter(is_wrong).map(|(&design, _)| design).collect()
+    }
+}
+
+/// The study without the bounds of constraints that have one: the worst value is the same whatever the bound is, so that designs are held
+/// against it later. Of two bounds the worst value depends on both.
+fn without_bounds(study: &Study) -> Study {
+    let mut free = study.clone();
+    for constraint in free.constraints.iter_mut().filter(|it| it.over.is_worst()) {
+        match (&mut constraint.low, &mut constraint.high) {
+            (Some(low), None) => *low = (f64::MIN, false),
+            (None, Some(high)) => *high = (f64::MAX, false),
+            _ => {}
+        }
+    }
+    free
+}
+
+/// Rows and places cut into about so many parts.
+fn parts<'a>(rows: &'a [u64], places: &'a [u64], count: usize) -> Vec<SearchPart<'a>> {
+    let by_rows = rows.len().div_ceil(count).max(1);
+    let cuts = count.div_ceil(rows.len().max(1)).max(1);
+    let by_places = places.len().div_ceil(cuts).max(1);
+    rows.chunks(by_rows).flat_map(|rows| places.chunks(by_places).map(move |places| SearchPart { rows, places })).collect()
+}

@@ -1,0 +1,153 @@
+//! What every design is worth in a working set of scenarios, kept while only bounds change.
+//!
+//! A bound that moves changes no value. So the worst values of all designs are kept, without the bounds, and a front under other bounds is
+//! found by holding each design against them.
+
+use super::search::WorkingSet;
+use crate::certify::{Column, margin_columns};
+use crate::masks::{count, keep_between, keep_finite};
+use crate::parallel::on_threads;
+use crate::plan::{Plan, Tracked};
+use crate::reduce::{Points, Reduction};
+use crate::screen::{BLOCK, Block, CpuEngine, Tables};
+use crate::study::{Constraint, Study};
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+/// Most bytes of a table.
+const MOST_BYTES: u64 = 64 << 20;
+/// Parts of a table, per thread.
+const PARTS: u64 = 16;
+
+/// The worst values of all designs in a working set.
+#[derive(Debug)]
+pub struct WorstTable {
+    /// Of the study without its bounds.
+    hash: String,
+    followed: Vec<Tracked>,
+    set: WorkingSet,
+    parts: Vec<TablePart>,
+}
+
+/// Those of some rows of the sweep.
+#[derive(Debug)]
+struct TablePart {
+    rows: Range<u64>,
+    /// By what the plan follows: one value per design, row by row; not a number where a design has no result.
+    columns: Vec<Vec<f64>>,
+}
+
+/// What a study's bounds are asked of: places among what the plan follows, with the least and the largest value that holds.
+type Bounds = Vec<(usize, f64, f64)>;
+
+/// The plan of a study without bounds that follows what they are about.
+pub fn free_plan(study: &Study) -> Plan {
+    let followed: Vec<Tracked> = margin_columns(study).iter().flat_map(Column::followed).collect();
+    let free = Study { constraints: Vec::new(), ..study.clone() };
+    Plan::following(free, &followed)
+}
+
+/// Is the table of a plan small enough to be kept?
+pub fn is_kept(free: &Plan) -> bool {
+    free.designs().saturating_mul(8 * free.tracked.len() as u64) <= MOST_BYTES
+}
+
+impl WorstTable {
+    /// Judges every design in some scenarios; `None` if it was stopped.
+    pub fn new(free: &Plan, tables: &Tables, set: &WorkingSet, threads: usize, stop: &AtomicBool) -> Option<Self> {
+        let (rows, width) = (free.slow.count(), free.fast.count());
+        let share = rows.div_ceil(PARTS * threads as u64).max(1);
+        let ranges: Vec<Range<u64>> = (0..rows).step_by(usize::try_from(share).ok()?).map(|first| first..rows.min(first + share)).collect();
+        let (places, chosen) = ((0..width).collect::<Vec<u64>>(), set.chosen(free));
+        let next = AtomicUsize::new(0);
+        let parts = on_threads(0..threads, |_| {
+            let mut engine = CpuEngine::new(free, tables).stopping_on(stop);
+            let mut own = Vec::new();
+            while let Some(rows) = ranges.get(next.fetch_add(1, Ordering::Relaxed)).filter(|_| !stop.load(Ordering::Relaxed)) {
+                let size = usize::try_from((rows.end - rows.start) * width).expect("it is held in memory");
+                let mut columns = vec![vec![f64::NAN; size]; free.tracked.len()];
+                let numbers: Vec<u64> = rows.clone().collect();
+                engine.screen_rows(&numbers, &places, &chosen, |block| {
+                    let row = free.slow.index_of(block.row_index) - rows.start;
+                    let first = usize::try_from(row * width + free.fast.index_of(block.offsets[0])).expect("it is held in memory");
+                    for (at, column) in columns.iter_mut().enumerate() {
+                        let values = block.column(at).iter().zip(block.alive);
+                        let room = &mut column[first..first + block.count()];
+                        room.iter_mut().zip(values).for_each(|(to, (&value, &alive))| *to = if alive == 0 { f64::NAN } else { value });
+                    }
+                });
+                own.push(TablePart { rows: rows.clone(), columns });
+            }
+            own
+        });
+        let parts = parts.into_iter().flatten().collect();
+        (!stop.load(Ordering::Relaxed)).then(|| Self { hash: free.study.hash(), followed: followed(free), set: set.clone(), parts })
+    }
+
+    /// Does it serve a plan without bounds and a working set?
+    pub fn serves(&self, free: &Plan, set: &WorkingSet) -> bool {
+        self.set == *set && self.followed == followed(free) && self.hash == free.study.hash()
+    }
+
+    /// The front of the designs that keep the bounds of a study; `None` if it was stopped.
+    pub fn front(&self, free: &Plan, study: &Study, threads: usize, stop: &AtomicBool) -> Option<Points> {
+        let reduction = Reduction::of_front(free);
+        let bounds = bounds(free, study);
+        let offsets: Vec<u64> = (0..free.fast.count()).map(|place| free.fast.source_index(place)).collect();
+        let next = AtomicUsize::new(0);
+        let found = on_threads(0..threads, |_| {
+            let mut own = reduction.start();
+            let mut alive = Vec::new();
+            let mut values = vec![Vec::new(); free.tracked.len()];
+            while let Some(part) = self.parts.get(next.fetch_add(1, Ordering::Relaxed)).filter(|_| !stop.load(Ordering::Relaxed)) {
+                for row in part.rows.clone() {
+                    let first = usize::try_from(row - part.rows.start).expect("it is held in memory") * offsets.len();
+                    let row_index = free.slow.source_index(row);
+                    for (number, offsets) in offsets.chunks(BLOCK).enumerate() {
+                        let place = first + number * BLOCK;
+                        let lanes = place..place + offsets.len();
+                        alive.clear();
+                        alive.resize(offsets.len(), u64::MAX);
+                        keep_finite(&mut alive, &part.columns[0][lanes.clone()]);
+                        for &(column, low, high) in &bounds {
+                            keep_between(&mut alive, &part.columns[column][lanes.clone()], low, high);
+                        }
+                        let feasible_count = count(&alive);
+                        if feasible_count == 0 {
+                            continue;
+                        }
+                        for &column in &free.objectives {
+                            values[column].clear();
+                            values[column].extend_from_slice(&part.columns[column][lanes.clone()]);
+                        }
+                        reduction
+                            .absorb_objectives(&mut own, &Block { row_index, offsets, feasible_count, alive: &alive, values: &values });
+                    }
+                }
+            }
+            own.into_fresh()
+        });
+        if stop.load(Ordering::Relaxed) {
+            return None;
+        }
+        let mut merged = reduction.start();
+        found.into_iter().for_each(|state| merged.merge(state));
+        Some(merged.front.points().clone())
+    }
+}
+
+fn followed(plan: &Plan) -> Vec<Tracked> {
+    plan.tracked.iter().map(|(it, _)| *it).collect()
+}
+
+/// Where the values stand that a study's bounds are about: the least of all scenarios for a lower bound, the largest for an upper one.
+fn bounds(free: &Plan, study: &Study) -> Bounds {
+    let of_constraint = |it: &Constraint| {
+        let (low, high) = it.ends();
+        let ends =
+            margin_columns(study).into_iter().filter(|column| column.is_of(it.quantity, it.over)).flat_map(|column| column.followed());
+        let place = |tracked: Tracked| free.tracked.iter().position(|(other, _)| *other == tracked);
+        ends.filter_map(place).map(|place| (place, low, high)).collect::<Vec<_>>()
+    };
+    study.constraints.iter().flat_map(of_constraint).collect()
+}

@@ -1,0 +1,162 @@
+//! The search in a few scenarios against the whole sweep.
+
+use super::search::{FrontSearch, JudgedRows};
+use super::{Live, LiveAnswer};
+use crate::error::Error;
+use crate::plan::Plan;
+use crate::run::{Engine, Judging, Options};
+use crate::screen::Control;
+use crate::study::Study;
+use crate::table::Data;
+use std::path::PathBuf;
+use std::sync::atomic::Ordering;
+
+const BELT: &str = "model = \"metal-cvt\"\n[design]\ngroove_angle_deg = { from = 18, to = 30, count = 5 }\n\
+    band_thickness_mm = { from = 0.1, to = 0.3, count = 9 }\nband_count = { from = 6, to = 14 }\ntraction = { from = 0.3, to = 0.5, count = 5 }\n\
+    [operation]\nratio = { from = 0.5, to = 2, count = 13, spacing = \"log\" }\ntorque_Nm = [50, 150]\n\
+    [uncertainty]\nfriction = { from = 0.065, to = 0.095, count = 4 }\n[fixed]\nstrength_MPa = 800\n[constraints]\nslip_margin = { min = 0 }\nstress_margin = { min = 0 }\n\
+    [objectives]\naxial_force_N = \"min\"\nstress_margin = \"max\"\nslip_margin = \"max\"\n[report]\ncolumns = [\"max_stress_MPa\"]\n";
+
+/// Variants of it: what is replaced by what.
+const VARIANTS: [&[(&str, &str)]; 8] = [
+    &[],
+    &[("stress_margin = { min = 0 }", "stress_margin = { min = 0.1, max = 0.85 }")],
+    &[("slip_margin = { min = 0 }\n", ""), ("slip_margin = \"max\"", "band_count = \"min\"")],
+    &[("\"min\"\nstress", "{ goal = \"min\", resolution = 500 }\nstress"), ("slip_margin = { min = 0 }", "slip_margin = { above = 0.05 }")],
+    // The worst of a quantity in the middle of an axis, and one that is an objective both ways round.
+    &[("slip_margin = \"max\"", "thrust_ratio = \"max\""), ("stress_margin = \"max\"", "max_stress_MPa = \"min\"")],
+    // Nothing is feasible; one scenario; the clamping force in place of the traction, so that roots are solved.
+    &[("slip_margin = { min = 0 }", "slip_margin = { min = 9 }")],
+    &[
+        ("count = 13, spacing = \"log\"", "count = 1"),
+        ("to = 2,", "to = 0.5,"),
+        ("[50, 150]", "[150]"),
+        ("to = 0.095, count = 4", "to = 0.065, count = 1"),
+    ],
+    &[("traction = { from = 0.3, to = 0.5, count = 5 }", "clamping_force_N = { from = 20000, to = 50000, count = 5 }")],
+];
+
+fn changed(edits: &[(&str, &str)]) -> String {
+    edits.iter().fold(BELT.to_owned(), |text, (from, to)| {
+        assert!(text.contains(from), "{from}");
+        text.replacen(from, to, 1)
+    })
+}
+
+/// Designs and values of the whole sweep's front, as far as they are numbers.
+fn swept(study: &Study) -> (Vec<u64>, Vec<(String, Vec<Option<u64>>)>) {
+    let options = Options::default().engine(Engine::Cpu).judging(Judging::Exhaustive).threads(2);
+    let front = study.sweep(options).expect("it is swept").front;
+    let mut designs = Vec::new();
+    let mut columns = Vec::new();
+    for column in front.columns {
+        match column.data {
+            Data::Whole(values) if column.name == "design_index" => designs = values.into_iter().flatten().collect(),
+            Data::Whole(values) => columns.push((column.name, values)),
+            Data::Number(values) => columns.push((column.name, values.into_iter().map(|it| it.map(f64::to_bits)).collect())),
+            Data::Text(_) => {}
+        }
+    }
+    (designs, columns)
+}
+
+#[test]
+fn the_front_found_in_a_few_scenarios_is_that_of_the_whole_sweep() {
+    for edits in VARIANTS {
+        let study = Study::parse(&changed(edits)).unwrap_or_else(|errors| panic!("{edits:?}: {errors}"));
+        let (designs, columns) = swept(&study);
+        let plan = Plan::new(study);
+        let control = Control::default();
+        let mut search = FrontSearch::new(&plan, 2, &control, JudgedRows::default());
+        let set = search.first_set().expect("nobody stops it");
+        let (rows, set) = search.exact(set, &mut |_, _, _| Ok(())).expect("it is found");
+        assert_eq!(rows.iter().map(|row| row.index).collect::<Vec<_>>(), designs, "{edits:?}");
+        assert_eq!(designs.is_empty(), edits.iter().any(|(_, to)| to.contains("min = 9")), "{edits:?}: {designs:?}");
+        let certified = search.certified(&rows).expect("the reference agrees");
+        for (at, column) in search.columns().iter().enumerate() {
+            let value = |name: &str| columns.iter().find(|(other, _)| other == name).map(|(_, values)| values);
+            // A design input has its column among the inputs.
+            let Some(scenarios) = value(&format!("{}_scenario", column.name)) else { continue };
+            let seen: Vec<_> = rows.iter().map(|row| row.columns[at].value.map(f64::to_bits)).collect();
+            assert_eq!(Some(&seen), value(&column.name), "{edits:?} {}", column.name);
+            let seen: Vec<_> = certified.iter().map(|row| row.columns[at].value.map(|_| row.columns[at].scenario)).collect();
+            assert_eq!(&seen, scenarios, "{edits:?} {}", column.name);
+        }
+        // Most of the scenarios were not needed, where there are many.
+        assert!(plan.scenarios() < 100 || set.count(plan.scenarios()) < 60, "{edits:?}: {}", set.count(plan.scenarios()));
+    }
+}
+
+#[test]
+fn a_working_set_that_lacks_what_matters_is_filled_up() {
+    let study = Study::parse(BELT).expect("it is right");
+    let plan = Plan::new(study.clone());
+    let control = Control::default();
+    let mut search = FrontSearch::new(&plan, 2, &control, JudgedRows::default());
+    // The mildest scenario alone: the front there is another one.
+    let mildest = search.only(plan.scenarios() - 1);
+    let in_few = search.coarse(&mildest, plan.designs()).expect("nobody stops it");
+    let (rows, set) = search.exact(mildest, &mut |_, _, _| Ok(())).expect("it is found");
+    let designs: Vec<u64> = rows.iter().map(|row| row.index).collect();
+    assert!(!designs.is_empty() && in_few.indices.len() != designs.len());
+    assert_eq!(designs, swept(&study).0);
+    assert!(set.count(plan.scenarios()) > 1);
+}
+
+#[test]
+fn what_was_judged_serves_again_where_only_bounds_differ() {
+    let control = Control::default();
+    let mut before = JudgedRows::default();
+    for (edits, serves) in [
+        (&[][..], false),
+        (&[("stress_margin = { min = 0 }", "stress_margin = { min = 0.2 }")], true),
+        (&[("slip_margin = { min = 0 }", "slip_margin = { min = 0.1 }")], true),
+        (&[("[50, 150]", "[50, 140]")], false),
+    ] {
+        let study = Study::parse(&changed(edits)).expect("it is right");
+        let designs = swept(&study).0;
+        let plan = Plan::new(study);
+        let mut search = FrontSearch::new(&plan, 2, &control, before);
+        assert_eq!(search.judged().is_empty(), !serves, "{edits:?}");
+        let set = search.first_set().expect("nobody stops it");
+        let (rows, _) = search.exact(set, &mut |_, _, _| Ok(())).expect("it is found");
+        assert_eq!(rows.iter().map(|row| row.index).collect::<Vec<_>>(), designs, "{edits:?}");
+        assert!(!designs.is_empty(), "{edits:?}");
+        before = search.judged();
+    }
+}
+
+#[test]
+fn an_answer_comes_in_steps_and_ends_when_it_is_stopped() {
+    let live = Live::new(BELT.to_owned(), "study.toml".to_owned(), PathBuf::from("."), 2);
+    let (study, text) = live.study(&["constraints.slip_margin.min=0.1".to_owned()]).expect("it is right");
+    assert!(text.contains("slip_margin = { min = 0.1 }"));
+    let plan = Plan::new(study.clone());
+    let mut steps = Vec::new();
+    live.answer(&plan, &Control::default(), &mut |step| {
+        steps.push(match step {
+            LiveAnswer::Coarse(_) => "coarse".to_owned(),
+            LiveAnswer::Few(_) => "few".to_owned(),
+            LiveAnswer::Exact(found) => format!("exact {}", found.rows.len()),
+            LiveAnswer::Certified(found) => format!("certified {}", found.rows.len()),
+            LiveAnswer::Counted(found) => format!("counted {:?}", found.feasible),
+        });
+        Ok(())
+    })
+    .expect("it is answered");
+    let outcome = study.sweep(Options::default().engine(Engine::Cpu)).expect("it is swept");
+    let (front, feasible) = (outcome.counts.front, outcome.counts.feasible);
+    let wanted = [format!("exact {front}"), format!("certified {front}"), format!("counted Some({feasible})")];
+    assert_eq!(steps[steps.len() - 3..], wanted, "{steps:?}");
+    let control = Control::default();
+    control.stop.store(true, Ordering::Relaxed);
+    let stopped = live.answer(&plan, &control, &mut |_| panic!("it was stopped"));
+    assert!(matches!(stopped, Err(Error::Stopped { .. })), "{stopped:?}");
+    let none = Live::new(
+        "model = \"metal-cvt\"\n[design]\nband_count = [6]\n[report]\ntop = { by = \"axial_force_N\", count = 1 }\n".to_owned(),
+        "s".to_owned(),
+        PathBuf::new(),
+        1,
+    );
+    assert!(none.study(&[]).is_err_and(|error| error.to_string().contains("no objective")));
+}

@@ -1,0 +1,183 @@
+// The answer to what is changed: asked at once, shown step by step, the newest question first.
+{
+  // A question that has had no exact answer for so long is given up for a newer one; one that is younger is awaited, so that the front
+  // moves while a slider does.
+  const PATIENCE = 120;
+  let current = null; // { abort, since, exact }
+  let wanted = null; // the newest question that was not asked yet: { set, eventAt }
+  let started = false;
+  let answered = 0;
+  let ghostOf = null;
+
+  const say = (text, kind) => {
+    const line = page.byId("live-text");
+    line.textContent = text;
+    page.byId("live").dataset.kind = kind;
+  };
+
+  const sameList = (a, b) => String(a) === String(b);
+
+  // The old front, as the one before the change that is being made.
+  const keepGhost = () => {
+    if (!page.front || !page.front.rows) return;
+    const byName = new Map(page.front.columns.filter((column) => !column.words && !column.exact).map((column) => [column.name, { values: column.values, low: column.low, high: column.high }]));
+    ghostOf = { byName, rows: page.front.rows };
+  };
+
+  page.showGhost = (on) => {
+    page.ghost = on ? ghostOf : null;
+    page.events.call("front");
+  };
+
+  const put = (told, buffer) => {
+    const { data } = page;
+    if (told.study) {
+      const { controls, begin } = data;
+      const feasible = sameList(told.study.study.hash, data.study && data.study.hash) ? data.study.feasible : null;
+      Object.assign(data, told.study, { controls, begin });
+      data.study.feasible = feasible;
+    }
+    Object.assign(data, { objectives: told.objectives, constraints: told.constraints, scenarios: told.scenarios });
+    const design = page.front && page.state.card !== null ? page.designOf(page.state.card) : null;
+    page.front = page.frontOf(data, told.front, buffer);
+    page.ghost = page.byId("ghost").checked ? ghostOf : null;
+    page.adoptFront();
+    page.state.card = design === null ? null : page.rowOf(design);
+    if (page.state.card === -1) page.state.card = null;
+    if (!started && page.front.rows) begin();
+    else if (started) page.events.call("front");
+    for (const id of ["matrix-section", "parallel-section", "table-section", "bar"]) page.byId(id).hidden = !page.front.rows;
+    if (design !== null && page.state.card === null) page.closeLostCard();
+  };
+
+  // The views, once there is something to see.
+  const begin = () => {
+    started = true;
+    const row = page.readAddress();
+    page.applySelection();
+    page.startBar();
+    page.startPins();
+    page.startMatrix();
+    page.startStrip();
+    page.startReadout();
+    page.startParallel();
+    page.startChooser();
+    page.startTable();
+    page.startCard();
+    page.startAround();
+    page.startAddress();
+    if (row !== null) page.openCard(row);
+  };
+
+  // What stands around the plots can wait until nothing moves.
+  let waiting = 0;
+  const later = () => {
+    clearTimeout(waiting);
+    waiting = setTimeout(() => {
+      page.startOverview();
+      page.startStudy();
+      page.byId("command").textContent = page.data.command;
+    }, 150);
+  };
+
+  const seconds = (s) => page.seconds(s);
+
+  const part = (question, told, buffer) => {
+    if (question !== current) return;
+    if (told.kind === "error") {
+      page.byId("live").dataset.kind = "error";
+      say(told.message, "error");
+      question.exact = true;
+      return next();
+    }
+    if (told.kind === "counted") {
+      Object.assign(page.data, { tally: told.tally, findings: told.findings.length ? told.findings : null });
+      page.data.study.feasible = told.feasible ?? undefined;
+      page.startOverview();
+      page.startTally();
+      const share = told.feasible === null ? `${page.percent(told.tally.feasible, told.tally.sampled)} of a sample are feasible` : `${page.count(told.feasible)} of ${page.count(page.data.study.designs)} designs are feasible`;
+      say(`exact: ${page.count(page.front.rows)} designs on the front; ${share}`, "exact");
+      page.timings.counted = answered;
+      return;
+    }
+    if (told.kind === "certified") {
+      put(told, buffer);
+      page.timings.certified = answered;
+      if (page.front.rows) say(`exact: ${page.count(page.front.rows)} designs on the front, each certified in f64; counting what is feasible …`, "exact");
+      return;
+    }
+    put(told, buffer);
+    later();
+    if (told.kind === "few") {
+      say(`${page.count(page.front.rows)} designs, judged in the ${page.count(told.in_scenarios)} scenarios that decide; now in all ${page.count(page.data.study.scenarios)} …`, "coarse");
+      page.timings.few = performance.now();
+      const { eventAt } = question;
+      requestAnimationFrame(() => setTimeout(() => page.timings.fews.push(eventAt === null ? null : performance.now() - eventAt)));
+      return;
+    }
+    if (told.kind === "coarse") {
+      say(`a first idea, of ${page.count(told.looked_at)} designs; the exact front follows …`, "coarse");
+      page.timings.coarse = performance.now();
+      return;
+    }
+    question.exact = true;
+    answered++;
+    const n = page.front.rows;
+    say(n ? `exact: ${page.count(n)} designs on the front, in ${seconds(told.seconds)}` : "no design is feasible; looking for what stands in the way …", n ? "exact" : "none");
+    if (!n && started === false) later();
+    const { eventAt } = question;
+    // After the frame in which it is painted.
+    requestAnimationFrame(() => {
+      const channel = new MessageChannel();
+      channel.port1.onmessage = () => {
+        const now = performance.now();
+        page.timings.answers.push({ took: eventAt === null ? null : now - eventAt, engine: told.seconds, set: question.set });
+        page.timings.answered = answered;
+      };
+      channel.port2.postMessage(0);
+    });
+    next();
+  };
+
+  const next = () => {
+    if (!wanted) return;
+    // An exact answer is there, or it has taken too long.
+    if (current && !current.exact && performance.now() - current.since < PATIENCE) return;
+    if (current) current.abort.abort();
+    const question = { ...wanted, abort: new AbortController(), since: performance.now(), exact: false };
+    wanted = null;
+    current = question;
+    page.ask("/answer", { set: question.set }, (told, buffer) => part(question, told, buffer), question.abort.signal).then(
+      () => {
+        if (question === current) current = null;
+        next();
+      },
+      (error) => {
+        if (error.name === "AbortError" || question !== current) return;
+        current = null;
+        say(`the engine does not answer: ${error.message}. Is beltspace explore still running?`, "error");
+        next();
+      },
+    );
+    setTimeout(next, PATIENCE + 5);
+  };
+
+  page.asked = () => (wanted ? wanted.set : current ? current.set : null);
+  page.isAnswered = () => !wanted && (!current || current.exact);
+
+  page.startAnswers = () => {
+    page.timings.answers = [];
+    page.timings.fews = [];
+    let settled = 0;
+    page.events.on("changes.answer", () => {
+      // A ghost of what was there before the first of several changes in a row.
+      if (performance.now() - settled > 600) keepGhost();
+      settled = performance.now();
+      wanted = { set: page.changeList(), eventAt: page.eventAt ?? null };
+      page.eventAt = null;
+      next();
+    });
+    wanted = { set: page.changeList(), eventAt: null };
+    next();
+  };
+}

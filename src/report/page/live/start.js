@@ -1,0 +1,37 @@
+// The page of a study in work.
+{
+  const save = () => {
+    const { study } = page.data;
+    const name = study.file.split(/[\\/]/).pop().replace(/\.toml$/, "");
+    page.download(`${name}-explored.toml`, "application/toml", study.text);
+  };
+
+  const bar = () => {
+    const live = page.byId("live");
+    live.hidden = false;
+    const ghost = page.element("input", { type: "checkbox", id: "ghost", checked: true, change: (event) => page.showGhost(event.target.checked) });
+    const copy = page.element("button", { type: "button", class: "no-print", "data-testid": "copy-command", click: () => page.copyText(page.byId("command").textContent) }, "Copy command");
+    live.replaceChildren(
+      page.element("p", { id: "live-text", role: "status", "aria-live": "polite" }, "asking the engine …"),
+      page.element("div", { class: "controls no-print" }, page.element("label", {}, ghost, " old front"), copy, page.element("button", { type: "button", id: "save", "data-testid": "save", click: save }, "Save as study")),
+      page.element("code", { id: "command", "data-testid": "command", tabindex: 0 }),
+    );
+  };
+
+  page.startLive = async () => {
+    // Without a front it reads the theme only.
+    page.readAddress();
+    page.startTheme();
+    document.documentElement.dataset.theme = page.dark() ? "dark" : "light";
+    page.data = { ...page.data, ...(await page.askOnce("/start", {})) };
+    document.title = `${page.data.title}: beltspace explore`;
+    page.data.study.feasible = null;
+    page.startOverview();
+    bar();
+    const given = page.changesOfAddress();
+    page.resetChanges(given.length ? given : page.data.begin);
+    page.startControls();
+    page.startAnswers();
+    page.timings.firstPaint = performance.now();
+  };
+}

@@ -1,0 +1,107 @@
+// Up to six designs that are pinned and compared: what they are made of, and what that gives, differences marked.
+{
+  const MOST = 6;
+  let pins = []; // { design, letter, values: name -> number or text, texts: name -> text, set }
+
+  page.pins = () => pins;
+
+  const columnsOf = () => page.front.shown.filter((column) => column.role !== "output");
+
+  // What is known of a design is kept with its pin: another front may not have it any more.
+  const pinOf = (row) => {
+    const columns = page.front.shown;
+    const entries = columns.map((column) => [column.name, { value: column.values[row], text: page.valueText(column, row), unit: column.unit, role: column.role, words: Boolean(column.words), goal: column.goal }]);
+    const free = "ABCDEF".split("").find((letter) => !pins.some((pin) => pin.letter === letter));
+    return { design: page.designOf(row), letter: free, values: new Map(entries), set: page.changeList ? page.changeList() : [] };
+  };
+
+  page.isPinned = (row) => pins.some((pin) => pin.design === page.designOf(row) && sameSet(pin));
+  const sameSet = (pin) => !page.changeList || String(pin.set) === String(page.changeList());
+
+  page.pin = (row) => {
+    if (page.isPinned(row)) pins = pins.filter((pin) => !(pin.design === page.designOf(row) && sameSet(pin)));
+    else if (pins.length < MOST) pins = [...pins, pinOf(row)];
+    page.events.call("pins");
+  };
+
+  page.unpin = (pin) => {
+    pins = pins.filter((other) => other !== pin);
+    page.events.call("pins");
+  };
+
+  // In the address by their designs.
+  page.pinsText = () => pins.filter(sameSet).map((pin) => pin.design).join(",");
+  page.readPins = (text) => {
+    pins = [];
+    for (const design of (text || "").split(",").slice(0, MOST)) {
+      const row = design && page.front ? page.rowOf(design) : -1;
+      if (row >= 0 && !page.isPinned(row)) pins = [...pins, pinOf(row)];
+    }
+    page.events.call("pins");
+  };
+
+  // Of the pinned designs, the best value of an objective.
+  const bestOf = (entries) => {
+    const goal = entries.find((entry) => entry && entry.goal)?.goal;
+    const values = entries.map((entry) => (entry ? entry.value : NaN)).filter(Number.isFinite);
+    if (!goal || new Set(values).size < 2) return null;
+    return goal === "max" ? Math.max(...values) : Math.min(...values);
+  };
+
+  const line = (name) => {
+    const entries = pins.map((pin) => pin.values.get(name));
+    const first = entries.find(Boolean);
+    const differs = new Set(entries.map((entry) => (entry ? String(entry.value) : ""))).size > 1;
+    const best = bestOf(entries);
+    const cell = (entry) => {
+      if (!entry) return page.element("td", { class: "number muted" }, "–");
+      const isBest = best !== null && entry.value === best;
+      return page.element("td", { class: `number${isBest ? " best" : ""}`, title: page.full(entry.value) }, entry.text, isBest ? page.element("span", { class: "offscreen" }, " best") : null);
+    };
+    return page.element("tr", { class: differs ? "differs" : "same" }, page.element("th", { scope: "row" }, page.breakable(name), first.goal ? page.element("span", { class: "unit" }, ` ${first.goal}`) : null), page.element("td", { class: "unit" }, first.words ? "" : page.unit(first.unit)), entries.map(cell));
+  };
+
+  const changed = (pin) => (pin.set.length ? page.element("div", { class: "unit", title: pin.set.join("\n") }, `${pin.set.length} change${pin.set.length > 1 ? "s" : ""}`) : null);
+
+  const draw = () => {
+    const section = page.byId("pins");
+    section.hidden = !pins.length;
+    if (!pins.length) return section.replaceChildren();
+    const order = { label: 0, design: 1, objective: 2, constraint: 3, report: 4 };
+    const names = new Map();
+    for (const pin of pins) for (const [name, entry] of pin.values) if (entry.role in order && !names.has(name)) names.set(name, order[entry.role]);
+    const rows = [...names].sort((a, b) => a[1] - b[1]).map(([name]) => name);
+    const open = (pin) => {
+      const row = sameSet(pin) ? page.rowOf(pin.design) : -1;
+      if (row >= 0) page.openCard(row);
+    };
+    const head = (pin) =>
+      page.element(
+        "th",
+        { scope: "col", class: "number" },
+        page.element("button", { type: "button", class: "pin-name", click: () => open(pin), title: "Open its card" }, page.element("span", { class: "pin-letter" }, pin.letter), ` ${pin.design}`),
+        page.element("button", { type: "button", class: "back no-print", "aria-label": `Unpin design ${pin.design}`, title: "Unpin", click: () => page.unpin(pin) }, "×"),
+        changed(pin),
+      );
+    const same = page.element("input", { type: "checkbox", id: "only-differences", checked: section.dataset.only === "yes", change: (event) => ((section.dataset.only = event.target.checked ? "yes" : "no"), draw()) });
+    const shown = section.dataset.only === "yes" ? rows.filter((name) => new Set(pins.map((pin) => String(pin.values.get(name)?.value))).size > 1) : rows;
+    section.replaceChildren(
+      page.element("div", { class: "title-line" }, page.element("h2", { id: "pins-title" }, "Pinned designs"), page.element("label", { class: "no-print" }, same, " only what differs")),
+      page.element("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Pinned designs" }, page.element("table", { class: "pins", "data-testid": "pins-table" }, page.element("thead", {}, page.element("tr", {}, page.element("th", { scope: "col" }, "quantity"), page.element("th", { scope: "col" }, "unit"), pins.map(head))), page.element("tbody", {}, shown.map(line)))),
+      pins.length === 1 ? page.element("p", { class: "hint no-print" }, "Pin another design, from its card, to compare them.") : "",
+    );
+  };
+
+  page.startPins = () => {
+    page.events.on("pins.table", draw);
+    page.events.on("front.pins", () => {
+      // The values of a pin of this very study are those of the newest answer, which may know more.
+      pins = pins.map((pin) => {
+        const row = sameSet(pin) ? page.rowOf(pin.design) : -1;
+        return row < 0 ? pin : { ...pinOf(row), letter: pin.letter };
+      });
+      draw();
+    });
+    draw();
+  };
+}

@@ -1,0 +1,421 @@
+//! The page of `beltspace explore` in Chromium, used as a person uses it. These tests need a browser, so they run where they are asked for.
+
+use crate::browser::Browser;
+use crate::random::Random;
+use beltspace::models::Models;
+use beltspace::{Data, Engine, Judging, Options, Study, Table};
+use serde_json::Value;
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// A server that ends with the test.
+struct Explored {
+    process: Child,
+    address: String,
+}
+
+impl Explored {
+    fn new(study: &Path, words: &[&str]) -> Self {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let mut process = Command::new(env!("CARGO_BIN_EXE_beltspace"))
+            .arg("explore")
+            .arg(study)
+            .arg("--no-browser")
+            .args(words)
+            .current_dir(root)
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("the program starts");
+        let mut line = String::new();
+        BufReader::new(process.stdout.take().expect("it is piped")).read_line(&mut line).expect("it prints its address");
+        let address = line.split_whitespace().find(|word| word.starts_with("http://")).expect("it has an address").to_owned();
+        Self { process, address }
+    }
+}
+
+impl Drop for Explored {
+    fn drop(&mut self) {
+        // It may have ended by itself.
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+fn study_file(text: &str) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().expect("there is room");
+    let file = folder.path().join("study.toml");
+    std::fs::write(&file, text).expect("it can be written");
+    (folder, file)
+}
+
+const SMALL: &str = r#"
+model = "metal-cvt"
+title = "A small belt"
+[design]
+groove_angle_deg  = { from = 18, to = 30, count = 7 }
+band_thickness_mm = { from = 0.10, to = 0.30, step = 0.02 }
+band_count        = { from = 6, to = 14 }
+traction          = { from = 0.30, to = 0.50, count = 5 }
+[operation]
+ratio     = { from = 0.5, to = 2.0, count = 9, spacing = "log" }
+torque_Nm = [50, 150]
+[uncertainty]
+friction = { from = 0.065, to = 0.095, count = 3 }
+[fixed]
+strength_MPa = 800
+[constraints]
+slip_margin   = { min = 0 }
+stress_margin = { min = 0 }
+[objectives]
+axial_force_N = "min"
+stress_margin = "max"
+slip_margin   = "max"
+[report]
+columns = ["max_stress_MPa"]
+"#;
+
+/// Waits for the exact answer to what was changed, and the frame that shows it.
+fn answered(browser: &mut Browser) {
+    browser.wait("beltspace.page.isAnswered() && beltspace.timings.answers.length >= (window.wanted || 1)");
+}
+
+/// Starts anew to count answers.
+const COUNT: &str = "(() => { window.wanted = beltspace.timings.answers.length + 1; })()";
+
+fn open(explored: &Explored) -> Browser {
+    let mut browser = Browser::open_at(&explored.address);
+    answered(&mut browser);
+    browser
+}
+
+/// In which column and row the page's front differs from a fresh sweep of the same changes.
+fn differs(browser: &mut Browser, text: &str, folder: &Path) -> Option<String> {
+    let set: Vec<String> = serde_json::from_value(browser.evaluate("beltspace.page.changeList()")).expect("texts");
+    let shown = browser.evaluate(
+        "({ index: beltspace.page.front.index ? [...beltspace.page.front.index.exact] : [], \
+         columns: Object.fromEntries(beltspace.page.front.columns.filter((it) => it.type === 'f64').map((it) => [it.name, \
+         [...it.values].map((v) => Number.isNaN(v) ? null : v)])) })",
+    );
+    let (study, _) = Study::parse_set(&Models::new(), text, "study.toml", folder, &set).unwrap_or_else(|error| panic!("{set:?}: {error}"));
+    let options = Options::default().engine(Engine::Cpu).judging(Judging::Exhaustive);
+    let outcome = study.sweep(options).unwrap_or_else(|error| panic!("{set:?}: {error}"));
+    difference(&shown, &outcome.front).map(|where_| format!("{set:?}: {where_}"))
+}
+
+fn difference(shown: &Value, front: &Table) -> Option<String> {
+    let indices = match &front.columns[0].data {
+        Data::Whole(indices) => indices.iter().map(|it| it.expect("each has one").to_string()).collect::<Vec<_>>(),
+        other => panic!("the first column is {other:?}"),
+    };
+    let own: Vec<String> = serde_json::from_value(shown["index"].clone()).expect("texts");
+    if own != indices {
+        return Some(format!("the page has {} designs, the sweep {}", own.len(), indices.len()));
+    }
+    let columns = shown["columns"].as_object().expect("columns by name");
+    let mut compared = 0;
+    for column in &front.columns {
+        let Data::Number(values) = &column.data else { continue };
+        let own = columns.get(&column.name).unwrap_or_else(|| panic!("the page has no {}", column.name)).as_array().expect("numbers");
+        for (row, (own, value)) in own.iter().zip(values).enumerate() {
+            if own.as_f64().map(f64::to_bits) != value.map(f64::to_bits) {
+                return Some(format!("{} in row {row}: the page has {own}, the sweep {value:?}", column.name));
+            }
+        }
+        compared += 1;
+    }
+    assert!(compared >= 4, "{compared} columns were compared");
+    None
+}
+
+/// Moves one slider or field of those in the panel to a random place, and waits for the answer.
+fn move_one(browser: &mut Browser, random: &mut Random) {
+    browser.evaluate(COUNT);
+    let at = random.unit();
+    let pick = random.unit();
+    let moved = browser.evaluate(&format!(
+        "(() => {{ const sliders = [...document.querySelectorAll('#controls input[type=range]')].filter((it) => it.closest('details').dataset.group !== 'others'); \
+         const slider = sliders[Math.floor({pick} * sliders.length)]; const before = String(beltspace.page.changeList()); \
+         slider.value = Number(slider.min) + {at} * (Number(slider.max) - Number(slider.min)); \
+         slider.dispatchEvent(new Event('input', {{ bubbles: true }})); slider.dispatchEvent(new Event('change', {{ bubbles: true }})); \
+         return before !== String(beltspace.page.changeList()) ? slider.dataset.part : null; }})()"
+    ));
+    if !moved.is_null() {
+        browser.wait("beltspace.page.isAnswered() && (beltspace.timings.answers.length >= window.wanted || document.querySelector('#live').dataset.kind === 'error')");
+        // What the engine refuses, such as an end beyond the other, is taken back.
+        if browser.evaluate("document.querySelector('#live').dataset.kind") == "error" {
+            browser.evaluate(COUNT);
+            browser.evaluate("beltspace.page.undoChange()");
+            answered(browser);
+        }
+    }
+}
+
+#[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored explore_page --test-threads 1"]
+fn the_front_after_two_hundred_moves_of_sliders_is_that_of_a_fresh_sweep() {
+    let (folder, file) = study_file(SMALL);
+    let explored = Explored::new(&file, &[]);
+    let mut browser = open(&explored);
+    let random = &mut Random::new(22);
+    let (mut empty, mut compared) = (0, 0);
+    for round in 0..200 {
+        move_one(&mut browser, random);
+        if browser.number("beltspace.page.front.rows") == 0.0 {
+            empty += 1;
+        }
+        assert_eq!(differs(&mut browser, SMALL, folder.path()), None, "round {round}");
+        compared += 1;
+        // Now and then back, so that not everything stands at its end.
+        if round % 12 == 11 {
+            browser.evaluate(COUNT);
+            browser.evaluate("beltspace.page.resetChanges()");
+            answered(&mut browser);
+        }
+    }
+    eprintln!("200 moves: {compared} fronts are those of a fresh sweep, {empty} of them empty");
+    assert!(empty < 150, "{empty} of 200 fronts were empty");
+    // Of another study the front is another: a wrong front would be seen.
+    let other = SMALL.replace("strength_MPa = 800", "strength_MPa = 700");
+    browser.evaluate("beltspace.page.resetChanges()");
+    std::thread::sleep(Duration::from_millis(500));
+    assert!(differs(&mut browser, &other, folder.path()).is_some());
+    let asked: Vec<_> = browser.complaints.iter().filter(|it| !it.contains("Log.entryAdded")).cloned().collect();
+    assert_eq!(asked, Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored explore_page --test-threads 1"]
+fn a_hundred_million_evaluations_move_with_a_slider() {
+    for file in ["studies/metal-cvt.toml", "benches/studies/metal-cvt-traction.toml"] {
+        let explored = Explored::new(Path::new(file), &[]);
+        let mut browser = open(&explored);
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
+        let text = std::fs::read_to_string(&path).expect("it is there");
+        let random = &mut Random::new(7);
+        let skipped = browser.number("beltspace.timings.answers.length");
+        for round in 0..40 {
+            move_one(&mut browser, random);
+            if round % 10 == 9 {
+                assert_eq!(differs(&mut browser, &text, path.parent().expect("it has a folder")), None, "{file}, round {round}");
+                browser.evaluate(COUNT);
+                browser.evaluate("beltspace.page.resetChanges()");
+                answered(&mut browser);
+            }
+        }
+        let times = browser.evaluate("beltspace.timings.answers.map((it) => [it.took, it.engine])");
+        let times: Vec<(Option<f64>, f64)> = serde_json::from_value(times).expect("times");
+        let of_moves = times.iter().skip(skipped as usize).filter_map(|(took, engine)| Some(((*took)?, 1000.0 * engine)));
+        let (mut took, mut engine): (Vec<f64>, Vec<f64>) = of_moves.unzip();
+        took.sort_by(f64::total_cmp);
+        engine.sort_by(f64::total_cmp);
+        let at = |times: &[f64], part: f64| times[((times.len() - 1) as f64 * part).round() as usize];
+        eprintln!(
+            "{file}: {} moves, from the event to the painted exact front: median {:.0} ms, 95 % within {:.0} ms; the engine: median {:.0} ms, 95 % within {:.0} ms",
+            took.len(),
+            at(&took, 0.5),
+            at(&took, 0.95),
+            at(&engine, 0.5),
+            at(&engine, 0.95),
+        );
+        assert!(took.len() >= 25, "{}", took.len());
+        // Other programs may be at work here too; the measure is in the line above.
+        assert!(at(&took, 0.5) < 1000.0, "{took:?}");
+        assert_eq!(browser.complaints, Vec::<String>::new());
+    }
+}
+
+#[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored explore_page --test-threads 1"]
+fn changes_are_undone_shared_saved_and_compared() {
+    let (folder, file) = study_file(SMALL);
+    let explored = Explored::new(&file, &[]);
+    let mut browser = open(&explored);
+    let before = browser.number("beltspace.page.front.rows");
+    // With the mouse: a slider is dragged; all of that is one step back.
+    let slider = "#controls input[type=range][data-part=\"constraints.stress_margin.min\"]";
+    let [left, top, width, height] = browser.rectangle(slider);
+    browser.evaluate(COUNT);
+    let at = |part: f64| [left + part * width, top + height / 2.0];
+    let value: f64 =
+        browser.number(&format!("(() => {{ const e = document.querySelector('{slider}'); return (0 - e.min) / (e.max - e.min); }})()"));
+    browser.drag(at(value), at((value + 0.25).min(0.95)));
+    answered(&mut browser);
+    let after = browser.number("beltspace.page.front.rows");
+    assert!(after > 0.0 && after < before, "{after} of {before}");
+    assert_eq!(browser.number("beltspace.page.changes().size"), 1.0);
+    let first = browser.text("beltspace.page.changeList().join()");
+    browser.picture("explore-dragged");
+    assert_eq!(differs(&mut browser, SMALL, folder.path()), None);
+    browser.evaluate(COUNT);
+    browser.click_on("#undo");
+    answered(&mut browser);
+    assert_eq!(browser.number("beltspace.page.front.rows"), before);
+    browser.evaluate(COUNT);
+    browser.click_on("#redo");
+    answered(&mut browser);
+    assert_eq!(browser.text("beltspace.page.changeList().join()"), first);
+    // The command line says it, and gives the same front.
+    let command = browser.text("document.querySelector('#command').textContent");
+    assert!(command.contains("--set constraints.stress_margin.min="), "{command}");
+    // A design is pinned, another one too, and they are compared.
+    browser.evaluate("beltspace.openCard(0)");
+    browser.click_on("#card-pin");
+    browser.evaluate("beltspace.openCard(beltspace.page.front.rows - 1)");
+    browser.click_on("#card-pin");
+    browser.wait("document.querySelectorAll('.pins thead .pin-letter').length === 2");
+    assert!(browser.number("document.querySelectorAll('.pins tr.differs').length") >= 2.0);
+    browser.wait("document.querySelector('#all-outputs table')");
+    browser.wait("document.querySelectorAll('#around svg.slice').length >= 8");
+    browser.picture("explore-card");
+    // All of this is in the address.
+    browser.wait("location.hash.includes('s=constraints.stress_margin.min') && location.hash.includes('p=')");
+    let hash = browser.text("location.hash");
+    let address = explored.address.split("/?").next().expect("it has a host").to_owned();
+    browser.go_to_address(&format!("{address}/{hash}"));
+    answered(&mut browser);
+    assert_eq!(browser.text("beltspace.page.changeList().join()"), first, "{hash}");
+    assert_eq!(browser.number("beltspace.page.front.rows"), after);
+    assert_eq!(browser.number("beltspace.page.pins().length"), 2.0);
+    // Saved: the text is a study that gives this front.
+    let saved = browser.text("beltspace.page.data.study.text");
+    let study = Study::parse_in(&saved, "saved.toml", folder.path()).expect("it is a study");
+    assert_eq!(study.sweep(Options::default().engine(Engine::Cpu)).expect("it is swept").counts.front as f64, after);
+    // What the engine refuses is told, and the next change is answered.
+    browser.evaluate("beltspace.change({ 'friction': '-1' })");
+    browser.wait("document.querySelector('#live').dataset.kind === 'error'");
+    let said = browser.text("document.querySelector('#live-text').textContent");
+    assert!(said.contains("out of range"), "{said}");
+    browser.evaluate(COUNT);
+    browser.evaluate("beltspace.page.undoChange()");
+    answered(&mut browser);
+    // Nothing feasible: by how much.
+    browser.evaluate("beltspace.change({ 'constraints.stress_margin.min': '5' })");
+    browser.wait("!document.querySelector('#lead').hidden && document.querySelector('#lead .findings')");
+    let said = browser.text("document.querySelector('#lead').innerText");
+    assert!(said.contains("the best of all designs has") || said.contains("lets"), "{said}");
+    browser.picture("explore-none");
+    assert_eq!(browser.complaints, Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored explore_page --test-threads 1"]
+fn a_billion_designs_answer_coarsely_first() {
+    let text = SMALL.replace("count = 7 }", "count = 1501 }").replace("step = 0.02", "count = 2001").replace("count = 5 }", "count = 41 }");
+    let (_folder, file) = study_file(&text);
+    let explored = Explored::new(&file, &[]);
+    let mut browser = Browser::open_at(&explored.address);
+    browser.wait("beltspace.page.front && beltspace.page.front.rows > 0");
+    let designs = browser.number("beltspace.page.data.study.designs");
+    assert!(designs > 1e9, "{designs}");
+    assert_eq!(browser.text("document.querySelector('#live').dataset.kind"), "coarse");
+    let times: Vec<f64> = (0..8)
+        .map(|round| {
+            let bound = 0.005 * f64::from(round);
+            browser.number(&format!(
+                "new Promise((done) => {{ const start = performance.now(); beltspace.timings.coarse = 0; \
+                 beltspace.change({{ 'constraints.slip_margin.min': '{bound}' }}); const look = () => beltspace.timings.coarse > start ? \
+                 requestAnimationFrame(() => done(performance.now() - start)) : setTimeout(look, 1); look(); }})"
+            ))
+        })
+        .collect();
+    let mut sorted = times.clone();
+    sorted.sort_by(f64::total_cmp);
+    eprintln!(
+        "{designs:.2e} designs: a coarse front after {:.0} ms in the median, {:.0} ms at most",
+        sorted[sorted.len() / 2],
+        sorted[sorted.len() - 1]
+    );
+    assert!(sorted[sorted.len() / 2] < 1500.0, "{times:?}");
+    browser.picture("explore-coarse");
+}
+
+/// Rules of axe that it finds broken, with the elements.
+fn broken_rules(browser: &mut Browser, axe: &str) -> Vec<String> {
+    browser.evaluate(&format!("{axe}; 1"));
+    let found = browser.evaluate("axe.run(document).then((it) => it.violations.map((v) => `${v.id}: ${v.nodes.map((n) => n.target.join(' ')).join(', ').slice(0, 300)}`))");
+    serde_json::from_value(found).expect("texts")
+}
+
+/// The text of axe-core, from npm; `None` where npm cannot install it, which is told.
+fn axe() -> Option<String> {
+    let folder = tempfile::tempdir().expect("there is room");
+    let done = Command::new("npm")
+        .args(["install", "--silent", "--no-audit", "--no-fund", "--prefix"])
+        .arg(folder.path())
+        .arg("axe-core@4")
+        .status();
+    if !done.as_ref().is_ok_and(std::process::ExitStatus::success) {
+        eprintln!("axe: NOT RUN, npm cannot install axe-core: {done:?}");
+        return None;
+    }
+    Some(std::fs::read_to_string(folder.path().join("node_modules/axe-core/axe.min.js")).expect("it is installed"))
+}
+
+/// The least contrast of the marks that are drawn on the plots: of every colour of the scale, of points behind and of unselected ones.
+const CONTRAST: &str = "(() => { const light = (c) => { const { r, g, b } = d3.rgb(c); const f = (v) => (v /= 255) <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; \
+     return 0.2126 * f(r) + 0.7152 * f(g) + 0.0722 * f(b); }; const p = beltspace.page; const ground = light(p.variable('--plot')); \
+     const ratio = (c) => { const l = light(c); return (Math.max(l, ground) + 0.05) / (Math.min(l, ground) + 0.05); }; \
+     const marks = [...d3.range(0, 1.001, 0.02).map(p.ramp()), ...['--sample', '--ghost', '--faint', '--knee', '--ink', '--accent'].map(p.variable)]; \
+     return Math.min(...marks.map(ratio)); })()";
+
+#[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored explore_page --test-threads 1"]
+fn the_page_is_clear_to_everybody_in_both_themes_and_on_narrow_screens() {
+    let (_folder, file) = study_file(SMALL);
+    let explored = Explored::new(&file, &[]);
+    let mut browser = open(&explored);
+    browser.wait("beltspace.timings.counted > 0");
+    browser.evaluate("beltspace.openCard(0); beltspace.page.pin(0); beltspace.page.pin(3)");
+    browser.wait("document.querySelectorAll('#around svg.slice').length >= 8 && document.querySelector('#all-outputs table')");
+    let axe = axe();
+    for theme in ["light", "dark"] {
+        browser.evaluate(&format!("(() => {{ beltspace.state.theme = '{theme}'; beltspace.page.applyTheme(); }})()"));
+        assert_eq!(browser.text("document.documentElement.dataset.theme"), theme);
+        let contrast = browser.number(CONTRAST);
+        assert!(contrast >= 3.0, "{theme}: {contrast}");
+        browser.picture(&format!("explore-{theme}"));
+        if let Some(axe) = &axe {
+            assert_eq!(broken_rules(&mut browser, axe), Vec::<String>::new(), "{theme}");
+        }
+    }
+    if let Some(axe) = &axe {
+        browser.evaluate("document.querySelector('#undo').removeAttribute('aria-label'); document.querySelector('#undo').textContent = ''; document.querySelector('#undo').title = ''");
+        assert!(!broken_rules(&mut browser, axe).is_empty(), "a button without a name would go unseen");
+    }
+    browser.evaluate("beltspace.closeCard()");
+    browser.resize(400, 800);
+    std::thread::sleep(Duration::from_millis(600));
+    let wide = browser.number("document.documentElement.scrollWidth");
+    browser.picture("explore-narrow");
+    assert!(wide <= 400.0, "{wide} px wide");
+}
+
+#[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored explore_page --test-threads 1"]
+fn a_slider_is_moved_with_the_keyboard_and_what_comes_of_it_is_told() {
+    let (_folder, file) = study_file(SMALL);
+    let explored = Explored::new(&file, &["--set", "strength_MPa=750"]);
+    let mut browser = open(&explored);
+    assert_eq!(browser.text("beltspace.page.changeList().join()"), "strength_MPa=750");
+    let part = "constraints.slip_margin.min";
+    browser.evaluate(COUNT);
+    browser.evaluate(&format!("document.querySelector('#controls input[type=range][data-part=\"{part}\"]').focus()"));
+    browser.key("ArrowRight", 39);
+    answered(&mut browser);
+    assert!(browser.number(&format!("Number(beltspace.page.changedValue('{part}'))")) > 0.0);
+    assert_eq!(browser.text("document.querySelector('#live-text').getAttribute('aria-live')"), "polite");
+    browser.wait("document.querySelector('#live-text').textContent.startsWith('exact: ')");
+    // Ctrl+Z takes it back.
+    browser.evaluate(COUNT);
+    let control = serde_json::json!({ "type": "keyDown", "key": "z", "code": "KeyZ", "windowsVirtualKeyCode": 90, "modifiers": 2 });
+    browser.call("Input.dispatchKeyEvent", &control);
+    answered(&mut browser);
+    assert_eq!(browser.text("beltspace.page.changeList().join()"), "strength_MPa=750");
+    let start = Instant::now();
+    drop(explored);
+    browser.evaluate("beltspace.change({ 'strength_MPa': '700' })");
+    browser.wait("document.querySelector('#live').dataset.kind === 'error'");
+    assert!(start.elapsed() < Duration::from_secs(20));
+}
