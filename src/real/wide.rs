@@ -6,7 +6,7 @@
 //! Developed at SunSoft, a Sun Microsystems, Inc. business. Permission to use, copy, modify, and distribute this software is freely
 //! granted, provided that this notice is preserved.
 
-#![allow(clippy::excessive_precision, reason = "the constants as they are published")]
+#![allow(clippy::excessive_precision, clippy::approx_constant, reason = "the constants as they are published")]
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_possible_wrap, reason = "parts of the bits of a number")]
 
 use multiversion::multiversion;
@@ -39,7 +39,7 @@ fn ln_1p_of(x: f64) -> f64 {
         1.479_819_860_511_658_591e-01,
     ];
     let hx = high(x);
-    let is_near = hx < 0x3fda_827a || (hx >= 0x8000_0000 && hx <= 0xbfd2_bec4);
+    let is_near = hx < 0x3fda_827a || (0x8000_0000..=0xbfd2_bec4).contains(&hx);
     let u = 1.0 + x;
     let hu = high(u) + (0x3ff0_0000 - 0x3fe6_a09e);
     let k = (hu >> 20) as i32 - 0x3ff;

@@ -70,6 +70,8 @@ pub struct CpuEngine<'p> {
     chosen: Vec<(u64, u64)>,
     /// Room for the second stage as a list, and which scenarios of the current row it is run in.
     pub(super) numbers: Option<(LaneNumbers, Decisive)>,
+    /// Designs of a row that are to be judged.
+    ahead: u64,
     ordered_numbers: OrderedNumbers,
 }
 
@@ -134,6 +136,7 @@ impl<'p> CpuEngine<'p> {
             stop: None,
             chosen: Vec::new(),
             ordered_numbers: OrderedNumbers::default(),
+            ahead: 0,
             numbers: tables.lanes.as_ref().and_then(|list| Some((list.numbers(), Decisive::new(plan, list)?))),
         }
     }
@@ -146,6 +149,7 @@ impl<'p> CpuEngine<'p> {
     /// all are judged: the end, unless the engine was stopped.
     pub fn screen(&mut self, positions: Range<u64>, mut absorb: impl FnMut(&Block<'_>)) -> u64 {
         let width = self.plan.fast.count();
+        self.ahead = width;
         let mut position = positions.start;
         while position < positions.end {
             let (row, first) = (position / width, position % width);
@@ -167,6 +171,7 @@ impl<'p> CpuEngine<'p> {
     pub fn screen_for(&mut self, positions: Range<u64>, reduction: &Reduction, reducers: &mut Reducers) -> u64 {
         let width = self.plan.fast.count();
         let mut position = positions.start;
+        self.ahead = width;
         if reduction.is_front_only() && self.tables.ordered.is_some() {
             let first = position.next_multiple_of(width);
             let last = positions.end / width;
@@ -214,6 +219,7 @@ impl<'p> CpuEngine<'p> {
     pub fn screen_some(&mut self, positions: &[u64], mut absorb: impl FnMut(&Block<'_>)) {
         let width = self.plan.fast.count();
         for row in positions.chunk_by(|a, b| a / width == b / width) {
+            self.ahead = row.len() as u64;
             if self.enter_row(row[0] / width) && self.row_feasible {
                 for block in row.chunks(BLOCK) {
                     let places: Vec<u64> = block.iter().map(|position| position % width).collect();
@@ -227,6 +233,7 @@ impl<'p> CpuEngine<'p> {
     pub fn screen_some_in(&mut self, chosen: &[(u64, u64)], positions: &[u64], absorb: impl FnMut(&Block<'_>)) {
         self.row = None;
         self.chosen.extend(chosen);
+        self.ahead = places.len() as u64;
         self.screen_some(positions, absorb);
         self.chosen.clear();
         self.row = None;
@@ -304,7 +311,7 @@ impl<'p> CpuEngine<'p> {
         if !done {
             self.row = None;
         } else if let (true, Some((_, decisive)), Some(list)) = (self.row_feasible, &mut self.numbers, &self.tables.lanes) {
-            decisive.settle(list, scenarios);
+            decisive.settle(list, scenarios, self.ahead);
         }
         done
     }

@@ -14,6 +14,10 @@ use crate::tape::{Binary, Interval, Node, Operation, Unary};
 /// Most scenarios, and most numbers of each, that are compared.
 const MOST_SCENARIOS: u64 = 1 << 14;
 const MOST_SCALARS: usize = 64;
+/// With more scenarios that decide than this, finding them would take as long as judging the designs in all of them.
+const MOST_KEPT: usize = 128;
+/// Fewer designs times scenarios than this are judged in all of them before it is known which decide.
+const LEAST_WORK: u64 = 1024;
 /// Beyond this a change of units might overflow.
 const LARGE: f64 = 1e280;
 
@@ -128,10 +132,11 @@ impl Decisive {
         &self.scalars[self.kept[number] * self.width..][..self.width]
     }
 
-    /// Finds which of `count` scenarios decide, in their order: all of them where nothing is sure.
-    pub(super) fn settle(&mut self, list: &LaneList, count: usize) {
+    /// Finds which of `count` scenarios decide about so many designs, in their order: all of them where nothing is sure.
+    pub(super) fn settle(&mut self, list: &LaneList, count: usize, designs: u64) {
         self.kept.clear();
-        if count < 2 || !self.find_trends(list) {
+        let is_little = (count as u64).saturating_mul(designs) < LEAST_WORK;
+        if count < 2 || is_little || !self.find_trends(list) {
             return self.kept.extend(0..count);
         }
         let mut is_kept = vec![false; count];
@@ -220,7 +225,11 @@ fn worst(scalars: &[f64], width: usize, worse: Trend, is_kept: &mut [bool]) {
     // Who comes later is never worse in the first number.
     order.sort_by(|&a, &b| badness(b, (first_place, first_sign)).total_cmp(&badness(a, (first_place, first_sign))).then(a.cmp(&b)));
     let mut kept: Vec<usize> = Vec::new();
-    for scenario in order {
+    for (place, &scenario) in order.iter().enumerate() {
+        if kept.len() == MOST_KEPT {
+            order[place..].iter().for_each(|&rest| is_kept[rest] = true);
+            return;
+        }
         let covers = |&other: &usize| signs.iter().all(|&sign| badness(other, sign) >= badness(scenario, sign));
         match kept.iter().position(covers) {
             // Who covers one scenario often covers the next.
