@@ -59,7 +59,7 @@ impl Gate {
     fn exchange(&self, token: &str) -> Reply {
         let lasting = same(token, &self.token);
         let once = same(token, &self.once);
-        if !lasting && !(once && !self.used.swap(true, Ordering::Relaxed)) {
+        if !lasting && (!once || self.used.swap(true, Ordering::Relaxed)) {
             return Reply::text(
                 403,
                 if once {

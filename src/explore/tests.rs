@@ -194,6 +194,7 @@ fn a_change_is_answered_and_what_cannot_be_is_told() {
         let said = client.until("error").pop().expect("it is told")["message"].to_string();
         assert!(said.contains(told) && !said.contains("root:"), "{set}: {said}");
     }
+    let mut client = Client::new(server());
     for (body, more, wanted) in [
         ("{}", "Content-Type: application/json\r\n", "403"),
         ("{}", "Origin: http://evil.example\r\nContent-Type: application/json\r\n", "403"),

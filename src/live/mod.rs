@@ -68,7 +68,7 @@ pub enum LiveAnswer<'a> {
     /// The same, computed once more by the f64 reference, which says in which scenario each value is the worst.
     Certified(LiveFront<'a>),
     /// What every design says.
-    Counted(LiveCounts),
+    Counted(Box<LiveCounts>),
 }
 
 /// Designs of a front.
@@ -258,7 +258,7 @@ impl Live {
             feasible = Some(state.feasible);
         }
         let findings = Findings::of(plan, feasible.unwrap_or(1), front, self.threads, control)?;
-        tell(LiveAnswer::Counted(LiveCounts { feasible, tally, findings }))
+        tell(LiveAnswer::Counted(Box::new(LiveCounts { feasible, tally, findings })))
     }
 }
 

@@ -355,7 +355,7 @@ impl<'p> FrontSearch<'p> {
         let of = self.plan.scenarios();
         loop {
             let begun = Instant::now();
-            let points = match self.from_table(&set)? {
+            let points = match self.front_by_table(&set)? {
                 Some(points) => points,
                 None => {
                     // What a few designs leave nothing of need not be kept until the end.
@@ -388,7 +388,7 @@ impl<'p> FrontSearch<'p> {
     }
 
     /// The front of all designs in a working set out of the table, which is made if need be; `None` if it would be too large.
-    fn from_table(&mut self, set: &WorkingSet) -> Result<Option<Points>> {
+    fn front_by_table(&mut self, set: &WorkingSet) -> Result<Option<Points>> {
         let Some((free, tables)) = &self.free else { return Ok(None) };
         let stop = &self.control.stop;
         if !self.table.as_ref().is_some_and(|it| it.serves(free, set)) {
