@@ -39,7 +39,7 @@ fn ln_1p_of(x: f64) -> f64 {
         1.479_819_860_511_658_591e-01,
     ];
     let hx = high(x);
-    let is_near = hx < 0x3fda_827a || (hx >= 0x8000_0000 && hx <= 0xbfd2_bec4);
+    let is_near = hx < 0x3fda_827a || (0x8000_0000..=0xbfd2_bec4).contains(&hx);
     let u = 1.0 + x;
     let hu = high(u) + (0x3ff0_0000 - 0x3fe6_a09e);
     let k = (hu >> 20) as i32 - 0x3ff;
