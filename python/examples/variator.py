@@ -37,9 +37,6 @@ light = front[(front["band_count"] <= 11) & (front["stress_margin"] >= 0.08)]
 light.sort_values("axial_force_upper_N").head()[["band_count", "band_thickness_mm", "axial_force_upper_N", "stress_margin"]]
 
 # %%
-import matplotlib
-
-matplotlib.use("agg")
 import matplotlib.pyplot as plt
 
 figure, axes = plt.subplots(figsize=(6, 4))

@@ -51,7 +51,7 @@ pub fn run(command: Command) -> Result<()> {
         #[cfg(feature = "gpu")]
         Command::Adapters { json } => adapters::run(json),
         Command::Schema { markdown: true } => terminal::print(&beltspace::study::study_reference()),
-        Command::Schema { markdown: false } => terminal::print(&format!("{:#}\n", beltspace::study::study_schema())),
+        Command::Schema { markdown: false } => terminal::print(&beltspace::study::study_schema()),
         Command::Man { dir } => man::run(dir.as_deref()),
         Command::Completions { shell } => {
             let mut script = Vec::new();

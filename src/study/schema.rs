@@ -232,8 +232,12 @@ fn definitions() -> Value {
     })
 }
 
-/// The form of a study file: JSON Schema, draft 2020-12.
-pub fn study_schema() -> Value {
+/// The form of a study file: the text of a JSON Schema, draft 2020-12.
+pub fn study_schema() -> String {
+    format!("{:#}\n", schema())
+}
+
+fn schema() -> Value {
     let axes = |doc: &'static str| (named(of("axis")), doc);
     let (design, of_design) = axes("What is chosen: one axis per input, the last one fastest.");
     let (operation, of_operation) = axes("What the drive must survive.");
@@ -337,7 +341,7 @@ fn rows(schema: &Value, page: &mut String) {
 
 /// Every key of a study file, as a page in Markdown.
 pub fn study_reference() -> String {
-    let schema = study_schema();
+    let schema = schema();
     let mut page = "# The study file: every key\n\n\
         This page is what `beltspace schema --markdown` prints; `beltspace schema` prints the same for editors, as JSON Schema. Both come from the \
         tables by which the reader refuses unknown keys. What the keys are for is told in the [README](../README.md) and in the pages that it \
@@ -370,7 +374,7 @@ mod tests {
 
     #[test]
     fn the_schema_tells_every_key_and_refers_to_what_there_is() {
-        let schema = study_schema();
+        let schema = schema();
         let text = schema.to_string();
         let definitions = schema["$defs"].as_object().expect("there are some");
         for part in text.split("#/$defs/").skip(1) {

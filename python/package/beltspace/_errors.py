@@ -35,7 +35,7 @@ class StudyError(RequestError):
         self.problems = [Problem(*it) for it in problems]
 
     def __reduce__(self) -> tuple[type["StudyError"], tuple[str, list[tuple[str, int, int, str]]]]:
-        return type(self), (str(self), [tuple(it) for it in self.problems])
+        return type(self), (str(self), [(it.file, it.line, it.column, it.message) for it in self.problems])
 
     @property
     def line(self) -> int:
