@@ -43,8 +43,11 @@ fn changed(edits: &[(&str, &str)]) -> String {
     })
 }
 
+/// A column with the bits of its numbers.
+type NamedBits = (String, Vec<Option<u64>>);
+
 /// Designs and values of the whole sweep's front, as far as they are numbers.
-fn swept(study: &Study) -> (Vec<u64>, Vec<(String, Vec<Option<u64>>)>) {
+fn swept(study: &Study) -> (Vec<u64>, Vec<NamedBits>) {
     let options = Options::default().engine(Engine::Cpu).judging(Judging::Exhaustive).threads(2);
     let front = study.sweep(options).expect("it is swept").front;
     let mut designs = Vec::new();

@@ -233,7 +233,6 @@ impl<'p> CpuEngine<'p> {
     pub fn screen_some_in(&mut self, chosen: &[(u64, u64)], positions: &[u64], absorb: impl FnMut(&Block<'_>)) {
         self.row = None;
         self.chosen.extend(chosen);
-        self.ahead = places.len() as u64;
         self.screen_some(positions, absorb);
         self.chosen.clear();
         self.row = None;
@@ -246,6 +245,7 @@ impl<'p> CpuEngine<'p> {
             self.row = None;
         }
         self.chosen.extend(chosen);
+        self.ahead = places.len() as u64;
         let blocks: Vec<FastBlock> = places.chunks(BLOCK).map(|places| FastBlock::picked(self.plan, self.tables, places)).collect();
         for &row in rows {
             if self.enter_row(row) && self.row_feasible {
