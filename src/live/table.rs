@@ -38,7 +38,7 @@ struct TablePart {
 }
 
 /// What a study's bounds are asked of: places among what the plan follows, with the least and the largest value that holds.
-type Bounds = Vec<(usize, f64, f64)>;
+type LiveBounds = Vec<(usize, f64, f64)>;
 
 /// The plan of a study without bounds that follows what they are about.
 pub fn free_plan(study: &Study) -> Plan {
@@ -141,7 +141,7 @@ fn followed(plan: &Plan) -> Vec<Tracked> {
 }
 
 /// Where the values stand that a study's bounds are about: the least of all scenarios for a lower bound, the largest for an upper one.
-fn bounds(free: &Plan, study: &Study) -> Bounds {
+fn bounds(free: &Plan, study: &Study) -> LiveBounds {
     let of_constraint = |it: &Constraint| {
         let (low, high) = it.ends();
         let ends =

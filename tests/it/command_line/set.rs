@@ -219,7 +219,7 @@ fn a_part_that_cannot_be_set_is_told_by_its_name() {
         ("operation.torque_Nm=[[1]]", "write a list of numbers or words, such as [50, 150]"),
         ("operation.torque_Nm=[1], x = [2", "write a list of numbers or words, such as [50, 150]"),
         ("operation.torque_Nm.from=1", "torque_Nm of [operation] is a list, which has no keys; give all of it a new value"),
-        ("constraints.slip_margin=3", "it must be a table"),
+        ("constraints.slip_margin=3", "wanted bounds such as { min = 0 }"),
         ("constraints.axial_force_N=off", "the study has no axial_force_N in [constraints]"),
         ("constraints.slip_margin.min=x", "\"x\""),
         ("objectives.stress_margin=up", "unknown goal \"up\""),
