@@ -207,7 +207,7 @@ impl Study {
         };
         let designs = self.designs;
         let follower = py.import("beltspace._progress")?.call_method1("follower", (progress,))?;
-        let tell = |py: Python<'_>| {
+        let tell = |_: Python<'_>| {
             if follower.is_none() {
                 return Ok(());
             }
