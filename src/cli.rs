@@ -1,5 +1,7 @@
 //! Every option of the command line.
 
+#![allow(rustdoc::invalid_html_tags, reason = "these texts are the help of the command line")]
+
 use beltspace::run::{Engine, Judging};
 use beltspace::study::{InfluenceOver, SensitivitySpec};
 use beltspace::tiles::Shard;

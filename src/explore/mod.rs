@@ -2,7 +2,7 @@
 //!
 //! A small server without further threads than its connections have. Each connection is read by a thread of its own; what it asks is
 //! answered by the library, in steps, and ends as soon as the browser has lost interest. Only the page that came with the token may ask
-//! ([`gate`]), and there are a few fixed addresses: nothing that a client says becomes a path.
+//! (`gate`), and there are a few fixed addresses: nothing that a client says becomes a path.
 
 mod controls;
 mod gate;
