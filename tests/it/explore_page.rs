@@ -240,7 +240,7 @@ fn changes_are_undone_shared_saved_and_compared() {
     let at = |part: f64| [left + part * width, top + height / 2.0];
     let value: f64 =
         browser.number(&format!("(() => {{ const e = document.querySelector('{slider}'); return (0 - e.min) / (e.max - e.min); }})()"));
-    browser.drag(at(value), at((value + 0.06).min(0.95)));
+    browser.drag(at(value), at((value + 0.15).min(0.95)));
     answered(&mut browser);
     let after = browser.number("beltspace.page.front.rows");
     assert!(after > 0.0 && after < before, "{after} of {before}");

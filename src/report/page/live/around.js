@@ -59,7 +59,7 @@
   };
 
   const draw = (box, { columns, slices }) => {
-    const head = page.element("tr", {}, page.element("th", { scope: "col" }, ""), columns.map((column) => page.element("th", { scope: "col", title: column.doc }, page.breakable(column.name), page.element("span", { class: "unit" }, ` ${page.unit(column.unit)}`))));
+    const head = page.element("tr", {}, page.element("th", { scope: "col" }, "input"), columns.map((column) => page.element("th", { scope: "col", title: column.doc }, page.breakable(column.name), page.element("span", { class: "unit" }, ` ${page.unit(column.unit)}`))));
     const rows = slices.map((slice) => page.element("tr", {}, page.element("th", { scope: "row" }, page.breakable(slice.input), page.element("div", { class: "unit" }, reachText(slice))), slice.lines.map((line, i) => page.element("td", {}, chart(slice, columns[i], line)))));
     box.replaceChildren(page.element("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Slices around the design" }, page.element("table", { class: "slices", "data-testid": "slices" }, page.element("thead", {}, head), page.element("tbody", {}, rows))), page.element("p", { class: "hint" }, "Dot: this design. Dashed: a limit. Shaded: infeasible. A tick on a line: another scenario becomes the worst."));
   };

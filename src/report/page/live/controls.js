@@ -215,7 +215,7 @@
         "div",
         { class: "controls-head" },
         page.element("h2", {}, "Change the study"),
-        page.element("div", { class: "controls-buttons" }, button("undo", "Undo (Ctrl+Z)", "↶", page.undoChange), button("redo", "Do it again (Ctrl+Y)", "↷", page.redoChange), button("reset", "Back to the study as its file has it", "Reset", () => page.resetChanges())),
+        page.element("div", { class: "controls-buttons" }, button("undo", "Undo (Ctrl+Z)", "↶", page.undoChange), button("redo", "Do it again (Ctrl+Y)", "↷", page.redoChange), button("reset", "Reset to the study as its file has it", "Reset", () => page.resetChanges())),
       ),
       ...[
         group("constraints", of.constraints, constraint, true),
