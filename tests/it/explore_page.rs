@@ -240,7 +240,13 @@ fn changes_are_undone_shared_saved_and_compared() {
     let at = |part: f64| [left + part * width, top + height / 2.0];
     let value: f64 =
         browser.number(&format!("(() => {{ const e = document.querySelector('{slider}'); return (0 - e.min) / (e.max - e.min); }})()"));
-    browser.drag(at(value), at((value + 0.15).min(0.95)));
+    // To where it leaves half of the front.
+    let to: f64 = browser.number(&format!(
+        "(() => {{ const e = document.querySelector('{slider}'); \
+         const values = Array.from(beltspace.page.front.columns.find((it) => it.name === 'stress_margin').values).sort((a, b) => a - b); \
+         return (values[values.length >> 1] - e.min) / (e.max - e.min); }})()"
+    ));
+    browser.drag(at(value), at(to));
     answered(&mut browser);
     let after = browser.number("beltspace.page.front.rows");
     assert!(after > 0.0 && after < before, "{after} of {before}");
@@ -256,7 +262,8 @@ fn changes_are_undone_shared_saved_and_compared() {
     browser.click_on("#redo");
     answered(&mut browser);
     assert_eq!(browser.text("beltspace.page.changeList().join()"), first);
-    // The command line says it, and gives the same front.
+    // The command line says it, a moment later, and gives the same front.
+    browser.wait("document.querySelector('#command').textContent.includes('--set constraints.stress_margin.min=')");
     let command = browser.text("document.querySelector('#command').textContent");
     assert!(command.contains("--set constraints.stress_margin.min="), "{command}");
     // A design is pinned, another one too, and they are compared.

@@ -26,7 +26,7 @@
       return page.element("tr", { "data-reason": text }, page.element("th", { scope: "row" }, text), page.element("td", { class: "muted" }, kind), page.element("td", { class: "bar-cell" }, meter), page.element("td", { class: "number" }, page.percent(failed, sampled)), page.element("td", { class: "number" }, constraint ? page.percent(only, sampled) : "–"));
     };
     const head = [["reason", ""], ["kind", ""], ["share", ""], ["fails", "number"], ["alone", "number"]].map(([name, kind]) => page.element("th", { scope: "col", class: kind }, name));
-    const table = page.element("table", { class: "tally" }, page.element("thead", {}, page.element("tr", {}, head)), page.element("tbody", {}, shown.map(line)));
+    const table = page.element("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Reasons and their shares" }, page.element("table", { class: "tally" }, page.element("thead", {}, page.element("tr", {}, head)), page.element("tbody", {}, shown.map(line))));
     section.append(
       page.element("h2", { id }, title),
       page.element("p", { class: "hint" }, `Of ${whole === sampled ? "all" : "a fixed sample of"} ${page.count(sampled)} ${one}s, ${page.count(tally.feasible)} (${page.percent(tally.feasible, sampled)}) ${good}. One ${one} may fail for several reasons; “alone” counts those that fail this constraint and nothing else.`),
@@ -51,7 +51,7 @@
   // How far off feasibility is, ends of axes on which the front stands, quantities below zero that no constraint forbids.
   const drawFindings = (place, findings) => {
     const list = page.element("ul", { class: "findings", "data-testid": "findings" }, findings.map((text) => page.element("li", {}, text)));
-    place.append(page.element("h3", {}, "Findings"), list);
+    place.append(page.element("h2", {}, "Findings"), list);
   };
 
   page.startTally = () => {
