@@ -22,9 +22,10 @@ mod models_and_eval;
 mod names;
 /// Which process uses a directory, and which files in it are beltspace's.
 mod ownership;
+/// The page of a result.
+mod presets;
 /// Interrupted, divided and resumed runs.
 mod recovery;
-/// The page of a result.
 mod report;
 /// Rows of a table, evaluated one by one.
 mod rows;

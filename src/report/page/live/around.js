@@ -110,10 +110,20 @@
       clearTimeout(waiting);
       waiting = setTimeout(ask, wait);
     };
-    page.events.on("front.around", () => later(500));
+    // The card is drawn anew with another front and with each pin: its list of outputs too.
+    let outputs = 0;
+    const laterOutputs = (wait) => {
+      clearTimeout(outputs);
+      outputs = setTimeout(askOutputs, wait);
+    };
+    page.events.on("front.around", () => {
+      later(500);
+      laterOutputs(500);
+    });
+    page.events.on("pins.around", () => laterOutputs(0));
     page.events.on("card.around", () => {
       later(60);
-      askOutputs();
+      laterOutputs(0);
     });
     later(300);
   };
