@@ -16,7 +16,7 @@ use std::ops::Range;
 use std::time::{Duration, Instant};
 
 /// The program itself, with a small study.
-const PROGRAM: u64 = 13_000_000;
+const PROGRAM: u64 = 13_900_000;
 /// A thread with its blocks.
 const THREAD: u64 = 350_000;
 /// Bytes of a cell of a map in the state, and with the copy and the serialised bytes while a checkpoint is saved.

@@ -69,11 +69,6 @@ pub(super) struct OrderedNumbers {
     open: Vec<Range<usize>>,
 }
 
-/// Bytes that the sorted columns of a plan may take.
-pub(super) fn sorted_bytes(plan: &Plan) -> u64 {
-    if plan.scenarios() == 1 { plan.designs().saturating_mul(DESIGN_BYTES).min(MOST_BYTES) } else { 0 }
-}
-
 impl OrderedRows {
     /// `None` where the rows of a plan are none of that kind.
     pub(super) fn new(plan: &Plan, list: &LaneList) -> Option<Self> {
@@ -119,6 +114,12 @@ impl OrderedRows {
             dimensions,
             columns: (0..columns).map(|_| OnceLock::new()).collect(),
         })
+    }
+
+    /// Bytes of all sorted columns.
+    pub(super) fn bytes(&self, plan: &Plan) -> u64 {
+        let one = size_of::<OnceLock<Option<SortedColumn>>>() as u64 + plan.fast.count() * DESIGN_BYTES;
+        self.columns.len() as u64 * one
     }
 
     /// The sorted column of a row, given the row's numbers.

@@ -1,7 +1,7 @@
 //! What the threads of the CPU engine share: settings of scenarios, and the designs of the fast axes by blocks.
 
 use super::lane_list::LaneList;
-use super::ordered::{OrderedRows, sorted_bytes};
+use super::ordered::OrderedRows;
 use crate::models::{self, LANES};
 use crate::plan::{FAST_DESIGNS, Plan};
 use crate::space::Product;
@@ -66,10 +66,15 @@ impl Tables {
             let one = size_of::<Setting>() + product.inputs().len() * size_of::<(usize, f64, f64)>();
             if product.count() <= TABLE { product.count() * one as u64 } else { 0 }
         };
-        let shared = LaneList::new(plan).map_or(0, |list| list.kept());
+        let settings = settings(&plan.slow_scenarios) + settings(&plan.fast_scenarios);
+        if plan.fast.count() > FAST_DESIGNS {
+            return settings;
+        }
+        let list = LaneList::new(plan);
+        let shared = list.as_ref().map_or(0, LaneList::kept);
         let numbers = 1 + (2 * plan.fast.inputs().len() + shared) as u64;
-        let blocks = if plan.fast.count() <= FAST_DESIGNS { plan.fast.count() * 8 * numbers } else { 0 };
-        settings(&plan.slow_scenarios) + settings(&plan.fast_scenarios) + blocks + sorted_bytes(plan)
+        let sorted = list.and_then(|list| Some(OrderedRows::new(plan, &list)?.bytes(plan))).unwrap_or(0);
+        settings + plan.fast.count() * 8 * numbers + sorted
     }
 }
 
