@@ -1,7 +1,7 @@
 //! What rows are evaluated by: a model, or a study.
 
 use super::refusal;
-use crate::certify::{self, Column, DesignColumns, Row};
+use crate::certify::{self, Column, DesignColumns, Row, TOGETHER};
 use crate::error::Result;
 use crate::export::tables::{input_column, of_rows};
 use crate::likeness::remedy;
@@ -11,9 +11,6 @@ use crate::screen::Control;
 use crate::study::{Axis, Constraint, Study};
 use crate::table::{Data, TableColumn};
 use std::sync::Arc;
-
-/// Evaluations from which on recording the formula takes less time than it saves.
-const TOGETHER: u64 = 2000;
 
 /// What rows are evaluated by.
 #[derive(Debug)]

@@ -426,7 +426,7 @@ mod tests {
             let designs = DesignColumns { inputs: &inputs, values: &values };
             let Some(together) = rows_of_columns(&plan, &columns, designs, 3, &control) else { continue };
             let numbers: Vec<u64> = (0..values[0].len() as u64).collect();
-            let alone = certify::rows(&plan, &columns, &numbers, 2, &control).expect("nobody stops it");
+            let alone = certify::one_by_one(&plan, &columns, &numbers, 2, &control).expect("nobody stops it");
             let together = together.expect("nobody stops it");
             assert_eq!(together.len(), alone.len());
             for (together, alone) in together.iter().zip(&alone) {

@@ -8,6 +8,7 @@ use super::decisive::Decisive;
 use super::kept_rows::KeptRows;
 use super::lane_list::{LaneList, LaneNumbers};
 use super::ordered::{OrderedNumbers, OrderedRow};
+use super::row_list::{RowList, RowNumbers};
 use super::spectrum::CaseSums;
 use super::tables::{BLOCK, FastBlock, Setting, Tables, setting};
 use crate::decision::Decision;
@@ -70,6 +71,8 @@ pub struct CpuEngine<'p> {
     chosen: Vec<(u64, u64)>,
     /// Room for the second stage as a list, and which scenarios of the current row it is run in.
     pub(super) numbers: Option<(LaneNumbers, Decisive)>,
+    /// What is the same for the current row, over all scenarios at once, where that serves.
+    row_numbers: Option<RowNumbers>,
     /// Designs of a row that are to be judged.
     ahead: u64,
     ordered_numbers: OrderedNumbers,
@@ -97,7 +100,9 @@ impl<'p> CpuEngine<'p> {
     /// Bytes of prepared numbers and sums under way that an engine for this plan keeps.
     pub fn prepared_bytes(plan: &Plan) -> u64 {
         let prepared = 8 * plan.study.model.kernel.prepared_len() as u64 * (plan.kept_scenarios() + 1);
-        prepared + CaseSums::bytes(plan, BLOCK) + LaneList::new(plan).map_or(0, |list| list.bytes() + Decisive::bytes(plan, &list))
+        let lanes = LaneList::new(plan);
+        let of_lanes = lanes.as_ref().map_or(0, |list| list.bytes() + Decisive::bytes(plan, list));
+        prepared + CaseSums::bytes(plan, BLOCK) + of_lanes + RowList::room(plan, lanes.as_ref())
     }
 
     /// An engine that keeps the prepared numbers of that many slow scenarios.
@@ -105,7 +110,10 @@ impl<'p> CpuEngine<'p> {
         let columns = plan.lane_outputs.len() + plan.lane_conditions.len();
         let first = plan.space.inputs(0, 0);
         let Sizes { prepared: width, outputs, conditions, .. } = plan.study.model.kernel.sizes();
+        let numbers = tables.lanes.as_ref().and_then(|list| Some((list.numbers(), Decisive::new(plan, list)?)));
         Self {
+            row_numbers: tables.rows.as_ref().filter(|_| numbers.is_some() || columns == 0).map(RowNumbers::new),
+            numbers,
             plan,
             tables,
             slow_reads: plan.dependencies.prepared & plan.slow.inputs(),
@@ -137,7 +145,6 @@ impl<'p> CpuEngine<'p> {
             chosen: Vec::new(),
             ordered_numbers: OrderedNumbers::default(),
             ahead: 0,
-            numbers: tables.lanes.as_ref().and_then(|list| Some((list.numbers(), Decisive::new(plan, list)?))),
         }
     }
 
@@ -318,10 +325,29 @@ impl<'p> CpuEngine<'p> {
 
     /// Keeps what the designs of the row need of the current scenario.
     fn add_scenario(&mut self, prepared: Range<usize>) {
+        self.enter_scenario(prepared);
         if let (Some((numbers, decisive)), Some(list)) = (&mut self.numbers, &self.tables.lanes) {
-            list.enter(numbers, &self.prepared[prepared], &self.si);
             decisive.add(numbers.scalars(list));
         }
+    }
+
+    /// Computes what the inner loop reads of the current row and scenario, where it is a list.
+    fn enter_scenario(&mut self, prepared: Range<usize>) {
+        let listed = self.listed().is_some();
+        let (Some((numbers, _)), Some(list)) = (&mut self.numbers, &self.tables.lanes) else { return };
+        match (&self.row_numbers, &self.tables.rows) {
+            (Some(of_row), Some(rows)) if listed => of_row.enter(rows, self.scenario, list, numbers),
+            _ => list.enter(numbers, &self.prepared[prepared], &self.si),
+        }
+    }
+
+    /// Where all scenarios of a row are taken at once: what is computed of them.
+    fn listed(&self) -> Option<(&RowList, &RowNumbers)> {
+        self.tables
+            .rows
+            .as_ref()
+            .zip(self.row_numbers.as_ref())
+            .filter(|_| self.chosen.is_empty() && (self.numbers.is_some() || self.results.is_empty()))
     }
 
     /// Turns to one scenario after the other, as long as `judge` wants to go on; false if it was stopped before that. `judge` is told
@@ -375,6 +401,9 @@ impl<'p> CpuEngine<'p> {
             self.kept = 0;
         }
         self.before = before;
+        if let (Some(rows), Some(numbers), true) = (&self.tables.rows, &mut self.row_numbers, self.chosen.is_empty()) {
+            numbers.turn(rows, self.tables.lanes.as_ref(), &self.si);
+        }
     }
 
     /// Conditions, constraints and worst values of a row in the current scenario; false if the whole row is out.
@@ -406,6 +435,12 @@ impl<'p> CpuEngine<'p> {
 
     /// Computes condition margins and row outputs in the current scenario.
     pub(super) fn row_values(&mut self, prepared: Range<usize>) {
+        if self.listed().is_some() {
+            if let (Some(rows), Some(numbers)) = (&self.tables.rows, &self.row_numbers) {
+                numbers.recall(rows, self.scenario, &mut self.row_margins, &mut self.row_outputs);
+            }
+            return;
+        }
         if self.kept_rows.recall(self.scenario, &mut self.row_margins, &mut self.row_outputs) {
             return;
         }
@@ -478,11 +513,14 @@ impl<'p> CpuEngine<'p> {
     /// Runs the inner loop: lane outputs and lane condition margins of a block in the current scenario.
     pub(super) fn evaluate(&mut self, prepared: Range<usize>, fast: &FastBlock) {
         let plan = self.plan;
-        let prepared = &self.prepared[prepared];
+        if self.results.is_empty() {
+            return;
+        }
+        self.enter_scenario(prepared.clone());
         if let (Some(list), Some((numbers, _))) = (&self.tables.lanes, &mut self.numbers) {
-            list.enter(numbers, prepared, &self.si);
             return list.run(numbers, (&fast.shared, fast.count), &mut self.results);
         }
+        let prepared = &self.prepared[prepared];
         let columns = Columns { count: fast.count, varying: &fast.si, outputs: &plan.lane_outputs, conditions: &plan.lane_conditions };
         plan.study.model.kernel.finish_columns(prepared, &self.si, &columns, &mut self.scratch, &mut self.results);
         columns.to_units(&plan.study.model.outputs, &mut self.results);
@@ -525,6 +563,10 @@ impl<'p> CpuEngine<'p> {
     /// Where the row's prepared numbers of slow scenario `q` stand; its inputs become the current ones. A row asks for its
     /// scenarios in order, so that what is kept is always the first ones.
     pub(super) fn prepare(&mut self, q: u64) -> Range<usize> {
+        if self.listed().is_some() {
+            self.set_slow_scenario(q);
+            return 0..0;
+        }
         if q >= self.kept {
             let place = self.prepare_at(q, q.min(self.room));
             self.kept = self.kept.max((q + 1).min(self.room));

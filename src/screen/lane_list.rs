@@ -100,6 +100,11 @@ impl LaneNumbers {
         &self.row
     }
 
+    /// Enters a row by the numbers of these operations.
+    pub(super) fn enter(&mut self, list: &LaneList, number: impl Fn(Node) -> f64) {
+        list.scalars.iter().for_each(|&node| self.row[node as usize] = number(node));
+    }
+
     /// Enters a row by these.
     pub(super) fn set_scalars(&mut self, list: &LaneList, scalars: &[f64]) {
         list.scalars.iter().zip(scalars).for_each(|(&node, &scalar)| self.row[node as usize] = scalar);

@@ -9,6 +9,7 @@ pub mod gpu;
 mod kept_rows;
 mod lane_list;
 mod ordered;
+mod row_list;
 mod spectrum;
 mod tables;
 mod tally;

@@ -2,6 +2,7 @@
 
 use super::lane_list::LaneList;
 use super::ordered::OrderedRows;
+use super::row_list::RowList;
 use crate::models::{self, LANES};
 use crate::plan::{FAST_DESIGNS, Plan};
 use crate::space::Product;
@@ -43,21 +44,21 @@ pub struct Tables {
     pub(super) lanes: Option<LaneList>,
     /// Rows whose designs stand in one order, if they are of that kind.
     pub(super) ordered: Option<OrderedRows>,
+    /// What is the same for a whole row as operations over all scenarios, where that serves.
+    pub(super) rows: Option<RowList>,
 }
 
 impl Tables {
     /// The tables of a plan.
     pub fn new(plan: &Plan) -> Self {
-        let settings = |product: &Product| -> Vec<Setting> {
-            let kept = if product.count() <= TABLE { product.count() } else { 0 };
-            (0..kept).map(|index| setting(plan, product, index)).collect()
-        };
         let kept = if plan.fast.count() <= FAST_DESIGNS { plan.fast.count() } else { 0 };
         let lanes = LaneList::new(plan);
         let block = |first: u64| FastBlock::new(plan, lanes.as_ref(), first..kept.min(first + BLOCK as u64));
         let blocks = (0..kept).step_by(BLOCK).map(block).collect();
         let ordered = lanes.as_ref().filter(|_| kept > 0).and_then(|list| OrderedRows::new(plan, list));
-        Self { slow_scenarios: settings(&plan.slow_scenarios), fast_scenarios: settings(&plan.fast_scenarios), blocks, lanes, ordered }
+        let (slow_scenarios, fast_scenarios) = (settings(plan, &plan.slow_scenarios), settings(plan, &plan.fast_scenarios));
+        let rows = RowList::new(plan, lanes.as_ref(), (&slow_scenarios, &fast_scenarios));
+        Self { slow_scenarios, fast_scenarios, blocks, lanes, ordered, rows }
     }
 
     /// About how many bytes the tables of a plan take.
@@ -137,6 +138,12 @@ impl FastBlock {
     pub(super) fn own(&self, input: usize) -> &[f64] {
         &self.own.iter().find(|(it, _)| *it == input).expect("a lane input is set by a fast axis").1
     }
+}
+
+/// The settings of all combinations of scenario axes, if they are few.
+pub(super) fn settings(plan: &Plan, product: &Product) -> Vec<Setting> {
+    let kept = if product.count() <= TABLE { product.count() } else { 0 };
+    (0..kept).map(|index| setting(plan, product, index)).collect()
 }
 
 /// What one combination of scenario axes sets.

@@ -1,0 +1,291 @@
+//! What is the same for all designs of a row, over all scenarios at once: the first stage, conditions and outputs of the row, and what the
+//! [inner loop](super::lane_list) reads of it.
+//!
+//! Operations that no scenario sets are one number; the others are a column, one number per scenario. From row to row only what depends on
+//! an input that has changed is computed again. The bits are those of the formula.
+
+use super::lane_list::{LaneList, LaneNumbers};
+use super::tables::{Setting, settings};
+use crate::plan::{Plan, knowns};
+use crate::tape::{CHUNK, ColumnValue, List, Node, NodeColumns, Operation, Set};
+
+/// With fewer scenarios they are taken one by one; with more their columns would fill the caches.
+const SCENARIOS: std::ops::RangeInclusive<u64> = 8..=4 * CHUNK as u64;
+/// Most operations, for the same reason.
+const MOST_OPERATIONS: usize = 1024;
+
+/// What an operation depends on.
+#[derive(Clone, Copy, Default)]
+struct RowReads {
+    /// Inputs that slow design axes set.
+    slow: Set,
+    scenarios: bool,
+}
+
+impl std::ops::BitOrAssign for RowReads {
+    fn bitor_assign(&mut self, other: Self) {
+        self.slow = self.slow | other.slow;
+        self.scenarios |= other.scenarios;
+    }
+}
+
+/// Operations of a list, operands first, with what each depends on.
+#[derive(Debug)]
+struct RowPart {
+    list: List,
+    nodes: Vec<Node>,
+    slow: Vec<Set>,
+    each: Vec<bool>,
+}
+
+impl RowPart {
+    fn new(list: List, asked: &[Node], of_input: impl Fn(u16) -> RowReads) -> Self {
+        let reads = list.dependencies(of_input);
+        let nodes = list.needed_by(asked);
+        Self { nodes, slow: reads.iter().map(|it| it.slow).collect(), each: reads.iter().map(|it| it.scenarios).collect(), list }
+    }
+
+    /// Computes what depends on inputs that have changed; everything if that is not known.
+    fn turn<'c>(&self, numbers: &mut NodeColumns, changed: Option<Set>, input: impl Fn(u16) -> ColumnValue<'c>) {
+        let is_stale = |node: &&Node| changed.is_none_or(|changed| self.slow[**node as usize].meets(changed));
+        for &node in self.nodes.iter().filter(is_stale) {
+            match self.list.operations[node as usize] {
+                Operation::Input(number) => match input(number) {
+                    ColumnValue::One(value) => numbers.slots[node as usize] = value,
+                    ColumnValue::Each(column) => numbers.fill(node, |to| to.copy_from_slice(column)),
+                },
+                _ if self.each[node as usize] => numbers.compute(&self.list, node, |node| self.each[node as usize]),
+                _ => self.list.compute(node, &mut numbers.slots),
+            }
+        }
+    }
+
+    fn value<'n>(&self, numbers: &'n NodeColumns, node: Node) -> ColumnValue<'n> {
+        numbers.value(node, |node| self.each[node as usize])
+    }
+
+    fn bytes(&self) -> u64 {
+        let columns = self.nodes.iter().filter(|&&node| self.each[node as usize]).count();
+        8 * (columns * CHUNK + self.list.operations.len()) as u64
+    }
+}
+
+/// The operations of a row; for all threads.
+#[derive(Debug)]
+pub(super) struct RowList {
+    /// The formula up to what is the same for the whole row.
+    whole: RowPart,
+    /// What the inner loop makes of it before its designs come in, if there is one.
+    lanes: Option<RowPart>,
+    /// Of each number that the first stage passes on to the inner loop: its result of `whole`.
+    passed: Vec<Option<Node>>,
+    /// Conditions and outputs of the model that the row decides, with their results.
+    conditions: Vec<(usize, Node)>,
+    outputs: Vec<(usize, Node)>,
+    /// Values of the inputs that scenarios set, in SI units, by input.
+    scenario_inputs: Vec<(usize, Vec<f64>)>,
+    scenarios: usize,
+    fast_scenarios: u64,
+}
+
+impl RowList {
+    /// `None` where the scenarios are better taken one by one, or the inner loop is no list.
+    pub(super) fn new(plan: &Plan, lanes: Option<&LaneList>, settings: (&[Setting], &[Setting])) -> Option<Self> {
+        if lanes.is_none() && plan.lane_outputs.len() + plan.lane_conditions.len() > 0 {
+            return None;
+        }
+        let (slow_settings, fast_settings) = settings;
+        let scenarios = plan.scenarios();
+        let are_listed = (slow_settings.len() * fast_settings.len()) as u64 == scenarios;
+        if !SCENARIOS.contains(&scenarios) || !are_listed || plan.spectrum.is_some() {
+            return None;
+        }
+        let formula = plan.study.model.kernel.formula()?;
+        let known = knowns(&plan.study, &plan.space);
+        let conditions = Set::of(&plan.row_conditions);
+        let whole = formula.whole(&known[..formula.fields().inputs.len()], plan.used_outputs(), conditions);
+        let read_of_list = |lanes: &LaneList, number: usize| {
+            lanes.list().needed_by(lanes.scalars()).iter().any(
+                |&node| matches!(lanes.list().operations[node as usize], Operation::Input(input) if lanes.passed_on(input) == Some(number)),
+            )
+        };
+        let read = |number: usize| lanes.is_some_and(|lanes| read_of_list(lanes, number));
+        let passed: Vec<usize> = (0..whole.prepared.len()).filter(|&number| read(number)).collect();
+        let asked = passed.iter().map(|&number| whole.prepared[number]);
+        let asked = asked.chain(plan.row_conditions.iter().map(|&number| whole.conditions[number]));
+        let asked: Vec<Option<Node>> = asked.chain(plan.row_outputs.iter().map(|number| whole.outputs[number])).map(Some).collect();
+        let list = List::cut(&whole.recording, &asked);
+        if list.operations.len() + lanes.map_or(0, |it| it.list().operations.len()) > MOST_OPERATIONS {
+            return None;
+        }
+        let results: Vec<Node> = list.results.iter().flatten().copied().collect();
+        let (slow, of_scenarios) = (plan.slow.inputs(), plan.slow_scenarios.inputs() | plan.fast_scenarios.inputs());
+        let of_input = |input: usize| RowReads { slow: Set::one(input) & slow, scenarios: of_scenarios.contains(input) };
+        let part = RowPart::new(list, &results, |input| of_input(input.into()));
+        let (of_passed, rest) = results.split_at(passed.len());
+        let (of_conditions, of_outputs) = rest.split_at(plan.row_conditions.len());
+        let mut places = vec![None; whole.prepared.len()];
+        passed.iter().zip(of_passed).for_each(|(&number, &node)| places[number] = Some(node));
+        let of_lanes = lanes.map(|lanes| {
+            let of_lane_input = |input: u16| match lanes.passed_on(input) {
+                None => of_input(input.into()),
+                Some(number) => places[number]
+                    .map_or(RowReads::default(), |node| RowReads { slow: part.slow[node as usize], scenarios: part.each[node as usize] }),
+            };
+            RowPart::new(lanes.list().clone(), lanes.scalars(), of_lane_input)
+        });
+        let scenario_inputs = of_scenarios.iter().map(|input| {
+            let of = |setting: &Setting| setting.iter().find(|(it, _, _)| *it == input).map(|(_, _, si)| *si);
+            let value = |slow: &Setting, fast: &Setting| of(fast).or(of(slow)).expect("a scenario sets it");
+            let values = slow_settings.iter().flat_map(|slow| fast_settings.iter().map(move |fast| value(slow, fast)));
+            (input, values.collect())
+        });
+        Some(Self {
+            scenario_inputs: scenario_inputs.collect(),
+            passed: places,
+            conditions: plan.row_conditions.iter().copied().zip(of_conditions.iter().copied()).collect(),
+            outputs: plan.row_outputs.iter().zip(of_outputs.iter().copied()).collect(),
+            whole: part,
+            lanes: of_lanes,
+            scenarios: scenarios as usize,
+            fast_scenarios: plan.fast_scenarios.count(),
+        })
+    }
+
+    /// Bytes of a thread's room.
+    pub(super) fn room(plan: &Plan, lanes: Option<&LaneList>) -> u64 {
+        let [slow, fast] = [&plan.slow_scenarios, &plan.fast_scenarios].map(|product| settings(plan, product));
+        Self::new(plan, lanes, (&slow, &fast))
+            .map_or(0, |it| (it.whole.bytes() + it.lanes.as_ref().map_or(0, RowPart::bytes)) * it.scenarios.div_ceil(CHUNK) as u64)
+    }
+}
+
+/// The numbers of a chunk of scenarios.
+#[derive(Debug)]
+struct ScenarioChunk {
+    first: usize,
+    count: usize,
+    whole: NodeColumns,
+    lanes: Option<NodeColumns>,
+}
+
+/// The numbers of the current row; one per thread.
+#[derive(Debug)]
+pub(super) struct RowNumbers {
+    chunks: Vec<ScenarioChunk>,
+    /// Inputs of the row that they are of, in SI units; none before the first.
+    inputs: Vec<f64>,
+}
+
+impl RowNumbers {
+    /// Room for a thread.
+    pub(super) fn new(list: &RowList) -> Self {
+        let chunk = |first: usize| {
+            let count = CHUNK.min(list.scenarios - first);
+            let room = |part: &RowPart| {
+                let mut numbers = NodeColumns::new(&part.list);
+                numbers.begin(count);
+                numbers
+            };
+            let (whole, lanes) = (room(&list.whole), list.lanes.as_ref().map(room));
+            ScenarioChunk { first, count, whole, lanes }
+        };
+        Self { chunks: (0..list.scenarios).step_by(CHUNK).map(chunk).collect(), inputs: Vec::new() }
+    }
+
+    /// Turns to the row with these inputs, in SI units.
+    pub(super) fn turn(&mut self, list: &RowList, lane_list: Option<&LaneList>, inputs: &[f64]) {
+        let differs = |&input: &usize| self.inputs[input].to_bits() != inputs[input].to_bits();
+        let changed = (!self.inputs.is_empty()).then(|| (0..inputs.len()).filter(differs).collect());
+        for ScenarioChunk { first, count, whole, lanes } in &mut self.chunks {
+            let model_input = |number: u16| {
+                let column = list.scenario_inputs.iter().find(|(input, _)| *input == usize::from(number));
+                column.map_or_else(
+                    || ColumnValue::One(inputs[usize::from(number)]),
+                    |(_, it)| ColumnValue::Each(&it[*first..*first + *count]),
+                )
+            };
+            list.whole.turn(whole, changed, model_input);
+            let whole = &*whole;
+            let (Some(part), Some(numbers), Some(lane_list)) = (&list.lanes, lanes, lane_list) else { continue };
+            part.turn(numbers, changed, |number| match lane_list.passed_on(number) {
+                Some(passed) => list.whole.value(whole, list.passed[passed].expect("what is read was asked for")),
+                None => model_input(number),
+            });
+        }
+        self.inputs.clear();
+        self.inputs.extend(inputs);
+    }
+
+    /// The chunk of a slow and a fast scenario, and its place there.
+    fn place(&self, list: &RowList, (slow, fast): (u64, u64)) -> (&ScenarioChunk, usize) {
+        let scenario = (slow * list.fast_scenarios + fast) as usize;
+        (&self.chunks[scenario / CHUNK], scenario % CHUNK)
+    }
+
+    /// Writes the condition margins and outputs of the row in a scenario.
+    pub(super) fn recall(&self, list: &RowList, scenario: (u64, u64), margins: &mut [f64], outputs: &mut [f64]) {
+        let (chunk, at) = self.place(list, scenario);
+        let number = |node: Node| list.whole.value(&chunk.whole, node).at(at);
+        list.conditions.iter().for_each(|&(condition, node)| margins[condition] = number(node));
+        list.outputs.iter().for_each(|&(output, node)| outputs[output] = number(node));
+    }
+
+    /// Enters a scenario of the row: what the inner loop reads of it.
+    pub(super) fn enter(&self, list: &RowList, scenario: (u64, u64), lanes: &LaneList, numbers: &mut LaneNumbers) {
+        let (chunk, at) = self.place(list, scenario);
+        if let (Some(part), Some(of_chunk)) = (&list.lanes, &chunk.lanes) {
+            numbers.enter(lanes, |node| part.value(of_chunk, node).at(at));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{CpuEngine, Tables};
+    use super::*;
+    use crate::study::Study;
+    use std::path::Path;
+
+    /// Feasible designs of some rows with the bits of their worst values.
+    fn judged(engine: &mut CpuEngine<'_>, plan: &Plan, rows: &[u64]) -> Vec<(u64, Vec<u64>)> {
+        let width = plan.fast.count();
+        let mut found = Vec::new();
+        for &row in rows {
+            engine.screen(row * width..(row + 1) * width, |block| {
+                let values = |lane: usize| (0..plan.tracked.len()).map(|at| block.column(at)[lane].to_bits()).collect();
+                found.extend(block.feasible().map(|lane| (block.index(lane), values(lane))));
+            });
+        }
+        found
+    }
+
+    #[test]
+    fn rows_over_all_scenarios_have_the_answers_of_one_scenario_after_the_other() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("studies");
+        let mut served = Vec::new();
+        for name in ["metal-cvt", "rubber-cvt", "scooter-variator", "variator-pressure", "flat-belt", "pulley-load", "metal-grid"] {
+            let plan = Plan::new(Study::read(&folder.join(format!("{name}.toml"))).expect("it is right").0);
+            let mut tables = Tables::new(&plan);
+            if tables.rows.is_none() {
+                continue;
+            }
+            // From end to end, and some rows next to each other.
+            let count = plan.slow.count();
+            let rows: Vec<u64> = (0..40).map(|step| step * 7919 % count).chain((0..count).take(20)).collect();
+            let together = judged(&mut CpuEngine::new(&plan, &tables), &plan, &rows);
+            let mut stale = tables.rows.take();
+            let alone = judged(&mut CpuEngine::new(&plan, &tables), &plan, &rows);
+            assert_eq!(together, alone, "{name}");
+            served.push((name, !alone.is_empty()));
+            // Were an input forgotten, a row would have what another one left.
+            for part in stale.iter_mut().flat_map(|it| std::iter::once(&mut it.whole).chain(&mut it.lanes)) {
+                part.slow.fill(Set::EMPTY);
+            }
+            tables.rows = stale;
+            let forgetful = judged(&mut CpuEngine::new(&plan, &tables), &plan, &rows);
+            assert!(alone.is_empty() || count == 1 || forgetful != alone, "{name}");
+        }
+        assert!(served.iter().filter(|(_, some)| *some).count() >= 3, "{served:?}");
+    }
+}
