@@ -11,7 +11,7 @@ use crate::study::Axis;
 use std::sync::atomic::Ordering;
 
 /// Of so many designs one is computed by the reference in every scenario.
-const ONE_OF: usize = 64;
+const ONE_OF: usize = 256;
 
 /// The rows of the designs at these positions: computed in columns, and every number of them once more by the scalar reference in the
 /// scenario that it is from. `None` where the designs must be computed one by one.
@@ -122,7 +122,7 @@ mod tests {
         let plan = Plan::new(Study::read(&path).expect("it is right").0);
         let columns = certify::columns(&plan.study);
         let control = Control::default();
-        let positions: Vec<u64> = plan.space.designs.coarse(200).iter().map(|&design| plan.position_of(design)).collect();
+        let positions: Vec<u64> = plan.space.designs.coarse(600).iter().map(|&design| plan.position_of(design)).collect();
         let rows = rows_together(&plan, &columns, &positions, 2, &control).expect("it can be recorded").expect("nobody stops it");
         assert!(rows.iter().any(|it| it.feasible) && rows.iter().any(|it| !it.feasible));
         let judged = |rows: &[Row]| confirm(&plan, &columns, rows, 2, &control);

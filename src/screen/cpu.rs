@@ -9,6 +9,7 @@ use super::kept_rows::KeptRows;
 use super::lane_list::{LaneList, LaneNumbers};
 use super::ordered::{OrderedNumbers, OrderedRow};
 use super::row_list::{RowList, RowNumbers};
+use super::rows_together::{BlockOfRows, RowsTogether};
 use super::spectrum::CaseSums;
 use super::tables::{BLOCK, FastBlock, Setting, Tables, setting};
 use crate::decision::Decision;
@@ -73,6 +74,8 @@ pub struct CpuEngine<'p> {
     pub(super) numbers: Option<(LaneNumbers, Decisive)>,
     /// What is the same for the current row, over all scenarios at once, where that serves.
     row_numbers: Option<RowNumbers>,
+    /// Room for designs that are judged together, where rows have no more than one.
+    together: Option<BlockOfRows>,
     /// Designs of a row that are to be judged.
     ahead: u64,
     ordered_numbers: OrderedNumbers,
@@ -102,7 +105,7 @@ impl<'p> CpuEngine<'p> {
         let prepared = 8 * plan.study.model.kernel.prepared_len() as u64 * (plan.kept_scenarios() + 1);
         let lanes = LaneList::new(plan);
         let of_lanes = lanes.as_ref().map_or(0, |list| list.bytes() + Decisive::bytes(plan, list));
-        prepared + CaseSums::bytes(plan, BLOCK) + of_lanes + RowList::room(plan, lanes.as_ref())
+        prepared + CaseSums::bytes(plan, BLOCK) + of_lanes + RowList::room(plan, lanes.as_ref()) + RowsTogether::room(plan)
     }
 
     /// An engine that keeps the prepared numbers of that many slow scenarios.
@@ -114,6 +117,7 @@ impl<'p> CpuEngine<'p> {
         Self {
             row_numbers: tables.rows.as_ref().filter(|_| numbers.is_some() || columns == 0).map(RowNumbers::new),
             numbers,
+            together: tables.together.as_ref().map(|rows| BlockOfRows::new(plan, rows)),
             plan,
             tables,
             slow_reads: plan.dependencies.prepared & plan.slow.inputs(),
@@ -155,6 +159,10 @@ impl<'p> CpuEngine<'p> {
     /// Judges the designs at `positions` and hands each block with a feasible design to `absorb`. Returns the position before which
     /// all are judged: the end, unless the engine was stopped.
     pub fn screen(&mut self, positions: Range<u64>, mut absorb: impl FnMut(&Block<'_>)) -> u64 {
+        if let (Some(rows), Some(block), true) = (&self.tables.together, &mut self.together, self.chosen.is_empty()) {
+            let is_stopped = || self.stop.is_some_and(|stop| stop.load(Ordering::Relaxed));
+            return block.judge(self.plan, rows, positions, is_stopped, absorb);
+        }
         let width = self.plan.fast.count();
         self.ahead = width;
         let mut position = positions.start;

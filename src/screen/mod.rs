@@ -10,9 +10,11 @@ mod kept_rows;
 mod lane_list;
 mod ordered;
 mod row_list;
+mod rows_together;
 mod spectrum;
 mod tables;
 mod tally;
+mod turned_list;
 
 pub use cpu::CpuEngine;
 pub use tables::{BLOCK, Tables};

@@ -6,6 +6,7 @@
 
 use super::lane_list::{LaneList, LaneNumbers};
 use super::tables::{Setting, settings};
+use super::turned_list::{NumberReads, TurnedList};
 use crate::plan::{Plan, knowns};
 use crate::tape::{CHUNK, ColumnValue, List, Node, NodeColumns, Operation, Set};
 
@@ -14,69 +15,13 @@ const SCENARIOS: std::ops::RangeInclusive<u64> = 8..=4 * CHUNK as u64;
 /// Most operations, for the same reason.
 const MOST_OPERATIONS: usize = 1024;
 
-/// What an operation depends on.
-#[derive(Clone, Copy, Default)]
-struct RowReads {
-    /// Inputs that slow design axes set.
-    slow: Set,
-    scenarios: bool,
-}
-
-impl std::ops::BitOrAssign for RowReads {
-    fn bitor_assign(&mut self, other: Self) {
-        self.slow = self.slow | other.slow;
-        self.scenarios |= other.scenarios;
-    }
-}
-
-/// Operations of a list, operands first, with what each depends on.
-#[derive(Debug)]
-struct RowPart {
-    list: List,
-    nodes: Vec<Node>,
-    slow: Vec<Set>,
-    each: Vec<bool>,
-}
-
-impl RowPart {
-    fn new(list: List, asked: &[Node], of_input: impl Fn(u16) -> RowReads) -> Self {
-        let reads = list.dependencies(of_input);
-        let nodes = list.needed_by(asked);
-        Self { nodes, slow: reads.iter().map(|it| it.slow).collect(), each: reads.iter().map(|it| it.scenarios).collect(), list }
-    }
-
-    /// Computes what depends on inputs that have changed; everything if that is not known.
-    fn turn<'c>(&self, numbers: &mut NodeColumns, changed: Option<Set>, input: impl Fn(u16) -> ColumnValue<'c>) {
-        let is_stale = |node: &&Node| changed.is_none_or(|changed| self.slow[**node as usize].meets(changed));
-        for &node in self.nodes.iter().filter(is_stale) {
-            match self.list.operations[node as usize] {
-                Operation::Input(number) => match input(number) {
-                    ColumnValue::One(value) => numbers.slots[node as usize] = value,
-                    ColumnValue::Each(column) => numbers.fill(node, |to| to.copy_from_slice(column)),
-                },
-                _ if self.each[node as usize] => numbers.compute(&self.list, node, |node| self.each[node as usize]),
-                _ => self.list.compute(node, &mut numbers.slots),
-            }
-        }
-    }
-
-    fn value<'n>(&self, numbers: &'n NodeColumns, node: Node) -> ColumnValue<'n> {
-        numbers.value(node, |node| self.each[node as usize])
-    }
-
-    fn bytes(&self) -> u64 {
-        let columns = self.nodes.iter().filter(|&&node| self.each[node as usize]).count();
-        8 * (columns * CHUNK + self.list.operations.len()) as u64
-    }
-}
-
 /// The operations of a row; for all threads.
 #[derive(Debug)]
 pub(super) struct RowList {
     /// The formula up to what is the same for the whole row.
-    whole: RowPart,
+    whole: TurnedList,
     /// What the inner loop makes of it before its designs come in, if there is one.
-    lanes: Option<RowPart>,
+    lanes: Option<TurnedList>,
     /// Of each number that the first stage passes on to the inner loop: its result of `whole`.
     passed: Vec<Option<Node>>,
     /// Conditions and outputs of the model that the row decides, with their results.
@@ -97,7 +42,7 @@ impl RowList {
         let (slow_settings, fast_settings) = settings;
         let scenarios = plan.scenarios();
         let are_listed = (slow_settings.len() * fast_settings.len()) as u64 == scenarios;
-        if !SCENARIOS.contains(&scenarios) || !are_listed || plan.spectrum.is_some() {
+        if !SCENARIOS.contains(&scenarios) || !are_listed {
             return None;
         }
         let formula = plan.study.model.kernel.formula()?;
@@ -120,8 +65,8 @@ impl RowList {
         }
         let results: Vec<Node> = list.results.iter().flatten().copied().collect();
         let (slow, of_scenarios) = (plan.slow.inputs(), plan.slow_scenarios.inputs() | plan.fast_scenarios.inputs());
-        let of_input = |input: usize| RowReads { slow: Set::one(input) & slow, scenarios: of_scenarios.contains(input) };
-        let part = RowPart::new(list, &results, |input| of_input(input.into()));
+        let of_input = |input: usize| NumberReads { turning: Set::one(input) & slow, each: of_scenarios.contains(input) };
+        let part = TurnedList::new(list, &results, |input| of_input(input.into()));
         let (of_passed, rest) = results.split_at(passed.len());
         let (of_conditions, of_outputs) = rest.split_at(plan.row_conditions.len());
         let mut places = vec![None; whole.prepared.len()];
@@ -129,10 +74,9 @@ impl RowList {
         let of_lanes = lanes.map(|lanes| {
             let of_lane_input = |input: u16| match lanes.passed_on(input) {
                 None => of_input(input.into()),
-                Some(number) => places[number]
-                    .map_or(RowReads::default(), |node| RowReads { slow: part.slow[node as usize], scenarios: part.each[node as usize] }),
+                Some(number) => places[number].map_or(NumberReads::default(), |node| part.reads(node)),
             };
-            RowPart::new(lanes.list().clone(), lanes.scalars(), of_lane_input)
+            TurnedList::new(lanes.list().clone(), lanes.scalars(), of_lane_input)
         });
         let scenario_inputs = of_scenarios.iter().map(|input| {
             let of = |setting: &Setting| setting.iter().find(|(it, _, _)| *it == input).map(|(_, _, si)| *si);
@@ -156,7 +100,7 @@ impl RowList {
     pub(super) fn room(plan: &Plan, lanes: Option<&LaneList>) -> u64 {
         let [slow, fast] = [&plan.slow_scenarios, &plan.fast_scenarios].map(|product| settings(plan, product));
         Self::new(plan, lanes, (&slow, &fast))
-            .map_or(0, |it| (it.whole.bytes() + it.lanes.as_ref().map_or(0, RowPart::bytes)) * it.scenarios.div_ceil(CHUNK) as u64)
+            .map_or(0, |it| (it.whole.bytes() + it.lanes.as_ref().map_or(0, TurnedList::bytes)) * it.scenarios.div_ceil(CHUNK) as u64)
     }
 }
 
@@ -182,7 +126,7 @@ impl RowNumbers {
     pub(super) fn new(list: &RowList) -> Self {
         let chunk = |first: usize| {
             let count = CHUNK.min(list.scenarios - first);
-            let room = |part: &RowPart| {
+            let room = |part: &TurnedList| {
                 let mut numbers = NodeColumns::new(&part.list);
                 numbers.begin(count);
                 numbers
@@ -241,18 +185,18 @@ impl RowNumbers {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::super::{CpuEngine, Tables};
     use super::*;
     use crate::study::Study;
+    use std::ops::Range;
     use std::path::Path;
 
-    /// Feasible designs of some rows with the bits of their worst values.
-    fn judged(engine: &mut CpuEngine<'_>, plan: &Plan, rows: &[u64]) -> Vec<(u64, Vec<u64>)> {
-        let width = plan.fast.count();
+    /// Feasible designs at some positions with the bits of their worst values.
+    pub(in crate::screen) fn judged(engine: &mut CpuEngine<'_>, plan: &Plan, stretches: &[Range<u64>]) -> Vec<(u64, Vec<u64>)> {
         let mut found = Vec::new();
-        for &row in rows {
-            engine.screen(row * width..(row + 1) * width, |block| {
+        for positions in stretches {
+            engine.screen(positions.clone(), |block| {
                 let values = |lane: usize| (0..plan.tracked.len()).map(|at| block.column(at)[lane].to_bits()).collect();
                 found.extend(block.feasible().map(|lane| (block.index(lane), values(lane))));
             });
@@ -272,7 +216,10 @@ mod tests {
             }
             // From end to end, and some rows next to each other.
             let count = plan.slow.count();
-            let rows: Vec<u64> = (0..40).map(|step| step * 7919 % count).chain((0..count).take(20)).collect();
+            let rows = (0..40).map(|step| step * 7919 % count).chain((0..count).take(20));
+            let width = plan.fast.count();
+            let rows: Vec<Range<u64>> = rows.map(|row| row * width..(row + 1) * width).collect();
+            tables.together = None;
             let together = judged(&mut CpuEngine::new(&plan, &tables), &plan, &rows);
             let mut stale = tables.rows.take();
             let alone = judged(&mut CpuEngine::new(&plan, &tables), &plan, &rows);
@@ -280,7 +227,7 @@ mod tests {
             served.push((name, !alone.is_empty()));
             // Were an input forgotten, a row would have what another one left.
             for part in stale.iter_mut().flat_map(|it| std::iter::once(&mut it.whole).chain(&mut it.lanes)) {
-                part.slow.fill(Set::EMPTY);
+                part.forget();
             }
             tables.rows = stale;
             let forgetful = judged(&mut CpuEngine::new(&plan, &tables), &plan, &rows);

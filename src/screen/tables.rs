@@ -3,6 +3,7 @@
 use super::lane_list::LaneList;
 use super::ordered::OrderedRows;
 use super::row_list::RowList;
+use super::rows_together::RowsTogether;
 use crate::models::{self, LANES};
 use crate::plan::{FAST_DESIGNS, Plan};
 use crate::space::Product;
@@ -46,6 +47,8 @@ pub struct Tables {
     pub(super) ordered: Option<OrderedRows>,
     /// What is the same for a whole row as operations over all scenarios, where that serves.
     pub(super) rows: Option<RowList>,
+    /// The whole formula over blocks of designs, where a row has no more than one.
+    pub(super) together: Option<RowsTogether>,
 }
 
 impl Tables {
@@ -58,7 +61,7 @@ impl Tables {
         let ordered = lanes.as_ref().filter(|_| kept > 0).and_then(|list| OrderedRows::new(plan, list));
         let (slow_scenarios, fast_scenarios) = (settings(plan, &plan.slow_scenarios), settings(plan, &plan.fast_scenarios));
         let rows = RowList::new(plan, lanes.as_ref(), (&slow_scenarios, &fast_scenarios));
-        Self { slow_scenarios, fast_scenarios, blocks, lanes, ordered, rows }
+        Self { slow_scenarios, fast_scenarios, blocks, lanes, ordered, rows, together: RowsTogether::new(plan) }
     }
 
     /// About how many bytes the tables of a plan take.
