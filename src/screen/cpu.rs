@@ -74,6 +74,10 @@ pub struct CpuEngine<'p> {
     pub(super) numbers: Option<(LaneNumbers, Decisive)>,
     /// What is the same for the current row, over all scenarios at once, where that serves.
     row_numbers: Option<RowNumbers>,
+    /// Are they those of the current row?
+    is_listed: bool,
+    /// The row before the current one.
+    last_row: Option<u64>,
     /// Room for designs that are judged together, where rows have no more than one.
     together: Option<BlockOfRows>,
     /// Designs of a row that are to be judged.
@@ -149,6 +153,8 @@ impl<'p> CpuEngine<'p> {
             chosen: Vec::new(),
             ordered_numbers: OrderedNumbers::default(),
             ahead: 0,
+            is_listed: false,
+            last_row: None,
         }
     }
 
@@ -341,21 +347,12 @@ impl<'p> CpuEngine<'p> {
 
     /// Computes what the inner loop reads of the current row and scenario, where it is a list.
     fn enter_scenario(&mut self, prepared: Range<usize>) {
-        let listed = self.listed().is_some();
+        let is_listed = self.is_listed;
         let (Some((numbers, _)), Some(list)) = (&mut self.numbers, &self.tables.lanes) else { return };
         match (&self.row_numbers, &self.tables.rows) {
-            (Some(of_row), Some(rows)) if listed => of_row.enter(rows, self.scenario, list, numbers),
+            (Some(of_row), Some(rows)) if is_listed => of_row.enter(rows, self.scenario, list, numbers),
             _ => list.enter(numbers, &self.prepared[prepared], &self.si),
         }
-    }
-
-    /// Where all scenarios of a row are taken at once: what is computed of them.
-    fn listed(&self) -> Option<(&RowList, &RowNumbers)> {
-        self.tables
-            .rows
-            .as_ref()
-            .zip(self.row_numbers.as_ref())
-            .filter(|_| self.chosen.is_empty() && (self.numbers.is_some() || self.results.is_empty()))
     }
 
     /// Turns to one scenario after the other, as long as `judge` wants to go on; false if it was stopped before that. `judge` is told
@@ -409,9 +406,17 @@ impl<'p> CpuEngine<'p> {
             self.kept = 0;
         }
         self.before = before;
-        if let (Some(rows), Some(numbers), true) = (&self.tables.rows, &mut self.row_numbers, self.chosen.is_empty()) {
-            numbers.turn(rows, self.tables.lanes.as_ref(), &self.si);
+        self.is_listed = false;
+        let can_be_listed = self.numbers.is_some() || self.results.is_empty();
+        if let (Some(rows), Some(numbers), true) = (&self.tables.rows, &mut self.row_numbers, can_be_listed) {
+            // Numbers of several rows do not pay where only some of them are asked for.
+            let follows = self.last_row.is_some_and(|last| row == last + 1);
+            if follows || numbers.holds(rows, row) || !rows.has_rows() {
+                numbers.turn(rows, self.tables.lanes.as_ref(), row, &self.si);
+                self.is_listed = true;
+            }
         }
+        self.last_row = Some(row);
     }
 
     /// Conditions, constraints and worst values of a row in the current scenario; false if the whole row is out.
@@ -443,11 +448,8 @@ impl<'p> CpuEngine<'p> {
 
     /// Computes condition margins and row outputs in the current scenario.
     pub(super) fn row_values(&mut self, prepared: Range<usize>) {
-        if self.listed().is_some() {
-            if let (Some(rows), Some(numbers)) = (&self.tables.rows, &self.row_numbers) {
-                numbers.recall(rows, self.scenario, &mut self.row_margins, &mut self.row_outputs);
-            }
-            return;
+        if let (Some(rows), Some(numbers), true) = (&self.tables.rows, &self.row_numbers, self.is_listed) {
+            return numbers.recall(rows, self.scenario, &mut self.row_margins, &mut self.row_outputs);
         }
         if self.kept_rows.recall(self.scenario, &mut self.row_margins, &mut self.row_outputs) {
             return;
@@ -571,24 +573,23 @@ impl<'p> CpuEngine<'p> {
     /// Where the row's prepared numbers of slow scenario `q` stand; its inputs become the current ones. A row asks for its
     /// scenarios in order, so that what is kept is always the first ones.
     pub(super) fn prepare(&mut self, q: u64) -> Range<usize> {
-        if self.listed().is_some() {
-            self.set_slow_scenario(q);
-            return 0..0;
-        }
-        if q >= self.kept {
+        if q >= self.kept && !self.is_listed {
             let place = self.prepare_at(q, q.min(self.room));
             self.kept = self.kept.max((q + 1).min(self.room));
             return place;
         }
         self.set_slow_scenario(q);
-        self.place(q)
+        // Nobody reads the place of a row whose numbers are listed.
+        self.place(q.min(self.room))
     }
 
     /// Prepares a slow scenario at some place.
     fn prepare_at(&mut self, q: u64, at: u64) -> Range<usize> {
         self.set_slow_scenario(q);
         let place = self.place(at);
-        self.latest.prepare(&self.si, self.wanted, &mut self.prepared[place.clone()]);
+        if !self.is_listed {
+            self.latest.prepare(&self.si, self.wanted, &mut self.prepared[place.clone()]);
+        }
         place
     }
 

@@ -1,17 +1,21 @@
-//! What is the same for all designs of a row, over all scenarios at once: the first stage, conditions and outputs of the row, and what the
-//! [inner loop](super::lane_list) reads of it.
+//! What is the same for all designs of a row, over all scenarios at once, and where these are few also over all rows of the innermost slow
+//! axis: the first stage, conditions and outputs of the row, and what the [inner loop](super::lane_list) reads of it.
 //!
-//! Operations that no scenario sets are one number; the others are a column, one number per scenario. From row to row only what depends on
-//! an input that has changed is computed again. The bits are those of the formula.
+//! Operations that neither a scenario nor that axis sets are one number; the others are a column. From row to row only what depends on
+//! another input that has changed is computed again. The bits are those of the formula.
 
 use super::lane_list::{LaneList, LaneNumbers};
 use super::tables::{Setting, settings};
 use super::turned_list::{NumberReads, TurnedList};
+use crate::models::input_to_si;
 use crate::plan::{Plan, knowns};
+use crate::space::SpaceDimension;
 use crate::tape::{CHUNK, ColumnValue, List, Node, NodeColumns, Operation, Set};
 
-/// With fewer scenarios they are taken one by one; with more their columns would fill the caches.
-const SCENARIOS: std::ops::RangeInclusive<u64> = 8..=4 * CHUNK as u64;
+/// Shorter columns would not pay; longer ones would fill the caches.
+const PLACES: std::ops::RangeInclusive<u64> = 8..=4 * CHUNK as u64;
+/// Most places where they are those of several rows: not all of these may be asked for.
+const MOST_OF_ROWS: u64 = 256;
 /// Most operations, for the same reason.
 const MOST_OPERATIONS: usize = 1024;
 
@@ -27,9 +31,11 @@ pub(super) struct RowList {
     /// Conditions and outputs of the model that the row decides, with their results.
     conditions: Vec<(usize, Node)>,
     outputs: Vec<(usize, Node)>,
-    /// Values of the inputs that scenarios set, in SI units, by input.
-    scenario_inputs: Vec<(usize, Vec<f64>)>,
-    scenarios: usize,
+    /// Values of the inputs that differ within a column, in SI units, by input.
+    column_inputs: Vec<(usize, Vec<f64>)>,
+    /// Rows of a column, by the levels of the innermost slow axis, and scenarios of a row.
+    rows: u64,
+    scenarios: u64,
     fast_scenarios: u64,
 }
 
@@ -42,9 +48,13 @@ impl RowList {
         let (slow_settings, fast_settings) = settings;
         let scenarios = plan.scenarios();
         let are_listed = (slow_settings.len() * fast_settings.len()) as u64 == scenarios;
-        if !SCENARIOS.contains(&scenarios) || !are_listed {
+        let innermost = plan.slow.dimensions().last().map(|(it, _)| it);
+        let levels = innermost.map_or(1, SpaceDimension::count);
+        let rows = if scenarios.saturating_mul(levels) <= MOST_OF_ROWS { levels } else { 1 };
+        if !PLACES.contains(&(scenarios.saturating_mul(rows))) || !are_listed {
             return None;
         }
+        let innermost = innermost.filter(|_| rows > 1);
         let formula = plan.study.model.kernel.formula()?;
         let known = knowns(&plan.study, &plan.space);
         let conditions = Set::of(&plan.row_conditions);
@@ -64,8 +74,10 @@ impl RowList {
             return None;
         }
         let results: Vec<Node> = list.results.iter().flatten().copied().collect();
-        let (slow, of_scenarios) = (plan.slow.inputs(), plan.slow_scenarios.inputs() | plan.fast_scenarios.inputs());
-        let of_input = |input: usize| NumberReads { turning: Set::one(input) & slow, each: of_scenarios.contains(input) };
+        let of_scenarios = plan.slow_scenarios.inputs() | plan.fast_scenarios.inputs();
+        let of_rows: Set = innermost.into_iter().flat_map(SpaceDimension::inputs).copied().collect();
+        let turning = plan.slow.inputs() - of_rows;
+        let of_input = |input: usize| NumberReads { turning: Set::one(input) & turning, each: (of_scenarios | of_rows).contains(input) };
         let part = TurnedList::new(list, &results, |input| of_input(input.into()));
         let (of_passed, rest) = results.split_at(passed.len());
         let (of_conditions, of_outputs) = rest.split_at(plan.row_conditions.len());
@@ -81,32 +93,49 @@ impl RowList {
         let scenario_inputs = of_scenarios.iter().map(|input| {
             let of = |setting: &Setting| setting.iter().find(|(it, _, _)| *it == input).map(|(_, _, si)| *si);
             let value = |slow: &Setting, fast: &Setting| of(fast).or(of(slow)).expect("a scenario sets it");
-            let values = slow_settings.iter().flat_map(|slow| fast_settings.iter().map(move |fast| value(slow, fast)));
-            (input, values.collect())
+            let values = || slow_settings.iter().flat_map(|slow| fast_settings.iter().map(move |fast| value(slow, fast)));
+            (input, (0..rows).flat_map(|_| values()).collect())
+        });
+        let row_inputs = innermost.into_iter().flat_map(|dimension| {
+            dimension.inputs().iter().enumerate().map(move |(number, &input)| {
+                let value = move |level: u64| input_to_si(&plan.study.model.inputs[input], dimension.value(number, level));
+                (input, (0..rows).flat_map(|level| std::iter::repeat_n(value(level), scenarios as usize)).collect())
+            })
         });
         Some(Self {
-            scenario_inputs: scenario_inputs.collect(),
+            column_inputs: scenario_inputs.chain(row_inputs).collect(),
             passed: places,
             conditions: plan.row_conditions.iter().copied().zip(of_conditions.iter().copied()).collect(),
             outputs: plan.row_outputs.iter().zip(of_outputs.iter().copied()).collect(),
             whole: part,
             lanes: of_lanes,
-            scenarios: scenarios as usize,
+            rows,
+            scenarios,
             fast_scenarios: plan.fast_scenarios.count(),
         })
+    }
+
+    /// Are there numbers of several rows in a column?
+    pub(super) fn has_rows(&self) -> bool {
+        self.rows > 1
+    }
+
+    /// Places of a column.
+    fn places(&self) -> usize {
+        (self.rows * self.scenarios) as usize
     }
 
     /// Bytes of a thread's room.
     pub(super) fn room(plan: &Plan, lanes: Option<&LaneList>) -> u64 {
         let [slow, fast] = [&plan.slow_scenarios, &plan.fast_scenarios].map(|product| settings(plan, product));
         Self::new(plan, lanes, (&slow, &fast))
-            .map_or(0, |it| (it.whole.bytes() + it.lanes.as_ref().map_or(0, TurnedList::bytes)) * it.scenarios.div_ceil(CHUNK) as u64)
+            .map_or(0, |it| (it.whole.bytes() + it.lanes.as_ref().map_or(0, TurnedList::bytes)) * (it.places().div_ceil(CHUNK)) as u64)
     }
 }
 
-/// The numbers of a chunk of scenarios.
+/// The numbers of a chunk of the places.
 #[derive(Debug)]
-struct ScenarioChunk {
+struct PlaceChunk {
     first: usize,
     count: usize,
     whole: NodeColumns,
@@ -116,34 +145,48 @@ struct ScenarioChunk {
 /// The numbers of the current row; one per thread.
 #[derive(Debug)]
 pub(super) struct RowNumbers {
-    chunks: Vec<ScenarioChunk>,
+    chunks: Vec<PlaceChunk>,
     /// Inputs of the row that they are of, in SI units; none before the first.
     inputs: Vec<f64>,
+    /// Which column it is, and the first place of the row there.
+    column: Option<u64>,
+    first: usize,
 }
 
 impl RowNumbers {
     /// Room for a thread.
     pub(super) fn new(list: &RowList) -> Self {
         let chunk = |first: usize| {
-            let count = CHUNK.min(list.scenarios - first);
+            let count = CHUNK.min(list.places() - first);
             let room = |part: &TurnedList| {
                 let mut numbers = NodeColumns::new(&part.list);
                 numbers.begin(count);
                 numbers
             };
             let (whole, lanes) = (room(&list.whole), list.lanes.as_ref().map(room));
-            ScenarioChunk { first, count, whole, lanes }
+            PlaceChunk { first, count, whole, lanes }
         };
-        Self { chunks: (0..list.scenarios).step_by(CHUNK).map(chunk).collect(), inputs: Vec::new() }
+        Self { chunks: (0..list.places()).step_by(CHUNK).map(chunk).collect(), inputs: Vec::new(), column: None, first: 0 }
     }
 
-    /// Turns to the row with these inputs, in SI units.
-    pub(super) fn turn(&mut self, list: &RowList, lane_list: Option<&LaneList>, inputs: &[f64]) {
+    /// Are the numbers of a row among those that are there?
+    pub(super) fn holds(&self, list: &RowList, row: u64) -> bool {
+        self.column == Some(row / list.rows)
+    }
+
+    /// Turns to a row with these inputs, in SI units.
+    pub(super) fn turn(&mut self, list: &RowList, lane_list: Option<&LaneList>, row: u64, inputs: &[f64]) {
+        // The innermost axis turns from row to row.
+        self.first = (row % list.rows * list.scenarios) as usize;
+        if self.holds(list, row) {
+            return;
+        }
+        self.column = Some(row / list.rows);
         let differs = |&input: &usize| self.inputs[input].to_bits() != inputs[input].to_bits();
         let changed = (!self.inputs.is_empty()).then(|| (0..inputs.len()).filter(differs).collect());
-        for ScenarioChunk { first, count, whole, lanes } in &mut self.chunks {
+        for PlaceChunk { first, count, whole, lanes } in &mut self.chunks {
             let model_input = |number: u16| {
-                let column = list.scenario_inputs.iter().find(|(input, _)| *input == usize::from(number));
+                let column = list.column_inputs.iter().find(|(input, _)| *input == usize::from(number));
                 column.map_or_else(
                     || ColumnValue::One(inputs[usize::from(number)]),
                     |(_, it)| ColumnValue::Each(&it[*first..*first + *count]),
@@ -162,9 +205,9 @@ impl RowNumbers {
     }
 
     /// The chunk of a slow and a fast scenario, and its place there.
-    fn place(&self, list: &RowList, (slow, fast): (u64, u64)) -> (&ScenarioChunk, usize) {
-        let scenario = (slow * list.fast_scenarios + fast) as usize;
-        (&self.chunks[scenario / CHUNK], scenario % CHUNK)
+    fn place(&self, list: &RowList, (slow, fast): (u64, u64)) -> (&PlaceChunk, usize) {
+        let place = self.first + (slow * list.fast_scenarios + fast) as usize;
+        (&self.chunks[place / CHUNK], place % CHUNK)
     }
 
     /// Writes the condition margins and outputs of the row in a scenario.
@@ -216,7 +259,7 @@ pub(super) mod tests {
             }
             // From end to end, and some rows next to each other.
             let count = plan.slow.count();
-            let rows = (0..40).map(|step| step * 7919 % count).chain((0..count).take(20));
+            let rows = (0..40).map(|step| step * 7919 % count).chain((0..count).take(120));
             let width = plan.fast.count();
             let rows: Vec<Range<u64>> = rows.map(|row| row * width..(row + 1) * width).collect();
             tables.together = None;
