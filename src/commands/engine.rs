@@ -11,7 +11,7 @@ use std::path::Path;
 
 /// The errors to put into a device's kernel, from the values of `--perturb`.
 pub fn wrong(model: &Model, words: &[String]) -> Result<Wrong> {
-    Ok(Wrong { perturb: perturbations(model, words)?, ..Wrong::default() })
+    Ok(Wrong::by(perturbations(model, words)?))
 }
 
 /// Reads `OUTPUT=FRACTION` of `--perturb`.

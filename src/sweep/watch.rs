@@ -19,7 +19,8 @@ const SELDOM: Duration = Duration::from_millis(1);
 pub enum Leaving {
     /// When judging the rest one by one is expected to be faster.
     WhereTheyDoNotPay,
-    /// When they have settled this fraction of their work, whatever time that took; for testing.
+    /// When they have settled this fraction of their work, whatever time that took.
+    #[cfg(feature = "testing")]
     After(f64),
 }
 
@@ -57,7 +58,10 @@ impl<'w> Teller<'w> {
     /// Counts designs that were settled.
     pub fn settle(&self, designs: u64) {
         self.untold.set(self.untold.get() + designs);
+        #[cfg(feature = "testing")]
         let is_at_once = matches!(self.watch.leaving, Some(Leaving::After(_)));
+        #[cfg(not(feature = "testing"))]
+        let is_at_once = false;
         if is_at_once || self.told.get().elapsed() >= SELDOM {
             self.tell();
         }
@@ -126,7 +130,9 @@ impl<'a> Watch<'a> {
     pub fn chunk(&self) -> f64 {
         match self.leaving {
             Some(Leaving::WhereTheyDoNotPay) => CHUNK * self.seconds * self.count as f64,
-            Some(Leaving::After(_)) | None => f64::INFINITY,
+            #[cfg(feature = "testing")]
+            Some(Leaving::After(_)) => f64::INFINITY,
+            None => f64::INFINITY,
         }
     }
 
@@ -171,6 +177,7 @@ impl<'a> Watch<'a> {
         let leaves = rest > 0.0
             && match leaving {
                 Leaving::WhereTheyDoNotPay => forecast.is_poor(whole, counting.map(|it| it.since)),
+                #[cfg(feature = "testing")]
                 Leaving::After(share) => forecast.settled >= share,
             };
         if leaves && !self.stop.swap(true, Ordering::Relaxed) {

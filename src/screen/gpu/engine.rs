@@ -196,11 +196,60 @@ pub struct Wrong {
     /// Outputs that come out wrong by this fraction of their value.
     pub perturb: Vec<(usize, f64)>,
     /// Pieces of the kernel's text to be replaced.
+    #[cfg(feature = "testing")]
     pub replace: Vec<(String, String)>,
     /// Judge lanes in groups also where the study is small.
+    #[cfg(feature = "testing")]
     pub grouped: bool,
     /// Room for survivors, if not the usual.
+    #[cfg(feature = "testing")]
     pub capacity: Option<u64>,
+}
+
+#[cfg(feature = "testing")]
+impl Wrong {
+    /// These outputs come out wrong by these fractions.
+    pub fn by(perturb: Vec<(usize, f64)>) -> Self {
+        Self { perturb, ..Self::default() }
+    }
+
+    fn text(&self, mut source: String) -> String {
+        for (piece, other) in &self.replace {
+            assert!(source.contains(piece), "the kernel has no {piece}");
+            source = source.replace(piece, other);
+        }
+        source
+    }
+
+    fn is_grouped(&self) -> bool {
+        self.grouped
+    }
+
+    fn capacity(&self) -> u64 {
+        self.capacity.unwrap_or(CAPACITY)
+    }
+}
+
+/// Where nothing is tested, a kernel is what it is.
+#[cfg(not(feature = "testing"))]
+#[allow(clippy::unused_self, reason = "as where it is tested")]
+impl Wrong {
+    /// These outputs come out wrong by these fractions.
+    pub fn by(perturb: Vec<(usize, f64)>) -> Self {
+        Self { perturb }
+    }
+
+    fn text(&self, source: String) -> String {
+        source
+    }
+
+    fn is_grouped(&self) -> bool {
+        false
+    }
+
+    fn capacity(&self) -> u64 {
+        CAPACITY
+    }
 }
 
 impl<'p> GpuEngine<'p> {
@@ -211,13 +260,9 @@ impl<'p> GpuEngine<'p> {
     /// [`Error::Gpu`](crate::error::Error::Gpu) if the device fails.
     pub fn new(plan: &'p Plan, ranges: &[(f64, f64)], device: &Device, limited_loops: bool, wrong: &Wrong) -> Result<Self> {
         supports_report(plan)?;
-        let layout = KernelLayout::new(plan, limited_loops, wrong.grouped)?;
+        let layout = KernelLayout::new(plan, limited_loops, wrong.is_grouped())?;
         supports_histograms(plan, ranges)?;
-        let mut source = kernel_text(plan, &layout, ranges, &wrong.perturb);
-        for (piece, other) in &wrong.replace {
-            assert!(source.contains(piece), "the kernel has no {piece}");
-            source = source.replace(piece, other);
-        }
+        let source = wrong.text(kernel_text(plan, &layout, ranges, &wrong.perturb));
         let program = Program::new(device, &source, ENTRIES)?;
         program.require_structure("Tile", size_of::<Tile>(), &Tile::MEMBERS)?;
         program.require_structure("KnownUniform", size_of::<KnownUniform>(), &KnownUniform::MEMBERS)?;
@@ -246,7 +291,7 @@ impl<'p> GpuEngine<'p> {
             return Err(device.error("the maps of this study are larger than a buffer of this device; use --engine cpu"));
         }
         let words = survivor_words(plan).max(check_words(plan));
-        let capacity = wrong.capacity.unwrap_or(CAPACITY).min(binding / (4 * words as u64));
+        let capacity = wrong.capacity().min(binding / (4 * words as u64));
 
         let steady: &[Level] = if layout.steady.is_empty() { &[[0.0; 4]] } else { &layout.steady };
         let steady = if layout.steady_is_uniform() { device.uniform("steady", steady) } else { device.storage("steady", steady) };
