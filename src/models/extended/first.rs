@@ -1,6 +1,6 @@
 //! What a model that is formulas alone computes once for all designs that have their slow inputs in common.
 
-use crate::formula::{Expression, ExpressionNode, Formulas, Operator, StudyFormula};
+use crate::formula::{ComparisonSign, Expression, ExpressionNode, Formulas, Operator};
 use std::collections::BTreeSet;
 
 /// Most numbers that are passed on.
@@ -32,28 +32,31 @@ impl FirstStage {
         Self { left: before.to_vec(), passed: Vec::new() }
     }
 
-    /// Of formulas alone, which read only these many inputs. `asked`: formulas whose values are asked for from without.
+    /// Of formulas alone, around these inputs. `asked`: formulas whose values are asked for from without.
     ///
     /// What takes long decides which inputs are slow: roots as long as there is one left that is not, since a first stage that reads
     /// them all would serve no two designs; exponentials, curves and the like as long as a third is left, since they take less time than
-    /// a first stage does that serves few.
-    pub fn of(formulas: &Formulas, before: &[usize], inputs: usize, asked: &[usize]) -> Self {
+    /// a first stage does that serves few. Where a formula chooses by a word, what it takes for the default word counts: most studies
+    /// leave it at that, and what is quick and reads a further input is left to the second stage.
+    pub fn of(formulas: &Formulas, before: &[usize], inputs: &NamedInputs<'_>, asked: &[usize]) -> Self {
         let all = formulas.all();
-        let mut costly: Vec<(bool, &StudyFormula)> =
-            before.iter().map(|&it| &all[it]).filter_map(|it| Some((!cost(&it.expression)?, it))).collect();
-        costly.sort_by_key(|(is_cheaper, it)| (*is_cheaper, it.depends_on.len()));
+        let usual = UsualReads::new(formulas, inputs);
+        let mut costly: Vec<(bool, &BTreeSet<usize>)> =
+            before.iter().filter_map(|&it| Some((!cost(&all[it].expression, &usual)?, &usual.of[it]))).collect();
+        costly.sort_by_key(|(is_cheaper, reads)| (*is_cheaper, reads.len()));
         let mut slow: BTreeSet<usize> = BTreeSet::new();
-        for (is_cheaper, formula) in costly {
-            let with: BTreeSet<usize> = slow.iter().chain(&formula.depends_on).copied().collect();
-            let left = inputs - with.len();
-            if (is_cheaper && 3 * left >= inputs) || (!is_cheaper && left > 0) {
+        for (is_cheaper, reads) in costly {
+            let with: BTreeSet<usize> = slow.union(reads).copied().collect();
+            let left = inputs.count.saturating_sub(with.len());
+            if (is_cheaper && 3 * left >= inputs.count) || (!is_cheaper && left > 0) {
                 slow = with;
             }
         }
         if slow.is_empty() {
             return Self::none(before);
         }
-        let mut kept: Vec<usize> = before.iter().copied().filter(|&it| all[it].depends_on.iter().all(|slot| slow.contains(slot))).collect();
+        let has_root = |it: usize| all[it].expression.roots() > 0;
+        let mut kept: Vec<usize> = before.iter().copied().filter(|&it| has_root(it) || usual.of[it].is_subset(&slow)).collect();
         loop {
             let left: Vec<usize> = before.iter().copied().filter(|it| !kept.contains(it)).collect();
             let passed = passed(formulas, &kept, &left, asked);
@@ -61,6 +64,57 @@ impl FirstStage {
                 return Self { left, passed };
             }
             kept.pop();
+        }
+    }
+}
+
+/// The inputs of formulas alone.
+pub struct NamedInputs<'a> {
+    /// The slot of an input.
+    pub slot: &'a dyn Fn(&str) -> Option<usize>,
+    /// The word that an input is if nobody says otherwise.
+    pub default_word: &'a dyn Fn(&str) -> Option<String>,
+    /// How many there are.
+    pub count: usize,
+}
+
+/// What each formula depends on where every word is the default.
+struct UsualReads<'a> {
+    inputs: &'a NamedInputs<'a>,
+    /// Slots of inputs, by formula.
+    of: Vec<BTreeSet<usize>>,
+}
+
+impl<'a> UsualReads<'a> {
+    fn new(formulas: &Formulas, inputs: &'a NamedInputs<'a>) -> Self {
+        let mut usual = Self { inputs, of: vec![BTreeSet::new(); formulas.all().len()] };
+        for &formula in formulas.order() {
+            let mut slots = BTreeSet::new();
+            let mut open = vec![&formulas.all()[formula].expression];
+            while let Some(expression) = open.pop() {
+                if let ExpressionNode::Name(name) = &expression.node {
+                    match (formulas.find(name), (inputs.slot)(name)) {
+                        (Some(of), _) => slots.extend(&usual.of[of]),
+                        (None, slot) => slots.extend(slot),
+                    }
+                }
+                open.extend(usual.branches(expression));
+            }
+            usual.of[formula] = slots;
+        }
+        usual
+    }
+
+    /// The parts of an expression that count.
+    fn branches<'e>(&self, expression: &'e Expression) -> Vec<&'e Expression> {
+        let ExpressionNode::If(ComparisonSign::Equal, parts) = &expression.node else { return expression.parts().collect() };
+        let [left, right, then, otherwise] = &**parts;
+        let (ExpressionNode::Name(name), ExpressionNode::Word(word)) = (&left.node, &right.node) else {
+            return expression.parts().collect();
+        };
+        match (self.inputs.default_word)(name) {
+            Some(default) => vec![left, if default == *word { then } else { otherwise }],
+            None => expression.parts().collect(),
         }
     }
 }
@@ -75,7 +129,7 @@ fn passed(formulas: &Formulas, kept: &[usize], left: &[usize], asked: &[usize]) 
 }
 
 /// Is there a root in it? `None` if it takes no longer than a few sums.
-fn cost(expression: &Expression) -> Option<bool> {
+fn cost(expression: &Expression, usual: &UsualReads<'_>) -> Option<bool> {
     let own = match &expression.node {
         ExpressionNode::Root(..) => Some(true),
         ExpressionNode::Call(name, _) if !CHEAP.contains(&&**name) => Some(false),
@@ -85,5 +139,5 @@ fn cost(expression: &Expression) -> Option<bool> {
         },
         _ => None,
     };
-    expression.parts().filter_map(cost).chain(own).max()
+    usual.branches(expression).into_iter().filter_map(|part| cost(part, usual)).chain(own).max()
 }

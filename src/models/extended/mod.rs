@@ -23,7 +23,7 @@ use crate::formula::{
 };
 use crate::probability::Effect;
 use crate::units::Unit;
-use first::FirstStage;
+use first::{FirstStage, NamedInputs};
 pub use interned::interned;
 #[cfg(feature = "gpu")]
 pub use interned::interned_list;
@@ -243,7 +243,17 @@ fn surroundings(base: &Arc<Model>, extension: &Extension, formulas: Formulas) ->
     if around.is_alone() {
         let margins = extension.formulas.len()..around.formulas.all().len();
         let asked: Vec<usize> = around.shown.iter().copied().chain(margins).collect();
-        around.first = FirstStage::of(&around.formulas, &around.before, around.inputs.len(), &asked);
+        let of_file = extension.inputs();
+        let slot = |name: &str| {
+            let of_input = of_file.iter().position(|input| input.name == name).map(|it| inputs + it);
+            of_input.or_else(|| extension.variables.iter().position(|it| it == name).map(|it| first_variable + it))
+        };
+        let default_word = |name: &str| {
+            let input = of_file.iter().find(|input| input.name == name)?;
+            Some(input.word_for(input.default)?.to_owned())
+        };
+        let named = NamedInputs { slot: &slot, default_word: &default_word, count: around.inputs.len() };
+        around.first = FirstStage::of(&around.formulas, &around.before, &named, &asked);
     }
     around
 }
