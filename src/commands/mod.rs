@@ -3,6 +3,7 @@
 #[cfg(feature = "gpu")]
 mod adapters;
 mod check;
+mod described;
 mod draws;
 #[cfg_attr(not(feature = "gpu"), path = "no_engine.rs")]
 mod engine;
@@ -111,6 +112,9 @@ fn read_study(path: &Path) -> Result<(Study, String)> {
 
 /// The same with what else is asked of it.
 fn read_study_with(path: &Path, edits: StudyEdits<'_>) -> Result<(Study, String)> {
+    if described::is_described(path) {
+        return described::read(path, edits);
+    }
     Study::read_with(path, edits).map_err(unreadable)
 }
 

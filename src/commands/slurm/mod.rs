@@ -3,8 +3,8 @@
 mod scripts;
 mod sizing;
 
-use super::read_study;
 use super::sweep::{default_out, files_of};
+use super::{described, read_study_with};
 use crate::cli::{self, Cli, Command};
 use crate::terminal::{self, TextGrid, bold, grouped, quoted, span};
 use beltspace::checkpoint::Saved;
@@ -15,7 +15,7 @@ use beltspace::memory::Needs;
 use beltspace::names::CHECKPOINT;
 use beltspace::plan::Plan;
 use beltspace::run::{Judging, method};
-use beltspace::study::differences;
+use beltspace::study::{Study, StudyEdits, differences};
 use beltspace::sweep::costs::Speed;
 use clap::Parser;
 use scripts::{MERGE, SHARDS, SUBMIT};
@@ -64,13 +64,13 @@ impl Scheduler {
 
 pub fn run(request: &cli::SlurmArgs) -> Result<()> {
     let scheduler = if request.pbs { Scheduler::Pbs } else { Scheduler::Slurm };
-    let (study, _) = read_study(&request.study)?;
-    let plan = Plan::new(study);
     let file = absolute(&request.study)?;
+    let own = checked_options(&file, &request.sweep)?;
+    let (study, text) = read_study_with(&request.study, StudyEdits { set: &own.set, feasible: own.feasible })?;
+    let plan = Plan::new(study);
     let out = absolute(&request.out.clone().unwrap_or_else(|| default_out(&request.study, None)))?;
     let jobs = absolute(&request.jobs.clone().unwrap_or_else(|| jobs_beside(&out)))?;
     let program = program(request.program.as_deref())?;
-    let own = checked_options(&file, &request.sweep)?;
     // Refuse what every shard would refuse, before anything is written.
     let mut speed = None;
     let mut measure = || *speed.get_or_insert_with(|| Speed::measured(&plan, 1, TRIAL));
@@ -93,13 +93,16 @@ pub fn run(request: &cli::SlurmArgs) -> Result<()> {
     let wanted = [needs.shard, needs.merge].map(|bytes| (bytes + bytes / 2).div_ceil(1_000_000).next_multiple_of(100));
     let memory = [0, 1].map(|job| if request.memory.is_some() { least[job] } else { least[job].max(wanted[job]) });
     let limit = if method.bounds { sizing::limit_of_bounds(work.of_all()) } else { sizing::limit(work.of_shard(shards)) };
+    // Jobs must not need files that lie where the study does.
+    let is_alone = described::is_described(&file) || Study::parse_in(&text, "study.toml", &jobs).is_ok();
+    let (study, words) = if is_alone { (file, request.sweep.clone()) } else { (jobs.join("study.json"), without_edits(&request.sweep)) };
     let time = [limit, sizing::limit(LEAST_MERGE + work.of_merge())].map(|seconds| time.clone().unwrap_or_else(|| sizing::clock(seconds)));
     let scripts = scripts::ScriptContents {
         scheduler,
         title: terminal::told(&plan.study.title),
         name: job_name(&request.study),
         program: word(&program)?,
-        study: word(&file)?,
+        study: word(&study)?,
         out: word(&out)?,
         jobs: word(&jobs)?,
         shards,
@@ -108,7 +111,7 @@ pub fn run(request: &cli::SlurmArgs) -> Result<()> {
         time,
         options,
         page: !own.no_report,
-        sweep: request.sweep.iter().map(|it| terminal::quoted_word(it)).collect(),
+        sweep: words.iter().map(|it| terminal::quoted_word(it)).collect(),
     };
     let _claim = Claim::new(&jobs, &terminal::command_line())?;
     refuse_to_replace(&jobs, request.force)?;
@@ -116,6 +119,9 @@ pub fn run(request: &cli::SlurmArgs) -> Result<()> {
     let submit = jobs.join(SUBMIT);
     if submit.exists() {
         std::fs::remove_file(&submit).map_err(Error::io(&submit))?;
+    }
+    if !is_alone {
+        described::write(&jobs, &plan.study, &text)?;
     }
     for (name, text) in scripts.scripts() {
         let path = jobs.join(name);
@@ -214,6 +220,21 @@ fn checked_options(study: &Path, options: &[String]) -> Result<cli::SweepArgs> {
         Ok(_) => unreachable!("it began with sweep"),
         Err(error) => Err(wrong(error.to_string().lines().next().unwrap_or_default())),
     }
+}
+
+/// The options without those that the resolved study already follows.
+fn without_edits(options: &[String]) -> Vec<String> {
+    let mut left = Vec::new();
+    let mut options = options.iter();
+    while let Some(option) = options.next() {
+        match option.as_str() {
+            "--set" => drop(options.next()),
+            "--feasible" => {}
+            it if it.starts_with("--set=") => {}
+            _ => left.push(option.clone()),
+        }
+    }
+    left
 }
 
 /// An option for the scheduler, which becomes a line of a script.

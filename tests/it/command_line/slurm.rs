@@ -124,7 +124,14 @@ fn the_jobs_give_the_files_of_one_run() {
     for (flavour, histogram) in [("", "bins = 40"), ("--pbs", "from = 0, to = 60000, bins = 40")] {
         let place = Place::of_a_table(histogram);
         let cluster = Cluster::new();
-        let printed = place.ask(&format!("--shards 3 --shortest 0 --cpus 2 {flavour} -- --engine cpu")).text();
+        let edited = ["sweep", "my study.toml", "--out", "plain", "--set", "band_count=9"];
+        ask_words(&place.path, &edited).text();
+        let plain = files(&place.path.join("plain"));
+        let printed = place.ask(&format!("--shards 3 --shortest 0 --cpus 2 {flavour} -- --engine cpu --set band_count=9")).text();
+        // The jobs need neither the study file nor its table.
+        for name in ["my study.toml", "loads.csv"] {
+            std::fs::remove_file(place.path.join(name)).expect("it is there");
+        }
         let jobs = place.path.join("results/my study-jobs");
         let submit = jobs.join("submit.sh");
         let quoted = submit.display().to_string().replace('\'', r"'\''");
@@ -140,7 +147,6 @@ fn the_jobs_give_the_files_of_one_run() {
             ["shards.sh", "-W depend=afterok:1[].server merge.sh"]
         };
         assert_eq!(asked, expected);
-        let plain = place.plain();
         let log = || read(&logs.join("merge.txt"));
         assert_eq!(same_result(&plain, &files(&place.path.join("results/my study"))), Ok(()), "{flavour}: {}", log());
         assert!(log().contains("front"), "the log shows the summary: {}", log());
@@ -154,6 +160,27 @@ fn the_jobs_give_the_files_of_one_run() {
         assert_eq!(read(&manifest), before, "a finished shard is left as it is");
         assert_eq!(same_result(&plain, &files(&place.path.join("results/my study"))), Ok(()), "{flavour}: {}", log());
     }
+}
+
+#[test]
+fn a_resolved_study_needs_no_other_file() {
+    let place = Place::of_a_table("bins = 40");
+    let plain = place.plain();
+    for name in ["my study.toml", "loads.csv"] {
+        std::fs::remove_file(place.path.join(name)).expect("it is there");
+    }
+    let resolved = "plain/study.json";
+    ask_words(&place.path, &["sweep", resolved, "--out", "again"]).text();
+    assert_eq!(same_result(&plain, &files(&place.path.join("again"))), Ok(()));
+    let refused = |words: &[&str]| ask_words(&place.path, words).refusal(2);
+    let said = refused(&["check", resolved, "--set", "torque_Nm=90"]);
+    assert!(said.contains("plain/study.json: this study is resolved") && said.contains("take the study file"), "{said}");
+    write(&place.path, "other.json", "{ \"model\": \"metal-cvt\" }");
+    let said = refused(&["check", "other.json"]);
+    assert!(said.contains("other.json: it is no resolved study"), "{said}");
+    std::fs::remove_file(place.path.join("plain/study.toml")).expect("it is there");
+    let said = refused(&["check", resolved]);
+    assert!(said.contains("its text, study.toml, belongs beside it"), "{said}");
 }
 
 #[test]
