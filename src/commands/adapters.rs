@@ -11,13 +11,13 @@ pub fn run(json: bool) -> Result<()> {
         return terminal::print(&format!("{:#}\n", adapters.iter().map(describe).collect::<Value>()));
     }
     if adapters.is_empty() {
-        return terminal::print(
+        return terminal::tell(
             "no GPU driver was found: every command runs on the CPU\n\
              A software driver, for trying things out: the Debian package mesa-vulkan-drivers (lavapipe).\n",
         );
     }
     let pages: Vec<_> = adapters.iter().map(page).collect();
-    terminal::print(&pages.join("\n"))
+    terminal::tell(&pages.join("\n"))
 }
 
 /// The self-test's report, or why there is none.

@@ -98,7 +98,7 @@ pub fn run(request: &cli::CheckArgs) -> Result<()> {
     for warning in warnings(&plan) {
         text.push_str(&format!("{} {warning}\n", bold("warning:")));
     }
-    terminal::print(&text)
+    terminal::tell(&text)
 }
 
 /// How long the method that begins by bounds is expected to take, where judging one by one takes so many `seconds`.

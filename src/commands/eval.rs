@@ -89,7 +89,7 @@ fn print_one(model: &Model, inputs: &[f64], of_study: Option<ShownDesign<'_>>, r
         Status::Failed(condition) => format!("  (unless: {})", model.conditions[condition].doc),
         Status::Overflow => "  (a value is too large for a 64-bit number)".to_owned(),
     };
-    terminal::print(&format!(
+    terminal::tell(&format!(
         "{}\n{}\n{}\n{}\n{} {reason}{why}\n",
         bold("inputs"),
         table.indented(2),
@@ -360,7 +360,7 @@ fn print_worst(plan: &Plan, design: u64, number_of: u64, request: &cli::EvalArgs
         Some(it) if it.levels == 1 => format!("over {} draws", grouped(it.draws)),
         Some(it) => format!("over {} draws, worst of {} levels", grouped(it.draws), grouped(it.levels)),
     };
-    terminal::print(&format!(
+    terminal::tell(&format!(
         "{} {number_of}{with}, {of_all}\n\n{}\n{}\n{}\n{}\n{}\n{}\n{} {status}{not_ok}\n{} {}\n",
         bold("design"),
         bold("inputs"),

@@ -76,7 +76,7 @@ pub fn run(request: &cli::MergeArgs) -> Result<()> {
         let study = terminal::quoted(&request.out.join("study.toml"));
         Some(page::beside(&plan, &request.out, &study, record.time, threads, &Control::default())?)
     };
-    if request.quiet { Ok(()) } else { terminal::print(&report::summary(&outcome, &record, &request.out, page.as_ref())) }
+    if request.quiet { Ok(()) } else { terminal::tell(&report::summary(&outcome, &record, &request.out, page.as_ref())) }
 }
 
 /// The checkpoint of a result directory, or the directory itself if it is one.

@@ -21,7 +21,8 @@ pub fn run(request: &cli::ModelsArgs) -> Result<()> {
         (Some(model), false) => page(&model),
         (None, false) => list(),
     };
-    terminal::print(&text)
+    // JSON and studies are for programs and files.
+    if request.json || request.study { terminal::print(&text) } else { terminal::tell(&text) }
 }
 
 /// The usual range of an input of which none is said.
@@ -128,11 +129,10 @@ fn equations(model: &Model) -> String {
 
 /// A table with a sentence below each row but the first: beside the numbers the sentence would not fit a terminal.
 fn described(table: &TextGrid, sentences: impl Iterator<Item = String>) -> String {
-    let text = table.indented(2);
-    let mut lines = text.lines();
-    let head = lines.next().unwrap_or_default();
-    let rows = lines.zip(sentences).map(|(line, sentence)| format!("{line}\n{}\n", dim(&format!("      {sentence}"))));
-    format!("{head}\n{}", rows.collect::<String>())
+    let mut rows = table.indented_rows(2).into_iter();
+    let head = rows.next().unwrap_or_default();
+    let rows = rows.zip(sentences).map(|(row, sentence)| format!("{row}{}\n", dim(&format!("      {sentence}"))));
+    head + &rows.collect::<String>()
 }
 
 /// Sentences that say what an input takes the place of, and for which words of which input it is read, if not always.

@@ -26,7 +26,7 @@ pub fn run(request: &cli::ReproduceArgs) -> Result<()> {
         return Ok(());
     }
     let page = if request.no_report { String::new() } else { format!("page: {}\n", page.display()) };
-    terminal::print(&(shown(&all, out) + &page))
+    terminal::tell(&(shown(&all, out) + &page))
 }
 
 /// Existing files are only replaced if they are those of a reproduction and `--force` is given.

@@ -50,7 +50,7 @@ pub fn run(request: &cli::SensitivityArgs) -> Result<()> {
     if let Some(out) = &request.out {
         text.push_str(&format!("\nresult {}\n", out.display()));
     }
-    terminal::print(&text)
+    terminal::tell(&text)
 }
 
 /// The files that `[report]` asked for belong to their result, whose page shows them.

@@ -96,7 +96,7 @@ pub fn run(request: &cli::SweepArgs) -> Result<()> {
     outcome.write(checkpoint, &text, &record, &control).map_err(|error| name_the_way_back(error, &out, request))?;
     let page =
         if request.no_report { None } else { Some(page::beside(&plan, &out, &named(request), record.time, settings.threads, &control)?) };
-    if request.quiet { Ok(()) } else { terminal::print(&report::summary(&outcome, &record, &out, page.as_ref())) }
+    if request.quiet { Ok(()) } else { terminal::tell(&report::summary(&outcome, &record, &out, page.as_ref())) }
 }
 
 /// The study of the checkpoint in `out`, which has the rows and labels of every table that it names. It goes on where such a table is no

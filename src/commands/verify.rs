@@ -58,8 +58,11 @@ fn of_points(device: &Trusted, model: &Arc<Model>, constraints: &[Constraint], p
 }
 
 fn print(request: &cli::VerifyArgs, what: &str, device: &Trusted, report: &VerifyReport, swept: Option<&Recheck>) -> Result<()> {
-    let text = if request.json { format!("{:#}\n", describe(device, report, swept)) } else { page(what, device, report, swept) };
-    terminal::print(&text)?;
+    if request.json {
+        terminal::print(&format!("{:#}\n", describe(device, report, swept)))?;
+    } else {
+        terminal::tell(&page(what, device, report, swept))?;
+    }
     report.require()
 }
 

@@ -3,12 +3,12 @@
 use super::Explorer;
 use super::controls::controls;
 use super::http::{Connection, HttpRequest, Reply, begin_chunks, write_chunk};
-use crate::certify::{self, Role};
+use crate::certify;
 use crate::error::{Error, Result};
 use crate::live::LiveAnswer;
-use crate::live::around::around;
+use crate::live::around::{PLACES, around};
 use crate::plan::Plan;
-use crate::report::live as told;
+use crate::report::{live as told, slices};
 use crate::screen::Control;
 use crate::study::{Axis, Quantity, ReportColumn, number, value_of};
 use serde::Deserialize;
@@ -200,25 +200,10 @@ impl Explorer {
     /// What is around a design.
     fn around(&self, question: &Question, control: &Control, tell: &mut dyn FnMut(ToldPart) -> Result<()>) -> Result<()> {
         let (plan, design) = self.asked_design(question)?;
-        let (columns, slices) = around(&plan, design, self.live.threads(), control)?;
-        let study = &plan.study;
-        let judged = || columns.iter().enumerate().filter(|(_, column)| column.role != Role::Report);
-        let named = judged().map(|(_, it)| json!({ "name": it.name, "unit": it.unit(study), "doc": it.doc(study) }));
-        let slices = slices.iter().map(|slice| {
-            let input = &study.model.inputs[slice.input];
-            let lines = judged().map(|(at, _)| {
-                let of = |it: Option<f64>| it.filter(|it| it.is_finite()).map(number);
-                let values = slice.rows.iter().map(|row| of(row.columns[at].value).unwrap_or(Value::Null));
-                let scenarios = slice.rows.iter().map(|row| row.columns[at].value.map(|_| row.columns[at].scenario));
-                json!({ "values": values.collect::<Vec<_>>(), "scenarios": scenarios.collect::<Vec<_>>() })
-            });
-            json!({
-                "input": input.name, "unit": input.unit.symbol, "own": number(slice.own), "integer": input.integer,
-                "at": slice.values.iter().map(|&it| number(it)).collect::<Vec<_>>(),
-                "feasible": slice.rows.iter().map(|row| row.feasible).collect::<Vec<_>>(), "lines": lines.collect::<Vec<_>>(),
-            })
-        });
-        tell((json!({ "kind": "around", "columns": named.collect::<Vec<_>>(), "slices": slices.collect::<Vec<_>>() }), Vec::new()))
+        let (columns, slices) = around(&plan, design, PLACES, self.live.threads(), control)?;
+        let mut told = slices::told(&plan, &columns, &slices);
+        told["kind"] = "around".into();
+        tell((told, Vec::new()))
     }
 }
 

@@ -7,7 +7,7 @@ use crate::screen::Control;
 use crate::study::{Axis, Levels, Report, Study};
 
 /// Places along an input.
-const PLACES: u64 = 33;
+pub const PLACES: u64 = 33;
 
 /// Designs that differ in one input.
 #[derive(Debug)]
@@ -22,27 +22,36 @@ pub struct Slice {
     pub rows: Vec<Row>,
 }
 
-/// The slices around a design over its axes of numbers, and the columns of their rows.
+/// The inputs that have a slice around a design, with their levels: axes of numbers.
+pub fn sliced<'p>(plan: &'p Plan, inputs: &[f64]) -> Vec<(usize, &'p Levels)> {
+    let study = &plan.study;
+    let single = study.design.iter().filter_map(|axis| match axis {
+        Axis::Single { input, levels } => Some((*input, levels)),
+        _ => None,
+    });
+    let of_numbers = |&(input, levels): &(usize, &Levels)| {
+        let table = &study.model.inputs[input];
+        let has_words = (0..levels.count().min(1000)).any(|at| table.word_for(levels.value(at)).is_some());
+        !has_words && table.word_for(inputs[input]).is_none()
+    };
+    single.filter(of_numbers).collect()
+}
+
+/// The slices around a design over its axes of numbers, each of about `most` places, and the columns of their rows.
 ///
 /// # Errors
 /// [`Error::Stopped`](crate::error::Error::Stopped) after `control.stop`.
-pub fn around(plan: &Plan, design: u64, threads: usize, control: &Control) -> Result<(Vec<Column>, Vec<Slice>)> {
+pub fn around(plan: &Plan, design: u64, most: u64, threads: usize, control: &Control) -> Result<(Vec<Column>, Vec<Slice>)> {
     let study = &plan.study;
     let inputs = plan.space.inputs(design, 0);
     let mut slices = Vec::new();
     let columns = certify::columns(study);
-    for axis in &study.design {
-        let Axis::Single { input, levels } = axis else { continue };
-        let table = &study.model.inputs[*input];
-        let has_words = (0..levels.count().min(1000)).any(|at| table.word_for(levels.value(at)).is_some());
-        if has_words || table.word_for(inputs[*input]).is_some() {
-            continue;
-        }
-        let values = places(levels, table.integer, inputs[*input]);
-        let line = Plan::new(along(study, &inputs, *input, &values));
+    for (input, levels) in sliced(plan, &inputs) {
+        let values = places(levels, study.model.inputs[input].integer, inputs[input], most);
+        let line = Plan::new(along(study, &inputs, input, &values));
         let designs: Vec<u64> = (0..line.designs()).collect();
         let rows = certify::rows(&line, &columns, &designs, threads, control)?;
-        slices.push(Slice { input: *input, own: inputs[*input], values, rows });
+        slices.push(Slice { input, own: inputs[input], values, rows });
     }
     Ok((columns, slices))
 }
@@ -64,20 +73,20 @@ fn along(study: &Study, inputs: &[f64], varied: usize, values: &[f64]) -> Study 
 
 /// Values between the ends of an axis, with that of the design among them.
 #[allow(clippy::cast_precision_loss, reason = "a few places of a picture")]
-fn places(levels: &Levels, integer: bool, own: f64) -> Vec<f64> {
+fn places(levels: &Levels, integer: bool, own: f64, most: u64) -> Vec<f64> {
     let (low, high) = levels.ends();
     let is_log = matches!(levels, Levels::Even { log: true, .. } | Levels::Step { log: true, .. } | Levels::Continuous { log: true, .. });
     let place = |at: u64| {
-        let t = at as f64 / (PLACES - 1) as f64;
+        let t = at as f64 / (most - 1) as f64;
         match at {
             0 => low,
-            at if at == PLACES - 1 => high,
+            at if at == most - 1 => high,
             _ if integer => (low + t * (high - low)).round(),
             _ if is_log => low * (high / low).powf(t),
             _ => low + t * (high - low),
         }
     };
-    let mut values: Vec<f64> = (0..PLACES).map(place).chain([own]).collect();
+    let mut values: Vec<f64> = (0..most).map(place).chain([own]).collect();
     values.sort_by(f64::total_cmp);
     values.dedup();
     values

@@ -9,6 +9,7 @@ mod influence;
 pub mod live;
 mod page;
 mod papers;
+pub mod slices;
 mod summary;
 
 pub use papers::of_papers;
@@ -16,6 +17,7 @@ pub use papers::of_papers;
 use crate::checkpoint::{Found, found};
 use crate::error::{Error, Result};
 use crate::export::pulley;
+use crate::models::Model;
 use crate::names::{CHECKPOINT, MARK, RUN};
 use crate::plan::Plan;
 use crate::reading::{Folder, STUDY, changed, json_of, picture_of, text_of};
@@ -111,6 +113,8 @@ pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
     let objectives = objectives_json(study, objectives);
     let constraints = constraints_json(study, constraints);
     let influence = influence::read(folder, plan, &summary)?;
+    let knee = summary["knee"]["design_index"].as_u64().filter(|&it| it < plan.designs());
+    let around = knee.map(|knee| slices::of_knee(plan, knee, threads, control)).transpose()?;
     let figures = [figures(folder)?, influence.figures].concat();
     let mut data = json!({
         "program": concat!("beltspace ", env!("CARGO_PKG_VERSION")),
@@ -126,6 +130,7 @@ pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
         "objectives": objectives,
         "constraints": constraints,
         "front": front.as_ref().map(|it| with_knee(it, &summary)),
+        "around": around,
         "scenarios": scenarios.map(|numbers| scenario_inputs(plan, numbers)),
         "evaluate": evaluate,
         "tally": summary["tally"],
@@ -145,7 +150,13 @@ pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
 
 fn model_json(study: &Study) -> Value {
     let model = &study.model;
-    json!({ "name": model.name, "summary": model.summary, "source": model.source, "limits": model.limits })
+    json!({ "name": model.name, "summary": model.summary, "source": model.source, "limits": model.limits, "drive": drive(model) })
+}
+
+/// The model of the program that this one is, or that its formulas stand around: the page knows what its drive looks like.
+fn drive(model: &Model) -> Option<&str> {
+    let innermost = model.base().unwrap_or(model);
+    crate::models::all().iter().find(|it| std::ptr::eq(&***it, innermost)).map(|it| it.name.as_str())
 }
 
 /// The objectives with the positions of their columns.
@@ -195,9 +206,9 @@ fn inputs(study: &Study) -> Vec<Value> {
         });
         match role(number) {
             "fixed" => described["value"] = value_of(model, number, study.fixed[number]),
-            role => {
+            _ => {
                 described["over"] = over(study, number).into();
-                if let Some((least, largest)) = ends(study, number).filter(|_| role == "design") {
+                if let Some((least, largest)) = ends(study, number) {
                     (described["least"], described["largest"]) = (least.into(), largest.into());
                 }
             }

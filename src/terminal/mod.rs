@@ -1,5 +1,7 @@
 //! Output for people: text on standard output, progress and errors on standard error.
 
+mod fill;
+mod grid;
 pub mod progress;
 pub mod report;
 
@@ -7,6 +9,8 @@ use beltspace::error::{Error, Result};
 pub use beltspace::sweep::costs::span;
 pub use beltspace::table::{grouped, short};
 use console::Style;
+use fill::filled;
+pub use grid::TextGrid;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
 
@@ -124,47 +128,11 @@ pub fn command_line() -> String {
     if line.chars().count() > MOST { line.chars().take(MOST).chain(" ...".chars()).collect() } else { line }
 }
 
-/// Text in columns, each as wide as its widest cell; the last one is not padded.
-#[derive(Debug, Default)]
-pub struct TextGrid {
-    rows: Vec<Vec<String>>,
-}
-
-impl TextGrid {
-    /// Adds a row.
-    pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
-        self.rows.push(cells.into_iter().collect());
-    }
-
-    /// The rows as indented lines. Numbers are aligned to the right.
-    pub fn indented(&self, indent: usize) -> String {
-        let is_number = |cell: &str| cell.replace(' ', "").parse::<f64>().is_ok();
-        let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
-        let width = |column: usize| {
-            self.rows.iter().filter_map(|row| row.get(column)).map(|cell| console::measure_text_width(cell)).max().unwrap_or(0)
-        };
-        let widths: Vec<_> = (0..columns).map(width).collect();
-        let of_numbers = |column: usize| {
-            let cells = self.rows.iter().filter_map(|row| row.get(column)).filter(|cell| !cell.is_empty());
-            2 * cells.clone().filter(|cell| is_number(cell)).count() > cells.count()
-        };
-        let of_numbers: Vec<_> = (0..columns).map(of_numbers).collect();
-        let mut text = String::new();
-        for row in &self.rows {
-            let mut line = " ".repeat(indent);
-            for (at, (cell, &width)) in row.iter().zip(&widths).enumerate() {
-                let padding = " ".repeat(width - console::measure_text_width(cell));
-                let number = of_numbers[at] && is_number(cell);
-                let cell = if number { format!("{padding}{cell}") } else { format!("{cell}{padding}") };
-                line.push_str(&cell);
-                if at + 1 < row.len() {
-                    line.push_str("  ");
-                }
-            }
-            text.push_str(line.trim_end());
-            text.push('\n');
-        }
-        text
+/// Prints text for people: on a terminal, lines that are wider than it are broken between words.
+pub fn tell(text: &str) -> Result<()> {
+    match width() {
+        Some(width) => print(&filled(text, width)),
+        None => print(text),
     }
 }
 
@@ -189,18 +157,6 @@ mod tests {
     fn a_path_with_spaces_is_quoted() {
         assert_eq!(quoted(Path::new("results/my-study_2")), "results/my-study_2");
         assert_eq!(quoted(Path::new("it's here")), r"'it'\''s here'");
-    }
-
-    #[test]
-    fn a_grid_lines_up() {
-        let mut grid = TextGrid::default();
-        grid.row(["a", "10", "x"].map(str::to_owned));
-        grid.row(["bbb", "5", "y"].map(str::to_owned));
-        assert_eq!(grid.indented(1), " a    10  x\n bbb   5  y\n");
-        let mut mixed = TextGrid::default();
-        mixed.row(["what", "12 345"].map(str::to_owned));
-        mixed.row(["time", "about 3 s"].map(str::to_owned));
-        assert_eq!(mixed.indented(0), "what  12 345\ntime  about 3 s\n");
     }
 
     #[test]

@@ -275,6 +275,13 @@ fn changes_are_undone_shared_saved_and_compared() {
     assert!(browser.number("document.querySelectorAll('.pins tr.differs').length") >= 2.0);
     browser.wait("document.querySelector('#all-outputs table')");
     browser.wait("document.querySelectorAll('#around svg.slice').length >= 8");
+    // The drive is drawn to scale here too, and stays at its ratio from card to card.
+    browser.evaluate("(() => { const e = document.querySelector('#drive-ratio'); e.value = 0; e.dispatchEvent(new Event('input')); })()");
+    assert!(browser.text("document.querySelector('#card svg.drive title').textContent").contains("at ratio 0.5"));
+    browser.evaluate("beltspace.openCard(0)");
+    assert!(browser.text("document.querySelector('#card svg.drive title').textContent").contains("at ratio 0.5"));
+    browser.evaluate("beltspace.openCard(beltspace.page.front.rows - 1)");
+    browser.wait("document.querySelector('#all-outputs table')");
     browser.picture("explore-card");
     // All of this is in the address.
     browser.wait("location.hash.includes('s=constraints.stress_margin.min') && location.hash.includes('p=')");
@@ -364,7 +371,7 @@ fn axe() -> Option<String> {
 const CONTRAST: &str = "(() => { const light = (c) => { const { r, g, b } = d3.rgb(c); const f = (v) => (v /= 255) <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; \
      return 0.2126 * f(r) + 0.7152 * f(g) + 0.0722 * f(b); }; const p = beltspace.page; const ground = light(p.variable('--plot')); \
      const ratio = (c) => { const l = light(c); return (Math.max(l, ground) + 0.05) / (Math.min(l, ground) + 0.05); }; \
-     const marks = [...d3.range(0, 1.001, 0.02).map(p.ramp()), ...['--sample', '--ghost', '--faint', '--knee', '--ink', '--accent'].map(p.variable)]; \
+     const marks = [...d3.range(0, 1.001, 0.02).map(p.ramp()), ...['--sample', '--ghost', '--faint', '--muted', '--knee', '--ink', '--accent'].map(p.variable)]; \
      return Math.min(...marks.map(ratio)); })()";
 
 #[test]

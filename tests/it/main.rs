@@ -55,6 +55,10 @@ mod random;
 mod readme;
 /// The page of a result, in a browser.
 mod report_page;
+/// The drive drawn to scale and the slices of the knee, on that page.
+mod report_page_drawn;
+/// That page on paper.
+mod report_page_print;
 /// Independent second implementations of the models, and printed golden values.
 mod second;
 /// Which input matters: shares of the variance.
@@ -67,6 +71,8 @@ mod shader_constants;
 mod shaders;
 /// Load spectra: means and sums over weighted cases.
 mod spectra;
+/// Tables of the program in a terminal of 80 columns.
+mod terminal_width;
 /// The timing belt: figures, closed forms, similarity.
 mod timing_mesh;
 /// The tutorials of `docs/`, run and compared with what the program prints.

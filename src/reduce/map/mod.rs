@@ -6,6 +6,8 @@ mod page;
 #[cfg(feature = "pictures")]
 mod picture;
 mod shown;
+#[cfg(feature = "pictures")]
+mod stripes;
 
 pub use files::{CSV_CELLS, cells, contours, contours_name, names};
 

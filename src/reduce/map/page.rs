@@ -2,6 +2,7 @@
 
 use super::files::{CSV_CELLS, contours_name, names};
 use super::shown::value_of as map_value;
+use super::stripes::stripes;
 use crate::error::Result;
 use crate::plan::Plan;
 use crate::reading::designs::design_of;
@@ -44,6 +45,7 @@ fn map(folder: &Path, plan: &Plan, spec: &MapSpec, name: &str) -> Result<Value> 
         Best::Value(quantity, goal) => (if goal == Goal::Min { "min" } else { "max" }, quantity.doc(model)),
         Best::Share => ("share", "Share of the cell's designs that are feasible."),
     };
+    let mut striped = None;
     let (cells, picture) = if shown {
         let (file, columns) = (folder.join(format!("{name}.csv")), map_columns(study, spec));
         let size = study.design[spec.x].count() * study.design[spec.y].count();
@@ -61,12 +63,15 @@ fn map(folder: &Path, plan: &Plan, spec: &MapSpec, name: &str) -> Result<Value> 
         }
         let values: Option<Vec<f64>> = rows.iter().map(|row| number(&row[2])).collect();
         let values = values.ok_or_else(|| changed(&file, "a cell is no number"))?;
-        let mut parts = vec![Packed::F64(values).bytes()];
+        let mut parts = vec![Packed::F64(values.clone()).bytes()];
         let indices = columns.len() == 4;
         if indices {
             let design = |cell: &str| if cell.is_empty() { Some(NO_DESIGN) } else { design_of(cell, plan) };
             let designs: Option<Vec<u64>> = rows.iter().map(|row| design(&row[3])).collect();
-            parts.push(Packed::U64(designs.ok_or_else(|| changed(&file, "a design_index is not one of the study"))?).bytes());
+            let designs = designs.ok_or_else(|| changed(&file, "a design_index is not one of the study"))?;
+            let known: Vec<_> = designs.iter().map(|&it| (it != NO_DESIGN).then_some(it)).collect();
+            striped = stripes(plan, spec, &values, &known);
+            parts.push(Packed::U64(designs).bytes());
         }
         (Some(json!({ "indices": indices, "packed": packed(parts) })), None)
     } else {
@@ -87,7 +92,7 @@ fn map(folder: &Path, plan: &Plan, spec: &MapSpec, name: &str) -> Result<Value> 
     Ok(json!({
         "title": format!("{value} over {} and {}", name(&x), name(&y)), "x": x, "y": y,
         "value": { "name": value, "unit": unit, "doc": doc }, "best": best, "log": [is_log(spec.x), is_log(spec.y)],
-        "cells": cells, "picture": picture, "contours": contours,
+        "cells": cells, "picture": picture, "contours": contours, "stripes": striped,
     }))
 }
 

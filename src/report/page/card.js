@@ -169,7 +169,7 @@
     const place = page.element("p", { class: "muted" }, `row ${page.count(row + 1)} of ${page.count(front.rows)} of the front`, page.mask[row] ? "" : ", not selected");
     const pinned = page.isPinned(row);
     const buttons = page.element("div", { class: "card-buttons no-print" }, button("card-pin", pinned ? "Unpin this design (p)" : "Pin this design, to compare it (p)", pinned ? "Unpin" : "Pin", () => page.pin(row), !pinned && page.pins().length >= 6), button("card-print", "Print a data sheet of this design", "Print", () => page.printSheet()), button("card-previous", "Previous design (left arrow)", "‹", () => step(-1), !any(-1)), button("card-next", "Next design (right arrow)", "›", () => step(1), !any(1)), button("card-close", "Close (Esc)", "×", page.closeCard));
-    return [page.element("div", { class: "card-head" }, page.element("div", {}, title, place), buttons), objectives(row), margins(row), inputs(row), outputs(row), page.data.kind === "live" ? page.element("section", { id: "all-outputs" }) : null, commands(row)].filter(Boolean);
+    return [page.element("div", { class: "card-head" }, page.element("div", {}, title, place), buttons), objectives(row), margins(row), page.driveSection(row), inputs(row), outputs(row), page.data.kind === "live" ? page.element("section", { id: "all-outputs" }) : null, commands(row)].filter(Boolean);
   };
 
   // In a wide window the card takes room from the plots.

@@ -8,7 +8,8 @@
   const block = (id, title, hint, { columns, units, rows, of = rows.length, labels = [] }) => {
     // A label may look like a number, such as 007, and stays as it is.
     const words = columns.map((name, at) => labels.includes(name) || rows.some((row) => row[at] !== "" && !Number.isFinite(Number(row[at]))));
-    const kind = (at) => (words[at] ? "" : "number");
+    // On paper the numbers of scenarios would take the room of the values.
+    const kind = (at) => (words[at] ? "" : columns[at].endsWith("_scenario") ? "number of-scenario" : "number");
     const head = columns.map((name, at) => page.element("th", { scope: "col", class: kind(at) }, page.breakable(name), units && units[at] ? page.element("span", { class: "unit" }, units[at]) : null));
     const line = (row) => page.element("tr", { class: row[columns.indexOf("feasible")] === "no" ? "infeasible" : null }, row.map((text, at) => page.element("td", { class: kind(at), title: text }, labels.includes(columns[at]) ? text : shorten(text))));
     const table = page.element("table", {}, page.element("thead", {}, page.element("tr", {}, head)), page.element("tbody", {}, rows.slice(0, MOST).map(line)));

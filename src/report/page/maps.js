@@ -169,6 +169,7 @@
         const count = map.x.values.length * map.y.values.length;
         drawCells(figures[i], map, new Float64Array(numbers, 0, count), map.cells.indices ? new BigUint64Array(numbers, 8 * count, count) : null);
       } else if (map.picture) figures[i].append(page.picture(map.picture));
+      if (map.stripes) figures[i].append(page.element("p", { class: "notice", "data-testid": "stripes" }, map.stripes));
     }
   };
 }

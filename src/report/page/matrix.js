@@ -10,7 +10,9 @@
   const sizeFor = (width, count) => {
     const across = count - 1;
     const room = (width - LEFT - GAP * across) / across;
-    if (across === 1) return Math.max(220, Math.min(460, width - LEFT - 330));
+    if (across === 1) return Math.max(220, Math.min(page.printing ? 340 : 460, width - LEFT - 330));
+    // On paper it stands on the first page, below the question.
+    if (page.printing) return Math.max(96, Math.min(room, (490 - TOP - BOTTOM - GAP * across) / across));
     return Math.max(96, Math.min(across === 2 ? 330 : 264, room));
   };
 

@@ -59,7 +59,7 @@
 
   // Buttons beside the title of a section.
   page.saveButtons = (id, name) => {
-    const title = page.byId(id);
+    const title = typeof id === "string" ? page.byId(id) : id;
     if (!title || title.parentNode.querySelector(".save-buttons")) return;
     const stage = () => title.closest("section").querySelector(".stage");
     const button = (kind) => page.element("button", { type: "button", "data-testid": `${kind} ${name}`, "aria-label": `Save ${title.textContent} as ${kind.toUpperCase()}`, click: () => stage() && save(stage(), name, kind) }, kind.toUpperCase());

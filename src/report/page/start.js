@@ -26,6 +26,7 @@
       page.startChooser();
       page.startTable();
       page.startCard();
+      page.startKneeSlices();
     }
     page.startAddress();
     page.startLists();

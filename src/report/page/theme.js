@@ -27,6 +27,9 @@
   const print = (on) => {
     if (page.printing === on) return;
     page.printing = on;
+    // Paper shows the study's text, which is the whole question.
+    const study = document.querySelector("#study details");
+    if (study) [study.open, page.studyOpen] = on ? [true, study.open] : [page.studyOpen, false];
     document.documentElement.dataset.theme = page.dark() ? "dark" : "light";
     page.events.call("layout");
     page.events.call("theme");

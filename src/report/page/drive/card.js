@@ -1,0 +1,69 @@
+// The drawing in a design's card: of models that are known, with a slider where the study has several ratios.
+{
+  const DRAWINGS = {
+    "metal-cvt": (row, ratio) => page.drawVariator(row, true, ratio),
+    "rubber-cvt": (row, ratio) => page.drawVariator(row, false, ratio),
+    "flat-belt": (row) => page.drawFlatBelt(row),
+    "timing-belt": (row) => page.drawTimingBelt(row),
+    "pulley-load": (row) => page.drawPulley(row, false),
+    pulley: (row) => page.drawPulley(row, true),
+  };
+  const STEPS = 200;
+  let ratioShown = null; // stays from one card to the next
+
+  const table = ({ heads, units, lines }) => {
+    const head = heads.map((name, i) => page.element("th", { scope: "col", class: i ? "number" : "" }, name, units[i] ? page.element("div", { class: "unit" }, units[i]) : null));
+    const body = lines.map(({ name, cells }) => page.element("tr", {}, page.element("th", { scope: "row" }, name), cells.map((cell) => page.element("td", { class: "number" }, cell))));
+    return page.element("table", { class: "drive-table", "data-testid": "drive-table" }, page.element("thead", {}, page.element("tr", {}, heads[0] === "" ? page.element("td", {}) : null, head.slice(1))), page.element("tbody", {}, body));
+  };
+
+  const parts = ({ node, notes, table: lines, key }) => [
+    node,
+    page.element("p", { class: "hint", "data-testid": "drive-notes" }, key ? `${key} ` : "", notes.length ? `Not to scale: ${notes.join("; ")}.` : ""),
+    lines ? table(lines) : null,
+  ];
+
+  page.driveSection = (row) => {
+    const draw = DRAWINGS[page.data.model && page.data.model.drive];
+    if (!draw || !page.front) return null;
+    const ratio = page.ratioOf(row);
+    const ends = page.data.model.drive.endsWith("-cvt") && ratio ? ratio.ends : null;
+    let shown = ratio ? ratio.first : null;
+    if (ends && ratioShown !== null && ratioShown >= ends[0] && ratioShown <= ends[1]) shown = ratioShown;
+    const first = draw(row, shown);
+    const title = page.element("h3", { id: "drive-title" }, "Drawn to scale");
+    const section = (...children) => page.element("section", { class: "drive-section", "data-testid": "drive", "aria-labelledby": "drive-title" }, page.element("div", {}, title), children);
+    if (first.none) return section(page.element("p", { class: "hint" }, `Not drawn: ${first.none}.`));
+    // An input that a formula gives may be nowhere on the page.
+    if (first.missing) return section(page.element("p", { class: "hint" }, `Not drawn: the page does not know ${first.missing.join(", ")} of this design.`));
+    const stage = page.element("div", { class: "stage drive-stage" }, first.node);
+    const rest = page.element("div", {}, parts(first).slice(1).filter(Boolean));
+    const show = (value) => {
+      shown = ratioShown = value;
+      const next = draw(row, value);
+      if (next.none) return;
+      stage.replaceChildren(next.node);
+      rest.replaceChildren(...parts(next).slice(1).filter(Boolean));
+    };
+    let slider = null;
+    if (ends) {
+      const log = ends[0] > 0;
+      const valueAt = (step) => (step <= 0 ? ends[0] : step >= STEPS ? ends[1] : log ? ends[0] * (ends[1] / ends[0]) ** (step / STEPS) : ends[0] + ((ends[1] - ends[0]) * step) / STEPS);
+      const stepOf = (value) => Math.round(STEPS * (log ? Math.log(value / ends[0]) / Math.log(ends[1] / ends[0]) : (value - ends[0]) / (ends[1] - ends[0])));
+      const said = page.element("output", { for: "drive-ratio" }, page.short(shown));
+      const move = (event) => {
+        const value = valueAt(Number(event.target.value));
+        show(value);
+        said.textContent = page.short(value);
+        event.target.setAttribute("aria-valuetext", page.short(value));
+      };
+      const input = page.element("input", { type: "range", id: "drive-ratio", "data-testid": "drive-ratio", min: 0, max: STEPS, step: 1, value: stepOf(shown), "aria-valuetext": page.short(shown), input: move });
+      // Arrow keys move the slider here, not the card.
+      input.addEventListener("keydown", (event) => event.key.startsWith("Arrow") && event.stopPropagation());
+      slider = page.element("div", { class: "drive-slider no-print" }, page.element("label", { for: "drive-ratio" }, "ratio"), input, said);
+    }
+    const made = section(slider, stage, rest);
+    page.saveButtons(title, `drive-${page.designOf(row)}`);
+    return made;
+  };
+}

@@ -1,0 +1,32 @@
+// What is known of a design's drive: the value of an input or output by its name, and what has to be chosen because nobody says it.
+{
+  const ofInput = (name) => (page.data.inputs || []).find((input) => input.name === name);
+
+  // A number with its unit, where it comes from and, where it varies over the scenarios, its ends; `null` if there is no such number.
+  page.quantityOf = (name, row) => {
+    const column = page.front.byName.get(name);
+    const input = ofInput(name);
+    if (column && column.role === "design") return column.words || !Number.isFinite(column.values[row]) ? null : { name, value: column.values[row], from: "design", least: input?.least, largest: input?.largest };
+    if (input && input.role === "fixed") return typeof input.value === "number" ? { name, value: input.value, from: "fixed" } : null;
+    if (input && Number.isFinite(input.least)) return { name, value: (input.least + input.largest) / 2, from: "varied", least: input.least, largest: input.largest };
+    return column && !column.words && Number.isFinite(column.values[row]) ? { name, value: column.values[row], from: "output" } : null;
+  };
+
+  // Reads the quantities of a drawing one after the other. `notes` says which lengths stand on a rule, not on the design.
+  page.readerOf = (row) => {
+    const notes = [];
+    const missing = [];
+    const number = (name) => {
+      const found = page.quantityOf(name, row);
+      if (!found) missing.push(name);
+      else if (found.from === "varied" && found.least !== found.largest) notes.push(`${name}: it varies over the scenarios from ${page.short(found.least)} to ${page.short(found.largest)} and is drawn at ${page.short(found.value)}`);
+      return found ? found.value : NaN;
+    };
+    // A length that the model has not: the value of a rule, which is told.
+    const chosen = (what, value, rule) => {
+      notes.push(`${what}, ${rule}`);
+      return value;
+    };
+    return { number, chosen, notes, missing };
+  };
+}

@@ -1,0 +1,121 @@
+// Slices around a design: every objective and constraint along each input, all else as it is, with limits, and how far the input can go.
+{
+  const WIDTH = 196;
+  const HEIGHT = 92;
+  const PAD = { left: 44, right: 16, top: 8, bottom: 20 };
+  // How far the input can go from the design's own value before it is infeasible: the last feasible place on either side and the next one.
+  const reach = ({ at, feasible, own }) => {
+    const here = at.indexOf(own);
+    if (!feasible[here]) return null;
+    const until = (by) => {
+      let last = here;
+      while (feasible[last + by]) last += by;
+      return { last, next: last + by >= 0 && last + by < at.length ? last + by : null };
+    };
+    return { down: until(-1), up: until(1) };
+  };
+
+  // What the design fails at in a place: the first bound that does not hold, or why it has no result.
+  const failsAt = (slice, columns, place) => {
+    if (slice.status && slice.status[place]) return slice.status[place];
+    for (const bound of page.front.constraints) {
+      const name = bound.column ? bound.column.name : bound.of;
+      const at = columns.findIndex((column) => column.name === name);
+      const value = at < 0 ? null : slice.lines[at].values[place];
+      if (value === null) continue;
+      const given = (limit) => limit !== null && limit !== undefined;
+      if ((given(bound.min) && value < bound.min) || (given(bound.above) && value <= bound.above)) return `${name} is too low`;
+      if ((given(bound.max) && value > bound.max) || (given(bound.below) && value >= bound.below)) return `${name} is too high`;
+    }
+    return "infeasible";
+  };
+
+  // How far until infeasible, in words.
+  const reachText = (slice, columns) => {
+    const found = reach(slice);
+    const unit = slice.unit ? ` ${page.unit(slice.unit)}` : "";
+    if (!found) return "this design is infeasible";
+    const way = (word, { last, next }) => {
+      const free = Math.abs(slice.at[last] - slice.own);
+      const end = `${page.short(slice.at[last])}${unit}`;
+      if (next === null) return free === 0 ? `${word}: it is at the end of its axis` : `${word} by ${page.short(free)} to ${end}, the end of its axis`;
+      const fails = `at ${page.short(slice.at[next])}${unit} ${failsAt(slice, columns, next)}`;
+      return free === 0 ? `${word}: not at all, ${fails}` : `${word} by ${page.short(free)} to ${end}; ${fails}`;
+    };
+    return [`now ${page.short(slice.own)}${unit}`, way("down", found.down), way("up", found.up)];
+  };
+
+  const limitsOf = (name) => {
+    const known = page.front.constraints.filter((it) => it.of === name || (it.column && it.column.name === name));
+    return known.flatMap((it) => [it.min, it.above, it.max, it.below]).filter((it) => it !== null && it !== undefined);
+  };
+
+  const valuesOf = (line) => line.values.map((it) => (it === null ? NaN : it));
+
+  // What differs in its last digits only is the same everywhere, and so is what has no value anywhere: told in words.
+  const isSame = (line) => {
+    const [least, most] = d3.extent(valuesOf(line).filter(Number.isFinite));
+    return least === undefined || most - least <= 1e-9 * Math.max(Math.abs(least), Math.abs(most));
+  };
+  const sameText = (slice, columns) => {
+    const told = slice.lines.map((line, i) => [columns[i], line]).filter(([, line]) => isSame(line));
+    if (!told.length) return [];
+    const each = ([column, line]) => {
+      const value = valuesOf(line).find(Number.isFinite);
+      return value === undefined ? `${column.name} has no value` : `${column.name} ${page.short(value)}${column.unit ? ` ${page.unit(column.unit)}` : ""}`;
+    };
+    return [`leaves unchanged ${told.map(each).join(", ")}`];
+  };
+
+  const chart = (slice, column, line) => {
+    const values = valuesOf(line);
+    const limits = limitsOf(column.name);
+    const finite = values.filter(Number.isFinite);
+    const [least, most] = d3.extent(finite);
+    const [low, high] = d3.extent([...finite, ...limits.filter((it) => it >= least - (most - least) && it <= most + (most - least))]);
+    const x = d3.scaleLinear([slice.at[0], slice.at[slice.at.length - 1]], [PAD.left, WIDTH - PAD.right]);
+    const y = d3.scaleLinear(low === high ? [low - (Math.abs(low) || 1) * 0.1, high + (Math.abs(high) || 1) * 0.1] : [low, high], [HEIGHT - PAD.bottom, PAD.top]).nice(3);
+    const svg = d3.create("svg").attr("class", "slice").attr("viewBox", `0 0 ${WIDTH} ${HEIGHT}`).attr("width", WIDTH).attr("height", HEIGHT).attr("role", "img");
+    svg.attr("aria-label", `${column.name} over ${slice.input}: ${page.short(finite[0])} to ${page.short(finite[finite.length - 1])}`);
+    svg.append("g").attr("class", "tick-axis").attr("transform", `translate(0,${HEIGHT - PAD.bottom})`).call(d3.axisBottom(x).ticks(3).tickSizeOuter(0).tickSize(3).tickFormat(page.tick(x, 3)));
+    svg.append("g").attr("class", "tick-axis").attr("transform", `translate(${PAD.left},0)`).call(d3.axisLeft(y).ticks(3).tickSizeOuter(0).tickSize(3).tickFormat(page.tick(y, 3)));
+    // Where the design would be infeasible.
+    const half = (i) => (i < 0 ? slice.at[0] : i >= slice.at.length - 1 ? slice.at[slice.at.length - 1] : (slice.at[i] + slice.at[i + 1]) / 2);
+    slice.feasible.forEach((is, i) => is || svg.append("rect").attr("class", "no-go").attr("x", x(half(i - 1))).attr("width", Math.max(0, x(half(i)) - x(half(i - 1)))).attr("y", PAD.top).attr("height", HEIGHT - PAD.top - PAD.bottom));
+    for (const limit of limits) if (limit >= y.domain()[0] && limit <= y.domain()[1]) svg.append("path").attr("class", "limit").attr("d", `M${PAD.left},${y(limit)}H${WIDTH - PAD.right}`);
+    const path = d3.line((_, i) => x(slice.at[i]), (value) => y(value)).defined(Number.isFinite);
+    if (slice.at.length === 1) svg.append("circle").attr("class", "own").attr("r", 3).attr("cx", x(slice.at[0])).attr("cy", y(values[0]));
+    else svg.append("path").attr("class", "slice-line").attr("d", path(values));
+    // Where another scenario becomes the worst.
+    line.scenarios.forEach((scenario, i) => {
+      if (i > 0 && scenario !== null && line.scenarios[i - 1] !== null && scenario !== line.scenarios[i - 1] && Number.isFinite(values[i])) {
+        svg.append("path").attr("class", "switch").attr("d", `M${x(half(i - 1))},${y((values[i] + values[i - 1]) / 2) - 5}v10`).append("title").text(`from here on the worst scenario is #${scenario}`);
+      }
+    });
+    const here = slice.at.indexOf(slice.own);
+    if (Number.isFinite(values[here])) svg.append("circle").attr("class", "own").attr("r", 3.5).attr("cx", x(slice.own)).attr("cy", y(values[here]));
+    return svg.node();
+  };
+
+  page.drawSlices = (box, { columns, slices }) => {
+    const caption = (column) => page.element("figcaption", { title: column.doc }, page.breakable(column.name), column.unit ? page.element("span", { class: "unit" }, ` ${page.unit(column.unit)}`) : null);
+    const cell = (slice, column, line) => (isSame(line) ? null : page.element("figure", { class: "slice-cell" }, caption(column), chart(slice, column, line)));
+    const text = (slice) => [reachText(slice, columns), sameText(slice, columns)].flat().map((line) => page.element("div", { class: "unit" }, line));
+    const row = (slice) => page.element("div", { class: "slice-row" }, page.element("div", { class: "slice-head" }, page.element("h3", {}, page.breakable(slice.input)), text(slice)), page.element("div", { class: "slice-cells" }, slice.lines.map((line, i) => cell(slice, columns[i], line))));
+    box.replaceChildren(page.element("div", { class: "slices", "data-testid": "slices" }, slices.map(row)), page.element("p", { class: "hint" }, "Dot: this design. Dashed: a limit. Shaded: infeasible. A tick on a line: another scenario becomes the worst."));
+  };
+
+  // The page of a result holds those of the knee only.
+  page.startKneeSlices = () => {
+    const { around } = page.data;
+    if (!around) return;
+    const section = page.byId("around");
+    section.hidden = false;
+    const others = page.element("p", { class: "hint", "data-testid": "around-note" }, "This page holds the slices of the knee only; ", page.element("code", {}, "beltspace explore"), " draws them for every design.");
+    const title = page.element("h2", { id: "around-title" }, `Around design ${around.design} (knee)`);
+    if (around.left_out) return section.replaceChildren(title, page.element("p", { class: "hint", "data-testid": "around-note" }, "Slices around the knee take too long to compute for this page; ", page.element("code", {}, "beltspace explore"), " draws them."));
+    const box = page.element("div", { class: "around-box" });
+    section.replaceChildren(title, others, box);
+    page.drawSlices(box, around);
+  };
+}

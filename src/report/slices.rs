@@ -1,0 +1,69 @@
+//! What is around a design, for a page: the values of objectives and constraints along each input that is chosen, all else as it is.
+//!
+//! The page of a study in work asks for it design by design. The page of a result holds it for the knee only, within bounds that hold on
+//! every machine, so that its bytes do too.
+
+use crate::certify::{self, Column, Role};
+use crate::error::Result;
+use crate::live::around::{PLACES, Slice, around, sliced};
+use crate::models::Effort;
+use crate::plan::Plan;
+use crate::screen::Control;
+use crate::study::number;
+use serde_json::{Value, json};
+
+/// Seconds of a thread that the slices of a result's page may take, by the model's own figures.
+const MOST_SECONDS: f64 = 2.0;
+/// Numbers that they may have; each has about 25 bytes with its scenario.
+const MOST_NUMBERS: u64 = 20_000;
+/// Places along an input, of which the page of a result takes the most that are within these bounds.
+const GRAINS: [u64; 4] = [PLACES, 17, 9, 5];
+
+/// Slices as the page draws them.
+pub fn told(plan: &Plan, columns: &[Column], slices: &[Slice]) -> Value {
+    let study = &plan.study;
+    let judged = || columns.iter().enumerate().filter(|(_, column)| column.role != Role::Report);
+    let named = judged().map(|(_, it)| json!({ "name": it.name, "unit": it.unit(study), "doc": it.doc(study) }));
+    let slices = slices.iter().map(|slice| {
+        let input = &study.model.inputs[slice.input];
+        let lines = judged().map(|(at, _)| {
+            let of = |it: Option<f64>| it.filter(|it| it.is_finite()).map(number);
+            let values = slice.rows.iter().map(|row| of(row.columns[at].value).unwrap_or(Value::Null));
+            let scenarios = slice.rows.iter().map(|row| row.columns[at].value.map(|_| row.columns[at].scenario));
+            json!({ "values": values.collect::<Vec<_>>(), "scenarios": scenarios.collect::<Vec<_>>() })
+        });
+        let status = |row: &certify::Row| (row.without_result > 0).then(|| row.status.reason(&study.model).to_owned());
+        json!({
+            "input": input.name, "unit": input.unit.symbol, "own": number(slice.own), "integer": input.integer,
+            "at": slice.values.iter().map(|&it| number(it)).collect::<Vec<_>>(),
+            "feasible": slice.rows.iter().map(|row| row.feasible).collect::<Vec<_>>(),
+            "status": slice.rows.iter().map(status).collect::<Vec<_>>(), "lines": lines.collect::<Vec<_>>(),
+        })
+    });
+    json!({ "columns": named.collect::<Vec<_>>(), "slices": slices.collect::<Vec<_>>() })
+}
+
+/// The slices around the knee of a result, or why there are none; `null` if no input has a slice.
+///
+/// # Errors
+/// [`Error::Stopped`](crate::error::Error::Stopped) after `control.stop`.
+pub fn of_knee(plan: &Plan, knee: u64, threads: usize, control: &Control) -> Result<Value> {
+    let axes = sliced(plan, &plan.space.inputs(knee, 0)).len() as u64;
+    if axes == 0 {
+        return Ok(Value::Null);
+    }
+    let columns = certify::columns(&plan.study);
+    let judged = columns.iter().filter(|it| it.role != Role::Report).count() as u64;
+    let Effort { prepare, finish } = plan.effort();
+    let designs = |places: u64| axes * (places + 1);
+    #[allow(clippy::cast_precision_loss, reason = "an estimate")]
+    let fits = |&places: &u64| (prepare + finish) * designs(places) as f64 <= MOST_SECONDS && designs(places) * judged <= MOST_NUMBERS;
+    let is_proven = columns.iter().any(|it| plan.study.is_proven(it.quantity));
+    let Some(places) = GRAINS.into_iter().find(fits).filter(|_| !is_proven) else {
+        return Ok(json!({ "design": knee.to_string(), "left_out": true }));
+    };
+    let (columns, slices) = around(plan, knee, places, threads, control)?;
+    let mut told = told(plan, &columns, &slices);
+    told["design"] = knee.to_string().into();
+    Ok(told)
+}

@@ -1,0 +1,87 @@
+//! The page of a result on paper: Chromium's PDF, read again by poppler-utils.
+
+use crate::browser::Browser;
+use crate::report_page::Swept;
+use base64::Engine;
+use serde_json::json;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Prints the page to a file on A4.
+fn printed(browser: &mut Browser, file: &Path) {
+    let size = json!({ "printBackground": true, "paperWidth": 8.27, "paperHeight": 11.69 });
+    let answer = browser.call("Page.printToPDF", &size);
+    let text = answer["data"].as_str().expect("it is text");
+    std::fs::write(file, base64::engine::general_purpose::STANDARD.decode(text).expect("it is base64")).expect("it can be written");
+}
+
+fn read_by(program: &str, words: &[&str]) -> String {
+    let output = Command::new(program).args(words).output().expect("poppler-utils are there");
+    assert!(output.status.success(), "{program}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+/// How far down each page has ink, from 0 to 1.
+fn filled(file: &Path) -> Vec<f64> {
+    let folder = tempfile::tempdir().expect("there is room");
+    let base = folder.path().join("page");
+    read_by("pdftoppm", &["-r", "40", "-gray", file.to_str().expect("a path of characters"), base.to_str().expect("a path of characters")]);
+    let mut pages: Vec<PathBuf> = std::fs::read_dir(folder.path()).expect("a folder").map(|it| it.expect("a file").path()).collect();
+    pages.sort();
+    pages.iter().map(|page| inked(&std::fs::read(page).expect("a picture"))).collect()
+}
+
+/// The lowest row of a PGM with a pixel that is not white, over its height.
+fn inked(pgm: &[u8]) -> f64 {
+    let head: Vec<&[u8]> = pgm.splitn(4, |it| it.is_ascii_whitespace()).take(3).collect();
+    let number = |at: usize| std::str::from_utf8(head[at]).expect("a number").parse::<usize>().expect("a number");
+    let (width, height) = (number(1), number(2));
+    let pixels = &pgm[pgm.len() - width * height..];
+    let last = pixels.chunks(width).rposition(|row| row.iter().any(|&it| it < 200)).unwrap_or(0);
+    last as f64 / height as f64
+}
+
+#[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored report_page --test-threads 1"]
+fn the_page_is_printed_without_broken_numbers_and_half_empty_pages() {
+    let swept = Swept::shipped("metal-cvt");
+    let mut browser = Browser::open(&swept.page(), "");
+    let file = swept.folder.path().join("page.pdf");
+    printed(&mut browser, &file);
+    let of_page =
+        |page: &str| read_by("pdftotext", &["-layout", "-f", page, "-l", page, file.to_str().expect("a path of characters"), "-"]);
+    // The question stands on the first page, with the front below it.
+    let first = of_page("1");
+    assert!(first.contains("Push belt for 150 N m") && first.contains("must hold") && first.contains("in every scenario of"), "{first}");
+    assert!(first.contains("Pareto front"), "{first}");
+    let whole = read_by("pdftotext", &["-layout", file.to_str().expect("a path of characters"), "-"]);
+    // Indices and values of the designs that are listed are whole.
+    for row in swept.front().iter().take(30) {
+        let index = &row["design_index"];
+        assert!(whole.split_whitespace().any(|it| it == index), "{index} is broken");
+    }
+    assert!(whole.contains("Around design") && whole.contains("clamping_force_N = "), "{whole}");
+    let filled = filled(&file);
+    eprintln!("{} pages, filled to {filled:.2?}", filled.len());
+    assert!((3..=8).contains(&filled.len()), "{filled:?}");
+    assert!(filled[..filled.len() - 1].iter().all(|&it| it > 0.6), "{filled:?}");
+    // The data sheet of a design is what its card says, drawing included.
+    browser.evaluate("beltspace.openCard(beltspace.page.front.knee)");
+    browser.evaluate("document.body.classList.add('sheet')");
+    printed(&mut browser, &file);
+    let sheet = read_by("pdftotext", &["-layout", file.to_str().expect("a path of characters"), "-"]);
+    for part in ["Drawn to scale", "156 mm", "groove 28.4°", "Outputs at their worst scenario", "Margins"] {
+        assert!(sheet.contains(part), "no {part}: {sheet}");
+    }
+    assert!(!sheet.contains("Pareto front"), "{sheet}");
+    assert_eq!(browser.complaints, Vec::<String>::new());
+}
+
+#[test]
+fn ink_is_found_where_it_is() {
+    let mut page = b"P5\n4 10\n255\n".to_vec();
+    page.extend([255; 40]);
+    let begin = page.len() - 40;
+    page[begin + 4 * 7 + 2] = 0;
+    assert_eq!(inked(&page), 0.7);
+}

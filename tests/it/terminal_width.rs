@@ -1,0 +1,94 @@
+//! What commands print in a terminal of 80 columns: no line of a table or a sentence is wider. `script` (Debian: bsdutils) makes the
+//! terminal.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+const WIDTH: usize = 80;
+
+/// What a command prints on a terminal, without colours, progress and what it says of paths.
+fn in_terminal(folder: &Path, columns: usize, words: &str) -> String {
+    let program = env!("CARGO_BIN_EXE_beltspace");
+    let line = format!("stty cols {columns} && '{program}' {words} 2> errors");
+    let output = Command::new("script").args(["-qec", &line, "/dev/null"]).current_dir(folder).output().expect("script is there");
+    let errors = fs::read_to_string(folder.join("errors")).expect("a file");
+    assert!(output.status.success(), "{words}: {} {errors}", String::from_utf8_lossy(&output.stdout));
+    console::strip_ansi_codes(&String::from_utf8(output.stdout).expect("text")).replace('\r', "")
+}
+
+/// Lines that are wider than the terminal, but for those that hold a word that is too wide itself, as a path may be.
+fn too_wide(text: &str) -> Vec<String> {
+    let wide = text.lines().filter(|line| console::measure_text_width(line) > WIDTH);
+    wide.filter(|line| line.split_whitespace().all(|word| word.len() < WIDTH - 10)).map(str::to_owned).collect()
+}
+
+const STUDY: &str = r#"model = "metal-cvt"
+title = "A push belt with a title that is longer than a terminal is wide, so that it has to be broken between its words"
+[design]
+groove_angle_deg = { from = 18, to = 30, count = 7 }
+band_count = { from = 6, to = 14 }
+[operation]
+ratio = { from = 0.5, to = 2.0, count = 9, spacing = "log" }
+torque_Nm = [50, 150]
+[fixed]
+strength_MPa = 800
+[formulas]
+clamping_force_N = "1.4 * torque_Nm * (1 + ratio) / (2 * 47.9[mm]) * cos(groove_angle_deg / 2) / (2 * 0.08)"
+[constraints]
+clamping_utilisation = { max = 0.909 }
+driver_axial_force_upper_N = { max = 75000 }
+[objectives]
+driver_axial_force_upper_N = "min"
+driven_axial_force_upper_N = "min"
+stress_margin = "max"
+torque_coefficient_N_per_mm = "max"
+band_count = "min"
+"#;
+
+#[test]
+#[ignore = "needs a terminal: cargo test --test it -- --ignored terminal_width"]
+fn nothing_is_wider_than_the_terminal() {
+    let folder = tempfile::tempdir().expect("there is room");
+    let folder = folder.path();
+    fs::write(folder.join("study.toml"), STUDY).expect("it can be written");
+    let commands = [
+        "sweep study.toml --out r",
+        "check study.toml",
+        "eval study.toml --design 3",
+        "eval metal-cvt",
+        "eval pulley-load",
+        "models",
+        "models metal-cvt",
+        "models rubber-cvt",
+        "models timing-belt",
+        "models flat-belt",
+        "adapters",
+        "sensitivity study.toml --over design --out s",
+        "reproduce --out papers",
+        "sweep study.toml --shard 1/2 --out a",
+        "sweep study.toml --shard 2/2 --out b",
+        "merge a b --out ab",
+    ];
+    let verify = if in_terminal(folder, WIDTH, "adapters").contains("passed") { &["verify metal-cvt --samples 2000"][..] } else { &[] };
+    if verify.is_empty() {
+        eprintln!("verify: NOT RUN, there is no adapter");
+    }
+    for words in commands.iter().chain(verify) {
+        let text = in_terminal(folder, WIDTH, words);
+        assert!(text.lines().count() >= 2, "{words}: {text}");
+        assert_eq!(too_wide(&text), Vec::<String>::new(), "{words}");
+    }
+    // In a wide terminal nothing is broken, and a pipe gets what it always got.
+    let wide = in_terminal(folder, 400, "eval metal-cvt");
+    assert!(!too_wide(&wide).is_empty(), "a line that is too wide would go unseen");
+    let piped = Command::new(env!("CARGO_BIN_EXE_beltspace")).args(["eval", "metal-cvt"]).output().expect("it runs").stdout;
+    assert_eq!(wide.trim_end(), String::from_utf8(piped).expect("text").trim_end());
+    // No word is lost where lines are broken.
+    let words = |text: &str| {
+        let mut words: Vec<String> = text.split_whitespace().map(str::to_owned).collect();
+        words.sort_unstable();
+        words
+    };
+    assert_eq!(words(&in_terminal(folder, WIDTH, "eval metal-cvt")), words(&wide));
+}
