@@ -21,6 +21,8 @@ mod equations;
 mod every_function;
 /// The page of `beltspace explore`, in a browser.
 mod explore_page;
+/// The same: weights, trade-offs, what explains the feasible designs.
+mod explore_page_choose;
 /// What a result says besides its numbers, by brute force.
 mod findings;
 /// Studies with formulas, by brute force.
@@ -55,6 +57,8 @@ mod random;
 mod readme;
 /// The page of a result, in a browser.
 mod report_page;
+/// The same: weights, trade-offs, what explains the feasible designs, other results.
+mod report_page_choose;
 /// Independent second implementations of the models, and printed golden values.
 mod second;
 /// Which input matters: shares of the variance.

@@ -17,39 +17,47 @@ fn beltspace(words: &[&str]) -> String {
 }
 
 /// The page of a study of its own.
-struct Swept {
+pub struct Swept {
     folder: TempDir,
 }
 
 impl Swept {
-    fn shipped(name: &str) -> Self {
+    pub fn shipped(name: &str) -> Self {
         Self::of(&format!("studies/{name}.toml"))
     }
 
-    fn text(study: &str) -> Self {
+    pub fn text(study: &str) -> Self {
         let folder = tempfile::tempdir().expect("there is room");
         let file = folder.path().join("study.toml");
         std::fs::write(&file, study).expect("it can be written");
         Self::of(file.to_str().expect("a path of characters"))
     }
 
-    fn of(study: &str) -> Self {
+    pub fn of(study: &str) -> Self {
         let folder = tempfile::tempdir().expect("there is room");
         beltspace(&["sweep", study, "--out", folder.path().join("r").to_str().expect("a path of characters"), "--quiet"]);
         Self { folder }
     }
 
-    fn page(&self) -> PathBuf {
-        self.folder.path().join("r/report.html")
+    pub fn page(&self) -> PathBuf {
+        self.file("report.html")
     }
 
-    fn front(&self) -> Vec<BTreeMap<String, String>> {
-        let mut reader = csv::Reader::from_path(self.folder.path().join("r/front.csv")).expect("there is a front");
+    pub fn file(&self, name: &str) -> PathBuf {
+        self.folder.path().join("r").join(name)
+    }
+
+    pub fn front(&self) -> Vec<BTreeMap<String, String>> {
+        self.table("front.csv")
+    }
+
+    pub fn table(&self, name: &str) -> Vec<BTreeMap<String, String>> {
+        let mut reader = csv::Reader::from_path(self.file(name)).expect("there is such a table");
         reader.deserialize().map(|row| row.expect("rows are complete")).collect()
     }
 }
 
-fn number(text: &str) -> f64 {
+pub fn number(text: &str) -> f64 {
     text.parse().expect("it is a number")
 }
 

@@ -14,6 +14,7 @@
       page.applySelection();
       page.startBar();
       page.startPins();
+      page.startOthers();
       page.startMatrix();
       page.startStrip();
       page.startReadout();
@@ -27,6 +28,7 @@
       page.startTable();
       page.startCard();
     }
+    page.startWeigh();
     page.startAddress();
     page.startLists();
     page.startHistograms();
@@ -34,6 +36,7 @@
     page.startFigures();
     page.startStudy();
     await page.startMaps();
+    page.showExplained();
     if (row !== null) page.openCard(row);
     page.timings.complete = performance.now();
   };
