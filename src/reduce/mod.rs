@@ -61,7 +61,6 @@ impl Reduction {
     }
 
     /// The same with a sample of the feasible designs.
-    #[cfg(feature = "cli")]
     pub(crate) fn of_front_and_sample(plan: &Plan, count: usize) -> Self {
         let reported = Reported { samples: vec![FeasibleSample::new(count, 0)], ..Reported::default() };
         Self { reported, ..Self::of_front(plan) }

@@ -57,8 +57,10 @@ mod random;
 mod readme;
 /// The page of a result, in a browser.
 mod report_page;
-/// The same: weights, trade-offs, what explains the feasible designs, other results.
+/// The same: weights, trade-offs, what explains the feasible designs.
 mod report_page_choose;
+/// The same: other results over it.
+mod report_page_others;
 /// Independent second implementations of the models, and printed golden values.
 mod second;
 /// Which input matters: shares of the variance.

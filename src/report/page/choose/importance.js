@@ -1,7 +1,7 @@
 // Which design axis explains how much of a quantity over the feasible designs: first-order shares of the variance, from a sample.
 //
 // The share of an axis is that of the variance between its levels, corrected for what so many levels would explain by chance (Kelley's
-// epsilon squared): 1 - (n - 1) / (n - levels) * (within / all). Neighbouring levels are put together until each has ten designs.
+// epsilon squared): 1 - (n - 1) / (n - levels) * (within / all). Where a level has fewer than ten designs in the mean, neighbouring ones are put together.
 {
   const RESAMPLES = 200;
   const SEED = 22;
@@ -18,7 +18,7 @@
     const levels = [...counts.keys()].sort((a, b) => a - b);
     if (levels.length < 2) return null;
     const few = values.length / levels.length < EACH;
-    if (few && !ordered) return { count: 0, of: null, levels: levels.length };
+    if (few && !ordered) return { count: 0, filled: 0, of: null, levels: levels.length };
     const groupOf = new Map();
     let count = 0;
     let filled = 0;
@@ -27,10 +27,10 @@
       groupOf.set(level, count);
       filled += counts.get(level);
       // Counted from the start, so that what one group has too much the next has less.
-      if (filled >= wanted * (count + 1)) count++;
+      if (filled >= wanted * (count + 1)) count = few ? Math.floor(filled / wanted) : count + 1;
     }
     const of = Uint32Array.from(values, (value) => groupOf.get(value));
-    return { count: d3.max(of) + 1, of, levels: levels.length };
+    return { count: d3.max(of) + 1, filled: new Set(of).size, of, levels: levels.length };
   };
 
   // The share of one axis; `times` says how often each design counts.
@@ -84,7 +84,7 @@
     }
     const half = (column, axis) => 1.96 * (d3.deviation(drawn, (round) => round[column][axis]) ?? 0);
     return {
-      axes: axes.map(({ name, of, groups }) => ({ name, of, levels: groups.levels, groups: groups.count })),
+      axes: axes.map(({ name, of, groups }) => ({ name, of, levels: groups.levels, groups: groups.filled })),
       columns: columns.map(({ name, unit }, c) => ({ name, unit, shares: shares[c].map((share, a) => ({ share, half: half(c, a) })) })).filter(({ shares: own }) => own.some(({ share }) => !Number.isNaN(share))),
       resamples: RESAMPLES,
       seed: SEED,

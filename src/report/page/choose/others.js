@@ -11,7 +11,8 @@
     cross: (r) => d3.range(-r, r + 1).flatMap((i) => [[i, i], [i, -i], [i + 1, i], [i + 1, -i]]),
     diamond: (r) => d3.range(-r, r + 1).flatMap((i) => [[i, r - Math.abs(i)], [i, Math.abs(i) - r], [i + 1, r - Math.abs(i)], [i + 1, Math.abs(i) - r]]),
   };
-  page.otherMark = ({ kind, rows }, ratio) => (rows > 20000 ? page.disc(0.7) : outlines[kind](Math.round((rows > 3000 ? 2 : 3) * ratio)).map(([dx, dy]) => ({ dx, dy, cover: 256 })));
+  const thick = (spots, ratio) => (ratio > 1.4 ? spots.flatMap(([dx, dy]) => [[dx, dy], [dx + 1, dy], [dx, dy + 1]]) : spots);
+  page.otherMark = ({ kind, rows }, ratio) => (rows > 20000 ? page.disc(0.7) : thick(outlines[kind](Math.round((rows > 3000 ? 2 : 3) * ratio)), ratio).map(([dx, dy]) => ({ dx, dy, cover: 256 })));
   page.otherColour = ({ kind }) => page.variable(`--other-${kind}`);
 
   const swatch = (kind) => {

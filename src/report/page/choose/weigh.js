@@ -4,6 +4,7 @@
   let kind = "near";
   let controls = []; // { sync }
   let run = 0;
+  let wasWeighed = false;
 
   const number = (value, column) => page.element("td", { class: "number", title: page.full(value, column.type) }, page.short(value));
 
@@ -120,8 +121,13 @@
     page.byId("clear-weights").disabled = !page.isWeighed();
     const mine = ++run;
     clearTimeout(waiting);
-    if (!page.isWeighed()) return plain();
-    page.byId("weigh").querySelector("details").open = true;
+    if (!page.isWeighed()) {
+      wasWeighed = false;
+      return plain();
+    }
+    // Somebody may close it again.
+    if (!wasWeighed) page.byId("weigh").querySelector("details").open = true;
+    wasWeighed = true;
     show(null);
     waiting = setTimeout(async () => {
       const stable = await page.stability(kind, () => mine !== run);
