@@ -44,7 +44,7 @@ const PAGE_CELL: u64 = 190;
 const PAGE_ROW: u64 = 1_050;
 const PAGE_OUTPUT: u64 = 50;
 const PAGE_VARIANT: u64 = 1_400;
-/// Bytes of an objective of a design that is a dot on the page: packed, and as text.
+/// Bytes of a column or an axis of a design that is a dot on the page: packed, and as text.
 const DOT: u64 = 24;
 /// Bytes of a combination of inputs whose sensitivity is looked at.
 const COMPARED: u64 = 1_500;
@@ -99,6 +99,8 @@ struct StudySizes {
     row: u64,
     outputs: u64,
     objectives: u64,
+    /// Columns and axes of a design that is a dot.
+    dotted: u64,
 }
 
 impl StudySizes {
@@ -129,6 +131,7 @@ impl StudySizes {
             row: ROW + study.labels.len() as u64 * ROW_LABEL + certify::columns(study).iter().map(bytes_of).sum::<u64>(),
             outputs: study.model.outputs.len() as u64,
             objectives: study.objectives.len() as u64,
+            dotted: (certify::columns(study).len() + study.design.len()) as u64,
         }
     }
 }
@@ -169,7 +172,7 @@ impl Needs {
             times(front.min(MOST_ON_PAGE as u64), PAGE_ROW + PAGE_OUTPUT * sizes.outputs),
             times(sizes.variants, PAGE_VARIANT),
             times(sizes.shown, PAGE_CELL),
-            times(sizes.dots, DOT * sizes.objectives),
+            times(sizes.dots, DOT * sizes.dotted),
         ];
         let page = if page { sum(&[state, PAGE, sum(&on_page)]) } else { 0 };
         let merged = sum(&[shard, times(sizes.cells, CELL)]);

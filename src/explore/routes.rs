@@ -151,7 +151,7 @@ impl Explorer {
                 LiveAnswer::Few(found) => ("few", told::front(&found)),
                 LiveAnswer::Exact(found) => ("exact", told::front(&found)),
                 LiveAnswer::Certified(found) => ("certified", told::front(&found)),
-                LiveAnswer::Counted(counted) => ("counted", (told::counted(&plan, &counted), Vec::new())),
+                LiveAnswer::Counted(counted) => ("counted", told::counted(&plan, &counted)),
             };
             json["kind"] = kind.into();
             // It comes with the first step.

@@ -181,6 +181,13 @@ fn a_change_is_answered_and_what_cannot_be_is_told() {
     let study = parts[0]["study"]["study"]["text"].as_str().expect("the first part has the study").to_owned();
     assert!(study.contains("friction = 0.09") && study.contains("max = 50000"), "{study}");
     assert!(parts.iter().any(|it| it["kind"] == "certified"));
+    let counted = parts.last().expect("it is the last");
+    let sample = &counted["sample"];
+    assert_eq!(sample["rows"].as_u64(), counted["feasible"].as_u64().map(|it| it.min(2000)), "{sample}");
+    assert!(
+        sample["columns"].as_array().is_some_and(|it| it.len() >= 2) && sample["axes"].as_array().is_some_and(|it| it.len() == 2),
+        "{sample}"
+    );
     for (set, told) in [
         ("friction=-1", "out of range"),
         ("nothing.at.all=1", "begin with one of design"),

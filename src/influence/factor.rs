@@ -3,16 +3,11 @@
 use crate::models::{Model, Range};
 use crate::probability::{Distribution, Effect, ProbabilityProblem};
 use crate::sample::value_at;
-use crate::study::{Axis, Levels, UncertainInput};
+use crate::study::{Axis, Levels, TOGETHER, UncertainInput};
 use crate::table::written;
-
-/// What stands between the values of inputs that vary together.
-pub(super) const TOGETHER: &str = " + ";
 
 /// A tornado and walks go from this probability to as much below 1.
 const TAIL: f64 = 0.05;
-/// Inputs of a joint axis that its name lists.
-const NAMED: usize = 3;
 
 /// Inputs that vary as one: an axis, or an input with a distribution.
 #[derive(Clone, Debug)]
@@ -50,12 +45,7 @@ pub(super) struct FactorPlace {
 impl InputFactor {
     /// Of an axis of more than one level.
     pub(super) fn of_axis(axis: &Axis, model: &Model) -> Self {
-        let names: Vec<&str> = axis.inputs().iter().map(|&input| model.inputs[input].name.as_str()).collect();
-        let mut name = names.iter().take(NAMED).copied().collect::<Vec<_>>().join(TOGETHER);
-        if names.len() > NAMED {
-            name.push_str(&format!(" + {} more", names.len() - NAMED));
-        }
-        Self { name, kind: FactorKind::Levels { axis: axis.clone(), order: order_of(axis, model) } }
+        Self { name: axis.name(model), kind: FactorKind::Levels { axis: axis.clone(), order: order_of(axis, model) } }
     }
 
     /// Of an input with a distribution, whose value would be `nominal` without it.

@@ -1,11 +1,10 @@
 //! What was found: shares of the variance, effects, a tornado.
 
-use super::factor::TOGETHER;
 use super::subject::{InfluenceSubject, QuantityAsked};
 use crate::error::Result;
 use crate::probability::{Replicated, replicated};
 use crate::sensitivity::Effects;
-use crate::study::InfluenceOver;
+use crate::study::{InfluenceOver, TOGETHER};
 use crate::table::short;
 
 /// Standard errors on either side of an estimate that hold the truth with 95 %, if its error comes from 16 replicates: the 0.975 quantile

@@ -12,7 +12,7 @@ pub mod table;
 mod tests;
 
 use crate::bounds::refusal;
-use crate::certify::{Column, Row};
+use crate::certify::{self, Column, Row};
 use crate::error::{Error, Result};
 use crate::findings::Findings;
 use crate::models::Models;
@@ -39,6 +39,8 @@ const FEW: u64 = 2000;
 const PAUSE: Duration = Duration::from_millis(250);
 /// Seconds that counting feasible designs may take; beyond, the sample alone is told.
 const COUNTED: f64 = 60.0;
+/// Feasible designs of the sample that is told with their number.
+const SAMPLED: usize = 2000;
 /// Seconds that judging every design may take before bounds are thought of.
 const LONG: f64 = 1.0;
 
@@ -91,6 +93,8 @@ pub struct LiveFront<'a> {
 pub struct LiveCounts {
     /// Feasible designs; `None` where counting them would take too long.
     pub feasible: Option<u64>,
+    /// A sample of them, where they were counted: in the columns of the study.
+    pub sample: Vec<Row>,
     /// What the designs of the sample fail at.
     pub tally: Tally,
     /// What else a person should know.
@@ -244,9 +248,10 @@ impl Live {
         #[allow(clippy::cast_precision_loss, reason = "an estimate")]
         let expected = plan.seconds_per_design() * plan.designs() as f64 / self.threads as f64;
         let mut feasible = front.is_empty().then_some(0);
+        let mut sample = Vec::new();
         if feasible.is_none() && expected < COUNTED {
             let settings = Settings { threads: self.threads, ..Settings::default() };
-            let state = sweep(plan, &tables, &Reduction::of_front(plan), &settings, None, control)?.state;
+            let state = sweep(plan, &tables, &Reduction::of_front_and_sample(plan, SAMPLED), &settings, None, control)?.state;
             let mut told: Vec<u64> = front.iter().map(|row| row.index).collect();
             let mut found = state.front.indices;
             told.sort_unstable();
@@ -256,9 +261,11 @@ impl Live {
                 return Err(Error::Disagreement(problem));
             }
             feasible = Some(state.feasible);
+            let designs = state.reported.samples.iter().flat_map(crate::reduce::FeasibleSample::indices).collect::<Vec<_>>();
+            sample = certify::rows(plan, &certify::columns(&plan.study), &designs, self.threads, control)?;
         }
         let findings = Findings::of(plan, feasible.unwrap_or(1), front, self.threads, control)?;
-        tell(LiveAnswer::Counted(Box::new(LiveCounts { feasible, tally, findings })))
+        tell(LiveAnswer::Counted(Box::new(LiveCounts { feasible, sample, tally, findings })))
     }
 }
 

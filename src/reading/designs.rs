@@ -1,11 +1,9 @@
 //! Reads a result's tables of designs and checks that they are as this program writes them: the columns, and in every row the design, its
 //! inputs and that numbers are numbers.
 
-use super::packed::{Packed, packed};
 use super::{changed, table_reader, unreadable};
 use crate::certify::{self, Column};
 use crate::error::Result;
-use crate::names::MOST_DOTS;
 use crate::plan::Plan;
 use crate::study::{Axis, Study};
 use crate::table::written;
@@ -128,38 +126,4 @@ pub fn list(file: &Path, plan: &Plan, most: u64, all: bool) -> Result<Value> {
         list["labels"] = study.labels.iter().map(|it| it.name.as_str()).collect();
     }
     Ok(list)
-}
-
-/// The objectives of designs that are shown as dots: `all` designs, in rising order.
-pub fn dots(file: &Path, plan: &Plan, all: u64) -> Result<Value> {
-    let study = &plan.study;
-    let columns = header(study, &certify::columns(study));
-    let mut reader = table_reader(file)?;
-    check_header(file, reader.headers().map_err(|error| unreadable(file, error))?, &columns)?;
-    let names: Vec<String> = study.objectives.iter().map(|it| it.name(&study.model)).collect();
-    let places: Vec<usize> = names.iter().filter_map(|name| columns.iter().position(|column| column == name)).collect();
-    let taken = all.min(MOST_DOTS);
-    let mut values = vec![Vec::new(); places.len()];
-    let (mut shown, mut seen, mut last) = (0, 0, None);
-    for row in reader.records() {
-        let row = row.map_err(|error| unreadable(file, error))?;
-        let design = check_row(file, &row, plan, &columns)?;
-        if last.is_some_and(|last| last >= design) {
-            return Err(changed(file, &format!("design {design} is not in rising order")));
-        }
-        last = Some(design);
-        if shown < taken && u128::from(seen) == u128::from(shown) * u128::from(all) / u128::from(taken) {
-            shown += 1;
-            for (values, &at) in values.iter_mut().zip(&places) {
-                let value = row[at].parse().ok().filter(|it: &f64| it.is_finite());
-                values.push(value.ok_or_else(|| changed(file, &format!("{} of design {design} is not a number", columns[at])))?);
-            }
-        }
-        seen += 1;
-    }
-    if seen != all {
-        return Err(changed(file, &format!("it has {seen} designs instead of {all}")));
-    }
-    let parts = values.into_iter().map(|values| Packed::F64(values).bytes());
-    Ok(json!({ "names": names, "rows": shown, "of": all, "packed": packed(parts) }))
 }

@@ -3,6 +3,7 @@
 pub mod designs;
 pub mod packed;
 mod picture;
+pub mod sample;
 
 use crate::error::{Error, Result, brief};
 use crate::files::{RESULT_BYTES, ROW_BYTES, ShortLines, open, read_text};

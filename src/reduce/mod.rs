@@ -60,6 +60,12 @@ impl Reduction {
         Self { rules, objectives: plan.objectives.clone(), reported: Reported::default() }
     }
 
+    /// The same with a sample of the feasible designs.
+    pub(crate) fn of_front_and_sample(plan: &Plan, count: usize) -> Self {
+        let reported = Reported { samples: vec![FeasibleSample::new(count, 0)], ..Reported::default() };
+        Self { reported, ..Self::of_front(plan) }
+    }
+
     /// The range of every histogram.
     pub fn histogram_ranges(&self) -> Vec<(f64, f64)> {
         self.reported.histograms.iter().map(|histogram| (histogram.from, histogram.to)).collect()

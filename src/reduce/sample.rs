@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::names::MOST_DOTS;
 use crate::plan::Plan;
 #[cfg(feature = "pictures")]
-use crate::reading::{Folder, designs};
+use crate::reading::{Folder, sample};
 use crate::sample::mix;
 use crate::screen::Block;
 use crate::study::{Report, Study};
@@ -243,9 +243,9 @@ impl Reducer for FeasibleSample {
 
     #[cfg(feature = "pictures")]
     fn page(folder: &Folder<'_>, data: &mut Map<String, Value>) -> Result<()> {
-        let Some(sample) = folder.plan.study.report.sample else { return Ok(()) };
-        let all = folder.feasible.min(sample.count as u64);
-        data.insert("sample".to_owned(), designs::dots(&folder.path.join(FILES[0]), folder.plan, all)?);
+        let Some(asked) = folder.plan.study.report.sample else { return Ok(()) };
+        let all = folder.feasible.min(asked.count as u64);
+        data.insert("sample".to_owned(), sample::read(&folder.path.join(FILES[0]), folder.plan, all)?);
         Ok(())
     }
 

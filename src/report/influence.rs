@@ -18,6 +18,8 @@ pub struct ShownInfluence {
     pub tables: Vec<Value>,
     /// Why there is none although the study asks for it.
     pub none: Value,
+    /// Over what it was looked at, if it was.
+    pub over: Value,
 }
 
 /// Reads what the summary and the pictures of a result say.
@@ -71,7 +73,12 @@ pub fn read(folder: &Path, plan: &Plan, summary: &Value) -> Result<ShownInfluenc
         "id": "sensitivity", "title": "the largest indices", "group": group, "csv": "sensitivity.csv",
         "caption": caption, "columns": columns, "units": null, "rows": rows,
     });
-    Ok(ShownInfluence { figures, tables: if rows.is_empty() { Vec::new() } else { vec![table] }, none: Value::Null })
+    Ok(ShownInfluence {
+        figures,
+        tables: if rows.is_empty() { Vec::new() } else { vec![table] },
+        none: Value::Null,
+        over: spec.over.word().into(),
+    })
 }
 
 /// The names of a quantity's pictures, each with its title, its caption and the file of its numbers.

@@ -7,6 +7,7 @@ use crate::export::ideal_and_knee;
 use crate::live::{Live, LiveCounts, LiveFront};
 use crate::models::OVERFLOW;
 use crate::plan::Plan;
+use crate::reading::sample::ShownSample;
 use crate::study::number;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
@@ -63,9 +64,9 @@ pub fn study(live: &Live, plan: &Plan, text: &str, command: &str, evaluate: &str
     })
 }
 
-/// What every design says.
-pub fn counted(plan: &Plan, counted: &LiveCounts) -> Value {
-    let LiveCounts { feasible, tally, findings } = counted;
+/// What every design says, and the numbers of a sample of the feasible ones.
+pub fn counted(plan: &Plan, counted: &LiveCounts) -> (Value, Vec<u8>) {
+    let LiveCounts { feasible, sample, tally, findings } = counted;
     let study = &plan.study;
     let model = &study.model;
     let mut status: Map<_, Value> = tally.statuses(study).into_iter().map(|(reason, count)| (reason.to_owned(), count.into())).collect();
@@ -75,11 +76,18 @@ pub fn counted(plan: &Plan, counted: &LiveCounts) -> Value {
     let constraints = study.constraints.iter().zip(tally.constraints.iter().zip(&tally.only)).map(|(constraint, (violated, only))| {
         json!({ "of": constraint.name(model), "bounds": constraint.in_words(), "violated": violated, "only": only })
     });
-    json!({
+    let designs: Vec<u64> = sample.iter().map(|row| row.index).collect();
+    let columns = 0..crate::certify::columns(study).len();
+    let values = columns.map(|at| sample.iter().map(|row| row.columns[at].value.unwrap_or(f64::NAN)).collect()).collect();
+    let sample = (!sample.is_empty()).then(|| ShownSample::new(plan, &designs, values, designs.len() as u64));
+    let bytes = sample.iter().flat_map(ShownSample::bytes).flatten().collect();
+    let json = json!({
         "feasible": feasible,
+        "sample": sample.as_ref().map(ShownSample::describe),
         "tally": {
             "sampled": tally.sampled, "feasible": tally.feasible, "status": status, "constraints": constraints.collect::<Vec<_>>(),
         },
         "findings": findings.in_words(study),
-    })
+    });
+    (json, bytes)
 }

@@ -141,6 +141,7 @@ pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
         "figures": figures,
         "tables": influence.tables,
         "sensitivity": influence.none,
+        "sensitivity_over": influence.over,
         "variants": variants(folder, plan)?,
     });
     Reported::page(&Folder { path: folder, plan, feasible }, data.as_object_mut().expect("it is one"))?;

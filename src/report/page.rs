@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 const TEMPLATE: &str = include_str!("page/page.html");
-const STYLE: &str = include_str!("page/style.css");
+const STYLE: &str = concat!(include_str!("page/style.css"), include_str!("page/choose/choose.css"));
 /// D3 (<https://d3js.org>, licence in `page/vendor`): scales, axes, brushes and colours.
 const D3: &str = include_str!("page/vendor/d3.min.js");
 /// In the order of their dependencies.
@@ -15,6 +15,15 @@ const SCRIPTS: &[&str] = &[
     include_str!("page/raster.js"),
     include_str!("page/save.js"),
     include_str!("page/pins.js"),
+    include_str!("page/choose/ranking.js"),
+    include_str!("page/choose/stability.js"),
+    include_str!("page/choose/weigh.js"),
+    include_str!("page/choose/tradeoff.js"),
+    include_str!("page/choose/importance.js"),
+    include_str!("page/choose/explained.js"),
+    include_str!("page/choose/dominance.js"),
+    include_str!("page/choose/other_read.js"),
+    include_str!("page/choose/others.js"),
     include_str!("page/matrix.js"),
     include_str!("page/readout.js"),
     include_str!("page/strip.js"),

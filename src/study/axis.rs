@@ -1,6 +1,12 @@
 //! Axes: the values that inputs take, by index.
 
+use crate::models::Model;
 use serde::{Deserialize, Serialize};
+
+/// What stands between inputs that vary together, and between their values.
+pub(crate) const TOGETHER: &str = " + ";
+/// Inputs of a joint axis that its name lists.
+const NAMED: usize = 3;
 
 /// The levels of one input, computed from their index: an axis of a billion levels takes no memory.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -117,6 +123,13 @@ impl Axis {
             Self::Single { input, .. } => std::slice::from_ref(input),
             Self::Joint { inputs, .. } => inputs,
         }
+    }
+
+    /// The input, or the first inputs of an axis that sets several.
+    pub(crate) fn name(&self, model: &Model) -> String {
+        let names: Vec<&str> = self.inputs().iter().map(|&input| model.inputs[input].name.as_str()).collect();
+        let first = names.iter().take(NAMED).copied().collect::<Vec<_>>().join(TOGETHER);
+        if names.len() > NAMED { format!("{first} + {} more", names.len() - NAMED) } else { first }
     }
 
     /// The value that the axis gives its input number `column` at `index`.

@@ -19,6 +19,7 @@ mod sensitivity;
 mod sensitivity_flaws;
 mod spectrum;
 
+pub(crate) use axis::TOGETHER;
 pub use axis::{Axis, Levels, Method, Sample};
 #[doc(hidden)]
 pub use describe::{differences, number, value_of};

@@ -11,13 +11,13 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// A server that ends with the test.
-struct Explored {
+pub struct Explored {
     process: Child,
-    address: String,
+    pub address: String,
 }
 
 impl Explored {
-    fn new(study: &Path, words: &[&str]) -> Self {
+    pub fn new(study: &Path, words: &[&str]) -> Self {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         let mut process = Command::new(env!("CARGO_BIN_EXE_beltspace"))
             .arg("explore")
@@ -43,14 +43,14 @@ impl Drop for Explored {
     }
 }
 
-fn study_file(text: &str) -> (tempfile::TempDir, PathBuf) {
+pub fn study_file(text: &str) -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().expect("there is room");
     let file = folder.path().join("study.toml");
     std::fs::write(&file, text).expect("it can be written");
     (folder, file)
 }
 
-const SMALL: &str = r#"
+pub const SMALL: &str = r#"
 model = "metal-cvt"
 title = "A small belt"
 [design]
@@ -77,14 +77,14 @@ columns = ["max_stress_MPa"]
 "#;
 
 /// Waits for the exact answer to what was changed, and the frame that shows it.
-fn answered(browser: &mut Browser) {
+pub fn answered(browser: &mut Browser) {
     browser.wait("beltspace.page.isAnswered() && beltspace.timings.answers.length >= (window.wanted || 1)");
 }
 
 /// Starts anew to count answers.
-const COUNT: &str = "(() => { window.wanted = beltspace.timings.answers.length + 1; })()";
+pub const COUNT: &str = "(() => { window.wanted = beltspace.timings.answers.length + 1; })()";
 
-fn open(explored: &Explored) -> Browser {
+pub fn open(explored: &Explored) -> Browser {
     let mut browser = Browser::open_at(&explored.address);
     answered(&mut browser);
     browser
@@ -346,14 +346,14 @@ fn a_billion_designs_answer_coarsely_first() {
 }
 
 /// Rules of axe that it finds broken, with the elements.
-fn broken_rules(browser: &mut Browser, axe: &str) -> Vec<String> {
+pub fn broken_rules(browser: &mut Browser, axe: &str) -> Vec<String> {
     browser.evaluate(&format!("{axe}; 1"));
     let found = browser.evaluate("axe.run(document).then((it) => it.violations.map((v) => `${v.id}: ${v.nodes.map((n) => n.target.join(' ')).join(', ').slice(0, 300)}`))");
     serde_json::from_value(found).expect("texts")
 }
 
 /// The text of axe-core, from npm; `None` where npm cannot install it, which is told.
-fn axe() -> Option<String> {
+pub fn axe() -> Option<String> {
     let folder = tempfile::tempdir().expect("there is room");
     let done = Command::new("npm")
         .args(["install", "--silent", "--no-audit", "--no-fund", "--prefix"])
@@ -368,10 +368,10 @@ fn axe() -> Option<String> {
 }
 
 /// The least contrast of the marks that are drawn on the plots: of every colour of the scale, of points behind and of unselected ones.
-const CONTRAST: &str = "(() => { const light = (c) => { const { r, g, b } = d3.rgb(c); const f = (v) => (v /= 255) <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; \
+pub const CONTRAST: &str = "(() => { const light = (c) => { const { r, g, b } = d3.rgb(c); const f = (v) => (v /= 255) <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; \
      return 0.2126 * f(r) + 0.7152 * f(g) + 0.0722 * f(b); }; const p = beltspace.page; const ground = light(p.variable('--plot')); \
      const ratio = (c) => { const l = light(c); return (Math.max(l, ground) + 0.05) / (Math.min(l, ground) + 0.05); }; \
-     const marks = [...d3.range(0, 1.001, 0.02).map(p.ramp()), ...['--sample', '--ghost', '--faint', '--muted', '--knee', '--ink', '--accent'].map(p.variable)]; \
+     const marks = [...d3.range(0, 1.001, 0.02).map(p.ramp()), ...['--sample', '--ghost', '--faint', '--muted', '--knee', '--ink', '--accent', '--other-square', '--other-cross', '--other-diamond'].map(p.variable)]; \
      return Math.min(...marks.map(ratio)); })()";
 
 #[test]

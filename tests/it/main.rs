@@ -21,6 +21,8 @@ mod equations;
 mod every_function;
 /// The page of `beltspace explore`, in a browser.
 mod explore_page;
+/// The same: weights, trade-offs, what explains the feasible designs.
+mod explore_page_choose;
 /// What a result says besides its numbers, by brute force.
 mod findings;
 /// Studies with formulas, by brute force.
@@ -55,8 +57,12 @@ mod random;
 mod readme;
 /// The page of a result, in a browser.
 mod report_page;
+/// The same: weights, trade-offs, what explains the feasible designs.
+mod report_page_choose;
 /// The drive drawn to scale and the slices of the knee, on that page.
 mod report_page_drawn;
+/// The same: other results over it.
+mod report_page_others;
 /// That page on paper.
 mod report_page_print;
 /// Independent second implementations of the models, and printed golden values.

@@ -40,16 +40,24 @@ impl Swept {
     }
 
     pub fn page(&self) -> PathBuf {
-        self.folder.path().join("r/report.html")
+        self.file("report.html")
+    }
+
+    pub fn file(&self, name: &str) -> PathBuf {
+        self.folder.path().join("r").join(name)
     }
 
     pub fn front(&self) -> Vec<BTreeMap<String, String>> {
-        let mut reader = csv::Reader::from_path(self.folder.path().join("r/front.csv")).expect("there is a front");
+        self.table("front.csv")
+    }
+
+    pub fn table(&self, name: &str) -> Vec<BTreeMap<String, String>> {
+        let mut reader = csv::Reader::from_path(self.file(name)).expect("there is such a table");
         reader.deserialize().map(|row| row.expect("rows are complete")).collect()
     }
 }
 
-fn number(text: &str) -> f64 {
+pub fn number(text: &str) -> f64 {
     text.parse().expect("it is a number")
 }
 

@@ -1,6 +1,7 @@
 // The state of the page, written after "#" in the address, so that a view can be bookmarked or sent to somebody.
 //   c=columns of the matrix   pc=axes in order   inv=reversed axes      col=colour column
 //   p=pinned designs                            s=changes of a live study
+//   w=objective:weight,...   a=objective:wished value,...              wn=weight sets that places are tried with
 //   b=axis:low..high,...      r=x*y:low..high*low..high,...             d=open design   t=light|dark
 {
   const encode = (name) => encodeURIComponent(name).replace(/\*/g, "%2A");
@@ -23,7 +24,12 @@
       if (state.card !== null) add("d", page.designOf(state.card));
     }
     add("t", state.theme);
-    if (page.front) add("p", page.pinsText());
+    if (page.front) {
+      add("p", page.pinsText());
+      add("w", page.weightsText());
+      add("a", page.wishesText());
+      add("wn", page.nearText());
+    }
     if (page.changesText) add("s", page.changesText());
     const hash = parts.length ? `#${parts.join("&")}` : "";
     if (hash === location.hash || hash === written) return;
@@ -42,7 +48,7 @@
     return good ? ends.sort((a, b) => a - b) : null;
   };
 
-  const decode = (text) => {
+  page.decoded = (text) => {
     try {
       return decodeURIComponent(text);
     } catch {
@@ -58,7 +64,7 @@
     state.theme = theme === "light" || theme === "dark" ? theme : null;
     if (!front) return null;
     const known = (name) => front.byName.has(name) && front.byName.get(name) !== front.index;
-    const list = (key) => (given.has(key) ? [...new Set(given.get(key).split(",").map(decode).filter(known))] : null);
+    const list = (key) => (given.has(key) ? [...new Set(given.get(key).split(",").map(page.decoded).filter(known))] : null);
     page.startState();
     defaults = { matrix: state.matrix.map(encode).join(","), parallel: state.parallel.map(encode).join(","), colour: state.colour };
     const matrix = list("c");
@@ -66,22 +72,24 @@
     const parallel = list("pc");
     if (parallel && parallel.length) state.parallel = parallel;
     state.inverted = new Set(list("inv") || []);
-    const colour = decode(given.get("col") || "");
+    const colour = page.decoded(given.get("col") || "");
     if (known(colour)) state.colour = colour;
     for (const part of (given.get("b") || "").split(",")) {
       const [name, ends] = part.split(":");
       const range = parseRange(ends);
-      const shown = known(decode(name)) && (state.parallel.includes(decode(name)) || state.matrix.includes(decode(name)));
-      if (range && shown) state.axes.set(decode(name), range);
+      const shown = known(page.decoded(name)) && (state.parallel.includes(page.decoded(name)) || state.matrix.includes(page.decoded(name)));
+      if (range && shown) state.axes.set(page.decoded(name), range);
     }
     for (const part of (given.get("r") || "").split(",")) {
       const [names, ends] = part.split(":");
-      const [x, y] = names.split("*").map(decode);
+      const [x, y] = names.split("*").map(page.decoded);
       const [xRange, yRange] = (ends || "").split("*").map(parseRange);
       const places = [state.matrix.indexOf(x), state.matrix.indexOf(y)];
       if (xRange && yRange && places[0] >= 0 && places[0] < places[1]) state.cells.set(`${x}*${y}`, { x, y, xRange, yRange });
     }
     page.readPins(given.get("p"));
+    page.readNear(given.get("wn"));
+    page.readWeights(given.get("w"), given.get("a"));
     const row = given.has("d") ? page.rowOf(given.get("d")) : -1;
     return row >= 0 ? row : null;
   };
@@ -93,7 +101,7 @@
       clearTimeout(waiting);
       waiting = setTimeout(page.writeAddress, 150);
     };
-    for (const event of ["selection", "columns", "colour", "card", "theme", "changes", "pins"]) page.events.on(`${event}.address`, write);
+    for (const event of ["selection", "columns", "colour", "card", "theme", "changes", "pins", "choice"]) page.events.on(`${event}.address`, write);
     window.addEventListener("hashchange", () => {
       if (location.hash === written) return;
       written = location.hash;

@@ -7,7 +7,8 @@ const page = {
   timings: {}, // ms from the start of navigation
   // selection: brushes changed; columns: axes chosen, moved or reversed; current: the point under the pointer
   // front: another front in place of the one before; changes: what is changed in the study
-  events: d3.dispatch("selection", "columns", "colour", "current", "card", "theme", "layout", "front", "changes", "pins"),
+  // choice: weights and wishes; others: other results over this one
+  events: d3.dispatch("selection", "columns", "colour", "current", "card", "theme", "layout", "front", "changes", "pins", "choice", "others"),
 };
 
 // Four significant digits and all those before the point; thousands apart from 10 000 on. Every digit is where the pointer rests, on cards

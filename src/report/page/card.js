@@ -158,6 +158,8 @@
     return section("Evaluate again", page.element("p", { class: "hint" }, "Run it in the folder in which this page was made."), parts);
   };
 
+  const named = (row) => [`Design ${page.full(page.designOf(row))}`, row === page.chosenRow() ? page.element("span", { class: "mark" }, ` ${page.chosenWord()}`) : ""];
+
   const build = (row) => {
     const { front } = page;
     const button = (id, label, text, click, disabled) => page.element("button", { type: "button", id, "aria-label": label, title: label, click, disabled }, text);
@@ -165,11 +167,11 @@
       for (let i = row + by; i >= 0 && i < front.rows; i += by) if (page.mask[i]) return true;
       return false;
     };
-    const title = page.element("h2", { id: "card-title" }, `Design ${page.full(page.designOf(row))}`, row === front.knee ? page.element("span", { class: "mark" }, " knee") : null);
+    const title = page.element("h2", { id: "card-title" }, named(row));
     const place = page.element("p", { class: "muted" }, `row ${page.count(row + 1)} of ${page.count(front.rows)} of the front`, page.mask[row] ? "" : ", not selected");
     const pinned = page.isPinned(row);
     const buttons = page.element("div", { class: "card-buttons no-print" }, button("card-pin", pinned ? "Unpin this design (p)" : "Pin this design, to compare it (p)", pinned ? "Unpin" : "Pin", () => page.pin(row), !pinned && page.pins().length >= 6), button("card-print", "Print a data sheet of this design", "Print", () => page.printSheet()), button("card-previous", "Previous design (left arrow)", "‹", () => step(-1), !any(-1)), button("card-next", "Next design (right arrow)", "›", () => step(1), !any(1)), button("card-close", "Close (Esc)", "×", page.closeCard));
-    return [page.element("div", { class: "card-head" }, page.element("div", {}, title, place), buttons), objectives(row), margins(row), page.driveSection(row), inputs(row), outputs(row), page.data.kind === "live" ? page.element("section", { id: "all-outputs" }) : null, commands(row)].filter(Boolean);
+    return [page.element("div", { class: "card-head" }, page.element("div", {}, title, place), buttons), objectives(row), margins(row), page.tradeoffSection(row), page.driveSection(row), inputs(row), outputs(row), page.data.kind === "live" ? page.element("section", { id: "all-outputs" }) : null, commands(row)].filter(Boolean);
   };
 
   // In a wide window the card takes room from the plots.
@@ -239,6 +241,7 @@
     };
     page.events.on("pins.card", again);
     page.events.on("front.card", again);
+    page.events.on("choice.card", () => page.state.card !== null && page.byId("card-title").replaceChildren(...named(page.state.card)));
     document.addEventListener("keydown", (event) => {
       if (page.state.card === null || event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
       if (event.key === "Escape") page.closeCard();

@@ -27,7 +27,7 @@
     return Float64Array.from(new Uint32Array(part), (value) => (value === ABSENT ? NaN : value));
   };
 
-  const addRange = (column) => {
+  page.withRange = (column) => {
     column.whole = column.values.every((value) => !Number.isFinite(value) || Number.isInteger(value));
     let low = Infinity;
     let high = -Infinity;
@@ -41,6 +41,7 @@
     column.low = finite ? low : NaN;
     column.high = finite ? high : NaN;
     column.absent = column.values.length - finite;
+    return column;
   };
 
   // What an axis spans: a little more than the values; a constant column gets a range around it.
@@ -63,6 +64,9 @@
     return text(value, column.type);
   };
 
+  // How many bytes the numbers of a front take.
+  page.packedBytes = ({ columns, rows }) => d3.sum(columns, ({ type, scenario }) => rows * (widthOf(type) + (scenario ? 4 : 0)));
+
   const decodeFront = (front, buffer) => {
     const columns = [];
     const byName = new Map();
@@ -77,29 +81,30 @@
         column.scenarios = new Uint32Array(buffer.slice(offset, offset + front.rows * 4));
         offset += front.rows * 4;
       }
-      addRange(column);
+      page.withRange(column);
       byName.set(column.name, column);
       columns.push(column);
     }
     return { ...front, columns, byName };
   };
 
-  // A sample of the feasible designs behind the front: values by the names of objectives, which have their range.
-  const decodeSample = async (sample) => {
-    const buffer = sample.rows && sample.names.length ? await page.inflate(sample.packed) : new ArrayBuffer(0);
+  // A sample of the feasible designs: values by the names of columns, which have their range, and axes with the place of each design.
+  page.sampleOf = (sample, buffer) => {
     const byName = new Map();
-    sample.names.forEach((name, at) => {
-      const column = { values: readValues(buffer, at * sample.rows * 8, sample.rows, "f64") };
-      addRange(column);
-      byName.set(name, column);
-    });
-    return { ...sample, byName };
+    let offset = 0;
+    const next = ({ type, ...told }) => {
+      const column = { ...told, values: readValues(buffer, offset, sample.rows, type) };
+      offset += sample.rows * widthOf(type);
+      return column;
+    };
+    for (const column of sample.columns) byName.set(column.name, page.withRange(next(column)));
+    return { ...sample, byName, axes: sample.axes.map(next) };
   };
 
-  // What an axis of the scatter matrix spans: the front with the sample and the old front behind it.
+  // What an axis of the scatter matrix spans: the front with the sample, the old front and other results behind it.
   page.ghost = null;
   page.wideDomain = (column) => {
-    const behind = [page.sample, page.ghost].map((layer) => layer && layer.byName.get(column.name)).filter((it) => it && !Number.isNaN(it.low));
+    const behind = [page.sample, page.ghost, ...page.others].map((layer) => layer && layer.byName.get(column.name)).filter((it) => it && !Number.isNaN(it.low));
     if (!behind.length || column.words || Number.isNaN(column.low)) return page.domain(column);
     return page.domain({ ...column, low: Math.min(column.low, ...behind.map((it) => it.low)), high: Math.max(column.high, ...behind.map((it) => it.high)) });
   };
@@ -120,7 +125,8 @@
     page.data = data;
     if (!data.front) return;
     page.front = page.frontOf(data, data.front, data.front.rows ? await page.inflate(data.front.packed) : new ArrayBuffer(0));
-    page.sample = data.sample ? await decodeSample(data.sample) : null;
+    page.sample = data.sample ? page.sampleOf(data.sample, data.sample.rows ? await page.inflate(data.sample.packed) : new ArrayBuffer(0)) : null;
+    page.feasible = page.sample;
     page.timings.decoded = performance.now();
   };
 

@@ -14,7 +14,7 @@
     const line = (row) => page.element("tr", { class: row[columns.indexOf("feasible")] === "no" ? "infeasible" : null }, row.map((text, at) => page.element("td", { class: kind(at), title: text }, labels.includes(columns[at]) ? text : shorten(text))));
     const table = page.element("table", {}, page.element("thead", {}, page.element("tr", {}, head)), page.element("tbody", {}, rows.slice(0, MOST).map(line)));
     const rest = of > MOST ? ` The first ${MOST} of ${page.count(of)} rows are shown.` : "";
-    return page.element("section", { id, "data-testid": id, "aria-labelledby": `${id}-title` }, page.element("h2", { id: `${id}-title` }, title), page.element("p", { class: "hint" }, hint + rest), page.element("div", { class: "scroll tall", tabindex: 0, role: "region", "aria-label": title }, table));
+    return page.element("section", { id, "data-testid": id, "aria-labelledby": `${id}-title` }, page.element("h2", { id: `${id}-title` }, title), page.element("p", { class: "hint" }, hint + rest), page.element("div", { class: "scroll tall", tabindex: 0, role: "region", "aria-label": `${title}, the table` }, table));
   };
 
   page.startLists = () => {

@@ -32,7 +32,8 @@
   const place = (cell, extent) => {
     cell.behind = layerOf(page.sample, cell.x, cell.y);
     cell.ghost = layerOf(page.ghost, cell.x, cell.y);
-    cell.ground = cell.behind || cell.ghost ? cell.ground || new Uint32Array(extent * extent) : null;
+    cell.others = page.others.map((other) => ({ other, at: layerOf(other, cell.x, cell.y) })).filter(({ at }) => at);
+    cell.ground = cell.behind || cell.ghost || cell.others.length ? cell.ground || new Uint32Array(extent * extent) : null;
     cell.xScale = d3.scaleLinear(page.wideDomain(cell.x), [0, size]);
     cell.yScale = d3.scaleLinear(page.wideDomain(cell.y), [size, 0]);
   };
@@ -67,7 +68,7 @@
   const cellNames = () => cells.map((cell) => [cell.x.name, cell.y.name]);
   const pairs = (names) => names.flatMap((y, row) => names.slice(0, row).map((x) => [x, y]));
 
-  // The pixels of the sample of feasible designs, or of an old front, in a cell of two objectives.
+  // The pixels of the sample of feasible designs, of an old front, or of another result in a cell.
   const layerOf = (layer, x, y) => {
     const [across, up] = [x, y].map((column) => layer && layer.byName.get(column.name));
     return across && up ? { xs: pixelsOf(x, false, across.values), ys: pixelsOf(y, true, up.values) } : null;
@@ -202,8 +203,9 @@
       const mark = cell.marks.append("path").attr("class", "ideal").attr("d", `M${ix - 6},${iy}h12M${ix},${iy - 6}v12`);
       mark.append("title").text("ideal: the best value of both, which no single design reaches");
     }
-    if (front.knee !== null && front.knee !== undefined) {
-      const [x, y] = [clip(cell.xScale, cell.x.values[front.knee]), clip(cell.yScale, cell.y.values[front.knee])];
+    const chosen = page.chosenRow();
+    if (chosen !== null && chosen !== undefined) {
+      const [x, y] = [clip(cell.xScale, cell.x.values[chosen]), clip(cell.yScale, cell.y.values[chosen])];
       if (Number.isFinite(x) && Number.isFinite(y)) cell.marks.append("path").attr("class", "knee").attr("d", `M${x},${y - 6}l6,6l-6,6l-6,-6z`);
     }
     // Bounds of constraints.
@@ -233,10 +235,10 @@
       const touch = event.changedTouches ? event.changedTouches[0] : event;
       return d3.pointer(touch, group.node());
     };
-    // Of points in the same place, the knee is taken if it is one of them.
+    // Of points in the same place, the knee, or the first by weights, is taken if it is one of them.
     const near = ([x, y], reach) => {
       const row = page.nearest(cell.xs, cell.ys, page.mask, x * ratio, y * ratio, reach * ratio);
-      const { knee } = page.front;
+      const knee = page.chosenRow();
       const onKnee = row >= 0 && page.mask[knee] && cell.xs[row] === cell.xs[knee] && cell.ys[row] === cell.ys[knee];
       return onKnee ? knee : row;
     };
@@ -307,6 +309,7 @@
           page.drawPoints(cell.base, extent, extent, cell.behind.xs, cell.behind.ys, null, null, page.pixel(page.variable("--sample")), dot);
         }
         if (cell.ghost) page.drawPoints(cell.base, extent, extent, cell.ghost.xs, cell.ghost.ys, null, null, page.pixel(page.variable("--ghost")), disc);
+        for (const { other, at } of cell.others) page.drawPoints(cell.base, extent, extent, at.xs, at.ys, null, null, page.pixel(page.otherColour(other)), page.otherMark(other, ratio));
         if (cell.ground) cell.ground.set(cell.base);
         page.drawPoints(cell.base, extent, extent, cell.xs, cell.ys, page.mask, null, faint, disc);
       }
@@ -335,13 +338,16 @@
     page.events.on("columns.matrix", (what) => what === "order" || layout());
     page.events.on("layout.matrix", layout);
     page.events.on("front.matrix", refresh);
-    page.events.on("pins.matrix", () => {
+    const again = () => {
       for (const cell of cells) {
         cell.marks.selectAll("*").remove();
         addMarks(cell);
       }
       showCurrent();
-    });
+    };
+    page.events.on("pins.matrix", again);
+    page.events.on("choice.matrix", () => page.schedule("marks", again));
+    page.events.on("others.matrix", refresh);
     page.events.on("theme.matrix", () => draw(true));
     page.events.on("colour.matrix", () => page.schedule("matrix", () => draw(false)));
     page.events.on("selection.matrix", () => {

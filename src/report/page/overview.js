@@ -8,12 +8,14 @@
     return parts.join(", ");
   };
 
-  // The ideal and the knee side by side, one line for each objective.
+  // The ideal and the knee, or the first design by weights, side by side, one line for each objective.
   const objectives = () => {
     const { front } = page;
     const ideal = front.ideal || {};
+    const chosen = page.chosenRow() ?? null;
+    const word = page.isWeighed() ? "first" : "knee";
     const line = ({ column, goal, of }) => {
-      const knee = front.knee === null ? null : column.values[front.knee];
+      const knee = chosen === null ? null : column.values[chosen];
       const value = (number, text) => page.element("td", { class: "number", title: page.full(number) }, text);
       return page.element(
         "tr",
@@ -22,11 +24,11 @@
         page.element("td", {}, column.unit || ""),
         page.element("td", {}, goal),
         value(ideal[of], page.short(ideal[of])),
-        front.knee === null ? null : value(knee, page.valueText(column, front.knee)),
+        chosen === null ? null : value(knee, page.valueText(column, chosen)),
       );
     };
-    const head = ["objective", "unit", "goal", "ideal", front.knee === null ? null : "knee"].filter(Boolean);
-    const title = { ideal: "the best value of each objective; no single design reaches all of them", knee: "the design nearest to the ideal, with each objective scaled to its range on the front" };
+    const head = ["objective", "unit", "goal", "ideal", chosen === null ? null : word].filter(Boolean);
+    const title = { ideal: "the best value of each objective; no single design reaches all of them", knee: "the design nearest to the ideal, with each objective scaled to its range on the front", first: "the first design by the weights and wished values" };
     return page.element(
       "table",
       { class: "objectives", "data-testid": "objectives" },
@@ -46,6 +48,14 @@
     return parts.length ? page.element("table", { class: "question", "data-testid": "question" }, parts) : null;
   };
 
+  const goals = () => {
+    const chosen = page.chosenRow() ?? null;
+    const word = page.isWeighed() ? "the first" : "the knee";
+    const open = chosen === null ? null : page.element("button", { type: "button", id: "open-knee", "data-testid": "open-knee", class: "primary", click: () => page.openCard(page.chosenRow()) }, `Open ${word}: design ${page.full(page.designOf(chosen))}`);
+    return page.element("div", { class: "goals" }, [objectives(), question(), open].filter(Boolean));
+  };
+  page.showGoals = () => page.byId("overview").querySelector(".goals")?.replaceWith(goals());
+
   page.startOverview = () => {
     const { data, front } = page;
     const { study, model, run } = data;
@@ -60,8 +70,6 @@
     if (front) facts.push(fact(front.of > front.rows ? `shown, of ${page.count(front.of)} on the Pareto front` : "on the Pareto front", page.count(front.rows), "front-size"));
     if (run) facts.push(fact("computed in", runText(run), "run", `${run.platform || ""} ${run.origin || ""}`.trim()));
     if (data.kind !== "live") facts.push(fact("program", data.program, "program"));
-    const knee = front && front.rows && front.knee !== null && front.knee !== undefined;
-    const openKnee = knee ? page.element("button", { type: "button", id: "open-knee", "data-testid": "open-knee", class: "primary", click: () => page.openCard(front.knee) }, `Open the knee: design ${page.full(page.designOf(front.knee))}`) : null;
     const parts = [
       page.element("div", { class: "title-line" }, page.element("h1", {}, data.title), theme),
       model && !model.limits ? page.element("p", { class: "model" }, page.element("strong", {}, model.name), `: ${model.summary}.`) : "",
@@ -70,7 +78,7 @@
       data.feasible_file ? page.element("p", { class: "hint", "data-testid": "feasible-file" }, `All feasible designs are in ${data.feasible_file} beside this page's result.`) : "",
       data.sensitivity ? page.element("p", { class: "notice" }, `Which input matters: ${data.sensitivity}.`) : "",
       (data.notes || []).map((note) => page.element("p", { class: "notice" }, note)),
-      front && front.rows && front.objectives.length ? page.element("div", { class: "goals" }, objectives(), question(), openKnee) : "",
+      front && front.rows && front.objectives.length ? goals() : "",
     ];
     page.byId("overview").replaceChildren(...parts.flat().filter((part) => part !== ""));
   };

@@ -21,11 +21,11 @@
     const readout = page.byId("readout");
     if (!readout) return;
     const { state, front } = page;
-    const row = state.current ?? state.card ?? front.knee;
+    const row = state.current ?? state.card ?? page.chosenRow();
     const children = [page.legend()];
     if (row !== null && row !== undefined) {
-      const what = state.current !== null ? "pointed at" : state.card !== null ? "card" : "knee";
-      const mark = row === front.knee && what !== "knee" ? `${what}, knee` : what;
+      const what = state.current !== null ? "pointed at" : state.card !== null ? "card" : page.chosenWord();
+      const mark = row === page.chosenRow() && what !== page.chosenWord() ? `${what}, ${page.chosenWord()}` : what;
       const labels = front.shown.filter((column) => column.role === "label").map((column) => column.name);
       const names = [...new Set([...labels, ...state.matrix, ...state.parallel])].slice(0, 18 + labels.length);
       const entry = (name) => {
@@ -35,14 +35,14 @@
       };
       children.push(page.element("div", { class: "readout-title" }, page.element("strong", {}, `design ${page.full(page.designOf(row))}`), ` (${mark})`));
       children.push(page.element("dl", {}, names.map(entry)));
-      if (front.knee !== null) children.push(page.element("p", { class: "muted key" }, "◇ knee, + ideal, ⤒ ⤓ at an end of its range"));
+      if (front.knee !== null) children.push(page.element("p", { class: "muted key" }, `◇ ${page.chosenWord()}, + ideal, ⤒ ⤓ at an end of its range`));
     }
     readout.replaceChildren(...children);
   };
 
   page.startReadout = () => {
     page.showReadout();
-    for (const event of ["current", "card", "colour", "theme", "front"]) page.events.on(`${event}.readout`, () => page.schedule("readout", page.showReadout));
+    for (const event of ["current", "card", "colour", "theme", "front", "choice"]) page.events.on(`${event}.readout`, () => page.schedule("readout", page.showReadout));
     page.events.on("columns.readout", () => page.schedule("readout", page.showReadout));
   };
 }

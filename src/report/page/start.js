@@ -14,6 +14,7 @@
       page.applySelection();
       page.startBar();
       page.startPins();
+      page.startOthers();
       page.startMatrix();
       page.startStrip();
       page.startReadout();
@@ -28,6 +29,7 @@
       page.startCard();
       page.startKneeSlices();
     }
+    page.startWeigh();
     page.startAddress();
     page.startLists();
     page.startHistograms();
@@ -35,6 +37,7 @@
     page.startFigures();
     page.startStudy();
     await page.startMaps();
+    page.showExplained();
     if (row !== null) page.openCard(row);
     page.timings.complete = performance.now();
   };

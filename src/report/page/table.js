@@ -52,9 +52,9 @@
     };
     heads.replaceChildren(...columns.map(head));
     const rows = sortedRows();
-    const { knee } = page.front;
+    const knee = page.chosenRow();
     const line = (row) => {
-      const cell = (column) => page.element("td", { class: column.words ? "" : "number" }, page.valueText(column, row), column === page.front.index && row === knee ? page.element("span", { class: "mark" }, " knee") : null);
+      const cell = (column) => page.element("td", { class: column.words ? "" : "number" }, page.valueText(column, row), column === page.front.index && row === knee ? page.element("span", { class: "mark" }, ` ${page.chosenWord()}`) : null);
       return page.element("tr", { "data-row": row, class: row === knee ? "is-knee" : "", tabindex: 0, "aria-label": `design ${page.designOf(row)}: open its card` }, columns.map(cell));
     };
     body.replaceChildren(...rows.slice(0, MOST).map(line));
@@ -106,6 +106,7 @@
     page.events.on("selection.table", later);
     page.events.on("columns.table", later);
     page.events.on("front.table", later);
+    page.events.on("choice.table", later);
     page.events.on("current.table", markCurrent);
     page.events.on("card.table", markCurrent);
   };

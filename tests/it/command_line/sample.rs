@@ -1,8 +1,9 @@
 //! A sample of the feasible designs: its files, its dots behind the front, and changed files.
 
-use super::report::data_of;
+use super::report::{columns_of, data_of};
 use super::{SMALL, ask, changed, folder_with, read, write};
 use parquet::file::reader::{FileReader, SerializedFileReader};
+use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
 fn with_sample() -> String {
@@ -34,7 +35,24 @@ fn a_sample_is_written_and_shown_behind_the_front() {
     let data = data_of(&at("report.html"));
     let sample = &data["sample"];
     assert_eq!((&sample["rows"], &sample["of"]), (&60.into(), &60.into()));
-    assert_eq!(sample["names"], serde_json::json!(["axial_force_N", "stress_margin", "band_count"]));
+    // Every column of the study and every axis has the numbers of the table: objectives to the last digit, the others to six or more.
+    let named = |it: &Value, key: &str| -> Vec<Value> { it[key].as_array().expect("a list").clone() };
+    let mut axes = named(sample, "axes");
+    assert_eq!(axes.iter().map(|it| it["levels"].as_u64()).collect::<Vec<_>>(), [13, 21, 9, 5].map(Some));
+    axes.iter_mut().for_each(|it| it["name"] = format!("axis {}", it["name"].as_str().expect("a name")).into());
+    let all = [named(sample, "columns"), axes].concat();
+    let columns = columns_of(&json!({ "front": { "rows": 60, "columns": all, "packed": sample["packed"] } }));
+    let header: Vec<&str> = lines[0].split(',').collect();
+    assert_eq!(columns.len(), header.iter().filter(|it| it.ends_with("_scenario")).count() + 1 + 4, "band_count has no scenario");
+    for (name, (values, _)) in &columns {
+        let at = header.iter().position(|it| *it == name.trim_start_matches("axis ")).expect("the table has it");
+        let exact = name.starts_with("axis") || ["axial_force_N", "stress_margin", "band_count"].contains(&name.as_str());
+        for (value, line) in values.iter().zip(&lines[1..]) {
+            let expected: f64 = line.split(',').nth(at).and_then(|it| it.parse().ok()).expect("a number");
+            let same = if exact { *value == expected } else { (value - expected).abs() <= 1e-6 * expected.abs() };
+            assert!(same, "{name}: {value}, in the table {expected}");
+        }
+    }
     // Another seed draws others; none of it is on the page of a study that does not ask.
     write(folder.path(), "other.toml", &changed(&with_sample(), &[("seed = 5", "seed = 6")]));
     ask(folder.path(), "sweep other.toml --out other").text();

@@ -57,6 +57,7 @@
     page.applySelection();
     page.startBar();
     page.startPins();
+    page.startWeigh();
     page.startMatrix();
     page.startStrip();
     page.startReadout();
@@ -95,6 +96,8 @@
       page.data.study.feasible = told.feasible ?? undefined;
       page.startOverview();
       page.startTally();
+      page.feasible = told.sample ? page.sampleOf(told.sample, buffer) : null;
+      page.showExplained();
       const share = told.feasible === null ? `${page.percent(told.tally.feasible, told.tally.sampled)} of a sample are feasible` : `${page.count(told.feasible)} of ${page.count(page.data.study.designs)} designs are feasible`;
       say(`exact: ${page.count(page.front.rows)} designs on the front; ${share}`, "exact");
       page.timings.counted = answered;
@@ -107,6 +110,7 @@
       return;
     }
     put(told, buffer);
+    page.showExplained(true);
     later();
     if (told.kind === "few") {
       say(`${page.count(page.front.rows)} designs, judged in the ${page.count(told.in_scenarios)} scenarios that decide; now in all ${page.count(page.data.study.scenarios)} …`, "coarse");
