@@ -4,6 +4,7 @@
 //! infeasible, or its objectives differ from those of the sweep, the program stops.
 
 mod worst_columns;
+mod worst_lanes;
 
 pub use worst_columns::{DesignColumns, rows_of_columns};
 
