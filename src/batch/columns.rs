@@ -120,9 +120,7 @@ fn values_of<'a>(name: &str, cells: &'a ColumnCells<'_>, input: &Input) -> Resul
             let value = |(row, text): (usize, &String)| value_of(&RowCell::Text(text.clone()), input).map_err(|why| wrong(row, why));
             Ok(GivenValues::Each(texts.iter().enumerate().map(value).collect::<Result<Vec<f64>>>()?.into()))
         }
-        ColumnCells::Same(cell) => {
-            value_of(cell, input).map(GivenValues::Same).map_err(|why| refusal(format!("column \"{name}\": {why}")))
-        }
+        ColumnCells::Same(cell) => value_of(cell, input).map(GivenValues::Same).map_err(|why| refusal(format!("column \"{name}\": {why}"))),
     }
 }
 

@@ -344,7 +344,7 @@ pub fn study_reference() -> String {
     let schema = schema();
     let mut page = "# The study file: every key\n\n\
         This page is what `beltspace schema --markdown` prints; `beltspace schema` prints the same for editors, as JSON Schema. Both come from the \
-        tables by which the reader refuses unknown keys. What the keys are for is told in the [README](../README.md) and in the pages that it \
+        tables by which the reader refuses unknown keys. What the keys are for is told in [what a study says](manual/study.md) and in the pages that it \
         names.\n\n\
         A *value* is a number in the unit that the name ends in, a text with a unit such as `\"0.25 in\"`, or a word that the input takes. An \
         *axis* is a value, a list of values, a range, or cases: rows `[{ a = 1, b = 2 }, ...]`, `{ csv = \"file.csv\" }`, or with weights \

@@ -91,15 +91,7 @@ fn of_all<'a>(values: ColumnValue<'a>, room: &'a mut Vec<f64>, count: usize) -> 
 /// The step of `bracketed_newton` in each lane that has not ended; how many go on.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
 #[allow(clippy::too_many_arguments, reason = "columns side by side")]
-fn steps(
-    value: &[f64],
-    slope: &[f64],
-    low: &mut [f64],
-    high: &mut [f64],
-    x: &mut [f64],
-    last_step: &mut [f64],
-    open: &mut [u64],
-) -> u64 {
+fn steps(value: &[f64], slope: &[f64], low: &mut [f64], high: &mut [f64], x: &mut [f64], last_step: &mut [f64], open: &mut [u64]) -> u64 {
     let count = x.len();
     let (value, slope, low, high) = (&value[..count], &slope[..count], &mut low[..count], &mut high[..count]);
     let (last_step, open) = (&mut last_step[..count], &mut open[..count]);

@@ -5,7 +5,7 @@ use super::vectors::{converted, ends};
 use super::{AskedColumns, ResultPart, input_to_si};
 use crate::models::{Input, Model};
 use crate::parallel::on_threads;
-use crate::tape::{ColumnValue, LIST_CHUNK, Known, List, ListColumns, Set};
+use crate::tape::{ColumnValue, Known, LIST_CHUNK, List, ListColumns, Set};
 
 /// Formulas with more operations than this are evaluated one by one: their columns would not fit the caches.
 const MOST_OPERATIONS: usize = 4096;

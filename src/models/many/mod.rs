@@ -11,8 +11,8 @@ use crate::parallel::on_threads;
 use crate::tape::Set;
 use columns::RecordedColumns;
 pub(crate) use judge::{ColumnJudge, JudgeRoom};
-pub(crate) use vectors::ends;
 use std::sync::atomic::{AtomicBool, Ordering};
+pub(crate) use vectors::ends;
 
 /// Rows that a thread is started for at least.
 const ROWS_PER_THREAD: usize = 256;
