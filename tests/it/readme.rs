@@ -222,7 +222,10 @@ fn cell(row: &Value, designs: f64) -> String {
 fn the_scale_is_what_the_record_says() {
     let read = |name: &str| std::fs::read_to_string(root().join("results/bench").join(name)).expect("the record is committed");
     let page = read("scale.md");
-    assert!(readme().contains(&page), "docs/manual/measured.md has another results/bench/scale.md: benches/scale --render --docs writes both");
+    assert!(
+        readme().contains(&page),
+        "docs/manual/measured.md has another results/bench/scale.md: benches/scale --render --docs writes both"
+    );
     let record: Value = serde_json::from_str(&read("scale.json")).expect("JSON");
     assert_eq!(record["problems"], Value::Array(Vec::new()), "committed with methods that disagree");
     let mut tables = page.split("| designs ").skip(1);
@@ -258,8 +261,7 @@ fn the_yields_are_what_the_record_says() {
         rows.map(|it| 1e3 * number(&it["seconds"])).fold(0.0, f64::max)
     };
     let page = readme();
-    let paragraph =
-        page.split("\n\n").find(|it| it.contains("bench/probability.json")).expect("a page has the times").replace('\n', " ");
+    let paragraph = page.split("\n\n").find(|it| it.contains("bench/probability.json")).expect("a page has the times").replace('\n', " ");
     assert_eq!((&all["designs"], &all["draws"], &all["cases"]), (&100_000.into(), &4096.into(), &4.into()));
     for said in [
         format!("took {:.2} s on the two cores, numpy on one of them {:.1} s", number(&all["seconds"]), number(&all["numpy"]["seconds"])),
