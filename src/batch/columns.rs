@@ -2,7 +2,7 @@
 
 use super::{BatchTarget, RowCell, refusal, value_of};
 use crate::error::Result;
-use crate::models::{EvaluatedColumns, Input, ManyOptions, ends, evaluate_columns};
+use crate::models::{ColumnEnds, EvaluatedColumns, Input, ManyOptions, ends, evaluate_columns};
 use crate::parallel::on_threads;
 use crate::screen::Control;
 use crate::table::Table;
@@ -36,7 +36,8 @@ pub struct GivenColumns<'a> {
 /// Values of an input, checked.
 #[derive(Clone, Debug)]
 enum GivenValues<'a> {
-    Each(Cow<'a, [f64]>),
+    /// With its ends, if they are known.
+    Each(Cow<'a, [f64]>, Option<ColumnEnds>),
     Same(f64),
 }
 
@@ -93,7 +94,7 @@ impl<'a> GivenColumns<'a> {
         *room = self.values.iter().filter_map(same).collect();
         let mut same = room.iter();
         let slice = |it: &'s GivenValues<'_>| match it {
-            GivenValues::Each(values) => &**values,
+            GivenValues::Each(values, _) => &**values,
             GivenValues::Same(_) => same.next().expect("there is one for each"),
         };
         self.values.iter().map(slice).collect()
@@ -111,14 +112,14 @@ fn values_of<'a>(name: &str, cells: &'a ColumnCells<'_>, input: &Input) -> Resul
                 true => None,
                 false => values.iter().position(|&value| input.is_enumeration() || !input.accepts(value)),
             };
-            let Some(first) = first else { return Ok(GivenValues::Each(Cow::Borrowed(values))) };
+            let Some(first) = first else { return Ok(GivenValues::Each(Cow::Borrowed(values), Some(ends))) };
             let checked = |(row, &value)| value_of(&RowCell::Number(value), input).map_err(|why| wrong(row, why));
             let rest: Vec<f64> = values.iter().enumerate().skip(first).map(checked).collect::<Result<_>>()?;
-            Ok(GivenValues::Each([&values[..first], &rest].concat().into()))
+            Ok(GivenValues::Each([&values[..first], &rest].concat().into(), None))
         }
         ColumnCells::Texts(texts) => {
             let value = |(row, text): (usize, &String)| value_of(&RowCell::Text(text.clone()), input).map_err(|why| wrong(row, why));
-            Ok(GivenValues::Each(texts.iter().enumerate().map(value).collect::<Result<Vec<f64>>>()?.into()))
+            Ok(GivenValues::Each(texts.iter().enumerate().map(value).collect::<Result<Vec<f64>>>()?.into(), None))
         }
         ColumnCells::Same(cell) => value_of(cell, input).map(GivenValues::Same).map_err(|why| refusal(format!("column \"{name}\": {why}"))),
     }
@@ -136,9 +137,13 @@ impl BatchTarget {
         let model = self.model();
         let mut base = self.base().expect("a model, no study").to_vec();
         let mut columns: Vec<(&str, &[f64])> = Vec::new();
+        let mut ends: Vec<Option<ColumnEnds>> = Vec::new();
         for (&input, values) in given.inputs.iter().zip(&given.values) {
             match values {
-                GivenValues::Each(values) => columns.push((&model.inputs[input].name, values)),
+                GivenValues::Each(values, known) => {
+                    columns.push((&model.inputs[input].name, values));
+                    ends.push(*known);
+                }
                 // What all rows share is computed once.
                 GivenValues::Same(value) => base[input] = *value,
             }
@@ -147,8 +152,9 @@ impl BatchTarget {
         let alone = [base[given.inputs[0]]];
         if columns.is_empty() {
             columns.push((&model.inputs[given.inputs[0]].name, &alone));
+            ends.push(None);
         }
-        let options = ManyOptions { inputs: Some(&base), ..options.clone() };
+        let options = ManyOptions { inputs: Some(&base), ends: Some(&ends), ..options.clone() };
         evaluate_columns(model, &columns, &options)
     }
 

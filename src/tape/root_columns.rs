@@ -57,7 +57,11 @@ impl RootLanes {
     }
 
     /// Writes where all lanes are, and keeps those that go on.
-    fn keep_open(&mut self, column: &mut [f64]) {
+    fn keep_open(&mut self, column: &mut [f64], left: usize) {
+        // As long as none was sorted out each stands at its place.
+        if left == 0 && self.x.len() == column.len() {
+            return column.copy_from_slice(&self.x);
+        }
         let mut kept = 0;
         for lane in 0..self.x.len() {
             column[self.place[lane] as usize] = self.x[lane];
@@ -159,7 +163,13 @@ impl RootColumns {
                 gathered = looked_at;
                 for &node in &differs {
                     let ColumnValue::Each(values) = of(node) else { continue };
-                    numbers.fill(node, |to| to.iter_mut().zip(&lanes.place).for_each(|(to, &place)| *to = values[place as usize]));
+                    numbers.fill(node, |to| {
+                        if to.len() == values.len() {
+                            to.copy_from_slice(values);
+                        } else {
+                            to.iter_mut().zip(&lanes.place).for_each(|(to, &place)| *to = values[place as usize]);
+                        }
+                    });
                 }
             }
             numbers.fill(root.argument, |to| to.copy_from_slice(&lanes.x));
@@ -168,13 +178,13 @@ impl RootColumns {
             }
             let left = lanes.step(numbers.value(root.value, each), numbers.value(root.slope, each));
             // Lanes that have ended cost less than to sort them out, unless they are many.
-            if 2 * left <= looked_at {
-                lanes.keep_open(column);
+            if 4 * left <= looked_at {
+                lanes.keep_open(column, left);
                 if left == 0 {
                     return;
                 }
             }
         }
-        lanes.keep_open(column);
+        lanes.keep_open(column, lanes.x.len());
     }
 }

@@ -1,7 +1,7 @@
 //! A model over columns of its inputs: its recorded formula, a chunk of rows at a time.
 
 use super::judge::{ColumnJudge, JudgeRoom};
-use super::vectors::{converted, ends};
+use super::vectors::{ColumnEnds, converted, ends};
 use super::{AskedColumns, ResultPart, input_to_si};
 use crate::models::{Input, Model};
 use crate::parallel::on_threads;
@@ -20,11 +20,11 @@ pub struct RecordedColumns {
 }
 
 /// What is known of a column in SI units: its ends, unless a value is no number.
-fn known(model: &Model, input: usize, values: &[f64]) -> Known {
+fn known(model: &Model, input: usize, values: &[f64], known: Option<ColumnEnds>) -> Known {
     let input = &model.inputs[input];
     if input.words.is_empty() {
         // A unit is a factor above zero, so that the ends stay the ends.
-        let ends = ends(values);
+        let ends = known.unwrap_or_else(|| ends(values));
         return if ends.numbers { Known::Within(input.unit.to_si(ends.low), input.unit.to_si(ends.high)) } else { Known::ANY };
     }
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -54,10 +54,12 @@ impl RecordedColumns {
         let formula = model.kernel.formula()?;
         let mut of_inputs: Vec<Known> =
             model.inputs.iter().zip(inputs).map(|(input, &value)| Known::Fixed(input_to_si(input, value))).collect();
-        let is_much = given.iter().map(|(_, values)| values.len()).sum::<usize>() >= MUCH;
+        let is_much = asked.options.ends.is_none() && given.iter().map(|(_, values)| values.len()).sum::<usize>() >= MUCH;
         let share = if is_much { given.len().div_ceil(asked.options.threads.max(1)) } else { given.len() };
-        let found = on_threads(given.chunks(share.max(1)), |given| {
-            given.iter().map(|&(input, values)| (input, known(model, input, values))).collect::<Vec<_>>()
+        let ends = |column: usize| asked.options.ends.and_then(|ends| ends[column]);
+        let columns: Vec<(usize, &(usize, &[f64]))> = given.iter().enumerate().collect();
+        let found = on_threads(columns.chunks(share.max(1)), |part| {
+            part.iter().map(|&(at, &(input, values))| (input, known(model, input, values, ends(at)))).collect::<Vec<_>>()
         });
         found.into_iter().flatten().for_each(|(input, known)| of_inputs[input] = known);
         let wanted = Set::of(outputs);

@@ -12,7 +12,7 @@ use crate::tape::Set;
 use columns::RecordedColumns;
 pub(crate) use judge::{ColumnJudge, JudgeRoom};
 use std::sync::atomic::{AtomicBool, Ordering};
-pub(crate) use vectors::ends;
+pub(crate) use vectors::{ColumnEnds, ends};
 
 /// Rows that a thread is started for at least.
 const ROWS_PER_THREAD: usize = 256;
@@ -58,12 +58,14 @@ pub struct ManyOptions<'a> {
     pub threads: usize,
     /// Set by somebody else to end the work.
     pub stop: Option<&'a AtomicBool>,
+    /// The ends of the columns, if they are known already, in their order.
+    pub(crate) ends: Option<&'a [Option<ColumnEnds>]>,
 }
 
 impl Default for ManyOptions<'_> {
     fn default() -> Self {
         let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-        Self { outputs: None, inputs: None, threads, stop: None }
+        Self { outputs: None, inputs: None, threads, stop: None, ends: None }
     }
 }
 
