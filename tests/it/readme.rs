@@ -78,6 +78,21 @@ fn block(start: &str) -> String {
 }
 
 #[test]
+fn the_first_commands_work_in_an_empty_folder() {
+    let folder = tempfile::tempdir().expect("a temporary directory");
+    let shown = block("$ beltspace models metal-cvt --study > my-belt.toml");
+    let (first, rest) = ("models metal-cvt --study", shown.lines().collect::<Vec<_>>());
+    assert_eq!(rest, ["$ beltspace check my-belt.toml", "$ beltspace sweep my-belt.toml"]);
+    std::fs::write(folder.path().join("my-belt.toml"), run(&first.split(' ').collect::<Vec<_>>()).0).expect("it can be written");
+    for command in rest {
+        let words = command.trim_start_matches("$ beltspace ").split(' ');
+        let output = Command::new(env!("CARGO_BIN_EXE_beltspace")).args(words).current_dir(folder.path()).output().expect("it starts");
+        assert!(output.status.success(), "{command}: {}", String::from_utf8_lossy(&output.stderr));
+    }
+    assert!(folder.path().join("results/my-belt/report.html").is_file());
+}
+
+#[test]
 fn the_session_is_what_the_program_prints() {
     let out = tempfile::tempdir().expect("a temporary directory");
     let (printed, _) =
