@@ -317,7 +317,7 @@ def cvt_page(record):
 
 
 def page(record):
-    """The text that is printed and written to results/bench/scale.md and the README."""
+    """The text that is printed and written to results/bench/scale.md and docs/manual/measured.md."""
     lines = [f"{record['machine']}, {record['cores']} cores, {record['memory_GB']:.0f} GB, {record['date']}; {', '.join(record['versions'])}.", "",
              "`metal-grid`, finer and finer: wall time and designs per second, and the exponent of time against designs, fitted to all sizes "
              "and between the two largest:", ""]
@@ -365,13 +365,13 @@ def conclude(record):
     return record
 
 
-def write(record, out, readme):
+def write(record, out, docs):
     text = page(record)
     out.mkdir(parents=True, exist_ok=True)
     (out / "scale.json").write_text(json.dumps(record, indent=2) + "\n")
     (out / "scale.md").write_text(text)
-    if readme:
-        file = Path("README.md")
+    if docs:
+        file = Path("docs/manual/measured.md")
         before, rest = file.read_text().split(BEFORE)
         file.write_text(before + BEFORE + text + AFTER + rest.split(AFTER)[1])
     return text
@@ -387,7 +387,7 @@ def main():
     arguments.add_argument("--resolutions", type=lambda text: [float(it) for it in text.split(",")], default=RESOLUTIONS, metavar="N,STRESS,SLIP",
                            help="of the refined metal-cvt's axial force and margins [default: 100,0.01,0.01, a front of 1700 points; "
                                 "25,0.0025,0.0025 gives more than 16000]")
-    arguments.add_argument("--readme", action="store_true", help="put the page into README.md too")
+    arguments.add_argument("--docs", action="store_true", help="put the page into docs/manual/measured.md too")
     arguments.add_argument("--render", action="store_true", help="run nothing: write the pages again from scale.json")
     given = arguments.parse_args()
     with tempfile.TemporaryDirectory() as folder:
@@ -395,7 +395,7 @@ def main():
         out = given.out or (folder if given.short else Path("results/bench"))
         if given.render:
             record = json.loads((out / "scale.json").read_text())
-            return print(write(record, out, given.readme), end="")
+            return print(write(record, out, given.docs), end="")
         problems = []
         run_own(given.program, write_study(folder), "cpu", "exhaustive", folder / "warm", 60)  # the program's pages are read before the clock counts
         record = {"date": date.today().isoformat(), "machine": measures.processor(), "cores": os.cpu_count(),
@@ -410,7 +410,7 @@ def main():
         for levels in CVT_LEVELS[:1] if given.short else CVT_LEVELS:
             record["cvt"].append(cvt(given.program, levels, given.resolutions, given.limit, folder, problems))
             write(conclude(record), out, False)
-        print(write(record, out, given.readme), end="")
+        print(write(record, out, given.docs), end="")
     if problems:
         sys.exit("methods disagree")
 

@@ -7,6 +7,7 @@
 mod confirm;
 mod reference;
 mod worst_columns;
+mod worst_lanes;
 
 pub use worst_columns::{DesignColumns, rows_of_columns};
 

@@ -58,6 +58,9 @@ pub enum Command {
         /// Print every key as a page in Markdown instead
         #[arg(long)]
         markdown: bool,
+        /// The form of the file of a model in place of a study's
+        #[arg(long, conflicts_with = "markdown")]
+        model: bool,
     },
     /// Print the man page, or write one per command into a directory
     Man {

@@ -30,7 +30,7 @@ unsafe fn taken<T>(capsule: &Bound<'_, PyCapsule>, name: &'static CStr, empty: T
 }
 
 /// The columns of an object that speaks Arrow; `None` if it does not.
-pub fn columns(table: &Bound<'_, PyAny>) -> PyResult<Option<Vec<(String, ColumnCells)>>> {
+pub fn columns(table: &Bound<'_, PyAny>) -> PyResult<Option<Vec<(String, ColumnCells<'static>)>>> {
     if table.hasattr("__arrow_c_stream__")? {
         let capsule = table.call_method0("__arrow_c_stream__")?.cast_into::<PyCapsule>()?;
         // SAFETY: the interface says that a capsule of this name holds such a stream, which the consumer moves out.
@@ -73,12 +73,12 @@ fn is_text(kind: &DataType) -> bool {
     }
 }
 
-fn empty_columns(schema: &Schema) -> PyResult<Vec<(String, ColumnCells)>> {
-    let cells = |kind: &DataType| if is_text(kind) { ColumnCells::Texts(Vec::new()) } else { ColumnCells::Numbers(Vec::new()) };
+fn empty_columns(schema: &Schema) -> PyResult<Vec<(String, ColumnCells<'static>)>> {
+    let cells = |kind: &DataType| if is_text(kind) { ColumnCells::Texts(Vec::new()) } else { ColumnCells::Numbers(Vec::new().into()) };
     Ok(schema.fields().iter().map(|field| (field.name().clone(), cells(field.data_type()))).collect())
 }
 
-fn append(columns: &mut [(String, ColumnCells)], batch: &RecordBatch, first_row: usize) -> PyResult<()> {
+fn append(columns: &mut [(String, ColumnCells<'static>)], batch: &RecordBatch, first_row: usize) -> PyResult<()> {
     for ((name, cells), array) in columns.iter_mut().zip(batch.columns()) {
         // NaN stands for absent too, and is refused with its place where an input is wanted.
         if array.logical_null_count() > 0 {
@@ -91,7 +91,7 @@ fn append(columns: &mut [(String, ColumnCells)], batch: &RecordBatch, first_row:
                 let found = numbers_of(array).ok_or_else(|| {
                     PyValueError::new_err(format!("column \"{name}\": {} is neither a number nor a text", array.data_type()))
                 })?;
-                numbers.extend(found);
+                numbers.to_mut().extend(found);
             }
             ColumnCells::Same(_) => {}
         }

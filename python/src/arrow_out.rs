@@ -13,19 +13,19 @@ use std::sync::Arc;
 /// Rows of a batch.
 pub const BATCH: usize = 65_536;
 
-pub fn schema(columns: &[Py<Column>]) -> SchemaRef {
-    Arc::new(Schema::new(columns.iter().map(|column| column.get().field()).collect::<Vec<_>>()))
+pub fn schema<'c>(columns: impl Iterator<Item = &'c Column>) -> SchemaRef {
+    Arc::new(Schema::new(columns.map(Column::field).collect::<Vec<_>>()))
 }
 
 /// All rows; the memory is the columns' own.
-pub fn batch(columns: &[Py<Column>], rows: usize) -> Result<RecordBatch, ArrowError> {
-    let arrays = columns.iter().map(|column| column.get().array()).collect();
+pub fn batch<'c>(columns: impl Iterator<Item = &'c Column> + Clone, rows: usize) -> Result<RecordBatch, ArrowError> {
+    let arrays = columns.clone().map(Column::array).collect();
     RecordBatch::try_new_with_options(schema(columns), arrays, &RecordBatchOptions::new().with_row_count(Some(rows)))
 }
 
 /// The rows in batches, as whoever reads them asks for.
 pub fn stream<'py>(py: Python<'py>, columns: &[Py<Column>], rows: usize) -> PyResult<Bound<'py, PyCapsule>> {
-    let whole = batch(columns, rows).map_err(failed)?;
+    let whole = batch(columns.iter().map(Py::get), rows).map_err(failed)?;
     let schema = whole.schema();
     let batches = (0..rows).step_by(BATCH).map(move |first| Ok(whole.slice(first, BATCH.min(rows - first))));
     capsule(py, Box::new(RecordBatchIterator::new(batches, schema)))
@@ -37,7 +37,7 @@ pub fn capsule<'py>(py: Python<'py>, batches: Box<dyn arrow_array::RecordBatchRe
 }
 
 /// Names and kinds of the columns.
-pub fn schema_capsule<'py>(py: Python<'py>, columns: &[Py<Column>]) -> PyResult<Bound<'py, PyCapsule>> {
+pub fn schema_capsule<'py, 'c>(py: Python<'py>, columns: impl Iterator<Item = &'c Column>) -> PyResult<Bound<'py, PyCapsule>> {
     let schema = FFI_ArrowSchema::try_from(&*schema(columns)).map_err(failed)?;
     PyCapsule::new_with_value(py, schema, c"arrow_schema")
 }

@@ -8,6 +8,7 @@ mod json;
 mod model;
 mod result;
 mod rows;
+mod stream;
 mod study;
 mod table;
 mod waiting;
@@ -28,6 +29,8 @@ fn _beltspace(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<column::Column>()?;
     module.add_class::<model::Model>()?;
     module.add_class::<result::SweepResult>()?;
+    module.add_class::<stream::RowStream>()?;
+    module.add_class::<stream::TableBatches>()?;
     module.add_class::<study::Study>()?;
     module.add_class::<table::Table>()?;
     module.add_function(wrap_pyfunction!(model::evaluate, module)?)?;

@@ -2,7 +2,7 @@
 
 use crate::column::{Column, Values};
 use crate::errors::{of_study, raised, request};
-use crate::rows::columns;
+use crate::rows::GivenTable;
 use crate::table::Table;
 use crate::waiting::supervised;
 use beltspace::batch::{BatchTarget, GivenColumns};
@@ -166,13 +166,13 @@ pub fn evaluate(
     threads: Option<usize>,
 ) -> PyResult<Table> {
     let model = Model::meant(model)?;
-    let columns = columns(table)?;
+    let table = GivenTable::new(table)?;
     let wanted = outputs.map(|names| names.iter().map(|name| output(py, &model, name)).collect::<PyResult<Vec<_>>>()).transpose()?;
     let stop = AtomicBool::new(false);
     let (of_model, threads) = (model.clone(), threads.unwrap_or_else(cores));
     let work = || {
         let mut target = BatchTarget::of_model(of_model.clone(), of_model.defaults(), Vec::new());
-        let given = GivenColumns::new(&mut target, &columns)?;
+        let given = GivenColumns::new(&mut target, table.columns(), threads)?;
         let options = ManyOptions::default().threads(threads).stop(&stop);
         let options = match &wanted {
             Some(wanted) => options.outputs(wanted),
@@ -202,12 +202,12 @@ fn output(py: Python<'_>, model: &BeltModel, name: &str) -> PyResult<usize> {
 }
 
 fn status_column(model: &BeltModel, statuses: &[Status]) -> Column {
-    let conditions = (0..model.conditions.len()).map(Status::Failed);
+    let conditions = (0..model.conditions.len()).map(Status::failed);
     let words = [Status::Ok, Status::Overflow].into_iter().chain(conditions).map(|it| it.reason(model).to_owned()).collect();
     let code = |status: &Status| match status {
         Status::Ok => 0,
         Status::Overflow => 1,
-        Status::Failed(condition) => u16::try_from(condition + 2).expect("a model has few conditions"),
+        Status::Failed(condition) => condition + 2,
     };
     let values = Values::Words(statuses.iter().map(code).collect(), words);
     Column::of("status".to_owned(), values).described(

@@ -1,6 +1,7 @@
 //! The result of a sweep.
 
 use crate::json;
+use crate::stream::RowStream;
 use crate::table::{Table, escaped};
 use beltspace::Outcome;
 use beltspace::run::{Engine, FrontPicture};
@@ -29,9 +30,9 @@ pub struct SweepResult {
     /// A sample of the feasible designs.
     #[pyo3(get)]
     sample: Option<Py<Table>>,
-    /// All feasible designs.
+    /// All feasible designs, block by block.
     #[pyo3(get)]
-    feasible: Option<Py<Table>>,
+    feasible: Option<Py<RowStream>>,
     /// Every design.
     #[pyo3(get)]
     variants: Option<Py<Table>>,
@@ -64,7 +65,7 @@ pub struct SweepResult {
 }
 
 impl SweepResult {
-    pub fn new(py: Python<'_>, outcome: Outcome) -> PyResult<Self> {
+    pub fn new(py: Python<'_>, outcome: Outcome, threads: usize) -> PyResult<Self> {
         let table = |table: beltspace::Table| Py::new(py, Table::new(py, table)?);
         let optional = |it: Option<beltspace::Table>| it.map(table).transpose();
         let named = |tables: Vec<(String, beltspace::Table)>| {
@@ -78,7 +79,7 @@ impl SweepResult {
             front: table(outcome.front)?,
             top: optional(outcome.top)?,
             sample: optional(outcome.sample)?,
-            feasible: optional(outcome.feasible)?,
+            feasible: outcome.feasible.map(|rows| Py::new(py, RowStream::new(rows, threads))).transpose()?,
             variants: optional(outcome.variants)?,
             histograms: named(outcome.histograms)?,
             maps: named(outcome.maps)?,

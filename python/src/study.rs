@@ -3,7 +3,7 @@
 use crate::errors::{raised, request};
 use crate::model::{Model, cores};
 use crate::result::SweepResult;
-use crate::rows::columns;
+use crate::rows::GivenTable;
 use crate::table::Table;
 use crate::waiting::{stage, supervised};
 use beltspace::batch::{BatchTarget, GivenColumns};
@@ -219,18 +219,18 @@ impl Study {
         if !follower.is_none() {
             follower.call_method0("close")?;
         }
-        SweepResult::new(py, swept?.map_err(|error| raised(py, error))?)
+        SweepResult::new(py, swept?.map_err(|error| raised(py, error))?, threads.unwrap_or_else(cores))
     }
 
     /// The worst of every row of a table over the scenarios of the study; a row is a design.
     #[pyo3(signature = (table, *, threads = None))]
     fn worst(&self, py: Python<'_>, table: &Bound<'_, PyAny>, threads: Option<usize>) -> PyResult<Table> {
-        let columns = columns(table)?;
+        let table = GivenTable::new(table)?;
         let control = Control::default();
         let threads = threads.unwrap_or_else(cores);
         let work = || {
             let mut target = BatchTarget::of_study(self.study.clone(), Vec::new());
-            let given = GivenColumns::new(&mut target, &columns)?;
+            let given = GivenColumns::new(&mut target, table.columns(), threads)?;
             target.worst_of_each(&given, threads, &control)
         };
         let found = supervised(py, || control.stop.store(true, Ordering::Relaxed), |_| Ok(()), work)?;

@@ -138,7 +138,7 @@ impl Table {
 
     /// Names and kinds of the columns as Arrow has them.
     fn __arrow_c_schema__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyCapsule>> {
-        arrow_out::schema_capsule(py, &self.columns)
+        arrow_out::schema_capsule(py, self.columns.iter().map(Py::get))
     }
 
     fn __repr__(&self) -> String {

@@ -85,6 +85,7 @@ fn of_block(rows: &RowReader, block: &RawBlock, uses: &[Use], given: &[usize], t
         let table = &target.model().inputs[input];
         table.is_enumeration() || (!table.words.is_empty() && column.is_none_or(|at| !rows.numeric[at]))
     };
+    let values: Vec<&[f64]> = values.iter().map(Vec::as_slice).collect();
     let (mut columns, results) = target.evaluate(given, &values, &has_words, threads)?;
     columns.extend(carried);
     columns.extend(results);

@@ -105,7 +105,7 @@ impl BatchTarget {
     pub(super) fn evaluate(
         &self,
         given: &[usize],
-        values: &[Vec<f64>],
+        values: &[&[f64]],
         has_words: &dyn Fn(usize) -> bool,
         threads: usize,
     ) -> Result<RowColumns> {
@@ -128,7 +128,7 @@ impl BatchTarget {
     pub(super) fn by_study(
         &self,
         given: &[usize],
-        values: &[Vec<f64>],
+        values: &[&[f64]],
         has_words: &dyn Fn(usize) -> bool,
         threads: usize,
         control: &Control,
@@ -138,7 +138,7 @@ impl BatchTarget {
     }
 
     /// Refuses rows that give an input although a number of another one takes its place.
-    pub(super) fn refuse_replaced(&self, given: &[usize], values: &[Vec<f64>]) -> Result<()> {
+    pub(super) fn refuse_replaced(&self, given: &[usize], values: &[&[f64]]) -> Result<()> {
         let model = &self.model;
         let fixed = match &self.kind {
             BatchKind::Model(inputs) => inputs,
@@ -169,13 +169,13 @@ impl BatchTarget {
         &self,
         base: &[f64],
         given: &[usize],
-        values: &[Vec<f64>],
+        values: &[&[f64]],
         has_words: &dyn Fn(usize) -> bool,
         threads: usize,
     ) -> Result<RowColumns> {
         let model = &self.model;
         let names = given.iter().map(|&input| model.inputs[input].name.as_str());
-        let columns: Vec<(&str, &[f64])> = names.zip(values.iter().map(Vec::as_slice)).collect();
+        let columns: Vec<(&str, &[f64])> = names.zip(values.iter().copied()).collect();
         let options = ManyOptions::default().inputs(base).threads(threads);
         let EvaluatedColumns { statuses, outputs } = evaluate_columns(model, &columns, &options)?;
         let inputs =
@@ -204,7 +204,7 @@ fn by_study(
     study: &Study,
     columns: &[Column],
     given: &[usize],
-    values: &[Vec<f64>],
+    values: &[&[f64]],
     has_words: &dyn Fn(usize) -> bool,
     threads: usize,
     control: &Control,

@@ -1,8 +1,9 @@
 //! Rows of many designs at once: the formula over a chunk of designs, scenario after scenario. The same bits as one by one.
 
-use super::{AtWorst, Column, Row, Worst};
+use super::worst_lanes::FoundWorst;
+use super::{Column, Row};
 use crate::error::{Error, Result};
-use crate::models::{ColumnJudge, Status, Worse, input_to_si};
+use crate::models::{ColumnJudge, JudgeRoom, Status, input_to_si};
 use crate::parallel::on_threads;
 use crate::plan::Plan;
 use crate::screen::Control;
@@ -23,7 +24,7 @@ pub struct DesignColumns<'a> {
     /// The inputs, by number.
     pub inputs: &'a [usize],
     /// Of each: one value per design, in its unit.
-    pub values: &'a [Vec<f64>],
+    pub values: &'a [&'a [f64]],
 }
 
 /// A number of a set of axes.
@@ -102,7 +103,8 @@ impl<'p> WorstColumns<'p> {
         self.axes.iter().for_each(|(axis, _)| set(&mut inputs, axis, 0));
         numbers.begin(count);
         self.compute(&self.once, numbers, first, count, &inputs);
-        let mut found = FoundWorst::new(self.columns, count);
+        let mut found = FoundWorst::new(plan, self.columns, count);
+        let mut room = JudgeRoom::default();
         let mut statuses = vec![Status::Ok; count];
         let mut outputs = vec![vec![0.0; count]; self.outputs.len()];
         let mut turned = 0;
@@ -117,9 +119,8 @@ impl<'p> WorstColumns<'p> {
                 let node = self.list.results[place].expect("every result is asked for");
                 numbers.value(node, |node| self.each[node as usize])
             };
-            statuses.fill(Status::Ok);
             let mut places: Vec<&mut [f64]> = outputs.iter_mut().map(Vec::as_mut_slice).collect();
-            self.judge.judge(model, |condition| result(conditions + condition), result, &mut statuses, &mut places);
+            self.judge.judge(model, |condition| result(conditions + condition), result, &mut statuses, &mut places, &mut room);
             let scenario = digits.iter().zip(&self.axes).map(|(digit, (_, stride))| digit * stride).sum();
             let value = |quantity: Quantity| match quantity {
                 Quantity::Output(output) => {
@@ -131,7 +132,7 @@ impl<'p> WorstColumns<'p> {
                     None => ColumnValue::One(inputs[input]),
                 },
             };
-            found.take(plan, self.columns, scenario, &statuses, value);
+            found.take(scenario, &statuses, value);
             // The next scenario: the innermost axis turns fastest.
             let Some(axis) = (0..digits.len()).rev().find(|&axis| digits[axis] + 1 < self.axes[axis].0.count()) else { break };
             digits[axis] += 1;
@@ -240,126 +241,6 @@ fn ordered<'a>(list: &List, mut axes: Vec<(&'a Axis, u64)>) -> Vec<(&'a Axis, u6
     axes
 }
 
-/// What is known of a chunk of designs after some scenarios.
-struct FoundWorst {
-    feasible: Vec<bool>,
-    without_result: Vec<u64>,
-    first_without: Vec<Option<u64>>,
-    not_ok: Vec<(u64, Status)>,
-    /// Of each column.
-    worst: Vec<WorstLanes>,
-}
-
-/// The worst of one column.
-struct WorstLanes {
-    badness: Vec<f64>,
-    /// NaN as long as there is none.
-    value: Vec<f64>,
-    scenario: Vec<u64>,
-    complete: Vec<bool>,
-}
-
-impl FoundWorst {
-    fn new(columns: &[Column], count: usize) -> Self {
-        let lanes = |_: &Column| WorstLanes {
-            badness: vec![f64::NEG_INFINITY; count],
-            value: vec![f64::NAN; count],
-            scenario: vec![0; count],
-            complete: vec![true; count],
-        };
-        Self {
-            feasible: vec![true; count],
-            without_result: vec![0; count],
-            first_without: vec![None; count],
-            not_ok: vec![(u64::MAX, Status::Ok); count],
-            worst: columns.iter().map(lanes).collect(),
-        }
-    }
-
-    /// Takes in a scenario.
-    fn take<'c>(
-        &mut self,
-        plan: &Plan,
-        columns: &[Column],
-        scenario: u64,
-        statuses: &[Status],
-        value: impl Fn(Quantity) -> ColumnValue<'c>,
-    ) {
-        // An overflow takes a value away, and counts as a result that is missing only where the value is asked for.
-        let mut has_result: Vec<bool> = statuses.iter().map(|status| matches!(status, Status::Ok | Status::Overflow)).collect();
-        let asked = plan.tracked.iter().map(|(it, _)| it.quantity).chain(plan.study.constraints.iter().map(|it| it.quantity));
-        for quantity in asked {
-            if let ColumnValue::Each(values) = value(quantity) {
-                has_result.iter_mut().zip(values).for_each(|(has, value)| *has &= !value.is_nan());
-            }
-        }
-        for (lane, has) in has_result.iter().enumerate() {
-            self.without_result[lane] += u64::from(!has);
-            if !has {
-                let first = &mut self.first_without[lane];
-                *first = Some(first.map_or(scenario, |it| it.min(scenario)));
-            }
-            self.feasible[lane] &= has;
-        }
-        for constraint in &plan.study.constraints {
-            let values = value(constraint.quantity);
-            self.feasible.iter_mut().enumerate().for_each(|(lane, feasible)| *feasible &= constraint.holds(values.at(lane)));
-        }
-        for (not_ok, &status) in self.not_ok.iter_mut().zip(statuses) {
-            if status != Status::Ok && scenario < not_ok.0 {
-                *not_ok = (scenario, status);
-            }
-        }
-        for (column, lanes) in columns.iter().zip(&mut self.worst) {
-            lanes.take(column.worst, value(column.quantity), scenario);
-        }
-    }
-
-    fn into_rows(self, first: usize, inputs: impl Fn(usize) -> Vec<f64>) -> Vec<Row> {
-        let row = |lane: usize| Row {
-            index: (first + lane) as u64,
-            feasible: self.feasible[lane],
-            without_result: self.without_result[lane],
-            first_without: self.first_without[lane],
-            status: self.not_ok[lane].1,
-            inputs: inputs(lane),
-            columns: self.worst.iter().map(|it| it.at(lane)).collect(),
-            complete: self.worst.iter().map(|it| it.complete[lane]).collect(),
-        };
-        (0..self.feasible.len()).map(row).collect()
-    }
-}
-
-impl WorstLanes {
-    fn take(&mut self, worst: Worst, values: ColumnValue<'_>, scenario: u64) {
-        match worst {
-            Worst::End(Worse::Higher) => self.take_by(|value| value, values, scenario),
-            Worst::End(Worse::Lower) => self.take_by(|value| -value, values, scenario),
-            Worst::Margin(constraint) => self.take_by(|value| -constraint.margin(value), values, scenario),
-        }
-    }
-
-    #[inline(always)]
-    fn take_by(&mut self, badness: impl Fn(f64) -> f64, values: ColumnValue<'_>, scenario: u64) {
-        for lane in 0..self.value.len() {
-            let value = values.at(lane);
-            let this = badness(value);
-            let (held, since) = (self.badness[lane], self.scenario[lane]);
-            let is_worse = this > held || (this == held && scenario < since) || self.value[lane].is_nan();
-            let takes = is_worse && !value.is_nan();
-            self.badness[lane] = if takes { this } else { held };
-            self.value[lane] = if takes { value + 0.0 } else { self.value[lane] };
-            self.scenario[lane] = if takes { scenario } else { since };
-            self.complete[lane] &= !value.is_nan();
-        }
-    }
-
-    fn at(&self, lane: usize) -> AtWorst {
-        let value = self.value[lane];
-        AtWorst { value: (!value.is_nan()).then_some(value), scenario: self.scenario[lane] }
-    }
-}
-
 /// The rows of designs of a study whose only design axis is these columns; `None` where they must be computed one by one.
 ///
 /// # Errors
@@ -372,7 +253,7 @@ pub fn rows_of_columns(
     control: &Control,
 ) -> Option<Result<Vec<Row>>> {
     let found = WorstColumns::new(plan, columns, designs)?;
-    let count = designs.values.first().map_or(0, Vec::len);
+    let count = designs.values.first().map_or(0, |it| it.len());
     let share = count.div_ceil(threads.max(1)).max(1);
     let parts = on_threads((0..count).step_by(share).map(|first| first..count.min(first + share)), |part| {
         let mut numbers = NodeColumns::new(&found.list);
@@ -423,7 +304,8 @@ mod tests {
             let plan = Plan::new(study);
             let columns = certify::columns(&plan.study);
             let control = Control::default();
-            let designs = DesignColumns { inputs: &inputs, values: &values };
+            let slices: Vec<&[f64]> = values.iter().map(Vec::as_slice).collect();
+            let designs = DesignColumns { inputs: &inputs, values: &slices };
             let Some(together) = rows_of_columns(&plan, &columns, designs, 3, &control) else { continue };
             let numbers: Vec<u64> = (0..values[0].len() as u64).collect();
             let alone = certify::one_by_one(&plan, &columns, &numbers, 2, &control).expect("nobody stops it");

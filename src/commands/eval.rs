@@ -86,7 +86,7 @@ fn print_one(model: &Model, inputs: &[f64], of_study: Option<ShownDesign<'_>>, r
     }
     let why = match evaluation.status {
         Status::Ok => String::new(),
-        Status::Failed(condition) => format!("  (unless: {})", model.conditions[condition].doc),
+        Status::Failed(condition) => format!("  (unless: {})", model.conditions[usize::from(condition)].doc),
         Status::Overflow => "  (a value is too large for a 64-bit number)".to_owned(),
     };
     terminal::tell(&format!(

@@ -51,8 +51,9 @@ pub fn run(command: Command) -> Result<()> {
         Command::Reproduce(request) => reproduce::run(&request),
         #[cfg(feature = "gpu")]
         Command::Adapters { json } => adapters::run(json),
-        Command::Schema { markdown: true } => terminal::print(&beltspace::study::study_reference()),
-        Command::Schema { markdown: false } => terminal::print(&beltspace::study::study_schema()),
+        Command::Schema { markdown: true, .. } => terminal::print(&beltspace::study::study_reference()),
+        Command::Schema { model: true, .. } => terminal::print(&beltspace::study::model_schema()),
+        Command::Schema { .. } => terminal::print(&beltspace::study::study_schema()),
         Command::Man { dir } => man::run(dir.as_deref()),
         Command::Completions { shell } => {
             let mut script = Vec::new();

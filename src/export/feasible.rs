@@ -1,9 +1,10 @@
 //! The table of all feasible designs, block by block: it may be too long for the memory.
 
 use super::{Certified, tables};
-use crate::certify::{self, check_feasible};
+use crate::certify::{self, Column, Row, check_feasible};
 use crate::error::{Error, Result};
-use crate::reduce::{FEASIBLE_FILE, FeasibleList};
+use crate::plan::Plan;
+use crate::reduce::{FEASIBLE_FILE, FeasibleCursor, FeasibleList};
 use crate::screen::Control;
 use crate::study::{Axis, Levels, Study};
 use crate::table::Table;
@@ -23,27 +24,78 @@ pub fn check_count(list: &FeasibleList, feasible: u64) -> Result<()> {
     Err(Error::Disagreement(format!("the sweep kept {kept} of the {feasible} feasible designs where it must keep all")))
 }
 
-/// Calls `take` with the table of the next designs, certified, until there are none; once at least, for its columns.
-fn each_block(
-    outcome: &Certified<'_>,
+/// All feasible designs of a sweep, as a table that may be longer than the memory: block by block, and again from the start as often as
+/// somebody asks. Kept are a byte or two per design; each block is computed when it is asked for.
+#[derive(Debug)]
+pub struct FeasibleRows {
+    plan: Plan,
+    columns: Vec<Column>,
+    list: FeasibleList,
+    rows: u64,
+}
+
+impl FeasibleRows {
+    pub(crate) fn new(outcome: &Certified<'_>, list: &FeasibleList) -> Self {
+        let plan = Plan::new(outcome.plan.study.clone());
+        Self { plan, columns: outcome.columns.clone(), list: list.clone(), rows: outcome.state.feasible }
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> u64 {
+        self.rows
+    }
+
+    /// A place before the first row.
+    pub fn cursor(&self) -> FeasibleCursor {
+        self.list.cursor()
+    }
+
+    /// The columns, without rows.
+    pub fn header(&self) -> Table {
+        table_of(&self.plan, &self.columns, &[])
+    }
+
+    /// The table of the next rows, 65 536 or the last ones, certified; `None` where there are no more. `control` can stop it.
+    ///
+    /// # Errors
+    /// [`Error::Disagreement`] if the f64 reference finds a design infeasible; [`Error::Stopped`] after `control.stop`.
+    pub fn next(&self, cursor: &mut FeasibleCursor, threads: usize, control: &Control) -> Result<Option<Table>> {
+        next_block(&self.plan, &self.columns, &self.list, cursor, threads, control)
+    }
+
+    /// The whole table in memory.
+    ///
+    /// # Errors
+    /// As [`Self::next`].
+    pub fn table(&self, threads: usize, control: &Control) -> Result<Table> {
+        let (mut cursor, mut whole) = (self.cursor(), self.header());
+        while let Some(table) = self.next(&mut cursor, threads, control)? {
+            whole.append(table);
+        }
+        Ok(whole)
+    }
+}
+
+fn next_block(
+    plan: &Plan,
+    columns: &[Column],
     list: &FeasibleList,
+    cursor: &mut FeasibleCursor,
     threads: usize,
     control: &Control,
-    mut take: impl FnMut(Table) -> Result<()>,
-) -> Result<()> {
-    let study = &outcome.plan.study;
-    let mut indices = list.indices();
-    let mut is_first = true;
-    loop {
-        let block: Vec<u64> = indices.by_ref().take(BLOCK_ROWS).collect();
-        if block.is_empty() && !is_first {
-            return Ok(());
-        }
-        let rows = certify::rows(outcome.plan, &outcome.columns, &block, threads, control)?;
-        rows.iter().try_for_each(check_feasible)?;
-        take(tables::of_rows(study, &tables::label_texts(outcome), &outcome.columns, &rows, &|input| may_be_a_word(study, input)))?;
-        is_first = false;
+) -> Result<Option<Table>> {
+    let block: Vec<u64> = std::iter::from_fn(|| list.next(cursor)).take(BLOCK_ROWS).collect();
+    if block.is_empty() {
+        return Ok(None);
     }
+    let rows = certify::rows(plan, columns, &block, threads, control)?;
+    rows.iter().try_for_each(check_feasible)?;
+    Ok(Some(table_of(plan, columns, &rows)))
+}
+
+fn table_of(plan: &Plan, columns: &[Column], rows: &[Row]) -> Table {
+    let study = &plan.study;
+    tables::of_rows(study, &tables::label_texts(plan), columns, rows, &|input| may_be_a_word(study, input))
 }
 
 /// Writes the table.
@@ -56,24 +108,18 @@ pub fn write(outcome: &Certified<'_>, list: &FeasibleList, threads: usize, contr
     #[cfg(not(feature = "parquet"))]
     let form = TableForm::Csv;
     let mut stream = TableStream::new(form, out, Path::new(FEASIBLE_FILE));
-    each_block(outcome, list, threads, control, |table| stream.write(&table))?;
-    stream.finish()
-}
-
-/// The whole table in memory.
-///
-/// # Errors
-/// As [`write`], but for those of files.
-pub fn table(outcome: &Certified<'_>, list: &FeasibleList, threads: usize, control: &Control) -> Result<Table> {
-    let mut whole: Option<Table> = None;
-    each_block(outcome, list, threads, control, |table| {
-        match &mut whole {
-            None => whole = Some(table),
-            Some(whole) => whole.append(table),
+    let (plan, columns) = (outcome.plan, &outcome.columns);
+    let (mut cursor, mut is_first) = (list.cursor(), true);
+    loop {
+        let block = next_block(plan, columns, list, &mut cursor, threads, control)?;
+        match block {
+            Some(table) => stream.write(&table)?,
+            // Without rows there are columns all the same.
+            None if is_first => stream.write(&table_of(plan, columns, &[]))?,
+            None => return stream.finish(),
         }
-        Ok(())
-    })?;
-    whole.ok_or_else(|| Error::Disagreement("the table of feasible designs has no columns".to_owned()))
+        is_first = false;
+    }
 }
 
 /// Is a level of the design axis of this input a word? All blocks must have the same kind of column.

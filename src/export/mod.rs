@@ -18,6 +18,7 @@ mod tests;
 
 pub use confirmed::Confirmed;
 pub use drawn_tally::DrawnTally;
+pub use feasible::FeasibleRows;
 #[cfg(feature = "pictures")]
 pub use pictures::FrontPicture;
 #[cfg(feature = "cli")]

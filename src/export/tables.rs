@@ -3,6 +3,7 @@
 use super::Certified;
 use crate::certify::{self, Column, Role, Row};
 use crate::models::{Input, Worse};
+use crate::plan::Plan;
 use crate::study::{Axis, Goal, Study};
 use crate::table::written;
 use crate::table::{Data, Table, TableColumn};
@@ -17,15 +18,15 @@ pub fn designs(outcome: &Certified<'_>, rows: &[Row]) -> Table {
         let table = &outcome.plan.study.model.inputs[input];
         table.is_enumeration() || rows.iter().any(|row| table.word_for(row.inputs[input]).is_some())
     };
-    of_rows(&outcome.plan.study, &label_texts(outcome), &outcome.columns, rows, &has_words)
+    of_rows(&outcome.plan.study, &label_texts(outcome.plan), &outcome.columns, rows, &has_words)
 }
 
 /// The texts of the labels of a design, in the order of the study's labels.
 pub type LabelTexts<'t> = dyn Fn(u64) -> Vec<String> + 't;
 
-/// Those of the designs of an outcome.
-pub fn label_texts<'t>(outcome: &'t Certified<'_>) -> impl Fn(u64) -> Vec<String> + 't {
-    |design| outcome.plan.labels(design).map(str::to_owned).collect()
+/// Those of the designs of a study.
+pub fn label_texts(plan: &Plan) -> impl Fn(u64) -> Vec<String> + '_ {
+    |design| plan.labels(design).map(str::to_owned).collect()
 }
 
 /// The same where it is known which inputs have words in the table, some rows of which these may be.

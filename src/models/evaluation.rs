@@ -11,7 +11,7 @@ impl Status {
     pub fn reason(self, model: &Model) -> &str {
         match self {
             Self::Ok => "ok",
-            Self::Failed(condition) => &model.conditions[condition].reason,
+            Self::Failed(condition) => &model.conditions[usize::from(condition)].reason,
             Self::Overflow => OVERFLOW,
         }
     }
@@ -44,7 +44,7 @@ pub(crate) fn judge(model: &Model, margins: &[f64]) -> (Status, Set) {
     for (number, condition) in model.conditions.iter().enumerate() {
         if holds(model, number, margins[number], 0.0) != Decision::Yes {
             if status == Status::Ok && !condition.quiet {
-                status = Status::Failed(number);
+                status = Status::failed(number);
             }
             condition.invalidates.iter().filter_map(|name| model.output(name)).for_each(|output| absent.insert(output));
         }

@@ -6,9 +6,24 @@ pub enum Status {
     /// The formula has a meaning.
     Ok,
     /// Number of the condition that failed.
-    Failed(usize),
+    Failed(u16),
     /// A value is beyond what f64 holds, and absent.
     Overflow,
+}
+
+impl Status {
+    /// The condition of this number failed.
+    #[inline]
+    #[allow(clippy::cast_possible_truncation, reason = "no model has as many conditions")]
+    pub fn failed(condition: usize) -> Self {
+        Self::Failed(condition as u16)
+    }
+
+    /// Number of the condition that failed, if one did.
+    #[inline]
+    pub fn condition(self) -> Option<usize> {
+        if let Self::Failed(condition) = self { Some(condition.into()) } else { None }
+    }
 }
 
 /// The reason of [`Status::Overflow`].

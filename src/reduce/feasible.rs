@@ -136,21 +136,51 @@ impl FeasibleList {
 
     /// The numbers in rising order, each once; of a list that a sweep has ended with.
     pub fn indices(&self) -> impl Iterator<Item = u64> + '_ {
-        let mut readers: Vec<_> = self.pieces.iter().map(PackedIndices::read).collect();
-        let mut next: BinaryHeap<Reverse<(u64, usize)>> =
-            readers.iter_mut().enumerate().filter_map(|(piece, reader)| Some(Reverse((reader.next()?, piece)))).collect();
-        let mut last = None;
-        std::iter::from_fn(move || {
-            loop {
-                let Reverse((index, piece)) = next.pop()?;
-                next.extend(readers[piece].next().map(|index| Reverse((index, piece))));
-                // The same design may come twice, when a comparison merges what it has merged before.
-                if last.replace(index) != Some(index) {
-                    return Some(index);
-                }
-            }
-        })
+        let mut cursor = self.cursor();
+        std::iter::from_fn(move || self.next(&mut cursor))
     }
+
+    /// A place before the first number.
+    pub fn cursor(&self) -> FeasibleCursor {
+        let mut cursor = FeasibleCursor { pieces: vec![(0, None); self.pieces.len()], next: BinaryHeap::new(), last: None };
+        for piece in 0..self.pieces.len() {
+            let first = self.read(piece, &mut cursor);
+            cursor.next.extend(first.map(|index| Reverse((index, piece))));
+        }
+        cursor
+    }
+
+    /// The next number from a place of this list, which moves on.
+    pub fn next(&self, cursor: &mut FeasibleCursor) -> Option<u64> {
+        loop {
+            let Reverse((index, piece)) = cursor.next.pop()?;
+            let following = self.read(piece, cursor);
+            cursor.next.extend(following.map(|index| Reverse((index, piece))));
+            // The same design may come twice, when a comparison merges what it has merged before.
+            if cursor.last.replace(index) != Some(index) {
+                return Some(index);
+            }
+        }
+    }
+
+    fn read(&self, piece: usize, cursor: &mut FeasibleCursor) -> Option<u64> {
+        let bytes = &self.pieces[piece].bytes;
+        let (read, last) = &mut cursor.pieces[piece];
+        let mut reader = IndexReader { bytes: bytes.get(*read..)?, last: *last };
+        let index = reader.next()?;
+        (*read, *last) = (bytes.len() - reader.bytes.len(), Some(index));
+        Some(index)
+    }
+}
+
+/// A place in a list of designs, which holds on to nothing of it.
+#[derive(Clone, Debug)]
+pub struct FeasibleCursor {
+    /// Of each piece: bytes that were read, and the last number.
+    pieces: Vec<(usize, Option<u64>)>,
+    /// The next number of each piece that has one.
+    next: BinaryHeap<Reverse<(u64, usize)>>,
+    last: Option<u64>,
 }
 
 impl Reducer for FeasibleList {

@@ -23,7 +23,7 @@ mod top;
 pub use answers::Answers;
 pub use dominance::{Dominance, beats};
 pub use extremes::{Extreme, Extremes};
-pub use feasible::{FEASIBLE_FILE, FeasibleList};
+pub use feasible::{FEASIBLE_FILE, FeasibleCursor, FeasibleList};
 pub use front::{FRONT_BYTES, Front, KeyRule, MOST_OBJECTIVES, Points, most_points};
 pub use histogram::Histogram;
 pub use list::{Places, Reported};

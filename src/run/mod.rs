@@ -15,10 +15,11 @@ mod outcome;
 mod outlook;
 mod stored;
 
+pub use crate::export::FeasibleRows;
 #[cfg(feature = "pictures")]
 pub use crate::export::FrontPicture;
 pub use crate::export::Knee;
-pub use crate::reduce::Extreme;
+pub use crate::reduce::{Extreme, FeasibleCursor};
 pub use crate::screen::Control;
 pub use options::{Engine, Judging, Options};
 pub use outcome::{Counts, Course, Highlights, Limit, Named, Outcome, Spread};

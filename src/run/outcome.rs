@@ -7,17 +7,17 @@ use crate::contours::contours as lines_over;
 use crate::error::Result;
 #[cfg(feature = "pictures")]
 use crate::export::FrontPicture;
-use crate::export::{Certified, Knee, Summary, feasible, tables};
+use crate::export::{Certified, FeasibleRows, Knee, Summary, tables};
 use crate::models::OVERFLOW;
 use crate::parallel::to_be_had;
 use crate::plan::Plan;
 use crate::reduce::{Extreme, Histogram, histogram, map};
-use crate::screen::Control;
 use crate::study::Study;
 use crate::sweep::Settings;
 use crate::sweep::costs::Speed;
 use crate::table::Table;
 use std::ops::Range;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// The outcome of a study. Everything but [`Outcome::course`] is the same on every engine, by every method, on any number of threads.
@@ -39,8 +39,9 @@ pub struct Outcome {
     pub sample: Option<Table>,
     /// Every design, feasible or not, if the study asks for it.
     pub variants: Option<Table>,
-    /// All feasible designs in the order of their indices, if the study asks for them.
-    pub feasible: Option<Table>,
+    /// All feasible designs in the order of their indices, if the study asks for them: block by block, as they may be longer than the
+    /// memory.
+    pub feasible: Option<Arc<FeasibleRows>>,
     /// The bins of each histogram with the name of its file without extension, in the order of the study.
     pub histograms: Vec<(String, Table)>,
     /// The cells of each map, row by row, named likewise.
@@ -174,12 +175,12 @@ impl Study {
         let record = record_of(method.why, settler);
         let engine = if did.is_some() { Engine::Gpu } else { Engine::Cpu };
         let course = Course { engine, method: record.name, why: record.why, time, remarks };
-        Outcome::new(&certified, threads, &control, course)
+        Ok(Outcome::new(&certified, threads, course))
     }
 }
 
 impl Outcome {
-    fn new(certified: &Certified<'_>, threads: usize, control: &Control, course: Course) -> Result<Self> {
+    fn new(certified: &Certified<'_>, threads: usize, course: Course) -> Self {
         let Certified { plan, state, .. } = certified;
         let study = &plan.study;
         let report = &study.report;
@@ -190,7 +191,7 @@ impl Outcome {
         });
         let places = state.reported.places();
         let listed = |places: Range<usize>| certified.named[places].first().map(|rows| tables::designs(certified, rows));
-        Ok(Self {
+        Self {
             counts: Counts {
                 designs: plan.designs(),
                 scenarios: plan.scenarios(),
@@ -201,7 +202,7 @@ impl Outcome {
             top: listed(places.top),
             sample: listed(places.samples),
             variants: study.report.variants.then(|| tables::variants(certified, &certified.variants)),
-            feasible: state.reported.all_feasible.first().map(|list| feasible::table(certified, list, threads, control)).transpose()?,
+            feasible: state.reported.all_feasible.first().map(|list| FeasibleRows::new(certified, list).into()),
             histograms: histogram::names(study).into_iter().zip(state.reported.histograms.iter().map(Histogram::table)).collect(),
             contours: lines.collect(),
             maps: {
@@ -214,7 +215,7 @@ impl Outcome {
             front_picture: FrontPicture::new(certified),
             course,
             study: study.clone(),
-        })
+        }
     }
 }
 

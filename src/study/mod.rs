@@ -42,6 +42,6 @@ pub use resolved::{
 };
 #[doc(hidden)]
 pub use resolved::{worst_end, worst_end_over};
-pub use schema::{study_reference, study_schema};
+pub use schema::{model_schema, study_reference, study_schema};
 pub use sensitivity::{HOLDS, InfluenceOver, SensitivitySpec};
 pub use spectrum::{OverScenarios, Spectrum};

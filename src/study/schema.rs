@@ -2,7 +2,7 @@
 //!
 //! Which keys a table takes comes from the reader. A schema sees the form only: names of a model, units and ranges are for the reader.
 
-use super::read::keys;
+use super::read::{DISCRETE, LAWS, LEFT_OUT, LISTED, MODEL_KEYS, PARAMETERS, keys};
 use serde_json::{Map, Value, json};
 
 /// A key of a table: its name, what its value is, and what it means.
@@ -80,12 +80,56 @@ fn end(what: &'static str, name: &'static str) -> SchemaKey {
     (name, of("value"), what)
 }
 
+/// A tolerance: `key` is the name of its effect.
+fn tolerance(key: &'static str, doc: &str) -> Value {
+    let change = any_of([list(of("value")), of("range"), of("law")]);
+    let mut schema = table(&[key], &[], &[key], vec![(key, change, "A distribution, or levels.")]);
+    schema["description"] = doc.into();
+    schema
+}
+
+/// A distribution: one key that names it, with its parameters, and where draws are cut off.
+fn law() -> Value {
+    let parameters = |(name, parameters): (&&str, &&[&str])| {
+        let one = |key: &&str| ((*key).to_owned(), of("value"));
+        let needed: Vec<&str> = parameters.iter().copied().filter(|key| (*name, *key) != LEFT_OUT).collect();
+        let length = parameters.len();
+        let of_numbers = || {
+            let properties: Map<String, Value> = parameters.iter().map(one).collect();
+            json!({ "type": "object", "properties": properties, "required": needed, "additionalProperties": false })
+        };
+        let in_order = || json!({ "type": "array", "items": of("value"), "minItems": length, "maxItems": length });
+        let mut schema = match *name {
+            "discrete" => of("discrete"),
+            "empirical" => any_of([list(of("value")), of("measured")]),
+            name if LISTED.contains(&name) => any_of([of_numbers(), in_order()]),
+            _ => of_numbers(),
+        };
+        let words: Vec<String> = parameters.iter().map(|it| format!("`{it}`")).collect();
+        schema["description"] = match *name {
+            "discrete" => "Values with weights.".to_owned(),
+            "empirical" => "Measured values: a list, or the column of a file.".to_owned(),
+            "weibull" => format!("Parameters {}; `from` is 0 if left out.", words.join(", ")),
+            name if LISTED.contains(&name) => format!("Parameters {}, also as a list.", words.join(", ")),
+            _ => format!("Parameters {}.", words.join(", ")),
+        }
+        .into();
+        ((*name).to_owned(), schema)
+    };
+    let mut properties: Map<String, Value> = LAWS.iter().zip(&PARAMETERS).map(parameters).collect();
+    for (key, doc) in [("from", "Draws below this are left out."), ("to", "Draws above this are left out.")] {
+        properties.insert(key.to_owned(), json!({ "$ref": "#/$defs/value", "description": doc }));
+    }
+    let one_of: Vec<Value> = LAWS.iter().map(|name| json!({ "required": [name] })).collect();
+    json!({
+        "type": "object", "description": "A distribution, one of these, truncated by `from` and `to`.",
+        "properties": properties, "oneOf": one_of, "additionalProperties": false,
+    })
+}
+
 #[allow(clippy::too_many_lines, reason = "one table after the other")]
 fn definitions() -> Value {
-    let law = |body: Value| json!({ "type": "object", "minProperties": 1, "properties": body });
     let numbers = || list(of("value"));
-    let laws: Map<String, Value> =
-        super::read::LAWS.iter().map(|name| ((*name).to_owned(), json!({ "type": ["object", "array"] }))).collect();
     json!({
         "value": { "type": ["number", "string"], "description": "A number in the unit of the name, a text with a unit such as \"0.25 in\", or a word." },
         "axis": any_of([
@@ -108,23 +152,8 @@ fn definitions() -> Value {
             ("step", of("value"), "The distance of two levels, in place of `count`; 1 for whole numbers."),
             ("spacing", word(&["linear", "log"]), "How the levels lie; `linear` if left out."),
         ]),
-        "uncertain": {
-            "type": "object",
-            "description": "A distribution, truncated by `from` and `to`; or `times` or `plus`: a tolerance about what the design says, by a distribution or levels.",
-            "properties": {
-                "times": { "type": ["object", "array"], "description": "A factor." },
-                "plus": { "type": ["object", "array"], "description": "An addend, in the unit of the name." },
-                "from": { "$ref": "#/$defs/value", "description": "Draws below this are left out." },
-                "to": { "$ref": "#/$defs/value", "description": "Draws above this are left out." },
-            },
-            "anyOf": [
-                { "required": ["times"] },
-                { "required": ["plus"] },
-                { "anyOf": super::read::LAWS.iter().map(|name| json!({ "required": [name] })).collect::<Vec<_>>() },
-            ],
-            "additionalProperties": false,
-            "patternProperties": { format!("^({})$", super::read::LAWS.join("|")): law(Value::Object(laws))["properties"]["normal"] },
-        },
+        "uncertain": any_of([tolerance("times", "A factor on what the design says."), tolerance("plus", "An addend to what the design says, in the unit of the name."), of("law")]),
+        "law": law(),
         "over_draws": any_of([
             word(&["mean", "worst", "sd"]),
             table(keys::QUANTILE, &[], &["quantile"], vec![("quantile", json!({ "type": "number" }), "The share of draws that are at least as good.")]),
@@ -196,10 +225,10 @@ fn definitions() -> Value {
             ("doc", text(), "What it is, in a sentence."),
             ("source", text(), "Where it comes from."),
         ])]),
-        "curve": table(keys::CURVE, &[], &["x", "y"], vec![
-            ("csv", text(), "A CSV file with the points, relative to the study."),
-            ("x", json!({ "type": ["string", "array"] }), "The column across, whose name ends in its unit."),
-            ("y", json!({ "type": ["string", "array"] }), "The column of values."),
+        "curve": table(keys::CURVE, &[], keys::CURVE, vec![
+            ("csv", text(), "A CSV file with the points, relative to the study or the model's file."),
+            ("x", text(), "The column across, whose name ends in its unit."),
+            ("y", text(), "The column of values."),
         ]),
         "probability": table(keys::PROBABILITY, &[], &[], vec![
             ("draws", whole(1), "Draws that choose designs; 4096 if left out."),
@@ -209,10 +238,47 @@ fn definitions() -> Value {
             ("correlation", list(json!({ "type": "array" })), "Pairs of inputs with their correlation: `[[\"a\", \"b\", -0.3]]`."),
             ("enclosure", truth(), "Yields of reported designs get proven bounds."),
         ]),
-        "measured": table(keys::MEASURED, &[], &["csv", "column"], vec![
+        "measured": table(keys::MEASURED, &[], keys::MEASURED, vec![
             ("csv", text(), "A CSV file of measured values."),
             ("column", text(), "Its column."),
         ]),
+        "discrete": table(DISCRETE, &[], DISCRETE, vec![
+            ("values", numbers(), "The values."),
+            ("weights", list(of("value")), "How often each comes, relative to the others."),
+        ]),
+        "input": table(keys::INPUT, &[], &["default"], vec![
+            ("default", of("value"), "Its value where nobody gives one."),
+            ("valid", any_of([of("ends"), of("valid")]), "Numbers that it takes, ends included; any if left out."),
+            ("usual", of("ends"), "Numbers for which the formulas are known to hold; others are told."),
+            ("integer", truth(), "It takes whole numbers only."),
+            ("words", list(text()), "Words that it takes, too; without `valid` nothing but them."),
+            ("only_for", json!({ "type": "object", "minProperties": 1, "maxProperties": 1, "additionalProperties": list(text()) }), "It is read only where another input has one of these words."),
+            ("follows", text(), "The input whose value it has unless it is given."),
+            ("instead_of", text(), "The input whose place a number of this one takes."),
+            ("symbol", text(), "Its symbol."),
+            ("doc", text(), "What it is, in a sentence."),
+            ("source", text(), "Where its values come from."),
+        ]),
+        "ends": json!({ "type": "array", "items": of("value"), "minItems": 2, "maxItems": 2, "description": "The least and the largest: `[low, high]`." }),
+        "valid": table(keys::VALID, &[], &[], vec![
+            end("The least.", "min"),
+            end("It is greater than this.", "above"),
+            end("The largest.", "max"),
+            end("It is less than this.", "below"),
+        ]),
+        "condition": table(keys::CONDITION, &[], &["margin"], vec![
+            ("margin", text(), "A formula: at least 0 where the condition holds."),
+            ("strict", truth(), "It holds only where the margin is greater than 0."),
+            ("quiet", truth(), "It takes outputs away and is no status."),
+            ("invalidates", list(text()), "Outputs without meaning where it fails; all if left out."),
+            ("doc", text(), "What holds, in a sentence."),
+        ]),
+        "output": any_of([text(), table(keys::OUTPUT, &[], &[], vec![
+            ("worst", word(&["lowest", "highest"]), "Which end over the scenarios is the worst."),
+            ("symbol", text(), "Its symbol."),
+            ("doc", text(), "What it is, in a sentence."),
+            ("source", text(), "Where it comes from."),
+        ])]),
         "sample": table(keys::SAMPLE, &[], &["method", "count"], vec![
             ("method", word(&["sobol", "latin-hypercube", "random"]), "How designs are drawn from the ranges of the axes."),
             ("count", whole(1), "How many designs."),
@@ -235,6 +301,36 @@ fn definitions() -> Value {
 /// The form of a study file: the text of a JSON Schema, draft 2020-12.
 pub fn study_schema() -> String {
     format!("{:#}\n", schema())
+}
+
+/// The form of the file of a model: the text of a JSON Schema, draft 2020-12.
+pub fn model_schema() -> String {
+    format!("{:#}\n", of_model())
+}
+
+fn of_model() -> Value {
+    let mut schema = table(
+        &MODEL_KEYS,
+        &[],
+        &["formulas"],
+        vec![
+            ("summary", text(), "What it is, in a sentence."),
+            ("source", text(), "Where its formulas come from."),
+            ("limits", text(), "What it leaves out."),
+            ("base", text(), "A model of `beltspace models` whose inputs, outputs and conditions it has, too."),
+            ("units", list(text()), "Units of one's own, such as `EUR`."),
+            ("inputs", named(of("input")), "Its inputs; the name ends in the unit."),
+            ("curves", named(of("curve")), "Measured data, used in formulas like a function."),
+            ("formulas", named(of("formula")), "What it computes; the name ends in the unit."),
+            ("conditions", named(of("condition")), "Where it has a meaning; the name is the status where it has none."),
+            ("outputs", named(of("output")), "The formulas that are outputs, with what they are; all that are not hidden if left out."),
+            ("presets", named(named(of("value"))), "Values of inputs that belong together."),
+        ],
+    );
+    schema["$schema"] = "https://json-schema.org/draft/2020-12/schema".into();
+    schema["title"] = "A model of beltspace in a file".into();
+    schema["$defs"] = definitions();
+    schema
 }
 
 fn schema() -> Value {
@@ -274,7 +370,9 @@ fn schema() -> Value {
 /// Tables of the page, in its order: heading, and place in the schema.
 const PAGES: &[(&str, &str)] = &[
     ("Ranges: `{ from, to, ... }`", "range"),
-    ("Distributions and tolerances in `[uncertainty]`", "uncertain"),
+    ("Tolerances in `[uncertainty]`", "uncertain"),
+    ("Distributions in `[uncertainty]`", "law"),
+    ("`discrete`: values with weights", "discrete"),
     ("`[probability]`", "probability"),
     ("A constraint", "constraint"),
     ("An objective", "objective"),
@@ -291,6 +389,14 @@ const PAGES: &[(&str, &str)] = &[
     ("A formula", "formula"),
     ("A curve", "curve"),
     ("Measured values of `empirical`", "measured"),
+];
+
+/// Those of the file of a model.
+const MODEL_PAGES: &[(&str, &str)] = &[
+    ("`[inputs]` of a model", "input"),
+    ("`valid` of an input", "valid"),
+    ("`[conditions]` of a model", "condition"),
+    ("`[outputs]` of a model", "output"),
 ];
 
 /// What a value may be, in words.
@@ -344,14 +450,24 @@ pub fn study_reference() -> String {
     let schema = schema();
     let mut page = "# The study file: every key\n\n\
         This page is what `beltspace schema --markdown` prints; `beltspace schema` prints the same for editors, as JSON Schema. Both come from the \
-        tables by which the reader refuses unknown keys. What the keys are for is told in the [README](../README.md) and in the pages that it \
+        tables by which the reader refuses unknown keys. What the keys are for is told in [what a study says](manual/study.md) and in the pages that it \
         names.\n\n\
         A *value* is a number in the unit that the name ends in, a text with a unit such as `\"0.25 in\"`, or a word that the input takes. An \
         *axis* is a value, a list of values, a range, or cases: rows `[{ a = 1, b = 2 }, ...]`, `{ csv = \"file.csv\" }`, or with weights \
         `{ cases = ..., weight = \"column\" }`; in `[uncertainty]` also a distribution or a tolerance.\n\n## Top level\n\n"
         .to_owned();
     rows(&schema, &mut page);
-    for (heading, definition) in PAGES {
+    sections(&schema, PAGES, &mut page);
+    page.push_str("\nWhat the parameters of a distribution mean is told in [probability](probability.md).\n");
+    page.push_str("\n## The file of a model\n\nIts form is what `beltspace schema --model` prints; formulas and curves are those of a study. See [models in a file](models-in-a-file.md).\n\n");
+    let model = of_model();
+    rows(&model, &mut page);
+    sections(&model, MODEL_PAGES, &mut page);
+    page
+}
+
+fn sections(schema: &Value, pages: &[(&str, &str)], page: &mut String) {
+    for (heading, definition) in pages {
         page.push_str(&format!("\n## {heading}\n\n"));
         let definition = &schema["$defs"][*definition];
         if let Some(doc) = definition["description"].as_str() {
@@ -361,11 +477,8 @@ pub fn study_reference() -> String {
             let short: Vec<String> = short.iter().filter(|it| !it["properties"].is_object()).map(kind).collect();
             page.push_str(&format!("In short {}, else a table:\n\n", short.join(" or ")));
         }
-        rows(definition, &mut page);
+        rows(definition, page);
     }
-    let laws: Vec<String> = super::read::LAWS.iter().map(|name| format!("`{name}`")).collect();
-    page.push_str(&format!("\nDistributions are {}; their parameters are in [probability](probability.md).\n", laws.join(", ")));
-    page
 }
 
 #[cfg(test)]
@@ -382,6 +495,7 @@ mod tests {
             assert!(definitions.contains_key(name), "{name}");
         }
         assert_eq!(schema["properties"].as_object().map(Map::len), Some(crate::study::read::TOP_LEVEL.len()));
+        assert_eq!(schema["$defs"]["law"]["properties"].as_object().map(Map::len), Some(LAWS.len() + 2));
         let page = study_reference();
         assert!(page.contains("| `model` (needed) | text |") && page.contains("| `front_budget` |"));
     }

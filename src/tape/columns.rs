@@ -36,6 +36,8 @@ pub struct NodeColumns {
     /// Of every operation: the number that all designs share; also room for one design.
     pub slots: Vec<f64>,
     columns: Vec<Vec<f64>>,
+    /// Of every operation: which column is its own while somebody reads it.
+    place: Vec<Node>,
     count: usize,
     /// Where roots are found; none while they are, as none stands within another.
     roots: Option<Box<RootColumns>>,
@@ -51,7 +53,36 @@ impl NodeColumns {
     /// The same where no root is found.
     pub(super) fn plain(list: &List) -> Self {
         let operations = list.operations.len();
-        Self { slots: vec![0.0; operations], columns: vec![Vec::new(); operations], count: 0, roots: None }
+        let place = (0..operations as Node).collect();
+        Self { slots: vec![0.0; operations], columns: vec![Vec::new(); operations], place, count: 0, roots: None }
+    }
+
+    /// Lets these operations, operands first, share columns: one is free again after it was last read, so that all of them stay in the
+    /// caches. Those that are `kept` are read at the end. Only they may be computed, and in this order.
+    pub(super) fn share(&mut self, list: &List, order: &[Node], kept: &[Node]) {
+        let mut last_read = vec![0; list.operations.len()];
+        let mut is_column = vec![false; list.operations.len()];
+        order.iter().for_each(|&node| is_column[node as usize] = true);
+        for (step, &node) in order.iter().enumerate() {
+            list.reads(node, |operand| last_read[operand as usize] = step);
+        }
+        kept.iter().for_each(|&node| last_read[node as usize] = usize::MAX);
+        let mut free: Vec<Node> = Vec::new();
+        let mut ended: Vec<Node> = Vec::new();
+        let mut columns = 0;
+        for (step, &node) in order.iter().enumerate() {
+            // Before the operands are free: no operation writes what it reads.
+            self.place[node as usize] = free.pop().unwrap_or_else(|| {
+                columns += 1;
+                columns - 1
+            });
+            ended.clear();
+            list.reads(node, |operand| ended.push(operand));
+            ended.retain(|&operand| last_read[operand as usize] == step && is_column[operand as usize]);
+            ended.sort_unstable();
+            ended.dedup();
+            free.extend(ended.iter().map(|&operand| self.place[operand as usize]));
+        }
     }
 
     /// Begins a chunk of that many designs, at most [`CHUNK`].
@@ -62,21 +93,24 @@ impl NodeColumns {
     /// A number of the chunk.
     #[inline]
     pub fn value(&self, node: Node, each: impl Fn(Node) -> bool) -> ColumnValue<'_> {
-        if each(node) { ColumnValue::Each(&self.columns[node as usize][..self.count]) } else { ColumnValue::One(self.slots[node as usize]) }
+        if each(node) {
+            ColumnValue::Each(&self.columns[self.place[node as usize] as usize][..self.count])
+        } else {
+            ColumnValue::One(self.slots[node as usize])
+        }
     }
 
     /// Fills the column of an operation by what the caller knows of it, such as the values of an input.
     pub fn fill(&mut self, node: Node, fill: impl FnOnce(&mut [f64])) {
-        let column = &mut self.columns[node as usize];
-        column.resize(CHUNK, 0.0);
-        fill(&mut column[..self.count]);
+        let column = &mut self.columns[self.place[node as usize] as usize];
+        fill(room(column, self.count));
     }
 
     /// Computes the column of an operation from its operands; what inputs are is the caller's business.
     pub fn compute(&mut self, list: &List, node: Node, each: impl Fn(Node) -> bool) {
-        let mut column = std::mem::take(&mut self.columns[node as usize]);
-        column.resize(CHUNK, 0.0);
-        let room = &mut column[..self.count];
+        let place = self.place[node as usize] as usize;
+        let mut column = std::mem::take(&mut self.columns[place]);
+        let room = room(&mut column, self.count);
         let of = |node| self.value(node, &each);
         match list.operations[node as usize] {
             Operation::Unary(operation, a) => unary(operation, of(a), room),
@@ -104,8 +138,18 @@ impl NodeColumns {
             }
             Operation::Input(_) | Operation::Constant(_) | Operation::Argument(_) | Operation::Rolled(_) => {}
         }
-        self.columns[node as usize] = column;
+        self.columns[place] = column;
     }
+}
+
+/// The first of a column, which grows to the longest chunk and no further: longer strides would put all columns at the same places of the
+/// first-level cache.
+#[inline]
+fn room(column: &mut Vec<f64>, count: usize) -> &mut [f64] {
+    if column.len() < count {
+        column.resize(count, 0.0);
+    }
+    &mut column[..count]
 }
 
 fn select(margin: ColumnValue<'_>, a: ColumnValue<'_>, b: ColumnValue<'_>, column: &mut [f64]) {

@@ -144,13 +144,18 @@ impl List {
             if !needed[node] {
                 continue;
             }
-            let mut mark = |operand: Node| needed[operand as usize] = true;
-            match self.operations[node] {
-                Operation::Root(number) => self.outside(number, &mut mark),
-                operation => operation.operands(mark),
-            }
+            let mark = |operand: Node| needed[operand as usize] = true;
+            self.reads(node as Node, mark);
         }
         (0..self.operations.len() as Node).filter(|&node| needed[node as usize] && !self.inner[node as usize]).collect()
+    }
+
+    /// Calls `each` with the operations that one reads when it is computed.
+    pub fn reads(&self, node: Node, each: impl FnMut(Node)) {
+        match self.operations[node as usize] {
+            Operation::Root(number) => self.outside(number, each),
+            operation => operation.operands(each),
+        }
     }
 
     /// Calls `each` with what a root and its function read that does not depend on what the function is asked at.

@@ -1,6 +1,9 @@
 //! Results of a list over many designs, a chunk at a time.
 
-use super::{CHUNK, ColumnValue, List, Node, NodeColumns, Operation};
+use super::{ColumnValue, List, Node, NodeColumns, Operation};
+
+/// Most designs in a chunk of a list: all the columns that are read at a time fit the second-level cache.
+pub const LIST_CHUNK: usize = 256;
 
 /// A list over a block of designs: which operations are needed, and which have a number per design.
 #[derive(Debug)]
@@ -21,6 +24,8 @@ impl ListColumns {
         let nodes: Vec<Node> = results.filter_map(|result| list.results[result]).collect();
         self.needed = list.needed_by(&nodes);
         self.each = list.dependencies(|input| Bits(varying(input))).into_iter().map(|it| it.0).collect();
+        let order: Vec<Node> = self.needed.iter().copied().filter(|&node| self.each[node as usize]).collect();
+        self.numbers.share(list, &order, &nodes);
     }
 
     /// Computes `count` designs, a chunk at a time; `input` gives the list's inputs, `take` is given every chunk.
@@ -31,8 +36,8 @@ impl ListColumns {
         input: impl Fn(u16) -> ColumnValue<'c>,
         mut take: impl FnMut(&Self, usize, usize),
     ) {
-        for first in (0..count).step_by(CHUNK) {
-            let length = CHUNK.min(count - first);
+        for first in (0..count).step_by(LIST_CHUNK) {
+            let length = LIST_CHUNK.min(count - first);
             self.numbers.begin(length);
             let Self { numbers, needed, each } = self;
             for &node in &*needed {

@@ -30,7 +30,7 @@ pub use equations::{EquationLine, FormulaEquations, Symbols};
 pub use error_bound::{RunningError, nearest_f32};
 pub use interval::{EVERYTHING, Interval};
 pub use list::{List, ListRoot};
-pub use list_columns::ListColumns;
+pub use list_columns::{LIST_CHUNK, ListColumns};
 pub use record::{Known, Loops, Recording, Trace};
 pub use rolled::{FormulaTable, ListLoop, Rolled, RolledLoop, Store};
 pub use set::Set;

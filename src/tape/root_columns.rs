@@ -2,6 +2,7 @@
 
 use super::columns::{ColumnValue, NodeColumns};
 use super::{List, ListRoot, Node, Operation};
+use multiversion::multiversion;
 
 /// Steps of a root at most, and what counts as rounding: those of `bracketed_newton`.
 const MOST_STEPS: usize = 100;
@@ -9,38 +10,112 @@ const MOST_STEPS: usize = 100;
 /// Room for the roots of a list.
 #[derive(Debug)]
 pub struct RootColumns {
-    /// The functions' operations, over the lanes that are still under way.
+    /// The functions' operations, over the lanes that are looked at.
     numbers: NodeColumns,
-    /// Of every lane under way: its place in the chunk, and where its search is.
-    lanes: Vec<Lane>,
+    lanes: RootLanes,
 }
 
-/// The search of one lane.
-#[derive(Clone, Copy, Debug)]
-struct Lane {
-    place: u32,
-    low: f64,
-    high: f64,
-    x: f64,
-    last_step: f64,
+/// Of every lane that is looked at: its place in the chunk, and where its search is.
+#[derive(Debug, Default)]
+struct RootLanes {
+    place: Vec<u32>,
+    low: Vec<f64>,
+    high: Vec<f64>,
+    x: Vec<f64>,
+    last_step: Vec<f64>,
+    /// All bits set while the search goes on: who has ended stays where it is.
+    open: Vec<u64>,
+    /// Room for the value and slope of a function that has one number for all lanes.
+    value: Vec<f64>,
+    slope: Vec<f64>,
 }
 
-impl Lane {
-    /// Takes a step; true if it was the last.
-    #[inline(always)]
-    fn step(&mut self, value: f64, slope: f64) -> bool {
-        let above = value > 0.0;
-        self.high = if above { self.x } else { self.high };
-        self.low = if above { self.low } else { self.x };
-        let newton = self.x - value / slope;
-        let next = if newton >= self.low && newton <= self.high { newton } else { 0.5 * (self.low + self.high) };
-        let step = (next - self.x).abs();
-        let at_rounding = step <= 1e4 * f64::EPSILON * self.x.abs();
-        self.x = next;
-        let ends = step == 0.0 || (at_rounding && step >= 0.5 * self.last_step);
-        self.last_step = step;
-        ends
+impl RootLanes {
+    fn begin(&mut self, count: usize, low: ColumnValue<'_>, high: ColumnValue<'_>, start: ColumnValue<'_>) {
+        let fill = |to: &mut Vec<f64>, number: &dyn Fn(usize) -> f64| {
+            to.clear();
+            to.extend((0..count).map(number));
+        };
+        self.place.clear();
+        self.place.extend(0..count as u32);
+        fill(&mut self.low, &|lane| low.at(lane));
+        fill(&mut self.high, &|lane| high.at(lane));
+        fill(&mut self.x, &|lane| f64::min(f64::max(start.at(lane), low.at(lane)), high.at(lane)));
+        fill(&mut self.last_step, &|_| f64::INFINITY);
+        self.open.clear();
+        self.open.resize(count, u64::MAX);
     }
+
+    /// Takes a step in each lane; the number of lanes that go on.
+    fn step(&mut self, value: ColumnValue<'_>, slope: ColumnValue<'_>) -> usize {
+        let count = self.x.len();
+        let value = of_all(value, &mut self.value, count);
+        let slope = of_all(slope, &mut self.slope, count);
+        let [low, high, x, last_step] = [&mut self.low, &mut self.high, &mut self.x, &mut self.last_step];
+        let left = steps(value, slope, low, high, x, last_step, &mut self.open);
+        usize::try_from(left).unwrap_or(count)
+    }
+
+    /// Writes where all lanes are, and keeps those that go on.
+    fn keep_open(&mut self, column: &mut [f64], left: usize) {
+        // As long as none was sorted out each stands at its place.
+        if left == 0 && self.x.len() == column.len() {
+            return column.copy_from_slice(&self.x);
+        }
+        let mut kept = 0;
+        for lane in 0..self.x.len() {
+            column[self.place[lane] as usize] = self.x[lane];
+            if self.open[lane] != 0 {
+                self.place[kept] = self.place[lane];
+                for numbers in [&mut self.low, &mut self.high, &mut self.x, &mut self.last_step] {
+                    numbers[kept] = numbers[lane];
+                }
+                kept += 1;
+            }
+        }
+        self.place.truncate(kept);
+        [&mut self.low, &mut self.high, &mut self.x, &mut self.last_step].into_iter().for_each(|numbers| numbers.truncate(kept));
+        self.open.clear();
+        self.open.resize(kept, u64::MAX);
+    }
+}
+
+/// A column with a number for each lane.
+fn of_all<'a>(values: ColumnValue<'a>, room: &'a mut Vec<f64>, count: usize) -> &'a [f64] {
+    match values {
+        ColumnValue::Each(values) => values,
+        ColumnValue::One(value) => {
+            room.clear();
+            room.resize(count, value);
+            room
+        }
+    }
+}
+
+/// The step of `bracketed_newton` in each lane that has not ended; how many go on.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+#[allow(clippy::too_many_arguments, reason = "columns side by side")]
+fn steps(value: &[f64], slope: &[f64], low: &mut [f64], high: &mut [f64], x: &mut [f64], last_step: &mut [f64], open: &mut [u64]) -> u64 {
+    let count = x.len();
+    let (value, slope, low, high) = (&value[..count], &slope[..count], &mut low[..count], &mut high[..count]);
+    let (last_step, open) = (&mut last_step[..count], &mut open[..count]);
+    let mut left = 0;
+    for lane in 0..count {
+        let above = value[lane] > 0.0;
+        high[lane] = if above { x[lane] } else { high[lane] };
+        low[lane] = if above { low[lane] } else { x[lane] };
+        let newton = x[lane] - value[lane] / slope[lane];
+        let halved = 0.5 * (low[lane] + high[lane]);
+        let next = if newton >= low[lane] && newton <= high[lane] { newton } else { halved };
+        let step = (next - x[lane]).abs();
+        let at_rounding = step <= 1e4 * f64::EPSILON * x[lane].abs();
+        let ends = step == 0.0 || (at_rounding && step >= 0.5 * last_step[lane]);
+        x[lane] = if open[lane] == 0 { x[lane] } else { next };
+        last_step[lane] = step;
+        open[lane] = if ends { 0 } else { open[lane] };
+        left += open[lane] & 1;
+    }
+    left
 }
 
 /// Can a root be found over columns? Its function must be plain operations.
@@ -57,7 +132,7 @@ pub fn serves(list: &List, number: u8) -> bool {
 impl RootColumns {
     /// Room for a list.
     pub fn new(list: &List) -> Self {
-        Self { numbers: NodeColumns::plain(list), lanes: Vec::new() }
+        Self { numbers: NodeColumns::plain(list), lanes: RootLanes::default() }
     }
 
     /// The roots of a chunk; `of` gives what the function reads from outside.
@@ -65,12 +140,7 @@ impl RootColumns {
         let Self { numbers, lanes } = self;
         let ListRoot { root, inner } = &list.roots[number as usize];
         let (low, high, start) = (of(root.bracket.0), of(root.bracket.1), of(root.start));
-        lanes.clear();
-        lanes.extend((0..column.len()).map(|lane| {
-            let (low, high) = (low.at(lane), high.at(lane));
-            let x = f64::min(f64::max(start.at(lane), low), high);
-            Lane { place: lane as u32, low, high, x, last_step: f64::INFINITY }
-        }));
+        lanes.begin(column.len(), low, high, start);
         let mut outside: Vec<Node> = Vec::new();
         list.outside(number, |node| {
             if !outside.contains(&node) {
@@ -87,34 +157,34 @@ impl RootColumns {
         let each: &dyn Fn(Node) -> bool = &|node| each[node as usize];
         let mut gathered = 0;
         for _ in 0..MOST_STEPS {
-            numbers.begin(lanes.len());
-            if gathered != lanes.len() {
-                gathered = lanes.len();
+            let looked_at = lanes.x.len();
+            numbers.begin(looked_at);
+            if gathered != looked_at {
+                gathered = looked_at;
                 for &node in &differs {
                     let ColumnValue::Each(values) = of(node) else { continue };
-                    numbers.fill(node, |to| to.iter_mut().zip(&*lanes).for_each(|(to, lane)| *to = values[lane.place as usize]));
+                    numbers.fill(node, |to| {
+                        if to.len() == values.len() {
+                            to.copy_from_slice(values);
+                        } else {
+                            to.iter_mut().zip(&lanes.place).for_each(|(to, &place)| *to = values[place as usize]);
+                        }
+                    });
                 }
             }
-            numbers.fill(root.argument, |to| to.iter_mut().zip(&*lanes).for_each(|(to, lane)| *to = lane.x));
+            numbers.fill(root.argument, |to| to.copy_from_slice(&lanes.x));
             for &node in inner {
                 numbers.compute(list, node, each);
             }
-            let (value, slope) = (numbers.value(root.value, each), numbers.value(root.slope, each));
-            let mut kept = 0;
-            for at in 0..lanes.len() {
-                let mut lane = lanes[at];
-                if lane.step(value.at(at), slope.at(at)) {
-                    column[lane.place as usize] = lane.x;
-                } else {
-                    lanes[kept] = lane;
-                    kept += 1;
+            let left = lanes.step(numbers.value(root.value, each), numbers.value(root.slope, each));
+            // Lanes that have ended cost less than to sort them out, unless they are many.
+            if 4 * left <= looked_at {
+                lanes.keep_open(column, left);
+                if left == 0 {
+                    return;
                 }
             }
-            lanes.truncate(kept);
-            if lanes.is_empty() {
-                return;
-            }
         }
-        lanes.iter().for_each(|lane| column[lane.place as usize] = lane.x);
+        lanes.keep_open(column, lanes.x.len());
     }
 }

@@ -53,7 +53,7 @@ mod pulley_fe;
 mod pulleys;
 /// A random number generator for seeded tests.
 mod random;
-/// The README, compared with what the program prints.
+/// The README and the manual, compared with what the program prints.
 mod readme;
 /// The page of a result, in a browser.
 mod report_page;

@@ -1,4 +1,4 @@
-//! The README shows what the program prints; only times may differ.
+//! The README and the pages of `docs/manual/` show what the program prints; only times may differ.
 
 use beltspace::models;
 use serde_json::Value;
@@ -9,8 +9,51 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
+/// Lines that a stranger reads first.
+const MOST_LINES: usize = 250;
+
+/// The README and the pages of the manual, with their paths.
+fn pages() -> Vec<(String, String)> {
+    let manual = std::fs::read_dir(root().join("docs/manual")).expect("there is a manual").map(|entry| entry.expect("a file").file_name());
+    let mut paths: Vec<String> = manual.map(|name| format!("docs/manual/{}", name.to_string_lossy())).collect();
+    paths.sort();
+    paths.insert(0, "README.md".to_owned());
+    let page = |path: String| {
+        let text = std::fs::read_to_string(root().join(&path)).expect("text");
+        (path, text)
+    };
+    paths.into_iter().map(page).collect()
+}
+
+/// All of them in one text.
 fn readme() -> String {
-    std::fs::read_to_string(root().join("README.md")).expect("the crate has a README")
+    pages().into_iter().map(|(_, text)| text).collect::<Vec<_>>().join("\n\n")
+}
+
+/// The targets of the links of a text outside its blocks, without what stands in the network.
+fn links(text: &str) -> Vec<String> {
+    let prose: String = text.split("```").step_by(2).collect();
+    let targets = prose.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(target, _)| target.to_owned());
+    targets.filter(|target| !target.starts_with("https://")).collect()
+}
+
+/// A link that leads to nothing, if there is one.
+fn lost_link(path: &str, text: &str) -> Option<String> {
+    let folder = Path::new(path).parent().expect("a file is in a folder");
+    links(text).into_iter().find(|target| !root().join(folder).join(target.split('#').next().unwrap_or_default()).exists())
+}
+
+#[test]
+fn the_readme_is_short_and_leads_to_every_page() {
+    let pages = pages();
+    let (_, readme) = &pages[0];
+    assert!(readme.lines().count() <= MOST_LINES, "the README has {} lines", readme.lines().count());
+    for (path, text) in &pages {
+        assert_eq!(lost_link(path, text), None, "{path}");
+        assert!(path == "README.md" || links(readme).contains(path), "the README does not lead to {path}");
+        assert!(text.split("```").count() % 2 == 1, "{path}: a block has no end");
+    }
+    assert_eq!(lost_link("docs/manual/x.md", "[a](../python.md) [b](papers.md) [c](nowhere.md)"), Some("nowhere.md".to_owned()));
 }
 
 fn run(arguments: &[&str]) -> (String, String) {
@@ -26,12 +69,27 @@ fn without_times(text: &str) -> Vec<&str> {
         .collect()
 }
 
-/// The fenced block of the README that starts with this line.
+/// The fenced block of one of the pages that starts with this line.
 fn block(start: &str) -> String {
     let readme = readme();
     let after = readme.split("```").find(|block| block.lines().nth(1) == Some(start));
-    let block = after.unwrap_or_else(|| panic!("the README has no block that starts with: {start}"));
+    let block = after.unwrap_or_else(|| panic!("no page has a block that starts with: {start}"));
     block.lines().skip(2).collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn the_first_commands_work_in_an_empty_folder() {
+    let folder = tempfile::tempdir().expect("a temporary directory");
+    let shown = block("$ beltspace models metal-cvt --study > my-belt.toml");
+    let (first, rest) = ("models metal-cvt --study", shown.lines().collect::<Vec<_>>());
+    assert_eq!(rest, ["$ beltspace check my-belt.toml", "$ beltspace sweep my-belt.toml"]);
+    std::fs::write(folder.path().join("my-belt.toml"), run(&first.split(' ').collect::<Vec<_>>()).0).expect("it can be written");
+    for command in rest {
+        let words = command.trim_start_matches("$ beltspace ").split(' ');
+        let output = Command::new(env!("CARGO_BIN_EXE_beltspace")).args(words).current_dir(folder.path()).output().expect("it starts");
+        assert!(output.status.success(), "{command}: {}", String::from_utf8_lossy(&output.stderr));
+    }
+    assert!(folder.path().join("results/my-belt/report.html").is_file());
 }
 
 #[test]
@@ -108,11 +166,11 @@ fn the_commands_are_those_of_the_help() {
     let (help, _) = run(&["--help"]);
     let commands = help.split("Commands:").nth(1).and_then(|rest| rest.split("\n\n").next()).expect("the help lists commands");
     for line in commands.lines().map(str::trim).filter(|line| !line.is_empty()) {
-        assert!(readme().contains(line), "the README lacks: {line}");
+        assert!(readme().contains(line), "no page has: {line}");
     }
 }
 
-/// What the README says that each model leaves out.
+/// What is said that each model leaves out.
 fn limits() -> String {
     let mut text = String::new();
     for model in models::all() {
@@ -132,11 +190,13 @@ fn limits() -> String {
 /// Run by `docs/write` it writes the list anew.
 #[test]
 fn every_model_and_what_it_leaves_out_is_named() {
-    let (before, rest) = readme().split_once("<!-- models -->\n").map(|(a, b)| (a.to_owned(), b.to_owned())).expect("a list of the models");
+    let path = root().join("docs/manual/models.md");
+    let page = std::fs::read_to_string(&path).expect("the models have a page");
+    let (before, rest) = page.split_once("<!-- models -->\n").map(|(a, b)| (a.to_owned(), b.to_owned())).expect("a list of the models");
     let (list, after) = rest.split_once("<!-- end of models -->").expect("the list ends");
-    if std::env::var_os("BELTSPACE_WRITE_README").is_some() {
+    if std::env::var_os("BELTSPACE_WRITE_MODELS").is_some() {
         let text = format!("{before}<!-- models -->\n{}<!-- end of models -->{after}", limits());
-        std::fs::write(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md"), text).expect("it can be written");
+        std::fs::write(path, text).expect("it can be written");
         return;
     }
     assert_eq!(list, limits(), "docs/write writes it");
@@ -177,7 +237,10 @@ fn cell(row: &Value, designs: f64) -> String {
 fn the_scale_is_what_the_record_says() {
     let read = |name: &str| std::fs::read_to_string(root().join("results/bench").join(name)).expect("the record is committed");
     let page = read("scale.md");
-    assert!(readme().contains(&page), "README.md has another results/bench/scale.md: benches/scale --render --readme writes both");
+    assert!(
+        readme().contains(&page),
+        "docs/manual/measured.md has another results/bench/scale.md: benches/scale --render --docs writes both"
+    );
     let record: Value = serde_json::from_str(&read("scale.json")).expect("JSON");
     assert_eq!(record["problems"], Value::Array(Vec::new()), "committed with methods that disagree");
     let mut tables = page.split("| designs ").skip(1);
@@ -213,15 +276,14 @@ fn the_yields_are_what_the_record_says() {
         rows.map(|it| 1e3 * number(&it["seconds"])).fold(0.0, f64::max)
     };
     let page = readme();
-    let paragraph =
-        page.split("\n\n").find(|it| it.contains("bench/probability.json")).expect("the README has the times").replace('\n', " ");
+    let paragraph = page.split("\n\n").find(|it| it.contains("bench/probability.json")).expect("a page has the times").replace('\n', " ");
     assert_eq!((&all["designs"], &all["draws"], &all["cases"]), (&100_000.into(), &4096.into(), &4.into()));
     for said in [
         format!("took {:.2} s on the two cores, numpy on one of them {:.1} s", number(&all["seconds"]), number(&all["numpy"]["seconds"])),
         format!("the peak memory was {:.0} MB", number(&all["peak_MB"])),
         format!("took up to {:.0}, {:.0} and {:.0} ms", slowest(2), slowest(3), slowest(4)),
     ] {
-        assert!(paragraph.contains(&said), "the README does not say \"{said}\"");
+        assert!(paragraph.contains(&said), "no page says \"{said}\"");
     }
 }
 
@@ -244,7 +306,7 @@ fn the_runs_on_a_gpu_are_what_the_record_says() {
     let rate = device["run"]["designs_per_second"].as_f64().expect("a number");
     let fine = run("metal-cvt-481.toml --engine gpu");
     let page = readme();
-    let paragraph = page.split("\n\n").find(|it| it.contains("gpu-h100.json")).expect("the README has the runs").replace('\n', " ");
+    let paragraph = page.split("\n\n").find(|it| it.contains("gpu-h100.json")).expect("a page has the runs").replace('\n', " ");
     for said in [
         format!("{} designs judged", grouped(&device["run"]["designs"])),
         format!("took {}, {rate:.2e} designs/s: {:.0} % of the floor", seconds(&device["wall_seconds"]), 100.0 * rate / 2.6e11),
@@ -254,6 +316,6 @@ fn the_runs_on_a_gpu_are_what_the_record_says() {
         format!("took {} on the same machine", seconds(&bounds["wall_seconds"])),
         format!("{} for {} designs", seconds(&fine["wall_seconds"]), grouped(&fine["run"]["designs"])),
     ] {
-        assert!(paragraph.contains(&said), "the README does not say \"{said}\"");
+        assert!(paragraph.contains(&said), "no page says \"{said}\"");
     }
 }

@@ -17,7 +17,7 @@ Without a study a model is evaluated for many rows at once:
 Units stand in the names: `torque_Nm` is in N m, `band_thickness_mm` in mm. Absent values are NaN in numpy and null in Arrow.
 """
 
-from beltspace._beltspace import Column, Model, Result, Study, Table, __version__, evaluate, models
+from beltspace._beltspace import Column, Model, Result, RowStream, Study, Table, __version__, evaluate, models
 from beltspace._errors import BeltspaceError, Problem, RequestError, RunError, StudyError
 
 __all__ = [
@@ -27,6 +27,7 @@ __all__ = [
     "Problem",
     "RequestError",
     "Result",
+    "RowStream",
     "RunError",
     "Study",
     "StudyError",

@@ -90,6 +90,41 @@ class Table:
     def _repr_html_(self) -> str: ...
 
 @final
+class RowStream:
+    """A table that may be longer than the memory. Its rows are computed while they are read, 65 536 at a time, and it may be read again and
+    again: `for table in rows`, `polars.DataFrame(rows)`, `pyarrow.RecordBatchReader.from_stream(rows)`."""
+
+    @property
+    def num_rows(self) -> int:
+        """Number of rows."""
+    @property
+    def num_columns(self) -> int:
+        """Number of columns."""
+    @property
+    def column_names(self) -> list[str]:
+        """Names of the columns, which end in their units."""
+    def __len__(self) -> int: ...
+    def __iter__(self) -> TableBatches:
+        """The rows as tables of 65 536 rows, the last one shorter. RunError if the f64 reference does not agree with the sweep."""
+    def to_table(self) -> Table:
+        """All rows as a table, in memory."""
+    def to_pandas(self) -> Any:
+        """All rows as a pandas DataFrame, in memory; pandas must be installed."""
+    def to_polars(self) -> Any:
+        """All rows as a polars DataFrame, in memory; polars must be installed."""
+    def to_pyarrow(self) -> Any:
+        """All rows as a pyarrow Table, in memory; pyarrow must be installed."""
+    def __arrow_c_stream__(self, requested_schema: object | None = None) -> object: ...
+    def __arrow_c_schema__(self) -> object: ...
+
+@final
+class TableBatches:
+    """The tables of a `RowStream`, one after the other."""
+
+    def __iter__(self) -> TableBatches: ...
+    def __next__(self) -> Table: ...
+
+@final
 class Model:
     """A model: inputs, outputs and the formulas between them.
 
@@ -161,8 +196,9 @@ class Result:
     def sample(self) -> Table | None:
         """A sample of the feasible designs, if the study asks for it."""
     @property
-    def feasible(self) -> Table | None:
-        """All feasible designs in the order of their indices, if the study or the sweep asks for them."""
+    def feasible(self) -> RowStream | None:
+        """All feasible designs in the order of their indices, if the study or the sweep asks for them: a stream, as there may be more than
+        the memory holds."""
     @property
     def variants(self) -> Table | None:
         """Every design, feasible or not, if the study asks for it."""

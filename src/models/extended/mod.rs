@@ -321,8 +321,8 @@ impl Surroundings {
     fn evaluation_of_base(&self, evaluation: &Evaluation) -> Evaluation {
         let status = match evaluation.status {
             Status::Failed(condition) => {
-                if let ConditionPlace::Base(own) = self.conditions[condition] {
-                    Status::Failed(own)
+                if let ConditionPlace::Base(own) = self.conditions[usize::from(condition)] {
+                    Status::failed(own)
                 } else {
                     Status::Ok
                 }

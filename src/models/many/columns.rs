@@ -1,12 +1,17 @@
 //! A model over columns of its inputs: its recorded formula, a chunk of rows at a time.
 
-use super::judge::ColumnJudge;
+use super::judge::{ColumnJudge, JudgeRoom};
+use super::vectors::{ColumnEnds, converted, ends};
 use super::{AskedColumns, ResultPart, input_to_si};
-use crate::models::Model;
-use crate::tape::{CHUNK, ColumnValue, Known, List, ListColumns, Set};
+use crate::models::{Input, Model};
+use crate::parallel::on_threads;
+use crate::tape::{ColumnValue, Known, LIST_CHUNK, List, ListColumns, Set};
 
 /// Formulas with more operations than this are evaluated one by one: their columns would not fit the caches.
 const MOST_OPERATIONS: usize = 4096;
+
+/// Numbers from which on several threads look at them.
+const MUCH: usize = 100_000;
 
 /// The formula with what is known of the inputs.
 pub struct RecordedColumns {
@@ -15,16 +20,31 @@ pub struct RecordedColumns {
 }
 
 /// What is known of a column in SI units: its ends, unless a value is no number.
-fn known(model: &Model, input: usize, values: &[f64]) -> Known {
+fn known(model: &Model, input: usize, values: &[f64], known: Option<ColumnEnds>) -> Known {
+    let input = &model.inputs[input];
+    if input.words.is_empty() {
+        // A unit is a factor above zero, so that the ends stay the ends.
+        let ends = known.unwrap_or_else(|| ends(values));
+        return if ends.numbers { Known::Within(input.unit.to_si(ends.low), input.unit.to_si(ends.high)) } else { Known::ANY };
+    }
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for &value in values {
-        let value = input_to_si(&model.inputs[input], value);
+        let value = input_to_si(input, value);
         if value.is_nan() {
             return Known::ANY;
         }
         (low, high) = (low.min(value), high.max(value));
     }
     Known::Within(low, high)
+}
+
+/// A column in SI units.
+fn fill_si(input: &Input, values: &[f64], to: &mut [f64]) {
+    if input.words.is_empty() {
+        converted(values, input.unit.factors(), to);
+    } else {
+        to.iter_mut().zip(values).for_each(|(si, &value)| *si = input_to_si(input, value));
+    }
 }
 
 impl RecordedColumns {
@@ -34,7 +54,14 @@ impl RecordedColumns {
         let formula = model.kernel.formula()?;
         let mut of_inputs: Vec<Known> =
             model.inputs.iter().zip(inputs).map(|(input, &value)| Known::Fixed(input_to_si(input, value))).collect();
-        given.iter().for_each(|&(input, values)| of_inputs[input] = known(model, input, values));
+        let is_much = asked.options.ends.is_none() && given.iter().map(|(_, values)| values.len()).sum::<usize>() >= MUCH;
+        let share = if is_much { given.len().div_ceil(asked.options.threads.max(1)) } else { given.len() };
+        let ends = |column: usize| asked.options.ends.and_then(|ends| ends[column]);
+        let columns: Vec<(usize, &(usize, &[f64]))> = given.iter().enumerate().collect();
+        let found = on_threads(columns.chunks(share.max(1)), |part| {
+            part.iter().map(|&(at, &(input, values))| (input, known(model, input, values, ends(at)))).collect::<Vec<_>>()
+        });
+        found.into_iter().flatten().for_each(|(input, known)| of_inputs[input] = known);
         let wanted = Set::of(outputs);
         let conditions: Vec<usize> = (0..model.conditions.len()).collect();
         let whole = formula.whole(&of_inputs, wanted, Set::of(&conditions));
@@ -51,15 +78,15 @@ impl RecordedColumns {
         let list = &self.list;
         let mut columns = ListColumns::new(list);
         columns.turn_to(list, 0..list.results.len(), |_| true);
-        let mut si: Vec<(usize, Vec<f64>)> = given.iter().map(|&(input, _)| (input, vec![0.0; CHUNK])).collect();
-        for start in (0..statuses.len()).step_by(CHUNK) {
+        let mut si: Vec<(usize, Vec<f64>)> = given.iter().map(|&(input, _)| (input, vec![0.0; LIST_CHUNK])).collect();
+        let mut room = JudgeRoom::default();
+        for start in (0..statuses.len()).step_by(LIST_CHUNK) {
             if options.is_stopped() {
                 return;
             }
-            let count = CHUNK.min(statuses.len() - start);
+            let count = LIST_CHUNK.min(statuses.len() - start);
             for ((input, column), (_, values)) in si.iter_mut().zip(given) {
-                let (input, values) = (&model.inputs[*input], &values[first + start..][..count]);
-                column.iter_mut().zip(values).for_each(|(si, &value)| *si = input_to_si(input, value));
+                fill_si(&model.inputs[*input], &values[first + start..][..count], &mut column[..count]);
             }
             let input = |number: u16| {
                 let column = si.iter().find(|(input, _)| *input == usize::from(number));
@@ -69,7 +96,7 @@ impl RecordedColumns {
                 let statuses = &mut statuses[start..start + count];
                 let margin = |condition: usize| columns.result(list, wanted.len() + condition);
                 let mut outputs: Vec<&mut [f64]> = outputs.iter_mut().map(|column| &mut column[start..start + count]).collect();
-                self.judge.judge(model, margin, |place| columns.result(list, place), statuses, &mut outputs);
+                self.judge.judge(model, margin, |place| columns.result(list, place), statuses, &mut outputs, &mut room);
             });
         }
     }

@@ -1,16 +1,22 @@
 //! Status and presence of outputs over a chunk of rows.
 
-use crate::decision::Decision;
-use crate::models::{Model, Status, holds};
+use super::vectors::{all_finite, clear, converted, failures, join};
+use crate::models::{Model, Status};
 use crate::tape::ColumnValue;
-
-/// Which rows of a chunk fail a condition.
-type FailedRows = Box<[bool]>;
 
 /// Judges rows of a model by the margins of its conditions.
 #[derive(Debug)]
 pub(crate) struct ColumnJudge {
     outputs: Vec<JudgedOutput>,
+}
+
+/// Room for a thread that judges.
+#[derive(Debug, Default)]
+pub(crate) struct JudgeRoom {
+    /// Of each condition: does it fail anywhere, and in which rows?
+    failed: Vec<(bool, Vec<bool>)>,
+    /// Where an output is taken away.
+    gone: Vec<bool>,
 }
 
 /// An output that is asked for.
@@ -37,8 +43,8 @@ impl ColumnJudge {
         Self { outputs: outputs.iter().map(judged).collect() }
     }
 
-    /// Judges a chunk: `margin` of each condition and `value` of each output asked for, in SI units. Statuses must be ok before; outputs are
-    /// written in their units, NaN where they have no meaning.
+    /// Judges a chunk: `margin` of each condition and `value` of each output asked for, in SI units. Outputs are written in their units, NaN
+    /// where they have no meaning.
     pub fn judge<'c>(
         &self,
         model: &Model,
@@ -46,54 +52,51 @@ impl ColumnJudge {
         value: impl Fn(usize) -> ColumnValue<'c>,
         statuses: &mut [Status],
         outputs: &mut [&mut [f64]],
+        room: &mut JudgeRoom,
     ) {
-        let failed: Vec<Option<FailedRows>> =
-            (0..model.conditions.len()).map(|condition| failures(model, condition, margin(condition), statuses.len())).collect();
-        for (number, (condition, failed)) in model.conditions.iter().zip(&failed).enumerate() {
-            let Some(failed) = failed.as_ref().filter(|_| !condition.quiet) else { continue };
-            for (status, _) in statuses.iter_mut().zip(failed).filter(|(status, failed)| **failed && **status == Status::Ok) {
-                *status = Status::Failed(number);
+        let count = statuses.len();
+        statuses.fill(Status::Ok);
+        let JudgeRoom { failed, gone } = room;
+        failed.resize_with(model.conditions.len(), Default::default);
+        gone.resize(count, false);
+        for (number, ((any, rows), condition)) in failed.iter_mut().zip(&model.conditions).enumerate() {
+            rows.resize(count, false);
+            *any = match margin(number) {
+                ColumnValue::Each(margins) => failures(margins, condition.strict, rows),
+                ColumnValue::One(margin) => {
+                    let fails = failures(&[margin], condition.strict, &mut [false]);
+                    rows.fill(fails);
+                    fails
+                }
+            };
+        }
+        // Of conditions that fail the first one is the status, so it is written last.
+        for (number, (any, rows)) in failed.iter().enumerate().rev() {
+            if *any && !model.conditions[number].quiet {
+                let failed = Status::failed(number);
+                statuses.iter_mut().zip(rows).for_each(|(status, fails)| *status = if *fails { failed } else { *status });
             }
         }
         for (place, (column, output)) in outputs.iter_mut().zip(&self.outputs).enumerate() {
             let unit = model.outputs[output.number].unit;
+            let (multiply, divide) = unit.factors();
             match value(place) {
                 ColumnValue::One(value) => column.fill(unit.from_si(value)),
-                ColumnValue::Each(values) => column.iter_mut().zip(values).for_each(|(to, &value)| *to = unit.from_si(value)),
+                ColumnValue::Each(values) => converted(values, (divide, multiply), column),
             }
-            let takers: Vec<&FailedRows> = output.takers.iter().filter_map(|&it| failed[it].as_ref()).collect();
-            clear(column, &takers, output.counts, statuses);
-        }
-    }
-}
-
-/// The rows in which a condition fails; `None` if it holds in all.
-fn failures(model: &Model, condition: usize, margins: ColumnValue<'_>, count: usize) -> Option<FailedRows> {
-    let fails = |margin: f64| holds(model, condition, margin, 0.0) != Decision::Yes;
-    match margins {
-        ColumnValue::One(margin) => fails(margin).then(|| vec![true; count].into()),
-        ColumnValue::Each(margins) => {
-            let strict = model.conditions[condition].strict;
-            // What most rows pass is asked in a way that is quick.
-            let surely = if strict { margins.iter().all(|&it| it > 0.0) } else { margins.iter().all(|&it| it >= 0.0) };
-            (!surely).then(|| margins.iter().map(|&margin| fails(margin)).collect())
-        }
-    }
-}
-
-/// Takes away what has no meaning: values that failed conditions take, and those that overflowed, which is a status of its own where no
-/// condition fails and the output counts.
-fn clear(column: &mut [f64], takers: &[&FailedRows], counts: bool, statuses: &mut [Status]) {
-    if takers.is_empty() && column.iter().fold(true, |all, value| all & value.is_finite()) {
-        return;
-    }
-    for (row, (value, status)) in column.iter_mut().zip(statuses).enumerate() {
-        if takers.iter().any(|failed| failed[row]) {
-            *value = f64::NAN;
-        } else if !value.is_finite() {
-            *value = f64::NAN;
-            if counts && *status == Status::Ok {
-                *status = Status::Overflow;
+            let mut takers = output.takers.iter().map(|&it| &failed[it]).filter(|(any, _)| *any).map(|(_, rows)| rows);
+            match takers.next() {
+                None if all_finite(column) => continue,
+                None => gone.fill(false),
+                Some(first) => gone.copy_from_slice(first),
+            }
+            takers.for_each(|rows| join(gone, rows));
+            // What no condition takes away and is absent all the same has overflowed.
+            if clear(column, gone) && output.counts {
+                let rows = column.iter().zip(&*gone).zip(&mut *statuses);
+                for ((_, _), status) in rows.filter(|((value, gone), status)| value.is_nan() && !**gone && **status == Status::Ok) {
+                    *status = Status::Overflow;
+                }
             }
         }
     }

@@ -2,6 +2,7 @@
 
 mod columns;
 mod judge;
+mod vectors;
 
 use super::{Evaluation, Model, Status, evaluate, evaluate_asked, input_to_si};
 use crate::error::{Error, Result};
@@ -9,8 +10,9 @@ use crate::likeness::closest;
 use crate::parallel::on_threads;
 use crate::tape::Set;
 use columns::RecordedColumns;
-pub(crate) use judge::ColumnJudge;
+pub(crate) use judge::{ColumnJudge, JudgeRoom};
 use std::sync::atomic::{AtomicBool, Ordering};
+pub(crate) use vectors::{ColumnEnds, ends};
 
 /// Rows that a thread is started for at least.
 const ROWS_PER_THREAD: usize = 256;
@@ -56,12 +58,14 @@ pub struct ManyOptions<'a> {
     pub threads: usize,
     /// Set by somebody else to end the work.
     pub stop: Option<&'a AtomicBool>,
+    /// The ends of the columns, if they are known already, in their order.
+    pub(crate) ends: Option<&'a [Option<ColumnEnds>]>,
 }
 
 impl Default for ManyOptions<'_> {
     fn default() -> Self {
         let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-        Self { outputs: None, inputs: None, threads, stop: None }
+        Self { outputs: None, inputs: None, threads, stop: None, ends: None }
     }
 }
 
@@ -158,7 +162,9 @@ pub fn evaluate_columns(model: &Model, columns: &[(&str, &[f64])], options: &Man
     }
     let asked = AskedColumns { model, given: &given, inputs, outputs, options };
     let recorded = (rows >= ROWS_TO_RECORD).then(|| RecordedColumns::new(&asked)).flatten();
-    let mut found = EvaluatedColumns { statuses: vec![Status::Ok; rows], outputs: vec![vec![0.0; rows]; outputs.len()] };
+    // Zeros from the system, each column by itself: the threads are the first to touch them.
+    let zeros = outputs.iter().map(|_| vec![0.0; rows]).collect();
+    let mut found = EvaluatedColumns { statuses: vec![Status::Ok; rows], outputs: zeros };
     let share = rows.div_ceil(options.threads.max(1)).max(ROWS_PER_THREAD);
     on_threads(parts(&mut found, share), |part| match &recorded {
         Some(recorded) => recorded.evaluate(&asked, part),

@@ -47,7 +47,7 @@ fn impossible_sections_and_loads_have_a_status_and_never_a_number() {
     ];
     for (changes, condition) in cases {
         let evaluation = evaluate(&pulley(), &with(changes));
-        assert_eq!(evaluation.status, Status::Failed(condition), "{changes:?}");
+        assert_eq!(evaluation.status, Status::failed(condition), "{changes:?}");
         for name in ["max_stress_MPa", "stress_Fl_MPa", "mass_g", "yield_safety"] {
             assert_eq!(evaluation.outputs[pulley().output(name).unwrap()], None, "{changes:?}: {name}");
         }

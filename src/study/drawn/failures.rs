@@ -41,7 +41,7 @@ impl DrawnKernel {
         let cases = self.drawn_cases(design, draw);
         let mut failures = DrawFailures { is_no_drive: cases.iter().any(|it| it.status.is_none()), ..DrawFailures::default() };
         for case in &cases {
-            if let Some(Status::Failed(condition)) = case.status {
+            if let Some(condition) = case.status.and_then(Status::condition) {
                 failures.conditions.insert(self.base.first_of_reason(condition));
             }
         }

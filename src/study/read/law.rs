@@ -13,6 +13,25 @@ use crate::units::{NONE, Unit};
 /// The distributions as they are written.
 pub(in super::super) const LAWS: [&str; 10] =
     ["uniform", "normal", "lognormal", "triangular", "beta", "weibull", "gumbel", "exponential", "discrete", "empirical"];
+/// The parameters of each, in the order in which a list may give them; empty where they are no plain numbers.
+pub(in super::super) const PARAMETERS: [&[&str]; 10] = [
+    &["from", "to"],
+    &["mean", "sd"],
+    &["mean", "sd"],
+    &["from", "mode", "to"],
+    &["alpha", "beta", "from", "to"],
+    &["shape", "scale", "from"],
+    &["mode", "scale"],
+    &["mean"],
+    &[],
+    &[],
+];
+/// Those whose parameters may be a list.
+pub(in super::super) const LISTED: [&str; 2] = ["uniform", "triangular"];
+/// The parameter that may be left out: where a Weibull distribution begins, 0.
+pub(in super::super) const LEFT_OUT: (&str, &str) = ("weibull", "from");
+/// The keys of a discrete distribution.
+pub(in super::super) const DISCRETE: &[&str] = &["values", "weights"];
 /// What a drawn number may do to what the design says.
 const EFFECTS: [(&str, Effect); 2] = [("times", Effect::Times), ("plus", Effect::Plus)];
 
@@ -49,6 +68,7 @@ pub(super) fn likely_law(key: &str) -> Option<&'static str> {
 /// Parameters of a distribution, with their units.
 struct LawParameters<'r, 't> {
     reader: &'r Reader<'r>,
+    name: &'static str,
     label: String,
     unit: Unit,
     table: Option<TomlTable<'t>>,
@@ -138,29 +158,28 @@ impl Reader<'_> {
             let values: Vec<f64> = nodes.clone().filter_map(|it| number(it, unit, "value")).collect();
             (values.len() == nodes.len()).then_some(values)
         };
-        let as_list =
-            if matches!(name, "uniform" | "triangular") { entry.node.list().and_then(|_| numbers(entry.node, unit)) } else { None };
+        let as_list = if LISTED.contains(&name) { entry.node.list().and_then(|_| numbers(entry.node, unit)) } else { None };
         let parameters = LawParameters {
             reader: self,
+            name,
             label: label.clone(),
             unit,
             table: entry.node.table(),
             numbers: as_list.unwrap_or_default(),
             at: entry.node.at,
         };
+        let names = LAWS.iter().position(|it| *it == name).map_or(&[][..], |at| PARAMETERS[at]);
         let law = match name {
-            "uniform" => parameters.read(&["from", "to"], |it| NamedLaw::Uniform { from: it[0], to: it[1] }),
-            "normal" => parameters.read(&["mean", "sd"], |it| NamedLaw::Normal { mean: it[0], sd: it[1] }),
-            "lognormal" => parameters.read(&["mean", "sd"], |it| NamedLaw::Lognormal { mean: it[0], sd: it[1] }),
-            "triangular" => parameters.read(&["from", "mode", "to"], |it| NamedLaw::Triangular { from: it[0], mode: it[1], to: it[2] }),
-            "beta" => {
-                parameters.read(&["alpha", "beta", "from", "to"], |it| NamedLaw::Beta { alpha: it[0], beta: it[1], from: it[2], to: it[3] })
-            }
-            "weibull" => parameters.read(&["shape", "scale", "from"], |it| NamedLaw::Weibull { shape: it[0], scale: it[1], from: it[2] }),
-            "gumbel" => parameters.read(&["mode", "scale"], |it| NamedLaw::Gumbel { mode: it[0], scale: it[1] }),
-            "exponential" => parameters.read(&["mean"], |it| NamedLaw::Exponential { mean: it[0] }),
+            "uniform" => parameters.read(names, |it| NamedLaw::Uniform { from: it[0], to: it[1] }),
+            "normal" => parameters.read(names, |it| NamedLaw::Normal { mean: it[0], sd: it[1] }),
+            "lognormal" => parameters.read(names, |it| NamedLaw::Lognormal { mean: it[0], sd: it[1] }),
+            "triangular" => parameters.read(names, |it| NamedLaw::Triangular { from: it[0], mode: it[1], to: it[2] }),
+            "beta" => parameters.read(names, |it| NamedLaw::Beta { alpha: it[0], beta: it[1], from: it[2], to: it[3] }),
+            "weibull" => parameters.read(names, |it| NamedLaw::Weibull { shape: it[0], scale: it[1], from: it[2] }),
+            "gumbel" => parameters.read(names, |it| NamedLaw::Gumbel { mode: it[0], scale: it[1] }),
+            "exponential" => parameters.read(names, |it| NamedLaw::Exponential { mean: it[0] }),
             "discrete" => self.table_of_law(entry, &label, "{ values = [...], weights = [...] }").and_then(|table| {
-                table.check_keys(self.problems, &label, &["values", "weights"]);
+                table.check_keys(self.problems, &label, DISCRETE);
                 let part = |key: &str| {
                     let found = table.get(key);
                     if found.is_none() {
@@ -233,6 +252,10 @@ impl Reader<'_> {
 }
 
 impl LawParameters<'_, '_> {
+    fn may_be_left_out(&self, name: &str) -> bool {
+        (self.name, name) == LEFT_OUT
+    }
+
     /// The parameters of these names, from a table or, in this order, from a list. The first of a Weibull distribution's values is 0
     /// unless it is given.
     fn read(&self, names: &[&str], law: impl Fn(&[f64]) -> NamedLaw) -> Option<NamedLaw> {
@@ -248,7 +271,7 @@ impl LawParameters<'_, '_> {
         table.check_keys(problems, &self.label, names);
         let value = |name: &&str| {
             let Some(entry) = table.get(name) else {
-                if *name == "from" && names[0] == "shape" {
+                if self.may_be_left_out(name) {
                     return Some(0.0);
                 }
                 problems.add(table.at, format!("{}: \"{name}\" is missing; write {{ {} }}", self.label, example()));

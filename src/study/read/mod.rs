@@ -56,7 +56,8 @@ mod value;
 mod weights;
 
 pub(super) use formulas::CurvePoints;
-pub(super) use law::LAWS;
+pub(super) use law::{DISCRETE, LAWS, LEFT_OUT, LISTED, PARAMETERS};
+pub(super) use model_file::KEYS as MODEL_KEYS;
 pub use model_file::{FileKind, file_kind, parse_model, read_model};
 pub(super) use model_file::{ModelText, read_model_text};
 #[cfg(feature = "cli")]

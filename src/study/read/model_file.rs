@@ -13,7 +13,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Keys and tables at the top level of the file of a model.
-const KEYS: [&str; 11] =
+pub(in super::super) const KEYS: [&str; 11] =
     ["summary", "source", "limits", "base", "units", "inputs", "curves", "formulas", "conditions", "outputs", "presets"];
 
 /// The text of the file of a model.

@@ -231,7 +231,7 @@ impl Failures {
         };
         let mut meaningless = false;
         for case in evaluated.cases(design) {
-            if let Status::Failed(number) = case.evaluation.status {
+            if let Some(number) = case.evaluation.status.condition() {
                 note(|failures| &mut failures.statuses, number);
             } else if needed.iter().any(|&quantity| case.value(quantity).is_none()) {
                 meaningless = true;

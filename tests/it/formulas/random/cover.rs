@@ -257,7 +257,7 @@ fn happened(drawn: &Drawn, plan: &Plan, had: &mut BTreeSet<String>) {
         for case in evaluated.cases(design) {
             match case.evaluation.status {
                 Status::Failed(number) => {
-                    let reason = &model.conditions[number].reason;
+                    let reason = &model.conditions[usize::from(number)].reason;
                     let of_formula = reason.split_once(": ").filter(|_| reason.starts_with("formula ")).map(|(_, why)| why);
                     had.insert(match of_formula {
                         Some(why) if why.ends_with("beyond its ends") => "beyond its ends".to_owned(),

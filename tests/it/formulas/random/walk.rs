@@ -241,7 +241,7 @@ impl Walker {
             of.find_map(|&it| reasons[it].as_ref()).map(|reason| condition(reason))
         };
         let of_base = evaluation.as_ref().and_then(|it| match it.status {
-            Status::Failed(number) => Some(condition(&base.conditions[number].reason)),
+            Status::Failed(number) => Some(condition(&base.conditions[usize::from(number)].reason)),
             Status::Ok => None,
             Status::Overflow => {
                 self.doubt();
@@ -273,7 +273,7 @@ impl Walker {
         });
         let outputs: Vec<Option<f64>> = outputs.collect();
         let status = match status {
-            Some(condition) => Status::Failed(condition),
+            Some(condition) => Status::failed(condition),
             None if overflow => Status::Overflow,
             None => Status::Ok,
         };

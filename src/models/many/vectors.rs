@@ -1,0 +1,144 @@
+//! Loops over columns of numbers, in the widest vectors that the processor has.
+
+use multiversion::multiversion;
+
+/// What is known of a column of numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ColumnEnds {
+    /// The least number; infinity if there is none. NaN counts as none.
+    pub low: f64,
+    /// The largest number; negative infinity if there is none.
+    pub high: f64,
+    /// No NaN among them.
+    pub numbers: bool,
+    /// All are whole or infinite.
+    pub whole: bool,
+}
+
+/// The ends of a column.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+pub(crate) fn ends(values: &[f64]) -> ColumnEnds {
+    // Eight lanes of each, so that no number waits for the one before it.
+    let (mut low, mut high) = ([f64::INFINITY; 8], [f64::NEG_INFINITY; 8]);
+    let (mut nan, mut broken) = ([0_u64; 8], [0_u64; 8]);
+    let (eights, rest) = values.as_chunks::<8>();
+    let mut take = |lane: usize, value: f64| {
+        low[lane] = if value < low[lane] { value } else { low[lane] };
+        high[lane] = if value > high[lane] { value } else { high[lane] };
+        nan[lane] |= u64::from(value.is_nan());
+        broken[lane] |= u64::from(value != value.trunc());
+    };
+    for eight in eights {
+        (0..8).for_each(|lane| take(lane, eight[lane]));
+    }
+    rest.iter().for_each(|&value| take(0, value));
+    ColumnEnds {
+        low: low.into_iter().fold(f64::INFINITY, f64::min),
+        high: high.into_iter().fold(f64::NEG_INFINITY, f64::max),
+        numbers: nan == [0; 8],
+        whole: broken == [0; 8],
+    }
+}
+
+/// Numbers times the first factor, divided by the second: the bits of [`Unit::to_si`](crate::units::Unit::to_si), of whose factors one is
+/// 1 as a rule.
+pub(crate) fn converted(values: &[f64], (multiply, divide): (f64, f64), to: &mut [f64]) {
+    match (multiply == 1.0, divide == 1.0) {
+        (true, true) => to.copy_from_slice(values),
+        (false, true) => multiplied(values, multiply, to),
+        (true, false) => divided(values, divide, to),
+        (false, false) => both(values, multiply, divide, to),
+    }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+fn multiplied(values: &[f64], factor: f64, to: &mut [f64]) {
+    to.iter_mut().zip(values).for_each(|(to, &value)| *to = value * factor);
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+fn divided(values: &[f64], divisor: f64, to: &mut [f64]) {
+    to.iter_mut().zip(values).for_each(|(to, &value)| *to = value / divisor);
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+fn both(values: &[f64], factor: f64, divisor: f64, to: &mut [f64]) {
+    to.iter_mut().zip(values).for_each(|(to, &value)| *to = value * factor / divisor);
+}
+
+/// Marks where a margin fails, which no number does too; true if one fails.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+pub(super) fn failures(margins: &[f64], strict: bool, failed: &mut [bool]) -> bool {
+    let mut any = false;
+    let mut mark = |failed: &mut bool, holds: bool| {
+        *failed = !holds;
+        any |= !holds;
+    };
+    let marked = failed.iter_mut().zip(margins);
+    if strict {
+        marked.for_each(|(failed, &margin)| mark(failed, margin > 0.0));
+    } else {
+        marked.for_each(|(failed, &margin)| mark(failed, margin >= 0.0));
+    }
+    any
+}
+
+/// Adds marks to marks.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+pub(super) fn join(marks: &mut [bool], others: &[bool]) {
+    marks.iter_mut().zip(others).for_each(|(mark, &other)| *mark |= other);
+}
+
+/// Takes away marked values and those that are not finite; true if one was not finite without a mark.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+pub(super) fn clear(column: &mut [f64], gone: &[bool]) -> bool {
+    let mut overflown = false;
+    for (value, &gone) in column.iter_mut().zip(gone) {
+        let finite = value.is_finite();
+        overflown |= !finite & !gone;
+        *value = if gone | !finite { f64::NAN } else { *value };
+    }
+    overflown
+}
+
+/// Are all of them finite?
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+pub(super) fn all_finite(column: &[f64]) -> bool {
+    column.iter().fold(true, |all, value| all & value.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ends_are_those_of_all_numbers() {
+        let mut values: Vec<f64> = (0..37).map(f64::from).collect();
+        let whole = ColumnEnds { low: 0.0, high: 36.0, numbers: true, whole: true };
+        assert_eq!(ends(&values), whole);
+        for place in [0, 7, 8, 31, 36] {
+            let kept = values[place];
+            values[place] = 99.5;
+            assert_eq!((ends(&values).high, ends(&values).whole), (99.5, false), "{place}");
+            values[place] = -1.0;
+            assert_eq!(ends(&values).low, -1.0, "{place}");
+            values[place] = f64::NAN;
+            assert!(!ends(&values).numbers, "{place}");
+            values[place] = kept;
+        }
+        assert_eq!(ends(&values), whole);
+        assert_eq!(ends(&[]), ColumnEnds { low: f64::INFINITY, high: f64::NEG_INFINITY, numbers: true, whole: true });
+    }
+
+    #[test]
+    fn a_factor_of_one_changes_no_bit() {
+        let values = [0.1, -0.0, 1e300, 3.0, f64::MIN_POSITIVE];
+        let mut to = [0.0; 5];
+        for (multiply, divide) in [(1.0, 1.0), (std::f64::consts::PI, 180.0), (1.0, 1000.0), (1e6, 1.0)] {
+            converted(&values, (multiply, divide), &mut to);
+            for (to, value) in to.iter().zip(values) {
+                assert_eq!(to.to_bits(), (value * multiply / divide).to_bits());
+            }
+        }
+    }
+}
