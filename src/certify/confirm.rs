@@ -35,6 +35,7 @@ pub(super) fn rows_together(
         plan.space.designs.set(plan.design_at(position), &mut of_design);
         values.iter_mut().zip(&inputs).for_each(|(column, &input)| column.push(of_design[input]));
     }
+    let values: Vec<&[f64]> = values.iter().map(Vec::as_slice).collect();
     let designs = DesignColumns { inputs: &inputs, values: &values };
     let mut rows = match rows_of_columns(plan, columns, designs, threads, control)? {
         Ok(rows) => rows,
