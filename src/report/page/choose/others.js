@@ -12,7 +12,9 @@
     diamond: (r) => d3.range(-r, r + 1).flatMap((i) => [[i, r - Math.abs(i)], [i, Math.abs(i) - r], [i + 1, r - Math.abs(i)], [i + 1, Math.abs(i) - r]]),
   };
   const thick = (spots, ratio) => (ratio > 1.4 ? spots.flatMap(([dx, dy]) => [[dx, dy], [dx + 1, dy], [dx, dy + 1]]) : spots);
-  page.otherMark = ({ kind, rows }, ratio) => (rows > 20000 ? page.disc(0.7) : thick(outlines[kind](Math.round((rows > 3000 ? 2 : 3) * ratio)), ratio).map(([dx, dy]) => ({ dx, dy, cover: 256 })));
+  // Larger than the points of this front, which lie over them.
+  const radius = () => [[20000, 2], [4000, 3], [300, 4], [0, 5]].find(([rows]) => page.front.rows >= rows)[1];
+  page.otherMark = ({ kind, rows }, ratio) => (rows > 20000 ? page.disc(0.7) : thick(outlines[kind](Math.round(radius() * ratio)), ratio).map(([dx, dy]) => ({ dx, dy, cover: 256 })));
   page.otherColour = ({ kind }) => page.variable(`--other-${kind}`);
 
   const swatch = (kind) => {
