@@ -297,8 +297,8 @@ fn what_python_takes_is_what_the_record_says() {
     let page = readme();
     let paragraph = page.split("\n\n").find(|it| it.contains("bench/python.json")).expect("a page has the times").replace('\n', " ");
     let of_each = |row: &Value| {
-        let [ours, numpy, blocks] = ["processor_ns_per_row", "numpy_processor_ns_per_row", "numpy_in_blocks_processor_ns_per_row"]
-            .map(|it| number(&row[it]));
+        let [ours, numpy, blocks] =
+            ["processor_ns_per_row", "numpy_processor_ns_per_row", "numpy_in_blocks_processor_ns_per_row"].map(|it| number(&row[it]));
         format!("{ours:.0} ns of processor time a row, numpy {numpy:.0} and in blocks {blocks:.0}")
     };
     let ratio = |row: &Value| format!("{:.1} times", number(&row["numpy_processor_ns_per_row"]) / number(&row["processor_ns_per_row"]));
