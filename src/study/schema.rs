@@ -81,11 +81,8 @@ fn end(what: &'static str, name: &'static str) -> SchemaKey {
 }
 
 /// A tolerance: `key` is the name of its effect.
-fn tolerance(key: &'static str, doc: &str) -> Value {
-    let change = any_of([list(of("value")), of("range"), of("law")]);
-    let mut schema = table(&[key], &[], &[key], vec![(key, change, "A distribution, or levels.")]);
-    schema["description"] = doc.into();
-    schema
+fn tolerance(key: &'static str, doc: &'static str) -> Value {
+    table(&[key], &[], &[key], vec![(key, any_of([of("law"), of("range"), list(of("value"))]), doc)])
 }
 
 /// A distribution: one key that names it, with its parameters, and where draws are cut off.
@@ -152,7 +149,11 @@ fn definitions() -> Value {
             ("step", of("value"), "The distance of two levels, in place of `count`; 1 for whole numbers."),
             ("spacing", word(&["linear", "log"]), "How the levels lie; `linear` if left out."),
         ]),
-        "uncertain": any_of([tolerance("times", "A factor on what the design says."), tolerance("plus", "An addend to what the design says, in the unit of the name."), of("law")]),
+        "uncertain": any_of([of("tolerance"), of("law")]),
+        "tolerance": any_of([
+            tolerance("times", "A factor on what the design says."),
+            tolerance("plus", "An addend to what the design says, in the unit of the name."),
+        ]),
         "law": law(),
         "over_draws": any_of([
             word(&["mean", "worst", "sd"]),
@@ -370,7 +371,7 @@ fn schema() -> Value {
 /// Tables of the page, in its order: heading, and place in the schema.
 const PAGES: &[(&str, &str)] = &[
     ("Ranges: `{ from, to, ... }`", "range"),
-    ("Tolerances in `[uncertainty]`", "uncertain"),
+    ("Tolerances in `[uncertainty]`", "tolerance"),
     ("Distributions in `[uncertainty]`", "law"),
     ("`discrete`: values with weights", "discrete"),
     ("`[probability]`", "probability"),
@@ -475,7 +476,9 @@ fn sections(schema: &Value, pages: &[(&str, &str)], page: &mut String) {
         }
         if let Some(short) = definition["anyOf"].as_array().filter(|_| !definition["properties"].is_object()) {
             let short: Vec<String> = short.iter().filter(|it| !it["properties"].is_object()).map(kind).collect();
-            page.push_str(&format!("In short {}, else a table:\n\n", short.join(" or ")));
+            if !short.is_empty() {
+                page.push_str(&format!("In short {}, else a table:\n\n", short.join(" or ")));
+            }
         }
         rows(definition, page);
     }

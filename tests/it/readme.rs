@@ -288,6 +288,32 @@ fn the_yields_are_what_the_record_says() {
 }
 
 #[test]
+fn what_python_takes_is_what_the_record_says() {
+    let text = std::fs::read_to_string(root().join("results/bench/python.json")).expect("the record is committed");
+    let record: Value = serde_json::from_str(&text).expect("JSON");
+    let number = |value: &Value| value.as_f64().expect("a number");
+    let (two, all) = (&record["two_outputs"], &record["all_outputs"]);
+    assert_eq!((&two["outputs"], &all["outputs"], &record["rows"]), (&2.into(), &38.into(), &1_000_000.into()));
+    let page = readme();
+    let paragraph = page.split("\n\n").find(|it| it.contains("bench/python.json")).expect("a page has the times").replace('\n', " ");
+    let of_each = |row: &Value| {
+        let [ours, numpy, blocks] =
+            ["processor_ns_per_row", "numpy_processor_ns_per_row", "numpy_in_blocks_processor_ns_per_row"].map(|it| number(&row[it]));
+        format!("{ours:.0} ns of processor time a row, numpy {numpy:.0} and in blocks {blocks:.0}")
+    };
+    let ratio = |row: &Value| format!("{:.1} times", number(&row["numpy_processor_ns_per_row"]) / number(&row["processor_ns_per_row"]));
+    for said in [
+        of_each(two),
+        of_each(all),
+        format!("{} and {}", ratio(two), ratio(all)),
+        format!("{:.2} s of processor time", number(&record["worst_by_traction_processor_s"])),
+        format!("{:.2} s with a clamping force", number(&record["worst_processor_s"])),
+    ] {
+        assert!(paragraph.contains(&said), "no page says \"{said}\"");
+    }
+}
+
+#[test]
 fn the_runs_on_a_gpu_are_what_the_record_says() {
     let text = std::fs::read_to_string(root().join("results/bench/gpu-h100.json")).expect("the record is committed");
     let record: Value = serde_json::from_str(&text).expect("JSON");
