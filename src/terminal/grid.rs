@@ -110,7 +110,7 @@ mod tests {
         assert_eq!(grid.fitted(2, Some(44)), grid.fitted(2, None));
         assert_eq!(
             grid.fitted(2, None).concat(),
-            "                        error median  used\n  driver_axial_force_N        5.1e-8  3.0 %\n"
+            "                        error median  used\n  driver_axial_force_N  5.1e-8        3.0 %\n"
         );
         assert_eq!(
             grid.fitted(2, Some(40)).concat(),
