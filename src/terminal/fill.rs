@@ -101,7 +101,7 @@ mod tests {
         assert_eq!(filled("one two three\n", 9), "one two\nthree\n");
         assert_eq!(filled("  one two three\nfour", 9), "  one two\n  three\nfour");
         assert_eq!(filled("a b c", 5), "a b c");
-        assert_eq!(filled("result /a/long/path", 12), "result /a/long/path");
+        assert_eq!(filled("result /a/long/path", 11), "result /a/long/path");
         assert_eq!(filled("\u{1b}[1mone two\u{1b}[0m three", 7), "\u{1b}[1mone two\u{1b}[0m\nthree");
         // In every width, no line is wider, and no word is lost.
         let text = "Angle between the two flanks of a pulley: µ and ° count once each";
