@@ -37,8 +37,15 @@ fn pieces(text: &str, width: usize, indent: usize, last: impl Fn(&str) -> Option
     while measure_text_width(rest) > room {
         // The longest beginning that fits, with the character behind it, which may be the space to break at.
         let mut end = 0;
+        let mut in_style = false;
         for (at, next) in rest.char_indices() {
             end = at;
+            // A sequence that is cut would count as letters.
+            in_style |= next == '\u{1b}';
+            if in_style {
+                in_style = next != 'm';
+                continue;
+            }
             if measure_text_width(&rest[..at + next.len_utf8()]) > room {
                 break;
             }
