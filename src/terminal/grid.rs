@@ -114,11 +114,11 @@ mod tests {
         );
         assert_eq!(
             grid.fitted(2, Some(40)).concat(),
-            "                        error   used\n                        median\n  driver_axial_force_N  5.1e-8  3.0 %\n"
+            "                        error      used\n                        median\n  driver_axial_force_N  5.1e-8     3.0 %\n"
         );
         assert_eq!(
             grid.fitted(2, Some(32)).concat(),
-            "                 error   used\n                 median\n  driver_axial_  5.1e-8  3.0 %\n  force_N\n"
+            "                   error   used\n                   median\n  driver_axial_    5.1e-8  3.0 %\n  force_N\n"
         );
         // One that cannot be made to fit is as narrow as it can be.
         assert!(grid.fitted(2, Some(5)).concat().lines().all(|line| line.len() < 30));
@@ -126,7 +126,7 @@ mod tests {
         text.row(["friction", "0.08", "Coefficient of friction between blocks and pulley."].map(str::to_owned));
         assert_eq!(
             text.fitted(2, Some(48)).concat(),
-            "  friction  0.08  Coefficient of friction between\n                  blocks and pulley.\n"
+            "  friction  0.08  Coefficient of friction\n                  between blocks and pulley.\n"
         );
     }
 }
