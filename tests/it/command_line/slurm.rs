@@ -124,10 +124,10 @@ fn the_jobs_give_the_files_of_one_run() {
     for (flavour, histogram) in [("", "bins = 40"), ("--pbs", "from = 0, to = 60000, bins = 40")] {
         let place = Place::of_a_table(histogram);
         let cluster = Cluster::new();
-        let edited = ["sweep", "my study.toml", "--out", "plain", "--set", "band_count=9"];
+        let edited = ["sweep", "my study.toml", "--out", "plain", "--set", "strength_MPa=900"];
         ask_words(&place.path, &edited).text();
         let plain = files(&place.path.join("plain"));
-        let printed = place.ask(&format!("--shards 3 --shortest 0 --cpus 2 {flavour} -- --engine cpu --set band_count=9")).text();
+        let printed = place.ask(&format!("--shards 3 --shortest 0 --cpus 2 {flavour} -- --engine cpu --set strength_MPa=900")).text();
         // The jobs need neither the study file nor its table.
         for name in ["my study.toml", "loads.csv"] {
             std::fs::remove_file(place.path.join(name)).expect("it is there");

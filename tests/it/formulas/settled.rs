@@ -157,9 +157,10 @@ fn little_is_left_to_be_asked_in_a_study() {
             [known, any].map(|known| SettledStages::new(formula, &known, wanted, &conditions))
         });
         let [[_, own], [in_file, asked_everything]] = &lists;
-        // The file asks once more whether a traction is zero that the limit gives.
+        // The file asks once more whether a traction is zero that the limit gives, which takes three operations; and it computes the
+        // centrifugal force with the designs, in three more, as the speed does not enter its first stage.
         let [most, found, before] = [own, in_file, asked_everything].map(|it| computed(&it.lists.finish));
-        assert!(found <= most + 3 && before > found + 3, "{name}: {found} in place of {before}, the model of the program takes {most}");
+        assert!(found <= most + 6 && before > found + 3, "{name}: {found} in place of {before}, the model of the program takes {most}");
         let open = in_file.open.len();
         assert!(open <= 16 && asked_everything.open.len() > 2 * open, "{name}: {open} of {} conditions", asked_everything.open.len());
     }
