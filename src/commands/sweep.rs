@@ -191,7 +191,7 @@ fn finish_shard(plan: &Plan, out: &Path, shard: Shard, quiet: bool) -> Result<()
         return Ok(());
     }
     let range = shard.range(plan.designs());
-    terminal::print(&format!(
+    terminal::tell(&format!(
         "shard {shard} of \"{}\": {} designs, in {}\nmerge the shards with: beltspace merge DIR... --out DIR\n",
         terminal::told(&plan.study.title),
         terminal::grouped(range.end - range.start),

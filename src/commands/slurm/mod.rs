@@ -138,7 +138,7 @@ pub fn run(request: &cli::SlurmArgs) -> Result<()> {
         };
         terminal::remark("note", &format!("{what}: {then}; -- --method exhaustive judges every design"));
     }
-    if request.quiet { Ok(()) } else { terminal::print(&summary(&plan, &work, (method.bounds, speed.how()), &scripts, &out, &jobs)) }
+    if request.quiet { Ok(()) } else { terminal::tell(&summary(&plan, &work, (method.bounds, speed.how()), &scripts, &out, &jobs)) }
 }
 
 fn summary(plan: &Plan, work: &Work, (bounds, how): (bool, &str), scripts: &scripts::ScriptContents, out: &Path, jobs: &Path) -> String {

@@ -140,7 +140,7 @@
   page.readNear = (text) => (kind = KINDS[text] ? text : "near");
 
   page.startWeigh = () => {
-    if (!page.front.objectives.length) return;
+    if (!page.front || !page.front.objectives.length) return;
     build();
     update();
     page.events.on("choice.weigh", () => page.schedule("weigh", update));
