@@ -10,7 +10,7 @@ const WIDTH: usize = 80;
 /// What a command prints on a terminal, without colours, progress and what it says of paths.
 fn in_terminal(folder: &Path, columns: usize, words: &str) -> String {
     let program = env!("CARGO_BIN_EXE_beltspace");
-    let line = format!("stty cols {columns} && '{program}' {words} 2> errors");
+    let line = format!("stty rows 24 cols {columns} && '{program}' {words} 2> errors");
     let output = Command::new("script").args(["-qec", &line, "/dev/null"]).current_dir(folder).output().expect("script is there");
     let errors = fs::read_to_string(folder.join("errors")).expect("a file");
     assert!(output.status.success(), "{words}: {} {errors}", String::from_utf8_lossy(&output.stdout));
@@ -80,9 +80,9 @@ fn nothing_is_wider_than_the_terminal() {
         assert_eq!(too_wide(&text), Vec::<String>::new(), "{words}");
     }
     // In a wide terminal nothing is broken, and a pipe gets what it always got.
-    let wide = in_terminal(folder, 400, "eval metal-cvt");
+    let wide = in_terminal(folder, 600, "models metal-cvt");
     assert!(!too_wide(&wide).is_empty(), "a line that is too wide would go unseen");
-    let piped = Command::new(env!("CARGO_BIN_EXE_beltspace")).args(["eval", "metal-cvt"]).output().expect("it runs").stdout;
+    let piped = Command::new(env!("CARGO_BIN_EXE_beltspace")).args(["models", "metal-cvt"]).output().expect("it runs").stdout;
     assert_eq!(wide.trim_end(), String::from_utf8(piped).expect("text").trim_end());
     // No word is lost where lines are broken.
     let words = |text: &str| {
@@ -90,5 +90,5 @@ fn nothing_is_wider_than_the_terminal() {
         words.sort_unstable();
         words
     };
-    assert_eq!(words(&in_terminal(folder, WIDTH, "eval metal-cvt")), words(&wide));
+    assert_eq!(words(&in_terminal(folder, WIDTH, "models metal-cvt")), words(&wide));
 }
