@@ -10,6 +10,7 @@ mod worst_columns;
 mod worst_lanes;
 
 pub use worst_columns::{DesignColumns, rows_of_columns};
+pub(crate) use worst_columns::{recorded, room};
 
 use crate::bounds::yields::{EnclosureProblem, YieldBounds};
 use crate::error::{Error, Result};
@@ -198,6 +199,13 @@ pub fn columns(study: &Study) -> Vec<Column> {
         columns.push(Column { name, quantity, over, role, worst });
     }
     columns
+}
+
+/// The same with a column of every output that has none.
+pub(crate) fn all_columns(study: &Study) -> Vec<Column> {
+    let mut everything = study.clone();
+    everything.report.columns.extend((0..everything.model.outputs.len()).map(|output| ReportColumn::from(Quantity::Output(output))));
+    columns(&everything)
 }
 
 /// One column per constraint, in their order, each at the scenario that is nearest to breaking it, or breaks it most.

@@ -4,7 +4,7 @@
 //! after the other; and the page. What each takes per cell, row and value was measured; `benches/memory` compares the estimate with the
 //! peaks of whole runs.
 
-use crate::certify;
+use crate::certify::{self, Column};
 use crate::models::{Effort, to_si};
 use crate::names::MOST_ON_PAGE;
 use crate::parallel::on_threads;
@@ -16,7 +16,7 @@ use std::ops::Range;
 use std::time::{Duration, Instant};
 
 /// The program itself, with a small study.
-const PROGRAM: u64 = 13_900_000;
+const PROGRAM: u64 = 15_500_000;
 /// A thread with its blocks.
 const THREAD: u64 = 350_000;
 /// Bytes of a cell of a map in the state, and with the copy and the serialised bytes while a checkpoint is saved.
@@ -157,6 +157,7 @@ impl Needs {
             times(sizes.cases, CASE),
             times(threads, THREAD),
             solving(plan, threads),
+            certify::recorded(plan),
             8 * sizes.bins * (threads + 2),
             times(sizes.indices, INDICES * 8 * (threads + 2)),
             times(sizes.packed, PACKED_COPIES),
@@ -167,12 +168,16 @@ impl Needs {
         let shard = sum(&[program, times(sizes.cells, CELL_SAVED), points]);
         let state = sum(&[program, times(sizes.cells, CELL), met]);
         let rows = times(front + sizes.rows, sizes.row);
-        let tables = sum(&[state, times(sizes.cases, CASE_DESCRIBED), rows, sizes.table, times(compared(plan), COMPARED)]);
+        let columns = certify::columns(&plan.study);
+        let together = |columns: &[Column], designs: u64| times(threads, certify::room(plan, columns, designs.div_ceil(threads)));
+        let certifying = together(&columns, front.max(sizes.rows));
+        let tables = sum(&[state, times(sizes.cases, CASE_DESCRIBED), rows, sizes.table, times(compared(plan), COMPARED), certifying]);
         let on_page = [
             times(front.min(MOST_ON_PAGE as u64), PAGE_ROW + PAGE_OUTPUT * sizes.outputs),
             times(sizes.variants, PAGE_VARIANT),
             times(sizes.shown, PAGE_CELL),
             times(sizes.dots, DOT * sizes.dotted),
+            together(&certify::all_columns(&plan.study), front.min(MOST_ON_PAGE as u64)),
         ];
         let page = if page { sum(&[state, PAGE, sum(&on_page)]) } else { 0 };
         let merged = sum(&[shard, times(sizes.cells, CELL)]);

@@ -1,11 +1,11 @@
 //! Rows of many designs at once: the formula over a chunk of designs, scenario after scenario. The same bits as one by one.
 
 use super::worst_lanes::FoundWorst;
-use super::{Column, Row};
+use super::{Column, Row, TOGETHER};
 use crate::error::{Error, Result};
 use crate::models::{ColumnJudge, JudgeRoom, Status, input_to_si};
 use crate::parallel::on_threads;
-use crate::plan::Plan;
+use crate::plan::{Plan, knowns};
 use crate::screen::Control;
 use crate::study::{Axis, Quantity, Study};
 use crate::tape::{ColumnValue, Known, List, Node, NodeColumns, Operation, Set};
@@ -239,6 +239,32 @@ fn ordered<'a>(list: &List, mut axes: Vec<(&'a Axis, u64)>) -> Vec<(&'a Axis, u6
         work[least..=place].rotate_left(1);
     }
     axes
+}
+
+/// Bytes of an operation while a formula is recorded and cut to what is asked for.
+const RECORDED: u64 = 600;
+
+/// Bytes that recording a plan's formula takes, also where it turns out too long to be computed together.
+pub(crate) fn recorded(plan: &Plan) -> u64 {
+    let Some(formula) = plan.study.model.kernel.formula() else { return 0 };
+    let known = knowns(&plan.study, &plan.space);
+    let conditions: Vec<usize> = (0..plan.study.model.conditions.len()).collect();
+    let whole = formula.whole(&known[..formula.fields().inputs.len()], plan.used_outputs(), Set::of(&conditions));
+    RECORDED * whole.recording.operations.len() as u64
+}
+
+/// Bytes that a thread needs to compute so many designs together.
+pub(crate) fn room(plan: &Plan, columns: &[Column], designs: u64) -> u64 {
+    if designs.saturating_mul(plan.scenarios()) < TOGETHER {
+        return 0;
+    }
+    let inputs: Vec<usize> = plan.study.design.iter().flat_map(Axis::inputs).copied().collect();
+    let ends = [0, plan.designs() - 1].map(|design| plan.space.inputs(design, 0));
+    let values: Vec<[f64; 2]> = inputs.iter().map(|&input| [ends[0][input], ends[1][input]]).collect();
+    let values: Vec<&[f64]> = values.iter().map(<[f64; 2]>::as_slice).collect();
+    let found = WorstColumns::new(plan, columns, DesignColumns { inputs: &inputs, values: &values });
+    let numbers = found.map_or(0, |it| it.each.iter().filter(|each| **each).count() + it.outputs.len() + 4 * columns.len());
+    8 * numbers as u64 * designs.min(DESIGNS as u64)
 }
 
 /// The rows of designs of a study whose only design axis is these columns; `None` where they must be computed one by one.

@@ -10,7 +10,7 @@ use crate::reading::designs::{check_header, check_row, header, inputs};
 use crate::reading::packed::{Packed, packed};
 use crate::reading::{changed, table_reader, unreadable};
 use crate::screen::Control;
-use crate::study::{Axis, Constraint, Goal, OverScenarios, Quantity, ReportColumn, Study};
+use crate::study::{Axis, Constraint, Goal, OverScenarios, Quantity, Study};
 use crate::table::written;
 use serde_json::{Value, json};
 use std::collections::{BTreeSet, HashSet};
@@ -312,9 +312,7 @@ fn complete(
     patience: Duration,
     control: &Control,
 ) -> Option<(Vec<Column>, Vec<Row>)> {
-    let mut everything = plan.study.clone();
-    everything.report.columns.extend((0..everything.model.outputs.len()).map(|output| ReportColumn::from(Quantity::Output(output))));
-    let all = certify::columns(&everything);
+    let all = certify::all_columns(&plan.study);
     // A high estimate of the time, by the model's own figures: if it is hopeless, the work is not begun.
     #[allow(clippy::cast_precision_loss, reason = "an estimate")]
     let expected = plan.seconds_per_design() * designs.len() as f64 / threads.max(1) as f64;
