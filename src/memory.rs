@@ -386,7 +386,8 @@ mod tests {
         let needs = |plan: &Plan, threads, page| Needs::with_front(plan, threads, page, 1000);
         let plain = grid(100, "");
         let one = needs(&plain, 1, false);
-        assert!(one.run > PROGRAM && one.run < PROGRAM + 3_000_000, "{one:?}");
+        // A small study takes little beside the program itself.
+        assert!(one.run > PROGRAM && one.run < PROGRAM / 4 * 5, "{one:?}");
         assert!(needs(&plain, 8, false).run > one.run);
         assert!(needs(&plain, 1, true).run > one.run + 1_000_000);
         assert!(Needs::with_front(&plain, 1, false, 1_000_000).run > one.run + 300_000_000);
