@@ -58,8 +58,9 @@ fn confirm(plan: &Plan, columns: &[Column], rows: &[Row], threads: usize, contro
                 let whole = reference.row(plan.position_of(row.index)).ok_or(Error::Stopped { kept: None })?;
                 if whole != *row {
                     return Err(Error::Disagreement(format!(
-                        "design {}: computed together with others it is {row:?}, by the scalar f64 reference {whole:?}",
-                        row.index
+                        "design {}: computed together with others it is not what the scalar f64 reference finds: {}",
+                        row.index,
+                        difference(columns, row, &whole)
                     )));
                 }
             }
@@ -106,6 +107,24 @@ fn confirm_shown(plan: &Plan, columns: &[Column], row: &Row, reference: &mut Ref
     Ok(())
 }
 
+/// In what two rows of a design differ first.
+fn difference(columns: &[Column], row: &Row, whole: &Row) -> String {
+    for (number, column) in columns.iter().enumerate() {
+        let [own, found] = [row, whole].map(|it| (it.columns[number], it.complete[number]));
+        if own != found {
+            let told = |(at, _): (super::AtWorst, bool)| format!("{} in scenario {}", in_words(at.value), at.scenario);
+            return format!("{} is {} and {}", column.name, told(own), told(found));
+        }
+    }
+    if (row.feasible, row.without_result, row.first_without) != (whole.feasible, whole.without_result, whole.first_without) {
+        let told = |it: &Row| {
+            format!("{} with {} scenarios without a result", if it.feasible { "feasible" } else { "infeasible" }, it.without_result)
+        };
+        return format!("it is {} and {}", told(row), told(whole));
+    }
+    "its status or its inputs".to_owned()
+}
+
 fn in_words(value: Option<f64>) -> String {
     value.map_or_else(|| "absent".to_owned(), |value| value.to_string())
 }
@@ -139,8 +158,8 @@ mod tests {
         let another = |row: &mut Row| row.columns[1].value = row.columns[1].value.map(f64::next_up);
         assert!(refused(&another, 5).contains(&format!("stress_margin of design {}", rows[5].index)));
         // A worst scenario that is not the worst is found where every scenario is computed.
-        assert!(refused(&|row| row.columns[0].scenario += 1, 0).contains("computed together"));
-        assert!(refused(&|row| row.without_result += 1, ONE_OF).contains("computed together"));
+        assert!(refused(&|row| row.columns[0].scenario += 1, 0).contains("axial_force_upper_N is "));
+        assert!(refused(&|row| row.without_result += 1, ONE_OF).contains("scenarios without a result"));
         let feasible = (0..rows.len()).find(|&at| at % ONE_OF != 0 && rows[at].feasible).expect("there is one");
         assert!(refused(&|row| row.first_without = Some(0), feasible).contains("finds a result"));
         control.stop.store(true, Ordering::Relaxed);

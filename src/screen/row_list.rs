@@ -6,11 +6,11 @@
 
 use super::lane_list::{LaneList, LaneNumbers};
 use super::tables::{Setting, settings};
-use super::turned_list::{NumberReads, TurnedList};
+use super::turned_list::{NumberReads, RowFormula, TurnedList};
 use crate::models::input_to_si;
-use crate::plan::{Plan, knowns};
+use crate::plan::Plan;
 use crate::space::SpaceDimension;
-use crate::tape::{CHUNK, ColumnValue, List, Node, NodeColumns, Operation, Set};
+use crate::tape::{CHUNK, ColumnValue, Node, NodeColumns, Operation, Set};
 
 /// Shorter columns would not pay; longer ones would fill the caches.
 const PLACES: std::ops::RangeInclusive<u64> = 8..=4 * CHUNK as u64;
@@ -55,34 +55,27 @@ impl RowList {
             return None;
         }
         let innermost = innermost.filter(|_| rows > 1);
-        let formula = plan.study.model.kernel.formula()?;
-        let known = knowns(&plan.study, &plan.space);
-        let conditions = Set::of(&plan.row_conditions);
-        let whole = formula.whole(&known[..formula.fields().inputs.len()], plan.used_outputs(), conditions);
         let read_of_list = |lanes: &LaneList, number: usize| {
             lanes.list().needed_by(lanes.scalars()).iter().any(
                 |&node| matches!(lanes.list().operations[node as usize], Operation::Input(input) if lanes.passed_on(input) == Some(number)),
             )
         };
         let read = |number: usize| lanes.is_some_and(|lanes| read_of_list(lanes, number));
-        let passed: Vec<usize> = (0..whole.prepared.len()).filter(|&number| read(number)).collect();
-        let asked = passed.iter().map(|&number| whole.prepared[number]);
-        let asked = asked.chain(plan.row_conditions.iter().map(|&number| whole.conditions[number]));
-        let asked: Vec<Option<Node>> = asked.chain(plan.row_outputs.iter().map(|number| whole.outputs[number])).map(Some).collect();
-        let list = List::cut(&whole.recording, &asked);
-        if list.operations.len() + lanes.map_or(0, |it| it.list().operations.len()) > MOST_OPERATIONS {
+        let prepared = plan.study.model.kernel.prepared_len();
+        let passed: Vec<usize> = (0..prepared).filter(|&number| read(number)).collect();
+        let formula = RowFormula::new(plan, &passed)?;
+        if formula.list.operations.len() + lanes.map_or(0, |it| it.list().operations.len()) > MOST_OPERATIONS {
             return None;
         }
-        let results: Vec<Node> = list.results.iter().flatten().copied().collect();
+        let mut places = vec![None; prepared];
+        passed.iter().zip(&formula.passed).for_each(|(&number, &node)| places[number] = Some(node));
+        let results = formula.results();
         let of_scenarios = plan.slow_scenarios.inputs() | plan.fast_scenarios.inputs();
         let of_rows: Set = innermost.into_iter().flat_map(SpaceDimension::inputs).copied().collect();
         let turning = plan.slow.inputs() - of_rows;
         let of_input = |input: usize| NumberReads { turning: Set::one(input) & turning, each: (of_scenarios | of_rows).contains(input) };
+        let RowFormula { list, conditions, outputs, .. } = formula;
         let part = TurnedList::new(list, &results, |input| of_input(input.into()));
-        let (of_passed, rest) = results.split_at(passed.len());
-        let (of_conditions, of_outputs) = rest.split_at(plan.row_conditions.len());
-        let mut places = vec![None; whole.prepared.len()];
-        passed.iter().zip(of_passed).for_each(|(&number, &node)| places[number] = Some(node));
         let of_lanes = lanes.map(|lanes| {
             let of_lane_input = |input: u16| match lanes.passed_on(input) {
                 None => of_input(input.into()),
@@ -105,8 +98,8 @@ impl RowList {
         Some(Self {
             column_inputs: scenario_inputs.chain(row_inputs).collect(),
             passed: places,
-            conditions: plan.row_conditions.iter().copied().zip(of_conditions.iter().copied()).collect(),
-            outputs: plan.row_outputs.iter().zip(of_outputs.iter().copied()).collect(),
+            conditions,
+            outputs,
             whole: part,
             lanes: of_lanes,
             rows,
@@ -128,8 +121,10 @@ impl RowList {
     /// Bytes of a thread's room.
     pub(super) fn room(plan: &Plan, lanes: Option<&LaneList>) -> u64 {
         let [slow, fast] = [&plan.slow_scenarios, &plan.fast_scenarios].map(|product| settings(plan, product));
-        Self::new(plan, lanes, (&slow, &fast))
-            .map_or(0, |it| (it.whole.bytes() + it.lanes.as_ref().map_or(0, TurnedList::bytes)) * (it.places().div_ceil(CHUNK)) as u64)
+        Self::new(plan, lanes, (&slow, &fast)).map_or(0, |it| {
+            let places = it.places();
+            it.whole.bytes(places) + it.lanes.as_ref().map_or(0, |lanes| lanes.bytes(places))
+        })
     }
 }
 

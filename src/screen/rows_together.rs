@@ -4,12 +4,13 @@
 //! that changes is computed again. Designs that are out are left behind, and the scenario in which most of them fail comes first.
 
 use super::Block;
+use super::cpu::{holds, worse_of};
 use super::tables::{Setting, settings};
-use super::turned_list::{NumberReads, TurnedList};
+use super::turned_list::{NumberReads, RowFormula, TurnedList};
 use crate::masks::{self, keep_between, keep_finite, keep_margin};
 use crate::models::input_to_si;
-use crate::plan::{Plan, Source, knowns};
-use crate::tape::{ColumnValue, List, Node, NodeColumns, Set};
+use crate::plan::{Plan, Source};
+use crate::tape::{ColumnValue, Node, NodeColumns, Set};
 use std::ops::Range;
 
 /// Designs of a block: what is computed of them stays in the second-level cache.
@@ -37,14 +38,8 @@ impl RowsTogether {
         if has_lanes || plan.fast.count() > 1 || plan.designs() < DESIGNS as u64 || plan.spectrum.is_some() {
             return None;
         }
-        let formula = plan.study.model.kernel.formula().filter(|it| it.fields().iterations == 0)?;
-        let known = knowns(&plan.study, &plan.space);
-        let conditions = Set::of(&plan.row_conditions);
-        let whole = formula.whole(&known[..formula.fields().inputs.len()], plan.used_outputs(), conditions);
-        let asked = plan.row_conditions.iter().map(|&number| whole.conditions[number]);
-        let asked: Vec<Option<Node>> = asked.chain(plan.row_outputs.iter().map(|number| whole.outputs[number])).map(Some).collect();
-        let list = List::cut(&whole.recording, &asked);
-        if list.operations.len() > MOST_OPERATIONS {
+        let formula = RowFormula::new(plan, &[])?;
+        if formula.list.operations.len() > MOST_OPERATIONS || !formula.list.loops.is_empty() {
             return None;
         }
         let [slow, fast] = [&plan.slow_scenarios, &plan.fast_scenarios].map(|product| settings(plan, product));
@@ -52,14 +47,14 @@ impl RowsTogether {
             return None;
         }
         let joined = slow.iter().flat_map(|slow| fast.iter().map(move |fast| slow.iter().chain(fast).copied().collect()));
-        let results: Vec<Node> = list.results.iter().flatten().copied().collect();
-        let (of_conditions, of_outputs) = results.split_at(plan.row_conditions.len());
         let of_designs = plan.slow.inputs() | plan.fast.inputs();
         let of_scenarios = plan.slow_scenarios.inputs() | plan.fast_scenarios.inputs();
         let of_input = |input: u16| NumberReads { turning: Set::one(input.into()) & of_scenarios, each: of_designs.contains(input.into()) };
+        let results = formula.results();
+        let RowFormula { list, conditions, outputs, .. } = formula;
         Some(Self {
-            conditions: plan.row_conditions.iter().copied().zip(of_conditions.iter().copied()).collect(),
-            outputs: plan.row_outputs.iter().zip(of_outputs.iter().copied()).collect(),
+            conditions,
+            outputs,
             list: TurnedList::new(list, &results, of_input),
             inputs: of_designs.iter().collect(),
             of_scenarios,
@@ -69,7 +64,7 @@ impl RowsTogether {
 
     /// Bytes of a thread's room.
     pub(super) fn room(plan: &Plan) -> u64 {
-        Self::new(plan).map_or(0, |it| it.list.bytes() + 8 * (DESIGNS * (2 * it.inputs.len() + plan.tracked.len() + 4)) as u64)
+        Self::new(plan).map_or(0, |it| it.list.bytes(DESIGNS) + 8 * (DESIGNS * (2 * it.inputs.len() + plan.tracked.len() + 4)) as u64)
     }
 }
 
@@ -224,7 +219,7 @@ impl BlockOfRows {
             let strict = model.conditions[condition].strict;
             match rows.list.value(numbers, node) {
                 ColumnValue::Each(margins) => keep_margin(alive, margins, strict),
-                ColumnValue::One(margin) => out_if(alive, !super::cpu::holds(plan, condition, margin)),
+                ColumnValue::One(margin) => out_if(alive, !holds(plan, condition, margin)),
             }
         }
         let mut judge = |source: Source, judge: &mut dyn FnMut(ColumnValue<'_>)| match source {
@@ -264,7 +259,7 @@ impl BlockOfRows {
                 }
                 ColumnValue::One(value) => {
                     out_if(alive, !value.is_finite());
-                    worst.iter_mut().for_each(|worst| *worst = super::cpu::worse_of(tracked.worse, *worst, value));
+                    worst.iter_mut().for_each(|worst| *worst = worse_of(tracked.worse, *worst, value));
                 }
             });
         }

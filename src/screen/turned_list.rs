@@ -1,6 +1,7 @@
 //! A list of operations, of which only those are computed again that read an input which has changed.
 
-use crate::tape::{CHUNK, ColumnValue, List, Node, NodeColumns, Operation, Set};
+use crate::plan::{Plan, knowns};
+use crate::tape::{ColumnValue, List, Node, NodeColumns, Operation, Set};
 
 /// What an operation depends on.
 #[derive(Clone, Copy, Default)]
@@ -15,6 +16,44 @@ impl std::ops::BitOrAssign for NumberReads {
     fn bitor_assign(&mut self, other: Self) {
         self.turning = self.turning | other.turning;
         self.each |= other.each;
+    }
+}
+
+/// The formula of a plan up to what is the same for all designs of a row.
+pub(super) struct RowFormula {
+    pub(super) list: List,
+    /// Numbers that the first stage passes on, in the order in which they were asked for.
+    pub(super) passed: Vec<Node>,
+    /// Conditions and outputs of the model that the row decides, with their results.
+    pub(super) conditions: Vec<(usize, Node)>,
+    pub(super) outputs: Vec<(usize, Node)>,
+}
+
+impl RowFormula {
+    /// Records it, with these of the numbers that the first stage passes on; `None` if that cannot be done.
+    pub(super) fn new(plan: &Plan, passed: &[usize]) -> Option<Self> {
+        let formula = plan.study.model.kernel.formula()?;
+        let known = knowns(&plan.study, &plan.space);
+        let whole = formula.whole(&known[..formula.fields().inputs.len()], plan.used_outputs(), Set::of(&plan.row_conditions));
+        let asked = passed.iter().map(|&number| whole.prepared[number]);
+        let asked = asked.chain(plan.row_conditions.iter().map(|&number| whole.conditions[number]));
+        let asked: Vec<Option<Node>> = asked.chain(plan.row_outputs.iter().map(|number| whole.outputs[number])).map(Some).collect();
+        let list = List::cut(&whole.recording, &asked);
+        let results: Vec<Node> = list.results.iter().flatten().copied().collect();
+        let (passed, rest) = results.split_at(passed.len());
+        let (conditions, outputs) = rest.split_at(plan.row_conditions.len());
+        Some(Self {
+            passed: passed.to_vec(),
+            conditions: plan.row_conditions.iter().copied().zip(conditions.iter().copied()).collect(),
+            outputs: plan.row_outputs.iter().zip(outputs.iter().copied()).collect(),
+            list,
+        })
+    }
+
+    /// All results.
+    pub(super) fn results(&self) -> Vec<Node> {
+        let rest = self.conditions.iter().chain(&self.outputs).map(|(_, node)| *node);
+        self.passed.iter().copied().chain(rest).collect()
     }
 }
 
@@ -55,10 +94,10 @@ impl TurnedList {
         numbers.value(node, |node| self.each[node as usize])
     }
 
-    /// Bytes of its numbers.
-    pub(super) fn bytes(&self) -> u64 {
+    /// Bytes of its numbers, with so many places in a column.
+    pub(super) fn bytes(&self, places: usize) -> u64 {
         let columns = self.nodes.iter().filter(|&&node| self.each[node as usize]).count();
-        8 * (columns * CHUNK + self.list.operations.len()) as u64
+        8 * (columns * places + self.list.operations.len()) as u64
     }
 
     /// What an operation depends on.

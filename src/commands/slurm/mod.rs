@@ -24,6 +24,8 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+/// In the directory of the jobs: the folder of the study that they read, if it names other files.
+const RESOLVED: &str = "study";
 /// How long the speed is measured.
 const TRIAL: Duration = Duration::from_secs(1);
 /// Least memory in megabytes that jobs ask for: a shard, and the merge.
@@ -95,7 +97,12 @@ pub fn run(request: &cli::SlurmArgs) -> Result<()> {
     let limit = if method.bounds { sizing::limit_of_bounds(work.of_all()) } else { sizing::limit(work.of_shard(shards)) };
     // Jobs must not need files that lie where the study does.
     let is_alone = described::is_described(&file) || Study::parse_in(&text, "study.toml", &jobs).is_ok();
-    let (study, words) = if is_alone { (file, request.sweep.clone()) } else { (jobs.join("study.json"), without_edits(&request.sweep)) };
+    let resolved = jobs.join(RESOLVED);
+    let (study, words) =
+        if is_alone { (file, request.sweep.clone()) } else { (resolved.join("study.json"), without_edits(&request.sweep)) };
+    if !is_alone {
+        described::refuse_to_replace(&resolved)?;
+    }
     let time = [limit, sizing::limit(LEAST_MERGE + work.of_merge())].map(|seconds| time.clone().unwrap_or_else(|| sizing::clock(seconds)));
     let scripts = scripts::ScriptContents {
         scheduler,
@@ -121,7 +128,7 @@ pub fn run(request: &cli::SlurmArgs) -> Result<()> {
         std::fs::remove_file(&submit).map_err(Error::io(&submit))?;
     }
     if !is_alone {
-        described::write(&jobs, &plan.study, &text)?;
+        described::write(&resolved, &plan.study, &text)?;
     }
     for (name, text) in scripts.scripts() {
         let path = jobs.join(name);
@@ -338,4 +345,16 @@ fn make_executable(path: &Path) -> Result<()> {
 #[cfg(not(unix))]
 fn make_executable(_: &Path) -> Result<()> {
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::without_edits;
+
+    #[test]
+    fn a_resolved_study_takes_no_edits_twice() {
+        let words = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+        let left = without_edits(&words("--engine cpu --set a=1 --feasible --set=b=2 --method bounds --set c=3"));
+        assert_eq!(left, words("--engine cpu --method bounds"));
+    }
 }

@@ -184,6 +184,25 @@ fn a_resolved_study_needs_no_other_file() {
 }
 
 #[test]
+fn a_folder_of_the_user_where_the_study_of_the_jobs_belongs_stays() {
+    let place = Place::of_a_table("bins = 40");
+    let folder = place.path.join("study");
+    std::fs::create_dir(&folder).expect("it can be made");
+    let ask = || place.ask("--shards 2 --shortest 0 --jobs . --quiet");
+    for (name, text) in [("notes.txt", "mine"), ("study.toml", "model = \"metal-cvt\""), ("study.json", "{}")] {
+        write(&folder, name, text);
+        let said = ask().refusal(2);
+        assert!(said.contains(&format!("study/{name}")) && said.contains("--jobs"), "{said}");
+        assert_eq!((read(&folder.join(name)).as_str(), place.path.join("submit.sh").exists()), (text, false));
+        std::fs::remove_file(folder.join(name)).expect("it is there");
+    }
+    ask().text();
+    // What it wrote itself it replaces, if the scripts may be replaced.
+    place.ask("--shards 2 --shortest 0 --jobs . --quiet --force").text();
+    assert!(read(&folder.join("study.json")).contains("metal-cvt"));
+}
+
+#[test]
 fn after_a_failed_shard_there_is_no_merge_and_another_submission_goes_on() {
     let place = Place::new(SMALL);
     let cluster = Cluster::new();
