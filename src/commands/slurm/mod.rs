@@ -95,9 +95,10 @@ pub fn run(request: &cli::SlurmArgs) -> Result<()> {
     let wanted = [needs.shard, needs.merge].map(|bytes| (bytes + bytes / 2).div_ceil(1_000_000).next_multiple_of(100));
     let memory = [0, 1].map(|job| if request.memory.is_some() { least[job] } else { least[job].max(wanted[job]) });
     let limit = if method.bounds { sizing::limit_of_bounds(work.of_all()) } else { sizing::limit(work.of_shard(shards)) };
-    // Jobs must not need files that lie where the study does.
-    let is_alone = described::is_described(&file) || Study::parse_in(&text, "study.toml", &jobs).is_ok();
     let resolved = jobs.join(RESOLVED);
+    // Jobs must not need files that lie where the study does. Looked for in what is no folder, none of them is found, not even if the
+    // jobs lie beside the study.
+    let is_alone = described::is_described(&file) || Study::parse_in(&text, "study.toml", &resolved.join("none")).is_ok();
     let (study, words) =
         if is_alone { (file, request.sweep.clone()) } else { (resolved.join("study.json"), without_edits(&request.sweep)) };
     if !is_alone {
