@@ -9,8 +9,8 @@ mod reference;
 mod worst_columns;
 mod worst_lanes;
 
+pub(crate) use worst_columns::room;
 pub use worst_columns::{DesignColumns, rows_of_columns};
-pub(crate) use worst_columns::{recorded, room};
 
 use crate::bounds::yields::{EnclosureProblem, YieldBounds};
 use crate::error::{Error, Result};
@@ -23,8 +23,13 @@ use crate::study::{Axis, ConfirmedEnd, Constraint, Objective, OverScenarios, Qua
 use reference::Reference;
 use std::sync::atomic::Ordering;
 
-/// Evaluations from which on designs are computed together: fewer are done before a formula is recorded.
-pub(crate) const TOGETHER: u64 = 2000;
+/// Evaluations from which on designs are computed together.
+const TOGETHER: u64 = 2000;
+
+/// Whether so many designs are computed together: fewer are done before a formula is recorded.
+pub(crate) fn pays_together(plan: &Plan, designs: u64) -> bool {
+    designs.saturating_mul(plan.scenarios()) >= TOGETHER
+}
 
 /// Why a column is in the tables.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -290,7 +295,7 @@ pub fn rows(plan: &Plan, columns: &[Column], designs: &[u64], threads: usize, co
     let mut order: Vec<(u64, usize)> = designs.iter().enumerate().map(|(at, &design)| (plan.position_of(design), at)).collect();
     order.sort_unstable();
     let positions: Vec<u64> = order.iter().map(|&(position, _)| position).collect();
-    let pays = designs.len() as u64 * plan.scenarios() >= TOGETHER;
+    let pays = pays_together(plan, designs.len() as u64);
     let together = || confirm::rows_together(plan, columns, &positions, threads, control);
     let computed = match pays.then(together).flatten() {
         Some(rows) => rows?,

@@ -157,7 +157,6 @@ impl Needs {
             times(sizes.cases, CASE),
             times(threads, THREAD),
             solving(plan, threads),
-            certify::recorded(plan),
             8 * sizes.bins * (threads + 2),
             times(sizes.indices, INDICES * 8 * (threads + 2)),
             times(sizes.packed, PACKED_COPIES),
@@ -169,7 +168,7 @@ impl Needs {
         let state = sum(&[program, times(sizes.cells, CELL), met]);
         let rows = times(front + sizes.rows, sizes.row);
         let columns = certify::columns(&plan.study);
-        let together = |columns: &[Column], designs: u64| times(threads, certify::room(plan, columns, designs.div_ceil(threads)));
+        let together = |columns: &[Column], designs: u64| certify::room(plan, columns, designs, threads);
         let certifying = together(&columns, front.max(sizes.rows));
         let tables = sum(&[state, times(sizes.cases, CASE_DESCRIBED), rows, sizes.table, times(compared(plan), COMPARED), certifying]);
         let on_page = [

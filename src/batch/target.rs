@@ -1,7 +1,7 @@
 //! What rows are evaluated by: a model, or a study.
 
 use super::refusal;
-use crate::certify::{self, Column, DesignColumns, Row, TOGETHER};
+use crate::certify::{self, Column, DesignColumns, Row};
 use crate::error::Result;
 use crate::export::tables::{input_column, of_rows};
 use crate::likeness::remedy;
@@ -221,7 +221,7 @@ fn by_study(
     } else {
         let plan = Plan::new(own.clone());
         let together = || certify::rows_of_columns(&plan, columns, DesignColumns { inputs: given, values }, threads, control);
-        match (count as u64 * plan.scenarios() >= TOGETHER).then(together).flatten() {
+        match certify::pays_together(&plan, count as u64).then(together).flatten() {
             Some(rows) => rows?,
             None => certify::rows(&plan, columns, &(0..count as u64).collect::<Vec<_>>(), threads, control)?,
         }

@@ -1,7 +1,7 @@
 //! Rows of many designs at once: the formula over a chunk of designs, scenario after scenario. The same bits as one by one.
 
 use super::worst_lanes::FoundWorst;
-use super::{Column, Row, TOGETHER};
+use super::{Column, Row, pays_together};
 use crate::error::{Error, Result};
 use crate::models::{ColumnJudge, JudgeRoom, Status, input_to_si};
 use crate::parallel::on_threads;
@@ -242,29 +242,24 @@ fn ordered<'a>(list: &List, mut axes: Vec<(&'a Axis, u64)>) -> Vec<(&'a Axis, u6
 }
 
 /// Bytes of an operation while a formula is recorded and cut to what is asked for.
-const RECORDED: u64 = 600;
+const RECORDED: u64 = 150;
 
-/// Bytes that recording a plan's formula takes, also where it turns out too long to be computed together.
-pub(crate) fn recorded(plan: &Plan) -> u64 {
-    let Some(formula) = plan.study.model.kernel.formula() else { return 0 };
+/// Bytes that so many threads need to compute so many designs together: to record the formula, also where it turns out too long for that,
+/// and for the numbers of each thread.
+pub(crate) fn room(plan: &Plan, columns: &[Column], designs: u64, threads: u64) -> u64 {
+    let Some(formula) = plan.study.model.kernel.formula().filter(|_| pays_together(plan, designs)) else { return 0 };
     let known = knowns(&plan.study, &plan.space);
     let conditions: Vec<usize> = (0..plan.study.model.conditions.len()).collect();
     let whole = formula.whole(&known[..formula.fields().inputs.len()], plan.used_outputs(), Set::of(&conditions));
-    RECORDED * whole.recording.operations.len() as u64
-}
+    let recorded = RECORDED * whole.recording.operations.len() as u64;
 
-/// Bytes that a thread needs to compute so many designs together.
-pub(crate) fn room(plan: &Plan, columns: &[Column], designs: u64) -> u64 {
-    if designs.saturating_mul(plan.scenarios()) < TOGETHER {
-        return 0;
-    }
     let inputs: Vec<usize> = plan.study.design.iter().flat_map(Axis::inputs).copied().collect();
     let ends = [0, plan.designs() - 1].map(|design| plan.space.inputs(design, 0));
     let values: Vec<[f64; 2]> = inputs.iter().map(|&input| [ends[0][input], ends[1][input]]).collect();
     let values: Vec<&[f64]> = values.iter().map(<[f64; 2]>::as_slice).collect();
     let found = WorstColumns::new(plan, columns, DesignColumns { inputs: &inputs, values: &values });
     let numbers = found.map_or(0, |it| it.each.iter().filter(|each| **each).count() + it.outputs.len() + 4 * columns.len());
-    8 * numbers as u64 * designs.min(DESIGNS as u64)
+    recorded + 8 * numbers as u64 * designs.div_ceil(threads).min(DESIGNS as u64) * threads
 }
 
 /// The rows of designs of a study whose only design axis is these columns; `None` where they must be computed one by one.
