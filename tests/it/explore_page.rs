@@ -284,6 +284,13 @@ fn changes_are_undone_shared_saved_and_compared() {
     assert!(browser.text("document.querySelector('#card svg.drive title').textContent").contains("at ratio 0.5"));
     browser.evaluate("beltspace.openCard(beltspace.page.front.rows - 1)");
     browser.wait("document.querySelector('#all-outputs table')");
+    // Findings come after the plots, which stay where they are; beside the card the button covers nothing.
+    browser.wait("document.querySelector('#tally .findings li')");
+    let covered = "(() => { const of = (it) => it.getBoundingClientRect(); const own = of(document.querySelector('#open-knee')); \
+         return [...document.querySelectorAll('#overview dl, #overview p, #overview li, #overview h1, #overview summary, #live')].filter((it) => it.checkVisibility()).map((it) => [it, of(it)]) \
+         .filter(([, it]) => it.left < own.right && own.left < it.right && it.top < own.bottom && own.top < it.bottom) \
+         .map(([it]) => it.outerHTML); })()";
+    assert_eq!(browser.evaluate(covered), serde_json::json!([]));
     browser.picture("explore-card");
     // All of this is in the address.
     browser.wait("location.hash.includes('s=constraints.stress_margin.min') && location.hash.includes('p=')");
