@@ -244,8 +244,8 @@ fn ordered<'a>(list: &List, mut axes: Vec<(&'a Axis, u64)>) -> Vec<(&'a Axis, u6
 /// Bytes of an operation while a formula is recorded and cut to what is asked for.
 const RECORDED: u64 = 150;
 
-/// Bytes that so many threads need to compute so many designs together: to record the formula, also where it turns out too long for that,
-/// and for the numbers of each thread.
+/// Bytes that certifying so many designs together takes on so many threads: the recorded formula, and the numbers of each thread. Of a
+/// formula that is too long to be computed together, what recording it took; 0 for fewer designs than [`pays_together`] asks for.
 pub(crate) fn room(plan: &Plan, columns: &[Column], designs: u64, threads: u64) -> u64 {
     let Some(formula) = plan.study.model.kernel.formula().filter(|_| pays_together(plan, designs)) else { return 0 };
     let known = knowns(&plan.study, &plan.space);
@@ -291,6 +291,21 @@ mod tests {
     use super::*;
     use crate::certify;
     use std::path::Path;
+
+    #[test]
+    fn room_is_asked_for_where_the_designs_of_all_threads_together_are_enough() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("studies");
+        let (study, _) = Study::read(&folder.join("timing-design.toml")).expect("it is right");
+        let plan = Plan::new(study);
+        let columns = certify::columns(&plan.study);
+        let least = super::super::TOGETHER.div_ceil(plan.scenarios());
+        assert_eq!(room(&plan, &columns, least - 1, 1), 0);
+        let on = |threads| room(&plan, &columns, least, threads);
+        assert!(on(1) > 0 && on(1) == on(least), "{} {}", on(1), on(least));
+        // Each thread has its own chunk.
+        let many = |threads| room(&plan, &columns, 1_000_000, threads);
+        assert!(many(2) > many(1) && many(3) - many(2) == many(2) - many(1));
+    }
 
     #[test]
     fn designs_in_columns_have_the_rows_that_each_has_alone() {

@@ -33,11 +33,11 @@ pub fn read(path: &Path, edits: StudyEdits<'_>) -> Result<(Study, String)> {
     Ok((study, written))
 }
 
-/// Refuses to write into a folder that has anything but the resolved form of a study.
+/// Refuses to write into a folder that has anything but the resolved form of a study, and without `force` also where it has one.
 ///
 /// # Errors
 /// [`Error::Request`] that names what is in the way.
-pub fn refuse_to_replace(folder: &Path) -> Result<()> {
+pub fn refuse_to_replace(folder: &Path, force: bool) -> Result<()> {
     if !is_there(folder) {
         return Ok(());
     }
@@ -63,6 +63,10 @@ pub fn refuse_to_replace(folder: &Path) -> Result<()> {
     };
     match [RESOLVED, TEXT].map(|name| folder.join(name)).into_iter().find(|path| is_there(path)) {
         Some(path) if is_own().is_none() => Err(foreign(&path)),
+        Some(_) if !force => Err(Error::Request(format!(
+            "{} has a study already; replace it with --force, or write to another directory with --jobs",
+            folder.display()
+        ))),
         _ => Ok(()),
     }
 }

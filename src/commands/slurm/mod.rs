@@ -96,13 +96,13 @@ pub fn run(request: &cli::SlurmArgs) -> Result<()> {
     let memory = [0, 1].map(|job| if request.memory.is_some() { least[job] } else { least[job].max(wanted[job]) });
     let limit = if method.bounds { sizing::limit_of_bounds(work.of_all()) } else { sizing::limit(work.of_shard(shards)) };
     let resolved = jobs.join(RESOLVED);
-    // Jobs must not need files that lie where the study does. Looked for in what is no folder, none of them is found, not even if the
-    // jobs lie beside the study.
+    // Jobs must not need files that lie where the study does. The study stands alone if it can be read from a folder that does not exist;
+    // the folder of the jobs would not tell, as it may be the study's own.
     let is_alone = described::is_described(&file) || Study::parse_in(&text, "study.toml", &resolved.join("none")).is_ok();
     let (study, words) =
         if is_alone { (file, request.sweep.clone()) } else { (resolved.join("study.json"), without_edits(&request.sweep)) };
     if !is_alone {
-        described::refuse_to_replace(&resolved)?;
+        described::refuse_to_replace(&resolved, request.force)?;
     }
     let time = [limit, sizing::limit(LEAST_MERGE + work.of_merge())].map(|seconds| time.clone().unwrap_or_else(|| sizing::clock(seconds)));
     let scripts = scripts::ScriptContents {

@@ -62,7 +62,7 @@
     if (tally) drawTally(tally, { one: "design", title: "What limits feasibility", id: "tally-title", all: study && study.designs, good: "are feasible" });
     if (data.draws) drawTally(data.draws, { one: "draw", title: "What draws fail at", id: "draws-title", all: data.draws.draws, good: "hold" });
     const none = study && (study.feasible === 0 || (front && front.rows === 0 && front.objectives.length));
-    // Where the study is changed nothing pushes the plots down while they move.
+    // On the page of `explore` they come a moment after the front: above the plots they would push these down.
     const place = page.byId(tally && data.kind === "live" ? "tally" : "overview");
     if (findings && !none) drawFindings(place, findings);
     const lead = page.byId("lead");

@@ -197,7 +197,14 @@ fn a_folder_of_the_user_where_the_study_of_the_jobs_belongs_stays() {
         std::fs::remove_file(folder.join(name)).expect("it is there");
     }
     ask().text();
-    // What it wrote itself it replaces, if the scripts may be replaced.
+    // Of a study that is there nobody knows whose it is, even where no script is.
+    for name in ["submit.sh", "shards.sh", "merge.sh"] {
+        std::fs::remove_file(place.path.join(name)).expect("it is there");
+    }
+    let before = read(&folder.join("study.toml"));
+    let said = place.ask("--shards 2 --shortest 0 --jobs . --quiet -- --set strength_MPa=900").refusal(2);
+    assert!(said.contains("has a study already; replace it with --force"), "{said}");
+    assert_eq!(read(&folder.join("study.toml")), before);
     place.ask("--shards 2 --shortest 0 --jobs . --quiet --force").text();
     assert!(read(&folder.join("study.json")).contains("metal-cvt"));
 }
