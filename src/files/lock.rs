@@ -102,9 +102,10 @@ impl Lock {
         #[cfg(not(feature = "cli"))]
         let host = std::env::var_os("HOSTNAME").unwrap_or_else(|| "this machine".into());
         let line = format!("{MARK}: process {} on {}: {task}\n", std::process::id(), host.to_string_lossy());
-        self.file.set_len(0)?;
         self.file.seek(io::SeekFrom::Start(0))?;
-        self.file.write_all(line.as_bytes())
+        // Others may read while a second reader writes its line over the first: at no moment is the file without one.
+        self.file.write_all(line.as_bytes())?;
+        self.file.set_len(line.len() as u64)
     }
 }
 
@@ -162,23 +163,30 @@ fn is_at(_: &File, _: &Path) -> bool {
     true
 }
 
-/// The first line of a lock; empty where it cannot be read.
-fn first_line(file: &File) -> String {
-    let mut file = file;
+/// The beginning of a file, as much as a lock can hold.
+fn beginning(mut file: &File) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    // On systems where a lock keeps others from reading, the process cannot be named.
-    let read = file.seek(io::SeekFrom::Start(0)).and_then(|_| file.take(LINE).read_to_end(&mut bytes));
-    let text = if read.is_ok() { String::from_utf8_lossy(&bytes).into_owned() } else { String::new() };
-    text.lines().next().unwrap_or_default().to_owned()
+    file.seek(io::SeekFrom::Start(0))?;
+    file.take(LINE).read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
+/// A lock is empty until its first holder has written into it. Only what was read decides, not a length asked for before: another
+/// process may write in between.
 fn is_a_lock(file: &File) -> io::Result<bool> {
-    Ok(file.metadata()?.len() == 0 || first_line(file).starts_with(MARK) || cfg!(not(unix)))
+    // On systems where a lock keeps others from reading, nothing is known of a file that is held.
+    if cfg!(not(unix)) {
+        return Ok(true);
+    }
+    let bytes = beginning(file)?;
+    Ok(bytes.is_empty() || bytes.starts_with(MARK.as_bytes()))
 }
 
 /// Which process holds a lock, and for how long: `process 12 on host, for 3 s: beltspace sweep study.toml`.
 fn holder(file: &File) -> String {
-    let line = first_line(file);
+    // Where a lock keeps others from reading, the process cannot be named.
+    let text = String::from_utf8_lossy(&beginning(file).unwrap_or_default()).into_owned();
+    let line = text.lines().next().unwrap_or_default();
     let since = file.metadata().and_then(|it| it.modified()).ok().and_then(|it| it.elapsed().ok());
     let Some((who, what)) = line.strip_prefix(MARK).and_then(|it| it.strip_prefix(": ")).and_then(|it| it.split_once(": ")) else {
         return "it is not known which".to_owned();
@@ -247,6 +255,36 @@ mod tests {
                 });
             }
         });
+    }
+
+    /// Each reader writes its own line over that of the reader before.
+    #[test]
+    fn a_lock_is_one_while_readers_write_into_it() {
+        let folder = folder();
+        let path = folder.path().join("lock");
+        let Ok(Taken::Held(_first)) = Lock::shared(&path, "a reader whose line is longer than that of the next") else {
+            panic!("it is free")
+        };
+        let done = std::sync::atomic::AtomicBool::new(false);
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                for round in 0..3000 {
+                    let Ok(Taken::Held(_)) = Lock::shared(&path, ["short", "a longer task than before"][round % 2]) else {
+                        panic!("readers share it")
+                    };
+                }
+                done.store(true, Ordering::SeqCst);
+            });
+            scope.spawn(|| {
+                let file = File::open(&path).expect("it is there");
+                while !done.load(Ordering::SeqCst) {
+                    assert!(is_a_lock(&file).expect("it can be read"));
+                    assert_ne!(holder(&file), "it is not known which");
+                }
+            });
+        });
+        let text = fs::read_to_string(&path).expect("it is there");
+        assert_eq!(text.lines().count(), 1, "{text}");
     }
 
     #[cfg(unix)]
