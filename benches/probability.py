@@ -141,26 +141,31 @@ def draws_of(program, folder):
 
 
 def counts_of_list(out, designs):
-    """How many draws hold, of each design of a study whose list has all of them."""
+    """How many draws hold, of each design of a study whose list has all that are feasible: those of which a draw holds."""
     with open(out / "top.csv") as file:
         rows = list(csv.DictReader(file))
-    if sorted(int(row["design_index"]) for row in rows) != list(range(designs)):
-        sys.exit(f"{out}/top.csv does not have each of the {designs} designs once")
-    found = np.empty(designs, np.int64)
+    listed = [int(row["design_index"]) for row in rows]
+    if len(set(listed)) != len(listed) or len(listed) != json.loads((out / "summary.json").read_text())["feasible"]:
+        sys.exit(f"{out}/top.csv does not have each feasible design once")
+    found = np.zeros(designs, np.int64)
     for row in rows:
         share = float(row["yield_screened"]) * DRAWS
         if share != round(share):
             sys.exit(f"{share} draws hold of design {row['design_index']}")
+        if share < 1:
+            sys.exit(f"no draw holds of the listed design {row['design_index']}")
         found[int(row["design_index"])] = round(share)
     return found
 
 
 def counts_of_histogram(out):
-    """How many designs have 0, 1, 2 and more draws that hold."""
+    """How many designs have 0, 1, 2 and more draws that hold. Designs without such a draw are not feasible: no bin counts them."""
     (file,) = out.glob("histogram-*.csv")
     with open(file) as rows:
         below, *counts, above = (int(row["designs"]) for row in csv.DictReader(rows))
-    assert below == above == 0 and len(counts) == DRAWS + 1
+    assert below == above == counts[0] == 0 and len(counts) == DRAWS + 1
+    summary = json.loads((out / "summary.json").read_text())
+    counts[0] = summary["designs"] - summary["feasible"]
     return np.array(counts)
 
 
