@@ -37,10 +37,10 @@ const ROW_COLUMN: u64 = 140;
 const ROW_INPUT: u64 = 50;
 /// Bytes of a label of such a row, a text of some twenty characters: held, as text and in Parquet.
 const ROW_LABEL: u64 = 100;
-/// Bytes of the page, of a cell of a map that it shows, of a design on it, of each output of such a design, and of a row of the list of
-/// all designs.
+/// Bytes of the page, of a number in a cell of a map that it shows (a cell has three or four, read as text), of a design on it, of each
+/// output of such a design, and of a row of the list of all designs.
 const PAGE: u64 = 700_000;
-const PAGE_CELL: u64 = 190;
+const PAGE_NUMBER: u64 = 63;
 const PAGE_ROW: u64 = 1_050;
 const PAGE_OUTPUT: u64 = 50;
 const PAGE_VARIANT: u64 = 1_400;
@@ -83,7 +83,7 @@ struct StudySizes {
     cells: u64,
     table: u64,
     bins: u64,
-    /// Cells of the maps that a page shows.
+    /// Numbers in the cells of the maps that a page shows.
     shown: u64,
     /// Values of lists of cases.
     cases: u64,
@@ -174,7 +174,7 @@ impl Needs {
         let on_page = [
             times(front.min(MOST_ON_PAGE as u64), PAGE_ROW + PAGE_OUTPUT * sizes.outputs),
             times(sizes.variants, PAGE_VARIANT),
-            times(sizes.shown, PAGE_CELL),
+            times(sizes.shown, PAGE_NUMBER),
             times(sizes.dots, DOT * sizes.dotted),
             together(&certify::all_columns(&plan.study), front.min(MOST_ON_PAGE as u64)),
         ];

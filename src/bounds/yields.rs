@@ -446,8 +446,9 @@ impl<const N: usize> Judge for DrawJudge<'_, N> {
         let over = drawn_over.map(|DrawnPoint { value, slopes }| Dual { value, slopes });
         let middles: [Option<u64>; N] = std::array::from_fn(|axis| self.cells.middle(cell, axis));
         let within = std::array::from_fn(|axis| middles[axis].map_or(0.5, |place| cell.within(axis, place)));
-        let sides = std::array::from_fn(|axis| cell.side(axis));
-        let mut slabs = Slabs::<N>::new(within, sides);
+        let mut slabs = Slabs::<N>::new(within);
+        // The first requirement without a derivative: its scenario, its number, and the axes that it depends on.
+        let mut unbound: Option<(usize, u16, [bool; N])> = None;
         let mut reference: Option<[Interval; N]> = None;
         let (mut slots, mut points) = (take(&mut self.over), take(&mut self.at));
         let mut left: OpenRequirements = Vec::new();
@@ -481,7 +482,11 @@ impl<const N: usize> Judge for DrawJudge<'_, N> {
                     }
                     at = Some(self.number(&mut points, required, &drawn, scenario_number));
                 }
-                match slabs.add(&margin(required, at, &value)) {
+                let margin = margin(required, at, &value);
+                if unbound.is_none() && !margin.is_bound() {
+                    unbound = Some((scenario_number, number, margin.slopes.map(|slope| !slope.is_zero())));
+                }
+                match slabs.add(&margin) {
                     Some(true) => continue,
                     Some(false) => {
                         fails = true;
@@ -495,6 +500,10 @@ impl<const N: usize> Judge for DrawJudge<'_, N> {
                 left.push((*scenario, if unsure.len() == numbers.len() { numbers.clone() } else { unsure.into() }));
             }
         }
+        let mut split = None;
+        if !fails && let Some(unbound) = unbound {
+            split = self.axis_at_fault(cell, &middles, unbound, &mut slots);
+        }
         (self.over, self.at) = (slots, points);
         if fails {
             return failed(open);
@@ -503,8 +512,35 @@ impl<const N: usize> Judge for DrawJudge<'_, N> {
             return CellVerdict { holds: 1.0, fails: 0.0, split: None, open: open.clone() };
         }
         let (holds, fails) = slabs.shares();
-        let split = slabs.longest().into_iter().find_map(|axis| Some((axis, middles[axis]?)));
+        let split = split.or_else(|| slabs.longest().into_iter().find(|&axis| middles[axis].is_some()));
+        let split = split.and_then(|axis| Some((axis, middles[axis]?)));
         CellVerdict { holds, fails, split, open: Rc::new(left) }
+    }
+}
+
+impl<const N: usize> DrawJudge<'_, N> {
+    /// The axis to divide so that a requirement gets a derivative over the box: of those that let it have one if the box is as short along
+    /// them as can be, or else of all that it depends on, the longest. Dividing along other axes would only make more boxes of the same kind.
+    fn axis_at_fault(
+        &mut self,
+        cell: &DrawCell,
+        middles: &[Option<u64>; N],
+        (scenario, number, depends): (usize, u16, [bool; N]),
+        slots: &mut Slots<Dual<Interval, N>>,
+    ) -> Option<usize> {
+        let mut best = ((false, false, 0.0), None);
+        for (axis, place) in middles.iter().enumerate() {
+            let Some(place) = *place else { continue };
+            let thin = self.cells.over(&cell.at(axis, place)).map(|DrawnPoint { value, slopes }| Dual { value, slopes });
+            self.turn(slots, scenario, &thin, Dual::fixed);
+            let value = self.number(slots, &self.required[usize::from(number)], &thin, scenario);
+            let is_at_fault = value.value.is_finite() && value.slopes.iter().all(|slope| slope.is_finite());
+            let rank = (is_at_fault, depends[axis], cell.side(axis));
+            if rank > best.0 {
+                best = (rank, Some(axis));
+            }
+        }
+        best.1
     }
 }
 

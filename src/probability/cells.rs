@@ -37,6 +37,13 @@ impl DrawCell {
         [below, above]
     }
 
+    /// The part of a cell at one place along an axis.
+    pub fn at(&self, axis: usize, place: u64) -> Self {
+        let mut thin = *self;
+        thin.sides[axis] = (place, place);
+        thin
+    }
+
     /// Where a place lies along an axis, from 0 to 1.
     pub fn within(&self, axis: usize, place: u64) -> f64 {
         let (low, high) = self.sides[axis];

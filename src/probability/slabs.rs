@@ -23,6 +23,13 @@ pub struct Margin<const N: usize> {
     pub error: f64,
 }
 
+impl<const N: usize> Margin<N> {
+    /// Has it a value at one place, and bounded derivatives?
+    pub fn is_bound(&self) -> bool {
+        self.at.is_some_and(|it| it.is_finite()) && self.slopes.iter().all(|slope| slope.is_finite())
+    }
+}
+
 /// A margin with a value at one place and bounded derivatives.
 #[derive(Clone, Copy, Debug)]
 struct Slab<const N: usize> {
@@ -101,8 +108,6 @@ impl<const N: usize> Orthant<N> {
 pub struct Slabs<const N: usize> {
     /// The place at which margins are known.
     within: [f64; N],
-    /// How long the box is.
-    sides: [f64; N],
     slabs: Vec<Slab<N>>,
     /// How much shorter axes would narrow the slabs.
     effects: [f64; N],
@@ -111,24 +116,15 @@ pub struct Slabs<const N: usize> {
 }
 
 impl<const N: usize> Slabs<N> {
-    /// Of margins that are known at a place `within` the box, the sides of which are shares of all draws.
-    pub fn new(within: [f64; N], sides: [f64; N]) -> Self {
-        Self { within, sides, slabs: Vec::new(), effects: [0.0; N], is_open: false }
+    /// Of margins that are known at a place `within` the box.
+    pub fn new(within: [f64; N]) -> Self {
+        Self { within, slabs: Vec::new(), effects: [0.0; N], is_open: false }
     }
 
     /// Takes a margin: is it above zero all over the box, or below zero? `None` if neither is sure.
     pub fn add(&mut self, margin: &Margin<N>) -> Option<bool> {
-        let known = margin.at.filter(|it| it.is_finite() && margin.slopes.iter().all(|slope| slope.is_finite()));
-        let Some(at) = known else {
+        let Some(at) = margin.at.filter(|_| margin.is_bound()) else {
             self.is_open = true;
-            for ((effect, side), slope) in self.effects.iter_mut().zip(self.sides).zip(&margin.slopes) {
-                // What has no derivative yet must be divided first, and whichever axis that is due to: long ones before short ones.
-                *effect += match slope {
-                    slope if slope.is_zero() => 0.0,
-                    slope if slope.is_finite() => 0.1 * side,
-                    _ => 10.0 * side,
-                };
-            }
             return None;
         };
         let error = margin.error * OUTWARD;

@@ -61,7 +61,7 @@ pub struct ReducerRoom {
     pub tables: Vec<(u64, u64)>,
     /// Numbers that every thread has a copy of.
     pub bins: u64,
-    /// Cells on the page.
+    /// Numbers in cells on the page.
     pub shown: u64,
     /// Designs that are listed with all columns.
     pub rows: u64,

@@ -229,6 +229,28 @@ fn bounds_come_close_where_slip_depends_on_friction_and_clamping_force() {
     assert!((0.01..0.99).contains(&held), "{held}: a drive that tells nothing");
 }
 
+/// Only friction decides whether the root of the clamping force exists over a box: dividing along the others too would take millions.
+#[test]
+fn boxes_without_a_derivative_are_divided_along_the_input_at_fault_whatever_the_order() {
+    let laws = [
+        "elastic_modulus_MPa = { normal = { mean = 210000, sd = 2000 } }\n",
+        "strength_MPa = { lognormal = { mean = 800, sd = 16 } }\n",
+        "band_thickness_mm = { times = { normal = { mean = 1, sd = 0.005 } } }\n",
+        "friction = { normal = { mean = 0.08, sd = 0.006 }, from = 0.05, to = 0.11 }\n",
+    ];
+    let text = |laws: String| {
+        format!(
+            "model = \"metal-cvt\"\n[design]\nclamping_force_N = [27000]\n[operation]\nratio = [0.5, 2]\ntorque_Nm = [100]\n\
+             [uncertainty]\n{laws}[probability]\ndraws = 1\n[constraints]\nslip_margin = {{ min = 0 }}\n\
+             stress_margin = {{ min = 0.13 }}\n[objectives]\nyield = \"max\"\n"
+        )
+    };
+    for laws in [laws.concat(), laws.iter().rev().copied().collect()] {
+        let found = enclosed(&Study::parse(&text(laws)).expect("a study"), 1e-4, 4000);
+        assert!(found.width() <= 1e-4, "{found:?}");
+    }
+}
+
 #[test]
 fn what_cannot_be_bounded_says_why() {
     let one = study(&[("w", normal(0.0, 1.0))], "w", "");

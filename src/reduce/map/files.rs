@@ -68,7 +68,7 @@ pub fn room(study: &Study) -> ReducerRoom {
     ReducerRoom {
         cells: cells().fold(0, u64::saturating_add),
         tables: report.maps.iter().map(|spec| (cells_of(study, spec), columns(spec))).collect(),
-        shown: cells().filter(|&cells| cells <= CSV_CELLS).sum(),
+        shown: report.maps.iter().zip(cells()).filter(|(_, cells)| *cells <= CSV_CELLS).map(|(spec, cells)| cells * columns(spec)).sum(),
         files: files.collect(),
         ..ReducerRoom::default()
     }
