@@ -448,7 +448,7 @@ impl<const N: usize> Judge for DrawJudge<'_, N> {
         let within = std::array::from_fn(|axis| middles[axis].map_or(0.5, |place| cell.within(axis, place)));
         let mut slabs = Slabs::<N>::new(within);
         // The first requirement without a derivative: its scenario, its number, and the axes that it depends on.
-        let mut unbound: Option<(usize, u16, [bool; N])> = None;
+        let mut without_slope: Option<(usize, u16, [bool; N])> = None;
         let mut reference: Option<[Interval; N]> = None;
         let (mut slots, mut points) = (take(&mut self.over), take(&mut self.at));
         let mut left: OpenRequirements = Vec::new();
@@ -483,8 +483,8 @@ impl<const N: usize> Judge for DrawJudge<'_, N> {
                     at = Some(self.number(&mut points, required, &drawn, scenario_number));
                 }
                 let margin = margin(required, at, &value);
-                if unbound.is_none() && !margin.is_bound() {
-                    unbound = Some((scenario_number, number, margin.slopes.map(|slope| !slope.is_zero())));
+                if without_slope.is_none() && !margin.is_bounded() {
+                    without_slope = Some((scenario_number, number, margin.slopes.map(|slope| !slope.is_zero())));
                 }
                 match slabs.add(&margin) {
                     Some(true) => continue,
@@ -501,8 +501,8 @@ impl<const N: usize> Judge for DrawJudge<'_, N> {
             }
         }
         let mut split = None;
-        if !fails && let Some(unbound) = unbound {
-            split = self.axis_at_fault(cell, &middles, unbound, &mut slots);
+        if !fails && let Some(without_slope) = without_slope {
+            split = self.axis_at_fault(cell, &middles, without_slope, &mut slots);
         }
         (self.over, self.at) = (slots, points);
         if fails {
@@ -519,8 +519,10 @@ impl<const N: usize> Judge for DrawJudge<'_, N> {
 }
 
 impl<const N: usize> DrawJudge<'_, N> {
-    /// The axis to divide so that a requirement gets a derivative over the box: of those that let it have one if the box is as short along
-    /// them as can be, or else of all that it depends on, the longest. Dividing along other axes would only make more boxes of the same kind.
+    /// The axis to divide where a requirement has no bounded derivative over the box.
+    ///
+    /// An axis is at fault if the requirement has one as soon as the box has no extent along that axis. Of the axes at fault the longest is
+    /// divided; if there are none, the longest that the requirement depends on. Boxes divided along other axes still have no derivative.
     fn axis_at_fault(
         &mut self,
         cell: &DrawCell,

@@ -103,7 +103,7 @@ impl Lock {
         let host = std::env::var_os("HOSTNAME").unwrap_or_else(|| "this machine".into());
         let line = format!("{MARK}: process {} on {}: {task}\n", std::process::id(), host.to_string_lossy());
         self.file.seek(io::SeekFrom::Start(0))?;
-        // Others may read while a second reader writes its line over the first: at no moment is the file without one.
+        // A second reader writes its line over that of the first. Whoever looks meanwhile must find a line, so the file is never emptied.
         self.file.write_all(line.as_bytes())?;
         self.file.set_len(line.len() as u64)
     }
@@ -171,8 +171,8 @@ fn beginning(mut file: &File) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// A lock is empty until its first holder has written into it. Only what was read decides, not a length asked for before: another
-/// process may write in between.
+/// A lock is empty until its first holder has written into it. Only what is read decides: a length asked for earlier may have changed by
+/// then, since other processes write into the file too.
 fn is_a_lock(file: &File) -> io::Result<bool> {
     // On systems where a lock keeps others from reading, nothing is known of a file that is held.
     if cfg!(not(unix)) {
@@ -265,23 +265,19 @@ mod tests {
         let Ok(Taken::Held(_first)) = Lock::shared(&path, "a reader whose line is longer than that of the next") else {
             panic!("it is free")
         };
-        let done = std::sync::atomic::AtomicBool::new(false);
         std::thread::scope(|scope| {
-            scope.spawn(|| {
+            let readers = scope.spawn(|| {
                 for round in 0..3000 {
                     let Ok(Taken::Held(_)) = Lock::shared(&path, ["short", "a longer task than before"][round % 2]) else {
                         panic!("readers share it")
                     };
                 }
-                done.store(true, Ordering::SeqCst);
             });
-            scope.spawn(|| {
-                let file = File::open(&path).expect("it is there");
-                while !done.load(Ordering::SeqCst) {
-                    assert!(is_a_lock(&file).expect("it can be read"));
-                    assert_ne!(holder(&file), "it is not known which");
-                }
-            });
+            let file = File::open(&path).expect("it is there");
+            while !readers.is_finished() {
+                assert!(is_a_lock(&file).expect("it can be read"));
+                assert_ne!(holder(&file), "it is not known which");
+            }
         });
         let text = fs::read_to_string(&path).expect("it is there");
         assert_eq!(text.lines().count(), 1, "{text}");

@@ -25,7 +25,7 @@ pub struct Margin<const N: usize> {
 
 impl<const N: usize> Margin<N> {
     /// Has it a value at one place, and bounded derivatives?
-    pub fn is_bound(&self) -> bool {
+    pub fn is_bounded(&self) -> bool {
         self.at.is_some_and(|it| it.is_finite()) && self.slopes.iter().all(|slope| slope.is_finite())
     }
 }
@@ -123,7 +123,7 @@ impl<const N: usize> Slabs<N> {
 
     /// Takes a margin: is it above zero all over the box, or below zero? `None` if neither is sure.
     pub fn add(&mut self, margin: &Margin<N>) -> Option<bool> {
-        let Some(at) = margin.at.filter(|_| margin.is_bound()) else {
+        let Some(at) = margin.at.filter(|_| margin.is_bounded()) else {
             self.is_open = true;
             return None;
         };

@@ -229,7 +229,8 @@ fn bounds_come_close_where_slip_depends_on_friction_and_clamping_force() {
     assert!((0.01..0.99).contains(&held), "{held}: a drive that tells nothing");
 }
 
-/// Only friction decides whether the root of the clamping force exists over a box: dividing along the others too would take millions.
+/// Only friction decides whether the root of the clamping force surely exists over a box. Divided along all four inputs in turn, 200 000
+/// boxes left more than a hundredth open.
 #[test]
 fn boxes_without_a_derivative_are_divided_along_the_input_at_fault_whatever_the_order() {
     let laws = [
