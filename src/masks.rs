@@ -30,6 +30,12 @@ pub fn keep_between(alive: &mut [u64], values: &[f64], low: f64, high: f64) {
     }
 }
 
+/// Counts once more each design that is in.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+pub fn add_one(counts: &mut [u64], alive: &[u64]) {
+    counts.iter_mut().zip(alive).for_each(|(count, alive)| *count += alive & 1);
+}
+
 /// Of the designs that are ok: marks those whose value is not between two ends, which are ok no longer.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
 pub fn mark_outside(ok: &mut [u64], marks: &mut [u64], values: &[f64], (low, high): (f64, f64)) {

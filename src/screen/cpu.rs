@@ -11,15 +11,15 @@ pub(super) use row::{holds, row_value, worse_of};
 use super::Block;
 use super::decisive::Decisive;
 use super::kept_rows::KeptRows;
-use super::lane_list::{LaneList, LaneNumbers};
 use super::ordered::{OrderedNumbers, OrderedRow};
 use super::row_list::{RowList, RowNumbers};
 use super::rows_together::{BlockOfRows, RowsTogether};
 use super::spectrum::CaseSums;
-use super::tables::{BLOCK, FastBlock, Tables};
+use super::tables::{BLOCK, FastBlock, Tables, lane_list};
 use crate::models::{Latest, Scratch, Set, Sizes};
 use crate::plan::Plan;
 use crate::reduce::{Reducers, Reduction};
+use crate::tape::LaneNumbers;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -109,8 +109,8 @@ impl<'p> CpuEngine<'p> {
     /// Bytes of prepared numbers and sums under way that an engine for this plan keeps.
     pub fn prepared_bytes(plan: &Plan) -> u64 {
         let prepared = 8 * plan.study.model.kernel.prepared_len() as u64 * (plan.kept_scenarios() + 1);
-        let lanes = LaneList::new(plan);
-        let of_lanes = lanes.as_ref().map_or(0, |list| list.bytes() + Decisive::bytes(plan, list));
+        let lanes = lane_list(plan);
+        let of_lanes = lanes.as_ref().map_or(0, |list| list.bytes(BLOCK) + Decisive::bytes(plan, list));
         prepared + CaseSums::bytes(plan, BLOCK) + of_lanes + RowList::room(plan, lanes.as_ref()) + RowsTogether::room(plan)
     }
 
@@ -119,7 +119,7 @@ impl<'p> CpuEngine<'p> {
         let columns = plan.lane_outputs.len() + plan.lane_conditions.len();
         let first = plan.space.inputs(0, 0);
         let Sizes { prepared: width, outputs, conditions, .. } = plan.study.model.kernel.sizes();
-        let numbers = tables.lanes.as_ref().and_then(|list| Some((list.numbers(), Decisive::new(plan, list)?)));
+        let numbers = tables.lanes.as_ref().and_then(|list| Some((list.numbers(BLOCK), Decisive::new(plan, list)?)));
         Self {
             row_numbers: tables.rows.as_ref().filter(|_| numbers.is_some() || columns == 0).map(RowNumbers::new),
             numbers,

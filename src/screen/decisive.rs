@@ -6,9 +6,9 @@
 //! is left. Sums, products, quotients, minima and maxima never swap the order of two numbers when they round; which way a result goes
 //! follows from the signs of what is multiplied, which intervals over the row give. They also show that nothing overflows on the way.
 
-use super::lane_list::LaneList;
 use crate::models::Worse;
 use crate::plan::{Plan, Source};
+use crate::tape::LaneList;
 use crate::tape::{Binary, Interval, Node, Operation, Unary};
 
 /// Most scenarios, and most numbers of each, that are compared.

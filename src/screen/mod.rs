@@ -7,7 +7,6 @@ mod decisive;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 mod kept_rows;
-mod lane_list;
 mod ordered;
 mod row_list;
 mod rows_together;

@@ -6,12 +6,12 @@
 //! its two ends, so that the front known so far drops most of them at once. A row of thousands of designs is judged by some dozens of
 //! values, design by design only where the front is near. The answer is the one that judging each of them gives, to the last bit.
 
-use super::lane_list::LaneList;
 use super::tables::{BLOCK, FastBlock};
 use crate::models::Set;
 use crate::plan::{Plan, Source, knowns};
 use crate::reduce::{KeyRule, Reducers, Reduction};
 use crate::screen::Block;
+use crate::tape::LaneList;
 use crate::tape::{Binary, List, Node, Operation, Step, Steps, Unary};
 use crate::units::Unit;
 use std::ops::Range;

@@ -1,16 +1,16 @@
 //! What is the same for all designs of a row, over all scenarios at once, and where these are few also over all rows of the innermost slow
-//! axis: the first stage, conditions and outputs of the row, and what the [inner loop](super::lane_list) reads of it.
+//! axis: the first stage, conditions and outputs of the row, and what the [inner loop](crate::tape::LaneList) reads of it.
 //!
 //! Operations that neither a scenario nor that axis sets are one number; the others are a column. From row to row only what depends on
 //! another input that has changed is computed again. The bits are those of the formula.
 
-use super::lane_list::{LaneList, LaneNumbers};
 use super::tables::{Setting, settings};
 use super::turned_list::{NumberReads, RowFormula, TurnedList};
 use crate::models::input_to_si;
 use crate::plan::Plan;
 use crate::space::SpaceDimension;
 use crate::tape::{CHUNK, ColumnValue, Node, NodeColumns, Operation, Set};
+use crate::tape::{LaneList, LaneNumbers};
 
 /// Shorter columns would not pay; longer ones would fill the caches.
 const PLACES: std::ops::RangeInclusive<u64> = 8..=4 * CHUNK as u64;

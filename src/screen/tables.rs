@@ -1,12 +1,12 @@
 //! What the threads of the CPU engine share: settings of scenarios, and the designs of the fast axes by blocks.
 
-use super::lane_list::LaneList;
 use super::ordered::OrderedRows;
 use super::row_list::RowList;
 use super::rows_together::RowsTogether;
 use crate::models::{self, LANES};
-use crate::plan::{FAST_DESIGNS, Plan};
+use crate::plan::{FAST_DESIGNS, Plan, knowns};
 use crate::space::Product;
+use crate::tape::{LaneList, List, Node, Set, Varies};
 
 /// Most designs in a block: its columns stay in the first-level cache.
 pub const BLOCK: usize = 512;
@@ -55,7 +55,7 @@ impl Tables {
     /// The tables of a plan.
     pub fn new(plan: &Plan) -> Self {
         let kept = if plan.fast.count() <= FAST_DESIGNS { plan.fast.count() } else { 0 };
-        let lanes = LaneList::new(plan);
+        let lanes = lane_list(plan);
         let block = |first: u64| FastBlock::new(plan, lanes.as_ref(), first..kept.min(first + BLOCK as u64));
         let blocks = (0..kept).step_by(BLOCK).map(block).collect();
         let ordered = lanes.as_ref().filter(|_| kept > 0).and_then(|list| OrderedRows::new(plan, list));
@@ -74,12 +74,35 @@ impl Tables {
         if plan.fast.count() > FAST_DESIGNS {
             return settings;
         }
-        let list = LaneList::new(plan);
+        let list = lane_list(plan);
         let shared = list.as_ref().map_or(0, LaneList::kept);
         let numbers = 1 + (2 * plan.fast.inputs().len() + shared) as u64;
         let sorted = list.and_then(|list| Some(OrderedRows::new(plan, &list)?.bytes(plan))).unwrap_or(0);
         settings + plan.fast.count() * 8 * numbers + sorted
     }
+}
+
+/// The second stage of a plan's formula as operations over columns; `None` where the formula's own loop serves better.
+pub(super) fn lane_list(plan: &Plan) -> Option<LaneList> {
+    let model = &plan.study.model;
+    let formula = model.kernel.formula()?;
+    let inputs = formula.fields().inputs.len();
+    if plan.lane_outputs.len() + plan.lane_conditions.len() == 0 || formula.fields().iterations > 0 {
+        return None;
+    }
+    let known = knowns(&plan.study, &plan.space);
+    let second = formula.second(&known[..inputs], Set::of(&plan.lane_outputs), Set::of(&plan.lane_conditions));
+    let outputs = plan.lane_outputs.iter().map(|&it| Some(second.outputs[it]));
+    let asked: Vec<Option<Node>> = outputs.chain(plan.lane_conditions.iter().map(|&it| Some(second.conditions[it]))).collect();
+    let list = List::cut(&second.recording, &asked);
+    let asked = list.results.iter().flatten().copied().collect();
+    let units: Vec<(f64, f64)> = plan.lane_outputs.iter().map(|&it| model.outputs[it].unit.factors()).collect();
+    let lane_inputs = plan.fast.inputs();
+    let laid = LaneList::new(list, inputs, asked, &units, |input| {
+        let over_lanes = lane_inputs.contains(input.into()) && usize::from(input) < inputs;
+        Varies { over_lanes, over_rows: !over_lanes }
+    })?;
+    Some(laid.knowing(&known))
 }
 
 impl FastBlock {
@@ -107,8 +130,8 @@ impl FastBlock {
             let input_table = &model.inputs[*input];
             (*input, column.iter().map(|&value| models::input_to_si(input_table, value)).collect())
         });
-        let si = si.collect();
-        let shared = lanes.map_or_else(Vec::new, |lanes| lanes.shared_columns(&si));
+        let si: InputColumns = si.collect();
+        let shared = lanes.map_or_else(Vec::new, |lanes| lanes.shared_columns(&si, &[]));
         Self { count, offsets, si, own: columns, shared }
     }
 

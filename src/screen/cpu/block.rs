@@ -6,6 +6,7 @@ use crate::models::Columns;
 use crate::plan::Source;
 use crate::screen::Block;
 use crate::screen::tables::FastBlock;
+use crate::tape::LaneBlock;
 use std::ops::Range;
 
 impl CpuEngine<'_> {
@@ -56,7 +57,7 @@ impl CpuEngine<'_> {
             }
             if let Some((numbers, decisive)) = &mut self.numbers {
                 numbers.set_scalars(list, decisive.scalars(number));
-                list.run(numbers, (&fast.shared, fast.count), &mut self.results);
+                list.run(numbers, LaneBlock { shared: &fast.shared, given: &[], count: fast.count }, &mut self.results);
             }
             self.judge_block_scenario(number == 0, count == 1);
             if !any(&self.alive) {
@@ -74,7 +75,7 @@ impl CpuEngine<'_> {
         }
         self.enter_scenario(prepared.clone());
         if let (Some(list), Some((numbers, _))) = (&self.tables.lanes, &mut self.numbers) {
-            return list.run(numbers, (&fast.shared, fast.count), &mut self.results);
+            return list.run(numbers, LaneBlock { shared: &fast.shared, given: &[], count: fast.count }, &mut self.results);
         }
         let prepared = &self.prepared[prepared];
         let columns = Columns { count: fast.count, varying: &fast.si, outputs: &plan.lane_outputs, conditions: &plan.lane_conditions };

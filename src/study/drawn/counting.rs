@@ -8,7 +8,7 @@ use crate::probability::Effect;
 use crate::tape::{CHUNK, ColumnValue, Known, List, ListColumns, Set};
 
 /// Most operations of a formula: each has a column of its own.
-const MOST_OPERATIONS: usize = 1000;
+pub(super) const MOST_OPERATIONS: usize = 1000;
 
 /// What a draw must keep, as a list of operations.
 #[derive(Debug)]

@@ -10,9 +10,10 @@ use crate::models::Columns;
 
 impl DrawnLanes {
     /// Computes the drive in a case and takes it in; false if nothing of the draw is open any more.
-    pub(super) fn take_case(&mut self, kernel: &DrawnDrive, (case, place): (usize, usize), count: usize) -> bool {
+    pub(super) fn take_case(&mut self, kernel: &DrawnDrive, (draw, case, place): (usize, usize, usize), count: usize) -> bool {
         // What all designs share comes first: where it fails, the designs need not be looked at.
-        if self.take_row(kernel, place, count) && !self.is_open(count) {
+        self.compute_row(kernel, (draw, case, place));
+        if self.judge_row(kernel, count) && !self.is_open(count) {
             return false;
         }
         if !self.results.is_empty() {
@@ -29,16 +30,27 @@ impl DrawnLanes {
         self.is_open(count)
     }
 
-    /// Computes and judges what all designs share; true if something of it fails.
-    fn take_row(&mut self, kernel: &DrawnDrive, place: usize, count: usize) -> bool {
+    /// Computes what all designs share.
+    fn compute_row(&mut self, kernel: &DrawnDrive, (draw, case, place): (usize, usize, usize)) {
+        let Self { of_row: Parts { outputs, conditions }, row_outputs, row_margins, .. } = self;
+        if let Some((_, Some(list))) = self.list.as_mut().filter(|_| self.is_listed) {
+            let mut numbers = list.turn(kernel, &self.varying, (draw, case)).iter();
+            outputs.iter().zip(&mut numbers).for_each(|(&output, &value)| row_outputs[output] = value);
+            conditions.iter().zip(numbers).for_each(|(&condition, &margin)| row_margins[condition] = margin);
+            return;
+        }
+        let (base, prepared) = (&kernel.base, &self.prepared[place]);
+        if !outputs.is_empty() {
+            base.kernel.finish(prepared, &self.si, outputs.iter().collect(), row_outputs);
+        }
+        if !conditions.is_empty() {
+            base.kernel.conditions(prepared, &self.si, row_margins);
+        }
+    }
+
+    /// Judges what all designs share; true if something of it fails.
+    fn judge_row(&mut self, kernel: &DrawnDrive, count: usize) -> bool {
         let base = &kernel.base;
-        let prepared = &self.prepared[place];
-        if !self.of_row.outputs.is_empty() {
-            base.kernel.finish(prepared, &self.si, self.of_row.outputs.iter().collect(), &mut self.row_outputs);
-        }
-        if !self.of_row.conditions.is_empty() {
-            base.kernel.conditions(prepared, &self.si, &mut self.row_margins);
-        }
         let mut fails = false;
         for at in 0..self.of_row.conditions.len() {
             let number = self.of_row.conditions[at];
@@ -69,9 +81,13 @@ impl DrawnLanes {
     fn take_lanes(&mut self, kernel: &DrawnDrive, place: usize, count: usize) {
         let base = &kernel.base;
         let Parts { outputs, conditions } = &self.of_lanes;
-        let asked = Columns { count, varying: &self.varying, outputs, conditions };
-        base.kernel.finish_columns(&self.prepared[place], &self.si, &asked, &mut self.scratch, &mut self.results);
-        asked.to_units(&base.outputs, &mut self.results);
+        if let Some((_, Some(list))) = self.list.as_mut().filter(|_| self.is_listed) {
+            list.run(&self.varying, count, &mut self.results);
+        } else {
+            let asked = Columns { count, varying: &self.varying, outputs, conditions };
+            base.kernel.finish_columns(&self.prepared[place], &self.si, &asked, &mut self.scratch, &mut self.results);
+            asked.to_units(&base.outputs, &mut self.results);
+        }
         let first = outputs.len();
         for at in 0..self.of_lanes.conditions.len() {
             let number = self.of_lanes.conditions[at];

@@ -1,13 +1,18 @@
 //! Many designs at once: the same bits as for single designs, draw by draw.
 
 mod case;
+mod list;
+#[cfg(test)]
+mod tests;
 
+use self::list::{DrawnList, LEAST_LANES};
 use super::super::resolved::Constraint;
 use super::drive::{DrawnDrive, margin_of, needs};
 use super::early::{LeastCount, decided};
 use super::fold::{over_draws, worse_of};
 use super::statistic::{AskedQuantity, OverDraws, StatisticKind};
 use super::tracks::{CaseFold, IN, Track, keep, keep_folds};
+use crate::masks::add_one;
 use crate::models::{Columns, LANES, Scratch, Worse, input_to_si};
 use crate::tape::Set;
 use std::ops::Range;
@@ -43,6 +48,9 @@ pub struct DrawnLanes {
     /// Least counts without which a design is surely infeasible.
     least: Vec<LeastCount>,
     prepared: Vec<Vec<f64>>,
+    /// The drive as a list for designs that differ in these inputs, where that serves, and whether it does for the current ones.
+    list: Option<(Set, Option<DrawnList>)>,
+    is_listed: bool,
     si: Vec<f64>,
     /// Inputs that differ between the designs that are still open: as the designs have them, and as the draw changes them.
     nominal: Vec<(usize, Vec<f64>)>,
@@ -132,6 +140,8 @@ impl DrawnLanes {
             conditions: conditions.iter().collect(),
             least: Vec::new(),
             prepared: Vec::new(),
+            list: None,
+            is_listed: false,
             si: vec![0.0; base.inputs.len()],
             nominal: Vec::new(),
             varying: Vec::new(),
@@ -198,6 +208,9 @@ impl DrawnLanes {
         let (conditions, row_conditions) = split(&self.conditions, &kernel.depends().conditions);
         self.of_lanes = Parts { outputs, conditions };
         self.of_row = Parts { outputs: row_outputs, conditions: row_conditions };
+        if self.list.as_ref().is_none_or(|it| it.0 != varying) && columns.count >= LEAST_LANES {
+            self.list = Some((varying, DrawnList::new(kernel, &self.of_lanes, &self.of_row, varying)));
+        }
     }
 
     /// A statistic of a design after all draws.
@@ -227,6 +240,7 @@ impl DrawnLanes {
     ) {
         let base = &kernel.base;
         self.begin(kernel, columns, range);
+        self.list_designs(inputs);
         let wanted = Set::of(&self.outputs);
         let cases = kernel.cases.rows.len();
         // What the first stage reads decides how often it must run: for every draw, every case, or once.
@@ -244,11 +258,13 @@ impl DrawnLanes {
             for case in 0..cases {
                 self.turn(kernel, inputs, (draw, case));
                 let place = if by_case { case } else { 0 };
-                if (by_draw && (by_case || case == 0)) || place >= ready {
+                if self.is_listed {
+                    // The list has its own first stage.
+                } else if (by_draw && (by_case || case == 0)) || place >= ready {
                     base.kernel.prepare(&self.si, wanted, &mut self.prepared[place]);
                     ready = ready.max(place + 1);
                 }
-                if !self.take_case(kernel, (case, place), count) {
+                if !self.take_case(kernel, (draw, case, place), count) {
                     break;
                 }
             }
@@ -289,6 +305,10 @@ impl DrawnLanes {
             column.truncate(padded);
         }
         tracks.iter_mut().for_each(|track| track.keep(&open));
+        self.is_listed &= open.len() >= LEAST_LANES;
+        if let Some((_, Some(list))) = self.list.as_mut().filter(|_| self.is_listed) {
+            list.keep(&open);
+        }
         true
     }
 
@@ -312,6 +332,17 @@ impl DrawnLanes {
         }
         for (track, statistic) in self.tracks.iter_mut().zip(&kernel.statistics) {
             track.begin(statistic, (kernel.draws(), count, padded));
+        }
+    }
+
+    /// Hands the designs that were begun to the list, if it serves them.
+    fn list_designs(&mut self, inputs: &[f64]) {
+        self.is_listed = false;
+        if let Some((_, Some(list))) = &mut self.list
+            && self.places.len() >= LEAST_LANES
+        {
+            list.begin(inputs, &self.nominal);
+            self.is_listed = true;
         }
     }
 
@@ -364,16 +395,15 @@ impl DrawnLanes {
         for (constraint, ends) in of_spectrum {
             keep_folds(&mut holds[..count], constraint, *ends, folds);
         }
-        let add = |counts: &mut [u64], mask: &[u64]| counts.iter_mut().zip(mask).for_each(|(count, mask)| *count += mask & 1);
         for track in tracks {
             match track {
-                Track::Holding(counts) => add(counts, &holds[..count]),
+                Track::Holding(counts) => add_one(counts, &holds[..count]),
                 Track::Keeping { constraint, kept, folds: ends, count: counts } => {
                     kept.iter_mut().zip(&*built).for_each(|(kept, built)| *kept &= built);
                     if let Some(ends) = ends {
                         keep_folds(&mut kept[..count], constraint, *ends, folds);
                     }
-                    add(counts, &kept[..count]);
+                    add_one(counts, &kept[..count]);
                 }
                 Track::Sum { fold, sum } => {
                     let CaseFold { present, result, .. } = &folds[*fold];

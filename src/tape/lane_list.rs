@@ -4,10 +4,8 @@
 //! for each block. Some read none of these: they are one number for the whole row. What is left is computed for every design, operation by
 //! operation, and is often a small part. The bits are those of the formula.
 
-use super::tables::{BLOCK, InputColumns};
-use crate::plan::{Plan, knowns};
+use super::{Binary, EVERYTHING, Interval, Known, List, Node, Operation, Unary};
 use crate::real::{LANES, Real};
-use crate::tape::{Binary, EVERYTHING, Interval, Known, List, Node, Operation, Set, Unary};
 use multiversion::multiversion;
 use std::mem::take;
 
@@ -23,6 +21,8 @@ enum Operand {
     Shared(usize),
     /// A column of the thread.
     Own(usize),
+    /// An input that differs between rows and between designs of a row: a column that comes with the row.
+    Given(usize),
 }
 
 /// An operation over a column.
@@ -40,9 +40,9 @@ struct ColumnStep {
     to: usize,
 }
 
-/// What the designs of a plan are asked for, laid out for its rows and blocks.
+/// What designs are asked for, laid out for rows and blocks.
 #[derive(Debug)]
-pub(super) struct LaneList {
+pub struct LaneList {
     list: List,
     /// The list's inputs below this are the model's; the others are what the first stage passes on.
     inputs: usize,
@@ -56,6 +56,8 @@ pub(super) struct LaneList {
     /// Operations that are the same for all rows, operands first, and those of them that have a column in every block.
     shared: Vec<Node>,
     kept: Vec<Node>,
+    /// Operations that these read and that are the same for all rows and designs, operands first.
+    common: Vec<Node>,
     steps: Vec<ColumnStep>,
     columns: usize,
     results: Vec<Operand>,
@@ -64,15 +66,19 @@ pub(super) struct LaneList {
     asked: Vec<Node>,
     /// What the operations for every design read of the row, without constants.
     scalars: Vec<Node>,
+    /// Inputs that come as a column with each row.
+    given: Vec<u16>,
     /// Of every operation that no row has to do with: all its values.
     ranges: Vec<Interval>,
 }
 
-/// What an operation depends on.
+/// What an operation differs over.
 #[derive(Clone, Copy, Default, PartialEq)]
-struct Varies {
-    over_lanes: bool,
-    over_rows: bool,
+pub struct Varies {
+    /// The designs of a row.
+    pub over_lanes: bool,
+    /// Rows, for one and the same place in them.
+    pub over_rows: bool,
 }
 
 impl std::ops::BitOrAssign for Varies {
@@ -82,56 +88,43 @@ impl std::ops::BitOrAssign for Varies {
     }
 }
 
-/// RowOrLanes of one thread.
+/// Numbers of one thread.
 #[derive(Debug)]
-pub(super) struct LaneNumbers {
+pub struct LaneNumbers {
     row: Vec<f64>,
     columns: Vec<Vec<f64>>,
 }
 
 impl LaneNumbers {
     /// What the operations for every design read of the row that was entered last.
-    pub(super) fn scalars<'n>(&'n self, list: &'n LaneList) -> impl Iterator<Item = f64> + 'n {
+    pub fn scalars<'n>(&'n self, list: &'n LaneList) -> impl Iterator<Item = f64> + 'n {
         list.scalars.iter().map(|&node| self.row[node as usize])
     }
 
     /// All numbers of the row that was entered last, by operation.
-    pub(super) fn row(&self) -> &[f64] {
+    pub fn row(&self) -> &[f64] {
         &self.row
     }
 
     /// Enters a row by the numbers of these operations.
-    pub(super) fn enter(&mut self, list: &LaneList, number: impl Fn(Node) -> f64) {
+    pub fn enter(&mut self, list: &LaneList, number: impl Fn(Node) -> f64) {
         list.scalars.iter().for_each(|&node| self.row[node as usize] = number(node));
     }
 
     /// Enters a row by these.
-    pub(super) fn set_scalars(&mut self, list: &LaneList, scalars: &[f64]) {
+    pub fn set_scalars(&mut self, list: &LaneList, scalars: &[f64]) {
         list.scalars.iter().zip(scalars).for_each(|(&node, &scalar)| self.row[node as usize] = scalar);
     }
 }
 
 impl LaneList {
-    /// `None` where there is nothing to compute for every design, or the formula's own loop is as good: where it cannot be recorded, or
-    /// has loops or roots for every design.
-    pub(super) fn new(plan: &Plan) -> Option<Self> {
-        let model = &plan.study.model;
-        let formula = model.kernel.formula()?;
-        let inputs = formula.fields().inputs.len();
-        if plan.lane_outputs.len() + plan.lane_conditions.len() == 0 || formula.fields().iterations > 0 {
-            return None;
-        }
-        let known = knowns(&plan.study, &plan.space);
-        let second = formula.second(&known[..inputs], Set::of(&plan.lane_outputs), Set::of(&plan.lane_conditions));
-        let outputs = plan.lane_outputs.iter().map(|&it| Some(second.outputs[it]));
-        let asked: Vec<Option<Node>> = outputs.chain(plan.lane_conditions.iter().map(|&it| Some(second.conditions[it]))).collect();
-        let list = List::cut(&second.recording, &asked);
-        let lane_inputs = plan.fast.inputs();
-        let varies = list.dependencies(|input| {
-            let over_lanes = lane_inputs.contains(input.into()) && usize::from(input) < inputs;
-            Varies { over_lanes, over_rows: !over_lanes }
-        });
-        let asked: Vec<Node> = list.results.iter().flatten().copied().collect();
+    /// Of these operations of a list, given what its inputs differ over. Its inputs below `inputs` are the model's; the others are what the
+    /// first stage passes on. The first of what is asked for are turned into units with these factors to multiply by and to divide by.
+    ///
+    /// `None` where there is nothing to compute for every design, or the formula's own loop is as good: where there are roots or loops for
+    /// every design.
+    pub fn new(list: List, inputs: usize, asked: Vec<Node>, units: &[(f64, f64)], of_input: impl Fn(u16) -> Varies) -> Option<Self> {
+        let varies = list.dependencies(of_input);
         let needed = list.needed_by(&asked);
         let is_each = |node: Node| varies[node as usize] == Varies { over_lanes: true, over_rows: true };
         let is_shared = |node: Node| varies[node as usize] == Varies { over_lanes: true, over_rows: false };
@@ -141,7 +134,8 @@ impl LaneList {
         };
         let each: Vec<Node> = needed.iter().copied().filter(|&node| is_each(node)).collect();
         let shared: Vec<Node> = needed.iter().copied().filter(|&node| is_shared(node)).collect();
-        if each.len() > MOST_STEPS || !each.iter().chain(&shared).all(is_plain) {
+        let common = list.needed_by(&shared).into_iter().filter(|&node| varies[node as usize] == Varies::default()).collect();
+        if asked.is_empty() || each.len() > MOST_STEPS || !each.iter().chain(&shared).all(is_plain) {
             return None;
         }
         let mut laid = Self {
@@ -152,10 +146,12 @@ impl LaneList {
             slots: list.operations.len(),
             shared,
             kept: Vec::new(),
+            common,
             steps: Vec::new(),
             columns: 0,
             results: Vec::new(),
             scalars: Vec::new(),
+            given: Vec::new(),
             ranges: Vec::new(),
             each,
             asked,
@@ -169,9 +165,13 @@ impl LaneList {
             }
         }
         laid.lay_out(&varies);
-        laid.ranges = laid.ranges_of_shared(&known);
-        laid.add_units(plan);
+        laid.add_units(units);
         Some(laid)
+    }
+
+    /// The same with [`LaneList::ranges`], from what is known of the model's inputs.
+    pub fn knowing(self, known: &[Known]) -> Self {
+        Self { ranges: self.ranges_of_shared(known), ..self }
     }
 
     /// All values of what is the same for all rows.
@@ -205,6 +205,10 @@ impl LaneList {
         let mut free: Vec<usize> = Vec::new();
         for (step, &node) in each.iter().enumerate() {
             let operation = self.list.operations[node as usize];
+            if let Operation::Input(input) = operation {
+                self.given.push(input);
+                continue;
+            }
             let mut operand = |node: Node| self.operand(node, varies, &column_of);
             let kind = match operation {
                 Operation::Unary(kind, a) => StepKind::Unary(kind, operand(a)),
@@ -222,7 +226,9 @@ impl LaneList {
             let mut ended: Vec<usize> = Vec::new();
             operation.operands(|operand| {
                 let varies = varies[operand as usize];
-                if last_read[operand as usize] == step && varies.over_lanes && varies.over_rows {
+                let has_column =
+                    varies.over_lanes && varies.over_rows && !matches!(self.list.operations[operand as usize], Operation::Input(_));
+                if last_read[operand as usize] == step && has_column {
                     ended.push(column_of[operand as usize]);
                 }
             });
@@ -242,7 +248,12 @@ impl LaneList {
                 }
                 Operand::Row(node as usize)
             }
-            Varies { over_rows: true, .. } => Operand::Own(column_of[node as usize]),
+            Varies { over_rows: true, .. } => match self.list.operations[node as usize] {
+                Operation::Input(input) => {
+                    Operand::Given(self.given.iter().position(|&it| it == input).expect("operands come before what reads them"))
+                }
+                _ => Operand::Own(column_of[node as usize]),
+            },
             Varies { .. } => Operand::Shared(self.kept.iter().position(|&it| it == node).unwrap_or_else(|| {
                 self.kept.push(node);
                 self.kept.len() - 1
@@ -251,16 +262,13 @@ impl LaneList {
     }
 
     /// Outputs are turned into their units as [`crate::units::Unit::from_si`] does it.
-    fn add_units(&mut self, plan: &Plan) {
-        for (result, &output) in plan.lane_outputs.iter().enumerate() {
-            let (multiply, divide) = plan.study.model.outputs[output].unit.factors();
+    fn add_units(&mut self, units: &[(f64, f64)]) {
+        for (result, &(multiply, divide)) in units.iter().enumerate() {
             for (kind, factor) in [(Binary::Mul, divide), (Binary::Div, multiply)] {
                 if factor != 1.0 {
                     self.constants.push((self.slots, factor));
-                    self.steps.push(ColumnStep {
-                        kind: StepKind::Binary(kind, self.results[result], Operand::Row(self.slots)),
-                        to: self.columns,
-                    });
+                    let kind = StepKind::Binary(kind, self.results[result], Operand::Row(self.slots));
+                    self.steps.push(ColumnStep { kind, to: self.columns });
                     self.results[result] = Operand::Own(self.columns);
                     (self.slots, self.columns) = (self.slots + 1, self.columns + 1);
                 }
@@ -269,53 +277,55 @@ impl LaneList {
     }
 
     /// Columns that every block has of it.
-    pub(super) fn kept(&self) -> usize {
+    pub fn kept(&self) -> usize {
         self.kept.len()
     }
 
     /// All operations.
-    pub(super) fn list(&self) -> &List {
+    pub fn list(&self) -> &List {
         &self.list
     }
 
     /// Is an input of the list one of the model?
-    pub(super) fn is_input(&self, input: u16) -> bool {
+    pub fn is_input(&self, input: u16) -> bool {
         usize::from(input) < self.inputs
     }
 
     /// Which number of those that the first stage passes on an input of the list is.
-    pub(super) fn passed_on(&self, input: u16) -> Option<usize> {
+    pub fn passed_on(&self, input: u16) -> Option<usize> {
         usize::from(input).checked_sub(self.inputs)
     }
 
     /// Those that are computed for every design, operands first.
-    pub(super) fn each(&self) -> &[Node] {
+    pub fn each(&self) -> &[Node] {
         &self.each
     }
 
     /// What is asked of the list, before it is turned into its unit: outputs, then margins.
-    pub(super) fn asked(&self) -> &[Node] {
+    pub fn asked(&self) -> &[Node] {
         &self.asked
     }
 
     /// What the operations for every design read of the row.
-    pub(super) fn scalars(&self) -> &[Node] {
+    pub fn scalars(&self) -> &[Node] {
         &self.scalars
     }
 
     /// Of every operation that no row has to do with: all its values.
-    pub(super) fn ranges(&self) -> &[Interval] {
+    pub fn ranges(&self) -> &[Interval] {
         &self.ranges
     }
 
-    /// RowOrLanes that a block of designs has in common with the same block of other rows, of its inputs in SI units, with idle lanes.
-    pub(super) fn shared_columns(&self, si: &InputColumns) -> Vec<Vec<f64>> {
+    /// What a block of designs has in common with the same block of other rows, of its inputs in SI units, with idle lanes, and of those
+    /// that no row and no design of it changes.
+    pub fn shared_columns(&self, si: &[(usize, Vec<f64>)], common: &[f64]) -> Vec<Vec<f64>> {
         let count = si.first().map_or(0, |(_, column)| column.len());
         let column = |input: usize| &si.iter().find(|(it, _)| *it == input).expect("a lane input is set by a fast axis").1;
         let mut slots = vec![0.0; self.list.operations.len()];
-        for &(slot, value) in &self.constants {
-            if let Some(it) = slots.get_mut(slot) {
-                *it = value;
+        for &node in &self.common {
+            match self.list.operations[node as usize] {
+                Operation::Input(input) => slots[node as usize] = common[usize::from(input)],
+                _ => self.list.compute(node, &mut slots),
             }
         }
         let mut columns: Vec<Vec<f64>> = self.kept.iter().map(|_| Vec::with_capacity(count)).collect();
@@ -336,22 +346,22 @@ impl LaneList {
         columns
     }
 
-    /// Room for a thread.
-    pub(super) fn numbers(&self) -> LaneNumbers {
+    /// Room for a thread, for blocks of so many designs at most.
+    pub fn numbers(&self, block: usize) -> LaneNumbers {
         let mut row = vec![0.0; self.slots];
         for &(slot, value) in &self.constants {
             row[slot] = value;
         }
-        LaneNumbers { row, columns: vec![vec![0.0; BLOCK]; self.columns] }
+        LaneNumbers { row, columns: vec![vec![0.0; block]; self.columns] }
     }
 
     /// Bytes of it, without what is allocated besides.
-    pub(super) fn bytes(&self) -> u64 {
-        8 * (self.slots + BLOCK * self.columns) as u64
+    pub fn bytes(&self, block: usize) -> u64 {
+        8 * (self.slots + block * self.columns) as u64
     }
 
     /// Computes what the operations for every design read of a row, given its prepared numbers and inputs (SI).
-    pub(super) fn enter(&self, numbers: &mut LaneNumbers, prepared: &[f64], inputs: &[f64]) {
+    pub fn enter(&self, numbers: &mut LaneNumbers, prepared: &[f64], inputs: &[f64]) {
         for &(node, input) in &self.row_inputs {
             numbers.row[node as usize] = input.checked_sub(self.inputs).map_or_else(|| inputs[input], |passed| prepared[passed]);
         }
@@ -360,14 +370,21 @@ impl LaneList {
         }
     }
 
-    /// Computes the block's outputs, in their units, and condition margins, for the row that was entered last.
-    pub(super) fn run(&self, numbers: &mut LaneNumbers, (shared, count): (&[Vec<f64>], usize), results: &mut [Vec<f64>]) {
+    /// Inputs that come as a column with each row.
+    pub fn given(&self) -> &[u16] {
+        &self.given
+    }
+
+    /// Computes the block's results, the first in their units, for the row that was entered last.
+    pub fn run(&self, numbers: &mut LaneNumbers, block: LaneBlock<'_>, results: &mut [Vec<f64>]) {
+        let LaneBlock { shared, given, count } = block;
         let room = count.next_multiple_of(LANES);
-        run_steps(&self.steps, &numbers.row, shared, &mut numbers.columns, room);
+        run_steps(&self.steps, &numbers.row, block, &mut numbers.columns);
         for (number, (result, &from)) in results.iter_mut().zip(&self.results).enumerate() {
             match from {
                 Operand::Row(slot) => result[..room].fill(numbers.row[slot]),
                 Operand::Shared(column) => result[..room].copy_from_slice(&shared[column][..room]),
+                Operand::Given(column) => result[..room].copy_from_slice(&given[column][..room]),
                 // The last result that asks for a column gets it without a copy.
                 Operand::Own(column) if self.results[number + 1..].contains(&from) => {
                     result[..room].copy_from_slice(&numbers.columns[column][..room]);
@@ -376,6 +393,17 @@ impl LaneList {
             }
         }
     }
+}
+
+/// A block of designs in a row.
+#[derive(Clone, Copy)]
+pub struct LaneBlock<'a> {
+    /// What it has in common with the same block of other rows: [`LaneList::shared_columns`].
+    pub shared: &'a [Vec<f64>],
+    /// The columns of [`LaneList::given`].
+    pub given: &'a [&'a [f64]],
+    /// Number of designs; there is room for a multiple of [`LANES`].
+    pub count: usize,
 }
 
 /// A number for all designs, or one for each.
@@ -397,7 +425,8 @@ impl RowOrLanes<'_> {
 
 /// Only operations that round alike on every instruction set are vectorised, and nothing contracts a product and a sum.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-fn run_steps(steps: &[ColumnStep], row: &[f64], shared: &[Vec<f64>], columns: &mut [Vec<f64>], room: usize) {
+fn run_steps(steps: &[ColumnStep], row: &[f64], LaneBlock { shared, given, count }: LaneBlock<'_>, columns: &mut [Vec<f64>]) {
+    let room = count.next_multiple_of(LANES);
     for step in steps {
         let mut column = take(&mut columns[step.to]);
         let to = &mut column[..room];
@@ -405,6 +434,7 @@ fn run_steps(steps: &[ColumnStep], row: &[f64], shared: &[Vec<f64>], columns: &m
             Operand::Row(slot) => RowOrLanes::One(row[slot]),
             Operand::Shared(column) => RowOrLanes::Each(&shared[column][..room]),
             Operand::Own(column) => RowOrLanes::Each(&columns[column][..room]),
+            Operand::Given(column) => RowOrLanes::Each(&given[column][..room]),
         };
         // Written out, so that every combination becomes one loop of vector instructions.
         macro_rules! binary {
