@@ -67,6 +67,9 @@ histograms = [{{ of = "yield", bins = {bins}, from = {first}, to = {last} }}]
 # Levels of the angle, the thickness and the width; the band count has 10.
 LARGE, MEDIUM, LISTED = (20, 25, 20), (5, 10, 10), (5, 5, 4)
 
+# A sweep of many draws, with a yield that designs must have and without, and the seconds that the first should take at most.
+MANY, MANY_DRAWS, MANY_CASES, LEAST_YIELD, MANY_SECONDS = (20, 50, 100), 100_000, CASES[:1], 0.999, 240
+
 # Uncertain inputs of the study whose yields are bounded, and how long bounds 1e-4 apart should take for the first 2, 3 and 4 of them.
 LAWS = (
     "friction = { normal = { mean = 0.08, sd = 0.006 }, from = 0.05, to = 0.11 }",
@@ -99,13 +102,13 @@ clamping_force_N = "min"
 """
 
 
-def text_of(levels, top=0):
+def text_of(levels, top=0, draws=DRAWS, operation=CASES):
     """The study with so many levels. Each bin of the histogram holds one count of draws."""
-    cases = ", ".join(f"{{ ratio = {ratio}, torque_Nm = {torque} }}" for ratio, torque in CASES)
+    cases = ", ".join(f"{{ ratio = {ratio}, torque_Nm = {torque} }}" for ratio, torque in operation)
     angles, thicknesses, widths = levels
     listed = f'top = {{ by = "yield", count = {top} }}' if top else ""
     half = 0.5 / DRAWS
-    return STUDY.format(angles=angles, thicknesses=thicknesses, widths=widths, cases=cases, draws=DRAWS, bins=DRAWS + 1, first=-half,
+    return STUDY.format(angles=angles, thicknesses=thicknesses, widths=widths, cases=cases, draws=draws, bins=DRAWS + 1, first=-half,
                         last=1 + half, top=listed, traction=LIMITS["traction"], axial_force_N=LIMITS["axial_force_N"])
 
 
@@ -117,9 +120,14 @@ def designs_of(levels):
 
 
 def sweep(program, levels, folder, top=0):
-    """Sweeps the study; the result directory, seconds of the whole command by the clock and of the processor, and its peak memory in MB."""
+    """Sweeps the study with so many levels; see `sweep_text`."""
+    return sweep_text(program, text_of(levels, top), folder)
+
+
+def sweep_text(program, text, folder):
+    """Sweeps a study; the result directory, seconds of the whole command by the clock and of the processor, and its peak memory in MB."""
     study, out = folder / "study.toml", folder / f"result-{len(list(folder.iterdir()))}"
-    study.write_text(text_of(levels, top))
+    study.write_text(text)
     before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
     process = subprocess.Popen([program, "sweep", study, "--out", out, "--quiet", "--no-report"])
     peak = peak_of(process)
@@ -222,6 +230,20 @@ def compare_all(program, levels, draws, folder, runs):
             "ratio": beside["numpy"]["seconds"] / clock, "ratio_hoisted": beside["numpy_hoisted"]["seconds"] / clock}
 
 
+def many(program, folder):
+    """Many draws of many designs: those that must have a yield, of which the others end early, and all of them to the last draw."""
+    whole = text_of(MANY, draws=MANY_DRAWS, operation=MANY_CASES)
+    asked = whole.replace("[objectives]\nyield         = \"max\"\n", f"yield = {{ min = {LEAST_YIELD} }}\n[objectives]\n")
+    assert asked != whole
+    rows, evaluations = {}, 10 * MANY[0] * MANY[1] * MANY[2] * MANY_DRAWS * len(MANY_CASES)
+    for name, text in (("early_end", asked), ("all_draws", whole)):
+        out, clock, processor, memory = sweep_text(program, text, folder)
+        summary = json.loads((out / "summary.json").read_text())
+        rows[name] = {"seconds": clock, "processor_seconds": processor, "evaluations_per_second": evaluations / clock, "peak_MB": memory,
+                      "feasible_share": summary["feasible"] / summary["designs"]}
+    return {"designs": summary["designs"], "draws": MANY_DRAWS, "cases": len(MANY_CASES), "least_yield": LEAST_YIELD, **rows}
+
+
 def enclosures(program, folder):
     """Seconds of a whole `eval` that proves bounds of a design's yield, the best of three, and how far the bounds are apart."""
     rows = []
@@ -255,11 +277,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("program", type=Path)
     parser.add_argument("--short", action="store_true", help="fewer designs; counts and memory are checked, times are not")
+    parser.add_argument("--many", action="store_true", help="also 1e6 designs with 1e5 draws each: some minutes")
     parser.add_argument("--out", type=Path, help="write the record, a JSON object")
     request = parser.parse_args()
     program = request.program.resolve()
     record = {"date": date.today().isoformat(), "cores": os.cpu_count(), "machine": processor(), "python": platform.python_version(),
-              "numpy": np.__version__, "command": "benches/probability" + (" --short" if request.short else "")}
+              "numpy": np.__version__, "command": "benches/probability" + (" --short" if request.short else "") + (" --many" if request.many else "")}
     print(f"{record['machine']}, {record['cores']} cores, {record['date']}, numpy {np.__version__} on one core", flush=True)
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
@@ -272,6 +295,11 @@ def main():
               f"  beltspace {it['seconds']:.2f} s, processor {it['processor_seconds']:.2f} s, {it['evaluations_per_second']:.2e}/s, peak memory {it['peak_MB']:.0f} MB\n"
               f"  numpy {it['numpy']['seconds']:.2f} s, processor {it['numpy']['processor_seconds']:.2f} s, ratio {it['ratio']:.1f}; what hangs on the angle "
               f"alone computed once per angle {it['numpy_hoisted']['seconds']:.2f} s, ratio {it['ratio_hoisted']:.1f}", flush=True)
+        if request.many:
+            record["many"] = them = many(program, folder)
+            early, full = them["early_end"], them["all_draws"]
+            print(f"{them['designs']} designs x {MANY_DRAWS} draws, a yield of {LEAST_YIELD} asked for: {early['seconds']:.1f} s, "
+                  f"{early['feasible_share']:.1%} have it\n  all draws of all designs: {full['seconds']:.1f} s, {full['evaluations_per_second']:.2e}/s", flush=True)
         record["enclosures"] = enclosures(program, folder)
         for row in record["enclosures"]:
             print(f"bounds of a yield, {row['inputs']} inputs, {row['clamping_force_N']} N: {row['at_least']:.6g} to {row['at_most']:.6g}, {row['width']:.1e} "
@@ -283,6 +311,8 @@ def main():
         wrong.append(f"a peak of {it['peak_MB']:.0f} MB is more than 1 GB")
     if not request.short and it["ratio"] < LEAST_RATIO:
         wrong.append(f"a ratio of {it['ratio']:.1f} to numpy is less than {LEAST_RATIO}")
+    if request.many and early["seconds"] > MANY_SECONDS:
+        wrong.append(f"{them['designs']} designs with {MANY_DRAWS} draws took {early['seconds']:.0f} s, more than {MANY_SECONDS}")
     sys.exit("; ".join(wrong) or 0)
 
 

@@ -30,6 +30,12 @@ pub fn keep_between(alive: &mut [u64], values: &[f64], low: f64, high: f64) {
     }
 }
 
+/// Keeps the designs that are marked.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+pub fn keep_marked(alive: &mut [u64], marks: &[u64]) {
+    alive.iter_mut().zip(marks).for_each(|(alive, mark)| *alive &= mark);
+}
+
 /// Counts once more each design that is in.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
 pub fn add_one(counts: &mut [u64], alive: &[u64]) {

@@ -118,6 +118,9 @@ const FIRST_CHUNK: u64 = 4096;
 /// How long a tile should take: how often a slow study shows that it moves.
 const TILE_TIME: Duration = Duration::from_millis(100);
 
+/// Draws of a whole block take little longer than those of one design: a tile has one, unless it would take this many seconds.
+const LONGEST_TILE: f64 = 4.0;
+
 /// A chunk that takes this many times as long as planned is handed over unfinished.
 const PATIENCE: f64 = 2.0;
 
@@ -313,11 +316,17 @@ fn tile_end(position: u64, tile: u64, row: u64) -> u64 {
     if tile > row { end.checked_next_multiple_of(row).unwrap_or(end) } else { end }
 }
 
+/// Work is cut by time: a tile of a slow model may be a single design, but not where draws are computed for a block at a time.
+fn least_tile(plan: &Plan) -> u64 {
+    let block = if plan.study.probability.is_some() { BLOCK as u64 } else { 1 };
+    block.min((LONGEST_TILE / plan.seconds_per_design()) as u64).max(1)
+}
+
 fn run_thread(job: SweepJob<'_>, work: &Mutex<SweepWork<'_>>) {
     let SweepJob { plan, tables, reduction, options, control } = job;
     let mut engine = CpuEngine::new(plan, tables).stopping_on(&control.stop);
-    // Work is cut by time: a tile of a slow model may be a single design.
-    let tile_at = |rate: f64| ((rate * TILE_TIME.as_secs_f64()) as u64).clamp(1, options.tile);
+    let least = least_tile(plan).min(options.tile);
+    let tile_at = |rate: f64| ((rate * TILE_TIME.as_secs_f64()) as u64).clamp(least, options.tile);
     let lock = || work.lock().unwrap_or_else(PoisonError::into_inner);
     let row = plan.fast.count();
     loop {

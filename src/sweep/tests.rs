@@ -6,7 +6,8 @@ use crate::checkpoint::Checkpoint;
 use crate::files::Claim;
 use crate::models::Model;
 use crate::models::tests::watched;
-use crate::study::study_of;
+use crate::study::{Study, study_of};
+use std::path::Path;
 use std::sync::Arc;
 
 /// A study with that many designs.
@@ -104,4 +105,20 @@ fn certifying_can_be_watched_and_stopped() {
     let stopped = certify::front(&plan_of(model, 400), &columns, &points, 2, control);
     assert!(matches!(stopped, Err(Error::Stopped { .. })), "{stopped:?}");
     assert!(kernel.prepared.load(Ordering::Relaxed) < 24 && control.certified.load(Ordering::Relaxed) < 24);
+}
+
+#[test]
+fn draws_are_computed_for_a_block_at_a_time_however_long_one_design_takes() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("studies");
+    let of = |name: &str, draws: u64| {
+        let text = std::fs::read_to_string(folder.join(name)).expect("it is there");
+        let text = text.replace("draws       = 10000", &format!("draws = {draws}"));
+        least_tile(&Plan::new(Study::parse_in(&text, name, &folder).unwrap_or_else(|errors| panic!("{errors}"))))
+    };
+    let drawn = "push-belt-yield.toml";
+    assert_eq!(of(drawn, 10_000), BLOCK as u64);
+    // Only a block that would take very long is cut.
+    let long = of(drawn, 1_000_000);
+    assert!((1..BLOCK as u64).contains(&long), "{long}");
+    assert_eq!(of("pulley-thickness.toml", 0), 1);
 }

@@ -278,9 +278,14 @@ fn the_yields_are_what_the_record_says() {
     let page = readme();
     let paragraph = page.split("\n\n").find(|it| it.contains("bench/probability.json")).expect("a page has the times").replace('\n', " ");
     assert_eq!((&all["designs"], &all["draws"], &all["cases"]), (&100_000.into(), &4096.into(), &4.into()));
+    let many = &record["many"];
+    assert_eq!((&many["designs"], &many["draws"], &many["cases"]), (&1_000_000.into(), &100_000.into(), &1.into()));
+    let (early, whole) = (&many["early_end"], &many["all_draws"]);
     for said in [
         format!("took {:.2} s on the two cores, numpy on one of them {:.1} s", number(&all["seconds"]), number(&all["numpy"]["seconds"])),
         format!("the peak memory was {:.0} MB", number(&all["peak_MB"])),
+        format!("took {:.0} s where a yield of {} is asked for", number(&early["seconds"]), many["least_yield"]),
+        format!("{:.1} % of them have, and {:.0} s", 100.0 * number(&early["feasible_share"]), number(&whole["seconds"])),
         format!("took up to {:.0}, {:.0} and {:.0} ms", slowest(2), slowest(3), slowest(4)),
     ] {
         assert!(paragraph.contains(&said), "no page says \"{said}\"");

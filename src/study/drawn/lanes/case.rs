@@ -56,7 +56,7 @@ impl DrawnLanes {
             let number = self.of_row.conditions[at];
             let margin = self.row_margins[number];
             if !(margin > 0.0 || (margin == 0.0 && !base.conditions[number].strict)) {
-                self.fail(kernel, number, count, &|mask| mask.fill(0));
+                self.fail(number, count, &|mask| mask.fill(0));
                 fails = true;
             }
         }
@@ -92,7 +92,7 @@ impl DrawnLanes {
         for at in 0..self.of_lanes.conditions.len() {
             let number = self.of_lanes.conditions[at];
             let margins = std::mem::take(&mut self.results[first + at]);
-            self.fail(kernel, number, count, &|mask| keep_margin(mask, &margins, base.conditions[number].strict));
+            self.fail(number, count, &|mask| keep_margin(mask, &margins, base.conditions[number].strict));
             self.results[first + at] = margins;
         }
         let mut holds = std::mem::take(&mut self.holds);
@@ -129,18 +129,15 @@ impl DrawnLanes {
     }
 
     /// A condition takes away the status, and outputs: `keep` clears the masks of the designs where it fails.
-    fn fail(&mut self, kernel: &DrawnDrive, number: usize, count: usize, keep: &dyn Fn(&mut [u64])) {
-        let base = &kernel.base;
-        let condition = &base.conditions[number];
-        let takes = |quantity: Quantity| quantity.output().is_some_and(|output| condition.invalidates.contains(&base.outputs[output].name));
-        if !condition.quiet || (self.counts && kernel.holds.iter().any(|it| takes(it.quantity))) {
-            keep(&mut self.holds[..count]);
+    fn fail(&mut self, number: usize, count: usize, keep: &dyn Fn(&mut [u64])) {
+        let Self { takes, holds, folds, tracks, .. } = self;
+        let takes = &takes[number];
+        if takes.holds {
+            keep(&mut holds[..count]);
         }
-        self.folds.iter_mut().filter(|it| takes(it.asked.quantity)).for_each(|it| keep(&mut it.present[..count]));
-        for track in &mut self.tracks {
-            if let Track::Keeping { constraint, kept, .. } = track
-                && takes(constraint.quantity)
-            {
+        takes.folds.iter().for_each(|&it| keep(&mut folds[it].present[..count]));
+        for &track in &takes.tracks {
+            if let Track::Keeping { kept, .. } = &mut tracks[track] {
                 keep(&mut kept[..count]);
             }
         }

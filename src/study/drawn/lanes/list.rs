@@ -9,9 +9,9 @@ use crate::models::{LANES, input_to_si};
 use crate::tape::{ColumnValue, Known, LaneBlock, LaneList, LaneNumbers, List, ListColumns, Node, Set, Varies};
 
 /// Fewer designs are faster by the drive's own loop.
-pub(super) const LEAST_LANES: usize = 64;
+pub(super) const LEAST_LANES: usize = 16;
 /// Most draws whose shared numbers are computed at a time, and most of these numbers that are kept.
-const MOST_DRAWS: usize = 128;
+const MOST_DRAWS: usize = 256;
 const MOST_NUMBERS: usize = 1 << 18;
 
 /// The drive for blocks of designs that differ in certain inputs; one per thread.

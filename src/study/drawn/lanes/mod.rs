@@ -6,14 +6,15 @@ mod list;
 mod tests;
 
 use self::list::{DrawnList, LEAST_LANES};
+use super::super::quantity::Quantity;
 use super::super::resolved::Constraint;
 use super::drive::{DrawnDrive, margin_of, needs};
 use super::early::{LeastCount, decided};
 use super::fold::{over_draws, worse_of};
 use super::statistic::{AskedQuantity, OverDraws, StatisticKind};
 use super::tracks::{CaseFold, IN, Track, keep, keep_folds};
-use crate::masks::add_one;
-use crate::models::{Columns, LANES, Scratch, Worse, input_to_si};
+use crate::masks::{add_one, keep_marked};
+use crate::models::{Columns, Condition, LANES, Scratch, Worse, input_to_si};
 use crate::tape::Set;
 use std::ops::Range;
 
@@ -72,6 +73,8 @@ pub struct DrawnLanes {
     /// Quantities over the cases of the current draw, and what each statistic makes of the draws.
     folds: Vec<CaseFold>,
     tracks: Vec<Track>,
+    /// Of every condition of the drive: what it takes away where it fails.
+    takes: Vec<Takes>,
     /// A value that all designs share, as a column.
     same: Vec<f64>,
 }
@@ -81,6 +84,29 @@ pub struct DrawnLanes {
 struct Parts {
     outputs: Vec<usize>,
     conditions: Vec<usize>,
+}
+
+/// What the failing of a condition takes away: the draw's holding, and the values of these folds and tracks.
+struct Takes {
+    holds: bool,
+    folds: Vec<usize>,
+    tracks: Vec<usize>,
+}
+
+impl Takes {
+    fn new(kernel: &DrawnDrive, counts: bool, folds: &[CaseFold], tracks: &[Track]) -> Vec<Self> {
+        let base = &kernel.base;
+        let of = |condition: &Condition| {
+            let takes = |quantity: Quantity| quantity.output().is_some_and(|it| condition.invalidates.contains(&base.outputs[it].name));
+            let is_taken = |track: &Track| matches!(track, Track::Keeping { constraint, .. } if takes(constraint.quantity));
+            Self {
+                holds: !condition.quiet || (counts && kernel.holds.iter().any(|it| takes(it.quantity))),
+                folds: (0..folds.len()).filter(|&it| takes(folds[it].asked.quantity)).collect(),
+                tracks: (0..tracks.len()).filter(|&it| is_taken(&tracks[it])).collect(),
+            }
+        };
+        base.conditions.iter().map(of).collect()
+    }
 }
 
 impl DrawnLanes {
@@ -131,8 +157,9 @@ impl DrawnLanes {
                 StatisticKind::Yield | StatisticKind::YieldOf(_) | StatisticKind::Confirmed(_) => unreachable!("it is a share"),
             })
         });
-        let tracks = tracks.collect();
+        let tracks: Vec<Track> = tracks.collect();
         Self {
+            takes: Takes::new(kernel, counts, &folds, &tracks),
             scratch: Scratch::new(base.inputs.len(), &*base.kernel),
             wanted,
             counts,
@@ -391,7 +418,7 @@ impl DrawnLanes {
     /// Takes in a draw, all cases of which are known.
     fn take_draw(&mut self, draw: usize, count: usize) {
         let Self { built, holds, of_spectrum, folds, tracks, .. } = self;
-        holds.iter_mut().zip(&*built).for_each(|(holds, built)| *holds &= built);
+        keep_marked(holds, built);
         for (constraint, ends) in of_spectrum {
             keep_folds(&mut holds[..count], constraint, *ends, folds);
         }
@@ -399,7 +426,7 @@ impl DrawnLanes {
             match track {
                 Track::Holding(counts) => add_one(counts, &holds[..count]),
                 Track::Keeping { constraint, kept, folds: ends, count: counts } => {
-                    kept.iter_mut().zip(&*built).for_each(|(kept, built)| *kept &= built);
+                    keep_marked(kept, built);
                     if let Some(ends) = ends {
                         keep_folds(&mut kept[..count], constraint, *ends, folds);
                     }
