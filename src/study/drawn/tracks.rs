@@ -3,7 +3,7 @@
 use super::super::resolved::Constraint;
 use super::super::spectrum::OverScenarios;
 use super::statistic::{AskedQuantity, Statistic};
-use crate::masks::{keep_between, keep_finite, lower, raise};
+use crate::masks::{keep_between, keep_finite, keep_marked, lower, raise};
 use crate::models::Worse;
 
 /// A mask of a design that is in.
@@ -61,7 +61,7 @@ impl CaseFold {
             worsen(asked.worse, &mut result[..count], &sum[..count]);
         }
         keep_finite(&mut present[..count], &result[..count]);
-        present.iter_mut().zip(&built[..count]).for_each(|(present, built)| *present &= built);
+        keep_marked(&mut present[..count], &built[..count]);
     }
 }
 
@@ -140,6 +140,6 @@ pub fn keep_folds(alive: &mut [u64], constraint: &Constraint, ends: [usize; 2], 
     let (low, high) = constraint.ends();
     for fold in ends.map(|end| &folds[end]) {
         keep_between(alive, &fold.result[..alive.len()], low, high);
-        alive.iter_mut().zip(&fold.present).for_each(|(alive, present)| *alive &= present);
+        keep_marked(alive, &fold.present);
     }
 }

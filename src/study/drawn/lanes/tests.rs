@@ -6,7 +6,7 @@ use crate::study::Study;
 /// Designs of the blocks: enough for a list, also when half of them are left out, with idle lanes behind the last.
 const COUNTS: [usize; 3] = [77, 301, 190];
 
-/// Axes, distributions and quantities of some drives, and can a list serve it?
+/// Drives with their distributions, and can a list serve them?
 const STUDIES: [(&str, bool); 5] = [
     (
         r#"model = "metal-cvt"
@@ -118,7 +118,7 @@ const STUDIES: [(&str, bool); 5] = [
     ),
 ];
 
-/// The results of all blocks, as bits, with the list or without.
+/// The results of all blocks, as bits, with the list or without, and was there a list.
 fn results(study: &Study, kernel: &DrawnDrive, least: &[LeastCount], with_list: bool) -> (Vec<Vec<Vec<u64>>>, bool) {
     let base = &kernel.base;
     let fixed: Vec<f64> = base.inputs.iter().map(|it| input_to_si(it, it.default)).collect();
