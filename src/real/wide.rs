@@ -64,9 +64,15 @@ fn ln_1p_is_rare(x: f64) -> bool {
     !(x > -1.0 && x < f64::INFINITY)
 }
 
-/// `exp(x) - 1` for |x| below 56 log 2.
+/// `exp(x) - 1` for x from -38.8 to 708.
 #[inline(always)]
 fn exp_m1_of(x: f64) -> f64 {
+    // Where the bits' upper half says so: about log 2 / 2, 3 log 2 / 2 and 2^-54.
+    const UNSHIFTED: f64 = f64::from_bits(0x3fd6_2e43 << 32);
+    const BY_ONE: f64 = f64::from_bits(0x3ff0_a2b2 << 32);
+    const TINY: f64 = f64::from_bits(0x3c90_0000 << 32);
+    /// Added to a whole number it leaves that number in the last bits.
+    const WHOLE: f64 = 6_755_399_441_055_744.0;
     const INVLN2: f64 = 1.442_695_040_888_963_387_00;
     const Q: [f64; 5] = [
         -3.333_333_333_333_313_164_28e-02,
@@ -75,14 +81,12 @@ fn exp_m1_of(x: f64) -> f64 {
         4.008_217_827_329_362_395_52e-06,
         -2.010_992_181_836_243_713_26e-07,
     ];
-    let hx = high_abs(x);
-    let half = if x < 0.0 { -0.5 } else { 0.5 };
-    let whole = (INVLN2 * x + half) as i32;
-    let one = if x < 0.0 { -1 } else { 1 };
-    let k = if hx > 0x3fd6_2e42 { if hx < 0x3ff0_a2b2 { one } else { whole } } else { 0 };
-    let t = f64::from(k);
-    let hi = x - t * LN2_HI;
-    let lo = t * LN2_LO;
+    let size = x.abs();
+    let (half, one) = if x < 0.0 { (-0.5, -1.0) } else { (0.5, 1.0) };
+    // A whole number all along: two vectors of 32 bits would have to be widened again and again.
+    let shift = if size >= UNSHIFTED { if size < BY_ONE { one } else { (INVLN2 * x + half).trunc() } } else { 0.0 };
+    let hi = x - shift * LN2_HI;
+    let lo = shift * LN2_LO;
     let r = hi - lo;
     let c = (hi - r) - lo;
     let hfx = 0.5 * r;
@@ -92,38 +96,34 @@ fn exp_m1_of(x: f64) -> f64 {
     let e = hxs * ((r1 - t) / (6.0 - r * t));
     let unscaled = r - (r * e - hxs);
     let e = r * (e - c) - c - hxs;
-    let power = |k: i32| f64::from_bits(((0x3ff + i64::from(k)) as u64) << 52);
-    // Lanes in which this overflows are rare ones, whose value is not kept.
+    let k = (shift + WHOLE).to_bits().wrapping_sub(WHOLE.to_bits());
+    let power = |k: u64| f64::from_bits(0x3ff_u64.wrapping_add(k) << 52);
     let (twopk, uf) = (power(k), power(k.wrapping_neg()));
     let below = 0.5 * (r - e) - 0.5;
     let above = if r < -0.25 { -2.0 * (e - (r + 0.5)) } else { 1.0 + 2.0 * (r - e) };
-    let negative = (r - e + 1.0) * twopk - 1.0;
+    let far = (r - e + 1.0) * twopk - 1.0;
     let small = (r - e + (1.0 - uf)) * twopk;
     let large = (r - (e + uf) + 1.0) * twopk;
-    let scaled = if k < 0 {
-        negative
-    } else if k < 20 {
-        small
-    } else {
-        large
-    };
-    let scaled = if k == 1 { above } else { scaled };
-    let scaled = if k == -1 { below } else { scaled };
-    let scaled = if k == 0 { unscaled } else { scaled };
-    if hx < 0x3c90_0000 { x } else { scaled }
+    let scaled = if shift < 20.0 { small } else { large };
+    let scaled = if shift < 0.0 || shift > 56.0 { far } else { scaled };
+    let scaled = if shift == 1.0 { above } else { scaled };
+    let scaled = if shift == -1.0 { below } else { scaled };
+    let scaled = if shift == 0.0 { unscaled } else { scaled };
+    if size < TINY { x } else { scaled }
 }
 
 #[inline(always)]
 fn exp_m1_is_rare(x: f64) -> bool {
-    high_abs(x) >= 0x4043_687a
+    // What is -1 to the last bit, and what is next to an overflow or beyond it.
+    !(x > -38.8 && x < 708.0)
 }
 
 const PIO2_HI: f64 = 1.570_796_326_794_896_558_00;
 const PIO2_LO: f64 = 6.123_233_995_736_766_035_87e-17;
 
-/// Arc sine for |x| below 1.
+/// What [`asin_of`] adds to a number times the number, given its square.
 #[inline(always)]
-fn asin_of(x: f64) -> f64 {
+fn asin_rest(z: f64) -> f64 {
     const P: [f64; 6] = [
         1.666_666_666_666_666_574_15e-01,
         -3.255_658_186_224_009_154_05e-01,
@@ -138,14 +138,25 @@ fn asin_of(x: f64) -> f64 {
         -6.882_839_716_054_532_930_30e-01,
         7.703_815_055_590_193_527_91e-02,
     ];
+    let p = z * (P[0] + z * (P[1] + z * (P[2] + z * (P[3] + z * (P[4] + z * P[5])))));
+    let q = 1.0 + z * (Q[0] + z * (Q[1] + z * (Q[2] + z * Q[3])));
+    p / q
+}
+
+/// Arc sine for |x| below 1/2.
+#[inline(always)]
+fn asin_near(x: f64) -> f64 {
+    let tiny = (0x0010_0000..0x3e50_0000).contains(&high_abs(x));
+    if tiny { x } else { x + x * asin_rest(x * x) }
+}
+
+/// Arc sine for |x| below 1.
+#[inline(always)]
+fn asin_of(x: f64) -> f64 {
     let ix = high_abs(x);
     let is_small = ix < 0x3fe0_0000;
     let far = (1.0 - x.abs()) * 0.5;
-    let z = if is_small { x * x } else { far };
-    let p = z * (P[0] + z * (P[1] + z * (P[2] + z * (P[3] + z * (P[4] + z * P[5])))));
-    let q = 1.0 + z * (Q[0] + z * (Q[1] + z * (Q[2] + z * Q[3])));
-    let r = p / q;
-    let small = x + x * r;
+    let r = asin_rest(if is_small { x * x } else { far });
     let s = far.sqrt();
     let f = f64::from_bits(s.to_bits() & 0xffff_ffff_0000_0000);
     let c = (far - f * f) / (s + f);
@@ -154,13 +165,8 @@ fn asin_of(x: f64) -> f64 {
     let large = if ix >= 0x3fef_3333 { end } else { middle };
     let large = if x < 0.0 { -large } else { large };
     let tiny = (0x0010_0000..0x3e50_0000).contains(&ix);
-    if tiny {
-        x
-    } else if is_small {
-        small
-    } else {
-        large
-    }
+    let small = if tiny { x } else { x + x * r };
+    if is_small { small } else { large }
 }
 
 #[inline(always)]
@@ -213,9 +219,9 @@ fn turn_is_rare(x: f64) -> bool {
 }
 
 macro_rules! over_columns {
-    ($($(#[$doc:meta])* $name:ident = $of:ident, $is_rare:ident, $exact:path;)*) => {$(
+    ($($(#[$doc:meta])* $visible:vis $name:ident = $of:ident, $is_rare:ident, $exact:path;)*) => {$(
         $(#[$doc])*
-        pub fn $name(a: &[f64], column: &mut [f64]) {
+        $visible fn $name(a: &[f64], column: &mut [f64]) {
             #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
             fn common(a: &[f64], column: &mut [f64]) -> bool {
                 let mut rare = false;
@@ -236,15 +242,28 @@ macro_rules! over_columns {
 
 over_columns! {
     /// `log(1 + a)` of a column.
-    ln_1p = ln_1p_of, ln_1p_is_rare, libm::log1p;
+    pub ln_1p = ln_1p_of, ln_1p_is_rare, libm::log1p;
     /// `exp(a) - 1` of a column.
-    exp_m1 = exp_m1_of, exp_m1_is_rare, libm::expm1;
+    pub exp_m1 = exp_m1_of, exp_m1_is_rare, libm::expm1;
     /// Arc sine of a column.
-    asin = asin_of, asin_is_rare, libm::asin;
+    any_asin = asin_of, asin_is_rare, libm::asin;
     /// Sine of a column.
-    sin = sin_of, turn_is_rare, libm::sin;
+    pub sin = sin_of, turn_is_rare, libm::sin;
     /// Cosine of a column.
-    cos = cos_of, turn_is_rare, libm::cos;
+    pub cos = cos_of, turn_is_rare, libm::cos;
+}
+
+/// Arc sine of a column: in half the time where all numbers are below 1/2, as the sine of a belt's lean is.
+pub fn asin(a: &[f64], column: &mut [f64]) {
+    #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+    fn all_near(a: &[f64]) -> bool {
+        a.iter().fold(true, |all, a| all & (a.abs() < 0.5))
+    }
+    #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+    fn near(a: &[f64], column: &mut [f64]) {
+        column.iter_mut().zip(a).for_each(|(it, &a)| *it = asin_near(a));
+    }
+    if all_near(a) { near(a, column) } else { any_asin(a, column) }
 }
 
 #[cfg(test)]
@@ -329,14 +348,18 @@ mod tests {
             ("sin", sin, libm::sin),
             ("cos", cos, libm::cos),
         ];
-        let numbers = numbers();
-        let mut column = vec![0.0; numbers.len()];
+        // A column of its own for numbers of one size: some ways are taken for whole columns.
+        let all = numbers();
+        let near: Vec<f64> = all.iter().copied().filter(|it| it.abs() < 0.5).collect();
         for (name, of_column, alone) in functions {
-            of_column(&numbers, &mut column);
-            for (&x, &found) in numbers.iter().zip(&column) {
-                let exact = alone(x);
-                let same = found.to_bits() == exact.to_bits() || (found.is_nan() && exact.is_nan());
-                assert!(same, "{name}({x:e}): {found:e} in a column, {exact:e} alone");
+            for numbers in [&all, &near] {
+                let mut column = vec![0.0; numbers.len()];
+                of_column(numbers, &mut column);
+                for (&x, &found) in numbers.iter().zip(&column) {
+                    let exact = alone(x);
+                    let same = found.to_bits() == exact.to_bits() || (found.is_nan() && exact.is_nan());
+                    assert!(same, "{name}({x:e}): {found:e} in a column, {exact:e} alone");
+                }
             }
         }
     }

@@ -22,9 +22,8 @@ struct RootLanes {
     low: Vec<f64>,
     high: Vec<f64>,
     x: Vec<f64>,
+    /// How far the step before went; below zero where the search has ended, which stays where it is.
     last_step: Vec<f64>,
-    /// All bits set while the search goes on: who has ended stays where it is.
-    open: Vec<u64>,
     /// Room for the value and slope of a function that has one number for all lanes.
     value: Vec<f64>,
     slope: Vec<f64>,
@@ -32,18 +31,15 @@ struct RootLanes {
 
 impl RootLanes {
     fn begin(&mut self, count: usize, low: ColumnValue<'_>, high: ColumnValue<'_>, start: ColumnValue<'_>) {
-        let fill = |to: &mut Vec<f64>, number: &dyn Fn(usize) -> f64| {
-            to.clear();
-            to.extend((0..count).map(number));
-        };
         self.place.clear();
         self.place.extend(0..count as u32);
-        fill(&mut self.low, &|lane| low.at(lane));
-        fill(&mut self.high, &|lane| high.at(lane));
-        fill(&mut self.x, &|lane| f64::min(f64::max(start.at(lane), low.at(lane)), high.at(lane)));
-        fill(&mut self.last_step, &|_| f64::INFINITY);
-        self.open.clear();
-        self.open.resize(count, u64::MAX);
+        let Self { low: lows, high: highs, x, last_step, .. } = self;
+        refill(lows, low, count);
+        refill(highs, high, count);
+        refill(x, start, count);
+        x.iter_mut().zip(&*lows).zip(&*highs).for_each(|((x, &low), &high)| *x = f64::min(f64::max(*x, low), high));
+        last_step.clear();
+        last_step.resize(count, f64::INFINITY);
     }
 
     /// Takes a step in each lane; the number of lanes that go on.
@@ -51,8 +47,7 @@ impl RootLanes {
         let count = self.x.len();
         let value = of_all(value, &mut self.value, count);
         let slope = of_all(slope, &mut self.slope, count);
-        let [low, high, x, last_step] = [&mut self.low, &mut self.high, &mut self.x, &mut self.last_step];
-        let left = steps(value, slope, low, high, x, last_step, &mut self.open);
+        let left = steps(value, slope, &mut self.low, &mut self.high, &mut self.x, &mut self.last_step);
         usize::try_from(left).unwrap_or(count)
     }
 
@@ -65,7 +60,7 @@ impl RootLanes {
         let mut kept = 0;
         for lane in 0..self.x.len() {
             column[self.place[lane] as usize] = self.x[lane];
-            if self.open[lane] != 0 {
+            if !has_ended(self.last_step[lane]) {
                 self.place[kept] = self.place[lane];
                 for numbers in [&mut self.low, &mut self.high, &mut self.x, &mut self.last_step] {
                     numbers[kept] = numbers[lane];
@@ -75,30 +70,39 @@ impl RootLanes {
         }
         self.place.truncate(kept);
         [&mut self.low, &mut self.high, &mut self.x, &mut self.last_step].into_iter().for_each(|numbers| numbers.truncate(kept));
-        self.open.clear();
-        self.open.resize(kept, u64::MAX);
     }
 }
 
 /// A column with a number for each lane.
 fn of_all<'a>(values: ColumnValue<'a>, room: &'a mut Vec<f64>, count: usize) -> &'a [f64] {
-    match values {
-        ColumnValue::Each(values) => values,
-        ColumnValue::One(value) => {
-            room.clear();
-            room.resize(count, value);
-            room
-        }
+    if let ColumnValue::Each(values) = values {
+        return values;
     }
+    refill(room, values, count);
+    room
+}
+
+/// Fills a column anew with a number for each lane.
+fn refill(column: &mut Vec<f64>, values: ColumnValue<'_>, count: usize) {
+    column.clear();
+    match values {
+        ColumnValue::Each(values) => column.extend_from_slice(&values[..count]),
+        ColumnValue::One(value) => column.resize(count, value),
+    }
+}
+
+/// Told by the last step: one that is no number, as between two infinities, ends nothing.
+#[inline(always)]
+fn has_ended(last_step: f64) -> bool {
+    last_step < 0.0
 }
 
 /// The step of `bracketed_newton` in each lane that has not ended; how many go on.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-#[allow(clippy::too_many_arguments, reason = "columns side by side")]
-fn steps(value: &[f64], slope: &[f64], low: &mut [f64], high: &mut [f64], x: &mut [f64], last_step: &mut [f64], open: &mut [u64]) -> u64 {
+fn steps(value: &[f64], slope: &[f64], low: &mut [f64], high: &mut [f64], x: &mut [f64], last_step: &mut [f64]) -> u64 {
     let count = x.len();
     let (value, slope, low, high) = (&value[..count], &slope[..count], &mut low[..count], &mut high[..count]);
-    let (last_step, open) = (&mut last_step[..count], &mut open[..count]);
+    let last_step = &mut last_step[..count];
     let mut left = 0;
     for lane in 0..count {
         let above = value[lane] > 0.0;
@@ -109,11 +113,11 @@ fn steps(value: &[f64], slope: &[f64], low: &mut [f64], high: &mut [f64], x: &mu
         let next = if newton >= low[lane] && newton <= high[lane] { newton } else { halved };
         let step = (next - x[lane]).abs();
         let at_rounding = step <= 1e4 * f64::EPSILON * x[lane].abs();
-        let ends = step == 0.0 || (at_rounding && step >= 0.5 * last_step[lane]);
-        x[lane] = if open[lane] == 0 { x[lane] } else { next };
-        last_step[lane] = step;
-        open[lane] = if ends { 0 } else { open[lane] };
-        left += open[lane] & 1;
+        let had_ended = has_ended(last_step[lane]);
+        let ends = had_ended || step == 0.0 || (at_rounding && step >= 0.5 * last_step[lane]);
+        x[lane] = if had_ended { x[lane] } else { next };
+        last_step[lane] = if ends { -1.0 } else { step };
+        left += u64::from(!ends);
     }
     left
 }
@@ -172,10 +176,12 @@ impl RootColumns {
                     });
                 }
             }
-            numbers.fill(root.argument, |to| to.copy_from_slice(&lanes.x));
+            // The function reads where the lanes are, where they are.
+            numbers.swap(root.argument, &mut lanes.x);
             for &node in inner {
                 numbers.compute(list, node, each);
             }
+            numbers.swap(root.argument, &mut lanes.x);
             let left = lanes.step(numbers.value(root.value, each), numbers.value(root.slope, each));
             // Lanes that have ended cost less than to sort them out, unless they are many.
             if 4 * left <= looked_at {

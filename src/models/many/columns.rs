@@ -5,7 +5,7 @@ use super::vectors::{ColumnEnds, converted, ends};
 use super::{AskedColumns, ResultPart, input_to_si};
 use crate::models::{Input, Model};
 use crate::parallel::on_threads;
-use crate::tape::{ColumnValue, Known, LIST_CHUNK, List, ListColumns, Set};
+use crate::tape::{Known, LIST_CHUNK, List, ListColumns, Set};
 
 /// Formulas with more operations than this are evaluated one by one: their columns would not fit the caches.
 const MOST_OPERATIONS: usize = 4096;
@@ -73,31 +73,29 @@ impl RecordedColumns {
 
     /// Fills some rows of the result.
     pub fn evaluate(&self, asked: &AskedColumns<'_>, part: ResultPart<'_>) {
-        let AskedColumns { model, given, outputs: wanted, options, .. } = *asked;
+        let AskedColumns { model, given, inputs, outputs: wanted, options } = *asked;
         let ResultPart { first, statuses, mut outputs } = part;
         let list = &self.list;
         let mut columns = ListColumns::new(list);
         columns.turn_to(list, 0..list.results.len(), |_| true);
-        let mut si: Vec<(usize, Vec<f64>)> = given.iter().map(|&(input, _)| (input, vec![0.0; LIST_CHUNK])).collect();
         let mut room = JudgeRoom::default();
         for start in (0..statuses.len()).step_by(LIST_CHUNK) {
             if options.is_stopped() {
                 return;
             }
             let count = LIST_CHUNK.min(statuses.len() - start);
-            for ((input, column), (_, values)) in si.iter_mut().zip(given) {
-                fill_si(&model.inputs[*input], &values[first + start..][..count], &mut column[..count]);
-            }
-            let input = |number: u16| {
-                let column = si.iter().find(|(input, _)| *input == usize::from(number));
-                column.map_or(ColumnValue::One(f64::NAN), |(_, column)| ColumnValue::Each(&column[..count]))
-            };
-            columns.run(list, count, input, |columns, _, _| {
-                let statuses = &mut statuses[start..start + count];
-                let margin = |condition: usize| columns.result(list, wanted.len() + condition);
-                let mut outputs: Vec<&mut [f64]> = outputs.iter_mut().map(|column| &mut column[start..start + count]).collect();
-                self.judge.judge(model, margin, |place| columns.result(list, place), statuses, &mut outputs, &mut room);
+            columns.chunk(list, count, |number, node, numbers| {
+                let input = usize::from(number);
+                let of_input = &model.inputs[input];
+                numbers.fill(node, |to| match given.iter().find(|(given, _)| *given == input) {
+                    Some((_, values)) => fill_si(of_input, &values[first + start..][..count], to),
+                    None => to.fill(input_to_si(of_input, inputs[input])),
+                });
             });
+            let statuses = &mut statuses[start..start + count];
+            let margin = |condition: usize| columns.result(list, wanted.len() + condition);
+            let mut outputs: Vec<&mut [f64]> = outputs.iter_mut().map(|column| &mut column[start..start + count]).collect();
+            self.judge.judge(model, margin, |place| columns.result(list, place), statuses, &mut outputs, &mut room);
         }
     }
 }
