@@ -33,6 +33,8 @@ use std::time::{Duration, Instant};
 pub const NOTICED: Duration = Duration::from_millis(50);
 /// Seconds that a coarse front may take.
 const COARSELY: f64 = 0.02;
+/// How many times as long a design of a coarser grid takes, as long as nothing else is known.
+const SLOWNESS: f64 = 3.0;
 /// Fewest designs of a coarse front.
 const FEW: u64 = 2000;
 /// What takes every design waits this long, for somebody who drags a slider on.
@@ -57,6 +59,8 @@ pub struct Live {
     judged: Mutex<JudgedRows>,
     /// Seconds that a thread took for one design in one scenario of late, by the name of the model.
     pace: Mutex<Option<f64>>,
+    /// How many times as long a design of a coarser grid has taken of late: its rows are short, and its front is not known yet.
+    slowness: Mutex<f64>,
 }
 
 /// A step of an answer.
@@ -104,7 +108,16 @@ pub struct LiveCounts {
 impl Live {
     /// For a study given as text, as [`Study::parse_in`] reads it.
     pub fn new(text: String, file: String, folder: PathBuf, threads: usize) -> Self {
-        Self { text, file, folder, threads: threads.max(1), sets: Mutex::default(), judged: Mutex::default(), pace: Mutex::default() }
+        Self {
+            text,
+            file,
+            folder,
+            threads: threads.max(1),
+            sets: Mutex::default(),
+            judged: Mutex::default(),
+            pace: Mutex::default(),
+            slowness: Mutex::new(SLOWNESS),
+        }
     }
 
     /// The study with changes, and its text.
@@ -199,12 +212,18 @@ impl Live {
         tell: &mut dyn FnMut(LiveAnswer<'_>) -> Result<()>,
     ) -> Result<()> {
         let plan = search.plan();
+        let slowness = *self.slowness.lock().unwrap_or_else(PoisonError::into_inner);
         #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "about so many")]
-        let most = ((COARSELY / expected * plan.designs() as f64) as u64).max(FEW);
+        let most = ((COARSELY / (expected * slowness) * plan.designs() as f64) as u64).max(FEW);
         if most >= plan.designs() {
             return Ok(());
         }
+        let begun = Instant::now();
         let points = search.coarse(set, most)?;
+        #[allow(clippy::cast_precision_loss, reason = "an estimate")]
+        let found = begun.elapsed().as_secs_f64() / (expected * most as f64 / plan.designs() as f64);
+        // Halfway, so that a moment in which the machine has something else to do does not count in full.
+        *self.slowness.lock().unwrap_or_else(PoisonError::into_inner) = (slowness * found).sqrt().clamp(1.0, 1e3);
         let rows = search.feasible_of(&points)?;
         let scenarios = set.count(plan.scenarios());
         tell(LiveAnswer::Coarse(LiveFront {

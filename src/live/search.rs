@@ -34,6 +34,8 @@ const MOST_ASKED: usize = 12;
 const UNKNOWN: u64 = u64::MAX;
 /// Designs of a front that others are compared with first.
 const FEW: u64 = 2000;
+/// A grid has so many times the designs of the one whose front comes before its own.
+const COARSER: u64 = 32;
 /// Most designs that are kept for the next study.
 const MOST_KEPT: usize = 100_000;
 /// Parts that the designs are cut into, per thread.
@@ -331,12 +333,15 @@ impl<'p> FrontSearch<'p> {
 
     /// The front of at most so many designs of a coarser grid in a working set.
     ///
+    /// Most of the time goes into designs that enter a front and are beaten later; so the front of a grid that is coarser still comes first.
+    ///
     /// # Errors
     /// [`Error::Stopped`] after `control.stop`.
     pub fn coarse(&self, set: &WorkingSet, most: u64) -> Result<Points> {
+        let seen = if most / COARSER < FEW { Points::default() } else { self.coarse(set, most / COARSER)? };
         let fast = self.plan.fast.coarse(most.isqrt().max(most / self.plan.slow.count().max(1)));
         let slow = self.plan.slow.coarse((most / fast.len().max(1) as u64).max(1));
-        self.front_in(set, &slow, &fast, Points::default())
+        self.front_in(set, &slow, &fast, seen)
     }
 
     /// The exact front, and the working set that has served to find it. `few` is told the front in the working set where it must still be

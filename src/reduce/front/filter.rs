@@ -1,11 +1,16 @@
 //! The cheap first comparison, which drops nearly every design.
 
-use super::Points;
+use super::{MOST_OBJECTIVES, Points};
 use crate::reduce::Dominance;
 use multiversion::multiversion;
+use std::cmp::Ordering;
 
 /// Bins of the two-objective table.
 pub(super) const BINS: usize = 8192;
+/// So many designs of a block are not compared with each other.
+const FEW_LEFT: usize = 6;
+/// Points from which on a table of cells pays.
+const FEW_POINTS: usize = 32;
 
 /// What a front compares with first.
 #[derive(Debug)]
@@ -16,8 +21,8 @@ pub(super) enum Filter {
     Best(f64),
     /// Two objectives.
     Table(BinTable),
-    /// More: recent dominators, then all points.
-    Dominators { recent: Vec<(Vec<f64>, u64)>, next: usize, all: Dominance },
+    /// More: a table where one serves, recent dominators, then all points.
+    Dominators { cells: Option<CellTable>, recent: Vec<(Vec<f64>, u64)>, next: usize, all: Dominance },
 }
 
 impl Filter {
@@ -33,7 +38,14 @@ impl Filter {
                     *alive &= if key <= best { u64::MAX } else { 0 };
                 }
             }
-            Self::Dominators { recent, .. } => recent.iter().for_each(|(dominator, _)| drop_dominated(alive, dominator, keys)),
+            Self::Dominators { cells, recent, .. } => {
+                if let Some(cells) = cells {
+                    drop_beaten(cells, keys, alive);
+                }
+                if drop_beaten_by_block(keys, alive) {
+                    recent.iter().for_each(|(dominator, _)| drop_dominated(alive, dominator, keys));
+                }
+            }
             Self::Nothing | Self::Table(_) => {}
         }
     }
@@ -81,16 +93,131 @@ impl BinTable {
         second >= self.best[self.bin(first)]
     }
 
-    /// A monotone function of the coordinate: all that the table relies on. What lies below the front's range shares bin 0
-    /// with nothing, what lies above shares the last bin with its end.
     #[inline(always)]
     fn bin(&self, key: f64) -> usize {
-        let place = (key - self.low) * self.scale + 1.0;
-        let place = if place > 0.0 { place } else { 0.0 };
-        let place = if place < (BINS - 1) as f64 { place } else { (BINS - 1) as f64 };
-        // Adding 2^52 leaves the rounded number in the low bits: one addition where a conversion would not vectorise.
-        ((place + (1u64 << 52) as f64).to_bits() & (BINS as u64 - 1)) as usize
+        bin(key, self.low, self.scale, BINS)
     }
+}
+
+/// A monotone function of the coordinate: all that a table relies on. What lies below the front's range shares bin 0 with nothing, what
+/// lies above shares the last bin with its end.
+#[inline(always)]
+fn bin(key: f64, low: f64, scale: f64, bins: usize) -> usize {
+    let place = (key - low) * scale + 1.0;
+    let place = if place > 0.0 { place } else { 0.0 };
+    let place = if place < (bins - 1) as f64 { place } else { (bins - 1) as f64 };
+    // Adding 2^52 leaves the rounded number in the low bits: one addition where a conversion would not vectorise.
+    ((place + (1u64 << 52) as f64).to_bits() & (bins as u64 - 1)) as usize
+}
+
+/// The same for three and four objectives: bins of all coordinates but one, and the best of that one among the points whose bins are
+/// strictly below in all others.
+#[derive(Debug)]
+pub(super) struct CellTable {
+    /// The coordinate that has no bins: that of the fewest levels, as equal coordinates share a bin, in which nothing is strictly below.
+    value: usize,
+    /// Of every other coordinate: which one it is, and the least number and the bins per unit.
+    lines: Vec<(usize, f64, f64)>,
+    /// Bins of a coordinate, as a power of two.
+    bits: u32,
+    /// NaN, beside which nothing is beaten, where there is no such point.
+    best: Vec<f64>,
+}
+
+impl CellTable {
+    /// For the points of a front; `None` where comparing with each is as good.
+    pub(super) fn new(points: &Points, objectives: usize) -> Option<Self> {
+        let bits = match objectives {
+            3 => 7,
+            4 => 5,
+            _ => return None,
+        };
+        if points.len() < FEW_POINTS {
+            return None;
+        }
+        let coordinates = |objective: usize| points.keys.iter().skip(objective).step_by(objectives).copied();
+        let levels = |&objective: &usize| {
+            let mut all: Vec<f64> = coordinates(objective).collect();
+            all.sort_unstable_by(f64::total_cmp);
+            all.dedup();
+            all.len()
+        };
+        let value = (0..objectives).min_by_key(levels)?;
+        let bins = 1_usize << bits;
+        let line = |objective: usize| {
+            let ends = coordinates(objective).fold((f64::INFINITY, f64::NEG_INFINITY), |ends, it| (ends.0.min(it), ends.1.max(it)));
+            let scale = (bins - 2) as f64 / (ends.1 - ends.0);
+            (objective, ends.0, if scale.is_finite() { scale } else { 0.0 })
+        };
+        let lines: Vec<_> = (0..objectives).filter(|&it| it != value).map(line).collect();
+        let mut table = Self { value, bits, best: vec![f64::NAN; 1 << (bits as usize * lines.len())], lines };
+        for key in points.keys.chunks(objectives) {
+            let places = table.lines.iter().map(|&(objective, low, scale)| bin(key[objective], low, scale, bins) + 1);
+            // What lies in a last bin is strictly below nothing.
+            if let Some(cell) = places.into_iter().try_fold(0, |cell, place| (place < bins).then_some((cell << bits) | place)) {
+                table.best[cell] = table.best[cell].min(key[value]);
+            }
+        }
+        for line in 0..table.lines.len() {
+            let step = 1 << (bits as usize * line);
+            for cell in (0..table.best.len()).filter(|cell| cell / step % bins > 0) {
+                table.best[cell] = table.best[cell].min(table.best[cell - step]);
+            }
+        }
+        Some(table)
+    }
+
+    /// Is what has these coordinates, or more, surely beaten?
+    pub(super) fn beats(&self, lower: &[f64]) -> bool {
+        let place = |&(objective, low, scale): &(usize, f64, f64)| bin(lower[objective], low, scale, 1 << self.bits);
+        let cell = self.lines.iter().fold(0, |cell, line| (cell << self.bits) | place(line));
+        self.best[cell] <= lower[self.value]
+    }
+}
+
+/// Drops what the table knows to be beaten.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+fn drop_beaten(table: &CellTable, keys: &[&[f64]], alive: &mut [u64]) {
+    const CHUNK: usize = 64;
+    let bins = 1 << table.bits;
+    for start in (0..alive.len()).step_by(CHUNK) {
+        let end = alive.len().min(start + CHUNK);
+        let alive = &mut alive[start..end];
+        let mut cells = [0; CHUNK];
+        for &(objective, low, scale) in &table.lines {
+            for (cell, &key) in cells.iter_mut().zip(&keys[objective][start..end]) {
+                *cell = (*cell << table.bits) | bin(key, low, scale, bins);
+            }
+        }
+        let mut best = [0.0; CHUNK];
+        for (best, &cell) in best[..alive.len()].iter_mut().zip(&cells) {
+            *best = table.best[cell];
+        }
+        for ((alive, &key), &best) in alive.iter_mut().zip(&keys[table.value][start..end]).zip(&best) {
+            *alive = if best <= key { 0 } else { *alive };
+        }
+    }
+}
+
+/// Drops what the designs of a block that are the best in one coordinate strictly dominate. In a row some coordinates are often all the same,
+/// so that no table tells its designs apart, and all of them would wait to be sorted. False if few are left.
+fn drop_beaten_by_block(keys: &[&[f64]], alive: &mut [u64]) -> bool {
+    let are_many = |alive: &[u64]| alive.iter().filter(|&&it| it != 0).count() > FEW_LEFT;
+    for objective in 0..keys.len() {
+        if !are_many(alive) {
+            return false;
+        }
+        // Of equal ones the best in the next coordinate.
+        let order = |&a: &usize, &b: &usize| {
+            let each = (0..keys.len()).map(|it| keys[(objective + it) % keys.len()]).map(|keys| keys[a].total_cmp(&keys[b]));
+            each.into_iter().find(|it| it.is_ne()).unwrap_or(Ordering::Equal)
+        };
+        let Some(best) = (0..alive.len()).filter(|&lane| alive[lane] != 0).min_by(order) else { return false };
+        let mut key = [0.0; MOST_OBJECTIVES];
+        key.iter_mut().zip(keys).for_each(|(key, keys)| *key = keys[best]);
+        drop_dominated(alive, &key[..keys.len()], keys);
+    }
+    are_many(alive)
 }
 
 /// Keeps, of the feasible designs, those that the table does not know to be beaten.
@@ -134,5 +261,64 @@ fn drop_dominated(alive: &mut [u64], dominator: &[f64], keys: &[&[f64]]) {
         for ((alive, no_better), worse) in alive.iter_mut().zip(no_better).zip(worse) {
             *alive &= !(no_better & worse);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reduce::dominance::beats;
+    use crate::sample::mix;
+
+    #[test]
+    fn what_a_table_of_cells_says_is_beaten_is_and_nearly_all_that_is_far_behind_is_told() {
+        for objectives in [3, 4] {
+            // On and behind a plane, the last coordinate on few levels as a number of bands is.
+            let point = |seed: u64, behind: f64| -> Vec<f64> {
+                let mut key: Vec<f64> = (0..objectives).map(|d| (mix(seed * 8 + d) % 1000) as f64 / 250.0).collect();
+                let sum: f64 = key.iter().sum();
+                key.iter_mut().for_each(|it| *it += 2.0 - sum / objectives as f64 + behind);
+                key.last_mut().into_iter().for_each(|it| *it = it.ceil());
+                key
+            };
+            let mut points = Points::default();
+            (0..500).for_each(|seed| points.push(point(seed, 0.0).into_iter(), seed));
+            let table = CellTable::new(&points, objectives as usize).expect("there are many points");
+            assert_eq!(table.value, objectives as usize - 1);
+            let is_beaten = |key: &[f64]| points.keys.chunks(objectives as usize).any(|it| beats(it, 1, key, 0));
+            let (mut told, mut beaten) = (0, 0);
+            for seed in 1000..3000 {
+                let key = point(seed, 0.8);
+                let mut alive = [u64::MAX];
+                drop_beaten(&table, &key.iter().map(std::slice::from_ref).collect::<Vec<_>>(), &mut alive);
+                assert_eq!(table.beats(&key), alive == [0]);
+                assert!(alive != [0] || is_beaten(&key), "{key:?}");
+                told += u32::from(alive == [0]);
+                beaten += u32::from(is_beaten(&key));
+            }
+            assert!(beaten > 1500 && 10 * told > 8 * beaten, "{objectives} objectives: {told} of {beaten}");
+            // A point of the table is never beaten by it, nor what is no number.
+            assert!(points.keys.chunks(objectives as usize).all(|it| !table.beats(it) || is_beaten(it)));
+            assert!(!table.beats(&vec![f64::NAN; objectives as usize]));
+        }
+    }
+
+    #[test]
+    fn of_a_row_with_equal_coordinates_only_the_best_are_left() {
+        let equal = [3.0; 200];
+        let each: Vec<f64> = (0..200).map(|lane| f64::from((lane * 37) % 101)).collect();
+        for keys in [[&equal[..], &equal, &each], [&each, &equal, &equal], [&equal, &each, &equal]] {
+            let mut alive = vec![u64::MAX; 200];
+            alive[0] = 0;
+            assert!(!drop_beaten_by_block(&keys, &mut alive));
+            let left: Vec<usize> = (0..200).filter(|&lane| alive[lane] != 0).collect();
+            // Lane 0 is infeasible; the next with a remainder of 0 is 101. Lanes that tie are told apart by their index later.
+            assert_eq!(left, [101]);
+        }
+        // Where no one is beaten, all stay.
+        let (up, down): (Vec<f64>, Vec<f64>) = (0..200).map(|lane| (f64::from(lane), f64::from(200 - lane))).unzip();
+        let mut alive = vec![u64::MAX; 200];
+        assert!(drop_beaten_by_block(&[&up, &down, &equal], &mut alive));
+        assert_eq!(alive, [u64::MAX; 200]);
     }
 }

@@ -1,6 +1,6 @@
 //! The Pareto front: feasible designs that no other one makes superfluous.
 //!
-//! Designs stream in by the billion, so most must be dropped at the cost of a comparison or two: against a table for two
+//! Designs stream in by the billion, so most must be dropped at the cost of a comparison or two: against a table for two to four
 //! objectives, against the points that dropped the last ones for more. What passes is checked against the front so far, what
 //! passes that waits in a list, and from time to time the list is merged into the front. The result does not depend on the
 //! order of arrival: it is the set of designs that no other one beats, and "beats" is a strict order.
@@ -12,7 +12,7 @@ pub use crate::keys::{KeyRule, Points};
 
 use super::dominance::{Dominance, beats};
 use crate::screen::Block;
-use filter::{BinTable, Filter};
+use filter::{BinTable, CellTable, Filter};
 use rays::Rays;
 use std::sync::OnceLock;
 
@@ -121,7 +121,7 @@ impl Front {
                     return;
                 }
             }
-            Filter::Dominators { recent, next, all } => {
+            Filter::Dominators { recent, next, all, .. } => {
                 if let Some((dominator, dominator_index)) = all.dominator(key, index) {
                     let dominator = (dominator.to_vec(), dominator_index);
                     if recent.len() < DOMINATORS {
@@ -147,7 +147,9 @@ impl Front {
                 let beyond = self.points.not_beyond(lower[0], dimensions);
                 beyond > 0 && beats(self.points.key(beyond - 1, dimensions), u64::MAX, lower, 0)
             }
-            Filter::Dominators { all, .. } => all.dominator(lower, 0).is_some(),
+            Filter::Dominators { cells, all, .. } => {
+                cells.as_ref().is_some_and(|cells| cells.beats(lower)) || all.dominator(lower, 0).is_some()
+            }
         }
     }
 
@@ -163,7 +165,9 @@ impl Front {
                 let beyond = self.points.not_beyond(lower[0], dimensions);
                 beyond > 0 && beats(self.points.key(beyond - 1, dimensions), self.points.indices[beyond - 1], lower, least_index)
             }
-            Filter::Dominators { all, .. } => all.dominator(lower, least_index).is_some(),
+            Filter::Dominators { cells, all, .. } => {
+                cells.as_ref().is_some_and(|cells| cells.beats(lower)) || all.dominator(lower, least_index).is_some()
+            }
         }
     }
 
@@ -283,7 +287,7 @@ impl Front {
             (true, _) | (_, 0) => Filter::Nothing,
             (_, 1) => Filter::Best(self.points.keys[0]),
             (_, 2) => Filter::Table(BinTable::new(&self.points)),
-            _ => Filter::Dominators { recent: Vec::new(), next: 0, all },
+            (_, objectives) => Filter::Dominators { cells: CellTable::new(&self.points, objectives), recent: Vec::new(), next: 0, all },
         };
     }
 }

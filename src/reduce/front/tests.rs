@@ -111,15 +111,19 @@ fn designs_that_tie_in_everything_are_one_point_with_the_lowest_index() {
 fn the_table_never_drops_a_point_of_the_front() {
     // Denormal spans and huge offsets: the bin function must stay monotone.
     for (offset, width) in [(0.0, 1e-310), (1e300, 1e285), (-1e-3, 1e-19), (5.0, 0.0)] {
-        let rules =
-            [KeyRule::from(&Objective { quantity: Quantity::Input(0), goal: Goal::Min, resolution: None, over: OverScenarios::Worst }); 2];
-        let value = |i: u64, d: u64| offset + width * (mix(i * 2 + d) % 1000) as f64;
-        let mut front = Front::new(&rules);
-        let column = |d| (0..512).map(|i| value(i, d)).collect::<Vec<_>>();
-        let block = Owned { row_index: 0, offsets: (0..512).collect(), alive: vec![u64::MAX; 512], values: vec![column(0), column(1)] };
-        front.absorb(&block.block(), &[0, 1]);
-        front.points();
-        front.absorb(&block.block(), &[0, 1]);
-        assert_eq!(sorted(front.points()), brute_force(&rules, &[block]), "{offset} {width}");
+        for objectives in 2..=4 {
+            let objective = Objective { quantity: Quantity::Input(0), goal: Goal::Min, resolution: None, over: OverScenarios::Worst };
+            let rules = vec![KeyRule::from(&objective); objectives];
+            let value = |i: u64, d: usize| offset + width * (mix(i * 4 + d as u64) % 1000) as f64;
+            let mut front = Front::new(&rules);
+            let column = |d| (0..512).map(|i| value(i, d)).collect::<Vec<_>>();
+            let values = (0..objectives).map(column).collect();
+            let block = Owned { row_index: 0, offsets: (0..512).collect(), alive: vec![u64::MAX; 512], values };
+            let places: Vec<_> = (0..objectives).collect();
+            front.absorb(&block.block(), &places);
+            front.points();
+            front.absorb(&block.block(), &places);
+            assert_eq!(sorted(front.points()), brute_force(&rules, &[block]), "{offset} {width}, {objectives} objectives");
+        }
     }
 }
