@@ -37,6 +37,8 @@ const COARSELY: f64 = 0.02;
 const SLOWNESS: f64 = 3.0;
 /// Fewest designs of a coarse front.
 const FEW: u64 = 2000;
+/// Seconds after which a page has drawn a coarse front.
+const DRAWN: f64 = 0.1;
 /// What takes every design waits this long, for somebody who drags a slider on.
 const PAUSE: Duration = Duration::from_millis(250);
 /// Seconds that counting feasible designs may take; beyond, the sample alone is told.
@@ -170,8 +172,9 @@ impl Live {
             None => search.first_set()?,
         };
         let expected = self.expected(plan, set.count(plan.scenarios()));
-        if expected > NOTICED.as_secs_f64() {
-            self.coarse(&mut search, &set, expected, start, tell)?;
+        if expected > NOTICED.as_secs_f64() && self.coarse(&mut search, &set, expected, start, tell)? {
+            // What is told is to be seen: on a machine with few cores nobody draws it while all of them search on.
+            pause(control, Duration::from_secs_f64((0.1 * expected).min(DRAWN)))?;
         }
         let designs = plan.designs();
         let (rows, set) = if expected > LONG && refusal(plan).is_none() {
@@ -193,7 +196,7 @@ impl Live {
         let front = LiveFront { plan, columns: search.columns(), rows: &rows, looked_at: designs, scenarios, took: start.elapsed() };
         tell(LiveAnswer::Exact(front))?;
         *self.judged.lock().unwrap_or_else(PoisonError::into_inner) = search.judged();
-        pause(control)?;
+        pause(control, PAUSE)?;
         // Now there is time for the reference, which also says in which scenario each value is the worst.
         let certified = search.certified(&rows)?;
         let front =
@@ -202,7 +205,7 @@ impl Live {
         self.count(plan, &rows, control, tell)
     }
 
-    /// The front of a coarser grid.
+    /// Tells the front of a coarser grid; false if there is none.
     fn coarse(
         &self,
         search: &mut FrontSearch<'_>,
@@ -210,13 +213,13 @@ impl Live {
         expected: f64,
         start: Instant,
         tell: &mut dyn FnMut(LiveAnswer<'_>) -> Result<()>,
-    ) -> Result<()> {
+    ) -> Result<bool> {
         let plan = search.plan();
         let slowness = *self.slowness.lock().unwrap_or_else(PoisonError::into_inner);
         #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "about so many")]
         let most = ((COARSELY / (expected * slowness) * plan.designs() as f64) as u64).max(FEW);
         if most >= plan.designs() {
-            return Ok(());
+            return Ok(false);
         }
         let begun = Instant::now();
         let points = search.coarse(set, most)?;
@@ -233,7 +236,8 @@ impl Live {
             looked_at: most,
             scenarios,
             took: start.elapsed(),
-        }))
+        }))?;
+        Ok(true)
     }
 
     /// The front by bounds, left where they do not pay.
@@ -289,9 +293,9 @@ impl Live {
 }
 
 /// Waits for somebody who drags a slider on.
-fn pause(control: &Control) -> Result<()> {
+fn pause(control: &Control, duration: Duration) -> Result<()> {
     let begin = Instant::now();
-    while begin.elapsed() < PAUSE {
+    while begin.elapsed() < duration {
         if control.stop.load(Ordering::Relaxed) {
             return Err(Error::Stopped { kept: None });
         }
