@@ -311,6 +311,7 @@ fn what_python_takes_is_what_the_record_says() {
         of_each(two),
         of_each(all),
         format!("{} and {}", ratio(two), ratio(all)),
+        format!("takes {:.1} times and {:.1} times as long", number(&two["times_numpy"]), number(&all["times_numpy"])),
         format!("{:.2} s of processor time", number(&record["worst_by_traction_processor_s"])),
         format!("{:.2} s with a clamping force", number(&record["worst_processor_s"])),
     ] {
