@@ -105,7 +105,7 @@ fn exp_m1_of(x: f64) -> f64 {
     let small = (r - e + (1.0 - uf)) * twopk;
     let large = (r - (e + uf) + 1.0) * twopk;
     let scaled = if shift < 20.0 { small } else { large };
-    let scaled = if shift < 0.0 || shift > 56.0 { far } else { scaled };
+    let scaled = if (0.0..=56.0).contains(&shift) { scaled } else { far };
     let scaled = if shift == 1.0 { above } else { scaled };
     let scaled = if shift == -1.0 { below } else { scaled };
     let scaled = if shift == 0.0 { unscaled } else { scaled };

@@ -160,7 +160,7 @@ impl CellTable {
         }
         for line in 0..table.lines.len() {
             let step = 1 << (bits as usize * line);
-            for cell in (0..table.best.len()).filter(|cell| cell / step % bins > 0) {
+            for cell in (0..table.best.len()).filter(|cell| !(cell / step).is_multiple_of(bins)) {
                 table.best[cell] = table.best[cell].min(table.best[cell - step]);
             }
         }
@@ -282,7 +282,7 @@ mod tests {
                 key
             };
             let mut points = Points::default();
-            (0..500).for_each(|seed| points.push(point(seed, 0.0).into_iter(), seed));
+            (0..500).for_each(|seed| points.push(point(seed, 0.0), seed));
             let table = CellTable::new(&points, objectives as usize).expect("there are many points");
             assert_eq!(table.value, objectives as usize - 1);
             let is_beaten = |key: &[f64]| points.keys.chunks(objectives as usize).any(|it| beats(it, 1, key, 0));
