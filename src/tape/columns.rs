@@ -106,11 +106,6 @@ impl NodeColumns {
         fill(room(column, self.count));
     }
 
-    /// Exchanges the column of an operation, at least as long as the chunk, for another.
-    pub(super) fn swap(&mut self, node: Node, column: &mut Vec<f64>) {
-        std::mem::swap(&mut self.columns[self.place[node as usize] as usize], column);
-    }
-
     /// Computes the column of an operation from its operands; what inputs are is the caller's business.
     pub fn compute(&mut self, list: &List, node: Node, each: impl Fn(Node) -> bool) {
         let place = self.place[node as usize] as usize;

@@ -176,12 +176,11 @@ impl RootColumns {
                     });
                 }
             }
-            // The function reads where the lanes are, where they are.
-            numbers.swap(root.argument, &mut lanes.x);
+            // A copy: the slope of a function, or its value, may be the argument itself.
+            numbers.fill(root.argument, |to| to.copy_from_slice(&lanes.x));
             for &node in inner {
                 numbers.compute(list, node, each);
             }
-            numbers.swap(root.argument, &mut lanes.x);
             let left = lanes.step(numbers.value(root.value, each), numbers.value(root.slope, each));
             // Lanes that have ended cost less than to sort them out, unless they are many.
             if 4 * left <= looked_at {
