@@ -3,9 +3,13 @@
 //! A formula that is read from text asks at every division, root and logarithm whether it has a value, and goes on with another number
 //! where it has none. In the ranges of a study nearly all of these questions have one answer, which intervals prove for f64; on a device
 //! they would be asked with error bounds for every design and scenario.
+//!
+//! A study also says which inputs change slowly. What depends on these alone is computed once for all that have them in common, however
+//! the formula was written: so a model that is read from a file takes a device no longer than one of the program.
 
 use super::list::needed;
-use super::{Binary, EVERYTHING, Interval, Known, List, Node, Operation, Reads, Recordable, Recording, Set};
+use super::{Binary, EVERYTHING, Fields, Interval, Known, List, Node, Operation, Reads, Recordable, Recording, Set, Unary};
+use crate::models::{interned, interned_list};
 
 /// The lists of a formula's two stages, as a device runs them.
 #[derive(Clone, Debug)]
@@ -40,20 +44,62 @@ pub struct SettledStages {
     pub open: Set,
     /// What the second stage reads.
     pub reads: Reads,
+    /// The names of the values, with what passes between these stages.
+    pub fields: Fields,
 }
 
+/// Most numbers that are passed on; a formula of which there are more is divided as it was written.
+const MOST_PASSED: usize = 200;
+
 impl SettledStages {
+    /// For a study: of each condition that is asked is told whether its margin must be greater than zero (else at least zero), and `slow`
+    /// are the inputs that change slowly.
+    ///
+    /// What depends on slow inputs alone is the first stage, unless the formula has loops or tables: then it is divided as it was written.
+    pub fn divided(formula: &dyn Recordable, known: &[Known], wanted: Set, conditions: &[(usize, bool)], slow: Set) -> Self {
+        Self::by_inputs(formula, known, wanted, conditions, slow).unwrap_or_else(|| Self::new(formula, known, wanted, conditions))
+    }
+
+    fn by_inputs(formula: &dyn Recordable, known: &[Known], wanted: Set, conditions: &[(usize, bool)], slow: Set) -> Option<Self> {
+        let own = formula.fields();
+        let (first, second) = formula.stages(wanted, Set::ALL);
+        let is_plain = |it: &Recording| it.loops.is_empty() && it.tables.is_empty();
+        if !own.tables.is_empty() || !is_plain(&first.recording) || !is_plain(&second.recording) {
+            return None;
+        }
+        let asked: Set = conditions.iter().map(|(condition, _)| condition).collect();
+        let whole = formula.whole(known, wanted, asked);
+        let ranges: Vec<Interval> = known.iter().map(range_of).collect();
+        let (settled, results) = settled(&whole.recording, &whole.asked(wanted, asked), &ranges);
+        let (outputs, margins) = results.split_at(own.outputs.len());
+        let open = open(conditions, margins);
+        let outputs: Vec<_> = outputs.iter().map(|&(node, _)| node).collect();
+        let margins: Vec<_> = margins.iter().enumerate().map(|(number, &(node, _))| node.filter(|_| open.contains(number))).collect();
+
+        let mut passed = passed_on(&settled, &[&outputs[..], &margins].concat(), slow);
+        if passed.len() > MOST_PASSED {
+            return None;
+        }
+        // A structure has a field.
+        let is_none = passed.is_empty();
+        let names: Vec<_> = (0..passed.len().max(1)).map(|number| interned(&format!("k{number}"))).collect();
+        let fields = Fields { prepared: interned_list(&names), ..own };
+        let first = List::cut(&settled, &passed.iter().copied().map(Some).chain(is_none.then_some(None)).collect::<Vec<_>>());
+        let mut second = settled;
+        for (number, node) in passed.drain(..).enumerate() {
+            let input = u16::try_from(own.inputs.len() + number).expect("there are few");
+            second.operations[node as usize] = Operation::Input(input);
+        }
+        let [conditions, finish] = [&margins, &outputs].map(|nodes| List::cut(&second, nodes));
+        let reads = Reads::of_lists(&fields, &[&conditions, &finish]);
+        Some(Self { lists: StageLists { first, conditions, finish }, open, reads, fields })
+    }
+
     /// For these outputs and these conditions, of each of which is told whether its margin must be greater than zero (else at least zero).
     pub fn new(formula: &dyn Recordable, known: &[Known], wanted: Set, conditions: &[(usize, bool)]) -> Self {
         let fields = formula.fields();
         let (first, second) = formula.stages(Set::ALL, Set::ALL);
-        let mut ranges: Vec<Interval> = known
-            .iter()
-            .map(|known| match *known {
-                Known::Fixed(value) => Interval::point(value),
-                Known::Within(least, largest) => Interval::new(least, largest),
-            })
-            .collect();
+        let mut ranges: Vec<Interval> = known.iter().map(range_of).collect();
         let prepared: Vec<_> = first.prepared.iter().copied().map(Some).collect();
         let (first, prepared) = settled(&first.recording, &prepared, &ranges);
         ranges.extend(fields.places().zip(&prepared).flat_map(|((_, length), &(_, range))| {
@@ -68,11 +114,7 @@ impl SettledStages {
         let nodes = [of(&second.outputs, wanted), of(&second.conditions, asked)].concat();
         let (second, results) = settled(&second.recording, &nodes, &ranges);
         let (outputs, margins) = results.split_at(fields.outputs.len());
-        let is_open = |&&(condition, strict): &&(usize, bool)| {
-            let margin = margins[condition].1;
-            if strict { margin.low <= 0.0 } else { margin.low < 0.0 }
-        };
-        let open: Set = conditions.iter().filter(is_open).map(|(condition, _)| condition).collect();
+        let open = open(conditions, margins);
         let margins = margins.iter().enumerate().map(|(condition, &(node, _))| node.filter(|_| open.contains(condition)));
         let conditions = List::cut(&second, &margins.collect::<Vec<_>>());
         let finish = List::cut(&second, &outputs.iter().map(|&(node, _)| node).collect::<Vec<_>>());
@@ -82,8 +124,53 @@ impl SettledStages {
         let is_passed = |field: usize| reads.prepared.contains(field) || field >= fields.prepared.len();
         let passed = prepared.iter().enumerate().map(|(field, &(node, _))| node.filter(|_| is_passed(field)));
         let first = List::cut(&first, &passed.collect::<Vec<_>>());
-        Self { lists: StageLists { first, conditions, finish }, open, reads }
+        Self { lists: StageLists { first, conditions, finish }, open, reads, fields }
     }
+}
+
+fn range_of(known: &Known) -> Interval {
+    match *known {
+        Known::Fixed(value) => Interval::point(value),
+        Known::Within(least, largest) => Interval::new(least, largest),
+    }
+}
+
+/// The conditions that do not surely hold, given the ranges of all margins.
+fn open(conditions: &[(usize, bool)], margins: &[(Option<Node>, Interval)]) -> Set {
+    let is_open = |&&(condition, strict): &&(usize, bool)| {
+        let margin = margins[condition].1;
+        if strict { margin.low <= 0.0 } else { margin.low < 0.0 }
+    };
+    conditions.iter().filter(is_open).map(|(condition, _)| condition).collect()
+}
+
+/// What depends on `slow` inputs alone and is read by what does not, or is a result: inputs and constants are at hand, and signs and
+/// factors of two cost nothing.
+fn passed_on(recording: &Recording, results: &[Option<Node>], slow: Set) -> Vec<Node> {
+    let list = List::cut(recording, results);
+    let inputs = list.dependencies(|input| Set::from_iter([usize::from(input)]));
+    let is_passed = |node: Node| {
+        let is_slow = (inputs[node as usize] - slow).is_empty() && !list.inner[node as usize];
+        let operation = list.operations[node as usize];
+        let is_cheap = matches!(operation, Operation::Input(_) | Operation::Constant(_) | Operation::Argument(_));
+        is_slow && !is_cheap && !matches!(operation, Operation::Unary(Unary::Neg | Unary::Scale(_), _))
+    };
+    let mut passed = vec![false; list.operations.len()];
+    let mut read = vec![false; list.operations.len()];
+    list.results.iter().flatten().for_each(|&node| read[node as usize] = true);
+    for node in (0..list.operations.len()).rev() {
+        passed[node] = read[node] && is_passed(node as Node);
+        if !read[node] || passed[node] {
+            continue;
+        }
+        match list.operations[node] {
+            Operation::Root(number) => list.roots[number as usize].root.reads(|operand| read[operand as usize] = true),
+            operation => operation.operands(|operand| read[operand as usize] = true),
+        }
+    }
+    let needed = needed(recording, results);
+    let nodes = (0..recording.operations.len()).filter(|&node| needed[node]);
+    nodes.zip(passed).filter(|&(_, is_passed)| is_passed).map(|(node, _)| node as Node).collect()
 }
 
 /// A recording in which every choice that is sure where inputs have these ranges is what was chosen, with what each result is then and the

@@ -182,11 +182,6 @@ pub struct Reads {
 }
 
 impl Reads {
-    /// Of a formula that can be recorded, to give the outputs in `wanted` and all conditions.
-    pub fn of(formula: &dyn Recordable, inputs: &[Known], wanted: Set) -> Self {
-        Self::of_lists(&formula.fields(), &[&formula.second(inputs, wanted, Set::ALL).list(wanted, Set::ALL)])
-    }
-
     /// Of these lists of a second stage.
     pub fn of_lists(fields: &Fields, lists: &[&List]) -> Self {
         let field_of: Vec<usize> =

@@ -9,7 +9,7 @@ use crate::models::{Fields, Set, Worse, input_to_si};
 use crate::plan::{Plan, Source, knowns};
 use crate::space::{Product, SpaceDimension};
 use crate::study::{Axis, Goal, Levels, Quantity};
-use crate::tape::{Reads, SettledStages, nearest_f32};
+use crate::tape::{SettledStages, nearest_f32};
 
 /// Most loop iterations of one invocation: some drivers end it after 65 535 without a word.
 pub const MOST_ITERATIONS: u64 = 55_000;
@@ -125,15 +125,23 @@ fn passed(fields: &Fields, read: Set) -> Vec<Passed> {
         .collect()
 }
 
+/// What a device computes of a design.
+#[derive(Clone, Debug)]
+pub enum FormulaOnDevice {
+    /// The model's formula, settled and divided for the study.
+    Own(Box<SettledStages>),
+    /// Statistics over the draws of a study with distributions.
+    Drawn(Box<DrawnOnDevice>),
+}
+
 /// A study as a device sees it.
 #[derive(Clone, Debug)]
 pub struct KernelLayout {
     /// The names of the formula's values.
     pub fields: Fields,
-    /// The stages where formulas of a study or a file are in them: these ask much that the ranges of the study settle.
-    pub settled: Option<SettledStages>,
-    /// The draws of a study with distributions, and the place of their first entry in the steady table.
-    pub drawn: Option<DrawnOnDevice>,
+    /// What is computed.
+    pub formula: FormulaOnDevice,
+    /// The place of the first entry of draws in the steady table.
     pub first_case: u32,
     /// What passes from the first stage to the second.
     pub prepared: Vec<Passed>,
@@ -168,10 +176,18 @@ impl KernelLayout {
     /// [`Error::NotOnDevice`] if it cannot be screened on a device, and why.
     pub fn new(plan: &Plan, limited_loops: bool, grouped: bool) -> Result<Self> {
         let model = &plan.study.model;
-        let drawn = DrawnOnDevice::new(plan)?;
-        let fields = match &drawn {
-            Some(drawn) => drawn.fields,
-            None => model.on_device()?.fields(),
+        let used = plan.used_outputs();
+        let known = knowns(&plan.study, &plan.space);
+        let (fields, reads, formula) = match DrawnOnDevice::new(plan)? {
+            Some(drawn) => (drawn.fields, drawn.reads, FormulaOnDevice::Drawn(Box::new(drawn))),
+            None => {
+                let asked = plan.row_conditions.iter().chain(&plan.lane_conditions);
+                let asked: Vec<_> = asked.map(|&it| (it, model.conditions[it].strict)).collect();
+                let fast = plan.fast.inputs() | plan.fast_scenarios.inputs();
+                let slow: Set = (0..model.inputs.len()).filter(|&input| !fast.contains(input)).collect();
+                let own = SettledStages::divided(model.on_device()?, &known, used, &asked, slow);
+                (own.fields, own.reads, FormulaOnDevice::Own(Box::new(own)))
+            }
         };
         let scenarios = [&plan.slow_scenarios, &plan.fast_scenarios].map(Product::count);
         let iterations = scenarios[0].saturating_mul(scenarios[1] + 1).saturating_mul(1 + fields.iterations);
@@ -198,21 +214,6 @@ impl KernelLayout {
         if plan.fast.count() >= 1 << LANE_BITS {
             return Err(refuse(format!("a row of {} designs is too long", plan.fast.count())));
         }
-        let used = plan.used_outputs();
-        let known = knowns(&plan.study, &plan.space);
-        let (settled, reads) = match &drawn {
-            Some(drawn) => (None, drawn.reads),
-            None => {
-                let formula = model.on_device()?;
-                let settled = model.origin.is_some().then(|| {
-                    let asked = plan.row_conditions.iter().chain(&plan.lane_conditions);
-                    SettledStages::new(formula, &known, used, &asked.map(|&it| (it, model.conditions[it].strict)).collect::<Vec<_>>())
-                });
-                let reads = settled.as_ref().map_or_else(|| Reads::of(formula, &known, used), |it| it.reads);
-                (settled, reads)
-            }
-        };
-
         let mut steady = Vec::new();
         let slow_scenarios = scenario_table(plan, &plan.slow_scenarios, &mut steady);
         let fast_scenarios = scenario_table(plan, &plan.fast_scenarios, &mut steady);
@@ -246,7 +247,9 @@ impl KernelLayout {
         }
 
         let first_case = steady.len() as u32;
-        steady.extend(drawn.iter().flat_map(|it| &it.entries));
+        if let FormulaOnDevice::Drawn(drawn) = &formula {
+            steady.extend(&drawn.entries);
+        }
         if steady.len() as u64 > WINDOW {
             return Err(refuse(format!("its rows of {} designs and its scenarios have {} values", plan.fast.count(), steady.len())));
         }
@@ -270,8 +273,7 @@ impl KernelLayout {
         let slow_inputs = plan.slow.inputs();
         Ok(Self {
             fields,
-            settled,
-            drawn,
+            formula,
             first_case,
             prepared: passed(&fields, reads.prepared),
             row_inputs: (reads.inputs & slow_inputs).iter().collect(),
@@ -290,12 +292,15 @@ impl KernelLayout {
 
     /// Is this condition to be asked? Not if it surely holds.
     pub fn asks(&self, condition: usize) -> bool {
-        self.settled.as_ref().is_none_or(|it| it.open.contains(condition))
+        match &self.formula {
+            FormulaOnDevice::Own(own) => own.open.contains(condition),
+            FormulaOnDevice::Drawn(_) => true,
+        }
     }
 
     /// Is this output a count, or the share that one is of all draws?
     pub fn counts(&self, output: usize) -> bool {
-        self.drawn.as_ref().is_some_and(|it| it.counts.contains(output))
+        matches!(&self.formula, FormulaOnDevice::Drawn(drawn) if drawn.counts.contains(output))
     }
 
     /// Do the steady entries fit a uniform buffer? A storage buffer serves too, at twice the price of a load.

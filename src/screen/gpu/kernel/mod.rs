@@ -18,10 +18,10 @@ mod rows;
 
 use super::constants::{DOMINATORS, FIRST_REPORTED, NEWTON_STEPS_OF_DRAWS, SURVIVOR_HEAD, sweep_constants};
 use super::held::on_device;
-use super::layout::{BINS, KernelLayout, LIST, Values, row_dominators, scenario_worst, sign};
+use super::layout::{BINS, FormulaOnDevice, KernelLayout, LIST, Values, row_dominators, scenario_worst, sign};
 use super::texts::{keep_between, least_bad, literal};
 use crate::gpu::constants::declare;
-use crate::gpu::{model_prelude, model_source, source, stages_source, tables};
+use crate::gpu::{model_prelude, source, stages_source, tables};
 use crate::models::{CONDITION_BOUND_FACTOR, Worse};
 use crate::plan::{Plan, Source};
 use crate::reduce::Shuffle;
@@ -108,13 +108,12 @@ pub fn text(plan: &Plan, layout: &KernelLayout, perturb: &[(usize, f64)]) -> Str
     let conditions = plan.row_conditions.iter().chain(&plan.lane_conditions).copied();
     let asked: Vec<usize> = conditions.filter(|&number| layout.asks(number)).collect();
     let model = &plan.study.model;
-    let of_model = match (&layout.drawn, &layout.settled) {
-        (Some(drawn), _) => drawn.text.clone(),
-        (None, Some(settled)) => stages_source(model, &layout.fields, &settled.lists),
-        (None, None) => model_source(model, model.on_device().expect("a layout is for a device")),
+    let (common, of_model) = match &layout.formula {
+        FormulaOnDevice::Own(own) => (source::common(), stages_source(model, &layout.fields, &own.lists)),
+        FormulaOnDevice::Drawn(drawn) => (source::common_with(NEWTON_STEPS_OF_DRAWS), drawn.text.clone()),
     };
     [
-        &if layout.drawn.is_some() { source::common_with(NEWTON_STEPS_OF_DRAWS) } else { source::common() },
+        &common,
         &sweep_constants(),
         include_str!("../../../../shaders/common/wide.wgsl"),
         &model_prelude(&layout.fields, model.conditions.len(), plan.used_outputs(), &asked),
