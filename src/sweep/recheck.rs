@@ -2,7 +2,7 @@
 
 use crate::decision::Decision;
 use crate::error::{Error, Result};
-use crate::models::{judge, to_si};
+use crate::models::{ManyOptions, evaluate_columns};
 use crate::parallel::on_threads;
 use crate::plan::Plan;
 use crate::reduce::{Reduction, State};
@@ -213,12 +213,11 @@ fn compare(
     }
     let each = plan.evaluations() / plan.scenarios();
     let step = (checked.len() as u64).saturating_mul(each).div_ceil(MOST_ALONE) as usize;
+    let alone: Vec<_> = (start..).zip(checked).step_by(step.max(1)).filter(|(_, it)| !it.asked.is_empty()).collect();
+    compare_alone(plan, used, &alone, &mut report)?;
     for (at, (checked, &feasible)) in checked.iter().zip(&feasible).enumerate() {
         report.unsure += u64::from(checked.verdict == Decision::Unsure);
         let design = plan.design_at(start + at as u64);
-        if at % step.max(1) == 0 {
-            compare_alone(plan, used, design, checked, &mut report)?;
-        }
         if (checked.verdict == Decision::Yes) != feasible && checked.verdict != Decision::Unsure {
             let (gpu, f64s) = if feasible { ("infeasible", "feasible") } else { ("feasible", "infeasible") };
             return Err(Error::ErrorBound(format!("design {design}: the GPU is sure that it is {gpu}, f64 finds it {f64s}")));
@@ -227,23 +226,29 @@ fn compare(
     Ok((report, reducers.state()))
 }
 
-/// Compares the outputs of a design in one scenario.
-fn compare_alone(plan: &Plan, used: &[usize], design: u64, checked: &Checked, report: &mut Recheck) -> Result<()> {
+/// Compares the outputs of designs, given by their positions, in one scenario each.
+fn compare_alone(plan: &Plan, used: &[usize], alone: &[(u64, &Checked)], report: &mut Recheck) -> Result<()> {
     let model = &plan.study.model;
-    let scenario = plan.slow_scenarios.source_index(checked.scenario.0) + plan.fast_scenarios.source_index(checked.scenario.1);
-    let inputs = plan.space.inputs(design, scenario);
-    let si = to_si(model, &inputs);
-    let prepared = model.kernel.prepared(&si);
-    let (_, present) = judge(model, &model.kernel.margins(&prepared, &si));
-    let outputs = model.kernel.outputs(&prepared, &si, used.iter().collect());
-    for (number, &output) in used.iter().enumerate() {
-        if checked.asked.is_empty() || !present.contains(output) || !outputs[output].is_finite() {
-            continue;
-        }
+    let scenario_of =
+        |checked: &Checked| plan.slow_scenarios.source_index(checked.scenario.0) + plan.fast_scenarios.source_index(checked.scenario.1);
+    let varied = plan.space.designs.inputs() | plan.space.scenarios.inputs();
+    let mut columns: Vec<(&str, Vec<f64>)> = varied.iter().map(|it| (&*model.inputs[it].name, Vec::with_capacity(alone.len()))).collect();
+    for &(position, checked) in alone {
+        let inputs = plan.space.inputs(plan.design_at(position), scenario_of(checked));
+        varied.iter().zip(&mut columns).for_each(|(input, (_, column))| column.push(inputs[input]));
+    }
+    let columns: Vec<(&str, &[f64])> = columns.iter().map(|(name, column)| (*name, &**column)).collect();
+    let options = ManyOptions::default().outputs(used).inputs(&plan.study.fixed).threads(1);
+    let found = evaluate_columns(model, &columns, &options)?;
+    for (number, (&output, values)) in used.iter().zip(&found.outputs).enumerate() {
         let slot = plan.tracked.len() + number;
         let name = format!("{} in one scenario", model.outputs[output].name);
-        if let Err(found) = report.compare(slot, &name, checked.asked[number], outputs[output]) {
-            return Err(broken_bound(plan, Quantity::Output(output), design, found, outputs[output], &format!("in scenario {scenario}")));
+        for (&(position, checked), &value) in alone.iter().zip(values).filter(|(_, value)| !value.is_nan()) {
+            let exact = model.outputs[output].unit.to_si(value);
+            if let Err(found) = report.compare(slot, &name, checked.asked[number], exact) {
+                let place = format!("in scenario {}", scenario_of(checked));
+                return Err(broken_bound(plan, Quantity::Output(output), plan.design_at(position), found, exact, &place));
+            }
         }
     }
     Ok(())
