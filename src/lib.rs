@@ -101,6 +101,7 @@ pub mod formula;
 pub mod gpu;
 #[doc(hidden)]
 pub mod influence;
+mod interned;
 #[doc(hidden)]
 pub mod keys;
 #[doc(hidden)]

@@ -38,9 +38,7 @@ pub use description::{
 };
 pub use evaluation::{evaluate, evaluate_asked};
 pub(crate) use evaluation::{fill_si, holds, input_to_si, judge, shown, to_si};
-#[cfg(feature = "gpu")]
-pub(crate) use extended::interned_list;
-pub(crate) use extended::{ExtensionProblem, extended, interned, nothing, unit_of_name};
+pub(crate) use extended::{ExtensionProblem, extended, nothing, unit_of_name};
 pub use formula::{Columns, Dependencies, Footprint, Formula, Kernel, Scratch, Sizes};
 pub use known::Models;
 pub(crate) use known::is_name;

@@ -9,7 +9,7 @@
 
 use super::list::needed;
 use super::{Binary, EVERYTHING, Fields, Interval, Known, List, Node, Operation, Reads, Recordable, Recording, Set, Unary};
-use crate::models::{interned, interned_list};
+use crate::interned::{interned, interned_list};
 
 /// The lists of a formula's two stages, as a device runs them.
 #[derive(Clone, Debug)]

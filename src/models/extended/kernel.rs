@@ -2,8 +2,8 @@
 
 use super::columns::{ExtendedColumns, Lists};
 use super::first::PassedNumber;
-use super::interned::{interned, interned_list};
 use super::surroundings::{ConditionPlace, Surroundings};
+use crate::interned::{interned, interned_list};
 use crate::models::description::Effort;
 use crate::models::formula::{Columns, Dependencies, Footprint, Kernel, Scratch, Sizes};
 use crate::real::Real;

@@ -6,7 +6,6 @@
 
 mod columns;
 mod first;
-mod interned;
 mod kernel;
 mod nothing;
 mod surroundings;
@@ -21,12 +20,10 @@ use crate::formula::{
     Expression, FormulaProblem, Formulas, MOST_ROOTS, MeasuredCurve, NameRole, QuantityUnit, Scope, ScopeName, Units, nominal_name,
     nominal_of,
 };
+use crate::interned::interned;
 use crate::probability::Effect;
 use crate::units::Unit;
 use first::{FirstStage, NamedInputs};
-pub use interned::interned;
-#[cfg(feature = "gpu")]
-pub use interned::interned_list;
 use kernel::Extended;
 pub use nothing::nothing;
 use std::sync::Arc;
