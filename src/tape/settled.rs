@@ -76,7 +76,7 @@ impl SettledStages {
         let outputs: Vec<_> = outputs.iter().map(|&(node, _)| node).collect();
         let margins: Vec<_> = margins.iter().enumerate().map(|(number, &(node, _))| node.filter(|_| open.contains(number))).collect();
 
-        let mut passed = passed_on(&settled, &[&outputs[..], &margins].concat(), slow);
+        let passed = passed_on(&settled, &[&outputs[..], &margins].concat(), slow);
         if passed.len() > MOST_PASSED {
             return None;
         }
@@ -86,7 +86,7 @@ impl SettledStages {
         let fields = Fields { prepared: interned_list(&names), ..own };
         let first = List::cut(&settled, &passed.iter().copied().map(Some).chain(is_none.then_some(None)).collect::<Vec<_>>());
         let mut second = settled;
-        for (number, node) in passed.drain(..).enumerate() {
+        for (number, node) in passed.into_iter().enumerate() {
             let input = u16::try_from(own.inputs.len() + number).expect("there are few");
             second.operations[node as usize] = Operation::Input(input);
         }
