@@ -139,7 +139,7 @@ resultant_force_N = "min"
 
 
 def on_device(folder):
-    """Processor seconds of the designs that the larger study has more, of either way to write a model: start and end do not count."""
+    """Processor seconds of the larger study less those of the smaller one, so that start and end do not count, for both ways to write a model."""
     for model, (study, levels) in ON_DEVICE.items():
         names = (model, f"{model}-in-a-file.toml")
         used = {}

@@ -48,12 +48,11 @@ pub struct SettledStages {
     pub fields: Fields,
 }
 
-/// Most numbers that are passed on; a formula of which there are more is divided as it was written.
+/// Most numbers that the first stage may pass on. A formula that would need more is divided as it was written.
 const MOST_PASSED: usize = 200;
 
 impl SettledStages {
-    /// For a study: of each condition that is asked is told whether its margin must be greater than zero (else at least zero), and `slow`
-    /// are the inputs that change slowly.
+    /// As [`SettledStages::new`], for a study in which the inputs in `slow` change slowly.
     ///
     /// What depends on slow inputs alone is the first stage, unless the formula has loops or tables: then it is divided as it was written.
     pub fn divided(formula: &dyn Recordable, known: &[Known], wanted: Set, conditions: &[(usize, bool)], slow: Set) -> Self {
@@ -80,7 +79,7 @@ impl SettledStages {
         if passed.len() > MOST_PASSED {
             return None;
         }
-        // A structure has a field.
+        // A structure in WGSL has at least one field.
         let is_none = passed.is_empty();
         let names: Vec<_> = (0..passed.len().max(1)).map(|number| interned(&format!("k{number}"))).collect();
         let fields = Fields { prepared: interned_list(&names), ..own };
@@ -148,7 +147,7 @@ fn open(conditions: &[(usize, bool)], margins: &[(Option<Node>, Interval)]) -> S
 /// factors of two cost nothing.
 fn passed_on(recording: &Recording, results: &[Option<Node>], slow: Set) -> Vec<Node> {
     let list = List::cut(recording, results);
-    let inputs = list.dependencies(|input| Set::from_iter([usize::from(input)]));
+    let inputs = list.dependencies(|input| Set::one(input.into()));
     let is_passed = |node: Node| {
         let is_slow = (inputs[node as usize] - slow).is_empty() && !list.inner[node as usize];
         let operation = list.operations[node as usize];
