@@ -38,7 +38,8 @@ histograms = [{{ of = "max_stress_MPa", from = 0, to = 2000, bins = 20 }}]
 """
 # Seconds of a section on one core at 3 GHz if only the arithmetic of its equations took time: 2400 rows, a half bandwidth of 30, 16
 # harmonics (14 and two that fill the lanes), 2 (30^2/2 + 4 x 2 x 30) operations on f64 a row and harmonic, eight to a cycle (products and sums
-# in two vector units each). Bytes: the factors, 2400 x 36 x 4 x 8 = 2.8 MB, are written once and read once for four harmonics.
+# in two vector units each). Bytes: the factors, 2400 x 28 x 4 x 8 = 2.2 MB (a row reaches 24 others on average, and its panel has four), are
+# written once and read once for four harmonics.
 FLOOR_SECTION = 2400 * 16 * 2 * (30**2 / 2 + 4 * 2 * 30) / 8 / 3e9
 
 

@@ -15,8 +15,10 @@
 //! so that the stiffness is `K0 + k K1 + k^2 K2`. The factor pi (2 pi at k = 0) that the integral around the axis gives stands on
 //! both sides of the equations and is left out.
 
+use super::band::{Coupling, PARTS};
 use super::mesh::{Element, Mesh};
 use glam::DVec2;
+use std::sync::LazyLock;
 
 /// A node's shape function at a point: its value and its derivatives by z and by r.
 #[derive(Clone, Copy, Debug, Default)]
@@ -82,6 +84,10 @@ fn local_shapes(corners: usize, at: DVec2) -> [Shape; 8] {
     shapes
 }
 
+/// Shape functions at the points of integration.
+static SQUARE_SHAPES: LazyLock<[[Shape; 8]; 4]> = LazyLock::new(|| SQUARE.map(|(at, _)| local_shapes(4, at)));
+static TRIANGLE_SHAPES: LazyLock<[[Shape; 8]; 3]> = LazyLock::new(|| TRIANGLE.map(|(at, _)| local_shapes(3, at)));
+
 /// A point of integration in the section.
 #[derive(Clone, Copy, Debug)]
 pub struct IntegrationPoint {
@@ -96,8 +102,9 @@ pub struct IntegrationPoint {
 /// The points of integration of an element; an area that is not positive means a mesh that folds over.
 pub fn samples<'m>(mesh: &'m Mesh, element: &'m Element) -> impl Iterator<Item = IntegrationPoint> + 'm {
     let points: &[Gauss] = if element.corners() == 4 { &SQUARE } else { &TRIANGLE };
-    points.iter().map(|&(at, weight)| {
-        let mut shapes = local_shapes(element.corners(), at);
+    let known: &[[Shape; 8]] = if element.corners() == 4 { &*SQUARE_SHAPES } else { &*TRIANGLE_SHAPES };
+    points.iter().zip(known).map(|(&(_, weight), shapes)| {
+        let mut shapes = *shapes;
         let (mut dz, mut dr) = (DVec2::ZERO, DVec2::ZERO);
         let mut radius = 0.0;
         for (shape, &node) in shapes.iter().zip(element.nodes()) {
@@ -161,30 +168,96 @@ impl Lame {
     }
 }
 
-/// How two nodes of an element resist each other: rows of the first node's displacements (r, z, theta), columns of the second's, for
-/// the three powers of the harmonic.
-pub type Coupling = [[[f64; 3]; 3]; 3];
+/// Nodes whose couplings are computed together.
+const FOUR: usize = 4;
 
-/// Adds what one point of integration contributes to the coupling of two of its nodes.
-#[inline(always)]
-pub fn couple(coupling: &mut Coupling, Lame { lambda, mu }: Lame, i: &Shape, j: &Shape, radius: f64, weight: f64) {
+/// How the nodes of an element resist each other.
+#[derive(Clone, Debug, Default)]
+pub struct Couplings {
+    /// Ascending.
+    nodes: [u32; 8],
+    /// Of each node with four others at a time, each of the [`PARTS`].
+    values: [[[[f64; FOUR]; PARTS.len()]; 2]; 8],
+}
+
+impl Couplings {
+    /// Computes those of an element.
+    pub fn compute(&mut self, mesh: &Mesh, element: &Element, lame: Lame) {
+        let nodes = element.nodes();
+        // In the order of their numbers, so that the nodes before each are side by side.
+        let mut order: [usize; 8] = std::array::from_fn(|place| place);
+        order[..nodes.len()].sort_unstable_by_key(|&place| nodes[place]);
+        self.nodes = order.map(|place| nodes.get(place).copied().unwrap_or_default());
+        let mut points = [SortedPoint::default(); 4];
+        let mut count = 0;
+        for (point, sample) in points.iter_mut().zip(samples(mesh, element)) {
+            *point = SortedPoint::new(&sample, &order);
+            count += 1;
+        }
+        couple(&mut self.values, &points[..count], nodes.len(), lame);
+    }
+
+    /// The coupling of two nodes by their places in the order of their numbers, `j` no later than `i`: both nodes, and how they are coupled, in
+    /// rows of the first and columns of the second.
+    #[inline(always)]
+    pub fn pair(&self, i: usize, j: usize) -> (usize, usize, Coupling) {
+        (self.nodes[i] as usize, self.nodes[j] as usize, self.values[i][j / FOUR].map(|part| part[j % FOUR]))
+    }
+}
+
+/// A point of integration with the element's nodes in the order of their numbers.
+#[derive(Clone, Copy, Debug, Default)]
+struct SortedPoint {
+    weight: f64,
+    /// dN/dz.
+    z: [f64; 8],
+    /// dN/dr.
+    r: [f64; 8],
+    /// N/r.
+    n: [f64; 8],
+    /// Shear in the (r, theta) plane of a displacement around the axis: dN/dr - N/r.
+    q: [f64; 8],
+}
+
+impl SortedPoint {
+    fn new(sample: &IntegrationPoint, order: &[usize; 8]) -> Self {
+        let shapes = order.map(|place| sample.shapes[place]);
+        let (r, n) = (shapes.map(|shape| shape.slope.y), shapes.map(|shape| shape.value / sample.radius));
+        let q = std::array::from_fn(|node| r[node] - n[node]);
+        Self { weight: sample.area * sample.radius, z: shapes.map(|shape| shape.slope.x), r, n, q }
+    }
+}
+
+/// Adds up what the points of integration contribute to the couplings of each node with those before it.
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+fn couple(values: &mut [[[[f64; FOUR]; PARTS.len()]; 2]; 8], points: &[SortedPoint], nodes: usize, Lame { lambda, mu }: Lame) {
     let stiff = lambda + 2.0 * mu;
-    let (iz, ir, jz, jr) = (i.slope.x, i.slope.y, j.slope.x, j.slope.y);
-    let (ni, nj) = (i.value / radius, j.value / radius);
-    // Shear in the (r, theta) plane of a displacement around the axis.
-    let (qi, qj) = (ir - ni, jr - nj);
-    let [k0, k1, k2] = coupling;
-    k0[0][0] += weight * (stiff * (ir * jr + ni * nj) + lambda * (ir * nj + ni * jr) + mu * iz * jz);
-    k0[0][1] += weight * (lambda * (ir + ni) * jz + mu * iz * jr);
-    k0[1][0] += weight * (lambda * iz * (jr + nj) + mu * ir * jz);
-    k0[1][1] += weight * (stiff * iz * jz + mu * ir * jr);
-    k0[2][2] += weight * mu * (qi * qj + iz * jz);
-    k1[0][2] += weight * ((lambda * ir + stiff * ni) * nj - mu * ni * qj);
-    k1[1][2] += weight * (lambda * iz * nj - mu * ni * jz);
-    k1[2][0] += weight * ((lambda * jr + stiff * nj) * ni - mu * nj * qi);
-    k1[2][1] += weight * (lambda * jz * ni - mu * nj * iz);
-    let product = weight * ni * nj;
-    k2[0][0] += mu * product;
-    k2[1][1] += mu * product;
-    k2[2][2] += stiff * product;
+    for (i, values) in values.iter_mut().enumerate().take(nodes) {
+        for (group, values) in values.iter_mut().enumerate().take(i / FOUR + 1) {
+            let mut sums = [[0.0; FOUR]; PARTS.len()];
+            for point in points {
+                let weight = point.weight;
+                let (iz, ir, ni, qi) = (point.z[i], point.r[i], point.n[i], point.q[i]);
+                let four = |of: &[f64; 8]| [of[group * FOUR], of[group * FOUR + 1], of[group * FOUR + 2], of[group * FOUR + 3]];
+                let (z, r, n, q) = (four(&point.z), four(&point.r), four(&point.n), four(&point.q));
+                for j in 0..FOUR {
+                    let (jz, jr, nj, qj) = (z[j], r[j], n[j], q[j]);
+                    sums[0][j] += weight * (stiff * (ir * jr + ni * nj) + lambda * (ir * nj + ni * jr) + mu * iz * jz);
+                    sums[1][j] += weight * (lambda * (ir + ni) * jz + mu * iz * jr);
+                    sums[2][j] += weight * (lambda * iz * (jr + nj) + mu * ir * jz);
+                    sums[3][j] += weight * (stiff * iz * jz + mu * ir * jr);
+                    sums[4][j] += weight * mu * (qi * qj + iz * jz);
+                    sums[5][j] += weight * ((lambda * ir + stiff * ni) * nj - mu * ni * qj);
+                    sums[6][j] += weight * (lambda * iz * nj - mu * ni * jz);
+                    sums[7][j] += weight * ((lambda * jr + stiff * nj) * ni - mu * nj * qi);
+                    sums[8][j] += weight * (lambda * jz * ni - mu * nj * iz);
+                    let product = weight * ni * nj;
+                    sums[9][j] += mu * product;
+                    sums[10][j] += mu * product;
+                    sums[11][j] += stiff * product;
+                }
+            }
+            *values = sums;
+        }
+    }
 }

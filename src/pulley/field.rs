@@ -71,15 +71,15 @@ impl UnitDisplacements {
         let solved = solved_orders(fineness, bolts);
         solve(mesh, dimensions, poisson, &solved, |answer| {
             for (lane, &order) in answer.orders.iter().enumerate().take(answer.count) {
-                for side in 0..answer.sides {
+                for (side, values) in answer.sides.iter().enumerate() {
                     let place = match side {
                         CLAMP_SIDE if order.is_multiple_of(bolts) => &mut clamp[order / bolts * row..][..row],
                         SPIN_SIDE if order == 0 => &mut spin[..],
                         CLAMP_SIDE | SPIN_SIDE => continue,
                         load => &mut belt[(order * BELT + load) * row..][..row],
                     };
-                    for (freedom, place) in place.iter_mut().enumerate() {
-                        *place = answer.values[freedom * answer.sides + side][lane];
+                    for (place, value) in place.iter_mut().zip(*values) {
+                        *place = value[lane];
                     }
                 }
             }

@@ -28,5 +28,6 @@ pub mod surface;
 #[cfg(test)]
 mod tests;
 pub mod turn;
+pub mod wide;
 
 pub use design::Design;

@@ -8,10 +8,10 @@
 //! s_ss = E/(1-nu^2) (e_ss + nu e_tt) + nu/(1-nu) s_nn, s_tt alike, tau_st = G g_st
 //! ```
 
-use super::band::{WIDTH, Wide};
 use super::equations::Displacements;
 use super::loads::EdgePoint;
 use super::mesh::{Face, Mesh, MeshEdge};
+use super::wide::{WIDTH, Wide};
 use glam::DVec2;
 
 /// Stresses kept of a surface point: along the section and around, both less the normal stress, and the shear between them.
@@ -117,22 +117,13 @@ impl SurfacePoint {
     /// Stresses under one unit load in four harmonics, for a modulus of 1 MPa. `normal` is the stress normal to the surface that the
     /// load makes there, MPa; a pressure is negative.
     pub fn stresses(&self, answer: &Displacements<'_>, side: usize, poisson: f64, normal: f64) -> [Wide; STRESSES] {
-        let (mut along, mut around, mut shear) = ([0.0; WIDTH], [0.0; WIDTH], [0.0; WIDTH]);
-        let [a, b, c, d] = answer.orders;
-        let order = [a as f64, b as f64, c as f64, d as f64];
-        for stencil in &self.stencils {
-            let [ur, uz, ut] = answer.of(stencil.node, side);
-            for lane in 0..WIDTH {
-                along[lane] += stencil.along[0] * ur[lane] + stencil.along[1] * uz[lane];
-                around[lane] += stencil.around * (ur[lane] + order[lane] * ut[lane]);
-                shear[lane] += stencil.shear * ut[lane] - order[lane] * (stencil.lean[0] * ur[lane] + stencil.lean[1] * uz[lane]);
-            }
-        }
+        let order = Wide(answer.orders.map(|order| order as f64));
+        let [along, around, shear] = strains(&self.stencils, answer.sides[side].as_chunks().0, &order);
         // Plane stress; a stress normal to the surface adds its share to both.
         let share = (poisson / (1.0 - poisson) - 1.0) * normal;
         let plane = 1.0 / (1.0 - poisson * poisson);
         let twist = 0.5 / (1.0 + poisson);
-        let mut stresses = [[0.0; WIDTH]; STRESSES];
+        let mut stresses = [Wide::ZERO; STRESSES];
         for lane in 0..WIDTH {
             stresses[0][lane] = plane * (along[lane] + poisson * around[lane]) + share;
             stresses[1][lane] = plane * (around[lane] + poisson * along[lane]) + share;
@@ -140,4 +131,19 @@ impl SurfacePoint {
         }
         stresses
     }
+}
+
+/// Strains along the section and around, and the shear between them, of displacements (r, z, theta) of the nodes.
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+fn strains(stencils: &[Stencil], displacements: &[[Wide; 3]], order: &Wide) -> [Wide; 3] {
+    let (mut along, mut around, mut shear) = (Wide::ZERO, Wide::ZERO, Wide::ZERO);
+    for stencil in stencils {
+        let [ur, uz, ut] = &displacements[stencil.node as usize];
+        for lane in 0..WIDTH {
+            along[lane] += stencil.along[0] * ur[lane] + stencil.along[1] * uz[lane];
+            around[lane] += stencil.around * (ur[lane] + order[lane] * ut[lane]);
+            shear[lane] += stencil.shear * ut[lane] - order[lane] * (stencil.lean[0] * ur[lane] + stencil.lean[1] * uz[lane]);
+        }
+    }
+    [along, around, shear]
 }

@@ -5,7 +5,6 @@
 //! surface, and the rim's displacement like the stresses of one more point. It is a flat table, [`View`], for an elastic modulus of 1 MPa:
 //! stresses do not depend on it, and displacements are divided by it.
 
-use super::band::WIDTH;
 use super::element::samples;
 use super::equations::{Displacements, Equations};
 use super::loads::{Seat, belt_patterns, spin};
@@ -14,6 +13,7 @@ pub use super::recovery::{STRESSES, points_of_edges};
 use super::recovery::{SurfacePoint, surface_points};
 use super::section::{Dimensions, Fineness, SectionKind};
 use super::spline;
+use super::wide::{WIDTH, Wide};
 use std::f64::consts::PI;
 
 /// Unit loads of the belt: normal to the flanks, along them, around the circumference.
@@ -196,17 +196,17 @@ pub fn solve(mesh: &Mesh, dimensions: &Dimensions, poisson: f64, orders: &[usize
         let lanes: [usize; WIDTH] = std::array::from_fn(|lane| batch[lane.min(batch.len() - 1)]);
         let (spins, clamps) = (lanes[0] == 0, lanes[0].is_multiple_of(bolts));
         let sides = BELT + usize::from(clamps) + usize::from(spins);
-        let values = equations.loads(sides);
+        let mut values = equations.loads(sides);
         for (side, pattern) in patterns.iter().enumerate() {
             for (place, &load) in pattern.iter().enumerate().filter(|(_, load)| **load != 0.0) {
-                values[place * sides + side] = [load; WIDTH];
+                values[side][place] = Wide([load; WIDTH]);
             }
         }
         for (lane, &order) in lanes.iter().enumerate().filter(|(_, order)| clamps && order.is_multiple_of(bolts)) {
-            seat.load(dimensions, order, |place, load| values[place * sides + CLAMP_SIDE][lane] += load);
+            seat.load(dimensions, order, |place, load| values[CLAMP_SIDE][place][lane] += load);
         }
         if spins {
-            spin(mesh, |place, load| values[place * sides + SPIN_SIDE][0] += load);
+            spin(mesh, |place, load| values[SPIN_SIDE][place][0] += load);
         }
         take(&equations.solve(lanes, batch.len()));
     }
@@ -258,7 +258,7 @@ pub fn respond(mesh: &Mesh, kind: SectionKind, dimensions: &Dimensions, poisson:
     }
     let solved = solved_orders(fineness, bolts);
     solve(mesh, dimensions, poisson, &solved, |answer| {
-        for side in 0..answer.sides {
+        for side in 0..answer.sides.len() {
             for (number, point) in points.iter().enumerate() {
                 let stresses = point.stresses(answer, side, poisson, normal_stress(point, side, mesh));
                 for lane in 0..answer.count {

@@ -7,11 +7,37 @@ pub fn fill_between(solved: &[usize], orders: usize, block: usize, table: &mut [
     for order in (0..orders).filter(|order| !solved.contains(order)) {
         let (before, rest) = table.split_at_mut(order * block);
         let (own, after) = rest.split_at_mut(block);
-        for (&knot, &weight) in solved.iter().zip(&weights[order]).filter(|(_, weight)| **weight != 0.0) {
-            let from = if knot < order { &before[knot * block..][..block] } else { &after[(knot - order - 1) * block..][..block] };
-            for (own, from) in own.iter_mut().zip(from) {
-                *own += weight * from;
+        let knots = solved.iter().zip(&weights[order]).filter(|(_, weight)| **weight != 0.0);
+        let knots: Vec<(&[f64], f64)> = knots
+            .map(|(&knot, &weight)| match knot < order {
+                true => (&before[knot * block..][..block], weight),
+                false => (&after[(knot - order - 1) * block..][..block], weight),
+            })
+            .collect();
+        add_up(own, &knots);
+    }
+}
+
+/// Adds columns times their weights.
+#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+fn add_up(own: &mut [f64], columns: &[(&[f64], f64)]) {
+    /// Numbers whose sums stay in registers.
+    const TILE: usize = 16;
+    let (tiles, rest) = own.as_chunks_mut::<TILE>();
+    let whole = tiles.len() * TILE;
+    for (number, tile) in tiles.iter_mut().enumerate() {
+        let mut sums = *tile;
+        for (column, weight) in columns {
+            let column = &column[number * TILE..][..TILE];
+            for place in 0..TILE {
+                sums[place] += weight * column[place];
             }
+        }
+        *tile = sums;
+    }
+    for (column, weight) in columns {
+        for (sum, value) in rest.iter_mut().zip(&column[whole..]) {
+            *sum += weight * value;
         }
     }
 }

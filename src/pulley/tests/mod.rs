@@ -6,11 +6,11 @@ mod properties;
 mod rings;
 mod series;
 
-use super::band::Wide;
 use super::fixtures::sections;
 use super::loads::EdgePoint;
 use super::mesh::{Element, Face, Mesh, MeshEdge};
 use super::section::{Dimensions, Fineness};
+use super::wide::{WIDTH, Wide};
 use glam::DVec2;
 
 /// Young's modulus of the cases, MPa.
@@ -96,9 +96,9 @@ fn tractions(mesh: &Mesh, traction: impl Fn(Face, &EdgePoint) -> [f64; 3]) -> Ve
 }
 
 /// Writes loads into one right side of all harmonics.
-fn set(values: &mut [Wide], sides: usize, side: usize, loads: &[f64]) {
-    for (place, &load) in loads.iter().enumerate() {
-        values[place * sides + side] = [load; super::band::WIDTH];
+fn set(values: &mut [Wide], loads: &[f64]) {
+    for (value, &load) in values.iter_mut().zip(loads) {
+        *value = Wide([load; WIDTH]);
     }
 }
 

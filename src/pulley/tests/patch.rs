@@ -1,12 +1,12 @@
 //! Patch tests: fields of constant stress on skewed meshes.
 
 use super::{CellDivision, POISSON, grid, node, set, tractions};
-use crate::pulley::band::WIDTH;
 use crate::pulley::element::Lame;
 use crate::pulley::equations::{Equations, stiffness};
 use crate::pulley::loads::EdgePoint;
 use crate::pulley::mesh::Mesh;
 use crate::pulley::recovery::surface_points;
+use crate::pulley::wide::WIDTH;
 use glam::DVec2;
 
 /// A displacement field linear in z and r, and its constant strains (e_rr, e_zz, e_tt, g_rz, g_rt, g_zt).
@@ -77,7 +77,7 @@ fn loaded(mesh: &Mesh, field: &PatchField) -> (Equations, [u32; 2]) {
         _ => {}
     }
     let mut equations = Equations::new(mesh, POISSON, fixed);
-    set(equations.loads(3), 3, 0, &tractions(mesh, |_, point| field.traction(point)));
+    set(equations.loads(3)[0], &tractions(mesh, |_, point| field.traction(point)));
     (equations, ends)
 }
 
@@ -113,8 +113,8 @@ fn a_skewed_patch_under_its_tractions_has_the_linear_field() {
                 let place = mesh.nodes[number as usize];
                 let [r, z, theta] = at(number);
                 let expected = [r - shift - tilt * place.x, z - axial + tilt * place.y, theta + shift + tilt * place.x];
-                for (found, expected) in answer.of(number, 0).into_iter().zip(expected) {
-                    for found in found {
+                for (found, expected) in answer.of(number, 0).iter().zip(expected) {
+                    for found in found.0 {
                         assert!((found - expected).abs() < 1e-10, "{division:?}, {}, {place}: {found} {expected}", field.name);
                     }
                 }

@@ -1,11 +1,11 @@
 //! Cylinders, discs and rings with exact solutions. Numbers of the cases for a modulus of 206 GPa and a Poisson's ratio of 0.29.
 
 use super::{CellDivision, MODULUS, POISSON, close, grid, node, set, tractions};
-use crate::pulley::band::{WIDTH, Wide};
 use crate::pulley::equations::Equations;
 use crate::pulley::loads::spin;
 use crate::pulley::mesh::{Face, Mesh};
 use crate::pulley::recovery::surface_points;
+use crate::pulley::wide::{WIDTH, Wide};
 use glam::DVec2;
 
 /// A ring of one element along the axis and `count` from radius a to b, whose lengths grow in proportion to the radius.
@@ -24,7 +24,7 @@ struct Answer {
 /// Solves a ring in four harmonics; `normal` is the stress normal to its inner and outer face, MPa.
 fn solve(mesh: &Mesh, fixed: impl Fn(&DVec2) -> [bool; 3], orders: [usize; WIDTH], loads: &[f64], normal: [f64; 2]) -> Answer {
     let mut equations = Equations::new(mesh, POISSON, mesh.nodes.iter().map(fixed).collect());
-    set(equations.loads(3), 3, 0, loads);
+    set(equations.loads(3)[0], loads);
     let answer = equations.solve(orders, WIDTH);
     let radii = mesh.nodes.iter().map(|node| node.y);
     let ends = [radii.clone().fold(f64::MAX, f64::min), radii.fold(0.0, f64::max)];
@@ -35,7 +35,7 @@ fn solve(mesh: &Mesh, fixed: impl Fn(&DVec2) -> [bool; 3], orders: [usize; WIDTH
         let point = points.iter().find(|point| point.node == faces[face]).expect("the surface is all around");
         point.stresses(&answer, 0, POISSON, normal[face])[1]
     };
-    Answer { radial: faces.map(|face| answer.of(face, 0)[0].map(|value| value / MODULUS)), around: [around(0), around(1)] }
+    Answer { radial: faces.map(|face| Wide(answer.of(face, 0)[0].0.map(|value| value / MODULUS))), around: [around(0), around(1)] }
 }
 
 /// Plane strain, no torsion.
@@ -181,7 +181,7 @@ fn a_long_cylinder_loaded_at_its_edge_is_a_beam_on_elastic_foundation() {
     let loads = tractions(&mesh, |face, point| if face == Face::Seat { [radius / (thickness * point.at.y), 0.0, 0.0] } else { [0.0; 3] });
     let fixed = mesh.nodes.iter().map(|node| [false, node.x == length, true]).collect();
     let mut equations = Equations::new(&mesh, POISSON, fixed);
-    set(equations.loads(3), 3, 0, &loads);
+    set(equations.loads(3)[0], &loads);
     let answer = equations.solve([0; WIDTH], WIDTH);
     let edge = answer.of(node(&mesh, 0.0, radius), 0)[0][0] / MODULUS;
     let stiffness = MODULUS * thickness.powi(3) / (12.0 * (1.0 - POISSON * POISSON));

@@ -1,0 +1,179 @@
+//! Symmetric banded equations for several harmonics at once: Cholesky factors and solutions, a harmonic per lane.
+//!
+//! Every lane does the same operations in the same order on every machine (no contraction, no reordering), so a solution has the
+//! same bits whatever instructions the CPU has.
+
+mod panels;
+
+use super::wide::{WIDTH, Wide};
+use panels::{Harmonics, PANEL, Panels, solve};
+
+/// How two nodes resist each other: the numbers that are not zero, in the order of [`PARTS`].
+pub type Coupling = [f64; PARTS.len()];
+
+/// Where the numbers of a [`Coupling`] stand: row and column among the displacements (r, z, theta) of the two nodes, and the power of the
+/// harmonic. What is symmetric around the axis couples r and z with theta by the first power only, everything else by the others.
+pub const PARTS: [(usize, usize, usize); 12] =
+    [(0, 0, 0), (0, 1, 0), (1, 0, 0), (1, 1, 0), (2, 2, 0), (0, 2, 1), (1, 2, 1), (2, 0, 1), (2, 1, 1), (0, 0, 2), (1, 1, 2), (2, 2, 2)];
+
+/// Symmetric banded matrices `K0 + k K1 + k^2 K2`, of which the diagonal and the band below it are kept, node by node.
+#[derive(Clone, Debug)]
+pub struct Matrices {
+    nodes: usize,
+    half: usize,
+    /// Per node, its coupling with itself and `half` nodes after it: rows are theirs, columns its own.
+    couplings: Vec<Coupling>,
+    /// Per column, one more than the last row with an entry.
+    reach: Vec<usize>,
+}
+
+impl Matrices {
+    /// Zero matrices of so many nodes, of which each may be coupled with `half` nodes after it; they reuse the memory of `couplings`.
+    pub fn reusing(mut couplings: Vec<Coupling>, nodes: usize, half: usize) -> Self {
+        couplings.clear();
+        couplings.resize(nodes * (half + 1), [0.0; PARTS.len()]);
+        Self { nodes, half, couplings, reach: (1..=3 * nodes).collect() }
+    }
+
+    /// Returns the couplings, so that other matrices can reuse their memory.
+    pub fn take_couplings(&mut self) -> Vec<Coupling> {
+        std::mem::take(&mut self.couplings)
+    }
+
+    /// The coupling of a node with itself or one before it. Of a node with itself, what stands above the diagonal is not read.
+    /// [`reaches`](Self::reaches) must be told of what is entered.
+    #[inline(always)]
+    pub fn coupling(&mut self, row_node: usize, column_node: usize) -> &mut Coupling {
+        &mut self.couplings[column_node * (self.half + 1) + (row_node - column_node)]
+    }
+
+    /// A column has entries down to a row.
+    pub fn reaches(&mut self, column: usize, row: usize) {
+        self.reach[column] = self.reach[column].max(row + 1);
+    }
+
+    /// Rows of the matrix: three of each node.
+    fn size(&self) -> usize {
+        3 * self.nodes
+    }
+
+    /// Rows, rounded up to whole panels: right sides have as many.
+    pub fn rows(&self) -> usize {
+        self.size().next_multiple_of(PANEL)
+    }
+
+    /// The panels of the factors; later columns may fill what an earlier one affects.
+    fn panels(&self) -> Panels {
+        let mut last = 0;
+        Panels::new((0..self.rows()).step_by(PANEL).map(|first| {
+            let own = self.reach[first..self.size().min(first + PANEL)].iter().max().copied().unwrap_or(0);
+            last = own.max(last).max(first + PANEL);
+            last - first
+        }))
+    }
+}
+
+/// Memory for the factors of four harmonics, reused from one solution to the next.
+#[derive(Clone, Debug, Default)]
+pub struct Factors {
+    entries: Vec<Wide>,
+}
+
+impl Factors {
+    /// Replaces right sides, which follow each other in `sides`, by the solutions in four harmonics.
+    ///
+    /// The matrices must be positive definite; others give numbers that are not finite.
+    pub fn solve(&mut self, matrices: &Matrices, orders: [usize; WIDTH], sides: &mut [Wide], count: usize) {
+        assert_eq!(sides.len(), matrices.rows() * count, "one number per row and right side");
+        let panels = matrices.panels();
+        // Whatever a larger matrix has left is overwritten.
+        self.entries.resize(self.entries.len().max(panels.length()), Wide::ZERO);
+        let factors = &mut self.entries[..panels.length()];
+        let orders = Wide(orders.map(|order| order as f64));
+        let harmonics = Harmonics { couplings: &matrices.couplings, nodes: matrices.nodes, half: matrices.half, orders };
+        match count {
+            3 => solve::<3>(&harmonics, &panels, factors, columns(sides)),
+            4 => solve::<4>(&harmonics, &panels, factors, columns(sides)),
+            5 => solve::<5>(&harmonics, &panels, factors, columns(sides)),
+            _ => unreachable!("a section has three to five right sides"),
+        }
+    }
+}
+
+/// Right sides that follow each other.
+fn columns<const COUNT: usize>(sides: &mut [Wide]) -> [&mut [Wide]; COUNT] {
+    let mut columns = sides.chunks_exact_mut(sides.len() / COUNT);
+    std::array::from_fn(|_| columns.next().unwrap_or_default())
+}
+
+#[cfg(test)]
+impl Matrices {
+    /// Product with a vector in one harmonic.
+    pub fn times(&self, order: usize, vector: &[f64]) -> Vec<f64> {
+        let mut product = vec![0.0; self.size()];
+        for column_node in 0..self.nodes {
+            for row_node in column_node..self.nodes.min(column_node + self.half + 1) {
+                let coupling = &self.couplings[column_node * (self.half + 1) + (row_node - column_node)];
+                for ((a, b, power), part) in PARTS.into_iter().zip(coupling) {
+                    let (row, column, entry) = (3 * row_node + a, 3 * column_node + b, part * (order as f64).powi(power as i32));
+                    if row >= column {
+                        product[row] += entry * vector[column];
+                    }
+                    if row > column {
+                        product[column] += entry * vector[row];
+                    }
+                }
+            }
+        }
+        product
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn solutions_satisfy_the_equations_of_every_harmonic() {
+        // The rows fill no whole number of panels, and nodes that are far apart are coupled at one place only.
+        let (nodes, half) = (7, 3);
+        let orders = [0, 1, 3, 8];
+        let part = |row: usize, column: usize, power: usize| match (row.abs_diff(column), power) {
+            (0, 0) => 10.0 + (row % 3) as f64,
+            (0, 2) => 1.0,
+            (far, _) => 0.3 / (far + power + 1) as f64 - if (row + column).is_multiple_of(2) { 0.1 } else { 0.0 },
+        };
+        let mut matrices = Matrices::reusing(Vec::new(), nodes, half);
+        for column_node in 0..nodes {
+            for row_node in (column_node..nodes).filter(|row_node| row_node - column_node < half || (*row_node, column_node) == (5, 2)) {
+                for ((a, b, power), entry) in PARTS.into_iter().zip(matrices.coupling(row_node, column_node)) {
+                    *entry = part(3 * row_node + a, 3 * column_node + b, power);
+                }
+                (0..3).for_each(|axis| matrices.reaches(3 * column_node + axis, 3 * row_node + 2));
+            }
+        }
+        let wanted = |row: usize, side: usize, lane: usize| (row as f64 - 3.0 * side as f64) * (1.0 + lane as f64);
+        let (size, rows) = (3 * nodes, matrices.rows());
+        let mut factors = Factors::default();
+        for count in 3..=5 {
+            let mut sides = vec![Wide::ZERO; rows * count];
+            for side in 0..count {
+                for (lane, &order) in orders.iter().enumerate() {
+                    let solution: Vec<f64> = (0..size).map(|row| wanted(row, side, lane)).collect();
+                    for (row, load) in matrices.times(order, &solution).into_iter().enumerate() {
+                        sides[side * rows + row][lane] = load;
+                    }
+                }
+            }
+            factors.solve(&matrices, orders, &mut sides, count);
+            for row in 0..size {
+                for side in 0..count {
+                    for (lane, found) in sides[side * rows + row].0.into_iter().enumerate() {
+                        let error = (found - wanted(row, side, lane)).abs();
+                        assert!(error < 1e-10, "row {row} side {side} lane {lane}: {error}");
+                    }
+                }
+            }
+        }
+    }
+}
