@@ -323,12 +323,10 @@ impl<'p> FrontSearch<'p> {
                 }
                 engine.screen_rows(part.rows, part.places, &chosen, |block| self.reduction.absorb(&mut own, block));
             }
-            own.into_fresh()
+            own
         });
         self.go_on()?;
-        let mut merged = self.reduction.start_after(seen);
-        found.into_iter().for_each(|state| merged.merge(state));
-        Ok(merged.front.points().clone())
+        Ok(self.reduction.front_together(found))
     }
 
     /// The front of at most so many designs of a coarser grid in a working set.

@@ -125,14 +125,12 @@ impl WorstTable {
                     }
                 }
             }
-            own.into_fresh()
+            own
         });
         if stop.load(Ordering::Relaxed) {
             return None;
         }
-        let mut merged = reduction.start();
-        found.into_iter().for_each(|state| merged.merge(state));
-        Some(merged.front.points().clone())
+        Some(reduction.front_together(found))
     }
 }
 

@@ -96,6 +96,11 @@ impl Reduction {
         }
     }
 
+    /// The front of what several reducers have seen, each of other designs.
+    pub fn front_together(&self, reducers: Vec<Reducers>) -> Points {
+        front::together(reducers.into_iter().map(|it| it.front).collect())
+    }
+
     /// Takes in a block.
     pub fn absorb(&self, reducers: &mut Reducers, block: &Block<'_>) {
         reducers.feasible += block.feasible_count;

@@ -7,8 +7,10 @@
 
 mod filter;
 mod rays;
+mod together;
 
 pub use crate::keys::{KeyRule, Points};
+pub use together::together;
 
 use super::dominance::{Dominance, beats};
 use crate::screen::Block;

@@ -86,7 +86,23 @@ fn the_front_is_the_brute_force_one_whatever_the_order_and_the_split() {
         merged.merge(part.into_fresh());
         assert_eq!(sorted(merged.points()), expected, "{dimensions} objectives, two parts");
         assert_eq!(merged.points(), whole.points());
+
+        // Threads that start after the same points, one of which meets nothing else; blocks overlap where both meet a known design again.
+        let known = points_of(&rules, &blocks[..5], &objectives);
+        let parts = [&blocks[..9], &blocks[9..], &[]].map(|part| {
+            let mut own = Front::seeded(&rules, known.clone());
+            part.iter().for_each(|block| own.absorb(&block.block(), &objectives));
+            own
+        });
+        assert_eq!(&together(Vec::from(parts)), whole.points(), "{dimensions} objectives, three threads");
     }
+}
+
+/// The front of a few blocks.
+fn points_of(rules: &[KeyRule], blocks: &[Owned], objectives: &[usize]) -> Points {
+    let mut front = Front::new(rules);
+    blocks.iter().for_each(|block| front.absorb(&block.block(), objectives));
+    front.points().clone()
 }
 
 #[test]
