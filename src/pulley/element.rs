@@ -171,7 +171,7 @@ impl Lame {
 /// Nodes whose couplings are computed together.
 const FOUR: usize = 4;
 
-/// How the nodes of an element resist each other.
+/// How each two nodes of an element resist each other.
 #[derive(Clone, Debug, Default)]
 pub struct Couplings {
     /// Ascending.

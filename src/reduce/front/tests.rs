@@ -87,7 +87,7 @@ fn the_front_is_the_brute_force_one_whatever_the_order_and_the_split() {
         assert_eq!(sorted(merged.points()), expected, "{dimensions} objectives, two parts");
         assert_eq!(merged.points(), whole.points());
 
-        // Threads that start after the same points, one of which meets nothing else; blocks overlap where both meet a known design again.
+        // Three threads that start with the same points: the first meets these designs again, the last meets none.
         let known = points_of(&rules, &blocks[..5], &objectives);
         let parts = [&blocks[..9], &blocks[9..], &[]].map(|part| {
             let mut own = Front::seeded(&rules, known.clone());

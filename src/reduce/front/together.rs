@@ -3,11 +3,10 @@
 use super::{Front, Points};
 use crate::parallel::on_threads;
 
-/// The points of several fronts under the same objectives that no point of another one beats, sorted as a front keeps its own. They may have
-/// points in common, such as those with which they started.
+/// The front of what several fronts under the same objectives have seen: the points of each that no other front beats, sorted as a front sorts
+/// its own. Points that several have, such as those they started with, come once.
 ///
-/// Each front is held against the others on a thread of its own; a merge of one into the other would compare all points again, one after the
-/// other.
+/// Each front is compared with the others on a thread of its own. To merge one into another would compare all points again, on one thread.
 pub fn together(mut fronts: Vec<Front>) -> Points {
     on_threads(&mut fronts, Front::merge_waiting);
     let dimensions = fronts.first().map_or(0, |front| front.rules.len());
