@@ -154,19 +154,19 @@ fn eliminate([a, b, c, d]: [&mut [Wide]; PANEL], sides: &mut [&mut [Wide]], firs
     d[0].subtract(&dc, &dc);
     let id = invert(&mut d[0]);
     (a[1], a[2], a[3], b[1], b[2], c[1]) = (ba, ca, da, cb, db, dc);
-    let corner = Corner { ia, ib, ic, id, ba, ca, cb, da, db, dc };
+    let block = DiagonalBlock { ia, ib, ic, id, ba, ca, cb, da, db, dc };
     for (((a, b), c), d) in a[4..].iter_mut().zip(&mut b[3..]).zip(&mut c[2..]).zip(&mut d[1..]) {
-        corner.eliminate(a, b, c, d);
+        block.eliminate(a, b, c, d);
     }
     for side in sides {
         let [a, b, c, d] = &mut side[first..].as_chunks_mut::<PANEL>().0[0];
-        corner.eliminate(a, b, c, d);
+        block.eliminate(a, b, c, d);
     }
 }
 
 /// What a panel's columns have in its own rows: row and column, and the inverse of each diagonal.
 #[derive(Clone, Copy, Debug)]
-struct Corner {
+struct DiagonalBlock {
     ia: Wide,
     ba: Wide,
     ib: Wide,
@@ -179,7 +179,7 @@ struct Corner {
     id: Wide,
 }
 
-impl Corner {
+impl DiagonalBlock {
     /// Takes the earlier columns out of each later number of a row, or of a right side. In a closure, which the compiler does not inline into
     /// the code for wide vectors, sections take up to a third longer.
     #[inline(always)]
