@@ -4,6 +4,7 @@
 //! whole row ([row]), then run the inner loop over blocks of the fast design axes ([block]), scenario by scenario, until no design is left.
 
 mod block;
+mod ordered;
 mod row;
 
 pub(super) use row::{holds, row_value, worse_of};
@@ -11,14 +12,13 @@ pub(super) use row::{holds, row_value, worse_of};
 use super::Block;
 use super::decisive::Decisive;
 use super::kept_rows::KeptRows;
-use super::ordered::{OrderedNumbers, OrderedRow};
+use super::ordered::{OrderedNumbers, RowRun};
 use super::row_list::{RowList, RowNumbers};
 use super::rows_together::{BlockOfRows, RowsTogether};
 use super::spectrum::CaseSums;
 use super::tables::{BLOCK, FastBlock, Tables, lane_list};
 use crate::models::{Latest, Scratch, Set, Sizes};
 use crate::plan::Plan;
-use crate::reduce::{Reducers, Reduction};
 use crate::tape::LaneNumbers;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -85,6 +85,7 @@ pub struct CpuEngine<'p> {
     /// Designs of a row that are to be judged.
     ahead: u64,
     ordered_numbers: OrderedNumbers,
+    pub(super) row_run: RowRun,
 }
 
 impl<'p> CpuEngine<'p> {
@@ -154,6 +155,7 @@ impl<'p> CpuEngine<'p> {
             stop: None,
             chosen: Vec::new(),
             ordered_numbers: OrderedNumbers::default(),
+            row_run: RowRun::default(),
             ahead: 0,
             is_listed: false,
             last_row: None,
@@ -187,55 +189,6 @@ impl<'p> CpuEngine<'p> {
             }
         }
         position
-    }
-
-    /// Judges the designs at `positions` for reducers; returns what [`CpuEngine::screen`] does. Whole rows whose designs stand in one order
-    /// are judged at once where only the front is asked for.
-    pub fn screen_for(&mut self, positions: Range<u64>, reduction: &Reduction, reducers: &mut Reducers) -> u64 {
-        let width = self.plan.fast.count();
-        let mut position = positions.start;
-        self.ahead = width;
-        if reduction.is_front_only() && self.tables.ordered.is_some() {
-            let first = position.next_multiple_of(width);
-            let last = positions.end / width;
-            if first / width < last {
-                position = self.screen(position..first, |block| reduction.absorb(reducers, block));
-                while position >= first && position < last * width {
-                    if !self.enter_row(position / width) {
-                        return position;
-                    }
-                    let judged = if self.judge_ordered(reduction, reducers) {
-                        position + width
-                    } else {
-                        self.screen(position..position + width, |block| reduction.absorb(reducers, block))
-                    };
-                    if judged < position + width {
-                        return judged;
-                    }
-                    position = judged;
-                }
-            }
-        }
-        self.screen(position..positions.end, |block| reduction.absorb(reducers, block))
-    }
-
-    /// Judges the current row at once; false if that cannot be done.
-    fn judge_ordered(&mut self, reduction: &Reduction, reducers: &mut Reducers) -> bool {
-        let (Some(ordered), Some(list)) = (&self.tables.ordered, &self.tables.lanes) else { return false };
-        let Some((numbers, _)) = &self.numbers else { return false };
-        if !self.row_feasible {
-            return true;
-        }
-        let row = OrderedRow {
-            plan: self.plan,
-            list,
-            blocks: &self.tables.blocks,
-            row: self.row.expect("the row has been entered"),
-            row_index: self.row_index,
-            row_worst: &self.row_worst,
-            numbers: numbers.row(),
-        };
-        row.judge(ordered, &mut self.ordered_numbers, reduction, reducers)
     }
 
     /// Judges single designs, given by their sorted positions, and hands each block with a feasible design to `absorb`.

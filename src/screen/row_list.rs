@@ -1,5 +1,5 @@
 //! What is the same for all designs of a row, over all scenarios at once, and where these are few also over all rows of the innermost slow
-//! axis: the first stage, conditions and outputs of the row, and what the [inner loop](crate::tape::LaneList) reads of it.
+//! axis, or a stretch of it: the first stage, conditions and outputs of the row, and what the [inner loop](crate::tape::LaneList) reads of it.
 //!
 //! Operations that neither a scenario nor that axis sets are one number; the others are a column. From row to row only what depends on
 //! another input that has changed is computed again. The bits are those of the formula.
@@ -11,11 +11,14 @@ use crate::plan::Plan;
 use crate::space::SpaceDimension;
 use crate::tape::{CHUNK, ColumnValue, Node, NodeColumns, Operation, Set};
 use crate::tape::{LaneList, LaneNumbers};
+use std::ops::Range;
 
 /// Shorter columns would not pay; longer ones would fill the caches.
 const PLACES: std::ops::RangeInclusive<u64> = 8..=4 * CHUNK as u64;
 /// Most places where they are those of several rows: not all of these may be asked for.
 const MOST_OF_ROWS: u64 = 256;
+/// Most levels of an axis that goes in stretches: their values are kept.
+const MOST_LEVELS: u64 = 4096;
 /// Most operations, for the same reason.
 const MOST_OPERATIONS: usize = 1024;
 
@@ -33,8 +36,11 @@ pub(super) struct RowList {
     outputs: Vec<(usize, Node)>,
     /// Values of the inputs that differ within a column, in SI units, by input.
     column_inputs: Vec<(usize, Vec<f64>)>,
-    /// Rows of a column, by the levels of the innermost slow axis, and scenarios of a row.
+    /// Rows of a column, which are levels of the innermost slow axis next to each other, and scenarios of a row.
     rows: u64,
+    /// All levels of that axis, and the inputs that it sets.
+    levels: u64,
+    of_rows: Set,
     scenarios: u64,
     fast_scenarios: u64,
 }
@@ -50,7 +56,12 @@ impl RowList {
         let are_listed = (slow_settings.len() * fast_settings.len()) as u64 == scenarios;
         let innermost = plan.slow.dimensions().last().map(|(it, _)| it);
         let levels = innermost.map_or(1, SpaceDimension::count);
-        let rows = if scenarios.saturating_mul(levels) <= MOST_OF_ROWS { levels } else { 1 };
+        let rows = match scenarios.saturating_mul(levels) {
+            all if all <= MOST_OF_ROWS => levels,
+            // Long axes go in stretches, all of them of about the same length.
+            _ if scenarios == 1 && levels <= MOST_LEVELS => levels.div_ceil(levels.div_ceil(MOST_OF_ROWS)),
+            _ => 1,
+        };
         if !PLACES.contains(&(scenarios.saturating_mul(rows))) || !are_listed {
             return None;
         }
@@ -72,7 +83,8 @@ impl RowList {
         let results = formula.results();
         let of_scenarios = plan.slow_scenarios.inputs() | plan.fast_scenarios.inputs();
         let of_rows: Set = innermost.into_iter().flat_map(SpaceDimension::inputs).copied().collect();
-        let turning = plan.slow.inputs() - of_rows;
+        let stretches = if rows > 1 { levels.div_ceil(rows) } else { 1 };
+        let turning = if stretches > 1 { plan.slow.inputs() } else { plan.slow.inputs() - of_rows };
         let of_input = |input: usize| NumberReads { turning: Set::one(input) & turning, each: (of_scenarios | of_rows).contains(input) };
         let RowFormula { list, conditions, outputs, .. } = formula;
         let part = TurnedList::new(list, &results, |input| of_input(input.into()));
@@ -87,12 +99,14 @@ impl RowList {
             let of = |setting: &Setting| setting.iter().find(|(it, _, _)| *it == input).map(|(_, _, si)| *si);
             let value = |slow: &Setting, fast: &Setting| of(fast).or(of(slow)).expect("a scenario sets it");
             let values = || slow_settings.iter().flat_map(|slow| fast_settings.iter().map(move |fast| value(slow, fast)));
-            (input, (0..rows).flat_map(|_| values()).collect())
+            (input, (0..stretches * rows).flat_map(|_| values()).collect())
         });
         let row_inputs = innermost.into_iter().flat_map(|dimension| {
             dimension.inputs().iter().enumerate().map(move |(number, &input)| {
                 let value = move |level: u64| input_to_si(&plan.study.model.inputs[input], dimension.value(number, level));
-                (input, (0..rows).flat_map(|level| std::iter::repeat_n(value(level), scenarios as usize)).collect())
+                // The last stretch may be shorter than the others; what stands in its place is never asked for.
+                let levels = (0..stretches * rows).map(|level| level.min(levels - 1));
+                (input, levels.flat_map(|level| std::iter::repeat_n(value(level), scenarios as usize)).collect())
             })
         });
         Some(Self {
@@ -103,6 +117,8 @@ impl RowList {
             whole: part,
             lanes: of_lanes,
             rows,
+            levels: if rows > 1 { levels } else { 1 },
+            of_rows,
             scenarios,
             fast_scenarios: plan.fast_scenarios.count(),
         })
@@ -111,6 +127,18 @@ impl RowList {
     /// Are there numbers of several rows in a column?
     pub(super) fn has_rows(&self) -> bool {
         self.rows > 1
+    }
+
+    /// The rows whose numbers stand in the same columns as those of a row.
+    pub(super) fn rows_beside(&self, row: u64) -> Range<u64> {
+        let first = row - self.stretch(row).1;
+        first..(first + self.rows).min((row / self.levels + 1) * self.levels)
+    }
+
+    /// The stretch of the innermost axis that a row belongs to, and its place there.
+    fn stretch(&self, row: u64) -> (u64, u64) {
+        let level = row % self.levels;
+        (level / self.rows, level % self.rows)
     }
 
     /// Places of a column.
@@ -143,8 +171,9 @@ pub(super) struct RowNumbers {
     chunks: Vec<PlaceChunk>,
     /// Inputs of the row that they are of, in SI units; none before the first.
     inputs: Vec<f64>,
-    /// Which column it is, and the first place of the row there.
+    /// The first row of the column, which stretch of the innermost axis it is, and the first place of the current row there.
     column: Option<u64>,
+    stretch: u64,
     first: usize,
 }
 
@@ -161,30 +190,34 @@ impl RowNumbers {
             let (whole, lanes) = (room(&list.whole), list.lanes.as_ref().map(room));
             PlaceChunk { first, count, whole, lanes }
         };
-        Self { chunks: (0..list.places()).step_by(CHUNK).map(chunk).collect(), inputs: Vec::new(), column: None, first: 0 }
+        Self { chunks: (0..list.places()).step_by(CHUNK).map(chunk).collect(), inputs: Vec::new(), column: None, stretch: 0, first: 0 }
     }
 
     /// Are the numbers of a row among those that are there?
     pub(super) fn holds(&self, list: &RowList, row: u64) -> bool {
-        self.column == Some(row / list.rows)
+        self.column == Some(list.rows_beside(row).start)
     }
 
     /// Turns to a row with these inputs, in SI units.
     pub(super) fn turn(&mut self, list: &RowList, lane_list: Option<&LaneList>, row: u64, inputs: &[f64]) {
         // The innermost axis turns from row to row.
-        self.first = (row % list.rows * list.scenarios) as usize;
+        let (stretch, place) = list.stretch(row);
+        self.first = (place * list.scenarios) as usize;
         if self.holds(list, row) {
             return;
         }
-        self.column = Some(row / list.rows);
+        self.column = Some(list.rows_beside(row).start);
         let differs = |&input: &usize| self.inputs[input].to_bits() != inputs[input].to_bits();
-        let changed = (!self.inputs.is_empty()).then(|| (0..inputs.len()).filter(differs).collect());
+        let of_stretch = if stretch == self.stretch { Set::EMPTY } else { list.of_rows };
+        let changed = (!self.inputs.is_empty()).then(|| ((0..inputs.len()).filter(differs).collect::<Set>() - list.of_rows) | of_stretch);
+        self.stretch = stretch;
+        let before = (stretch * list.rows * list.scenarios) as usize;
         for PlaceChunk { first, count, whole, lanes } in &mut self.chunks {
             let model_input = |number: u16| {
                 let column = list.column_inputs.iter().find(|(input, _)| *input == usize::from(number));
                 column.map_or_else(
                     || ColumnValue::One(inputs[usize::from(number)]),
-                    |(_, it)| ColumnValue::Each(&it[*first..*first + *count]),
+                    |(_, it)| ColumnValue::Each(&it[before..][*first..*first + *count]),
                 )
             };
             list.whole.turn(whole, changed, model_input);
@@ -199,15 +232,19 @@ impl RowNumbers {
         self.inputs.extend(inputs);
     }
 
-    /// The chunk of a slow and a fast scenario, and its place there.
-    fn place(&self, list: &RowList, (slow, fast): (u64, u64)) -> (&PlaceChunk, usize) {
-        let place = self.first + (slow * list.fast_scenarios + fast) as usize;
-        (&self.chunks[place / CHUNK], place % CHUNK)
+    /// Where a slow and a fast scenario of the row stand.
+    fn place(&self, list: &RowList, (slow, fast): (u64, u64)) -> usize {
+        self.first + (slow * list.fast_scenarios + fast) as usize
     }
 
     /// Writes the condition margins and outputs of the row in a scenario.
     pub(super) fn recall(&self, list: &RowList, scenario: (u64, u64), margins: &mut [f64], outputs: &mut [f64]) {
-        let (chunk, at) = self.place(list, scenario);
+        self.recall_at(list, self.place(list, scenario), margins, outputs);
+    }
+
+    /// Writes the condition margins and outputs at a place of the column.
+    pub(super) fn recall_at(&self, list: &RowList, place: usize, margins: &mut [f64], outputs: &mut [f64]) {
+        let (chunk, at) = (&self.chunks[place / CHUNK], place % CHUNK);
         let number = |node: Node| list.whole.value(&chunk.whole, node).at(at);
         list.conditions.iter().for_each(|&(condition, node)| margins[condition] = number(node));
         list.outputs.iter().for_each(|&(output, node)| outputs[output] = number(node));
@@ -215,9 +252,24 @@ impl RowNumbers {
 
     /// Enters a scenario of the row: what the inner loop reads of it.
     pub(super) fn enter(&self, list: &RowList, scenario: (u64, u64), lanes: &LaneList, numbers: &mut LaneNumbers) {
-        let (chunk, at) = self.place(list, scenario);
+        let place = self.place(list, scenario);
+        let (chunk, at) = (&self.chunks[place / CHUNK], place % CHUNK);
         if let (Some(part), Some(of_chunk)) = (&list.lanes, &chunk.lanes) {
             numbers.enter(lanes, |node| part.value(of_chunk, node).at(at));
+        }
+    }
+
+    /// What the inner loop reads of an operation in all rows of the column, of which there are [several](RowList::has_rows).
+    pub(super) fn lane_column(&self, list: &RowList, node: Node) -> Option<ColumnValue<'_>> {
+        let [chunk] = &self.chunks[..] else { return None };
+        Some(list.lanes.as_ref()?.value(chunk.lanes.as_ref()?, node))
+    }
+
+    /// Calls `each` with every condition that a row decides and its margins in all rows of the column, of which there are
+    /// [several](RowList::has_rows), in the only scenario.
+    pub(super) fn conditions(&self, list: &RowList, mut each: impl FnMut(usize, ColumnValue<'_>)) {
+        for chunk in &self.chunks {
+            list.conditions.iter().for_each(|&(condition, node)| each(condition, list.whole.value(&chunk.whole, node)));
         }
     }
 }

@@ -5,11 +5,14 @@
 //! how steep a ray is beaten in the whole bin. The largest of these numbers in groups of bins finds those of a range where a ray is not.
 
 use super::filter::{BINS, BinTable};
+use std::ops::Range;
 
 /// What the edges of bins and the factors of rays may be off by, relative: far more than they are rounded by.
 const SLACK: f64 = 1e-9;
 /// Bins in a group.
-const GROUP: usize = 64;
+const GROUP: usize = 16;
+/// Bins that rays may be beaten in. Nothing is better than what belongs to the first two; the last has no upper edge.
+const INNER: Range<usize> = 2..BINS - 1;
 /// With more bins than this per magnitude of a coordinate, which bin it belongs to may be off by more than is allowed for.
 const MOST_BINS: f64 = 1e8;
 
@@ -18,11 +21,14 @@ const MOST_BINS: f64 = 1e8;
 pub(super) struct Rays {
     /// Is the first coordinate below zero, and does the second rise along a ray?
     is_steep: bool,
-    /// Of each bin, and the largest of each group.
+    /// Of each bin.
     least: Vec<f64>,
-    of_groups: Vec<f64>,
+    /// The largest of the [inner bins](INNER) of each group, of each two groups next to each other, each four and so on, by the first of them.
+    of_groups: Vec<Vec<f64>>,
     low: f64,
     scale: f64,
+    /// The second coordinate from which on what is in the last bin is surely beaten.
+    best_of_last: f64,
 }
 
 impl Rays {
@@ -31,7 +37,7 @@ impl Rays {
         let (low, scale) = table.line();
         let mut least = vec![f64::INFINITY; BINS];
         let is_sharp = scale > 0.0 && scale * low.abs() < MOST_BINS;
-        for bin in if is_sharp { 1..BINS - 1 } else { 0..0 } {
+        for bin in if is_sharp { INNER } else { 0..0 } {
             // The first coordinate is at most this, whichever way it was rounded.
             let edge = low + (bin as f64 - 0.5 + 1e-6) / scale;
             let edge = edge + SLACK * edge.abs();
@@ -39,8 +45,15 @@ impl Rays {
                 least[bin] = table.best(bin) / edge.abs();
             }
         }
-        let of_groups = least.chunks(GROUP).map(|group| group.iter().copied().fold(f64::NEG_INFINITY, f64::max)).collect();
-        Self { is_steep, least, of_groups, low, scale }
+        let largest =
+            |first: usize| least[first.max(INNER.start)..INNER.end.min(first + GROUP)].iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let of_groups: Vec<f64> = (0..BINS).step_by(GROUP).map(largest).collect();
+        let twice = |shorter: &Vec<f64>, apart: usize| shorter.iter().zip(shorter.iter().skip(apart)).map(|(a, b)| a.max(*b)).collect();
+        let mut of_groups = vec![of_groups];
+        while let Some(last) = of_groups.last().filter(|last| last.len() > 1 << (of_groups.len() - 1)) {
+            of_groups.push(twice(last, 1 << (of_groups.len() - 1)));
+        }
+        Self { is_steep, least, of_groups, low, scale, best_of_last: table.best(BINS - 1) }
     }
 
     /// Is it for rays of this kind?
@@ -53,11 +66,18 @@ impl Rays {
     pub(super) fn open(&self, factors: (f64, f64), (from, to): (f64, f64), mut each: impl FnMut(f64, f64)) {
         let steepness = factors.1 / factors.0.abs();
         let steepness = steepness - SLACK * steepness.abs();
+        if !steepness.is_finite() {
+            return each(from, to);
+        }
         let place = |y: f64| (factors.0 * y - self.low) * self.scale + 1.0;
         let bin = |place: f64| (place.clamp(0.0, (BINS - 1) as f64)) as usize;
         let (a, b) = (place(from), place(to));
         // One bin more on either side: places are rounded.
-        let (first, last) = (bin(a.min(b) - 1.0), bin(a.max(b) + 1.5));
+        let (first, mut last) = (bin(a.min(b) - 1.0), bin(a.max(b) + 1.5));
+        // The last bin has no upper edge, but there is a least number.
+        if self.is_steep && last == BINS - 1 && first < last && factors.1 * from * (1.0 - SLACK) >= self.best_of_last {
+            last -= 1;
+        }
         let mut bin = first;
         while let Some(open) = self.next_open(bin, last, steepness) {
             let mut end = open;
@@ -80,16 +100,28 @@ impl Rays {
 
     /// The first bin between two where rays of this steepness are not beaten.
     fn next_open(&self, from: usize, last: usize, steepness: f64) -> Option<usize> {
+        let inner = last.min(INNER.end - 1);
         let mut bin = from;
         while bin <= last {
-            let group = bin / GROUP;
-            if self.of_groups[group] > steepness {
-                let end = ((group + 1) * GROUP).min(last + 1);
+            if !INNER.contains(&bin) {
+                return Some(bin);
+            }
+            let mut group = bin / GROUP;
+            if self.of_groups[0][group] > steepness {
+                let end = ((group + 1) * GROUP).min(inner + 1);
                 if let Some(open) = self.least[bin..end].iter().position(|least| *least > steepness) {
                     return Some(bin + open);
                 }
+                bin = end;
+                continue;
             }
-            bin = (group + 1) * GROUP;
+            // On past groups that are all beaten, as many at a time as may be.
+            for (power, largest) in self.of_groups.iter().enumerate().rev() {
+                if group + (1 << power) <= inner / GROUP + 1 && largest[group] <= steepness {
+                    group += 1 << power;
+                }
+            }
+            bin = (group * GROUP).min(inner + 1);
         }
         None
     }
@@ -122,7 +154,8 @@ mod tests {
             let (mut kept, mut beaten) = (0, 0);
             for steepness in 0..60 {
                 let factors = (sign * 1.3, -sign * 1.3 * (0.8 + 0.01 * f64::from(steepness)));
-                let (from, to) = (0.5, 14_000.0);
+                // The least number of some rays is beaten beyond the last bin, of others it is not.
+                let (from, to) = (if steepness % 2 == 0 { 0.5 } else { 0.75 }, 14_000.0);
                 let mut open: Vec<(f64, f64)> = Vec::new();
                 rays.open(factors, (from, to), |low, high| open.push((low, high)));
                 for place in 0..20_000 {

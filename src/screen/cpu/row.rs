@@ -126,26 +126,10 @@ impl CpuEngine<'_> {
     fn judge_row_scenario(&mut self, prepared: Range<usize>) -> bool {
         let plan = self.plan;
         self.row_values(prepared);
-        if !plan.row_conditions.iter().all(|&number| holds(plan, number, self.row_margins[number])) {
+        if !judge_row_values(plan, &self.own, &self.row_margins, &self.row_outputs, &mut self.row_worst) {
             return false;
         }
         let value = |source| row_value(plan, source, &self.own, &self.row_outputs);
-        let constraints = plan.study.constraints.iter().zip(&plan.constraints);
-        if !constraints.filter(|(it, source)| source.is_row() && it.over.is_worst()).all(|(constraint, &source)| {
-            let value = value(source);
-            value.is_finite() && constraint.holds(value)
-        }) {
-            return false;
-        }
-        for ((tracked, source), worst) in plan.tracked.iter().zip(&mut self.row_worst) {
-            if source.is_row() && tracked.over.is_worst() {
-                let value = value(*source);
-                if !value.is_finite() {
-                    return false;
-                }
-                *worst = worse_of(tracked.worse, *worst, value);
-            }
-        }
         self.row_sums.judge_row(plan, self.scenario, value, &mut self.row_worst)
     }
 
@@ -225,6 +209,31 @@ impl CpuEngine<'_> {
 /// Does a condition hold? In f64 the answer is never unsure.
 pub(in crate::screen) fn holds(plan: &Plan, condition: usize, margin: f64) -> bool {
     models::holds(&plan.study.model, condition, margin, 0.0) == Decision::Yes
+}
+
+/// Conditions, constraints and worst values of a row, given its inputs, margins and outputs in a scenario; false if the whole row is out.
+pub(super) fn judge_row_values(plan: &Plan, own: &[f64], margins: &[f64], outputs: &[f64], worst: &mut [f64]) -> bool {
+    if !plan.row_conditions.iter().all(|&number| holds(plan, number, margins[number])) {
+        return false;
+    }
+    let value = |source| row_value(plan, source, own, outputs);
+    let constraints = plan.study.constraints.iter().zip(&plan.constraints);
+    if !constraints.filter(|(it, source)| source.is_row() && it.over.is_worst()).all(|(constraint, &source)| {
+        let value = value(source);
+        value.is_finite() && constraint.holds(value)
+    }) {
+        return false;
+    }
+    for ((tracked, source), worst) in plan.tracked.iter().zip(worst) {
+        if source.is_row() && tracked.over.is_worst() {
+            let value = value(*source);
+            if !value.is_finite() {
+                return false;
+            }
+            *worst = worse_of(tracked.worse, *worst, value);
+        }
+    }
+    true
 }
 
 /// A value that is the same for the whole row, in its unit.

@@ -1,0 +1,300 @@
+//! Rows whose designs stand in one order: what differs between them comes in by a single number.
+//!
+//! Where every result of a row is one number of each design, v, with numbers of the row added, multiplied and so on, each result rises or
+//! falls with v, rounding and all (see [`Steps`]). With the designs sorted by v, those that satisfy a constraint are neighbours, found by
+//! halving; the least and the largest value of an objective stand at their ends; and a stretch of neighbours has no values beyond those of
+//! its two ends, so that the front known so far drops most of them at once. A row of thousands of designs is judged by some dozens of
+//! values, design by design only where the front is near. The answer is the one that judging each of them gives, to the last bit.
+
+mod chain;
+mod column;
+mod row;
+mod run;
+
+pub(super) use column::SortedColumn;
+pub(super) use row::{OrderedNumbers, OrderedRow};
+pub(super) use run::RowRun;
+
+use crate::models::Set;
+use crate::plan::{Plan, Source, knowns};
+use crate::tape::{LaneList, List, Node};
+use chain::{LONGEST, RowChain, chain, path};
+use std::sync::OnceLock;
+
+/// Most bytes of sorted columns.
+const MOST_BYTES: u64 = 64 << 20;
+/// Bytes of a design in a sorted column: its number, and which design it is.
+const DESIGN_BYTES: u64 = 8 + 2 + 2;
+
+/// What is known of such rows; for all threads.
+#[derive(Debug)]
+pub(super) struct OrderedRows {
+    channel: Node,
+    /// What the number is made of, operands first.
+    below: Vec<Node>,
+    chains: Vec<RowChain>,
+    /// What these read of a row.
+    reads: Vec<Node>,
+    /// Chains, and between what their results must lie.
+    bounds: Vec<(usize, (f64, f64))>,
+    /// Dimensions of the slow axes that the number depends on, with the distance of two levels among the columns.
+    dimensions: Vec<(usize, u64)>,
+    /// `None` for a column whose numbers are not all finite.
+    columns: Vec<OnceLock<Option<SortedColumn>>>,
+}
+
+impl OrderedRows {
+    /// `None` where the rows of a plan are none of that kind.
+    pub(super) fn new(plan: &Plan, list: &LaneList) -> Option<Self> {
+        let is_served = |source: &Source| !matches!(source, Source::LaneInput(_));
+        let sources = plan.constraints.iter().chain(plan.tracked.iter().map(|(_, source)| source));
+        if plan.scenarios() != 1 || plan.spectrum.is_some() || !sources.into_iter().all(is_served) {
+            return None;
+        }
+        let over_lanes = over_lanes(plan, list);
+        let paths: Vec<Vec<Node>> = list.asked().iter().map(|&node| path(list.list(), node, &over_lanes)).collect();
+        let start = *paths.first()?.last()?;
+        if !paths.iter().all(|path| path.last() == Some(&start) && path.len() <= LONGEST) {
+            return None;
+        }
+        // Further up on the way that all have in common there is less left to compute, as long as that takes no more columns.
+        let depends = slow_dimensions(plan, list);
+        let mut channel = start;
+        for &node in paths[0].iter().rev() {
+            if paths.iter().all(|path| path.contains(&node)) && depends[node as usize] == depends[start as usize] {
+                channel = node;
+            }
+        }
+        let mut dimensions = Vec::new();
+        let mut columns = 1u64;
+        for (dimension, count) in plan.slow.dimensions().map(|(it, _)| it.count()).enumerate() {
+            if depends[channel as usize].contains(dimension) {
+                dimensions.push((dimension, columns));
+                columns = columns.checked_mul(count)?;
+            }
+        }
+        let fits = columns.checked_mul(plan.fast.count() * DESIGN_BYTES).is_some_and(|bytes| bytes <= MOST_BYTES);
+        if !fits || plan.fast.count() >= 1 << 16 {
+            return None;
+        }
+        let mut reads = Vec::new();
+        let chain = |(number, path): (usize, &Vec<Node>)| {
+            let output = plan.lane_outputs.get(number).map(|&output| plan.study.model.outputs[output].unit);
+            chain(list.list(), path, channel, output, &mut reads)
+        };
+        let chains = paths.iter().enumerate().map(chain).collect();
+        Some(Self {
+            channel,
+            below: list.list().needed_by(&[channel]).into_iter().filter(|&node| over_lanes[node as usize]).collect(),
+            bounds: (0..paths.len()).flat_map(|result| bounds(plan, result).into_iter().map(move |it| (result, it))).collect(),
+            chains,
+            reads,
+            dimensions,
+            columns: (0..columns).map(|_| OnceLock::new()).collect(),
+        })
+    }
+
+    /// Bytes of all sorted columns.
+    pub(super) fn bytes(&self, plan: &Plan) -> u64 {
+        let one = size_of::<OnceLock<Option<SortedColumn>>>() as u64 + plan.fast.count() * DESIGN_BYTES + 2;
+        self.columns.len() as u64 * one
+    }
+
+    /// What the chains read of a row, given the numbers of its operations.
+    pub(super) fn others(&self, number: impl Fn(Node) -> f64) -> impl Iterator<Item = f64> {
+        self.reads.iter().map(move |&node| number(node))
+    }
+
+    /// Which sorted column is that of a row, and how far it is to that of the next one along the innermost slow axis.
+    pub(super) fn column_of(&self, plan: &Plan, row: u64) -> (u64, u64) {
+        let column = self.dimensions.iter().map(|&(dimension, stride)| plan.slow.digit(dimension, row) * stride).sum();
+        let innermost = plan.slow.dimensions().count().wrapping_sub(1);
+        let step = self.dimensions.iter().find(|(dimension, _)| *dimension == innermost).map_or(0, |(_, stride)| *stride);
+        (column, step)
+    }
+
+    /// A sorted column, made by `sorted` where nobody has asked for it before; `None` if rows with it are none of that kind.
+    pub(super) fn column(&self, column: u64, sorted: impl FnOnce() -> Option<SortedColumn>) -> Option<&SortedColumn> {
+        self.columns[column as usize].get_or_init(sorted).as_ref()
+    }
+
+    /// Chains, and between what their results must lie.
+    fn bounds(&self) -> impl Iterator<Item = (&RowChain, (f64, f64))> {
+        self.bounds.iter().map(|&(chain, bounds)| (&self.chains[chain], bounds))
+    }
+
+    /// A sorted column, if it has been made.
+    fn made(&self, column: u64) -> Option<&SortedColumn> {
+        self.columns[column as usize].get()?.as_ref()
+    }
+}
+
+/// Between what a result of the inner loop must lie: outputs come first, then margins of conditions.
+fn bounds(plan: &Plan, result: usize) -> Vec<(f64, f64)> {
+    match result.checked_sub(plan.lane_outputs.len()) {
+        None => {
+            let constraints = plan.study.constraints.iter().zip(&plan.constraints);
+            constraints.filter(|(_, source)| **source == Source::LaneOutput(result)).map(|(it, _)| it.ends()).collect()
+        }
+        Some(margin) => {
+            let strict = plan.study.model.conditions[plan.lane_conditions[margin]].strict;
+            vec![(if strict { f64::from_bits(1) } else { 0.0 }, f64::INFINITY)]
+        }
+    }
+}
+
+/// Which operations depend on inputs that differ within a row.
+fn over_lanes(plan: &Plan, list: &LaneList) -> Vec<bool> {
+    let lane_inputs = plan.fast.inputs();
+    let sets = list.list().dependencies(|input| if list.is_input(input) { Set::one(input.into()) } else { Set::EMPTY });
+    sets.into_iter().map(|set| set.meets(lane_inputs)).collect()
+}
+
+/// Which dimensions of the slow axes each operation depends on.
+fn slow_dimensions(plan: &Plan, list: &LaneList) -> Vec<Set> {
+    let dimensions: Vec<Set> = plan.slow.dimensions().map(|(it, _)| it.inputs().iter().collect()).collect();
+    let of_inputs = |inputs: Set| -> Set { (0..dimensions.len()).filter(|&dimension| dimensions[dimension].meets(inputs)).collect() };
+    let formula = plan.study.model.kernel.formula().expect("what was laid out was recorded");
+    let known = knowns(&plan.study, &plan.space);
+    let whole = formula.whole(&known[..formula.fields().inputs.len()], Set::ALL, Set::ALL);
+    let first = List::cut(&whole.recording, &whole.prepared.iter().copied().map(Some).collect::<Vec<_>>());
+    let sets = first.dependencies(|input| Set::one(input.into()));
+    let passed: Vec<Set> = first.results.iter().map(|result| result.map_or(Set::EMPTY, |node| sets[node as usize])).collect();
+    list.list().dependencies(|input| match list.passed_on(input) {
+        None => of_inputs(Set::one(input.into())),
+        Some(number) => of_inputs(passed[number]),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{CpuEngine, Tables};
+    use super::*;
+    use crate::reduce::{Reduction, State};
+    use crate::study::study_of;
+
+    const GRID: &str = "[design]\nfriction = { from = 0.06, to = 0.12, count = 5 }\ngroove_angle_deg = { from = 18, to = 30, count = 7 }\n\
+                        ratio = { from = 0.5, to = 2, count = 9 }\nband_thickness_mm = { from = 0.1, to = 0.4, count = 31 }\n\
+                        band_count = { from = 4, to = 14 }\n[fixed]\ntraction = \"limit\"\n";
+
+    fn plan(text: &str) -> Plan {
+        Plan::new(
+            study_of(&crate::models::find("metal-cvt").expect("it is a model"), &format!("{GRID}{text}")).expect("the study is right"),
+        )
+    }
+
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    enum Judged {
+        OneByOne,
+        ByRows,
+        ByRuns,
+    }
+
+    /// What remains of all designs; `between` sees the engine between parts.
+    fn swept_with(plan: &Plan, judged: Judged, mut between: impl FnMut(&mut CpuEngine<'_>, u64)) -> State {
+        let (mut tables, reduction) = (Tables::new(plan), Reduction::new(plan, &[]));
+        assert!(tables.ordered.is_some() && tables.rows.is_some() && reduction.is_front_only());
+        match judged {
+            Judged::OneByOne => tables.ordered = None,
+            Judged::ByRows => tables.rows = None,
+            Judged::ByRuns => {}
+        }
+        let mut reducers = reduction.start();
+        let mut engine = CpuEngine::new(plan, &tables);
+        // Not whole rows at the ends, and in parts, so that the front is known to the later ones. One part ends where a run does.
+        let width = plan.fast.count();
+        for (first, last) in [(0, 1000), (1000, 36 * width), (36 * width, plan.designs() / 2), (plan.designs() / 2, plan.designs())] {
+            between(&mut engine, first / width);
+            assert_eq!(engine.screen_for(first..last, &reduction, &mut reducers), last);
+            reducers.front.points();
+        }
+        assert_eq!(engine.row_run.first.is_some(), judged == Judged::ByRuns);
+        reducers.state()
+    }
+
+    fn swept(plan: &Plan, judged: Judged) -> State {
+        swept_with(plan, judged, |_, _| {})
+    }
+
+    #[test]
+    fn rows_judged_at_once_leave_what_their_designs_leave() {
+        let constraints = [
+            "[constraints]\ncapacity_axial_force_N = { max = 30000 }\ntorque_capacity_Nm = { above = 0 }\n",
+            "[constraints]\ncapacity_axial_force_N = { min = 5000, max = 20000 }\ntorque_capacity_Nm = { max = 150 }\n",
+            "",
+        ];
+        let objectives = [
+            "[objectives]\ntorque_capacity_Nm = \"max\"\ncapacity_axial_force_N = \"min\"\n",
+            "[objectives]\ncapacity_axial_force_N = \"min\"\ntorque_capacity_Nm = \"max\"\n",
+            "[objectives]\ntorque_capacity_Nm = \"min\"\ncapacity_axial_force_N = \"max\"\n",
+            "[objectives]\ntorque_capacity_Nm = { goal = \"max\", resolution = 5 }\ncapacity_axial_force_N = \"min\"\n",
+            "[objectives]\ncapacity_axial_force_N = \"max\"\n",
+            "[objectives]\ntorque_capacity_Nm = \"max\"\ncapacity_axial_force_N = \"min\"\nfriction = \"min\"\n",
+            "[objectives]\ntorque_capacity_Nm = \"min\"\ncapacity_axial_force_N = \"min\"\n",
+        ];
+        let mut sizes = Vec::new();
+        for constraints in constraints {
+            for objectives in objectives {
+                let plan = plan(&format!("{constraints}{objectives}"));
+                let [one_by_one, by_rows, by_runs] = [Judged::OneByOne, Judged::ByRows, Judged::ByRuns].map(|it| swept(&plan, it));
+                assert!(by_rows == by_runs, "{constraints}{objectives}: {} and {}", by_rows.front.len(), by_runs.front.len());
+                assert!(one_by_one == by_rows, "{constraints}{objectives}: {} and {}", one_by_one.front.len(), by_rows.front.len());
+                assert!(by_rows.feasible > 1000, "{constraints}{objectives}");
+                sizes.push(by_rows.front.len());
+            }
+        }
+        assert!(sizes.iter().filter(|size| **size > 50).count() > 6, "{sizes:?}");
+    }
+
+    #[test]
+    fn there_is_a_column_for_each_level_that_the_number_depends_on() {
+        let plan = plan("[objectives]\ntorque_capacity_Nm = \"max\"\ncapacity_axial_force_N = \"min\"\n");
+        let (mut tables, reduction) = (Tables::new(&plan), Reduction::new(&plan, &[]));
+        // The tension that the bands can take depends on the ratio, of the slow axes.
+        let ordered = tables.ordered.as_mut().expect("it is of that kind");
+        assert_eq!(ordered.columns.len(), 9);
+        // Were that overlooked, what is left would be wrong.
+        ordered.dimensions.clear();
+        let mut wrong = reduction.start();
+        CpuEngine::new(&plan, &tables).screen_for(0..plan.designs(), &reduction, &mut wrong);
+        assert!(wrong.state() != swept(&plan, Judged::ByRuns));
+    }
+
+    #[test]
+    fn rows_of_a_long_axis_are_judged_by_stretches() {
+        let text = GRID.replace("count = 9", "count = 301").replace("count = 5", "count = 3").replace("count = 7", "count = 2");
+        for goals in ["", "friction = \"min\"\nratio = \"max\"\n"] {
+            let text = format!("{text}[objectives]\ntorque_capacity_Nm = \"max\"\ncapacity_axial_force_N = \"min\"\n{goals}");
+            let plan = Plan::new(study_of(&crate::models::find("metal-cvt").expect("it is a model"), &text).expect("the study is right"));
+            // Two stretches of the ratio, the last of which is the shorter one.
+            let rows = Tables::new(&plan).rows.expect("there are several rows in a column");
+            assert_eq!([0, 150, 151, 301].map(|row| rows.rows_beside(row)), [0..151, 0..151, 151..301, 301..452]);
+            let [one_by_one, by_runs] = [Judged::OneByOne, Judged::ByRuns].map(|it| swept(&plan, it));
+            assert!(one_by_one == by_runs, "{} and {}", one_by_one.front.len(), by_runs.front.len());
+            assert!(by_runs.front.len() > 50, "{}", by_runs.front.len());
+        }
+    }
+
+    #[test]
+    fn rows_whose_designs_are_all_alike_are_judged() {
+        // Bands so thick that bending leaves them no tension, so that no design has a capacity.
+        let text = GRID.replace("from = 0.1, to = 0.4", "from = 1, to = 2");
+        let text = format!("{text}[objectives]\ntorque_capacity_Nm = \"max\"\ncapacity_axial_force_N = \"min\"\n");
+        let plan = Plan::new(study_of(&crate::models::find("metal-cvt").expect("it is a model"), &text).expect("the study is right"));
+        let [one_by_one, by_rows, by_runs] = [Judged::OneByOne, Judged::ByRows, Judged::ByRuns].map(|it| swept(&plan, it));
+        assert!(one_by_one == by_rows && by_rows == by_runs && by_runs.feasible == plan.designs());
+    }
+
+    #[test]
+    fn rows_of_a_run_have_their_own_numbers() {
+        let plan = plan(
+            "[constraints]\ncapacity_axial_force_N = { max = 20000 }\n[objectives]\ntorque_capacity_Nm = \"max\"\ncapacity_axial_force_N = \"min\"\n",
+        );
+        // Were a run taken for that of the next rows, what is left would be wrong.
+        let wrong = swept_with(&plan, Judged::ByRuns, |engine, row| {
+            let first = engine.row_run.first.as_mut();
+            first.filter(|_| row == 36).into_iter().for_each(|first| *first = 36);
+        });
+        assert!(wrong != swept(&plan, Judged::ByRuns));
+    }
+}
