@@ -64,6 +64,11 @@ impl Tables {
         Self { slow_scenarios, fast_scenarios, blocks, lanes, ordered, rows, together: RowsTogether::new(plan) }
     }
 
+    /// Is a part of them made only where a sweep comes by?
+    pub fn fill_up(&self) -> bool {
+        self.ordered.is_some()
+    }
+
     /// About how many bytes the tables of a plan take.
     pub fn bytes(plan: &Plan) -> u64 {
         let settings = |product: &Product| {

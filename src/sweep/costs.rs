@@ -1,11 +1,11 @@
 //! What judging every design takes here, and whether bounds pay: one estimate for `check`, `--method auto` and the jobs of a cluster.
 
-use super::tile_end;
+use super::{Control, Settings, SweepJob, look_around, tile_end};
 use crate::bounds::refusal;
 use crate::models::Effort;
 use crate::parallel::on_threads;
 use crate::plan::Plan;
-use crate::reduce::Reduction;
+use crate::reduce::{Points, Reducers, Reduction};
 use crate::screen::{CpuEngine, Tables};
 use std::time::{Duration, Instant};
 
@@ -58,8 +58,19 @@ impl Speed {
         if prepare + finish > LONGEST {
             return Self::told(plan);
         }
-        let tables = Tables::new(plan);
-        let seconds = on_threads(0..threads.max(1), |thread| trial(plan, &tables, thread as u64, threads.max(1) as u64, time));
+        let (tables, reduction) = (Tables::new(plan), Reduction::new(plan, &vec![(0.0, 1.0); plan.study.report.histograms.len()]));
+        let known = if tables.fill_up() {
+            // Where rows are passed over because of the front, there must be one.
+            let (options, control) = (Settings { threads, ..Settings::default() }, Control::default());
+            let job = SweepJob { plan, tables: &tables, reduction: &reduction, options: &options, control: &control };
+            look_around(job, &(0..plan.designs()), time.as_secs_f64()).front.points().clone()
+        } else {
+            Points::default()
+        };
+        let seconds = on_threads(0..threads.max(1), |thread| {
+            let reducers = reduction.start_after(known.clone());
+            trial(plan, (&tables, &reduction, reducers), (thread as u64, threads.max(1) as u64), time)
+        });
         Self { seconds: seconds.iter().sum::<f64>() / seconds.len() as f64, measured: true }
     }
 
@@ -85,10 +96,13 @@ impl Speed {
 /// At each place designs are judged one after another, as a sweep does: what neighbours share is most of the work of some models. Of a slow
 /// one only the beginnings of rows are tried; then the model says what that means for whole rows.
 #[allow(clippy::cast_precision_loss, reason = "an estimate")]
-fn trial(plan: &Plan, tables: &Tables, thread: u64, threads: u64, time: Duration) -> f64 {
+fn trial(
+    plan: &Plan,
+    (tables, reduction, mut reducers): (&Tables, &Reduction, Reducers),
+    (thread, threads): (u64, u64),
+    time: Duration,
+) -> f64 {
     let Effort { prepare, finish } = plan.effort();
-    let reduction = Reduction::new(plan, &vec![(0.0, 1.0); plan.study.report.histograms.len()]);
-    let mut reducers = reduction.start();
     let mut engine = CpuEngine::new(plan, tables);
     let moment = time / PLACES as u32;
     let row = plan.fast.count();
@@ -98,14 +112,19 @@ fn trial(plan: &Plan, tables: &Tables, thread: u64, threads: u64, time: Duration
     let (mut sum, mut tried) = (0.0, 0.0);
     for place in (thread % places..places).step_by(threads as usize) {
         let (first, last) = (edge(place), edge(place + 1));
-        let (start, mut at, mut rows) = (Instant::now(), first, 0u64);
-        while at < last && (at == first || start.elapsed() < moment) {
+        let (begin, mut at, mut rows, mut seconds) = (Instant::now(), first, 0u64, 0.0);
+        while at < last && (at == first || begin.elapsed() < moment) {
             let end = last.min(tile_end(at, piece, row));
-            engine.screen_for(at..end, &reduction, &mut reducers);
+            if tables.fill_up() {
+                // What is made once for the whole sweep says nothing about its pace.
+                engine.screen_for(at..end, reduction, &mut reducers);
+            }
+            let start = Instant::now();
+            engine.screen_for(at..end, reduction, &mut reducers);
+            seconds += start.elapsed().as_secs_f64();
             rows += (end - 1) / row - at / row + 1;
             at = end;
         }
-        let seconds = start.elapsed().as_secs_f64();
         let judged = (at - first) as f64;
         sum += if (at - first) >= row {
             seconds / judged

@@ -1,7 +1,7 @@
 //! The sweep on a device: tiles judged there, survivors in f64 here, one host thread that keeps the answers.
 
 use super::recheck::{Recheck, Recheckable};
-use super::{Control, Settings, SweepJob, SweepWork, Swept, head_start, look_around};
+use super::{Control, HEAD_START_TIME, Settings, SweepJob, SweepWork, Swept, head_start, look_around};
 use crate::checkpoint::{Checkpoint, Progress};
 use crate::error::{Error, Result};
 use crate::gpu::Device;
@@ -100,7 +100,7 @@ pub(super) fn go_on(
     let start = Instant::now();
     let mut engine = GpuEngine::new(plan, &reduction.histogram_ranges(), &on.device, on.limited_loops, &on.wrong)?;
     let whole = job.whole();
-    let mut seen = look_around(job, &whole);
+    let mut seen = look_around(job, &whole, HEAD_START_TIME);
     let progress = progress.unwrap_or_else(|| Progress { done: Ranges::default(), state: head_start(reduction, &mut seen) });
     let mut work = SweepWork::new(job, progress, checkpoint);
     let designs = work.todo.count();
@@ -144,7 +144,7 @@ pub fn recheck_on_device(plan: &Plan, tables: &Tables, reduction: &Reduction, th
     let mut engine = GpuEngine::new(plan, &reduction.histogram_ranges(), &on.device, on.limited_loops, &on.wrong)?;
     let whole = 0..plan.designs();
     let job = SweepJob { plan, tables, reduction, options: &Settings { threads, ..Settings::default() }, control: &Control::default() };
-    let answers = answers(&mut look_around(job, &whole));
+    let answers = answers(&mut look_around(job, &whole, HEAD_START_TIME));
     engine.tell_cells(&answers);
     Recheckable::new(plan, tables, reduction, &mut engine, &answers, &whole, threads).map(Recheckable::into_report)
 }

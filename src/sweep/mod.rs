@@ -132,7 +132,7 @@ const HEAD_START: u64 = 256;
 const HEAD_START_SHARE: u64 = 64;
 /// Most rows of the coarser grid.
 const HEAD_START_ROWS: u64 = 1 << 16;
-/// Most seconds of the head start, estimated from the cost that the model states.
+/// Most seconds of the head start.
 const HEAD_START_TIME: f64 = 0.3;
 
 /// What is swept, how, and who may stop it.
@@ -177,7 +177,7 @@ impl<'a> SweepWork<'a> {
             Some(checkpoint) => checkpoint.take_progress(job.plan, job.reduction)?,
             None => None,
         };
-        let fresh = || head_start(job.reduction, &mut look_around(job, &job.whole()));
+        let fresh = || head_start(job.reduction, &mut look_around(job, &job.whole(), HEAD_START_TIME));
         let progress = progress.unwrap_or_else(|| Progress { done: Ranges::default(), state: fresh() });
         Ok(Self::new(job, progress, checkpoint))
     }
@@ -274,20 +274,21 @@ fn judge(job: SweepJob<'_>, work: SweepWork<'_>) -> Result<State> {
 /// What remains of a few designs from all over a range, so that the first chunks have something to compare with: stretches of neighbours,
 /// and whole rows of a coarser grid, which has the ends of every slow axis, where fronts often are.
 ///
-/// They are designs like any other, judged in f64: the sweep will meet them again and finds those of the front there already.
-fn look_around(job: SweepJob<'_>, whole: &std::ops::Range<u64>) -> Reducers {
+/// It takes about so many seconds at most, by the cost that the model states. They are designs like any other, judged in f64: the sweep will
+/// meet them again and finds those of the front there already.
+fn look_around(job: SweepJob<'_>, whole: &std::ops::Range<u64>, seconds: f64) -> Reducers {
     let SweepJob { plan, tables, reduction, control, .. } = job;
     let mut seen = reduction.start();
     let mut engine = CpuEngine::new(plan, tables).stopping_on(&control.stop);
     let designs = whole.end - whole.start;
-    let affordable = (HEAD_START_TIME / (plan.seconds_per_design() * BLOCK as f64)) as u64;
+    let affordable = (seconds / (plan.seconds_per_design() * BLOCK as f64)) as u64;
     for step in 0..(designs / HEAD_START_SHARE / BLOCK as u64).min(HEAD_START).min(affordable) {
         let first = whole.start + ((u128::from(plan.spread(step)) * u128::from(designs)) / u128::from(plan.designs())) as u64;
         engine.screen(first..whole.end.min(first + BLOCK as u64), |block| reduction.absorb(&mut seen, block));
     }
     let (start, width) = (Instant::now(), plan.fast.count());
     let most = (plan.slow.count() / HEAD_START_SHARE).min(HEAD_START_ROWS);
-    if most > 0 && plan.seconds_per_design() * (width as f64) < HEAD_START_TIME / 4.0 {
+    if most > 0 && plan.seconds_per_design() * (width as f64) < seconds / 4.0 {
         let rows = plan.slow.coarse(most);
         for step in 0..rows.len() as u64 {
             // All over them from the beginning: there may be no time for all.
@@ -295,7 +296,7 @@ fn look_around(job: SweepJob<'_>, whole: &std::ops::Range<u64>) -> Reducers {
             if whole.contains(&row) && whole.contains(&(row + width - 1)) {
                 engine.screen_for(row..row + width, reduction, &mut seen);
             }
-            if start.elapsed().as_secs_f64() > HEAD_START_TIME / 2.0 {
+            if start.elapsed().as_secs_f64() > seconds / 2.0 {
                 break;
             }
         }

@@ -23,7 +23,8 @@ pub(super) struct Rays {
     is_steep: bool,
     /// Of each bin.
     least: Vec<f64>,
-    /// The largest of the [inner bins](INNER) of each group, of each two groups next to each other, each four and so on, by the first of them.
+    /// The largest of the [inner bins](INNER) of each group, of each two groups next to each other, each four and so on, by the first of
+    /// them.
     of_groups: Vec<Vec<f64>>,
     low: f64,
     scale: f64,
