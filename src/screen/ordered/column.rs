@@ -26,13 +26,13 @@ pub(in crate::screen) struct SortedColumn {
 
 /// What two bounds cut off a sorted column: about where what is left starts and ends.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cut {
+pub(super) struct ColumnCut {
     rises: bool,
     start: u32,
     end: u32,
 }
 
-impl Cut {
+impl ColumnCut {
     /// In place of a start or an end: nothing is cut off there.
     const NOTHING: u32 = u32::MAX;
 }
@@ -109,30 +109,30 @@ impl SortedColumn {
     /// What two bounds cut off where results rise or fall all the way between those of the least and the largest number. `number` tells
     /// about which number has a result, NaN where that is not known.
     #[inline(always)]
-    pub(super) fn cut(&self, (first, last): (f64, f64), (low, high): (f64, f64), number: impl Fn(f64) -> f64) -> Cut {
-        let guess = |is_needed: bool, bound: f64| if is_needed { self.guess(number(bound)) as u32 } else { Cut::NOTHING };
+    pub(super) fn cut(&self, (first, last): (f64, f64), (low, high): (f64, f64), number: impl Fn(f64) -> f64) -> ColumnCut {
+        let guess = |is_needed: bool, bound: f64| if is_needed { self.guess(number(bound)) as u32 } else { ColumnCut::NOTHING };
         // Up to where they are on the one side, and from where on the other.
         if first <= last {
-            Cut { rises: true, start: guess(first < low, low), end: guess(last > high, high) }
+            ColumnCut { rises: true, start: guess(first < low, low), end: guess(last > high, high) }
         } else {
-            Cut { rises: false, start: guess(first > high, high), end: guess(last < low, low) }
+            ColumnCut { rises: false, start: guess(first > high, high), end: guess(last < low, low) }
         }
     }
 
     /// Leaves of a range of places those whose results are between two bounds, given what these cut off.
     #[inline(always)]
-    pub(super) fn narrow(&self, places: &mut Range<usize>, cut: Cut, (low, high): (f64, f64), result: impl Fn(f64) -> f64) {
-        let Cut { rises, start, end } = cut;
-        if start == Cut::NOTHING && end == Cut::NOTHING {
+    pub(super) fn narrow(&self, places: &mut Range<usize>, cut: ColumnCut, (low, high): (f64, f64), result: impl Fn(f64) -> f64) {
+        let ColumnCut { rises, start, end } = cut;
+        if start == ColumnCut::NOTHING && end == ColumnCut::NOTHING {
             return;
         }
         let start = match (start, rises) {
-            (Cut::NOTHING, _) => places.start,
+            (ColumnCut::NOTHING, _) => places.start,
             (guess, true) => self.first_not(places, guess as usize, |it| result(it) < low),
             (guess, false) => self.first_not(places, guess as usize, |it| result(it) > high),
         };
         let end = match (end, rises) {
-            (Cut::NOTHING, _) => places.end,
+            (ColumnCut::NOTHING, _) => places.end,
             (guess, true) => self.first_not(places, guess as usize, |it| result(it) <= high),
             (guess, false) => self.first_not(places, guess as usize, |it| result(it) >= low),
         };

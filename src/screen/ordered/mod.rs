@@ -184,20 +184,20 @@ mod tests {
     }
 
     #[derive(Clone, Copy, Debug, PartialEq)]
-    enum Judged {
+    enum RowsJudged {
         OneByOne,
         ByRows,
         ByRuns,
     }
 
     /// What remains of all designs; `between` sees the engine between parts.
-    fn swept_with(plan: &Plan, judged: Judged, mut between: impl FnMut(&mut CpuEngine<'_>, u64)) -> State {
+    fn swept_with(plan: &Plan, judged: RowsJudged, mut between: impl FnMut(&mut CpuEngine<'_>, u64)) -> State {
         let (mut tables, reduction) = (Tables::new(plan), Reduction::new(plan, &[]));
         assert!(tables.ordered.is_some() && tables.rows.is_some() && reduction.is_front_only());
         match judged {
-            Judged::OneByOne => tables.ordered = None,
-            Judged::ByRows => tables.rows = None,
-            Judged::ByRuns => {}
+            RowsJudged::OneByOne => tables.ordered = None,
+            RowsJudged::ByRows => tables.rows = None,
+            RowsJudged::ByRuns => {}
         }
         let mut reducers = reduction.start();
         let mut engine = CpuEngine::new(plan, &tables);
@@ -208,11 +208,11 @@ mod tests {
             assert_eq!(engine.screen_for(first..last, &reduction, &mut reducers), last);
             reducers.front.points();
         }
-        assert_eq!(engine.row_run.first.is_some(), judged == Judged::ByRuns);
+        assert_eq!(engine.row_run.first.is_some(), judged == RowsJudged::ByRuns);
         reducers.state()
     }
 
-    fn swept(plan: &Plan, judged: Judged) -> State {
+    fn swept(plan: &Plan, judged: RowsJudged) -> State {
         swept_with(plan, judged, |_, _| {})
     }
 
@@ -236,7 +236,8 @@ mod tests {
         for constraints in constraints {
             for objectives in objectives {
                 let plan = plan(&format!("{constraints}{objectives}"));
-                let [one_by_one, by_rows, by_runs] = [Judged::OneByOne, Judged::ByRows, Judged::ByRuns].map(|it| swept(&plan, it));
+                let [one_by_one, by_rows, by_runs] =
+                    [RowsJudged::OneByOne, RowsJudged::ByRows, RowsJudged::ByRuns].map(|it| swept(&plan, it));
                 assert!(by_rows == by_runs, "{constraints}{objectives}: {} and {}", by_rows.front.len(), by_runs.front.len());
                 assert!(one_by_one == by_rows, "{constraints}{objectives}: {} and {}", one_by_one.front.len(), by_rows.front.len());
                 assert!(by_rows.feasible > 1000, "{constraints}{objectives}");
@@ -257,7 +258,7 @@ mod tests {
         ordered.dimensions.clear();
         let mut wrong = reduction.start();
         CpuEngine::new(&plan, &tables).screen_for(0..plan.designs(), &reduction, &mut wrong);
-        assert!(wrong.state() != swept(&plan, Judged::ByRuns));
+        assert!(wrong.state() != swept(&plan, RowsJudged::ByRuns));
     }
 
     #[test]
@@ -269,7 +270,7 @@ mod tests {
             // Two stretches of the ratio, the last of which is the shorter one.
             let rows = Tables::new(&plan).rows.expect("there are several rows in a column");
             assert_eq!([0, 150, 151, 301].map(|row| rows.rows_beside(row)), [0..151, 0..151, 151..301, 301..452]);
-            let [one_by_one, by_runs] = [Judged::OneByOne, Judged::ByRuns].map(|it| swept(&plan, it));
+            let [one_by_one, by_runs] = [RowsJudged::OneByOne, RowsJudged::ByRuns].map(|it| swept(&plan, it));
             assert!(one_by_one == by_runs, "{} and {}", one_by_one.front.len(), by_runs.front.len());
             assert!(by_runs.front.len() > 50, "{}", by_runs.front.len());
         }
@@ -281,7 +282,7 @@ mod tests {
         let text = GRID.replace("from = 0.1, to = 0.4", "from = 1, to = 2");
         let text = format!("{text}[objectives]\ntorque_capacity_Nm = \"max\"\ncapacity_axial_force_N = \"min\"\n");
         let plan = Plan::new(study_of(&crate::models::find("metal-cvt").expect("it is a model"), &text).expect("the study is right"));
-        let [one_by_one, by_rows, by_runs] = [Judged::OneByOne, Judged::ByRows, Judged::ByRuns].map(|it| swept(&plan, it));
+        let [one_by_one, by_rows, by_runs] = [RowsJudged::OneByOne, RowsJudged::ByRows, RowsJudged::ByRuns].map(|it| swept(&plan, it));
         assert!(one_by_one == by_rows && by_rows == by_runs && by_runs.feasible == plan.designs());
     }
 
@@ -291,10 +292,10 @@ mod tests {
             "[constraints]\ncapacity_axial_force_N = { max = 20000 }\n[objectives]\ntorque_capacity_Nm = \"max\"\ncapacity_axial_force_N = \"min\"\n",
         );
         // Were a run taken for that of the next rows, what is left would be wrong.
-        let wrong = swept_with(&plan, Judged::ByRuns, |engine, row| {
+        let wrong = swept_with(&plan, RowsJudged::ByRuns, |engine, row| {
             let first = engine.row_run.first.as_mut();
             first.filter(|_| row == 36).into_iter().for_each(|first| *first = 36);
         });
-        assert!(wrong != swept(&plan, Judged::ByRuns));
+        assert!(wrong != swept(&plan, RowsJudged::ByRuns));
     }
 }

@@ -2,7 +2,7 @@
 
 use super::OrderedRows;
 use super::chain::RowChain;
-use super::column::{Cut, SortedColumn};
+use super::column::{ColumnCut, SortedColumn};
 use crate::plan::{Plan, Source};
 use crate::reduce::{KeyRule, Reducers, Reduction};
 use crate::screen::Block;
@@ -42,7 +42,7 @@ impl OrderedRow<'_> {
 
     /// What the bounds of a chain cut off a sorted column.
     #[inline(always)]
-    pub(super) fn cut(&self, chain: &RowChain, column: &SortedColumn, bounds: (f64, f64)) -> Cut {
+    pub(super) fn cut(&self, chain: &RowChain, column: &SortedColumn, bounds: (f64, f64)) -> ColumnCut {
         let [a, b] = [column.ends.0, column.ends.1].map(|number| chain.value(number, self.others));
         let factor = chain.factor(self.others).unwrap_or(f64::NAN);
         column.cut((a, b), bounds, |bound| bound / factor)
@@ -50,7 +50,7 @@ impl OrderedRow<'_> {
 
     /// Leaves of a range of places in a sorted column those whose results are between the bounds of a chain.
     #[inline(always)]
-    pub(super) fn narrow(&self, chain: &RowChain, column: &SortedColumn, places: &mut Range<usize>, cut: Cut, bounds: (f64, f64)) {
+    pub(super) fn narrow(&self, chain: &RowChain, column: &SortedColumn, places: &mut Range<usize>, cut: ColumnCut, bounds: (f64, f64)) {
         // A product needs no look at the steps of the chain.
         match chain.multiplier(self.others) {
             Some(factor) => column.narrow(places, cut, bounds, |number| chain.shown(number * factor)),

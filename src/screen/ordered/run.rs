@@ -21,7 +21,7 @@ pub(in crate::screen) struct RowRun {
 }
 
 /// A row of a run: its sorted designs, and the places of the feasible ones.
-struct Stretch<'a> {
+struct RowStretch<'a> {
     row: OrderedRow<'a>,
     column: &'a SortedColumn,
     feasible: Range<usize>,
@@ -92,7 +92,7 @@ impl RowRun {
                 if !row.is_sure(ordered, column) {
                     break;
                 }
-                stretches.push(Stretch { row, column, feasible: 0..column.values.len() });
+                stretches.push(RowStretch { row, column, feasible: 0..column.values.len() });
             }
             (column, row_index, judged) = (column + column_step, row_index + index_step, judged + 1);
         }
@@ -101,11 +101,11 @@ impl RowRun {
         for (chain, bounds) in ordered.bounds() {
             cuts.clear();
             cuts.extend(stretches.iter().map(|it| it.row.cut(chain, it.column, bounds)));
-            for (Stretch { row, column, feasible }, &cut) in stretches.iter_mut().zip(&cuts) {
+            for (RowStretch { row, column, feasible }, &cut) in stretches.iter_mut().zip(&cuts) {
                 row.narrow(chain, column, feasible, cut, bounds);
             }
         }
-        for Stretch { row, column, feasible } in stretches {
+        for RowStretch { row, column, feasible } in stretches {
             row.take_in(ordered, column, feasible, room, reduction, reducers);
         }
         judged
