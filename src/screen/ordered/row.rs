@@ -58,22 +58,6 @@ impl OrderedRow<'_> {
         }
     }
 
-    /// Takes in feasible designs, for their number, the front and the extremes.
-    pub(super) fn take_in(
-        &self,
-        rows: &OrderedRows,
-        column: &SortedColumn,
-        feasible: Range<usize>,
-        room: &mut OrderedNumbers,
-        reduction: &Reduction,
-        reducers: &mut Reducers,
-    ) {
-        if !feasible.is_empty() {
-            reducers.feasible += feasible.len() as u64;
-            self.search(rows, column, feasible, room, reduction, reducers);
-        }
-    }
-
     /// Judges the row, for the number of feasible designs, the front and the extremes; false if it is not sure of the order.
     pub(in crate::screen) fn judge(
         &self,
@@ -94,8 +78,8 @@ impl OrderedRow<'_> {
         true
     }
 
-    /// Hands over the designs that the front may need, and those at the ends of objectives.
-    fn search(
+    /// Takes in feasible designs: counts them, and hands over those that the front may need and those at the ends of objectives.
+    pub(super) fn take_in(
         &self,
         rows: &OrderedRows,
         column: &SortedColumn,
@@ -104,6 +88,10 @@ impl OrderedRow<'_> {
         reduction: &Reduction,
         reducers: &mut Reducers,
     ) {
+        if feasible.is_empty() {
+            return;
+        }
+        reducers.feasible += feasible.len() as u64;
         let values = &column.values;
         let worst_of = |tracked: usize, number: f64| match self.plan.tracked[tracked].1 {
             Source::LaneOutput(result) => rows.chains[result].value(number, self.others),
