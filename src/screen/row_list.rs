@@ -1,5 +1,6 @@
 //! What is the same for all designs of a row, over all scenarios at once, and where these are few also over all rows of the innermost slow
-//! axis, or a stretch of it: the first stage, conditions and outputs of the row, and what the [inner loop](crate::tape::LaneList) reads of it.
+//! axis, or a stretch of it: the first stage, conditions and outputs of the row, and what the [inner loop](crate::tape::LaneList) reads of
+//! it.
 //!
 //! Operations that neither a scenario nor that axis sets are one number; the others are a column. From row to row only what depends on
 //! another input that has changed is computed again. The bits are those of the formula.
@@ -17,10 +18,10 @@ use std::ops::Range;
 const PLACES: std::ops::RangeInclusive<u64> = 8..=4 * CHUNK as u64;
 /// Most places where they are those of several rows: not all of these may be asked for.
 const MOST_OF_ROWS: u64 = 256;
-/// Most levels of an axis that goes in stretches: their values are kept.
-const MOST_LEVELS: u64 = 4096;
 /// Most operations, for the same reason.
 const MOST_OPERATIONS: usize = 1024;
+/// Most levels of an axis that is taken stretch by stretch: all their values are kept.
+const MOST_LEVELS: u64 = 4096;
 
 /// The operations of a row; for all threads.
 #[derive(Debug)]
@@ -58,7 +59,7 @@ impl RowList {
         let levels = innermost.map_or(1, SpaceDimension::count);
         let rows = match scenarios.saturating_mul(levels) {
             all if all <= MOST_OF_ROWS => levels,
-            // Long axes go in stretches, all of them of about the same length.
+            // A long axis is taken stretch by stretch, all of about the same length.
             _ if scenarios == 1 && levels <= MOST_LEVELS => levels.div_ceil(levels.div_ceil(MOST_OF_ROWS)),
             _ => 1,
         };

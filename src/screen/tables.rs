@@ -64,8 +64,9 @@ impl Tables {
         Self { slow_scenarios, fast_scenarios, blocks, lanes, ordered, rows, together: RowsTogether::new(plan) }
     }
 
-    /// Is a part of them made only where a sweep comes by?
-    pub fn fill_up(&self) -> bool {
+    /// Are rows judged at once, by the order of their designs? Then columns are sorted when a sweep first meets them, and how fast it is
+    /// depends on the front that it knows.
+    pub fn has_ordered_rows(&self) -> bool {
         self.ordered.is_some()
     }
 

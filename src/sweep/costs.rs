@@ -59,8 +59,8 @@ impl Speed {
             return Self::told(plan);
         }
         let (tables, reduction) = (Tables::new(plan), Reduction::new(plan, &vec![(0.0, 1.0); plan.study.report.histograms.len()]));
-        let known = if tables.fill_up() {
-            // Where rows are passed over because of the front, there must be one.
+        let known = if tables.has_ordered_rows() {
+            // A sweep starts with such a front too.
             let (options, control) = (Settings { threads, ..Settings::default() }, Control::default());
             let job = SweepJob { plan, tables: &tables, reduction: &reduction, options: &options, control: &control };
             look_around(job, &(0..plan.designs()), time.as_secs_f64()).front.points().clone()
@@ -115,8 +115,8 @@ fn trial(
         let (begin, mut at, mut rows, mut seconds) = (Instant::now(), first, 0u64, 0.0);
         while at < last && (at == first || begin.elapsed() < moment) {
             let end = last.min(tile_end(at, piece, row));
-            if tables.fill_up() {
-                // What is made once for the whole sweep says nothing about its pace.
+            if tables.has_ordered_rows() {
+                // Columns are sorted once in a sweep: that does not count.
                 engine.screen_for(at..end, reduction, &mut reducers);
             }
             let start = Instant::now();

@@ -148,6 +148,14 @@ mod tests {
     }
 
     #[test]
+    fn of_rays_too_steep_for_a_number_nothing_is_left_out() {
+        let table = table(-1.0, 300);
+        let mut open = Vec::new();
+        Rays::new(&table, true).open((-1e-300, 1e300), (0.5, 2.0), |low, high| open.push((low, high)));
+        assert_eq!(open, [(0.5, 2.0)]);
+    }
+
+    #[test]
     fn what_is_left_out_is_beaten_and_little_else_is_kept() {
         for sign in [-1.0, 1.0] {
             let table = table(sign, 300);

@@ -20,7 +20,7 @@ pub(in crate::screen) struct SortedColumn {
     scale: f64,
     /// The least and the largest number.
     pub(super) ends: (f64, f64),
-    /// How many numbers are the least, and how many are below the largest: formulas that cut numbers off leave many equal ones there.
+    /// How many numbers equal the least one, and how many are below the largest: a formula with a limit makes many of them equal.
     plateaus: (usize, usize),
 }
 
@@ -94,8 +94,8 @@ impl SortedColumn {
     /// The first place of a range whose number is no longer `before` something, given about where that is; the end if all are.
     #[inline(always)]
     fn first_not(&self, range: &Range<usize>, guess: usize, before: impl Fn(f64) -> bool) -> usize {
-        // Nearly always it is among a few next to the guess. Nothing there waits for another number or takes a branch, so that the numbers
-        // of the next rows, far off in memory, are on their way meanwhile.
+        // Nearly always it is among a few next to the guess. They are compared without a branch, so that the processor can fetch the numbers
+        // of the next rows at the same time.
         if range.len() >= NEAR {
             let start = guess.saturating_sub(NEAR / 2).max(range.start).min(range.end - NEAR);
             let count = self.values[start..][..NEAR].iter().map(|&value| usize::from(before(value))).sum::<usize>();

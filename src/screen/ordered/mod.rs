@@ -3,9 +3,9 @@
 //! Where every result of a row is one number of each design, v, with numbers of the row added, multiplied and so on, each result rises or
 //! falls with v, rounding and all (see [`Steps`](crate::tape::Steps)). With the designs sorted by v, those that satisfy a constraint are
 //! neighbours, found by halving; the least and the largest value of an objective stand at their ends; and a stretch of neighbours has no
-//! values beyond those of its two ends, so that the front known so far drops most of them at once. A row of thousands of designs is judged by
-//! some dozens of values, design by design only where the front is near. The answer is the one that judging each of them gives, to the last
-//! bit.
+//! values beyond those of its two ends, so that the front known so far drops most of them at once. A row of thousands of designs is judged
+//! by some dozens of values, design by design only where the front is near. The answer is the one that judging each of them gives, to the
+//! last bit.
 
 mod chain;
 mod column;

@@ -6,7 +6,7 @@ use super::{OrderedNumbers, OrderedRow, OrderedRows};
 use crate::plan::Plan;
 use crate::reduce::{Reducers, Reduction};
 use crate::screen::tables::FastBlock;
-use crate::tape::ColumnValue;
+use crate::tape::{ColumnValue, Node};
 use std::ops::Range;
 
 /// What is the same for all designs of each row of a column; one per thread.
@@ -21,7 +21,7 @@ pub(in crate::screen) struct RowRun {
 }
 
 /// A row of a run: its sorted designs, and the places of the feasible ones.
-struct RowStretch<'a> {
+struct NarrowedRow<'a> {
     row: OrderedRow<'a>,
     column: &'a SortedColumn,
     feasible: Range<usize>,
@@ -44,7 +44,7 @@ impl RowRun {
     }
 
     /// What the chains read of each row, given the numbers of its operations.
-    pub(in crate::screen) fn set_others<'n>(&mut self, ordered: &OrderedRows, number: impl Fn(crate::tape::Node) -> ColumnValue<'n>) {
+    pub(in crate::screen) fn set_others<'n>(&mut self, ordered: &OrderedRows, number: impl Fn(Node) -> ColumnValue<'n>) {
         let reads = ordered.reads.len();
         for (place, &node) in ordered.reads.iter().enumerate() {
             let column = number(node);
@@ -82,7 +82,7 @@ impl RowRun {
         let index_step = plan.slow.source_index(rows.end - 1).saturating_sub(row_index) / (rows.end - 1 - rows.start).max(1);
         let (reads, tracked) = (ordered.reads.len(), plan.tracked.len());
         let first = (rows.start - self.first.unwrap_or(rows.start)) as usize;
-        let mut stretches = Vec::with_capacity((rows.end - rows.start) as usize);
+        let mut narrowed = Vec::with_capacity((rows.end - rows.start) as usize);
         let mut judged = 0;
         for place in first..first + (rows.end - rows.start) as usize {
             if self.may_hold[place] {
@@ -92,20 +92,21 @@ impl RowRun {
                 if !row.is_sure(ordered, column) {
                     break;
                 }
-                stretches.push(RowStretch { row, column, feasible: 0..column.values.len() });
+                narrowed.push(NarrowedRow { row, column, feasible: 0..column.values.len() });
             }
             (column, row_index, judged) = (column + column_step, row_index + index_step, judged + 1);
         }
-        // One step after the other for all rows: their numbers lie far apart in memory and come in side by side.
-        let mut cuts = Vec::with_capacity(stretches.len());
+        // Each step is made for all rows before the next one: their numbers lie far apart in memory, and the processor fetches those of
+        // several rows at a time.
+        let mut cuts = Vec::with_capacity(narrowed.len());
         for (chain, bounds) in ordered.bounds() {
             cuts.clear();
-            cuts.extend(stretches.iter().map(|it| it.row.cut(chain, it.column, bounds)));
-            for (RowStretch { row, column, feasible }, &cut) in stretches.iter_mut().zip(&cuts) {
+            cuts.extend(narrowed.iter().map(|it| it.row.cut(chain, it.column, bounds)));
+            for (NarrowedRow { row, column, feasible }, &cut) in narrowed.iter_mut().zip(&cuts) {
                 row.narrow(chain, column, feasible, cut, bounds);
             }
         }
-        for RowStretch { row, column, feasible } in stretches {
+        for NarrowedRow { row, column, feasible } in narrowed {
             row.take_in(ordered, column, feasible, room, reduction, reducers);
         }
         judged
