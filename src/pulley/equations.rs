@@ -1,6 +1,6 @@
 //! The equations of a section: its stiffness in every harmonic, what is fixed, and displacements under loads.
 
-use super::band::{Coupling, Factors, Matrices, PARTS};
+use super::band::{self, Coupling, Factors, Matrices, PARTS};
 use super::element::{Couplings, Lame};
 use super::mesh::Mesh;
 use super::wide::{WIDTH, Wide};
@@ -57,11 +57,16 @@ impl Equations {
     }
 }
 
-/// Bytes of the equations of a mesh with their factors and right sides.
+/// Bytes of the equations of a mesh with their factors and right sides, if nothing is fixed.
 pub fn bytes(mesh: &Mesh) -> u64 {
-    let (nodes, half) = (mesh.nodes.len() as u64, mesh.reach() as u64);
-    let (coupling, wide) = (size_of::<Coupling>() as u64, size_of::<Wide>() as u64);
-    nodes * (half + 1) * coupling + 3 * nodes * (3 * half + 6) * wide + 3 * nodes * MOST_SIDES * wide
+    let nodes = mesh.nodes.len();
+    let mut reach: Vec<usize> = (1..=3 * nodes).collect();
+    for element in &mesh.elements {
+        let places = || element.nodes().iter().flat_map(|&node| (3 * node as usize..).take(3));
+        let end = places().max().map_or(0, |last| last + 1);
+        places().for_each(|place| reach[place] = reach[place].max(end));
+    }
+    band::bytes(nodes, mesh.reach(), &reach) + 3 * nodes as u64 * MOST_SIDES * size_of::<Wide>() as u64
 }
 
 /// Most right sides: three of the belt, one of the clamp, one of the spin.

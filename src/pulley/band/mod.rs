@@ -62,15 +62,26 @@ impl Matrices {
         self.size().next_multiple_of(PANEL)
     }
 
-    /// The panels of the factors; later columns may fill what an earlier one affects.
+    /// The panels of the factors.
     fn panels(&self) -> Panels {
-        let mut last = 0;
-        Panels::new((0..self.rows()).step_by(PANEL).map(|first| {
-            let own = self.reach[first..self.size().min(first + PANEL)].iter().max().copied().unwrap_or(0);
-            last = own.max(last).max(first + PANEL);
-            last - first
-        }))
+        panels(&self.reach)
     }
+}
+
+/// The panels of the factors of a matrix whose columns have entries down to these rows, less one; later columns may fill what an earlier
+/// one affects.
+fn panels(reach: &[usize]) -> Panels {
+    let mut last = 0;
+    Panels::new((0..reach.len().next_multiple_of(PANEL)).step_by(PANEL).map(|first| {
+        let own = reach[first..reach.len().min(first + PANEL)].iter().max().copied().unwrap_or(0);
+        last = own.max(last).max(first + PANEL);
+        last - first
+    }))
+}
+
+/// Bytes of matrices with so many nodes, `half` and reach as in [`Matrices`], and of their factors.
+pub fn bytes(nodes: usize, half: usize, reach: &[usize]) -> u64 {
+    (nodes * (half + 1) * size_of::<Coupling>() + panels(reach).length() * size_of::<Wide>()) as u64
 }
 
 /// Memory for the factors of four harmonics, reused from one solution to the next.
