@@ -5,6 +5,7 @@ mod arrow_out;
 mod column;
 mod errors;
 mod json;
+mod memory;
 mod model;
 mod result;
 mod rows;

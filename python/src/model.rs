@@ -2,11 +2,12 @@
 
 use crate::column::{Column, Values};
 use crate::errors::{of_study, raised, request};
+use crate::memory::ColumnRoom;
 use crate::rows::GivenTable;
 use crate::table::Table;
 use crate::waiting::supervised;
 use beltspace::batch::{BatchTarget, GivenColumns};
-use beltspace::models::{EvaluatedColumns, ManyOptions, Model as BeltModel, Models, Status, all, find};
+use beltspace::models::{ManyOptions, Model as BeltModel, Models, ResultColumns, Status, all, find};
 use beltspace::study::{parse_model, read_model};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyString};
@@ -170,26 +171,25 @@ pub fn evaluate(
     let wanted = outputs.map(|names| names.iter().map(|name| output(py, &model, name)).collect::<PyResult<Vec<_>>>()).transpose()?;
     let stop = AtomicBool::new(false);
     let (of_model, threads) = (model.clone(), threads.unwrap_or_else(cores));
+    let numbers: Vec<usize> = wanted.unwrap_or_else(|| (0..model.outputs.len()).collect());
     let work = || {
         let mut target = BatchTarget::of_model(of_model.clone(), of_model.defaults(), Vec::new());
         let given = GivenColumns::new(&mut target, table.columns(), threads)?;
-        let options = ManyOptions::default().threads(threads).stop(&stop);
-        let options = match &wanted {
-            Some(wanted) => options.outputs(wanted),
-            None => options,
-        };
-        target.evaluate_each(&given, &options)
+        let options = ManyOptions::default().threads(threads).stop(&stop).outputs(&numbers);
+        let mut statuses = vec![0_u16; given.rows()];
+        let mut rooms: Vec<ColumnRoom> = numbers.iter().map(|_| ColumnRoom::new(given.rows())).collect();
+        let outputs = rooms.iter_mut().map(ColumnRoom::numbers).collect();
+        target.evaluate_each(&given, &options, ResultColumns { statuses: &mut statuses, outputs })?;
+        Ok((statuses, rooms))
     };
-    let EvaluatedColumns { statuses, outputs, .. } =
-        supervised(py, || stop.store(true, Ordering::Relaxed), |_| Ok(()), work)?.map_err(|error| raised(py, error))?;
-    let numbers = wanted.unwrap_or_else(|| (0..model.outputs.len()).collect());
-    let column = |(number, values): (usize, Vec<f64>)| {
+    let (statuses, rooms) = supervised(py, || stop.store(true, Ordering::Relaxed), |_| Ok(()), work)?.map_err(|error| raised(py, error))?;
+    let column = |(&number, room): (&usize, ColumnRoom)| {
         let output = &model.outputs[number];
         let (unit, role) = (output.unit.symbol.to_owned(), "output".to_owned());
-        Column::of(output.name.clone(), Values::Numbers(values.into())).described(unit, role, String::new(), output.doc.clone())
+        Column::of(output.name.clone(), Values::Numbers(room.into_buffer())).described(unit, role, String::new(), output.doc.clone())
     };
-    let mut columns: Vec<Column> = numbers.into_iter().zip(outputs).map(column).collect();
-    columns.push(status_column(&model, &statuses));
+    let mut columns: Vec<Column> = numbers.iter().zip(rooms).map(column).collect();
+    columns.push(status_column(&model, statuses));
     Table::of(py, columns)
 }
 
@@ -201,15 +201,11 @@ fn output(py: Python<'_>, model: &BeltModel, name: &str) -> PyResult<usize> {
     })
 }
 
-fn status_column(model: &BeltModel, statuses: &[Status]) -> Column {
+/// The column of statuses, from their numbers.
+fn status_column(model: &BeltModel, statuses: Vec<u16>) -> Column {
     let conditions = (0..model.conditions.len()).map(Status::failed);
     let words = [Status::Ok, Status::Overflow].into_iter().chain(conditions).map(|it| it.reason(model).to_owned()).collect();
-    let code = |status: &Status| match status {
-        Status::Ok => 0,
-        Status::Overflow => 1,
-        Status::Failed(condition) => condition + 2,
-    };
-    let values = Values::Words(statuses.iter().map(code).collect(), words);
+    let values = Values::Words(statuses, words);
     Column::of("status".to_owned(), values).described(
         String::new(),
         "status".to_owned(),

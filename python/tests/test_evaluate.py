@@ -1,10 +1,12 @@
 """Models evaluated for many rows."""
 
+import gc
 import subprocess
 import sys
 from pathlib import Path
 
 import numpy as np
+import pyarrow as pa
 import pytest
 
 import beltspace
@@ -31,6 +33,23 @@ def test_many_rows_are_the_same_as_the_program_gives(tmp_path: Path) -> None:
     # Few rows take another way to the same numbers.
     few = beltspace.evaluate("metal-cvt", {name: column[:7] for name, column in rows.items()})
     assert all((few[name] == found[name][:7]).all() for name in few.column_names if name != "status")
+
+
+def test_long_columns_outlive_their_table_and_are_those_of_short_ones() -> None:
+    count = 600_000
+    friction = np.random.default_rng(2).uniform(0.06, 0.1, count)
+    found = beltspace.evaluate("metal-cvt", {"friction": friction}, outputs=["axial_force_N", "slip_margin"])
+    forces, table = found["axial_force_N"], pa.table(found)
+    del found
+    gc.collect()
+    assert not forces.flags.writeable
+    for first in (0, 300_000, count - 1000):
+        few = beltspace.evaluate("metal-cvt", {"friction": friction[first : first + 1000]})
+        assert few["axial_force_N"].tobytes() == forces[first : first + 1000].tobytes()
+    del forces
+    gc.collect()
+    margins = table["slip_margin"].to_numpy()
+    assert len(margins) == count and margins[-1000:].tobytes() == few["slip_margin"].tobytes()
 
 
 def test_numbers_of_any_kind_are_columns_and_a_scalar_is_every_row() -> None:

@@ -2,7 +2,7 @@
 
 use super::{BatchTarget, RowCell, refusal, value_of};
 use crate::error::Result;
-use crate::models::{ColumnEnds, EvaluatedColumns, Input, ManyOptions, ends, evaluate_columns};
+use crate::models::{ColumnEnds, Input, ManyOptions, ResultColumns, Status, ends, evaluate_into};
 use crate::parallel::on_threads;
 use crate::screen::Control;
 use crate::table::Table;
@@ -39,6 +39,16 @@ enum GivenValues<'a> {
     /// With its ends, if they are known.
     Each(Cow<'a, [f64]>, Option<ColumnEnds>),
     Same(f64),
+}
+
+impl GivenValues<'_> {
+    /// The values, once if they are the same in all rows.
+    fn different(&self) -> &[f64] {
+        match self {
+            Self::Each(values, _) => values,
+            Self::Same(value) => std::slice::from_ref(value),
+        }
+    }
 }
 
 impl<'a> GivenColumns<'a> {
@@ -79,7 +89,7 @@ impl<'a> GivenColumns<'a> {
         });
         given.values = values.into_iter().collect::<Result<Vec<_>>>()?.into_iter().flatten().collect();
         target.given(&given.inputs)?;
-        target.refuse_replaced(&given.inputs, &given.slices(&mut Vec::new()))?;
+        target.refuse_replaced(&given.inputs, &given.values.iter().map(GivenValues::different).collect::<Vec<_>>())?;
         Ok(given)
     }
 
@@ -129,11 +139,16 @@ impl BatchTarget {
     /// Evaluates a model for every row.
     ///
     /// # Errors
-    /// As [`evaluate_columns`].
+    /// As [`evaluate_into`].
     ///
     /// # Panics
     /// If the target is a study.
-    pub fn evaluate_each(&self, given: &GivenColumns<'_>, options: &ManyOptions<'_>) -> Result<EvaluatedColumns> {
+    pub fn evaluate_each<S: From<Status> + Send>(
+        &self,
+        given: &GivenColumns<'_>,
+        options: &ManyOptions<'_>,
+        results: ResultColumns<'_, S>,
+    ) -> Result<()> {
         let model = self.model();
         let mut base = self.base().expect("a model, no study").to_vec();
         let mut columns: Vec<(&str, &[f64])> = Vec::new();
@@ -155,7 +170,7 @@ impl BatchTarget {
             ends.push(None);
         }
         let options = ManyOptions { inputs: Some(&base), ends: Some(&ends), ..options.clone() };
-        evaluate_columns(model, &columns, &options)
+        evaluate_into(model, &columns, &options, results)
     }
 
     /// The worst of every row over the scenarios of a study: the columns of its results, margins of its constraints, and whether and why

@@ -44,7 +44,7 @@ pub use known::Models;
 pub(crate) use known::is_name;
 pub use latest::{Evaluator, Latest};
 pub(crate) use many::{ColumnEnds, ColumnJudge, JudgeRoom, ends};
-pub use many::{EvaluatedColumns, Evaluations, ManyOptions, evaluate_columns, evaluate_many};
+pub use many::{EvaluatedColumns, Evaluations, ManyOptions, ResultColumns, evaluate_columns, evaluate_into, evaluate_many};
 pub use model::{AlongTheBelt, Doubts, Model, Notes, PulleyOf, Remarks};
 pub use pulley::CHECK_POINT_STRESSES;
 pub(crate) use source::{ConditionSource, CurveSource, Extension, FileSource, FormulaSource};

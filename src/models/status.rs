@@ -26,6 +26,18 @@ impl Status {
     }
 }
 
+/// As a number: 0 for ok, 1 for an overflow, 2 and on for the conditions.
+impl From<Status> for u16 {
+    #[inline]
+    fn from(status: Status) -> Self {
+        match status {
+            Status::Ok => 0,
+            Status::Overflow => 1,
+            Status::Failed(condition) => condition + 2,
+        }
+    }
+}
+
 /// The reason of [`Status::Overflow`].
 pub const OVERFLOW: &str = "overflow";
 

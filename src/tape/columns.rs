@@ -106,6 +106,12 @@ impl NodeColumns {
         fill(room(column, self.count));
     }
 
+    /// Gives the column of an operation these numbers, one per design, for those that it had.
+    pub(super) fn swap(&mut self, node: Node, numbers: &mut Vec<f64>) {
+        assert_eq!(numbers.len(), self.count, "one number per design");
+        std::mem::swap(&mut self.columns[self.place[node as usize] as usize], numbers);
+    }
+
     /// Computes the column of an operation from its operands; what inputs are is the caller's business.
     pub fn compute(&mut self, list: &List, node: Node, each: impl Fn(Node) -> bool) {
         let place = self.place[node as usize] as usize;

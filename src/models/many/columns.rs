@@ -2,8 +2,8 @@
 
 use super::judge::{ColumnJudge, JudgeRoom};
 use super::vectors::{ColumnEnds, converted, ends};
-use super::{AskedColumns, ResultPart, input_to_si};
-use crate::models::{Input, Model};
+use super::{AskedColumns, ResultColumns, ResultPart, input_to_si};
+use crate::models::{Input, Model, Status};
 use crate::parallel::on_threads;
 use crate::tape::{Known, LIST_CHUNK, List, ListColumns, Set};
 
@@ -41,7 +41,7 @@ fn known(model: &Model, input: usize, values: &[f64], known: Option<ColumnEnds>)
 /// A column in SI units.
 fn fill_si(input: &Input, values: &[f64], to: &mut [f64]) {
     if input.words.is_empty() {
-        converted(values, input.unit.factors(), to);
+        let _ = converted(values, input.unit.factors(), to);
     } else {
         to.iter_mut().zip(values).for_each(|(si, &value)| *si = input_to_si(input, value));
     }
@@ -72,13 +72,13 @@ impl RecordedColumns {
     }
 
     /// Fills some rows of the result.
-    pub fn evaluate(&self, asked: &AskedColumns<'_>, part: ResultPart<'_>) {
+    pub fn evaluate<S: From<Status>>(&self, asked: &AskedColumns<'_>, part: ResultPart<'_, S>) {
         let AskedColumns { model, given, inputs, outputs: wanted, options } = *asked;
-        let ResultPart { first, statuses, mut outputs } = part;
+        let ResultPart { first, results: ResultColumns { statuses, mut outputs } } = part;
         let list = &self.list;
         let mut columns = ListColumns::new(list);
         columns.turn_to(list, 0..list.results.len(), |_| true);
-        let mut room = JudgeRoom::default();
+        let (mut room, mut judged) = (JudgeRoom::default(), [Status::Ok; LIST_CHUNK]);
         for start in (0..statuses.len()).step_by(LIST_CHUNK) {
             if options.is_stopped() {
                 return;
@@ -92,10 +92,11 @@ impl RecordedColumns {
                     None => to.fill(input_to_si(of_input, inputs[input])),
                 });
             });
-            let statuses = &mut statuses[start..start + count];
+            let judged = &mut judged[..count];
             let margin = |condition: usize| columns.result(list, wanted.len() + condition);
             let mut outputs: Vec<&mut [f64]> = outputs.iter_mut().map(|column| &mut column[start..start + count]).collect();
-            self.judge.judge(model, margin, |place| columns.result(list, place), statuses, &mut outputs, &mut room);
+            self.judge.judge(model, margin, |place| columns.result(list, place), judged, &mut outputs, &mut room);
+            statuses[start..][..count].iter_mut().zip(judged).for_each(|(status, judged)| *status = S::from(*judged));
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Status and presence of outputs over a chunk of rows.
 
-use super::vectors::{all_finite, clear, converted, failures, join};
+use super::vectors::{clear, converted, failures, join};
 use crate::models::{Model, Status};
 use crate::tape::ColumnValue;
 
@@ -80,13 +80,17 @@ impl ColumnJudge {
         for (place, (column, output)) in outputs.iter_mut().zip(&self.outputs).enumerate() {
             let unit = model.outputs[output.number].unit;
             let (multiply, divide) = unit.factors();
-            match value(place) {
-                ColumnValue::One(value) => column.fill(unit.from_si(value)),
+            let finite = match value(place) {
+                ColumnValue::One(value) => {
+                    let value = unit.from_si(value);
+                    column.fill(value);
+                    value.is_finite()
+                }
                 ColumnValue::Each(values) => converted(values, (divide, multiply), column),
-            }
+            };
             let mut takers = output.takers.iter().map(|&it| &failed[it]).filter(|(any, _)| *any).map(|(_, rows)| rows);
             match takers.next() {
-                None if all_finite(column) => continue,
+                None if finite => continue,
                 None => gone.fill(false),
                 Some(first) => gone.copy_from_slice(first),
             }

@@ -46,6 +46,15 @@ pub struct EvaluatedColumns {
     pub outputs: Vec<Vec<f64>>,
 }
 
+/// Where [`evaluate_into`] writes: everything has as many rows as the columns of inputs. What stood there before is lost.
+#[derive(Debug)]
+pub struct ResultColumns<'a, S = Status> {
+    /// Of every row: ok, or why not.
+    pub statuses: &'a mut [S],
+    /// One column per output that is asked for, in that order and in the output's unit; NaN where it has no meaning.
+    pub outputs: Vec<&'a mut [f64]>,
+}
+
 /// How many designs are evaluated, and what of them is asked for.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
@@ -141,6 +150,39 @@ pub fn evaluate_many(model: &Model, columns: &[(&str, &[f64])]) -> Result<Evalua
 /// [`Error::Stopped`] after `stop`.
 pub fn evaluate_columns(model: &Model, columns: &[(&str, &[f64])], options: &ManyOptions<'_>) -> Result<EvaluatedColumns> {
     let rows = columns.first().map_or(0, |(_, values)| values.len());
+    let count = options.outputs.map_or(model.outputs.len(), <[usize]>::len);
+    // Zeros from the system, each column by itself: the threads are the first to touch them.
+    let mut found = EvaluatedColumns { statuses: vec![Status::Ok; rows], outputs: (0..count).map(|_| vec![0.0; rows]).collect() };
+    let EvaluatedColumns { statuses, outputs } = &mut found;
+    let results = ResultColumns { statuses, outputs: outputs.iter_mut().map(Vec::as_mut_slice).collect() };
+    evaluate_into(model, columns, options, results)?;
+    Ok(found)
+}
+
+/// The same into memory of the caller's, with statuses of the caller's kind: `u16` is one.
+///
+/// ```
+/// use beltspace::models::{self, ManyOptions, ResultColumns};
+///
+/// let model = models::find("metal-cvt").unwrap();
+/// let wanted = [model.output("axial_force_N").unwrap()];
+/// let (mut codes, mut forces) = ([9_u16; 2], [0.0; 2]);
+/// let results = ResultColumns { statuses: &mut codes, outputs: vec![&mut forces] };
+/// models::evaluate_into(&model, &[("band_count", &[6.0, 9.0])], &ManyOptions::default().outputs(&wanted), results)?;
+/// assert!(codes == [0, 0] && forces[0] > 0.0);
+/// # Ok::<(), beltspace::Error>(())
+/// ```
+///
+/// # Errors
+/// As [`evaluate_columns`]; [`Error::Request`] if the results have other rows or another number of columns. After an error it is not said
+/// what the results are.
+pub fn evaluate_into<S: From<Status> + Send>(
+    model: &Model,
+    columns: &[(&str, &[f64])],
+    options: &ManyOptions<'_>,
+    results: ResultColumns<'_, S>,
+) -> Result<()> {
+    let rows = columns.first().map_or(0, |(_, values)| values.len());
     let mut given: Vec<(usize, &[f64])> = Vec::with_capacity(columns.len());
     for &(name, values) in columns {
         let input = model.input(name).ok_or_else(|| no_such_input(model, name))?;
@@ -160,17 +202,22 @@ pub fn evaluate_columns(model: &Model, columns: &[(&str, &[f64])], options: &Man
         let (there, wanted) = (inputs.len(), model.inputs.len());
         return Err(Error::Request(format!("there are values for {there} inputs, but {} has {wanted}", model.name)));
     }
+    if results.outputs.len() != outputs.len() {
+        let (there, wanted) = (results.outputs.len(), outputs.len());
+        return Err(Error::Request(format!("there is room for {there} outputs, but {wanted} are asked for")));
+    }
+    let lengths = results.outputs.iter().map(|column| column.len()).chain([results.statuses.len()]);
+    if let Some(there) = lengths.into_iter().find(|length| *length != rows) {
+        return Err(Error::Request(format!("there is room for {there} rows, but there are {rows}")));
+    }
     let asked = AskedColumns { model, given: &given, inputs, outputs, options };
     let recorded = (rows >= ROWS_TO_RECORD).then(|| RecordedColumns::new(&asked)).flatten();
-    // Zeros from the system, each column by itself: the threads are the first to touch them.
-    let zeros = outputs.iter().map(|_| vec![0.0; rows]).collect();
-    let mut found = EvaluatedColumns { statuses: vec![Status::Ok; rows], outputs: zeros };
     let share = rows.div_ceil(options.threads.max(1)).max(ROWS_PER_THREAD);
-    on_threads(parts(&mut found, share), |part| match &recorded {
+    on_threads(parts(results, share), |part| match &recorded {
         Some(recorded) => recorded.evaluate(&asked, part),
         None => asked.one_by_one(part),
     });
-    if options.is_stopped() { Err(Error::Stopped { kept: None }) } else { Ok(found) }
+    if options.is_stopped() { Err(Error::Stopped { kept: None }) } else { Ok(()) }
 }
 
 /// What is asked.
@@ -185,25 +232,24 @@ struct AskedColumns<'a> {
 }
 
 /// Rows of the result that one thread fills.
-struct ResultPart<'a> {
+struct ResultPart<'a, S> {
     first: usize,
-    statuses: &'a mut [Status],
-    outputs: Vec<&'a mut [f64]>,
+    results: ResultColumns<'a, S>,
 }
 
 /// The result in parts of so many rows.
-fn parts(found: &mut EvaluatedColumns, share: usize) -> Vec<ResultPart<'_>> {
-    let mut outputs: Vec<_> = found.outputs.iter_mut().map(|column| column.chunks_mut(share)).collect();
+fn parts<S>(results: ResultColumns<'_, S>, share: usize) -> Vec<ResultPart<'_, S>> {
+    let mut outputs: Vec<_> = results.outputs.into_iter().map(|column| column.chunks_mut(share)).collect();
     let part = |(number, statuses)| {
         let outputs = outputs.iter_mut().filter_map(Iterator::next).collect();
-        ResultPart { first: number * share, statuses, outputs }
+        ResultPart { first: number * share, results: ResultColumns { statuses, outputs } }
     };
-    found.statuses.chunks_mut(share).enumerate().map(part).collect()
+    results.statuses.chunks_mut(share).enumerate().map(part).collect()
 }
 
 impl AskedColumns<'_> {
-    fn one_by_one(&self, part: ResultPart<'_>) {
-        let ResultPart { first, statuses, mut outputs } = part;
+    fn one_by_one<S: From<Status>>(&self, part: ResultPart<'_, S>) {
+        let ResultPart { first, results: ResultColumns { statuses, mut outputs } } = part;
         let (asked, mut inputs) = (Set::of(self.outputs), self.inputs.to_vec());
         for (row, place) in statuses.iter_mut().enumerate() {
             if self.options.is_stopped() {
@@ -212,7 +258,7 @@ impl AskedColumns<'_> {
             self.given.iter().for_each(|&(input, values)| inputs[input] = values[first + row]);
             let Evaluation { status, outputs: values } =
                 if self.options.outputs.is_none() { evaluate(self.model, &inputs) } else { evaluate_asked(self.model, &inputs, asked) };
-            *place = status;
+            *place = status.into();
             for (column, &output) in outputs.iter_mut().zip(self.outputs) {
                 column[row] = values[output].unwrap_or(f64::NAN);
             }
@@ -307,6 +353,30 @@ mod tests {
         let stop = AtomicBool::new(true);
         let stopped = evaluate_columns(&model, &[("friction", &values)], &ManyOptions::default().stop(&stop));
         assert!(matches!(stopped, Err(Error::Stopped { kept: None })));
+    }
+
+    #[test]
+    fn results_go_into_memory_of_the_same_size_only() {
+        let model = crate::models::find("metal-cvt").expect("it is a model");
+        let (wanted, rows) = ([3, 0], 2 * ROWS_TO_RECORD);
+        let values: Vec<f64> = (0..rows).map(|row| 0.05 + 0.01 * row as f64).collect();
+        let options = ManyOptions::default().outputs(&wanted);
+        let found = evaluate_columns(&model, &[("friction", &values)], &options).expect("it is an input");
+        let into = |codes: &mut [u16], columns: &mut [Vec<f64>]| {
+            let results = ResultColumns { statuses: codes, outputs: columns.iter_mut().map(Vec::as_mut_slice).collect() };
+            evaluate_into(&model, &[("friction", &values)], &options, results).map_err(|error| error.to_string())
+        };
+        let (mut codes, mut columns) = (vec![7; rows], vec![vec![1.0; rows]; 2]);
+        assert_eq!(into(&mut codes, &mut columns), Ok(()));
+        assert_eq!(codes, found.statuses.iter().map(|&status| u16::from(status)).collect::<Vec<_>>());
+        assert!(codes.contains(&0) && codes.iter().any(|code| *code > 1), "some are ok, and some fail");
+        let bits = |columns: &[Vec<f64>]| columns.concat().into_iter().map(f64::to_bits).collect::<Vec<_>>();
+        assert_eq!(bits(&columns), bits(&found.outputs));
+        let other = Err(format!("there is room for 5 rows, but there are {rows}"));
+        assert_eq!(into(&mut codes[..5], &mut columns), other);
+        columns[1].truncate(5);
+        assert_eq!(into(&mut codes, &mut columns), other);
+        assert_eq!(into(&mut codes, &mut columns[..1]), Err("there is room for 1 outputs, but 2 are asked for".to_owned()));
     }
 
     #[test]

@@ -41,29 +41,35 @@ pub(crate) fn ends(values: &[f64]) -> ColumnEnds {
 }
 
 /// Numbers times the first factor, divided by the second: the bits of [`Unit::to_si`](crate::units::Unit::to_si), of whose factors one is
-/// 1 as a rule.
-pub(crate) fn converted(values: &[f64], (multiply, divide): (f64, f64), to: &mut [f64]) {
+/// 1 as a rule. True if all of them are finite then.
+pub(crate) fn converted(values: &[f64], (multiply, divide): (f64, f64), to: &mut [f64]) -> bool {
     match (multiply == 1.0, divide == 1.0) {
-        (true, true) => to.copy_from_slice(values),
+        (true, true) => copied(values, to),
         (false, true) => multiplied(values, multiply, to),
         (true, false) => divided(values, divide, to),
         (false, false) => both(values, multiply, divide, to),
     }
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-fn multiplied(values: &[f64], factor: f64, to: &mut [f64]) {
-    to.iter_mut().zip(values).for_each(|(to, &value)| *to = value * factor);
+macro_rules! conversions {
+    ($($name:ident($value:ident $(, $factor:ident)*) = $converted:expr;)*) => {$(
+        #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+        fn $name(values: &[f64] $(, $factor: f64)*, to: &mut [f64]) -> bool {
+            let mut finite = true;
+            for (to, &$value) in to.iter_mut().zip(values) {
+                *to = $converted;
+                finite &= to.is_finite();
+            }
+            finite
+        }
+    )*};
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-fn divided(values: &[f64], divisor: f64, to: &mut [f64]) {
-    to.iter_mut().zip(values).for_each(|(to, &value)| *to = value / divisor);
-}
-
-#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-fn both(values: &[f64], factor: f64, divisor: f64, to: &mut [f64]) {
-    to.iter_mut().zip(values).for_each(|(to, &value)| *to = value * factor / divisor);
+conversions! {
+    copied(value) = value;
+    multiplied(value, factor) = value * factor;
+    divided(value, divisor) = value / divisor;
+    both(value, factor, divisor) = value * factor / divisor;
 }
 
 /// Marks where a margin fails, which no number does too; true if one fails.
@@ -96,15 +102,10 @@ pub(super) fn clear(column: &mut [f64], gone: &[bool]) -> bool {
     for (value, &gone) in column.iter_mut().zip(gone) {
         let finite = value.is_finite();
         overflown |= !finite & !gone;
-        *value = if gone | !finite { f64::NAN } else { *value };
+        // A choice, not a branch: that would store under masks, which takes many times as long.
+        *value = std::hint::select_unpredictable(gone | !finite, f64::NAN, *value);
     }
     overflown
-}
-
-/// Are all of them finite?
-#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-pub(super) fn all_finite(column: &[f64]) -> bool {
-    column.iter().fold(true, |all, value| all & value.is_finite())
 }
 
 #[cfg(test)]
@@ -134,8 +135,10 @@ mod tests {
     fn a_factor_of_one_changes_no_bit() {
         let values = [0.1, -0.0, 1e300, 3.0, f64::MIN_POSITIVE];
         let mut to = [0.0; 5];
+        assert!(!converted(&values, (1e10, 1.0), &mut to) && !converted(&values, (1.0, 1e-10), &mut to));
+        assert!(!converted(&[1.0, f64::INFINITY], (1.0, 1.0), &mut to) && !converted(&[f64::NAN], (1.0, 3.0), &mut to));
         for (multiply, divide) in [(1.0, 1.0), (std::f64::consts::PI, 180.0), (1.0, 1000.0), (1e6, 1.0)] {
-            converted(&values, (multiply, divide), &mut to);
+            assert!(converted(&values, (multiply, divide), &mut to));
             for (to, value) in to.iter().zip(values) {
                 assert_eq!(to.to_bits(), (value * multiply / divide).to_bits());
             }
