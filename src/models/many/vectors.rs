@@ -102,8 +102,7 @@ pub(super) fn clear(column: &mut [f64], gone: &[bool]) -> bool {
     for (value, &gone) in column.iter_mut().zip(gone) {
         let finite = value.is_finite();
         overflown |= !finite & !gone;
-        // A choice, not a branch: that would store under masks, which takes many times as long.
-        *value = std::hint::select_unpredictable(gone | !finite, f64::NAN, *value);
+        *value = if gone | !finite { f64::NAN } else { *value };
     }
     overflown
 }
