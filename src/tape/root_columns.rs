@@ -180,20 +180,16 @@ pub fn serves(list: &List, number: u8) -> bool {
 impl RootColumns {
     /// Room for a list.
     pub fn new(list: &List) -> Self {
-        let outside = (0..list.roots.len()).map(|number| {
-            let mut nodes = Vec::new();
-            list.outside(number as u8, |node| nodes.push(node));
+        // Roots that nothing asks for any more have no operation, and name none that is there.
+        let mut outside = vec![Vec::new(); list.roots.len()];
+        for operation in &list.operations {
+            let Operation::Root(number) = *operation else { continue };
+            let nodes = &mut outside[number as usize];
+            list.outside(number, |node| nodes.push(node));
             nodes.sort_unstable();
             nodes.dedup();
-            nodes
-        });
-        Self {
-            numbers: NodeColumns::plain(list),
-            lanes: RootLanes::default(),
-            outside: outside.collect(),
-            differs: Vec::new(),
-            each: Vec::new(),
         }
+        Self { numbers: NodeColumns::plain(list), lanes: RootLanes::default(), outside, differs: Vec::new(), each: Vec::new() }
     }
 
     /// The roots of a chunk; `of` gives what the function reads from outside.

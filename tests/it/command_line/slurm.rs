@@ -303,15 +303,16 @@ fn a_shard_takes_minutes_and_not_seconds() {
         answer.err
     );
     assert!(place.script("shards.sh").contains("#SBATCH --array=1-1\n"));
-    // Bounds are faster than judging every design, and every shard would repeat their search.
-    let fine = include_str!("../../../studies/metal-grid.toml").replace("count = 37", "count = 560");
+    // Bounds are faster than judging every design, and every shard would repeat their search. So many designs that three take minutes each.
+    let fine = include_str!("../../../studies/metal-grid.toml").replace("count = 37", "count = 3000");
     let place = Place::new(&fine);
     let answer = place.ask("");
     assert!(answer.err.starts_with("note: bounds settle boxes of designs at once") && answer.err.contains("one job is written"));
     assert!(answer.text().contains("\nshards    1, by bounds; every design would take about "));
     let answer = place.ask("--force --shards 3");
     assert!(answer.err.contains("every shard searches for the whole front"), "{}", answer.err);
-    assert!(answer.text().contains("\nshards    3, by bounds; every design would take about "));
+    let text = answer.text();
+    assert!(text.contains("\nshards    3, by bounds; every design would take about "), "{text}");
     let answer = place.ask("--force -- --method exhaustive");
     assert!(!answer.err.contains("bounds") && !answer.text().contains("bounds"));
     let place = Place::new(&endless());
