@@ -1,5 +1,5 @@
-//! Memory for the numbers of long columns: in large pages where the system has them, as numpy asks for them, too. To fill small pages for
-//! the first time takes longer than to compute what goes into them.
+//! Memory for the numbers of long columns, in large pages where the system has them, as numpy has it. With small pages, touching them for
+//! the first time took half of the time of an evaluation with all outputs.
 
 use arrow_buffer::{Buffer, ScalarBuffer};
 use memmap2::MmapMut;
@@ -21,7 +21,7 @@ impl ColumnRoom {
         let bytes = rows * size_of::<f64>();
         let pages = (bytes >= LONG).then(|| MmapMut::map_anon(bytes).ok()).flatten();
         let Some(pages) = pages else { return Self::Short(vec![0.0; rows]) };
-        // A wish only: without large pages it takes longer.
+        // A request that the system may refuse: then it only takes longer.
         #[cfg(target_os = "linux")]
         let _ = pages.advise(memmap2::Advice::HugePage);
         Self::Long(pages, rows)

@@ -106,7 +106,7 @@ impl NodeColumns {
         fill(room(column, self.count));
     }
 
-    /// Gives the column of an operation these numbers, one per design, for those that it had.
+    /// Exchanges the column of an operation for these numbers, one per design.
     pub(super) fn swap(&mut self, node: Node, numbers: &mut Vec<f64>) {
         assert_eq!(numbers.len(), self.count, "one number per design");
         std::mem::swap(&mut self.columns[self.place[node as usize] as usize], numbers);

@@ -180,7 +180,7 @@ pub fn serves(list: &List, number: u8) -> bool {
 impl RootColumns {
     /// Room for a list.
     pub fn new(list: &List) -> Self {
-        // Roots that nothing asks for any more have no operation, and name none that is there.
+        // A cut list keeps roots that nothing asks for; the operations that they name are not in it.
         let mut outside = vec![Vec::new(); list.roots.len()];
         for operation in &list.operations {
             let Operation::Root(number) = *operation else { continue };

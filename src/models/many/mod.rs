@@ -159,7 +159,7 @@ pub fn evaluate_columns(model: &Model, columns: &[(&str, &[f64])], options: &Man
     Ok(found)
 }
 
-/// The same into memory of the caller's, with statuses of the caller's kind: `u16` is one.
+/// The same, written into memory that the caller provides. Statuses are of any type that [`Status`] turns into, such as `u16`.
 ///
 /// ```
 /// use beltspace::models::{self, ManyOptions, ResultColumns};
@@ -174,8 +174,8 @@ pub fn evaluate_columns(model: &Model, columns: &[(&str, &[f64])], options: &Man
 /// ```
 ///
 /// # Errors
-/// As [`evaluate_columns`]; [`Error::Request`] if the results have other rows or another number of columns. After an error it is not said
-/// what the results are.
+/// As [`evaluate_columns`]; [`Error::Request`] if the results have another number of rows or columns. After [`Error::Stopped`] the results
+/// are incomplete.
 pub fn evaluate_into<S: From<Status> + Send>(
     model: &Model,
     columns: &[(&str, &[f64])],

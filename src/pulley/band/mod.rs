@@ -68,8 +68,7 @@ impl Matrices {
     }
 }
 
-/// The panels of the factors of a matrix whose columns have entries down to these rows, less one; later columns may fill what an earlier
-/// one affects.
+/// The panels of the factors, from `reach` as in [`Matrices`]; later columns may fill what an earlier one affects.
 fn panels(reach: &[usize]) -> Panels {
     let mut last = 0;
     Panels::new((0..reach.len().next_multiple_of(PANEL)).step_by(PANEL).map(|first| {
