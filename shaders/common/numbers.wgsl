@@ -23,6 +23,12 @@ fn near(value: f32) -> Real {
     return Real(value, abs(value) * ROUNDING);
 }
 
+// Any number between two others: the middle, with half of their distance as the bound.
+fn between(a: Real, b: Real) -> Real {
+    let reach = 0.5 * abs(b.value - a.value) + 2.0 * ROUNDING * (abs(a.value) + abs(b.value)) + FLUSH;
+    return Real(0.5 * a.value + 0.5 * b.value, reach + max(a.bound, b.bound));
+}
+
 fn rounded(value: f32, inherited: f32, relative: f32) -> Real {
     return Real(value, inherited + (abs(value) * relative + FLUSH));
 }
@@ -162,7 +168,7 @@ fn cos_(a: Real) -> Real {
 fn asin_(a: Real) -> Real {
     let end = (abs(a.value) + a.bound) * 1.00000024;
     let steep = a.bound / sqrt((1.0 - end) * (1.0 + end));
-    let anywhere = select(2.2215, 1.5708, a.bound <= 1.0) * sqrt(a.bound);
+    let anywhere = select(f32(2.2215), 1.5708, a.bound <= 1.0) * sqrt(a.bound);
     let inherited = ROOTED * min(select(infinity(), steep, end < 1.0), anywhere);
     let value = arc_sine(a.value);
     return rounded(value, inherited + rooted_arc(a.value, value), FUNCTION);

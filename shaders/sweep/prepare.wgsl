@@ -1,4 +1,4 @@
-// First stage: `prepare` once per row and slow scenario, and what is the same for all lanes of a row.
+// First stage: `prepare` once per row and slow scenario, in f64 where the device has it, and what is the same for all lanes of a row.
 
 @compute @workgroup_size(WORKGROUP)
 fn prepare_rows(@builtin(global_invocation_id) id: vec3<u32>) {
@@ -7,11 +7,8 @@ fn prepare_rows(@builtin(global_invocation_id) id: vec3<u32>) {
     if row >= tile.rows {
         return;
     }
-    var inputs = fixed_inputs();
-    set_row(&inputs, digits_of_row(row));
-    set_slow_scenario(&inputs, q);
     begin_prepared(q, row);
-    store_prepared(q, row, prepare(inputs));
+    store_prepared(q, row, prepare_row(q, row));
 }
 
 // Judges what the lanes of a row share, over all scenarios.

@@ -37,7 +37,7 @@ struct KnownUniform {
 
 @group(0) @binding(0) var<uniform> tile: Tile;
 @group(0) @binding(1) var<uniform> known: KnownUniform;
-// Levels of the slow design axes: value and bound in SI, value in its unit, 1 if constraints on inputs allow it.
+// Levels of the slow design axes: value in SI and what f32 loses of it, value in its unit, 1 if constraints on inputs allow it.
 @group(0) @binding(3) var<storage, read> levels: array<vec4<f32>>;
 @group(0) @binding(4) var<storage, read_write> prepared_table: array<Real>;
 @group(0) @binding(5) var<storage, read_write> row_table: array<u32>;
@@ -52,4 +52,8 @@ struct KnownUniform {
 fn ordered(x: f32) -> u32 {
     let bits = bitcast<u32>(x);
     return select(bits | 0x80000000u, ~bits, (bits >> 31u) == 1u);
+}
+
+fn level(entry: vec4<f32>) -> Real {
+    return Real(entry.x, abs(entry.y));
 }

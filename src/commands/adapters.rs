@@ -62,6 +62,12 @@ fn page(adapter: &Adapter) -> String {
             };
             fact("  loops", loops);
             fact("  lost appends", report.lost_appends.to_string());
+            let f64 = match (report.trusts_f64(), report.measures_64.is_empty()) {
+                (true, _) => "accurate: what many designs share is computed in it".to_owned(),
+                (false, true) => "none".to_owned(),
+                (false, false) => format!("not accurate enough, and not used: {}", report.problems_64().join("; ")),
+            };
+            fact("  f64", f64);
             for measure in &report.measures {
                 fact(&format!("  {}", measure.name), format!("at most {:.2} ULP off, {:.1} are allowed", measure.ulp, measure.allowed));
             }

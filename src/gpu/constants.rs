@@ -26,6 +26,13 @@ impl InWgsl for f32 {
     }
 }
 
+impl InWgsl for f64 {
+    const TYPE: &'static str = "f64";
+    fn literal(self) -> String {
+        format!("{self:?}lf")
+    }
+}
+
 impl InWgsl for bool {
     const TYPE: &'static str = "bool";
     fn literal(self) -> String {
@@ -82,6 +89,25 @@ shared_constants! {
     const YES: u32 = 2;
     /// Invocations of a workgroup, where the study does not say.
     const WORKGROUP: u32 = 64;
+}
+
+/// Two ULP of an f64: what a device and the CPU, whose values are held against each other, may both round, and more.
+const ROUNDING_64: f64 = 4.0 / (1u64 << 53) as f64;
+
+/// So many ULP a quotient, a root and a function of f64 may be off, on a device whose first stage is computed in it. Nothing says how accurate
+/// they are, so the self-test asks for a quarter of it; and it is still a hundred thousandth of what f32 loses.
+pub(crate) const ULP_64: f64 = 4096.0;
+
+/// The same of f64.
+pub(crate) fn constants_64() -> String {
+    let mut text = String::new();
+    declare(&mut text, "ROUNDING_64", ROUNDING_64);
+    for name in ["DIVISION_64", "SQUARE_ROOT_64", "FUNCTION_64"] {
+        declare(&mut text, name, ULP_64 * ROUNDING_64);
+    }
+    declare(&mut text, "FLUSH_64", f64::MIN_POSITIVE);
+    declare(&mut text, "LARGEST_DIVISOR_64", 1.0 / f64::MIN_POSITIVE);
+    text
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use super::Adapter;
 use crate::error::{Error, Result};
 use bytemuck::{NoUninit, Pod};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -21,6 +22,10 @@ pub struct Device {
     failure: Arc<Mutex<Option<String>>>,
     /// Held by who submits or waits: wgpu panics where one thread finds a submission finished while another looks for it.
     one_at_a_time: Arc<Mutex<()>>,
+    /// Does it compute in f64, and as accurately as kernels rely on? False once the self-test has found that it does not.
+    f64: Arc<AtomicBool>,
+    /// Is it a GPU in hardware?
+    pub(crate) is_hardware: bool,
     /// Of the adapter.
     pub name: String,
     /// Limits that it was opened with: all that the adapter has.
@@ -39,8 +44,10 @@ impl Device {
         if limits.max_storage_buffers_per_shader_stage < 8 || limits.max_compute_invocations_per_workgroup < 256 {
             return Err(refused("it has fewer than 8 storage buffers or 256 invocations per workgroup".to_owned()));
         }
+        let f64 = adapter.adapter.features() & wgpu::Features::SHADER_F64;
         let wanted = wgpu::DeviceDescriptor {
             label: Some("beltspace"),
+            required_features: f64,
             required_limits: limits.clone(),
             memory_hints: wgpu::MemoryHints::MemoryUsage,
             ..Default::default()
@@ -63,7 +70,27 @@ impl Device {
         }));
         let on_loss = keep(&failure);
         device.set_device_lost_callback(move |reason, message| on_loss(format!("it was lost ({reason:?}): {message}")));
-        Ok(Self { device, queue, failure, one_at_a_time: Arc::default(), name: adapter.name.clone(), limits })
+        let f64 = Arc::new(AtomicBool::new(!f64.is_empty()));
+        Ok(Self {
+            device,
+            queue,
+            failure,
+            one_at_a_time: Arc::default(),
+            f64,
+            is_hardware: adapter.is_hardware(),
+            name: adapter.name.clone(),
+            limits,
+        })
+    }
+
+    /// May kernels compute in f64?
+    pub fn has_f64(&self) -> bool {
+        self.f64.load(Ordering::Relaxed)
+    }
+
+    /// Kernels must do without f64 from now on.
+    pub(crate) fn forgo_f64(&self) {
+        self.f64.store(false, Ordering::Relaxed);
     }
 
     /// An error of this device.
@@ -164,6 +191,20 @@ impl Device {
     /// # Errors
     /// [`Error::Gpu`].
     pub(crate) fn read<T: Pod>(&self, landing: &Buffer, count: usize, submission: &Wait) -> Result<Vec<T>> {
+        self.read_some(landing, count, submission, <[T]>::len)
+    }
+
+    /// The same, of which only as many leading values are copied as `used` says of them.
+    ///
+    /// # Errors
+    /// [`Error::Gpu`].
+    pub(crate) fn read_some<T: Pod>(
+        &self,
+        landing: &Buffer,
+        count: usize,
+        submission: &Wait,
+        used: impl FnOnce(&[T]) -> usize,
+    ) -> Result<Vec<T>> {
         let bytes = (count * size_of::<T>()) as u64;
         if count == 0 {
             return Ok(Vec::new());
@@ -188,7 +229,8 @@ impl Device {
             self.check()?;
         }
         let range = landing.get_mapped_range(0..bytes).map_err(|error| self.error(format!("its results cannot be read: {error}")))?;
-        let values = bytemuck::pod_collect_to_vec(&range);
+        let values: &[T] = bytemuck::cast_slice(&range);
+        let values = values[..used(values)].to_vec();
         drop(range);
         landing.unmap();
         Ok(values)

@@ -31,7 +31,7 @@ pub(crate) struct Program {
 /// What is wrong with the text, with a line of it.
 fn parse(source: &str) -> std::result::Result<naga::Module, String> {
     let module = naga::front::wgsl::parse_str(source).map_err(|error| error.emit_to_string(source))?;
-    let mut validator = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty());
+    let mut validator = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::FLOAT64);
     validator.validate(&module).map_err(|error| error.emit_to_string(source))?;
     Ok(module)
 }

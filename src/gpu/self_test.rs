@@ -1,6 +1,7 @@
 //! Is a driver to be trusted? What has gone wrong on some driver without an error, tried on every one before it is used.
 
-use super::source::common;
+use super::constants::ULP_64;
+use super::source::{common, common_64};
 use super::{Device, Program, WORKGROUP, shared_constants};
 use crate::error::Result;
 use crate::real::FUNCTION_ULP;
@@ -12,6 +13,8 @@ const LOOPS: u32 = 100_000;
 pub const LOOP_LIMIT: u32 = 65_535;
 /// Points of the arithmetic.
 const POINTS: u32 = 1 << 14;
+/// Of the results per point, the leading ones that are rounded correctly.
+const ROUNDED: usize = 3;
 /// Invocations that append themselves.
 const APPENDS: u32 = 1 << 16;
 
@@ -34,6 +37,12 @@ pub struct Measure {
     pub allowed: f64,
 }
 
+impl Measure {
+    fn is_kept(&self) -> bool {
+        self.ulp <= self.allowed
+    }
+}
+
 /// What a driver's self-test found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SelfTest {
@@ -43,6 +52,14 @@ pub struct SelfTest {
     pub measures: Vec<Measure>,
     /// Appends that were lost or doubled, of 65 536 at once.
     pub lost_appends: u32,
+    /// The same errors in f64; empty on a device that has none.
+    pub measures_64: Vec<Measure>,
+}
+
+/// The measures that are beyond what is allowed, in words.
+fn beyond(measures: &[Measure]) -> Vec<String> {
+    let wrong = measures.iter().filter(|it| !it.is_kept());
+    wrong.map(|it| format!("{} is {:.1} ULP off, at most {} is allowed", it.name, it.ulp, it.allowed)).collect()
 }
 
 impl SelfTest {
@@ -51,14 +68,23 @@ impl SelfTest {
         self.loop_turns != LOOPS
     }
 
+    /// What of f64 is too inaccurate, in words; empty also where there is none.
+    pub fn problems_64(&self) -> Vec<String> {
+        beyond(&self.measures_64)
+    }
+
+    /// May the first stage of a kernel compute in f64? A device whose f64 is missing or inaccurate computes it in f32.
+    pub fn trusts_f64(&self) -> bool {
+        !self.measures_64.is_empty() && self.problems_64().is_empty()
+    }
+
     /// What is wrong with the driver; empty if it can be trusted.
     pub fn problems(&self) -> Vec<String> {
         let mut problems = Vec::new();
         if self.loop_turns < LOOP_LIMIT {
             problems.push(format!("a loop ends after {} iterations", self.loop_turns));
         }
-        let wrong = self.measures.iter().filter(|it| it.ulp.is_nan() || it.ulp > it.allowed);
-        problems.extend(wrong.map(|it| format!("{} is {:.1} ULP off, at most {} is allowed", it.name, it.ulp, it.allowed)));
+        problems.extend(beyond(&self.measures));
         if self.lost_appends > 0 {
             problems.push(format!("{} of {APPENDS} simultaneous appends were lost", self.lost_appends));
         }
@@ -67,10 +93,11 @@ impl SelfTest {
 
     /// As it stands in `run.json`.
     pub fn to_json(&self) -> Value {
-        let measures = self.measures.iter().map(|it| (it.name.to_owned(), json!(it.ulp)));
+        let told = |measures: &[Measure]| measures.iter().map(|it| (it.name.to_owned(), json!(it.ulp))).collect::<serde_json::Map<_, _>>();
         json!({
             "loop_turns": self.loop_turns,
-            "error_ulp": measures.collect::<serde_json::Map<_, _>>(),
+            "error_ulp": told(&self.measures),
+            "error_ulp_f64": told(&self.measures_64),
             "lost_appends": self.lost_appends,
             "problems": self.problems(),
         })
@@ -103,8 +130,62 @@ pub fn run(device: &Device) -> Result<SelfTest> {
     let missing = seen.iter().filter(|it| !**it).count() as u32;
     run("arithmetic", POINTS, POINTS / WORKGROUP, 1)?;
     let results: Vec<f32> = device.fetch(&found, (POINTS * RESULTS) as usize)?;
-    Ok(SelfTest { loop_turns, measures: measure(&points, &results), lost_appends: wrong.max(missing) })
+    let exact: Vec<[f64; 2]> = points.iter().map(|point| point.map(f64::from)).collect();
+    let results: Vec<f64> = results.into_iter().map(f64::from).collect();
+    let measures = measure(&exact, &results, &SINGLE);
+    let found = SelfTest { loop_turns, measures, lost_appends: wrong.max(missing), measures_64: run_in_f64(device, &points)? };
+    if !found.trusts_f64() {
+        device.forgo_f64();
+    }
+    Ok(found)
 }
+
+/// The arithmetic in f64, on a device that has it.
+fn run_in_f64(device: &Device, points: &[[f32; 2]]) -> Result<Vec<Measure>> {
+    if !device.has_f64() {
+        return Ok(Vec::new());
+    }
+    let source = [&common(), &common_64(), &self_test_constants(), include_str!("../../shaders/self-test-64.wgsl")].join("\n");
+    let program = Program::new(device, &source, &["arithmetic_64"])?;
+    let given = device.storage("given", points);
+    let found = device.buffer("found", u64::from(POINTS) * u64::from(RESULTS) * 8, wgpu::BufferUsages::STORAGE);
+    let bound = program.bind(&[("given", &given), ("found", &found)]);
+    device.submit(|encoder| program.dispatch(encoder, "arithmetic_64", &bound, [POINTS / WORKGROUP, 1]));
+    let results: Vec<f64> = device.fetch(&found, (POINTS * RESULTS) as usize)?;
+    let number = |leading: f32, behind: f32| f64::from(leading) + f64::from(behind) / f64::from(1u32 << 30);
+    let points: Vec<[f64; 2]> = points.iter().map(|&[a, b]| [number(a, b), number(b, a)]).collect();
+    Ok(measure(&points, &results, &DOUBLE))
+}
+
+/// How the results of a precision are measured.
+struct UlpScale {
+    /// The distance from a number to the next.
+    ulp: fn(f64) -> f64,
+    /// How far sums and products may be off, in ULP.
+    rounding: f64,
+    /// How far all others may be off, if not what WGSL and our own functions say of f32.
+    others: Option<f64>,
+}
+
+#[allow(clippy::cast_possible_truncation, reason = "the spacing of f32 is asked for")]
+const SINGLE: UlpScale = UlpScale {
+    ulp: |exact| {
+        let near = (exact.abs() as f32).max(f32::MIN_POSITIVE);
+        f64::from(near.next_up()) - f64::from(near)
+    },
+    rounding: 0.5,
+    others: None,
+};
+
+/// In f64 the exact values are rounded themselves: a sum is the very same.
+const DOUBLE: UlpScale = UlpScale {
+    ulp: |exact| {
+        let near = exact.abs().max(f64::MIN_POSITIVE);
+        near.next_up() - near
+    },
+    rounding: 0.0,
+    others: Some(ULP_64 / 4.0),
+};
 
 /// Pairs of numbers: of all sizes, near 1, near each other, around multiples of pi/2.
 #[allow(clippy::cast_possible_truncation, clippy::cast_precision_loss, reason = "any numbers will do")]
@@ -127,8 +208,7 @@ fn points() -> Vec<[f32; 2]> {
 }
 
 /// Errors of the results in ULP of the exact value.
-#[allow(clippy::cast_possible_truncation, reason = "the spacing of f32 is asked for")]
-fn measure(points: &[[f32; 2]], results: &[f32]) -> Vec<Measure> {
+fn measure(points: &[[f64; 2]], results: &[f64], scale: &UlpScale) -> Vec<Measure> {
     type Exact = fn(f64, f64) -> f64;
     let cases: [(&'static str, f64, Exact); RESULTS as usize] = [
         ("sum", 0.5, |a, b| a + b),
@@ -140,15 +220,13 @@ fn measure(points: &[[f32; 2]], results: &[f32]) -> Vec<Measure> {
         ("ln_1p", FUNCTION_ULP, |a, _| libm::log1p(a.abs())),
         ("sine", FUNCTION_ULP, |a, _| libm::sin(a)),
         ("cosine", FUNCTION_ULP, |a, _| libm::cos(a)),
-        // The argument is a quotient of f32 numbers: its own rounding is allowed for.
+        // The argument is a quotient: its own rounding is allowed for.
         ("arc_sine", FUNCTION_ULP + 6.0, |a, _| libm::asin(a / (1.0 + a.abs()))),
     ];
     let worst = |number: usize, exact: Exact| {
         points.iter().enumerate().fold(0.0, |worst: f64, (at, &[a, b])| {
-            let exact = exact(f64::from(a), f64::from(b));
-            let near = (exact.abs() as f32).max(f32::MIN_POSITIVE);
-            let ulp = f64::from(near.next_up()) - f64::from(near);
-            let error = (f64::from(results[at * RESULTS as usize + number]) - exact).abs() / ulp;
+            let exact = exact(a, b);
+            let error = (results[at * RESULTS as usize + number] - exact).abs() / (scale.ulp)(exact);
             // A NaN must not hide behind a comparison.
             if error.is_nan() || worst.is_nan() { f64::NAN } else { worst.max(error) }
         })
@@ -157,7 +235,10 @@ fn measure(points: &[[f32; 2]], results: &[f32]) -> Vec<Measure> {
     cases
         .iter()
         .enumerate()
-        .map(|(number, &(name, allowed, exact))| Measure { name, ulp: worst(number, exact), allowed: allowed + 0.01 })
+        .map(|(number, &(name, allowed, exact))| {
+            let allowed = if number < ROUNDED { scale.rounding } else { scale.others.unwrap_or(allowed) };
+            Measure { name, ulp: worst(number, exact), allowed: allowed + 0.01 }
+        })
         .collect()
 }
 
@@ -167,7 +248,7 @@ mod tests {
 
     fn good() -> SelfTest {
         let measures = vec![Measure { name: "sum", ulp: 0.5, allowed: 0.51 }];
-        SelfTest { loop_turns: LOOPS, measures, lost_appends: 0 }
+        SelfTest { loop_turns: LOOPS, measures, lost_appends: 0, measures_64: Vec::new() }
     }
 
     #[test]
@@ -192,14 +273,42 @@ mod tests {
             use crate::real::functions::{cosine, exp_m1, ln_1p, sine};
             [a + b, a - b, a * b, a / b, a.abs().sqrt(), exp_m1(a), ln_1p(a.abs()), sine(a), cosine(a), f(c)]
         };
-        let mut results: Vec<f32> = points.iter().flat_map(|&point| exact(point)).collect();
-        let clean = measure(&points, &results);
-        assert!(clean.iter().all(|it| it.ulp <= it.allowed), "{clean:?}");
+        let mut results: Vec<f64> = points.iter().flat_map(|&point| exact(point)).map(f64::from).collect();
+        let points: Vec<[f64; 2]> = points.iter().map(|point| point.map(f64::from)).collect();
+        let clean = measure(&points, &results, &SINGLE);
+        assert!(clean.iter().all(Measure::is_kept), "{clean:?}");
         for number in 0..5 {
             let kept = results[number];
-            results[number] = f32::from_bits(kept.to_bits() + 6);
-            assert!(measure(&points, &results)[number].ulp > clean[number].allowed, "{}", clean[number].name);
+            results[number] = f64::from(f32::from_bits((kept as f32).to_bits() + 6));
+            assert!(measure(&points, &results, &SINGLE)[number].ulp > clean[number].allowed, "{}", clean[number].name);
             results[number] = kept;
+        }
+    }
+
+    #[test]
+    fn f64_is_trusted_only_where_it_is_as_accurate_as_kernels_rely_on() {
+        let points: Vec<[f64; 2]> = points().iter().map(|&[a, b]| [f64::from(a) + 1e-9, f64::from(b) + 1e-9]).collect();
+        let exact = |&[a, b]: &[f64; 2]| {
+            let of = a / (1.0 + a.abs());
+            use libm::{asin, cos, expm1, log1p, sin, sqrt};
+            [a + b, a - b, a * b, a / b, sqrt(a.abs()), expm1(a), log1p(a.abs()), sin(a), cos(a), asin(of)]
+        };
+        let mut results: Vec<f64> = points.iter().flat_map(exact).collect();
+        let found = |results: &[f64]| SelfTest { measures_64: measure(&points, results, &DOUBLE), ..good() };
+        assert!(found(&results).trusts_f64() && !good().trusts_f64());
+        for number in 0..RESULTS as usize {
+            // Where f32 does not happen to hold the result.
+            let places = || (number..results.len()).step_by(RESULTS as usize);
+            let lost = |at: &usize| (f64::from(results[*at] as f32) - results[*at]).abs() > 1e-9 * results[*at].abs();
+            let at = places().find(lost).expect("f32 loses digits of most numbers");
+            let kept = results[at];
+            let off = if number < ROUNDED { 1 } else { ULP_64 as u64 };
+            // What a device gives that computes in f32, and what is farther off than the bounds of a kernel say.
+            for wrong in [f64::from(kept as f32), f64::from_bits(kept.to_bits() + off), f64::NAN] {
+                results[at] = wrong;
+                assert!(!found(&results).trusts_f64() && found(&results).problems().is_empty(), "{number}: {wrong} for {kept}");
+            }
+            results[at] = kept;
         }
     }
 }

@@ -1,8 +1,9 @@
 //! The texts of the shaders, and the declarations that follow from a model's Rust records.
 
-use super::constants::common_constants;
+use super::constants::{common_constants, constants_64};
 use crate::models::{Fields, Model, Set};
 use crate::tape::{Recordable, StageLists, wgsl};
+use std::collections::HashSet;
 use std::fmt::Write;
 
 /// Most steps of the search for a root, as on the CPU.
@@ -25,15 +26,68 @@ pub fn common_with(newton_steps: u32) -> String {
     .join("\n")
 }
 
+/// What a first stage in f64 needs besides [`common`].
+pub fn common_64() -> String {
+    [&constants_64(), &in_f64(include_str!("../../shaders/common/numbers.wgsl")), include_str!("../../shaders/common/functions-64.wgsl")]
+        .join("\n")
+}
+
+/// A text on bounded numbers of f32 as one on those of f64: f64 stands for f32, and what `shaders/common/numbers.wgsl` and the texts that go
+/// with it declare is called what it is with `_64` behind it.
+pub fn in_f64(text: &str) -> String {
+    let declared = |text: &'static str| {
+        let names = text.lines().filter_map(|line| ["fn ", "struct ", "const "].iter().find_map(|word| line.strip_prefix(word)));
+        names.map(|rest| rest.split(|it: char| !is_of_name(it)).next().unwrap_or_default())
+    };
+    let shared =
+        declared(include_str!("../../shaders/common/numbers.wgsl")).chain(declared(include_str!("../../shaders/common/functions.wgsl")));
+    let names: HashSet<&str> =
+        shared.chain(["ROUNDING", "DIVISION", "SQUARE_ROOT", "FUNCTION", "FLUSH", "LARGEST_DIVISOR", "Inputs", "Prepared"]).collect();
+    let mut written = String::with_capacity(text.len() * 5 / 4);
+    let mut rest = text;
+    while let Some(begin) = rest.find(is_of_name) {
+        written.push_str(&rest[..begin]);
+        let name = rest[begin..].split(|it: char| !is_of_name(it)).next().unwrap_or_default();
+        // What stands behind a point is a member.
+        let is_member = rest[..begin].ends_with('.');
+        match name {
+            "f32" => written.push_str("f64"),
+            _ if !is_member && names.contains(name) => {
+                written.push_str(name);
+                written.push_str("_64");
+            }
+            _ => written.push_str(name),
+        }
+        rest = &rest[begin + name.len()..];
+    }
+    written + rest
+}
+
+fn is_of_name(it: char) -> bool {
+    it.is_ascii_alphanumeric() || it == '_'
+}
+
 /// The text of a model, written from its recorded formula.
 pub fn model_source(model: &Model, formula: &dyn Recordable) -> String {
     stages_source(model, &formula.fields(), &StageLists::whole(formula, model.conditions.len()))
 }
 
+/// The same from lists of its formula, but for the first stage, which is in f64; `None` if it cannot be.
+pub fn stages_source_64(model: &Model, fields: &Fields, lists: &StageLists) -> Option<String> {
+    let first = wgsl::first_stage_in_f64(&wgsl::StageNames { prepare: "prepare_64", ..wgsl::OWN }, fields, &lists.first)?;
+    let mut records = String::new();
+    structure(&mut records, "Inputs", fields.inputs);
+    structure(&mut records, "Prepared", fields.prepared);
+    Some(common_64() + "\n" + &in_f64(&(records + &first)) + &wgsl::second_stage(&wgsl::OWN, fields, lists, &equations(model)))
+}
+
+fn equations(model: &Model) -> Vec<&str> {
+    model.outputs.iter().map(|output| output.source.as_str()).collect()
+}
+
 /// The same from lists of its formula.
 pub fn stages_source(model: &Model, fields: &Fields, lists: &StageLists) -> String {
-    let equations: Vec<_> = model.outputs.iter().map(|output| output.source.as_str()).collect();
-    wgsl::stages_text(&wgsl::OWN, fields, lists, &equations)
+    wgsl::stages_text(&wgsl::OWN, fields, lists, &equations(model))
 }
 
 /// A structure of `Real`s.
@@ -85,4 +139,16 @@ pub fn tables(fields: &Fields, entry: impl Fn(usize, &str) -> Option<String>) ->
         write!(text, "{set}\nfn {table}(p: Prepared, at: u32) -> Real {{\n    return {get};\n}}\n\n").expect("a text takes everything");
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::in_f64;
+
+    #[test]
+    fn a_text_in_f64_calls_what_is_shared_otherwise_and_nothing_else() {
+        let single = "fn made(i: Inputs, add_: f32) -> Prepared {\n    p.add = add(i.add, Real(add_, FLUSH)); // add\n}";
+        let double = "fn made(i: Inputs_64, add_: f64) -> Prepared_64 {\n    p.add = add_64(i.add, Real_64(add_, FLUSH_64)); // add_64\n}";
+        assert_eq!(in_f64(single), double);
+    }
 }

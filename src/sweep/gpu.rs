@@ -22,8 +22,10 @@ use std::time::{Duration, Instant};
 const FIRST_TILE: u64 = 80_000;
 /// How long a tile should take.
 const TILE_TIME: Duration = Duration::from_millis(60);
-/// Least evaluations that a thread is started for, and least survivors to be looked through.
-const LEAST_SHARE: u64 = 1 << 13;
+/// Least survivors to be looked through that a thread is started for.
+const LEAST_SHARE: usize = 1 << 11;
+/// Least evaluations that a thread is started for.
+const LEAST_EVALUATIONS: u64 = 1 << 9;
 
 /// A device that a study is to be swept on.
 #[derive(Clone, Debug)]
@@ -183,12 +185,7 @@ impl Run<'_, '_> {
         let mut most = u64::MAX;
         let mut host_time = Duration::ZERO;
         loop {
-            while flying.len() < 2 && !control.stop.load(Ordering::Relaxed) {
-                let Some(first) = work.todo.first() else { break };
-                let tile = self.engine.tile(&first, size);
-                work.todo.take(tile.end - tile.start);
-                flying.push_back((self.engine.start(tile, &answers), Instant::now()));
-            }
+            self.start_tiles(&mut flying, work, size, &answers, control);
             let Some((tile, begun)) = flying.pop_front() else { return Ok(()) };
             let waiting = Instant::now();
             let finished = self.engine.finish(&tile);
@@ -214,6 +211,8 @@ impl Run<'_, '_> {
                 work.todo.add(range);
                 continue;
             };
+            // The device goes on while the survivors are looked through.
+            self.start_tiles(&mut flying, work, size, &answers, control);
             let host = Instant::now();
             self.take_in(work, &counts, &survivors)?;
             self.record.tiles += 1;
@@ -225,6 +224,23 @@ impl Run<'_, '_> {
             let wanted = TILE_TIME.max(2 * host_time).as_secs_f64();
             let fitting = designs as f64 * wanted / device_time.as_secs_f64().max(1e-4);
             size = (fitting as u64).clamp(size / 4, size.saturating_mul(4)).clamp(least.min(most), most);
+        }
+    }
+
+    /// Hands over tiles until two are in flight.
+    fn start_tiles(
+        &mut self,
+        flying: &mut VecDeque<(InFlight, Instant)>,
+        work: &mut SweepWork<'_>,
+        size: u64,
+        answers: &Answers,
+        control: &Control,
+    ) {
+        while flying.len() < 2 && !control.stop.load(Ordering::Relaxed) {
+            let Some(first) = work.todo.first() else { return };
+            let tile = self.engine.tile(&first, size);
+            work.todo.take(tile.end - tile.start);
+            flying.push_back((self.engine.start(tile, answers), Instant::now()));
         }
     }
 
@@ -240,7 +256,7 @@ impl Run<'_, '_> {
         let (front, objectives) = (&work.reducers.front, plan.study.objectives.len());
         let on_front = |it: &Survivor| it.front.is_some_and(|keys| !front.beats(&lower_keys(plan, &keys)[..objectives]));
         let cells = BestCells::new(plan, survivors);
-        let looked = in_shares(survivors.len(), LEAST_SHARE as usize, self.threads, |part| {
+        let looked = in_shares(survivors.len(), LEAST_SHARE, self.threads, |part| {
             let (mut sure, mut unsure) = (Vec::new(), Vec::new());
             for it in part.map(|at| survivors.get(at)) {
                 if it.unsure {
@@ -271,11 +287,8 @@ impl Run<'_, '_> {
         let absorb = |reducers: &mut Reducers, block: &crate::screen::Block<'_>| {
             if counted { reduction.absorb_counted(reducers, block) } else { reduction.absorb(reducers, block) }
         };
-        // Each share begins with a front and reducers of its own, and ends with merging them.
-        let front = reducers.front.points();
-        let front = (front.keys.len() + front.len()) as u64;
-        let own = reducers.reported.size();
-        let least = LEAST_SHARE.max(own + front).div_ceil(plan.scenarios()) as usize;
+        // Each share begins with reducers of its own, and ends with merging them.
+        let least = (LEAST_EVALUATIONS + reducers.reported.size()).div_ceil(plan.scenarios()) as usize;
         let mut feasible = 0;
         if positions.len() < 2 * least || self.threads == 1 {
             self.host.screen_some(positions, |block| {
@@ -284,7 +297,11 @@ impl Run<'_, '_> {
             });
             return feasible;
         }
-        let known = reducers.front.points().clone();
+        // A long share knows the front so far, and drops what it beats; a short one has less to drop than there is to copy.
+        let front = reducers.front.points();
+        let words = front.keys.len() + front.len();
+        let shares = positions.len().div_ceil(least).min(self.threads);
+        let known = if positions.len() / shares * plan.scenarios() as usize > words { front.clone() } else { Points::default() };
         let parts: Vec<(State, u64)> = in_shares(positions.len(), least, self.threads, |part| {
             let (mut own, mut feasible) = (reduction.start_after(known.clone()), 0);
             CpuEngine::new(plan, tables).screen_some(&positions[part], |block| {

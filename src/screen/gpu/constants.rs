@@ -12,7 +12,7 @@ pub const WINDOW: u64 = 1 << 20;
 /// bound of its root, and the draw is left to f64.
 pub const NEWTON_STEPS_OF_DRAWS: u32 = 8;
 
-/// A device's entry of one level of one input: value and bound in SI, value in its unit, 1 if constraints on inputs allow it.
+/// A device's entry of one level of one input: value in SI, what f32 loses of it, value in its unit, 1 if constraints on inputs allow it.
 pub type Level = [f32; 4];
 
 shared_constants! {

@@ -24,8 +24,8 @@ use std::ops::Range;
 
 /// Most bytes of the table that passes between the stages.
 const PREPARED_BYTES: u64 = 64 << 20;
-/// Survivors that come back with the counts; more take a second trip.
-const FIRST_TRIP: u64 = 1 << 14;
+/// Least survivors that come back with the counts. As many come as twice those of the tile before; more take a second trip.
+const LEAST_TRIP: u64 = 1 << 14;
 /// Room for survivors of a tile.
 const CAPACITY: u64 = 1 << 20;
 /// Most designs of a tile: counts and places are 32-bit numbers.
@@ -139,6 +139,8 @@ pub struct InFlight {
     pub range: Range<u64>,
     rows: Range<u64>,
     slot: usize,
+    /// Words that come back at once.
+    words: usize,
     wait: Wait,
 }
 
@@ -188,6 +190,8 @@ pub struct GpuEngine<'p> {
     counted: Vec<usize>,
     words: usize,
     most_rows: u64,
+    /// Survivors that come back with a tile's counts.
+    trip: u64,
 }
 
 /// Faults put into a kernel on purpose: `--perturb` and the tests show that they are noticed.
@@ -198,7 +202,7 @@ pub struct Wrong {
     /// Pieces of the kernel's text to be replaced.
     #[cfg(feature = "testing")]
     pub replace: Vec<(String, String)>,
-    /// Judge lanes in groups also where the study is small.
+    /// Judge lanes in groups also where the study is small, and in runs also on a software device.
     #[cfg(feature = "testing")]
     pub grouped: bool,
     /// Room for survivors, if not the usual.
@@ -260,9 +264,9 @@ impl<'p> GpuEngine<'p> {
     /// [`Error::Gpu`](crate::error::Error::Gpu) if the device fails.
     pub fn new(plan: &'p Plan, ranges: &[(f64, f64)], device: &Device, limited_loops: bool, wrong: &Wrong) -> Result<Self> {
         supports_report(plan)?;
-        let layout = KernelLayout::new(plan, limited_loops, wrong.is_grouped())?;
+        let layout = KernelLayout::new(plan, limited_loops, wrong.is_grouped(), device.is_hardware || wrong.is_grouped())?;
         supports_histograms(plan, ranges)?;
-        let source = wrong.text(kernel_text(plan, &layout, ranges, &wrong.perturb));
+        let source = wrong.text(kernel_text(plan, &layout, ranges, device.has_f64(), &wrong.perturb));
         let program = Program::new(device, &source, ENTRIES)?;
         program.require_structure("Tile", size_of::<Tile>(), &Tile::MEMBERS)?;
         program.require_structure("KnownUniform", size_of::<KnownUniform>(), &KnownUniform::MEMBERS)?;
@@ -306,7 +310,7 @@ impl<'p> GpuEngine<'p> {
             let dominator_table = device.buffer("dominator_table", list * 4, storage);
             let counts = device.buffer("counts", count_words * 4, storage);
             let survivors = device.buffer("survivors", capacity * words as u64 * 4, storage);
-            let landing = device.landing("landing", count_words * 4 + FIRST_TRIP.min(capacity) * survivor_words(plan) as u64 * 4);
+            let landing = device.landing("landing", count_words * 4 + capacity * survivor_words(plan) as u64 * 4);
             let bound = program.bind(&[
                 ("tile", &tile),
                 ("known", &known),
@@ -340,6 +344,7 @@ impl<'p> GpuEngine<'p> {
             counted,
             words,
             most_rows,
+            trip: LEAST_TRIP,
         })
     }
 
@@ -351,14 +356,14 @@ impl<'p> GpuEngine<'p> {
     /// The longest tile that starts at `range.start`, lies within `range` and has about `designs` designs.
     pub fn tile(&self, range: &Range<u64>, designs: u64) -> Range<u64> {
         let width = self.plan.fast.count();
-        let cut = self.layout.cut;
+        let widest = self.layout.widest();
         let wanted = designs.clamp(1, MOST_DESIGNS).min(range.end - range.start);
         let inside = range.start % width;
-        if inside != 0 || wanted < width || width > cut.widest() {
+        if inside != 0 || wanted < width || width > widest {
             // Part of one row.
-            return range.start..range.start + wanted.min(width - inside).min(cut.widest());
+            return range.start..range.start + wanted.min(width - inside).min(widest);
         }
-        let rows = (wanted / width).min(self.most_rows).min(MOST_GROUPS * cut.group_rows);
+        let rows = (wanted / width).min(self.most_rows).min(self.layout.most_rows());
         range.start..range.start + rows * width
     }
 
@@ -378,8 +383,8 @@ impl<'p> GpuEngine<'p> {
         let (rows, groups) = self.place(slot, &range);
         let it = &self.slots[slot];
         let counts = self.count_words * 4;
-        let trip = it.landing.size() - counts.next_multiple_of(4);
-        let trip = trip.min(it.survivors.size()) / 4 * 4;
+        let trip = self.trip * survivor_words(self.plan) as u64 * 4;
+        let trip = trip.min(it.landing.size() - counts).min(it.survivors.size());
         let wait = self.device.submit(|encoder| {
             encoder.copy_buffer_to_buffer(&self.zeros, 0, &it.counts, 0, counts);
             self.first_stage(encoder, it, &rows);
@@ -387,7 +392,7 @@ impl<'p> GpuEngine<'p> {
             encoder.copy_buffer_to_buffer(&it.counts, 0, &it.landing, 0, counts);
             encoder.copy_buffer_to_buffer(&it.survivors, 0, &it.landing, counts, trip);
         });
-        InFlight { range, rows, slot, wait }
+        InFlight { range, rows, slot, words: ((counts + trip) / 4) as usize, wait }
     }
 
     fn first_stage(&self, encoder: &mut wgpu::CommandEncoder, slot: &Slot, rows: &Range<u64>) {
@@ -418,7 +423,7 @@ impl<'p> GpuEngine<'p> {
             tile.window = self.window.start as u32;
         }
         self.device.write(&self.slots[slot].tile, 0, &[tile]);
-        let groups = self.layout.cut.groups(rows.end - rows.start, lanes.end - lanes.start);
+        let groups = self.layout.groups(rows.end - rows.start, lanes.end - lanes.start);
         (rows, groups)
     }
 
@@ -439,20 +444,22 @@ impl<'p> GpuEngine<'p> {
     ///
     /// # Errors
     /// [`Error::Gpu`](crate::error::Error::Gpu).
-    pub fn finish(&self, tile: &InFlight) -> Result<Option<(TileCounts, Survivors)>> {
+    pub fn finish(&mut self, tile: &InFlight) -> Result<Option<(TileCounts, Survivors)>> {
         let slot = &self.slots[tile.slot];
         let words = survivor_words(self.plan);
-        let landed: Vec<u32> = self.device.read(&slot.landing, (slot.landing.size() / 4) as usize, &tile.wait)?;
-        let (counts, first_trip) = landed.split_at(self.count_words as usize);
+        let counted = self.count_words as usize;
+        // Of what came back at once only the survivors that there are get copied.
+        let used = |landed: &[u32]| landed.len().min(counted + words * landed[APPENDED as usize] as usize);
+        let mut landed: Vec<u32> = self.device.read_some(&slot.landing, tile.words, &tile.wait, used)?;
+        let first_trip = landed.split_off(counted);
+        let counts = landed;
         let appended = counts[APPENDED as usize] as usize;
+        self.trip = (2 * appended as u64).max(LEAST_TRIP);
         if appended as u64 > slot.survivors.size() / (4 * words as u64) {
             return Ok(None);
         }
-        let records = if appended * words <= first_trip.len() {
-            first_trip[..appended * words].to_vec()
-        } else {
-            self.device.fetch(&slot.survivors, appended * words)?
-        };
+        let records =
+            if appended * words <= first_trip.len() { first_trip } else { self.device.fetch(&slot.survivors, appended * words)? };
         let mut rest = &counts[FIRST_REPORTED as usize..];
         let mut take = |count: usize| {
             let (taken, left) = rest.split_at(count);
@@ -530,7 +537,7 @@ pub fn supports(plan: &Plan, limited_loops: bool) -> Result<()> {
     let given = plan.study.report.histograms.iter().map(|it| it.range.unwrap_or((0.0, 1.0))).collect::<Vec<_>>();
     supports_report(plan)?;
     supports_histograms(plan, &given)?;
-    KernelLayout::new(plan, limited_loops, false).map(|_| ())
+    KernelLayout::new(plan, limited_loops, false, false).map(|_| ())
 }
 
 /// Does the study ask for nothing but worst values, counts and candidates?
@@ -557,9 +564,9 @@ pub fn supports_histograms(plan: &Plan, ranges: &[(f64, f64)]) -> Result<()> {
 pub fn kernel_of(plan: &Plan, ranges: &[(f64, f64)], perturb: &[(usize, f64)]) -> Result<String> {
     supports_report(plan)?;
     supports_histograms(plan, ranges)?;
-    Ok(kernel_text(plan, &KernelLayout::new(plan, true, false)?, ranges, perturb))
+    Ok(kernel_text(plan, &KernelLayout::new(plan, true, false, false)?, ranges, false, perturb))
 }
 
-fn kernel_text(plan: &Plan, layout: &KernelLayout, ranges: &[(f64, f64)], perturb: &[(usize, f64)]) -> String {
-    kernel::histogram_constants(plan, ranges) + &text(plan, layout, perturb)
+fn kernel_text(plan: &Plan, layout: &KernelLayout, ranges: &[(f64, f64)], f64: bool, perturb: &[(usize, f64)]) -> String {
+    kernel::histogram_constants(plan, ranges) + &text(plan, layout, f64, perturb)
 }

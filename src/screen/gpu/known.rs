@@ -69,13 +69,12 @@ pub fn known(plan: &Plan, coordinates: &[Coordinate], is_exact: impl Fn(Quantity
     let mut known = KnownUniform::zeroed();
     known.dominators = [[f32::INFINITY; 8]; DOMINATORS];
     // Sorted by the first coordinate, as the front is: the kernel relies on it where there are two.
-    let points: Vec<Vec<f32>> = answers
+    let thresholds = answers
         .front
         .chunks(dimensions.max(1))
-        .map(|key| {
-            key.iter().zip(objectives).zip(coordinates).map(|((&key, it), &coordinate)| threshold(plan, it, coordinate, key)).collect()
-        })
-        .collect();
+        .flat_map(|key| key.iter().zip(objectives).zip(coordinates).map(|((&key, it), &coordinate)| threshold(plan, it, coordinate, key)));
+    let thresholds: Vec<f32> = thresholds.collect();
+    let points: Vec<&[f32]> = thresholds.chunks(dimensions.max(1)).collect();
     for (dominator, point) in known.dominators.iter_mut().zip(chosen(&points, DOMINATORS)) {
         dominator[..dimensions].copy_from_slice(point);
     }
@@ -112,10 +111,10 @@ pub fn known(plan: &Plan, coordinates: &[Coordinate], is_exact: impl Fn(Quantity
 }
 
 /// Points spread over the front: for each coordinate in turn those at even ranks of it, so that none lies far from one of them.
-fn chosen(points: &[Vec<f32>], count: usize) -> Vec<&[f32]> {
-    let dimensions = points.first().map_or(0, Vec::len);
+fn chosen<'a>(points: &[&'a [f32]], count: usize) -> Vec<&'a [f32]> {
+    let dimensions = points.first().map_or(0, |point| point.len());
     if points.len() <= count {
-        return points.iter().map(Vec::as_slice).collect();
+        return points.to_vec();
     }
     // On a curve one coordinate says where a point is; on a surface every coordinate gets its share.
     let ranked = if dimensions == 2 { 1 } else { dimensions };
@@ -125,7 +124,7 @@ fn chosen(points: &[Vec<f32>], count: usize) -> Vec<&[f32]> {
         order.sort_by(|&a, &b| points[a][dimension].total_cmp(&points[b][dimension]));
         let share = count / ranked + usize::from(dimension < count % ranked);
         for place in 0..share {
-            chosen.push(&points[order[(2 * place + 1) * points.len() / (2 * share)]]);
+            chosen.push(points[order[(2 * place + 1) * points.len() / (2 * share)]]);
         }
     }
     chosen
@@ -134,7 +133,7 @@ fn chosen(points: &[Vec<f32>], count: usize) -> Vec<&[f32]> {
 /// The table: per bin (or pair of bins) the least last coordinate of the points that are certainly better in the others. A point
 /// counts from two bins above its own, so that no rounding of the bins' places on either side matters.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, reason = "bins are few")]
-fn table(points: &[Vec<f32>], bins: usize, dimensions: usize) -> ([f32; 4], Vec<f32>) {
+fn table(points: &[&[f32]], bins: usize, dimensions: usize) -> ([f32; 4], Vec<f32>) {
     let binned = dimensions - 1;
     let size = bins.pow(binned as u32);
     let mut cells = vec![f32::INFINITY; size];
@@ -151,9 +150,9 @@ fn table(points: &[Vec<f32>], bins: usize, dimensions: usize) -> ([f32; 4], Vec<
         place.clamp(0.0, (bins - 1) as f32) as usize + 2
     };
     for point in points {
-        let at: Vec<usize> = (0..binned).map(|dimension| bin(point, dimension)).collect();
-        if at.iter().all(|&bin| bin < bins) {
-            let cell = at.iter().fold(0, |cell, bin| cell * bins + bin);
+        let at = (0..binned).map(|dimension| bin(point, dimension));
+        if at.clone().all(|bin| bin < bins) {
+            let cell = at.fold(0, |cell, bin| cell * bins + bin);
             cells[cell] = cells[cell].min(point[dimensions - 1]);
         }
     }
@@ -206,7 +205,8 @@ mod tests {
             let beats = |a: &[f32], b: &[f32]| a.iter().zip(b).all(|(a, b)| a < b);
             let front: Vec<Vec<f32>> = all.iter().filter(|b| !all.iter().any(|a| beats(a, b))).cloned().collect();
             let bins = BINS_FOR_TEST[dimensions as usize - 2];
-            let (place, cells) = table(&front, bins, dimensions as usize);
+            let points: Vec<&[f32]> = front.iter().map(Vec::as_slice).collect();
+            let (place, cells) = table(&points, bins, dimensions as usize);
             let beaten = |point: &[f32]| {
                 let bin = |d: usize| ((point[d] - place[2 * d]) * place[2 * d + 1]).clamp(0.0, (bins - 1) as f32) as usize;
                 let cell = (0..dimensions as usize - 1).fold(0, |cell, d| cell * bins + bin(d));
@@ -219,5 +219,5 @@ mod tests {
         }
     }
 
-    const BINS_FOR_TEST: [usize; 2] = [16_384, 256];
+    const BINS_FOR_TEST: [usize; 2] = [65_536, 256];
 }

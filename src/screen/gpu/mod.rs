@@ -1,4 +1,4 @@
-//! Screening on a GPU, in f32 with bounds.
+//! Screening on a GPU, in f32 with bounds; what many designs share in f64 where the device has it.
 //!
 //! The device judges every design over all scenarios with three-valued decisions, counts what is surely feasible and hands back
 //! the few designs that are unsure or may be part of an answer: those go to f64. Nothing that it computes is reported.

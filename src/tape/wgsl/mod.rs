@@ -64,6 +64,15 @@ const TAKEN: &[&str] = &[
     "x",
 ];
 
+/// The precision of a function's constants.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Precision {
+    /// As f32 has them, with what it loses.
+    Single,
+    /// As they are.
+    Double,
+}
+
 /// How a list's numbers are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Arithmetic {
@@ -107,15 +116,23 @@ pub const OWN: StageNames = StageNames {
 
 /// The same of a formula's lists.
 pub fn stages_text(names: &StageNames, fields: &Fields, lists: &StageLists, equations: &[&str]) -> String {
-    first_stage(names, fields, &lists.first) + &second_stage(names, fields, lists, equations)
+    first_stage(names, fields, &lists.first, Precision::Single) + &second_stage(names, fields, lists, equations)
 }
 
-fn first_stage(names: &StageNames, fields: &Fields, list: &List) -> String {
+/// The first stage alone, with constants that f32 does not hold: for arithmetic in f64, which it must be rewritten for. `None` if it has
+/// loops or tables.
+pub fn first_stage_in_f64(names: &StageNames, fields: &Fields, list: &List) -> Option<String> {
+    let is_rolled = |operation: &Operation| matches!(operation, Operation::Rolled(_));
+    let plain = fields.tables.is_empty() && !list.operations.iter().any(is_rolled);
+    plain.then(|| first_stage(names, fields, list, Precision::Double))
+}
+
+fn first_stage(names: &StageNames, fields: &Fields, list: &List, precision: Precision) -> String {
     let leaf = |input: usize, _: &str| format!("i.{}", fields.inputs[input]);
     let results: Vec<Assignment> =
         fields.prepared.iter().map(|field| Assignment { to: format!("p.{field}"), name: field, equation: "" }).collect();
     let StageNames { prepare, prepared, .. } = names;
-    let mut writer = Writer::new(prepare, fields, list, &leaf, &results);
+    let mut writer = Writer { precision, ..Writer::new(prepare, fields, list, &leaf, &results) };
     for (&result, (table, _)) in list.results[results.len()..].iter().flatten().zip(fields.tables) {
         writer.tables.insert(list.table(result), table);
     }
@@ -123,7 +140,8 @@ fn first_stage(names: &StageNames, fields: &Fields, list: &List) -> String {
     writer.text()
 }
 
-fn second_stage(names: &StageNames, fields: &Fields, lists: &StageLists, equations: &[&str]) -> String {
+/// The text of the second stage.
+pub fn second_stage(names: &StageNames, fields: &Fields, lists: &StageLists, equations: &[&str]) -> String {
     let StageNames { prepared, conditions: of_conditions, count, finish: of_finish, outputs, .. } = names;
     let inputs = fields.inputs.len();
     let fields_passed: Vec<(usize, usize)> = fields.places().collect();
@@ -171,6 +189,7 @@ struct Assignment<'a> {
 struct Writer<'a> {
     /// The function that is written.
     stage: &'static str,
+    precision: Precision,
     list: &'a List,
     /// What an input is called; of one in a table, given the index.
     leaf: &'a dyn Fn(usize, &str) -> String,
@@ -224,7 +243,7 @@ impl<'a> Writer<'a> {
         let tables = fields.tables.iter().map(|&(table, _)| table).chain(list.tables.iter().map(|table| table.name));
         let taken = TAKEN.iter().copied().chain(tables).map(str::to_owned).collect();
         let (roots, text, tables, written, names, given) = Default::default();
-        let mut writer = Self { stage, list, leaf, tables, written, reads, names, given, taken, roots, text };
+        let mut writer = Self { stage, precision: Precision::Single, list, leaf, tables, written, reads, names, given, taken, roots, text };
         for (node, name) in list.names.iter().enumerate() {
             if let Some((name, _)) = name {
                 writer.call(node as Node, name);
@@ -290,7 +309,7 @@ impl<'a> Writer<'a> {
         match self.list.operations[node as usize] {
             Operation::Input(input) => (self.leaf)(input.into(), ""),
             Operation::Rolled(rolled) => self.rolled(rolled),
-            Operation::Constant(bits) => constant(f64::from_bits(bits), arithmetic),
+            Operation::Constant(bits) => constant(f64::from_bits(bits), arithmetic, self.precision),
             Operation::Argument(_) => "x".to_owned(),
             Operation::Root(number) => self.root(node, number, arithmetic),
             Operation::Unary(operation, a) => {
@@ -385,6 +404,7 @@ impl<'a> Writer<'a> {
 
         let mut inside = Writer {
             stage: self.stage,
+            precision: self.precision,
             list,
             leaf: self.leaf,
             tables: HashMap::new(),
@@ -481,7 +501,14 @@ fn broken(line: &str, indent: &str) -> String {
 }
 
 /// A constant: exact in f32, or with what f32 loses of it.
-fn constant(value: f64, arithmetic: Arithmetic) -> String {
+fn constant(value: f64, arithmetic: Arithmetic, precision: Precision) -> String {
+    if precision == Precision::Double {
+        return match arithmetic {
+            Arithmetic::Plain if value < 0.0 => format!("({value:?}lf)"),
+            Arithmetic::Plain => format!("{value:?}lf"),
+            Arithmetic::Bounded => format!("constant({value:?}lf)"),
+        };
+    }
     let (near, bound) = nearest_f32(value);
     match arithmetic {
         Arithmetic::Plain if near < 0.0 => format!("({near:?})"),

@@ -1,6 +1,6 @@
 //! Every check is given a wrong answer and must notice it.
 
-use super::{Prepared, SMALL, device, larger, wrong};
+use super::{Prepared, RUNS, SMALL, device, larger, wrong};
 use beltspace::error::Error;
 use beltspace::gpu::PointKernel;
 use beltspace::models::{self, Model, find};
@@ -77,8 +77,13 @@ fn every_output_that_is_perturbed_is_named() {
 
 /// The sweep of the first small study with a wrong kernel, which must fail.
 fn refused(piece: &str, other: &str) -> String {
-    let on = wrong(Wrong { replace: vec![(piece.to_owned(), other.to_owned())], ..Wrong::default() });
-    message(&on, other)
+    refused_with(&[(piece, other)])
+}
+
+/// The same with several pieces of the kernel replaced.
+fn refused_with(pieces: &[(&str, &str)]) -> String {
+    let replace = pieces.iter().map(|&(piece, other)| (piece.to_owned(), other.to_owned())).collect();
+    message(&wrong(Wrong { replace, ..Wrong::default() }), pieces[0].1)
 }
 
 fn message(on: &OnDevice, what: &str) -> String {
@@ -92,11 +97,15 @@ fn message(on: &OnDevice, what: &str) -> String {
 #[test]
 fn a_sweep_objects_to_dropped_candidates_wrong_counts_and_wrong_bounds() {
     // Survivors that are not handed over: unsure ones change a count, others are missed in the end.
-    let dropped = refused("            if why != 0u {", "            if why != 0u && (why & IS_UNSURE) == 0u && lane % 3u != 1u {");
+    // With a first stage in f64 hardly any is unsure: its bounds are made wider.
+    let dropped = refused_with(&[
+        ("        if why != 0u {", "        if why != 0u && (why & IS_UNSURE) == 0u {"),
+        ("f32(away) * 1.000001 + FLUSH, 0.0, away == 0.0)", "f32(away) + 1e-5 * abs(near), 0.0, away == 0.0)"),
+    ]);
     assert!(dropped.contains("unsure designs and handed over"), "{dropped}");
-    let lost = refused("            if why != 0u {", "            if why != 0u && (why == IS_UNSURE || lane % 9u != 4u) {");
+    let lost = refused("        if why != 0u {", "        if why != 0u && (why == IS_UNSURE || lane % 9u != 4u) {");
     assert!(lost.contains("belongs to the"), "{lost}");
-    let count = refused("sure_count += countOneBits(seen.sure);", "sure_count += countOneBits(seen.sure & 0xfffffffeu);");
+    let count = refused("var sure_count = countOneBits(seen.sure);", "var sure_count = countOneBits(seen.sure & 0xfffffffeu);");
     assert!(count.contains("counts") && count.contains("feasible designs, f64 counts"), "{count}");
     let bins = refused("let middle = (number.value - low.value) * per_unit;", "let middle = (number.value - low.value) * per_unit + 0.2;");
     assert!(bins.contains("designs in a bin") || bins.contains("feasible"), "{bins}");
@@ -117,6 +126,34 @@ fn a_device_that_draws_another_sample_is_noticed() {
     ] {
         let message = refused(piece, other);
         assert!(message.contains("belongs to the sample"), "{message}");
+    }
+}
+
+#[test]
+fn a_wrong_first_stage_in_f64_is_noticed() {
+    assert!(device().device.has_f64(), "lavapipe computes in f64");
+    for pieces in [
+        &[("r * z * (-1.0 / 6.0 + z * (1.0 / 120.0", "r * z * (-1.0 / 6.0 + z * (1.0 / 100.0")][..],
+        &[("1.0 / 24.0 + r * (1.0 / 120.0", "1.0 / 23.0 + r * (1.0 / 120.0")],
+        &[("let near = f32(a.value);", "let near = f32(a.value * 1.00001);"), ("abs(a.value - f64(near)) + a.bound;", "a.bound;")],
+        &[("let value = f64(entry.x) + f64(entry.y);", "let value = f64(entry.x) + 256.0 * f64(entry.y);")],
+    ] {
+        let message = refused_with(pieces);
+        assert!(message.contains("more than the error bound") || message.contains("the GPU is sure"), "{pieces:?}: {message}");
+    }
+}
+
+#[test]
+fn runs_that_are_judged_too_narrowly_are_noticed() {
+    for (piece, other) in [
+        // As if a run's lanes were all like its middle.
+        ("let reach = 0.5 * abs(b.value - a.value)", "let reach = 0.0 * abs(b.value - a.value)"),
+        ("counted.x += run.last - run.first;", "counted.x += run.last - run.first - 1u;"),
+        ("return !beaten || may_be_extreme(judged, horizon);", "return false;"),
+    ] {
+        let on = wrong(Wrong { grouped: true, replace: vec![(piece.to_owned(), other.to_owned())], ..Wrong::default() });
+        let result = Prepared::parse(RUNS).on(&on);
+        assert!(matches!(&result, Err(Error::ErrorBound(_))), "{piece}: {:?}", result.map(|_| ()));
     }
 }
 

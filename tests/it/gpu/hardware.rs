@@ -23,7 +23,8 @@ fn hardware_gives_the_answers_of_f64() {
     let device = hardware();
     let small = SMALL.iter().map(|text| Prepared::parse(text));
     let shipped = shipped().into_iter().map(|path| Prepared::new(Study::read(&path).expect("the study is right").0));
-    for study in small.chain(shipped) {
+    // Sums over a spectrum are for the CPU: the test on lavapipe has the refusal.
+    for study in small.chain(shipped).filter(|it| !it.plan.study.decides_by_spectrum()) {
         let (state, record) = study.on(&device).expect("the device works");
         assert_same(&state, &study.on_cpu(), &study.plan.study.title);
         assert_eq!(record.designs, study.plan.designs());

@@ -129,6 +129,24 @@ fn larger() -> String {
     SMALL[0].replace("count = 13 }", "count = 97 }").replace("count = 21 }", "count = 101 }")
 }
 
+/// A study with an axis of many levels that nothing asks for by itself: its designs can be judged in runs.
+const RUNS: &str = r#"model = "metal-cvt"
+[design]
+friction = { from = 0.06, to = 0.12, count = 9 }
+groove_angle_deg = { from = 18, to = 30, count = 7 }
+ratio = { from = 0.5, to = 2.0, count = 11 }
+band_thickness_mm = { from = 0.1, to = 0.4, count = 150 }
+band_count = { from = 4, to = 14 }
+[fixed]
+traction = "limit"
+[constraints]
+capacity_axial_force_N = { max = 30000 }
+torque_capacity_Nm = { above = 0 }
+[objectives]
+torque_capacity_Nm = "max"
+capacity_axial_force_N = "min"
+"#;
+
 /// One study per model with all that a report may have, small enough to be swept in a moment.
 const SMALL: [&str; 4] = [
     r#"model = "metal-cvt"

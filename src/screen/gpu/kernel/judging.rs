@@ -2,6 +2,21 @@
 
 use super::*;
 
+/// A function that judges lanes over all scenarios.
+#[derive(Clone, Copy)]
+struct JudgingText<'a> {
+    name: &'a str,
+    /// Where: its last parameter.
+    at: &'a str,
+    /// A line that makes the first lane's digits of it.
+    begin: &'a str,
+    members: &'a [u64],
+    /// The line from one member's digits to the next one's.
+    next: &'a str,
+    /// The function that sets the inputs at digits.
+    set: &'a str,
+}
+
 impl Prelude<'_> {
     /// Conditions, constraints and worst values in one scenario, of rows and of lanes.
     pub(super) fn judging(&mut self, perturb: &[(usize, f64)]) {
@@ -64,29 +79,43 @@ impl Prelude<'_> {
         put!(self, "struct Group {{");
         all.iter().for_each(|it| put!(self, "    l{it}: Lane,"));
         put!(self, "}}\n");
-        for (head, members, result) in [
-            ("judge(row: u32, state: RowState, held: Prepared, digits: Digits) -> Lane", &all[..1], "return l0;".to_owned()),
-            (
-                "judge_group(row: u32, state: RowState, held: Prepared, first: u32) -> Group",
-                &all[..],
-                format!("return Group({});", all.iter().map(|it| format!("l{it}")).collect::<Vec<_>>().join(", ")),
-            ),
-        ] {
+        let of_group = format!("return Group({});", all.iter().map(|it| format!("l{it}")).collect::<Vec<_>>().join(", "));
+        // Beyond the last lane the members of a group repeat earlier ones or leave the axis; nobody looks at them.
+        let one = JudgingText { name: "judge", at: "digits: Digits", begin: "", members: &all[..1], next: "", set: "set_lane" };
+        let group = JudgingText {
+            name: "judge_group",
+            at: "first: u32",
+            begin: "var digits = digits_of_lane(first);",
+            members: &all,
+            next: "advance(&digits);",
+            ..one
+        };
+        let along = JudgingText {
+            name: "judge_along",
+            at: "first: Digits",
+            begin: "var digits = first;",
+            next: "digits = along(digits, 1u);",
+            ..group
+        };
+        let run = JudgingText { name: "judge_run", set: "set_run", ..one };
+        let runs = if self.layout.runs.is_some() { vec![along, run] } else { Vec::new() };
+        for judged in [one, group].into_iter().chain(runs) {
+            let JudgingText { name, at, begin, members, next, set } = judged;
             let mut lines = vec!["var inputs = fixed_inputs();".to_owned(), "set_row_inputs(&inputs, state);".to_owned()];
-            if head.contains("first") {
-                // Beyond the last lane the members repeat earlier ones; nobody looks at them.
-                lines.insert(0, "var digits = digits_of_lane(first);".to_owned());
+            if !begin.is_empty() {
+                lines.insert(0, begin.to_owned());
             }
             for it in members {
                 lines.push(format!("let d{it} = digits;"));
                 lines.push(format!("var l{it} = start_lane(state, d{it});"));
                 if members.len() > 1 {
-                    lines.push("advance(&digits);".to_owned());
+                    lines.push(next.to_owned());
                 }
             }
-            lines.extend(self.scenario_loops(members));
-            lines.push(result);
-            self.function(head, &lines);
+            lines.extend(self.scenario_loops(members, set));
+            let (kind, result) = if begin.is_empty() { ("Lane", "return l0;") } else { ("Group", of_group.as_str()) };
+            lines.push(result.to_owned());
+            self.function(&format!("{name}(row: u32, state: RowState, held: Prepared, {at}) -> {kind}"), &lines);
         }
         let look = all.iter().map(|it| format!("look_at(group.l{it}, horizon, i + {it}u, count, seen, row_dominator);"));
         let keep = all.iter().map(|it| format!("(*kept)[i + {it}u] = group.l{it};"));
@@ -99,13 +128,13 @@ impl Prelude<'_> {
         self.function("check_group(group: Group, row: u32, state: RowState, first: u32, lanes: u32)", &check.collect::<Vec<_>>());
     }
 
-    pub(super) fn scenario_loops(&self, members: &[u64]) -> Vec<String> {
+    fn scenario_loops(&self, members: &[u64], set: &str) -> Vec<String> {
         let (plan, layout) = (self.plan, self.layout);
         if plan.lane_outputs.is_empty() && plan.lane_conditions.is_empty() {
             return Vec::new();
         }
         let once = |name: &str, index: &str| format!("set_{name}_scenario(&inputs, {index});");
-        let each = members.iter().flat_map(|it| [format!("set_lane(&inputs, d{it});"), format!("judge_lane(prepared, inputs, &l{it});")]);
+        let each = members.iter().flat_map(|it| [format!("{set}(&inputs, d{it});"), format!("judge_lane(prepared, inputs, &l{it});")]);
         let mut inner: Vec<String> = Vec::new();
         if layout.fast_scenarios.count == 1 {
             inner.push(once("fast", "0u"));

@@ -49,7 +49,7 @@ impl Prelude<'_> {
                 Values::Table(offset) => {
                     for (column, &input) in it.inputs.iter().enumerate() {
                         let entry = format!("steady[{}u + digits.d{number} * {}u]", offset as usize + column, it.inputs.len());
-                        set.push(format!("(*inputs).{} = Real({entry}.x, {entry}.y);", self.input(input)));
+                        set.push(format!("(*inputs).{} = level({entry});", self.input(input)));
                         if plan.study.constraints.iter().any(|constraint| constraint.quantity == Quantity::Input(input)) {
                             allowed.push(format!("lane.verdict = select(NO, lane.verdict, {entry}.w == 1.0);"));
                         }

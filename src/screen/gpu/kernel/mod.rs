@@ -15,13 +15,14 @@ mod judging;
 mod lanes;
 mod report;
 mod rows;
+mod runs;
 
 use super::constants::{DOMINATORS, FIRST_REPORTED, NEWTON_STEPS_OF_DRAWS, SURVIVOR_HEAD, sweep_constants};
 use super::held::on_device;
 use super::layout::{BINS, FormulaOnDevice, KernelLayout, LIST, Values, row_dominators, scenario_worst, sign};
 use super::texts::{keep_between, least_bad, literal};
 use crate::gpu::constants::declare;
-use crate::gpu::{model_prelude, source, stages_source, tables};
+use crate::gpu::{model_prelude, source, stages_source, stages_source_64, tables};
 use crate::models::{CONDITION_BOUND_FACTOR, Worse};
 use crate::plan::{Plan, Source};
 use crate::reduce::Shuffle;
@@ -93,24 +94,35 @@ fn real(value: f64) -> String {
     format!("Real({}, {})", literal(value), literal(bound))
 }
 
-/// The text of the kernel. `perturb`: outputs that are to come out wrong by this fraction of their value, for testing.
-pub fn text(plan: &Plan, layout: &KernelLayout, perturb: &[(usize, f64)]) -> String {
-    let mut prelude = Prelude { plan, layout, text: String::new(), coordinates: coordinates(plan, layout) };
+/// The text of the kernel. `f64`: for a device that has it. `perturb`: outputs that are to come out wrong by this fraction of their value, for
+/// testing.
+pub fn text(plan: &Plan, layout: &KernelLayout, f64: bool, perturb: &[(usize, f64)]) -> String {
+    let model = &plan.study.model;
+    let double = match &layout.formula {
+        FormulaOnDevice::Own(own) if f64 => stages_source_64(model, &layout.fields, &own.lists),
+        _ => None,
+    };
+    let f64 = double.is_some();
+    let mut prelude = Prelude { plan, layout, f64, text: String::new(), coordinates: coordinates(plan, layout) };
     prelude.constants();
     prelude.inputs();
     prelude.rows();
     prelude.passing();
     prelude.lanes();
+    prelude.runs();
     prelude.judging(perturb);
     prelude.front();
     prelude.others();
     prelude.report();
     let conditions = plan.row_conditions.iter().chain(&plan.lane_conditions).copied();
     let asked: Vec<usize> = conditions.filter(|&number| layout.asks(number)).collect();
-    let model = &plan.study.model;
     let (common, of_model) = match &layout.formula {
-        FormulaOnDevice::Own(own) => (source::common(), stages_source(model, &layout.fields, &own.lists)),
+        FormulaOnDevice::Own(own) => (source::common(), double.unwrap_or_else(|| stages_source(model, &layout.fields, &own.lists))),
         FormulaOnDevice::Drawn(drawn) => (source::common_with(NEWTON_STEPS_OF_DRAWS), drawn.text.clone()),
+    };
+    let second_stage = match layout.runs {
+        Some(_) => include_str!("../../../../shaders/sweep/runs.wgsl"),
+        None => include_str!("../../../../shaders/sweep/sweep.wgsl"),
     };
     [
         &common,
@@ -124,7 +136,8 @@ pub fn text(plan: &Plan, layout: &KernelLayout, perturb: &[(usize, f64)]) -> Str
         include_str!("../../../../shaders/sweep/bins.wgsl"),
         &prelude.text,
         include_str!("../../../../shaders/sweep/prepare.wgsl"),
-        include_str!("../../../../shaders/sweep/sweep.wgsl"),
+        include_str!("../../../../shaders/sweep/look.wgsl"),
+        second_stage,
         include_str!("../../../../shaders/sweep/check.wgsl"),
     ]
     .join("\n")
@@ -141,6 +154,8 @@ fn passed_tables(layout: &KernelLayout) -> String {
 struct Prelude<'a> {
     plan: &'a Plan,
     layout: &'a KernelLayout,
+    /// Is the first stage in f64?
+    f64: bool,
     text: String,
     coordinates: Vec<Coordinate>,
 }

@@ -2,27 +2,49 @@
 
 use super::*;
 
+/// An arithmetic in which inputs are given.
+#[derive(Clone, Copy)]
+pub(super) struct Stage {
+    /// What the names of its functions end with.
+    name: &'static str,
+    /// The function that makes a number of a level's entry.
+    level: &'static str,
+    /// A number as a literal.
+    number: fn(f64) -> String,
+}
+
 impl Prelude<'_> {
+    /// f32, then f64 if that is what the first stage computes in.
+    fn stages(&self) -> Vec<Stage> {
+        let single = Stage { name: "", level: "level", number: real };
+        let double = Stage { name: "_64", level: "level_64", number: |value| format!("constant_64({value:?})") };
+        if self.f64 { vec![single, double] } else { vec![single] }
+    }
+
     /// Fixed inputs and scenarios.
     pub(super) fn inputs(&mut self) {
         let plan = self.plan;
         let model = &plan.study.model;
         // Inputs that a stage does not depend on still decide selections: every one has a value of its own axis.
         let first = crate::models::to_si(model, &plan.space.inputs(0, 0));
-        let mut lines = vec!["var inputs: Inputs;".to_owned()];
-        for (input, &value) in first.iter().enumerate().take(model.inputs.len()) {
-            lines.push(format!("inputs.{} = {};", self.input(input), real(value)));
+        for Stage { name, level: _, number } in self.stages() {
+            let mut lines = vec![format!("var inputs: Inputs{name};")];
+            for (input, &value) in first.iter().enumerate().take(model.inputs.len()) {
+                lines.push(format!("inputs.{} = {};", self.input(input), number(value)));
+            }
+            lines.push("return inputs;".to_owned());
+            self.function(&format!("fixed_inputs{name}() -> Inputs{name}"), &lines);
         }
-        lines.push("return inputs;".to_owned());
-        self.function("fixed_inputs() -> Inputs", &lines);
         for (name, table) in [("slow", &self.layout.slow_scenarios), ("fast", &self.layout.fast_scenarios)] {
             let columns = table.inputs.len();
-            let set = |(column, &input): (usize, &usize)| {
-                let entry = format!("steady[{}u + scenario * {columns}u]", table.offset as usize + column);
-                format!("(*inputs).{} = Real({entry}.x, {entry}.y);", self.input(input))
-            };
-            let lines: Vec<_> = table.inputs.iter().enumerate().map(set).collect();
-            self.function(&format!("set_{name}_scenario(inputs: ptr<function, Inputs>, scenario: u32)"), &lines);
+            for Stage { name: stage, level, .. } in self.stages() {
+                let set = |(column, &input): (usize, &usize)| {
+                    let entry = format!("steady[{}u + scenario * {columns}u]", table.offset as usize + column);
+                    format!("(*inputs).{} = {level}({entry});", self.input(input))
+                };
+                let lines: Vec<_> = table.inputs.iter().enumerate().map(set).collect();
+                self.function(&format!("set_{name}_scenario{stage}(inputs: ptr<function, Inputs{stage}>, scenario: u32)"), &lines);
+            }
         }
     }
 
@@ -47,13 +69,13 @@ impl Prelude<'_> {
             let dimension = &slow[number];
             format!("levels[{}u + digits[{number}] * {}u]", dimension.offset as usize + column, dimension.inputs.len())
         };
-        let mut lines = Vec::new();
+        let mut set = Vec::new();
         let mut allowed = vec!["var allowed = 1.0;".to_owned()];
         let mut index = vec!["var index = tile.index;".to_owned()];
         for (number, dimension) in slow.iter().enumerate() {
             for (column, &input) in dimension.inputs.iter().enumerate() {
                 let entry = entry(number, column);
-                lines.push(format!("(*inputs).{} = Real({entry}.x, {entry}.y);", self.input(input)));
+                set.push((self.input(input), entry.clone()));
                 allowed.push(format!("allowed = min(allowed, {entry}.w);"));
             }
             let stride = dimension.stride;
@@ -65,7 +87,10 @@ impl Prelude<'_> {
         }
         allowed.push("return allowed == 1.0;".to_owned());
         index.push("return index;".to_owned());
-        self.function("set_row(inputs: ptr<function, Inputs>, digits: array<u32, DIMENSIONS>)", &lines);
+        for Stage { name, level, .. } in self.stages() {
+            let lines: Vec<_> = set.iter().map(|(input, entry)| format!("(*inputs).{input} = {level}({entry});")).collect();
+            self.function(&format!("set_row{name}(inputs: ptr<function, Inputs{name}>, digits: array<u32, DIMENSIONS>)"), &lines);
+        }
         self.function("is_allowed(digits: array<u32, DIMENSIONS>) -> bool", &allowed);
         self.function("index_of_row(digits: array<u32, DIMENSIONS>) -> vec2<u32>", &index);
     }
@@ -93,6 +118,22 @@ impl Prelude<'_> {
             begin.push(format!("table_place = {place};"));
         }
         self.function("begin_prepared(q: u32, row: u32)", &begin);
+        let stage = self.stages().last().expect("the first stage has an arithmetic").name;
+        let mut lines = vec![
+            format!("var inputs = fixed_inputs{stage}();"),
+            format!("set_row{stage}(&inputs, digits_of_row(row));"),
+            format!("set_slow_scenario{stage}(&inputs, q);"),
+        ];
+        if stage.is_empty() {
+            lines.push("return prepare(inputs);".to_owned());
+        } else {
+            lines.push("let exact = prepare_64(inputs);".to_owned());
+            lines.push("var prepared: Prepared;".to_owned());
+            let names = layout.prepared.iter().filter_map(|passed| fields.prepared.get(passed.field));
+            lines.extend(names.map(|name| format!("prepared.{name} = narrowed(exact.{name});")));
+            lines.push("return prepared;".to_owned());
+        }
+        self.function("prepare_row(q: u32, row: u32) -> Prepared", &lines);
         load.push("return prepared;".to_owned());
         self.function("store_prepared(q: u32, row: u32, prepared: Prepared)", &store);
         self.function("load_prepared(q: u32, row: u32) -> Prepared", &load);
