@@ -123,7 +123,7 @@ def compare(designs, rows, fronts, folders, problems):
 
 def known_elsewhere(designs):
     """Committed records of metal-grid with this many designs, judged one by one on a device."""
-    for name in ("device-1e11.json", "gpu-h100.json"):
+    for name in ("device-1e11.json", "gpu-h200.json"):
         file = Path("results/bench", name)
         if not file.exists():
             say(f"{file} is not there: nothing to compare with")
