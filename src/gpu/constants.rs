@@ -91,14 +91,14 @@ shared_constants! {
     const WORKGROUP: u32 = 64;
 }
 
-/// Two ULP of an f64: what a device and the CPU, whose values are held against each other, may both round, and more.
+/// Relative error of a sum or product in f64: four times half an ULP. A device's values are held against those of the CPU, which rounds too.
 const ROUNDING_64: f64 = 4.0 / (1u64 << 53) as f64;
 
-/// So many ULP a quotient, a root and a function of f64 may be off, on a device whose first stage is computed in it. Nothing says how accurate
-/// they are, so the self-test asks for a quarter of it; and it is still a hundred thousandth of what f32 loses.
+/// How many ULP a quotient, a root and a function may be off in f64. No standard says how accurate a device is there, so the self-test measures
+/// it and allows a quarter of this. It is still less than a ten thousandth of what f32 loses.
 pub(crate) const ULP_64: f64 = 4096.0;
 
-/// The same of f64.
+/// The constants of `shaders/common` for f64.
 pub(crate) fn constants_64() -> String {
     let mut text = String::new();
     declare(&mut text, "ROUNDING_64", ROUNDING_64);

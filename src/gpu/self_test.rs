@@ -1,12 +1,14 @@
 //! Is a driver to be trusted? What has gone wrong on some driver without an error, tried on every one before it is used.
 
 use super::constants::ULP_64;
-use super::source::{common, common_64};
+use super::source::{common, common_64, in_f64};
 use super::{Device, Program, WORKGROUP, shared_constants};
 use crate::error::Result;
 use crate::real::FUNCTION_ULP;
 use serde_json::{Value, json};
 
+/// The arithmetic that is tried, in f32.
+const ARITHMETIC: &str = include_str!("../../shaders/self-test-arithmetic.wgsl");
 /// Iterations of the long loop.
 const LOOPS: u32 = 100_000;
 /// Iterations after which some drivers end an invocation.
@@ -109,7 +111,7 @@ impl SelfTest {
 /// # Errors
 /// [`Error::Gpu`](crate::error::Error::Gpu) if the device fails altogether.
 pub fn run(device: &Device) -> Result<SelfTest> {
-    let source = [&common(), &self_test_constants(), include_str!("../../shaders/self-test.wgsl")].join("\n");
+    let source = [&common(), &self_test_constants(), ARITHMETIC, include_str!("../../shaders/self-test.wgsl")].join("\n");
     let program = Program::new(device, &source, &["arithmetic", "loops", "append"])?;
     let points = points();
     let given = device.storage("given", &points);
@@ -145,7 +147,8 @@ fn run_in_f64(device: &Device, points: &[[f32; 2]]) -> Result<Vec<Measure>> {
     if !device.has_f64() {
         return Ok(Vec::new());
     }
-    let source = [&common(), &common_64(), &self_test_constants(), include_str!("../../shaders/self-test-64.wgsl")].join("\n");
+    let entry = include_str!("../../shaders/self-test-64.wgsl");
+    let source = [&common(), &common_64(), &self_test_constants(), &in_f64(ARITHMETIC), entry].join("\n");
     let program = Program::new(device, &source, &["arithmetic_64"])?;
     let given = device.storage("given", points);
     let found = device.buffer("found", u64::from(POINTS) * u64::from(RESULTS) * 8, wgpu::BufferUsages::STORAGE);

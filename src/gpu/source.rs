@@ -35,14 +35,13 @@ pub fn common_64() -> String {
 /// A text on bounded numbers of f32 as one on those of f64: f64 stands for f32, and what `shaders/common/numbers.wgsl` and the texts that go
 /// with it declare is called what it is with `_64` behind it.
 pub fn in_f64(text: &str) -> String {
-    let declared = |text: &'static str| {
-        let names = text.lines().filter_map(|line| ["fn ", "struct ", "const "].iter().find_map(|word| line.strip_prefix(word)));
-        names.map(|rest| rest.split(|it: char| !is_of_name(it)).next().unwrap_or_default())
-    };
-    let shared =
-        declared(include_str!("../../shaders/common/numbers.wgsl")).chain(declared(include_str!("../../shaders/common/functions.wgsl")));
-    let names: HashSet<&str> =
-        shared.chain(["ROUNDING", "DIVISION", "SQUARE_ROOT", "FUNCTION", "FLUSH", "LARGEST_DIVISOR", "Inputs", "Prepared"]).collect();
+    let constants = constants_64();
+    let shared = [include_str!("../../shaders/common/numbers.wgsl"), include_str!("../../shaders/common/functions.wgsl"), &constants];
+    let declared = shared.iter().flat_map(|text| text.lines()).filter_map(|line| {
+        let rest = ["fn ", "struct ", "const "].iter().find_map(|word| line.strip_prefix(word))?;
+        rest.split(|it: char| !is_of_name(it)).next()
+    });
+    let names: HashSet<&str> = declared.map(|name| name.trim_end_matches("_64")).chain(["Inputs", "Prepared"]).collect();
     let mut written = String::with_capacity(text.len() * 5 / 4);
     let mut rest = text;
     while let Some(begin) = rest.find(is_of_name) {

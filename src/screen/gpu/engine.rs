@@ -5,11 +5,12 @@ use super::constants::{
     APPENDED, DIGIT_VECTORS, FIRST_REPORTED, IS_UNSURE, LANE_BITS, MAY_BE_END, MAY_BE_FRONT, MAY_BE_IN_MAP, SCENARIO_PER_LANE,
     SCENARIO_PER_ROW, SURE, SURVIVOR_HEAD, UNDECIDED,
 };
+use super::cut::MOST_GROUPS;
 use super::held::histogram_beyond_f32;
 use super::held::refuse;
 use super::kernel::{self, Coordinate, ENTRIES, check_words, coordinates, survivor_words, text};
 use super::known::{self, KnownUniform};
-use super::layout::{KernelLayout, MOST_GROUPS, push_level};
+use super::layout::{KernelLayout, push_level};
 use crate::decision::Decision;
 use crate::error::Result;
 use crate::gpu::constants::{UNSURE, YES};
@@ -310,7 +311,8 @@ impl<'p> GpuEngine<'p> {
             let dominator_table = device.buffer("dominator_table", list * 4, storage);
             let counts = device.buffer("counts", count_words * 4, storage);
             let survivors = device.buffer("survivors", capacity * words as u64 * 4, storage);
-            let landing = device.landing("landing", count_words * 4 + capacity * survivor_words(plan) as u64 * 4);
+            let landing = count_words * 4 + capacity * survivor_words(plan) as u64 * 4;
+            let landing = device.landing("landing", landing.min(device.limits.max_buffer_size / 16 * 16));
             let bound = program.bind(&[
                 ("tile", &tile),
                 ("known", &known),
@@ -384,7 +386,7 @@ impl<'p> GpuEngine<'p> {
         let it = &self.slots[slot];
         let counts = self.count_words * 4;
         let trip = self.trip * survivor_words(self.plan) as u64 * 4;
-        let trip = trip.min(it.landing.size() - counts).min(it.survivors.size());
+        let trip = trip.min(it.landing.size() - counts).min(it.survivors.size()) / 4 * 4;
         let wait = self.device.submit(|encoder| {
             encoder.copy_buffer_to_buffer(&self.zeros, 0, &it.counts, 0, counts);
             self.first_stage(encoder, it, &rows);

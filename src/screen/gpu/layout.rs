@@ -1,33 +1,17 @@
-//! How a study lies on the device: which values pass between the stages, where the levels of every axis stand, how the work is
-//! cut into invocations.
+//! How a study lies on the device: which values pass between the stages, and where the levels of every axis stand. How the work is cut into
+//! invocations, `cut` says.
 
 use super::constants::{LANE_BITS, Level, WINDOW};
+use super::cut::{Cut, MOST_GROUPS, MOST_ITERATIONS, Runs, covers_ranges};
 use super::drawn::DrawnOnDevice;
 use super::held::{beyond_f32, refuse};
 use crate::error::Result;
-use crate::gpu::WORKGROUP;
 use crate::models::{Fields, Set, Worse, input_to_si};
-use crate::plan::{Plan, Source, knowns};
+use crate::plan::{Plan, knowns};
 use crate::space::{Product, SpaceDimension};
 use crate::study::{Axis, Goal, Levels, Quantity};
-use crate::tape::{Operation, SettledStages, StageLists, nearest_f32};
+use crate::tape::{SettledStages, nearest_f32};
 
-/// Most loop iterations of one invocation: some drivers end it after 65 535 without a word.
-pub const MOST_ITERATIONS: u64 = 55_000;
-/// Most workgroups of a dispatch along either side.
-pub const MOST_GROUPS: u64 = 65_535;
-/// Lanes of a block: their answers are the bits of one word.
-const BLOCK: u64 = 32;
-/// Lanes of one invocation where a design takes a single evaluation: what a row needs is then loaded rarely.
-const MANY_LANES: u64 = 256;
-/// Lanes that are judged together: where scenarios are many, what a row gives them is expensive to load; where there is one, registers are.
-const GROUP: [u64; 2] = [4, 2];
-/// Least levels of an axis along which runs lie.
-const LEAST_LEVELS: u64 = 8;
-/// Most runs that an invocation takes: their numbers stand in the workgroup's memory.
-const MOST_TURNS: u64 = 16;
-/// Evaluations of a small study.
-const SMALL: u64 = 20_000_000;
 /// Points in the list that the closer look compares with, where no table serves.
 pub const LIST: usize = 64;
 /// Bins of the look-up table along its one or two coordinates.
@@ -88,40 +72,6 @@ pub struct ScenarioTable {
     pub count: u64,
     /// First entry.
     pub offset: u32,
-}
-
-/// How work is cut.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Cut {
-    /// Lanes of one invocation.
-    pub lanes_each: u64,
-    /// Lanes of a block of it.
-    pub block: u64,
-    /// Lanes that are judged together, sharing what the row gives them.
-    pub group: u64,
-    /// Are judged lanes kept for the closer look? Judging again is cheaper where there is but one scenario.
-    pub keeps: bool,
-    /// Rows of a workgroup.
-    pub group_rows: u64,
-    /// Invocations of a workgroup that share a row.
-    pub group_chunks: u64,
-}
-
-/// Runs: lanes that differ in one fast axis alone, which are judged together first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Runs {
-    /// The fast dimension along which they lie.
-    pub dimension: usize,
-    /// Most lanes of a run.
-    pub length: u64,
-    /// Distance of its neighbours among the lanes.
-    pub step: u64,
-    /// Runs of a row.
-    pub of_row: u64,
-    /// Runs of one row that a workgroup takes.
-    pub at_once: u64,
-    /// Rows of a workgroup.
-    pub rows: u64,
 }
 
 /// A field that passes from the first stage to the second, and where it stands among those that do.
@@ -323,7 +273,7 @@ impl KernelLayout {
 
     /// Most lanes of a row that one dispatch can take.
     pub fn widest(&self) -> u64 {
-        self.runs.map_or(self.cut.widest(), |runs| (MOST_GROUPS * runs.at_once).min(1 << LANE_BITS))
+        self.runs.map_or(self.cut.widest(), Runs::widest)
     }
 
     /// Most rows that one dispatch can take.
@@ -334,7 +284,7 @@ impl KernelLayout {
     /// Workgroups that cover `rows` rows and `lanes` lanes.
     pub fn groups(&self, rows: u64, lanes: u64) -> [u32; 2] {
         match self.runs {
-            Some(runs) => [rows.div_ceil(runs.rows), runs.of_row.div_ceil(runs.at_once)].map(|groups| groups as u32),
+            Some(runs) => runs.groups(rows),
             None => self.cut.groups(rows, lanes),
         }
     }
@@ -366,109 +316,6 @@ impl KernelLayout {
     pub fn prepared_width(&self) -> usize {
         self.prepared.last().map_or(0, |last| last.offset + last.length)
     }
-}
-
-/// Do the bounds of a formula's second stage hold however large those of its inputs are? What the bound of a root and of a number from a
-/// table says holds near their values only.
-fn covers_ranges(lists: &StageLists) -> bool {
-    let is_near = |operation: &Operation| matches!(operation, Operation::Root(_) | Operation::Rolled(_));
-    [&lists.conditions, &lists.finish].into_iter().all(|list| !list.operations.iter().any(is_near))
-}
-
-impl Runs {
-    /// Runs along the longest fast axis whose values only rise or only fall, and that nothing asks for by itself. None where lanes are judged
-    /// singly, or where neighbours in a row decide over each other.
-    fn new(plan: &Plan, fast: &[FastDimension], asked: Set, cut: Cut, own: u64) -> Option<Self> {
-        if cut.group == 1 || row_dominators(plan) || plan.lane_outputs.is_empty() {
-            return None;
-        }
-        let serves = |(_, (it, (dimension, _))): &(usize, (&FastDimension, (&SpaceDimension, u64)))| {
-            it.count >= LEAST_LEVELS && it.inputs.iter().all(|&input| !asked.contains(input)) && is_monotone(dimension)
-        };
-        let axes = fast.iter().zip(plan.fast.dimensions()).enumerate().filter(serves);
-        let (dimension, (axis, _)) = axes.max_by_key(|(_, (it, _))| it.count)?;
-        let length = axis.count.div_ceil(axis.count.div_ceil(BLOCK));
-        let of_row = plan.fast.count() / axis.count * axis.count.div_ceil(length);
-        let (shared, alone) = Cut::iterations(plan, own, cut.keeps);
-        let turns = MOST_ITERATIONS / ((1 + length.div_ceil(cut.group)) * shared + length * alone);
-        let most = turns.min(MOST_TURNS) * u64::from(WORKGROUP);
-        if most == 0 {
-            return None;
-        }
-        let at_once = of_row.min(most);
-        Some(Self { dimension, length, step: axis.lane_stride, of_row, at_once, rows: most / at_once })
-    }
-
-    /// Runs that an invocation takes.
-    pub fn turns(self) -> u64 {
-        (self.rows * self.at_once).div_ceil(WORKGROUP.into())
-    }
-}
-
-/// Do the values of an axis only rise or only fall?
-fn is_monotone(dimension: &SpaceDimension) -> bool {
-    let sorted = |column: usize| {
-        let values = || (0..dimension.count()).map(|level| dimension.value(column, level));
-        values().is_sorted() || values().map(|value| -value).is_sorted()
-    };
-    (0..dimension.inputs().len()).all(sorted)
-}
-
-impl Cut {
-    /// Loop iterations of an invocation: those that a group of lanes shares, and those of one lane by itself: inside the formula, and in the
-    /// closer look, where it meets a list, its neighbours, and its scenarios again unless it was kept. `own`: of the formula.
-    fn iterations(plan: &Plan, own: u64, keeps: bool) -> (u64, u64) {
-        let shared = plan.slow_scenarios.count() * (plan.fast_scenarios.count() + 1) + 1;
-        let own = plan.scenarios() * own;
-        (shared, own + LIST as u64 + 40 + if keeps { 0 } else { shared + own })
-    }
-
-    fn new(plan: &Plan, own: u64, grouped: bool) -> Self {
-        let lanes = plan.fast.count();
-        let keeps = plan.scenarios() > 1;
-        let (iterations, alone) = Self::iterations(plan, own, keeps);
-        // The driver's compiler takes longer over a group than a small study takes altogether.
-        let small = !grouped && plan.designs().saturating_mul(plan.scenarios()) < SMALL;
-        let mut group = if small { 1 } else { GROUP[usize::from(!keeps)].min(lanes) };
-        while group > 1 && iterations + group * alone > MOST_ITERATIONS {
-            group /= 2;
-        }
-        let most = (MOST_ITERATIONS / (iterations + group * alone)).max(1) * group;
-        let wanted = (MANY_LANES / plan.scenarios()).clamp(group, most);
-        // Chunks of equal size, so that the last one is not nearly empty.
-        let chunks = lanes.div_ceil(wanted.min(lanes).max(1));
-        let lanes_each = lanes.div_ceil(chunks).next_multiple_of(group);
-        let chunks = lanes.div_ceil(lanes_each);
-        let rows = plan.slow.count().min(8).next_power_of_two();
-        let group_chunks = chunks.next_power_of_two().min(if row_dominators(plan) { 256 / rows } else { 64 / rows });
-        // Row dominators stand in the workgroup's memory, of which every device has 16 KiB.
-        let each = 4 * plan.objectives.len() as u64 * if keeps { group } else { 1 };
-        let fits = (16_384 / (each * rows).max(1)).max(1);
-        let group_chunks = if row_dominators(plan) {
-            group_chunks.min(fits.next_power_of_two() >> u64::from(!fits.is_power_of_two()))
-        } else {
-            group_chunks
-        };
-        let group_rows = (64 / group_chunks).max(rows);
-        let block = if keeps { group } else { lanes_each.min(BLOCK / group * group) };
-        Self { lanes_each, block, group, keeps, group_rows, group_chunks }
-    }
-
-    /// Most lanes of a row that one dispatch can take.
-    pub fn widest(self) -> u64 {
-        MOST_GROUPS * self.lanes_each * self.group_chunks
-    }
-
-    /// Workgroups that cover `rows` rows and `lanes` lanes.
-    pub fn groups(self, rows: u64, lanes: u64) -> [u32; 2] {
-        [rows.div_ceil(self.group_rows), lanes.div_ceil(self.lanes_each * self.group_chunks)].map(|groups| groups as u32)
-    }
-}
-
-/// Do neighbours in a row share an objective that only the row decides, while another one differs?
-pub fn row_dominators(plan: &Plan) -> bool {
-    let sources: Vec<Source> = plan.objectives.iter().map(|&position| plan.tracked[position].1).collect();
-    plan.fast.count() > 1 && sources.iter().any(|it| it.is_row()) && sources.iter().any(|it| !it.is_row())
 }
 
 /// Inputs that are tracked or constrained themselves.
@@ -580,50 +427,4 @@ pub fn scenario_worst(plan: &Plan, input: usize, worse: Worse) -> f64 {
 /// +1 where less is better.
 pub fn sign(goal: Goal) -> f64 {
     if goal == Goal::Min { 1.0 } else { -1.0 }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::study::Study;
-
-    #[test]
-    fn an_invocation_never_takes_more_iterations_than_a_driver_allows() {
-        let study = |model: &str, axis: &str, objective: &str, scenarios: u64| {
-            let text = format!(
-                "model = \"{model}\"\n[design]\n{axis}\n[operation]\ncases = [{}]\n[objectives]\n{objective} = \"min\"\n",
-                (0..scenarios)
-                    .map(|it| format!("{{ {} = {} }}", if model == "timing-belt" { "slack_tension_N" } else { "torque_Nm" }, it + 1))
-                    .collect::<Vec<_>>()
-                    .join(", "),
-            );
-            Plan::new(Study::parse_in(&text, "test.toml", std::path::Path::new(".")).unwrap_or_else(|errors| panic!("{errors}")))
-        };
-        let (mut accepted, mut in_runs) = (0, 0);
-        for scenarios in [1, 2, 7, 40, 91, 130, 160, 302, 400, 5000] {
-            for (model, axis, objective) in [
-                ("timing-belt", "tight_tension_N = { from = 6000, to = 9000, count = 3000 }", "tight_tension_N"),
-                ("timing-belt", "tight_tension_N = [6000, 7000, 8000]", "tight_tension_N"),
-                ("rubber-cvt", "belt_thickness_mm = { from = 1, to = 9, count = 3000 }", "belt_thickness_mm"),
-                ("rubber-cvt", "belt_thickness_mm = { from = 1, to = 9, count = 3000 }", "max_stress_MPa"),
-            ] {
-                let plan = study(model, axis, objective, scenarios);
-                for grouped in [false, true] {
-                    let Ok(layout) = KernelLayout::new(&plan, true, grouped, true) else { continue };
-                    let cut = layout.cut;
-                    let (shared, alone) = Cut::iterations(&plan, layout.fields.iterations, cut.keeps);
-                    let iterations = cut.lanes_each.div_ceil(cut.group) * shared + cut.lanes_each * alone;
-                    // What one lane takes may pass the target by its closer look.
-                    assert!(iterations <= MOST_ITERATIONS + 200, "{model}, {scenarios} scenarios: {cut:?} takes {iterations} iterations");
-                    if let Some(runs) = layout.runs {
-                        let each = (1 + runs.length.div_ceil(cut.group)) * shared + runs.length * alone;
-                        assert!(runs.turns() * each <= MOST_ITERATIONS, "{model}, {scenarios} scenarios: {runs:?} of {each} iterations");
-                        in_runs += 1;
-                    }
-                    accepted += 1;
-                }
-            }
-        }
-        assert!(accepted > 40 && in_runs > 5, "{accepted}, {in_runs}");
-    }
 }

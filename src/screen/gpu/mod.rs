@@ -4,6 +4,7 @@
 //! the few designs that are unsure or may be part of an answer: those go to f64. Nothing that it computes is reported.
 
 mod constants;
+mod cut;
 mod drawn;
 mod engine;
 mod held;

@@ -1,6 +1,7 @@
 //! A recorded formula as text in WGSL: the functions `prepare`, `conditions` and `finish` of a model.
 //!
-//! Every operation of the list is one call of a function in `shaders/common/numbers.wgsl`, which computes in f32 with an error bound.
+//! Every operation of the list is one call of a function in `shaders/common/numbers.wgsl`, which computes in f32 with an error bound; the text
+//! of a first stage can be rewritten for f64.
 //! What the formula names, and what is read more than once, stands in a line of its own. A root is found in plain f32, and its bound
 //! comes from one evaluation of its function there.
 
@@ -119,8 +120,7 @@ pub fn stages_text(names: &StageNames, fields: &Fields, lists: &StageLists, equa
     first_stage(names, fields, &lists.first, Precision::Single) + &second_stage(names, fields, lists, equations)
 }
 
-/// The first stage alone, with constants that f32 does not hold: for arithmetic in f64, which it must be rewritten for. `None` if it has
-/// loops or tables.
+/// The first stage alone, with its constants in all their digits, to be rewritten for f64. `None` if it has loops or tables.
 pub fn first_stage_in_f64(names: &StageNames, fields: &Fields, list: &List) -> Option<String> {
     let is_rolled = |operation: &Operation| matches!(operation, Operation::Rolled(_));
     let plain = fields.tables.is_empty() && !list.operations.iter().any(is_rolled);

@@ -1,6 +1,6 @@
 //! Every check is given a wrong answer and must notice it.
 
-use super::{Prepared, RUNS, SMALL, device, larger, wrong};
+use super::{Prepared, RUNS, SMALL, device, larger, long_runs, wrong};
 use beltspace::error::Error;
 use beltspace::gpu::PointKernel;
 use beltspace::models::{self, Model, find};
@@ -154,6 +154,22 @@ fn runs_that_are_judged_too_narrowly_are_noticed() {
         let on = wrong(Wrong { grouped: true, replace: vec![(piece.to_owned(), other.to_owned())], ..Wrong::default() });
         let result = Prepared::parse(RUNS).on(&on);
         assert!(matches!(&result, Err(Error::ErrorBound(_))), "{piece}: {:?}", result.map(|_| ()));
+    }
+}
+
+#[test]
+fn a_run_that_two_tiles_share_is_counted_once() {
+    let study = Prepared::parse(&long_runs());
+    let expected = study.on_cpu();
+    for (piece, other) in [
+        ("let before = max(tile.first_lane, run.first_lane) - run.first_lane;", "let before = 0u;"),
+        ("let until = max(tile.last_lane, run.first_lane) - run.first_lane;", "let until = RUN_LENGTH * RUN_STEP;"),
+        ("seen.sure &= here;", "seen.sure &= 0xffffffffu;"),
+    ] {
+        let on = wrong(Wrong { grouped: true, replace: vec![(piece.to_owned(), other.to_owned())], ..Wrong::default() });
+        if let Ok((state, _)) = study.on(&on) {
+            assert_ne!(state.feasible, expected.feasible, "{piece}: nobody objects");
+        }
     }
 }
 

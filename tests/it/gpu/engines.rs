@@ -1,6 +1,6 @@
 //! The device compared with the CPU: the same answers, however a sweep is divided, interrupted or continued on the other engine.
 
-use super::{Prepared, RUNS, SMALL, assert_same, device, larger, open, shipped, wrong};
+use super::{Prepared, RUNS, SMALL, assert_same, device, larger, long_runs, open, shipped, wrong};
 use beltspace::checkpoint::{Checkpoint, Saved};
 use beltspace::error::Error;
 use beltspace::files::Claim;
@@ -47,11 +47,12 @@ fn designs_judged_in_runs_give_the_same_answers() {
     let several = RUNS.replace("[fixed]", "[operation]\nstrength_MPa = [480, 500]\n[fixed]");
     let reported = format!("{RUNS}[report]\ntop = {{ by = \"torque_capacity_Nm\", count = 20 }}\n");
     let counted = format!("{RUNS}[report]\nhistograms = [{{ of = \"torque_capacity_Nm\", bins = 12 }}]\nsample = 50\n");
-    let linked = RUNS.replace(
+    let logarithmic = RUNS.replace(
         "band_thickness_mm = { from = 0.1, to = 0.4, count = 150 }",
         "band_thickness_mm = { from = 0.4, to = 0.1, count = 90, spacing = \"log\" }",
     );
-    for text in [RUNS, several.as_str(), reported.as_str(), counted.as_str(), linked.as_str()] {
+    let long = long_runs();
+    for text in [RUNS, &several, &reported, &counted, &logarithmic, &long] {
         let study = Prepared::parse(text);
         // The kernel must have runs to be told so.
         let runs = vec![("const RUN_LENGTH".to_owned(), "const RUN_LENGTH".to_owned())];

@@ -147,6 +147,18 @@ torque_capacity_Nm = "max"
 capacity_axial_force_N = "min"
 "#;
 
+/// The same with rows longer than a first tile: tiles begin and end within a row, and within runs.
+fn long_runs() -> String {
+    let fewer = |text: String, axis: &str, other: &str| {
+        assert!(text.contains(axis), "{axis}");
+        text.replace(axis, other)
+    };
+    let text = fewer(RUNS.to_owned(), "to = 0.12, count = 9 }", "to = 0.12, count = 2 }");
+    let text = fewer(text, "to = 30, count = 7 }", "to = 30, count = 2 }");
+    let text = fewer(text, "to = 2.0, count = 11 }", "to = 2.0, count = 3 }");
+    fewer(text, "count = 150 }", "count = 9001 }")
+}
+
 /// One study per model with all that a report may have, small enough to be swept in a moment.
 const SMALL: [&str; 4] = [
     r#"model = "metal-cvt"

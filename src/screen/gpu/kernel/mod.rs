@@ -18,8 +18,9 @@ mod rows;
 mod runs;
 
 use super::constants::{DOMINATORS, FIRST_REPORTED, NEWTON_STEPS_OF_DRAWS, SURVIVOR_HEAD, sweep_constants};
+use super::cut::row_dominators;
 use super::held::on_device;
-use super::layout::{BINS, FormulaOnDevice, KernelLayout, LIST, Values, row_dominators, scenario_worst, sign};
+use super::layout::{BINS, FormulaOnDevice, KernelLayout, LIST, Values, scenario_worst, sign};
 use super::texts::{keep_between, least_bad, literal};
 use crate::gpu::constants::declare;
 use crate::gpu::{model_prelude, source, stages_source, stages_source_64, tables};
@@ -120,6 +121,7 @@ pub fn text(plan: &Plan, layout: &KernelLayout, f64: bool, perturb: &[(usize, f6
         FormulaOnDevice::Own(own) => (source::common(), double.unwrap_or_else(|| stages_source(model, &layout.fields, &own.lists))),
         FormulaOnDevice::Drawn(drawn) => (source::common_with(NEWTON_STEPS_OF_DRAWS), drawn.text.clone()),
     };
+    let around_first_stage = if f64 { include_str!("../../../../shaders/sweep/first-stage-64.wgsl") } else { "" };
     let second_stage = match layout.runs {
         Some(_) => include_str!("../../../../shaders/sweep/runs.wgsl"),
         None => include_str!("../../../../shaders/sweep/sweep.wgsl"),
@@ -132,6 +134,7 @@ pub fn text(plan: &Plan, layout: &KernelLayout, f64: bool, perturb: &[(usize, f6
         &passed_tables(layout),
         &of_model,
         include_str!("../../../../shaders/sweep/tile.wgsl"),
+        around_first_stage,
         include_str!("../../../../shaders/sweep/shuffle.wgsl"),
         include_str!("../../../../shaders/sweep/bins.wgsl"),
         &prelude.text,
