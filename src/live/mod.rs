@@ -23,7 +23,7 @@ use crate::study::Study;
 use crate::sweep::costs::Speed;
 use crate::sweep::{Leaving, Rule, Settings, sweep, sweep_auto};
 use rustc_hash::FxHashMap;
-use search::{FrontSearch, JudgedRows, WorkingSet};
+use search::{FrontSearch, JudgedRows, SearchTimes, WorkingSet};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::sync::{Mutex, PoisonError};
@@ -59,10 +59,18 @@ pub struct Live {
     sets: Mutex<FxHashMap<Vec<u64>, WorkingSet>>,
     /// Designs of the last front, over all scenarios.
     judged: Mutex<JudgedRows>,
-    /// Seconds that a thread took for one design in one scenario of late, by the name of the model.
-    pace: Mutex<Option<f64>>,
-    /// How many times as long a design of a coarser grid has taken of late: its rows are short, and its front is not known yet.
-    slowness: Mutex<f64>,
+    pace: Mutex<Pace>,
+}
+
+/// How long things took of late.
+#[derive(Clone, Copy, Debug)]
+struct Pace {
+    /// Seconds that a thread took for one design in one scenario.
+    swept: Option<f64>,
+    /// Seconds that all threads took for one design of a front in one scenario.
+    judged: Option<f64>,
+    /// How many times as long a design of a coarser grid took: its rows are short, and its front is not known yet.
+    slowness: f64,
 }
 
 /// A step of an answer.
@@ -117,8 +125,7 @@ impl Live {
             threads: threads.max(1),
             sets: Mutex::default(),
             judged: Mutex::default(),
-            pace: Mutex::default(),
-            slowness: Mutex::new(SLOWNESS),
+            pace: Mutex::new(Pace { swept: None, judged: None, slowness: SLOWNESS }),
         }
     }
 
@@ -172,7 +179,9 @@ impl Live {
             None => search.first_set()?,
         };
         let expected = self.expected(plan, set.count(plan.scenarios()));
-        if expected > NOTICED.as_secs_f64() && self.coarse(&mut search, &set, expected, start, tell)? {
+        // Where only bounds have moved, the exact front comes soon.
+        let is_long = expected > NOTICED.as_secs_f64() && !search.knows_all_in(&set);
+        if is_long && self.coarse(&mut search, &set, expected, start, tell)? {
             // What is told is to be seen: on a machine with few cores nobody draws it while all of them search on.
             pause(control, Duration::from_secs_f64((0.1 * expected).min(DRAWN)))?;
         }
@@ -181,7 +190,13 @@ impl Live {
             // Of very many designs most are settled in boxes.
             (search.feasible_of(&self.by_bounds(plan, control)?)?, WorkingSet::default())
         } else {
-            search.exact(set, &mut |search, set, points| {
+            search.exact(set, &mut |search, set, points, missing| {
+                // What is followed by the exact front before anybody has drawn it only delays that.
+                #[allow(clippy::cast_precision_loss, reason = "an estimate")]
+                let work = (missing * plan.scenarios()) as f64;
+                if self.pace().judged.is_some_and(|pace| pace * work < NOTICED.as_secs_f64()) {
+                    return Ok(());
+                }
                 let (rows, scenarios) = (search.in_few(set, points)?, set.count(plan.scenarios()));
                 let front =
                     LiveFront { plan, columns: search.columns(), rows: &rows, looked_at: designs, scenarios, took: start.elapsed() };
@@ -190,7 +205,7 @@ impl Live {
         };
         let scenarios = set.count(plan.scenarios());
         if scenarios > 0 {
-            self.note(plan, scenarios, search.swept());
+            self.note(plan, scenarios, search.times());
             self.sets.lock().unwrap_or_else(PoisonError::into_inner).insert(shape, set);
         }
         let front = LiveFront { plan, columns: search.columns(), rows: &rows, looked_at: designs, scenarios, took: start.elapsed() };
@@ -215,28 +230,21 @@ impl Live {
         tell: &mut dyn FnMut(LiveAnswer<'_>) -> Result<()>,
     ) -> Result<bool> {
         let plan = search.plan();
-        let slowness = *self.slowness.lock().unwrap_or_else(PoisonError::into_inner);
+        let slowness = self.pace().slowness;
         #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "about so many")]
         let most = ((COARSELY / (expected * slowness) * plan.designs() as f64) as u64).max(FEW);
         if most >= plan.designs() {
             return Ok(false);
         }
         let begun = Instant::now();
-        let points = search.coarse(set, most)?;
+        let (points, looked_at) = search.coarse(set, most)?;
         #[allow(clippy::cast_precision_loss, reason = "an estimate")]
-        let found = begun.elapsed().as_secs_f64() / (expected * most as f64 / plan.designs() as f64);
+        let found = begun.elapsed().as_secs_f64() / (expected * looked_at as f64 / plan.designs() as f64);
         // Halfway, so that a moment in which the machine has something else to do does not count in full.
-        *self.slowness.lock().unwrap_or_else(PoisonError::into_inner) = (slowness * found).sqrt().clamp(1.0, 1e3);
-        let rows = search.feasible_of(&points)?;
+        self.change_pace(|pace| pace.slowness = (slowness * found).sqrt().clamp(1.0, 1e3));
+        let rows = search.in_few(set, &points)?;
         let scenarios = set.count(plan.scenarios());
-        tell(LiveAnswer::Coarse(LiveFront {
-            plan,
-            columns: search.columns(),
-            rows: &rows,
-            looked_at: most,
-            scenarios,
-            took: start.elapsed(),
-        }))?;
+        tell(LiveAnswer::Coarse(LiveFront { plan, columns: search.columns(), rows: &rows, looked_at, scenarios, took: start.elapsed() }))?;
         Ok(true)
     }
 
@@ -254,14 +262,26 @@ impl Live {
     #[allow(clippy::cast_precision_loss, reason = "an estimate")]
     fn expected(&self, plan: &Plan, scenarios: u64) -> f64 {
         let told = plan.seconds_per_design() / plan.scenarios() as f64;
-        let pace = self.pace.lock().unwrap_or_else(PoisonError::into_inner).unwrap_or(told);
+        let pace = self.pace().swept.unwrap_or(told);
         pace * plan.designs() as f64 * scenarios as f64 / self.threads as f64
     }
 
     #[allow(clippy::cast_precision_loss, reason = "an estimate")]
-    fn note(&self, plan: &Plan, scenarios: u64, took: Duration) {
-        let pace = took.as_secs_f64() * self.threads as f64 / (plan.designs() as f64 * scenarios as f64);
-        *self.pace.lock().unwrap_or_else(PoisonError::into_inner) = Some(pace);
+    fn note(&self, plan: &Plan, scenarios: u64, times: SearchTimes) {
+        let of_thread = self.threads as f64 / (plan.designs() as f64 * scenarios as f64);
+        let swept = times.swept.map(|took| took.as_secs_f64() * of_thread);
+        self.change_pace(|pace| {
+            pace.swept = swept.or(pace.swept);
+            pace.judged = times.judged.or(pace.judged);
+        });
+    }
+
+    fn pace(&self) -> Pace {
+        *self.pace.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn change_pace(&self, change: impl FnOnce(&mut Pace)) {
+        change(&mut self.pace.lock().unwrap_or_else(PoisonError::into_inner));
     }
 
     /// What every design says. The front of the whole sweep must be the one that was told.

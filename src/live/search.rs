@@ -36,10 +36,16 @@ const UNKNOWN: u64 = u64::MAX;
 const FEW: u64 = 2000;
 /// A grid has so many times the designs of the one whose front comes before its own.
 const COARSER: u64 = 32;
+/// The coarse grid of a table has at most one of so many rows.
+const COARSE_SHARE: u64 = 8;
+/// So many designs must be judged at a time for their pace to be known.
+const TELLING: usize = 50;
 /// Most designs that are kept for the next study.
 const MOST_KEPT: usize = 100_000;
 /// Parts that the designs are cut into, per thread.
 const PARTS: usize = 24;
+/// Parts that the designs of a front are cut into, per thread.
+const SCREENED_PARTS: usize = 6;
 
 /// The scenarios in which every design is judged, sorted; none stands for all.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -111,8 +117,18 @@ pub struct FrontSearch<'p> {
     /// The plan without bounds, where its table is kept, its tables, and that table.
     free: Option<(Plan, Tables)>,
     table: Option<Arc<WorstTable>>,
-    /// How long the last look at every design took.
-    swept: Duration,
+    /// The front of the table's coarse grid in a working set, and how long it took.
+    begun: Option<(WorkingSet, Points, Duration)>,
+    times: SearchTimes,
+}
+
+/// How long a search took.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SearchTimes {
+    /// The last look at every design, unless an older table served.
+    pub swept: Option<Duration>,
+    /// Seconds for one design of the front in one scenario, if enough were judged.
+    pub judged: Option<f64>,
 }
 
 /// Designs that were judged in all scenarios, for the next study that differs in nothing but bounds.
@@ -163,7 +179,8 @@ impl<'p> FrontSearch<'p> {
             judged,
             free,
             table,
-            swept: Duration::ZERO,
+            begun: None,
+            times: SearchTimes::default(),
         }
     }
 
@@ -183,9 +200,14 @@ impl<'p> FrontSearch<'p> {
         JudgedRows { hash: self.shown.study.hash(), rows, table: self.table.clone() }
     }
 
-    /// How long the last look at every design took.
-    pub fn swept(&self) -> Duration {
-        self.swept
+    /// How long it took.
+    pub fn times(&self) -> SearchTimes {
+        self.times
+    }
+
+    /// Is every design known in a working set, as in the last study that differed in nothing but bounds?
+    pub fn knows_all_in(&self, set: &WorkingSet) -> bool {
+        self.free.as_ref().is_some_and(|(free, _)| self.table.as_ref().is_some_and(|it| it.is_whole() && it.serves(free, set)))
     }
 
     /// The plan.
@@ -209,9 +231,7 @@ impl<'p> FrontSearch<'p> {
     /// # Errors
     /// [`Error::Stopped`] after `control.stop`.
     pub fn in_few(&self, set: &WorkingSet, points: &Points) -> Result<Vec<Row>> {
-        let mut positions: Vec<u64> = points.indices.iter().map(|&design| self.plan.position_of(design)).collect();
-        positions.sort_unstable();
-        let mut rows = self.screened(&self.shown, &self.shown_tables, &set.chosen(self.plan), &positions, &self.places)?;
+        let mut rows = self.screened(&self.shown, &self.shown_tables, &set.chosen(self.plan), &points.indices, &self.places)?;
         certify::sort_front(self.plan, &self.columns, &mut rows);
         Ok(rows)
     }
@@ -329,21 +349,48 @@ impl<'p> FrontSearch<'p> {
         Ok(self.reduction.front_together(found))
     }
 
-    /// The front of at most so many designs of a coarser grid in a working set.
-    ///
-    /// Most of the time goes into designs that enter a front and are beaten later; so the front of a grid that is coarser still comes first.
+    /// The front of at most so many designs of a coarser grid in a working set, and how many these are. What a table needs anyhow comes out of
+    /// that.
     ///
     /// # Errors
     /// [`Error::Stopped`] after `control.stop`.
-    pub fn coarse(&self, set: &WorkingSet, most: u64) -> Result<Points> {
-        let seen = if most / COARSER < FEW { Points::default() } else { self.coarse(set, most / COARSER)? };
+    pub fn coarse(&mut self, set: &WorkingSet, most: u64) -> Result<(Points, u64)> {
+        match self.free.as_ref().map(|(free, _)| free.fast.count()) {
+            Some(width) if width <= most => self.begin_table(set, most / width),
+            _ => Ok((self.coarse_grid(set, most)?, most)),
+        }
+    }
+
+    /// The same without a table.
+    ///
+    /// Most of the time goes into designs that enter a front and are beaten later; so the front of a grid that is coarser still comes first.
+    pub(super) fn coarse_grid(&self, set: &WorkingSet, most: u64) -> Result<Points> {
+        let seen = if most / COARSER < FEW { Points::default() } else { self.coarse_grid(set, most / COARSER)? };
         let fast = self.plan.fast.coarse(most.isqrt().max(most / self.plan.slow.count().max(1)));
         let slow = self.plan.slow.coarse((most / fast.len().max(1) as u64).max(1));
         self.front_in(set, &slow, &fast, seen)
     }
 
-    /// The exact front, and the working set that has served to find it. `few` is told the front in the working set where it must still be
-    /// judged in all scenarios. Its values are those of the engine over all scenarios, of which it
+    /// The front of a coarse grid of at most so many rows out of the table, which is begun if need be, and how many designs these are; none
+    /// without a table.
+    fn begin_table(&mut self, set: &WorkingSet, rows: u64) -> Result<(Points, u64)> {
+        let Some((free, tables)) = &self.free else { return Ok((Points::default(), 0)) };
+        let stop = &self.control.stop;
+        let start = Instant::now();
+        if !self.table.as_ref().is_some_and(|it| it.serves(free, set)) {
+            let rows = rows.min(free.slow.count().div_ceil(COARSE_SHARE));
+            self.table = WorstTable::begin(free, tables, set, rows, self.threads, stop).map(Arc::new);
+        }
+        let table = self.table.as_ref();
+        let points = table.and_then(|it| it.coarse_front(free, &self.plan.study, self.threads, stop)).unwrap_or_default();
+        let designs = table.map_or(0, |it| it.begun(free));
+        self.go_on()?;
+        self.begun = Some((set.clone(), points.clone(), start.elapsed()));
+        Ok((points, designs))
+    }
+
+    /// The exact front, and the working set that has served to find it. `few` is told the front in the working set where some of it, of which
+    /// it is told the number, must still be judged in all scenarios. Its values are those of the engine over all scenarios, of which it
     /// is not known which is the worst.
     ///
     /// # Errors
@@ -351,24 +398,27 @@ impl<'p> FrontSearch<'p> {
     pub fn exact(
         &mut self,
         mut set: WorkingSet,
-        few: &mut dyn FnMut(&Self, &WorkingSet, &Points) -> Result<()>,
+        few: &mut dyn FnMut(&Self, &WorkingSet, &Points, u64) -> Result<()>,
     ) -> Result<(Vec<Row>, WorkingSet)> {
         let rows: Vec<u64> = (0..self.plan.slow.count()).collect();
         let places: Vec<u64> = (0..self.plan.fast.count()).collect();
         let of = self.plan.scenarios();
         loop {
-            let begun = Instant::now();
+            let start = Instant::now();
+            let is_known = self.knows_all_in(&set);
             let points = match self.front_by_table(&set)? {
                 Some(points) => points,
                 None => {
                     // What a few designs leave nothing of need not be kept until the end.
-                    let seen = self.coarse(&set, FEW)?;
+                    let seen = self.coarse_grid(&set, FEW)?;
                     self.front_in(&set, &rows, &places, seen)?
                 }
             };
-            self.swept = begun.elapsed();
-            if points.indices.iter().any(|design| !self.judged.contains_key(design)) {
-                few(self, &set, &points)?;
+            let begun = self.begun.take().map_or(Duration::ZERO, |(.., took)| took);
+            self.times.swept = (!is_known).then(|| begun + start.elapsed());
+            let missing = points.indices.iter().filter(|design| !self.judged.contains_key(design)).count();
+            if missing > 0 {
+                few(self, &set, &points, missing as u64)?;
             }
             let mut front = self.judge_in_all(&points.indices)?;
             front.retain(|row| self.holds(row));
@@ -392,44 +442,50 @@ impl<'p> FrontSearch<'p> {
 
     /// The front of all designs in a working set out of the table, which is made if need be; `None` if it would be too large.
     fn front_by_table(&mut self, set: &WorkingSet) -> Result<Option<Points>> {
-        let Some((free, tables)) = &self.free else { return Ok(None) };
-        let stop = &self.control.stop;
-        if !self.table.as_ref().is_some_and(|it| it.serves(free, set)) {
-            self.table = WorstTable::new(free, tables, set, self.threads, stop).map(Arc::new);
+        if self.free.is_none() {
+            return Ok(None);
         }
-        let points = self.table.as_ref().and_then(|it| it.front(free, &self.plan.study, self.threads, stop));
+        if !self.begun.as_ref().is_some_and(|it| it.0 == *set) {
+            self.begin_table(set, u64::MAX)?;
+        }
+        let (Some((free, tables)), Some((_, coarse, _))) = (&self.free, &self.begun) else { return Ok(None) };
+        let stop = &self.control.stop;
+        if let Some(begun) = self.table.take_if(|it| !it.is_whole()) {
+            self.table = begun.finish(free, tables, self.threads, stop).map(Arc::new);
+        }
+        let points = self.table.as_ref().and_then(|it| it.front(coarse.clone(), free, &self.plan.study, self.threads, stop));
         self.go_on()?;
         Ok(points)
     }
 
     /// Designs with their values over all scenarios, without those that have none in some; of feasible ones all are there.
+    #[allow(clippy::cast_precision_loss, reason = "an estimate")]
     fn judge_in_all(&mut self, designs: &[u64]) -> Result<Vec<Row>> {
-        let new = |judged: &FxHashMap<u64, Row>| -> Vec<u64> {
-            let missing = designs.iter().filter(|design| !judged.contains_key(design));
-            let mut positions: Vec<u64> = missing.map(|&design| self.plan.position_of(design)).collect();
-            positions.sort_unstable();
-            positions
-        };
-        let positions = new(&self.judged);
+        let new =
+            |judged: &FxHashMap<u64, Row>| -> Vec<u64> { designs.iter().copied().filter(|design| !judged.contains_key(design)).collect() };
+        let missing = new(&self.judged);
+        let start = Instant::now();
         let found = match &self.lanes {
-            Some(lanes) => self.in_lanes(lanes, &positions)?,
-            None => self.screened(&self.shown, &self.shown_tables, &[], &positions, &self.places)?,
+            Some(lanes) => self.in_lanes(lanes, &missing)?,
+            None => self.screened(&self.shown, &self.shown_tables, &[], &missing, &self.places)?,
         };
+        if missing.len() >= TELLING {
+            self.times.judged = Some(start.elapsed().as_secs_f64() / (missing.len() as f64 * self.plan.scenarios() as f64));
+        }
         self.judged.extend(found.into_iter().map(|row| (row.index, row)));
         let mut rows: Vec<Row> = designs.iter().filter_map(|design| self.judged.get(design).cloned()).collect();
-        let positions = new(&self.judged);
-        if !positions.is_empty() {
+        let missing = new(&self.judged);
+        if !missing.is_empty() {
             // Some columns may have no value for a design that is feasible all the same.
             let place = |wanted: &Tracked| self.plan.tracked.iter().position(|(it, _)| it == wanted);
             let places: Vec<Vec<usize>> = self.columns.iter().map(|column| column.followed().iter().filter_map(place).collect()).collect();
-            rows.extend(self.screened(self.plan, &self.tables, &[], &positions, &places)?);
+            rows.extend(self.screened(self.plan, &self.tables, &[], &missing, &places)?);
         }
         Ok(rows)
     }
 
-    /// The feasible ones of some designs at these positions, each over all scenarios at once.
-    fn in_lanes(&self, lanes: &ScenarioLanes, positions: &[u64]) -> Result<Vec<Row>> {
-        let designs: Vec<u64> = positions.iter().map(|&position| self.plan.design_at(position)).collect();
+    /// The feasible ones of some designs, each over all scenarios at once.
+    fn in_lanes(&self, lanes: &ScenarioLanes, designs: &[u64]) -> Result<Vec<Row>> {
         let share = designs.len().div_ceil(self.threads).max(1);
         let parts = on_threads(designs.chunks(share), |part| lanes.judge(&self.shown, &self.columns, part, &self.control.stop));
         self.go_on()?;
@@ -440,22 +496,28 @@ impl<'p> FrontSearch<'p> {
         if self.control.stop.load(Ordering::Relaxed) { Err(Error::Stopped { kept: None }) } else { Ok(()) }
     }
 
-    /// The feasible ones of some designs at these sorted positions, with the values that a plan follows.
-    fn screened(&self, plan: &Plan, tables: &Tables, chosen: &[(u64, u64)], positions: &[u64], places: &[Vec<usize>]) -> Result<Vec<Row>> {
-        let share = positions.len().div_ceil(self.threads).max(1);
-        let parts = on_threads(positions.chunks(share), |part| {
+    /// The feasible ones of some designs, with the values that a plan follows.
+    fn screened(&self, plan: &Plan, tables: &Tables, chosen: &[(u64, u64)], designs: &[u64], places: &[Vec<usize>]) -> Result<Vec<Row>> {
+        // Designs of a row, and rows that share much, next to each other.
+        let mut positions: Vec<u64> = designs.iter().map(|&design| plan.position_of(design)).collect();
+        positions.sort_unstable();
+        let parts: Vec<&[u64]> = positions.chunks(positions.len().div_ceil(SCREENED_PARTS * self.threads).max(1)).collect();
+        let next = AtomicUsize::new(0);
+        let parts = on_threads(0..self.threads, |_| {
             let mut engine = CpuEngine::new(plan, tables).stopping_on(&self.control.stop);
-            let mut rows = Vec::with_capacity(part.len());
-            engine.screen_some_in(chosen, part, |block| {
-                for lane in block.feasible() {
-                    let value = |(column, places): (&Column, &Vec<usize>)| {
-                        let values = places.iter().map(|&place| block.column(place)[lane] + 0.0);
-                        AtWorst { value: column.worst_of(values), scenario: UNKNOWN }
-                    };
-                    let columns: Vec<_> = self.columns.iter().zip(places).map(value).collect();
-                    rows.push(Row::seen(plan, block.index(lane), columns));
-                }
-            });
+            let mut rows = Vec::new();
+            while let Some(part) = parts.get(next.fetch_add(1, Ordering::Relaxed)).filter(|_| !self.control.stop.load(Ordering::Relaxed)) {
+                engine.screen_some_in(chosen, part, |block| {
+                    for lane in block.feasible() {
+                        let value = |(column, places): (&Column, &Vec<usize>)| {
+                            let values = places.iter().map(|&place| block.column(place)[lane] + 0.0);
+                            AtWorst { value: column.worst_of(values), scenario: UNKNOWN }
+                        };
+                        let columns: Vec<_> = self.columns.iter().zip(places).map(value).collect();
+                        rows.push(Row::seen(plan, block.index(lane), columns));
+                    }
+                });
+            }
             rows
         });
         self.go_on()?;

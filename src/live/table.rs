@@ -11,28 +11,32 @@ use crate::plan::{Plan, Tracked};
 use crate::reduce::{Points, Reduction};
 use crate::screen::{BLOCK, Block, CpuEngine, Tables};
 use crate::study::{Constraint, Study};
-use std::ops::Range;
+use rustc_hash::FxHashSet;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Most bytes of a table.
 const MOST_BYTES: u64 = 64 << 20;
 /// Parts of a table, per thread.
-const PARTS: u64 = 16;
+const PARTS: usize = 16;
 
-/// The worst values of all designs in a working set.
+/// The worst values of designs in a working set.
 #[derive(Debug)]
 pub struct WorstTable {
     /// Of the study without its bounds.
     hash: String,
     followed: Vec<Tracked>,
     set: WorkingSet,
-    parts: Vec<TablePart>,
+    /// Of a coarse grid of rows: their front drops most of what follows.
+    coarse: Arc<Vec<TablePart>>,
+    /// Of all other rows, once they are asked for.
+    rest: Option<Vec<TablePart>>,
 }
 
 /// Those of some rows of the sweep.
 #[derive(Debug)]
 struct TablePart {
-    rows: Range<u64>,
+    rows: Vec<u64>,
     /// By what the plan follows: one value per design, row by row; not a number where a design has no result.
     columns: Vec<Vec<f64>>,
 }
@@ -53,35 +57,29 @@ pub fn is_kept(free: &Plan) -> bool {
 }
 
 impl WorstTable {
-    /// Judges every design in some scenarios; `None` if it was stopped.
-    pub fn new(free: &Plan, tables: &Tables, set: &WorkingSet, threads: usize, stop: &AtomicBool) -> Option<Self> {
-        let (rows, width) = (free.slow.count(), free.fast.count());
-        let share = rows.div_ceil(PARTS * threads as u64).max(1);
-        let ranges: Vec<Range<u64>> = (0..rows).step_by(usize::try_from(share).ok()?).map(|first| first..rows.min(first + share)).collect();
-        let (places, chosen) = ((0..width).collect::<Vec<u64>>(), set.chosen(free));
-        let next = AtomicUsize::new(0);
-        let parts = on_threads(0..threads, |_| {
-            let mut engine = CpuEngine::new(free, tables).stopping_on(stop);
-            let mut own = Vec::new();
-            while let Some(rows) = ranges.get(next.fetch_add(1, Ordering::Relaxed)).filter(|_| !stop.load(Ordering::Relaxed)) {
-                let size = usize::try_from((rows.end - rows.start) * width).expect("it is held in memory");
-                let mut columns = vec![vec![f64::NAN; size]; free.tracked.len()];
-                let numbers: Vec<u64> = rows.clone().collect();
-                engine.screen_rows(&numbers, &places, &chosen, |block| {
-                    let row = free.slow.index_of(block.row_index) - rows.start;
-                    let first = usize::try_from(row * width + free.fast.index_of(block.offsets[0])).expect("it is held in memory");
-                    for (at, column) in columns.iter_mut().enumerate() {
-                        let values = block.column(at).iter().zip(block.alive);
-                        let room = &mut column[first..first + block.count()];
-                        room.iter_mut().zip(values).for_each(|(to, (&value, &alive))| *to = if alive == 0 { f64::NAN } else { value });
-                    }
-                });
-                own.push(TablePart { rows: rows.clone(), columns });
-            }
-            own
-        });
-        let parts = parts.into_iter().flatten().collect();
-        (!stop.load(Ordering::Relaxed)).then(|| Self { hash: free.study.hash(), followed: followed(free), set: set.clone(), parts })
+    /// Judges every design of at most so many rows, which are spread over all, in some scenarios; `None` if it was stopped.
+    pub fn begin(free: &Plan, tables: &Tables, set: &WorkingSet, rows: u64, threads: usize, stop: &AtomicBool) -> Option<Self> {
+        let coarse = Arc::new(judge(free, tables, set, &free.slow.coarse(rows.max(1)), threads, stop)?);
+        Some(Self { hash: free.study.hash(), followed: followed(free), set: set.clone(), coarse, rest: None })
+    }
+
+    /// The same with all other designs; `None` if it was stopped.
+    pub fn finish(&self, free: &Plan, tables: &Tables, threads: usize, stop: &AtomicBool) -> Option<Self> {
+        let known: FxHashSet<u64> = self.coarse.iter().flat_map(|part| part.rows.iter().copied()).collect();
+        let rows: Vec<u64> = (0..free.slow.count()).filter(|row| !known.contains(row)).collect();
+        let rest = Some(judge(free, tables, &self.set, &rows, threads, stop)?);
+        let (hash, followed, set) = (self.hash.clone(), self.followed.clone(), self.set.clone());
+        Some(Self { hash, followed, set, coarse: Arc::clone(&self.coarse), rest })
+    }
+
+    /// Are all designs in it?
+    pub fn is_whole(&self) -> bool {
+        self.rest.is_some()
+    }
+
+    /// Designs of the coarse grid.
+    pub fn begun(&self, free: &Plan) -> u64 {
+        self.coarse.iter().map(|part| part.rows.len() as u64).sum::<u64>() * free.fast.count()
     }
 
     /// Does it serve a plan without bounds and a working set?
@@ -89,49 +87,83 @@ impl WorstTable {
         self.set == *set && self.followed == followed(free) && self.hash == free.study.hash()
     }
 
-    /// The front of the designs that keep the bounds of a study; `None` if it was stopped.
-    pub fn front(&self, free: &Plan, study: &Study, threads: usize, stop: &AtomicBool) -> Option<Points> {
-        let reduction = Reduction::of_front(free);
-        let bounds = bounds(free, study);
-        let offsets: Vec<u64> = (0..free.fast.count()).map(|place| free.fast.source_index(place)).collect();
-        let next = AtomicUsize::new(0);
-        let found = on_threads(0..threads, |_| {
-            let mut own = reduction.start();
-            let mut alive = Vec::new();
-            let mut values = vec![Vec::new(); free.tracked.len()];
-            while let Some(part) = self.parts.get(next.fetch_add(1, Ordering::Relaxed)).filter(|_| !stop.load(Ordering::Relaxed)) {
-                for row in part.rows.clone() {
-                    let first = usize::try_from(row - part.rows.start).expect("it is held in memory") * offsets.len();
-                    let row_index = free.slow.source_index(row);
-                    for (number, offsets) in offsets.chunks(BLOCK).enumerate() {
-                        let place = first + number * BLOCK;
-                        let lanes = place..place + offsets.len();
-                        alive.clear();
-                        alive.resize(offsets.len(), u64::MAX);
-                        keep_finite(&mut alive, &part.columns[0][lanes.clone()]);
-                        for &(column, low, high) in &bounds {
-                            keep_between(&mut alive, &part.columns[column][lanes.clone()], low, high);
-                        }
-                        let feasible_count = count(&alive);
-                        if feasible_count == 0 {
-                            continue;
-                        }
-                        for &column in &free.objectives {
-                            values[column].clear();
-                            values[column].extend_from_slice(&part.columns[column][lanes.clone()]);
-                        }
-                        reduction
-                            .absorb_objectives(&mut own, &Block { row_index, offsets, feasible_count, alive: &alive, values: &values });
+    /// The front of the coarse grid's designs that keep the bounds of a study; `None` if it was stopped.
+    pub fn coarse_front(&self, free: &Plan, study: &Study, threads: usize, stop: &AtomicBool) -> Option<Points> {
+        front(&self.coarse, Points::default(), free, study, threads, stop)
+    }
+
+    /// The front of all designs in it that keep the bounds, where that of the coarse grid is known; `None` if it was stopped.
+    pub fn front(&self, coarse: Points, free: &Plan, study: &Study, threads: usize, stop: &AtomicBool) -> Option<Points> {
+        front(self.rest.as_deref().unwrap_or_default(), coarse, free, study, threads, stop)
+    }
+}
+
+/// Judges every design of some rows.
+fn judge(free: &Plan, tables: &Tables, set: &WorkingSet, rows: &[u64], threads: usize, stop: &AtomicBool) -> Option<Vec<TablePart>> {
+    let shares: Vec<&[u64]> = rows.chunks(rows.len().div_ceil(PARTS * threads).max(1)).collect();
+    let width = free.fast.count();
+    let (places, chosen) = ((0..width).collect::<Vec<u64>>(), set.chosen(free));
+    let next = AtomicUsize::new(0);
+    let parts = on_threads(0..threads, |_| {
+        let mut engine = CpuEngine::new(free, tables).stopping_on(stop);
+        let mut own = Vec::new();
+        while let Some(rows) = shares.get(next.fetch_add(1, Ordering::Relaxed)).filter(|_| !stop.load(Ordering::Relaxed)) {
+            let size = usize::try_from(rows.len() as u64 * width).expect("it is held in memory");
+            let mut columns = vec![vec![f64::NAN; size]; free.tracked.len()];
+            engine.screen_rows(rows, &places, &chosen, |block| {
+                let row = rows.binary_search(&free.slow.index_of(block.row_index)).expect("it is one of these");
+                let first = usize::try_from(row as u64 * width + free.fast.index_of(block.offsets[0])).expect("it is held in memory");
+                for (at, column) in columns.iter_mut().enumerate() {
+                    let values = block.column(at).iter().zip(block.alive);
+                    let room = &mut column[first..first + block.count()];
+                    room.iter_mut().zip(values).for_each(|(to, (&value, &alive))| *to = if alive == 0 { f64::NAN } else { value });
+                }
+            });
+            own.push(TablePart { rows: rows.to_vec(), columns });
+        }
+        own
+    });
+    (!stop.load(Ordering::Relaxed)).then(|| parts.into_iter().flatten().collect())
+}
+
+/// The front of the designs of some parts that keep the bounds of a study, and of points that are known.
+fn front(parts: &[TablePart], known: Points, free: &Plan, study: &Study, threads: usize, stop: &AtomicBool) -> Option<Points> {
+    let reduction = Reduction::of_front(free);
+    let bounds = bounds(free, study);
+    let offsets: Vec<u64> = (0..free.fast.count()).map(|place| free.fast.source_index(place)).collect();
+    let next = AtomicUsize::new(0);
+    let found = on_threads(0..threads, |_| {
+        let mut own = reduction.start_after(known.clone());
+        let mut alive = Vec::new();
+        let mut values = vec![Vec::new(); free.tracked.len()];
+        while let Some(part) = parts.get(next.fetch_add(1, Ordering::Relaxed)).filter(|_| !stop.load(Ordering::Relaxed)) {
+            for (at, &row) in part.rows.iter().enumerate() {
+                let first = at * offsets.len();
+                let row_index = free.slow.source_index(row);
+                for (number, offsets) in offsets.chunks(BLOCK).enumerate() {
+                    let place = first + number * BLOCK;
+                    let lanes = place..place + offsets.len();
+                    alive.clear();
+                    alive.resize(offsets.len(), u64::MAX);
+                    keep_finite(&mut alive, &part.columns[0][lanes.clone()]);
+                    for &(column, low, high) in &bounds {
+                        keep_between(&mut alive, &part.columns[column][lanes.clone()], low, high);
                     }
+                    let feasible_count = count(&alive);
+                    if feasible_count == 0 {
+                        continue;
+                    }
+                    for &column in &free.objectives {
+                        values[column].clear();
+                        values[column].extend_from_slice(&part.columns[column][lanes.clone()]);
+                    }
+                    reduction.absorb_objectives(&mut own, &Block { row_index, offsets, feasible_count, alive: &alive, values: &values });
                 }
             }
-            own
-        });
-        if stop.load(Ordering::Relaxed) {
-            return None;
         }
-        Some(reduction.front_together(found))
-    }
+        own
+    });
+    (!stop.load(Ordering::Relaxed)).then(|| reduction.front_together(found))
 }
 
 fn followed(plan: &Plan) -> Vec<Tracked> {

@@ -72,7 +72,7 @@ fn the_front_found_in_a_few_scenarios_is_that_of_the_whole_sweep() {
         let control = Control::default();
         let mut search = FrontSearch::new(&plan, 2, &control, JudgedRows::default());
         let set = search.first_set().expect("nobody stops it");
-        let (rows, set) = search.exact(set, &mut |_, _, _| Ok(())).expect("it is found");
+        let (rows, set) = search.exact(set, &mut |_, _, _, _| Ok(())).expect("it is found");
         assert_eq!(rows.iter().map(|row| row.index).collect::<Vec<_>>(), designs, "{edits:?}");
         assert_eq!(designs.is_empty(), edits.iter().any(|(_, to)| to.contains("min = 9")), "{edits:?}: {designs:?}");
         let certified = search.certified(&rows).expect("the reference agrees");
@@ -98,8 +98,8 @@ fn a_working_set_that_lacks_what_matters_is_filled_up() {
     let mut search = FrontSearch::new(&plan, 2, &control, JudgedRows::default());
     // The mildest scenario alone: the front there is another one.
     let mildest = search.only(plan.scenarios() - 1);
-    let in_few = search.coarse(&mildest, plan.designs()).expect("nobody stops it");
-    let (rows, set) = search.exact(mildest, &mut |_, _, _| Ok(())).expect("it is found");
+    let in_few = search.coarse_grid(&mildest, plan.designs()).expect("nobody stops it");
+    let (rows, set) = search.exact(mildest, &mut |_, _, _, _| Ok(())).expect("it is found");
     let designs: Vec<u64> = rows.iter().map(|row| row.index).collect();
     assert!(!designs.is_empty() && in_few.indices.len() != designs.len());
     assert_eq!(designs, swept(&study).0);
@@ -122,7 +122,7 @@ fn what_was_judged_serves_again_where_only_bounds_differ() {
         let mut search = FrontSearch::new(&plan, 2, &control, before);
         assert_eq!(search.judged().is_empty(), !serves, "{edits:?}");
         let set = search.first_set().expect("nobody stops it");
-        let (rows, _) = search.exact(set, &mut |_, _, _| Ok(())).expect("it is found");
+        let (rows, _) = search.exact(set, &mut |_, _, _, _| Ok(())).expect("it is found");
         assert_eq!(rows.iter().map(|row| row.index).collect::<Vec<_>>(), designs, "{edits:?}");
         assert!(!designs.is_empty(), "{edits:?}");
         before = search.judged();

@@ -64,6 +64,13 @@ impl Dominance {
         Self { dimensions, trees: Vec::new(), buffer: PointSet::default() }
     }
 
+    /// The set of these points: coordinates point after point, and an index each. Faster than to insert one by one.
+    pub fn of(dimensions: usize, keys: &[f64], indices: &[u64]) -> Self {
+        let points = PointSet { keys: keys.to_vec(), indices: indices.to_vec() };
+        let trees = if indices.is_empty() { Vec::new() } else { vec![Tree::new(points, dimensions)] };
+        Self { dimensions, trees, buffer: PointSet::default() }
+    }
+
     /// Adds a point.
     pub fn insert(&mut self, key: &[f64], index: u64) {
         self.buffer.push(key, index);
@@ -166,6 +173,7 @@ mod tests {
             // Few levels, so that ties in single coordinates and equal points are common.
             let point = |i: u64| -> Vec<f64> { (0..dimensions).map(|d| (mix(i * 8 + d + 1000 * dimensions) % 12) as f64).collect() };
             let mut set = Dominance::new(dimensions as usize);
+            assert!(Dominance::of(dimensions as usize, &[], &[]).dominator(&point(0), 0).is_none());
             let points: Vec<_> = (0..700).map(point).collect();
             for (index, key) in points.iter().enumerate() {
                 let beaten = points[..index].iter().enumerate().any(|(other, it)| beats(it, other as u64, key, index as u64));
@@ -175,6 +183,11 @@ mod tests {
                     assert!(beats(by, by_index, key, index as u64));
                 }
                 set.insert(key, index as u64);
+                if index % 50 == 0 {
+                    let keys: Vec<f64> = points[..index].concat();
+                    let at_once = Dominance::of(dimensions as usize, &keys, &(0..index as u64).collect::<Vec<_>>());
+                    assert_eq!(at_once.dominator(key, index as u64).is_some(), beaten, "{dimensions} dimensions, {index} points");
+                }
             }
         }
     }

@@ -190,8 +190,13 @@ impl Front {
 
     /// Takes in points of another front.
     pub fn merge(&mut self, other: Points) {
-        self.waiting.keys.extend(other.keys);
-        self.waiting.indices.extend(other.indices);
+        let dimensions = self.rules.len();
+        for point in 0..other.len() {
+            let (key, index) = (other.key(point, dimensions), other.indices[point]);
+            if !self.beats_from(key, index) {
+                self.waiting.push(key.iter().copied(), index);
+            }
+        }
         self.merge_waiting();
     }
 
@@ -222,7 +227,7 @@ impl Front {
         self.points.is_empty()
     }
 
-    /// Sorts what waits into the front and drops what is beaten.
+    /// Sorts what waits into the front and drops what is beaten. Nothing that waits is beaten by the front: that was seen when it came.
     fn merge_waiting(&mut self) {
         if self.waiting.is_empty() {
             return;
@@ -230,6 +235,7 @@ impl Front {
         let dimensions = self.rules.len();
         let waiting = std::mem::take(&mut self.waiting);
         let mut all = std::mem::take(&mut self.points);
+        let known = all.len();
         self.fresh.resize(all.len() + waiting.len(), true);
         all.keys.extend(waiting.keys);
         all.indices.extend(waiting.indices);
@@ -245,8 +251,8 @@ impl Front {
             // A design that came back with a seed is the same point twice: the known one first, the other is dropped.
             by_key.unwrap_or_else(|| all.indices[a].cmp(&all.indices[b]).then(self.fresh[a].cmp(&self.fresh[b])))
         });
-        // In this order a point can only be beaten by an earlier one.
-        let mut kept = Dominance::new(dimensions);
+        // In this order a point can only be beaten by an earlier one, and by one that has waited.
+        let mut new = Dominance::new(dimensions);
         let mut best_second = f64::INFINITY;
         let mut fresh = Vec::new();
         let mut last = None;
@@ -256,40 +262,36 @@ impl Front {
                 || match dimensions {
                     1 => !self.points.is_empty(),
                     2 => key[1] >= best_second,
-                    _ => kept.dominator(key, index).is_some(),
+                    _ => new.dominator(key, index).is_some(),
                 };
             last = Some(index);
             if !beaten {
                 match dimensions {
                     1 => {}
                     2 => best_second = key[1],
-                    _ => kept.insert(key, index),
+                    _ if point < known => {}
+                    _ => new.insert(key, index),
                 }
                 self.points.push(key.iter().copied(), index);
                 fresh.push(self.fresh[point]);
             }
         }
         self.fresh = fresh;
-        self.refresh_filter_with(kept);
+        self.refresh_filter();
     }
 
     fn refresh_filter(&mut self) {
-        let mut all = Dominance::new(self.rules.len());
-        if self.rules.len() > 2 {
-            for (key, &index) in self.points.keys.chunks(self.rules.len()).zip(&self.points.indices) {
-                all.insert(key, index);
-            }
-        }
-        self.refresh_filter_with(all);
-    }
-
-    fn refresh_filter_with(&mut self, all: Dominance) {
         self.rays = OnceLock::new();
         self.filter = match (self.points.is_empty(), self.rules.len()) {
             (true, _) | (_, 0) => Filter::Nothing,
             (_, 1) => Filter::Best(self.points.keys[0]),
             (_, 2) => Filter::Table(BinTable::new(&self.points)),
-            (_, objectives) => Filter::Dominators { cells: CellTable::new(&self.points, objectives), recent: Vec::new(), next: 0, all },
+            (_, objectives) => Filter::Dominators {
+                cells: CellTable::new(&self.points, objectives),
+                recent: Vec::new(),
+                next: 0,
+                all: Dominance::of(objectives, &self.points.keys, &self.points.indices),
+            },
         };
     }
 }

@@ -89,6 +89,24 @@ page.breakable = (name) => name.split(/(?<=_)/).flatMap((part) => [part, documen
   };
 }
 
+// Work that waits until it has not been asked for during `pause` ms, and until the exact answer is there if one is awaited: on a machine with
+// few cores it would only delay that. Nothing waits longer than a second for an answer.
+page.afterPause = (pause, work) => {
+  let waiting = 0;
+  let since = null;
+  const look = () => {
+    const isAwaited = page.isAnswered && !page.isAnswered() && performance.now() - since < 1000;
+    if (isAwaited) return void (waiting = setTimeout(look, pause));
+    since = null;
+    return work();
+  };
+  return () => {
+    clearTimeout(waiting);
+    since ??= performance.now();
+    waiting = setTimeout(look, pause);
+  };
+};
+
 page.tip = (event, text) => {
   const tip = page.byId("tip");
   tip.hidden = !text;

@@ -41,8 +41,10 @@
   // Another front of the same columns: the cells stay, with other points and scales.
   const refresh = () => {
     const { front, state } = page;
+    // Without a design nothing of it is shown, and the next front finds the cells as they were.
+    if (!front.rows) return;
     const same = cells.length && String(cellNames()) === String(pairs(state.matrix));
-    if (!same || !front.rows) return layout();
+    if (!same) return layout();
     const extent = Math.round(size * ratio);
     const pixels = new Map();
     const pixel = (column, flip) => {
@@ -292,13 +294,22 @@
     }
   };
 
-  // The unselected points of all rows are drawn once per layout; a brush then only adds the selected ones.
+  // The unselected points of all rows are drawn once per layout, in a pause or with the first brush; a brush then only adds the selected ones.
+  const drawUnselected = () => {
+    const faint = page.pixel(page.variable("--faint"));
+    const extent = Math.round(size * ratio);
+    for (const cell of cells.filter((it) => !it.isBased)) {
+      page.drawPoints(cell.base, extent, extent, cell.xs, cell.ys, page.mask, null, faint, disc);
+      cell.isBased = true;
+    }
+  };
+  const drawUnselectedLater = page.afterPause(300, () => page.front.rows && drawUnselected());
+
   const draw = (all) => {
     if (!cells.length) return;
     const start = performance.now();
     const context = canvas.getContext("2d");
     const ground = page.pixel(page.variable("--plot"));
-    const faint = page.pixel(page.variable("--faint"));
     const extent = Math.round(size * ratio);
     const colours = page.colours();
     const everything = page.selectedCount === page.front.rows;
@@ -311,8 +322,12 @@
         if (cell.ghost) page.drawPoints(cell.base, extent, extent, cell.ghost.xs, cell.ghost.ys, null, null, page.pixel(page.variable("--ghost")), disc);
         for (const { other, at } of cell.others) page.drawPoints(cell.base, extent, extent, at.xs, at.ys, null, null, page.pixel(page.otherColour(other)), page.otherMark(other, ratio));
         if (cell.ground) cell.ground.set(cell.base);
-        page.drawPoints(cell.base, extent, extent, cell.xs, cell.ys, page.mask, null, faint, disc);
+        cell.isBased = false;
       }
+    }
+    if (!everything) drawUnselected();
+    else if (all) drawUnselectedLater();
+    for (const cell of cells) {
       if (everything && cell.ground) cell.pixels.set(cell.ground);
       else if (everything) cell.pixels.fill(ground);
       else cell.pixels.set(cell.base);

@@ -176,11 +176,10 @@
     page.events.on("columns.parallel", layout);
     page.events.on("layout.parallel", layout);
     // Thousands of lines take longer than the points: not while a slider moves.
-    let waiting = 0;
+    const later = page.afterPause(140, layout);
     page.events.on("front.parallel", () => {
-      clearTimeout(waiting);
       page.layoutLines(null);
-      waiting = setTimeout(layout, 140);
+      later();
     });
     page.events.on("selection.parallel", () => {
       syncBrushes();

@@ -98,11 +98,7 @@
     body.addEventListener("focusin", (event) => page.setCurrent(rowAt(event)));
     update();
     // Not on every move of a brush, but after a pause.
-    let waiting = 0;
-    const later = () => {
-      clearTimeout(waiting);
-      waiting = setTimeout(update, 80);
-    };
+    const later = page.afterPause(80, update);
     page.events.on("selection.table", later);
     page.events.on("columns.table", later);
     page.events.on("front.table", later);

@@ -71,15 +71,11 @@
   };
 
   // What stands around the plots can wait until nothing moves.
-  let waiting = 0;
-  const later = () => {
-    clearTimeout(waiting);
-    waiting = setTimeout(() => {
-      page.startOverview();
-      page.startStudy();
-      page.byId("command").textContent = page.data.command;
-    }, 150);
-  };
+  const later = page.afterPause(150, () => {
+    page.startOverview();
+    page.startStudy();
+    page.byId("command").textContent = page.data.command;
+  });
 
   const seconds = (s) => page.seconds(s);
 
