@@ -1,13 +1,15 @@
 //! Single designs over all their scenarios at once: the scenarios are the columns of the recorded formula.
 //!
 //! The engine of the sweep is quick where many designs share a row. The designs of a front share little; what they share is the scenarios.
-//! What depends on the scenario alone is computed once for all designs, what depends on the design alone once for all scenarios. The
-//! numbers have the bits of the formula itself.
+//! What depends on the scenario alone is computed once for all designs, what depends on the design alone once for all scenarios, and from
+//! design to design only what depends on an input that has changed. The numbers have the bits of the formula itself.
 
+use super::search::UNKNOWN;
 use crate::certify::{AtWorst, Column, Row};
-use crate::models::input_to_si;
-use crate::plan::{Plan, Source, knowns};
-use crate::study::{Axis, Quantity};
+use crate::masks::{ends, keep_finite, keep_margin};
+use crate::models::{Worse, input_to_si};
+use crate::plan::{Plan, knowns};
+use crate::study::{Axis, Constraint, Quantity};
 use crate::tape::{CHUNK, ColumnValue, List, Node, NodeColumns, Operation, Set};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -21,22 +23,18 @@ pub struct ScenarioLanes {
     list: List,
     /// Does an operation depend on the scenario?
     of_scenario: Vec<bool>,
-    /// Operations that depend on the scenario alone, and all others, operands first.
+    /// Operations that depend on no design, and all others, operands first.
     shared: Vec<Node>,
     own: Vec<Node>,
+    /// The design's inputs that each operation depends on.
+    turning: Vec<Set>,
     /// Conditions that matter, with the place of their margin among the results.
     conditions: Vec<(usize, usize)>,
+    /// What constraints and columns are about, each once.
+    asked: Vec<Quantity>,
     /// By scenario, of each input that the scenario sets: its number, and its values in its unit and in SI.
     inputs: Vec<(usize, Vec<f64>, Vec<f64>)>,
     scenarios: usize,
-}
-
-/// A number of every scenario.
-#[derive(Clone, Copy)]
-enum LaneValues<'a> {
-    Column(ColumnValue<'a>),
-    /// An input that the scenario sets, in its unit.
-    Input(&'a [f64]),
 }
 
 impl ScenarioLanes {
@@ -51,20 +49,19 @@ impl ScenarioLanes {
         let mattering: Vec<usize> = plan.row_conditions.iter().chain(&plan.lane_conditions).copied().collect();
         let (wanted, asked): (Set, Set) = (plan.used_outputs(), mattering.iter().collect());
         let list = formula.whole(&knowns(study, &plan.space), wanted, asked).list(wanted, asked);
-        // A root takes long for each scenario, and the engine solves it once for all designs of a row.
-        let is_slow = |it: &Operation| matches!(it, Operation::Root(_) | Operation::Rolled(_));
-        if list.operations.len() > MOST_OPERATIONS || list.operations.iter().any(is_slow) {
+        let is_rolled = |it: &Operation| matches!(it, Operation::Rolled(_));
+        if list.operations.len() > MOST_OPERATIONS || list.operations.iter().any(is_rolled) || !list.has_roots_in_columns() {
             return None;
         }
         let by = |axes: &[&Vec<Axis>]| -> Set { axes.iter().flat_map(|axes| axes.iter()).flat_map(Axis::inputs).collect() };
         let (designs, scenarios) = (by(&[&study.design]), by(&[&study.operation, &study.uncertainty]));
-        let depends = |inputs: Set| -> Vec<bool> {
-            list.dependencies(|input| Bit(inputs.contains(input.into()))).into_iter().map(|it| it.0).collect()
+        let reads = |inputs: Set| -> Vec<Set> {
+            list.dependencies(|input| JoinedInputs(Set::one(input.into()) & inputs)).into_iter().map(|it| it.0).collect()
         };
-        let (of_design, of_scenario) = (depends(designs), depends(scenarios));
+        let turning = reads(designs);
+        let of_scenario: Vec<bool> = reads(scenarios).iter().map(|it| !it.is_empty()).collect();
         let results: Vec<Node> = list.results.iter().flatten().copied().collect();
-        let is_shared = |node: &Node| of_scenario[*node as usize] && !of_design[*node as usize];
-        let (shared, own) = list.needed_by(&results).into_iter().partition(is_shared);
+        let (shared, own) = list.needed_by(&results).into_iter().partition(|node| turning[*node as usize].is_empty());
         let count = usize::try_from(plan.scenarios()).ok()?;
         let outputs = formula.fields().outputs.len();
         let mut values = study.fixed.clone();
@@ -77,38 +74,57 @@ impl ScenarioLanes {
             }
         }
         let conditions = mattering.into_iter().map(|condition| (condition, outputs + condition)).collect();
-        Some(Self { list, of_scenario, shared, own, conditions, inputs, scenarios: count })
+        let mut asked: Vec<Quantity> = Vec::new();
+        for quantity in study.constraints.iter().map(|it| it.quantity).chain(plan.tracked.iter().map(|(it, _)| it.quantity)) {
+            if !asked.contains(&quantity) {
+                asked.push(quantity);
+            }
+        }
+        Some(Self { list, of_scenario, shared, own, turning, conditions, asked, inputs, scenarios: count })
     }
 
-    /// The feasible ones of some designs with their values at the worst scenarios, in any order. A design of which a followed value is
-    /// absent somewhere is left out.
+    /// The feasible ones of some designs with their worst values, in any order. A design of which a followed value is absent somewhere is left
+    /// out. Designs next to each other should share inputs.
     pub fn judge(&self, plan: &Plan, columns: &[Column], designs: &[u64], stop: &AtomicBool) -> Vec<Row> {
         let mut numbers = NodeColumns::new(&self.list);
         let own: Vec<Vec<f64>> = designs.iter().map(|&design| plan.space.inputs(design, 0)).collect();
         let mut worst: Vec<Option<Vec<(f64, AtWorst)>>> = designs.iter().map(|_| Some(vec![Column::nothing(); columns.len()])).collect();
+        let mut alive = Vec::new();
         for first in (0..self.scenarios).step_by(CHUNK) {
             let lanes = first..self.scenarios.min(first + CHUNK);
             numbers.begin(lanes.len());
-            self.fill(plan, &self.shared, &plan.study.fixed, &lanes, &mut numbers);
+            self.fill(plan, self.shared.iter(), &plan.study.fixed, &lanes, &mut numbers);
+            let mut last: Option<&[f64]> = None;
             for (inputs, slot) in own.iter().zip(&mut worst) {
                 if stop.load(Ordering::Relaxed) {
                     return Vec::new();
                 }
                 let Some(worst) = slot.as_mut() else { continue };
-                self.fill(plan, &self.own, inputs, &lanes, &mut numbers);
-                if !self.take(plan, columns, inputs, &lanes, &numbers, worst) {
+                let differs = |last: &[f64]| (0..inputs.len()).filter(|&it| inputs[it].to_bits() != last[it].to_bits()).collect::<Set>();
+                let changed = last.map(differs);
+                let is_stale = |node: &&Node| changed.is_none_or(|changed| self.turning[**node as usize].meets(changed));
+                self.fill(plan, self.own.iter().filter(is_stale), inputs, &lanes, &mut numbers);
+                last = Some(inputs);
+                if !self.take(plan, columns, inputs, &lanes, &numbers, &mut alive, worst) {
                     *slot = None;
                 }
             }
         }
         let row = |(&design, worst): (&u64, Option<Vec<(f64, AtWorst)>>)| {
-            Some(Row::seen(plan, design, worst?.into_iter().map(|(_, at)| at).collect()))
+            Some(Row::seen(plan, design, worst?.into_iter().map(|(_, at)| AtWorst { scenario: UNKNOWN, ..at }).collect()))
         };
         designs.iter().zip(worst).filter_map(row).collect()
     }
 
     /// Computes some operations over a chunk of scenarios.
-    fn fill(&self, plan: &Plan, nodes: &[Node], inputs: &[f64], lanes: &Range<usize>, numbers: &mut NodeColumns) {
+    fn fill<'n>(
+        &self,
+        plan: &Plan,
+        nodes: impl Iterator<Item = &'n Node>,
+        inputs: &[f64],
+        lanes: &Range<usize>,
+        numbers: &mut NodeColumns,
+    ) {
         for &node in nodes {
             let at = node as usize;
             match self.list.operations[at] {
@@ -122,7 +138,8 @@ impl ScenarioLanes {
         }
     }
 
-    /// Takes the values of a chunk of scenarios into the worst ones; false if the design is out.
+    /// Takes the values of a chunk of scenarios into the worst ones; false if the design is out. `alive` is room.
+    #[allow(clippy::too_many_arguments, reason = "each is one thing")]
     fn take(
         &self,
         plan: &Plan,
@@ -130,44 +147,53 @@ impl ScenarioLanes {
         inputs: &[f64],
         lanes: &Range<usize>,
         numbers: &NodeColumns,
+        alive: &mut Vec<u64>,
         worst: &mut [(f64, AtWorst)],
     ) -> bool {
         let model = &plan.study.model;
+        alive.clear();
+        alive.resize(lanes.len(), u64::MAX);
         let result = |place: usize| {
             let node = self.list.results[place].expect("the list is cut to what is asked for");
             numbers.value(node, |node| self.of_scenario[node as usize])
         };
-        let count = lanes.len();
-        let all = |value: ColumnValue<'_>, is: &dyn Fn(f64) -> bool| match value {
-            ColumnValue::One(value) => is(value),
-            ColumnValue::Each(values) => values.iter().all(|&value| is(value)),
-        };
-        let keeps = |condition: usize, margin: f64| if model.conditions[condition].strict { margin > 0.0 } else { margin >= 0.0 };
-        if !self.conditions.iter().all(|&(condition, place)| all(result(place), &|margin| keeps(condition, margin))) {
-            return false;
+        for &(condition, place) in &self.conditions {
+            let is_strict = model.conditions[condition].strict;
+            match result(place) {
+                ColumnValue::One(margin) if margin > 0.0 || margin == 0.0 && !is_strict => {}
+                ColumnValue::One(_) => return false,
+                ColumnValue::Each(margins) => keep_margin(alive, margins, is_strict),
+            }
         }
         let values = |quantity: Quantity| match quantity {
             Quantity::Input(input) => match self.inputs.iter().find(|(it, ..)| *it == input) {
-                Some((_, own, _)) => LaneValues::Input(&own[lanes.clone()]),
-                None => LaneValues::Column(ColumnValue::One(inputs[input])),
+                Some((_, own, _)) => ColumnValue::Each(&own[lanes.clone()]),
+                None => ColumnValue::One(inputs[input]),
             },
-            Quantity::Output(output) => LaneValues::Column(result(output)),
+            Quantity::Output(output) => result(output),
         };
         let in_unit = |quantity: Quantity, value: f64| match quantity {
             Quantity::Input(_) => value,
             Quantity::Output(output) => model.outputs[output].unit.from_si(value),
         };
-        let fits = |quantity: Quantity, is: &dyn Fn(f64) -> bool| match values(quantity) {
-            LaneValues::Input(values) => values.iter().all(|&it| is(it)),
-            LaneValues::Column(values) => all(values, &|it| is(in_unit(quantity, it))),
+        // A larger number is no smaller in another unit.
+        let mut ends_of = |quantity: Quantity| {
+            let (low, high) = match values(quantity) {
+                ColumnValue::One(value) => (value, value),
+                ColumnValue::Each(values) => {
+                    keep_finite(alive, values);
+                    ends(alive, values)
+                }
+            };
+            (in_unit(quantity, low), in_unit(quantity, high))
         };
-        if !plan.study.constraints.iter().all(|it| fits(it.quantity, &|value| value.is_finite() && it.holds(value))) {
+        let found: Vec<(f64, f64)> = self.asked.iter().map(|&quantity| ends_of(quantity)).collect();
+        if alive.contains(&0) || !found.iter().all(|(low, high)| low.is_finite() && high.is_finite()) {
             return false;
         }
-        // Constraints have asked for finite numbers already.
-        let constrained = |source: &Source| plan.constraints.contains(source);
-        let mut followed = plan.tracked.iter().filter(|(_, source)| !constrained(source));
-        if !followed.all(|(it, _)| fits(it.quantity, &f64::is_finite)) {
+        let ends = |quantity: Quantity| self.asked.iter().position(|it| *it == quantity).map(|at| found[at]);
+        let holds = |(low, high): (f64, f64), of: &Constraint| of.holds(low) && of.holds(high);
+        if !plan.study.constraints.iter().all(|it| ends(it.quantity).is_some_and(|ends| holds(ends, it))) {
             return false;
         }
         for (column, worst) in columns.iter().zip(worst) {
@@ -176,17 +202,12 @@ impl ScenarioLanes {
                 continue;
             }
             let quantity = column.quantity;
-            match values(quantity) {
-                LaneValues::Column(ColumnValue::One(value)) => column.take(worst, in_unit(quantity, value), lanes.start as u64),
-                LaneValues::Column(ColumnValue::Each(values)) => {
-                    for (lane, &value) in values[..count].iter().enumerate() {
-                        column.take(worst, in_unit(quantity, value), (lanes.start + lane) as u64);
-                    }
-                }
-                LaneValues::Input(values) => {
-                    for (lane, &value) in values.iter().enumerate() {
-                        column.take(worst, value, (lanes.start + lane) as u64);
-                    }
+            match (column.end(), ends(quantity), values(quantity)) {
+                (Some(Worse::Lower), Some((low, _)), _) => column.take(worst, low, UNKNOWN),
+                (Some(Worse::Higher), Some((_, high)), _) => column.take(worst, high, UNKNOWN),
+                (.., ColumnValue::One(value)) => column.take(worst, in_unit(quantity, value), UNKNOWN),
+                (.., ColumnValue::Each(values)) => {
+                    values.iter().for_each(|&value| column.take(worst, in_unit(quantity, value), UNKNOWN));
                 }
             }
         }
@@ -194,12 +215,12 @@ impl ScenarioLanes {
     }
 }
 
-/// One bit, to be joined over what a number depends on.
+/// The inputs that an operation depends on, to be joined.
 #[derive(Clone, Copy, Default)]
-struct Bit(bool);
+struct JoinedInputs(Set);
 
-impl std::ops::BitOrAssign for Bit {
+impl std::ops::BitOrAssign for JoinedInputs {
     fn bitor_assign(&mut self, other: Self) {
-        self.0 |= other.0;
+        self.0 = self.0 | other.0;
     }
 }

@@ -59,12 +59,12 @@ pub struct Live {
     sets: Mutex<FxHashMap<Vec<u64>, WorkingSet>>,
     /// Designs of the last front, over all scenarios.
     judged: Mutex<JudgedRows>,
-    pace: Mutex<Pace>,
+    pace: Mutex<LivePace>,
 }
 
 /// How long things took of late.
 #[derive(Clone, Copy, Debug)]
-struct Pace {
+struct LivePace {
     /// Seconds that a thread took for one design in one scenario.
     swept: Option<f64>,
     /// Seconds that all threads took for one design of a front in one scenario.
@@ -125,7 +125,7 @@ impl Live {
             threads: threads.max(1),
             sets: Mutex::default(),
             judged: Mutex::default(),
-            pace: Mutex::new(Pace { swept: None, judged: None, slowness: SLOWNESS }),
+            pace: Mutex::new(LivePace { swept: None, judged: None, slowness: SLOWNESS }),
         }
     }
 
@@ -276,11 +276,11 @@ impl Live {
         });
     }
 
-    fn pace(&self) -> Pace {
+    fn pace(&self) -> LivePace {
         *self.pace.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn change_pace(&self, change: impl FnOnce(&mut Pace)) {
+    fn change_pace(&self, change: impl FnOnce(&mut LivePace)) {
         change(&mut self.pace.lock().unwrap_or_else(PoisonError::into_inner));
     }
 

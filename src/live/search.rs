@@ -31,7 +31,7 @@ const SEEDS: u64 = 48;
 /// Designs that say which scenarios are missing.
 const MOST_ASKED: usize = 12;
 /// Stands for a scenario that is not known.
-const UNKNOWN: u64 = u64::MAX;
+pub(super) const UNKNOWN: u64 = u64::MAX;
 /// Designs of a front that others are compared with first.
 const FEW: u64 = 2000;
 /// A grid has so many times the designs of the one whose front comes before its own.
@@ -486,6 +486,9 @@ impl<'p> FrontSearch<'p> {
 
     /// The feasible ones of some designs, each over all scenarios at once.
     fn in_lanes(&self, lanes: &ScenarioLanes, designs: &[u64]) -> Result<Vec<Row>> {
+        let mut positions: Vec<u64> = designs.iter().map(|&design| self.shown.position_of(design)).collect();
+        positions.sort_unstable();
+        let designs: Vec<u64> = positions.into_iter().map(|position| self.shown.design_at(position)).collect();
         let share = designs.len().div_ceil(self.threads).max(1);
         let parts = on_threads(designs.chunks(share), |part| lanes.judge(&self.shown, &self.columns, part, &self.control.stop));
         self.go_on()?;

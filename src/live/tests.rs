@@ -18,7 +18,7 @@ const BELT: &str = "model = \"metal-cvt\"\n[design]\ngroove_angle_deg = { from =
     [objectives]\naxial_force_N = \"min\"\nstress_margin = \"max\"\nslip_margin = \"max\"\n[report]\ncolumns = [\"max_stress_MPa\"]\n";
 
 /// Variants of it: what is replaced by what.
-const VARIANTS: [&[(&str, &str)]; 8] = [
+const VARIANTS: [&[(&str, &str)]; 9] = [
     &[],
     &[("stress_margin = { min = 0 }", "stress_margin = { min = 0.1, max = 0.85 }")],
     &[("slip_margin = { min = 0 }\n", ""), ("slip_margin = \"max\"", "band_count = \"min\"")],
@@ -34,6 +34,11 @@ const VARIANTS: [&[(&str, &str)]; 8] = [
         ("to = 0.095, count = 4", "to = 0.065, count = 1"),
     ],
     &[("traction = { from = 0.3, to = 0.5, count = 5 }", "clamping_force_N = { from = 20000, to = 50000, count = 5 }")],
+    // A force that follows from scenarios and numbers in part.
+    &[
+        ("traction = { from = 0.3, to = 0.5, count = 5 }", "reserve = { from = 1.3, to = 1.8, count = 5 }"),
+        ("[constraints]", "[formulas]\nclamping_force_N = \"reserve * torque_Nm * (1 + ratio) / (4 * 0.08 * 47.9[mm])\"\n[constraints]"),
+    ],
 ];
 
 fn changed(edits: &[(&str, &str)]) -> String {

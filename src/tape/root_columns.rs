@@ -166,6 +166,13 @@ fn steps(
     left
 }
 
+impl List {
+    /// Are all its roots found over columns?
+    pub(crate) fn has_roots_in_columns(&self) -> bool {
+        self.operations.iter().all(|it| !matches!(it, Operation::Root(number) if !serves(self, *number)))
+    }
+}
+
 /// Can a root be found over columns? Its function must be plain operations.
 pub fn serves(list: &List, number: u8) -> bool {
     let plain = |node: &Node| {

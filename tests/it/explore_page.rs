@@ -237,7 +237,8 @@ fn changes_are_undone_shared_saved_and_compared() {
     let slider = "#controls input[type=range][data-part=\"constraints.stress_margin.min\"]";
     let [left, top, width, height] = browser.rectangle(slider);
     browser.evaluate(COUNT);
-    let at = |part: f64| [left + part * width, top + height / 2.0];
+    // The handle, 16 pixels wide, moves between the ends of the track.
+    let at = |part: f64| [left + 8.0 + part * (width - 16.0), top + height / 2.0];
     let value: f64 =
         browser.number(&format!("(() => {{ const e = document.querySelector('{slider}'); return (0 - e.min) / (e.max - e.min); }})()"));
     // To where it leaves half of the front.
@@ -432,8 +433,7 @@ fn a_slider_is_moved_with_the_keyboard_and_what_comes_of_it_is_told() {
     browser.wait("document.querySelector('#live-text').textContent.startsWith('exact: ')");
     // Ctrl+Z takes it back.
     browser.evaluate(COUNT);
-    let control = serde_json::json!({ "type": "keyDown", "key": "z", "code": "KeyZ", "windowsVirtualKeyCode": 90, "modifiers": 2 });
-    browser.call("Input.dispatchKeyEvent", &control);
+    browser.control_key('z');
     answered(&mut browser);
     assert_eq!(browser.text("beltspace.page.changeList().join()"), "strength_MPa=750");
     let start = Instant::now();

@@ -2,18 +2,8 @@
 
 use crate::browser::Browser;
 use crate::report_page::Swept;
-use base64::Engine;
-use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-
-/// Prints the page to a file on A4.
-fn printed(browser: &mut Browser, file: &Path) {
-    let size = json!({ "printBackground": true, "paperWidth": 8.27, "paperHeight": 11.69 });
-    let answer = browser.call("Page.printToPDF", &size);
-    let text = answer["data"].as_str().expect("it is text");
-    std::fs::write(file, base64::engine::general_purpose::STANDARD.decode(text).expect("it is base64")).expect("it can be written");
-}
 
 fn read_by(program: &str, words: &[&str]) -> String {
     let output = Command::new(program).args(words).output().expect("poppler-utils are there");
@@ -47,7 +37,7 @@ fn the_page_is_printed_without_broken_numbers_and_half_empty_pages() {
     let swept = Swept::shipped("metal-cvt");
     let mut browser = Browser::open(&swept.page(), "");
     let file = swept.folder.path().join("page.pdf");
-    printed(&mut browser, &file);
+    std::fs::write(&file, browser.paper()).expect("it can be written");
     let of_page =
         |page: &str| read_by("pdftotext", &["-layout", "-f", page, "-l", page, file.to_str().expect("a path of characters"), "-"]);
     // The question stands on the first page, with the front below it.
@@ -68,7 +58,7 @@ fn the_page_is_printed_without_broken_numbers_and_half_empty_pages() {
     // The data sheet of a design is what its card says, drawing included.
     browser.evaluate("beltspace.openCard(beltspace.page.front.knee)");
     browser.evaluate("document.body.classList.add('sheet')");
-    printed(&mut browser, &file);
+    std::fs::write(&file, browser.paper()).expect("it can be written");
     let sheet = read_by("pdftotext", &["-layout", file.to_str().expect("a path of characters"), "-"]);
     for part in ["Drawn to scale", "156 mm", "groove 28.4°", "Outputs at their worst scenario", "Margins"] {
         assert!(sheet.contains(part), "no {part}: {sheet}");

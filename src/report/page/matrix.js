@@ -125,7 +125,7 @@
       }
     dot = page.disc((page.sample && page.sample.rows > 3000 ? 0.7 / ratio : 1.2) * ratio);
     disc = discOf(front.rows);
-    const readout = page.element("div", { id: "readout", "data-testid": "readout" });
+    const readout = page.element("div", { id: "readout", "data-testid": "readout", tabindex: 0, role: "group", "aria-label": "colours, and the values of the current design" });
     const stage = page.element("div", { class: "stage" }, canvas, svg.node());
     stage.style.width = `${total.width}px`;
     stage.style.height = `${total.height}px`;

@@ -1,23 +1,49 @@
-//! Chromium without a screen, driven as a person drives it: with mouse and keys, over its debugging protocol.
+//! A browser without a screen, driven as a person drives it: with mouse and keys. It is Chromium, or Firefox where BELTSPACE_BROWSER is
+//! `firefox`.
 
-use serde_json::{Value, json};
-use std::net::TcpStream;
+mod chromium;
+mod firefox;
+mod wire;
+
+use serde_json::Value;
 use std::path::Path;
-use std::process::{Child, Command, Stdio};
+use std::process::Child;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
-use tungstenite::stream::MaybeTlsStream;
-use tungstenite::{Message, WebSocket};
 
 /// How long anything may take before the test gives up.
 const PATIENCE: Duration = Duration::from_secs(60);
 
+/// What a browser of some kind can be told to do.
+trait Driven {
+    fn resize(&mut self, width: u32, height: u32);
+    fn navigate(&mut self, address: &str);
+    fn evaluate(&mut self, expression: &str) -> Result<Value, String>;
+    /// `mouseMoved`, `mousePressed` or `mouseReleased`; is the button held?
+    fn mouse(&mut self, kind: &str, x: f64, y: f64, held: bool);
+    /// Presses a key, by the name that the page sees and the number that Windows has for it.
+    fn key(&mut self, key: &str, code: u32, control: bool);
+    fn choose_file(&mut self, selector: &str, file: &Path);
+    /// A PNG of what is seen, in base64.
+    fn picture(&mut self) -> Value;
+    /// A PDF on paper of this size in inches, in base64.
+    fn paper(&mut self, width: f64, height: f64) -> Value;
+    /// What has happened since it was last asked.
+    fn events(&mut self) -> Vec<Event>;
+}
+
+/// What a browser tells of a page.
+enum Event {
+    /// An error or a warning.
+    Complaint(String),
+    /// An address that was asked for.
+    Request(String),
+}
+
 /// A page in a browser of its own.
 pub struct Browser {
     process: Child,
-    socket: WebSocket<MaybeTlsStream<TcpStream>>,
-    session: String,
-    next: u64,
+    driven: Box<dyn Driven>,
     /// Errors and warnings of the page, and everything that it asked a network for.
     pub complaints: Vec<String>,
     /// The beginning of addresses that are its own, besides those of files.
@@ -27,8 +53,13 @@ pub struct Browser {
     _profile: TempDir,
 }
 
+/// Is it Firefox that is driven?
+pub fn is_firefox() -> bool {
+    std::env::var_os("BELTSPACE_BROWSER").is_some_and(|it| it == "firefox")
+}
+
 impl Browser {
-    /// Starts `chromium` and opens a file by its `file://` address, `after` being put behind it, such as `#d=5`.
+    /// Starts a browser and opens a file by its `file://` address, `after` being put behind it, such as `#d=5`.
     pub fn open(file: &Path, after: &str) -> Self {
         let start = Instant::now();
         let mut browser = Self::start();
@@ -37,7 +68,7 @@ impl Browser {
         browser
     }
 
-    /// Starts `chromium` and opens an address of a server on this machine.
+    /// Starts a browser and opens an address of a server on this machine.
     pub fn open_at(address: &str) -> Self {
         let start = Instant::now();
         let mut browser = Self::start();
@@ -49,49 +80,16 @@ impl Browser {
 
     fn start() -> Self {
         let profile = tempfile::tempdir().expect("there is room for a profile");
-        let process = Command::new("chromium")
-            .args(["--headless=new", "--no-sandbox", "--disable-gpu", "--no-first-run", "--hide-scrollbars", "--remote-debugging-port=0"])
-            .args(["--disable-background-networking", "--disable-component-update", "--disable-sync", "--window-size=1400,1000"])
-            .arg(format!("--user-data-dir={}", profile.path().display()))
-            .arg("about:blank")
-            .stdin(Stdio::null())
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .spawn()
-            .expect("chromium starts (Debian package chromium)");
-        let address = wait_for("chromium to listen", || {
-            let text = std::fs::read_to_string(profile.path().join("DevToolsActivePort")).ok()?;
-            let (port, path) = text.split_once('\n')?;
-            Some(format!("ws://127.0.0.1:{}{}", port.trim(), path.trim()))
-        });
-        let (socket, _) = tungstenite::connect(&address).expect("chromium answers");
-        if let MaybeTlsStream::Plain(stream) = socket.get_ref() {
-            stream.set_read_timeout(Some(PATIENCE)).expect("a socket takes a limit");
-        }
-        let mut browser = Self {
-            process,
-            socket,
-            session: String::new(),
-            next: 0,
-            complaints: Vec::new(),
-            own: None,
-            opened: Duration::ZERO,
-            _profile: profile,
-        };
-        let target = browser.call("Target.createTarget", &json!({ "url": "about:blank" }))["targetId"].clone();
-        let attached = browser.call("Target.attachToTarget", &json!({ "targetId": target, "flatten": true }));
-        browser.session = attached["sessionId"].as_str().expect("a session has a name").to_owned();
-        for domain in ["Page", "Runtime", "Log", "Network"] {
-            browser.call(&format!("{domain}.enable"), &json!({}));
-        }
+        let start = if is_firefox() { firefox::Firefox::start } else { chromium::Chromium::start };
+        let (process, driven) = start(profile.path());
+        let mut browser = Self { process, driven, complaints: Vec::new(), own: None, opened: Duration::ZERO, _profile: profile };
         browser.resize(1400, 1000);
         browser
     }
 
     /// Gives the page another size.
     pub fn resize(&mut self, width: u32, height: u32) {
-        let size = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
-        self.call("Emulation.setDeviceMetricsOverride", &size);
+        self.driven.resize(width, height);
     }
 
     /// Opens another file, or the same anew.
@@ -102,8 +100,8 @@ impl Browser {
     /// Opens an address.
     pub fn go_to_address(&mut self, address: &str) {
         // An address that differs in its fragment only would not load anything.
-        self.call("Page.navigate", &json!({ "url": "about:blank" }));
-        self.call("Page.navigate", &json!({ "url": address }));
+        self.driven.navigate("about:blank");
+        self.driven.navigate(address);
         self.wait("document.readyState == 'complete' && window.beltspace !== undefined");
         let ready = self.evaluate("Promise.resolve(window.beltspace.ready).then(() => true)");
         assert_eq!(ready, true, "the page never became ready");
@@ -112,10 +110,9 @@ impl Browser {
     /// The value of an expression in the page.
     #[track_caller]
     pub fn evaluate(&mut self, expression: &str) -> Value {
-        let request = json!({ "expression": expression, "returnByValue": true, "awaitPromise": true });
-        let answer = self.call("Runtime.evaluate", &request);
-        assert!(answer["exceptionDetails"].is_null(), "{expression}: {}", answer["exceptionDetails"]);
-        answer["result"]["value"].clone()
+        let value = self.driven.evaluate(expression);
+        self.note();
+        value.unwrap_or_else(|error| panic!("{expression}: {error}"))
     }
 
     /// A number in the page.
@@ -163,12 +160,8 @@ impl Browser {
 
     /// Moves, presses or releases the mouse.
     pub fn mouse(&mut self, kind: &str, x: f64, y: f64) {
-        let buttons = i32::from(kind != "mouseReleased");
-        let (button, count) = if kind == "mouseMoved" { ("none", 0) } else { ("left", 1) };
-        self.call(
-            "Input.dispatchMouseEvent",
-            &json!({ "type": kind, "x": x, "y": y, "button": button, "buttons": buttons, "clickCount": count }),
-        );
+        self.driven.mouse(kind, x, y, kind == "mousePressed");
+        self.note();
     }
 
     /// Drags from one point to another.
@@ -178,8 +171,7 @@ impl Browser {
         for step in 1..=5 {
             let part = f64::from(step) / 5.0;
             let [x, y] = [0, 1].map(|at| from[at] + part * (to[at] - from[at]));
-            let held = json!({ "type": "mouseMoved", "x": x, "y": y, "button": "left", "buttons": 1 });
-            self.call("Input.dispatchMouseEvent", &held);
+            self.driven.mouse("mouseMoved", x, y, true);
         }
         self.mouse("mouseReleased", to[0], to[1]);
     }
@@ -200,63 +192,52 @@ impl Browser {
 
     /// Presses a key, by the name that the page sees.
     pub fn key(&mut self, key: &str, code: u32) {
-        let text = if key == "Enter" { "\r" } else { "" };
-        for kind in ["keyDown", "keyUp"] {
-            self.call(
-                "Input.dispatchKeyEvent",
-                &json!({ "type": kind, "key": key, "code": key, "windowsVirtualKeyCode": code, "text": text }),
-            );
-        }
+        self.driven.key(key, code, false);
+        self.note();
+    }
+
+    /// Presses a letter with the control key.
+    pub fn control_key(&mut self, letter: char) {
+        self.driven.key(&letter.to_string(), letter.to_ascii_uppercase().into(), true);
+    }
+
+    /// Chooses a file as a person does in the dialogue of the system.
+    pub fn choose_file(&mut self, selector: &str, file: &Path) {
+        self.driven.choose_file(selector, file);
+    }
+
+    /// The page as a PDF on A4.
+    pub fn paper(&mut self) -> Vec<u8> {
+        decoded(&self.driven.paper(8.27, 11.69))
     }
 
     /// The page as a picture, into the folder that BELTSPACE_PICTURES names, if it names one.
     pub fn picture(&mut self, name: &str) {
-        use base64::Engine;
         let Some(folder) = std::env::var_os("BELTSPACE_PICTURES") else { return };
-        let picture = self.call("Page.captureScreenshot", &json!({ "format": "png" }));
-        let bytes = base64::engine::general_purpose::STANDARD.decode(picture["data"].as_str().expect("it is text")).expect("it is base64");
+        let bytes = decoded(&self.driven.picture());
         std::fs::create_dir_all(&folder).expect("the folder can be made");
-        std::fs::write(Path::new(&folder).join(format!("{name}.png")), bytes).expect("a picture can be written");
+        let browser = if is_firefox() { "firefox-" } else { "" };
+        std::fs::write(Path::new(&folder).join(format!("{browser}{name}.png")), bytes).expect("a picture can be written");
     }
 
-    /// Sends a command and waits for its answer; events that come in between are noted.
-    #[track_caller]
-    pub fn call(&mut self, method: &str, parameters: &Value) -> Value {
-        self.next += 1;
-        let mut message = json!({ "id": self.next, "method": method, "params": parameters });
-        if !self.session.is_empty() {
-            message["sessionId"] = self.session.as_str().into();
-        }
-        self.socket.send(Message::text(message.to_string())).expect("chromium listens");
-        loop {
-            let text = self.socket.read().unwrap_or_else(|error| panic!("{method}: chromium does not answer: {error}"));
-            let Message::Text(text) = text else { continue };
-            let answer: Value = serde_json::from_str(&text).expect("chromium speaks JSON");
-            if answer["id"] == self.next {
-                assert!(answer["error"].is_null(), "{method}: {}", answer["error"]);
-                return answer["result"].clone();
-            }
-            self.note(&answer);
-        }
-    }
-
-    fn note(&mut self, event: &Value) {
-        let parameters = &event["params"];
-        match event["method"].as_str().unwrap_or_default() {
-            "Runtime.exceptionThrown" => self.complaints.push(parameters["exceptionDetails"].to_string()),
-            "Log.entryAdded" => self.complaints.push(parameters["entry"].to_string()),
-            "Runtime.consoleAPICalled" if parameters["type"] != "log" => self.complaints.push(parameters.to_string()),
-            "Network.requestWillBeSent" => {
-                let address = parameters["request"]["url"].as_str().unwrap_or_default();
-                let own = ["file://", "data:", "blob:", "about:"].into_iter().chain(self.own.as_deref());
-                let own = own.into_iter().any(|scheme| address.starts_with(scheme));
-                if !own {
-                    self.complaints.push(format!("asked for {address}"));
+    fn note(&mut self) {
+        for event in self.driven.events() {
+            match event {
+                Event::Complaint(text) => self.complaints.push(text),
+                Event::Request(address) => {
+                    let own = ["file://", "data:", "blob:", "about:"].into_iter().chain(self.own.as_deref());
+                    if !own.into_iter().any(|scheme| address.starts_with(scheme)) {
+                        self.complaints.push(format!("asked for {address}"));
+                    }
                 }
             }
-            _ => {}
         }
     }
+}
+
+fn decoded(base64: &Value) -> Vec<u8> {
+    use base64::Engine;
+    base64::engine::general_purpose::STANDARD.decode(base64.as_str().expect("it is text")).expect("it is base64")
 }
 
 impl Drop for Browser {

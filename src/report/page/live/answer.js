@@ -169,7 +169,10 @@
     page.timings.answers = [];
     page.timings.fews = [];
     let settled = 0;
+    const rest = page.afterPause(400, () => document.body.classList.remove("moves"));
     page.events.on("changes.answer", () => {
+      document.body.classList.add("moves");
+      rest();
       // A ghost of what was there before the first of several changes in a row.
       if (performance.now() - settled > 600) keepGhost();
       settled = performance.now();
