@@ -176,7 +176,7 @@ impl ScenarioLanes {
             Quantity::Input(_) => value,
             Quantity::Output(output) => model.outputs[output].unit.from_si(value),
         };
-        // A larger number is no smaller in another unit.
+        // Converting a unit keeps the order of numbers, so the ends alone are converted.
         let mut ends_of = |quantity: Quantity| {
             let (low, high) = match values(quantity) {
                 ColumnValue::One(value) => (value, value),

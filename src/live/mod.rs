@@ -191,7 +191,7 @@ impl Live {
             (search.feasible_of(&self.by_bounds(plan, control)?)?, WorkingSet::default())
         } else {
             search.exact(set, &mut |search, set, points, missing| {
-                // What is followed by the exact front before anybody has drawn it only delays that.
+                // The exact front comes before anybody has drawn this one.
                 #[allow(clippy::cast_precision_loss, reason = "an estimate")]
                 let work = (missing * plan.scenarios()) as f64;
                 if self.pace().judged.is_some_and(|pace| pace * work < NOTICED.as_secs_f64()) {

@@ -227,7 +227,7 @@ impl Front {
         self.points.is_empty()
     }
 
-    /// Sorts what waits into the front and drops what is beaten. Nothing that waits is beaten by the front: that was seen when it came.
+    /// Sorts what waits into the front and drops what is beaten. The front beats nothing that waits: each was checked when it came.
     fn merge_waiting(&mut self) {
         if self.waiting.is_empty() {
             return;
@@ -251,7 +251,7 @@ impl Front {
             // A design that came back with a seed is the same point twice: the known one first, the other is dropped.
             by_key.unwrap_or_else(|| all.indices[a].cmp(&all.indices[b]).then(self.fresh[a].cmp(&self.fresh[b])))
         });
-        // In this order a point can only be beaten by an earlier one, and by one that has waited.
+        // In this order a point can only be beaten by an earlier one, and only by one of those that waited.
         let mut new = Dominance::new(dimensions);
         let mut best_second = f64::INFINITY;
         let mut fresh = Vec::new();

@@ -41,7 +41,7 @@
   // Another front of the same columns: the cells stay, with other points and scales.
   const refresh = () => {
     const { front, state } = page;
-    // Without a design nothing of it is shown, and the next front finds the cells as they were.
+    // Without a design the matrix is hidden; the cells stay for the next front.
     if (!front.rows) return;
     const same = cells.length && String(cellNames()) === String(pairs(state.matrix));
     if (!same) return layout();

@@ -31,7 +31,7 @@ impl Firefox {
         });
         let mut wire = Wire::new(&address);
         wire.call("session.new", &json!({ "capabilities": {} }));
-        // What the page's own rules stop is no request and no entry of the log; so it is written there.
+        // Firefox logs nothing of a request that the page's security policy blocks; so the page writes it to the console.
         let blocked =
             "() => document.addEventListener('securitypolicyviolation', (event) => console.error(`blocked: ${event.blockedURI}`))";
         wire.call("script.addPreloadScript", &json!({ "functionDeclaration": blocked }));
@@ -60,7 +60,7 @@ fn plain(remote: &Value) -> Value {
     let value = &remote["value"];
     let items = || value.as_array().into_iter().flatten();
     match remote["type"].as_str().unwrap_or_default() {
-        // What is no number in JSON has its name here.
+        // NaN and infinities come as text; JSON has no number for them.
         "number" => value.as_f64().map_or(Value::Null, |_| value.clone()),
         "string" | "boolean" => value.clone(),
         "array" => items().map(plain).collect(),

@@ -54,8 +54,12 @@ pub struct Browser {
 }
 
 /// Is it Firefox that is driven?
-pub fn is_firefox() -> bool {
-    std::env::var_os("BELTSPACE_BROWSER").is_some_and(|it| it == "firefox")
+fn is_firefox() -> bool {
+    match std::env::var("BELTSPACE_BROWSER").as_deref() {
+        Ok("firefox") => true,
+        Ok("chromium") | Err(std::env::VarError::NotPresent) => false,
+        other => panic!("BELTSPACE_BROWSER is {other:?}; the tests drive `chromium` and `firefox`"),
+    }
 }
 
 impl Browser {
