@@ -10,11 +10,14 @@ mod float;
 pub mod functions;
 mod lanes;
 mod loops;
+mod root;
 pub(crate) mod wide;
 
 pub use functions::FUNCTION_ULP;
 pub use lanes::{LANES, Lanes};
 pub use loops::{Loop, Place};
+pub(crate) use root::{Lane, MOST_STEPS, bracketed_newton, has_ended, newton_step, root_step};
+pub use root::{ROOT_PARAMETERS, RootFunction, RootSearch, RootStep};
 
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -141,6 +144,11 @@ pub trait Real:
         parameters: [Self; P],
         function: impl Fn([Self; P], Self) -> (Self, Self),
     ) -> Self;
+    /// The same of a function that has a name: who looks for many roots at a time may have it compiled for that.
+    #[inline(always)]
+    fn root_of<F: RootFunction>(bracket: (Self, Self), start: Self, parameters: [Self; ROOT_PARAMETERS]) -> Self {
+        Self::monotone_root(bracket, start, parameters, F::at)
+    }
 
     /// The exponential function. In f32 it has no error bound beyond about 87 on either side of zero; in f64 it is infinite above 709, and
     /// below -709 what it is there, half the least normal number.
@@ -239,33 +247,4 @@ pub(crate) fn chosen_at<R: Real>(table: &[R::Shared], index: R, last: R) -> R {
         chosen = R::select(index - R::constant(at as f64 - 0.5), R::shared(number), chosen);
     }
     chosen
-}
-
-/// Newton steps kept inside a shrinking bracket: the scalar definition of [`Real::monotone_root`], shared by every instance
-/// that works with plain numbers.
-///
-/// The steps end when they no longer shrink at the level of rounding, so the result does not depend on a tolerance.
-#[inline]
-pub(crate) fn bracketed_newton(bracket: (f64, f64), start: f64, rounding: f64, mut function: impl FnMut(f64) -> (f64, f64)) -> f64 {
-    let (mut low, mut high) = bracket;
-    let mut x = start.max(low).min(high);
-    let mut last_step = f64::INFINITY;
-    for _ in 0..100 {
-        let (value, slope) = function(x);
-        if value > 0.0 {
-            high = x;
-        } else {
-            low = x;
-        }
-        let newton = x - value / slope;
-        let next = if newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
-        let step = (next - x).abs();
-        let at_rounding = step <= 1e4 * rounding * x.abs();
-        x = next;
-        if step == 0.0 || (at_rounding && step >= 0.5 * last_step) {
-            break;
-        }
-        last_step = step;
-    }
-    x
 }

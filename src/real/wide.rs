@@ -28,7 +28,7 @@ fn high_abs(x: f64) -> u64 {
 
 /// `log(1 + x)` for x > -1 that is finite.
 #[inline(always)]
-fn ln_1p_of(x: f64) -> f64 {
+pub(super) fn ln_1p_of(x: f64) -> f64 {
     const LG: [f64; 7] = [
         6.666_666_666_666_735_130e-01,
         3.999_999_999_940_941_908e-01,
@@ -60,13 +60,13 @@ fn ln_1p_of(x: f64) -> f64 {
 }
 
 #[inline(always)]
-fn ln_1p_is_rare(x: f64) -> bool {
+pub(super) fn ln_1p_is_rare(x: f64) -> bool {
     !(x > -1.0 && x < f64::INFINITY)
 }
 
 /// `exp(x) - 1` for x from -38.8 to 708.
 #[inline(always)]
-fn exp_m1_of(x: f64) -> f64 {
+pub(super) fn exp_m1_of(x: f64) -> f64 {
     // Where the bits' upper half says so: about log 2 / 2, 3 log 2 / 2 and 2^-54.
     const UNSHIFTED: f64 = f64::from_bits(0x3fd6_2e43 << 32);
     const BY_ONE: f64 = f64::from_bits(0x3ff0_a2b2 << 32);
@@ -113,7 +113,7 @@ fn exp_m1_of(x: f64) -> f64 {
 }
 
 #[inline(always)]
-fn exp_m1_is_rare(x: f64) -> bool {
+pub(super) fn exp_m1_is_rare(x: f64) -> bool {
     // What is -1 to the last bit, and what is next to an overflow or beyond it.
     !(x > -38.8 && x < 708.0)
 }
@@ -145,9 +145,15 @@ fn asin_rest(z: f64) -> f64 {
 
 /// Arc sine for |x| below 1/2.
 #[inline(always)]
-fn asin_near(x: f64) -> f64 {
+pub(super) fn asin_near(x: f64) -> f64 {
     let tiny = (0x0010_0000..0x3e50_0000).contains(&high_abs(x));
     if tiny { x } else { x + x * asin_rest(x * x) }
+}
+
+/// Is [`asin_near`] the arc sine?
+#[inline(always)]
+pub(super) fn is_asin_near(x: f64) -> bool {
+    x.abs() < 0.5
 }
 
 /// Arc sine for |x| below 1.
@@ -176,7 +182,7 @@ fn asin_is_rare(x: f64) -> bool {
 
 /// Sine for |x| up to pi/4.
 #[inline(always)]
-fn sin_of(x: f64) -> f64 {
+pub(super) fn sin_of(x: f64) -> f64 {
     const S: [f64; 6] = [
         -1.666_666_666_666_663_243_48e-01,
         8.333_333_333_322_489_461_24e-03,
@@ -195,7 +201,7 @@ fn sin_of(x: f64) -> f64 {
 
 /// Cosine for |x| up to pi/4.
 #[inline(always)]
-fn cos_of(x: f64) -> f64 {
+pub(super) fn cos_of(x: f64) -> f64 {
     const C: [f64; 6] = [
         4.166_666_666_666_660_190_37e-02,
         -1.388_888_888_887_410_957_49e-03,
@@ -214,7 +220,7 @@ fn cos_of(x: f64) -> f64 {
 }
 
 #[inline(always)]
-fn turn_is_rare(x: f64) -> bool {
+pub(super) fn turn_is_rare(x: f64) -> bool {
     high_abs(x) > 0x3fe9_21fb
 }
 
@@ -257,7 +263,7 @@ over_columns! {
 pub fn asin(a: &[f64], column: &mut [f64]) {
     #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
     fn all_near(a: &[f64]) -> bool {
-        a.iter().fold(true, |all, a| all & (a.abs() < 0.5))
+        a.iter().fold(true, |all, a| all & is_asin_near(*a))
     }
     #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
     fn near(a: &[f64], column: &mut [f64]) {

@@ -158,24 +158,27 @@ fn room(column: &mut Vec<f64>, count: usize) -> &mut [f64] {
     &mut column[..count]
 }
 
-fn select(margin: ColumnValue<'_>, a: ColumnValue<'_>, b: ColumnValue<'_>, column: &mut [f64]) {
-    match (margin, a, b) {
-        (ColumnValue::One(margin), a, b) => match if margin >= 0.0 { a } else { b } {
-            ColumnValue::One(value) => column.fill(value),
-            ColumnValue::Each(values) => column.copy_from_slice(values),
-        },
-        (ColumnValue::Each(margin), ColumnValue::Each(a), ColumnValue::Each(b)) => selected(margin, a, b, column),
-        (ColumnValue::Each(margin), a, b) => {
-            for (lane, it) in column.iter_mut().enumerate() {
-                *it = f64::select(margin[lane], a.at(lane), b.at(lane));
-            }
-        }
-    }
-}
-
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-fn selected(margin: &[f64], a: &[f64], b: &[f64], column: &mut [f64]) {
-    column.iter_mut().zip(margin).zip(a).zip(b).for_each(|(((it, &margin), &a), &b)| *it = f64::select(margin, a, b));
+fn select(margin: ColumnValue<'_>, a: ColumnValue<'_>, b: ColumnValue<'_>, column: &mut [f64]) {
+    let margin = match margin {
+        ColumnValue::Each(margin) => margin,
+        ColumnValue::One(margin) => {
+            return match if margin >= 0.0 { a } else { b } {
+                ColumnValue::One(value) => column.fill(value),
+                ColumnValue::Each(values) => column.copy_from_slice(values),
+            };
+        }
+    };
+    // Written out, so that each becomes a loop of vector instructions.
+    let lanes = column.iter_mut().zip(margin);
+    match (a, b) {
+        (ColumnValue::Each(a), ColumnValue::Each(b)) => {
+            lanes.zip(a).zip(b).for_each(|(((it, &margin), &a), &b)| *it = f64::select(margin, a, b));
+        }
+        (ColumnValue::Each(a), ColumnValue::One(b)) => lanes.zip(a).for_each(|((it, &margin), &a)| *it = f64::select(margin, a, b)),
+        (ColumnValue::One(a), ColumnValue::Each(b)) => lanes.zip(b).for_each(|((it, &margin), &b)| *it = f64::select(margin, a, b)),
+        (ColumnValue::One(a), ColumnValue::One(b)) => lanes.for_each(|(it, &margin)| *it = f64::select(margin, a, b)),
+    }
 }
 
 fn unary(operation: Unary, a: ColumnValue<'_>, column: &mut [f64]) {

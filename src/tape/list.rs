@@ -1,6 +1,6 @@
 //! A recorded formula cut down to what is asked for, run over any number type.
 
-use super::{Binary, FormulaTable, ListLoop, Node, Operation, Recording, Rolled, RolledLoop, Root};
+use super::{Binary, FormulaTable, ListLoop, Node, Operation, Recording, Rolled, RolledLoop, Root, RootParameter};
 use crate::real::Real;
 use std::cell::RefCell;
 use std::ops::BitOrAssign;
@@ -99,6 +99,9 @@ impl List {
                         arguments[node as usize] >> number & 1 == 1 && list.operations[node as usize] != Operation::Argument(number)
                     };
                     root.inner = (0..new).filter(is_inner).collect();
+                    // A parameter that went into other numbers alone may not be computed at all.
+                    let is_computed = |it| !matches!(it, RootParameter::Node(Node::MAX));
+                    root.root.function = root.root.function.filter(|it| it.parameters.into_iter().all(is_computed));
                 }
                 other => other.operands(|operand| within |= arguments[operand as usize]),
             }
@@ -166,6 +169,7 @@ impl List {
                 each(node);
             }
         });
+        root.function.iter().for_each(|it| it.nodes().for_each(&mut each));
         for &node in inner {
             self.operations[node as usize].operands(|operand| {
                 if !self.inner[operand as usize] {

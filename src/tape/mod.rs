@@ -40,7 +40,7 @@ pub use settled::{SettledStages, StageLists};
 pub use stages::{Fields, First, Reads, Recordable, Second, Whole};
 pub use steps::{Step, Steps};
 
-use crate::real::Real;
+use crate::real::{ROOT_PARAMETERS, Real, RootStep};
 
 /// Number of an operation in its list.
 pub type Node = u32;
@@ -176,6 +176,39 @@ pub struct Root {
     pub value: Node,
     /// The function's slope.
     pub slope: Node,
+    /// The function, where it has been compiled for many searches at a time.
+    pub function: Option<KnownFunction>,
+}
+
+/// A function whose root is sought that has been compiled.
+#[derive(Clone, Copy, Debug)]
+pub struct KnownFunction {
+    /// A step of many searches.
+    pub step: RootStep,
+    /// What the function takes.
+    pub parameters: [RootParameter; ROOT_PARAMETERS],
+}
+
+/// A parameter of such a function.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RootParameter {
+    /// It is known.
+    Number(f64),
+    /// It is computed.
+    Node(Node),
+}
+
+impl KnownFunction {
+    /// The parameters that are computed.
+    pub fn nodes(&self) -> impl Iterator<Item = Node> {
+        self.parameters.into_iter().filter_map(|it| if let RootParameter::Node(node) = it { Some(node) } else { None })
+    }
+}
+
+impl PartialEq for KnownFunction {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::fn_addr_eq(self.step, other.step) && self.parameters == other.parameters
+    }
 }
 
 impl Root {
@@ -187,7 +220,13 @@ impl Root {
     /// The same of other nodes.
     #[must_use]
     pub fn map(self, at: impl Fn(Node) -> Node) -> Self {
-        let Self { bracket, start, argument, value, slope } = self;
-        Self { bracket: (at(bracket.0), at(bracket.1)), start: at(start), argument: at(argument), value: at(value), slope: at(slope) }
+        let Self { bracket, start, argument, value, slope, function } = self;
+        let parameter = |it| match it {
+            RootParameter::Number(_) => it,
+            RootParameter::Node(node) => RootParameter::Node(at(node)),
+        };
+        let function = function.map(|it| KnownFunction { parameters: it.parameters.map(parameter), ..it });
+        let bracket = (at(bracket.0), at(bracket.1));
+        Self { bracket, start: at(start), argument: at(argument), value: at(value), slope: at(slope), function }
     }
 }

@@ -1,7 +1,7 @@
 //! Recording: a formula runs on names of numbers, and every operation that it asks for is written down.
 
-use super::{Binary, Fields, FormulaTable, Node, Operation, Rolled, RolledLoop, Root, Store, Unary};
-use crate::real::{Loop, Place, Real, bracketed_newton, chosen_at};
+use super::{Binary, Fields, FormulaTable, KnownFunction, Node, Operation, Rolled, RolledLoop, Root, RootParameter, Store, Unary};
+use crate::real::{Loop, Place, ROOT_PARAMETERS, Real, RootFunction, bracketed_newton, chosen_at};
 use rustc_hash::FxHashMap as HashMap;
 use std::cell::RefCell;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -364,7 +364,7 @@ impl Real for Trace {
         let index = u8::try_from(number).expect("a formula has few roots");
         let argument = Self(with(|recorder| recorder.push(Operation::Argument(index))));
         // Taken at once, so that a root within this function gets a number of its own.
-        let unknown = Root { bracket: (0, 0), start: 0, argument: argument.0, value: 0, slope: 0 };
+        let unknown = Root { bracket: (0, 0), start: 0, argument: argument.0, value: 0, slope: 0, function: None };
         with(|recorder| recorder.roots.push(unknown));
         let (value, slope) = function(parameters, argument);
         if let (Some(low), Some(high), Some(first)) = (bracket.0.known(), bracket.1.known(), start.known()) {
@@ -373,11 +373,23 @@ impl Real for Trace {
                 return Self::constant(root);
             }
         }
-        let root = Root { bracket: (bracket.0.0, bracket.1.0), start: start.0, argument: argument.0, value: value.0, slope: slope.0 };
+        let bracket = (bracket.0.0, bracket.1.0);
+        let root = Root { bracket, start: start.0, argument: argument.0, value: value.0, slope: slope.0, function: None };
         with(|recorder| {
             recorder.roots[number] = root;
             Self(recorder.push(Operation::Root(index)))
         })
+    }
+    fn root_of<F: RootFunction>(bracket: (Self, Self), start: Self, parameters: [Self; ROOT_PARAMETERS]) -> Self {
+        let root = Self::monotone_root(bracket, start, parameters, F::at);
+        let parameters = parameters.map(|it| it.known().map_or(RootParameter::Node(it.0), RootParameter::Number));
+        let function = F::in_columns().map(|step| KnownFunction { step, parameters });
+        with(|recorder| {
+            if let Operation::Root(number) = recorder.operations[root.0 as usize] {
+                recorder.roots[usize::from(number)].function = function;
+            }
+        });
+        root
     }
 }
 

@@ -1,7 +1,8 @@
 //! A root over every number type.
 
-use super::{ColumnValue, Dual, Interval, Known, LIST_CHUNK, List, ListColumns, Loops, Recording, RunningError};
-use crate::real::{LANES, Lanes, Real};
+use super::{ColumnValue, Dual, Interval, Known, LIST_CHUNK, List, ListColumns, Loops, Operation, Recording, RunningError, Set};
+use crate::models;
+use crate::real::{LANES, Lanes, ROOT_PARAMETERS, Real, RootFunction, RootSearch, RootStep, root_step};
 
 /// The cube root of 2, on every instance that has a value.
 fn cube_root<R: Real>() -> R {
@@ -40,21 +41,142 @@ fn over_columns_a_root_whose_slope_is_the_argument_has_the_bits_that_it_has_alon
     let (recording, results) =
         Recording::recorded(Loops::EveryIteration, &[Known::Within(0.1, 40.0)], |inputs| vec![of_half_square(inputs[0])]);
     let list = List::cut(&recording, &[Some(results[0])]);
-    let mut columns = ListColumns::new(&list);
-    columns.turn_to(&list, 0..1, |_| true);
     let values: Vec<f64> = (1..=2 * LIST_CHUNK + 5).map(|row| 0.05 * row as f64).collect();
+    each_has_the_bits_that_it_has_alone(&list, &[&values], |row| of_half_square(values[row]));
+}
+
+/// Compares the first result of a list over columns with what each row gives alone.
+fn each_has_the_bits_that_it_has_alone(list: &List, inputs: &[&[f64]], alone: impl Fn(usize) -> f64) {
+    let mut columns = ListColumns::new(list);
+    columns.turn_to(list, 0..1, |_| true);
     let mut rows = 0;
     columns.run(
-        &list,
-        values.len(),
-        |_| ColumnValue::Each(&values),
+        list,
+        inputs[0].len(),
+        |input| ColumnValue::Each(inputs[usize::from(input)]),
         |columns, first, length| {
             for lane in 0..length {
-                let (found, alone) = (columns.result(&list, 0).at(lane), of_half_square(values[first + lane]));
-                assert_eq!(found.to_bits(), alone.to_bits(), "row {}", first + lane);
+                let (found, alone) = (columns.result(list, 0).at(lane), alone(first + lane));
+                assert!(
+                    found.to_bits() == alone.to_bits() || found.is_nan() && alone.is_nan(),
+                    "row {}: {found:e}, {alone:e}",
+                    first + lane
+                );
                 rows += 1;
             }
         },
     );
-    assert_eq!(rows, values.len());
+    assert_eq!(rows, inputs[0].len());
+}
+
+/// `asin(a x) + log(1 + b x) + c x`, less `d`.
+struct Mixed;
+
+impl RootFunction for Mixed {
+    fn at<R: Real>([a, b, c, d]: [R; ROOT_PARAMETERS], x: R) -> (R, R) {
+        let one = R::constant(1.0);
+        let sine = (a * x).min(one).max(-one);
+        (sine.asin() + (b * x).ln_1p() + c * x - d, a + b / (one + b * x) + c)
+    }
+
+    fn in_columns() -> Option<RootStep> {
+        root_step!(Mixed)
+    }
+}
+
+fn of_mixed<R: Real>(inputs: &[R]) -> R {
+    let [a, b, c, d, start] = [0, 1, 2, 3, 4].map(|it| inputs[it]);
+    R::root_of::<Mixed>((R::constant(0.0), R::constant(1.0)), start, [a, b, c, d])
+}
+
+#[test]
+fn a_function_that_is_compiled_gives_the_bits_that_its_operations_give() {
+    let (recording, results) = Recording::recorded(Loops::EveryIteration, &[Known::Within(0.0, 2.0); 5], |inputs| vec![of_mixed(inputs)]);
+    let list = List::cut(&recording, &[Some(results[0])]);
+    assert!(list.roots[0].root.function.is_some());
+    let mut plain = list.clone();
+    plain.roots[0].root.function = None;
+    // In the first chunk the arc sine is never rare, in the second at the start, in the third after some steps, and in the last one there
+    // are rows without a root, and without numbers.
+    let chunks: [(f64, f64, f64); 4] = [(0.4, 0.5, 0.9), (0.9, 0.1, 1.0), (0.9, 1.6, 0.0), (0.4, 3.0, 0.5)];
+    let rows = 4 * LIST_CHUNK;
+    let of_row = |row: usize| (chunks[row / LIST_CHUNK], (row % LIST_CHUNK) as f64 / LIST_CHUNK as f64);
+    let column = |value: &dyn Fn((f64, f64, f64), f64) -> f64| -> Vec<f64> {
+        (0..rows)
+            .map(|row| {
+                let (chunk, fraction) = of_row(row);
+                value(chunk, fraction)
+            })
+            .collect()
+    };
+    let mut inputs = [
+        column(&|(a, ..), it| a * (1.0 - 0.1 * it)),
+        column(&|_, it| 0.3 + it),
+        column(&|_, it| 1.0 - 0.7 * it),
+        column(&|(_, d, _), it| d * (0.5 + it)),
+        column(&|(.., start), it| start * (1.0 - 0.2 * it)),
+    ];
+    inputs[3][rows - 7] = f64::NAN;
+    let inputs: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
+    let alone = |row: usize| of_mixed(&inputs.iter().map(|it| it[row]).collect::<Vec<_>>());
+    each_has_the_bits_that_it_has_alone(&list, &inputs, alone);
+    each_has_the_bits_that_it_has_alone(&plain, &inputs, alone);
+}
+
+#[test]
+fn a_compiled_function_tells_that_it_takes_a_rare_way() {
+    let step = Mixed::in_columns().expect("it is compiled");
+    let taken = |x: f64| {
+        let (ones, mut next) = ([1.0; 9], RootSearch { x: [0.0; 9], low: [0.0; 9], high: [0.0; 9], last_step: [0.0; 9] });
+        let mut asked = [0.1; 9];
+        asked[5] = x;
+        let at = RootSearch { x: &asked[..], low: &[0.0; 9], high: &ones, last_step: &ones };
+        let RootSearch { x, low, high, last_step } = &mut next;
+        let left = step([&ones, &ones, &ones, &ones], at, RootSearch { x, low, high, last_step });
+        left.map(|left| (left, next.x))
+    };
+    let (left, next) = taken(0.2).expect("nothing is rare");
+    let (value, slope) = Mixed::at([1.0; ROOT_PARAMETERS], 0.2);
+    assert_eq!((left, next[5]), (9, 0.2 - value / slope));
+    assert_eq!(taken(0.6), None);
+}
+
+/// The root of `x = a`, which leaves three parameters unread.
+struct Unread;
+
+impl RootFunction for Unread {
+    fn at<R: Real>([a, ..]: [R; ROOT_PARAMETERS], x: R) -> (R, R) {
+        (x - a, R::constant(1.0))
+    }
+
+    fn in_columns() -> Option<RootStep> {
+        root_step!(Unread)
+    }
+}
+
+#[test]
+fn a_function_whose_parameters_nobody_computes_is_left_to_its_operations() {
+    let (recording, results) = Recording::recorded(Loops::EveryIteration, &[Known::Within(0.0, 1.0); 4], |inputs| {
+        let parameters = std::array::from_fn(|it| inputs[it]);
+        vec![Real::root_of::<Unread>((Real::constant(0.0), Real::constant(1.0)), inputs[0], parameters), inputs[3]]
+    });
+    let list = List::cut(&recording, &[Some(results[0]), Some(results[1])]);
+    assert_eq!((list.roots.len(), list.roots[0].root.function), (1, None));
+    let column: Vec<f64> = (0..50).map(|row| 0.02 * f64::from(row)).collect();
+    each_has_the_bits_that_it_has_alone(&list, &[&column[..]; 4], |row| column[row]);
+}
+
+#[test]
+fn the_roots_of_the_variators_are_compiled() {
+    for name in ["metal-cvt", "rubber-cvt"] {
+        let model = models::find(name).expect("it is there");
+        let known = vec![Known::ANY; model.inputs.len()];
+        let (outputs, conditions) = (Set::between(0, model.outputs.len()), Set::between(0, model.conditions.len()));
+        let formula = model.kernel.formula().expect("it is recorded");
+        let list = formula.whole(&known, outputs, conditions).list(outputs, conditions);
+        let roots: Vec<u8> =
+            list.operations.iter().filter_map(|it| if let Operation::Root(number) = it { Some(*number) } else { None }).collect();
+        assert_eq!(roots.len(), 2, "{name}: the driver's radius and the slack side's force");
+        assert!(roots.iter().all(|&it| list.roots[usize::from(it)].root.function.is_some()), "{name}");
+    }
 }

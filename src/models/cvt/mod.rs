@@ -37,7 +37,7 @@
 //!   stress is exactly `sigma_y`.
 
 use super::formula::{Formula, record};
-use crate::real::Real;
+use crate::real::{ROOT_PARAMETERS, Real, RootFunction, RootStep, root_step};
 use crate::tape::{Fields, Set};
 use std::f64::consts::PI;
 
@@ -135,14 +135,26 @@ fn driver_radius<R: Real>(belt: &Drive<R>) -> R {
     // Beyond A/|R - 1| one pulley would lie inside the other. Equal pulleys have no such end: any large one serves.
     let largest = (centre_distance / step.abs().max(R::constant(1e-9))).named("largest_radius", "");
     let start = ((belt_length - two * centre_distance) / both).named("first_radius", "");
-    R::monotone_root((R::constant(0.0), largest), start, [step, both, belt_length, centre_distance], |parameters, radius| {
+    R::root_of::<BeltLength>((R::constant(0.0), largest), start, [step, both, belt_length, centre_distance])
+}
+
+/// The belt's length at a radius of the driver, less what it is.
+struct BeltLength;
+
+impl RootFunction for BeltLength {
+    #[inline(always)]
+    fn at<R: Real>(parameters: [R; ROOT_PARAMETERS], radius: R) -> (R, R) {
         let [one, two] = [1.0, 2.0].map(R::constant);
         let [step, both, belt_length, centre_distance] = parameters;
         let sine_of_lean = (step * radius / centre_distance).min(one).max(-one).named("sine_of_lean", "");
         let lean = sine_of_lean.asin().named("lean", "");
         let free = (two * centre_distance * ((one - sine_of_lean) * (one + sine_of_lean)).sqrt()).named("free", "");
         (free + both * radius + two * lean * step * radius - belt_length, both + two * lean * step)
-    })
+    }
+
+    fn in_columns() -> Option<RootStep> {
+        root_step!(BeltLength)
+    }
 }
 
 /// Twice the slack side's force at which the driven pulley is pressed with `clamping_force`: the root v = F1 + F2 - P of
@@ -156,14 +168,27 @@ fn clamped_slack<R: Real>(belt_force: R, target: R, driven_wrap: R, effective_fr
     let two = R::constant(2.0);
     let asymptote = ((target + two * belt_force / effective_friction) / driven_wrap).named("asymptote", "");
     let highest = asymptote.max(least).named("highest_slack", "");
-    R::monotone_root((least / two, two * highest), highest, [belt_force, target, driven_wrap, effective_friction], |parameters, slack| {
+    let parameters = [belt_force, target, driven_wrap, effective_friction];
+    R::root_of::<ClampedPulley>((least / two, two * highest), highest, parameters)
+}
+
+/// Four times the clamping force without the torque's part over the wedge factor, at twice the slack side's force, less what it is.
+struct ClampedPulley;
+
+impl RootFunction for ClampedPulley {
+    #[inline(always)]
+    fn at<R: Real>(parameters: [R; ROOT_PARAMETERS], slack: R) -> (R, R) {
         let [one, two] = [1.0, 2.0].map(R::constant);
         let [belt_force, target, driven_wrap, effective_friction] = parameters;
         // Without a torque nothing is pulled; the quotient must not be 0/0 there.
         let gain = (two * belt_force / slack.max(R::constant(1e-30))).named("gain", "F1/F2 - 1");
         let idle = (driven_wrap - gain.ln_1p() / effective_friction).named("idle", "theta_driven - theta_a");
         (slack * idle - target, idle + gain / (one + gain) / effective_friction)
-    })
+    }
+
+    fn in_columns() -> Option<RootStep> {
+        root_step!(ClampedPulley)
+    }
 }
 
 /// First stage for either belt.

@@ -12,10 +12,13 @@ use crate::tape::Set;
 use columns::RecordedColumns;
 pub(crate) use judge::{ColumnJudge, JudgeRoom};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 pub(crate) use vectors::{ColumnEnds, ends};
 
 /// Rows that a thread is started for at least.
 const ROWS_PER_THREAD: usize = 256;
+/// Rows that a thread takes at a time, about.
+const ROWS_AT_A_TIME: usize = 1 << 15;
 /// Rows from which on recording the formula takes less time than it saves.
 const ROWS_TO_RECORD: usize = 512;
 
@@ -213,9 +216,19 @@ pub fn evaluate_into<S: From<Status> + Send>(
     let asked = AskedColumns { model, given: &given, inputs, outputs, options };
     let recorded = (rows >= ROWS_TO_RECORD).then(|| RecordedColumns::new(&asked)).flatten();
     let share = rows.div_ceil(options.threads.max(1)).max(ROWS_PER_THREAD);
-    on_threads(parts(results, share), |part| match &recorded {
-        Some(recorded) => recorded.evaluate(&asked, part),
-        None => asked.one_by_one(part),
+    let share = share.div_ceil((share / ROWS_AT_A_TIME).max(1));
+    let parts = parts(results, share);
+    let threads = options.threads.max(1).min(parts.len());
+    // Whoever is done takes the next part: another program may have the core of somebody else.
+    let next = Mutex::new(parts.into_iter());
+    let take = || next.lock().unwrap_or_else(PoisonError::into_inner).next();
+    on_threads(0..threads, |_| {
+        while let Some(part) = take() {
+            match &recorded {
+                Some(recorded) => recorded.evaluate(&asked, part),
+                None => asked.one_by_one(part),
+            }
+        }
     });
     if options.is_stopped() { Err(Error::Stopped { kept: None }) } else { Ok(()) }
 }

@@ -383,7 +383,7 @@ impl<'a> Writer<'a> {
     /// The functions that find a root, and the call of one.
     fn root(&mut self, node: Node, number: u8, arithmetic: Arithmetic) -> String {
         let list = self.list;
-        let ListRoot { root: Root { bracket, start, argument, value, slope }, inner } = &list.roots[number as usize];
+        let ListRoot { root: Root { bracket, start, argument, value, slope, .. }, inner } = &list.roots[number as usize];
         let own = self.name(node);
         let name = format!("{}_{own}", self.stage);
         // What the root and its function read, besides what depends on where the function is asked.

@@ -346,6 +346,7 @@ impl Reader<'_> {
             argument,
             value: bounded[0],
             slope: bounded[1],
+            function: None,
         });
         self.push(Operation::Root(number))
     }
@@ -400,12 +401,14 @@ fn rounded(list: &List) -> Expected {
         }
     }
     let at = |node: Node| place[node as usize];
-    let root = |Root { bracket, start, argument, value, slope }| Root {
+    let root = |Root { bracket, start, argument, value, slope, .. }| Root {
         bracket: (at(bracket.0), at(bracket.1)),
         start: at(start),
         argument: at(argument),
         value: at(value),
         slope: at(slope),
+        // No shader is told of it.
+        function: None,
     };
     let used = |number: &usize| list.operations.contains(&Operation::Root(*number as u8));
     let roots = (0..list.roots.len()).filter(used).map(|number| root(list.roots[number].root)).collect();
