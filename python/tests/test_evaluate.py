@@ -52,6 +52,25 @@ def test_long_columns_outlive_their_table_and_are_those_of_short_ones() -> None:
     assert len(margins) == count and margins[-1000:].tobytes() == few["slip_margin"].tobytes()
 
 
+def test_memory_of_long_columns_is_used_again_but_never_by_two() -> None:
+    count = 600_000
+    frictions = [np.random.default_rng(seed).uniform(0.06, 0.1, count) for seed in (3, 4, 5)]
+
+    def forces_of(friction: np.ndarray) -> np.ndarray:
+        return beltspace.evaluate("metal-cvt", {"friction": friction}, outputs=["axial_force_N"])["axial_force_N"]
+
+    first, second = forces_of(frictions[0]), forces_of(frictions[1])
+    assert not np.shares_memory(first, second)
+    place, copy = first.ctypes.data, second.copy()
+    del first
+    gc.collect()
+    third = forces_of(frictions[2])
+    assert third.ctypes.data == place, "the pages of the first column were free"
+    assert (second == copy).all()
+    few = beltspace.evaluate("metal-cvt", {"friction": frictions[2][-1000:]}, outputs=["axial_force_N"])
+    assert third[-1000:].tobytes() == few["axial_force_N"].tobytes()
+
+
 def test_numbers_of_any_kind_are_columns_and_a_scalar_is_every_row() -> None:
     wanted = beltspace.evaluate("metal-cvt", {"band_count": [6.0, 7.0], "torque_Nm": [150.0, 150.0]})
     for counts in (range(6, 8), (6, 7), np.array([6, 7], dtype=np.int8), np.array([6, 0, 7, 0])[::2], np.float32([6, 7])):
