@@ -46,6 +46,8 @@ const MOST_KEPT: usize = 100_000;
 const PARTS: usize = 24;
 /// Parts that the designs of a front are cut into, per thread.
 const SCREENED_PARTS: usize = 6;
+/// The same where each is judged over all scenarios at once; every part computes once more what all designs share.
+const LANE_PARTS: usize = 4;
 
 /// The scenarios in which every design is judged, sorted; none stands for all.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -489,10 +491,9 @@ impl<'p> FrontSearch<'p> {
         let mut positions: Vec<u64> = designs.iter().map(|&design| self.shown.position_of(design)).collect();
         positions.sort_unstable();
         let designs: Vec<u64> = positions.into_iter().map(|position| self.shown.design_at(position)).collect();
-        let share = designs.len().div_ceil(self.threads).max(1);
-        let parts = on_threads(designs.chunks(share), |part| lanes.judge(&self.shown, &self.columns, part, &self.control.stop));
-        self.go_on()?;
-        Ok(parts.into_iter().flatten().collect())
+        self.in_parts(&designs, LANE_PARTS, |parts| {
+            parts.flat_map(|part| lanes.judge(&self.shown, &self.columns, part, &self.control.stop)).collect()
+        })
     }
 
     fn go_on(&self) -> Result<()> {
@@ -504,12 +505,10 @@ impl<'p> FrontSearch<'p> {
         // Designs of a row, and rows that share much, next to each other.
         let mut positions: Vec<u64> = designs.iter().map(|&design| plan.position_of(design)).collect();
         positions.sort_unstable();
-        let parts: Vec<&[u64]> = positions.chunks(positions.len().div_ceil(SCREENED_PARTS * self.threads).max(1)).collect();
-        let next = AtomicUsize::new(0);
-        let parts = on_threads(0..self.threads, |_| {
+        self.in_parts(&positions, SCREENED_PARTS, |parts| {
             let mut engine = CpuEngine::new(plan, tables).stopping_on(&self.control.stop);
             let mut rows = Vec::new();
-            while let Some(part) = parts.get(next.fetch_add(1, Ordering::Relaxed)).filter(|_| !self.control.stop.load(Ordering::Relaxed)) {
+            for part in parts {
                 engine.screen_some_in(chosen, part, |block| {
                     for lane in block.feasible() {
                         let value = |(column, places): (&Column, &Vec<usize>)| {
@@ -522,9 +521,23 @@ impl<'p> FrontSearch<'p> {
                 });
             }
             rows
-        });
+        })
+    }
+
+    /// What `work` makes of some designs, or positions of designs, cut into so many parts per thread: it is given those that one thread
+    /// takes, one after the other, so that no thread waits long for another one.
+    fn in_parts<'a>(
+        &self,
+        designs: &'a [u64],
+        count: usize,
+        work: impl Fn(&mut dyn Iterator<Item = &'a [u64]>) -> Vec<Row> + Sync,
+    ) -> Result<Vec<Row>> {
+        let parts: Vec<&[u64]> = designs.chunks(designs.len().div_ceil(count * self.threads).max(1)).collect();
+        let (next, stop) = (AtomicUsize::new(0), &self.control.stop);
+        let take = || parts.get(next.fetch_add(1, Ordering::Relaxed)).filter(|_| !stop.load(Ordering::Relaxed)).copied();
+        let found = on_threads(0..self.threads, |_| work(&mut std::iter::from_fn(take)));
         self.go_on()?;
-        Ok(parts.into_iter().flatten().collect())
+        Ok(found.into_iter().flatten().collect())
     }
 
     /// The designs of a front in a working set of which all scenarios say something else.
