@@ -9,7 +9,7 @@ use crate::plan::{Plan, knowns};
 use crate::screen::Control;
 use crate::study::{Axis, Quantity, Study};
 use crate::tape::{ColumnValue, Known, List, Node, NodeColumns, Operation, Set};
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Designs of a chunk: what the formula computes of them stays in the second-level cache.
 const DESIGNS: usize = 256;
@@ -275,14 +275,21 @@ pub fn rows_of_columns(
 ) -> Option<Result<Vec<Row>>> {
     let found = WorstColumns::new(plan, columns, designs)?;
     let count = designs.values.first().map_or(0, |it| it.len());
-    let share = count.div_ceil(threads.max(1)).max(1);
-    let parts = on_threads((0..count).step_by(share).map(|first| first..count.min(first + share)), |part| {
+    let length = count.div_ceil(threads.max(1)).clamp(1, DESIGNS);
+    let chunks: Vec<usize> = (0..count).step_by(length).collect();
+    // Whoever is done takes the next chunk: another program may have the core of somebody else.
+    let next = AtomicUsize::new(0);
+    let parts = on_threads(0..threads.max(1).min(chunks.len()), |_| {
         let mut numbers = NodeColumns::new(&found.list);
-        let chunks = part.clone().step_by(DESIGNS).map(|first| (first, DESIGNS.min(part.end - first)));
-        let rows: Option<Vec<Vec<Row>>> = chunks.map(|(first, count)| found.rows(first, count, &mut numbers, control)).collect();
-        rows
+        let take = || chunks.get(next.fetch_add(1, Ordering::Relaxed)).copied();
+        let rows = |first: usize| found.rows(first, length.min(count - first), &mut numbers, control);
+        std::iter::from_fn(take).map(rows).collect::<Option<Vec<_>>>()
     });
-    let rows: Option<Vec<Row>> = parts.into_iter().collect::<Option<Vec<_>>>().map(|parts| parts.into_iter().flatten().flatten().collect());
+    let rows = parts.into_iter().collect::<Option<Vec<_>>>().map(|parts| {
+        let mut rows: Vec<Vec<Row>> = parts.into_iter().flatten().collect();
+        rows.sort_unstable_by_key(|rows| rows[0].index);
+        rows.into_iter().flatten().collect()
+    });
     Some(rows.ok_or(Error::Stopped { kept: None }))
 }
 
