@@ -10,10 +10,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Bytes from which on a column has pages of its own.
 const LONG: usize = 4 << 20;
-/// Bytes of pages that wait at most: all outputs of a million designs. The system may take what is in them where memory is short.
+/// Bytes of pages that wait at most: more than all outputs of a million designs of a variator.
 const MOST_WAITING: usize = 512 << 20;
 
-/// The pages that wait, the longest first to go.
+/// The pages that wait; those that have waited longest go first.
 static WAITING: Mutex<WaitingPages> = Mutex::new(WaitingPages(VecDeque::new()));
 
 /// Pages that no column has at present.
@@ -27,10 +27,16 @@ impl WaitingPages {
         self.0.remove(place)
     }
 
+    /// Keeps pages if the system may take back what is in them where memory is short; elsewhere they are given back at once.
     fn put(&mut self, pages: MmapMut) {
         // SAFETY: nobody has the pages, so that what is in them may be lost.
         #[cfg(target_os = "linux")]
-        let _ = unsafe { pages.unchecked_advise(memmap2::UncheckedAdvice::Free) };
+        let may_be_taken = unsafe { pages.unchecked_advise(memmap2::UncheckedAdvice::Free) }.is_ok();
+        #[cfg(not(target_os = "linux"))]
+        let may_be_taken = false;
+        if !may_be_taken {
+            return;
+        }
         self.0.push_back(pages);
         while self.bytes() > MOST_WAITING {
             self.0.pop_front();
@@ -48,9 +54,14 @@ pub struct ColumnPages(Option<MmapMut>);
 impl ColumnPages {
     /// Pages of at least so many bytes, if the system has them.
     fn of(bytes: usize) -> Option<Self> {
-        let waiting = WAITING.lock().unwrap_or_else(PoisonError::into_inner).take(bytes);
-        let pages = waiting.or_else(|| {
-            let pages = MmapMut::map_anon(bytes).ok()?;
+        let mut waiting = WAITING.lock().unwrap_or_else(PoisonError::into_inner);
+        let pages = waiting.take(bytes).or_else(|| {
+            // A process may have a limit, of which pages that wait are a part.
+            let pages = MmapMut::map_anon(bytes).or_else(|_| {
+                waiting.0.clear();
+                MmapMut::map_anon(bytes)
+            });
+            let pages = pages.ok()?;
             // A request that the system may refuse: then it only takes longer.
             #[cfg(target_os = "linux")]
             let _ = pages.advise(memmap2::Advice::HugePage);

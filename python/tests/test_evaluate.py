@@ -65,7 +65,8 @@ def test_memory_of_long_columns_is_used_again_but_never_by_two() -> None:
     del first
     gc.collect()
     third = forces_of(frictions[2])
-    assert third.ctypes.data == place, "the pages of the first column were free"
+    # Elsewhere the system could not take them back, so that none are kept.
+    assert sys.platform != "linux" or third.ctypes.data == place, "the pages of the first column were free"
     assert (second == copy).all()
     few = beltspace.evaluate("metal-cvt", {"friction": frictions[2][-1000:]}, outputs=["axial_force_N"])
     assert third[-1000:].tobytes() == few["axial_force_N"].tobytes()

@@ -25,16 +25,16 @@ pub trait RootFunction {
 pub struct RootSearch<C> {
     /// Where the function is asked.
     pub x: C,
-    /// What is known of the root: it lies above.
+    /// The root lies above this number.
     pub low: C,
-    /// Likewise: below.
+    /// The root lies below this number.
     pub high: C,
     /// How far the step before went; below zero where the search has ended, which stays where it is.
     pub last_step: C,
 }
 
-/// Takes a step of every search: from the parameters of each and where it is to where it is then. How many go on; `None`, and nothing of
-/// worth is written, where the function takes a rare way that has not been compiled.
+/// Takes a step of every search, given the parameters of each, where it is, and room for where it is next. Returns how many searches have
+/// not ended; `None`, and what was written is of no use, where the function meets an argument that has not been compiled for.
 pub type RootStep = fn([&[f64]; ROOT_PARAMETERS], RootSearch<&[f64]>, RootSearch<&mut [f64]>) -> Option<usize>;
 
 /// Has a search ended? A step that is no number, as between two infinities, ends nothing.

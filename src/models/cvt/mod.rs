@@ -138,7 +138,7 @@ fn driver_radius<R: Real>(belt: &Drive<R>) -> R {
     R::root_of::<BeltLength>((R::constant(0.0), largest), start, [step, both, belt_length, centre_distance])
 }
 
-/// The belt's length at a radius of the driver, less what it is.
+/// The length that a belt has with this radius of the driver, less the belt's own.
 struct BeltLength;
 
 impl RootFunction for BeltLength {
@@ -172,7 +172,7 @@ fn clamped_slack<R: Real>(belt_force: R, target: R, driven_wrap: R, effective_fr
     R::root_of::<ClampedPulley>((least / two, two * highest), highest, parameters)
 }
 
-/// Four times the clamping force without the torque's part over the wedge factor, at twice the slack side's force, less what it is.
+/// The left side of [`clamped_slack`]'s equation without the torque's part, times four over the wedge factor, less the target.
 struct ClampedPulley;
 
 impl RootFunction for ClampedPulley {
