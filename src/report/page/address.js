@@ -21,7 +21,7 @@
       if (list(state.parallel) !== defaults.parallel) parts.push(`pc=${list(state.parallel)}`);
       add("inv", list([...state.inverted]));
       if (state.colour !== defaults.colour) add("col", encode(state.colour ?? ""));
-      if (state.card !== null) add("d", page.designOf(state.card));
+      add("d", state.card !== null ? page.designOf(state.card) : state.awaited);
     }
     add("t", state.theme);
     if (page.front) {
@@ -91,6 +91,7 @@
     page.readNear(given.get("wn"));
     page.readWeights(given.get("w"), given.get("a"));
     const row = given.has("d") ? page.rowOf(given.get("d")) : -1;
+    state.awaited = row < 0 && page.awaits() ? (given.get("d") ?? null) : null;
     return row >= 0 ? row : null;
   };
 
@@ -105,15 +106,18 @@
     window.addEventListener("hashchange", () => {
       if (location.hash === written) return;
       written = location.hash;
+      // Before the designs: they are those of the changed study.
+      if (page.readChanges) page.readChanges();
       const row = page.readAddress();
       page.applyTheme();
-      if (page.readChanges && page.readChanges()) return;
       if (!page.front) return;
       page.events.call("columns");
       page.events.call("colour");
       page.applySelection();
-      if (row === null) page.closeCard();
-      else page.openCard(row);
+      if (row !== null) return page.openCard(row);
+      const { awaited } = page.state;
+      page.closeCard();
+      page.state.awaited = awaited;
     });
   };
 }

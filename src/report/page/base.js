@@ -5,6 +5,8 @@ const page = {
   data: null, // the parsed JSON
   front: null, // decoded columns, see decode.js
   timings: {}, // ms from the start of navigation
+  // Is a front of more designs, or of what is changed in the study, still to come? Only of a live study.
+  awaits: () => false,
   // selection: brushes changed; columns: axes chosen, moved or reversed; current: the point under the pointer
   // front: another front in place of the one before; changes: what is changed in the study
   // choice: weights and wishes; others: other results over this one

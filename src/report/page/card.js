@@ -195,6 +195,8 @@
     if (fresh) opener = document.activeElement;
     const width = page.byId("main").clientWidth;
     page.state.card = row;
+    page.state.awaited = null;
+    card.inert = false;
     card.replaceChildren(...build(row));
     card.hidden = false;
     document.body.classList.add("with-card");
@@ -208,6 +210,7 @@
 
   page.closeCard = () => {
     const card = page.byId("card");
+    page.state.awaited = null;
     if (card.hidden) return;
     const width = page.byId("main").clientWidth;
     card.hidden = true;
@@ -243,8 +246,9 @@
     page.events.on("front.card", again);
     page.events.on("choice.card", () => page.state.card !== null && page.byId("card-title").replaceChildren(...named(page.state.card)));
     document.addEventListener("keydown", (event) => {
-      if (page.state.card === null || event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
+      if (page.byId("card").hidden || event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
       if (event.key === "Escape") page.closeCard();
+      else if (page.state.card === null) return;
       else if (event.key === "p" && page.byId("card").contains(event.target)) page.pin(page.state.card);
       else if (!page.byId("card").contains(event.target)) return;
       else if (event.target.tagName !== "CODE" && (event.key === "ArrowRight" || event.key === "ArrowLeft")) step(event.key === "ArrowRight" ? 1 : -1);

@@ -2,6 +2,7 @@
 {
   const MOST = 6;
   let pins = []; // { design, letter, values: name -> number or text, texts: name -> text, set }
+  let awaited = []; // pins of the address that no front had yet: { design, letter, set }
 
   page.pins = () => pins;
 
@@ -11,16 +12,22 @@
   const pinOf = (row) => {
     const columns = page.front.shown;
     const entries = columns.map((column) => [column.name, { value: column.values[row], text: page.valueText(column, row), unit: column.unit, role: column.role, words: Boolean(column.words), goal: column.goal }]);
-    const free = "ABCDEF".split("").find((letter) => !pins.some((pin) => pin.letter === letter));
-    return { design: page.designOf(row), letter: free, values: new Map(entries), set: page.changeList ? page.changeList() : [] };
+    return { design: page.designOf(row), letter: free(), values: new Map(entries), set: shownSet() };
   };
 
-  page.isPinned = (row) => pins.some((pin) => pin.design === page.designOf(row) && sameSet(pin));
-  const sameSet = (pin) => !page.changeList || String(pin.set) === String(page.changeList());
+  const LETTERS = "ABCDEF".split("");
+  const free = () => LETTERS.find((letter) => ![...pins, ...awaited].some((pin) => pin.letter === letter));
+
+  // The changes that the shown front is of, and those that are asked for.
+  const shownSet = () => page.shownSet ?? [];
+  const askedSet = () => (page.changeList ? page.changeList() : []);
+  const isOf = (pin, set) => String(pin.set) === String(set);
+
+  page.isPinned = (row) => pins.some((pin) => pin.design === page.designOf(row) && isOf(pin, shownSet()));
 
   page.pin = (row) => {
-    if (page.isPinned(row)) pins = pins.filter((pin) => !(pin.design === page.designOf(row) && sameSet(pin)));
-    else if (pins.length < MOST) pins = [...pins, pinOf(row)];
+    if (page.isPinned(row)) pins = pins.filter((pin) => !(pin.design === page.designOf(row) && isOf(pin, shownSet())));
+    else if (pins.length + awaited.length < MOST) pins = [...pins, pinOf(row)];
     page.events.call("pins");
   };
 
@@ -30,14 +37,21 @@
   };
 
   // In the address by their designs.
-  page.pinsText = () => pins.filter(sameSet).map((pin) => pin.design).join(",");
+  page.pinsText = () => [...pins, ...awaited].filter((pin) => isOf(pin, askedSet())).map((pin) => pin.design).join(",");
   page.readPins = (text) => {
     pins = [];
-    for (const design of (text || "").split(",").slice(0, MOST)) {
-      const row = design && page.front ? page.rowOf(design) : -1;
-      if (row >= 0 && !page.isPinned(row)) pins = [...pins, pinOf(row)];
-    }
+    const designs = new Set((text || "").split(",").filter(Boolean));
+    awaited = [...designs].slice(0, MOST).map((design, i) => ({ design, letter: LETTERS[i], set: askedSet() }));
+    adoptAwaited();
     page.events.call("pins");
+  };
+
+  // A first front has few designs: what it lacks may be on the next.
+  const adoptAwaited = () => {
+    const rows = awaited.map((pin) => (isOf(pin, shownSet()) && page.front ? page.rowOf(pin.design) : -1));
+    const found = awaited.filter((_, i) => rows[i] >= 0).map((pin) => ({ ...pinOf(page.rowOf(pin.design)), letter: pin.letter }));
+    pins = [...pins, ...found].sort((a, b) => d3.ascending(a.letter, b.letter));
+    awaited = page.awaits() ? awaited.filter((_, i) => rows[i] < 0) : [];
   };
 
   // Of the pinned designs, the best value of an objective.
@@ -97,9 +111,10 @@
     page.events.on("front.pins", () => {
       // The values of a pin of this very study are those of the newest answer, which may know more.
       pins = pins.map((pin) => {
-        const row = sameSet(pin) ? page.rowOf(pin.design) : -1;
+        const row = isOf(pin, shownSet()) ? page.rowOf(pin.design) : -1;
         return row < 0 ? pin : { ...pinOf(row), letter: pin.letter };
       });
+      adoptAwaited();
       draw();
     });
     draw();

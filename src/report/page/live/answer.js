@@ -8,6 +8,9 @@
   let started = false;
   let answered = 0;
   let ghostOf = null;
+  let isFirst = true; // is the shown front a first idea only?
+
+  page.awaits = () => isFirst || !sameList(page.shownSet, page.changeList());
 
   const say = (text, kind) => {
     const line = page.byId("live-text");
@@ -29,7 +32,7 @@
     page.events.call("front");
   };
 
-  const put = (told, buffer) => {
+  const put = (question, told, buffer) => {
     const { data } = page;
     if (told.study) {
       const { controls, begin } = data;
@@ -38,16 +41,31 @@
       data.study.feasible = feasible;
     }
     Object.assign(data, { objectives: told.objectives, constraints: told.constraints, scenarios: told.scenarios });
-    const design = page.front && page.state.card !== null ? page.designOf(page.state.card) : null;
+    const { state } = page;
+    const design = page.front && state.card !== null ? page.designOf(state.card) : state.awaited;
     page.front = page.frontOf(data, told.front, buffer);
+    page.shownSet = question.set;
+    isFirst = told.kind === "coarse" || told.kind === "few";
     page.ghost = page.byId("ghost").checked ? ghostOf : null;
     page.adoptFront();
-    page.state.card = design === null ? null : page.rowOf(design);
-    if (page.state.card === -1) page.state.card = null;
+    const row = design === null ? -1 : page.rowOf(design);
+    state.card = row < 0 ? null : row;
+    // What a first front lacks may be on the exact one: until then the card stands as it is, and nothing on it can be pressed.
+    state.awaited = row < 0 && page.awaits() ? design : null;
+    const card = page.byId("card");
+    card.inert = state.awaited !== null;
     if (!started && page.front.rows) begin();
     else if (started) page.events.call("front");
     for (const id of ["matrix-section", "parallel-section", "table-section", "bar"]) page.byId(id).hidden = !page.front.rows;
-    if (design !== null && page.state.card === null) page.closeLostCard();
+    if (state.card !== null && card.hidden) openAwaited(state.card);
+    else if (design !== null && state.card === null && state.awaited === null) page.closeLostCard();
+  };
+
+  // Whoever is at work elsewhere by now stays there.
+  const openAwaited = (row) => {
+    const focused = document.activeElement;
+    page.openCard(row);
+    if (focused && focused !== document.body) focused.focus({ preventScroll: true });
   };
 
   // The views, once there is something to see.
@@ -100,12 +118,12 @@
       return;
     }
     if (told.kind === "certified") {
-      put(told, buffer);
+      put(question, told, buffer);
       page.timings.certified = answered;
       if (page.front.rows) say(`exact: ${page.count(page.front.rows)} designs on the front, each certified in f64; counting what is feasible …`, "exact");
       return;
     }
-    put(told, buffer);
+    put(question, told, buffer);
     page.showExplained(true);
     later();
     if (told.kind === "few") {

@@ -6,6 +6,7 @@
     const section = page.byId("around");
     const row = page.state.card ?? (page.front ? page.front.knee : null);
     if (asking) asking.abort();
+    if (page.state.awaited !== null) return null;
     if (row === null || row === undefined) return (section.hidden = true);
     section.hidden = false;
     const design = page.designOf(row);
