@@ -8,7 +8,9 @@ use multiversion::multiversion;
 
 const IN: u64 = u64::MAX;
 
-fn mask(inside: bool) -> u64 {
+/// All bits or none.
+#[inline(always)]
+pub fn mask(inside: bool) -> u64 {
     if inside { IN } else { 0 }
 }
 
@@ -141,6 +143,32 @@ pub fn ends(alive: &[u64], values: &[f64]) -> (f64, f64) {
     (least.into_iter().fold(f64::INFINITY, f64::min), largest.into_iter().fold(f64::NEG_INFINITY, f64::max))
 }
 
+/// Least and largest of some values; `None` if one is no number.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+pub fn all_ends(values: &[f64]) -> Option<(f64, f64)> {
+    const WIDTH: usize = 16;
+    let (mut least, mut largest, mut none) = ([f64::INFINITY; WIDTH], [f64::NEG_INFINITY; WIDTH], [0; WIDTH]);
+    let (chunks, rest) = values.as_chunks::<WIDTH>();
+    for values in chunks {
+        for lane in 0..WIDTH {
+            least[lane] = if values[lane] < least[lane] { values[lane] } else { least[lane] };
+        }
+        for lane in 0..WIDTH {
+            largest[lane] = if values[lane] > largest[lane] { values[lane] } else { largest[lane] };
+        }
+        for lane in 0..WIDTH {
+            none[lane] |= mask(values[lane].is_nan());
+        }
+    }
+    for (lane, &value) in rest.iter().enumerate() {
+        least[lane] = if value < least[lane] { value } else { least[lane] };
+        largest[lane] = if value > largest[lane] { value } else { largest[lane] };
+        none[lane] |= mask(value.is_nan());
+    }
+    let ends = (least.into_iter().fold(f64::INFINITY, f64::min), largest.into_iter().fold(f64::NEG_INFINITY, f64::max));
+    (none == [0; WIDTH]).then_some(ends)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -168,5 +196,22 @@ mod tests {
         assert_eq!(ends(&[IN, 0, IN], &[3.0, 9.0, 2.0]), (2.0, 3.0));
         assert_eq!(ends(&[0], &[3.0]), (f64::INFINITY, f64::NEG_INFINITY));
         assert_eq!(count(&[IN, 0, IN]), 2);
+    }
+
+    #[test]
+    fn all_ends_are_those_of_all_values_wherever_they_stand() {
+        for count in [1, 15, 16, 37] {
+            for place in 0..count {
+                let mut values = vec![1.5; count];
+                assert_eq!(all_ends(&values), Some((1.5, 1.5)));
+                values[place] = 2.0;
+                assert_eq!(all_ends(&values).map(|it| it.1), Some(2.0), "{place} of {count}");
+                values[place] = f64::NEG_INFINITY;
+                assert_eq!(all_ends(&values).map(|it| it.0), Some(f64::NEG_INFINITY), "{place} of {count}");
+                values[place] = f64::NAN;
+                assert_eq!(all_ends(&values), None, "{place} of {count}");
+            }
+        }
+        assert_eq!(all_ends(&[]), Some((f64::INFINITY, f64::NEG_INFINITY)));
     }
 }

@@ -3,7 +3,7 @@
 use super::worst_lanes::FoundWorst;
 use super::{Column, Row, pays_together};
 use crate::error::{Error, Result};
-use crate::models::{ColumnJudge, JudgeRoom, Status, input_to_si};
+use crate::models::{ColumnJudge, JudgeRoom, input_to_si};
 use crate::parallel::on_threads;
 use crate::plan::{Plan, knowns};
 use crate::screen::Control;
@@ -98,14 +98,14 @@ impl<'p> WorstColumns<'p> {
     fn rows(&self, first: usize, count: usize, numbers: &mut NodeColumns, control: &Control) -> Option<Vec<Row>> {
         let (plan, model) = (self.plan, &self.plan.study.model);
         let conditions = self.outputs.len();
-        let mut digits = vec![0_u64; self.axes.len()];
+        let mut steps = vec![0_u64; self.axes.len()];
         let mut inputs = plan.study.fixed.clone();
-        self.axes.iter().for_each(|(axis, _)| set(&mut inputs, axis, 0));
+        self.axes.iter().for_each(|(axis, _)| set(&mut inputs, axis, level(axis, 0)));
         numbers.begin(count);
         self.compute(&self.once, numbers, first, count, &inputs);
         let mut found = FoundWorst::new(plan, self.columns, count);
         let mut room = JudgeRoom::default();
-        let mut statuses = vec![Status::Ok; count];
+        let mut statuses = vec![0; count];
         let mut outputs = vec![vec![0.0; count]; self.outputs.len()];
         let mut turned = 0;
         loop {
@@ -121,7 +121,7 @@ impl<'p> WorstColumns<'p> {
             };
             let mut places: Vec<&mut [f64]> = outputs.iter_mut().map(Vec::as_mut_slice).collect();
             self.judge.judge(model, |condition| result(conditions + condition), result, &mut statuses, &mut places, &mut room);
-            let scenario = digits.iter().zip(&self.axes).map(|(digit, (_, stride))| digit * stride).sum();
+            let scenario = steps.iter().zip(&self.axes).map(|(&step, (axis, stride))| level(axis, step) * stride).sum();
             let value = |quantity: Quantity| match quantity {
                 Quantity::Output(output) => {
                     let place = self.outputs.iter().position(|&it| it == output).expect("it is computed");
@@ -134,10 +134,10 @@ impl<'p> WorstColumns<'p> {
             };
             found.take(scenario, &statuses, value);
             // The next scenario: the innermost axis turns fastest.
-            let Some(axis) = (0..digits.len()).rev().find(|&axis| digits[axis] + 1 < self.axes[axis].0.count()) else { break };
-            digits[axis] += 1;
-            digits[axis + 1..].fill(0);
-            (axis..digits.len()).for_each(|axis| set(&mut inputs, self.axes[axis].0, digits[axis]));
+            let Some(axis) = (0..steps.len()).rev().find(|&axis| steps[axis] + 1 < self.axes[axis].0.count()) else { break };
+            steps[axis] += 1;
+            steps[axis + 1..].fill(0);
+            (axis..steps.len()).for_each(|axis| set(&mut inputs, self.axes[axis].0, level(self.axes[axis].0, steps[axis])));
             turned = axis;
         }
         control.certified.fetch_add(count as u64, Ordering::Relaxed);
@@ -183,6 +183,11 @@ fn axes(study: &Study) -> Vec<(&Axis, u64)> {
     }
     axes.reverse();
     axes
+}
+
+/// The level of an axis that comes at a step: its ends first, where the worst is as a rule, so that all others change little.
+fn level(axis: &Axis, step: u64) -> u64 {
+    if step == 0 { axis.count() - 1 } else { step - 1 }
 }
 
 fn set(inputs: &mut [f64], axis: &Axis, level: u64) {
@@ -258,7 +263,7 @@ pub(crate) fn room(plan: &Plan, columns: &[Column], designs: u64, threads: u64) 
     let values: Vec<[f64; 2]> = inputs.iter().map(|&input| [ends[0][input], ends[1][input]]).collect();
     let values: Vec<&[f64]> = values.iter().map(<[f64; 2]>::as_slice).collect();
     let found = WorstColumns::new(plan, columns, DesignColumns { inputs: &inputs, values: &values });
-    let numbers = found.map_or(0, |it| it.each.iter().filter(|each| **each).count() + it.outputs.len() + 4 * columns.len());
+    let numbers = found.map_or(0, |it| it.each.iter().filter(|each| **each).count() + it.outputs.len() + 3 * columns.len());
     recorded + 8 * numbers as u64 * designs.div_ceil(threads).min(DESIGNS as u64) * threads
 }
 

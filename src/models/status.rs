@@ -26,6 +26,18 @@ impl Status {
     }
 }
 
+impl Status {
+    /// The status of a number, as [`u16::from`] gives it.
+    #[inline]
+    pub(crate) fn of_number(number: u16) -> Self {
+        match number {
+            0 => Self::Ok,
+            1 => Self::Overflow,
+            _ => Self::Failed(number - 2),
+        }
+    }
+}
+
 /// As a number: 0 for ok, 1 for an overflow, 2 and on for the conditions.
 impl From<Status> for u16 {
     #[inline]

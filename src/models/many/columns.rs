@@ -78,7 +78,7 @@ impl RecordedColumns {
         let list = &self.list;
         let mut columns = ListColumns::new(list);
         columns.turn_to(list, 0..list.results.len(), |_| true);
-        let (mut room, mut judged) = (JudgeRoom::default(), [Status::Ok; LIST_CHUNK]);
+        let (mut room, mut judged) = (JudgeRoom::default(), [0; LIST_CHUNK]);
         for start in (0..statuses.len()).step_by(LIST_CHUNK) {
             if options.is_stopped() {
                 return;
@@ -96,7 +96,7 @@ impl RecordedColumns {
             let margin = |condition: usize| columns.result(list, wanted.len() + condition);
             let mut outputs: Vec<&mut [f64]> = outputs.iter_mut().map(|column| &mut column[start..start + count]).collect();
             self.judge.judge(model, margin, |place| columns.result(list, place), judged, &mut outputs, &mut room);
-            statuses[start..][..count].iter_mut().zip(judged).for_each(|(status, judged)| *status = S::from(*judged));
+            statuses[start..][..count].iter_mut().zip(judged).for_each(|(status, judged)| *status = S::from(Status::of_number(*judged)));
         }
     }
 }

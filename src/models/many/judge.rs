@@ -1,8 +1,11 @@
 //! Status and presence of outputs over a chunk of rows.
 
-use super::vectors::{clear, converted, failures, join};
+use super::vectors::{clear, converted, failures, join, write_marked};
 use crate::models::{Model, Status};
 use crate::tape::ColumnValue;
+
+/// The number of a status that is ok.
+const OK: u16 = 0;
 
 /// Judges rows of a model by the margins of its conditions.
 #[derive(Debug)]
@@ -44,18 +47,18 @@ impl ColumnJudge {
     }
 
     /// Judges a chunk: `margin` of each condition and `value` of each output asked for, in SI units. Outputs are written in their units, NaN
-    /// where they have no meaning.
+    /// where they have no meaning; statuses as their numbers, which go side by side in vectors.
     pub fn judge<'c>(
         &self,
         model: &Model,
         margin: impl Fn(usize) -> ColumnValue<'c>,
         value: impl Fn(usize) -> ColumnValue<'c>,
-        statuses: &mut [Status],
+        statuses: &mut [u16],
         outputs: &mut [&mut [f64]],
         room: &mut JudgeRoom,
     ) {
         let count = statuses.len();
-        statuses.fill(Status::Ok);
+        statuses.fill(OK);
         let JudgeRoom { failed, gone } = room;
         failed.resize_with(model.conditions.len(), Default::default);
         gone.resize(count, false);
@@ -73,8 +76,7 @@ impl ColumnJudge {
         // Of conditions that fail the first one is the status, so it is written last.
         for (number, (any, rows)) in failed.iter().enumerate().rev() {
             if *any && !model.conditions[number].quiet {
-                let failed = Status::failed(number);
-                statuses.iter_mut().zip(rows).for_each(|(status, fails)| *status = if *fails { failed } else { *status });
+                write_marked(statuses, rows, Status::failed(number).into());
             }
         }
         for (place, (column, output)) in outputs.iter_mut().zip(&self.outputs).enumerate() {
@@ -98,8 +100,8 @@ impl ColumnJudge {
             // What no condition takes away and is absent all the same has overflowed.
             if clear(column, gone) && output.counts {
                 let rows = column.iter().zip(&*gone).zip(&mut *statuses);
-                for ((_, _), status) in rows.filter(|((value, gone), status)| value.is_nan() && !**gone && **status == Status::Ok) {
-                    *status = Status::Overflow;
+                for ((_, _), status) in rows.filter(|((value, gone), status)| value.is_nan() && !**gone && **status == OK) {
+                    *status = Status::Overflow.into();
                 }
             }
         }

@@ -89,6 +89,12 @@ pub(super) fn failures(margins: &[f64], strict: bool, failed: &mut [bool]) -> bo
     any
 }
 
+/// Writes a number where there is a mark.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
+pub(super) fn write_marked(numbers: &mut [u16], marks: &[bool], new: u16) {
+    numbers.iter_mut().zip(marks).for_each(|(number, &mark)| *number = if mark { new } else { *number });
+}
+
 /// Adds marks to marks.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
 pub(super) fn join(marks: &mut [bool], others: &[bool]) {
