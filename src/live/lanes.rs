@@ -6,7 +6,7 @@
 
 use super::search::UNKNOWN;
 use crate::certify::{AtWorst, Column, Row};
-use crate::masks::{ends, keep_finite, keep_margin};
+use crate::masks::all_ends;
 use crate::models::{Worse, input_to_si};
 use crate::plan::{Plan, knowns};
 use crate::study::{Axis, Constraint, Quantity};
@@ -89,7 +89,6 @@ impl ScenarioLanes {
         let mut numbers = NodeColumns::new(&self.list);
         let own: Vec<Vec<f64>> = designs.iter().map(|&design| plan.space.inputs(design, 0)).collect();
         let mut worst: Vec<Option<Vec<(f64, AtWorst)>>> = designs.iter().map(|_| Some(vec![Column::nothing(); columns.len()])).collect();
-        let mut alive = Vec::new();
         for first in (0..self.scenarios).step_by(CHUNK) {
             let lanes = first..self.scenarios.min(first + CHUNK);
             numbers.begin(lanes.len());
@@ -105,7 +104,7 @@ impl ScenarioLanes {
                 let is_stale = |node: &&Node| changed.is_none_or(|changed| self.turning[**node as usize].meets(changed));
                 self.fill(plan, self.own.iter().filter(is_stale), inputs, &lanes, &mut numbers);
                 last = Some(inputs);
-                if !self.take(plan, columns, inputs, &lanes, &numbers, &mut alive, worst) {
+                if !self.take(plan, columns, inputs, &lanes, &numbers, worst) {
                     *slot = None;
                 }
             }
@@ -138,8 +137,7 @@ impl ScenarioLanes {
         }
     }
 
-    /// Takes the values of a chunk of scenarios into the worst ones; false if the design is out. `alive` is room.
-    #[allow(clippy::too_many_arguments, reason = "each is one thing")]
+    /// Takes the values of a chunk of scenarios into the worst ones; false if the design is out.
     fn take(
         &self,
         plan: &Plan,
@@ -147,22 +145,20 @@ impl ScenarioLanes {
         inputs: &[f64],
         lanes: &Range<usize>,
         numbers: &NodeColumns,
-        alive: &mut Vec<u64>,
         worst: &mut [(f64, AtWorst)],
     ) -> bool {
         let model = &plan.study.model;
-        alive.clear();
-        alive.resize(lanes.len(), u64::MAX);
         let result = |place: usize| {
             let node = self.list.results[place].expect("the list is cut to what is asked for");
             numbers.value(node, |node| self.of_scenario[node as usize])
         };
         for &(condition, place) in &self.conditions {
-            let is_strict = model.conditions[condition].strict;
-            match result(place) {
-                ColumnValue::One(margin) if margin > 0.0 || margin == 0.0 && !is_strict => {}
-                ColumnValue::One(_) => return false,
-                ColumnValue::Each(margins) => keep_margin(alive, margins, is_strict),
+            let least = match result(place) {
+                ColumnValue::One(margin) => margin,
+                ColumnValue::Each(margins) => all_ends(margins).map_or(f64::NAN, |(least, _)| least),
+            };
+            if !(least > 0.0 || least == 0.0 && !model.conditions[condition].strict) {
+                return false;
             }
         }
         let values = |quantity: Quantity| match quantity {
@@ -177,20 +173,15 @@ impl ScenarioLanes {
             Quantity::Output(output) => model.outputs[output].unit.from_si(value),
         };
         // Converting a unit keeps the order of numbers, so the ends alone are converted.
-        let mut ends_of = |quantity: Quantity| {
+        let ends_of = |quantity: Quantity| {
             let (low, high) = match values(quantity) {
                 ColumnValue::One(value) => (value, value),
-                ColumnValue::Each(values) => {
-                    keep_finite(alive, values);
-                    ends(alive, values)
-                }
+                ColumnValue::Each(values) => all_ends(values)?,
             };
-            (in_unit(quantity, low), in_unit(quantity, high))
+            let ends = (in_unit(quantity, low), in_unit(quantity, high));
+            (low.is_finite() && high.is_finite() && ends.0.is_finite() && ends.1.is_finite()).then_some(ends)
         };
-        let found: Vec<(f64, f64)> = self.asked.iter().map(|&quantity| ends_of(quantity)).collect();
-        if alive.contains(&0) || !found.iter().all(|(low, high)| low.is_finite() && high.is_finite()) {
-            return false;
-        }
+        let Some(found) = self.asked.iter().map(|&quantity| ends_of(quantity)).collect::<Option<Vec<(f64, f64)>>>() else { return false };
         let ends = |quantity: Quantity| self.asked.iter().position(|it| *it == quantity).map(|at| found[at]);
         let holds = |(low, high): (f64, f64), of: &Constraint| of.holds(low) && of.holds(high);
         if !plan.study.constraints.iter().all(|it| ends(it.quantity).is_some_and(|ends| holds(ends, it))) {

@@ -114,7 +114,8 @@ pub struct FrontSearch<'p> {
     places: Vec<Vec<usize>>,
     /// Judges single designs, where the formula allows it.
     lanes: Option<ScenarioLanes>,
-    /// Designs with their values over all scenarios, whether they keep those bounds or not.
+    /// Designs with their values over all scenarios, whether they keep those bounds or not: of the study before, and new ones.
+    judged_before: Arc<FxHashMap<u64, Row>>,
     judged: FxHashMap<u64, Row>,
     /// The plan without bounds, where its table is kept, its tables, and that table.
     free: Option<(Plan, Tables)>,
@@ -138,7 +139,7 @@ pub struct SearchTimes {
 pub struct JudgedRows {
     /// Of the study without these bounds.
     hash: String,
-    rows: FxHashMap<u64, Row>,
+    rows: Arc<FxHashMap<u64, Row>>,
     /// What all designs are worth in the scenarios that decided.
     table: Option<Arc<WorstTable>>,
 }
@@ -163,7 +164,7 @@ impl<'p> FrontSearch<'p> {
             (free, tables)
         });
         let table = before.table;
-        let judged = if before.hash == shown.study.hash() { before.rows } else { FxHashMap::default() };
+        let judged_before = if before.hash == shown.study.hash() { before.rows } else { Arc::default() };
         let place = |wanted: &Tracked| shown.tracked.iter().position(|(it, _)| it == wanted);
         let places = columns.iter().map(|column| column.followed().iter().filter_map(place).collect()).collect();
         Self {
@@ -178,7 +179,8 @@ impl<'p> FrontSearch<'p> {
             threads: threads.max(1),
             control,
             known: FxHashMap::default(),
-            judged,
+            judged_before,
+            judged: FxHashMap::default(),
             free,
             table,
             begun: None,
@@ -198,8 +200,18 @@ impl<'p> FrontSearch<'p> {
 
     /// What was judged, to be used again.
     pub fn judged(&self) -> JudgedRows {
-        let rows = if self.judged.len() > MOST_KEPT { FxHashMap::default() } else { self.judged.clone() };
+        let mut rows = Arc::clone(&self.judged_before);
+        if rows.len() + self.judged.len() > MOST_KEPT {
+            rows = Arc::default();
+        } else if !self.judged.is_empty() {
+            Arc::make_mut(&mut rows).extend(self.judged.iter().map(|(&design, row)| (design, row.clone())));
+        }
         JudgedRows { hash: self.shown.study.hash(), rows, table: self.table.clone() }
+    }
+
+    /// What all scenarios say of a design, if it was judged in them.
+    fn judged_row(&self, design: u64) -> Option<&Row> {
+        self.judged.get(&design).or_else(|| self.judged_before.get(&design))
     }
 
     /// How long it took.
@@ -418,7 +430,7 @@ impl<'p> FrontSearch<'p> {
             };
             let begun = self.begun.take().map_or(Duration::ZERO, |(.., took)| took);
             self.times.swept = (!is_known).then(|| begun + start.elapsed());
-            let missing = points.indices.iter().filter(|design| !self.judged.contains_key(design)).count();
+            let missing = points.indices.iter().filter(|&&design| self.judged_row(design).is_none()).count();
             if missing > 0 {
                 few(self, &set, &points, missing as u64)?;
             }
@@ -463,9 +475,8 @@ impl<'p> FrontSearch<'p> {
     /// Designs with their values over all scenarios, without those that have none in some; of feasible ones all are there.
     #[allow(clippy::cast_precision_loss, reason = "an estimate")]
     fn judge_in_all(&mut self, designs: &[u64]) -> Result<Vec<Row>> {
-        let new =
-            |judged: &FxHashMap<u64, Row>| -> Vec<u64> { designs.iter().copied().filter(|design| !judged.contains_key(design)).collect() };
-        let missing = new(&self.judged);
+        let new = |it: &Self| -> Vec<u64> { designs.iter().copied().filter(|&design| it.judged_row(design).is_none()).collect() };
+        let missing = new(self);
         let start = Instant::now();
         let found = match &self.lanes {
             Some(lanes) => self.in_lanes(lanes, &missing)?,
@@ -475,8 +486,8 @@ impl<'p> FrontSearch<'p> {
             self.times.judged = Some(start.elapsed().as_secs_f64() / (missing.len() as f64 * self.plan.scenarios() as f64));
         }
         self.judged.extend(found.into_iter().map(|row| (row.index, row)));
-        let mut rows: Vec<Row> = designs.iter().filter_map(|design| self.judged.get(design).cloned()).collect();
-        let missing = new(&self.judged);
+        let mut rows: Vec<Row> = designs.iter().filter_map(|&design| self.judged_row(design).cloned()).collect();
+        let missing = new(self);
         if !missing.is_empty() {
             // Some columns may have no value for a design that is feasible all the same.
             let place = |wanted: &Tracked| self.plan.tracked.iter().position(|(it, _)| it == wanted);

@@ -4,6 +4,8 @@
 //! Saxe), each a k-d tree whose nodes know the best corner of what they hold: a node whose corner is not at least as good as
 //! the point asked about cannot hold one that is.
 
+use std::ops::Range;
+
 /// Points in a leaf.
 const LEAF: usize = 16;
 /// Most nodes that wait in a search: one for each time that all points can be halved, and the one looked at.
@@ -11,7 +13,7 @@ const MOST_PENDING: usize = 65;
 /// Points that are searched one by one before they become a tree.
 const BUFFER: usize = 64;
 
-/// A set of points with design indices.
+/// A set of points with design indices, in at most six coordinates.
 #[derive(Debug, Default)]
 pub struct Dominance {
     dimensions: usize,
@@ -29,6 +31,13 @@ struct PointSet {
 impl PointSet {
     fn key(&self, point: usize, dimensions: usize) -> &[f64] {
         &self.keys[point * dimensions..][..dimensions]
+    }
+
+    /// The first of some points that makes another one superfluous.
+    fn find<const D: usize>(&self, points: Range<usize>, key: &[f64; D], index: u64) -> Option<usize> {
+        let keys = &self.keys.as_chunks::<D>().0[points.clone()];
+        let beats = |(own, &own_index): (&[f64; D], &u64)| is_no_worse(own, key) && (own_index < index || own != key);
+        keys.iter().zip(&self.indices[points.clone()]).position(beats).map(|place| points.start + place)
     }
 
     fn push(&mut self, key: &[f64], index: u64) {
@@ -56,6 +65,12 @@ struct Tree {
 /// Does `a` make `b` superfluous: at least as good everywhere, and better somewhere or the same with a lower index?
 pub fn beats(a: &[f64], a_index: u64, b: &[f64], b_index: u64) -> bool {
     a.iter().zip(b).all(|(a, b)| a <= b) && (a_index < b_index || a.iter().zip(b).any(|(a, b)| a < b))
+}
+
+/// Is `a` at least as good everywhere? One comparison waits for no other.
+#[inline(always)]
+fn is_no_worse<const D: usize>(a: &[f64; D], b: &[f64; D]) -> bool {
+    (0..D).fold(true, |all, at| all & (a[at] <= b[at]))
 }
 
 impl Dominance {
@@ -88,15 +103,27 @@ impl Dominance {
 
     /// A point of the set that makes this one superfluous, if there is one: its coordinates and index.
     pub fn dominator(&self, key: &[f64], index: u64) -> Option<(&[f64], u64)> {
-        let dimensions = self.dimensions;
-        let is_dominator = |points: &'_ PointSet, point: usize| beats(points.key(point, dimensions), points.indices[point], key, index);
+        // Asked of every design that may be on a front: compiled for each number of coordinates.
+        let (points, point) = match self.dimensions {
+            1 => self.find::<1>(key, index),
+            2 => self.find::<2>(key, index),
+            3 => self.find::<3>(key, index),
+            4 => self.find::<4>(key, index),
+            5 => self.find::<5>(key, index),
+            6 => self.find::<6>(key, index),
+            more => panic!("{more} coordinates: there are 1 to 6"),
+        }?;
+        Some((points.key(point, self.dimensions), points.indices[point]))
+    }
+
+    fn find<const D: usize>(&self, key: &[f64], index: u64) -> Option<(&PointSet, usize)> {
+        let key: &[f64; D] = key.try_into().expect("it has as many coordinates as the points");
         for tree in &self.trees {
-            if let Some(point) = tree.find(key, dimensions, is_dominator) {
-                return Some((tree.points.key(point, dimensions), tree.points.indices[point]));
+            if let Some(point) = tree.find(key, index) {
+                return Some((&tree.points, point));
             }
         }
-        let found = (0..self.buffer.indices.len()).find(|&point| is_dominator(&self.buffer, point))?;
-        Some((self.buffer.key(found, dimensions), self.buffer.indices[found]))
+        Some((&self.buffer, self.buffer.find(0..self.buffer.indices.len(), key, index)?))
     }
 }
 
@@ -135,14 +162,13 @@ impl Tree {
         self.build(points, right, first + middle, dimensions);
     }
 
-    fn find(&self, key: &[f64], dimensions: usize, beats: impl Fn(&PointSet, usize) -> bool) -> Option<usize> {
-        // On the stack: this is asked of every design that may be on a front.
+    fn find<const D: usize>(&self, key: &[f64; D], index: u64) -> Option<usize> {
+        let corners = self.corners.as_chunks::<D>().0;
         let (mut pending, mut count) = ([0; MOST_PENDING], 1);
         while count > 0 {
             count -= 1;
             let number = pending[count];
-            let corner = &self.corners[number * dimensions..][..dimensions];
-            if corner.iter().zip(key).any(|(corner, key)| corner > key) {
+            if !is_no_worse(&corners[number], key) {
                 continue;
             }
             let node = &self.nodes[number];
@@ -152,7 +178,7 @@ impl Tree {
                     count += 2;
                 }
                 None => {
-                    if let Some(point) = (node.first..node.last).find(|&point| beats(&self.points, point)) {
+                    if let Some(point) = self.points.find(node.first..node.last, key, index) {
                         return Some(point);
                     }
                 }

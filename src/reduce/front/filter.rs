@@ -12,6 +12,9 @@ const FEW_LEFT: usize = 6;
 /// Points from which on a table of cells pays.
 const FEW_POINTS: usize = 32;
 
+/// Points that tell which coordinate has the fewest levels.
+const TELLING_POINTS: usize = 256;
+
 /// What a front compares with first.
 #[derive(Debug)]
 pub(super) enum Filter {
@@ -136,8 +139,10 @@ impl CellTable {
             return None;
         }
         let coordinates = |objective: usize| points.keys.iter().skip(objective).step_by(objectives).copied();
+        // Where some points have hundreds of levels, it matters little how many all of them have.
+        let apart = points.len().div_ceil(TELLING_POINTS);
         let levels = |&objective: &usize| {
-            let mut all: Vec<f64> = coordinates(objective).collect();
+            let mut all: Vec<f64> = coordinates(objective).step_by(apart).collect();
             all.sort_unstable_by(f64::total_cmp);
             all.dedup();
             all.len()
@@ -160,8 +165,12 @@ impl CellTable {
         }
         for line in 0..table.lines.len() {
             let step = 1 << (bits as usize * line);
-            for cell in (0..table.best.len()).filter(|cell| !(cell / step).is_multiple_of(bins)) {
-                table.best[cell] = table.best[cell].min(table.best[cell - step]);
+            for cells in table.best.chunks_mut(step * bins) {
+                for first in (step..cells.len()).step_by(step) {
+                    let (before, own) = cells.split_at_mut(first);
+                    let better = |(own, before): (&mut f64, &f64)| *own = own.min(*before);
+                    own.iter_mut().zip(&before[first - step..]).for_each(better);
+                }
             }
         }
         Some(table)
