@@ -387,6 +387,42 @@ fn designs_that_a_first_front_lacks_stay_pinned_and_on_the_card() {
 
 #[test]
 #[ignore = "drives the page in Chromium: cargo test --test it -- --ignored explore_page --test-threads 1"]
+fn a_front_that_is_there_already_or_has_nothing_is_not_drawn() {
+    let (_folder, file) = study_file(SMALL);
+    let explored = Explored::new(&file, &[]);
+    let mut browser = open(&explored);
+    browser.wait("beltspace.timings.certified > 0");
+    // In place of the engine's first fronts comes one that is the exact one, or one of nothing.
+    browser.evaluate(
+        "(() => { const ask = beltspace.page.ask; window.draws = 0; beltspace.page.events.on('front.test', () => { window.draws++; }); \
+         beltspace.page.ask = (path, question, each, signal) => { let study; return ask(path, question, (told, buffer) => { \
+         study = told.study ?? study; const { study: _, ...rest } = told; \
+         if (told.kind === 'coarse' || told.kind === 'few') return; \
+         if (path !== '/answer' || told.kind !== 'exact') return each(told, buffer); \
+         const first = window.first === 'same' ? rest.front : { ...rest.front, rows: 0 }; \
+         window.draws = 0; each({ ...rest, study, kind: 'few', in_scenarios: 3, front: first }, window.first === 'same' ? buffer : new ArrayBuffer(0)); \
+         window.seen = [window.draws, beltspace.page.front.rows, document.querySelector('#matrix-section').hidden, document.querySelector('#live').dataset.kind]; \
+         each(rest, buffer); window.seen.push(window.draws, beltspace.page.front.rows, document.querySelector('#live').dataset.kind); }, signal); }; })()",
+    );
+    let mut seen = |first: &str, strength: u32| {
+        browser.evaluate(&format!("(() => {{ window.first = '{first}'; }})()"));
+        browser.evaluate(COUNT);
+        browser.evaluate(&format!("beltspace.change({{ 'fixed.strength_MPa': '{strength}' }})"));
+        answered(&mut browser);
+        (browser.evaluate("window.seen"), browser.number("beltspace.page.front.rows"))
+    };
+    let (same, rows) = seen("same", 780);
+    assert!(rows > 0.0, "there is something to draw");
+    assert_eq!(same, serde_json::json!([1, rows as u64, false, "coarse", 1, rows as u64, "exact"]));
+    let (nothing, others) = seen("nothing", 760);
+    assert_eq!(nothing, serde_json::json!([0, rows as u64, false, "coarse", 1, others as u64, "exact"]));
+    // The values of the exact front are those of a fresh sweep of what is shown.
+    assert_eq!(differs(&mut browser, SMALL, file.parent().expect("it has a folder")), None);
+    assert_eq!(browser.complaints, Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored explore_page --test-threads 1"]
 fn a_billion_designs_answer_coarsely_first() {
     let text = SMALL.replace("count = 7 }", "count = 1501 }").replace("step = 0.02", "count = 2001").replace("count = 5 }", "count = 41 }");
     let (_folder, file) = study_file(&text);

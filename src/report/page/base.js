@@ -104,7 +104,7 @@ page.afterPause = (pause, work) => {
   };
   return () => {
     clearTimeout(waiting);
-    since ??= performance.now();
+    since = performance.now();
     waiting = setTimeout(look, pause);
   };
 };

@@ -5,6 +5,7 @@
   let awaited = []; // pins of the address that no front had yet: { design, letter, set }
 
   page.pins = () => pins;
+  page.awaitsPins = () => awaited.length > 0;
 
   const columnsOf = () => page.front.shown.filter((column) => column.role !== "output");
 

@@ -9,6 +9,7 @@
   let answered = 0;
   let ghostOf = null;
   let isFirst = true; // is the shown front a first idea only?
+  let shown = { question: null, front: "", buffer: null };
 
   page.awaits = () => isFirst || !sameList(page.shownSet, page.changeList());
 
@@ -32,20 +33,36 @@
     page.events.call("front");
   };
 
+  // What the study says of itself comes with the first part of an answer.
+  const describe = (told) => {
+    const { data } = page;
+    if (!told.study) return;
+    const { controls, begin } = data;
+    const feasible = sameList(told.study.study.hash, data.study && data.study.hash) ? data.study.feasible : null;
+    Object.assign(data, told.study, { controls, begin });
+    data.study.feasible = feasible;
+  };
+
+  // What is on the page already: the front of the few scenarios that decide is the exact one, as a rule.
+  const isShown = (question, told, buffer) => {
+    const is = shown.question === question && shown.front === JSON.stringify(told.front) && page.state.awaited === null && !page.awaitsPins();
+    if (!is || shown.buffer.byteLength !== buffer.byteLength) return false;
+    const [old, next] = [new Uint32Array(shown.buffer), new Uint32Array(buffer)];
+    return next.every((word, i) => word === old[i]);
+  };
+
   const put = (question, told, buffer) => {
     const { data } = page;
-    if (told.study) {
-      const { controls, begin } = data;
-      const feasible = sameList(told.study.study.hash, data.study && data.study.hash) ? data.study.feasible : null;
-      Object.assign(data, told.study, { controls, begin });
-      data.study.feasible = feasible;
-    }
+    describe(told);
+    const isOld = isShown(question, told, buffer);
+    isFirst = told.kind === "coarse" || told.kind === "few";
+    if (isOld) return;
+    shown = { question, front: JSON.stringify(told.front), buffer };
     Object.assign(data, { objectives: told.objectives, constraints: told.constraints, scenarios: told.scenarios });
     const { state } = page;
     const design = page.front && state.card !== null ? page.designOf(state.card) : state.awaited;
     page.front = page.frontOf(data, told.front, buffer);
     page.shownSet = question.set;
-    isFirst = told.kind === "coarse" || told.kind === "few";
     page.ghost = page.byId("ghost").checked ? ghostOf : null;
     page.adoptFront();
     const row = design === null ? -1 : page.rowOf(design);
@@ -123,11 +140,14 @@
       if (page.front.rows) say(`exact: ${page.count(page.front.rows)} designs on the front, each certified in f64; counting what is feasible …`, "exact");
       return;
     }
-    put(question, told, buffer);
+    // A first front of nothing says nothing of the exact one: until that is there the old one stays.
+    const isEmpty = (told.kind === "coarse" || told.kind === "few") && !told.front.rows;
+    if (isEmpty) describe(told);
+    else put(question, told, buffer);
     page.showExplained(true);
     later();
     if (told.kind === "few") {
-      say(`${page.count(page.front.rows)} designs, judged in the ${page.count(told.in_scenarios)} scenarios that decide; now in all ${page.count(page.data.study.scenarios)} …`, "coarse");
+      say(`${page.count(told.front.rows)} designs, judged in the ${page.count(told.in_scenarios)} scenarios that decide; now in all ${page.count(page.data.study.scenarios)} …`, "coarse");
       page.timings.few = performance.now();
       const { eventAt } = question;
       requestAnimationFrame(() => setTimeout(() => page.timings.fews.push(eventAt === null ? null : performance.now() - eventAt)));
