@@ -371,4 +371,30 @@ mod tests {
         assert!(served.len() >= 6, "{served:?}");
         assert!(served.iter().filter(|it| it.1).count() >= 4, "some hold and some do not: {served:?}");
     }
+
+    #[test]
+    fn of_two_ends_that_are_met_the_excluded_one_counts() {
+        for (bounds, holds) in [
+            ("min = 0.5, below = 2", false),
+            ("above = 0.5, max = 2", false),
+            ("min = 0.5, max = 2", true),
+            ("above = 0.5, below = 2", false),
+            ("above = 0.4, below = 3", true),
+        ] {
+            let text = format!(
+                "model = \"metal-cvt\"\n[design]\nband_count = {{ from = 6, to = 14 }}\n[operation]\nratio = [0.5, 1, 2]\n[fixed]\ntraction = 0.4\n\
+                 [constraints]\nratio = {{ {bounds} }}\n[objectives]\naxial_force_N = \"min\"\n"
+            );
+            let plan = Plan::new(Study::parse(&text).expect("it is right"));
+            let columns = certify::columns(&plan.study);
+            let inputs: Vec<usize> = plan.study.design.iter().flat_map(|axis| axis.inputs().to_vec()).collect();
+            let values: Vec<f64> = (6..=14).map(f64::from).collect();
+            let designs = DesignColumns { inputs: &inputs, values: &[&values] };
+            let control = Control::default();
+            let together = rows_of_columns(&plan, &columns, designs, 1, &control).expect("it is served").expect("nobody stops it");
+            let alone = certify::one_by_one(&plan, &columns, &(0..9).collect::<Vec<_>>(), 1, &control).expect("nobody stops it");
+            assert_eq!(together, alone, "{bounds}");
+            assert!(together.len() == 9 && together.iter().all(|row| row.feasible == holds), "{bounds}");
+        }
+    }
 }

@@ -71,7 +71,10 @@ impl<'p> FoundWorst<'p> {
         let (mut held, mut settled) = (Vec::new(), Vec::new());
         for constraint in constraints {
             let nearest = Worst::Margin(*constraint);
+            // Where both ends are met and one of them is excluded, two values are equally near to it, of which one holds.
+            let is_telling = constraint.low.zip(constraint.high).is_none_or(|(low, high)| low.1 == high.1);
             let is_its = |it: &Column| it.quantity == constraint.quantity && (it.worst == nearest || it.worst.same(nearest));
+            let is_its = |it: &Column| is_telling && is_its(it);
             match columns.iter().position(is_its) {
                 Some(column) => settled.push((column, *constraint)),
                 None => held.push(*constraint),
@@ -291,7 +294,9 @@ mod tests {
                 }
             }
             for lane in 0..count {
-                assert_eq!((lanes.at(lane), lanes.complete[lane] == YES), (alone[lane].1, complete[lane]), "{worst:?} {lane}");
+                let (found, wanted) = (lanes.at(lane), alone[lane].1);
+                assert_eq!((found, lanes.complete[lane] == YES), (wanted, complete[lane]), "{worst:?} {lane}");
+                assert_eq!(found.value.map(f64::to_bits), wanted.value.map(f64::to_bits), "{worst:?} {lane}");
             }
         }
     }

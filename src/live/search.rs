@@ -251,7 +251,7 @@ impl<'p> FrontSearch<'p> {
     }
 
     /// Does a design keep the bounds of the study?
-    fn holds(&self, row: &Row) -> bool {
+    pub(super) fn holds(&self, row: &Row) -> bool {
         let place = |it: &Constraint| certify::constraint_column(&self.columns, it, &it.name(&self.plan.study.model));
         self.plan.study.constraints.iter().all(|it| {
             let value = match (certify::design_input(&self.plan.study, it.quantity), it.quantity) {

@@ -1,9 +1,13 @@
 //! The search in a few scenarios against the whole sweep.
 
 use super::search::{FrontSearch, JudgedRows};
+use super::table::free_plan;
 use super::{Live, LiveAnswer};
+use crate::certify;
 use crate::error::Error;
+use crate::keys::KeyRule;
 use crate::plan::Plan;
+use crate::reduce::{Points, beats};
 use crate::run::{Engine, Judging, Options};
 use crate::screen::Control;
 use crate::study::Study;
@@ -109,6 +113,49 @@ fn a_working_set_that_lacks_what_matters_is_filled_up() {
     assert!(!designs.is_empty() && in_few.indices.len() != designs.len());
     assert_eq!(designs, swept(&study).0);
     assert!(set.count(plan.scenarios()) > 1);
+}
+
+#[test]
+fn a_coarse_front_is_that_of_the_designs_that_were_looked_at() {
+    let mut compared = 0;
+    for edits in VARIANTS {
+        let plan = Plan::new(Study::parse(&changed(edits)).expect("it is right"));
+        let control = Control::default();
+        let mut search = FrontSearch::new(&plan, 2, &control, JudgedRows::default());
+        let set = search.first_set().expect("nobody stops it");
+        let most = plan.designs() / 5;
+        let (points, looked_at) = search.coarse(&set, most).expect("nobody stops it");
+        // The rows of the table that is begun, spread over all: one of eight at most.
+        let free = free_plan(&plan.study);
+        let width = free.fast.count();
+        if width > most {
+            continue;
+        }
+        let rows = free.slow.coarse((most / width).min(free.slow.count().div_ceil(8)));
+        let mut designs = Points::default();
+        for row in &rows {
+            for place in 0..width {
+                designs.push(std::iter::empty(), free.slow.source_index(*row) + free.fast.source_index(place));
+            }
+        }
+        assert_eq!(looked_at, designs.len() as u64, "{edits:?}");
+        let mut feasible = search.in_few(&set, &designs).expect("nobody stops it");
+        feasible.retain(|row| search.holds(row));
+        let rules: Vec<KeyRule> = plan.study.objectives.iter().map(KeyRule::from).collect();
+        let places = certify::objective_columns(&plan.study, search.columns());
+        let key = |row: &certify::Row| -> Vec<f64> {
+            rules.iter().zip(&places).map(|(rule, &place)| rule.key(row.columns[place].value.expect("it is feasible"))).collect()
+        };
+        let keys: Vec<(Vec<f64>, u64)> = feasible.iter().map(|row| (key(row), row.index)).collect();
+        let is_beaten = |it: &&(Vec<f64>, u64)| keys.iter().any(|other| beats(&other.0, other.1, &it.0, it.1));
+        let mut wanted: Vec<u64> = keys.iter().filter(|it| !is_beaten(it)).map(|it| it.1).collect();
+        let mut found = points.indices;
+        wanted.sort_unstable();
+        found.sort_unstable();
+        assert_eq!(found, wanted, "{edits:?}");
+        compared += usize::from(found.len() > 3 && found.len() < feasible.len());
+    }
+    assert!(compared >= 5, "{compared} of {}", VARIANTS.len());
 }
 
 #[test]

@@ -61,3 +61,16 @@ pub struct Evaluation {
     /// One value per output of the model, in the output's unit; `None` where it has no meaning.
     pub outputs: Vec<Option<f64>>,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_status_is_that_of_its_number() {
+        for (number, status) in [Status::Ok, Status::Overflow, Status::failed(0)].into_iter().enumerate() {
+            assert_eq!((u16::from(status), Status::of_number(number as u16)), (number as u16, status));
+        }
+        assert_eq!(Status::of_number(u16::from(Status::failed(7))), Status::failed(7));
+    }
+}

@@ -155,6 +155,53 @@ impl RootFunction for Unread {
 }
 
 #[test]
+fn where_a_list_names_a_function_its_steps_are_taken() {
+    let (recording, results) = Recording::recorded(Loops::EveryIteration, &[Known::Within(0.0, 1.0); 5], |inputs| vec![of_mixed(inputs)]);
+    let mut list = List::cut(&recording, &[Some(results[0])]);
+    // Of another function than its operations are: what comes of it tells which was asked.
+    list.roots[0].root.function.as_mut().expect("it is compiled").step = Unread::in_columns().expect("it is compiled");
+    let column: Vec<f64> = (0..LIST_CHUNK + 50).map(|row| 0.001 * row as f64).collect();
+    let alone = |row: usize| {
+        let a = column[row];
+        f64::root_of::<Unread>((0.0, 1.0), a, [a; ROOT_PARAMETERS])
+    };
+    each_has_the_bits_that_it_has_alone(&list, &[&column[..]; 5], alone);
+}
+
+/// `x + x^3`, less the sum of twice the parameters: operations read these only where they are doubled.
+struct Doubled;
+
+impl RootFunction for Doubled {
+    fn at<R: Real>(parameters: [R; ROOT_PARAMETERS], x: R) -> (R, R) {
+        let [one, two, three] = [1.0, 2.0, 3.0].map(R::constant);
+        let [a, b, c, d] = parameters.map(|it| two * it);
+        (x + x * x * x - (a + b + c + d), one + three * x * x)
+    }
+
+    fn in_columns() -> Option<RootStep> {
+        root_step!(Doubled)
+    }
+}
+
+/// The parameters are computed, and after them where the search begins.
+fn of_doubled<R: Real>(inputs: &[R]) -> R {
+    let parameters = std::array::from_fn(|it| inputs[it] * inputs[it + 1]);
+    let start = ((inputs[0] + inputs[2]) * (inputs[1] + inputs[3])).sqrt() / R::constant(9.0);
+    R::root_of::<Doubled>((R::constant(0.0), R::constant(9.0)), start, parameters)
+}
+
+#[test]
+fn parameters_stay_as_they_are_until_the_root_is_found() {
+    let (recording, results) = Recording::recorded(Loops::EveryIteration, &[Known::Within(0.1, 1.0); 5], |inputs| vec![of_doubled(inputs)]);
+    let list = List::cut(&recording, &[Some(results[0])]);
+    assert!(list.roots[0].root.function.is_some());
+    let columns: Vec<Vec<f64>> =
+        (0..5_u32).map(|input| (0..300_u32).map(|row| 0.1 + f64::from((row * (7 + 2 * input)) % 300) / 400.0).collect()).collect();
+    let inputs: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+    each_has_the_bits_that_it_has_alone(&list, &inputs, |row| of_doubled(&inputs.iter().map(|it| it[row]).collect::<Vec<_>>()));
+}
+
+#[test]
 fn a_function_whose_parameters_nobody_computes_is_left_to_its_operations() {
     let (recording, results) = Recording::recorded(Loops::EveryIteration, &[Known::Within(0.0, 1.0); 4], |inputs| {
         let parameters = std::array::from_fn(|it| inputs[it]);

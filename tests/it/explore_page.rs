@@ -283,7 +283,9 @@ fn changes_are_undone_shared_saved_and_compared() {
     assert!(browser.text("document.querySelector('#card svg.drive title').textContent").contains("at ratio 0.5"));
     browser.evaluate("beltspace.openCard(0)");
     assert!(browser.text("document.querySelector('#card svg.drive title').textContent").contains("at ratio 0.5"));
-    browser.evaluate("beltspace.openCard(beltspace.page.front.rows - 1)");
+    // By its name in the table of pinned designs too.
+    browser.evaluate("document.querySelectorAll('.pins .pin-name')[1].click()");
+    assert_eq!(browser.number("beltspace.page.state.card"), browser.number("beltspace.page.front.rows - 1"));
     browser.wait("document.querySelector('#all-outputs table')");
     // Findings come after the plots, which stay where they are; beside the card the button covers nothing.
     browser.wait("document.querySelector('#tally .findings li')");
@@ -341,7 +343,7 @@ fn designs_that_a_first_front_lacks_stay_pinned_and_on_the_card() {
     let (pinned, card) = (browser.text(pins), browser.text("beltspace.page.designOf(beltspace.page.state.card)"));
     // Every front that is shown: its kind, and what the page shows of the design of the card.
     let watch = format!(
-        "(() => {{ window.seen = []; beltspace.page.events.on('front.test', () => seen.push({{          lacks: beltspace.page.rowOf('{card}') < 0, hidden: document.querySelector('#card').hidden, inert: document.querySelector('#card').inert,          pins: beltspace.page.pinsText().split(',').sort().join() }})); }})()"
+        "(() => {{ window.seen = []; beltspace.page.events.on('front.test', () => seen.push({{          lacks: beltspace.page.rowOf('{card}') < 0, hidden: document.querySelector('#card').hidden, inert: document.querySelector('#card').inert,          waits: beltspace.page.awaitsPins() }})); }})()"
     );
     browser.evaluate(&watch);
     // The study changes: the card goes through a front that lacks its design.
@@ -362,10 +364,25 @@ fn designs_that_a_first_front_lacks_stay_pinned_and_on_the_card() {
     browser.wait("window.seen.length > 0");
     answered(&mut browser);
     assert_ne!(browser.number("window.seen.filter((it) => it.lacks).length"), 0.0, "no first front: the test sees nothing");
+    assert_eq!(browser.evaluate("window.seen[0].waits && !window.seen.at(-1).waits"), true, "the first front has all pins");
     assert_eq!(browser.text(pins), pinned);
     assert_eq!(browser.text("beltspace.page.designOf(beltspace.page.state.card)"), card);
-    browser.evaluate(COUNT);
+    // What is refused after a first front leaves no card that nobody can use; it comes back with its front.
+    browser.evaluate(
+        "(() => { const ask = beltspace.page.ask; let over = false; \
+         beltspace.page.ask = (path, question, each, signal) => ask(path, question, (told, buffer) => { if (over) return; each(told, buffer); \
+         if (path !== '/answer' || beltspace.page.state.awaited === null) return; \
+         over = true; beltspace.page.ask = ask; each({ kind: 'error', message: 'no' }, buffer); }, signal); })()",
+    );
     browser.evaluate("beltspace.change({ 'fixed.strength_MPa': '792' })");
+    browser.wait("document.querySelector('#live').dataset.kind === 'error'");
+    assert_eq!(browser.evaluate("document.querySelector('#card').hidden && !document.querySelector('#card').inert"), true);
+    browser.evaluate(COUNT);
+    browser.evaluate("beltspace.page.undoChange()");
+    answered(&mut browser);
+    browser.wait(&format!("!document.querySelector('#card').hidden && beltspace.page.designOf(beltspace.page.state.card) === '{card}'"));
+    browser.evaluate(COUNT);
+    browser.evaluate("beltspace.change({ 'fixed.strength_MPa': '793' })");
     answered(&mut browser);
     let address = explored.address.split("/?").next().expect("it has a host").to_owned();
     browser.go_to_address(&format!("{address}/{hash}"));

@@ -92,7 +92,7 @@ page.breakable = (name) => name.split(/(?<=_)/).flatMap((part) => [part, documen
 }
 
 // Work that waits until it has not been asked for during `pause` ms, and until the exact answer is there if one is awaited: on a machine with
-// few cores it would only delay that. Nothing waits longer than a second for an answer.
+// few cores it would only delay that. Nothing waits for an answer longer than a second after it was last asked for.
 page.afterPause = (pause, work) => {
   let waiting = 0;
   let since = null;

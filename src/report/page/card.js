@@ -170,7 +170,7 @@
     const title = page.element("h2", { id: "card-title" }, named(row));
     const place = page.element("p", { class: "muted" }, `row ${page.count(row + 1)} of ${page.count(front.rows)} of the front`, page.mask[row] ? "" : ", not selected");
     const pinned = page.isPinned(row);
-    const buttons = page.element("div", { class: "card-buttons no-print" }, button("card-pin", pinned ? "Unpin this design (p)" : "Pin this design, to compare it (p)", pinned ? "Unpin" : "Pin", () => page.pin(row), !pinned && page.pins().length >= 6), button("card-print", "Print a data sheet of this design", "Print", () => page.printSheet()), button("card-previous", "Previous design (left arrow)", "‹", () => step(-1), !any(-1)), button("card-next", "Next design (right arrow)", "›", () => step(1), !any(1)), button("card-close", "Close (Esc)", "×", page.closeCard));
+    const buttons = page.element("div", { class: "card-buttons no-print" }, button("card-pin", pinned ? "Unpin this design (p)" : "Pin this design, to compare it (p)", pinned ? "Unpin" : "Pin", () => page.pin(row), !pinned && !page.canPin()), button("card-print", "Print a data sheet of this design", "Print", () => page.printSheet()), button("card-previous", "Previous design (left arrow)", "‹", () => step(-1), !any(-1)), button("card-next", "Next design (right arrow)", "›", () => step(1), !any(1)), button("card-close", "Close (Esc)", "×", page.closeCard));
     return [page.element("div", { class: "card-head" }, page.element("div", {}, title, place), buttons), objectives(row), margins(row), page.tradeoffSection(row), page.driveSection(row), inputs(row), outputs(row), page.data.kind === "live" ? page.element("section", { id: "all-outputs" }) : null, commands(row)].filter(Boolean);
   };
 
@@ -187,7 +187,7 @@
     if (again && again.isConnected) again.focus({ preventScroll: true });
   };
 
-  page.openCard = (row) => {
+  page.openCard = (row, takesFocus = true) => {
     if (!page.front || !(row >= 0 && row < page.front.rows)) return;
     const card = page.byId("card");
     const fresh = card.hidden;
@@ -202,7 +202,7 @@
     document.body.classList.add("with-card");
     const again = within && page.byId(within);
     if (again && !again.disabled) again.focus();
-    else card.focus({ preventScroll: true });
+    else if (takesFocus) card.focus({ preventScroll: true });
     if (fresh) card.scrollTop = 0;
     page.events.call("card");
     if (fresh) layoutIfNarrower(width);

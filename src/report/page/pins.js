@@ -5,7 +5,8 @@
   let awaited = []; // pins of the address that no front had yet: { design, letter, set }
 
   page.pins = () => pins;
-  page.awaitsPins = () => awaited.length > 0;
+  page.awaitsPins = () => awaited.some((pin) => isOf(pin, askedSet()));
+  page.canPin = () => pins.length < MOST;
 
   const columnsOf = () => page.front.shown.filter((column) => column.role !== "output");
 
@@ -17,7 +18,8 @@
   };
 
   const LETTERS = "ABCDEF".split("");
-  const free = () => LETTERS.find((letter) => ![...pins, ...awaited].some((pin) => pin.letter === letter));
+  const isFree = (letter) => !pins.some((pin) => pin.letter === letter);
+  const free = () => LETTERS.find((letter) => isFree(letter) && !awaited.some((pin) => pin.letter === letter)) ?? LETTERS.find(isFree);
 
   // The changes that the shown front is of, and those that are asked for.
   const shownSet = () => page.shownSet ?? [];
@@ -28,7 +30,7 @@
 
   page.pin = (row) => {
     if (page.isPinned(row)) pins = pins.filter((pin) => !(pin.design === page.designOf(row) && isOf(pin, shownSet())));
-    else if (pins.length + awaited.length < MOST) pins = [...pins, pinOf(row)];
+    else if (page.canPin()) pins = [...pins, pinOf(row)];
     page.events.call("pins");
   };
 
@@ -41,18 +43,24 @@
   page.pinsText = () => [...pins, ...awaited].filter((pin) => isOf(pin, askedSet())).map((pin) => pin.design).join(",");
   page.readPins = (text) => {
     pins = [];
-    const designs = new Set((text || "").split(",").filter(Boolean));
-    awaited = [...designs].slice(0, MOST).map((design, i) => ({ design, letter: LETTERS[i], set: askedSet() }));
+    const isHere = (design) => page.front && page.rowOf(design) >= 0;
+    const designs = [...new Set((text || "").split(",").filter(Boolean))].filter((design) => page.awaits() || isHere(design));
+    awaited = designs.slice(0, MOST).map((design, i) => ({ design, letter: LETTERS[i], set: askedSet() }));
     adoptAwaited();
     page.events.call("pins");
   };
 
-  // A first front has few designs: what it lacks may be on the next.
+  // A first front has few designs: what it lacks may be on the next. What the exact one lacks too is not there; pins of other changes wait
+  // for these to come back.
   const adoptAwaited = () => {
-    const rows = awaited.map((pin) => (isOf(pin, shownSet()) && page.front ? page.rowOf(pin.design) : -1));
-    const found = awaited.filter((_, i) => rows[i] >= 0).map((pin) => ({ ...pinOf(page.rowOf(pin.design)), letter: pin.letter }));
-    pins = [...pins, ...found].sort((a, b) => d3.ascending(a.letter, b.letter));
-    awaited = page.awaits() ? awaited.filter((_, i) => rows[i] < 0) : [];
+    const isShown = (pin) => page.front && isOf(pin, shownSet());
+    const found = awaited.filter((pin) => isShown(pin) && page.rowOf(pin.design) >= 0);
+    awaited = awaited.filter((pin) => !found.includes(pin) && (page.awaits() || !isShown(pin)));
+    for (const { design, letter } of found.slice(0, MOST - pins.length)) {
+      const pin = pinOf(page.rowOf(design));
+      pins = [...pins, isFree(letter) ? { ...pin, letter } : pin];
+    }
+    if (found.length) pins.sort((a, b) => d3.ascending(a.letter, b.letter));
   };
 
   // Of the pinned designs, the best value of an objective.
@@ -87,7 +95,7 @@
     for (const pin of pins) for (const [name, entry] of pin.values) if (entry.role in order && !names.has(name)) names.set(name, order[entry.role]);
     const rows = [...names].sort((a, b) => a[1] - b[1]).map(([name]) => name);
     const open = (pin) => {
-      const row = sameSet(pin) ? page.rowOf(pin.design) : -1;
+      const row = isOf(pin, shownSet()) ? page.rowOf(pin.design) : -1;
       if (row >= 0) page.openCard(row);
     };
     const head = (pin) =>
@@ -115,8 +123,10 @@
         const row = isOf(pin, shownSet()) ? page.rowOf(pin.design) : -1;
         return row < 0 ? pin : { ...pinOf(row), letter: pin.letter };
       });
+      const count = awaited.length;
       adoptAwaited();
-      draw();
+      if (awaited.length === count) draw();
+      else page.events.call("pins");
     });
     draw();
   };

@@ -74,15 +74,16 @@
     if (!started && page.front.rows) begin();
     else if (started) page.events.call("front");
     for (const id of ["matrix-section", "parallel-section", "table-section", "bar"]) page.byId(id).hidden = !page.front.rows;
-    if (state.card !== null && card.hidden) openAwaited(state.card);
+    // Whoever is at work elsewhere by now stays there.
+    if (state.card !== null && card.hidden) page.openCard(state.card, document.activeElement === document.body);
     else if (design !== null && state.card === null && state.awaited === null) page.closeLostCard();
   };
 
-  // Whoever is at work elsewhere by now stays there.
-  const openAwaited = (row) => {
-    const focused = document.activeElement;
-    page.openCard(row);
-    if (focused && focused !== document.body) focused.focus({ preventScroll: true });
+  // No exact front comes. A card that waits for one is put away until a front has its design.
+  const putCardAway = () => {
+    const card = page.byId("card");
+    if (page.state.awaited !== null && !card.hidden) page.closeLostCard();
+    card.inert = false;
   };
 
   // The views, once there is something to see.
@@ -119,6 +120,7 @@
     if (told.kind === "error") {
       page.byId("live").dataset.kind = "error";
       say(told.message, "error");
+      putCardAway();
       question.exact = true;
       return next();
     }
@@ -193,6 +195,7 @@
       (error) => {
         if (error.name === "AbortError" || question !== current) return;
         current = null;
+        putCardAway();
         say(`the engine does not answer: ${error.message}. Is beltspace explore still running?`, "error");
         next();
       },
