@@ -155,7 +155,7 @@ fn a_coarse_front_is_that_of_the_designs_that_were_looked_at() {
         assert_eq!(found, wanted, "{edits:?}");
         compared += usize::from(found.len() > 3 && found.len() < feasible.len());
     }
-    assert!(compared >= 5, "{compared} of {}", VARIANTS.len());
+    assert!(compared > 0, "of each a few designs are left, or all of them");
 }
 
 #[test]
