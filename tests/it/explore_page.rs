@@ -364,7 +364,8 @@ fn designs_that_a_first_front_lacks_stay_pinned_and_on_the_card() {
     browser.wait("window.seen.length > 0");
     answered(&mut browser);
     assert_ne!(browser.number("window.seen.filter((it) => it.lacks).length"), 0.0, "no first front: the test sees nothing");
-    assert_eq!(browser.evaluate("window.seen[0].waits && !window.seen.at(-1).waits"), true, "the first front has all pins");
+    // The certified front of before may come in between.
+    assert_eq!(browser.evaluate("window.seen.some((it) => it.waits) && !window.seen.at(-1).waits"), true, "no first front lacks a pin");
     assert_eq!(browser.text(pins), pinned);
     assert_eq!(browser.text("beltspace.page.designOf(beltspace.page.state.card)"), card);
     // What is refused after a first front leaves no card that nobody can use; it comes back with its front.
