@@ -328,7 +328,7 @@ fn changes_are_undone_shared_saved_and_compared() {
 #[test]
 #[ignore = "drives the page in Chromium: cargo test --test it -- --ignored explore_page --test-threads 1"]
 fn designs_that_a_first_front_lacks_stay_pinned_and_on_the_card() {
-    let (_folder, file) = study_file(&SMALL.replace("count = 7 }", "count = 701 }").replace("step = 0.02", "count = 101"));
+    let (_folder, file) = study_file(&SMALL.replace("count = 7 }", "count = 1401 }").replace("step = 0.02", "count = 151"));
     let explored = Explored::new(&file, &[]);
     let mut browser = open(&explored);
     browser.wait("document.querySelector('#open-knee')");
