@@ -336,14 +336,16 @@ fn designs_that_a_first_front_lacks_stay_pinned_and_on_the_card() {
     browser.evaluate("beltspace.change({ 'fixed.strength_MPa': '790' })");
     answered(&mut browser);
     // Of the exact front, in the middle of the objectives' ranges: no coarser grid has them all.
-    browser.evaluate("(() => { const n = beltspace.page.front.rows; window.row = n >> 1; for (const at of [n >> 2, n >> 1, (3 * n) >> 2]) beltspace.page.pin(at); beltspace.openCard(n >> 1); })()");
+    browser.evaluate("(() => { const n = beltspace.page.front.rows; for (const at of [n >> 2, n >> 1, (3 * n) >> 2]) beltspace.page.pin(at); beltspace.openCard(n >> 1); })()");
     browser.wait("location.hash.includes('d=') && (location.hash.match(/p=[^&]*/)?.[0].split('%2C').join(',').split(',').length === 3)");
     let hash = browser.text("location.hash");
     let pins = "beltspace.page.pins().map((it) => it.letter + it.design).join()";
     let (pinned, card) = (browser.text(pins), browser.text("beltspace.page.designOf(beltspace.page.state.card)"));
-    // Every front that is shown: its kind, and what the page shows of the design of the card.
+    // Of every front that is shown: does it lack the design of the card, and what becomes of the card and the pins?
     let watch = format!(
-        "(() => {{ window.seen = []; beltspace.page.events.on('front.test', () => seen.push({{          lacks: beltspace.page.rowOf('{card}') < 0, hidden: document.querySelector('#card').hidden, inert: document.querySelector('#card').inert,          waits: beltspace.page.awaitsPins() }})); }})()"
+        "(() => {{ window.seen = []; beltspace.page.events.on('front.test', () => seen.push({{ \
+         lacks: beltspace.page.rowOf('{card}') < 0, hidden: document.querySelector('#card').hidden, inert: document.querySelector('#card').inert, \
+         waits: beltspace.page.awaitsPins() }})); }})()"
     );
     browser.evaluate(&watch);
     // The study changes: the card goes through a front that lacks its design.
