@@ -22,6 +22,8 @@ FACTOR, SECONDS = 1.5, 1.0
 # About how many seconds judging every design of a study should take.
 LEAST, MOST = 0.3, 6.0
 DESIGNS = (1e5, 1e9)
+# Of a map, as a picture shows.
+MOST_CELLS = 100_000
 # Of each model: evaluations per second of two cores, about; ranges of inputs (the last three words: whole numbers), what may be an objective, and bounds for constraints.
 WHOLE = True
 MODELS = {
@@ -92,6 +94,11 @@ def a_study(draw, model, number):
     top = draw.choice((None, draw.choice(wanted)))
     lines = random.Random(draw.random())
     state = lines.getstate()
+    # Histograms and maps, as a user would add them to the study.
+    more = random.Random(f"report {number}")
+    histogram = more.random() < 0.4 and f'histograms = [{{ of = "{more.choice(wanted)}", bins = {more.choice((5, 20, 60))} }}]'
+    shown = more.random() < 0.4 and more.choice(('best = "share"', f'value = "{more.choice(wanted)}"'))
+    map_axes = more.sample(axes, 2)
 
     def text(target):
         lines.setstate(state)
@@ -99,13 +106,15 @@ def a_study(draw, model, number):
         free = [name for name in axes if name not in whole]
         rest = target / math.prod(it["design"][name][1] - it["design"][name][0] + 1 for name in whole)
         mean = (rest / math.prod(shares[name] for name in free)) ** (1 / len(free))
-        design = []
+        design, levels = [], {}
         for name in axes:
             low, high = it["design"][name][:2]
             if name in whole:
+                levels[name] = high - low + 1
                 design.append(f"{name} = {{ from = {low}, to = {high} }}")
             else:
-                design.append(axis(name, low, high, max(2, min(1_000_000, round(mean * shares[name]))), lines))
+                levels[name] = max(2, min(1_000_000, round(mean * shares[name])))
+                design.append(axis(name, low, high, levels[name], lines))
         uncertain = [axis(name, *it["scenarios"][name], count, lines) for name, count in scenarios.items()]
         fixed = [f"{name} = {value}" for name, value in it["fixed"].items() if name not in axes]
         objectives = []
@@ -114,6 +123,9 @@ def a_study(draw, model, number):
             objectives.append(f'{name} = {{ goal = "{goal}", resolution = {step} }}' if steps[name] else f'{name} = "{goal}"')
         parts = {"design": design, "uncertainty": uncertain, "fixed": fixed, "constraints": bounds, "objectives": objectives}
         report = ["front_budget = 1000000"] + ([f'top = {{ by = "{top}", count = 20 }}'] if top else [])
+        report += [histogram] if histogram else []
+        if shown and math.prod(levels[name] for name in map_axes) <= MOST_CELLS:
+            report.append(f'maps = [{{ x = "{map_axes[0]}", y = "{map_axes[1]}", {shown} }}]')
         body = "\n".join(f"\n[{key}]\n" + "\n".join(rows) for key, rows in {**parts, "report": report}.items() if rows)
         return f'model = "{model}"\ntitle = "Random study {number}"\n{body}\n'
 

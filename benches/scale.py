@@ -169,7 +169,7 @@ def grid(program, levels, long, limit, folder, problems):
 
 
 def cvt_study(resolutions, angle, thickness, traction):
-    """The study benches/studies/metal-cvt-traction.toml, finer. Bounds give no histograms and no maps, and without resolutions the front of four objectives
+    """The study benches/studies/metal-cvt-traction.toml, finer, without its histogram and its map; without resolutions the front of four objectives
     would be as large as the grid."""
     force, stress, slip = resolutions
     text, changes = CVT, (
@@ -306,7 +306,7 @@ def left_out(record):
 
 def cvt_page(record):
     force, stress, slip = record["resolutions"]
-    lines = [f"`metal-cvt`, refined, each design in 434 scenarios, without histograms and maps, which bounds cannot give; a front of four "
+    lines = [f"`metal-cvt`, refined, each design in 434 scenarios, without histograms and maps; a front of four "
              f"objectives in steps of {force:g} N, {stress:g} and {slip:g} (stress and slip margin):", ""]
     lines += table_of_times(record["cvt"], record["fits"]["cvt"]) + [""]
     lines += table_of_bounds(record["cvt"], record["fits"]["cvt"]) + [""]

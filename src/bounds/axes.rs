@@ -89,6 +89,18 @@ impl std::ops::IndexMut<usize> for Spans {
 }
 
 impl Spans {
+    /// The same with some axes at the levels of one of their combinations, the last of them fastest.
+    pub fn at(&self, axes: impl DoubleEndedIterator<Item = usize>, combination: u64) -> Self {
+        let mut levels = *self;
+        let mut rest = combination;
+        for axis in axes.rev() {
+            let count = self[axis].count();
+            levels[axis] = Span::at(self[axis].low + (rest % count) as u32);
+            rest /= count;
+        }
+        levels
+    }
+
     /// Both halves of a box along an axis.
     pub fn halves(&self, axis: usize) -> [Self; 2] {
         self[axis].halves().map(|half| {

@@ -5,8 +5,10 @@
 //! the ordinary engines, so a result does not show how it was found. Which rule settled how many designs is the [`Certificate`].
 
 mod axes;
+mod bins;
 mod bounder;
 mod box_columns;
+mod cells;
 mod chain;
 mod count;
 mod open;
@@ -20,6 +22,7 @@ mod staircase;
 mod study_tape;
 #[cfg(test)]
 mod tests;
+mod trial;
 pub(crate) mod yields;
 
 pub use count::{BoxCounter, Settled};
@@ -28,11 +31,13 @@ pub use yields::{EnclosureProblem, YieldBounds, YieldInput, enclose_yield};
 
 use crate::parallel::on_threads;
 use crate::plan::Plan;
-use crate::reduce::{KeyRule, ReducerNeeds, Reducers, Reduction, Reported};
+use crate::reduce::{KeyRule, ReducerNeeds, Reducers, Reduction, Reported, histogram, map};
 use crate::screen::{CpuEngine, Tables};
-use crate::study::{Axis, Constraint, Goal, Objective, OverScenarios, Quantity, TopSpec};
+use crate::study::{Axis, Best, Constraint, Goal, MapSpec, Objective, OverScenarios, Quantity};
 use axes::{Axes, Spans};
+use bins::{Binned, BinnedNumber};
 use bounder::{AskedNumber, Bounder};
+use cells::CellAxes;
 use open::{Bounded, Decided, all_open};
 use pairing::Pairing;
 use pairs::{BestPair, Pairs};
@@ -64,6 +69,10 @@ pub fn refusal(plan: &Plan) -> Option<String> {
     if let Some(why) = Reported::needs(&study.report).into_iter().find_map(ReducerNeeds::beyond_bounds) {
         return Some(why.to_owned());
     }
+    let cells = |map: &MapSpec| study.design[map.x].count().saturating_mul(study.design[map.y].count());
+    if study.report.maps.iter().any(|map| cells(map) > MOST_CELLS) {
+        return Some(format!("a map in [report] has more than {MOST_CELLS} cells"));
+    }
     if study.report.variants {
         return Some("variants in [report] lists every design".to_owned());
     }
@@ -72,6 +81,9 @@ pub fn refusal(plan: &Plan) -> Option<String> {
     }
     None
 }
+
+/// Most cells of a map: every thread may meet all of them.
+const MOST_CELLS: u64 = 1 << 20;
 
 /// Where a search looks, and who follows it.
 #[derive(Clone, Copy)]
@@ -94,6 +106,9 @@ pub struct BoundedStudy {
     axes: Axes,
     tape: StudyTape,
     requirements: Vec<Bounded>,
+    /// The numbers of the histograms, and the axes of the maps.
+    histograms: Vec<BinnedNumber>,
+    maps: Vec<CellAxes>,
     /// Points of a front at which a search gives up.
     pub most_points: u64,
     /// Boxes at which a search gives up.
@@ -114,7 +129,9 @@ impl BoundedStudy {
         };
         let requirements = requirements(plan, &tape, &axes).into_iter().map(bounded).collect();
         let most_points = crate::reduce::most_points(plan.study.objectives.len(), crate::reduce::FRONT_BYTES);
-        Some(Self { axes, tape, requirements, most_points, most_boxes: u64::MAX })
+        let histograms = plan.study.report.histograms.iter().map(|spec| BinnedNumber::new(plan, &tape, spec)).collect();
+        let maps = plan.study.report.maps.iter().map(|spec| CellAxes::new(plan, &axes, spec)).collect();
+        Some(Self { axes, tape, requirements, histograms, maps, most_points, most_boxes: u64::MAX })
     }
 
     /// A counter for one thread.
@@ -137,6 +154,42 @@ impl BoundedStudy {
         Some(total)
     }
 
+    /// What a result of this plan counts besides the feasible designs.
+    pub fn tallies(plan: &Plan) -> Vec<BoxTally> {
+        let report = &plan.study.report;
+        let histograms = (0..report.histograms.len()).map(BoxTally::Histogram);
+        let maps = report.maps.iter().enumerate().filter(|(_, spec)| spec.value == Best::Share);
+        histograms.chain(maps.map(|(number, _)| BoxTally::Map(number))).collect()
+    }
+
+    /// Counts the feasible designs at a range of positions by bin or by cell, into what the report asks for. Returns how many there are;
+    /// `None` if it was stopped.
+    pub fn count_by(&self, tally: BoxTally, counter: &mut BoxCounter<'_>, range: &Range<u64>, into: &mut Reported) -> Option<u64> {
+        let open = all_open(&self.requirements, &self.axes);
+        match tally {
+            BoxTally::Histogram(number) => {
+                let histogram = &mut into.histograms[number];
+                let mut binned = Binned::new(&self.histograms[number], histogram);
+                for spans in self.axes.boxes(range) {
+                    counter.count_bins(&mut binned, &spans, &open)?;
+                }
+                histogram.add(&binned.counts);
+                Some(binned.counts.iter().sum())
+            }
+            BoxTally::Map(number) => {
+                let mut total = 0;
+                let mut take = |cell: u64, count: u64| {
+                    total += count;
+                    into.maps[number].add_feasible(cell, count);
+                };
+                for spans in self.axes.boxes(range) {
+                    counter.count_cells(self.maps[number], &spans, &open, &mut take)?;
+                }
+                Some(total)
+            }
+        }
+    }
+
     /// The end of a range that starts at `range.start`, has about `about` designs and consists of few boxes.
     pub fn round(&self, range: &Range<u64>, about: u64) -> u64 {
         let step = self.axes.steps.iter().copied().filter(|&step| step <= about.max(1)).max().unwrap_or(1);
@@ -150,19 +203,33 @@ impl BoundedStudy {
         let front = (objectives > 0).then_some(Sought::Front);
         let top = plan.study.report.top.map(|_| Sought::Top);
         let extremes = (0..objectives).flat_map(|objective| [false, true].map(|largest| Sought::Extreme { objective, largest }));
-        front.into_iter().chain(top).chain(extremes).collect()
+        let maps = plan.study.report.maps.iter().enumerate().filter(|(_, spec)| spec.value != Best::Share);
+        front.into_iter().chain(top).chain(extremes).chain(maps.map(|(number, _)| Sought::Cells(number))).collect()
     }
 
     /// Searches a range of positions and takes what it finds into `found`; `None` if it was stopped, or the front has more than
     /// [`BoundedStudy::most_points`], or it took more than [`BoundedStudy::most_boxes`].
     pub fn search(&self, job: SearchJob<'_>, sought: Sought, workers: &mut [Worker<'_>], found: &mut Reducers) -> Option<Searched> {
-        let SearchJob { plan, reduction, range, stop, progress } = job;
+        let SearchJob { plan, range, stop, progress, .. } = job;
         let roots = self.axes.boxes(range);
-        let targets = self.targets(plan, sought);
-        if let Some(searched) = self.extreme_of_pairs(job, sought, &targets[0], &roots, workers, found) {
+        if let Some(searched) = self.extreme_of_pairs(job, sought, &self.targets(plan, sought)[0], &roots, workers, found) {
             progress(range.end - range.start);
             return (!stop.load(Ordering::Relaxed)).then_some(searched);
         }
+        self.search_boxes(job, sought, &roots, workers, found)
+    }
+
+    /// Searches boxes.
+    fn search_boxes(
+        &self,
+        job: SearchJob<'_>,
+        sought: Sought,
+        roots: &[Spans],
+        workers: &mut [Worker<'_>],
+        found: &mut Reducers,
+    ) -> Option<Searched> {
+        let SearchJob { plan, reduction, range, stop, progress } = job;
+        let targets = self.targets(plan, sought);
         let search = BoxSearch {
             axes: &self.axes,
             range,
@@ -172,6 +239,7 @@ impl BoundedStudy {
             progress,
             sought,
             targets,
+            cells: if let Sought::Cells(number) = sought { Some(self.maps[number]) } else { None },
             product: (sought == Sought::Front).then(|| self.product(plan)).flatten(),
             plan,
             effort: plan.effort(),
@@ -180,7 +248,7 @@ impl BoundedStudy {
             most_points: self.most_points,
             most_boxes: self.most_boxes,
         };
-        search.run(&roots, workers, found)
+        search.run(roots, workers, found)
     }
 
     fn targets(&self, plan: &Plan, sought: Sought) -> Vec<Target> {
@@ -190,13 +258,14 @@ impl BoundedStudy {
             let limits = self.limits(plan, objective.quantity, asked.higher_is_worse == at_the_bad_end);
             Target { asked, rule: KeyRule::from(objective), at_the_bad_end, limits }
         };
+        let best = |quantity, goal| target(&Objective { quantity, goal, resolution: None, over: OverScenarios::Worst }, false);
         match sought {
             Sought::Front => plan.study.objectives.iter().map(|objective| target(objective, false)).collect(),
-            Sought::Top => {
-                let as_objective =
-                    |top: &TopSpec| Objective { quantity: top.by, goal: top.goal, resolution: None, over: OverScenarios::Worst };
-                plan.study.report.top.iter().map(|top| target(&as_objective(top), false)).collect()
-            }
+            Sought::Top => plan.study.report.top.iter().map(|top| best(top.by, top.goal)).collect(),
+            Sought::Cells(number) => match plan.study.report.maps[number].value {
+                Best::Value(quantity, goal) => vec![best(quantity, goal)],
+                Best::Share => Vec::new(),
+            },
             Sought::Extreme { objective, largest } => {
                 let objective = &plan.study.objectives[objective];
                 vec![target(objective, (objective.goal == Goal::Min) == largest)]
@@ -286,7 +355,7 @@ impl BoundedStudy {
             };
             let sources: Vec<NumberSource> = open.iter().map(|it| self.requirements[it.requirement].requirement.source).collect();
             let sources: Vec<NumberSource> = sources.into_iter().chain([target.asked.source]).collect();
-            let pairing = Pairing::find(&self.tape, &self.axes, spans, &sources)?;
+            let pairing = Pairing::find(0, &self.tape, &self.axes, spans, &sources)?;
             if !pairing.is_through_both(open.len()) || pairing.cost > self.axes.count(spans) as f64 || pairing.cost > PAIRED_EXTREME {
                 return None;
             }
@@ -329,6 +398,25 @@ impl BoundedStudy {
     }
 }
 
+/// What is counted besides the number of feasible designs, by its number in the report.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BoxTally {
+    /// A histogram.
+    Histogram(usize),
+    /// A map of shares.
+    Map(usize),
+}
+
+impl BoxTally {
+    /// By its name, which is that of its file.
+    pub fn in_words(self, plan: &Plan) -> String {
+        match self {
+            Self::Histogram(number) => histogram::names(&plan.study)[number].replacen('-', " of ", 1),
+            Self::Map(number) => map::names(&plan.study)[number].replacen('-', " of ", 1),
+        }
+    }
+}
+
 /// Seconds that an operation of a formula takes in all bounds of a box.
 const OPERATION: f64 = 1e-7;
 /// Most operations of a search by pairs: some hours of one thread.
@@ -339,6 +427,8 @@ const PAIRED_EXTREME: f64 = 1e14;
 pub struct Certificate {
     /// For the count of feasible designs.
     pub count: Settled,
+    /// For each histogram and each map of shares: what, and how.
+    pub tallies: Vec<(String, Settled)>,
     /// For each search: what for, and how.
     pub searches: Vec<(String, Searched)>,
     /// Designs of random ranges that were judged one by one besides, and compared.
@@ -348,17 +438,26 @@ pub struct Certificate {
 impl Certificate {
     /// Boxes that were looked at in all.
     pub fn boxes(&self) -> u64 {
-        self.count.boxes + self.searches.iter().map(|(_, it)| it.boxes).sum::<u64>()
+        self.counts().map(|it| it.boxes).sum::<u64>() + self.searches.iter().map(|(_, it)| it.boxes).sum::<u64>()
     }
 
     /// Evaluations in f64 in all.
     pub fn evaluations(&self) -> u64 {
-        self.count.evaluations + self.searches.iter().map(|(_, it)| it.evaluations).sum::<u64>()
+        self.counts().map(|it| it.evaluations).sum::<u64>() + self.searches.iter().map(|(_, it)| it.evaluations).sum::<u64>()
+    }
+
+    /// All that was counted.
+    fn counts(&self) -> impl Iterator<Item = &Settled> {
+        std::iter::once(&self.count).chain(self.tallies.iter().map(|(_, it)| it))
     }
 
     /// As it stands in `run.json`.
     pub fn to_json(&self) -> Value {
-        let count = &self.count;
+        let tallies = self.tallies.iter().map(|(name, it)| {
+            let mut tally = it.to_json();
+            tally["for"] = name.as_str().into();
+            tally
+        });
         let searches = self.searches.iter().map(|(name, it)| {
             json!({
                 "for": name, "designs": it.designs(), "in_infeasible_boxes": it.infeasible, "in_beaten_boxes": it.beaten,
@@ -366,11 +465,8 @@ impl Certificate {
             })
         });
         json!({
-            "count": {
-                "designs": count.designs(), "in_infeasible_boxes": count.infeasible, "in_feasible_boxes": count.feasible,
-                "in_products": count.products, "in_pairs_of_lists": count.pairs, "judged_in_f64": count.evaluated,
-                "boxes": count.boxes, "evaluations": count.evaluations,
-            },
+            "count": self.count.to_json(),
+            "tallies": tallies.collect::<Vec<_>>(),
             "searches": searches.collect::<Vec<_>>(),
             "boxes": self.boxes(),
             "evaluations": self.evaluations(),
@@ -384,6 +480,7 @@ pub fn in_words(plan: &Plan, sought: Sought) -> String {
     match sought {
         Sought::Front => "front".to_owned(),
         Sought::Top => "top".to_owned(),
+        Sought::Cells(number) => BoxTally::Map(number).in_words(plan),
         Sought::Extreme { objective, largest } => {
             let name = plan.study.objectives[objective].quantity.name(&plan.study.model);
             format!("{} {name}", if largest { "largest" } else { "least" })

@@ -5,8 +5,10 @@ use super::bounder::{AskedNumber, Bounder, Bounds, Wanted};
 use super::requirement::{Requirement, Test};
 use std::sync::Arc;
 
-/// Most boxes of scenarios that a number is followed over.
+/// Most boxes of scenarios that a requirement is followed over.
 const COVER: usize = 64;
+/// And a number whose worst value is bounded.
+const WORST_COVER: usize = 32;
 
 /// A requirement, ready to be bounded.
 #[derive(Debug)]
@@ -60,6 +62,12 @@ impl BetterEnds {
         if strictly {
             self.strict |= bounds.strict & asked.axis_set();
         }
+    }
+
+    /// Keeps every level of a set of axes, whatever is better.
+    pub fn keep(&mut self, set: u64) {
+        self.first &= !set;
+        self.last &= !set;
     }
 
     /// A box without the designs that one of its ends makes superfluous.
@@ -204,6 +212,42 @@ pub fn scenario_to_split(asked: &AskedNumber, bounds: &Bounds, spans: &Spans, ax
     let designs: f64 = of_designs.map(|axis| bounds.spread[axis]).sum();
     let is_single = (0..axes.designs).all(|axis| spans[axis].is_single() || asked.axis_set() >> axis & 1 == 0);
     (is_single || bounds.spread[widest] >= designs || bounds.spread[widest].is_infinite()).then_some(widest)
+}
+
+/// Bounds of the worst value of a number over all scenarios, as badness: no design of the box is worse than the second, none better than
+/// the first. The cover becomes the scenarios that may be worst; `each` is told of their bounds and boxes.
+pub fn worst_of(
+    asked: &AskedNumber,
+    bounder: &mut Bounder<'_>,
+    axes: &Axes,
+    designs: &Spans,
+    cover: &mut Arc<[Spans]>,
+    wanted: Wanted,
+    mut each: impl FnMut(&Bounds, &Spans),
+) -> (f64, f64) {
+    // Which of several scenarios decides takes both ends of each.
+    let wanted = if cover.len() == 1 { wanted } else { Wanted::Both };
+    let bounded: Vec<_> = cover.iter().map(|part| (*part, bounder.bounds(asked, &over(designs, part, axes), wanted))).collect();
+    let least = bounded.iter().fold(f64::NEG_INFINITY, |least, (_, it)| least.max(it.least));
+    // What is not a number may be anything.
+    let more = |most: f64, it: f64| if most.is_nan() || it.is_nan() { f64::NAN } else { most.max(it) };
+    let most = bounded.iter().fold(f64::NEG_INFINITY, |most, (_, it)| more(most, it.most));
+    let room = cover.len() < WORST_COVER;
+    let mut left = Vec::new();
+    // Where another scenario is worse for every design of the box, this one decides nothing.
+    for (part, it) in bounded.iter().filter(|(_, it)| it.most >= least || it.most.is_nan()) {
+        let part = &worst_scenarios(part, it, axes);
+        let whole = over(designs, part, axes);
+        each(it, &whole);
+        match scenario_to_split(asked, it, &whole, axes).filter(|_| room) {
+            Some(axis) => left.extend(part.halves(axis)),
+            None => left.push(*part),
+        }
+    }
+    if left[..] != cover[..] {
+        *cover = left.into();
+    }
+    (least, most)
 }
 
 /// The scenarios of all boxes of a cover, one by one.

@@ -44,13 +44,14 @@ fn list(set: u64) -> Vec<usize> {
 }
 
 impl Pairing {
-    /// The cheapest way to see the numbers asked for as made of two groups of the axes that vary in a box.
-    pub fn find(tape: &StudyTape, axes: &Axes, spans: &Spans, sources: &[NumberSource]) -> Option<Self> {
+    /// The cheapest way to see the numbers asked for as made of two groups of the axes that vary in a box, with no unwanted one in the first.
+    pub fn find(unwanted: u64, tape: &StudyTape, axes: &Axes, spans: &Spans, sources: &[NumberSource]) -> Option<Self> {
         let varying = (0..axes.designs).filter(|&axis| !spans[axis].is_single()).fold(0u64, |set, axis| set | 1 << axis);
         let widest = sources.iter().max_by_key(|source| (source.axes(tape) & varying).count_ones())?;
         let mut best: Option<Self> = None;
         for chain in Chain::all(tape, *widest, varying) {
             if let Some(found) = Self::about(tape, spans, sources, varying, &chain)
+                && found.first.iter().all(|axis| unwanted >> axis & 1 == 0)
                 && best.as_ref().is_none_or(|best| found.cost < best.cost)
             {
                 best = Some(found);

@@ -101,13 +101,31 @@ impl<'t> Pairs<'t> {
     /// Axes that do not vary in what is asked stay at their first level and count once.
     pub fn count(&mut self, pairing: &Pairing, spans: &Spans, instances: &[Instance<'_>], mut best: Option<(usize, &mut BestPair)>) -> u64 {
         let mut total = 0;
+        self.each_outer(pairing, spans, |pairs, at| {
+            let best = best.as_mut().map(|(role, best)| (*role, &mut **best));
+            total += pairs.count_at(pairing, at, instances, best, &mut |_, _| ());
+        });
+        total
+    }
+
+    /// Counts them apart by the levels of all axes but those of the first group: `tell` is told of such levels, and how many satisfy all.
+    pub fn count_each(&mut self, pairing: &Pairing, spans: &Spans, instances: &[Instance<'_>], mut tell: impl FnMut(&Spans, u64)) {
+        self.each_outer(pairing, spans, |pairs, at| {
+            pairs.count_at(pairing, at, instances, None, &mut |member, found| {
+                tell(&at.at(pairing.second.iter().copied(), member as u64), found);
+            });
+        });
+    }
+
+    /// Calls for every combination of the levels of the shared axes.
+    fn each_outer(&mut self, pairing: &Pairing, spans: &Spans, mut call: impl FnMut(&mut Self, &Spans)) {
         let mut at = *spans;
         pairing.outer.iter().for_each(|&axis| at[axis] = Span::at(spans[axis].low));
         loop {
-            total += self.count_at(pairing, &at, instances, best.as_mut().map(|(role, best)| (*role, &mut **best)));
+            call(self, &at);
             let mut rest = pairing.outer.iter().rev();
             loop {
-                let Some(&axis) = rest.next().filter(|_| !self.stop.load(Ordering::Relaxed)) else { return total };
+                let Some(&axis) = rest.next().filter(|_| !self.stop.load(Ordering::Relaxed)) else { return };
                 if at[axis].low < spans[axis].high {
                     at[axis] = Span::at(at[axis].low + 1);
                     break;
@@ -118,7 +136,14 @@ impl<'t> Pairs<'t> {
     }
 
     /// The same with the shared axes at one level.
-    fn count_at(&mut self, pairing: &Pairing, spans: &Spans, instances: &[Instance<'_>], best: Option<(usize, &mut BestPair)>) -> u64 {
+    fn count_at(
+        &mut self,
+        pairing: &Pairing,
+        spans: &Spans,
+        instances: &[Instance<'_>],
+        best: Option<(usize, &mut BestPair)>,
+        tell: &mut dyn FnMut(usize, u64),
+    ) -> u64 {
         let scenarios = scenarios_of(instances, self.axes);
         for instance in instances.iter().filter(|it| pairing.roles[it.role] == PairRole::Outer) {
             if !self.holds_for_one(spans, instance) {
@@ -139,7 +164,7 @@ impl<'t> Pairs<'t> {
             }
             _ => None,
         });
-        self.count_members(&Listed { pairing, spans, instances, links }, &mut channels, &second, goal)
+        self.count_members(&Listed { pairing, spans, instances, links }, &mut channels, &second, goal, tell)
     }
 
     /// Does a requirement hold that no varying axis but the shared ones has to do with?
@@ -296,8 +321,15 @@ impl<'t> Pairs<'t> {
         (width, others)
     }
 
-    /// Counts the pairs, member by member of the second group.
-    fn count_members(&self, listed: &Listed<'_>, channels: &mut [Channel], second: &[usize], mut goal: Option<PairGoal<'_>>) -> u64 {
+    /// Counts the pairs, member by member of the second group; `tell` is told of each that has some.
+    fn count_members(
+        &self,
+        listed: &Listed<'_>,
+        channels: &mut [Channel],
+        second: &[usize],
+        mut goal: Option<PairGoal<'_>>,
+        tell: &mut dyn FnMut(usize, u64),
+    ) -> u64 {
         let Listed { pairing, spans, instances, links } = listed;
         let mut total = 0;
         // Of every channel: between which starts all is well.
@@ -339,6 +371,9 @@ impl<'t> Pairs<'t> {
                 }
             };
             total += found;
+            if found > 0 {
+                tell(member, found);
+            }
             if let Some(goal) = &mut goal
                 && found > 0
                 && goal.may_improve(channels, &limits, member)
@@ -361,14 +396,8 @@ impl<'t> Pairs<'t> {
 
     /// The design index of a pair.
     fn index(&self, pairing: &Pairing, spans: &Spans, first: u64, second: u64) -> u64 {
-        let mut levels = spans.0.map(|span| span.low);
-        for (group, mut rest) in [(&pairing.first, first), (&pairing.second, second)] {
-            for &axis in group.iter().rev() {
-                levels[axis] = spans[axis].low + (rest % spans[axis].count()) as u32;
-                rest /= spans[axis].count();
-            }
-        }
-        self.axes.all[..self.axes.designs].iter().zip(levels).map(|(axis, level)| u64::from(level) * axis.stride).sum()
+        let pair = spans.at(pairing.first.iter().copied(), first).at(pairing.second.iter().copied(), second);
+        self.axes.least_index(&pair)
     }
 }
 

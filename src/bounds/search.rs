@@ -1,4 +1,4 @@
-//! The designs that a result names, found without looking at all: the front, the best by one quantity, the extremes.
+//! The designs that a result names, found without looking at all: the front, the best by one quantity or of every cell of a map, the extremes.
 //!
 //! Boxes wait in batches. Of each the best that it might hold is bounded: if no design of it can be on the front any more (or among the
 //! best, or an extreme), it is settled; a small one is judged by the ordinary engine; the others are cut in two, and one promising
@@ -6,16 +6,15 @@
 
 use super::axes::{AXES, Axes, Span, Spans};
 use super::bounder::{AskedNumber, Bounder, Bounds, Wanted};
-use super::open::{
-    BetterEnds, Bounded, Decided, add_pull, all_open, decide, each_scenario, is_infeasible, over, scenario_to_split, scenarios,
-    worst_scenarios,
-};
+use super::cells::CellAxes;
+use super::count::varying;
+use super::open::{BetterEnds, Bounded, Decided, add_pull, all_open, decide, each_scenario, is_infeasible, over, scenarios, worst_of};
 use super::queue::{Queue, Waiting};
 use super::staircase::{Fit, Staircase};
 use crate::models::Effort;
 use crate::parallel::on_threads;
 use crate::plan::Plan;
-use crate::reduce::{Extreme, Front, KeyRule, MOST_OBJECTIVES, Reducers, Reduction};
+use crate::reduce::{Extreme, Front, KeyRule, MOST_OBJECTIVES, Map, Reducers, Reduction};
 use crate::screen::CpuEngine;
 use std::ops::Range;
 use std::sync::Arc;
@@ -31,6 +30,10 @@ const DESIGN: f64 = 7e-9;
 const PLACE: f64 = 7e-8;
 /// And a scenario of a row.
 const SCENARIO: f64 = 2e-7;
+/// A box of a map's cells is judged by the engine where that takes so many seconds a cell, about as long as a few bounds of each; but not if it
+/// takes more than this in all, as one bound may settle many cells.
+const CELL: f64 = 5e-4;
+const CELLS: f64 = 1e-2;
 /// Designs of a box above which single ones are tried: smaller ones are soon judged whole.
 const WORTH_A_TRY: u64 = 1 << 22;
 /// Most boxes that a thread takes at a time.
@@ -39,8 +42,8 @@ const SHARE: usize = 64;
 const FIRST_BATCHES: usize = 64;
 /// Most scenarios of a leaf that are listed: of more, all are looked at.
 const CHOSEN: u64 = 1 << 12;
-/// Most boxes of scenarios that a number is followed over.
-const COVER: usize = 32;
+/// Most cells of a map that are looked at to settle a box of several.
+const LOOKED_AT: u64 = 64;
 /// More than rounding can make of a product of a few numbers.
 const OUTWARD: f64 = 1.0 + 256.0 * f64::EPSILON;
 
@@ -51,6 +54,8 @@ pub enum Sought {
     Front,
     /// The best by one quantity.
     Top,
+    /// The best of every cell of the map with this number.
+    Cells(usize),
     /// The least (or largest) worst value of an objective.
     Extreme {
         /// Number of the objective.
@@ -154,8 +159,10 @@ pub struct BoxSearch<'a> {
     pub progress: &'a (dyn Fn(u64) + Sync),
     /// What is sought, and the numbers that it is about.
     pub sought: Sought,
-    /// One for an extreme or the best, one per objective for the front.
+    /// One for an extreme, the best or the cells of a map, one per objective for the front.
     pub targets: Vec<Target>,
+    /// The axes of the map whose cells are sought.
+    pub cells: Option<CellAxes>,
     /// For a front of two objectives.
     pub product: Option<ObjectiveProduct>,
     /// The study.
@@ -185,6 +192,8 @@ enum Rival<'a> {
     Front(&'a Front, Option<Staircase>),
     /// Key and index of the last of the best K, once there are K.
     Top(Option<(f64, u64)>),
+    /// The best of every cell so far, and its axes.
+    Cells(&'a Map, CellAxes),
     Extreme(Option<Extreme>),
 }
 
@@ -255,6 +264,7 @@ impl BoxSearch<'_> {
                 Rival::Front(&found.front, staircase)
             }
             Sought::Top => Rival::Top(found.reported.top.first_mut().and_then(crate::reduce::Top::worst)),
+            Sought::Cells(number) => Rival::Cells(&found.reported.maps[number], self.cells.expect("the map has axes")),
             Sought::Extreme { objective, largest } => {
                 Rival::Extreme(if largest { found.extremes.largest[objective] } else { found.extremes.least[objective] })
             }
@@ -263,7 +273,16 @@ impl BoxSearch<'_> {
         let shares: Vec<&[Waiting]> = batch.chunks((batch.len() / (8 * workers.len())).clamp(1, SHARE)).collect();
         let taken = AtomicUsize::new(0);
         let is_first = batch.len() <= FIRST_BATCHES;
-        let mut reducers: Vec<Reducers> = workers.iter().take(shares.len()).map(|_| self.reduction.start_after(known.clone())).collect();
+        let start = || {
+            let mut own = self.reduction.start_after(known.clone());
+            // Nothing is counted here, and maps are large.
+            own.reported.histograms.clear();
+            if self.cells.is_none() {
+                own.reported.maps.clear();
+            }
+            own
+        };
+        let mut reducers: Vec<Reducers> = workers.iter().take(shares.len()).map(|_| start()).collect();
         let parts = on_threads(workers.iter_mut().zip(&mut reducers), |(worker, reducers)| {
             let mut own = Vec::new();
             loop {
@@ -320,6 +339,7 @@ impl BoxSearch<'_> {
                         // Of anything else the block may not hold the worst.
                         Sought::Front => self.reduction.absorb_objectives(reducers, block),
                         Sought::Top => self.reduction.absorb_top(reducers, block),
+                        Sought::Cells(number) => self.reduction.absorb_cells(reducers, block, number),
                         Sought::Extreme { objective, .. } => self.reduction.absorb_objective(reducers, block, objective),
                     });
                 }
@@ -376,6 +396,10 @@ impl BoxSearch<'_> {
                 }
             }
             // What another design of the box makes superfluous need not be looked at.
+            if let Some(cells) = self.cells {
+                // Every cell has a best of its own.
+                view.ends.keep(cells.set());
+            }
             let left = if self.sought == Sought::Top { now.spans } else { view.ends.collapse(&now.spans, self.axes) };
             if left == now.spans {
                 return self.leaf_or_cut(now, &view);
@@ -397,7 +421,7 @@ impl BoxSearch<'_> {
             };
         }
         let hopes = &hopes[..self.targets.len()];
-        if self.is_beaten(hopes, self.axes.least_index(&waiting.spans), rival) {
+        if self.is_beaten(hopes, &waiting.spans, rival) {
             return true;
         }
         self.fit(hopes, rival, &waiting.spans, bounder).is_some_and(|(fit, _)| fit == Fit::None)
@@ -425,7 +449,7 @@ impl BoxSearch<'_> {
                 *hope = self.limited(target, limit, *hope, bounds.most, bounder, &now.spans);
             }
         }
-        if self.is_beaten(&hopes[..self.targets.len()], self.axes.least_index(&now.spans), rival) {
+        if self.is_beaten(&hopes[..self.targets.len()], &now.spans, rival) {
             return true;
         }
         match self.fit(&hopes[..self.targets.len()], rival, &now.spans, bounder) {
@@ -489,7 +513,8 @@ impl BoxSearch<'_> {
         let rows = (size / places) as f64;
         let time = self.time(rows, size as f64, self.chosen_count(&now)) + places as f64 * PLACE;
         // A single row has nothing in common with others that bounds could use.
-        if size == 1 || time <= (if rows > 1.0 { LEAF } else { ROW }).max(self.bounding) {
+        let of_cells = self.cells.map_or(0.0, |cells| (cells.count(&now.spans) as f64 * CELL).min(CELLS));
+        if size == 1 || time <= (if rows > 1.0 { LEAF } else { ROW }).max(self.bounding).max(of_cells) {
             return Fate::Leaf(now);
         }
         let axis = self.axis_to_cut(&now.spans, &view.pull);
@@ -512,38 +537,17 @@ impl BoxSearch<'_> {
 
     /// Bounds of the worst value over all scenarios, as badness; the cover becomes the scenarios that may be worst.
     fn worst(&self, target: &Target, bounder: &mut Bounder<'_>, spans: &Spans, cover: &mut Arc<[Spans]>, view: &mut BoxView) -> (f64, f64) {
-        // Which of several scenarios decides takes both ends of each.
-        let wanted = match (cover.len(), target.at_the_bad_end) {
-            (1, true) => Wanted::Most,
-            (1, false) => Wanted::Least,
-            _ => Wanted::Both,
-        };
-        let bounded: Vec<_> =
-            cover.iter().map(|part| (*part, bounder.bounds(&target.asked, &over(spans, part, self.axes), wanted))).collect();
-        let least = bounded.iter().fold(f64::NEG_INFINITY, |least, (_, it)| least.max(it.least));
-        let most = bounded.iter().fold(f64::NEG_INFINITY, |most, (_, it)| most.max(it.most));
-        let room = cover.len() < COVER;
-        let mut left = Vec::new();
-        // Where another scenario is worse for every design of the box, this one decides nothing.
-        for (part, it) in bounded.iter().filter(|(_, it)| it.most >= least || it.most.is_nan()) {
-            let part = &worst_scenarios(part, it, self.axes);
-            let whole = over(spans, part, self.axes);
-            add_pull(&mut view.pull, it, &whole, self.axes);
+        let wanted = if target.at_the_bad_end { Wanted::Most } else { Wanted::Least };
+        worst_of(&target.asked, bounder, self.axes, spans, cover, wanted, |it, whole| {
+            add_pull(&mut view.pull, it, whole, self.axes);
             view.ends.narrow(&target.asked, it, target.at_the_bad_end, !target.rule.has_steps() || target.at_the_bad_end);
             view.agree(it, target.at_the_bad_end, self.axes.designs);
-            match scenario_to_split(&target.asked, it, &whole, self.axes).filter(|_| room) {
-                Some(axis) => left.extend(part.halves(axis)),
-                None => left.push(*part),
-            }
-        }
-        if left[..] != cover[..] {
-            *cover = left.into();
-        }
-        (least, most)
+        })
     }
 
     /// Can no design of a box be what is sought, given the best that it may have?
-    fn is_beaten(&self, hopes: &[f64], least_index: u64, rival: &Rival<'_>) -> bool {
+    fn is_beaten(&self, hopes: &[f64], spans: &Spans, rival: &Rival<'_>) -> bool {
+        let least_index = self.axes.least_index(spans);
         match rival {
             Rival::Front(front, _) => {
                 let mut keys = [0.0; MOST_OBJECTIVES];
@@ -557,6 +561,10 @@ impl BoxSearch<'_> {
                 let key = self.targets[0].rule.key(hopes[0]);
                 last.is_some_and(|(worst, index)| worst < key || worst == key && index < least_index)
             }
+            Rival::Cells(map, cells) => {
+                let key = self.targets[0].rule.key(hopes[0]);
+                cells.count(spans) <= LOOKED_AT && cells.of(spans).all(|cell| map.beats(cell, key, least_index))
+            }
             Rival::Extreme(held) => held.is_some_and(|held| {
                 let Sought::Extreme { largest, .. } = self.sought else { return false };
                 let beyond = if largest { held.value > hopes[0] } else { held.value < hopes[0] };
@@ -567,7 +575,10 @@ impl BoxSearch<'_> {
 
     /// The axis along which what is open and what is sought differ most.
     fn axis_to_cut(&self, spans: &Spans, pull: &[f64; AXES]) -> usize {
-        let candidates = (0..self.axes.designs).filter(|&axis| !spans[axis].is_single());
+        // Rivals are those of a cell: cells come apart first.
+        let first = self.cells.map_or(0, |cells| cells.set() & varying(spans, self.axes));
+        let is_candidate = |axis: usize| if first > 0 { first >> axis & 1 == 1 } else { !spans[axis].is_single() };
+        let candidates = (0..self.axes.designs).filter(|&axis| is_candidate(axis));
         let by = |a: &usize, b: &usize| pull[*a].total_cmp(&pull[*b]).then(spans[*a].count().cmp(&spans[*b].count()));
         candidates.max_by(by).expect("a box of more than one design has such an axis")
     }

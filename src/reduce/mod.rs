@@ -130,6 +130,11 @@ impl Reduction {
         reducers.reported.top.iter_mut().for_each(|top| top.absorb(block));
     }
 
+    /// Takes in a block of which the values of one map are known: for the best of its cells.
+    pub fn absorb_cells(&self, reducers: &mut Reducers, block: &Block<'_>, map: usize) {
+        reducers.reported.maps[map].absorb_counted(block);
+    }
+
     /// Adds counts that were made elsewhere: feasible designs, and those that each reducer asks a device for.
     pub fn add_counts(&self, reducers: &mut Reducers, feasible: u64, counts: &[Vec<u32>]) {
         reducers.feasible += feasible;

@@ -21,13 +21,15 @@ use crate::table::Table;
 use serde_json::{Map, Value};
 
 /// What a reducer must be given of the feasible designs, which decides what can feed it. The text says what asks for it, for whoever
-/// cannot: "histograms in `[report]` ask for every feasible design".
+/// cannot: "feasible in `[report]` asks for every feasible design".
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReducerNeeds {
     /// Designs that may be among the best by one quantity: any engine may leave out what is surely not, and bounds can search for them.
     Candidates,
-    /// Counts of all feasible designs, or candidates for places that designs from everywhere compete for: boxes of designs do not tell
-    /// them, but a device hands over both, where its kernel (`screen/gpu/kernel`) has the lines that count or choose for this reducer.
+    /// Counts of all feasible designs by bins or cells, or the best of each cell: bounds count and search box by box, and a device hands over
+    /// both, where its kernel (`screen/gpu/kernel`) has the lines that count or choose for this reducer.
+    Counts,
+    /// Single feasible designs from everywhere: boxes of designs do not tell them, but a device hands them over.
     Designs(&'static str),
     /// Every feasible design itself, as a block: only what judges designs one by one in f64 gives that. This is what a new reducer needs
     /// as long as no kernel knows of it; it is then refused to devices and bounds, and their automatic choice leaves it to the CPU.
@@ -38,7 +40,7 @@ impl ReducerNeeds {
     /// Why bounds, which settle boxes of designs whole, cannot feed it; `None` if they can.
     pub fn beyond_bounds(self) -> Option<&'static str> {
         match self {
-            Self::Candidates => None,
+            Self::Candidates | Self::Counts => None,
             Self::Designs(why) | Self::Blocks(why) => Some(why),
         }
     }
@@ -46,7 +48,7 @@ impl ReducerNeeds {
     /// Why a device, which hands over counts and candidates, cannot feed it; `None` if it can.
     pub fn beyond_devices(self) -> Option<&'static str> {
         match self {
-            Self::Candidates | Self::Designs(_) => None,
+            Self::Candidates | Self::Counts | Self::Designs(_) => None,
             Self::Blocks(why) => Some(why),
         }
     }
@@ -128,7 +130,7 @@ pub trait Reducer: Clone + Sized {
     /// Takes in a block. The order of blocks, and who takes in which, must not show in the end.
     fn absorb(&mut self, block: &Block<'_>);
 
-    /// Takes in a block of designs that a device has counted already, see [`Reducer::add_counts`].
+    /// Takes in a block of designs that are counted elsewhere, by a device or by bounds, and may come more than once, see [`Reducer::add_counts`].
     fn absorb_counted(&mut self, block: &Block<'_>) {
         self.absorb(block);
     }

@@ -279,7 +279,7 @@ mod tests {
     #[test]
     fn needs_say_who_can_feed_a_reducer() {
         let of = |needs: ReducerNeeds| (needs.beyond_bounds(), needs.beyond_devices());
-        assert_eq!(of(ReducerNeeds::Candidates), (None, None));
+        assert_eq!([ReducerNeeds::Candidates, ReducerNeeds::Counts].map(of), [(None, None); 2]);
         assert_eq!(of(ReducerNeeds::Designs("why")), (Some("why"), None));
         assert_eq!(of(ReducerNeeds::Blocks("why")), (Some("why"), Some("why")));
     }

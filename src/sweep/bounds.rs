@@ -6,13 +6,13 @@
 use super::costs::Forecast;
 use super::watch::{Leaving, OFTEN, Teller, Watch};
 use super::{Control, Settings, SweepJob, SweepWork, Swept};
-use crate::bounds::{BoundedStudy, Certificate, SearchJob, Settled, Worker, in_words, refusal};
+use crate::bounds::{BoundedStudy, BoxCounter, BoxTally, Certificate, SearchJob, Settled, Worker, in_words, refusal};
 use crate::checkpoint::Checkpoint;
 use crate::error::{Error, Result};
 use crate::parallel::{on_threads, with_beside};
 use crate::plan::Plan;
-use crate::reduce::{Reduction, State};
-use crate::screen::{CpuEngine, Tables};
+use crate::reduce::{Reducers, Reduction, State};
+use crate::screen::{CpuEngine, Tables, Tally};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -27,6 +27,8 @@ const COMPARED_RANGES: u64 = 32;
 const COMPARED: u64 = 4096;
 /// Seconds that this may take, by what the model says.
 const COMPARED_TIME: f64 = 2.0;
+/// Of histograms and maps this share, over the number of threads, is tried before bounds begin where they may be left.
+const TRIED: f64 = 1.0 / 32.0;
 
 /// Sweeps a plan by bounds. With a checkpoint, starts from what it holds, however that was made.
 ///
@@ -78,28 +80,46 @@ impl BoundsTrial {
 /// Sweeps a plan by bounds for so long at most, to see how they get on; nothing is kept. `None` if they cannot serve it or fail.
 pub fn try_bounds(plan: &Plan, threads: usize, time: Duration) -> Option<BoundsTrial> {
     let tables = Tables::new(plan);
-    let reduction = Reduction::new(plan, &[]);
+    let report = &plan.study.report;
+    let ranges = match report.histograms.iter().map(|spec| spec.range).collect::<Option<Vec<_>>>() {
+        Some(given) => given,
+        // The sample may take longer than the trial, which then tells less.
+        None if plan.seconds_per_design() * plan.study.model.sample as f64 / threads as f64 > time.as_secs_f64() => {
+            vec![(0.0, 1.0); report.histograms.len()]
+        }
+        None => Tally::new(plan, &tables, threads).histogram_ranges(plan),
+    };
+    let reduction = Reduction::new(plan, &ranges);
     let settings = Settings { threads, ..Settings::default() };
-    let (control, over) = (Control::default(), AtomicBool::new(false));
+    let layout = BoundedStudy::new(plan)?;
+    let (control, over, half_over) = (Control::default(), AtomicBool::new(false), AtomicBool::new(false));
     let start = Instant::now();
     let watch = || {
         while !over.load(Ordering::Relaxed) && start.elapsed() < time {
+            half_over.store(start.elapsed() > time / 2, Ordering::Relaxed);
             std::thread::sleep(OFTEN);
         }
+        half_over.store(true, Ordering::Relaxed);
         control.stop.store(true, Ordering::Relaxed);
     };
-    let swept = with_beside(watch, |runs| {
+    let (tallies, swept, seconds) = with_beside(watch, |runs| {
         let _end = AtEnd(&over);
         // Without a thread to watch it nothing would end it.
-        if runs { Some(sweep_by_bounds(plan, &tables, &reduction, &settings, None, &control)) } else { None }
+        runs.then(|| {
+            let job = SweepJob { plan, tables: &tables, reduction: &reduction, options: &settings, control: &control };
+            let tallies = seconds_of_tallies(job, &layout, &(0..plan.designs()), plan.designs(), &half_over, &|_| ());
+            let start = Instant::now();
+            let swept = sweep_by_bounds(plan, &tables, &reduction, &settings, None, &control);
+            (tallies, swept, start.elapsed().as_secs_f64())
+        })
     })?;
-    let seconds = start.elapsed().as_secs_f64();
     match swept {
         Ok(_) => Some(BoundsTrial::Finished(seconds)),
         #[allow(clippy::cast_precision_loss, reason = "an estimate")]
         Err(Error::Stopped { .. }) => {
             let settled = control.done.load(Ordering::Relaxed) as f64 / plan.designs() as f64;
-            Some(BoundsTrial::Begun { settled: settled.min(1.0), seconds })
+            // The searches come first, and may be fast: at that pace nobody counts bins and cells.
+            Some(BoundsTrial::Begun { settled: settled.min(1.0).min(seconds / tallies), seconds })
         }
         Err(_) => None,
     }
@@ -132,8 +152,9 @@ pub(super) fn settle(job: SweepJob<'_>, work: &mut SweepWork<'_>, leaving: Optio
     let mut layout = BoundedStudy::new(plan).ok_or_else(refuse)?;
     layout.most_points = options.most_points(plan);
     let whole = job.whole();
-    let passes = BoundedStudy::sought(plan).len() as u64 + 1;
-    let watch = Watch::new(control, leaving, whole.end - whole.start, work.todo.count(), passes);
+    let searches = (whole.end - whole.start, BoundedStudy::sought(plan).len());
+    let counts = (work.todo.count(), BoundedStudy::tallies(plan).len() + 1);
+    let watch = Watch::new(control, leaving, searches, counts);
     let over = AtomicBool::new(false);
     let mut settle = || settle_watched(job, &layout, &whole, work, &watch);
     if !watch.may_leave() {
@@ -142,6 +163,7 @@ pub(super) fn settle(job: SweepJob<'_>, work: &mut SweepWork<'_>, leaving: Optio
     let look = || {
         while !over.load(Ordering::Relaxed) {
             watch.look();
+            watch.look_at_trial();
             std::thread::sleep(OFTEN);
         }
     };
@@ -170,6 +192,9 @@ fn settle_watched(
     watch: &Watch<'_>,
 ) -> Result<Settling> {
     let SweepJob { plan, options, control, .. } = job;
+    if let Some(forecast) = tallies_are_poor(job, layout, whole, work.todo.count(), watch) {
+        return Ok(Settling::Left(Remains { forecast, at: "a trial of histograms and maps".to_owned(), counted: 0, found: None }));
+    }
     let designs = work.todo.count();
     let mut certificate = Certificate::default();
     let searched = search(job, layout, whole, work, watch, &mut certificate);
@@ -185,11 +210,17 @@ fn settle_watched(
     // What was searched is final.
     options.check_budget(plan, &state)?;
     let passes = BoundedStudy::sought(plan).len() as u64 + 1;
-    control.settles(format!("count, {passes} of {passes}"));
+    let what = if BoundedStudy::tallies(plan).is_empty() { "count" } else { "counts" };
+    control.settles(format!("{what}, {passes} of {passes}"));
     watch.counts();
     let shared = Mutex::new(work);
-    let settled = on_threads(0..options.threads.max(1), |_| count_on_thread(plan, layout, options, &shared, watch));
-    settled.iter().for_each(|it| certificate.count.add(it));
+    let tallies = BoundedStudy::tallies(plan);
+    let settled = on_threads(0..options.threads.max(1), |_| count_on_thread(job, layout, &tallies, &shared, watch));
+    certificate.tallies = tallies.iter().map(|tally| (tally.in_words(plan), Settled::default())).collect();
+    for settled in &settled {
+        let counts = std::iter::once(&mut certificate.count).chain(certificate.tallies.iter_mut().map(|(_, it)| it));
+        counts.zip(settled).for_each(|(count, own)| count.add(own));
+    }
     let work = shared.into_inner().unwrap_or_else(PoisonError::into_inner);
     if let Some(failure) = work.failure.take() {
         return Err(failure);
@@ -210,6 +241,34 @@ fn settle_watched(
 
 pub(super) fn stopped() -> Error {
     Error::Stopped { kept: None }
+}
+
+/// Tries histograms and maps, where there are any and bounds may be left: the forecast at which they are, if it does not pay.
+fn tallies_are_poor(job: SweepJob<'_>, layout: &BoundedStudy, whole: &Range<u64>, left: u64, watch: &Watch<'_>) -> Option<Forecast> {
+    let (report, control) = (&job.plan.study.report, job.control);
+    let judging = watch.begin_trial().filter(|_| !report.histograms.is_empty() || !report.maps.is_empty())?;
+    control.settles("a trial of histograms and maps".to_owned());
+    let expected = seconds_of_tallies(job, layout, whole, left, watch.trial_is_over(), &|_| watch.look_at_trial());
+    let poor = expected > judging && !control.stop.load(Ordering::Relaxed);
+    poor.then(|| Forecast { spent: watch.spent(), settled: 0.0, bounds: expected, judging })
+}
+
+/// Seconds that histograms and maps are expected to take where so many designs are `left`, by a trial of a small part of them; infinite if
+/// that was stopped.
+#[allow(clippy::cast_precision_loss, reason = "an estimate")]
+fn seconds_of_tallies(
+    job: SweepJob<'_>,
+    layout: &BoundedStudy,
+    whole: &Range<u64>,
+    left: u64,
+    stop: &AtomicBool,
+    progress: &(dyn Fn(u64) + Sync),
+) -> f64 {
+    let SweepJob { plan, tables, reduction, options, .. } = job;
+    let threads = options.threads.max(1) as f64;
+    let trial = SearchJob { plan, reduction, range: whole, stop, progress };
+    let left = left as f64 / (whole.end - whole.start) as f64;
+    layout.try_tallies(trial, layout.worker(plan, tables, stop), TRIED / threads, left).map_or(f64::INFINITY, |seconds| seconds / threads)
 }
 
 /// Searches for everything that the result names; false if it was stopped.
@@ -237,15 +296,22 @@ fn search(
     true
 }
 
-/// Counts ranges until there are none left.
-fn count_on_thread(plan: &Plan, layout: &BoundedStudy, options: &Settings, work: &Mutex<&mut SweepWork<'_>>, watch: &Watch<'_>) -> Settled {
+/// Counts ranges until there are none left: the feasible designs, then those of each tally. Returns how each of them was settled.
+fn count_on_thread(
+    job: SweepJob<'_>,
+    layout: &BoundedStudy,
+    tallies: &[BoxTally],
+    work: &Mutex<&mut SweepWork<'_>>,
+    watch: &Watch<'_>,
+) -> Vec<Settled> {
+    let SweepJob { plan, reduction, options, .. } = job;
     let teller = Teller::new(watch);
     let settle = |designs: u64| teller.settle(designs);
     let mut counter = layout.counter(watch.stop()).telling(&settle);
     let lock = || work.lock().unwrap_or_else(PoisonError::into_inner);
     let all = options.shard.range(plan.designs());
     let least = (all.end - all.start) / PARTS;
-    let mut settled = Settled::default();
+    let mut settled = vec![Settled::default(); tallies.len() + 1];
     loop {
         let range = {
             let mut work = lock();
@@ -260,38 +326,72 @@ fn count_on_thread(plan: &Plan, layout: &BoundedStudy, options: &Settings, work:
             work.todo.take(end - first.start).unwrap_or(first)
         };
         let start = Instant::now();
-        let before = counter.settled;
-        match layout.count(&mut counter, &range) {
-            None => {
+        match count_range(plan, layout, tallies, &mut counter, &range, reduction.start()) {
+            Ok(Some((counted, own))) => {
+                settled.iter_mut().zip(&own).for_each(|(all, own)| all.add(own));
+                teller.tell();
+                hand_over(plan, range, counted, start.elapsed(), &mut lock());
+            }
+            Ok(None) => {
                 lock().todo.add(range);
                 return settled;
             }
-            Some(feasible) => {
-                let mut own = counter.settled;
-                own.subtract(&before);
-                settled.add(&own);
-                teller.tell();
-                hand_over(plan, range, feasible, start.elapsed(), &mut lock());
+            Err(failure) => {
+                lock().failure = Some(failure);
+                return settled;
             }
         }
     }
 }
 
-fn hand_over(plan: &Plan, range: Range<u64>, feasible: u64, time: Duration, work: &mut SweepWork<'_>) {
+/// Counts all that is asked for at a range of positions into empty reducers; how each count was settled. `None` if it was stopped.
+fn count_range(
+    plan: &Plan,
+    layout: &BoundedStudy,
+    tallies: &[BoxTally],
+    counter: &mut BoxCounter<'_>,
+    range: &Range<u64>,
+    mut into: Reducers,
+) -> Result<Option<(Reducers, Vec<Settled>)>> {
+    let mut before = counter.settled;
+    let mut since = |counter: &BoxCounter<'_>| {
+        let mut own = counter.settled;
+        own.subtract(&before);
+        before = counter.settled;
+        own
+    };
+    let Some(feasible) = layout.count(counter, range) else { return Ok(None) };
+    into.feasible = feasible;
+    let mut settled = vec![since(counter)];
+    for &tally in tallies {
+        let Some(counted) = layout.count_by(tally, counter, range, &mut into.reported) else { return Ok(None) };
+        if counted != feasible {
+            let what = tally.in_words(plan);
+            return Err(Error::Disagreement(format!(
+                "at positions {range:?} bounds counted {feasible} feasible designs, and {counted} for the {what}"
+            )));
+        }
+        settled.push(since(counter));
+    }
+    Ok(Some((into, settled)))
+}
+
+fn hand_over(plan: &Plan, range: Range<u64>, counted: Reducers, time: Duration, work: &mut SweepWork<'_>) {
     work.rate = Some((range.end - range.start) as f64 / time.as_secs_f64().max(1e-6));
-    work.reducers.feasible += feasible;
+    work.reducers.merge(counted.into_fresh());
     if let Err(failure) = work.finish(plan, range) {
         work.failure = Some(failure);
     }
 }
 
-/// Every design must have been settled by one rule: once for the count, and once in each search.
+/// Every design must have been settled by one rule: once for each count, and once in each search.
 fn adds_up(certificate: &Certificate, counted: u64, searched: u64) -> Result<()> {
     let differs = |what: &str, settled: u64, all: u64| {
         Error::Disagreement(format!("bounds settled {settled} designs for the {what}, but there are {all}"))
     };
-    if certificate.count.designs() != counted {
-        return Err(differs("count", certificate.count.designs(), counted));
+    let counts = std::iter::once(("count", &certificate.count)).chain(certificate.tallies.iter().map(|(what, it)| (&**what, it)));
+    if let Some((what, it)) = counts.into_iter().find(|(_, it)| it.designs() != counted) {
+        return Err(differs(what, it.designs(), counted));
     }
     match certificate.searches.iter().find(|(_, it)| it.designs() != searched) {
         Some((what, it)) => Err(differs(what, it.designs(), searched)),
@@ -299,7 +399,7 @@ fn adds_up(certificate: &Certificate, counted: u64, searched: u64) -> Result<()>
     }
 }
 
-/// Judges random ranges design by design: the count must be the same, and no design may be better than what was found.
+/// Judges random ranges design by design: all counts must be the same, and no design may be better than what was found.
 fn compare(job: SweepJob<'_>, layout: &BoundedStudy, whole: &Range<u64>, state: &State) -> Result<u64> {
     let SweepJob { plan, tables, reduction, control, .. } = job;
     let size = whole.end - whole.start;
@@ -307,23 +407,23 @@ fn compare(job: SweepJob<'_>, layout: &BoundedStudy, whole: &Range<u64>, state: 
     let length = COMPARED.min(size / COMPARED_RANGES).min(affordable / COMPARED_RANGES).max(1).min(size);
     let mut engine = CpuEngine::new(plan, tables).stopping_on(&control.stop);
     let mut counter = layout.counter(&control.stop);
-    let mut known = reduction.restore(State { feasible: 0, ..state.clone() });
+    let tallies = BoundedStudy::tallies(plan);
+    let mut known = reduction.restore(state.clone());
     let mut compared = 0;
     for number in 0..COMPARED_RANGES.min(size) {
         let spread = (u128::from(plan.spread(number + 1)) * u128::from(size - length + 1) / u128::from(plan.designs())) as u64;
         let range = whole.start + spread..whole.start + spread + length;
-        let before = known.feasible;
-        engine.screen(range.clone(), |block| reduction.absorb(&mut known, block));
-        let Some(counted) = layout.count(&mut counter, &range) else { return Err(stopped()) };
-        if control.stop.load(Ordering::Relaxed) {
-            return Err(stopped());
-        }
-        if known.feasible - before != counted {
-            let judged = known.feasible - before;
+        let mut judged = reduction.start();
+        engine.screen(range.clone(), |block| reduction.absorb(&mut judged, block));
+        let counted = count_range(plan, layout, &tallies, &mut counter, &range, reduction.start())?;
+        let Some((counted, _)) = counted.filter(|_| !control.stop.load(Ordering::Relaxed)) else { return Err(stopped()) };
+        let feasible = Some(("feasible designs", counted.feasible, judged.feasible)).filter(|(_, counted, judged)| counted != judged);
+        if let Some((what, counted, judged)) = feasible.or_else(|| counted.reported.miscounts(&judged.reported)) {
             return Err(Error::Disagreement(format!(
-                "at positions {range:?} bounds counted {counted} feasible designs, one by one they are {judged}"
+                "at positions {range:?} bounds counted {counted} {what}, one by one they are {judged}"
             )));
         }
+        known.merge(judged.into_fresh());
         compared += length;
     }
     if !state.names_all_of(&known.state()) {

@@ -9,6 +9,8 @@ use std::time::{Duration, Instant};
 
 /// A range that is counted takes at most this fraction of the time that judging every design would take.
 const CHUNK: f64 = 0.05;
+/// A trial of histograms and maps takes at most this fraction of it.
+const TRIAL: f64 = 0.04;
 /// How often the watch is looked at where nobody reports progress.
 pub const OFTEN: Duration = Duration::from_millis(10);
 /// And how often a thread tells of the boxes that it counts.
@@ -33,11 +35,15 @@ pub struct Watch<'a> {
     /// Designs of a search, and of the count.
     search: u64,
     count: u64,
-    passes: u64,
+    searches: u64,
+    counts: u64,
     start: Instant,
     /// Designs settled so far, over all passes: the bits of an f64, as they may be more than a u64 holds.
     settled: AtomicU64,
     stop: AtomicBool,
+    /// Until how many seconds after the start a trial may take, as the bits of an f64, and whether it is over.
+    trial: AtomicU64,
+    trial_is_over: AtomicBool,
     pace: Mutex<(Pace, Option<Counting>)>,
     left: Mutex<Option<Forecast>>,
 }
@@ -83,19 +89,27 @@ struct Counting {
 
 #[allow(clippy::cast_precision_loss, reason = "estimates")]
 impl<'a> Watch<'a> {
-    /// Over so many passes, the last of which is the count; `leaving` says when bounds are left, and how many seconds a design takes that is
-    /// judged, all threads at work.
-    pub fn new(control: &'a Control, leaving: Option<(Leaving, f64)>, search: u64, count: u64, passes: u64) -> Self {
+    /// Over so many searches, and counts after them; `leaving` says when bounds are left, and how many seconds a design takes that is judged,
+    /// all threads at work.
+    pub fn new(
+        control: &'a Control,
+        leaving: Option<(Leaving, f64)>,
+        (search, searches): (u64, usize),
+        (count, counts): (u64, usize),
+    ) -> Self {
         Self {
             control,
             leaving: leaving.map(|it| it.0),
             seconds: leaving.map_or(f64::INFINITY, |it| it.1),
             search,
             count,
-            passes,
+            searches: searches as u64,
+            counts: counts as u64,
             start: Instant::now(),
             settled: AtomicU64::new(0),
             stop: AtomicBool::new(false),
+            trial: AtomicU64::new(f64::INFINITY.to_bits()),
+            trial_is_over: AtomicBool::new(false),
             pace: Mutex::default(),
             left: Mutex::default(),
         }
@@ -123,7 +137,7 @@ impl<'a> Watch<'a> {
 
     /// Designs of all searches.
     fn searches(&self) -> f64 {
-        self.search as f64 * (self.passes - 1) as f64
+        self.search as f64 * self.searches as f64
     }
 
     /// Seconds that a range should take at most: what is counted of it is lost where bounds are left.
@@ -153,10 +167,32 @@ impl<'a> Watch<'a> {
         *pace = (Pace::default(), Some(Counting { since: self.spent(), before }));
     }
 
+    /// Begins a trial, if bounds are left where they do not pay: seconds that judging every design takes.
+    pub fn begin_trial(&self) -> Option<f64> {
+        let judging = self.seconds * self.count as f64;
+        matches!(self.leaving, Some(Leaving::WhereTheyDoNotPay)).then(|| {
+            self.trial.store((self.spent() + TRIAL * judging).to_bits(), Ordering::Relaxed);
+            judging
+        })
+    }
+
+    /// Is set when a trial has taken too long, or all is stopped.
+    pub fn trial_is_over(&self) -> &AtomicBool {
+        &self.trial_is_over
+    }
+
+    /// Looks whether a trial has taken too long.
+    pub fn look_at_trial(&self) {
+        let is_late = self.spent() > f64::from_bits(self.trial.load(Ordering::Relaxed));
+        if is_late || self.control.stop.load(Ordering::Relaxed) {
+            self.trial_is_over.store(true, Ordering::Relaxed);
+        }
+    }
+
     /// Looks how bounds get on, and stops them if they do not pay.
     pub fn look(&self) {
         let settled = f64::from_bits(self.settled.load(Ordering::Relaxed));
-        let all = (self.searches() + self.count as f64).max(1.0);
+        let all = (self.searches() + self.count as f64 * self.counts as f64).max(1.0);
         self.control.done.fetch_max(((settled / all) * self.search as f64) as u64, Ordering::Relaxed);
         let Some(leaving) = self.leaving else { return };
         if self.control.stop.load(Ordering::Relaxed) {
@@ -171,7 +207,7 @@ impl<'a> Watch<'a> {
         pace.note(time, own);
         let rest = all - settled;
         let whole = self.seconds * self.count as f64;
-        let judged = if counting.is_some() { own } else { 0.0 };
+        let judged = if counting.is_some() { own / self.counts as f64 } else { 0.0 };
         let judging = self.seconds * (self.count as f64 - judged);
         let forecast = Forecast { spent, settled: settled / all, bounds: pace.rest(time, own, rest, whole), judging };
         let leaves = rest > 0.0

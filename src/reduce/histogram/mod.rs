@@ -64,7 +64,7 @@ impl Histogram {
     }
 
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, reason = "the value is in range")]
-    fn count(&mut self, value: f64) {
+    pub(crate) fn count(&mut self, value: f64) {
         if value < self.from {
             self.below += 1;
         } else if value > self.to {
@@ -82,6 +82,15 @@ impl Histogram {
             }
             self.counts[bin] += 1;
         }
+    }
+
+    /// Adds counts that were made elsewhere: below, every bin, above.
+    pub fn add<N: Copy + Into<u64>>(&mut self, counts: &[N]) {
+        let (below, rest) = counts.split_first().expect("there is a count below");
+        let (above, bins) = rest.split_last().expect("there is a count above");
+        self.below += (*below).into();
+        self.above += (*above).into();
+        self.counts.iter_mut().zip(bins).for_each(|(count, &bin)| *count += bin.into());
     }
 
     /// Bins; the first row counts what lies below, the last what lies above.
@@ -115,7 +124,7 @@ impl Reducer for Histogram {
     }
 
     fn needs(report: &Report) -> Option<ReducerNeeds> {
-        (!report.histograms.is_empty()).then_some(ReducerNeeds::Designs("histograms in [report] ask for every feasible design"))
+        (!report.histograms.is_empty()).then_some(ReducerNeeds::Counts)
     }
 
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, reason = "the edges decide")]
@@ -171,11 +180,7 @@ impl Reducer for Histogram {
     }
 
     fn add_counts(&mut self, counts: &[u32]) {
-        let (below, rest) = counts.split_first().expect("there is a count below");
-        let (above, bins) = rest.split_last().expect("there is a count above");
-        self.below += u64::from(*below);
-        self.above += u64::from(*above);
-        self.counts.iter_mut().zip(bins).for_each(|(count, &bin)| *count += u64::from(bin));
+        self.add(counts);
     }
 
     fn miscounts(&self, other: &Self) -> Option<(&'static str, u64, u64)> {

@@ -32,11 +32,11 @@ const DENSE: u64 = 1 << 16;
 /// What a cell holds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cell {
-    /// Feasible designs met.
+    /// In a map of shares: feasible designs met.
     pub feasible: u64,
     /// Best key (less is better).
     key: f64,
-    /// The design that has it, the lowest index of equals.
+    /// In a map of the best: the design that has it, the lowest index of equals.
     pub index: u64,
 }
 
@@ -90,6 +90,11 @@ impl PartialEq for Map {
 }
 
 impl Cell {
+    /// Does a feasible design lie in it?
+    fn is_met(&self) -> bool {
+        self.feasible > 0 || self.index < u64::MAX
+    }
+
     fn take(&mut self, other: Self) {
         self.feasible += other.feasible;
         if other.key < self.key || (other.key == self.key && other.index < self.index) {
@@ -134,7 +139,18 @@ impl Map {
             Cells::All(cells) => cells.get(at as usize).copied(),
             Cells::Met(cells) => cells.get(&at).copied(),
         };
-        cell.filter(|cell| cell.feasible > 0)
+        cell.filter(Cell::is_met)
+    }
+
+    /// Is the best of a cell surely better than a design of this key, whose index is this one at least?
+    pub(crate) fn beats(&self, at: u64, key: f64, least_index: u64) -> bool {
+        self.cell(at).is_some_and(|cell| cell.key < key || cell.key == key && cell.index < least_index)
+    }
+
+    /// Adds feasible designs of a cell that were counted elsewhere, in a map of shares.
+    pub(crate) fn add_feasible(&mut self, at: u64, count: u64) {
+        // Every key is 0, and which design has it is not asked.
+        self.take(at, Cell { feasible: count, key: 0.0, index: u64::MAX });
     }
 
     /// The best value of a cell.
@@ -151,7 +167,7 @@ impl Reducer for Map {
     }
 
     fn needs(report: &Report) -> Option<ReducerNeeds> {
-        (!report.maps.is_empty()).then_some(ReducerNeeds::Designs("maps in [report] ask for the best of every cell"))
+        (!report.maps.is_empty()).then_some(ReducerNeeds::Counts)
     }
 
     fn absorb(&mut self, block: &Block<'_>) {
@@ -159,9 +175,14 @@ impl Reducer for Map {
         for lane in block.feasible() {
             let index = block.index(lane);
             let cell = designs.digit(self.y, index) * self.width + designs.digit(self.x, index);
-            let value = self.column.map_or(0.0, |column| block.values[column][lane]);
+            let Some(column) = self.column else {
+                self.add_feasible(cell, 1);
+                continue;
+            };
+            let value = block.values[column][lane];
             let key = if self.goal == Goal::Min { value } else { -value };
-            self.take(cell, Cell { feasible: 1, key: key + 0.0, index });
+            // Not counted: bounds may meet it more than once.
+            self.take(cell, Cell { feasible: 0, key: key + 0.0, index });
         }
         self.designs = Some(designs);
     }
@@ -174,9 +195,7 @@ impl Reducer for Map {
 
     fn merge(&mut self, other: Self) {
         match other.cells {
-            Cells::All(cells) => {
-                cells.into_iter().zip(0..).filter(|(cell, _)| cell.feasible > 0).for_each(|(cell, at)| self.take(at, cell))
-            }
+            Cells::All(cells) => cells.into_iter().zip(0..).filter(|(cell, _)| cell.is_met()).for_each(|(cell, at)| self.take(at, cell)),
             Cells::Met(cells) => cells.into_iter().for_each(|(at, cell)| self.take(at, cell)),
         }
         // Once most cells have been met a table is smaller than a map of them.
@@ -216,8 +235,7 @@ impl Reducer for Map {
 
     fn add_counts(&mut self, counts: &[u32]) {
         for (at, &count) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
-            // In a map of shares every key is 0, and which design has it is not asked.
-            self.take(at as u64, Cell { feasible: u64::from(count), key: 0.0, index: u64::MAX });
+            self.add_feasible(at as u64, count.into());
         }
     }
 

@@ -19,6 +19,8 @@ resultant_force_N = "min"
 mean_radius_mm = "min"
 [report]
 top = { by = "resultant_force_N", count = 5 }
+histograms = [{ of = "resultant_force_N", bins = 5 }]
+maps = [{ x = "mean_radius_mm", y = "slack_tension_N", value = "resultant_force_N" }]
 "#;
 
 #[test]
@@ -50,6 +52,8 @@ fn a_wrong_count_a_lost_point_and_another_extreme_are_noticed() {
         assert!(objection(&moved).contains("the extremes"));
     }
     assert!(objection(&|state| state.reported.top.clear()).contains("the best"));
+    assert!(objection(&|state| state.reported.histograms[0].above += 1).contains("histograms"));
+    assert!(objection(&|state| state.reported.maps.clear()).contains("maps"));
 }
 
 #[test]
@@ -67,6 +71,11 @@ fn a_certificate_that_does_not_add_up_is_noticed() {
         less.searches[at].1.evaluated -= 1;
         assert!(unaccounted(&plan, &less, designs, designs).is_some_and(|it| it.starts_with("the search for")));
     }
+    let mut less = good.clone();
+    less.tallies[0].1.evaluated += 1;
+    assert!(unaccounted(&plan, &less, designs, designs).is_some_and(|it| it.starts_with("the histogram of resultant_force_N settled")));
+    less.tallies.clear();
+    assert!(unaccounted(&plan, &less, designs, designs).is_some_and(|it| it.contains("tallies")));
     let mut fewer = good.clone();
     fewer.searches.pop();
     assert!(unaccounted(&plan, &fewer, designs, designs).is_some_and(|it| it.contains("searches")));

@@ -34,10 +34,16 @@ resultant_force_N = "min"
 mean_radius_mm = "min"
 [report]
 top = { by = "resultant_force_N", count = 5 }
+histograms = [{ of = "friction_margin", bins = 12 }]
+maps = [
+    { x = "mean_radius_mm", y = "groove_count", value = "resultant_force_N" },
+    { x = "slack_tension_N", y = "groove_angle_deg", best = "share" },
+]
 "#;
 
-/// Fractions of the bounds' work after which they are given up: at once, in the search for the front, for an extreme, in the count.
-const SHARES: [f64; 5] = [0.0, 0.1, 0.6, 0.87, 0.93];
+/// Fractions of the bounds' work after which they are given up: at once, in the search for the front, for an extreme, for the map, in the
+/// counts.
+const SHARES: [f64; 5] = [0.0, 0.05, 0.45, 0.65, 0.93];
 
 /// As if a thread took this many seconds for each design.
 fn taking(seconds: f64) -> Rule<'static> {
@@ -111,10 +117,11 @@ fn whenever_bounds_are_left_the_files_are_the_same() {
             }
         }
     }
-    // Seven passes: front, best, four extremes and the count.
-    assert!(phases[0].0.starts_with("front, 1 of 7") && phases[1].0.starts_with("front, 1 of 7"), "{phases:?}");
-    assert!(phases[2].0.ends_with(", 5 of 7") && phases[..3].iter().all(|it| !it.1), "{phases:?}");
-    assert_eq!(phases[4], ("count, 7 of 7".to_owned(), true), "what is counted is kept");
+    // Eight passes: front, best, four extremes, the best of a map's cells; and three counts together.
+    assert!(phases[0].0.starts_with("front, 1 of 8") && phases[1].0.starts_with("front, 1 of 8"), "{phases:?}");
+    assert!(phases[2].0.ends_with(", 5 of 8") && phases[..4].iter().all(|it| !it.1), "{phases:?}");
+    assert_eq!(phases[3].0, "map of resultant_force_N, 7 of 8", "{phases:?}");
+    assert_eq!(phases[4], ("counts, 8 of 8".to_owned(), true), "what is counted is kept");
 }
 
 #[test]
@@ -133,6 +140,21 @@ fn shards_that_leave_bounds_merge_to_the_same() {
 }
 
 #[test]
+fn shards_try_their_own_designs() {
+    let plan = Plan::new(parse(STUDY));
+    let pipeline = Pipeline::new(&plan, STUDY);
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    let mut tried = 0;
+    let state = pipeline.sharded_by(&mut Random::new(5), folder.path(), |_, options, checkpoint| {
+        // Judging takes so long that histograms and maps are worth any trial, and bounds are never left.
+        let swept = auto(&pipeline, options, Some(checkpoint), &Control::default(), &taking(1e3)).expect("the sweep ends");
+        tried += u32::from(matches!(swept.settler, Settler::Bounds(_)));
+    });
+    assert_eq!(difference(&reference(&pipeline), &state), None);
+    assert!(tried > 0, "no shard was settled by bounds");
+}
+
+#[test]
 fn a_run_that_left_bounds_is_resumed_by_any_method() {
     let plan = Plan::new(parse(STUDY));
     let pipeline = Pipeline::new(&plan, STUDY);
@@ -144,7 +166,8 @@ fn a_run_that_left_bounds_is_resumed_by_any_method() {
         let stopped = Control::default();
         let result = std::thread::scope(|scope| {
             scope.spawn(|| {
-                while stopped.settled_for().is_none_or(|it| !it.starts_with("count")) {
+                // Three counts are three tenths of the work.
+                while stopped.done.load(Ordering::Relaxed) < plan.designs() / 4 * 3 {
                     std::thread::yield_now();
                 }
                 stopped.stop.store(true, Ordering::Relaxed);
@@ -200,6 +223,16 @@ fn a_study_that_bounds_cannot_settle_is_judged() {
     let Auto { swept, settler, .. } = swept_as_if(1.1);
     assert!(matches!(&settler, Settler::Both(left) if left.forecast.bounds > left.forecast.judging), "{settler:?}");
     assert_eq!(difference(&reference(&pipeline), &swept.state), None);
+    // Where most of the work would be in a histogram, that is tried first.
+    let text = format!("{SLOW}histograms = [{{ of = \"peak_tooth_load_N\", bins = 1000 }}]\n");
+    let plan = Plan::new(parse(&text));
+    let pipeline = Pipeline::new(&plan, &text);
+    let rule = taking(2.0 * 1.1 / plan.designs() as f64);
+    let Auto { swept, settler, .. } = auto(&pipeline, &options, None, &Control::default(), &rule).expect("the sweep ends");
+    let Settler::Both(left) = settler else { panic!("bounds are not left: {settler:?}") };
+    assert_eq!((left.at.as_str(), left.counted), ("a trial of histograms and maps", 0));
+    assert!(left.forecast.bounds > left.forecast.judging, "{left:?}");
+    assert_eq!(difference(&reference(&pipeline), &swept.state), None);
     // Every design of such a short study is judged at once.
     let Auto { settler, .. } = swept_as_if(0.9);
     assert!(matches!(settler, Settler::EveryDesign), "{settler:?}");
@@ -211,7 +244,7 @@ fn a_device_goes_on_where_bounds_are_left() {
     let pipeline = Pipeline::new(&plan, STUDY);
     let device = crate::gpu::wrong(Wrong::default());
     let expected = reference(&pipeline);
-    for share in [0.1, 0.93] {
+    for share in [0.05, 0.93] {
         let rule = Rule { device: Some(&device), leaving: Leaving::After(share), ..taking(1.0) };
         let options = Settings { threads: 1, ..Settings::default() };
         let Auto { swept, settler, device } = auto(&pipeline, &options, None, &Control::default(), &rule).expect("the sweep ends");

@@ -14,7 +14,7 @@ use beltspace::bounds::{Certificate, refusal};
 use beltspace::error::Error;
 use beltspace::plan::Plan;
 use beltspace::reduce::State;
-use beltspace::study::{Quantity, Study};
+use beltspace::study::{Best, Quantity, Study};
 use beltspace::sweep::{Control, Settings};
 use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -185,6 +185,10 @@ const EVERY_FEATURE: &[&str] = &[
     "strict bound",
     "bounds on both sides",
     "top",
+    "histogram",
+    "histogram with a given range",
+    "map of the best",
+    "map of shares",
     "front of at least 20 points",
     "nothing feasible",
     "some feasible",
@@ -198,6 +202,15 @@ const EVERY_FEATURE: &[&str] = &[
     "count: products",
     "count: pairs",
     "count: evaluated",
+    "histogram: infeasible boxes",
+    "histogram: feasible boxes",
+    "histogram: products",
+    "histogram: pairs",
+    "histogram: evaluated",
+    "map: infeasible boxes",
+    "map: feasible boxes",
+    "map: products",
+    "map: evaluated",
     "search: infeasible boxes",
     "search: beaten boxes",
     "search: evaluated",
@@ -231,6 +244,11 @@ fn cover(draft: &Draft, plan: &Plan, state: &State, certificate: &Certificate, t
     note("strict bound", strict(true));
     note("bounds on both sides", study.constraints.iter().any(|it| it.low.is_some() && it.high.is_some()));
     note("top", study.report.top.is_some());
+    let report = &study.report;
+    note("histogram", !report.histograms.is_empty());
+    note("histogram with a given range", report.histograms.iter().any(|it| it.range.is_some()));
+    note("map of the best", report.maps.iter().any(|it| it.value != Best::Share));
+    note("map of shares", report.maps.iter().any(|it| it.value == Best::Share));
     note("front of at least 20 points", state.front.len() >= 20);
     let designs = plan.designs();
     note("nothing feasible", state.feasible == 0);
@@ -244,6 +262,14 @@ fn cover(draft: &Draft, plan: &Plan, state: &State, certificate: &Certificate, t
     note("count: products", count.products > 0);
     note("count: pairs", count.pairs > 0);
     note("count: evaluated", count.evaluated > 0);
+    for (what, it) in &certificate.tallies {
+        let what = if what.starts_with("histogram") { "histogram" } else { "map" };
+        note(&format!("{what}: infeasible boxes"), it.infeasible > 0);
+        note(&format!("{what}: feasible boxes"), it.feasible > 0);
+        note(&format!("{what}: products"), it.products > 0);
+        note(&format!("{what}: pairs"), it.pairs > 0);
+        note(&format!("{what}: evaluated"), it.evaluated > 0);
+    }
     for (_, it) in &certificate.searches {
         note("search: infeasible boxes", it.infeasible > 0);
         note("search: beaten boxes", it.beaten > 0);

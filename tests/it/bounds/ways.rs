@@ -8,6 +8,7 @@ use beltspace::error::{Error, Result as Outcome};
 use beltspace::files::Claim;
 use beltspace::plan::Plan;
 use beltspace::reduce::{State, Top};
+use beltspace::study::Best;
 use beltspace::sweep::{Control, Settings, Swept, sweep, sweep_by_bounds};
 use beltspace::tiles::Shard;
 use std::path::Path;
@@ -35,8 +36,20 @@ pub fn difference(expected: &State, found: &State) -> Option<String> {
     if best(expected) != best(found) {
         return Some(format!("the best are {:?}, not {:?}", best(expected), best(found)));
     }
-    let others = |state: &State| (state.reported.histograms.clone(), state.reported.maps.clone());
-    (others(expected) != others(found)).then(|| "histograms or maps differ".to_owned())
+    let (expected, found) = (&expected.reported, &found.reported);
+    if expected.histograms != found.histograms {
+        return Some(format!("the histograms are {:?}, not {:?}", expected.histograms, found.histograms));
+    }
+    if expected.maps.len() != found.maps.len() {
+        return Some(format!("there are {} maps, not {}", expected.maps.len(), found.maps.len()));
+    }
+    let differing = expected.maps.iter().zip(&found.maps).enumerate().find(|(_, (map, other))| map != other);
+    differing.map(|(number, (map, other))| {
+        let (width, height) = map.size();
+        let cell = (0..width * height).find(|&cell| map.cell(cell) != other.cell(cell));
+        let [own, other] = [map, other].map(|map| cell.and_then(|cell| map.cell(cell)));
+        format!("of the maps number {number} has {own:?} in cell {cell:?}, not {other:?}")
+    })
 }
 
 /// What a certificate does not account for.
@@ -52,8 +65,20 @@ pub fn unaccounted(plan: &Plan, certificate: &Certificate, counted: u64, searche
             return Some(format!("the search for {what} settled {sum} of {searched} designs: {it:?}"));
         }
     }
+    for (what, it) in &certificate.tallies {
+        let sum = it.infeasible + it.feasible + it.products + it.pairs + it.evaluated;
+        if sum != counted {
+            return Some(format!("the {what} settled {sum} of {counted} designs: {it:?}"));
+        }
+    }
+    let report = &plan.study.report;
+    let shares = report.maps.iter().filter(|map| map.value == Best::Share).count();
+    if certificate.tallies.len() != report.histograms.len() + shares {
+        return Some(format!("there are {} tallies", certificate.tallies.len()));
+    }
     let objectives = plan.study.objectives.len();
-    let searches = 2 * objectives + usize::from(objectives > 0) + usize::from(plan.study.report.top.is_some());
+    let best = usize::from(objectives > 0) + usize::from(report.top.is_some()) + report.maps.len() - shares;
+    let searches = 2 * objectives + best;
     (certificate.searches.len() != searches).then(|| format!("there are {} searches, not {searches}", certificate.searches.len()))
 }
 

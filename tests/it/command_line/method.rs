@@ -8,21 +8,11 @@ use std::sync::OnceLock;
 #[cfg(unix)]
 use std::time::{Duration, Instant};
 
-/// The lines of [`SMALL`] that need every design.
-const HISTOGRAM: &str = "histograms = [{ of = \"axial_force_N\", bins = 40 }]\n";
-const MAPS: &str = "maps = [\n    { x = \"band_thickness_mm\", y = \"groove_angle_deg\", value = \"axial_force_N\" },\n    \
-                    { x = \"band_thickness_mm\", y = \"band_count\", best = \"share\" },\n]\n";
-
-/// A study without them.
-fn for_bounds(study: &str) -> String {
-    changed(study, &[(HISTOGRAM, ""), (MAPS, "")])
-}
-
 /// The files of one undisturbed run of it, design by design.
 fn one_by_one() -> &'static Files {
     static FILES: OnceLock<Files> = OnceLock::new();
     FILES.get_or_init(|| {
-        let folder = folder_with("grid.toml", &for_bounds(SMALL));
+        let folder = folder_with("grid.toml", SMALL);
         ask(folder.path(), "sweep grid.toml --method exhaustive --out out").text();
         let run = json_of(&folder.path().join("out/run.json"));
         assert_eq!((&run["method"], &run["method_chosen"]), (&"exhaustive".into(), &"asked for".into()));
@@ -33,25 +23,29 @@ fn one_by_one() -> &'static Files {
 
 #[test]
 fn bounds_refuse_what_asks_for_every_design_and_say_what_to_do() {
-    let plain = for_bounds(SMALL);
-    let report = |line: &str| changed(&plain, &[("[report]\n", &format!("[report]\n{line}\n"))]);
-    let sampled = |line: &str| changed(&plain, &[("[design]\n", &format!("[sample]\n{line}\n[design]\n"))]);
+    let plain = &SMALL[..SMALL.find("maps = ").expect("it has maps")];
+    let report = |line: &str| changed(plain, &[("[report]\n", &format!("[report]\n{line}\n"))]);
+    let sampled = |line: &str| changed(plain, &[("[design]\n", &format!("[sample]\n{line}\n[design]\n"))]);
     let cases = "cases = [{ band_count = 8, traction = 0.3 }, { band_count = 9, traction = 0.4 }]";
     let cases = changed(
-        &plain,
+        plain,
         &[("band_count        = { from = 6, to = 14 }", cases), ("traction          = { from = 0.30, to = 0.50, count = 5 }\n", "")],
     );
     let folder = folder_with("small.toml", SMALL);
     let pulley = ask(folder.path(), "models pulley --study").text();
     let refused = [
-        ("histograms in [report]", report("histograms = [{ of = \"axial_force_N\", bins = 4 }]")),
-        ("maps in [report]", report("maps = [{ x = \"band_thickness_mm\", y = \"band_count\", best = \"share\" }]")),
         ("sample in [report]", report("sample = 100")),
         ("variants in [report]", changed(&report("variants = true"), &[("to = 0.50, count = 5", "to = 0.50, count = 2")])),
+        (
+            "a map in [report] has more than 1048576 cells",
+            changed(
+                &report("maps = [{ x = \"band_thickness_mm\", y = \"groove_angle_deg\", best = \"share\" }]"),
+                &[("to = 30, count = 13", "to = 30, count = 1025"), ("to = 0.30, count = 21", "to = 0.30, count = 1024")],
+            ),
+        ),
         ("[sample]", sampled("method = \"sobol\"\ncount = 1000")),
         ("cases in [design]", cases),
         ("pulley is no formula", pulley),
-        ("histograms in [report]", SMALL.to_owned()),
     ];
     for (thing, study) in refused {
         write(folder.path(), "refused.toml", &study);
@@ -62,7 +56,7 @@ fn bounds_refuse_what_asks_for_every_design_and_say_what_to_do() {
         assert!(!err.contains("panicked"), "{err}");
         assert_eq!(files(folder.path()), before, "{thing}: a refusal writes nothing");
     }
-    write(folder.path(), "grid.toml", &plain);
+    write(folder.path(), "grid.toml", SMALL);
     for (option, line) in [("--engine gpu", "--engine gpu"), ("--adapter llvmpipe", "--adapter llvmpipe")] {
         let err = ask(folder.path(), &format!("sweep grid.toml --method bounds {line} --out out")).refusal(2);
         assert!(err.contains("on the CPU") && err.contains(option) && err.contains("leave one of them out"), "{err}");
@@ -91,14 +85,23 @@ fn assert_certified(run: &serde_json::Value) {
         "largest stress_margin",
         "least band_count",
         "largest band_count",
+        "map of axial_force_N",
     ];
     assert_eq!(names, expected);
+    let tallies = certificate["tallies"].as_array().expect("there are tallies");
+    assert_eq!(
+        tallies.iter().map(|it| it["for"].as_str()).collect::<Vec<_>>(),
+        [Some("histogram of axial_force_N"), Some("map of feasible_share")]
+    );
+    for it in tallies {
+        assert_eq!((number(&it["designs"]), sum(it, &rules)), (designs, designs), "{it}");
+    }
     for it in searches {
         let settled = sum(it, &["in_infeasible_boxes", "in_beaten_boxes", "in_pairs_of_lists", "judged_in_f64"]);
         assert_eq!((number(&it["designs"]), settled), (designs, designs), "{it}");
     }
     for what in ["boxes", "evaluations"] {
-        let all = number(&count[what]) + searches.iter().map(|it| number(&it[what])).sum::<u64>();
+        let all = number(&count[what]) + searches.iter().chain(tallies).map(|it| number(&it[what])).sum::<u64>();
         assert_eq!(number(&certificate[what]), all, "{what}");
     }
     assert!(number(&certificate["compared_one_by_one"]) > 0, "{run}");
@@ -106,7 +109,7 @@ fn assert_certified(run: &serde_json::Value) {
 
 #[test]
 fn the_files_are_the_same_and_the_record_says_how_they_came_about() {
-    let folder = folder_with("grid.toml", &for_bounds(SMALL));
+    let folder = folder_with("grid.toml", SMALL);
     for options in ["--threads 1", "--threads 3 --engine cpu", "--threads 2 --tile 7"] {
         ask(folder.path(), &format!("sweep grid.toml --method bounds --out out --force {options}")).text();
         let out = folder.path().join("out");
@@ -119,8 +122,8 @@ fn the_files_are_the_same_and_the_record_says_how_they_came_about() {
 
 #[test]
 fn auto_says_why() {
-    let folder = folder_with("grid.toml", &for_bounds(SMALL));
-    write(folder.path(), "small.toml", SMALL);
+    let folder = folder_with("grid.toml", SMALL);
+    write(folder.path(), "sample.toml", &changed(SMALL, &[("[report]\n", "[report]\nsample = 100\n")]));
     let chosen = |line: &str| {
         ask(folder.path(), &format!("sweep {line} --out out --force")).text();
         let run = json_of(&folder.path().join("out/run.json"));
@@ -131,8 +134,8 @@ fn auto_says_why() {
     let small = ("exhaustive".to_owned(), "the study is small enough to judge every design".to_owned());
     assert_eq!(chosen("grid.toml"), small);
     assert_eq!(chosen("grid.toml --method auto"), small);
-    let (method, why) = chosen("small.toml");
-    assert!(method == "exhaustive" && why.starts_with("bounds cannot serve the study: histograms in [report]"), "{why}");
+    let (method, why) = chosen("sample.toml");
+    assert!(method == "exhaustive" && why.starts_with("bounds cannot serve the study: sample in [report]"), "{why}");
 }
 
 /// A drive of which bounds settle almost nothing, with this many friction values; judging it takes a second or two.
@@ -204,7 +207,7 @@ fn auto_begins_by_bounds_and_leaves_them_where_they_do_not_pay() {
 
 #[test]
 fn shards_by_either_method_merge_to_the_same_files() {
-    let folder = folder_with("grid.toml", &for_bounds(SMALL));
+    let folder = folder_with("grid.toml", SMALL);
     for methods in [["bounds"; 3], ["bounds", "exhaustive", "bounds"]] {
         let mut parts = Vec::new();
         for (at, method) in methods.iter().enumerate() {
@@ -228,7 +231,7 @@ fn shards_by_either_method_merge_to_the_same_files() {
 #[cfg(unix)]
 #[test]
 fn a_run_by_bounds_that_is_interrupted_goes_on_design_by_design() {
-    let folder = folder_with("large.toml", &for_bounds(&larger(41)));
+    let folder = folder_with("large.toml", &larger(41));
     ask(folder.path(), "sweep large.toml --method exhaustive --out plain").text();
     let manifest = folder.path().join("out/checkpoint/manifest.json");
     // Before the boxes comes a sample, of which nothing is kept: then once more, and later.

@@ -231,13 +231,12 @@ impl Draft {
             let goal = if random.chance(0.5) { format!(", goal = \"{}\"", goal(random)) } else { String::new() };
             self.report.push(format!("top = {{ by = \"{by}\", count = {count}{goal} }}"));
         }
-        let histograms = if self.for_bounds { 0 } else { random.pick(&[0, 0, 1, 2]) };
-        for _ in 0..histograms {
+        for _ in 0..random.pick(&[0, 0, 1, 2]) {
             let bins = random.pick(&[1, 7, 50]);
             self.histograms.push((self.draw(random, &quantities), bins, None));
         }
         let mut single: Vec<&str> = self.axes[0].iter().filter(|axis| axis.kind != "joint").map(|axis| axis.key.as_str()).collect();
-        if self.sample.is_none() && single.len() >= 2 && !self.for_bounds {
+        if self.sample.is_none() && single.len() >= 2 {
             let mut maps = Vec::new();
             for _ in 0..random.pick(&[0, 1, 1, 3]) {
                 random.shuffle(&mut single);
@@ -253,7 +252,7 @@ impl Draft {
                 self.report.push(format!("maps = [{}]", maps.join(", ")));
             }
         }
-        // Bounds cannot give one.
+        // Bounds cannot give a sample.
         if !self.for_bounds {
             match random.below(6) {
                 0 => self.report.push(format!("sample = {}", random.pick(&[1, 7, 100, 10_000]))),

@@ -1,0 +1,78 @@
+//! How long histograms and maps take by boxes, tried on a part of them.
+//!
+//! Where a histogram has many bins, or a map small cells, boxes settle little, and judging every design is faster. That does not show in
+//! the searches that come before.
+
+use super::cells::CellAxes;
+use super::open::all_open;
+use super::{Binned, BoundedStudy, BoxTally, SearchJob, Sought, Worker};
+use crate::bounds::axes::{Span, Spans};
+use crate::reduce::Reducers;
+use std::ops::Range;
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+impl BoundedStudy {
+    /// Expected seconds of one thread for all histograms and maps of the job's range, by a share of each; of what is counted, and not searched,
+    /// only the part `left` is to be done. What is tried is not kept. `None` if it was stopped.
+    pub fn try_tallies(&self, job: SearchJob<'_>, worker: Worker<'_>, share: f64, left: f64) -> Option<f64> {
+        let mut workers = [worker];
+        let mut scratch = job.reduction.start();
+        let mut expected = 0.0;
+        for sought in Self::sought(job.plan) {
+            let Sought::Cells(number) = sought else { continue };
+            let start = Instant::now();
+            let (parts, tried) = self.part_of_cells(self.maps[number], job.range, share);
+            self.search_boxes(job, sought, &parts, &mut workers, &mut scratch)?;
+            expected += start.elapsed().as_secs_f64() / tried;
+        }
+        for tally in Self::tallies(job.plan) {
+            let start = Instant::now();
+            let tried = self.try_tally(job, tally, share, &mut scratch)?;
+            expected += start.elapsed().as_secs_f64() / tried * left;
+        }
+        (!job.stop.load(Ordering::Relaxed)).then_some(expected)
+    }
+
+    /// Counts a part of a tally; returns how large a share it was. `None` if it was stopped.
+    #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share")]
+    fn try_tally(&self, job: SearchJob<'_>, tally: BoxTally, share: f64, scratch: &mut Reducers) -> Option<f64> {
+        let mut counter = self.counter(job.stop).telling(job.progress);
+        let open = all_open(&self.requirements, &self.axes);
+        match tally {
+            BoxTally::Histogram(number) => {
+                let mut binned = Binned::new(&self.histograms[number], &scratch.reported.histograms[number]);
+                let all = job.range.end - job.range.start;
+                let middle = job.range.start + all / 2;
+                let end = self.round(&(middle..job.range.end), (all as f64 * share) as u64);
+                for spans in self.axes.boxes(&(middle..end)) {
+                    counter.count_bins(&mut binned, &spans, &open)?;
+                }
+                Some((end - middle) as f64 / all as f64)
+            }
+            BoxTally::Map(number) => {
+                let (parts, tried) = self.part_of_cells(self.maps[number], job.range, share);
+                for spans in &parts {
+                    counter.count_cells(self.maps[number], spans, &open, &mut |_, _| ())?;
+                }
+                Some(tried)
+            }
+        }
+    }
+
+    /// Of the boxes of a range those parts that lie in about a share of the cells of a map, with all of their designs; and how large a share
+    /// of the range they are.
+    #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share")]
+    fn part_of_cells(&self, cells: CellAxes, range: &Range<u64>, share: f64) -> (Vec<Spans>, f64) {
+        let mut parts = self.axes.boxes(range);
+        let middle = |span: Span| {
+            let count = span.count();
+            let levels = ((count as f64 * share.sqrt()).round() as u64).clamp(1, count);
+            let low = span.low + ((count - levels) / 2) as u32;
+            Span { low, high: low + (levels - 1) as u32 }
+        };
+        parts.iter_mut().for_each(|part| cells.axes().into_iter().for_each(|axis| part[axis] = middle(part[axis])));
+        let tried: u64 = parts.iter().map(|part| self.axes.count(part)).sum();
+        (parts, tried as f64 / (range.end - range.start) as f64)
+    }
+}
