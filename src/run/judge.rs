@@ -59,6 +59,7 @@ pub fn record_of(why: String, settler: Settler) -> MethodRecord {
     let record = |name, certificate, left, why| MethodRecord { name, why, certificate, left };
     match settler {
         Settler::EveryDesign => record("exhaustive", None, None, why),
+        Settler::Tried(_) => record("exhaustive", None, None, format!("{why}; bounds would take longer for its histograms and maps")),
         Settler::Bounds(certificate) => record("bounds", Some(certificate), None, why),
         Settler::Both(left) => {
             let (spent, share, judging) = (left.forecast.spent, 100.0 * left.forecast.settled, left.forecast.judging);

@@ -36,6 +36,8 @@ pub struct Rule<'d> {
 pub enum Settler {
     /// Each was judged: so little was left to do that bounds were not begun.
     EveryDesign,
+    /// Each was judged: a trial forecast that bounds would take longer for histograms and maps alone.
+    Tried(Forecast),
     /// Bounds.
     Bounds(Certificate),
     /// Bounds, and then each of the others was judged.
@@ -106,6 +108,11 @@ pub fn sweep_auto(
     let leaving = Some((rule.leaving, rule.speed.of(1, options.threads)));
     let remains = match settle(job, &mut work, leaving)? {
         Settling::Done(state, certificate) => return Ok(done(state, Settler::Bounds(certificate), None)),
+        Settling::Tried(forecast) => {
+            control.judges(work.done.count());
+            let (state, device) = judge_rest(job, work, rule.device)?;
+            return Ok(done(state, Settler::Tried(forecast), device));
+        }
         Settling::Left(remains) => remains,
     };
     control.judges(work.done.count());

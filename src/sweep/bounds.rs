@@ -49,7 +49,7 @@ pub fn sweep_by_bounds(
     let designs = work.todo.count();
     match settle(job, &mut work, None)? {
         Settling::Done(state, certificate) => Ok((Swept { state, designs, time: start.elapsed() }, certificate)),
-        Settling::Left(_) => Err(stopped()),
+        Settling::Left(_) | Settling::Tried(_) => Err(stopped()),
     }
 }
 
@@ -129,6 +129,8 @@ pub fn try_bounds(plan: &Plan, threads: usize, time: Duration) -> Option<BoundsT
 pub(super) enum Settling {
     /// They settled every design.
     Done(State, Certificate),
+    /// Histograms and maps were tried, and judging every design is faster.
+    Tried(Forecast),
     /// They were left; what they counted and found is kept in the work.
     Left(Remains),
 }
@@ -193,7 +195,7 @@ fn settle_watched(
 ) -> Result<Settling> {
     let SweepJob { plan, options, control, .. } = job;
     if let Some(forecast) = tallies_are_poor(job, layout, whole, work.todo.count(), watch) {
-        return Ok(Settling::Left(Remains { forecast, at: "a trial of histograms and maps".to_owned(), counted: 0, found: None }));
+        return Ok(Settling::Tried(forecast));
     }
     let designs = work.todo.count();
     let mut certificate = Certificate::default();

@@ -443,6 +443,33 @@ fn a_front_that_is_there_already_or_has_nothing_is_not_drawn() {
 
 #[test]
 #[ignore = "drives the page in Chromium: cargo test --test it -- --ignored explore_page --test-threads 1"]
+fn an_input_that_varies_for_the_first_time_becomes_an_axis() {
+    let (_folder, file) = study_file(&SMALL.replace("[constraints]\n", "[constraints]\ntraction = { max = 0.32 }\n"));
+    let explored = Explored::new(&file, &[]);
+    let mut browser = open(&explored);
+    let axes = "beltspace.page.state.parallel.join()";
+    let drawn = "[...document.querySelectorAll('#parallel .axis-head')].length === beltspace.page.state.parallel.length";
+    let up_to = |browser: &mut Browser, most: &str| {
+        browser.evaluate(COUNT);
+        browser.evaluate(&format!("beltspace.change({{ 'constraints.traction.max': '{most}' }})"));
+        answered(browser);
+        browser.wait(drawn);
+        browser.text(axes)
+    };
+    // All designs of the front have a traction of 0.3; then some have 0.35.
+    let constant = browser.text(axes);
+    assert!(!constant.contains("traction"), "{constant}");
+    let varying = up_to(&mut browser, "0.37");
+    assert_eq!(varying, constant.replace("axial_force_N", "traction,axial_force_N"));
+    // An axis stays where it varies no more, and one that was taken away does not come back.
+    assert_eq!(up_to(&mut browser, "0.32"), varying);
+    browser.evaluate("beltspace.page.chooseColumns('parallel', beltspace.page.state.parallel.filter((it) => it !== 'traction'))");
+    assert_eq!(up_to(&mut browser, "0.42"), constant);
+    assert_eq!(browser.complaints, Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored explore_page --test-threads 1"]
 fn a_billion_designs_answer_coarsely_first() {
     let text = SMALL.replace("count = 7 }", "count = 1501 }").replace("step = 0.02", "count = 2001").replace("count = 5 }", "count = 41 }");
     let (_folder, file) = study_file(&text);

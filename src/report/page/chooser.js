@@ -90,6 +90,7 @@
 
   page.startChooser = () => {
     page.events.on("selection.chooser", () => page.schedule("chooser", update));
+    page.events.on("front.chooser", () => page.schedule("chooser", update));
     page.events.on("columns.chooser", () => page.schedule("chooser", update));
   };
 }

@@ -1,9 +1,12 @@
 // The state of the page: which columns are shown, what is brushed, the colour column, the current point.
 // Every view changes it through these functions only, and draws it.
 {
+  // Axes of the parallel plot, at most.
+  const MOST_AXES = 14;
   const state = {
     matrix: [], // names of the scatter matrix' columns
     parallel: [], // names of the axes, in order
+    leftOut: [], // names of inputs that were constant on every front so far, and so are no axes yet
     inverted: new Set(),
     colour: null,
     axes: new Map(), // name -> [low, high]
@@ -27,14 +30,23 @@
     const inputs = front.shown.filter((column) => column.role === "design");
     // Inputs that are constant on the front make useless axes; they are only in the chooser.
     const varied = inputs.filter((column) => !(column.low === column.high) || front.rows < 2);
+    state.leftOut = names(inputs.filter((column) => !varied.includes(column)));
     const judged = front.shown.filter((column) => ["objective", "constraint", "report"].includes(column.role));
-    state.parallel = [...new Set([...names(varied), ...names(judged)])].slice(0, 14);
+    state.parallel = [...new Set([...names(varied), ...names(judged)])].slice(0, MOST_AXES);
     state.inverted = new Set();
     state.colour = objectives[0] ?? state.parallel[0] ?? null;
     state.axes = new Map();
     state.cells = new Map();
     page.mask = new Uint8Array(front.rows).fill(1);
     page.selectedCount = front.rows;
+  };
+
+  // The axes that stay, and inputs that vary now for the first time: in their usual places, unless the user has put the axes in another order.
+  const withNewAxes = (kept, leftOut) => {
+    const isNew = (name) => leftOut.includes(name) && !kept.includes(name);
+    const usual = state.parallel.filter((name) => kept.includes(name) || isNew(name));
+    const isUsual = usual.filter((name) => kept.includes(name)).join() === kept.join();
+    return (isUsual ? usual : [...kept, ...usual.filter(isNew)]).slice(0, MOST_AXES);
   };
 
   // Another front is there: what is chosen and brushed stays, as far as it has such columns.
@@ -45,9 +57,14 @@
     const kept = { matrix: state.matrix.filter(known), parallel: state.parallel.filter(known), inverted: state.inverted, colour: state.colour, axes: state.axes, cells: state.cells };
     const columns = front.columns.map((column) => column.name).join();
     const isSame = columns === state.columns;
+    const { leftOut } = state;
     page.startState();
     state.columns = columns;
-    if (isSame) Object.assign(state, { matrix: kept.matrix, parallel: kept.parallel, colour: known(kept.colour) ? kept.colour : state.colour });
+    if (isSame) {
+      const parallel = withNewAxes(kept.parallel, leftOut);
+      Object.assign(state, { matrix: kept.matrix, parallel, colour: known(kept.colour) ? kept.colour : state.colour });
+      state.leftOut = state.leftOut.filter((name) => leftOut.includes(name));
+    }
     state.inverted = kept.inverted;
     for (const [name, range] of kept.axes) if (known(name) && state.parallel.concat(state.matrix).includes(name)) state.axes.set(name, range);
     for (const [key, cell] of kept.cells) if (state.matrix.includes(cell.x) && state.matrix.includes(cell.y)) state.cells.set(key, cell);
@@ -129,6 +146,8 @@
   // A brush that is no longer shown would select invisibly: it is removed with its axis or cell.
   page.chooseColumns = (which, names) => {
     state[which] = names;
+    // What was an axis once is the user's to bring back.
+    if (which === "parallel") state.leftOut = state.leftOut.filter((name) => !names.includes(name));
     const gone = (name) => !state.parallel.includes(name);
     let changed = false;
     for (const name of state.axes.keys()) if (gone(name)) changed = state.axes.delete(name) || changed;
