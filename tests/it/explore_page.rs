@@ -456,15 +456,15 @@ fn an_input_that_varies_for_the_first_time_becomes_an_axis() {
         browser.wait(drawn);
         browser.text(axes)
     };
-    // All designs of the front have a traction of 0.3; then some have 0.35.
+    // All designs of the front have a traction of 0.3, and thin bands; then some have 0.35, and thicker ones.
     let constant = browser.text(axes);
     assert!(!constant.contains("traction"), "{constant}");
     let varying = up_to(&mut browser, "0.37");
-    assert_eq!(varying, constant.replace("axial_force_N", "traction,axial_force_N"));
+    assert_eq!(varying, constant.replace("groove_angle_deg", "groove_angle_deg,band_thickness_mm,traction"));
     // An axis stays where it varies no more, and one that was taken away does not come back.
     assert_eq!(up_to(&mut browser, "0.32"), varying);
     browser.evaluate("beltspace.page.chooseColumns('parallel', beltspace.page.state.parallel.filter((it) => it !== 'traction'))");
-    assert_eq!(up_to(&mut browser, "0.42"), constant);
+    assert_eq!(up_to(&mut browser, "0.42"), varying.replace("traction,", ""));
     assert_eq!(browser.complaints, Vec::<String>::new());
 }
 
