@@ -22,7 +22,7 @@ FACTOR, SECONDS = 1.5, 1.0
 # About how many seconds judging every design of a study should take.
 LEAST, MOST = 0.3, 6.0
 DESIGNS = (1e5, 1e9)
-# Of a map, as a picture shows.
+# Cells of a map, at most: about as many as a picture shows.
 MOST_CELLS = 100_000
 # Of each model: evaluations per second of two cores, about; ranges of inputs (the last three words: whole numbers), what may be an objective, and bounds for constraints.
 WHOLE = True

@@ -89,7 +89,7 @@ impl std::ops::IndexMut<usize> for Spans {
 }
 
 impl Spans {
-    /// The same with some axes at the levels of one of their combinations, the last of them fastest.
+    /// The box with some of its axes at one level each: that of a combination, numbered with the last of these axes fastest.
     pub fn at(&self, axes: impl DoubleEndedIterator<Item = usize>, combination: u64) -> Self {
         let mut levels = *self;
         let mut rest = combination;

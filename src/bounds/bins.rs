@@ -70,7 +70,7 @@ impl<'a> Binned<'a> {
         first..=if high.is_nan() { self.edges.len() } else { self.place(high) }
     }
 
-    /// What a scenario must satisfy for the worst value to lie on the good side of what divides a place from the next one.
+    /// The requirement that the worst value lies on the good side of the edge between a place and the next one.
     fn divide(&self, place: usize) -> Requirement {
         let edge = self.edges[place];
         // The last edge itself is in the bin below it, any other in the bin above.
@@ -157,7 +157,7 @@ impl BoxCounter<'_> {
         worst
     }
 
-    /// Counts a box by place as pairs of two groups of axes, one time for every edge, if that takes much less than evaluating it.
+    /// Counts a box by place as pairs of two groups of axes, once for every edge, if that takes much less than evaluating it.
     fn count_pairs_by_place(
         &mut self,
         binned: &Binned<'_>,
@@ -177,7 +177,7 @@ impl BoxCounter<'_> {
         }
         let of_open = instances(self.requirements, open, self.axes);
         let all = self.pairs.count(&pairing, spans, &of_open, None);
-        // How many are on the good side of each edge, from one end to the other: below it, or above.
+        // How many lie on the good side of each edge.
         let mut good: Vec<u64> = Vec::with_capacity(edges + 1);
         for place in *places.start()..*places.end() {
             let requirement = binned.divide(place);
@@ -190,7 +190,7 @@ impl BoxCounter<'_> {
                 return Some(Vec::new());
             }
         }
-        // Of the larger ones each edge leaves more out, of the smaller ones fewer.
+        // Where higher is worse these are the designs below each edge, from none to all; else those above it, from all to none.
         let (mut counts, mut before) = (Vec::with_capacity(edges), if asked.higher_is_worse { 0 } else { all });
         for now in good.into_iter().chain([if asked.higher_is_worse { all } else { 0 }]) {
             counts.push(now.abs_diff(before));

@@ -76,7 +76,7 @@ impl BoxCounter<'_> {
         let Some(bearing) = self.bearing_on(cells.set(), spans, &open, inside)? else { return Some(()) };
         let (spans, each) = (bearing.spans, each * bearing.each);
         let (open, varying) = (&bearing.open[..], varying(&spans, self.axes));
-        // Axes of the map that decide nothing have the same in all of their cells.
+        // Along an axis of the map that nothing open depends on, all cells have the same count.
         let decisive = open.iter().fold(0, |all, item| all | self.requirements[item.requirement].asked.axis_set());
         let counted = reduce(&spans, !cells.set() | decisive, self.axes);
         let alike = self.axes.count(&spans) / self.axes.count(&counted);
@@ -114,8 +114,8 @@ impl BoxCounter<'_> {
         spans.halves(axis).iter().try_for_each(|part| self.count_cells_of(cells, part, open, each, bearing.inside, take))
     }
 
-    /// Counts all cells of a box at once as pairs of two groups of axes, the first of which has no axis of the map; false if that does not take
-    /// less than evaluating it.
+    /// Counts all cells of a box at once as pairs of two groups of axes, the first of which has no axis of the map; false if evaluating its
+    /// designs takes less.
     fn count_pairs_by_cell(
         &mut self,
         cells: CellAxes,

@@ -324,8 +324,8 @@ impl<'t> BoxCounter<'t> {
         Some(self.pairs.count(&pairing, spans, &instances, None))
     }
 
-    /// A box as pairs for open requirements, and for a number `besides` in so many scenarios, with what they cost; none of a set of axes is in
-    /// the first group.
+    /// How a box is made of pairs for its open requirements, and for a number besides them in so many scenarios; and what counting them
+    /// costs. No unwanted axis is in the first group.
     pub(super) fn pairing(
         &self,
         unwanted: u64,

@@ -11,13 +11,16 @@ mod box_columns;
 mod cells;
 mod chain;
 mod count;
+mod leaf;
 mod open;
 mod pairing;
 mod pairs;
 mod queue;
 mod requirement;
+mod rival;
 mod search;
 mod sorted;
+mod sought;
 mod staircase;
 mod study_tape;
 #[cfg(test)]
@@ -26,7 +29,8 @@ mod trial;
 pub(crate) mod yields;
 
 pub use count::{BoxCounter, Settled};
-pub use search::{Searched, Sought, Worker};
+pub use search::Worker;
+pub use sought::{Searched, Sought};
 pub use yields::{EnclosureProblem, YieldBounds, YieldInput, enclose_yield};
 
 use crate::parallel::on_threads;
@@ -42,8 +46,9 @@ use open::{Bounded, Decided, all_open};
 use pairing::Pairing;
 use pairs::{BestPair, Pairs};
 use requirement::{NumberSource, Test, requirements};
-use search::{BoxSearch, ObjectiveProduct, QuotientLimit, Target};
+use search::BoxSearch;
 use serde_json::{Value, json};
+use sought::{ObjectiveProduct, QuotientLimit, Target};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use study_tape::{Merit, StudyTape};

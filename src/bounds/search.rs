@@ -1,20 +1,23 @@
-//! The designs that a result names, found without looking at all: the front, the best by one quantity or of every cell of a map, the extremes.
+//! The designs that a result names, found without looking at all: the front, the best by one quantity, the best of every cell of a map, the
+//! extremes.
 //!
 //! Boxes wait in batches. Of each the best that it might hold is bounded: if no design of it can be on the front any more (or among the
 //! best, or an extreme), it is settled; a small one is judged by the ordinary engine; the others are cut in two, and one promising
 //! design of each is judged at once, so that the next batch meets better rivals.
 
 use super::axes::{AXES, Axes, Span, Spans};
-use super::bounder::{AskedNumber, Bounder, Bounds, Wanted};
+use super::bounder::{Bounder, Bounds, Wanted};
 use super::cells::CellAxes;
 use super::count::varying;
-use super::open::{BetterEnds, Bounded, Decided, add_pull, all_open, decide, each_scenario, is_infeasible, over, scenarios, worst_of};
+use super::open::{BetterEnds, Bounded, Decided, add_pull, all_open, decide, is_infeasible, over, worst_of};
 use super::queue::{Queue, Waiting};
-use super::staircase::{Fit, Staircase};
+use super::rival::Rival;
+use super::sought::{ObjectiveProduct, QuotientLimit, Searched, Sought, Target};
+use super::staircase::Fit;
 use crate::models::Effort;
 use crate::parallel::on_threads;
 use crate::plan::Plan;
-use crate::reduce::{Extreme, Front, KeyRule, MOST_OBJECTIVES, Map, Reducers, Reduction};
+use crate::reduce::{MOST_OBJECTIVES, Reducers, Reduction};
 use crate::screen::CpuEngine;
 use std::ops::Range;
 use std::sync::Arc;
@@ -22,116 +25,14 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Boxes that are looked at before what was found in them counts against others: more where it takes longer to sort that in.
 const BATCH: std::ops::RangeInclusive<usize> = 1 << 10..=1 << 14;
-/// A box is judged by the engine where that takes about as long as a few more bounds: seconds, by what the model says.
-const LEAF: f64 = 5e-5;
-const ROW: f64 = 3e-4;
-/// Seconds that a design takes besides, and a place of a row.
-const DESIGN: f64 = 7e-9;
-const PLACE: f64 = 7e-8;
-/// And a scenario of a row.
-const SCENARIO: f64 = 2e-7;
-/// A box of a map's cells is judged by the engine where that takes so many seconds a cell, about as long as a few bounds of each; but not if it
-/// takes more than this in all, as one bound may settle many cells.
-const CELL: f64 = 5e-4;
-const CELLS: f64 = 1e-2;
 /// Designs of a box above which single ones are tried: smaller ones are soon judged whole.
 const WORTH_A_TRY: u64 = 1 << 22;
 /// Most boxes that a thread takes at a time.
 const SHARE: usize = 64;
 /// A batch this small is one of the first: of what is tried there, the whole row is.
 const FIRST_BATCHES: usize = 64;
-/// Most scenarios of a leaf that are listed: of more, all are looked at.
-const CHOSEN: u64 = 1 << 12;
-/// Most cells of a map that are looked at to settle a box of several.
-const LOOKED_AT: u64 = 64;
 /// More than rounding can make of a product of a few numbers.
 const OUTWARD: f64 = 1.0 + 256.0 * f64::EPSILON;
-
-/// What is searched for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Sought {
-    /// The Pareto front.
-    Front,
-    /// The best by one quantity.
-    Top,
-    /// The best of every cell of the map with this number.
-    Cells(usize),
-    /// The least (or largest) worst value of an objective.
-    Extreme {
-        /// Number of the objective.
-        objective: usize,
-        /// The largest?
-        largest: bool,
-    },
-}
-
-/// A number whose worst value is bounded, and how.
-#[derive(Debug)]
-pub struct Target {
-    /// The number, worse in the direction of its goal.
-    pub asked: AskedNumber,
-    /// What it is compared by.
-    pub rule: KeyRule,
-    /// Is it an extreme that is sought at its bad end?
-    pub at_the_bad_end: bool,
-    /// What limits it through a number that it shares factors with.
-    pub limits: Vec<QuotientLimit>,
-}
-
-/// A requirement that limits a number through their quotient, without the factors that cancel.
-#[derive(Debug)]
-pub struct QuotientLimit {
-    /// The quotient, of the better over the worse.
-    pub quotient: AskedNumber,
-    /// What the requirement is about.
-    pub limited: AskedNumber,
-    /// Its bound, times what takes the quotient from SI to the units of both.
-    pub bound: f64,
-}
-
-/// The product of both objectives, without the factors that cancel: larger where better.
-#[derive(Debug)]
-pub struct ObjectiveProduct {
-    /// In SI.
-    pub asked: AskedNumber,
-    /// What takes it to the units of both.
-    pub unit: f64,
-    /// Which objectives are to be large.
-    pub largest: [bool; 2],
-}
-
-/// How the designs of a search were settled.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Searched {
-    /// In boxes that surely violate a requirement.
-    pub infeasible: u64,
-    /// In boxes that cannot hold what is sought.
-    pub beaten: u64,
-    /// In boxes of two groups of axes.
-    pub pairs: u64,
-    /// Judged in f64.
-    pub evaluated: u64,
-    /// Boxes looked at.
-    pub boxes: u64,
-    /// Designs judged in f64, those that were tried as rivals among them.
-    pub evaluations: u64,
-}
-
-impl Searched {
-    /// All designs that were settled.
-    pub fn designs(&self) -> u64 {
-        self.infeasible + self.beaten + self.pairs + self.evaluated
-    }
-
-    fn add(&mut self, other: &Self) {
-        self.infeasible += other.infeasible;
-        self.beaten += other.beaten;
-        self.pairs += other.pairs;
-        self.evaluated += other.evaluated;
-        self.boxes += other.boxes;
-        self.evaluations += other.evaluations;
-    }
-}
 
 /// What came of a box.
 enum Fate {
@@ -185,16 +86,6 @@ pub struct Worker<'t> {
     pub bounder: Bounder<'t>,
     /// Judges designs.
     pub engine: CpuEngine<'t>,
-}
-
-/// The best so far, while a batch is looked at.
-enum Rival<'a> {
-    Front(&'a Front, Option<Staircase>),
-    /// Key and index of the last of the best K, once there are K.
-    Top(Option<(f64, u64)>),
-    /// The best of every cell so far, and its axes.
-    Cells(&'a Map, CellAxes),
-    Extreme(Option<Extreme>),
 }
 
 /// What the bounds of all that is open and sought say of a box.
@@ -257,18 +148,7 @@ impl BoxSearch<'_> {
     /// Looks at a batch of boxes on all threads; returns their parts.
     fn look_at(&self, batch: &[Waiting], workers: &mut [Worker<'_>], found: &mut Reducers) -> (Vec<Waiting>, Searched) {
         let known = found.front.points().clone();
-        let rival = match self.sought {
-            Sought::Front => {
-                let points = found.front.points();
-                let staircase = self.product.as_ref().map(|product| Staircase::new(points, product.largest));
-                Rival::Front(&found.front, staircase)
-            }
-            Sought::Top => Rival::Top(found.reported.top.first_mut().and_then(crate::reduce::Top::worst)),
-            Sought::Cells(number) => Rival::Cells(&found.reported.maps[number], self.cells.expect("the map has axes")),
-            Sought::Extreme { objective, largest } => {
-                Rival::Extreme(if largest { found.extremes.largest[objective] } else { found.extremes.least[objective] })
-            }
-        };
+        let rival = Rival::new(self, found);
         // Threads take boxes a share at a time, each starting with what is known: it drops most of what it judges there and then.
         let shares: Vec<&[Waiting]> = batch.chunks((batch.len() / (8 * workers.len())).clamp(1, SHARE)).collect();
         let taken = AtomicUsize::new(0);
@@ -395,11 +275,11 @@ impl BoxSearch<'_> {
                     }
                 }
             }
-            // What another design of the box makes superfluous need not be looked at.
             if let Some(cells) = self.cells {
                 // Every cell has a best of its own.
                 view.ends.keep(cells.set());
             }
+            // What another design of the box makes superfluous need not be looked at.
             let left = if self.sought == Sought::Top { now.spans } else { view.ends.collapse(&now.spans, self.axes) };
             if left == now.spans {
                 return self.leaf_or_cut(now, &view);
@@ -421,7 +301,7 @@ impl BoxSearch<'_> {
             };
         }
         let hopes = &hopes[..self.targets.len()];
-        if self.is_beaten(hopes, &waiting.spans, rival) {
+        if rival.beats(self, hopes, &waiting.spans) {
             return true;
         }
         self.fit(hopes, rival, &waiting.spans, bounder).is_some_and(|(fit, _)| fit == Fit::None)
@@ -449,7 +329,7 @@ impl BoxSearch<'_> {
                 *hope = self.limited(target, limit, *hope, bounds.most, bounder, &now.spans);
             }
         }
-        if self.is_beaten(&hopes[..self.targets.len()], &now.spans, rival) {
+        if rival.beats(self, &hopes[..self.targets.len()], &now.spans) {
             return true;
         }
         match self.fit(&hopes[..self.targets.len()], rival, &now.spans, bounder) {
@@ -470,51 +350,8 @@ impl BoxSearch<'_> {
         false
     }
 
-    /// Seconds that it takes to judge designs in some of the scenarios.
-    fn time(&self, rows: f64, designs: f64, chosen: u64) -> f64 {
-        let share = |all: u64| (chosen as f64 / all as f64).min(1.0);
-        let prepare = self.effort.prepare * share(self.plan.slow_scenarios.count());
-        let finish = self.effort.finish * share(self.plan.scenarios());
-        rows * (prepare + chosen as f64 * SCENARIO) + designs * (finish + DESIGN)
-    }
-
-    /// How many scenarios of a leaf are looked at, at most.
-    fn chosen_count(&self, waiting: &Waiting) -> u64 {
-        let targets = self.targets.iter().zip(&waiting.covers).map(|(target, cover)| scenarios(cover, &target.asked, self.axes));
-        let open = waiting.open.iter().map(|item| scenarios(&item.cover, &self.requirements[item.requirement].asked, self.axes));
-        let chosen = targets.chain(open).fold(0, u64::saturating_add);
-        if chosen > CHOSEN { self.plan.scenarios() } else { chosen.min(self.plan.scenarios()) }
-    }
-
-    /// The scenarios, slow and fast, that decide about the designs of a box: in which what is sought may be worst, or what is open be
-    /// violated. None where it may be any.
-    fn chosen(&self, waiting: &Waiting) -> Vec<(u64, u64)> {
-        if self.chosen_count(waiting) == self.plan.scenarios() {
-            return Vec::new();
-        }
-        let mut chosen = Vec::new();
-        let mut choose = |cover: &[Spans], asked: &AskedNumber| {
-            each_scenario(cover, asked, self.axes, |scenario| {
-                let index = self.axes.scenario_index(&scenario);
-                chosen.push((self.plan.slow_scenarios.index_of(index), self.plan.fast_scenarios.index_of(index)));
-            });
-        };
-        self.targets.iter().zip(&waiting.covers).for_each(|(target, cover)| choose(cover, &target.asked));
-        waiting.open.iter().for_each(|item| choose(&item.cover, &self.requirements[item.requirement].asked));
-        chosen.sort_unstable();
-        chosen.dedup();
-        chosen
-    }
-
     fn leaf_or_cut(&self, now: Waiting, view: &BoxView) -> Fate {
-        let size = self.axes.count(&now.spans);
-        let places: u64 =
-            self.axes.steps.iter().zip(&now.spans.0).filter(|(step, _)| **step < self.row).map(|(_, span)| span.count()).product();
-        let rows = (size / places) as f64;
-        let time = self.time(rows, size as f64, self.chosen_count(&now)) + places as f64 * PLACE;
-        // A single row has nothing in common with others that bounds could use.
-        let of_cells = self.cells.map_or(0.0, |cells| (cells.count(&now.spans) as f64 * CELL).min(CELLS));
-        if size == 1 || time <= (if rows > 1.0 { LEAF } else { ROW }).max(self.bounding).max(of_cells) {
+        if self.is_leaf(&now) {
             return Fate::Leaf(now);
         }
         let axis = self.axis_to_cut(&now.spans, &view.pull);
@@ -543,34 +380,6 @@ impl BoxSearch<'_> {
             view.ends.narrow(&target.asked, it, target.at_the_bad_end, !target.rule.has_steps() || target.at_the_bad_end);
             view.agree(it, target.at_the_bad_end, self.axes.designs);
         })
-    }
-
-    /// Can no design of a box be what is sought, given the best that it may have?
-    fn is_beaten(&self, hopes: &[f64], spans: &Spans, rival: &Rival<'_>) -> bool {
-        let least_index = self.axes.least_index(spans);
-        match rival {
-            Rival::Front(front, _) => {
-                let mut keys = [0.0; MOST_OBJECTIVES];
-                for ((key, hope), target) in keys.iter_mut().zip(hopes).zip(&self.targets) {
-                    *key = target.rule.key(*hope);
-                }
-                let keys = &keys[..hopes.len()];
-                !keys.iter().any(|key| key.is_nan()) && front.beats_from(keys, least_index)
-            }
-            Rival::Top(last) => {
-                let key = self.targets[0].rule.key(hopes[0]);
-                last.is_some_and(|(worst, index)| worst < key || worst == key && index < least_index)
-            }
-            Rival::Cells(map, cells) => {
-                let key = self.targets[0].rule.key(hopes[0]);
-                cells.count(spans) <= LOOKED_AT && cells.of(spans).all(|cell| map.beats(cell, key, least_index))
-            }
-            Rival::Extreme(held) => held.is_some_and(|held| {
-                let Sought::Extreme { largest, .. } = self.sought else { return false };
-                let beyond = if largest { held.value > hopes[0] } else { held.value < hopes[0] };
-                beyond || held.value == hopes[0] && held.index < least_index
-            }),
-        }
     }
 
     /// The axis along which what is open and what is sought differ most.

@@ -13,8 +13,8 @@ use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 impl BoundedStudy {
-    /// Expected seconds of one thread for all histograms and maps of the job's range, by a share of each; of what is counted, and not searched,
-    /// only the part `left` is to be done. What is tried is not kept. `None` if it was stopped.
+    /// Expected seconds of one thread for all histograms and maps of the job's range, by a share of each. Of what is counted only the part
+    /// `left` is to be done; what is searched is searched again. What is tried is not kept. `None` if it was stopped.
     pub fn try_tallies(&self, job: SearchJob<'_>, worker: Worker<'_>, share: f64, left: f64) -> Option<f64> {
         let mut workers = [worker];
         let mut scratch = job.reduction.start();
@@ -74,5 +74,39 @@ impl BoundedStudy {
         parts.iter_mut().for_each(|part| cells.axes().into_iter().for_each(|axis| part[axis] = middle(part[axis])));
         let tried: u64 = parts.iter().map(|part| self.axes.count(part)).sum();
         (parts, tried as f64 / (range.end - range.start) as f64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::bounds::BoundedStudy;
+    use crate::plan::Plan;
+    use crate::study::study_of;
+
+    #[test]
+    fn what_is_tried_lies_in_the_range_and_is_the_share_that_is_told() {
+        let text = "[design]\npower_kW = { from = 1, to = 3, count = 9 }\nspeed_rpm = { from = 1000, to = 4000, count = 16 }\n\
+                    friction_limit = { from = 0.2, to = 0.5, count = 5 }\n[objectives]\nfriction_margin = \"max\"\n[report]\n\
+                    maps = [{ x = \"speed_rpm\", y = \"friction_limit\", best = \"share\" }]\n";
+        let plan = Plan::new(study_of(&crate::models::find("pulley-load").expect("it is a model"), text).expect("the study is right"));
+        let layout = BoundedStudy::new(&plan).expect("bounds serve it");
+        let designs = plan.designs();
+        for range in [0..designs, 0..designs / 4, designs / 2..designs, 7..designs / 3, 700..701] {
+            for share in [1.0, 0.25, 1e-3] {
+                let (parts, told) = layout.part_of_cells(layout.maps[0], &range, share);
+                let positions: Vec<u64> = parts
+                    .iter()
+                    .flat_map(|part| {
+                        let (rows, places) = layout.axes.rows(part, plan.fast.count());
+                        rows.into_iter().flat_map(move |row| places.clone().into_iter().map(move |place| (row, place)))
+                    })
+                    .map(|(row, place)| row * plan.fast.count() + place)
+                    .collect();
+                assert!(positions.iter().all(|position| range.contains(position)), "{range:?}: {positions:?}");
+                assert_eq!(told, positions.len() as f64 / (range.end - range.start) as f64, "{range:?}, {share}");
+                assert!(share < 1.0 || told == 1.0, "{range:?}: {told}");
+                assert!(share > 0.1 || told < 0.5 || range.end - range.start < designs / 4, "{range:?}: {told}");
+            }
+        }
     }
 }

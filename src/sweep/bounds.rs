@@ -58,7 +58,7 @@ pub fn sweep_by_bounds(
 pub enum BoundsTrial {
     /// They settled every design, in so many seconds.
     Finished(f64),
-    /// They settled this fraction of their work in so many seconds.
+    /// They settled this fraction of their work in so many seconds, or less if a trial of histograms and maps was slower.
     Begun {
         /// Fraction of the work, from 0 to 1.
         settled: f64,

@@ -1,0 +1,73 @@
+//! When a box is judged by the ordinary engine, and in which scenarios.
+
+use super::axes::Spans;
+use super::bounder::AskedNumber;
+use super::open::{each_scenario, scenarios};
+use super::queue::Waiting;
+use super::search::BoxSearch;
+
+/// A box is judged by the engine where that takes about as long as a few more bounds: seconds, by what the model says.
+const LEAF: f64 = 5e-5;
+const ROW: f64 = 3e-4;
+/// Seconds that a design takes besides, and a place of a row.
+const DESIGN: f64 = 7e-9;
+const PLACE: f64 = 7e-8;
+/// And a scenario of a row.
+const SCENARIO: f64 = 2e-7;
+/// A box of a map's cells is judged by the engine where that takes at most so many seconds a cell, about as long as a few bounds of each,
+/// and at most so many in all: one bound may settle many cells.
+const CELL: f64 = 5e-4;
+const CELLS: f64 = 1e-2;
+/// Most scenarios of a leaf that are listed: of more, all are looked at.
+const CHOSEN: u64 = 1 << 12;
+
+impl BoxSearch<'_> {
+    /// Is a box judged whole? Bounds of its parts would take about as long.
+    pub(super) fn is_leaf(&self, waiting: &Waiting) -> bool {
+        let size = self.axes.count(&waiting.spans);
+        let places: u64 =
+            self.axes.steps.iter().zip(&waiting.spans.0).filter(|(step, _)| **step < self.row).map(|(_, span)| span.count()).product();
+        let rows = (size / places) as f64;
+        let time = self.time(rows, size as f64, self.chosen_count(waiting)) + places as f64 * PLACE;
+        // A single row has nothing in common with others that bounds could use.
+        let own = if rows > 1.0 { LEAF } else { ROW };
+        let of_cells = self.cells.map_or(0.0, |cells| (cells.count(&waiting.spans) as f64 * CELL).min(CELLS));
+        size == 1 || time <= own.max(self.bounding).max(of_cells)
+    }
+
+    /// Seconds that it takes to judge designs in some of the scenarios.
+    fn time(&self, rows: f64, designs: f64, chosen: u64) -> f64 {
+        let share = |all: u64| (chosen as f64 / all as f64).min(1.0);
+        let prepare = self.effort.prepare * share(self.plan.slow_scenarios.count());
+        let finish = self.effort.finish * share(self.plan.scenarios());
+        rows * (prepare + chosen as f64 * SCENARIO) + designs * (finish + DESIGN)
+    }
+
+    /// How many scenarios of a leaf are looked at, at most.
+    fn chosen_count(&self, waiting: &Waiting) -> u64 {
+        let targets = self.targets.iter().zip(&waiting.covers).map(|(target, cover)| scenarios(cover, &target.asked, self.axes));
+        let open = waiting.open.iter().map(|item| scenarios(&item.cover, &self.requirements[item.requirement].asked, self.axes));
+        let chosen = targets.chain(open).fold(0, u64::saturating_add);
+        if chosen > CHOSEN { self.plan.scenarios() } else { chosen.min(self.plan.scenarios()) }
+    }
+
+    /// The scenarios, slow and fast, that decide about the designs of a box: in which what is sought may be worst, or what is open be
+    /// violated. None where it may be any.
+    pub(super) fn chosen(&self, waiting: &Waiting) -> Vec<(u64, u64)> {
+        if self.chosen_count(waiting) == self.plan.scenarios() {
+            return Vec::new();
+        }
+        let mut chosen = Vec::new();
+        let mut choose = |cover: &[Spans], asked: &AskedNumber| {
+            each_scenario(cover, asked, self.axes, |scenario| {
+                let index = self.axes.scenario_index(&scenario);
+                chosen.push((self.plan.slow_scenarios.index_of(index), self.plan.fast_scenarios.index_of(index)));
+            });
+        };
+        self.targets.iter().zip(&waiting.covers).for_each(|(target, cover)| choose(cover, &target.asked));
+        waiting.open.iter().for_each(|item| choose(&item.cover, &self.requirements[item.requirement].asked));
+        chosen.sort_unstable();
+        chosen.dedup();
+        chosen
+    }
+}
