@@ -173,13 +173,13 @@ impl BoundedStudy {
         let open = all_open(&self.requirements, &self.axes);
         match tally {
             BoxTally::Histogram(number) => {
-                let histogram = &mut into.histograms[number];
-                let mut binned = Binned::new(&self.histograms[number], histogram);
+                let mut binned = Binned::new(&self.histograms[number], &into.histograms[number]);
                 for spans in self.axes.boxes(range) {
                     counter.count_bins(&mut binned, &spans, &open)?;
                 }
-                histogram.add(&binned.counts);
-                Some(binned.counts.iter().sum())
+                let counts = binned.counts;
+                into.histograms[number].add(&counts);
+                Some(counts.iter().sum())
             }
             BoxTally::Map(number) => {
                 let mut total = 0;

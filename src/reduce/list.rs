@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::plan::Plan;
 #[cfg(feature = "pictures")]
 use crate::reading::Folder;
-use crate::screen::Block;
+use crate::screen::{Block, SortedRow};
 use crate::study::{Report, Study};
 use crate::table::Table;
 use serde::{Deserialize, Serialize};
@@ -48,6 +48,16 @@ macro_rules! reducers {
             /// Takes in a block.
             pub fn absorb(&mut self, block: &Block<'_>) {
                 $(self.$field.iter_mut().for_each(|it| it.absorb(block));)*
+            }
+
+            /// Takes in designs of a row in their order.
+            pub fn absorb_row(&mut self, row: &mut SortedRow<'_>) {
+                $(self.$field.iter_mut().for_each(|it| it.absorb_row(row));)*
+            }
+
+            /// Ends rows that came in their order.
+            pub fn end_rows(&mut self) {
+                $(self.$field.iter_mut().for_each(Reducer::end_rows);)*
             }
 
             /// Takes in a block of designs that were counted elsewhere.

@@ -76,11 +76,6 @@ impl Reduction {
         &self.rules
     }
 
-    /// Is nothing asked for but the number of feasible designs, the front and the extremes?
-    pub fn is_front_only(&self) -> bool {
-        self.reported.is_empty()
-    }
-
     /// Reducers that have seen nothing.
     pub fn start(&self) -> Reducers {
         self.start_after(Points::default())

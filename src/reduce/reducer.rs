@@ -14,7 +14,7 @@ use crate::error::Result;
 use crate::plan::Plan;
 #[cfg(feature = "pictures")]
 use crate::reading::Folder;
-use crate::screen::Block;
+use crate::screen::{Block, SortedRow};
 use crate::study::{Report, Study};
 use crate::table::Table;
 #[cfg(feature = "pictures")]
@@ -129,6 +129,14 @@ pub trait Reducer: Clone + Sized {
 
     /// Takes in a block. The order of blocks, and who takes in which, must not show in the end.
     fn absorb(&mut self, block: &Block<'_>);
+
+    /// Takes in designs of a row in their order. Whoever keeps what the order tells at once need not look at each of them.
+    fn absorb_row(&mut self, row: &mut SortedRow<'_>) {
+        self.absorb(&row.as_block());
+    }
+
+    /// Ends rows that came in their order: what is shared by several of them may have been put off till here.
+    fn end_rows(&mut self) {}
 
     /// Takes in a block of designs that are counted elsewhere, by a device or by bounds, and may come more than once, see [`Reducer::add_counts`].
     fn absorb_counted(&mut self, block: &Block<'_>) {

@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::plan::Plan;
 #[cfg(feature = "pictures")]
 use crate::reading::{Folder, designs};
-use crate::screen::Block;
+use crate::screen::{Block, SortedRow};
 use crate::study::{Goal, Report, Study};
 use crate::table::csv;
 use serde::{Deserialize, Serialize};
@@ -20,7 +20,7 @@ const FILE: &str = "top.csv";
 ///
 /// Invariant: `best` holds at most `2 * count` designs, and once `count` have been seen, every design of the answer is among
 /// them and none worse than `worst_kept` can be part of it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Top {
     /// Where its values are among those of a block; none where it was read from a checkpoint.
     #[serde(skip)]
@@ -30,6 +30,12 @@ pub struct Top {
     /// Key (less is better) and index.
     best: Vec<(f64, u64)>,
     worst_kept: f64,
+}
+
+impl PartialEq for Top {
+    fn eq(&self, other: &Self) -> bool {
+        (self.goal, self.count) == (other.goal, other.count) && self.sorted() == other.sorted()
+    }
 }
 
 impl Top {
@@ -63,9 +69,13 @@ impl Top {
 
     /// The design indices, best first, ties by index.
     pub fn indices(&self) -> Vec<u64> {
-        let mut sorted = self.clone();
-        sorted.shrink();
-        sorted.best.into_iter().map(|(_, index)| index).collect()
+        self.sorted().into_iter().map(|(_, index)| index).collect()
+    }
+
+    fn sorted(&self) -> Vec<(f64, u64)> {
+        let mut own = self.clone();
+        own.shrink();
+        own.best
     }
 }
 
@@ -88,6 +98,24 @@ impl Reducer for Top {
             if alive != 0 && key <= self.worst_kept {
                 self.push(key + 0.0, block.index(lane));
             }
+        }
+    }
+
+    fn absorb_row(&mut self, row: &mut SortedRow<'_>) {
+        let column = self.column.expect("a list that takes in rows was made for a plan");
+        let Some((first, last)) = row.ends(column) else { return self.absorb(&row.as_block()) };
+        let sign = if self.goal == Goal::Min { 1.0 } else { -1.0 };
+        let (count, from_first) = (row.count(), sign * first <= sign * last);
+        if sign * (if from_first { first } else { last }) > self.worst_kept {
+            return;
+        }
+        for step in 0..count {
+            let place = if from_first { step } else { count - 1 - step };
+            let key = sign * row.values(column)[place];
+            if key > self.worst_kept {
+                break;
+            }
+            self.push(key + 0.0, row.index(place));
         }
     }
 

@@ -16,6 +16,7 @@ mod tally;
 mod turned_list;
 
 pub use cpu::CpuEngine;
+pub use ordered::{SortedDesigns, SortedRow};
 pub use tables::{BLOCK, Tables};
 pub use tally::Tally;
 pub(crate) use tally::sample;

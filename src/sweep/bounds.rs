@@ -3,7 +3,7 @@
 //! A range counts as done when it is counted; the search comes first and covers all of it, so that whatever a checkpoint holds is as
 //! complete as that of a sweep design by design, and either may go on with the other's.
 
-use super::costs::Forecast;
+use super::costs::{Forecast, ranges_for_trial};
 use super::watch::{Leaving, OFTEN, Teller, Watch};
 use super::{Control, Settings, SweepJob, SweepWork, Swept};
 use crate::bounds::{BoundedStudy, BoxCounter, BoxTally, Certificate, SearchJob, Settled, Worker, in_words, refusal};
@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::parallel::{on_threads, with_beside};
 use crate::plan::Plan;
 use crate::reduce::{Reducers, Reduction, State};
-use crate::screen::{CpuEngine, Tables, Tally};
+use crate::screen::{CpuEngine, Tables};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -80,16 +80,7 @@ impl BoundsTrial {
 /// Sweeps a plan by bounds for so long at most, to see how they get on; nothing is kept. `None` if they cannot serve it or fail.
 pub fn try_bounds(plan: &Plan, threads: usize, time: Duration) -> Option<BoundsTrial> {
     let tables = Tables::new(plan);
-    let report = &plan.study.report;
-    let ranges = match report.histograms.iter().map(|spec| spec.range).collect::<Option<Vec<_>>>() {
-        Some(given) => given,
-        // The sample may take longer than the trial, which then tells less.
-        None if plan.seconds_per_design() * plan.study.model.sample as f64 / threads as f64 > time.as_secs_f64() => {
-            vec![(0.0, 1.0); report.histograms.len()]
-        }
-        None => Tally::new(plan, &tables, threads).histogram_ranges(plan),
-    };
-    let reduction = Reduction::new(plan, &ranges);
+    let reduction = Reduction::new(plan, &ranges_for_trial(plan, &tables, threads, time));
     let settings = Settings { threads, ..Settings::default() };
     let layout = BoundedStudy::new(plan)?;
     let (control, over, half_over) = (Control::default(), AtomicBool::new(false), AtomicBool::new(false));

@@ -6,7 +6,7 @@ use crate::models::Effort;
 use crate::parallel::on_threads;
 use crate::plan::Plan;
 use crate::reduce::{Points, Reducers, Reduction};
-use crate::screen::{CpuEngine, Tables};
+use crate::screen::{CpuEngine, Tables, Tally};
 use std::time::{Duration, Instant};
 
 /// Seconds above which a single design is not tried.
@@ -58,7 +58,14 @@ impl Speed {
         if prepare + finish > LONGEST {
             return Self::told(plan);
         }
-        let (tables, reduction) = (Tables::new(plan), Reduction::new(plan, &vec![(0.0, 1.0); plan.study.report.histograms.len()]));
+        let tables = Tables::new(plan);
+        // How many edges a row crosses is most of what a histogram takes where designs are not counted one by one.
+        let ranges = if tables.has_ordered_rows() {
+            ranges_for_trial(plan, &tables, threads, time)
+        } else {
+            vec![(0.0, 1.0); plan.study.report.histograms.len()]
+        };
+        let reduction = Reduction::new(plan, &ranges);
         let known = if tables.has_ordered_rows() {
             // A sweep starts with such a front too.
             let (options, control) = (Settings { threads, ..Settings::default() }, Control::default());
@@ -88,6 +95,18 @@ impl Speed {
     /// How it is known, in words.
     pub fn how(&self) -> &'static str {
         if self.measured { "measured over a moment" } else { "by what the model usually takes" }
+    }
+}
+
+/// Ranges of histograms for a trial of so long: those of a sweep, unless its sample alone took longer. Any serve then, but tell less.
+pub(super) fn ranges_for_trial(plan: &Plan, tables: &Tables, threads: usize, time: Duration) -> Vec<(f64, f64)> {
+    let histograms = &plan.study.report.histograms;
+    match histograms.iter().map(|spec| spec.range).collect() {
+        Some(given) => given,
+        None if plan.seconds_per_design() * plan.study.model.sample as f64 / threads as f64 > time.as_secs_f64() => {
+            vec![(0.0, 1.0); histograms.len()]
+        }
+        None => Tally::new(plan, tables, threads).histogram_ranges(plan),
     }
 }
 

@@ -9,13 +9,16 @@ use crate::error::Result;
 use crate::plan::{Plan, worst_end};
 #[cfg(feature = "pictures")]
 use crate::reading::Folder;
-use crate::screen::Block;
+use crate::screen::{Block, SortedRow};
 use crate::study::{Report, Study};
 use crate::table::csv;
 use crate::table::{Data, Table, TableColumn};
 use serde::{Deserialize, Serialize};
 #[cfg(feature = "pictures")]
 use serde_json::{Map, Value};
+
+/// Designs that are counted one by one in about the time that the place of an edge among them takes.
+const EDGE: usize = 12;
 
 /// Counts per bin. Bin `i` of `n` holds `edge(i) <= value < edge(i + 1)`; the last one also its upper edge.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -33,9 +36,9 @@ pub struct Histogram {
     /// Where its values are among those of a block; none where it was read from a checkpoint.
     #[serde(skip)]
     column: Option<usize>,
-    /// Every [`Histogram::edge`], once it is needed often.
+    /// What a value must be below to lie at each place but the last, once that is needed often: see [`Histogram::limit`].
     #[serde(skip)]
-    edges: Vec<f64>,
+    limits: Vec<f64>,
 }
 
 impl PartialEq for Histogram {
@@ -48,7 +51,7 @@ impl PartialEq for Histogram {
 impl Histogram {
     /// Empty bins over a range that is not empty; `column` is where the values are among those of a block.
     pub fn new((from, to): (f64, f64), bins: usize, column: usize) -> Self {
-        Self { from, to, counts: vec![0; bins], below: 0, above: 0, column: Some(column), edges: Vec::new() }
+        Self { from, to, counts: vec![0; bins], below: 0, above: 0, column: Some(column), limits: Vec::new() }
     }
 
     /// Lower edge of a bin, or the upper edge of the last.
@@ -63,25 +66,70 @@ impl Histogram {
         }
     }
 
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, reason = "the value is in range")]
-    pub(crate) fn count(&mut self, value: f64) {
-        if value < self.from {
-            self.below += 1;
-        } else if value > self.to {
-            self.above += 1;
-        } else {
-            let bins = self.counts.len();
-            let guess = ((value - self.from) / (self.to - self.from) * bins as f64) as usize;
-            let mut bin = guess.min(bins - 1);
-            // The guess rounds; the edges decide.
-            while bin > 0 && value < self.edge(bin) {
-                bin -= 1;
-            }
-            while bin + 1 < bins && value >= self.edge(bin + 1) {
-                bin += 1;
-            }
-            self.counts[bin] += 1;
+    /// What a value must be below to lie at a place, see [`Histogram::place`]: the bin's upper edge, and of the last bin the number after it.
+    fn limit(&self, place: usize) -> f64 {
+        if place == self.counts.len() { self.to.next_up() } else { self.edge(place) }
+    }
+
+    fn find_limits(&mut self) {
+        if self.limits.is_empty() {
+            self.limits = (0..=self.counts.len()).map(|place| self.limit(place)).collect();
         }
+    }
+
+    /// Where a value lies: 0 below the first bin, then bin by bin, and above the last one.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, reason = "the value is in range")]
+    pub(crate) fn place(&self, value: f64) -> usize {
+        let bins = self.counts.len();
+        if value < self.from {
+            return 0;
+        }
+        if value > self.to {
+            return bins + 1;
+        }
+        let guess = ((value - self.from) / (self.to - self.from) * bins as f64) as usize;
+        let mut bin = guess.min(bins - 1);
+        // The guess rounds; the edges decide.
+        while bin > 0 && value < self.edge(bin) {
+            bin -= 1;
+        }
+        while bin + 1 < bins && value >= self.edge(bin + 1) {
+            bin += 1;
+        }
+        bin + 1
+    }
+
+    /// Adds designs whose values lie at a place.
+    fn add_at(&mut self, place: usize, count: u64) {
+        *match place.checked_sub(1) {
+            None => &mut self.below,
+            Some(bin) => self.counts.get_mut(bin).unwrap_or(&mut self.above),
+        } += count;
+    }
+
+    /// Counts values one by one.
+    #[inline]
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, reason = "the edges decide")]
+    fn count(&mut self, values: impl Iterator<Item = f64>) {
+        self.find_limits();
+        let bins = self.counts.len();
+        let (from, per_unit) = (self.from, bins as f64 / (self.to - self.from));
+        // Neighbours often have one value, above all where values are whole numbers: those are counted by runs.
+        let (mut last, mut run, mut bin) = (f64::NAN, 0, 0);
+        for value in values {
+            if value == last {
+                run += 1;
+                continue;
+            }
+            let guess = (((value - from) * per_unit) as usize).min(bins - 1);
+            if value >= self.limits[guess] && value < self.limits[guess + 1] {
+                self.counts[bin] += run;
+                (last, run, bin) = (value, 1, guess);
+            } else {
+                self.add_at(self.place(value), 1);
+            }
+        }
+        self.counts[bin] += run;
     }
 
     /// Adds counts that were made elsewhere: below, every bin, above.
@@ -127,33 +175,28 @@ impl Reducer for Histogram {
         (!report.histograms.is_empty()).then_some(ReducerNeeds::Counts)
     }
 
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, reason = "the edges decide")]
     fn absorb(&mut self, block: &Block<'_>) {
         let column = self.column.expect("a histogram that takes in blocks was made for a plan");
-        let bins = self.counts.len();
-        if self.edges.is_empty() {
-            self.edges = (0..=bins).map(|bin| self.edge(bin)).collect();
+        let designs = block.alive.iter().zip(&block.values[column]);
+        self.count(designs.filter(|(alive, _)| **alive != 0).map(|(_, &value)| value));
+    }
+
+    fn absorb_row(&mut self, row: &mut SortedRow<'_>) {
+        let column = self.column.expect("a histogram that takes in rows was made for a plan");
+        let Some((first, last)) = row.ends(column) else { return self.count(row.values(column).iter().copied()) };
+        let (low, high) = (self.place(first.min(last)), self.place(first.max(last)));
+        if (high - low) * EDGE > row.count() {
+            return self.count(row.values(column).iter().copied());
         }
-        let (from, per_unit) = (self.from, bins as f64 / (self.to - self.from));
-        // Neighbours often have one value, above all where values are whole numbers: those are counted by runs.
-        let (mut last, mut run, mut place) = (f64::NAN, 0, 0);
-        for (&alive, &value) in block.alive.iter().zip(&block.values[column]) {
-            if alive == 0 {
-                continue;
-            }
-            if value == last {
-                run += 1;
-                continue;
-            }
-            let guess = (((value - from) * per_unit) as usize).min(bins - 1);
-            if value >= self.edges[guess] && value < self.edges[guess + 1] {
-                self.counts[place] += run;
-                (last, run, place) = (value, 1, guess);
-            } else {
-                self.count(value);
-            }
-        }
-        self.counts[place] += run;
+        self.find_limits();
+        let limits = std::mem::take(&mut self.limits);
+        let (mut place, mut below) = (low, 0);
+        row.count_below(column, &limits[low..high], |next| {
+            self.add_at(place, (next - below) as u64);
+            (place, below) = (place + 1, next);
+        });
+        self.add_at(high, (row.count() - below) as u64);
+        self.limits = limits;
     }
 
     fn absorb_counted(&mut self, _block: &Block<'_>) {}
@@ -224,16 +267,25 @@ mod tests {
     #[test]
     fn edges_decide_and_what_is_outside_is_counted() {
         let mut histogram = Histogram::new((0.1, 0.7), 6, 0);
-        for bin in 0..=6 {
-            histogram.count(histogram.edge(bin));
-            histogram.count(histogram.edge(bin).next_down());
-        }
-        histogram.count(0.7f64.next_up());
+        let edges: Vec<f64> = (0..=6).map(|bin| histogram.edge(bin)).collect();
+        histogram.count(edges.iter().flat_map(|edge| [*edge, edge.next_down()]).chain([0.7f64.next_up()]));
         let wide = Histogram::new((-1.7e308, 1.7e308), 4, 0);
         let edges = [0, 1, 2, 3, 4].map(|bin| wide.edge(bin));
         let near = edges.iter().zip([-1.7e308, -0.85e308, 0.0, 0.85e308, 1.7e308]).all(|(a, b)| (a - b).abs() <= 1e-15 * b.abs());
         assert!(near && edges[0] == wide.from && edges[4] == wide.to, "{edges:?}");
         assert_eq!(histogram.counts, [2, 2, 2, 2, 2, 3]);
         assert_eq!((histogram.below, histogram.above), (1, 1));
+    }
+
+    #[test]
+    fn a_value_lies_beyond_the_edges_below_it() {
+        for (range, bins) in [((0.1, 0.7), 6), ((-1.7e308, 1.7e308), 5), ((0.0, f64::from_bits(3)), 4)] {
+            let histogram = Histogram::new(range, bins, 0);
+            let edges: Vec<f64> = (0..=bins).map(|bin| histogram.edge(bin)).collect();
+            for value in edges.iter().flat_map(|&edge| [edge.next_down(), edge, edge.next_up()]) {
+                let passed = edges[..bins].iter().filter(|edge| value >= **edge).count() + usize::from(value > edges[bins]);
+                assert_eq!(histogram.place(value), passed, "{value:e} in {range:?}");
+            }
+        }
     }
 }

@@ -17,7 +17,7 @@ use crate::error::Result;
 use crate::plan::Plan;
 #[cfg(feature = "pictures")]
 use crate::reading::Folder;
-use crate::screen::Block;
+use crate::screen::{Block, SortedRow};
 use crate::space::Product;
 use crate::study::{Best, Goal, MapSpec, Report, Study};
 use serde::{Deserialize, Serialize};
@@ -79,6 +79,9 @@ pub struct Map {
     /// The grid that the cells are of; none where it was read from a checkpoint.
     #[serde(skip)]
     designs: Option<Product>,
+    /// Where the designs of a row lie, once whole rows come.
+    #[serde(skip)]
+    lanes: Option<LaneCells>,
     cells: Cells,
 }
 
@@ -89,10 +92,32 @@ impl PartialEq for Map {
     }
 }
 
+/// Where the designs of a row lie.
+#[derive(Clone, Debug)]
+struct LaneCells {
+    /// What each lane adds to the row's cell; empty where all designs of a row lie in one.
+    cells: Vec<u32>,
+    /// In a map of shares: the cell of the last rows, and how many feasible designs each of their lanes has had.
+    row_cell: u64,
+    counts: Vec<u64>,
+}
+
 impl Cell {
     /// Does a feasible design lie in it?
     fn is_met(&self) -> bool {
         self.feasible > 0 || self.index < u64::MAX
+    }
+
+    /// Adds feasible designs, in a map of shares: every key is 0, and which design has it is not asked.
+    fn add(&mut self, count: u64) {
+        self.feasible += count;
+        self.key = 0.0;
+    }
+
+    /// Is its best, if it has one, surely better than a design of this key, whose index is this one at least?
+    #[inline]
+    fn beats(&self, key: f64, least_index: u64) -> bool {
+        self.key < key || self.key == key && self.index < least_index
     }
 
     fn take(&mut self, other: Self) {
@@ -113,7 +138,7 @@ impl Map {
         };
         let cells =
             if width * height <= DENSE { Cells::All(vec![EMPTY; (width * height) as usize]) } else { Cells::Met(HashMap::default()) };
-        Self { goal, width, height, x: spec.x, y: spec.y, column, designs: Some(plan.space.designs.clone()), cells }
+        Self { goal, width, height, x: spec.x, y: spec.y, column, designs: Some(plan.space.designs.clone()), lanes: None, cells }
     }
 
     /// The best key of every cell, infinite where there is none: less is better.
@@ -144,13 +169,58 @@ impl Map {
 
     /// Is the best of a cell surely better than a design of this key, whose index is this one at least?
     pub(crate) fn beats(&self, at: u64, key: f64, least_index: u64) -> bool {
-        self.cell(at).is_some_and(|cell| cell.key < key || cell.key == key && cell.index < least_index)
+        self.cell(at).is_some_and(|cell| cell.beats(key, least_index))
     }
 
     /// Adds feasible designs of a cell that were counted elsewhere, in a map of shares.
     pub(crate) fn add_feasible(&mut self, at: u64, count: u64) {
-        // Every key is 0, and which design has it is not asked.
-        self.take(at, Cell { feasible: count, key: 0.0, index: u64::MAX });
+        match &mut self.cells {
+            Cells::All(cells) => cells[at as usize].add(count),
+            Cells::Met(cells) => cells.entry(at).or_insert(EMPTY).add(count),
+        }
+    }
+
+    /// The key of a value: less is better.
+    fn key(&self, value: f64) -> f64 {
+        (if self.goal == Goal::Min { value } else { -value }) + 0.0
+    }
+
+    /// The cell of a design; of parts of its index, what they add to it.
+    fn cell_of(&self, index: u64) -> u64 {
+        let designs = self.designs.as_ref().expect("a map that takes in designs was made for a plan");
+        designs.digit(self.y, index) * self.width + designs.digit(self.x, index)
+    }
+
+    /// Where the designs of a row lie: the same in every row but for the row's own cell.
+    fn lane_cells(&self, row: &SortedRow<'_>) -> LaneCells {
+        let mut cells: Vec<u32> = row.offsets().map(|offset| self.cell_of(offset) as u32).collect();
+        if cells.iter().all(|&cell| cell == 0) {
+            cells.clear();
+        }
+        LaneCells { row_cell: 0, counts: vec![0; if self.column.is_none() { cells.len() } else { 0 }], cells }
+    }
+
+    /// Adds the feasible designs that each lane has had to their cells.
+    fn add_lanes(&mut self, lanes: &mut LaneCells) {
+        for (count, &cell) in lanes.counts.iter_mut().zip(&lanes.cells).filter(|(count, _)| **count > 0) {
+            self.add_feasible(lanes.row_cell + u64::from(cell), *count);
+            *count = 0;
+        }
+    }
+
+    /// Takes in designs of a row that lie in one cell. The best of them is at an end, if they have an order.
+    fn absorb_one_cell(&mut self, row: &mut SortedRow<'_>, at: u64) {
+        let Some(column) = self.column else { return self.add_feasible(at, row.count() as u64) };
+        let best = row.ends(column).map(|(first, last)| self.key(first).min(self.key(last)));
+        if best.is_some_and(|best| self.beats(at, best, row.row_index())) {
+            return;
+        }
+        for place in 0..row.count() {
+            let key = self.key(row.values(column)[place]);
+            if best.is_none_or(|best| key == best) {
+                self.take(at, Cell { feasible: 0, key, index: row.index(place) });
+            }
+        }
     }
 
     /// The best value of a cell.
@@ -171,20 +241,54 @@ impl Reducer for Map {
     }
 
     fn absorb(&mut self, block: &Block<'_>) {
-        let designs = self.designs.take().expect("a map that takes in blocks was made for a plan");
         for lane in block.feasible() {
             let index = block.index(lane);
-            let cell = designs.digit(self.y, index) * self.width + designs.digit(self.x, index);
+            let cell = self.cell_of(index);
             let Some(column) = self.column else {
                 self.add_feasible(cell, 1);
                 continue;
             };
-            let value = block.values[column][lane];
-            let key = if self.goal == Goal::Min { value } else { -value };
             // Not counted: bounds may meet it more than once.
-            self.take(cell, Cell { feasible: 0, key: key + 0.0, index });
+            let key = self.key(block.values[column][lane]);
+            self.take(cell, Cell { feasible: 0, key, index });
         }
-        self.designs = Some(designs);
+    }
+
+    fn absorb_row(&mut self, row: &mut SortedRow<'_>) {
+        let row_cell = self.cell_of(row.row_index());
+        let mut lanes = self.lanes.take().unwrap_or_else(|| self.lane_cells(row));
+        if lanes.cells.is_empty() {
+            self.absorb_one_cell(row, row_cell);
+        } else if let Some(column) = self.column {
+            let (least_index, designs) = (row.row_index(), row.designs(column));
+            let sign = if self.goal == Goal::Min { 1.0 } else { -1.0 };
+            let take = |cell: &mut Cell, (lane, value): (u16, f64)| {
+                let key = sign * value + 0.0;
+                if !cell.beats(key, least_index) {
+                    cell.take(Cell { feasible: 0, key, index: designs.index(lane) });
+                }
+            };
+            let all = designs.lanes.iter().copied().zip(designs.values.iter().copied());
+            let with_cells = all.map(|it| (row_cell + u64::from(lanes.cells[usize::from(it.0)]), it));
+            match &mut self.cells {
+                Cells::All(cells) => with_cells.for_each(|(at, it)| take(&mut cells[at as usize], it)),
+                Cells::Met(cells) => with_cells.for_each(|(at, it)| take(cells.entry(at).or_insert(EMPTY), it)),
+            }
+        } else {
+            if lanes.row_cell != row_cell {
+                self.add_lanes(&mut lanes);
+                lanes.row_cell = row_cell;
+            }
+            row.count_lanes(&mut lanes.counts);
+        }
+        self.lanes = Some(lanes);
+    }
+
+    fn end_rows(&mut self) {
+        if let Some(mut lanes) = self.lanes.take() {
+            self.add_lanes(&mut lanes);
+            self.lanes = Some(lanes);
+        }
     }
 
     fn absorb_counted(&mut self, block: &Block<'_>) {

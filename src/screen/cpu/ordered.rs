@@ -1,4 +1,4 @@
-//! Judging whole rows whose designs stand in one order, where only the front is asked for.
+//! Judging whole rows whose designs stand in one order.
 
 use super::CpuEngine;
 use super::row::{holds, judge_row_values};
@@ -9,40 +9,43 @@ use std::ops::Range;
 
 impl CpuEngine<'_> {
     /// Judges the designs at `positions` for reducers; returns what [`CpuEngine::screen`] does. Whole rows whose designs stand in one order
-    /// are judged at once where only the front is asked for.
+    /// are judged at once.
     pub fn screen_for(&mut self, positions: Range<u64>, reduction: &Reduction, reducers: &mut Reducers) -> u64 {
         let width = self.plan.fast.count();
-        let mut position = positions.start;
+        let (first, last) = (positions.start.next_multiple_of(width), positions.end / width * width);
+        if self.tables.ordered.is_none() || first >= last {
+            return self.screen(positions, |block| reduction.absorb(reducers, block));
+        }
+        let mut position = self.screen(positions.start..first, |block| reduction.absorb(reducers, block));
+        if position == first {
+            position = self.screen_whole_rows(first / width..last / width, reduction, reducers);
+            reducers.reported.end_rows();
+        }
+        if position < last {
+            return position;
+        }
+        self.screen(last..positions.end, |block| reduction.absorb(reducers, block))
+    }
+
+    /// The same for whole rows, each at once where that can be done.
+    fn screen_whole_rows(&mut self, rows: Range<u64>, reduction: &Reduction, reducers: &mut Reducers) -> u64 {
+        let width = self.plan.fast.count();
+        let mut row = rows.start;
         self.ahead = width;
-        if reduction.is_front_only() && self.tables.ordered.is_some() {
-            let first = position.next_multiple_of(width);
-            let last = positions.end / width;
-            if first / width < last {
-                position = self.screen(position..first, |block| reduction.absorb(reducers, block));
-                while position >= first && position < last * width {
-                    if self.stopped() {
-                        return position;
-                    }
-                    position += self.judge_run(position / width..last, reduction, reducers) * width;
-                    if position == last * width {
-                        break;
-                    }
-                    if !self.enter_row(position / width) {
-                        return position;
-                    }
-                    let judged = if self.judge_ordered(reduction, reducers) {
-                        position + width
-                    } else {
-                        self.screen(position..position + width, |block| reduction.absorb(reducers, block))
-                    };
-                    if judged < position + width {
-                        return judged;
-                    }
-                    position = judged;
+        while row < rows.end && !self.stopped() {
+            row += self.judge_run(row..rows.end, reduction, reducers);
+            if row == rows.end || !self.enter_row(row) {
+                break;
+            }
+            if !self.judge_ordered(reduction, reducers) {
+                let judged = self.screen(row * width..(row + 1) * width, |block| reduction.absorb(reducers, block));
+                if judged < (row + 1) * width {
+                    return judged;
                 }
             }
+            row += 1;
         }
-        self.screen(position..positions.end, |block| reduction.absorb(reducers, block))
+        row * width
     }
 
     /// Judges the current row at once; false if that cannot be done.

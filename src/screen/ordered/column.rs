@@ -14,6 +14,8 @@ pub(in crate::screen) struct SortedColumn {
     /// The numbers, the least first, and the designs that have them.
     pub(super) values: Vec<f64>,
     pub(super) lanes: Vec<u16>,
+    /// The numbers lane by lane.
+    pub(super) by_lane: Vec<f64>,
     /// How many numbers are below the lower edge of each of as many even steps from the least to the largest, and at last all of them;
     /// steps per number.
     below: Vec<u16>,
@@ -61,6 +63,8 @@ impl SortedColumn {
         if !members.iter().all(|(value, _)| value.is_finite()) {
             return None;
         }
+        let mut by_lane = vec![0.0; members.len()];
+        members.iter().for_each(|&(value, lane)| by_lane[usize::from(lane)] = value);
         members.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (values, lanes): (Vec<f64>, _) = members.into_iter().unzip();
         let ends = (*values.first()?, *values.last()?);
@@ -77,7 +81,7 @@ impl SortedColumn {
         }
         below.push(values.len() as u16);
         let plateaus = (values.partition_point(|&value| value <= ends.0), values.partition_point(|&value| value < ends.1));
-        Some(Self { values, lanes, below, scale, ends, plateaus })
+        Some(Self { values, lanes, by_lane, below, scale, ends, plateaus })
     }
 
     /// About how many numbers are below this one, which is neither below all of them nor beyond.
@@ -93,7 +97,7 @@ impl SortedColumn {
 
     /// The first place of a range whose number is no longer `before` something, given about where that is; the end if all are.
     #[inline(always)]
-    fn first_not(&self, range: &Range<usize>, guess: usize, before: impl Fn(f64) -> bool) -> usize {
+    pub(super) fn first_not(&self, range: &Range<usize>, guess: usize, before: impl Fn(f64) -> bool) -> usize {
         // Nearly always it is among a few next to the guess. They are compared without a branch, so that the processor can fetch the numbers
         // of the next rows at the same time.
         if range.len() >= NEAR {

@@ -11,10 +11,12 @@ mod chain;
 mod column;
 mod row;
 mod run;
+mod sorted_row;
 
 pub(super) use column::SortedColumn;
 pub(super) use row::{OrderedNumbers, OrderedRow};
 pub(super) use run::RowRun;
+pub use sorted_row::{SortedDesigns, SortedRow};
 
 use crate::models::Set;
 use crate::plan::{Plan, Source, knowns};
@@ -23,9 +25,9 @@ use chain::{LONGEST, RowChain, chain, path};
 use std::sync::OnceLock;
 
 /// Most bytes of sorted columns.
-const MOST_BYTES: u64 = 64 << 20;
-/// Bytes of a design in a sorted column: its number, and which design it is.
-const DESIGN_BYTES: u64 = 8 + 2 + 2;
+const MOST_BYTES: u64 = 128 << 20;
+/// Bytes of a design in a sorted column: its number twice, which design it is, and a step.
+const DESIGN_BYTES: u64 = 8 + 8 + 2 + 2;
 
 /// What is known of such rows; for all threads.
 #[derive(Debug)]
@@ -47,9 +49,10 @@ pub(super) struct OrderedRows {
 impl OrderedRows {
     /// `None` where the rows of a plan are none of that kind.
     pub(super) fn new(plan: &Plan, list: &LaneList) -> Option<Self> {
-        let is_served = |source: &Source| !matches!(source, Source::LaneInput(_));
-        let sources = plan.constraints.iter().chain(plan.tracked.iter().map(|(_, source)| source));
-        if plan.scenarios() != 1 || plan.spectrum.is_some() || !sources.into_iter().all(is_served) {
+        // What the designs of a row have in common with others of theirs has no order along it: it can only be reported.
+        let has_order = |source: &Source| !matches!(source, Source::LaneInput(_));
+        let mut sources = plan.constraints.iter().chain(plan.objectives.iter().map(|&tracked| &plan.tracked[tracked].1));
+        if plan.scenarios() != 1 || plan.spectrum.is_some() || !sources.all(has_order) {
             return None;
         }
         let over_lanes = over_lanes(plan, list);
@@ -193,8 +196,9 @@ mod tests {
 
     /// What remains of all designs; `between` sees the engine between parts.
     fn swept_with(plan: &Plan, judged: RowsJudged, mut between: impl FnMut(&mut CpuEngine<'_>, u64)) -> State {
-        let (mut tables, reduction) = (Tables::new(plan), Reduction::new(plan, &[]));
-        assert!(tables.ordered.is_some() && tables.rows.is_some() && reduction.is_front_only());
+        let ranges: Vec<_> = plan.study.report.histograms.iter().map(|it| it.range.expect("the study gives it")).collect();
+        let (mut tables, reduction) = (Tables::new(plan), Reduction::new(plan, &ranges));
+        assert!(tables.ordered.is_some() && tables.rows.is_some());
         match judged {
             RowsJudged::OneByOne => tables.ordered = None,
             RowsJudged::ByRows => tables.rows = None,
@@ -246,6 +250,57 @@ mod tests {
             }
         }
         assert!(sizes.iter().filter(|size| **size > 50).count() > 6, "{sizes:?}");
+    }
+
+    #[test]
+    fn reports_on_rows_judged_at_once_are_those_on_their_designs() {
+        let constraints = [
+            "[constraints]\ncapacity_axial_force_N = { max = 20000 }\ntorque_capacity_Nm = { above = 0 }\n",
+            "[constraints]\ncapacity_axial_force_N = { min = 5000, max = 20000 }\ntorque_capacity_Nm = { max = 150 }\n",
+            "",
+        ];
+        // Of numbers that rise with what the row is sorted by, of the row's own, and of inputs that differ within it.
+        let of = ["torque_capacity_Nm", "capacity_axial_force_N", "ratio", "traction_limit", "band_count", "band_thickness_mm"];
+        let to = [200.0, 12345.6, 2.0, 0.8, 14.0, 0.35];
+        // Many narrow bins, few wide ones, and one that some are below and some above.
+        let histogram = |(of, to): (&str, f64), (from, bins): (f64, usize)| {
+            format!("{{ of = \"{of}\", from = {}, to = {to}, bins = {bins} }}, ", from * to)
+        };
+        let each = |of| [(0.0, 900), (0.01, 7), (0.3, 1)].map(|bins| histogram(of, bins)).concat();
+        let histograms: String = of.into_iter().zip(to).map(each).collect();
+        // Cells of rows, of designs within rows, and of both, in dense maps.
+        let axes = [
+            ("friction", "ratio"),
+            ("ratio", "band_count"),
+            ("band_thickness_mm", "groove_angle_deg"),
+            ("band_count", "band_thickness_mm"),
+        ];
+        let map = |what: &str| axes.map(|(x, y)| format!("{{ x = \"{x}\", y = \"{y}\", {what} }}, ")).concat();
+        let both = |of: &str| ["min", "max"].map(|goal| map(&format!("value = \"{of}\", best = \"{goal}\""))).concat();
+        let objectives = of[..2].iter().map(|of| map(&format!("value = \"{of}\""))).collect::<String>();
+        let maps = map("best = \"share\"") + &objectives + &of[2..].iter().map(|of| both(of)).collect::<String>();
+        let mut met = [0; 3];
+        for constraints in constraints {
+            for (top, goals) in of.into_iter().zip([["min", "max"], ["max", "min"]].into_iter().cycle()) {
+                let report = format!(
+                    "[objectives]\ntorque_capacity_Nm = \"{}\"\ncapacity_axial_force_N = \"{}\"\n[report]\nhistograms = [{histograms}]\n\
+                     maps = [{maps}]\ntop = {{ by = \"{top}\", count = 500, goal = \"{}\" }}\nsample = {{ count = 100 }}\nfeasible = true\n",
+                    goals[0],
+                    goals[1],
+                    goals[usize::from(top != of[0])],
+                );
+                let plan = plan(&format!("{constraints}{report}"));
+                let [one_by_one, by_rows, by_runs] =
+                    [RowsJudged::OneByOne, RowsJudged::ByRows, RowsJudged::ByRuns].map(|it| swept(&plan, it));
+                assert!(by_rows == by_runs, "{constraints}{top}");
+                assert!(one_by_one == by_rows, "{constraints}{top}: {:?}", one_by_one.reported.lacks(&by_rows.reported));
+                let histograms = &by_rows.reported.histograms;
+                met[0] += histograms.iter().filter(|it| it.below > 0 && it.above > 0).count();
+                met[1] += histograms.iter().filter(|it| it.counts.iter().filter(|count| **count > 0).count() > 50).count();
+                met[2] += usize::from(by_rows.feasible == plan.designs());
+            }
+        }
+        assert!(met.into_iter().all(|times| times > 5), "{met:?}");
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use super::OrderedRows;
 use super::chain::RowChain;
 use super::column::{ColumnCut, SortedColumn};
+use super::sorted_row::{SortedRow, SortedValues};
 use crate::plan::{Plan, Source};
 use crate::reduce::{KeyRule, Reducers, Reduction};
 use crate::screen::Block;
@@ -19,9 +20,11 @@ pub(in crate::screen) struct OrderedNumbers {
     alive: Vec<u64>,
     values: Vec<Vec<f64>>,
     open: Vec<Range<usize>>,
+    sorted: SortedValues,
 }
 
 /// A whole row, to be judged at once.
+#[derive(Debug)]
 pub(in crate::screen) struct OrderedRow<'a> {
     pub(in crate::screen) plan: &'a Plan,
     pub(in crate::screen) blocks: &'a [FastBlock],
@@ -34,6 +37,19 @@ pub(in crate::screen) struct OrderedRow<'a> {
 }
 
 impl OrderedRow<'_> {
+    /// Part of the design index that a lane contributes.
+    #[inline(always)]
+    pub(super) fn offset(&self, lane: u16) -> u64 {
+        let lane = usize::from(lane);
+        self.blocks[lane / BLOCK].offsets[lane % BLOCK]
+    }
+
+    /// Design index of a lane.
+    #[inline(always)]
+    pub(super) fn index(&self, lane: u16) -> u64 {
+        self.row_index + self.offset(lane)
+    }
+
     /// Do the results of all chains rise or fall all the way along a sorted column?
     #[inline(always)]
     pub(super) fn is_sure(&self, rows: &OrderedRows, column: &SortedColumn) -> bool {
@@ -58,7 +74,7 @@ impl OrderedRow<'_> {
         }
     }
 
-    /// Judges the row, for the number of feasible designs, the front and the extremes; false if it is not sure of the order.
+    /// Judges the row for reducers; false if it is not sure of the order.
     pub(in crate::screen) fn judge(
         &self,
         rows: &OrderedRows,
@@ -78,7 +94,8 @@ impl OrderedRow<'_> {
         true
     }
 
-    /// Takes in feasible designs: counts them, and hands over those that the front may need and those at the ends of objectives.
+    /// Takes in feasible designs: counts them, hands them to what the report asks for, and of them those that the front may need and those
+    /// at the ends of objectives to these.
     pub(super) fn take_in(
         &self,
         rows: &OrderedRows,
@@ -99,12 +116,15 @@ impl OrderedRow<'_> {
         };
         let worst_at = |tracked: usize, place: usize| worst_of(tracked, values[place]);
         let ends = column.ends_of(&feasible);
-        let OrderedNumbers { offsets, alive, values: columns, open } = room;
+        let OrderedNumbers { offsets, alive, values: columns, open, sorted } = room;
+        if !reducers.reported.is_empty() {
+            reducers.reported.absorb_row(&mut SortedRow::new(self, rows, column, feasible.clone(), sorted));
+        }
         columns.resize(self.plan.tracked.len(), Vec::new());
         let mut keep = |place: usize| {
-            let lane = usize::from(column.lanes[place]);
-            offsets.push(self.blocks[lane / BLOCK].offsets[lane % BLOCK]);
-            columns.iter_mut().enumerate().for_each(|(tracked, column)| column.push(worst_at(tracked, place)));
+            offsets.push(self.offset(column.lanes[place]));
+            let objectives = columns.iter_mut().enumerate().filter(|(tracked, _)| self.plan.objectives.contains(tracked));
+            objectives.for_each(|(tracked, column)| column.push(worst_at(tracked, place)));
         };
         for (objective, &tracked) in self.plan.objectives.iter().enumerate() {
             for (place, number, step) in [(feasible.start, ends.0, 1isize), (feasible.end - 1, ends.1, -1)] {
