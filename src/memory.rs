@@ -155,9 +155,10 @@ impl Needs {
             PROGRAM,
             Tables::bytes(plan),
             times(sizes.cases, CASE),
-            times(threads, THREAD),
+            times(threads, THREAD + Tables::row_bytes(plan)),
             solving(plan, threads),
-            8 * sizes.bins * (threads + 2),
+            // A thread has the edges of the bins too.
+            8 * sizes.bins * (2 * threads + 2),
             times(sizes.indices, INDICES * 8 * (threads + 2)),
             times(sizes.packed, PACKED_COPIES),
             plan.study.probability.as_ref().map_or(0, |it| it.bytes(threads, plan.fast.count(), plan.used_outputs())),

@@ -31,8 +31,8 @@ pub enum ReducerNeeds {
     Counts,
     /// Single feasible designs from everywhere: boxes of designs do not tell them, but a device hands them over.
     Designs(&'static str),
-    /// Every feasible design itself, as a block: only what judges designs one by one in f64 gives that. This is what a new reducer needs
-    /// as long as no kernel knows of it; it is then refused to devices and bounds, and their automatic choice leaves it to the CPU.
+    /// Every feasible design itself, as a block: only what judges designs or rows one by one in f64 gives that. This is what a new reducer
+    /// needs as long as no kernel knows of it; it is then refused to devices and bounds, and their automatic choice leaves it to the CPU.
     Blocks(&'static str),
 }
 
@@ -130,12 +130,13 @@ pub trait Reducer: Clone + Sized {
     /// Takes in a block. The order of blocks, and who takes in which, must not show in the end.
     fn absorb(&mut self, block: &Block<'_>);
 
-    /// Takes in designs of a row in their order. Whoever keeps what the order tells at once need not look at each of them.
+    /// Takes in designs of a row in their order, which may tell at once what is kept of them. Counts may be put off to
+    /// [`Reducer::end_rows`], which comes before anything else is asked.
     fn absorb_row(&mut self, row: &mut SortedRow<'_>) {
         self.absorb(&row.as_block());
     }
 
-    /// Ends rows that came in their order: what is shared by several of them may have been put off till here.
+    /// Takes in what was put off of such rows.
     fn end_rows(&mut self) {}
 
     /// Takes in a block of designs that are counted elsewhere, by a device or by bounds, and may come more than once, see [`Reducer::add_counts`].

@@ -94,9 +94,9 @@ impl Reducer for Top {
     fn absorb(&mut self, block: &Block<'_>) {
         let values = block.column(self.column.expect("a list that takes in blocks was made for a plan"));
         for (lane, (&value, &alive)) in values.iter().zip(block.alive).enumerate() {
-            let key = if self.goal == Goal::Min { value } else { -value };
+            let key = self.goal.key(value);
             if alive != 0 && key <= self.worst_kept {
-                self.push(key + 0.0, block.index(lane));
+                self.push(key, block.index(lane));
             }
         }
     }
@@ -104,18 +104,18 @@ impl Reducer for Top {
     fn absorb_row(&mut self, row: &mut SortedRow<'_>) {
         let column = self.column.expect("a list that takes in rows was made for a plan");
         let Some((first, last)) = row.ends(column) else { return self.absorb(&row.as_block()) };
-        let sign = if self.goal == Goal::Min { 1.0 } else { -1.0 };
-        let (count, from_first) = (row.count(), sign * first <= sign * last);
-        if sign * (if from_first { first } else { last }) > self.worst_kept {
+        let (first, last) = (self.goal.key(first), self.goal.key(last));
+        if first.min(last) > self.worst_kept {
             return;
         }
-        for step in 0..count {
-            let place = if from_first { step } else { count - 1 - step };
-            let key = sign * row.values(column)[place];
+        // From the better end on, as long as they may be among the best.
+        for step in 0..row.count() {
+            let place = if first <= last { step } else { row.count() - 1 - step };
+            let key = self.goal.key(row.values(column)[place]);
             if key > self.worst_kept {
                 break;
             }
-            self.push(key + 0.0, row.index(place));
+            self.push(key, row.index(place));
         }
     }
 

@@ -5,6 +5,7 @@ use super::row_list::RowList;
 use super::rows_together::RowsTogether;
 use crate::models::{self, LANES};
 use crate::plan::{FAST_DESIGNS, Plan, knowns};
+use crate::reduce::Reported;
 use crate::space::Product;
 use crate::tape::{LaneList, List, Node, Set, Varies};
 
@@ -68,6 +69,16 @@ impl Tables {
     /// depends on the front that it knows.
     pub fn has_ordered_rows(&self) -> bool {
         self.ordered.is_some()
+    }
+
+    /// Bytes that a thread takes for the designs of a row that is judged at once: values and indices, and in each map what lanes count.
+    pub fn row_bytes(plan: &Plan) -> u64 {
+        if Reported::needs(&plan.study.report).is_empty() || plan.fast.count() > FAST_DESIGNS {
+            return 0;
+        }
+        let is_ordered = lane_list(plan).is_some_and(|list| OrderedRows::new(plan, &list).is_some());
+        let (tracked, maps) = (plan.tracked.len(), plan.study.report.maps.len());
+        if is_ordered { plan.fast.count() * (8 * (tracked + 2) + 12 * maps) as u64 } else { 0 }
     }
 
     /// About how many bytes the tables of a plan take.

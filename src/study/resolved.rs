@@ -28,6 +28,12 @@ impl Goal {
             Self::Max => Worse::Lower,
         }
     }
+
+    /// What values are compared by: less is better. The key of a key is the value.
+    #[inline]
+    pub(crate) fn key(self, value: f64) -> f64 {
+        (if self == Self::Min { value } else { -value }) + 0.0
+    }
 }
 
 /// An objective: a quantity that should be small or large in its worst scenario.

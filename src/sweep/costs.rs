@@ -69,7 +69,7 @@ impl Speed {
         let known = if tables.has_ordered_rows() {
             // A sweep starts with such a front too.
             let (options, control) = (Settings { threads, ..Settings::default() }, Control::default());
-            let job = SweepJob { plan, tables: &tables, reduction: &reduction, options: &options, control: &control };
+            let job = SweepJob { plan, tables: &tables, reduction: &Reduction::of_front(plan), options: &options, control: &control };
             look_around(job, &(0..plan.designs()), time.as_secs_f64()).front.points().clone()
         } else {
             Points::default()

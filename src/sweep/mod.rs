@@ -177,7 +177,10 @@ impl<'a> SweepWork<'a> {
             Some(checkpoint) => checkpoint.take_progress(job.plan, job.reduction)?,
             None => None,
         };
-        let fresh = || head_start(job.reduction, &mut look_around(job, &job.whole(), HEAD_START_TIME));
+        let fresh = || {
+            let front = &Reduction::of_front(job.plan);
+            head_start(job.reduction, &mut look_around(SweepJob { reduction: front, ..job }, &job.whole(), HEAD_START_TIME))
+        };
         let progress = progress.unwrap_or_else(|| Progress { done: Ranges::default(), state: fresh() });
         Ok(Self::new(job, progress, checkpoint))
     }

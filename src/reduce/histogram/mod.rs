@@ -60,8 +60,8 @@ impl Histogram {
         let (bins, width) = (self.counts.len() as f64, self.to - self.from);
         match bin as f64 {
             bin if bin == bins => self.to,
-            bin if width.is_finite() => self.from + bin * width / bins,
-            // Ends so far apart that their distance is more than f64 holds.
+            bin if (bins * width).is_finite() => self.from + bin * width / bins,
+            // Ends so far apart that a multiple of their distance is more than f64 holds.
             bin => self.from * (1.0 - bin / bins) + self.to * (bin / bins),
         }
     }
@@ -279,9 +279,10 @@ mod tests {
 
     #[test]
     fn a_value_lies_beyond_the_edges_below_it() {
-        for (range, bins) in [((0.1, 0.7), 6), ((-1.7e308, 1.7e308), 5), ((0.0, f64::from_bits(3)), 4)] {
+        for (range, bins) in [((0.1, 0.7), 6), ((-1.7e308, 1.7e308), 5), ((0.0, 1e308), 3), ((0.0, f64::from_bits(3)), 4)] {
             let histogram = Histogram::new(range, bins, 0);
             let edges: Vec<f64> = (0..=bins).map(|bin| histogram.edge(bin)).collect();
+            assert!(edges.is_sorted() && edges.iter().all(|edge| edge.is_finite()), "{edges:?}");
             for value in edges.iter().flat_map(|&edge| [edge.next_down(), edge, edge.next_up()]) {
                 let passed = edges[..bins].iter().filter(|edge| value >= **edge).count() + usize::from(value > edges[bins]);
                 assert_eq!(histogram.place(value), passed, "{value:e} in {range:?}");

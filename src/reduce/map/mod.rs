@@ -180,11 +180,6 @@ impl Map {
         }
     }
 
-    /// The key of a value: less is better.
-    fn key(&self, value: f64) -> f64 {
-        (if self.goal == Goal::Min { value } else { -value }) + 0.0
-    }
-
     /// The cell of a design; of parts of its index, what they add to it.
     fn cell_of(&self, index: u64) -> u64 {
         let designs = self.designs.as_ref().expect("a map that takes in designs was made for a plan");
@@ -211,12 +206,12 @@ impl Map {
     /// Takes in designs of a row that lie in one cell. The best of them is at an end, if they have an order.
     fn absorb_one_cell(&mut self, row: &mut SortedRow<'_>, at: u64) {
         let Some(column) = self.column else { return self.add_feasible(at, row.count() as u64) };
-        let best = row.ends(column).map(|(first, last)| self.key(first).min(self.key(last)));
+        let best = row.ends(column).map(|(first, last)| self.goal.key(first).min(self.goal.key(last)));
         if best.is_some_and(|best| self.beats(at, best, row.row_index())) {
             return;
         }
         for place in 0..row.count() {
-            let key = self.key(row.values(column)[place]);
+            let key = self.goal.key(row.values(column)[place]);
             if best.is_none_or(|best| key == best) {
                 self.take(at, Cell { feasible: 0, key, index: row.index(place) });
             }
@@ -225,7 +220,7 @@ impl Map {
 
     /// The best value of a cell.
     pub fn value(&self, cell: Cell) -> f64 {
-        (if self.goal == Goal::Min { cell.key } else { -cell.key }) + 0.0
+        self.goal.key(cell.key)
     }
 }
 
@@ -249,7 +244,7 @@ impl Reducer for Map {
                 continue;
             };
             // Not counted: bounds may meet it more than once.
-            let key = self.key(block.values[column][lane]);
+            let key = self.goal.key(block.values[column][lane]);
             self.take(cell, Cell { feasible: 0, key, index });
         }
     }
@@ -260,10 +255,9 @@ impl Reducer for Map {
         if lanes.cells.is_empty() {
             self.absorb_one_cell(row, row_cell);
         } else if let Some(column) = self.column {
-            let (least_index, designs) = (row.row_index(), row.designs(column));
-            let sign = if self.goal == Goal::Min { 1.0 } else { -1.0 };
+            let (goal, least_index, designs) = (self.goal, row.row_index(), row.designs(column));
             let take = |cell: &mut Cell, (lane, value): (u16, f64)| {
-                let key = sign * value + 0.0;
+                let key = goal.key(value);
                 if !cell.beats(key, least_index) {
                     cell.take(Cell { feasible: 0, key, index: designs.index(lane) });
                 }
@@ -298,6 +292,7 @@ impl Reducer for Map {
     }
 
     fn merge(&mut self, other: Self) {
+        debug_assert!(other.lanes.is_none_or(|it| it.counts.iter().all(|count| *count == 0)), "rows that were not ended");
         match other.cells {
             Cells::All(cells) => cells.into_iter().zip(0..).filter(|(cell, _)| cell.is_met()).for_each(|(cell, at)| self.take(at, cell)),
             Cells::Met(cells) => cells.into_iter().for_each(|(at, cell)| self.take(at, cell)),

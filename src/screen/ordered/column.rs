@@ -14,7 +14,7 @@ pub(in crate::screen) struct SortedColumn {
     /// The numbers, the least first, and the designs that have them.
     pub(super) values: Vec<f64>,
     pub(super) lanes: Vec<u16>,
-    /// The numbers lane by lane.
+    /// The numbers lane by lane, where feasible designs are counted by them; else none.
     pub(super) by_lane: Vec<f64>,
     /// How many numbers are below the lower edge of each of as many even steps from the least to the largest, and at last all of them;
     /// steps per number.
@@ -55,16 +55,15 @@ impl SortedColumn {
                 members.push((slots[rows.channel as usize], members.len() as u16));
             }
         }
-        Self::of(members)
+        Self::of(members, rows.counts_lanes)
     }
 
-    /// The column of these numbers and designs; `None` if one is not finite, or there are none.
-    fn of(mut members: Vec<(f64, u16)>) -> Option<Self> {
+    /// The column of these numbers and designs, every lane from the first on; `None` if one is not finite, or there are none.
+    fn of(mut members: Vec<(f64, u16)>, counts_lanes: bool) -> Option<Self> {
         if !members.iter().all(|(value, _)| value.is_finite()) {
             return None;
         }
-        let mut by_lane = vec![0.0; members.len()];
-        members.iter().for_each(|&(value, lane)| by_lane[usize::from(lane)] = value);
+        let by_lane = if counts_lanes { members.iter().map(|(value, _)| *value).collect() } else { Vec::new() };
         members.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (values, lanes): (Vec<f64>, _) = members.into_iter().unzip();
         let ends = (*values.first()?, *values.last()?);
@@ -84,7 +83,7 @@ impl SortedColumn {
         Some(Self { values, lanes, by_lane, below, scale, ends, plateaus })
     }
 
-    /// About how many numbers are below this one, which is neither below all of them nor beyond.
+    /// About how many numbers are below this one, if it is neither below all of them nor beyond; else some place.
     #[inline(always)]
     pub(super) fn guess(&self, value: f64) -> usize {
         let steps = ((value - self.ends.0) * self.scale).clamp(0.0, (self.below.len() - 2) as f64);
@@ -195,7 +194,7 @@ mod tests {
     use super::*;
 
     fn column(values: impl Iterator<Item = f64>) -> SortedColumn {
-        SortedColumn::of(values.enumerate().map(|(lane, value)| (value, lane as u16)).collect()).expect("it is of that kind")
+        SortedColumn::of(values.enumerate().map(|(lane, value)| (value, lane as u16)).collect(), false).expect("it is of that kind")
     }
 
     #[test]
@@ -232,8 +231,8 @@ mod tests {
 
     #[test]
     fn numbers_that_are_not_finite_have_no_order() {
-        assert!(SortedColumn::of(vec![(1.0, 0), (f64::NAN, 1)]).is_none());
-        assert!(SortedColumn::of(Vec::new()).is_none());
+        assert!(SortedColumn::of(vec![(1.0, 0), (f64::NAN, 1)], false).is_none());
+        assert!(SortedColumn::of(Vec::new(), false).is_none());
         // Equal numbers have one.
         assert_eq!(column([2.0; 30].into_iter()).between(0..30, 2.0, 2.0), 0..30);
     }

@@ -20,14 +20,16 @@ pub use sorted_row::{SortedDesigns, SortedRow};
 
 use crate::models::Set;
 use crate::plan::{Plan, Source, knowns};
+use crate::study::Best;
 use crate::tape::{LaneList, List, Node};
 use chain::{LONGEST, RowChain, chain, path};
 use std::sync::OnceLock;
 
 /// Most bytes of sorted columns.
-const MOST_BYTES: u64 = 128 << 20;
-/// Bytes of a design in a sorted column: its number twice, which design it is, and a step.
-const DESIGN_BYTES: u64 = 8 + 8 + 2 + 2;
+const MOST_BYTES: u64 = 64 << 20;
+/// Bytes of a design in a sorted column: its number, which design it is, and a step; and its number once more where lanes are counted.
+const DESIGN_BYTES: u64 = 8 + 2 + 2;
+const COUNTED_BYTES: u64 = 8;
 
 /// What is known of such rows; for all threads.
 #[derive(Debug)]
@@ -42,6 +44,8 @@ pub(super) struct OrderedRows {
     bounds: Vec<(usize, (f64, f64))>,
     /// Dimensions of the slow axes that the number depends on, with the distance of two levels among the columns.
     dimensions: Vec<(usize, u64)>,
+    /// Are feasible designs counted lane by lane?
+    counts_lanes: bool,
     /// `None` for a column whose numbers are not all finite.
     columns: Vec<OnceLock<Option<SortedColumn>>>,
 }
@@ -49,7 +53,7 @@ pub(super) struct OrderedRows {
 impl OrderedRows {
     /// `None` where the rows of a plan are none of that kind.
     pub(super) fn new(plan: &Plan, list: &LaneList) -> Option<Self> {
-        // What the designs of a row have in common with others of theirs has no order along it: it can only be reported.
+        // Inputs of the fast axes have no order along a row: they can only be reported.
         let has_order = |source: &Source| !matches!(source, Source::LaneInput(_));
         let mut sources = plan.constraints.iter().chain(plan.objectives.iter().map(|&tracked| &plan.tracked[tracked].1));
         if plan.scenarios() != 1 || plan.spectrum.is_some() || !sources.all(has_order) {
@@ -77,7 +81,9 @@ impl OrderedRows {
                 columns = columns.checked_mul(count)?;
             }
         }
-        let fits = columns.checked_mul(plan.fast.count() * DESIGN_BYTES).is_some_and(|bytes| bytes <= MOST_BYTES);
+        let counts_lanes = plan.study.report.maps.iter().any(|map| map.value == Best::Share);
+        let bytes = plan.fast.count() * design_bytes(counts_lanes);
+        let fits = columns.checked_mul(bytes).is_some_and(|bytes| bytes <= MOST_BYTES);
         if !fits || plan.fast.count() >= 1 << 16 {
             return None;
         }
@@ -94,13 +100,14 @@ impl OrderedRows {
             chains,
             reads,
             dimensions,
+            counts_lanes,
             columns: (0..columns).map(|_| OnceLock::new()).collect(),
         })
     }
 
     /// Bytes of all sorted columns.
     pub(super) fn bytes(&self, plan: &Plan) -> u64 {
-        let one = size_of::<OnceLock<Option<SortedColumn>>>() as u64 + plan.fast.count() * DESIGN_BYTES + 2;
+        let one = size_of::<OnceLock<Option<SortedColumn>>>() as u64 + plan.fast.count() * design_bytes(self.counts_lanes) + 2;
         self.columns.len() as u64 * one
     }
 
@@ -131,6 +138,10 @@ impl OrderedRows {
     fn made(&self, column: u64) -> Option<&SortedColumn> {
         self.columns[column as usize].get()?.as_ref()
     }
+}
+
+fn design_bytes(counts_lanes: bool) -> u64 {
+    DESIGN_BYTES + if counts_lanes { COUNTED_BYTES } else { 0 }
 }
 
 /// Between what a result of the inner loop must lie: outputs come first, then margins of conditions.
@@ -301,6 +312,22 @@ mod tests {
             }
         }
         assert!(met.into_iter().all(|times| times > 5), "{met:?}");
+    }
+
+    #[test]
+    fn reports_without_objectives_and_maps_of_many_cells_are_those_of_single_designs() {
+        let text = GRID.replace("count = 31", "count = 700").replace("count = 9", "count = 101").replace("count = 5", "count = 2");
+        let text = text.replace("count = 7", "count = 1").replace("to = 30", "to = 18");
+        let report = "[report]\nhistograms = [{ of = \"torque_capacity_Nm\", from = 0, to = 200, bins = 30 }]\nmaps = [\n\
+                      { x = \"ratio\", y = \"band_thickness_mm\", best = \"share\" },\n\
+                      { x = \"band_thickness_mm\", y = \"ratio\", value = \"torque_capacity_Nm\", best = \"max\" }]\n";
+        let text = format!("{text}[constraints]\ncapacity_axial_force_N = {{ max = 20000 }}\n{report}");
+        let plan = Plan::new(study_of(&crate::models::find("metal-cvt").expect("it is a model"), &text).expect("the study is right"));
+        let [one_by_one, by_rows, by_runs] = [RowsJudged::OneByOne, RowsJudged::ByRows, RowsJudged::ByRuns].map(|it| swept(&plan, it));
+        assert!(one_by_one == by_rows && by_rows == by_runs && by_runs.front.is_empty());
+        let maps = &by_runs.reported.maps;
+        let met = |map: &crate::reduce::Map| (0..101 * 700).filter(|&at| map.cell(at).is_some()).count();
+        assert!(met(&maps[0]) > 5_000 && met(&maps[0]) == met(&maps[1]) && by_runs.feasible < plan.designs(), "{}", met(&maps[0]));
     }
 
     #[test]

@@ -94,8 +94,7 @@ impl OrderedRow<'_> {
         true
     }
 
-    /// Takes in feasible designs: counts them, hands them to what the report asks for, and of them those that the front may need and those
-    /// at the ends of objectives to these.
+    /// Takes in feasible designs: counts them, hands them to what the report asks for, and to front and extremes those that these may need.
     pub(super) fn take_in(
         &self,
         rows: &OrderedRows,
@@ -119,6 +118,9 @@ impl OrderedRow<'_> {
         let OrderedNumbers { offsets, alive, values: columns, open, sorted } = room;
         if !reducers.reported.is_empty() {
             reducers.reported.absorb_row(&mut SortedRow::new(self, rows, column, feasible.clone(), sorted));
+        }
+        if self.plan.objectives.is_empty() {
+            return;
         }
         columns.resize(self.plan.tracked.len(), Vec::new());
         let mut keep = |place: usize| {

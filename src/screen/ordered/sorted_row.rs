@@ -9,8 +9,8 @@ use crate::screen::tables::BLOCK;
 use multiversion::multiversion;
 use std::ops::Range;
 
-/// Of this many lanes at least one must be counted for a look at all of them to be worth it.
-const FEW: usize = 8;
+/// A look at all lanes is worth it where one of so many is counted.
+const SPARSE: usize = 8;
 
 /// Feasible designs of one row by place in the order of the number that they differ by: each output rises or falls all the way.
 #[derive(Debug)]
@@ -83,7 +83,7 @@ impl<'a> SortedRow<'a> {
     }
 
     /// Lane of each design by place: its number among all designs of the row, feasible or not.
-    pub fn lanes(&self) -> &[u16] {
+    pub fn lanes(&self) -> &'a [u16] {
         &self.column.lanes[self.places.clone()]
     }
 
@@ -118,8 +118,8 @@ impl<'a> SortedRow<'a> {
                 let chain = &self.rows.chains[result];
                 // A product is worked out without a look at the steps of the chain.
                 match chain.multiplier(self.row.others) {
-                    Some(factor) => self.places_of(tracked, limits, chain, |number| chain.shown(number * factor), each),
-                    None => self.places_of(tracked, limits, chain, |number| chain.value(number, self.row.others), each),
+                    Some(factor) => self.count_results_below(tracked, limits, chain, |number| chain.shown(number * factor), each),
+                    None => self.count_results_below(tracked, limits, chain, |number| chain.value(number, self.row.others), each),
                 }
             }
             Source::RowInput(_) | Source::RowOutput(_) => {
@@ -132,7 +132,14 @@ impl<'a> SortedRow<'a> {
 
     /// The same for a result with its chain.
     #[inline(always)]
-    fn places_of(&self, tracked: usize, limits: &[f64], chain: &RowChain, value: impl Fn(f64) -> f64, mut each: impl FnMut(usize)) {
+    fn count_results_below(
+        &self,
+        tracked: usize,
+        limits: &[f64],
+        chain: &RowChain,
+        value: impl Fn(f64) -> f64,
+        mut each: impl FnMut(usize),
+    ) {
         let (first, last) = self.ends(tracked).expect("an output has an order");
         let factor = chain.factor(self.row.others).unwrap_or(f64::NAN);
         let Range { start, end } = self.places;
@@ -149,12 +156,12 @@ impl<'a> SortedRow<'a> {
 
     /// Adds one to the count of every lane that has one of the designs.
     pub fn count_lanes(&self, counts: &mut [u64]) {
-        if self.count() * FEW < counts.len() {
+        if self.column.by_lane.is_empty() || self.count() * SPARSE < counts.len() {
             self.lanes().iter().for_each(|&lane| counts[usize::from(lane)] += 1);
         } else {
-            let values = &self.column.values[self.places.clone()];
             // Equal numbers are all among them or all not.
-            count_between(&self.column.by_lane, values[0], values[values.len() - 1], counts);
+            let (least, largest) = self.column.ends_of(&self.places);
+            count_between(&self.column.by_lane, least, largest, counts);
         }
     }
 
@@ -177,9 +184,10 @@ impl<'a> SortedRow<'a> {
             self.values(tracked);
         }
         let count = self.count();
+        let lanes = self.lanes();
         let SortedValues { offsets, alive, .. } = &mut *self.room;
         offsets.clear();
-        offsets.extend(self.column.lanes[self.places.clone()].iter().map(|&lane| self.row.offset(lane)));
+        offsets.extend(lanes.iter().map(|&lane| self.row.offset(lane)));
         alive.clear();
         alive.resize(count, u64::MAX);
         let SortedValues { values, offsets, alive } = &*self.room;
@@ -191,21 +199,20 @@ impl<'a> SortedRow<'a> {
     }
 
     fn fill(&mut self, tracked: usize) {
-        let (others, count) = (self.row.others, self.count());
+        let (others, count, source, lanes) = (self.row.others, self.count(), self.source(tracked), self.lanes());
         let numbers = &self.column.values[self.places.clone()];
         let values = &mut self.room.values[tracked];
-        match self.row.plan.tracked[tracked].1 {
+        match source {
             Source::LaneOutput(result) => {
-                let chain: &RowChain = &self.rows.chains[result];
-                // A product is worked out without a look at the steps of the chain.
+                let chain = &self.rows.chains[result];
                 match chain.multiplier(others) {
                     Some(factor) => values.extend(numbers.iter().map(|&number| chain.shown(number * factor))),
                     None => values.extend(numbers.iter().map(|&number| chain.value(number, others))),
                 }
             }
             Source::LaneInput(input) => {
-                let lanes = self.column.lanes[self.places.clone()].iter().map(|&lane| usize::from(lane));
-                values.extend(lanes.map(|lane| self.row.blocks[lane / BLOCK].own(input)[lane % BLOCK]));
+                values
+                    .extend(lanes.iter().map(|&lane| usize::from(lane)).map(|lane| self.row.blocks[lane / BLOCK].own(input)[lane % BLOCK]));
             }
             Source::RowInput(_) | Source::RowOutput(_) => values.resize(count, self.row.row_worst[tracked]),
         }
