@@ -107,16 +107,19 @@ impl Histogram {
         } += count;
     }
 
-    /// Counts values one by one.
-    #[inline]
+    /// Counts the values of those that are feasible, one by one.
+    #[inline(always)]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, reason = "the edges decide")]
-    fn count(&mut self, values: impl Iterator<Item = f64>) {
+    fn count(&mut self, designs: impl Iterator<Item = (bool, f64)>) {
         self.find_limits();
         let bins = self.counts.len();
         let (from, per_unit) = (self.from, bins as f64 / (self.to - self.from));
         // Neighbours often have one value, above all where values are whole numbers: those are counted by runs.
         let (mut last, mut run, mut bin) = (f64::NAN, 0, 0);
-        for value in values {
+        for (is_feasible, value) in designs {
+            if !is_feasible {
+                continue;
+            }
             if value == last {
                 run += 1;
                 continue;
@@ -126,10 +129,22 @@ impl Histogram {
                 self.counts[bin] += run;
                 (last, run, bin) = (value, 1, guess);
             } else {
-                self.add_at(self.place(value), 1);
+                self.count_at_place(value);
             }
         }
         self.counts[bin] += run;
+    }
+
+    /// Counts the designs of a row one by one.
+    fn count_row(&mut self, row: &mut SortedRow<'_>, column: usize) {
+        self.count(row.values(column).iter().map(|&value| (true, value)));
+    }
+
+    /// Counts a value whose bin was guessed wrongly, or that lies in none. Out of line: few are, and the loop over the others stays short.
+    #[cold]
+    #[inline(never)]
+    fn count_at_place(&mut self, value: f64) {
+        self.add_at(self.place(value), 1);
     }
 
     /// Adds counts that were made elsewhere: below, every bin, above.
@@ -177,16 +192,15 @@ impl Reducer for Histogram {
 
     fn absorb(&mut self, block: &Block<'_>) {
         let column = self.column.expect("a histogram that takes in blocks was made for a plan");
-        let designs = block.alive.iter().zip(&block.values[column]);
-        self.count(designs.filter(|(alive, _)| **alive != 0).map(|(_, &value)| value));
+        self.count(block.alive.iter().zip(&block.values[column]).map(|(&alive, &value)| (alive != 0, value)));
     }
 
     fn absorb_row(&mut self, row: &mut SortedRow<'_>) {
         let column = self.column.expect("a histogram that takes in rows was made for a plan");
-        let Some((first, last)) = row.ends(column) else { return self.count(row.values(column).iter().copied()) };
+        let Some((first, last)) = row.ends(column) else { return self.count_row(row, column) };
         let (low, high) = (self.place(first.min(last)), self.place(first.max(last)));
         if (high - low) * EDGE > row.count() {
-            return self.count(row.values(column).iter().copied());
+            return self.count_row(row, column);
         }
         self.find_limits();
         let limits = std::mem::take(&mut self.limits);
@@ -268,7 +282,8 @@ mod tests {
     fn edges_decide_and_what_is_outside_is_counted() {
         let mut histogram = Histogram::new((0.1, 0.7), 6, 0);
         let edges: Vec<f64> = (0..=6).map(|bin| histogram.edge(bin)).collect();
-        histogram.count(edges.iter().flat_map(|edge| [*edge, edge.next_down()]).chain([0.7f64.next_up()]));
+        let values = edges.iter().flat_map(|edge| [*edge, edge.next_down()]).chain([0.7f64.next_up()]);
+        histogram.count(values.map(|value| (true, value)));
         let wide = Histogram::new((-1.7e308, 1.7e308), 4, 0);
         let edges = [0, 1, 2, 3, 4].map(|bin| wide.edge(bin));
         let near = edges.iter().zip([-1.7e308, -0.85e308, 0.0, 0.85e308, 1.7e308]).all(|(a, b)| (a - b).abs() <= 1e-15 * b.abs());
