@@ -42,7 +42,7 @@ impl BinnedNumber {
     }
 }
 
-/// A histogram and how many designs lie where in it: below the first bin, in every bin, above the last.
+/// How many designs lie at each place of a histogram: below the first bin, in every bin, above the last.
 pub struct Binned<'a> {
     number: &'a BinnedNumber,
     histogram: &'a Histogram,

@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 #[cfg(feature = "pictures")]
 use serde_json::{Map, Value};
 
-/// Designs that are counted one by one in about the time that the place of an edge among them takes.
+/// Counting so many designs one by one takes about as long as finding one edge among them.
 const EDGE: usize = 12;
 
 /// Counts per bin. Bin `i` of `n` holds `edge(i) <= value < edge(i + 1)`; the last one also its upper edge.
@@ -140,7 +140,7 @@ impl Histogram {
         self.count(row.values(column).iter().map(|&value| (true, value)));
     }
 
-    /// Counts a value whose bin was guessed wrongly, or that lies in none. Out of line: few are, and the loop over the others stays short.
+    /// Counts a value whose bin was guessed wrongly, or that lies in none. There are few, so it is kept out of the loop over the others.
     #[cold]
     #[inline(never)]
     fn count_at_place(&mut self, value: f64) {

@@ -9,7 +9,7 @@ use crate::screen::tables::BLOCK;
 use multiversion::multiversion;
 use std::ops::Range;
 
-/// A look at all lanes is worth it where one of so many is counted.
+/// If fewer than one in so many lanes are counted, these are visited one by one; else all lanes are compared.
 const SPARSE: usize = 8;
 
 /// Feasible designs of one row by place in the order of the number that they differ by: each output rises or falls all the way.
@@ -159,7 +159,7 @@ impl<'a> SortedRow<'a> {
         if self.column.by_lane.is_empty() || self.count() * SPARSE < counts.len() {
             self.lanes().iter().for_each(|&lane| counts[usize::from(lane)] += 1);
         } else {
-            // Equal numbers are all among them or all not.
+            // Designs of equal numbers are all feasible or all not, so the numbers at the ends tell which lanes these are.
             let (least, largest) = self.column.ends_of(&self.places);
             count_between(&self.column.by_lane, least, largest, counts);
         }
