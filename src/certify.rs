@@ -16,7 +16,7 @@ use crate::bounds::yields::{EnclosureProblem, YieldBounds};
 use crate::error::{Error, Result};
 use crate::keys::{KeyRule, Points};
 use crate::models::{Status, Worse};
-use crate::parallel::on_threads;
+use crate::parallel::{on_threads, one_after_another};
 use crate::plan::{Plan, Tracked};
 use crate::screen::Control;
 use crate::study::{Axis, ConfirmedEnd, Constraint, Objective, OverScenarios, Quantity, ReportColumn, Study, worst_end_over};
@@ -310,9 +310,8 @@ pub fn rows(plan: &Plan, columns: &[Column], designs: &[u64], threads: usize, co
 
 /// The rows of the designs at these positions by the scalar reference alone.
 fn one_by_one(plan: &Plan, columns: &[Column], positions: &[u64], threads: usize, control: &Control) -> Result<Vec<Row>> {
-    let share = positions.len().div_ceil(threads.max(1)).max(1);
-    let parts = on_threads(positions.chunks(share), |part| {
-        let mut reference = Reference::new(plan, columns, &control.stop);
+    let begin = || Reference::new(plan, columns, &control.stop);
+    let parts = one_after_another(plan.parts(positions, threads), threads, begin, |reference, part| {
         let certified = |&position: &u64| {
             let row = reference.row(position)?;
             control.certified.fetch_add(1, Ordering::Relaxed);

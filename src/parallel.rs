@@ -25,6 +25,29 @@ pub fn on_threads<T: Send, R: Send>(parts: impl IntoIterator<Item = T>, work: im
     })
 }
 
+/// Does `work` on every part, on so many threads, each of which takes the next part when it is done with one: some may take far longer than
+/// others. `begin` makes what a thread keeps from part to part. Results in the order of the parts.
+///
+/// # Panics
+/// If `begin` or `work` does.
+pub fn one_after_another<T: Send, S, R: Send>(
+    parts: Vec<T>,
+    threads: usize,
+    begin: impl Fn() -> S + Sync,
+    work: impl Fn(&mut S, T) -> R + Sync,
+) -> Vec<R> {
+    let threads = threads.clamp(1, parts.len().max(1));
+    let waiting = Mutex::new(parts.into_iter().enumerate());
+    let next = || waiting.lock().unwrap_or_else(PoisonError::into_inner).next();
+    let done = on_threads(0..threads, |_| {
+        let mut state = begin();
+        std::iter::from_fn(next).map(|(number, part)| (number, work(&mut state, part))).collect::<Vec<_>>()
+    });
+    let mut done: Vec<(usize, R)> = done.into_iter().flatten().collect();
+    done.sort_unstable_by_key(|(number, _)| *number);
+    done.into_iter().map(|(_, result)| result).collect()
+}
+
 /// Does the caller's `work` while `beside` runs on a thread of its own, and waits for both. `work` is told whether there was a thread for
 /// `beside`: where there is none, `beside` is not run.
 ///
@@ -66,6 +89,7 @@ mod tests {
     use super::*;
     use std::collections::HashSet;
     use std::sync::Barrier;
+    use std::sync::atomic::{AtomicUsize, Ordering};
 
     #[test]
     fn every_part_is_done_once_in_order_and_on_a_thread_of_its_own() {
@@ -80,6 +104,28 @@ mod tests {
         assert_eq!(done[3].1, std::thread::current().id(), "the last one is the caller's");
         assert!(on_threads(Vec::<u8>::new(), |part| part).is_empty());
         assert_eq!([0, 1, 3].map(to_be_had), [0, 1, 3]);
+    }
+
+    #[test]
+    fn a_thread_that_is_done_takes_the_next_part_and_keeps_what_it_has() {
+        let begun = AtomicUsize::new(0);
+        // The first part waits until all others are done.
+        let (others, waits) = (Barrier::new(2), 0);
+        let begin = || {
+            begun.fetch_add(1, Ordering::Relaxed);
+            0
+        };
+        let done = one_after_another((0..50).collect(), 2, begin, |before: &mut u32, part| {
+            *before += 1;
+            if part == waits || part == 49 {
+                others.wait();
+            }
+            (part, *before)
+        });
+        assert_eq!(done.iter().map(|it| it.0).collect::<Vec<_>>(), (0..50).collect::<Vec<_>>());
+        assert_eq!((done[0].1, done[49].1, begun.into_inner()), (1, 49, 2));
+        assert!(one_after_another(Vec::<u8>::new(), 3, || (), |(), part| part).is_empty());
+        assert_eq!(one_after_another(vec![7], 0, || (), |(), part| part), [7]);
     }
 
     #[test]

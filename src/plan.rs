@@ -13,6 +13,10 @@ use crate::tape::{Known, Set};
 /// Most combinations of the fast design axes in a row, so that their values fit into a table.
 pub const FAST_DESIGNS: u64 = 1 << 15;
 
+/// Most parts of a thread's share of designs, and its fewest rows where parts are whole rows.
+const PARTS: usize = 16;
+const ROWS: usize = 4;
+
 /// Most bytes of prepared numbers that a thread keeps for a row.
 const KEPT_BYTES: u64 = 256 << 20;
 /// Most slow scenarios for which it keeps them.
@@ -323,6 +327,27 @@ impl Plan {
         self.slow.index_of(design) * self.fast.count() + self.fast.index_of(design)
     }
 
+    /// Sorted positions in parts for so many threads: whole rows, of which some may take far longer than others, or one part for each thread
+    /// where there are few rows.
+    pub(crate) fn parts<'s>(&self, positions: &'s [u64], threads: usize) -> Vec<&'s [u64]> {
+        let (threads, width) = (threads.max(1), self.fast.count());
+        let rows: Vec<&[u64]> = positions.chunk_by(|a, b| a / width == b / width).collect();
+        if rows.len() < ROWS * threads {
+            return positions.chunks(positions.len().div_ceil(threads).max(1)).collect();
+        }
+        let share = positions.len().div_ceil(PARTS * threads);
+        let mut parts = Vec::new();
+        let (mut first, mut last) = (0, 0);
+        for row in rows {
+            last += row.len();
+            if last - first >= share || last == positions.len() {
+                parts.push(&positions[first..last]);
+                first = last;
+            }
+        }
+        parts
+    }
+
     /// A position for every step, spread evenly over the study after any number of steps.
     pub fn spread(&self, step: u64) -> u64 {
         spread(self.designs(), step)
@@ -410,4 +435,36 @@ pub(crate) fn knowns(study: &Study, space: &Space) -> Vec<Known> {
         product.for_each_range(|input, (least, largest)| inputs[input] = Known::Within(si(input, least), si(input, largest)));
     }
     inputs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::study_of;
+
+    #[test]
+    fn parts_are_whole_rows_unless_there_are_few() {
+        let plan = |angles: u64| {
+            let text = format!(
+                "[design]\ngroove_angle_deg = {{ from = 18, to = 30, count = {angles} }}\nband_count = {{ from = 4, to = 14 }}\n\
+                 [objectives]\naxial_force_N = \"min\""
+            );
+            Plan::new(study_of(&crate::models::find("metal-cvt").expect("it is a model"), &text).expect("the study is right"))
+        };
+        let (many, few) = (plan(200), plan(3));
+        let width = many.fast.count();
+        assert!(width > 1 && many.slow.count() == 200, "a row is an angle");
+        // Of each row every third design.
+        let positions: Vec<u64> = (0..many.designs()).filter(|it| it % 3 == 0).collect();
+        for threads in [1, 2, 5] {
+            let parts = many.parts(&positions, threads);
+            assert_eq!(parts.concat(), positions);
+            assert!(parts.len() > 4 * threads && parts.len() <= 16 * threads, "{} parts", parts.len());
+            assert!(parts.windows(2).all(|it| it[0].last().map(|it| it / width) < it[1].first().map(|it| it / width)));
+        }
+        let positions: Vec<u64> = (0..few.designs()).collect();
+        let parts = few.parts(&positions, 2);
+        assert_eq!((parts.len(), parts.concat()), (2, positions));
+        assert!(few.parts(&[], 2).is_empty() && many.parts(&[7], 0) == [[7]]);
+    }
 }

@@ -79,8 +79,7 @@ impl<'p> Reference<'p> {
                     if kept { self.prepared.push(prepared) } else { self.beyond = prepared }
                 }
                 let prepared = if kept { &self.prepared[q as usize] } else { &self.beyond };
-                model.kernel.finish(prepared, &si, self.wanted, &mut outputs);
-                model.kernel.conditions(prepared, &si, &mut margins);
+                model.kernel.finish_with_conditions(prepared, &si, self.wanted, &mut outputs, &mut margins);
                 let (status, present) = judge(model, &margins);
                 let scenario = plan.slow_scenarios.source_index(q) + plan.fast_scenarios.source_index(t);
                 let value = |quantity| match quantity {
@@ -139,8 +138,7 @@ impl<'p> Reference<'p> {
         fill_si(model, &inputs, &mut si);
         let mut prepared = vec![0.0; model.kernel.prepared_len()];
         self.latest.prepare(&si, self.wanted, &mut prepared);
-        model.kernel.finish(&prepared, &si, self.wanted, &mut outputs);
-        model.kernel.conditions(&prepared, &si, &mut margins);
+        model.kernel.finish_with_conditions(&prepared, &si, self.wanted, &mut outputs, &mut margins);
         let (status, present) = judge(model, &margins);
         let value = move |quantity| match quantity {
             Quantity::Input(input) => Some(inputs[input]),

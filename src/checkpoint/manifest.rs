@@ -12,7 +12,7 @@ use serde_json::Value;
 use std::path::Path;
 
 /// Version of the checkpoint's layout; another one is refused.
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 /// Its file.
 pub(super) const MANIFEST: &str = "manifest.json";
 /// Most bytes of a manifest: it holds the study's text with all rows of its tables.

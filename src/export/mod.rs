@@ -40,6 +40,7 @@ use crate::screen::{Control, Tally};
 #[cfg(feature = "parquet")]
 use crate::table::parquet;
 use crate::table::{Table, csv};
+use rustc_hash::FxHashMap;
 use std::io::Write;
 use std::path::Path;
 use std::sync::atomic::Ordering;
@@ -69,6 +70,21 @@ pub struct Certified<'p> {
     pub influence: Option<InfluenceReport>,
 }
 
+/// The rows of designs: those that have been certified `before`, and what `certify` makes of the others.
+fn rows_after<'r>(
+    before: impl Iterator<Item = &'r Vec<Row>>,
+    designs: &[u64],
+    control: &Control,
+    certify: impl FnOnce(&[u64]) -> Result<Vec<Row>>,
+) -> Result<Vec<Row>> {
+    let known: FxHashMap<u64, &Row> = before.flatten().map(|row| (row.index, row)).collect();
+    let missing: Vec<u64> = designs.iter().copied().filter(|design| !known.contains_key(design)).collect();
+    control.certified.fetch_add((designs.len() - missing.len()) as u64, Ordering::Relaxed);
+    let mut certified = certify(&missing)?.into_iter();
+    let row = |design: &u64| known.get(design).map_or_else(|| certified.next().expect("every design has a row"), |&row| row.clone());
+    Ok(designs.iter().map(row).collect())
+}
+
 impl<'p> Certified<'p> {
     /// Certifies the state of a sweep; `control` shows the progress and can stop it.
     ///
@@ -82,9 +98,10 @@ impl<'p> Certified<'p> {
         control.reported.store(reported as u64, Ordering::Relaxed);
         state.reported.all_feasible.iter().try_for_each(|list| feasible::check_count(list, state.feasible))?;
         let front = certify::front(plan, &columns, &state.front, threads, control)?;
-        let mut named = Vec::new();
+        let mut named: Vec<Vec<Row>> = Vec::new();
         for (designs, all) in designs.iter().zip(state.reported.designs_of(state.feasible)) {
-            let rows = certify::rows(plan, &columns, designs, threads, control)?;
+            let before = named.iter().chain([&front]);
+            let rows = rows_after(before, designs, control, |missing| certify::rows(plan, &columns, missing, threads, control))?;
             rows.iter().try_for_each(certify::check_feasible)?;
             if let Some(all) = all.filter(|&all| all != rows.len() as u64) {
                 let (found, feasible) = (rows.len(), state.feasible);
@@ -94,7 +111,8 @@ impl<'p> Certified<'p> {
             }
             named.push(rows);
         }
-        let variants = certify::rows(plan, &columns, &all, threads, control)?;
+        let before = named.iter().chain([&front]);
+        let variants = rows_after(before, &all, control, |missing| certify::rows(plan, &columns, missing, threads, control))?;
         let feasible = variants.iter().filter(|row| row.feasible).count() as u64;
         if plan.study.report.variants && feasible != state.feasible {
             let seen = state.feasible;

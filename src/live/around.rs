@@ -1,6 +1,6 @@
 //! What is around a design: along each input that is chosen, the values of objectives and constraints, all else as it is.
 
-use crate::certify::{self, Column, Row};
+use crate::certify::{self, Column, Role, Row};
 use crate::error::Result;
 use crate::plan::Plan;
 use crate::screen::Control;
@@ -37,7 +37,8 @@ pub fn sliced<'p>(plan: &'p Plan, inputs: &[f64]) -> Vec<(usize, &'p Levels)> {
     single.filter(of_numbers).collect()
 }
 
-/// The slices around a design over its axes of numbers, each of about `most` places, and the columns of their rows.
+/// The slices around a design over its axes of numbers, each of about `most` places, and the columns of their rows: objectives and
+/// constraints. What is only reported may cost more than all else, as fresh draws do.
 ///
 /// # Errors
 /// [`Error::Stopped`](crate::error::Error::Stopped) after `control.stop`.
@@ -45,7 +46,7 @@ pub fn around(plan: &Plan, design: u64, most: u64, threads: usize, control: &Con
     let study = &plan.study;
     let inputs = plan.space.inputs(design, 0);
     let mut slices = Vec::new();
-    let columns = certify::columns(study);
+    let columns: Vec<Column> = certify::columns(study).into_iter().filter(|it| it.role != Role::Report).collect();
     for (input, levels) in sliced(plan, &inputs) {
         let values = places(levels, study.model.inputs[input].integer, inputs[input], most);
         let line = Plan::new(along(study, &inputs, input, &values));

@@ -73,8 +73,10 @@ pub fn evaluate_asked(model: &Model, inputs: &[f64], asked: Set) -> Evaluation {
 
 /// The second stage of an evaluation, of inputs in SI units and what was prepared of them.
 pub(super) fn evaluated(model: &Model, si: &[f64], prepared: &[f64], asked: Set) -> Evaluation {
-    let outputs = model.kernel.outputs(prepared, si, Set::ALL);
-    let (status, present) = judge(model, &model.kernel.margins(prepared, si));
+    let sizes = model.kernel.sizes();
+    let [mut outputs, mut margins] = [sizes.outputs, sizes.conditions].map(|length| vec![0.0; length]);
+    model.kernel.finish_with_conditions(prepared, si, Set::ALL, &mut outputs, &mut margins);
+    let (status, present) = judge(model, &margins);
     let outputs: Vec<_> = (0..model.outputs.len()).map(|output| shown(model, &outputs, present, output)).collect();
     // What no condition takes away and is absent all the same has overflowed.
     let overflow = outputs.iter().enumerate().any(|(output, value)| value.is_none() && (asked & present).contains(output));

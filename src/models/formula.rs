@@ -129,6 +129,11 @@ pub trait Kernel: Send + Sync {
     fn conditions(&self, prepared: &[f64], inputs: &[f64], margins: &mut [f64]);
     /// Second stage in f64.
     fn finish(&self, prepared: &[f64], inputs: &[f64], wanted: Set, outputs: &mut [f64]);
+    /// Second stage and margins together, to the same bits; what they have in common may be computed once.
+    fn finish_with_conditions(&self, prepared: &[f64], inputs: &[f64], wanted: Set, outputs: &mut [f64], margins: &mut [f64]) {
+        self.finish(prepared, inputs, wanted, outputs);
+        self.conditions(prepared, inputs, margins);
+    }
     /// First stage in f64 with all that it can pass on.
     fn prepared(&self, inputs: &[f64]) -> Vec<f64> {
         let mut prepared = vec![0.0; self.prepared_len()];

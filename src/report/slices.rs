@@ -22,11 +22,10 @@ const GRAINS: [u64; 4] = [PLACES, 17, 9, 5];
 /// Slices as the page draws them.
 pub fn told(plan: &Plan, columns: &[Column], slices: &[Slice]) -> Value {
     let study = &plan.study;
-    let judged = || columns.iter().enumerate().filter(|(_, column)| column.role != Role::Report);
-    let named = judged().map(|(_, it)| json!({ "name": it.name, "unit": it.unit(study), "doc": it.doc(study) }));
+    let named = columns.iter().map(|it| json!({ "name": it.name, "unit": it.unit(study), "doc": it.doc(study) }));
     let slices = slices.iter().map(|slice| {
         let input = &study.model.inputs[slice.input];
-        let lines = judged().map(|(at, _)| {
+        let lines = (0..columns.len()).map(|at| {
             let of = |it: Option<f64>| it.filter(|it| it.is_finite()).map(number);
             let values = slice.rows.iter().map(|row| of(row.columns[at].value).unwrap_or(Value::Null));
             let scenarios = slice.rows.iter().map(|row| row.columns[at].value.map(|_| row.columns[at].scenario));

@@ -8,11 +8,11 @@ use crate::error::Result;
 use crate::export::{Certified, MethodRecord};
 use crate::plan::Plan;
 use crate::reduce::Reduction;
-use crate::screen::{Control, Tables, Tally};
+use crate::screen::{Control, JudgedDesigns, Tables, Tally};
 use crate::sweep::costs::span;
 use crate::sweep::{DeviceRecord, Leaving, OnDevice, Rule, Settings, Settler, Swept, sweep, sweep_auto, sweep_by_bounds};
 use crate::table::short;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// What judges the designs.
 #[derive(Debug)]
@@ -91,10 +91,16 @@ pub fn judge<'p>(
     how: How<'_>,
     remark: &mut dyn FnMut(&str),
 ) -> Result<Judged<'p>> {
-    let tables = Tables::new(plan);
+    let mut tables = Tables::new(plan);
+    let start = Instant::now();
     // With a slow model the sample can be most of the work: a shard skips it unless it needs it.
     let sampled = whole || plan.shards_sample();
-    let tally = if sampled { Tally::watched(plan, &tables, settings.threads, control)? } else { Tally::empty(plan) };
+    let (tally, judged) = if sampled {
+        Tally::with_judged(plan, &tables, settings.threads, control)?
+    } else {
+        (Tally::empty(plan), JudgedDesigns::default())
+    };
+    let sampling = start.elapsed();
     let reduction = Reduction::new(plan, &tally.histogram_ranges(plan));
     let how = match how {
         How::Device(_, true) => match supports_histograms(plan, &reduction.histogram_ranges()) {
@@ -106,9 +112,18 @@ pub fn judge<'p>(
         },
         how => how,
     };
+    // The sweep need not judge again what the sample has judged; the time that took is part of its own.
+    let takes_over = matches!(how, How::Cpu) && !judged.is_empty();
+    if takes_over {
+        tables.take_over(judged);
+    }
     let (mut did, mut settler) = (None, Settler::EveryDesign);
     let Swept { state, designs, time } = match how {
-        How::Cpu => sweep(plan, &tables, &reduction, settings, checkpoint, control)?,
+        How::Cpu => {
+            let swept = sweep(plan, &tables, &reduction, settings, checkpoint, control)?;
+            let share = if takes_over { swept.designs as f64 / plan.designs() as f64 } else { 0.0 };
+            Swept { time: sampling.mul_f64(share) + swept.time, ..swept }
+        }
         How::Device(on, _) => {
             let (swept, record) = sweep_on_device(plan, &tables, &reduction, settings, checkpoint, control, on)?;
             did = Some(record);

@@ -169,6 +169,22 @@ impl<'p> CpuEngine<'p> {
     /// Judges the designs at `positions` and hands each block with a feasible design to `absorb`. Returns the position before which
     /// all are judged: the end, unless the engine was stopped.
     pub fn screen(&mut self, positions: Range<u64>, mut absorb: impl FnMut(&Block<'_>)) -> u64 {
+        let mut position = positions.start;
+        while position < positions.end {
+            let (places, next) = self.tables.judged.first_of(&(position..positions.end));
+            position += places.len() as u64;
+            self.tables.judged.hand_over(self.plan, places, &mut absorb);
+            let reached = self.judge(position..next, &mut absorb);
+            if reached < next {
+                return reached;
+            }
+            position = next;
+        }
+        position
+    }
+
+    /// Judges designs that the sample has not judged, as [`CpuEngine::screen`] does.
+    fn judge(&mut self, positions: Range<u64>, mut absorb: &mut impl FnMut(&Block<'_>)) -> u64 {
         if let (Some(rows), Some(block), true) = (&self.tables.together, &mut self.together, self.chosen.is_empty()) {
             let is_stopped = || self.stop.is_some_and(|stop| stop.load(Ordering::Relaxed));
             return block.judge(self.plan, rows, positions, is_stopped, absorb);

@@ -6,6 +6,7 @@ mod cpu;
 mod decisive;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+mod judged;
 mod kept_rows;
 mod ordered;
 mod row_list;
@@ -16,6 +17,7 @@ mod tally;
 mod turned_list;
 
 pub use cpu::CpuEngine;
+pub use judged::JudgedDesigns;
 pub use ordered::{SortedDesigns, SortedRow};
 pub use tables::{BLOCK, Tables};
 pub use tally::Tally;
@@ -61,10 +63,10 @@ impl Control {
     }
 }
 
-/// Judged designs of one row: who is feasible, and the worst values of what the plan tracks.
+/// Judged designs: who is feasible, and the worst values of what the plan tracks.
 #[derive(Clone, Copy, Debug)]
 pub struct Block<'a> {
-    /// Part of the design index that the row contributes.
+    /// Part of the design index that the row contributes; zero where the designs are of several rows.
     pub row_index: u64,
     /// Part of the design index that each lane contributes.
     pub offsets: &'a [u64],

@@ -1,5 +1,6 @@
 //! What the threads of the CPU engine share: settings of scenarios, and the designs of the fast axes by blocks.
 
+use super::judged::JudgedDesigns;
 use super::ordered::OrderedRows;
 use super::row_list::RowList;
 use super::rows_together::RowsTogether;
@@ -50,6 +51,8 @@ pub struct Tables {
     pub(super) rows: Option<RowList>,
     /// The whole formula over blocks of designs, where a row has no more than one.
     pub(super) together: Option<RowsTogether>,
+    /// Designs that need not be judged any more.
+    pub(super) judged: JudgedDesigns,
 }
 
 impl Tables {
@@ -62,13 +65,32 @@ impl Tables {
         let ordered = lanes.as_ref().filter(|_| kept > 0).and_then(|list| OrderedRows::new(plan, list));
         let (slow_scenarios, fast_scenarios) = (settings(plan, &plan.slow_scenarios), settings(plan, &plan.fast_scenarios));
         let rows = RowList::new(plan, lanes.as_ref(), (&slow_scenarios, &fast_scenarios));
-        Self { slow_scenarios, fast_scenarios, blocks, lanes, ordered, rows, together: RowsTogether::new(plan) }
+        Self {
+            slow_scenarios,
+            fast_scenarios,
+            blocks,
+            lanes,
+            ordered,
+            rows,
+            together: RowsTogether::new(plan),
+            judged: JudgedDesigns::default(),
+        }
+    }
+
+    /// From now on these designs are taken over as they are.
+    pub fn take_over(&mut self, judged: JudgedDesigns) {
+        self.judged = judged;
     }
 
     /// Are rows judged at once, by the order of their designs? Then columns are sorted when a sweep first meets them, and how fast it is
     /// depends on the front that it knows.
     pub fn has_ordered_rows(&self) -> bool {
         self.ordered.is_some()
+    }
+
+    /// Are whole rows, or several of them, judged at once?
+    pub(super) fn has_rows_together(&self) -> bool {
+        self.ordered.is_some() || self.together.is_some()
     }
 
     /// Bytes that a thread takes for the designs of a row that is judged at once: values and indices, and in each map what lanes count.
@@ -88,6 +110,7 @@ impl Tables {
             if product.count() <= TABLE { product.count() * one as u64 } else { 0 }
         };
         let settings = settings(&plan.slow_scenarios) + settings(&plan.fast_scenarios);
+        let settings = settings + JudgedDesigns::bytes(plan);
         if plan.fast.count() > FAST_DESIGNS {
             return settings;
         }

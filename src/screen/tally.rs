@@ -6,12 +6,13 @@
 
 use super::Control;
 use super::cpu::{CpuEngine, holds, row_value, worse_of};
+use super::judged::JudgedDesigns;
 use super::spectrum::CaseSums;
 use super::tables::{BLOCK, FastBlock, Tables};
 use crate::error::{Error, Result};
 use crate::masks;
 use crate::models::Set;
-use crate::parallel::on_threads;
+use crate::parallel::one_after_another;
 use crate::plan::{Plan, Source, Tracked, worst_end};
 use crate::sample::mix;
 use crate::study::Study;
@@ -55,7 +56,7 @@ impl Failures {
 impl Tally {
     /// Counts the sample of a plan.
     pub fn new(plan: &Plan, tables: &Tables, threads: usize) -> Self {
-        Self::count(plan, tables, threads, &Control::default())
+        Self::count(plan, tables, threads, &Control::default()).0
     }
 
     /// The same, seen and stopped by others.
@@ -63,22 +64,33 @@ impl Tally {
     /// # Errors
     /// [`Error::Stopped`] after `control.stop`.
     pub fn watched(plan: &Plan, tables: &Tables, threads: usize, control: &Control) -> Result<Self> {
-        let tally = Self::count(plan, tables, threads, control);
+        Ok(Self::with_judged(plan, tables, threads, control)?.0)
+    }
+
+    /// The same with the designs of the sample, where they are worth keeping for [`Tables::take_over`].
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] after `control.stop`.
+    pub fn with_judged(plan: &Plan, tables: &Tables, threads: usize, control: &Control) -> Result<(Self, JudgedDesigns)> {
+        let counted = Self::count(plan, tables, threads, control);
         if control.stop.load(Ordering::Relaxed) {
             return Err(Error::Stopped { kept: None });
         }
-        Ok(tally)
+        Ok(counted)
     }
 
-    fn count(plan: &Plan, tables: &Tables, threads: usize, control: &Control) -> Self {
+    fn count(plan: &Plan, tables: &Tables, threads: usize, control: &Control) -> (Self, JudgedDesigns) {
         let indices = sample(plan.designs(), plan.study.model.sample);
         let mut positions: Vec<u64> = indices.map(|design| plan.position_of(design)).collect();
         // In the order of the sweep neighbours share what is prepared.
         positions.sort_unstable();
         control.sample.store(positions.len() as u64, Ordering::Relaxed);
-        let share = positions.len().div_ceil(threads.max(1)).max(1);
-        let parts = on_threads(positions.chunks(share), |part| Counter::new(plan, tables, control).count(part));
-        parts.into_iter().fold(Self::empty(plan), Self::merge)
+        let begin = || Counter::new(plan, tables, control);
+        let parts = one_after_another(plan.parts(&positions, threads), threads, begin, Counter::count);
+        parts.into_iter().fold((Self::empty(plan), JudgedDesigns::new(plan)), |(tally, mut judged), (of_part, judged_there)| {
+            judged.append(judged_there);
+            (tally.merge(of_part), judged)
+        })
     }
 
     /// The range of every histogram of the study: as given, else what the sample's feasible designs cover.
@@ -280,6 +292,8 @@ struct Counter<'p> {
     tables: &'p Tables,
     control: &'p Control,
     tally: Tally,
+    /// Designs that have been judged, if they are kept.
+    judged: Option<JudgedDesigns>,
 }
 
 impl<'p> Counter<'p> {
@@ -290,21 +304,25 @@ impl<'p> Counter<'p> {
             engine: CpuEngine::new(plan, tables).stopping_on(&control.stop).with_all_values(),
             control,
             tally: Tally::empty(plan),
+            // Designs that are judged together are judged quicker than one by one.
+            judged: (JudgedDesigns::are_kept(plan) && !tables.has_rows_together()).then(|| JudgedDesigns::new(plan)),
         }
     }
 
-    fn count(mut self, positions: &[u64]) -> Tally {
+    /// Counts some designs of the sample.
+    fn count(&mut self, positions: &[u64]) -> (Tally, JudgedDesigns) {
         let width = self.plan.fast.count();
-        for row in positions.chunk_by(|a, b| a / width == b / width) {
+        'sample: for row in positions.chunk_by(|a, b| a / width == b / width) {
             for block in row.chunks(BLOCK) {
                 let fast: Vec<u64> = block.iter().map(|position| position % width).collect();
-                if !self.count_block(block[0] / width, &fast) {
-                    return self.tally;
+                if self.engine.stopped() || !self.count_block(block[0] / width, &fast) {
+                    break 'sample;
                 }
                 self.control.sampled.fetch_add(block.len() as u64, Ordering::Relaxed);
             }
         }
-        self.tally
+        let judged = self.judged.as_mut().map(|it| std::mem::replace(it, JudgedDesigns::new(self.plan)));
+        (std::mem::replace(&mut self.tally, Tally::empty(self.plan)), judged.unwrap_or_default())
     }
 
     /// Counts designs of one row, at most [`BLOCK`]; false if it was stopped.
@@ -315,7 +333,7 @@ impl<'p> Counter<'p> {
         let mut marks = Marks::new(plan, designs.len());
         let mut sums = CaseSums::new(plan, designs.len());
         // Worst values that are sums over cases are found by judging the feasible designs once more.
-        let mut worst = vec![vec![0.0; designs.len()]; if plan.spectrum.is_none() { plan.tracked.len() } else { 0 }];
+        let mut worst = vec![vec![0.0; designs.len()]; plan.tracked.len()];
         self.engine.set_row(row);
         for q in 0..plan.slow_scenarios.count() {
             let prepared = self.engine.prepare(q);
@@ -336,21 +354,27 @@ impl<'p> Counter<'p> {
                     has_failed.extend(marks.ok.iter().map(|ok| *ok == 0));
                 }
                 self.sum(&mut sums, (q, t), &fast, &has_failed, &mut failures);
-                self.worsen(&mut worst, q == 0 && t == 0, &fast);
+                if plan.spectrum.is_none() {
+                    self.worsen(&mut worst, q == 0 && t == 0, &fast);
+                }
             }
         }
         marks.add_to(plan, &mut failures);
         for &failures in &failures {
             self.tally.count_design(failures);
         }
-        match failures.contains(&Failures::NONE) {
-            true if plan.spectrum.is_some() => self.stretch_ranges(row, &fast, &failures),
-            true => {
-                stretch(&mut self.tally.ranges, &failures, &worst);
-                true
+        let is_feasible = || failures.iter().map(|&it| it == Failures::NONE);
+        if is_feasible().any(|it| it) {
+            if plan.spectrum.is_some() && !self.worst_sums(row, &fast, &mut worst) {
+                return false;
             }
-            false => true,
+            stretch(&mut self.tally.ranges, &failures, &worst);
         }
+        if let Some(judged) = &mut self.judged {
+            let first = row * plan.fast.count();
+            judged.add(designs.iter().map(|design| first + design), is_feasible(), &worst);
+        }
+        true
     }
 
     /// Takes the values of the current scenario into the worst ones of the block.
@@ -425,15 +449,14 @@ impl<'p> Counter<'p> {
         }
     }
 
-    /// Takes the worst values of the block's feasible designs into account; false if it was stopped.
-    fn stretch_ranges(&mut self, row: u64, fast: &FastBlock, failures: &[Failures]) -> bool {
-        let ranges = &mut self.tally.ranges;
+    /// The worst values of a block's feasible designs, of which some are sums over cases; false if it was stopped.
+    fn worst_sums(&mut self, row: u64, fast: &FastBlock, worst: &mut [Vec<f64>]) -> bool {
         // What has just been prepared of the row is still there.
         self.engine.row = None;
         let entered = self.engine.enter_row(row);
         entered
             && self.engine.screen_block(fast, &mut |block| {
-                stretch(ranges, failures, block.values);
+                worst.iter_mut().zip(0..).for_each(|(worst, column)| worst.copy_from_slice(block.column(column)));
             })
     }
 }

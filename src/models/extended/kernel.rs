@@ -201,6 +201,16 @@ impl Kernel for Extended {
         outputs[..found.len()].copy_from_slice(&found);
     }
 
+    fn finish_with_conditions(&self, prepared: &[f64], inputs: &[f64], wanted: Set, outputs: &mut [f64], margins: &mut [f64]) {
+        if self.around.is_alone() {
+            self.finish(prepared, inputs, wanted, outputs);
+            return self.conditions(prepared, inputs, margins);
+        }
+        let (found, of_conditions) = self.results_in_f64(prepared, inputs, WantedResults { outputs: wanted, margins: true });
+        outputs[..found.len()].copy_from_slice(&found);
+        margins[..of_conditions.len()].copy_from_slice(&of_conditions);
+    }
+
     fn finish_columns(&self, prepared: &[f64], inputs: &[f64], columns: &Columns<'_>, scratch: &mut Scratch, results: &mut [Vec<f64>]) {
         let lists = self.lists();
         let own = scratch.own.get_or_insert_with(|| Box::new(ExtendedColumns::new(&self.around, lists)));

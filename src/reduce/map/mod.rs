@@ -1,6 +1,7 @@
 //! A map over two design axes: the best of each cell over all other axes, or the feasible share.
 
 mod files;
+mod met;
 #[cfg(feature = "pictures")]
 mod page;
 #[cfg(feature = "pictures")]
@@ -11,6 +12,7 @@ mod stripes;
 
 pub use files::{CSV_CELLS, cells, contours, contours_name, names};
 
+use self::met::MetCells;
 use super::Answers;
 use super::reducer::{Put, Reducer, ReducerNeeds, ReducerResults, ReducerRoom};
 use crate::error::Result;
@@ -23,10 +25,8 @@ use crate::study::{Best, Goal, MapSpec, Report, Study};
 use serde::{Deserialize, Serialize};
 #[cfg(feature = "pictures")]
 use serde_json::Value;
-use std::collections::HashMap;
-use std::hash::{BuildHasherDefault, Hasher};
 
-/// Cells above which only those that were met are kept while a chunk is swept.
+/// Cells above which only squares with a cell that was met are kept while a chunk is swept.
 const DENSE: u64 = 1 << 16;
 
 /// What a cell holds.
@@ -45,24 +45,7 @@ const EMPTY: Cell = Cell { feasible: 0, key: f64::INFINITY, index: u64::MAX };
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Cells {
     All(Vec<Cell>),
-    Met(HashMap<u64, Cell, BuildHasherDefault<CellHasher>>),
-}
-
-/// Spreads the numbers of cells: nobody chooses them to collide, and the standard hash costs more than all else that a cell takes.
-#[derive(Clone, Default)]
-struct CellHasher(u64);
-
-impl Hasher for CellHasher {
-    fn finish(&self) -> u64 {
-        self.0
-    }
-    fn write(&mut self, _bytes: &[u8]) {
-        unreachable!("cells are numbers")
-    }
-    fn write_u64(&mut self, number: u64) {
-        // The golden section, and the high bits, which it mixes best, brought to where the table looks.
-        self.0 = number.wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(32);
-    }
+    Met(MetCells),
 }
 
 /// The cells of a map, row-major in y, then x.
@@ -137,7 +120,7 @@ impl Map {
             Best::Share => (Goal::Min, None),
         };
         let cells =
-            if width * height <= DENSE { Cells::All(vec![EMPTY; (width * height) as usize]) } else { Cells::Met(HashMap::default()) };
+            if width * height <= DENSE { Cells::All(vec![EMPTY; (width * height) as usize]) } else { Cells::Met(MetCells::new(width)) };
         Self { goal, width, height, x: spec.x, y: spec.y, column, designs: Some(plan.space.designs.clone()), lanes: None, cells }
     }
 
@@ -149,7 +132,7 @@ impl Map {
     fn take(&mut self, at: u64, cell: Cell) {
         match &mut self.cells {
             Cells::All(cells) => cells[at as usize].take(cell),
-            Cells::Met(cells) => cells.entry(at).or_insert(EMPTY).take(cell),
+            Cells::Met(cells) => cells.at(at).take(cell),
         }
     }
 
@@ -162,7 +145,7 @@ impl Map {
     pub fn cell(&self, at: u64) -> Option<Cell> {
         let cell = match &self.cells {
             Cells::All(cells) => cells.get(at as usize).copied(),
-            Cells::Met(cells) => cells.get(&at).copied(),
+            Cells::Met(cells) => (at < self.width * self.height).then(|| cells.get(at)),
         };
         cell.filter(Cell::is_met)
     }
@@ -176,7 +159,7 @@ impl Map {
     pub(crate) fn add_feasible(&mut self, at: u64, count: u64) {
         match &mut self.cells {
             Cells::All(cells) => cells[at as usize].add(count),
-            Cells::Met(cells) => cells.entry(at).or_insert(EMPTY).add(count),
+            Cells::Met(cells) => cells.at(at).add(count),
         }
     }
 
@@ -266,7 +249,7 @@ impl Reducer for Map {
             let with_cells = all.map(|it| (row_cell + u64::from(lanes.cells[usize::from(it.0)]), it));
             match &mut self.cells {
                 Cells::All(cells) => with_cells.for_each(|(at, it)| take(&mut cells[at as usize], it)),
-                Cells::Met(cells) => with_cells.for_each(|(at, it)| take(cells.entry(at).or_insert(EMPTY), it)),
+                Cells::Met(cells) => with_cells.for_each(|(at, it)| take(cells.at(at), it)),
             }
         } else {
             if lanes.row_cell != row_cell {
@@ -293,16 +276,19 @@ impl Reducer for Map {
 
     fn merge(&mut self, other: Self) {
         debug_assert!(other.lanes.is_none_or(|it| it.counts.iter().all(|count| *count == 0)), "rows that were not ended");
-        match other.cells {
-            Cells::All(cells) => cells.into_iter().zip(0..).filter(|(cell, _)| cell.is_met()).for_each(|(cell, at)| self.take(at, cell)),
-            Cells::Met(cells) => cells.into_iter().for_each(|(at, cell)| self.take(at, cell)),
+        match (&mut self.cells, other.cells) {
+            (_, Cells::All(cells)) => {
+                cells.into_iter().zip(0..).filter(|(cell, _)| cell.is_met()).for_each(|(cell, at)| self.take(at, cell))
+            }
+            (Cells::Met(own), Cells::Met(cells)) => own.merge(cells),
+            (Cells::All(own), Cells::Met(cells)) => cells.cells().for_each(|(at, cell)| own[at as usize].take(cell)),
         }
-        // Once most cells have been met a table is smaller than a map of them.
+        // Once there is room for a quarter of the cells a table takes little more, and is quicker.
         if let Cells::Met(cells) = &self.cells
-            && cells.len() as u64 * 4 > self.width * self.height
+            && cells.room() * 4 > self.width * self.height
         {
             let mut all = vec![EMPTY; (self.width * self.height) as usize];
-            cells.iter().for_each(|(&at, &cell)| all[at as usize] = cell);
+            cells.cells().for_each(|(at, cell)| all[at as usize] = cell);
             self.cells = Cells::All(all);
         }
     }
@@ -310,10 +296,13 @@ impl Reducer for Map {
     fn fits(&self, asked: &Self, met: u64, designs: u64) -> bool {
         let place = |it: &Self| (it.goal, it.width, it.height, it.x, it.y);
         let size = asked.width * asked.height;
-        let possible = |cell: &Cell| !cell.key.is_nan() && (cell.index < designs || cell.index == u64::MAX);
-        let (inside, cells): (bool, Box<dyn Iterator<Item = &Cell>>) = match &self.cells {
-            Cells::All(cells) => (cells.len() as u64 == size, Box::new(cells.iter())),
-            Cells::Met(cells) => (cells.keys().all(|&at| at < size), Box::new(cells.values())),
+        let possible = |cell: Cell| !cell.key.is_nan() && (cell.index < designs || cell.index == u64::MAX);
+        let (inside, cells): (bool, Box<dyn Iterator<Item = Cell>>) = match &self.cells {
+            Cells::All(cells) => (cells.len() as u64 == size, Box::new(cells.iter().copied())),
+            Cells::Met(cells) => {
+                let fits = cells.width() == self.width && cells.cells().all(|(at, _)| at < size);
+                (fits, Box::new(cells.cells().map(|(_, cell)| cell)))
+            }
         };
         let mut sum = 0u64;
         let mut good = cells.map(|cell| {

@@ -143,10 +143,14 @@ impl CpuEngine<'_> {
         }
         let kernel = &self.plan.study.model.kernel;
         let prepared = &self.prepared[prepared];
-        if !self.plan.row_outputs.is_empty() {
-            kernel.finish(prepared, &self.si, self.plan.row_outputs, &mut self.row_outputs);
+        // What is not asked for is not computed: of drawn drives the conditions of one design take as long as its draws.
+        let (plan, si, outputs, margins) = (self.plan, &self.si, &mut self.row_outputs, &mut self.row_margins);
+        match (plan.row_outputs.is_empty(), plan.row_conditions.is_empty()) {
+            (false, false) => kernel.finish_with_conditions(prepared, si, plan.row_outputs, outputs, margins),
+            (false, true) => kernel.finish(prepared, si, plan.row_outputs, outputs),
+            (true, false) => kernel.conditions(prepared, si, margins),
+            (true, true) => {}
         }
-        kernel.conditions(prepared, &self.si, &mut self.row_margins);
         self.kept_rows.keep(self.scenario, &self.row_margins, &self.row_outputs);
     }
 

@@ -1,11 +1,12 @@
 //! Fresh draws, which judge what others have chosen.
 
+use super::columns;
 use super::statistic::{CONFIDENCE, ConfirmedEnd};
 use crate::probability::{Draws, clopper_pearson, simultaneous};
 use std::sync::OnceLock;
 
 /// Draws that are looked at together, and the most numbers that are kept for the next design.
-const BLOCK: u64 = 8192;
+const BLOCK: u64 = columns::BLOCK as u64;
 const MOST_KEPT: u64 = 1 << 23;
 
 /// Fresh draws and the number of levels at which each design is judged by them.

@@ -2,12 +2,13 @@
 
 use super::super::quantity::Quantity;
 use super::super::resolved::Constraint;
-use super::counting::DrawCounting;
+use super::columns::{AskedDraws, BLOCK, DrawColumns, DrawnBlock};
 use super::drive::{DrawnDrive, margin_of};
 use super::early::least_counts;
 use super::fold::{of_any, over_cases, over_draws};
 use super::lanes::DrawnLanes;
 use super::statistic::{AskedQuantity, ConfirmedEnd, Statistic, StatisticKind};
+use crate::masks::{count, mask};
 use crate::models::{Columns, Dependencies, Kernel, Scratch, Sizes, Status, Worse, judge, shown};
 use crate::probability::{Effect, REPLICATES, replicated};
 use crate::tape::{Known, Set};
@@ -15,11 +16,22 @@ use std::cell::RefCell;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+/// Fewest draws that are computed together.
+const TOGETHER: usize = 256;
+/// Of a block of draws computed together, one in so many is computed by the scalar formula too; of one block in so many, every draw.
+const COMPARED: usize = 64;
+const WHOLE: u64 = 256;
+
 /// Draws as a formula.
 pub struct DrawnKernel {
     drive: DrawnDrive,
-    /// How draws are counted many at a time, where that is possible.
-    counting: OnceLock<Option<DrawCounting>>,
+    /// What the statistics need of every draw, and the formula over many draws at a time, where that is possible.
+    asked: AskedDraws,
+    together: OnceLock<Option<DrawColumns>>,
+    /// The same for fresh draws, of which only those that hold are counted.
+    counting: OnceLock<Option<DrawColumns>>,
+    /// Blocks of draws that were computed together so far.
+    blocks: AtomicU64,
     /// Tells kernels apart where a result is kept for the next call.
     id: u64,
 }
@@ -44,7 +56,9 @@ impl std::ops::Deref for DrawnKernel {
 impl DrawnKernel {
     /// Of a drive.
     pub fn new(drive: DrawnDrive) -> Self {
-        Self { drive, counting: OnceLock::new(), id: NEXT.fetch_add(1, Ordering::Relaxed) }
+        let asked = AskedDraws::of(&drive.statistics);
+        let [together, counting] = [OnceLock::new(), OnceLock::new()];
+        Self { asked, together, counting, blocks: AtomicU64::new(0), drive, id: NEXT.fetch_add(1, Ordering::Relaxed) }
     }
 
     /// The value of a quantity of the drive in its unit.
@@ -73,40 +87,68 @@ impl DrawnKernel {
 
     fn computed(&self, design: &[f64], wanted: Set) -> Vec<Option<f64>> {
         let draws = self.draws();
-        let mut counts = vec![0u64; self.statistics.len()];
         // Of each replicate, if there are such.
         let replicates = self.statistics.iter().any(|it| it.kind == StatisticKind::Confirmed(ConfirmedEnd::StandardError));
         let mut held = vec![0u64; if replicates { REPLICATES as usize } else { 0 }];
-        let mut values: Vec<Vec<f64>> =
-            self.statistics.iter().map(|it| Vec::with_capacity(if it.kind.may_be_absent() { draws } else { 0 })).collect();
-        for draw in 0..draws {
-            let cases = self.drawn_cases(design, draw);
-            for (number, statistic) in self.statistics.iter().enumerate() {
-                match statistic.kind {
-                    StatisticKind::Yield => counts[number] += u64::from(self.draw_holds(&cases)),
-                    StatisticKind::YieldOf(constraint) => counts[number] += u64::from(self.keeps(&constraint, &cases)),
-                    StatisticKind::Plain(asked) | StatisticKind::Over(asked, _) => {
-                        values[number].push(self.over_cases(&asked, &cases).unwrap_or(f64::NAN));
-                    }
-                    StatisticKind::Confirmed(ConfirmedEnd::StandardError) => {
-                        held[draw * REPLICATES as usize / draws] += u64::from(self.draw_holds(&cases));
-                    }
-                    StatisticKind::Confirmed(_) => {}
-                }
+        let mut holds = 0;
+        let mut kept = vec![0; self.asked.keeping.len()];
+        let mut values: Vec<Vec<f64>> = self.asked.quantities.iter().map(|_| Vec::with_capacity(draws)).collect();
+        let together = self.recorded(&self.together, &self.asked, draws);
+        for first in (0..draws).step_by(BLOCK) {
+            let columns: Vec<&[f64]> = self.columns.iter().map(|it| &it[first..draws.min(first + BLOCK)]).collect();
+            let block = self.block(together, &self.asked, design, &columns);
+            holds += count(&block.holds);
+            kept.iter_mut().zip(&block.kept).for_each(|(sum, kept)| *sum += count(kept));
+            values.iter_mut().zip(&block.values).for_each(|(to, from)| to.extend(from));
+            if replicates {
+                (first..).zip(&block.holds).for_each(|(draw, holds)| held[draw * REPLICATES as usize / draws] += holds & 1);
             }
         }
         let holding = (0..self.statistics.len()).any(|it| wanted.contains(it) && self.is_confirmed(it)).then(|| self.holding(design));
-        let result = |(number, statistic): (usize, &Statistic)| match statistic.kind {
-            StatisticKind::Yield | StatisticKind::YieldOf(_) => Some(counts[number] as f64),
-            StatisticKind::Plain(asked) => of_any(&asked, &values[number]),
-            StatisticKind::Over(asked, over) => over_draws(&asked, over, &values[number]),
+        let (mut kept, mut values) = (kept.into_iter(), values.iter());
+        let mut own = || values.next().expect("every quantity that is asked for has values");
+        let result = |statistic: &Statistic| match statistic.kind {
+            StatisticKind::Yield => Some(holds as f64),
+            StatisticKind::YieldOf(_) => kept.next().map(|count| count as f64),
+            StatisticKind::Plain(asked) => of_any(&asked, own()),
+            StatisticKind::Over(asked, over) => over_draws(&asked, over, own()),
             StatisticKind::Confirmed(ConfirmedEnd::StandardError) => {
                 let shares: Vec<f64> = held.iter().map(|it| *it as f64 * REPLICATES as f64 / draws as f64).collect();
                 replicated(&shares).ok()?.standard_error
             }
             StatisticKind::Confirmed(end) => self.fresh.as_ref().zip(holding).map(|(fresh, holding)| fresh.told(end, holding)),
         };
-        self.statistics.iter().enumerate().map(result).collect()
+        self.statistics.iter().map(result).collect()
+    }
+
+    /// The formula over many draws, if so many are worth it.
+    fn recorded<'k>(&'k self, kept: &'k OnceLock<Option<DrawColumns>>, asked: &AskedDraws, draws: usize) -> Option<&'k DrawColumns> {
+        if draws < TOGETHER { None } else { kept.get_or_init(|| DrawColumns::new(&self.drive, asked)).as_ref() }
+    }
+
+    /// What comes of a block of draws (a column per drawn input): computed together where that is possible, and then some of them, or all,
+    /// by the scalar formula too. Where the two differ, all are computed by the scalar formula.
+    pub(super) fn block(&self, together: Option<&DrawColumns>, asked: &AskedDraws, design: &[f64], columns: &[&[f64]]) -> DrawnBlock {
+        let draws = columns.first().map_or(0, |it| it.len());
+        let alone = |draws: &mut dyn Iterator<Item = usize>| {
+            let mut block = DrawnBlock::new(asked);
+            draws.for_each(|draw| self.add_draw(asked, &self.cases_of(&|input| columns[input][draw], design), &mut block));
+            block
+        };
+        let Some(together) = together else { return alone(&mut (0..draws)) };
+        let found = together.run(&self.drive, design, columns);
+        let is_whole = self.blocks.fetch_add(1, Ordering::Relaxed).is_multiple_of(WHOLE);
+        let compared = || (0..draws).step_by(if is_whole { 1 } else { COMPARED });
+        let others = alone(&mut compared());
+        if compared().enumerate().all(|(at, draw)| found.is_same(draw, &others, at)) { found } else { alone(&mut (0..draws)) }
+    }
+
+    /// Adds what comes of a draw in all cases.
+    fn add_draw(&self, asked: &AskedDraws, cases: &[CaseOfDraw], block: &mut DrawnBlock) {
+        block.holds.push(mask(self.draw_holds(cases)));
+        block.kept.iter_mut().zip(&asked.keeping).for_each(|(kept, constraint)| kept.push(mask(self.keeps(constraint, cases))));
+        let value = |asked: &AskedQuantity| self.over_cases(asked, cases).unwrap_or(f64::NAN);
+        block.values.iter_mut().zip(&asked.quantities).for_each(|(values, asked)| values.push(value(asked)));
     }
 
     /// Is it a statistic that the fresh draws tell? Formulas of statistics have numbers behind those of all statistics.
@@ -116,15 +158,13 @@ impl DrawnKernel {
 
     /// How many of the fresh draws hold.
     fn holding(&self, design: &[f64]) -> u64 {
-        let counting = self.counting.get_or_init(|| DrawCounting::new(&self.drive));
-        let mut count = |columns: &[Vec<f64>]| {
-            if let Some(counting) = counting {
-                return counting.holding(&self.drive, design, columns);
-            }
-            let holds = |draw: usize| self.draw_holds(&self.cases_of(&|input| columns[input][draw], design));
-            (0..columns.first().map_or(0, Vec::len)).filter(|&draw| holds(draw)).count() as u64
+        let nothing = AskedDraws::default();
+        let mut held = |columns: &[Vec<f64>]| {
+            let counting = self.recorded(&self.counting, &nothing, columns.first().map_or(0, Vec::len));
+            let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+            count(&self.block(counting, &nothing, design, &columns).holds)
         };
-        self.fresh.as_ref().map_or(0, |fresh| fresh.holding(&mut count))
+        self.fresh.as_ref().map_or(0, |fresh| fresh.holding(&mut held))
     }
 
     /// One of the draws that choose, in all cases.
@@ -136,6 +176,7 @@ impl DrawnKernel {
     fn cases_of(&self, drawn: &dyn Fn(usize) -> f64, design: &[f64]) -> Vec<CaseOfDraw> {
         let (base, kernel) = (&self.base, &*self.base.kernel);
         let wanted: Set = self.outputs.iter().copied().collect();
+        let sizes = kernel.sizes();
         let mut si = vec![0.0; design.len()];
         let case = |case: usize| {
             if !self.turn(drawn, case, design, &mut si) {
@@ -143,8 +184,9 @@ impl DrawnKernel {
             }
             let mut prepared = vec![0.0; kernel.prepared_len()];
             kernel.prepare(&si, wanted, &mut prepared);
-            let outputs = kernel.outputs(&prepared, &si, wanted);
-            let (status, present) = judge(base, &kernel.margins(&prepared, &si));
+            let [mut outputs, mut margins] = [sizes.outputs, sizes.conditions].map(|length| vec![0.0; length]);
+            kernel.finish_with_conditions(&prepared, &si, wanted, &mut outputs, &mut margins);
+            let (status, present) = judge(base, &margins);
             CaseOfDraw { status: Some(status), si: si.clone(), outputs, present }
         };
         (0..self.cases.rows.len()).map(case).collect()

@@ -6,8 +6,8 @@
 //! `[uncertainty]`, which have no probability, are left as scenarios. So everything that judges, ranks and shows designs serves it too.
 
 mod cases;
+mod columns;
 mod confirm;
-mod counting;
 mod drive;
 mod early;
 mod failures;

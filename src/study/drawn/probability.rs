@@ -4,6 +4,7 @@ use super::super::axis::Axis;
 use super::super::quantity::Quantity;
 use super::super::resolved::Constraint;
 use super::super::spectrum::{Spectrum, unit_over};
+use super::columns::DrawColumns;
 use super::confirm::FreshDraws;
 use super::lanes::most_kept;
 use super::law::LawText;
@@ -127,7 +128,11 @@ impl Probability {
         let needs_all = |it: &Statistic| matches!(it.kind, StatisticKind::Over(_, OverDraws::Sd | OverDraws::Quantile(_)));
         let all = self.statistics.iter().enumerate().filter(|(number, it)| used.contains(*number) && needs_all(it)).count() as u64;
         let has_tables = self.drive.model.kernel.formula().is_some_and(|it| !it.fields().tables.is_empty());
-        own + threads * 8 * most_kept(self.draws, all, designs) + if has_tables { WRITTEN_OUT } else { 0 }
+        let asked = self.statistics.len() + self.drive.constraints.len();
+        let cases = self.drive.operation.iter().map(Axis::count).fold(1, u64::saturating_mul);
+        let sums = self.drive.spectrum.as_ref().map_or(0, |it| cases / self.drive.operation[it.axis].count());
+        let together = DrawColumns::bytes(self.draws.max(self.confirm), inputs, asked as u64, sums);
+        own + threads * (8 * most_kept(self.draws, all, designs) + together) + if has_tables { WRITTEN_OUT } else { 0 }
     }
 
     /// The draws that choose.

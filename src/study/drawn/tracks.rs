@@ -9,7 +9,7 @@ use crate::models::Worse;
 /// A mask of a design that is in.
 pub const IN: u64 = u64::MAX;
 
-/// A quantity over the cases of one draw, for each design.
+/// A quantity over the cases, for each design in one draw, or for each draw of one design.
 pub struct CaseFold {
     pub asked: AskedQuantity,
     pub present: Vec<u64>,

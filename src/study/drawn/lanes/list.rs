@@ -1,7 +1,7 @@
 //! The drive as a list of operations: over the designs of a block what differs between these, over the draws what all of them share.
 //! The bits are those of the formula.
 
-use super::super::counting::MOST_OPERATIONS;
+use super::super::columns::MOST_OPERATIONS;
 use super::super::drive::DrawnDrive;
 use super::super::tracks::keep;
 use super::Parts;

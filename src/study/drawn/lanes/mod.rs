@@ -3,7 +3,7 @@
 mod case;
 mod list;
 #[cfg(test)]
-mod tests;
+pub(in crate::study::drawn) mod tests;
 
 use self::list::{DrawnList, LEAST_LANES};
 use super::super::quantity::Quantity;

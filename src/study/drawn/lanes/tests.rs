@@ -7,7 +7,7 @@ use crate::study::Study;
 const COUNTS: [usize; 3] = [77, 301, 190];
 
 /// Drives with their distributions, and can a list serve them?
-const STUDIES: [(&str, bool); 5] = [
+pub(in crate::study::drawn) const STUDIES: [(&str, bool); 5] = [
     (
         r#"model = "metal-cvt"
         [design]
