@@ -12,6 +12,7 @@ use crate::screen::{Control, JudgedDesigns, Tables, Tally};
 use crate::sweep::costs::span;
 use crate::sweep::{DeviceRecord, Leaving, OnDevice, Rule, Settings, Settler, Swept, sweep, sweep_auto, sweep_by_bounds};
 use crate::table::short;
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 /// What judges the designs.
@@ -101,6 +102,7 @@ pub fn judge<'p>(
         (Tally::empty(plan), JudgedDesigns::default())
     };
     let sampling = start.elapsed();
+    control.done.store(0, Ordering::Relaxed);
     let reduction = Reduction::new(plan, &tally.histogram_ranges(plan));
     let how = match how {
         How::Device(_, true) => match supports_histograms(plan, &reduction.histogram_ranges()) {

@@ -177,7 +177,9 @@ mod tests {
             let own = screened(&plan, &tables);
             assert!(own.len() > 10 && (own.len() as u64) < plan.designs(), "{} feasible: {text}", own.len());
             for threads in [1, 3] {
-                let (_, judged) = Tally::with_judged(&plan, &Tables::new(&plan), threads, &Control::default()).expect("nobody stops it");
+                let control = Control::default();
+                let (_, judged) = Tally::with_judged(&plan, &Tables::new(&plan), threads, &control).expect("nobody stops it");
+                assert_eq!(control.done.load(Ordering::Relaxed), plan.designs(), "{text}");
                 assert_eq!(judged.positions.len() as u64, plan.designs(), "{text}");
                 tables.take_over(judged);
                 assert!(screened(&plan, &tables) == own, "{threads} threads: {text}");
@@ -203,7 +205,9 @@ mod tests {
         let plan = Plan::new(study_of(&model, text).expect("the study is right"));
         let mut tables = Tables::new(&plan);
         let own = screened(&plan, &tables);
-        let (tally, judged) = Tally::with_judged(&plan, &tables, 2, &Control::default()).expect("nobody stops it");
+        let control = Control::default();
+        let (tally, judged) = Tally::with_judged(&plan, &tables, 2, &control).expect("nobody stops it");
+        assert_eq!(control.done.load(Ordering::Relaxed), 0, "the sweep has most of its work before it");
         let positions = judged.positions.clone();
         assert_eq!((tally.sampled, positions.len()), (50, 50));
         tables.take_over(judged);

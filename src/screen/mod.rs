@@ -33,7 +33,8 @@ pub struct Control {
     pub sample: AtomicU64,
     /// Of these, designs looked at so far.
     pub sampled: AtomicU64,
-    /// Designs judged so far, those of a resumed checkpoint included. By bounds: the settled share, over all that is searched for.
+    /// Designs judged so far, those of a resumed checkpoint included; while the sample judges all designs for the sweep, those of the sample.
+    /// By bounds: the settled share, over all that is searched for.
     pub done: AtomicU64,
     /// By bounds: what boxes are being settled for.
     pub settling: Mutex<Option<String>>,

@@ -12,15 +12,18 @@ use crate::masks::{count, mask};
 use crate::models::{Columns, Dependencies, Kernel, Scratch, Sizes, Status, Worse, judge, shown};
 use crate::probability::{Effect, REPLICATES, replicated};
 use crate::tape::{Known, Set};
+use rustc_hash::FxHashMap;
 use std::cell::RefCell;
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 /// Fewest draws that are computed together.
 const TOGETHER: usize = 256;
 /// Of a block of draws computed together, one in so many is computed by the scalar formula too; of one block in so many, every draw.
 const COMPARED: usize = 64;
 const WHOLE: u64 = 256;
+/// Most designs whose fresh draws are remembered.
+const MOST_HELD: usize = 10_000;
 
 /// Draws as a formula.
 pub struct DrawnKernel {
@@ -30,6 +33,8 @@ pub struct DrawnKernel {
     together: OnceLock<Option<DrawColumns>>,
     /// The same for fresh draws, of which only those that hold are counted.
     counting: OnceLock<Option<DrawColumns>>,
+    /// Fresh draws that hold, of designs by their inputs: who certifies a design, who looks for values below zero and the page all ask for them.
+    held: Mutex<FxHashMap<Vec<u64>, u64>>,
     /// Blocks of draws that were computed together so far.
     blocks: AtomicU64,
     /// Tells kernels apart where a result is kept for the next call.
@@ -58,7 +63,15 @@ impl DrawnKernel {
     pub fn new(drive: DrawnDrive) -> Self {
         let asked = AskedDraws::of(&drive.statistics);
         let [together, counting] = [OnceLock::new(), OnceLock::new()];
-        Self { asked, together, counting, blocks: AtomicU64::new(0), drive, id: NEXT.fetch_add(1, Ordering::Relaxed) }
+        Self {
+            asked,
+            together,
+            counting,
+            held: Mutex::default(),
+            blocks: AtomicU64::new(0),
+            drive,
+            id: NEXT.fetch_add(1, Ordering::Relaxed),
+        }
     }
 
     /// The value of a quantity of the drive in its unit.
@@ -158,6 +171,21 @@ impl DrawnKernel {
 
     /// How many of the fresh draws hold.
     fn holding(&self, design: &[f64]) -> u64 {
+        let held = || self.held.lock().unwrap_or_else(PoisonError::into_inner);
+        let key: Vec<u64> = design.iter().map(|it| it.to_bits()).collect();
+        let known = held().get(&key).copied();
+        known.unwrap_or_else(|| {
+            let count = self.count_fresh(design);
+            let mut held = held();
+            if held.len() < MOST_HELD {
+                held.insert(key, count);
+            }
+            count
+        })
+    }
+
+    /// Counts the fresh draws that hold.
+    fn count_fresh(&self, design: &[f64]) -> u64 {
         let nothing = AskedDraws::default();
         let mut held = |columns: &[Vec<f64>]| {
             let counting = self.recorded(&self.counting, &nothing, columns.first().map_or(0, Vec::len));

@@ -91,8 +91,8 @@ fn a_damaged_manifest_is_refused() {
             assert!(err.contains(told) && err.contains("half"), "{line}: {err}");
         }
     }
-    for other in ["\"version\": 2", "\"version\": 999"] {
-        write(&checkpoint, "manifest.json", &changed(&whole, &[("\"version\": 3", other)]));
+    for other in ["\"version\": 3", "\"version\": 999"] {
+        write(&checkpoint, "manifest.json", &changed(&whole, &[("\"version\": 4", other)]));
         let err = ask(folder.path(), RESUME).refusal(1);
         assert!(err.contains("another version of beltspace"), "{err}");
     }
