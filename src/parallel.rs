@@ -109,16 +109,16 @@ mod tests {
     #[test]
     fn a_thread_that_is_done_takes_the_next_part_and_keeps_what_it_has() {
         let begun = AtomicUsize::new(0);
-        // The first part waits until all others are done.
-        let (others, waits) = (Barrier::new(2), 0);
+        // The first part waits for the last, so that the other thread does all between.
+        let last = Barrier::new(2);
         let begin = || {
             begun.fetch_add(1, Ordering::Relaxed);
             0
         };
         let done = one_after_another((0..50).collect(), 2, begin, |before: &mut u32, part| {
             *before += 1;
-            if part == waits || part == 49 {
-                others.wait();
+            if part == 0 || part == 49 {
+                last.wait();
             }
             (part, *before)
         });

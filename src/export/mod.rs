@@ -40,7 +40,7 @@ use crate::screen::{Control, Tally};
 #[cfg(feature = "parquet")]
 use crate::table::parquet;
 use crate::table::{Table, csv};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::io::Write;
 use std::path::Path;
 use std::sync::atomic::Ordering;
@@ -70,14 +70,16 @@ pub struct Certified<'p> {
     pub influence: Option<InfluenceReport>,
 }
 
-/// The rows of designs: those that have been certified `before`, and what `certify` makes of the others.
+/// The rows of designs: those certified `before` are copied, `certify` makes the others.
 fn rows_after<'r>(
     before: impl Iterator<Item = &'r Vec<Row>>,
     designs: &[u64],
     control: &Control,
     certify: impl FnOnce(&[u64]) -> Result<Vec<Row>>,
 ) -> Result<Vec<Row>> {
-    let known: FxHashMap<u64, &Row> = before.flatten().map(|row| (row.index, row)).collect();
+    // The front may be far longer than the list: only what is listed is looked up.
+    let listed: FxHashSet<u64> = designs.iter().copied().collect();
+    let known: FxHashMap<u64, &Row> = before.flatten().filter(|row| listed.contains(&row.index)).map(|row| (row.index, row)).collect();
     let missing: Vec<u64> = designs.iter().copied().filter(|design| !known.contains_key(design)).collect();
     control.certified.fetch_add((designs.len() - missing.len()) as u64, Ordering::Relaxed);
     let mut certified = certify(&missing)?.into_iter();

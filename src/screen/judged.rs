@@ -90,6 +90,7 @@ mod tests {
     use super::*;
     use crate::models::tests::watched;
     use crate::models::{Effort, Model};
+    use crate::screen::tally::tests::STUDY;
     use crate::screen::{Control, CpuEngine, Tables, Tally};
     use crate::study::{Study, study_of};
     use std::sync::Arc;
@@ -190,19 +191,7 @@ mod tests {
     #[test]
     fn of_a_slow_model_a_few_of_many_are_taken_over_too() {
         let (model, kernel) = watched(Duration::from_micros(200), 0);
-        let text = r#"
-            [design]
-            power_kW = { from = 1, to = 4, count = 300 }
-            [operation]
-            slack_tension_N = [500, 700]
-            [fixed]
-            friction_direction_deg = 45
-            [constraints]
-            friction_margin = { min = 0.7 }
-            [objectives]
-            torque_Nm = "max"
-        "#;
-        let plan = Plan::new(study_of(&model, text).expect("the study is right"));
+        let plan = Plan::new(study_of(&model, STUDY).expect("the study is right"));
         let mut tables = Tables::new(&plan);
         let own = screened(&plan, &tables);
         let control = Control::default();

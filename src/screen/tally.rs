@@ -319,7 +319,7 @@ impl<'p> Counter<'p> {
                     break 'sample;
                 }
                 self.control.sampled.fetch_add(block.len() as u64, Ordering::Relaxed);
-                // Then the sample is the sweep, as far as anybody who waits for it can tell.
+                // Here the sample does the work of the sweep: the progress bar follows it.
                 if self.judged.is_some() && self.control.sample.load(Ordering::Relaxed) == self.plan.designs() {
                     self.control.done.fetch_add(block.len() as u64, Ordering::Relaxed);
                 }
@@ -477,13 +477,13 @@ fn stretch(ranges: &mut [Option<(f64, f64)>], failures: &[Failures], worst: &[Ve
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::models::tests::watched;
     use crate::study::study_of;
     use std::time::Duration;
 
-    const STUDY: &str = r#"
+    pub const STUDY: &str = r#"
         [design]
         power_kW = { from = 1, to = 4, count = 300 }
         [operation]

@@ -10,7 +10,7 @@ use crate::models::{Worse, input_to_si};
 use crate::probability::Effect;
 use crate::tape::{CHUNK, ColumnValue, Known, List, ListColumns, Set};
 
-/// Most draws that are computed together, and most numbers that each may take meanwhile.
+/// Most draws computed together, and most numbers in memory for each of them.
 pub const BLOCK: usize = 8192;
 const MOST_NUMBERS: usize = 512;
 /// Most operations of a formula: each has a column of its own.
@@ -26,7 +26,7 @@ pub struct AskedDraws {
 }
 
 /// What came of some draws, one entry per draw.
-#[derive(Debug, PartialEq)]
+#[derive(Debug)]
 pub struct DrawnBlock {
     /// All ones where it holds, else zero.
     pub holds: Vec<u64>,
@@ -57,7 +57,7 @@ struct ListedCondition {
     /// Its result in the list.
     result: usize,
     strict: bool,
-    /// Is it the draw's status where it fails?
+    /// Does a draw that fails it not hold? Quiet conditions only take values away.
     is_status: bool,
     /// Places of the quantities that have no value where it fails.
     takes: Vec<usize>,
@@ -92,7 +92,7 @@ impl DrawnBlock {
 }
 
 impl DrawColumns {
-    /// For a drive that can be recorded, and a block of whose draws fits into [`MOST_NUMBERS`].
+    /// `None` if the formula cannot be recorded, or a draw needs more than [`MOST_NUMBERS`].
     pub fn new(kernel: &DrawnDrive, asked: &AskedDraws) -> Option<Self> {
         let base = &kernel.base;
         let formula = base.kernel.formula()?;
@@ -149,14 +149,16 @@ impl DrawColumns {
         })
     }
 
-    /// About how many bytes a block of so many draws takes, of which so many quantities are asked, in so many sums over cases.
+    /// About how many bytes a block of draws takes, given the number of drawn inputs, of quantities asked for, and of sums over cases.
     pub fn bytes(draws: u64, inputs: u64, asked: u64, sums: u64) -> u64 {
         // Of a quantity a value and a mask, in the case and over the cases; some are asked for at both ends.
-        let numbers = (2 * inputs + asked * (4 + 2 * sums) + 4).min(MOST_NUMBERS as u64);
+        let of_asked = asked.saturating_mul(sums.saturating_mul(2).saturating_add(4));
+        let numbers = of_asked.saturating_add(2 * inputs + 4).min(MOST_NUMBERS as u64);
         8 * (draws.min(BLOCK as u64) * numbers + (CHUNK * MOST_OPERATIONS) as u64 / 4)
     }
 
-    /// What comes of these draws (a column per drawn input) of a design, given its inputs in SI units: the bits that each has alone.
+    /// Computes draws (a column per drawn input) of a design, given its inputs in SI units. Every draw has the bits that it has when computed
+    /// alone.
     pub fn run(&self, kernel: &DrawnDrive, design: &[f64], columns: &[&[f64]]) -> DrawnBlock {
         let base = &kernel.base;
         let draws = columns.first().map_or(0, |it| it.len());
