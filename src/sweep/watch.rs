@@ -198,8 +198,14 @@ impl<'a> Watch<'a> {
         if self.control.stop.load(Ordering::Relaxed) {
             self.stop.store(true, Ordering::Relaxed);
         }
-        // Whoever looks at the same time looks for all.
-        let Ok(mut pace) = self.pace.try_lock() else { return };
+        let pace = match leaving {
+            // Whoever looks at the same time looks for all.
+            Leaving::WhereTheyDoNotPay => self.pace.try_lock().ok(),
+            // But one who is held up then would let the others settle all the rest.
+            #[cfg(feature = "testing")]
+            Leaving::After(_) => self.pace.lock().ok(),
+        };
+        let Some(mut pace) = pace else { return };
         let (pace, counting) = &mut *pace;
         let spent = self.spent();
         let begin = counting.map_or((0.0, 0.0), |it| (it.since, it.before));
