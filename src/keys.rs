@@ -33,6 +33,18 @@ impl KeyRule {
         self.resolution.is_some()
     }
 
+    /// The key as it would be without steps, which only cut off what is no whole number of them.
+    pub(crate) fn uncut(&self, value: f64) -> f64 {
+        let steps = self.resolution.map_or(value, |resolution| value / resolution);
+        if self.goal == Goal::Min { steps } else { -steps }
+    }
+
+    /// By how much the key may be less than [`Self::uncut`] says, but for rounding.
+    pub(crate) fn most_cut(&self) -> f64 {
+        // Of a value that is to be large the key is cut the other way.
+        if self.resolution.is_some() && self.goal == Goal::Min { 1.0 } else { 0.0 }
+    }
+
     /// The keys of a column of values, but for the sign of zero: the values themselves where they serve, else in `scratch`.
     pub(crate) fn keys<'a>(self, values: &'a [f64], scratch: &'a mut Vec<f64>) -> &'a [f64] {
         if self.resolution.is_none() && self.goal == Goal::Min {

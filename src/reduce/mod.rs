@@ -24,7 +24,7 @@ pub use answers::Answers;
 pub use dominance::{Dominance, beats};
 pub use extremes::{Extreme, Extremes};
 pub use feasible::{FEASIBLE_FILE, FeasibleCursor, FeasibleList};
-pub use front::{FRONT_BYTES, Front, KeyRule, MOST_OBJECTIVES, Points, most_points};
+pub use front::{FRONT_BYTES, FreeObjectives, Front, KeyRule, KnownFront, MOST_OBJECTIVES, Points, most_points, slice_bytes};
 pub use histogram::Histogram;
 pub use list::{Places, Reported};
 pub use map::{CSV_CELLS, Cell, Map};

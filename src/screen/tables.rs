@@ -93,14 +93,17 @@ impl Tables {
         self.ordered.is_some() || self.together.is_some()
     }
 
-    /// Bytes that a thread takes for the designs of a row that is judged at once: values and indices, and in each map what lanes count.
+    /// Bytes that a thread takes for rows that are judged at once: slices of the front, and where their designs are reported values and
+    /// indices, and in each map what lanes count.
     pub fn row_bytes(plan: &Plan) -> u64 {
-        if Reported::needs(&plan.study.report).is_empty() || plan.fast.count() > FAST_DESIGNS {
+        if plan.fast.count() > FAST_DESIGNS {
             return 0;
         }
-        let is_ordered = lane_list(plan).is_some_and(|list| OrderedRows::new(plan, &list).is_some());
+        let Some(ordered) = lane_list(plan).and_then(|list| OrderedRows::new(plan, &list)) else { return 0 };
         let (tracked, maps) = (plan.tracked.len(), plan.study.report.maps.len());
-        if is_ordered { plan.fast.count() * (8 * (tracked + 2) + 12 * maps) as u64 } else { 0 }
+        let is_reported = !Reported::needs(&plan.study.report).is_empty();
+        let designs = if is_reported { plan.fast.count() * (8 * (tracked + 2) + 12 * maps) as u64 } else { 0 };
+        ordered.slice_bytes(plan) + designs
     }
 
     /// About how many bytes the tables of a plan take.

@@ -296,14 +296,14 @@ fn changes_are_undone_shared_saved_and_compared() {
     assert_eq!(browser.evaluate(covered), serde_json::json!([]));
     browser.picture("explore-card");
     // All of this is in the address.
-    browser.wait("location.hash.includes('s=constraints.stress_margin.min') && location.hash.includes('p=')");
+    browser.wait("location.hash.includes('s=constraints.stress_margin.min') && /p=[0-9]+,[0-9]+/.test(location.hash)");
     let hash = browser.text("location.hash");
     let address = explored.address.split("/?").next().expect("it has a host").to_owned();
     browser.go_to_address(&format!("{address}/{hash}"));
     answered(&mut browser);
     assert_eq!(browser.text("beltspace.page.changeList().join()"), first, "{hash}");
     assert_eq!(browser.number("beltspace.page.front.rows"), after);
-    assert_eq!(browser.number("beltspace.page.pins().length"), 2.0);
+    assert_eq!(browser.number("beltspace.page.pins().length"), 2.0, "{hash}");
     // Saved: the text is a study that gives this front.
     let saved = browser.text("beltspace.page.data.study.text");
     let study = Study::parse_in(&saved, "saved.toml", folder.path()).expect("it is a study");

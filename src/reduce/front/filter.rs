@@ -1,12 +1,15 @@
 //! The cheap first comparison, which drops nearly every design.
 
+use super::rays::Rays;
 use super::{MOST_OBJECTIVES, Points};
 use crate::reduce::Dominance;
+use crate::reduce::dominance::beats;
 use multiversion::multiversion;
 use std::cmp::Ordering;
+use std::sync::OnceLock;
 
 /// Bins of the two-objective table.
-pub(super) const BINS: usize = 8192;
+const BINS: usize = 8192;
 /// So many designs of a block are not compared with each other.
 const FEW_LEFT: usize = 6;
 /// Points from which on a table of cells pays.
@@ -23,7 +26,7 @@ pub(super) enum Filter {
     /// One objective: the best value.
     Best(f64),
     /// Two objectives.
-    Table(BinTable),
+    Table(BinTable<BINS>),
     /// More: a table where one serves, recent dominators, then all points.
     Dominators { cells: Option<CellTable>, recent: Vec<(Vec<f64>, u64)>, next: usize, all: Dominance },
 }
@@ -57,21 +60,26 @@ impl Filter {
 /// For every bin of the first coordinate, the best second coordinate of the points in bins strictly below: those points are
 /// strictly better in the first, so that value or more is surely beaten.
 #[derive(Debug)]
-pub(super) struct BinTable {
+pub(super) struct BinTable<const BINS: usize> {
     low: f64,
     scale: f64,
     best: Box<[f64; BINS]>,
+    /// What it says of rays, once one is asked about.
+    rays: OnceLock<Rays<BINS>>,
 }
 
-impl BinTable {
-    pub(super) fn new(points: &Points) -> Self {
-        let (low, high) = (points.keys[0], points.keys[2 * (points.len() - 1)]);
+impl<const BINS: usize> BinTable<BINS> {
+    /// For points with these coordinates, one at least.
+    pub(super) fn new(keys: impl Iterator<Item = [f64; 2]> + Clone) -> Self {
+        let ends = (f64::INFINITY, f64::NEG_INFINITY);
+        let (low, high) = keys.clone().fold(ends, |(low, high), [first, _]| (low.min(first), high.max(first)));
         let scale = if high > low { (BINS - 2) as f64 / (high - low) } else { 0.0 };
-        let mut table = Self { low, scale: if scale.is_finite() { scale } else { 0.0 }, best: Box::new([f64::INFINITY; BINS]) };
-        for key in points.keys.chunks(2) {
-            let next = table.bin(key[0]) + 1;
+        let scale = if scale.is_finite() { scale } else { 0.0 };
+        let mut table = Self { low, scale, best: Box::new([f64::INFINITY; BINS]), rays: OnceLock::new() };
+        for [first, second] in keys {
+            let next = table.bin(first) + 1;
             if next < BINS {
-                table.best[next] = table.best[next].min(key[1]);
+                table.best[next] = table.best[next].min(second);
             }
         }
         for bin in 1..BINS {
@@ -94,6 +102,32 @@ impl BinTable {
     /// Is what has these coordinates, or more, surely beaten?
     pub(super) fn beats(&self, first: f64, second: f64) -> bool {
         second >= self.best[self.bin(first)]
+    }
+
+    /// Is what has these coordinates, or more, and at least this index, superfluous beside one of the points that the table was made of?
+    /// They are sorted by the first coordinate, the second falls.
+    #[inline]
+    pub(super) fn beats_from(&self, points: &Points, lower: [f64; 2], least_index: u64) -> bool {
+        // Nearly always the table knows.
+        if self.beats(lower[0], lower[1]) {
+            return true;
+        }
+        let beyond = points.not_beyond(lower[0], 2);
+        beyond > 0 && beats(points.key(beyond - 1, 2), points.indices[beyond - 1], &lower, least_index)
+    }
+
+    /// Calls `each` with ranges of a number y between two ends outside of which designs are surely beaten whose two coordinates are these
+    /// factors times y, but for rounding and what is `cut` of them. One of the factors must be above zero, the other below; y is at least zero.
+    /// False if the table does not tell.
+    pub(super) fn open_on_ray(&self, factors: (f64, f64), ends: (f64, f64), cut: (f64, f64), each: impl FnMut(f64, f64)) -> bool {
+        let is_steep = factors.0 < 0.0;
+        let rays = self.rays.get_or_init(|| Rays::new(self, is_steep, cut));
+        let is_opposed = factors.0 * factors.1 < 0.0;
+        if !rays.is_for(is_steep) || !is_opposed {
+            return false;
+        }
+        rays.open(factors, ends, each);
+        true
     }
 
     #[inline(always)]
@@ -231,7 +265,7 @@ fn drop_beaten_by_block(keys: &[&[f64]], alive: &mut [u64]) -> bool {
 
 /// Keeps, of the feasible designs, those that the table does not know to be beaten.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-fn keep_unbeaten(table: &BinTable, feasible: &[u64], first: &[f64], second: &[f64], alive: &mut [u64]) {
+fn keep_unbeaten(table: &BinTable<BINS>, feasible: &[u64], first: &[f64], second: &[f64], alive: &mut [u64]) {
     // Bins, then look-ups, then comparisons: the first and last vectorise, and nothing branches.
     const CHUNK: usize = 64;
     let mut bins = [0; CHUNK];
@@ -276,7 +310,6 @@ fn drop_dominated(alive: &mut [u64], dominator: &[f64], keys: &[&[f64]]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reduce::dominance::beats;
     use crate::sample::mix;
 
     #[test]

@@ -7,16 +7,17 @@
 
 mod filter;
 mod rays;
+mod slice;
 mod together;
 
 pub use crate::keys::{KeyRule, Points};
+pub use slice::{FreeObjectives, KnownFront, slice_bytes};
 pub use together::together;
 
 use super::dominance::{Dominance, beats};
 use crate::screen::Block;
 use filter::{BinTable, CellTable, Filter};
-use rays::Rays;
-use std::sync::OnceLock;
+use slice::FrontSlices;
 
 /// Most objectives that a study may have.
 pub const MOST_OBJECTIVES: usize = 6;
@@ -45,8 +46,7 @@ pub struct Front {
     fresh: Vec<bool>,
     waiting: Points,
     filter: Filter,
-    /// What the table says of rays, once one is asked about.
-    rays: OnceLock<Rays>,
+    slices: FrontSlices,
     /// Room for the coordinates of a block, one column per objective.
     keys: Vec<Vec<f64>>,
     alive: Vec<u64>,
@@ -66,7 +66,7 @@ impl Front {
             points,
             waiting: Points::default(),
             filter: Filter::Nothing,
-            rays: OnceLock::new(),
+            slices: FrontSlices::default(),
             keys: vec![Vec::new(); rules.len()],
             alive: Vec::new(),
         };
@@ -161,9 +161,8 @@ impl Front {
         let dimensions = self.rules.len();
         match &self.filter {
             Filter::Nothing => false,
-            // Nearly always the table knows.
-            Filter::Table(table) if table.beats(lower[0], lower[1]) => true,
-            Filter::Best(_) | Filter::Table(_) => {
+            Filter::Table(table) => table.beats_from(&self.points, [lower[0], lower[1]], least_index),
+            Filter::Best(_) => {
                 let beyond = self.points.not_beyond(lower[0], dimensions);
                 beyond > 0 && beats(self.points.key(beyond - 1, dimensions), self.points.indices[beyond - 1], lower, least_index)
             }
@@ -171,21 +170,6 @@ impl Front {
                 cells.as_ref().is_some_and(|cells| cells.beats(lower)) || all.dominator(lower, least_index).is_some()
             }
         }
-    }
-
-    /// Calls `each` with ranges of a number y between two ends outside of which designs whose two coordinates are, but for rounding, these
-    /// factors times y are surely beaten. One of the factors must be above zero, the other below; y is at least zero. False if the front
-    /// does not tell.
-    pub fn open_on_ray(&self, factors: (f64, f64), ends: (f64, f64), each: impl FnMut(f64, f64)) -> bool {
-        let Filter::Table(table) = &self.filter else { return false };
-        let is_steep = factors.0 < 0.0;
-        let rays = self.rays.get_or_init(|| Rays::new(table, is_steep));
-        let is_opposed = factors.0 * factors.1 < 0.0;
-        if !rays.is_for(is_steep) || !is_opposed {
-            return false;
-        }
-        rays.open(factors, ends, each);
-        true
     }
 
     /// Takes in points of another front.
@@ -281,11 +265,11 @@ impl Front {
     }
 
     fn refresh_filter(&mut self) {
-        self.rays = OnceLock::new();
+        self.slices.clear();
         self.filter = match (self.points.is_empty(), self.rules.len()) {
             (true, _) | (_, 0) => Filter::Nothing,
             (_, 1) => Filter::Best(self.points.keys[0]),
-            (_, 2) => Filter::Table(BinTable::new(&self.points)),
+            (_, 2) => Filter::Table(BinTable::new(self.points.keys.as_chunks().0.iter().copied())),
             (_, objectives) => Filter::Dominators {
                 cells: CellTable::new(&self.points, objectives),
                 recent: Vec::new(),

@@ -143,3 +143,34 @@ fn the_table_never_drops_a_point_of_the_front() {
         }
     }
 }
+
+#[test]
+fn a_slice_knows_what_the_front_knows_of_designs_with_something_in_common() {
+    for (objectives, free) in [(3, FreeObjectives(0, 1)), (3, FreeObjectives(0, 2)), (4, FreeObjectives(1, 3)), (4, FreeObjectives(2, 0))] {
+        // About a plane, on so few levels that ties in single coordinates and in all of them are common.
+        let point = |seed: u64| -> Vec<f64> {
+            let key: Vec<f64> = (0..objectives).map(|d| (mix(seed * 8 + d) % 40) as f64).collect();
+            let behind = (60.0 - key.iter().sum::<f64>()) / objectives as f64;
+            key.iter().map(|it| (it + behind).round()).collect()
+        };
+        let mut waiting = Points::default();
+        (0..600).for_each(|seed| waiting.push(point(seed), seed + 1));
+        let mut front = Front::new(&rules(objectives as usize));
+        front.merge(waiting);
+        let (mut told, mut made) = (0, 0);
+        for seed in 0..4000 {
+            // Among and behind the points, and the points themselves.
+            let mut lower = point(seed % 900);
+            lower.iter_mut().for_each(|it| *it += (seed % 4) as f64 - 2.0);
+            let index = if seed % 2 == 0 { 1 + seed / 4 } else { 2000 };
+            let expected = front.beats_from(&lower, index);
+            // A slice is made when it has been asked for some times.
+            (0..4).for_each(|_| assert!(front.known(Some(free), &lower).beats_from(&lower, index) == expected));
+            let known = front.known(Some(free), &lower);
+            assert_eq!(known.beats_from(&lower, index), expected, "{lower:?}, {index}, {free:?}");
+            told += u32::from(expected);
+            made += u32::from(matches!(known, KnownFront::Slice(_)));
+        }
+        assert!((1000..3500).contains(&told) && made == 4000, "{told}, {made} of {} points", front.len());
+    }
+}

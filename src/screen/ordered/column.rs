@@ -3,6 +3,7 @@
 use super::OrderedRows;
 use crate::screen::tables::FastBlock;
 use crate::tape::{LaneList, Operation};
+use std::collections::HashMap;
 use std::ops::Range;
 
 /// Places about a guess that are looked at at once.
@@ -14,7 +15,7 @@ pub(in crate::screen) struct SortedColumn {
     /// The numbers, the least first, and the designs that have them.
     pub(super) values: Vec<f64>,
     pub(super) lanes: Vec<u16>,
-    /// The numbers lane by lane, where feasible designs are counted by them; else none.
+    /// The numbers of all lanes, where feasible designs are counted by them, NaN where the inputs are out; else none.
     pub(super) by_lane: Vec<f64>,
     /// How many numbers are below the lower edge of each of as many even steps from the least to the largest, and at last all of them;
     /// steps per number.
@@ -24,7 +25,20 @@ pub(in crate::screen) struct SortedColumn {
     pub(super) ends: (f64, f64),
     /// How many numbers equal the least one, and how many are below the largest: a formula with a limit makes many of them equal.
     plateaus: (usize, usize),
+    /// The same designs by the inputs that are objectives; none where no objective is an input of the fast axes.
+    pub(super) groups: Vec<ColumnGroup>,
 }
+
+/// The designs of a sorted column that have the same of all inputs of the fast axes that are objectives.
+#[derive(Debug)]
+pub(super) struct ColumnGroup {
+    /// These inputs by tracked quantity; zero where that is something else.
+    pub(super) inputs: Vec<f64>,
+    pub(super) designs: SortedColumn,
+}
+
+/// Designs of a column that is not sorted yet: their numbers and their lanes.
+type Members = Vec<(f64, u16)>;
 
 /// What two bounds cut off a sorted column: about where what is left starts and ends.
 #[derive(Clone, Copy, Debug)]
@@ -40,30 +54,52 @@ impl ColumnCut {
 }
 
 impl SortedColumn {
-    /// The column of a row whose list has these numbers; `None` if one of its own is not finite.
+    /// The column of a row whose list has these numbers, without the designs whose inputs are out; `None` if one of its own is not finite.
     pub(in crate::screen) fn new(rows: &OrderedRows, list: &LaneList, blocks: &[FastBlock], numbers: &[f64]) -> Option<Self> {
         let mut slots = numbers.to_vec();
-        let mut members: Vec<(f64, u16)> = Vec::new();
+        let mut members = Members::new();
+        let (mut groups, mut group_of): (Vec<(Vec<f64>, Members)>, _) = (Vec::new(), HashMap::new());
+        let mut by_lane = Vec::new();
         for block in blocks {
             for lane in 0..block.count {
+                let lane_number = by_lane.len() as u16;
+                by_lane.push(f64::NAN);
+                if !rows.input_bounds.iter().all(|&(input, (low, high))| (low..=high).contains(&block.own(input)[lane])) {
+                    continue;
+                }
                 for &node in &rows.below {
                     match list.list().operations[node as usize] {
                         Operation::Input(input) => slots[node as usize] = block.si(input.into())[lane],
                         _ => list.list().compute(node, &mut slots),
                     }
                 }
-                members.push((slots[rows.channel as usize], members.len() as u16));
+                let member = (slots[rows.channel as usize], lane_number);
+                by_lane[usize::from(lane_number)] = member.0;
+                members.push(member);
+                if rows.groups > 0 {
+                    let inputs: Vec<f64> = rows.inputs.iter().map(|input| input.map_or(0.0, |input| block.own(input)[lane])).collect();
+                    let group = *group_of.entry(inputs.iter().map(|it| it.to_bits()).collect::<Vec<_>>()).or_insert(groups.len());
+                    if group == groups.len() {
+                        groups.push((inputs, Vec::new()));
+                    }
+                    groups[group].1.push(member);
+                }
             }
         }
-        Self::of(members, rows.counts_lanes)
+        let mut column = Self::of(members)?;
+        if rows.counts_lanes {
+            column.by_lane = by_lane;
+        }
+        let group = |(inputs, members)| Some(ColumnGroup { inputs, designs: Self::of(members)? });
+        column.groups = groups.into_iter().map(group).collect::<Option<_>>()?;
+        Some(column)
     }
 
-    /// The column of these numbers and designs, every lane from the first on; `None` if one is not finite, or there are none.
-    fn of(mut members: Vec<(f64, u16)>, counts_lanes: bool) -> Option<Self> {
+    /// The column of these numbers and designs; `None` if one is not finite, or there are none.
+    fn of(mut members: Members) -> Option<Self> {
         if !members.iter().all(|(value, _)| value.is_finite()) {
             return None;
         }
-        let by_lane = if counts_lanes { members.iter().map(|(value, _)| *value).collect() } else { Vec::new() };
         members.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (values, lanes): (Vec<f64>, _) = members.into_iter().unzip();
         let ends = (*values.first()?, *values.last()?);
@@ -80,7 +116,7 @@ impl SortedColumn {
         }
         below.push(values.len() as u16);
         let plateaus = (values.partition_point(|&value| value <= ends.0), values.partition_point(|&value| value < ends.1));
-        Some(Self { values, lanes, by_lane, below, scale, ends, plateaus })
+        Some(Self { values, lanes, by_lane: Vec::new(), below, scale, ends, plateaus, groups: Vec::new() })
     }
 
     /// About how many numbers are below this one, if it is neither below all of them nor beyond; else some place.
@@ -194,7 +230,7 @@ mod tests {
     use super::*;
 
     fn column(values: impl Iterator<Item = f64>) -> SortedColumn {
-        SortedColumn::of(values.enumerate().map(|(lane, value)| (value, lane as u16)).collect(), false).expect("it is of that kind")
+        SortedColumn::of(values.enumerate().map(|(lane, value)| (value, lane as u16)).collect()).expect("it is of that kind")
     }
 
     #[test]
@@ -231,8 +267,8 @@ mod tests {
 
     #[test]
     fn numbers_that_are_not_finite_have_no_order() {
-        assert!(SortedColumn::of(vec![(1.0, 0), (f64::NAN, 1)], false).is_none());
-        assert!(SortedColumn::of(Vec::new(), false).is_none());
+        assert!(SortedColumn::of(vec![(1.0, 0), (f64::NAN, 1)]).is_none());
+        assert!(SortedColumn::of(Vec::new()).is_none());
         // Equal numbers have one.
         assert_eq!(column([2.0; 30].into_iter()).between(0..30, 2.0, 2.0), 0..30);
     }

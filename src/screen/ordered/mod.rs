@@ -6,6 +6,9 @@
 //! values beyond those of its two ends, so that the front known so far drops most of them at once. A row of thousands of designs is judged
 //! by some dozens of values, design by design only where the front is near. The answer is the one that judging each of them gives, to the
 //! last bit.
+//!
+//! An objective may be an input that differs within the row, as a number of bands does. Then the designs that have the same of it are
+//! sorted once more for themselves.
 
 mod chain;
 mod column;
@@ -13,6 +16,7 @@ mod row;
 mod run;
 mod sorted_row;
 
+use column::ColumnGroup;
 pub(super) use column::SortedColumn;
 pub(super) use row::{OrderedNumbers, OrderedRow};
 pub(super) use run::RowRun;
@@ -20,11 +24,16 @@ pub use sorted_row::{SortedDesigns, SortedRow};
 
 use crate::models::Set;
 use crate::plan::{Plan, Source, knowns};
-use crate::study::Best;
+use crate::reduce::{FreeObjectives, slice_bytes};
+use crate::study::{Best, Constraint};
 use crate::tape::{LaneList, List, Node};
 use chain::{LONGEST, RowChain, chain, path};
+use std::collections::HashSet;
 use std::sync::OnceLock;
 
+/// Groups of designs that have the inputs in common which are objectives: no more than these, and of so many designs at least on average.
+const MOST_GROUPS: u64 = 256;
+const LEAST_GROUPED: u64 = 8;
 /// Most bytes of sorted columns.
 const MOST_BYTES: u64 = 64 << 20;
 /// Bytes of a design in a sorted column: its number, which design it is, and a step; and its number once more where lanes are counted.
@@ -42,10 +51,18 @@ pub(super) struct OrderedRows {
     reads: Vec<Node>,
     /// Chains, and between what their results must lie.
     bounds: Vec<(usize, (f64, f64))>,
+    /// Inputs of the fast axes that are constraints, and between what they must lie.
+    input_bounds: Vec<(usize, (f64, f64))>,
+    /// Of each tracked quantity: the input of the fast axes that it is, if it is an objective.
+    inputs: Vec<Option<usize>>,
+    /// The objectives that differ between designs which have the same of these, if there are no more than two.
+    free: Option<FreeObjectives>,
     /// Dimensions of the slow axes that the number depends on, with the distance of two levels among the columns.
     dimensions: Vec<(usize, u64)>,
     /// Are feasible designs counted lane by lane?
     counts_lanes: bool,
+    /// How many settings of [`Self::inputs`] there are; zero where no objective is such an input.
+    groups: u64,
     /// `None` for a column whose numbers are not all finite.
     columns: Vec<OnceLock<Option<SortedColumn>>>,
 }
@@ -53,10 +70,12 @@ pub(super) struct OrderedRows {
 impl OrderedRows {
     /// `None` where the rows of a plan are none of that kind.
     pub(super) fn new(plan: &Plan, list: &LaneList) -> Option<Self> {
-        // Inputs of the fast axes have no order along a row: they can only be reported.
-        let has_order = |source: &Source| !matches!(source, Source::LaneInput(_));
-        let mut sources = plan.constraints.iter().chain(plan.objectives.iter().map(|&tracked| &plan.tracked[tracked].1));
-        if plan.scenarios() != 1 || plan.spectrum.is_some() || !sources.all(has_order) {
+        if plan.scenarios() != 1 || plan.spectrum.is_some() {
+            return None;
+        }
+        let inputs = lane_objectives(plan);
+        let groups = groups(plan, &inputs);
+        if groups > 0 && (groups > MOST_GROUPS || groups * LEAST_GROUPED > plan.fast.count()) {
             return None;
         }
         let over_lanes = over_lanes(plan, list);
@@ -82,7 +101,7 @@ impl OrderedRows {
             }
         }
         let counts_lanes = plan.study.report.maps.iter().any(|map| map.value == Best::Share);
-        let bytes = plan.fast.count() * design_bytes(counts_lanes);
+        let bytes = column_bytes(plan, counts_lanes, groups);
         let fits = columns.checked_mul(bytes).is_some_and(|bytes| bytes <= MOST_BYTES);
         if !fits || plan.fast.count() >= 1 << 16 {
             return None;
@@ -99,16 +118,27 @@ impl OrderedRows {
             bounds: (0..paths.len()).flat_map(|result| bounds(plan, result).into_iter().map(move |it| (result, it))).collect(),
             chains,
             reads,
+            input_bounds: input_bounds(plan),
+            inputs,
+            free: free_objectives(plan),
             dimensions,
             counts_lanes,
+            groups,
             columns: (0..columns).map(|_| OnceLock::new()).collect(),
         })
     }
 
     /// Bytes of all sorted columns.
     pub(super) fn bytes(&self, plan: &Plan) -> u64 {
-        let one = size_of::<OnceLock<Option<SortedColumn>>>() as u64 + plan.fast.count() * design_bytes(self.counts_lanes) + 2;
+        let one = size_of::<OnceLock<Option<SortedColumn>>>() as u64 + column_bytes(plan, self.counts_lanes, self.groups);
         self.columns.len() as u64 * one
+    }
+
+    /// Bytes of the slices of the front that a thread compares with.
+    pub(super) fn slice_bytes(&self, plan: &Plan) -> u64 {
+        let is_of_row = |&tracked: &usize| matches!(plan.tracked[tracked].1, Source::RowInput(_) | Source::RowOutput(_));
+        let of_rows = if plan.objectives.iter().any(is_of_row) { u64::MAX } else { 1 };
+        if self.free.is_some() { slice_bytes(plan.objectives.len(), self.groups.max(1).saturating_mul(of_rows)) } else { 0 }
     }
 
     /// What the chains read of a row, given the numbers of its operations.
@@ -140,8 +170,52 @@ impl OrderedRows {
     }
 }
 
-fn design_bytes(counts_lanes: bool) -> u64 {
-    DESIGN_BYTES + if counts_lanes { COUNTED_BYTES } else { 0 }
+/// Bytes of a sorted column, without the table that it stands in.
+fn column_bytes(plan: &Plan, counts_lanes: bool, groups: u64) -> u64 {
+    let designs = plan.fast.count() * (DESIGN_BYTES + if counts_lanes { COUNTED_BYTES } else { 0 }) + 2;
+    // Each design stands in a group once more.
+    let own = (size_of::<ColumnGroup>() + 8 * plan.tracked.len() + 2) as u64;
+    designs + if groups > 0 { plan.fast.count() * DESIGN_BYTES + groups * own } else { 0 }
+}
+
+/// Of each tracked quantity: the input of the fast axes that it is, if it is an objective.
+fn lane_objectives(plan: &Plan) -> Vec<Option<usize>> {
+    let input = |(tracked, source): (usize, Source)| match source {
+        Source::LaneInput(input) if plan.objectives.contains(&tracked) => Some(input),
+        _ => None,
+    };
+    plan.tracked.iter().map(|it| it.1).enumerate().map(input).collect()
+}
+
+/// The two objectives that differ between designs of a row which have the same inputs as objectives; fewer are made two.
+fn free_objectives(plan: &Plan) -> Option<FreeObjectives> {
+    let differs = |objective: &usize| matches!(plan.tracked[plan.objectives[*objective]].1, Source::LaneOutput(_));
+    let (free, common): (Vec<usize>, Vec<usize>) = (0..plan.objectives.len()).partition(differs);
+    match (&free[..], &common[..]) {
+        (&[first, second], _) | (&[first], &[second, ..]) | ([], &[first, second, ..]) => Some(FreeObjectives(first, second)),
+        _ => None,
+    }
+}
+
+/// How many different settings the fast axes have of the inputs that are objectives; zero where there are no such inputs.
+fn groups(plan: &Plan, inputs: &[Option<usize>]) -> u64 {
+    let read: Set = inputs.iter().flatten().copied().collect();
+    let mut values = plan.study.fixed.clone();
+    let mut settings = HashSet::new();
+    for design in 0..if read.is_empty() { 0 } else { plan.fast.count() } {
+        plan.fast.set(design, &mut values);
+        settings.insert(read.iter().map(|input| values[input].to_bits()).collect::<Vec<_>>());
+    }
+    settings.len() as u64
+}
+
+/// Inputs of the fast axes that are constraints, and between what they must lie.
+fn input_bounds(plan: &Plan) -> Vec<(usize, (f64, f64))> {
+    let bounds = |(constraint, source): (&Constraint, &Source)| match *source {
+        Source::LaneInput(input) => Some((input, constraint.ends())),
+        _ => None,
+    };
+    plan.study.constraints.iter().zip(&plan.constraints).filter_map(bounds).collect()
 }
 
 /// Between what a result of the inner loop must lie: outputs come first, then margins of conditions.
@@ -206,17 +280,25 @@ mod tests {
     }
 
     /// What remains of all designs; `between` sees the engine between parts.
-    fn swept_with(plan: &Plan, judged: RowsJudged, mut between: impl FnMut(&mut CpuEngine<'_>, u64)) -> State {
-        let ranges: Vec<_> = plan.study.report.histograms.iter().map(|it| it.range.expect("the study gives it")).collect();
-        let (mut tables, reduction) = (Tables::new(plan), Reduction::new(plan, &ranges));
+    fn swept_with(plan: &Plan, judged: RowsJudged, between: impl FnMut(&mut CpuEngine<'_>, u64)) -> State {
+        let mut tables = Tables::new(plan);
         assert!(tables.ordered.is_some() && tables.rows.is_some());
         match judged {
             RowsJudged::OneByOne => tables.ordered = None,
             RowsJudged::ByRows => tables.rows = None,
             RowsJudged::ByRuns => {}
         }
+        let (state, has_runs) = swept_by(plan, &tables, between);
+        assert_eq!(has_runs, judged == RowsJudged::ByRuns);
+        state
+    }
+
+    /// The same with these tables, and whether there were runs of rows.
+    fn swept_by(plan: &Plan, tables: &Tables, mut between: impl FnMut(&mut CpuEngine<'_>, u64)) -> (State, bool) {
+        let ranges: Vec<_> = plan.study.report.histograms.iter().map(|it| it.range.expect("the study gives it")).collect();
+        let reduction = Reduction::new(plan, &ranges);
         let mut reducers = reduction.start();
-        let mut engine = CpuEngine::new(plan, &tables);
+        let mut engine = CpuEngine::new(plan, tables);
         // Not whole rows at the ends, and in parts, so that the front is known to the later ones. One part ends where a run does.
         let width = plan.fast.count();
         for (first, last) in [(0, 1000), (1000, 36 * width), (36 * width, plan.designs() / 2), (plan.designs() / 2, plan.designs())] {
@@ -224,8 +306,8 @@ mod tests {
             assert_eq!(engine.screen_for(first..last, &reduction, &mut reducers), last);
             reducers.front.points();
         }
-        assert_eq!(engine.row_run.first.is_some(), judged == RowsJudged::ByRuns);
-        reducers.state()
+        let has_runs = engine.row_run.first.is_some();
+        (reducers.state(), has_runs)
     }
 
     fn swept(plan: &Plan, judged: RowsJudged) -> State {
@@ -237,6 +319,7 @@ mod tests {
         let constraints = [
             "[constraints]\ncapacity_axial_force_N = { max = 30000 }\ntorque_capacity_Nm = { above = 0 }\n",
             "[constraints]\ncapacity_axial_force_N = { min = 5000, max = 20000 }\ntorque_capacity_Nm = { max = 150 }\n",
+            "[constraints]\ncapacity_axial_force_N = { max = 20000 }\nband_count = { max = 12 }\nband_thickness_mm = { above = 0.12 }\n",
             "",
         ];
         let objectives = [
@@ -247,6 +330,11 @@ mod tests {
             "[objectives]\ncapacity_axial_force_N = \"max\"\n",
             "[objectives]\ntorque_capacity_Nm = \"max\"\ncapacity_axial_force_N = \"min\"\nfriction = \"min\"\n",
             "[objectives]\ntorque_capacity_Nm = \"min\"\ncapacity_axial_force_N = \"min\"\n",
+            // Inputs of the fast axes, alone and beside others.
+            "[objectives]\ntorque_capacity_Nm = \"max\"\ncapacity_axial_force_N = \"min\"\nband_count = \"min\"\n",
+            "[objectives]\nband_thickness_mm = \"min\"\ncapacity_axial_force_N = { goal = \"min\", resolution = 100 }\nratio = \"max\"\n",
+            "[objectives]\nband_count = { goal = \"max\", resolution = 3 }\ncapacity_axial_force_N = \"min\"\n",
+            "[objectives]\ntorque_capacity_Nm = \"max\"\nband_count = \"min\"\n",
         ];
         let mut sizes = Vec::new();
         for constraints in constraints {
@@ -268,6 +356,7 @@ mod tests {
         let constraints = [
             "[constraints]\ncapacity_axial_force_N = { max = 20000 }\ntorque_capacity_Nm = { above = 0 }\n",
             "[constraints]\ncapacity_axial_force_N = { min = 5000, max = 20000 }\ntorque_capacity_Nm = { max = 150 }\n",
+            "[constraints]\ncapacity_axial_force_N = { max = 20000 }\nband_count = { min = 7 }\nband_thickness_mm = { below = 0.3 }\n",
             "",
         ];
         // Of numbers that rise with what the row is sorted by, of the row's own, and of inputs that differ within it.
@@ -342,6 +431,31 @@ mod tests {
         let mut wrong = reduction.start();
         CpuEngine::new(&plan, &tables).screen_for(0..plan.designs(), &reduction, &mut wrong);
         assert!(wrong.state() != swept(&plan, RowsJudged::ByRuns));
+    }
+
+    #[test]
+    fn inputs_of_the_fast_axes_are_objectives_and_constraints() {
+        let plan = plan(
+            "[constraints]\nband_count = { max = 12 }\n[objectives]\ntorque_capacity_Nm = \"max\"\nband_count = \"min\"\n\
+             band_thickness_mm = { goal = \"min\", resolution = 0.05 }\n",
+        );
+        // As objectives both inputs leave too few designs that are alike.
+        assert!(Tables::new(&plan).ordered.is_none());
+        let plan = self::plan(
+            "[constraints]\nband_count = { max = 12 }\n[objectives]\ntorque_capacity_Nm = \"max\"\nband_thickness_mm = \"min\"\n\
+             capacity_axial_force_N = \"min\"\n",
+        );
+        let with = |change: &dyn Fn(&mut OrderedRows)| {
+            let mut tables = Tables::new(&plan);
+            change(tables.ordered.as_mut().expect("it is of that kind"));
+            swept_by(&plan, &tables, |_, _| {}).0
+        };
+        let right = with(&|_| ());
+        assert!(right == swept(&plan, RowsJudged::OneByOne));
+        // Were an input overlooked or taken for another one, what is left would be wrong.
+        assert!(with(&|rows| rows.input_bounds.clear()).feasible > right.feasible);
+        let bands = plan.study.model.input("band_count");
+        assert!(with(&|rows| rows.inputs.iter_mut().filter(|it| it.is_some()).for_each(|it| *it = bands)).front != right.front);
     }
 
     #[test]

@@ -2,13 +2,13 @@
 
 use super::OrderedRows;
 use super::chain::RowChain;
-use super::column::{ColumnCut, SortedColumn};
+use super::column::{ColumnCut, ColumnGroup, SortedColumn};
 use super::sorted_row::{SortedRow, SortedValues};
 use crate::plan::{Plan, Source};
-use crate::reduce::{KeyRule, Reducers, Reduction};
+use crate::reduce::{FreeObjectives, KnownFront, MOST_OBJECTIVES, Reducers, Reduction};
 use crate::screen::Block;
 use crate::screen::tables::{BLOCK, FastBlock};
-use std::ops::Range;
+use std::ops::{Deref, Range};
 
 /// A stretch of so few designs is looked at one by one.
 const FEW: usize = 4;
@@ -42,6 +42,13 @@ impl OrderedRow<'_> {
     pub(super) fn offset(&self, lane: u16) -> u64 {
         let lane = usize::from(lane);
         self.blocks[lane / BLOCK].offsets[lane % BLOCK]
+    }
+
+    /// An input of the fast axes, in its unit.
+    #[inline(always)]
+    pub(super) fn input(&self, input: usize, lane: u16) -> f64 {
+        let lane = usize::from(lane);
+        self.blocks[lane / BLOCK].own(input)[lane % BLOCK]
     }
 
     /// Design index of a lane.
@@ -108,88 +115,175 @@ impl OrderedRow<'_> {
             return;
         }
         reducers.feasible += feasible.len() as u64;
-        let values = &column.values;
-        let worst_of = |tracked: usize, number: f64| match self.plan.tracked[tracked].1 {
-            Source::LaneOutput(result) => rows.chains[result].value(number, self.others),
-            _ => self.row_worst[tracked],
-        };
-        let worst_at = |tracked: usize, place: usize| worst_of(tracked, values[place]);
-        let ends = column.ends_of(&feasible);
-        let OrderedNumbers { offsets, alive, values: columns, open, sorted } = room;
         if !reducers.reported.is_empty() {
-            reducers.reported.absorb_row(&mut SortedRow::new(self, rows, column, feasible.clone(), sorted));
+            reducers.reported.absorb_row(&mut SortedRow::new(self, rows, column, feasible.clone(), &mut room.sorted));
         }
         if self.plan.objectives.is_empty() {
             return;
         }
-        columns.resize(self.plan.tracked.len(), Vec::new());
-        let mut keep = |place: usize| {
-            offsets.push(self.offset(column.lanes[place]));
-            let objectives = columns.iter_mut().enumerate().filter(|(tracked, _)| self.plan.objectives.contains(tracked));
-            objectives.for_each(|(tracked, column)| column.push(worst_at(tracked, place)));
-        };
-        for (objective, &tracked) in self.plan.objectives.iter().enumerate() {
-            for (place, number, step) in [(feasible.start, ends.0, 1isize), (feasible.end - 1, ends.1, -1)] {
-                let value = worst_of(tracked, number);
-                if reducers.extremes.may_take(objective, value, self.row_index) {
+        room.values.resize(self.plan.tracked.len(), Vec::new());
+        let alike = AlikeDesigns { row: self, rows, column, inputs: &[] };
+        alike.keep_extremes(&feasible, room, reducers);
+        let ends = column.ends_of(&feasible);
+        if column.groups.is_empty() {
+            alike.keep_front(feasible, ends, room, reduction, reducers.front.known(rows.free, &alike.lower(ends, reduction)));
+        } else {
+            for ColumnGroup { inputs, designs } in &column.groups {
+                AlikeDesigns { row: self, rows, column: designs, inputs }.keep(ends, room, reduction, reducers);
+            }
+        }
+        let OrderedNumbers { offsets, alive, values, .. } = room;
+        if !offsets.is_empty() {
+            alive.clear();
+            alive.resize(offsets.len(), u64::MAX);
+            let block = Block { row_index: self.row_index, offsets, feasible_count: offsets.len() as u64, alive, values };
+            reduction.absorb_objectives(reducers, &block);
+            offsets.clear();
+            values.iter_mut().for_each(Vec::clear);
+        }
+    }
+}
+
+/// Sorted designs of a row of which every objective has an order.
+#[derive(Clone, Copy)]
+struct AlikeDesigns<'a> {
+    row: &'a OrderedRow<'a>,
+    rows: &'a OrderedRows,
+    column: &'a SortedColumn,
+    /// Of a group, by tracked quantity: the objectives that are inputs of the fast axes.
+    inputs: &'a [f64],
+}
+
+/// Keys of all objectives.
+struct LowerKeys([f64; MOST_OBJECTIVES], usize);
+
+impl Deref for LowerKeys {
+    type Target = [f64];
+
+    fn deref(&self) -> &[f64] {
+        &self.0[..self.1]
+    }
+}
+
+impl AlikeDesigns<'_> {
+    /// The worst value of a tracked quantity for a number of the column.
+    #[inline(always)]
+    fn worst_of(self, tracked: usize, number: f64) -> f64 {
+        match self.row.plan.tracked[tracked].1 {
+            Source::LaneOutput(result) => self.rows.chains[result].value(number, self.row.others),
+            Source::LaneInput(_) => self.inputs[tracked],
+            Source::RowInput(_) | Source::RowOutput(_) => self.row.row_worst[tracked],
+        }
+    }
+
+    /// Hands a design over to front and extremes.
+    #[inline(always)]
+    fn keep_design(self, place: usize, offsets: &mut Vec<u64>, values: &mut [Vec<f64>]) {
+        let lane = self.column.lanes[place];
+        offsets.push(self.row.offset(lane));
+        let objectives = values.iter_mut().enumerate().filter(|(tracked, _)| self.row.plan.objectives.contains(tracked));
+        objectives.for_each(|(tracked, column)| {
+            column.push(match self.row.plan.tracked[tracked].1 {
+                Source::LaneInput(input) => self.row.input(input, lane),
+                _ => self.worst_of(tracked, self.column.values[place]),
+            });
+        });
+    }
+
+    /// The least that the keys of designs with numbers between two can be.
+    #[inline(always)]
+    fn lower(self, (low, high): (f64, f64), reduction: &Reduction) -> LowerKeys {
+        let mut lower = [0.0; MOST_OBJECTIVES];
+        for ((rule, &tracked), lower) in reduction.rules().iter().zip(&self.row.plan.objectives).zip(&mut lower) {
+            let [a, b] = [low, high].map(|number| rule.key(self.worst_of(tracked, number)));
+            *lower = a.min(b);
+        }
+        LowerKeys(lower, reduction.rules().len())
+    }
+
+    /// Of a group: hands over what may be an extreme or of the front, given the ends of the feasible numbers of the whole row.
+    fn keep(self, (low, high): (f64, f64), room: &mut OrderedNumbers, reduction: &Reduction, reducers: &mut Reducers) {
+        let own = self.column.ends;
+        let ends = (own.0.max(low), own.1.min(high));
+        if ends.0 > ends.1 {
+            return;
+        }
+        let objectives = || self.row.plan.objectives.iter().copied().enumerate();
+        let mut inputs = objectives().filter(|(_, tracked)| matches!(self.row.plan.tracked[*tracked].1, Source::LaneInput(_)));
+        let is_extreme = inputs.any(|(objective, tracked)| reducers.extremes.may_take(objective, self.inputs[tracked], self.row.row_index));
+        let lower = self.lower(ends, reduction);
+        let known = reducers.front.known(self.rows.free, &lower);
+        let is_beaten = known.beats_from(&lower, self.row.row_index);
+        if is_beaten && !is_extreme {
+            return;
+        }
+        let all = 0..self.column.values.len();
+        if is_extreme {
+            // All have the same: which of them has the lowest index is seen later.
+            self.column.between(all.clone(), low, high).for_each(|place| self.keep_design(place, &mut room.offsets, &mut room.values));
+        }
+        if !is_beaten {
+            self.keep_front(all, ends, room, reduction, known);
+        }
+    }
+
+    /// Hands over the designs at places that may be an extreme of an objective that is no input of the fast axes.
+    fn keep_extremes(self, places: &Range<usize>, room: &mut OrderedNumbers, reducers: &Reducers) {
+        let ends = self.column.ends_of(places);
+        for (objective, &tracked) in self.row.plan.objectives.iter().enumerate() {
+            if matches!(self.row.plan.tracked[tracked].1, Source::LaneInput(_)) {
+                continue;
+            }
+            for (place, number, step) in [(places.start, ends.0, 1isize), (places.end - 1, ends.1, -1)] {
+                let value = self.worst_of(tracked, number);
+                if reducers.extremes.may_take(objective, value, self.row.row_index) {
                     // All that have the same value: which of them has the lowest index is seen later.
                     let mut at = place;
-                    while feasible.contains(&at) && worst_at(tracked, at) == value {
-                        keep(at);
+                    while places.contains(&at) && self.worst_of(tracked, self.column.values[at]) == value {
+                        self.keep_design(at, &mut room.offsets, &mut room.values);
                         at = at.wrapping_add_signed(step);
                     }
                 }
             }
         }
+    }
+
+    /// Hands over the designs that may be of the front, of those at places whose numbers are between two.
+    #[inline(always)]
+    fn keep_front(self, places: Range<usize>, ends: (f64, f64), room: &mut OrderedNumbers, reduction: &Reduction, known: KnownFront<'_>) {
+        let OrderedNumbers { offsets, values, open, .. } = room;
         open.clear();
-        match self.ray(rows, ends, reduction) {
-            Some(factors) => {
-                let mut add = |low, high| open.push(column.between(feasible.clone(), low, high));
-                let on_ray = reducers.front.open_on_ray(factors, ends, &mut add);
-                if !on_ray {
-                    open.push(feasible);
-                }
-            }
-            None => open.push(feasible),
+        let mut add = |low: f64, high: f64| open.push(self.column.between(places.clone(), low.max(ends.0), high.min(ends.1)));
+        // Where nothing of a ray is open no place is looked for.
+        if !self.ray(ends, reduction).is_some_and(|factors| known.open_on_ray(factors, ends, &mut add)) {
+            add(ends.0, ends.1);
         }
-        let mut lower = [0.0; crate::reduce::MOST_OBJECTIVES];
         while let Some(stretch) = open.pop() {
             if stretch.is_empty() {
                 continue;
             }
-            for ((rule, &tracked), lower) in reduction.rules().iter().zip(&self.plan.objectives).zip(&mut lower) {
-                let [a, b] = [stretch.start, stretch.end - 1].map(|place| rule.key(worst_at(tracked, place)));
-                *lower = a.min(b);
-            }
-            if reducers.front.beats_from(&lower[..reduction.rules().len()], self.row_index) {
+            let ends = (self.column.values[stretch.start], self.column.values[stretch.end - 1]);
+            if known.beats_from(&self.lower(ends, reduction), self.row.row_index) {
                 continue;
             }
             if stretch.len() <= FEW {
-                stretch.for_each(&mut keep);
+                stretch.for_each(|place| self.keep_design(place, offsets, values));
             } else {
                 let middle = stretch.start + stretch.len() / 2;
                 open.extend([middle..stretch.end, stretch.start..middle]);
             }
         }
-        if !offsets.is_empty() {
-            alive.clear();
-            alive.resize(offsets.len(), u64::MAX);
-            let block = Block { row_index: self.row_index, offsets, feasible_count: offsets.len() as u64, alive, values: columns };
-            reduction.absorb_objectives(reducers, &block);
-            offsets.clear();
-            columns.iter_mut().for_each(Vec::clear);
-        }
     }
 
     /// The factors of both objectives' keys, where each is one times the number, which lies between two ends.
     #[inline]
-    fn ray(&self, rows: &OrderedRows, ends: (f64, f64), reduction: &Reduction) -> Option<(f64, f64)> {
-        let [first, second] = self.plan.objectives[..] else { return None };
-        let factor = |tracked: usize, rule: &KeyRule| {
-            let Source::LaneOutput(result) = self.plan.tracked[tracked].1 else { return None };
-            rows.chains[result].factor(self.others).filter(|_| !rule.has_steps()).map(|factor| rule.key(factor))
+    fn ray(self, ends: (f64, f64), reduction: &Reduction) -> Option<(f64, f64)> {
+        let FreeObjectives(first, second) = self.rows.free?;
+        let factor = |objective: usize| {
+            let Source::LaneOutput(result) = self.row.plan.tracked[self.row.plan.objectives[objective]].1 else { return None };
+            self.rows.chains[result].factor(self.row.others).map(|factor| reduction.rules()[objective].uncut(factor))
         };
-        let factors = (factor(first, &reduction.rules()[0])?, factor(second, &reduction.rules()[1])?);
+        let factors = (factor(first)?, factor(second)?);
         (ends.0 >= 0.0 && factors.0.is_finite() && factors.1.is_finite()).then_some(factors)
     }
 }

@@ -5,7 +5,6 @@ use super::column::SortedColumn;
 use super::{OrderedRow, OrderedRows};
 use crate::plan::Source;
 use crate::screen::Block;
-use crate::screen::tables::BLOCK;
 use multiversion::multiversion;
 use std::ops::Range;
 
@@ -211,8 +210,7 @@ impl<'a> SortedRow<'a> {
                 }
             }
             Source::LaneInput(input) => {
-                values
-                    .extend(lanes.iter().map(|&lane| usize::from(lane)).map(|lane| self.row.blocks[lane / BLOCK].own(input)[lane % BLOCK]));
+                values.extend(lanes.iter().map(|&lane| self.row.input(input, lane)));
             }
             Source::RowInput(_) | Source::RowOutput(_) => values.resize(count, self.row.row_worst[tracked]),
         }
