@@ -33,15 +33,15 @@ impl KeyRule {
         self.resolution.is_some()
     }
 
-    /// The key as it would be without steps, which only cut off what is no whole number of them.
+    /// The key before it is rounded to whole steps.
     pub(crate) fn uncut(&self, value: f64) -> f64 {
         let steps = self.resolution.map_or(value, |resolution| value / resolution);
         if self.goal == Goal::Min { steps } else { -steps }
     }
 
-    /// By how much the key may be less than [`Self::uncut`] says, but for rounding.
+    /// How far whole steps can take the key below [`Self::uncut`].
     pub(crate) fn most_cut(&self) -> f64 {
-        // Of a value that is to be large the key is cut the other way.
+        // With `max`, rounding down makes the key larger.
         if self.resolution.is_some() && self.goal == Goal::Min { 1.0 } else { 0.0 }
     }
 

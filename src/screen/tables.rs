@@ -93,8 +93,8 @@ impl Tables {
         self.ordered.is_some() || self.together.is_some()
     }
 
-    /// Bytes that a thread takes for rows that are judged at once: slices of the front, and where their designs are reported values and
-    /// indices, and in each map what lanes count.
+    /// Bytes that a thread takes for rows that are judged at once: slices of the front; if the study has reports, also values and indices of a
+    /// row's designs and lane counts of each map.
     pub fn row_bytes(plan: &Plan) -> u64 {
         if plan.fast.count() > FAST_DESIGNS {
             return 0;

@@ -76,6 +76,10 @@ impl<const BINS: usize> BinTable<BINS> {
         let scale = if high > low { (BINS - 2) as f64 / (high - low) } else { 0.0 };
         let scale = if scale.is_finite() { scale } else { 0.0 };
         let mut table = Self { low, scale, best: Box::new([f64::INFINITY; BINS]), rays: OnceLock::new() };
+        // One bin tells nothing, and how far a coordinate is from the least one may be no number.
+        if table.scale == 0.0 {
+            return table;
+        }
         for [first, second] in keys {
             let next = table.bin(first) + 1;
             if next < BINS {
@@ -117,13 +121,15 @@ impl<const BINS: usize> BinTable<BINS> {
     }
 
     /// Calls `each` with ranges of a number y between two ends outside of which designs are surely beaten whose two coordinates are these
-    /// factors times y, but for rounding and what is `cut` of them. One of the factors must be above zero, the other below; y is at least zero.
+    /// factors times y, but for rounding and what steps `cut` off. One of the factors must be above zero, the other below; y is at least zero.
     /// False if the table does not tell.
     pub(super) fn open_on_ray(&self, factors: (f64, f64), ends: (f64, f64), cut: (f64, f64), each: impl FnMut(f64, f64)) -> bool {
-        let is_steep = factors.0 < 0.0;
+        let (is_steep, is_opposed) = (factors.0 < 0.0, factors.0 * factors.1 < 0.0);
+        if !is_opposed {
+            return false;
+        }
         let rays = self.rays.get_or_init(|| Rays::new(self, is_steep, cut));
-        let is_opposed = factors.0 * factors.1 < 0.0;
-        if !rays.is_for(is_steep) || !is_opposed {
+        if !rays.is_for(is_steep) {
             return false;
         }
         rays.open(factors, ends, each);
@@ -189,6 +195,9 @@ impl CellTable {
             (objective, ends.0, if scale.is_finite() { scale } else { 0.0 })
         };
         let lines: Vec<_> = (0..objectives).filter(|&it| it != value).map(line).collect();
+        if lines.iter().any(|line| line.2 == 0.0) {
+            return None;
+        }
         let mut table = Self { value, bits, best: vec![f64::NAN; 1 << (bits as usize * lines.len())], lines };
         for key in points.keys.chunks(objectives) {
             let places = table.lines.iter().map(|&(objective, low, scale)| bin(key[objective], low, scale, bins) + 1);
@@ -342,6 +351,18 @@ mod tests {
             // A point of the table is never beaten by it, nor what is no number.
             assert!(points.keys.chunks(objectives as usize).all(|it| !table.beats(it) || is_beaten(it)));
             assert!(!table.beats(&vec![f64::NAN; objectives as usize]));
+        }
+    }
+
+    #[test]
+    fn a_table_over_more_than_a_number_holds_tells_nothing() {
+        for (keys, beaten_by_none) in
+            [([[1e308, 5.0], [f64::INFINITY, 3.0]], [9e307, 4.0]), ([[-1.5e308, 5.0], [1.5e308, 3.0]], [-1.6e308, 4.0])]
+        {
+            assert!(!BinTable::<BINS>::new(keys.into_iter()).beats(beaten_by_none[0], beaten_by_none[1]));
+            let mut points = Points::default();
+            (0..FEW_POINTS).for_each(|number| points.push([keys[number % 2][0], number as f64, (number % 2) as f64], number as u64));
+            assert!(CellTable::new(&points, 3).is_none());
         }
     }
 

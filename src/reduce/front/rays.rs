@@ -3,7 +3,7 @@
 //! Two objectives that are both a factor of the row times one number y of each design put the row's designs on a ray from the origin.
 //! For each bin of the first coordinate the table of the front says from which second coordinate on a design is surely beaten, and so
 //! how steep a ray is beaten in the whole bin. The largest of these numbers in groups of bins finds those of a range where a ray is not.
-//! Where objectives have steps a design may be better by one step than the ray says, so the table is moved by so much.
+//! Rounding to whole steps can make a key less than its ray by up to `cut`, so the table is shifted by that much.
 
 use super::filter::BinTable;
 use std::ops::Range;
@@ -35,8 +35,8 @@ impl<const BINS: usize> Rays<BINS> {
     /// Bins that rays may be beaten in. Nothing is better than what belongs to the first two; the last has no upper edge.
     const INNER: Range<usize> = 2..BINS - 1;
 
-    /// From a table, for rays whose first coordinate is below zero, or else above it with the second below. The coordinates of a design may
-    /// be less than those of the ray by what is `cut` of them.
+    /// From a table, for rays whose first coordinate is below zero, or else above it with the second below. Rounding to whole steps may
+    /// make the coordinates of a design less than those of its ray by up to `cut`.
     pub(super) fn new(table: &BinTable<BINS>, is_steep: bool, cut: (f64, f64)) -> Self {
         let (low, scale) = table.line();
         let (low, best) = (low + cut.0, |bin| table.best(bin) + cut.1);

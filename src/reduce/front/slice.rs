@@ -1,30 +1,32 @@
 //! What a front says of designs that have all objectives but two in common.
 //!
-//! Such a design is beaten by a point that is no worse in what they have in common and in the two others. So of the points that are no worse
-//! in the first it compares with those that no other of them beats in the two, as if there were these two objectives only. What designs have
-//! in common is an input or an output that is the same for a whole row, or for a group of its designs.
+//! Take the points that are no worse in the shared objectives. Among them only the other two objectives decide, so a slice is the front of
+//! these points with two objectives. Objectives are shared where they are the same for a whole row or for a group of its designs.
 
 use super::filter::{BinTable, Filter};
 use super::{Front, KeyRule, MOST_OBJECTIVES, Points};
 use std::collections::HashMap;
 
-/// Bins of a slice: many of them are in use at a time.
+/// Bins of a slice's table: fewer than the front's, as many slices are kept.
 const BINS: usize = 1024;
 /// Of so few points no slice is made.
 const FEW_POINTS: usize = 32;
-/// A slice is made when it has been asked for once for each so many points: to make it takes a look at all of them.
+/// A slice is made when it has been asked for so often, or once for each so many points of the front: making it is a pass over all points.
+const LEAST_QUESTIONS: usize = 4;
 const POINTS_PER_QUESTION: usize = 256;
-/// Most slices that are kept, and their points where the front has no more itself.
+/// Most slices that are kept, and most that are asked for and not made yet.
 const MOST_SLICES: usize = 128;
+const MOST_ASKED: usize = 4096;
+/// All slices together have at most so many points, or a quarter of those of the front.
 const MOST_POINTS: usize = 1 << 14;
 
 /// Bytes of the tables of so many slices of a front, as far as they are kept at a time.
 pub fn slice_bytes(objectives: usize, slices: u64) -> u64 {
-    // The best of each bin, and how steep a ray is there.
-    if objectives > 2 { slices.min(MOST_SLICES as u64) * (2 * 8 * BINS + size_of::<FrontSlice>()) as u64 } else { 0 }
+    // The best of each bin, how steep a ray is there, and the largest of groups of bins.
+    if objectives > 2 { slices.min(MOST_SLICES as u64) * (20 * BINS + size_of::<FrontSlice>()) as u64 } else { 0 }
 }
 
-/// The two objectives that designs with something in common differ by.
+/// The two objectives that designs may differ by which share the others.
 #[derive(Clone, Copy, Debug)]
 pub struct FreeObjectives(pub usize, pub usize);
 
@@ -33,8 +35,8 @@ pub struct FreeObjectives(pub usize, pub usize);
 pub struct FrontSlice {
     free: FreeObjectives,
     cut: (f64, f64),
-    /// The two coordinates: sorted by the first, the second falls. A point that is better in what is common beats whatever it is no worse than:
-    /// it has index 0.
+    /// The two coordinates: sorted by the first, the second falls. A point that is better in a shared objective wins ties whatever its index,
+    /// so it has index 0.
     points: Points,
     /// None where there are no points.
     table: Option<BinTable<BINS>>,
@@ -51,7 +53,7 @@ impl FrontSlice {
             }
         }
         let table = (!counting.is_empty()).then(|| BinTable::new(counting.iter().map(|it| [it.0, it.1])));
-        // The table knows most of those that others beat.
+        // The table drops most beaten points before the sort.
         counting.retain(|&(first, second, _)| table.as_ref().is_some_and(|table| !table.beats(first, second)));
         counting.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
         let mut best = f64::INFINITY;
@@ -62,16 +64,28 @@ impl FrontSlice {
                 best = second;
             }
         }
+        points.keys.shrink_to_fit();
+        points.indices.shrink_to_fit();
         Self { free, cut: (rules[free.0].most_cut(), rules[free.1].most_cut()), points, table }
     }
 }
 
-/// The slices that have been asked for, by what designs have in common.
+/// What designs have in common, and which objectives are free.
+type SliceKey = [u64; MOST_OBJECTIVES];
+
+/// How often a slice was asked for since it was last made, and where it stands if it is.
+#[derive(Debug, Default)]
+struct AskedSlice {
+    asked: usize,
+    place: Option<usize>,
+}
+
+/// The slices that have been asked for.
 #[derive(Debug, Default)]
 pub(super) struct FrontSlices {
-    numbers: HashMap<[u64; MOST_OBJECTIVES], usize>,
-    /// How often each was asked for, until it is made.
-    asked: Vec<(usize, Option<FrontSlice>)>,
+    asked: HashMap<SliceKey, AskedSlice>,
+    made: Vec<(SliceKey, FrontSlice)>,
+    oldest: usize,
     /// Points of all that are made.
     points: usize,
 }
@@ -79,22 +93,30 @@ pub(super) struct FrontSlices {
 impl FrontSlices {
     /// Forgets all.
     pub(super) fn clear(&mut self) {
-        self.numbers.clear();
         self.asked.clear();
-        self.points = 0;
+        self.made.clear();
+        (self.oldest, self.points) = (0, 0);
     }
 
-    /// Which one it is of designs with this in common.
-    fn number(&mut self, common: [u64; MOST_OBJECTIVES]) -> usize {
-        if let Some(&number) = self.numbers.get(&common) {
-            return number;
-        }
-        if self.asked.len() == MOST_SLICES {
+    /// Keeps a slice, in place of the oldest one if there are many; returns where it stands.
+    fn keep(&mut self, key: SliceKey, slice: FrontSlice, most_points: usize) -> usize {
+        if self.points + slice.points.len() > most_points {
             self.clear();
         }
-        self.numbers.insert(common, self.asked.len());
-        self.asked.push((0, None));
-        self.asked.len() - 1
+        self.points += slice.points.len();
+        let place = if self.made.len() < MOST_SLICES {
+            self.made.push((key, slice));
+            self.made.len() - 1
+        } else {
+            let place = self.oldest;
+            self.oldest = (self.oldest + 1) % MOST_SLICES;
+            let (old, gone) = std::mem::replace(&mut self.made[place], (key, slice));
+            self.points -= gone.points.len();
+            self.asked.remove(&old);
+            place
+        };
+        self.asked.insert(key, AskedSlice { asked: 0, place: Some(place) });
+        place
     }
 }
 
@@ -119,9 +141,9 @@ impl KnownFront<'_> {
         }
     }
 
-    /// Calls `each` with ranges of a number y between two ends outside of which designs whose two coordinates are these factors times y, but
-    /// for rounding and what steps cut off, are surely beaten. One of the factors must be above zero, the other below; y is at least zero.
-    /// False if the front does not tell.
+    /// Calls `each` with ranges of a number y between two ends outside of which every design whose two coordinates are these factors times y is
+    /// surely beaten, rounding and steps allowed for. One of the factors must be above zero, the other below; y is at least zero. False if the
+    /// front does not tell.
     pub fn open_on_ray(self, factors: (f64, f64), ends: (f64, f64), each: impl FnMut(f64, f64)) -> bool {
         match self {
             Self::Front(front) => {
@@ -134,11 +156,11 @@ impl KnownFront<'_> {
 }
 
 impl Front {
-    /// What designs are compared with that differ by two objectives only, where that is so; `lower` has what they have in common. With two
-    /// objectives that is the whole front.
+    /// The slice for designs that share all objectives but `free`, whose shared keys stand in `lower`; else the front. With two objectives it is
+    /// always the front.
     pub fn known(&mut self, free: Option<FreeObjectives>, lower: &[f64]) -> KnownFront<'_> {
         match free.filter(|_| self.rules.len() > 2).and_then(|free| self.slice(free, lower)) {
-            Some(number) => self.slices.asked[number].1.as_ref().map_or(KnownFront::Front(self), KnownFront::Slice),
+            Some(place) => KnownFront::Slice(&self.slices.made[place].1),
             None => KnownFront::Front(self),
         }
     }
@@ -148,25 +170,24 @@ impl Front {
         if self.points.len() < FEW_POINTS {
             return None;
         }
+        // There are two objectives less in common than there may be objectives.
         let mut key = [0; MOST_OBJECTIVES];
         let common = lower.iter().enumerate().filter(|&(it, _)| it != free.0 && it != free.1);
         key.iter_mut().zip(common).for_each(|(key, (_, lower))| *key = lower.to_bits());
-        let mut number = self.slices.number(key);
-        let (count, slice) = &mut self.slices.asked[number];
-        *count += 1;
-        if slice.is_none() {
-            if *count * POINTS_PER_QUESTION < self.points.len() {
-                return None;
-            }
-            let made = FrontSlice::new(&self.rules, free, &self.points, lower);
-            // One front more at most, however much its slices have in common.
-            if self.slices.points + made.points.len() > self.points.len().max(MOST_POINTS) {
-                self.slices.clear();
-                number = self.slices.number(key);
-            }
-            self.slices.points += made.points.len();
-            self.slices.asked[number].1 = Some(made);
+        (key[MOST_OBJECTIVES - 2], key[MOST_OBJECTIVES - 1]) = (free.0 as u64, free.1 as u64);
+        let slices = &mut self.slices;
+        if slices.asked.len() >= MOST_ASKED && !slices.asked.contains_key(&key) {
+            slices.asked.retain(|_, it| it.place.is_some());
         }
-        Some(number)
+        let entry = slices.asked.entry(key).or_default();
+        if entry.place.is_some() {
+            return entry.place;
+        }
+        entry.asked += 1;
+        if entry.asked < LEAST_QUESTIONS.max(self.points.len() / POINTS_PER_QUESTION) {
+            return None;
+        }
+        let made = FrontSlice::new(&self.rules, free, &self.points, lower);
+        Some(slices.keep(key, made, (self.points.len() / 4).max(MOST_POINTS)))
     }
 }

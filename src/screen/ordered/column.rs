@@ -15,7 +15,7 @@ pub(in crate::screen) struct SortedColumn {
     /// The numbers, the least first, and the designs that have them.
     pub(super) values: Vec<f64>,
     pub(super) lanes: Vec<u16>,
-    /// The numbers of all lanes, where feasible designs are counted by them, NaN where the inputs are out; else none.
+    /// The number of every lane, NaN if its inputs break a constraint. Empty unless designs are counted lane by lane.
     pub(super) by_lane: Vec<f64>,
     /// How many numbers are below the lower edge of each of as many even steps from the least to the largest, and at last all of them;
     /// steps per number.
@@ -25,7 +25,7 @@ pub(in crate::screen) struct SortedColumn {
     pub(super) ends: (f64, f64),
     /// How many numbers equal the least one, and how many are below the largest: a formula with a limit makes many of them equal.
     plateaus: (usize, usize),
-    /// The same designs by the inputs that are objectives; none where no objective is an input of the fast axes.
+    /// The same designs, grouped by the inputs that are objectives; empty if there are none.
     pub(super) groups: Vec<ColumnGroup>,
 }
 
@@ -54,7 +54,8 @@ impl ColumnCut {
 }
 
 impl SortedColumn {
-    /// The column of a row whose list has these numbers, without the designs whose inputs are out; `None` if one of its own is not finite.
+    /// The column of a row whose list has these numbers, without the designs whose inputs break a constraint; `None` if one of its own is not
+    /// finite.
     pub(in crate::screen) fn new(rows: &OrderedRows, list: &LaneList, blocks: &[FastBlock], numbers: &[f64]) -> Option<Self> {
         let mut slots = numbers.to_vec();
         let mut members = Members::new();

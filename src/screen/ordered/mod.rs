@@ -7,8 +7,8 @@
 //! by some dozens of values, design by design only where the front is near. The answer is the one that judging each of them gives, to the
 //! last bit.
 //!
-//! An objective may be an input that differs within the row, as a number of bands does. Then the designs that have the same of it are
-//! sorted once more for themselves.
+//! An objective may be an input that differs within the row, as a number of bands does. Then the designs that share its value are
+//! sorted a second time, as a group.
 
 mod chain;
 mod column;
@@ -31,7 +31,8 @@ use chain::{LONGEST, RowChain, chain, path};
 use std::collections::HashSet;
 use std::sync::OnceLock;
 
-/// Groups of designs that have the inputs in common which are objectives: no more than these, and of so many designs at least on average.
+/// Most groups (designs that share all inputs that are objectives), and fewest designs of a group on average; otherwise designs are judged one
+/// by one.
 const MOST_GROUPS: u64 = 256;
 const LEAST_GROUPED: u64 = 8;
 /// Most bytes of sorted columns.
@@ -55,7 +56,7 @@ pub(super) struct OrderedRows {
     input_bounds: Vec<(usize, (f64, f64))>,
     /// Of each tracked quantity: the input of the fast axes that it is, if it is an objective.
     inputs: Vec<Option<usize>>,
-    /// The objectives that differ between designs which have the same of these, if there are no more than two.
+    /// The two objectives that can differ within a group; `None` if more can.
     free: Option<FreeObjectives>,
     /// Dimensions of the slow axes that the number depends on, with the distance of two levels among the columns.
     dimensions: Vec<(usize, u64)>,
@@ -101,7 +102,7 @@ impl OrderedRows {
             }
         }
         let counts_lanes = plan.study.report.maps.iter().any(|map| map.value == Best::Share);
-        let bytes = column_bytes(plan, counts_lanes, groups);
+        let bytes = column_bytes(plan, counts_lanes, groups) + size_of::<OnceLock<Option<SortedColumn>>>() as u64;
         let fits = columns.checked_mul(bytes).is_some_and(|bytes| bytes <= MOST_BYTES);
         if !fits || plan.fast.count() >= 1 << 16 {
             return None;
@@ -187,7 +188,7 @@ fn lane_objectives(plan: &Plan) -> Vec<Option<usize>> {
     plan.tracked.iter().map(|it| it.1).enumerate().map(input).collect()
 }
 
-/// The two objectives that differ between designs of a row which have the same inputs as objectives; fewer are made two.
+/// The two objectives that can differ within a group; `None` if more can. If fewer can, objectives that the group shares make up two.
 fn free_objectives(plan: &Plan) -> Option<FreeObjectives> {
     let differs = |objective: &usize| matches!(plan.tracked[plan.objectives[*objective]].1, Source::LaneOutput(_));
     let (free, common): (Vec<usize>, Vec<usize>) = (0..plan.objectives.len()).partition(differs);
@@ -333,6 +334,9 @@ mod tests {
             // Inputs of the fast axes, alone and beside others.
             "[objectives]\ntorque_capacity_Nm = \"max\"\ncapacity_axial_force_N = \"min\"\nband_count = \"min\"\n",
             "[objectives]\nband_thickness_mm = \"min\"\ncapacity_axial_force_N = { goal = \"min\", resolution = 100 }\nratio = \"max\"\n",
+            "[objectives]\ntorque_capacity_Nm = { goal = \"max\", resolution = 5 }\ncapacity_axial_force_N = { goal = \"min\", resolution = 100 }\n",
+            "[objectives]\ncapacity_axial_force_N = { goal = \"min\", resolution = 100 }\ntorque_capacity_Nm = { goal = \"max\", resolution = 5 }\n\
+             friction = \"min\"\nband_count = \"min\"\n",
             "[objectives]\nband_count = { goal = \"max\", resolution = 3 }\ncapacity_axial_force_N = \"min\"\n",
             "[objectives]\ntorque_capacity_Nm = \"max\"\nband_count = \"min\"\n",
         ];
@@ -439,10 +443,10 @@ mod tests {
             "[constraints]\nband_count = { max = 12 }\n[objectives]\ntorque_capacity_Nm = \"max\"\nband_count = \"min\"\n\
              band_thickness_mm = { goal = \"min\", resolution = 0.05 }\n",
         );
-        // As objectives both inputs leave too few designs that are alike.
+        // Grouped by both inputs, too few designs share a group.
         assert!(Tables::new(&plan).ordered.is_none());
         let plan = self::plan(
-            "[constraints]\nband_count = { max = 12 }\n[objectives]\ntorque_capacity_Nm = \"max\"\nband_thickness_mm = \"min\"\n\
+            "[constraints]\nband_count = { max = 12 }\ntorque_capacity_Nm = { above = 0 }\n[objectives]\nband_thickness_mm = \"min\"\n\
              capacity_axial_force_N = \"min\"\n",
         );
         let with = |change: &dyn Fn(&mut OrderedRows)| {

@@ -144,13 +144,13 @@ impl OrderedRow<'_> {
     }
 }
 
-/// Sorted designs of a row of which every objective has an order.
+/// Designs of a column or of one of its groups, with what their objectives are.
 #[derive(Clone, Copy)]
 struct AlikeDesigns<'a> {
     row: &'a OrderedRow<'a>,
     rows: &'a OrderedRows,
     column: &'a SortedColumn,
-    /// Of a group, by tracked quantity: the objectives that are inputs of the fast axes.
+    /// Of a group, by tracked quantity: the objectives that are inputs of the fast axes. Empty where these are not asked for.
     inputs: &'a [f64],
 }
 
@@ -201,7 +201,7 @@ impl AlikeDesigns<'_> {
         LowerKeys(lower, reduction.rules().len())
     }
 
-    /// Of a group: hands over what may be an extreme or of the front, given the ends of the feasible numbers of the whole row.
+    /// Of a group: hands over designs that may be an extreme or on the front, given the ends of the feasible numbers of the whole row.
     fn keep(self, (low, high): (f64, f64), room: &mut OrderedNumbers, reduction: &Reduction, reducers: &mut Reducers) {
         let own = self.column.ends;
         let ends = (own.0.max(low), own.1.min(high));
@@ -219,11 +219,17 @@ impl AlikeDesigns<'_> {
         }
         let all = 0..self.column.values.len();
         if is_extreme {
-            // All have the same: which of them has the lowest index is seen later.
-            self.column.between(all.clone(), low, high).for_each(|place| self.keep_design(place, &mut room.offsets, &mut room.values));
+            self.keep_first(self.column.between(all.clone(), low, high), room);
         }
         if !is_beaten {
             self.keep_front(all, ends, room, reduction, known);
+        }
+    }
+
+    /// Of designs that are all as extreme, hands over the one with the lowest index, which the extremes take.
+    fn keep_first(self, places: Range<usize>, room: &mut OrderedNumbers) {
+        if let Some(place) = places.min_by_key(|&place| self.row.offset(self.column.lanes[place])) {
+            self.keep_design(place, &mut room.offsets, &mut room.values);
         }
     }
 
@@ -237,12 +243,11 @@ impl AlikeDesigns<'_> {
             for (place, number, step) in [(places.start, ends.0, 1isize), (places.end - 1, ends.1, -1)] {
                 let value = self.worst_of(tracked, number);
                 if reducers.extremes.may_take(objective, value, self.row.row_index) {
-                    // All that have the same value: which of them has the lowest index is seen later.
-                    let mut at = place;
-                    while places.contains(&at) && self.worst_of(tracked, self.column.values[at]) == value {
-                        self.keep_design(at, &mut room.offsets, &mut room.values);
-                        at = at.wrapping_add_signed(step);
+                    let mut end = place;
+                    while places.contains(&end) && self.worst_of(tracked, self.column.values[end]) == value {
+                        end = end.wrapping_add_signed(step);
                     }
+                    self.keep_first(if step > 0 { place..end } else { end.wrapping_add(1)..place + 1 }, room);
                 }
             }
         }
@@ -254,7 +259,7 @@ impl AlikeDesigns<'_> {
         let OrderedNumbers { offsets, values, open, .. } = room;
         open.clear();
         let mut add = |low: f64, high: f64| open.push(self.column.between(places.clone(), low.max(ends.0), high.min(ends.1)));
-        // Where nothing of a ray is open no place is looked for.
+        // If no part of the ray is open, no place is looked for. An end that is no number leaves that of all.
         if !self.ray(ends, reduction).is_some_and(|factors| known.open_on_ray(factors, ends, &mut add)) {
             add(ends.0, ends.1);
         }
