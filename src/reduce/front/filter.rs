@@ -361,7 +361,7 @@ mod tests {
         {
             assert!(!BinTable::<BINS>::new(keys.into_iter()).beats(beaten_by_none[0], beaten_by_none[1]));
             let mut points = Points::default();
-            (0..FEW_POINTS).for_each(|number| points.push([keys[number % 2][0], number as f64, (number % 2) as f64], number as u64));
+            (0..FEW_POINTS).for_each(|number| points.push([keys[number % 2][0], number as f64, 0.0], number as u64));
             assert!(CellTable::new(&points, 3).is_none());
         }
     }

@@ -31,8 +31,8 @@ use chain::{LONGEST, RowChain, chain, path};
 use std::collections::HashSet;
 use std::sync::OnceLock;
 
-/// Most groups (designs that share all inputs that are objectives), and fewest designs of a group on average; otherwise designs are judged one
-/// by one.
+/// Most groups (designs that share all inputs that are objectives), and fewest designs of a group on average; otherwise designs are judged
+/// one by one.
 const MOST_GROUPS: u64 = 256;
 const LEAST_GROUPED: u64 = 8;
 /// Most bytes of sorted columns.
