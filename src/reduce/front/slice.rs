@@ -17,8 +17,8 @@ const POINTS_PER_QUESTION: usize = 256;
 /// Most slices that are kept, and most that are asked for and not made yet.
 const MOST_SLICES: usize = 128;
 const MOST_ASKED: usize = 4096;
-/// All slices together have at most so many points, or a quarter of those of the front.
-const MOST_POINTS: usize = 1 << 14;
+/// All slices together have at most so many points, 24 bytes each, or a quarter of those of the front.
+const MOST_POINTS: usize = 1 << 17;
 
 /// Bytes of the tables of so many slices of a front, as far as they are kept at a time.
 pub fn slice_bytes(objectives: usize, slices: u64) -> u64 {
@@ -98,10 +98,12 @@ impl FrontSlices {
         (self.oldest, self.points) = (0, 0);
     }
 
-    /// Keeps a slice, in place of the oldest one if there are many; returns where it stands.
-    fn keep(&mut self, key: SliceKey, slice: FrontSlice, most_points: usize) -> usize {
+    /// Keeps a slice, in place of the oldest one if there are many; returns where it stands. `None` if all would have too many points.
+    fn keep(&mut self, key: SliceKey, slice: FrontSlice, most_points: usize) -> Option<usize> {
         if self.points + slice.points.len() > most_points {
-            self.clear();
+            // The next questions come before it is made in vain again.
+            self.asked.remove(&key);
+            return None;
         }
         self.points += slice.points.len();
         let place = if self.made.len() < MOST_SLICES {
@@ -116,7 +118,7 @@ impl FrontSlices {
             place
         };
         self.asked.insert(key, AskedSlice { asked: 0, place: Some(place) });
-        place
+        Some(place)
     }
 }
 
@@ -188,6 +190,6 @@ impl Front {
             return None;
         }
         let made = FrontSlice::new(&self.rules, free, &self.points, lower);
-        Some(slices.keep(key, made, (self.points.len() / 4).max(MOST_POINTS)))
+        slices.keep(key, made, (self.points.len() / 4).max(MOST_POINTS))
     }
 }
