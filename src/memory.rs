@@ -23,7 +23,7 @@ const THREAD: u64 = 350_000;
 const CELL: u64 = 24;
 const CELL_SAVED: u64 = 70;
 /// Bytes of a cell that a chunk has touched, and the most cells that a chunk may touch.
-const CELL_MET: u64 = 18;
+const CELL_MET: u64 = 9;
 const MET: u64 = 1 << 20;
 /// Bytes of a cell in each column of a map's table, and while the table is written.
 const CELL_COLUMN: u64 = 16;

@@ -8,7 +8,7 @@ use super::tracks::{CaseFold, IN, keep_folds};
 use crate::masks::{keep_between, keep_finite, keep_margin, keep_marked, mask};
 use crate::models::{Worse, input_to_si};
 use crate::probability::Effect;
-use crate::tape::{CHUNK, ColumnValue, Known, List, ListColumns, Set};
+use crate::tape::{CHUNK, ColumnValue, Known, LIST_CHUNK, List, ListColumns, Set};
 
 /// Most draws computed together, and most numbers in memory for each of them.
 pub const BLOCK: usize = 8192;
@@ -132,12 +132,7 @@ impl DrawColumns {
                 }
             }
         }
-        let sums = kernel.cases.weights.as_ref().map_or(0, |it| it.sums);
-        let numbers = 2 * (kernel.drawn.len() + quantities.len()) + folded.len() * (2 + sums) + asked.keeping.len() + 4;
-        if numbers > MOST_NUMBERS {
-            return None;
-        }
-        Some(Self {
+        let found = Self {
             conditions: conditions.iter().map(listed).collect(),
             outputs: quantities.iter().enumerate().filter_map(|(at, it)| Some((at, it.output()?))).collect(),
             drawn: kernel.drawn.iter().map(|it| it.0).collect(),
@@ -146,15 +141,22 @@ impl DrawColumns {
             list,
             quantities,
             folded,
-        })
+        };
+        (found.numbers(kernel) <= MOST_NUMBERS).then_some(found)
     }
 
-    /// About how many bytes a block of draws takes, given the number of drawn inputs, of quantities asked for, and of sums over cases.
-    pub fn bytes(draws: u64, inputs: u64, asked: u64, sums: u64) -> u64 {
-        // Of a quantity a value and a mask, in the case and over the cases; some are asked for at both ends.
-        let of_asked = asked.saturating_mul(sums.saturating_mul(2).saturating_add(4));
-        let numbers = of_asked.saturating_add(2 * inputs + 4).min(MOST_NUMBERS as u64);
-        8 * (draws.min(BLOCK as u64) * numbers + (CHUNK * MOST_OPERATIONS) as u64 / 4)
+    /// Numbers in memory for each draw of a block.
+    fn numbers(&self, kernel: &DrawnDrive) -> usize {
+        let sums = kernel.cases.weights.as_ref().map_or(0, |it| it.sums);
+        // Of a quantity a value and a mask, of a fold the same and its sums.
+        2 * (kernel.drawn.len() + self.quantities.len()) + self.folded.len() * (2 + sums) + self.keeping.len() + 4
+    }
+
+    /// About how many bytes so many draws of a design take.
+    pub fn bytes(&self, kernel: &DrawnDrive, draws: usize) -> u64 {
+        // Operations share columns, about four of them one.
+        let columns = LIST_CHUNK * self.list.operations.len() / 4;
+        8 * (draws.min(BLOCK) * self.numbers(kernel) + columns) as u64
     }
 
     /// Computes draws (a column per drawn input) of a design, given its inputs in SI units. Every draw has the bits that it has when computed
@@ -291,6 +293,7 @@ mod tests {
     use super::super::lanes::tests::STUDIES;
     use super::*;
     use crate::masks::count;
+    use crate::models::Kernel;
     use crate::study::Study;
 
     /// Draws that cannot be built, shares of single constraints, quantities that some draws have no value of.
@@ -328,6 +331,10 @@ mod tests {
             let asked = AskedDraws::of(&drive.statistics);
             let together = DrawColumns::new(&drive, &asked);
             assert_eq!(together.is_some(), serves, "{text}");
+            // Memory is asked for only where draws are computed together: a mask, a value and an input of each at least.
+            let needs = kernel.footprint(&[]).scratch;
+            let least = if serves && drive.draws() >= 256 { 3 * 8 * drive.draws() as u64 } else { 0 };
+            assert!(if least > 0 { (least..100 * least).contains(&needs) } else { needs == 0 }, "{needs}: {text}");
             let Some(together) = together else { continue };
             let columns: Vec<&[f64]> = drive.columns.iter().map(Vec::as_slice).collect();
             for share in [0.0, 0.3, 0.6, 1.0] {

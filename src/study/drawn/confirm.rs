@@ -28,6 +28,11 @@ impl FreshDraws {
         if draws.saturating_mul(inputs) <= MOST_KEPT { draws } else { BLOCK }
     }
 
+    /// Most of them that are looked at together.
+    pub fn at_a_time(&self) -> usize {
+        self.draws.count().min(BLOCK) as usize
+    }
+
     /// How many of them hold; `count` counts those of a block, a column per input.
     pub fn holding(&self, count: &mut dyn FnMut(&[Vec<f64>]) -> u64) -> u64 {
         let number = self.draws.count().div_ceil(BLOCK);

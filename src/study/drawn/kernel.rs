@@ -3,13 +3,14 @@
 use super::super::quantity::Quantity;
 use super::super::resolved::Constraint;
 use super::columns::{AskedDraws, BLOCK, DrawColumns, DrawnBlock};
+use super::confirm::FreshDraws;
 use super::drive::{DrawnDrive, margin_of};
 use super::early::least_counts;
 use super::fold::{of_any, over_cases, over_draws};
 use super::lanes::DrawnLanes;
 use super::statistic::{AskedQuantity, ConfirmedEnd, Statistic, StatisticKind};
 use crate::masks::{count, mask};
-use crate::models::{Columns, Dependencies, Kernel, Scratch, Sizes, Status, Worse, judge, shown};
+use crate::models::{Columns, Dependencies, Footprint, Kernel, Scratch, Sizes, Status, Worse, judge, shown};
 use crate::probability::{Effect, REPLICATES, replicated};
 use crate::tape::{Known, Set};
 use rustc_hash::FxHashMap;
@@ -295,6 +296,13 @@ impl Kernel for DrawnKernel {
         let fresh = |design: &[f64], statistic: usize| self.results(design, Set::one(statistic))[statistic];
         lanes.ask_for(least);
         lanes.run(&self.drive, inputs, columns, results, &fresh);
+    }
+
+    fn footprint(&self, _inputs: &[f64]) -> Footprint {
+        let fresh = self.fresh.as_ref().map_or(0, FreshDraws::at_a_time);
+        let both = [(&self.together, &self.asked, self.draws()), (&self.counting, &AskedDraws::default(), fresh)];
+        let bytes = both.map(|(kept, asked, draws)| self.recorded(kept, asked, draws).map_or(0, |it| it.bytes(&self.drive, draws)));
+        Footprint { prepared: 0, scratch: bytes[0].max(bytes[1]) }
     }
 
     fn dependencies(&self, inputs: &[Known]) -> Dependencies {

@@ -4,7 +4,6 @@ use super::super::axis::Axis;
 use super::super::quantity::Quantity;
 use super::super::resolved::Constraint;
 use super::super::spectrum::{Spectrum, unit_over};
-use super::columns::DrawColumns;
 use super::confirm::FreshDraws;
 use super::lanes::most_kept;
 use super::law::LawText;
@@ -121,18 +120,15 @@ impl Probability {
         self.drive.operation.iter().map(Axis::count).fold(self.draws, u64::saturating_mul)
     }
 
-    /// Bytes that the draws take on so many threads, which judge so many designs at a time by these of the statistics.
+    /// Bytes that the draws take on so many threads, which judge so many designs at a time by these of the statistics. What draws of a single
+    /// design take besides is the kernel's to say.
     pub(crate) fn bytes(&self, threads: u64, designs: u64, used: Set) -> u64 {
         let inputs = self.inputs.len() as u64;
         let own = 8 * inputs * (self.draws + FreshDraws::kept(self.confirm, inputs));
         let needs_all = |it: &Statistic| matches!(it.kind, StatisticKind::Over(_, OverDraws::Sd | OverDraws::Quantile(_)));
         let all = self.statistics.iter().enumerate().filter(|(number, it)| used.contains(*number) && needs_all(it)).count() as u64;
         let has_tables = self.drive.model.kernel.formula().is_some_and(|it| !it.fields().tables.is_empty());
-        let asked = self.statistics.len() + self.drive.constraints.len();
-        let cases = self.drive.operation.iter().map(Axis::count).fold(1, u64::saturating_mul);
-        let sums = self.drive.spectrum.as_ref().map_or(0, |it| cases / self.drive.operation[it.axis].count());
-        let together = DrawColumns::bytes(self.draws.max(self.confirm), inputs, asked as u64, sums);
-        own + threads * (8 * most_kept(self.draws, all, designs) + together) + if has_tables { WRITTEN_OUT } else { 0 }
+        own + threads * 8 * most_kept(self.draws, all, designs) + if has_tables { WRITTEN_OUT } else { 0 }
     }
 
     /// The draws that choose.
