@@ -193,3 +193,101 @@ impl Front {
         slices.keep(key, made, (self.points.len() / 4).max(MOST_POINTS))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::beats;
+    use super::*;
+    use crate::sample::mix;
+    use crate::study::{Goal, Objective, OverScenarios, Quantity};
+
+    /// A front of three objectives, the second of which has keys below zero, as one that is to be large.
+    fn front(designs: u64, levels: u64) -> Front {
+        let objective = |goal| Objective { quantity: Quantity::Input(0), goal, resolution: None, over: OverScenarios::Worst };
+        let rules = [Goal::Min, Goal::Max, Goal::Min].map(|goal| KeyRule::from(&objective(goal)));
+        let mut points = Points::default();
+        for design in 0..designs {
+            let [first, second, third] = [0, 1, 2].map(|d| mix(design * 4 + d));
+            points.push([20.0 + (first % 200) as f64, -10.0 - (second % 150) as f64, (third % levels) as f64], design + 1);
+        }
+        let mut front = Front::new(&rules);
+        front.merge(points);
+        front
+    }
+
+    /// The slice of designs with this third objective, asked for until it is made.
+    fn made(front: &mut Front, free: FreeObjectives, third: f64) -> &FrontSlice {
+        let lower = [0.0, 0.0, third];
+        for _ in 0..LEAST_QUESTIONS.max(front.points.len() / POINTS_PER_QUESTION) {
+            front.known(Some(free), &lower);
+        }
+        let KnownFront::Slice(slice) = front.known(Some(free), &lower) else { panic!("it has been asked for often") };
+        slice
+    }
+
+    #[test]
+    fn designs_on_a_ray_that_a_slice_leaves_out_are_beaten() {
+        let mut front = front(3000, 12);
+        let points = front.points.clone();
+        let (mut out, mut open) = (0, 0);
+        for third in 0..12 {
+            for free in [FreeObjectives(0, 1), FreeObjectives(1, 0)] {
+                made(&mut front, free, f64::from(third));
+                let known = front.known(Some(free), &[0.0, 0.0, f64::from(third)]);
+                for ray in 0..8_u32 {
+                    // Of the first and second objective, whichever of them is the first of the slice.
+                    let (rising, falling) = (0.4 + 0.2 * f64::from(ray), -1.3 + 0.13 * f64::from(ray));
+                    let factors = if free.0 == 0 { (rising, falling) } else { (falling, rising) };
+                    let mut ranges: Vec<(f64, f64)> = Vec::new();
+                    assert!(known.open_on_ray(factors, (0.0, 250.0), |low, high| ranges.push((low, high))), "{free:?} {third}");
+                    for number in 0..500 {
+                        let y = 0.5 * f64::from(number);
+                        let key = [rising * y, falling * y, f64::from(third)];
+                        let is_beaten = (0..points.len()).any(|it| beats(points.key(it, 3), points.indices[it], &key, u64::MAX));
+                        let is_open = ranges.iter().any(|&(low, high)| (low..=high).contains(&y));
+                        assert!(is_open || is_beaten, "{free:?}, {key:?}: {ranges:?}");
+                        (out, open) = (out + u32::from(!is_open), open + u32::from(is_open));
+                    }
+                }
+            }
+        }
+        assert!(out > 10_000 && open > 10_000, "{out} left out, {open} open");
+    }
+
+    #[test]
+    fn many_slices_make_room_for_each_other_and_know_what_the_front_knows() {
+        let (mut front, free) = (front(4000, 1000), FreeObjectives(0, 1));
+        let count = 2 * MOST_SLICES as u64 + 7;
+        for round in 0..2 {
+            for third in 0..count {
+                made(&mut front, free, third as f64);
+                // The last one that was made, and one of those that had to go or are still there.
+                for asked in [third, mix(third + round) % count] {
+                    let lower = [40.0 + (mix(asked) % 100) as f64, -40.0 - (mix(asked + 1) % 60) as f64, asked as f64];
+                    let expected = front.beats_from(&lower, 9000);
+                    assert_eq!(front.known(Some(free), &lower).beats_from(&lower, 9000), expected, "{lower:?}");
+                }
+                let slices = &front.slices;
+                assert_eq!(slices.points, slices.made.iter().map(|it| it.1.points.len()).sum::<usize>());
+                let is_there = |(place, made): (usize, &(SliceKey, FrontSlice))| slices.asked[&made.0].place == Some(place);
+                assert!(slices.made.len() <= MOST_SLICES && slices.made.iter().enumerate().all(is_there));
+                assert_eq!(slices.asked.values().filter(|it| it.place.is_some()).count(), slices.made.len());
+            }
+        }
+        assert_eq!(front.slices.made.len(), MOST_SLICES);
+    }
+
+    #[test]
+    fn slices_with_too_many_points_are_not_kept() {
+        let (mut front, free) = (front(3000, 12), FreeObjectives(0, 1));
+        let of_first = made(&mut front, free, 0.0).points.len();
+        let rules = front.rules.clone();
+        let second = || FrontSlice::new(&rules, free, &front.points, &[0.0, 0.0, 1.0]);
+        let (both, key) = (of_first + second().points.len(), [7; MOST_OBJECTIVES]);
+        front.slices.asked.insert(key, AskedSlice { asked: 3, place: None });
+        assert_eq!(front.slices.keep(key, second(), both - 1), None);
+        assert!(front.slices.points == of_first && front.slices.made.len() == 1 && !front.slices.asked.contains_key(&key));
+        assert_eq!(front.slices.keep(key, second(), both), Some(1));
+        assert_eq!((front.slices.points, front.slices.asked[&key].place), (both, Some(1)));
+    }
+}
