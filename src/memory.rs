@@ -22,7 +22,7 @@ const THREAD: u64 = 350_000;
 /// Bytes of a cell of a map in the state, and with the copy and the serialised bytes while a checkpoint is saved.
 const CELL: u64 = 24;
 const CELL_SAVED: u64 = 70;
-/// Bytes of a cell that a chunk has touched, and the most cells that a chunk may touch.
+/// Bytes of a cell that a chunk has touched, as far as the tables do not use them again, and the most cells that a chunk may touch.
 const CELL_MET: u64 = 9;
 const MET: u64 = 1 << 20;
 /// Bytes of a cell in each column of a map's table, and while the table is written.

@@ -148,13 +148,13 @@ impl DrawColumns {
     /// Numbers in memory for each draw of a block.
     fn numbers(&self, kernel: &DrawnDrive) -> usize {
         let sums = kernel.cases.weights.as_ref().map_or(0, |it| it.sums);
-        // Of a quantity a value and a mask, of a fold the same and its sums.
+        // A quantity has a value and a mask; a fold has these and its sums.
         2 * (kernel.drawn.len() + self.quantities.len()) + self.folded.len() * (2 + sums) + self.keeping.len() + 4
     }
 
     /// About how many bytes so many draws of a design take.
     pub fn bytes(&self, kernel: &DrawnDrive, draws: usize) -> u64 {
-        // Operations share columns, about four of them one.
+        // About four operations share a column.
         let columns = LIST_CHUNK * self.list.operations.len() / 4;
         8 * (draws.min(BLOCK) * self.numbers(kernel) + columns) as u64
     }
@@ -288,9 +288,11 @@ fn both_ends(constraint: &Constraint) -> [AskedQuantity; 2] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::DrawnKernel;
+    use super::super::confirm::FreshDraws;
     use super::super::fold::{of_any, over_draws};
+    use super::super::kernel::{DrawnKernel, TOGETHER};
     use super::super::lanes::tests::STUDIES;
+    use super::super::probability::Probability;
     use super::*;
     use crate::masks::count;
     use crate::models::Kernel;
@@ -331,10 +333,18 @@ mod tests {
             let asked = AskedDraws::of(&drive.statistics);
             let together = DrawColumns::new(&drive, &asked);
             assert_eq!(together.is_some(), serves, "{text}");
-            // Memory is asked for only where draws are computed together: a mask, a value and an input of each at least.
-            let needs = kernel.footprint(&[]).scratch;
-            let least = if serves && drive.draws() >= 256 { 3 * 8 * drive.draws() as u64 } else { 0 };
-            assert!(if least > 0 { (least..100 * least).contains(&needs) } else { needs == 0 }, "{needs}: {text}");
+            // Memory is asked for only where draws are computed together: at least a mask, a value and an input of each.
+            let check = |kernel: &DrawnKernel, draws: usize| {
+                let needs = kernel.footprint(&[]).scratch;
+                let least = if serves && draws >= TOGETHER { 3 * 8 * draws as u64 } else { 0 };
+                assert!(if least > 0 { (least..100 * least).contains(&needs) } else { needs == 0 }, "{needs}, {draws} draws: {text}");
+            };
+            check(&kernel, drive.draws());
+            // With fresh draws it is that of the larger blocks.
+            let probability =
+                Probability { confirm: 3 * BLOCK as u64, ..Probability::clone(study.probability.as_ref().expect("it has draws")) };
+            let fresh = FreshDraws::new(probability.confirming().expect("they can be drawn"), probability.inputs.len(), 1);
+            check(&DrawnKernel::new(probability.drawn(Some(fresh)).expect("it can be drawn")), BLOCK);
             let Some(together) = together else { continue };
             let columns: Vec<&[f64]> = drive.columns.iter().map(Vec::as_slice).collect();
             for share in [0.0, 0.3, 0.6, 1.0] {

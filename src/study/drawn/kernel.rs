@@ -19,7 +19,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 /// Fewest draws that are computed together.
-const TOGETHER: usize = 256;
+pub(super) const TOGETHER: usize = 256;
 /// Of a block of draws computed together, one in so many is computed by the scalar formula too; of one block in so many, every draw.
 const COMPARED: usize = 64;
 const WHOLE: u64 = 256;

@@ -120,8 +120,8 @@ impl Probability {
         self.drive.operation.iter().map(Axis::count).fold(self.draws, u64::saturating_mul)
     }
 
-    /// Bytes that the draws take on so many threads, which judge so many designs at a time by these of the statistics. What draws of a single
-    /// design take besides is the kernel's to say.
+    /// Bytes that the draws take on so many threads, which judge so many designs at a time by these of the statistics. What the draws of a
+    /// single design take besides, the footprint of its kernel tells.
     pub(crate) fn bytes(&self, threads: u64, designs: u64, used: Set) -> u64 {
         let inputs = self.inputs.len() as u64;
         let own = 8 * inputs * (self.draws + FreshDraws::kept(self.confirm, inputs));
