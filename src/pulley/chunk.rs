@@ -4,11 +4,14 @@
 
 use super::loads::Complex;
 use super::response::{CHUNK, STRESSES};
+use super::wide::{WIDTH, Wide, vectors, vectors_mut};
+use pulp::{Arch, Simd, WithSimd};
 
 /// Angles at which all points are evaluated, 3.75 degrees apart.
 pub const ANGLES: usize = 96;
 /// Steps of a quarter turn.
 pub(super) const QUARTER: usize = ANGLES / 4;
+const _: () = assert!((QUARTER + 1).is_multiple_of(PLACES), "no angle of the quarter is left out");
 
 /// Cosines and sines of k times an angle, for all harmonics.
 #[derive(Clone, Debug)]
@@ -28,11 +31,11 @@ impl Waves {
 }
 
 /// Cosine and sine term of eight points.
-pub(super) type Term = [[f64; CHUNK]; 2];
+pub(super) type Term = [Wide; 2];
 /// Terms of the harmonics of a chunk of points, a list per stress; harmonics follow each other in even or odd multiples of the same.
 pub(super) type Terms = [Vec<Term>; STRESSES];
 /// Stresses of eight points at all angles.
-pub(super) type ChunkStresses = Vec<[[f64; CHUNK]; STRESSES]>;
+pub(super) type ChunkStresses = Vec<[Wide; STRESSES]>;
 
 /// Stresses of one point at one angle: along and around, less the normal stress, and shear.
 pub type Stress = [f64; STRESSES];
@@ -81,46 +84,76 @@ pub(super) struct Limits {
 }
 
 /// Adds up the harmonics `step` times 0, 1, 2, ... at the angles of a quarter turn, and the others by symmetry.
-#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
 pub(super) fn synthesise(terms: &Terms, step: usize, quarter: &[Waves], field: &mut ChunkStresses) {
-    field.resize(ANGLES, [[0.0; CHUNK]; STRESSES]);
-    for place in 0..=QUARTER {
-        let waves = &quarter[place].0;
-        for stress in 0..STRESSES {
-            let terms = &terms[stress];
-            // Cosine and sine sums of the even and the odd harmonics.
-            let mut sums = [[[0.0; CHUNK]; 2]; 2];
-            for odd in 0..2 {
-                let (mut cosines, mut sines) = ([0.0; CHUNK], [0.0; CHUNK]);
-                let mut number = if step % 2 == 1 { odd } else { odd * terms.len() };
-                let stride = if step % 2 == 1 { 2 } else { 1 };
-                while number < terms.len() {
-                    let (cosine, sine) = waves[number * step];
-                    let term = &terms[number];
-                    for lane in 0..CHUNK {
-                        cosines[lane] += cosine * term[0][lane];
-                        sines[lane] += sine * term[1][lane];
+    field.resize(ANGLES, [Wide::ZERO; STRESSES]);
+    Arch::new().dispatch(Synthesis { terms, step, quarter, field });
+}
+
+/// The work of [`synthesise`].
+struct Synthesis<'t> {
+    terms: &'t Terms,
+    step: usize,
+    quarter: &'t [Waves],
+    field: &'t mut ChunkStresses,
+}
+
+impl WithSimd for Synthesis<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { terms, step, quarter, field } = self;
+        for vector in 0..WIDTH / S::F64_LANES {
+            for stress in 0..STRESSES {
+                let terms: &[[Wide; 2]] = &terms[stress];
+                for (block, places) in quarter.as_chunks::<PLACES>().0.iter().enumerate() {
+                    let sums = sums(simd, vector, terms, step, places);
+                    for (place, [[ce, se], [co, so]]) in sums.into_iter().enumerate() {
+                        let place = block * PLACES + place;
+                        let (even, odd) = (simd.add_f64s(ce, so), simd.add_f64s(co, se));
+                        let (even_back, odd_back) = (simd.sub_f64s(ce, so), simd.sub_f64s(co, se));
+                        let mut set = |place: usize, value| vectors_mut::<S>(&mut field[place][stress])[vector] = value;
+                        set(place, simd.add_f64s(even, odd));
+                        set((ANGLES - place) % ANGLES, simd.add_f64s(even_back, odd_back));
+                        set(ANGLES / 2 - place, simd.sub_f64s(even, odd));
+                        set(ANGLES / 2 + place, simd.sub_f64s(even_back, odd_back));
                     }
-                    number += stride;
                 }
-                sums[odd] = [cosines, sines];
-            }
-            let [[ce, se], [co, so]] = sums;
-            for lane in 0..CHUNK {
-                let (even, odd) = (ce[lane] + so[lane], co[lane] + se[lane]);
-                let (even_back, odd_back) = (ce[lane] - so[lane], co[lane] - se[lane]);
-                field[place][stress][lane] = even + odd;
-                field[(ANGLES - place) % ANGLES][stress][lane] = even_back + odd_back;
-                field[ANGLES / 2 - place][stress][lane] = even - odd;
-                field[ANGLES / 2 + place][stress][lane] = even_back - odd_back;
             }
         }
     }
 }
 
+/// Angles of a quarter turn that are added up together: sums of one alone would wait for each other.
+const PLACES: usize = 5;
+
+/// Cosine and sine sums of the even and the odd harmonics at some angles, in one vector of the points.
+#[inline(always)]
+fn sums<S: Simd>(simd: S, vector: usize, terms: &[[Wide; 2]], step: usize, places: &[Waves; PLACES]) -> [[[S::f64s; 2]; 2]; PLACES] {
+    let zero = simd.splat_f64s(0.0);
+    let mut sums = [[[zero; 2]; 2]; PLACES];
+    let (odds, stride) = if step % 2 == 1 { (1, 2) } else { (terms.len(), 1) };
+    for odd in 0..2 {
+        let (mut cosines, mut sines) = ([zero; PLACES], [zero; PLACES]);
+        for number in (odd * odds..terms.len()).step_by(stride) {
+            let [cosine, sine] = &terms[number];
+            let (cosine, sine) = (vectors::<S>(cosine)[vector], vectors::<S>(sine)[vector]);
+            for place in 0..PLACES {
+                let wave = places[place].0[number * step];
+                cosines[place] = simd.add_f64s(cosines[place], simd.mul_f64s(simd.splat_f64s(wave.0), cosine));
+                sines[place] = simd.add_f64s(sines[place], simd.mul_f64s(simd.splat_f64s(wave.1), sine));
+            }
+        }
+        for place in 0..PLACES {
+            sums[place][odd] = [cosines[place], sines[place]];
+        }
+    }
+    sums
+}
+
 /// Squares of the von Mises stresses of eight points.
 #[inline(always)]
-fn squares(stress: &[[f64; CHUNK]; STRESSES]) -> [f64; CHUNK] {
+fn squares(stress: &[Wide; STRESSES]) -> [f64; CHUNK] {
     let mut squares = [0.0; CHUNK];
     for lane in 0..CHUNK {
         squares[lane] = von_mises_squared([stress[0][lane], stress[1][lane], stress[2][lane]]);
@@ -192,4 +225,39 @@ pub(super) fn largest_of(
         }
     }
     (most, angles.map(|step| step as usize))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_are_those_of_the_harmonics_with_all_vectors() {
+        // Odd multiples of the harmonics go two by two, even ones one by one.
+        for (step, orders) in [(1, 25), (3, 9), (4, 7)] {
+            let value =
+                |number: usize, stress: usize, lane: usize, sine: usize| ((number * 5 + stress * 3 + lane * 7 + sine) % 13) as f64 - 6.3;
+            let term =
+                |number: usize, stress: usize| [0, 1].map(|sine| Wide(std::array::from_fn(|lane| value(number, stress, lane, sine))));
+            let terms: Terms = std::array::from_fn(|stress| (0..orders).map(|number| term(number, stress)).collect());
+            let angle = |place: usize| std::f64::consts::TAU * place as f64 / ANGLES as f64;
+            let quarter: Vec<Waves> = (0..=QUARTER).map(|place| Waves::new(angle(place), step * orders)).collect();
+            let mut field = ChunkStresses::new();
+            synthesise(&terms, step, &quarter, &mut field);
+            for (place, stresses) in field.iter().enumerate() {
+                for (stress, lane) in (0..STRESSES).flat_map(|stress| (0..WIDTH).map(move |lane| (stress, lane))) {
+                    let wave = |number: usize| (angle(place) * (step * number) as f64).sin_cos();
+                    let share =
+                        |number: usize| value(number, stress, lane, 0) * wave(number).1 + value(number, stress, lane, 1) * wave(number).0;
+                    let expected: f64 = (0..orders).map(share).sum();
+                    let found = stresses[stress][lane];
+                    assert!((found - expected).abs() < 1e-11, "step {step}, place {place}: {found} {expected}");
+                }
+            }
+            let mut narrow = vec![[Wide::ZERO; STRESSES]; ANGLES];
+            Simd::vectorize(pulp::Scalar, Synthesis { terms: &terms, step, quarter: &quarter, field: &mut narrow });
+            let bits = |field: &ChunkStresses| field.iter().flatten().flat_map(|it| it.0.map(f64::to_bits)).collect::<Vec<_>>();
+            assert_eq!(bits(&field), bits(&narrow), "one after the other");
+        }
+    }
 }

@@ -45,9 +45,10 @@ impl Equations {
         self.values.chunks_exact_mut(self.matrices.rows()).collect()
     }
 
-    /// Displacements under the loads that were filled in, in four harmonics of which the first `count` are wanted. Loads on what is
-    /// fixed have no effect.
-    pub fn solve(&mut self, orders: [usize; WIDTH], count: usize) -> Displacements<'_> {
+    /// Displacements under the loads that were filled in, in one to eight harmonics. Loads on what is fixed have no effect.
+    pub fn solve(&mut self, orders: &[usize]) -> Displacements<'_> {
+        let count = orders.len();
+        let orders = std::array::from_fn(|lane| orders[lane.min(count - 1)]);
         let rows = self.matrices.rows();
         for side in self.values.chunks_exact_mut(rows) {
             places(&self.fixed).for_each(|place| side[place] = Wide::ZERO);
@@ -79,7 +80,7 @@ impl Drop for Equations {
     }
 }
 
-/// Displacements of all nodes under unit loads in four harmonics, times the modulus.
+/// Displacements of all nodes under unit loads in eight harmonics, times the modulus.
 #[derive(Clone, Debug)]
 pub struct Displacements<'s> {
     /// The harmonics.

@@ -114,7 +114,7 @@ fn add_stencils(stencils: &mut Vec<Stencil>, mesh: &Mesh, edge: &MeshEdge, local
 }
 
 impl SurfacePoint {
-    /// Stresses under one unit load in four harmonics, for a modulus of 1 MPa. `normal` is the stress normal to the surface that the
+    /// Stresses under one unit load in eight harmonics, for a modulus of 1 MPa. `normal` is the stress normal to the surface that the
     /// load makes there, MPa; a pressure is negative.
     pub fn stresses(&self, answer: &Displacements<'_>, side: usize, poisson: f64, normal: f64) -> [Wide; STRESSES] {
         let order = Wide(answer.orders.map(|order| order as f64));

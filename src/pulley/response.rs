@@ -19,7 +19,7 @@ use std::f64::consts::PI;
 /// Unit loads of the belt: normal to the flanks, along them, around the circumference.
 pub const BELT: usize = 3;
 /// Numbers that points are padded to a multiple of.
-pub const CHUNK: usize = 8;
+pub const CHUNK: usize = WIDTH;
 /// Points that are stored a second time after the others, so that they are together: the check points and the rim.
 pub const NAMED: usize = 2 * CHUNK;
 /// The rim among the named points: its displacements along r, z and the circumference stand in place of stresses.
@@ -183,7 +183,7 @@ pub fn solved_orders(fineness: &Fineness, bolts: usize) -> Vec<usize> {
     (0..=fineness.harmonics).filter(wanted).collect()
 }
 
-/// Solves a section for unit loads in the given harmonics, four at a time.
+/// Solves a section for unit loads in the given harmonics, eight at a time.
 pub fn solve(mesh: &Mesh, dimensions: &Dimensions, poisson: f64, orders: &[usize], mut take: impl FnMut(&Displacements<'_>)) {
     let bolts = dimensions.bolt_count as usize;
     let mut equations = Equations::new(mesh, poisson, mesh.fixed().into_iter().map(|fixed| [fixed; 3]).collect());
@@ -193,8 +193,7 @@ pub fn solve(mesh: &Mesh, dimensions: &Dimensions, poisson: f64, orders: &[usize
     let mut orders = orders.to_vec();
     orders.sort_by_key(|order| (!order.is_multiple_of(bolts), *order));
     for batch in orders.chunks(WIDTH) {
-        let lanes: [usize; WIDTH] = std::array::from_fn(|lane| batch[lane.min(batch.len() - 1)]);
-        let (spins, clamps) = (lanes[0] == 0, lanes[0].is_multiple_of(bolts));
+        let (spins, clamps) = (batch[0] == 0, batch[0].is_multiple_of(bolts));
         let sides = BELT + usize::from(clamps) + usize::from(spins);
         let mut values = equations.loads(sides);
         for (side, pattern) in patterns.iter().enumerate() {
@@ -202,13 +201,13 @@ pub fn solve(mesh: &Mesh, dimensions: &Dimensions, poisson: f64, orders: &[usize
                 values[side][place] = Wide([load; WIDTH]);
             }
         }
-        for (lane, &order) in lanes.iter().enumerate().filter(|(_, order)| clamps && order.is_multiple_of(bolts)) {
+        for (lane, &order) in batch.iter().enumerate().filter(|(_, order)| clamps && order.is_multiple_of(bolts)) {
             seat.load(dimensions, order, |place, load| values[CLAMP_SIDE][place][lane] += load);
         }
         if spins {
             spin(mesh, |place, load| values[SPIN_SIDE][place][0] += load);
         }
-        take(&equations.solve(lanes, batch.len()));
+        take(&equations.solve(batch));
     }
 }
 

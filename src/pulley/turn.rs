@@ -10,6 +10,7 @@
 use super::chunk::{ChunkStresses, QUARTER, Term, Terms, Waves, farthest, largest_of, length_squared, limits, synthesise};
 use super::loads::{Complex, belt_harmonic};
 use super::response::{BELT, CHECK_POINTS, CHUNK, NAMED, RIM, STRESSES, View};
+use super::wide::Wide;
 use std::f64::consts::PI;
 
 pub use super::chunk::{ANGLES, Stress, von_mises_squared};
@@ -117,7 +118,7 @@ impl<'t> Turn<'t> {
         for (order, shares) in self.shares.iter().enumerate() {
             for (stress, terms) in room.terms.iter_mut().enumerate() {
                 let shares = if stress == STRESSES - 1 { &shares.shear } else { &shares.normal };
-                let mut term: Term = [[0.0; CHUNK]; 2];
+                let mut term: Term = [Wide::ZERO; 2];
                 for (load, share) in shares.iter().enumerate() {
                     let unit = &self.view.belt(order, load, stress)[places.clone()];
                     for lane in 0..CHUNK {
@@ -137,7 +138,7 @@ impl<'t> Turn<'t> {
             for (stress, terms) in room.terms.iter_mut().enumerate() {
                 let unit = &self.view.clamp(clamp, stress)[places.clone()];
                 let share = if stress == STRESSES - 1 { [-sine, cosine] } else { [cosine, sine] };
-                let mut term: Term = [[0.0; CHUNK]; 2];
+                let mut term: Term = [Wide::ZERO; 2];
                 for lane in 0..CHUNK {
                     term[0][lane] = share[0] * unit[lane];
                     term[1][lane] = share[1] * unit[lane];

@@ -6,7 +6,8 @@
 mod panels;
 
 use super::wide::{WIDTH, Wide};
-use panels::{Harmonics, PANEL, Panels, solve};
+use panels::{Harmonics, PANEL, Panels, Solve};
+use pulp::Arch;
 
 /// How two nodes resist each other: the numbers that are not zero, in the order of [`PARTS`].
 pub type Coupling = [f64; PARTS.len()];
@@ -83,14 +84,14 @@ pub fn bytes(nodes: usize, half: usize, reach: &[usize]) -> u64 {
     (nodes * (half + 1) * size_of::<Coupling>() + panels(reach).length() * size_of::<Wide>()) as u64
 }
 
-/// Memory for the factors of four harmonics, reused from one solution to the next.
+/// Memory for the factors of eight harmonics, reused from one solution to the next.
 #[derive(Clone, Debug, Default)]
 pub struct Factors {
     entries: Vec<Wide>,
 }
 
 impl Factors {
-    /// Replaces right sides, which follow each other in `sides`, by the solutions in four harmonics.
+    /// Replaces right sides, which follow each other in `sides`, by the solutions in eight harmonics.
     ///
     /// The matrices must be positive definite; others give numbers that are not finite.
     pub fn solve(&mut self, matrices: &Matrices, orders: [usize; WIDTH], sides: &mut [Wide], count: usize) {
@@ -102,18 +103,19 @@ impl Factors {
         let orders = Wide(orders.map(|order| order as f64));
         let harmonics = Harmonics { couplings: &matrices.couplings, nodes: matrices.nodes, half: matrices.half, orders };
         match count {
-            3 => solve::<3>(&harmonics, &panels, factors, columns(sides)),
-            4 => solve::<4>(&harmonics, &panels, factors, columns(sides)),
-            5 => solve::<5>(&harmonics, &panels, factors, columns(sides)),
+            3 => solve::<3>(harmonics, &panels, factors, sides),
+            4 => solve::<4>(harmonics, &panels, factors, sides),
+            5 => solve::<5>(harmonics, &panels, factors, sides),
             _ => unreachable!("a section has three to five right sides"),
         }
     }
 }
 
-/// Right sides that follow each other.
-fn columns<const COUNT: usize>(sides: &mut [Wide]) -> [&mut [Wide]; COUNT] {
+/// Factors and solves with the processor's vectors; right sides follow each other in `sides`.
+fn solve<const COUNT: usize>(matrices: Harmonics<'_>, panels: &Panels, factors: &mut [Wide], sides: &mut [Wide]) {
     let mut columns = sides.chunks_exact_mut(sides.len() / COUNT);
-    std::array::from_fn(|_| columns.next().unwrap_or_default())
+    let sides: [&mut [Wide]; COUNT] = std::array::from_fn(|_| columns.next().unwrap_or_default());
+    Arch::new().dispatch(Solve { matrices, panels, factors, sides });
 }
 
 #[cfg(test)]
@@ -142,12 +144,12 @@ impl Matrices {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use pulp::Simd;
 
-    #[test]
-    fn solutions_satisfy_the_equations_of_every_harmonic() {
-        // The rows fill no whole number of panels, and nodes that are far apart are coupled at one place only.
-        let (nodes, half) = (7, 3);
-        let orders = [0, 1, 3, 8];
+    const ORDERS: [usize; WIDTH] = [0, 1, 3, 8, 2, 5, 4, 13];
+
+    /// Matrices of so many nodes. Their rows fill no whole number of panels, and nodes that are `half` apart are coupled at one place only.
+    fn matrices(nodes: usize, half: usize) -> Matrices {
         let part = |row: usize, column: usize, power: usize| match (row.abs_diff(column), power) {
             (0, 0) => 10.0 + (row % 3) as f64,
             (0, 2) => 1.0,
@@ -155,27 +157,41 @@ mod tests {
         };
         let mut matrices = Matrices::reusing(Vec::new(), nodes, half);
         for column_node in 0..nodes {
-            for row_node in (column_node..nodes).filter(|row_node| row_node - column_node < half || (*row_node, column_node) == (5, 2)) {
+            for row_node in
+                (column_node..nodes).filter(|row_node| row_node - column_node < half || (*row_node, column_node) == (half + 2, 2))
+            {
                 for ((a, b, power), entry) in PARTS.into_iter().zip(matrices.coupling(row_node, column_node)) {
                     *entry = part(3 * row_node + a, 3 * column_node + b, power);
                 }
                 (0..3).for_each(|axis| matrices.reaches(3 * column_node + axis, 3 * row_node + 2));
             }
         }
+        matrices
+    }
+
+    #[test]
+    fn solutions_satisfy_the_equations_of_every_harmonic() {
+        // The second has more panels than stand in one block, and panels that reach into several.
+        for (nodes, half) in [(7, 3), (41, 9)] {
+            solution_is_found(&matrices(nodes, half));
+        }
+    }
+
+    fn solution_is_found(matrices: &Matrices) {
         let wanted = |row: usize, side: usize, lane: usize| (row as f64 - 3.0 * side as f64) * (1.0 + lane as f64);
-        let (size, rows) = (3 * nodes, matrices.rows());
+        let (size, rows) = (matrices.size(), matrices.rows());
         let mut factors = Factors::default();
         for count in 3..=5 {
             let mut sides = vec![Wide::ZERO; rows * count];
             for side in 0..count {
-                for (lane, &order) in orders.iter().enumerate() {
+                for (lane, &order) in ORDERS.iter().enumerate() {
                     let solution: Vec<f64> = (0..size).map(|row| wanted(row, side, lane)).collect();
                     for (row, load) in matrices.times(order, &solution).into_iter().enumerate() {
                         sides[side * rows + row][lane] = load;
                     }
                 }
             }
-            factors.solve(&matrices, orders, &mut sides, count);
+            factors.solve(matrices, ORDERS, &mut sides, count);
             for row in 0..size {
                 for side in 0..count {
                     for (lane, found) in sides[side * rows + row].0.into_iter().enumerate() {
@@ -184,6 +200,31 @@ mod tests {
                     }
                 }
             }
+        }
+    }
+
+    #[test]
+    fn solutions_are_the_same_to_the_bit_with_all_vectors() {
+        let matrices = matrices(41, 9);
+        let panels = matrices.panels();
+        let orders = Wide(ORDERS.map(|order| order as f64));
+        let harmonics = Harmonics { couplings: &matrices.couplings, nodes: matrices.nodes, half: matrices.half, orders };
+        let rows = matrices.rows();
+        let solution = |solve: &dyn Fn(Solve<'_, 3>)| {
+            let load = |at: usize, lane: usize| if at < rows { ((at * 7 + lane) % 11) as f64 - 4.5 } else { (at % 2) as f64 };
+            let mut sides: Vec<Wide> = (0..3 * rows).map(|at| Wide(std::array::from_fn(|lane| load(at, lane)))).collect();
+            let mut factors = vec![Wide([f64::NAN; WIDTH]); panels.length()];
+            let mut columns = sides.chunks_exact_mut(rows);
+            let columns = std::array::from_fn(|_| columns.next().unwrap_or_default());
+            solve(Solve { matrices: harmonics, panels: &panels, factors: &mut factors, sides: columns });
+            sides.into_iter().flat_map(|side| side.0.map(f64::to_bits)).collect::<Vec<u64>>()
+        };
+        let expected = solution(&|work| Simd::vectorize(pulp::Scalar, work));
+        assert!(expected.iter().all(|bits| f64::from_bits(*bits).is_finite()));
+        assert_eq!(solution(&|work| Arch::new().dispatch(work)), expected, "the widest of this processor");
+        #[cfg(target_arch = "x86_64")]
+        if let Some(narrower) = pulp::x86::V3::try_new() {
+            assert_eq!(solution(&|work| Simd::vectorize(narrower, work)), expected, "AVX2");
         }
     }
 }

@@ -1,14 +1,16 @@
 //! Cholesky factors and solutions, a panel of columns at a time.
 
-#![allow(clippy::needless_range_loop, reason = "loops of one index over several slices are what the compiler makes vectors of")]
-
 use super::Coupling;
-use crate::pulley::wide::{WIDTH, Wide};
+use crate::pulley::wide::{Vectors, WIDTH, Wide};
+use pulp::{Simd, WithSimd};
 use std::array::from_fn;
 use std::ops::Range;
 
 /// Columns that are eliminated together: their effect on the rest is applied in one pass.
 pub const PANEL: usize = 4;
+/// Panels from which earlier ones are subtracted together. Of a section whose band is wide, the panels that affect the next do not fit the
+/// fast memory of a core, and each is loaded once for a block.
+const BLOCK: usize = 4;
 
 /// Where the factors of each panel stand: its columns one after another, each from its diagonal down. All are as long as the first, so the
 /// last numbers of the others are not used.
@@ -42,13 +44,28 @@ impl Panels {
         self.starts[panel]..self.starts[panel + 1]
     }
 
+    /// One more than the last row that the elimination of a panel affects.
+    fn end(&self, panel: usize) -> usize {
+        panel * PANEL + self.rows(panel)
+    }
+
     /// Numbers of one column, and rows that the elimination affects.
     fn rows(&self, panel: usize) -> usize {
         self.range(panel).len() / PANEL
     }
 }
 
-/// The matrices `K0 + k K1 + k^2 K2` of four harmonics.
+/// The columns of a panel, each from its diagonal down.
+#[inline(always)]
+fn columns<T>(panel: &mut [T]) -> [&mut [T]; PANEL] {
+    let rows = panel.len() / PANEL;
+    let (a, rest) = panel.split_at_mut(rows);
+    let (b, rest) = rest.split_at_mut(rows);
+    let (c, d) = rest.split_at_mut(rows);
+    [a, b, c, d]
+}
+
+/// The matrices `K0 + k K1 + k^2 K2` of several harmonics.
 #[derive(Clone, Copy, Debug)]
 pub struct Harmonics<'m> {
     /// Per node, its coupling with itself and `half` nodes after it.
@@ -61,14 +78,22 @@ pub struct Harmonics<'m> {
     pub orders: Wide,
 }
 
-impl Harmonics<'_> {
+/// Writes columns of the matrices.
+#[derive(Clone, Copy)]
+struct Writer<'m, S: Simd, const N: usize> {
+    matrices: Harmonics<'m>,
+    vectors: Vectors<S, N>,
+    orders: [S::f64s; N],
+}
+
+impl<S: Simd, const N: usize> Writer<'_, S, N> {
     /// Writes a column from its diagonal down. Columns beyond the last, which fill the last panel, are those of the identity.
     #[inline(always)]
-    fn write(&self, number: usize, column: &mut [Wide]) {
+    fn write(&self, number: usize, column: &mut [[S::f64s; N]]) {
         match number % 3 {
-            _ if number >= 3 * self.nodes => {
-                column.fill(Wide::ZERO);
-                column[0] = Wide::ONE;
+            _ if number >= 3 * self.matrices.nodes => {
+                column.fill(self.vectors.all(0.0));
+                column[0] = self.vectors.all(1.0);
             }
             0 => self.write_axis::<0>(number / 3, column),
             1 => self.write_axis::<1>(number / 3, column),
@@ -77,214 +102,276 @@ impl Harmonics<'_> {
     }
 
     #[inline(always)]
-    fn write_axis<const AXIS: usize>(&self, node: usize, column: &mut [Wide]) {
-        let couplings = &self.couplings[node * (self.half + 1)..][..=self.half];
+    fn write_axis<const AXIS: usize>(&self, node: usize, column: &mut [[S::f64s; N]]) {
+        let half = self.matrices.half;
+        let couplings = &self.matrices.couplings[node * (half + 1)..][..=half];
+        let zero = [self.vectors.all(0.0); 3];
         let (own, below) = column.split_at_mut(3 - AXIS);
         own.copy_from_slice(&self.rows::<AXIS>(&couplings[0])[AXIS..]);
         let (nodes, rest) = below.as_chunks_mut::<3>();
-        let (coupled, beyond) = nodes.split_at_mut(nodes.len().min(self.half));
+        let (coupled, beyond) = nodes.split_at_mut(nodes.len().min(half));
         for (rows, coupling) in coupled.iter_mut().zip(&couplings[1..]) {
             *rows = self.rows::<AXIS>(coupling);
         }
-        beyond.fill([Wide::ZERO; 3]);
-        let last = couplings.get(1 + coupled.len()).filter(|_| beyond.is_empty()).map(|coupling| self.rows::<AXIS>(coupling));
-        rest.copy_from_slice(&last.unwrap_or([Wide::ZERO; 3])[..rest.len()]);
+        beyond.fill(zero);
+        let last = match couplings.get(1 + coupled.len()) {
+            Some(coupling) if beyond.is_empty() => self.rows::<AXIS>(coupling),
+            _ => zero,
+        };
+        for (row, value) in rest.iter_mut().zip(last) {
+            *row = value;
+        }
     }
 
     /// What a coupling has in one column, row by row.
     #[inline(always)]
-    fn rows<const AXIS: usize>(&self, [rr, rz, zr, zz, tt, rt, zt, tr, tz, rr2, zz2, tt2]: &Coupling) -> [Wide; 3] {
-        let alone = |part: f64| Wide([part; WIDTH]);
-        let first = |part: f64| {
-            let mut wide = Wide::ZERO;
-            for lane in 0..WIDTH {
-                wide[lane] += self.orders[lane] * part;
-            }
-            wide
-        };
-        let second = |part: f64, square: f64| {
-            let mut wide = alone(part);
-            for lane in 0..WIDTH {
-                wide[lane] += self.orders[lane] * (self.orders[lane] * square);
-            }
-            wide
-        };
+    fn rows<const AXIS: usize>(&self, [rr, rz, zr, zz, tt, rt, zt, tr, tz, rr2, zz2, tt2]: &Coupling) -> [[S::f64s; N]; 3] {
         match AXIS {
-            0 => [second(*rr, *rr2), alone(*zr), first(*tr)],
-            1 => [alone(*rz), second(*zz, *zz2), first(*tz)],
-            _ => [first(*rt), first(*zt), second(*tt, *tt2)],
+            0 => [self.second(*rr, *rr2), self.vectors.all(*zr), self.first(*tr)],
+            1 => [self.vectors.all(*rz), self.second(*zz, *zz2), self.first(*tz)],
+            _ => [self.first(*rt), self.first(*zt), self.second(*tt, *tt2)],
         }
     }
-}
 
-/// The inverse of the square root of a diagonal, in its place.
-#[inline(always)]
-fn invert(diagonal: &mut Wide) -> Wide {
-    for lane in 0..WIDTH {
-        diagonal[lane] = 1.0 / diagonal[lane].sqrt();
+    /// k times a part; the zero that it is added to makes zeros positive.
+    #[inline(always)]
+    fn first(&self, part: f64) -> [S::f64s; N] {
+        let vectors = self.vectors;
+        vectors.add(vectors.all(0.0), vectors.multiply(self.orders, vectors.all(part)))
     }
-    *diagonal
-}
 
-/// Eliminates the columns of a panel, given from their diagonals down, among themselves: they become factors, with the inverse on the
-/// diagonal. So it does the right sides in the rows of the panel, which start with row `first`.
-#[inline(always)]
-fn eliminate([a, b, c, d]: [&mut [Wide]; PANEL], sides: &mut [&mut [Wide]], first: usize) {
-    let ia = invert(&mut a[0]);
-    let [mut ba, mut ca, mut da] = [a[1], a[2], a[3]];
-    ba.multiply(&ia);
-    ca.multiply(&ia);
-    da.multiply(&ia);
-    b[0].subtract(&ba, &ba);
-    let ib = invert(&mut b[0]);
-    let [mut cb, mut db] = [b[1], b[2]];
-    cb.subtract(&ca, &ba);
-    cb.multiply(&ib);
-    db.subtract(&da, &ba);
-    db.multiply(&ib);
-    c[0].subtract(&ca, &ca);
-    c[0].subtract(&cb, &cb);
-    let ic = invert(&mut c[0]);
-    let mut dc = c[1];
-    dc.subtract(&da, &ca);
-    dc.subtract(&db, &cb);
-    dc.multiply(&ic);
-    d[0].subtract(&da, &da);
-    d[0].subtract(&db, &db);
-    d[0].subtract(&dc, &dc);
-    let id = invert(&mut d[0]);
-    (a[1], a[2], a[3], b[1], b[2], c[1]) = (ba, ca, da, cb, db, dc);
-    let block = DiagonalBlock { ia, ib, ic, id, ba, ca, cb, da, db, dc };
-    for (((a, b), c), d) in a[4..].iter_mut().zip(&mut b[3..]).zip(&mut c[2..]).zip(&mut d[1..]) {
-        block.eliminate(a, b, c, d);
-    }
-    for side in sides {
-        let [a, b, c, d] = &mut side[first..].as_chunks_mut::<PANEL>().0[0];
-        block.eliminate(a, b, c, d);
+    /// A part and k^2 times another.
+    #[inline(always)]
+    fn second(&self, part: f64, square: f64) -> [S::f64s; N] {
+        let vectors = self.vectors;
+        let square = vectors.multiply(self.orders, vectors.multiply(self.orders, vectors.all(square)));
+        vectors.add(vectors.all(part), square)
     }
 }
 
 /// What a panel's columns have in its own rows: row and column, and the inverse of each diagonal.
-#[derive(Clone, Copy, Debug)]
-struct DiagonalBlock {
-    ia: Wide,
-    ba: Wide,
-    ib: Wide,
-    ca: Wide,
-    cb: Wide,
-    ic: Wide,
-    da: Wide,
-    db: Wide,
-    dc: Wide,
-    id: Wide,
-}
-
-impl DiagonalBlock {
-    /// Takes the earlier columns out of each later number of a row, or of a right side. In a closure, which the compiler does not inline into
-    /// the code for wide vectors, sections take up to a third longer.
-    #[inline(always)]
-    fn eliminate(&self, a: &mut Wide, b: &mut Wide, c: &mut Wide, d: &mut Wide) {
-        a.multiply(&self.ia);
-        b.subtract(&self.ba, a);
-        b.multiply(&self.ib);
-        c.subtract(&self.ca, a);
-        c.subtract(&self.cb, b);
-        c.multiply(&self.ic);
-        d.subtract(&self.da, a);
-        d.subtract(&self.db, b);
-        d.subtract(&self.dc, c);
-        d.multiply(&self.id);
-    }
+#[derive(Clone, Copy)]
+struct DiagonalBlock<V> {
+    ia: V,
+    ba: V,
+    ib: V,
+    ca: V,
+    cb: V,
+    ic: V,
+    da: V,
+    db: V,
+    dc: V,
+    id: V,
 }
 
 /// Factors and solves in one pass down and one up: a panel is made just before the elimination reaches it and used for the right
 /// sides while it is at hand, so that only the factors go to memory and back.
-#[multiversion::multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx2+fma", "x86_64+avx2"))]
-pub fn solve<const COUNT: usize>(matrices: &Harmonics<'_>, panels: &Panels, factors: &mut [Wide], mut sides: [&mut [Wide]; COUNT]) {
-    let mut written = 0;
-    // Right sides that are still zero need no work.
-    let mut loaded = [false; COUNT];
-    for panel in 0..panels.count() {
-        let (first, rows) = (panel * PANEL, panels.rows(panel));
-        while written * PANEL < first + rows {
-            let columns = factors[panels.range(written)].chunks_exact_mut(panels.rows(written));
-            for (number, column) in columns.enumerate() {
-                matrices.write(written * PANEL + number, column);
-            }
-            written += 1;
-        }
-        let reach = rows - PANEL;
-        let (a, rest) = factors[panels.starts[panel]..].split_at_mut(rows);
-        let (b, rest) = rest.split_at_mut(rows);
-        let (c, rest) = rest.split_at_mut(rows);
-        let (d, later) = rest.split_at_mut(rows);
-        eliminate([&mut *a, &mut b[..rows - 1], &mut c[..rows - 2], &mut d[..rows - 3]], &mut sides, first);
-        let (a, b, c, d) = (&a[4..], &b[3..][..reach], &c[2..][..reach], &d[1..][..reach]);
-        apply([a, b, c, d], later, |next| panels.rows(panel + 1 + next / PANEL));
-        for (side, loaded) in sides.iter_mut().zip(&mut loaded) {
-            let (known, below) = side[first..].split_at_mut(PANEL);
-            let known = [known[0], known[1], known[2], known[3]];
-            *loaded |= known.iter().any(|value| value.0 != [0.0; WIDTH]);
-            if *loaded {
-                let below = &mut below[..reach];
-                for i in 0..reach {
-                    below[i].subtract_four([&a[i], &b[i], &c[i], &d[i]], &known);
-                }
-            }
-        }
-    }
-    for panel in (0..panels.count()).rev() {
-        let rows = panels.rows(panel);
-        let own = &factors[panels.range(panel)];
-        // Two rows in one pass: the sums of one alone would wait for each other.
-        for row in [2, 0] {
-            let upper = &own[row * rows..][..rows - row];
-            let lower = &own[(row + 1) * rows..][..rows - row - 1];
-            let count = upper.len() - 2;
-            let (from_upper, from_lower) = (&upper[2..][..count], &lower[1..][..count]);
-            let first = panel * PANEL + row;
-            let below: [&[Wide]; COUNT] = from_fn(|side| &sides[side][first + 2..][..count]);
-            let mut own: [Wide; COUNT] = from_fn(|side| sides[side][first]);
-            let mut next: [Wide; COUNT] = from_fn(|side| sides[side][first + 1]);
-            for i in 0..count {
-                for side in 0..COUNT {
-                    own[side].subtract(&from_upper[i], &below[side][i]);
-                    next[side].subtract(&from_lower[i], &below[side][i]);
-                }
-            }
-            for side in 0..COUNT {
-                next[side].multiply(&lower[0]);
-                own[side].subtract(&upper[1], &next[side]);
-                own[side].multiply(&upper[0]);
-                (sides[side][first], sides[side][first + 1]) = (own[side], next[side]);
-            }
+pub struct Solve<'m, const COUNT: usize> {
+    /// The matrices.
+    pub matrices: Harmonics<'m>,
+    /// The panels of their factors.
+    pub panels: &'m Panels,
+    /// Memory for them.
+    pub factors: &'m mut [Wide],
+    /// Right sides, which become the solutions.
+    pub sides: [&'m mut [Wide]; COUNT],
+}
+
+impl<const COUNT: usize> WithSimd for Solve<'_, COUNT> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        match WIDTH / S::F64_LANES {
+            1 => Elimination::<S, 1>::solve(simd, self),
+            2 => Elimination::<S, 2>::solve(simd, self),
+            4 => Elimination::<S, 4>::solve(simd, self),
+            _ => Elimination::<S, WIDTH>::solve(simd, self),
         }
     }
 }
 
-/// Subtracts the products of an eliminated panel from the later columns that it reaches, `later`; `rows` says how long each of them is.
-#[inline(always)]
-fn apply([a, b, c, d]: [&[Wide]; PANEL], mut later: &mut [Wide], rows: impl Fn(usize) -> usize) {
-    // Two columns in one pass share what is loaded of the panel.
-    for next in (0..a.len()).step_by(2) {
-        let length = a.len() - next;
-        let (column, rest) = later.split_at_mut(rows(next));
-        let (a, b, c, d) = (&a[next..], &b[next..][..length], &c[next..][..length], &d[next..][..length]);
-        let own = [a[0], b[0], c[0], d[0]];
-        column[0].subtract_four([&a[0], &b[0], &c[0], &d[0]], &own);
-        if length == 1 {
+/// The steps of [`Solve`] with the vectors of a processor, of which `N` hold all harmonics.
+struct Elimination<S: Simd, const N: usize> {
+    vectors: Vectors<S, N>,
+}
+
+impl<S: Simd, const N: usize> Elimination<S, N> {
+    #[inline(always)]
+    fn solve<const COUNT: usize>(simd: S, Solve { matrices, panels, factors, sides }: Solve<'_, COUNT>) {
+        let vectors = Vectors::<S, N>::new(simd);
+        let this = Self { vectors };
+        let writer = Writer { matrices, vectors, orders: vectors.of(&[matrices.orders])[0] };
+        let factors = vectors.of_mut(factors);
+        let mut sides = sides.map(|side| vectors.of_mut(side));
+        this.down(&writer, panels, factors, &mut sides);
+        this.up(panels, factors, &mut sides);
+    }
+
+    #[inline(always)]
+    fn down<const COUNT: usize>(
+        &self,
+        writer: &Writer<'_, S, N>,
+        panels: &Panels,
+        factors: &mut [[S::f64s; N]],
+        sides: &mut [&mut [[S::f64s; N]]; COUNT],
+    ) {
+        // Right sides that are still zero need no work.
+        let mut loaded = [false; COUNT];
+        // The first panel whose elimination still affects later columns.
+        let mut oldest = 0;
+        for start in (0..panels.count()).step_by(BLOCK) {
+            let end = panels.count().min(start + BLOCK);
+            let (earlier, block) = factors.split_at_mut(panels.starts[start]);
+            let block = &mut block[..panels.starts[end] - panels.starts[start]];
+            let place = |panel: usize| panels.starts[panel] - panels.starts[start];
+            for panel in start..end {
+                for (number, column) in block[place(panel)..].chunks_exact_mut(panels.rows(panel)).take(PANEL).enumerate() {
+                    writer.write(panel * PANEL + number, column);
+                }
+            }
+            while oldest < start && panels.end(oldest) <= start * PANEL {
+                oldest += 1;
+            }
+            // What is far away in memory is loaded once for all panels of the block.
+            for from in oldest..start {
+                for panel in (start..end).take_while(|panel| panel * PANEL < panels.end(from)) {
+                    self.apply(&earlier[panels.range(from)], panel - from, &mut block[place(panel)..place(panel + 1)]);
+                }
+            }
+            for panel in start..end {
+                let (before, own) = block.split_at_mut(place(panel));
+                let own = &mut own[..panels.range(panel).len()];
+                for from in oldest.max(start)..panel {
+                    if panel * PANEL < panels.end(from) {
+                        self.apply(&before[place(from)..place(from + 1)], panel - from, own);
+                    }
+                }
+                self.finish(panel * PANEL, own, sides, &mut loaded);
+            }
+        }
+    }
+
+    /// Eliminates the columns of a panel among themselves, and takes them out of the right sides. Its first row is `first`.
+    #[inline(always)]
+    fn finish<const COUNT: usize>(
+        &self,
+        first: usize,
+        panel: &mut [[S::f64s; N]],
+        sides: &mut [&mut [[S::f64s; N]]; COUNT],
+        loaded: &mut [bool; COUNT],
+    ) {
+        let [a, b, c, d] = columns(panel);
+        let block = self.diagonal([&mut *a, &mut *b, &mut *c, &mut *d]);
+        let reach = a.len() - PANEL;
+        let (a, b, c, d) = (&mut a[4..], &mut b[3..][..reach], &mut c[2..][..reach], &mut d[1..][..reach]);
+        for (((a, b), c), d) in a.iter_mut().zip(&mut *b).zip(&mut *c).zip(&mut *d) {
+            [*a, *b, *c, *d] = self.eliminate(&block, [*a, *b, *c, *d]);
+        }
+        for side in 0..COUNT {
+            let (own, below) = sides[side][first..].split_at_mut(PANEL);
+            let known = self.eliminate(&block, [own[0], own[1], own[2], own[3]]);
+            own.copy_from_slice(&known);
+            loaded[side] = loaded[side] || !self.vectors.are_zero(&known);
+            if loaded[side] {
+                for ((((below, a), b), c), d) in below[..reach].iter_mut().zip(&*a).zip(&*b).zip(&*c).zip(&*d) {
+                    *below = self.vectors.subtract_four(*below, [*a, *b, *c, *d], &known);
+                }
+            }
+        }
+    }
+
+    /// Eliminates the columns of a panel, given from their diagonals down, among themselves in the panel's own rows: they become factors,
+    /// with the inverse on the diagonal.
+    #[inline(always)]
+    fn diagonal(&self, [a, b, c, d]: [&mut [[S::f64s; N]]; PANEL]) -> DiagonalBlock<[S::f64s; N]> {
+        let v = self.vectors;
+        let ia = v.inverse_root(a[0]);
+        let (ba, ca, da) = (v.multiply(a[1], ia), v.multiply(a[2], ia), v.multiply(a[3], ia));
+        let ib = v.inverse_root(v.subtract(b[0], ba, ba));
+        let cb = v.multiply(v.subtract(b[1], ca, ba), ib);
+        let db = v.multiply(v.subtract(b[2], da, ba), ib);
+        let ic = v.inverse_root(v.subtract(v.subtract(c[0], ca, ca), cb, cb));
+        let dc = v.multiply(v.subtract(v.subtract(c[1], da, ca), db, cb), ic);
+        let id = v.inverse_root(v.subtract(v.subtract(v.subtract(d[0], da, da), db, db), dc, dc));
+        (a[0], a[1], a[2], a[3]) = (ia, ba, ca, da);
+        (b[0], b[1], b[2]) = (ib, cb, db);
+        (c[0], c[1], d[0]) = (ic, dc, id);
+        DiagonalBlock { ia, ba, ib, ca, cb, ic, da, db, dc, id }
+    }
+
+    /// Takes the earlier columns out of each later number of a row, or of a right side.
+    #[inline(always)]
+    fn eliminate(&self, block: &DiagonalBlock<[S::f64s; N]>, [a, b, c, d]: [[S::f64s; N]; PANEL]) -> [[S::f64s; N]; PANEL] {
+        let v = self.vectors;
+        let a = v.multiply(a, block.ia);
+        let b = v.multiply(v.subtract(b, block.ba, a), block.ib);
+        let c = v.multiply(v.subtract(v.subtract(c, block.ca, a), block.cb, b), block.ic);
+        let d = v.multiply(v.subtract(v.subtract(v.subtract(d, block.da, a), block.db, b), block.dc, c), block.id);
+        [a, b, c, d]
+    }
+
+    /// Subtracts the products of a panel, `from`, from those of the columns that it reaches which stand in another, `after` panels later.
+    #[inline(always)]
+    fn apply(&self, from: &[[S::f64s; N]], after: usize, panel: &mut [[S::f64s; N]]) {
+        let v = self.vectors;
+        let (rows, after) = (from.len() / PANEL, after * PANEL);
+        let reach = rows - after;
+        let known: [&[[S::f64s; N]]; PANEL] = from_fn(|number| &from[number * rows + after - number..][..reach]);
+        let columns = columns(panel);
+        let at = |row: usize| [known[0][row], known[1][row], known[2][row], known[3][row]];
+        let common = reach.min(PANEL);
+        for row in 0..common {
+            for column in 0..=row {
+                let place = &mut columns[column][row - column];
+                *place = v.subtract_four(*place, at(row), &at(column));
+            }
+        }
+        if reach <= PANEL {
             return;
         }
-        let length = length - 1;
-        let (a, b, c, d) = (&a[1..][..length], &b[1..][..length], &c[1..][..length], &d[1..][..length]);
-        let following = [a[0], b[0], c[0], d[0]];
-        let rows = column.len();
-        let (column, after) = (&mut column[1..][..length], &mut rest[..length]);
-        for i in 0..length {
-            let known = [&a[i], &b[i], &c[i], &d[i]];
-            column[i].subtract_four(known, &own);
-            after[i].subtract_four(known, &following);
+        let own = [at(0), at(1), at(2), at(3)];
+        let [a, b, c, d] = columns;
+        let below = reach - PANEL;
+        let targets = a[4..][..below].iter_mut().zip(&mut b[3..][..below]).zip(&mut c[2..][..below]).zip(&mut d[1..][..below]);
+        let [ka, kb, kc, kd] = known;
+        for (((((((a, b), c), d), ka), kb), kc), kd) in targets.zip(&ka[4..]).zip(&kb[4..]).zip(&kc[4..]).zip(&kd[4..]) {
+            let known = [*ka, *kb, *kc, *kd];
+            *a = v.subtract_four(*a, known, &own[0]);
+            *b = v.subtract_four(*b, known, &own[1]);
+            *c = v.subtract_four(*c, known, &own[2]);
+            *d = v.subtract_four(*d, known, &own[3]);
         }
-        later = &mut rest[rows..];
+    }
+
+    #[inline(always)]
+    fn up<const COUNT: usize>(&self, panels: &Panels, factors: &[[S::f64s; N]], sides: &mut [&mut [[S::f64s; N]]; COUNT]) {
+        let v = self.vectors;
+        for panel in (0..panels.count()).rev() {
+            let rows = panels.rows(panel);
+            let own = &factors[panels.range(panel)];
+            // Two rows in one pass: the sums of one alone would wait for each other.
+            for row in [2, 0] {
+                let upper = &own[row * rows..][..rows - row];
+                let lower = &own[(row + 1) * rows..][..rows - row - 1];
+                let count = upper.len() - 2;
+                let (from_upper, from_lower) = (&upper[2..][..count], &lower[1..][..count]);
+                let first = panel * PANEL + row;
+                let below: [&[[S::f64s; N]]; COUNT] = from_fn(|side| &sides[side][first + 2..][..count]);
+                let mut own: [[S::f64s; N]; COUNT] = from_fn(|side| sides[side][first]);
+                let mut next: [[S::f64s; N]; COUNT] = from_fn(|side| sides[side][first + 1]);
+                for i in 0..count {
+                    for side in 0..COUNT {
+                        own[side] = v.subtract(own[side], from_upper[i], below[side][i]);
+                        next[side] = v.subtract(next[side], from_lower[i], below[side][i]);
+                    }
+                }
+                for side in 0..COUNT {
+                    next[side] = v.multiply(next[side], lower[0]);
+                    own[side] = v.multiply(v.subtract(own[side], upper[1], next[side]), upper[0]);
+                    (sides[side][first], sides[side][first + 1]) = (own[side], next[side]);
+                }
+            }
+        }
     }
 }
