@@ -6,11 +6,12 @@ use super::mesh::Mesh;
 use super::wide::{WIDTH, Wide};
 use std::sync::{Mutex, PoisonError};
 
-/// Megabytes that are filled anew for every section: the factors, and the couplings of the matrices.
+/// Megabytes that are filled anew for every section: the factors, the couplings of the matrices, and the right sides.
 #[derive(Clone, Debug, Default)]
 struct EquationRoom {
     factors: Factors,
     couplings: Vec<Coupling>,
+    values: Vec<Wide>,
 }
 
 /// Unused memory: one block for each thread that has solved sections at the same time as others. Threads come and go during a run, and what
@@ -32,8 +33,8 @@ impl Equations {
     /// The equations of a mesh; `fixed` says for every node which of its displacements along r, z and the circumference are zero in all
     /// harmonics.
     pub fn new(mesh: &Mesh, poisson: f64, fixed: Vec<[bool; 3]>) -> Self {
-        let EquationRoom { factors, couplings } = ROOMS.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default();
-        Self { matrices: stiffness(mesh, poisson, &fixed, couplings), factors, fixed, values: Vec::new(), sides: 0 }
+        let EquationRoom { factors, couplings, values } = ROOMS.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default();
+        Self { matrices: stiffness(mesh, poisson, &fixed, couplings), factors, fixed, values, sides: 0 }
     }
 
     /// Zero loads in so many right sides (three to five), to be filled: `loads[side][3 * node + axis]`, N per rad; those of a density over
@@ -75,7 +76,8 @@ const MOST_SIDES: u64 = 5;
 
 impl Drop for Equations {
     fn drop(&mut self) {
-        let room = EquationRoom { factors: std::mem::take(&mut self.factors), couplings: self.matrices.take_couplings() };
+        let (factors, values) = (std::mem::take(&mut self.factors), std::mem::take(&mut self.values));
+        let room = EquationRoom { factors, couplings: self.matrices.take_couplings(), values };
         ROOMS.lock().unwrap_or_else(PoisonError::into_inner).push(room);
     }
 }

@@ -6,6 +6,7 @@
 mod panels;
 
 use super::wide::{WIDTH, Wide};
+use bytemuck::pod_align_to_mut;
 use panels::{Harmonics, PANEL, Panels, Solve};
 use pulp::Arch;
 
@@ -84,10 +85,15 @@ pub fn bytes(nodes: usize, half: usize, reach: &[usize]) -> u64 {
     (nodes * (half + 1) * size_of::<Coupling>() + panels(reach).length() * size_of::<Wide>()) as u64
 }
 
+/// Memory for factors grows by 40 MiB, of which the system gives a page when it is first written. Allocators take blocks of that size from
+/// the system and give them back; of smaller ones, each a little larger than the last, they keep gaps.
+const GROWTH: usize = (40 << 20) / size_of::<Wide>();
+
 /// Memory for the factors of eight harmonics, reused from one solution to the next.
 #[derive(Clone, Debug, Default)]
 pub struct Factors {
-    entries: Vec<Wide>,
+    /// Of [`Wide`] from the first place that is aligned for it: only plain numbers are given without being written.
+    entries: Vec<f64>,
 }
 
 impl Factors {
@@ -98,8 +104,12 @@ impl Factors {
         assert_eq!(sides.len(), matrices.rows() * count, "one number per row and right side");
         let panels = matrices.panels();
         // Whatever a larger matrix has left is overwritten.
-        self.entries.resize(self.entries.len().max(panels.length()), Wide::ZERO);
-        let factors = &mut self.entries[..panels.length()];
+        if self.entries.len() < WIDTH * (panels.length() + 1) {
+            self.entries = Vec::new();
+            self.entries = vec![0.0; WIDTH * (panels.length() + 1).next_multiple_of(GROWTH)];
+        }
+        let (_, entries, _) = pod_align_to_mut::<f64, Wide>(&mut self.entries);
+        let factors = &mut entries[..panels.length()];
         let orders = Wide(orders.map(|order| order as f64));
         let harmonics = Harmonics { couplings: &matrices.couplings, nodes: matrices.nodes, half: matrices.half, orders };
         match count {
