@@ -80,13 +80,13 @@ pub struct Harmonics<'m> {
 
 /// Writes columns of the matrices.
 #[derive(Clone, Copy)]
-struct Writer<'m, S: Simd, const N: usize> {
+struct ColumnWriter<'m, S: Simd, const N: usize> {
     matrices: Harmonics<'m>,
     vectors: Vectors<S, N>,
     orders: [S::f64s; N],
 }
 
-impl<S: Simd, const N: usize> Writer<'_, S, N> {
+impl<S: Simd, const N: usize> ColumnWriter<'_, S, N> {
     /// Writes a column from its diagonal down. Columns beyond the last, which fill the last panel, are those of the identity.
     #[inline(always)]
     fn write(&self, number: usize, column: &mut [[S::f64s; N]]) {
@@ -183,25 +183,25 @@ impl<const COUNT: usize> WithSimd for Solve<'_, COUNT> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         match WIDTH / S::F64_LANES {
-            1 => Elimination::<S, 1>::solve(simd, self),
-            2 => Elimination::<S, 2>::solve(simd, self),
-            4 => Elimination::<S, 4>::solve(simd, self),
-            _ => Elimination::<S, WIDTH>::solve(simd, self),
+            1 => BandElimination::<S, 1>::solve(simd, self),
+            2 => BandElimination::<S, 2>::solve(simd, self),
+            4 => BandElimination::<S, 4>::solve(simd, self),
+            _ => BandElimination::<S, WIDTH>::solve(simd, self),
         }
     }
 }
 
 /// The steps of [`Solve`] with the vectors of a processor, of which `N` hold all harmonics.
-struct Elimination<S: Simd, const N: usize> {
+struct BandElimination<S: Simd, const N: usize> {
     vectors: Vectors<S, N>,
 }
 
-impl<S: Simd, const N: usize> Elimination<S, N> {
+impl<S: Simd, const N: usize> BandElimination<S, N> {
     #[inline(always)]
     fn solve<const COUNT: usize>(simd: S, Solve { matrices, panels, factors, sides }: Solve<'_, COUNT>) {
         let vectors = Vectors::<S, N>::new(simd);
         let this = Self { vectors };
-        let writer = Writer { matrices, vectors, orders: vectors.of(&[matrices.orders])[0] };
+        let writer = ColumnWriter { matrices, vectors, orders: vectors.of(&[matrices.orders])[0] };
         let factors = vectors.of_mut(factors);
         let mut sides = sides.map(|side| vectors.of_mut(side));
         this.down(&writer, panels, factors, &mut sides);
@@ -211,7 +211,7 @@ impl<S: Simd, const N: usize> Elimination<S, N> {
     #[inline(always)]
     fn down<const COUNT: usize>(
         &self,
-        writer: &Writer<'_, S, N>,
+        writer: &ColumnWriter<'_, S, N>,
         panels: &Panels,
         factors: &mut [[S::f64s; N]],
         sides: &mut [&mut [[S::f64s; N]]; COUNT],
