@@ -11,6 +11,8 @@ use pulp::{Arch, Simd, WithSimd};
 pub const ANGLES: usize = 96;
 /// Steps of a quarter turn.
 pub(super) const QUARTER: usize = ANGLES / 4;
+/// Angles of a quarter turn that are added up together: sums of one alone would wait for each other.
+const PLACES: usize = 5;
 const _: () = assert!((QUARTER + 1).is_multiple_of(PLACES), "no angle of the quarter is left out");
 
 /// Cosines and sines of k times an angle, for all harmonics.
@@ -105,7 +107,7 @@ impl WithSimd for Synthesis<'_> {
         let Self { terms, step, quarter, field } = self;
         for vector in 0..WIDTH / S::F64_LANES {
             for stress in 0..STRESSES {
-                let terms: &[[Wide; 2]] = &terms[stress];
+                let terms: &[Term] = &terms[stress];
                 for (block, places) in quarter.as_chunks::<PLACES>().0.iter().enumerate() {
                     let sums = sums(simd, vector, terms, step, places);
                     for (place, [[ce, se], [co, so]]) in sums.into_iter().enumerate() {
@@ -124,12 +126,9 @@ impl WithSimd for Synthesis<'_> {
     }
 }
 
-/// Angles of a quarter turn that are added up together: sums of one alone would wait for each other.
-const PLACES: usize = 5;
-
 /// Cosine and sine sums of the even and the odd harmonics at some angles, in one vector of the points.
 #[inline(always)]
-fn sums<S: Simd>(simd: S, vector: usize, terms: &[[Wide; 2]], step: usize, places: &[Waves; PLACES]) -> [[[S::f64s; 2]; 2]; PLACES] {
+fn sums<S: Simd>(simd: S, vector: usize, terms: &[Term], step: usize, places: &[Waves; PLACES]) -> [[[S::f64s; 2]; 2]; PLACES] {
     let zero = simd.splat_f64s(0.0);
     let mut sums = [[[zero; 2]; 2]; PLACES];
     let (odds, stride) = if step % 2 == 1 { (1, 2) } else { (terms.len(), 1) };
@@ -254,10 +253,17 @@ mod tests {
                     assert!((found - expected).abs() < 1e-11, "step {step}, place {place}: {found} {expected}");
                 }
             }
-            let mut narrow = vec![[Wide::ZERO; STRESSES]; ANGLES];
-            Simd::vectorize(pulp::Scalar, Synthesis { terms: &terms, step, quarter: &quarter, field: &mut narrow });
             let bits = |field: &ChunkStresses| field.iter().flatten().flat_map(|it| it.0.map(f64::to_bits)).collect::<Vec<_>>();
-            assert_eq!(bits(&field), bits(&narrow), "one after the other");
+            let narrower = |sum: &dyn Fn(Synthesis<'_>)| {
+                let mut narrow = vec![[Wide::ZERO; STRESSES]; ANGLES];
+                sum(Synthesis { terms: &terms, step, quarter: &quarter, field: &mut narrow });
+                bits(&narrow)
+            };
+            assert_eq!(narrower(&|work| Simd::vectorize(pulp::Scalar, work)), bits(&field), "one number at a time");
+            #[cfg(target_arch = "x86_64")]
+            if let Some(vectors) = pulp::x86::V3::try_new() {
+                assert_eq!(narrower(&|work| Simd::vectorize(vectors, work)), bits(&field), "AVX2");
+            }
         }
     }
 }

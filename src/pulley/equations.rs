@@ -49,6 +49,7 @@ impl Equations {
     /// Displacements under the loads that were filled in, in one to eight harmonics. Loads on what is fixed have no effect.
     pub fn solve(&mut self, orders: &[usize]) -> Displacements<'_> {
         let count = orders.len();
+        assert!((1..=WIDTH).contains(&count), "{count} harmonics at a time");
         let orders = std::array::from_fn(|lane| orders[lane.min(count - 1)]);
         let rows = self.matrices.rows();
         for side in self.values.chunks_exact_mut(rows) {
@@ -87,7 +88,7 @@ impl Drop for Equations {
 pub struct Displacements<'s> {
     /// The harmonics.
     pub orders: [usize; WIDTH],
-    /// How many of them count: the last may be repeated to fill the lanes.
+    /// How many of them count. What stands in the other lanes does not matter.
     pub count: usize,
     /// The displacements under each load, `sides[side][3 * node + axis]`.
     pub sides: Vec<&'s [Wide]>,

@@ -71,7 +71,7 @@ impl<S: Simd, const N: usize> Vectors<S, N> {
         cast_slice_mut(numbers)
     }
 
-    /// The same number in every harmonic.
+    /// The same number in every lane.
     #[inline(always)]
     pub fn all(self, number: f64) -> [S::f64s; N] {
         [self.simd.splat_f64s(number); N]

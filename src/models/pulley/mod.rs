@@ -131,8 +131,8 @@ impl Kernel for Pulley {
         let body = Body::new(inputs, design::kind(inputs));
         let Ok(mesh) = section::mesh(body.kind(), &body.dimensions, &body.fineness()) else { return Footprint::default() };
         let (table, scratch) = response::bytes(&mesh, &body.dimensions, &body.fineness());
-        // The last section is kept beside the one that is asked for; the mesh and its loads take a tenth of what the equations do.
-        Footprint { prepared: 8 * HEAD as u64 + table, scratch: scratch + scratch / 10 + table }
+        // The last section is kept beside the one that is asked for; the mesh and its loads take a twentieth of what the equations do.
+        Footprint { prepared: 8 * HEAD as u64 + table, scratch: scratch + scratch / 20 + table }
     }
 
     fn conditions(&self, prepared: &[f64], inputs: &[f64], room: &mut [f64]) {

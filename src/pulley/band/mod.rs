@@ -64,6 +64,12 @@ impl Matrices {
         self.size().next_multiple_of(PANEL)
     }
 
+    /// The matrices in some harmonics.
+    fn harmonics(&self, orders: [usize; WIDTH]) -> Harmonics<'_> {
+        let orders = Wide(orders.map(|order| order as f64));
+        Harmonics { couplings: &self.couplings, nodes: self.nodes, half: self.half, orders }
+    }
+
     /// The panels of the factors.
     fn panels(&self) -> Panels {
         panels(&self.reach)
@@ -85,14 +91,14 @@ pub fn bytes(nodes: usize, half: usize, reach: &[usize]) -> u64 {
     (nodes * (half + 1) * size_of::<Coupling>() + panels(reach).length() * size_of::<Wide>()) as u64
 }
 
-/// Memory for factors grows by 40 MiB, of which the system gives a page when it is first written. Allocators take blocks of that size from
-/// the system and give them back; of smaller ones, each a little larger than the last, they keep gaps.
-const GROWTH: usize = (40 << 20) / size_of::<Wide>();
+/// Factors get memory in steps of 40 MiB: more than the 32 MiB up to which glibc may serve blocks from its heap, where each section a little
+/// larger than the last leaves a gap. Untouched memory costs nothing on these systems; others get steps of 1 MiB.
+const GROWTH: usize = (if cfg!(all(unix, target_pointer_width = "64")) { 40 } else { 1 } << 20) / size_of::<Wide>();
 
 /// Memory for the factors of eight harmonics, reused from one solution to the next.
 #[derive(Clone, Debug, Default)]
 pub struct Factors {
-    /// Of [`Wide`] from the first place that is aligned for it: only plain numbers are given without being written.
+    /// [`Wide`] from the first place that is aligned for it: of plain numbers a vector asks the system for zeroed memory, and writes none.
     entries: Vec<f64>,
 }
 
@@ -103,15 +109,14 @@ impl Factors {
     pub fn solve(&mut self, matrices: &Matrices, orders: [usize; WIDTH], sides: &mut [Wide], count: usize) {
         assert_eq!(sides.len(), matrices.rows() * count, "one number per row and right side");
         let panels = matrices.panels();
-        // Whatever a larger matrix has left is overwritten.
         if self.entries.len() < WIDTH * (panels.length() + 1) {
             self.entries = Vec::new();
             self.entries = vec![0.0; WIDTH * (panels.length() + 1).next_multiple_of(GROWTH)];
         }
         let (_, entries, _) = pod_align_to_mut::<f64, Wide>(&mut self.entries);
+        // Whatever a larger matrix has left is overwritten.
         let factors = &mut entries[..panels.length()];
-        let orders = Wide(orders.map(|order| order as f64));
-        let harmonics = Harmonics { couplings: &matrices.couplings, nodes: matrices.nodes, half: matrices.half, orders };
+        let harmonics = matrices.harmonics(orders);
         match count {
             3 => solve::<3>(harmonics, &panels, factors, sides),
             4 => solve::<4>(harmonics, &panels, factors, sides),
@@ -123,9 +128,13 @@ impl Factors {
 
 /// Factors and solves with the processor's vectors; right sides follow each other in `sides`.
 fn solve<const COUNT: usize>(matrices: Harmonics<'_>, panels: &Panels, factors: &mut [Wide], sides: &mut [Wide]) {
+    Arch::new().dispatch(Solve { matrices, panels, factors, sides: columns::<COUNT>(sides) });
+}
+
+/// Right sides that follow each other.
+fn columns<const COUNT: usize>(sides: &mut [Wide]) -> [&mut [Wide]; COUNT] {
     let mut columns = sides.chunks_exact_mut(sides.len() / COUNT);
-    let sides: [&mut [Wide]; COUNT] = std::array::from_fn(|_| columns.next().unwrap_or_default());
-    Arch::new().dispatch(Solve { matrices, panels, factors, sides });
+    std::array::from_fn(|_| columns.next().unwrap_or_default())
 }
 
 #[cfg(test)]
@@ -213,28 +222,101 @@ mod tests {
         }
     }
 
-    #[test]
-    fn solutions_are_the_same_to_the_bit_with_all_vectors() {
-        let matrices = matrices(41, 9);
-        let panels = matrices.panels();
-        let orders = Wide(ORDERS.map(|order| order as f64));
-        let harmonics = Harmonics { couplings: &matrices.couplings, nodes: matrices.nodes, half: matrices.half, orders };
+    /// Cholesky's factors and the solution of one right side in one harmonic, a number at a time: what four columns take out of a number is
+    /// summed in pairs, and all else follows column by column.
+    fn solved_plainly(matrices: &Matrices, order: usize, side: &[f64]) -> Vec<f64> {
+        let (rows, size) = (matrices.rows(), matrices.size());
+        let mut factor = vec![vec![0.0; rows]; rows];
+        (size..rows).for_each(|row| factor[row][row] = 1.0);
+        for column_node in 0..matrices.nodes {
+            for row_node in column_node..matrices.nodes.min(column_node + matrices.half + 1) {
+                let coupling = &matrices.couplings[column_node * (matrices.half + 1) + row_node - column_node];
+                for (a, b) in (0..3).flat_map(|a| (0..3).map(move |b| (a, b))) {
+                    let of = |power| PARTS.iter().position(|part| *part == (a, b, power)).map_or(0.0, |it| coupling[it]);
+                    let k = order as f64;
+                    factor[3 * row_node + a][3 * column_node + b] = of(0) + k * of(1) + k * (k * of(2));
+                }
+            }
+        }
+        let mut values = side.to_vec();
+        values.resize(rows, 0.0);
+        let four = |a: &[f64], b: &[f64]| (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3]);
+        for row in 0..rows {
+            for column in 0..=row {
+                let (first, mut value) = (column / PANEL * PANEL, factor[row][column]);
+                for panel in (0..first).step_by(PANEL) {
+                    value -= four(&factor[row][panel..panel + PANEL], &factor[column][panel..panel + PANEL]);
+                }
+                (first..column).for_each(|earlier| value -= factor[row][earlier] * factor[column][earlier]);
+                // Diagonals hold their inverse.
+                factor[row][column] = if row == column { 1.0 / value.sqrt() } else { value * factor[column][column] };
+            }
+            let first = row / PANEL * PANEL;
+            for panel in (0..first).step_by(PANEL) {
+                values[row] -= four(&factor[row][panel..panel + PANEL], &values[panel..panel + PANEL]);
+            }
+            for earlier in first..row {
+                values[row] -= factor[row][earlier] * values[earlier];
+            }
+            values[row] *= factor[row][row];
+        }
+        for row in (0..rows).rev() {
+            // Of two rows the upper takes what follows both first, then the lower.
+            let (pair, after) = (row / 2 * 2 + 1, row / 2 * 2 + 2);
+            let later = (after..rows).chain((row < pair).then_some(pair));
+            later.for_each(|later| values[row] -= factor[later][row] * values[later]);
+            values[row] *= factor[row][row];
+        }
+        values
+    }
+
+    /// Bits of the solutions of so many right sides. The first is loaded everywhere, the second from the middle on in one harmonic only, the
+    /// others here and there.
+    fn solved<const COUNT: usize>(matrices: &Matrices, solve: &dyn Fn(Solve<'_, COUNT>)) -> Vec<u64> {
+        let (rows, panels) = (matrices.rows(), matrices.panels());
+        let mut sides: Vec<Wide> = (0..COUNT * rows).map(|at| Wide(std::array::from_fn(|lane| load(matrices, at, lane)))).collect();
+        let mut factors = vec![Wide([f64::NAN; WIDTH]); panels.length()];
+        solve(Solve { matrices: matrices.harmonics(ORDERS), panels: &panels, factors: &mut factors, sides: columns::<COUNT>(&mut sides) });
+        sides.into_iter().flat_map(|side| side.0.map(f64::to_bits)).collect()
+    }
+
+    fn load(matrices: &Matrices, at: usize, lane: usize) -> f64 {
+        let (side, row) = (at / matrices.rows(), at % matrices.rows());
+        match side {
+            _ if row >= matrices.size() => 0.0,
+            0 => ((row * 7 + lane) % 11) as f64 - 4.5,
+            1 if row > matrices.size() / 2 && lane == 6 => 2.5,
+            1 => 0.0,
+            _ => ((row + side) % 3) as f64,
+        }
+    }
+
+    fn same_with_all_vectors<const COUNT: usize>(matrices: &Matrices) {
         let rows = matrices.rows();
-        let solution = |solve: &dyn Fn(Solve<'_, 3>)| {
-            let load = |at: usize, lane: usize| if at < rows { ((at * 7 + lane) % 11) as f64 - 4.5 } else { (at % 2) as f64 };
-            let mut sides: Vec<Wide> = (0..3 * rows).map(|at| Wide(std::array::from_fn(|lane| load(at, lane)))).collect();
-            let mut factors = vec![Wide([f64::NAN; WIDTH]); panels.length()];
-            let mut columns = sides.chunks_exact_mut(rows);
-            let columns = std::array::from_fn(|_| columns.next().unwrap_or_default());
-            solve(Solve { matrices: harmonics, panels: &panels, factors: &mut factors, sides: columns });
-            sides.into_iter().flat_map(|side| side.0.map(f64::to_bits)).collect::<Vec<u64>>()
-        };
-        let expected = solution(&|work| Simd::vectorize(pulp::Scalar, work));
-        assert!(expected.iter().all(|bits| f64::from_bits(*bits).is_finite()));
-        assert_eq!(solution(&|work| Arch::new().dispatch(work)), expected, "the widest of this processor");
+        let mut expected = vec![0; COUNT * rows * WIDTH];
+        for (side, (lane, order)) in (0..COUNT).flat_map(|side| ORDERS.into_iter().enumerate().map(move |it| (side, it))) {
+            let loads: Vec<f64> = (0..rows).map(|row| load(matrices, side * rows + row, lane)).collect();
+            for (row, value) in solved_plainly(matrices, order, &loads).into_iter().enumerate() {
+                assert!(value.is_finite());
+                expected[(side * rows + row) * WIDTH + lane] = value.to_bits();
+            }
+        }
+        let what = format!("{} nodes, {COUNT} right sides", matrices.nodes);
+        assert_eq!(solved::<COUNT>(matrices, &|work| Simd::vectorize(pulp::Scalar, work)), expected, "one number at a time, {what}");
+        assert_eq!(solved::<COUNT>(matrices, &|work| Arch::new().dispatch(work)), expected, "the widest vectors, {what}");
         #[cfg(target_arch = "x86_64")]
         if let Some(narrower) = pulp::x86::V3::try_new() {
-            assert_eq!(solution(&|work| Simd::vectorize(narrower, work)), expected, "AVX2");
+            assert_eq!(solved::<COUNT>(matrices, &|work| Simd::vectorize(narrower, work)), expected, "AVX2, {what}");
+        }
+    }
+
+    #[test]
+    fn solutions_are_those_of_plain_arithmetic_to_the_bit_with_all_vectors() {
+        for (nodes, half) in [(7, 3), (41, 9), (30, 1), (23, 2)] {
+            let matrices = matrices(nodes, half);
+            same_with_all_vectors::<3>(&matrices);
+            same_with_all_vectors::<4>(&matrices);
+            same_with_all_vectors::<5>(&matrices);
         }
     }
 }

@@ -164,8 +164,8 @@ struct DiagonalBlock<V> {
     id: V,
 }
 
-/// Factors and solves in one pass down and one up: a panel is made just before the elimination reaches it and used for the right
-/// sides while it is at hand, so that only the factors go to memory and back.
+/// Factors and solves in one pass down and one up: the panels of a block are made just before the elimination reaches them, and each is used
+/// for the right sides while it is at hand, so that only the factors go to memory and back.
 pub struct Solve<'m, const COUNT: usize> {
     /// The matrices.
     pub matrices: Harmonics<'m>,
@@ -186,7 +186,8 @@ impl<const COUNT: usize> WithSimd for Solve<'_, COUNT> {
             1 => BandElimination::<S, 1>::solve(simd, self),
             2 => BandElimination::<S, 2>::solve(simd, self),
             4 => BandElimination::<S, 4>::solve(simd, self),
-            _ => BandElimination::<S, WIDTH>::solve(simd, self),
+            8 => BandElimination::<S, 8>::solve(simd, self),
+            _ => unreachable!("vectors hold one, two, four or eight numbers"),
         }
     }
 }
@@ -226,7 +227,7 @@ impl<S: Simd, const N: usize> BandElimination<S, N> {
             let block = &mut block[..panels.starts[end] - panels.starts[start]];
             let place = |panel: usize| panels.starts[panel] - panels.starts[start];
             for panel in start..end {
-                for (number, column) in block[place(panel)..].chunks_exact_mut(panels.rows(panel)).take(PANEL).enumerate() {
+                for (number, column) in columns(&mut block[place(panel)..place(panel + 1)]).into_iter().enumerate() {
                     writer.write(panel * PANEL + number, column);
                 }
             }
@@ -242,7 +243,7 @@ impl<S: Simd, const N: usize> BandElimination<S, N> {
             for panel in start..end {
                 let (before, own) = block.split_at_mut(place(panel));
                 let own = &mut own[..panels.range(panel).len()];
-                for from in oldest.max(start)..panel {
+                for from in start..panel {
                     if panel * PANEL < panels.end(from) {
                         self.apply(&before[place(from)..place(from + 1)], panel - from, own);
                     }
@@ -311,7 +312,7 @@ impl<S: Simd, const N: usize> BandElimination<S, N> {
         [a, b, c, d]
     }
 
-    /// Subtracts the products of a panel, `from`, from those of the columns that it reaches which stand in another, `after` panels later.
+    /// Subtracts what a panel that is eliminated, `from`, contributes to the columns of the panel that comes `after` panels later.
     #[inline(always)]
     fn apply(&self, from: &[[S::f64s; N]], after: usize, panel: &mut [[S::f64s; N]]) {
         let v = self.vectors;
