@@ -86,13 +86,13 @@ fn panels(reach: &[usize]) -> Panels {
     }))
 }
 
-/// Bytes of matrices with so many nodes, `half` and reach as in [`Matrices`], and of their factors.
+/// Bytes of matrices with so many nodes, `half` and reach as in [`Matrices`], and of their factors as far as they are written.
 pub fn bytes(nodes: usize, half: usize, reach: &[usize]) -> u64 {
     (nodes * (half + 1) * size_of::<Coupling>() + panels(reach).length() * size_of::<Wide>()) as u64
 }
 
-/// Factors get memory in steps of 40 MiB: more than the 32 MiB up to which glibc may serve blocks from its heap, where each section a little
-/// larger than the last leaves a gap. Untouched memory costs nothing on these systems; others get steps of 1 MiB.
+/// Factors get memory in steps of 40 MiB: more than the 32 MiB up to which glibc may serve blocks from its heap, where each section a
+/// little larger than the last leaves a gap. Memory that is never written costs nothing on 64-bit Unix; other systems get steps of 1 MiB.
 const GROWTH: usize = (if cfg!(all(unix, target_pointer_width = "64")) { 40 } else { 1 } << 20) / size_of::<Wide>();
 
 /// Memory for the factors of eight harmonics, reused from one solution to the next.
@@ -222,8 +222,8 @@ mod tests {
         }
     }
 
-    /// Cholesky's factors and the solution of one right side in one harmonic, a number at a time: what four columns take out of a number is
-    /// summed in pairs, and all else follows column by column.
+    /// The solution of one right side in one harmonic by Cholesky's factors, number by number in the order that the solver keeps: what a
+    /// panel of earlier columns takes out of a number is summed in pairs first; columns of the same panel follow one after the other.
     fn solved_plainly(matrices: &Matrices, order: usize, side: &[f64]) -> Vec<f64> {
         let (rows, size) = (matrices.rows(), matrices.size());
         let mut factor = vec![vec![0.0; rows]; rows];
@@ -270,8 +270,8 @@ mod tests {
         values
     }
 
-    /// Bits of the solutions of so many right sides. The first is loaded everywhere, the second from the middle on in one harmonic only, the
-    /// others here and there.
+    /// Bits of the solutions of so many right sides. The first is loaded everywhere, the second from the middle on in one harmonic only,
+    /// the others here and there.
     fn solved<const COUNT: usize>(matrices: &Matrices, solve: &dyn Fn(Solve<'_, COUNT>)) -> Vec<u64> {
         let (rows, panels) = (matrices.rows(), matrices.panels());
         let mut sides: Vec<Wide> = (0..COUNT * rows).map(|at| Wide(std::array::from_fn(|lane| load(matrices, at, lane)))).collect();

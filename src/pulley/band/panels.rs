@@ -8,8 +8,8 @@ use std::ops::Range;
 
 /// Columns that are eliminated together: their effect on the rest is applied in one pass.
 pub const PANEL: usize = 4;
-/// Panels from which earlier ones are subtracted together. Of a section whose band is wide, the panels that affect the next do not fit the
-/// fast memory of a core, and each is loaded once for a block.
+/// Panels that take up the effect of earlier ones together. Where the band is wide, the earlier panels do not fit the cache of a core: so
+/// each is loaded once for a whole block.
 const BLOCK: usize = 4;
 
 /// Where the factors of each panel stand: its columns one after another, each from its diagonal down. All are as long as the first, so the
@@ -164,8 +164,8 @@ struct DiagonalBlock<V> {
     id: V,
 }
 
-/// Factors and solves in one pass down and one up: the panels of a block are made just before the elimination reaches them, and each is used
-/// for the right sides while it is at hand, so that only the factors go to memory and back.
+/// Factors and solves in one pass down and one up: the panels of a block are made just before the elimination reaches them, and each is
+/// used for the right sides while it is at hand, so that only the factors go to memory and back.
 pub struct Solve<'m, const COUNT: usize> {
     /// The matrices.
     pub matrices: Harmonics<'m>,
