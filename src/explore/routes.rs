@@ -147,7 +147,7 @@ impl Explorer {
         let mut study = Some(self.described(&plan, &text, &question.set));
         self.live.answer(&plan, control, &mut |step| {
             let (kind, (mut json, bytes)) = match step {
-                LiveAnswer::Coarse(found) => ("coarse", told::front(&found)),
+                LiveAnswer::Coarse(found, exact) => ("coarse", told::coarse(&found, exact)),
                 LiveAnswer::Few(found) => ("few", told::front(&found)),
                 LiveAnswer::Exact(found) => ("exact", told::front(&found)),
                 LiveAnswer::Certified(found) => ("certified", told::front(&found)),

@@ -75,8 +75,8 @@ struct LivePace {
 
 /// A step of an answer.
 pub enum LiveAnswer<'a> {
-    /// The front of a few designs, in a few scenarios: a first idea.
-    Coarse(LiveFront<'a>),
+    /// The front of a few designs, in a few scenarios: a first idea; and how long the exact one may take from the question on.
+    Coarse(LiveFront<'a>, Duration),
     /// The front of all designs in a few scenarios, most likely the exact one: it is being judged in all of them.
     Few(LiveFront<'a>),
     /// The exact front, each value over all scenarios.
@@ -244,7 +244,8 @@ impl Live {
         self.change_pace(|pace| pace.slowness = (slowness * found).sqrt().clamp(1.0, 1e3));
         let rows = search.in_few(set, &points)?;
         let scenarios = set.count(plan.scenarios());
-        tell(LiveAnswer::Coarse(LiveFront { plan, columns: search.columns(), rows: &rows, looked_at, scenarios, took: start.elapsed() }))?;
+        let front = LiveFront { plan, columns: search.columns(), rows: &rows, looked_at, scenarios, took: start.elapsed() };
+        tell(LiveAnswer::Coarse(front, start.elapsed() + Duration::try_from_secs_f64(expected).unwrap_or(Duration::MAX / 2)))?;
         Ok(true)
     }
 

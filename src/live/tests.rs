@@ -190,7 +190,7 @@ fn an_answer_comes_in_steps_and_ends_when_it_is_stopped() {
     let mut steps = Vec::new();
     live.answer(&plan, &Control::default(), &mut |step| {
         steps.push(match step {
-            LiveAnswer::Coarse(_) => "coarse".to_owned(),
+            LiveAnswer::Coarse(..) => "coarse".to_owned(),
             LiveAnswer::Few(_) => "few".to_owned(),
             LiveAnswer::Exact(found) => format!("exact {}", found.rows.len()),
             LiveAnswer::Certified(found) => format!("certified {}", found.rows.len()),

@@ -11,6 +11,7 @@ use crate::reading::sample::ShownSample;
 use crate::study::number;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
+use std::time::Duration;
 
 pub use super::page::{LIVE_FILES, live_page};
 
@@ -37,6 +38,13 @@ pub fn front(found: &LiveFront<'_>) -> (Value, Vec<u8>) {
         "in_scenarios": found.scenarios,
         "seconds": found.took.as_secs_f64(),
     });
+    (json, bytes)
+}
+
+/// The same of a first front, and after how long the exact one may come.
+pub fn coarse(found: &LiveFront<'_>, exact: Duration) -> (Value, Vec<u8>) {
+    let (mut json, bytes) = front(found);
+    json["exact_after"] = number(exact.as_secs_f64());
     (json, bytes)
 }
 

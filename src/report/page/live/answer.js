@@ -1,9 +1,9 @@
 // The answer to what is changed: asked at once, shown step by step, the newest question first.
 {
   // A question that has had no exact answer for so long is given up for a newer one; one that is younger is awaited, so that the front
-  // moves while a slider does.
+  // moves while a slider does. One that has its first idea, and whose exact answer will take longer, is given up at once.
   const PATIENCE = 120;
-  let current = null; // { abort, since, exact }
+  let current = null; // { abort, since, exact, isLong }
   let wanted = null; // the newest question that was not asked yet: { set, eventAt }
   let started = false;
   let answered = 0;
@@ -158,7 +158,8 @@
     if (told.kind === "coarse") {
       say(`a first idea, of ${page.count(told.looked_at)} designs; the exact front follows …`, "coarse");
       page.timings.coarse = performance.now();
-      return;
+      question.isLong = 1000 * told.exact_after > PATIENCE;
+      return next();
     }
     question.exact = true;
     answered++;
@@ -182,9 +183,9 @@
   const next = () => {
     if (!wanted) return;
     // An exact answer is there, or it has taken too long.
-    if (current && !current.exact && performance.now() - current.since < PATIENCE) return;
+    if (current && !current.exact && !current.isLong && performance.now() - current.since < PATIENCE) return;
     if (current) current.abort.abort();
-    const question = { ...wanted, abort: new AbortController(), since: performance.now(), exact: false };
+    const question = { ...wanted, abort: new AbortController(), since: performance.now(), exact: false, isLong: false };
     wanted = null;
     current = question;
     page.ask("/answer", { set: question.set }, (told, buffer) => part(question, told, buffer), question.abort.signal).then(
