@@ -43,22 +43,19 @@ impl CpuEngine<'_> {
 
     /// Judges the block in every scenario that may decide; false if it was stopped before it had.
     fn judge_block(&mut self, fast: &FastBlock) -> bool {
-        let (Some(list), true) = (&self.tables.lanes, self.numbers.is_some()) else {
+        let Some((_, decisive)) = &self.numbers else {
             return self.each_scenario(|engine, prepared, is_first, is_last| {
                 engine.evaluate(prepared, fast);
                 engine.judge_block_scenario(is_first, engine.plan.scenarios() == 1);
                 !is_last || any(&engine.alive)
             });
         };
-        let count = self.numbers.as_ref().map_or(0, |(_, decisive)| decisive.count());
+        let count = decisive.count();
         for number in 0..count {
             if self.stopped() {
                 return false;
             }
-            if let Some((numbers, decisive)) = &mut self.numbers {
-                numbers.set_scalars(list, decisive.scalars(number));
-                list.run(numbers, LaneBlock { shared: &fast.shared, given: &[], count: fast.count }, &mut self.results);
-            }
+            self.evaluate_settled(number, fast);
             self.judge_block_scenario(number == 0, count == 1);
             if !any(&self.alive) {
                 break;
@@ -81,6 +78,13 @@ impl CpuEngine<'_> {
         let columns = Columns { count: fast.count, varying: &fast.si, outputs: &plan.lane_outputs, conditions: &plan.lane_conditions };
         plan.study.model.kernel.finish_columns(prepared, &self.si, &columns, &mut self.scratch, &mut self.results);
         columns.to_units(&plan.study.model.outputs, &mut self.results);
+    }
+
+    /// The same in one of the scenarios that decide.
+    pub(in crate::screen) fn evaluate_settled(&mut self, number: usize, fast: &FastBlock) {
+        let (Some((numbers, decisive)), Some(list)) = (&mut self.numbers, &self.tables.lanes) else { return };
+        numbers.set_scalars(list, decisive.scalars(number));
+        list.run(numbers, LaneBlock { shared: &fast.shared, given: &[], count: fast.count }, &mut self.results);
     }
 
     fn judge_block_scenario(&mut self, first: bool, only: bool) {

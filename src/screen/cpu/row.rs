@@ -20,9 +20,7 @@ impl CpuEngine<'_> {
         for (worst, (tracked, _)) in self.row_worst.iter_mut().zip(&self.plan.tracked) {
             *worst = tracked.worse.least_bad();
         }
-        if let Some((_, decisive)) = &mut self.numbers {
-            decisive.begin();
-        }
+        self.begin_scenarios();
         let mut scenarios = 0;
         let done = self.each_scenario(|engine, prepared, _, _| {
             engine.row_feasible &= engine.judge_row_scenario(prepared.clone());
@@ -34,14 +32,29 @@ impl CpuEngine<'_> {
         });
         if !done {
             self.row = None;
-        } else if let (true, Some((_, decisive)), Some(list)) = (self.row_feasible, &mut self.numbers, &self.tables.lanes) {
-            decisive.settle(list, scenarios, self.ahead);
+        } else if self.row_feasible {
+            self.settle_scenarios(scenarios, self.ahead);
         }
         done
     }
 
+    /// Begins to look which scenarios decide about a row's designs; false where all of them do.
+    pub(in crate::screen) fn begin_scenarios(&mut self) -> bool {
+        self.numbers.as_mut().is_some_and(|(_, decisive)| {
+            decisive.begin();
+            true
+        })
+    }
+
+    /// Finds which of those that were added decide about so many designs; their number.
+    pub(in crate::screen) fn settle_scenarios(&mut self, added: usize, designs: u64) -> usize {
+        let (Some((_, decisive)), Some(list)) = (&mut self.numbers, &self.tables.lanes) else { return 0 };
+        decisive.settle(list, added, designs);
+        decisive.count()
+    }
+
     /// Keeps what the designs of the row need of the current scenario.
-    fn add_scenario(&mut self, prepared: Range<usize>) {
+    pub(in crate::screen) fn add_scenario(&mut self, prepared: Range<usize>) {
         self.enter_scenario(prepared);
         if let (Some((numbers, decisive)), Some(list)) = (&mut self.numbers, &self.tables.lanes) {
             decisive.add(numbers.scalars(list));
