@@ -134,6 +134,8 @@ impl Front {
                     *next += 1;
                     return;
                 }
+                // Neighbours come soon, and are often beaten by this one.
+                all.insert(key, index);
             }
         }
         self.waiting.push(key.iter().copied(), index);
@@ -192,7 +194,7 @@ impl Front {
 
     /// The points that did not come with the seed.
     pub fn into_fresh(mut self) -> Points {
-        self.merge_waiting();
+        self.sort_waiting_in();
         let dimensions = self.rules.len();
         let mut fresh = Points::default();
         for point in (0..self.points.len()).filter(|&point| self.fresh[point]) {
@@ -213,6 +215,14 @@ impl Front {
 
     /// Sorts what waits into the front and drops what is beaten. The front beats nothing that waits: each was checked when it came.
     fn merge_waiting(&mut self) {
+        if !self.waiting.is_empty() {
+            self.sort_waiting_in();
+            self.refresh_filter();
+        }
+    }
+
+    /// The same, after which nothing can be compared with the front.
+    fn sort_waiting_in(&mut self) {
         if self.waiting.is_empty() {
             return;
         }
@@ -261,7 +271,6 @@ impl Front {
             }
         }
         self.fresh = fresh;
-        self.refresh_filter();
     }
 
     fn refresh_filter(&mut self) {
