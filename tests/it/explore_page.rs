@@ -195,9 +195,10 @@ fn a_hundred_million_evaluations_move_with_a_slider() {
         let text = std::fs::read_to_string(&path).expect("it is there");
         let random = &mut Random::new(7);
         let skipped = browser.number("beltspace.timings.answers.length");
-        for round in 0..40 {
+        // Enough for the slowest twentieth to be more than two or three of them.
+        for round in 0..120 {
             move_one(&mut browser, random);
-            if round % 10 == 9 {
+            if round % 12 == 11 {
                 assert_eq!(differs(&mut browser, &text, path.parent().expect("it has a folder")), None, "{file}, round {round}");
                 browser.evaluate(COUNT);
                 browser.evaluate("beltspace.page.resetChanges()");
@@ -219,7 +220,7 @@ fn a_hundred_million_evaluations_move_with_a_slider() {
             at(&engine, 0.5),
             at(&engine, 0.95),
         );
-        assert!(took.len() >= 25, "{}", took.len());
+        assert!(took.len() >= 80, "{}", took.len());
         // Other programs may be at work here too; the measure is in the line above.
         assert!(at(&took, 0.5) < 1000.0, "{took:?}");
         assert_eq!(browser.complaints, Vec::<String>::new());
