@@ -30,6 +30,8 @@ const COPIES: u64 = 6;
 const DOMINATORS: usize = 8;
 /// Least number of waiting designs before they are merged.
 const WAITING: usize = 2048;
+/// Points of a front from which on merging is so dear that what waits is compared with too.
+const LARGE: usize = 4 * WAITING;
 
 /// The most points of a front with that many objectives which fit into that many bytes.
 pub fn most_points(objectives: usize, bytes: u64) -> u64 {
@@ -135,7 +137,9 @@ impl Front {
                     return;
                 }
                 // Neighbours come soon, and are often beaten by this one.
-                all.insert(key, index);
+                if self.points.len() >= LARGE {
+                    all.insert(key, index);
+                }
             }
         }
         self.waiting.push(key.iter().copied(), index);
