@@ -182,8 +182,7 @@ impl Live {
         // Where only bounds have moved, the exact front comes soon.
         let is_long = expected > NOTICED.as_secs_f64() && !search.knows_all_in(&set);
         if is_long && self.coarse(&mut search, &set, expected, start, tell)? {
-            // What is told is to be seen: on a machine with few cores nobody draws it while all of them search on.
-            pause(control, Duration::from_secs_f64((0.1 * expected).min(DRAWN)))?;
+            pause(control, to_be_seen(expected))?;
         }
         let designs = plan.designs();
         let (rows, set) = if expected > LONG && refusal(plan).is_none() {
@@ -245,7 +244,8 @@ impl Live {
         let rows = search.in_few(set, &points)?;
         let scenarios = set.count(plan.scenarios());
         let front = LiveFront { plan, columns: search.columns(), rows: &rows, looked_at, scenarios, took: start.elapsed() };
-        tell(LiveAnswer::Coarse(front, start.elapsed() + Duration::try_from_secs_f64(expected).unwrap_or(Duration::MAX / 2)))?;
+        let rest = Duration::try_from_secs_f64(expected).unwrap_or(Duration::MAX / 4) + to_be_seen(expected);
+        tell(LiveAnswer::Coarse(front, start.elapsed() + rest))?;
         Ok(true)
     }
 
@@ -311,6 +311,12 @@ impl Live {
         let findings = Findings::of(plan, feasible.unwrap_or(1), front, self.threads, control)?;
         tell(LiveAnswer::Counted(Box::new(LiveCounts { feasible, sample, tally, findings })))
     }
+}
+
+/// How long a search of so many seconds rests once it has told a coarse front: on a machine with few cores nobody draws it while all of them
+/// search on.
+fn to_be_seen(expected: f64) -> Duration {
+    Duration::from_secs_f64((0.1 * expected).min(DRAWN))
 }
 
 /// Waits for somebody who drags a slider on.

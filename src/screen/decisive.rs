@@ -103,6 +103,11 @@ impl Decisive {
         })
     }
 
+    /// Is it looked for scenarios that decide about so many designs?
+    pub(super) fn is_worth_it(scenarios: u64, designs: u64) -> bool {
+        scenarios > 1 && scenarios.saturating_mul(designs) >= LEAST_WORK
+    }
+
     /// Bytes that it takes for a plan.
     pub(super) fn bytes(plan: &Plan, list: &LaneList) -> u64 {
         Self::new(plan, list).map_or(0, |it| {
@@ -135,8 +140,7 @@ impl Decisive {
     /// Finds which of `count` scenarios decide about so many designs, in their order: all of them where nothing is sure.
     pub(super) fn settle(&mut self, list: &LaneList, count: usize, designs: u64) {
         self.kept.clear();
-        let is_little = (count as u64).saturating_mul(designs) < LEAST_WORK;
-        if count < 2 || is_little || !self.find_trends(list) {
+        if !Self::is_worth_it(count as u64, designs) || !self.find_trends(list) {
             return self.kept.extend(0..count);
         }
         let mut is_kept = vec![false; count];

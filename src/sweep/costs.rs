@@ -16,11 +16,13 @@ const PLACES: u64 = 5;
 /// Seconds that a piece between two looks at the clock should take at most, and most designs of one: those of a sweep.
 const PIECE: f64 = 0.1;
 const LARGEST: u64 = 1 << 16;
-/// How long `--method auto` measures, and how long first: that is enough where judging every design takes far less than [`SHORT`].
+/// How long `--method auto` measures, and how long first, which is enough where judging every design takes far less than [`SHORT`].
 const BRIEFLY: Duration = Duration::from_millis(100);
 const GLANCE: Duration = Duration::from_millis(10);
-/// By a glance this fraction of [`SHORT`] is far less.
-const SURELY: f64 = 0.25;
+/// A glance decides if by it all designs take less than the one fraction of [`SHORT`], and by the model less than the other: it may
+/// have met nothing but rows that fail at once.
+const GLANCED: f64 = 0.25;
+const TOLD: f64 = 4.0;
 /// Seconds that judging every design may take before bounds are thought of.
 const SHORT: f64 = 1.0;
 /// Bounds may take this fraction of the time that judging every design would take before a forecast decides about them: what is lost where they
@@ -84,16 +86,16 @@ impl Speed {
         Self { seconds: seconds.iter().sum::<f64>() / seconds.len() as f64, measured: true }
     }
 
-    /// Measured for a moment, unless the model says that all designs together take no longer; the shorter, the surer it is that judging
-    /// every design takes little.
+    /// Measured for a moment, unless the model says that all designs together take no longer. First at a glance, which is enough where
+    /// they take far less than a second.
     pub fn quick(plan: &Plan, threads: usize) -> Self {
         let of_all = |speed: &Self| speed.of(plan.designs(), threads);
         let told = Self::told(plan);
         if of_all(&told) < BRIEFLY.as_secs_f64() {
             return told;
         }
-        let glanced = Self::measured(plan, threads, GLANCE);
-        if of_all(&glanced) < SURELY * SHORT { glanced } else { Self::measured(plan, threads, BRIEFLY) }
+        let glanced = (of_all(&told) < TOLD * SHORT).then(|| Self::measured(plan, threads, GLANCE));
+        glanced.filter(|it| of_all(it) < GLANCED * SHORT).unwrap_or_else(|| Self::measured(plan, threads, BRIEFLY))
     }
 
     /// Seconds that `threads` threads take for `designs` designs.

@@ -30,8 +30,8 @@ const COPIES: u64 = 6;
 const DOMINATORS: usize = 8;
 /// Least number of waiting designs before they are merged.
 const WAITING: usize = 2048;
-/// Points of a front from which on merging is so dear that what waits is compared with too.
-const LARGE: usize = 4 * WAITING;
+/// Points of a front from which on merging is so dear that what waits is compared with too. Tests have small fronts.
+const LARGE: usize = if cfg!(test) { 100 } else { 4 * WAITING };
 
 /// The most points of a front with that many objectives which fit into that many bytes.
 pub fn most_points(objectives: usize, bytes: u64) -> u64 {
@@ -162,7 +162,7 @@ impl Front {
     }
 
     /// Is every design whose coordinates are at least these, and whose index is at least this, surely superfluous beside a point so far?
-    /// Points that wait are not asked.
+    /// Points that wait need not be asked.
     pub fn beats_from(&self, lower: &[f64], least_index: u64) -> bool {
         let dimensions = self.rules.len();
         match &self.filter {
@@ -231,6 +231,8 @@ impl Front {
             return;
         }
         let dimensions = self.rules.len();
+        // Its room is needed now, and what it compares with is out of date.
+        self.filter = Filter::Nothing;
         let waiting = std::mem::take(&mut self.waiting);
         let mut all = std::mem::take(&mut self.points);
         let known = all.len();

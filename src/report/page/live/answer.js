@@ -1,7 +1,7 @@
 // The answer to what is changed: asked at once, shown step by step, the newest question first.
 {
   // A question that has had no exact answer for so long is given up for a newer one; one that is younger is awaited, so that the front
-  // moves while a slider does. One that has its first idea, and whose exact answer will take longer, is given up at once.
+  // moves while a slider does. One that has its first idea, and whose exact answer will take longer than that, is given up at once.
   const PATIENCE = 120;
   let current = null; // { abort, since, exact, isLong }
   let wanted = null; // the newest question that was not asked yet: { set, eventAt }
