@@ -19,6 +19,8 @@ const LARGEST: u64 = 1 << 16;
 /// How long `--method auto` measures, and how long first, which is enough where judging every design takes far less than [`SHORT`].
 const BRIEFLY: Duration = Duration::from_millis(100);
 const GLANCE: Duration = Duration::from_millis(10);
+/// Where a glance sees fewer designs than this, by the model, there is none.
+const GLANCED_AT: f64 = 100.0;
 /// A glance decides if by it all designs take less than the one fraction of [`SHORT`], and by the model less than the other: it may
 /// have met nothing but rows that fail at once.
 const GLANCED: f64 = 0.25;
@@ -94,7 +96,8 @@ impl Speed {
         if of_all(&told) < BRIEFLY.as_secs_f64() {
             return told;
         }
-        let glanced = (of_all(&told) < TOLD * SHORT).then(|| Self::measured(plan, threads, GLANCE));
+        let is_quick = GLANCED_AT * told.seconds < GLANCE.as_secs_f64() && of_all(&told) < TOLD * SHORT;
+        let glanced = is_quick.then(|| Self::measured(plan, threads, GLANCE));
         glanced.filter(|it| of_all(it) < GLANCED * SHORT).unwrap_or_else(|| Self::measured(plan, threads, BRIEFLY))
     }
 

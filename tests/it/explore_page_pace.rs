@@ -49,14 +49,14 @@ fn a_hundred_million_evaluations_move_with_a_slider() {
                 times.sort_by(f64::total_cmp);
                 times[((times.len() - 1) as f64 * share).round() as usize]
             };
-            let [took, engine]: [&dyn Fn(&(f64, f64, f64)) -> f64; 2] = [&|it| it.0, &|it| it.1];
-            median = at(took, 0.5);
+            let (took, engine) = (|it: &(f64, f64, f64)| it.0, |it: &(f64, f64, f64)| it.1);
+            median = at(&took, 0.5);
             eprintln!(
                 "{file}: {} {which}, from the event to the painted exact front: median {median:.0} ms, 95 % within {:.0} ms; the engine: median {:.0} ms, 95 % within {:.0} ms",
                 part().count(),
-                at(took, 0.95),
-                at(engine, 0.5),
-                at(engine, 0.95),
+                at(&took, 0.95),
+                at(&engine, 0.5),
+                at(&engine, 0.95),
             );
         }
         assert!(moves.len() >= 80, "{}", moves.len());
