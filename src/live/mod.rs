@@ -313,8 +313,8 @@ impl Live {
     }
 }
 
-/// How long a search of so many seconds rests once it has told a coarse front: on a machine with few cores nobody draws it while all of them
-/// search on.
+/// How long a search of so many seconds rests once it has told a coarse front: on a machine with few cores nobody draws it while all of
+/// them search on.
 fn to_be_seen(expected: f64) -> Duration {
     Duration::from_secs_f64((0.1 * expected).min(DRAWN))
 }
