@@ -103,7 +103,7 @@ impl Decisive {
         })
     }
 
-    /// Is it looked for scenarios that decide about so many designs?
+    /// Does it pay to find the scenarios that decide about so many designs?
     pub(super) fn is_worth_it(scenarios: u64, designs: u64) -> bool {
         scenarios > 1 && scenarios.saturating_mul(designs) >= LEAST_WORK
     }

@@ -19,11 +19,11 @@ const LARGEST: u64 = 1 << 16;
 /// How long `--method auto` measures, and how long first, which is enough where judging every design takes far less than [`SHORT`].
 const BRIEFLY: Duration = Duration::from_millis(100);
 const GLANCE: Duration = Duration::from_millis(10);
-/// Where a glance sees fewer designs than this, by the model, there is none.
+/// There is no glance at a model by which a thread judges fewer designs than this in its time.
 const GLANCED_AT: f64 = 100.0;
-/// A glance decides if by it all designs take less than the one fraction of [`SHORT`], and by the model less than the other: it may
-/// have met nothing but rows that fail at once.
+/// A glance is enough if by it all designs take less than this part of [`SHORT`].
 const GLANCED: f64 = 0.25;
+/// It may have met nothing but rows that fail at once: so the model too must say that all designs take less than this many times [`SHORT`].
 const TOLD: f64 = 4.0;
 /// Seconds that judging every design may take before bounds are thought of.
 const SHORT: f64 = 1.0;

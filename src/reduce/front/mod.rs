@@ -162,7 +162,7 @@ impl Front {
     }
 
     /// Is every design whose coordinates are at least these, and whose index is at least this, surely superfluous beside a point so far?
-    /// Points that wait need not be asked.
+    /// Points that wait may be left out.
     pub fn beats_from(&self, lower: &[f64], least_index: u64) -> bool {
         let dimensions = self.rules.len();
         match &self.filter {
@@ -225,13 +225,13 @@ impl Front {
         }
     }
 
-    /// The same, after which nothing can be compared with the front.
+    /// The same without [`Front::refresh_filter`]: no design can be compared with the front after it.
     fn sort_waiting_in(&mut self) {
         if self.waiting.is_empty() {
             return;
         }
         let dimensions = self.rules.len();
-        // Its room is needed now, and what it compares with is out of date.
+        // It is out of date, and its memory is needed now.
         self.filter = Filter::Nothing;
         let waiting = std::mem::take(&mut self.waiting);
         let mut all = std::mem::take(&mut self.points);

@@ -133,7 +133,7 @@ pub enum KnownFront<'a> {
 
 impl KnownFront<'_> {
     /// Is every design whose coordinates are at least these, and whose index is at least this, surely superfluous beside a point so far?
-    /// Points that wait need not be asked.
+    /// Points that wait may be left out.
     pub fn beats_from(self, lower: &[f64], least_index: u64) -> bool {
         match self {
             Self::Front(front) => front.beats_from(lower, least_index),

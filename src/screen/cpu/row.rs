@@ -38,7 +38,7 @@ impl CpuEngine<'_> {
         done
     }
 
-    /// Begins to look which scenarios decide about a row's designs; false where all of them do.
+    /// Begins to look for the scenarios that decide about a row's designs; false where that cannot be done.
     pub(in crate::screen) fn begin_scenarios(&mut self) -> bool {
         self.numbers.as_mut().is_some_and(|(_, decisive)| {
             decisive.begin();
@@ -46,7 +46,7 @@ impl CpuEngine<'_> {
         })
     }
 
-    /// Finds which of those that were added decide about so many designs; their number.
+    /// Finds which of the scenarios that were added decide about so many designs, and returns how many these are.
     pub(in crate::screen) fn settle_scenarios(&mut self, added: usize, designs: u64) -> usize {
         let (Some((_, decisive)), Some(list)) = (&mut self.numbers, &self.tables.lanes) else { return 0 };
         decisive.settle(list, added, designs);

@@ -70,7 +70,7 @@ impl<'p> Counter<'p> {
         }
     }
 
-    /// Counts those of the designs about which a few scenarios decide; the others, or `None` if it was stopped.
+    /// Counts the designs about which a few scenarios decide. Returns those that are left, or `None` if it was stopped.
     ///
     /// A scenario that is no worse than another one fails at no condition that the other one does not fail at, and violates no constraint
     /// that the other one does not violate. Where a condition fails, though, what is violated in milder scenarios counts too: designs of
@@ -312,7 +312,7 @@ mod tests {
 
     #[test]
     fn a_few_scenarios_count_as_all_do() {
-        // Are some designs counted in few scenarios, and others left? Of single designs, those of which a condition fails.
+        // Each study with what is expected: are designs counted in few scenarios, and are designs left for all of them?
         for (study, has_few, has_left) in [
             // One scenario decides by itself.
             ("studies/metal-grid.toml", false, true),
