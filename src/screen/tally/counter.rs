@@ -10,6 +10,7 @@ use crate::screen::decisive::Decisive;
 use crate::screen::judged::JudgedDesigns;
 use crate::screen::spectrum::CaseSums;
 use crate::screen::tables::{BLOCK, FastBlock, Tables};
+use std::ops::Range;
 use std::sync::atomic::Ordering;
 
 /// What a quantity is over a block in the current scenario.
@@ -85,28 +86,26 @@ impl<'p> Counter<'p> {
         let fast = FastBlock::picked(plan, self.tables, designs);
         let mut marks = Marks::new(plan, designs.len());
         let (mut of_row, mut worst) = self.worst_of_none(designs.len());
-        let mut scenarios = 0;
-        self.engine.set_row(row);
-        for q in 0..plan.slow_scenarios.count() {
-            let prepared = self.engine.prepare(q);
-            for t in 0..plan.fast_scenarios.count() {
-                if self.engine.stopped() {
-                    return None;
-                }
-                self.engine.set_fast_scenario(t);
-                self.engine.row_values(prepared.clone());
-                marks.begin();
-                match self.failed_of_row() {
-                    Some(_) if !plan.lane_conditions.is_empty() => return all(),
-                    Some(number) => marks.mark_row(plan.study.model.first_of_reason(number)),
-                    None => {
-                        marks.values(self, &fast, Source::is_row);
-                        self.worsen_of_row(&mut of_row);
-                        self.engine.add_scenario(prepared.clone());
-                        scenarios += 1;
-                    }
+        let (mut scenarios, mut is_sure) = (0, true);
+        let done = self.each_scenario(row, |counter, _, prepared| {
+            marks.begin();
+            match counter.failed_of_row() {
+                Some(_) if !plan.lane_conditions.is_empty() => is_sure = false,
+                Some(number) => marks.mark_row(plan.study.model.first_of_reason(number)),
+                None => {
+                    marks.values(counter, &fast, Source::is_row);
+                    counter.worsen_of_row(&mut of_row);
+                    counter.engine.add_scenario(prepared);
+                    scenarios += 1;
                 }
             }
+            is_sure
+        });
+        if !done {
+            return None;
+        }
+        if !is_sure {
+            return all();
         }
         let settled = self.engine.settle_scenarios(scenarios, designs.len() as u64);
         // Nothing would be saved, and some designs might be judged twice.
@@ -143,30 +142,25 @@ impl<'p> Counter<'p> {
         let mut sums = CaseSums::new(plan, designs.len());
         // Worst values that are sums over cases are found by judging the feasible designs once more.
         let (mut of_row, mut worst) = self.worst_of_none(designs.len());
-        self.engine.set_row(row);
-        for q in 0..plan.slow_scenarios.count() {
-            let prepared = self.engine.prepare(q);
-            for t in 0..plan.fast_scenarios.count() {
-                if self.engine.stopped() {
-                    return false;
-                }
-                self.engine.set_fast_scenario(t);
-                self.engine.row_values(prepared.clone());
-                let failed = self.failed_of_row();
-                self.engine.evaluate(prepared.clone(), &fast);
-                marks.scenario(self, &fast, failed);
-                let mut has_failed = Vec::new();
-                if plan.spectrum.is_some() {
-                    // Whether a sum has a meaning depends on what has failed before.
-                    marks.add_to(plan, &mut failures);
-                    has_failed.extend(marks.ok.iter().map(|ok| *ok == 0));
-                }
-                self.sum(&mut sums, (q, t), &fast, &has_failed, &mut failures);
-                if plan.spectrum.is_none() {
-                    self.worsen_of_row(&mut of_row);
-                    self.worsen_lanes(&mut worst, q == 0 && t == 0, &fast);
-                }
+        let done = self.each_scenario(row, |counter, scenario, prepared| {
+            let failed = counter.failed_of_row();
+            counter.engine.evaluate(prepared, &fast);
+            marks.scenario(counter, &fast, failed);
+            let mut has_failed = Vec::new();
+            if plan.spectrum.is_some() {
+                // Whether a sum has a meaning depends on what has failed before.
+                marks.add_to(plan, &mut failures);
+                has_failed.extend(marks.ok.iter().map(|ok| *ok == 0));
             }
+            counter.sum(&mut sums, scenario, &fast, &has_failed, &mut failures);
+            if plan.spectrum.is_none() {
+                counter.worsen_of_row(&mut of_row);
+                counter.worsen_lanes(&mut worst, scenario == (0, 0), &fast);
+            }
+            true
+        });
+        if !done {
+            return false;
         }
         marks.add_to(plan, &mut failures);
         for &failures in &failures {
@@ -183,6 +177,26 @@ impl<'p> Counter<'p> {
         if let Some(judged) = &mut self.judged {
             let first = row * plan.fast.count();
             judged.add(designs.iter().map(|design| first + design), is_feasible(), &worst);
+        }
+        true
+    }
+
+    /// Enters a row and turns to one of its scenarios, slow and fast, after the other, as long as `look` wants to go on; `look` is told where
+    /// the prepared numbers stand. False if it was stopped.
+    fn each_scenario(&mut self, row: u64, mut look: impl FnMut(&mut Self, (u64, u64), Range<usize>) -> bool) -> bool {
+        self.engine.set_row(row);
+        for q in 0..self.plan.slow_scenarios.count() {
+            let prepared = self.engine.prepare(q);
+            for t in 0..self.plan.fast_scenarios.count() {
+                if self.engine.stopped() {
+                    return false;
+                }
+                self.engine.set_fast_scenario(t);
+                self.engine.row_values(prepared.clone());
+                if !look(self, (q, t), prepared.clone()) {
+                    return true;
+                }
+            }
         }
         true
     }
