@@ -308,6 +308,27 @@ pub fn rows(plan: &Plan, columns: &[Column], designs: &[u64], threads: usize, co
     Ok(rows)
 }
 
+/// What differs by less, relative to itself, is the same number with other rounding errors.
+const ROUNDING: f64 = 1e-9;
+
+/// Where another scenario becomes the worst of rows in their order only by rounding, the one before stays.
+pub(crate) fn keep_scenarios(plan: &Plan, columns: &[Column], rows: &mut [Row], control: &Control) {
+    let mut reference = Reference::new(plan, columns, &control.stop);
+    for (at, column) in columns.iter().enumerate().filter(|(_, it)| it.over.is_worst()) {
+        let mut before = None;
+        for (index, row) in rows.iter_mut().enumerate() {
+            let AtWorst { value: Some(value), scenario } = row.columns[at] else { continue };
+            if let Some(kept) = before.filter(|&kept| kept != scenario) {
+                let (_, other) = reference.at(index as u64, kept);
+                if other(column.quantity).is_some_and(|other| (other - value).abs() <= ROUNDING * value.abs()) {
+                    row.columns[at].scenario = kept;
+                }
+            }
+            before = Some(row.columns[at].scenario);
+        }
+    }
+}
+
 /// The rows of the designs at these positions by the scalar reference alone.
 fn one_by_one(plan: &Plan, columns: &[Column], positions: &[u64], threads: usize, control: &Control) -> Result<Vec<Row>> {
     let begin = || Reference::new(plan, columns, &control.stop);

@@ -14,9 +14,6 @@ use std::path::Path;
 /// Most draws that correlations are shown of.
 const SHOWN: u64 = 1 << 16;
 
-/// A mean that is this small beside the standard deviation is what rounding leaves of zero.
-const ROUNDING: f64 = 1e-12;
-
 /// What an input with a distribution is called in tables: that a factor or addend is drawn stands in its name.
 fn column_name(it: &UncertainInput) -> String {
     match it.effect {
@@ -33,19 +30,7 @@ fn columns(probability: &Probability, draws: u64) -> Result<Vec<Vec<f64>>> {
 /// The axes of `check` that are drawn.
 pub fn axes(probability: &Probability, grid: &mut TextGrid) {
     for it in &probability.inputs {
-        let ends = [("below", it.law.from), ("above", it.law.to)];
-        let ends: Vec<String> = ends.iter().filter_map(|(word, end)| Some(format!("{word} {}", short((*end)?)))).collect();
-        let cut = if ends.is_empty() { String::new() } else { format!(", cut off {}", ends.join(" and ")) };
-        let (mean, sd) = (it.distribution.mean(), it.distribution.sd());
-        // Numbers that cancel leave a rest of their rounding errors.
-        let mean = if mean.abs() < ROUNDING * sd { 0.0 } else { mean };
-        let law = format!("{}{cut}: mean {}, sd {}", it.law.name(), short(mean), short(sd));
-        let what = match it.effect {
-            Effect::Is => law,
-            Effect::Times => format!("times {law}"),
-            Effect::Plus => format!("plus {law}"),
-        };
-        grid.row(["drawn".to_owned(), it.name.clone(), String::new(), what]);
+        grid.row(["drawn".to_owned(), it.name.clone(), String::new(), it.in_words()]);
     }
 }
 

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::live::LiveAnswer;
 use crate::live::around::{PLACES, around};
 use crate::plan::Plan;
-use crate::report::{live as told, slices};
+use crate::report::{live as told, sections, slices};
 use crate::screen::Control;
 use crate::study::{Axis, Quantity, ReportColumn, number, value_of};
 use serde::Deserialize;
@@ -192,7 +192,7 @@ impl Explorer {
         let told = json!({
             "kind": "design", "design": design.to_string(), "inputs": inputs, "outputs": named.collect::<Vec<_>>(), "feasible": row.feasible,
             "status": row.status.reason(model), "without_result": row.without_result,
-            "scenarios": told::scenarios(&plan, &scenarios),
+            "scenarios": told::scenarios(&plan, &scenarios), "section": sections::of_design(&plan, design),
         });
         tell((told, Vec::new()))
     }

@@ -1,94 +1,335 @@
-//! What is around a design: along each input that is chosen, the values of objectives and constraints, all else as it is.
+//! What is around a design: along each axis of the study, the values of objectives and constraints, all else as it is.
 
 use crate::certify::{self, Column, Role, Row};
 use crate::error::Result;
 use crate::plan::Plan;
 use crate::screen::Control;
 use crate::study::{Axis, Levels, Report, Study};
+use crate::table::written;
 
-/// Places along an input.
+/// Places along an axis.
 pub const PLACES: u64 = 33;
+/// Times that the end of what is feasible is looked for between two places: of 33 places over 1e6 levels that finds the very level.
+const HALVINGS: usize = 16;
+/// The same where an axis has no levels.
+const HALVINGS_BETWEEN: usize = 6;
+/// Axes with more levels are taken for ranges.
+const MOST_LEVELS: u64 = 1 << 20;
+/// Inputs that the name of a row of a catalogue says.
+const NAMED: usize = 3;
 
-/// Designs that differ in one input.
+/// Designs that differ along one axis.
 #[derive(Debug)]
 pub struct Slice {
-    /// The input.
-    pub input: usize,
-    /// Its value in the design.
+    /// The axis.
+    pub name: String,
+    /// Unit of its values, as text.
+    pub unit: String,
+    /// Its value in the design; of words and rows their number.
     pub own: f64,
     /// Its values, from the least.
     pub values: Vec<f64>,
+    /// What the values are called, where they have no order: words, and rows of a catalogue.
+    pub words: Option<Vec<String>>,
     /// The design at each of them, by the f64 reference.
     pub rows: Vec<Row>,
 }
 
-/// The inputs that have a slice around a design, with their levels: axes of numbers.
-pub fn sliced<'p>(plan: &'p Plan, inputs: &[f64]) -> Vec<(usize, &'p Levels)> {
-    let study = &plan.study;
-    let single = study.design.iter().filter_map(|axis| match axis {
-        Axis::Single { input, levels } => Some((*input, levels)),
-        _ => None,
-    });
-    let of_numbers = |&(input, levels): &(usize, &Levels)| {
-        let table = &study.model.inputs[input];
-        let has_words = (0..levels.count().min(1000)).any(|at| table.word_for(levels.value(at)).is_some());
-        !has_words && table.word_for(inputs[input]).is_none()
-    };
-    single.filter(of_numbers).collect()
+/// The axes along which a slice can be laid: those with several levels.
+pub fn sliced(plan: &Plan) -> impl Iterator<Item = &Axis> {
+    plan.study.design.iter().filter(|axis| axis.count() > 1)
 }
 
-/// The slices around a design over its axes of numbers, each of about `most` places, and the columns of their rows: objectives and
-/// constraints. What is only reported may cost more than all else, as fresh draws do.
+/// Most designs of one slice that has about so many places.
+pub fn most_designs(places: u64) -> u64 {
+    places + 3 + 2 * HALVINGS as u64
+}
+
+/// The slices around a design, each of about `most` places, and the columns of their rows: objectives and constraints. What is only reported
+/// may cost more than all else, as fresh draws do.
 ///
 /// # Errors
 /// [`Error::Stopped`](crate::error::Error::Stopped) after `control.stop`.
 pub fn around(plan: &Plan, design: u64, most: u64, threads: usize, control: &Control) -> Result<(Vec<Column>, Vec<Slice>)> {
     let study = &plan.study;
-    let inputs = plan.space.inputs(design, 0);
-    let mut slices = Vec::new();
     let columns: Vec<Column> = certify::columns(study).into_iter().filter(|it| it.role != Role::Report).collect();
-    for (input, levels) in sliced(plan, &inputs) {
-        let values = places(levels, study.model.inputs[input].integer, inputs[input], most);
-        let line = Plan::new(along(study, &inputs, input, &values));
-        let designs: Vec<u64> = (0..line.designs()).collect();
-        let rows = certify::rows(&line, &columns, &designs, threads, control)?;
-        slices.push(Slice { input, own: inputs[input], values, rows });
-    }
+    let line = Line { study, inputs: plan.space.inputs(design, 0), columns: &columns, threads, control };
+    let slices = sliced(plan).map(|axis| line.slice(axis, most)).collect::<Result<Vec<_>>>()?;
     Ok((columns, slices))
 }
 
-/// The study of the designs that differ in one input.
-fn along(study: &Study, inputs: &[f64], varied: usize, values: &[f64]) -> Study {
-    let single = |&input: &usize| {
-        let values = if input == varied { values.to_vec() } else { vec![inputs[input]] };
-        Axis::Single { input, levels: Levels::List(values) }
-    };
-    Study {
-        design: study.design.iter().flat_map(Axis::inputs).map(single).collect(),
-        labels: Vec::new(),
-        sample: None,
-        report: Report { columns: study.report.columns.clone(), front_budget: study.report.front_budget, ..Report::default() },
-        ..study.clone()
+/// How designs along a line through one are judged.
+struct Line<'a> {
+    study: &'a Study,
+    inputs: Vec<f64>,
+    columns: &'a [Column],
+    threads: usize,
+    control: &'a Control,
+}
+
+impl Line<'_> {
+    fn slice(&self, axis: &Axis, most: u64) -> Result<Slice> {
+        let model = &self.study.model;
+        match axis {
+            Axis::Single { input, levels } => {
+                let table = &model.inputs[*input];
+                let (name, unit) = (table.name.clone(), table.unit.symbol.to_owned());
+                let has_words =
+                    table.is_enumeration() || (0..levels.count().min(1000)).any(|at| table.word_for(levels.value(at)).is_some());
+                if !has_words {
+                    return self.along_levels(axis, levels, most).map(|(values, rows)| {
+                        let own = self.inputs[*input];
+                        Slice { name, unit, own, values, words: None, rows }
+                    });
+                }
+                let values: Vec<f64> = (0..levels.count()).map(|level| levels.value(level)).collect();
+                let rows: Vec<Vec<f64>> = values.iter().map(|&value| vec![value]).collect();
+                self.along_rows(axis, &rows, most).map(|slice| Slice { name, ..slice })
+            }
+            Axis::Joint { rows, .. } => self.along_rows(axis, rows, most).map(|slice| Slice { name: axis.name(model), ..slice }),
+        }
+    }
+
+    /// Along rows without an order.
+    fn along_rows(&self, axis: &Axis, rows: &[Vec<f64>], most: u64) -> Result<Slice> {
+        let inputs = axis.inputs();
+        let is_own = |row: &&Vec<f64>| inputs.iter().zip(*row).all(|(&input, value)| value.to_bits() == self.inputs[input].to_bits());
+        let own = rows.iter().position(|row| is_own(&row)).unwrap_or(0);
+        let chosen = spread(rows.len(), most, own);
+        let values: Vec<Vec<f64>> = chosen.iter().map(|&row| rows[row].clone()).collect();
+        let word = |row: &Vec<f64>| {
+            let each = inputs.iter().zip(row).take(NAMED).map(|(&input, &value)| written(&self.study.model.inputs[input], value));
+            each.collect::<Vec<_>>().join(", ")
+        };
+        let words = Some(values.iter().map(word).collect());
+        let found = self.judged(axis, &values)?;
+        let place = |&row: &usize| row as f64;
+        Ok(Slice {
+            name: String::new(),
+            unit: String::new(),
+            own: place(&own),
+            values: chosen.iter().map(place).collect(),
+            words,
+            rows: found,
+        })
+    }
+
+    /// Along numbers: some of them, and from the design on to either side the last feasible one and the one after it.
+    fn along_levels(&self, axis: &Axis, levels: &Levels, most: u64) -> Result<(Vec<f64>, Vec<Row>)> {
+        let own = self.inputs[axis.inputs()[0]];
+        let places = Places::new(levels, own);
+        let mut values = places.some(most);
+        let judged = |values: &[f64]| self.judged(axis, &values.iter().map(|&it| vec![it]).collect::<Vec<_>>());
+        let mut rows = judged(&values)?;
+        for _ in 0..places.halvings() {
+            let here = values.iter().position(|it| it.to_bits() == own.to_bits()).unwrap_or(0);
+            let further: Vec<f64> =
+                edges(&rows, here).into_iter().flatten().filter_map(|(a, b)| places.between(values[a], values[b])).collect();
+            if further.is_empty() {
+                break;
+            }
+            let found = judged(&further)?;
+            let mut all: Vec<(f64, Row)> = values.into_iter().zip(rows).chain(further.into_iter().zip(found)).collect();
+            all.sort_by(|a, b| a.0.total_cmp(&b.0));
+            (values, rows) = all.into_iter().unzip();
+        }
+        let line = self.along(axis, &values.iter().map(|&it| vec![it]).collect::<Vec<_>>());
+        certify::keep_scenarios(&Plan::new(line), self.columns, &mut rows, self.control);
+        Ok((values, rows))
+    }
+
+    fn judged(&self, axis: &Axis, rows: &[Vec<f64>]) -> Result<Vec<Row>> {
+        let line = Plan::new(self.along(axis, rows));
+        let designs: Vec<u64> = (0..line.designs()).collect();
+        certify::rows(&line, self.columns, &designs, self.threads, self.control)
+    }
+
+    /// The study of the designs that differ along one axis.
+    fn along(&self, varied: &Axis, rows: &[Vec<f64>]) -> Study {
+        let study = self.study;
+        let fixed = |&input: &usize| Axis::Single { input, levels: Levels::List(vec![self.inputs[input]]) };
+        let others = study.design.iter().filter(|axis| !std::ptr::eq(*axis, varied)).flat_map(Axis::inputs).map(fixed);
+        let axis = match varied {
+            Axis::Single { input, .. } => Axis::Single { input: *input, levels: Levels::List(rows.iter().map(|row| row[0]).collect()) },
+            Axis::Joint { inputs, .. } => Axis::Joint { inputs: inputs.clone(), rows: rows.to_vec() },
+        };
+        Study {
+            design: others.chain([axis]).collect(),
+            labels: Vec::new(),
+            sample: None,
+            report: Report { columns: study.report.columns.clone(), front_budget: study.report.front_budget, ..Report::default() },
+            ..study.clone()
+        }
     }
 }
 
-/// Values between the ends of an axis, with that of the design among them.
-#[allow(clippy::cast_precision_loss, reason = "a few places of a picture")]
-fn places(levels: &Levels, integer: bool, own: f64, most: u64) -> Vec<f64> {
-    let (low, high) = levels.ends();
-    let is_log = matches!(levels, Levels::Even { log: true, .. } | Levels::Step { log: true, .. } | Levels::Continuous { log: true, .. });
-    let place = |at: u64| {
-        let t = at as f64 / (most - 1) as f64;
-        match at {
-            0 => low,
-            at if at == most - 1 => high,
-            _ if integer => (low + t * (high - low)).round(),
-            _ if is_log => low * (high / low).powf(t),
-            _ => low + t * (high - low),
+/// The last feasible place to either side of a feasible one, with the next one, if there is one.
+fn edges(rows: &[Row], here: usize) -> [Option<(usize, usize)>; 2] {
+    if !rows[here].feasible {
+        return [None, None];
+    }
+    let down = (0..here).rev().find(|&at| !rows[at].feasible).map(|at| (at, at + 1));
+    let up = (here + 1..rows.len()).find(|&at| !rows[at].feasible).map(|at| (at - 1, at));
+    [down, up]
+}
+
+/// About `most` of `count` rows evenly, the own one among them.
+fn spread(count: usize, most: u64, own: usize) -> Vec<usize> {
+    let most = (most as usize).min(count);
+    let even = |at: usize| if most > 1 { (at * (count - 1) + (most - 1) / 2) / (most - 1) } else { 0 };
+    let mut chosen: Vec<usize> = (0..most).map(even).chain([own]).collect();
+    chosen.sort_unstable();
+    chosen.dedup();
+    chosen
+}
+
+/// Where a design may stand on an axis of numbers.
+enum Places {
+    /// On one of these, from the least.
+    Levels { levels: Vec<f64>, own: usize },
+    /// Anywhere.
+    Between { low: f64, high: f64, log: bool, own: f64 },
+}
+
+impl Places {
+    fn new(levels: &Levels, own: f64) -> Self {
+        if levels.count() > MOST_LEVELS || matches!(levels, Levels::Continuous { .. }) {
+            let (low, high) = levels.ends();
+            let log =
+                matches!(levels, Levels::Even { log: true, .. } | Levels::Step { log: true, .. } | Levels::Continuous { log: true, .. });
+            return Self::Between { low: low.min(high), high: low.max(high), log, own };
         }
-    };
-    let mut values: Vec<f64> = (0..most).map(place).chain([own]).collect();
-    values.sort_by(f64::total_cmp);
-    values.dedup();
-    values
+        let mut all: Vec<f64> = (0..levels.count()).map(|level| levels.value(level)).chain([own]).collect();
+        all.sort_by(f64::total_cmp);
+        all.dedup();
+        let place = all.iter().position(|it| it.to_bits() == own.to_bits()).unwrap_or(0);
+        Self::Levels { levels: all, own: place }
+    }
+
+    /// About so many of them: the ends, the own one, and its neighbours.
+    #[allow(clippy::cast_precision_loss, reason = "a few places of a picture")]
+    fn some(&self, most: u64) -> Vec<f64> {
+        match self {
+            Self::Levels { levels, own } => {
+                let mut chosen = spread(levels.len(), most, *own);
+                chosen.extend([own.saturating_sub(1), (own + 1).min(levels.len() - 1)]);
+                chosen.sort_unstable();
+                chosen.dedup();
+                chosen.into_iter().map(|at| levels[at]).collect()
+            }
+            Self::Between { low, high, log, own } => {
+                let place = |at: u64| {
+                    let t = at as f64 / (most - 1) as f64;
+                    match at {
+                        0 => *low,
+                        at if at == most - 1 => *high,
+                        _ if *log => low * (high / low).powf(t),
+                        _ => low + t * (high - low),
+                    }
+                };
+                let mut values: Vec<f64> = (0..most).map(place).chain([*own]).collect();
+                values.sort_by(f64::total_cmp);
+                values.dedup();
+                values
+            }
+        }
+    }
+
+    fn halvings(&self) -> usize {
+        if matches!(self, Self::Levels { .. }) { HALVINGS } else { HALVINGS_BETWEEN }
+    }
+
+    /// One in the middle between two, if there is one.
+    fn between(&self, a: f64, b: f64) -> Option<f64> {
+        match self {
+            Self::Levels { levels, .. } => {
+                let at = |value: f64| levels.partition_point(|it| *it < value);
+                let (a, b) = (at(a), at(b));
+                (b > a + 1).then(|| levels[(a + b) / 2])
+            }
+            Self::Between { log, .. } => Some(if *log { (a * b).sqrt() } else { 0.5 * (a + b) }).filter(|it| a < *it && *it < b),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::study_of;
+
+    /// A push belt whose thickness has many more levels than a slice has places.
+    fn plan(levels: &str) -> Plan {
+        let text = format!(
+            "[design]\nband_thickness_mm = {levels}\nband_count = [6, 9]\n[fixed]\ntorque_Nm = 100\nstrength_MPa = 900\ntraction = 0.3\n[operation]\nratio = {{ from = 0.5, to = 2, count = 9 }}\n\
+             [constraints]\nstress_margin = {{ min = 0 }}\n[objectives]\naxial_force_N = \"min\"\n"
+        );
+        Plan::new(study_of(&crate::models::find("metal-cvt").expect("it is a model"), &text).expect("the study is right"))
+    }
+
+    #[test]
+    fn the_end_of_what_is_feasible_is_the_very_level() {
+        let plan = plan("{ from = 0.1, to = 0.4, count = 3001 }");
+        let control = Control::default();
+        let columns = certify::columns(&plan.study);
+        let all: Vec<u64> = (0..plan.designs()).collect();
+        let feasible: Vec<bool> = certify::rows(&plan, &columns, &all, 2, &control).expect("rows").iter().map(|it| it.feasible).collect();
+        let design = (0..plan.designs()).find(|&it| feasible[it as usize]).expect("some are feasible");
+        let count = plan.space.inputs(design, 0);
+        let own = |at: u64| plan.space.inputs(at, 0)[plan.study.design[1].inputs()[0]] == count[plan.study.design[1].inputs()[0]];
+        let thickness = |at: u64| plan.space.inputs(at, 0)[plan.study.design[0].inputs()[0]];
+        let mut line: Vec<(f64, bool)> = all.iter().filter(|&&at| own(at)).map(|&at| (thickness(at), feasible[at as usize])).collect();
+        line.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (_, slices) = around(&plan, design, PLACES, 2, &control).expect("slices");
+        let slice = &slices[0];
+        assert!(slice.values.len() < 80 && slice.values.len() as u64 <= most_designs(PLACES));
+        let here = slice.values.iter().position(|it| *it == slice.own).expect("its own place");
+        let [_, up] = edges(&slice.rows, here);
+        let (last, next) = up.expect("it ends somewhere");
+        let at = line.iter().position(|(value, _)| *value == slice.values[next]).expect("it is a level");
+        assert!(line[at - 1].0 == slice.values[last] && line[at - 1].1 && !line[at].1, "{:?}", &line[at - 1..=at]);
+        // The slice over the bands has their two levels, and no other.
+        assert_eq!(slices[1].values, [6.0, 9.0]);
+    }
+
+    #[test]
+    fn places_are_levels_and_those_beside_the_design_are_there() {
+        let levels = Levels::Step { from: 0.0, step: 1.0, count: 1000, log: false };
+        let values = Places::new(&levels, 401.0).some(33);
+        assert!([400.0, 401.0, 402.0, 0.0, 999.0].iter().all(|it| values.contains(it)) && values.iter().all(|it| it.fract() == 0.0));
+        assert_eq!(spread(5, 33, 2), [0, 1, 2, 3, 4]);
+        assert_eq!(spread(100, 3, 7), [0, 7, 50, 99]);
+        let anywhere = Places::new(&Levels::Continuous { from: 1.0, to: 100.0, log: true }, 10.0);
+        assert_eq!(anywhere.between(1.0, 100.0), Some(10.0));
+    }
+
+    #[test]
+    fn words_and_rows_of_a_catalogue_have_slices_too() {
+        let text = "[design]\ncases = [{ band_count = 6, band_thickness_mm = 0.2 }, { band_count = 9, band_thickness_mm = 0.15 }]\n\
+                    traction = [\"limit\", 0.3]\n[objectives]\naxial_force_N = \"min\"\n";
+        let plan = Plan::new(study_of(&crate::models::find("metal-cvt").expect("it is a model"), text).expect("the study is right"));
+        let (_, slices) = around(&plan, 0, PLACES, 1, &Control::default()).expect("slices");
+        let words: Vec<_> = slices.iter().map(|it| (it.name.as_str(), it.words.clone().expect("words"), it.rows.len())).collect();
+        assert_eq!(words[0], ("band_count + band_thickness_mm", vec!["6, 0.2".to_owned(), "9, 0.15".to_owned()], 2));
+        assert_eq!(words[1], ("traction", vec!["limit".to_owned(), "0.3".to_owned()], 2));
+    }
+
+    #[test]
+    fn a_scenario_that_is_the_worst_by_rounding_only_is_no_other_one() {
+        // Bending does not depend on the torque, and the radii depend on the ratio.
+        let text = "[design]\nband_thickness_mm = [0.1, 0.15, 0.2]\n[operation]\ntorque_Nm = [50, 100]\nratio = [0.5, 2]\n\
+                    [objectives]\nbending_stress_MPa = \"min\"\n";
+        let plan = Plan::new(study_of(&crate::models::find("metal-cvt").expect("it is a model"), text).expect("the study is right"));
+        let columns = certify::columns(&plan.study);
+        let control = Control::default();
+        let mut rows = certify::rows(&plan, &columns, &[0, 1, 2], 1, &control).expect("rows");
+        let worst = rows[0].columns[0].scenario;
+        let [of_other_torque, of_other_ratio] = [worst ^ 2, worst ^ 1];
+        rows[1].columns[0].scenario = of_other_torque;
+        rows[2].columns[0].scenario = of_other_ratio;
+        // Another ratio has another stress, so this row stays as it is told.
+        rows[2].columns[0].value = rows[2].columns[0].value.map(|it| 1.1 * it);
+        certify::keep_scenarios(&plan, &columns, &mut rows, &control);
+        let scenarios: Vec<u64> = rows.iter().map(|row| row.columns[0].scenario).collect();
+        assert_eq!(scenarios, [worst, worst, of_other_ratio]);
+    }
 }

@@ -3,6 +3,7 @@
 use crate::certify::{self, Column, Role, Row};
 use crate::error::Result;
 use crate::export::tables::LABEL;
+use crate::models::Worse;
 use crate::names::MOST_ON_PAGE;
 use crate::parallel::with_beside;
 use crate::plan::Plan;
@@ -44,6 +45,8 @@ struct Shown {
     doc: String,
     role: &'static str,
     direction: String,
+    /// Which end of the scenarios it is, if it is one: a bound on the quantity is one on this value only where it has the same end.
+    end: Option<Worse>,
     words: Option<Vec<String>>,
     values: Packed,
     scenarios: Option<Vec<u32>>,
@@ -211,6 +214,7 @@ fn index_column(designs: &[u64]) -> Shown {
         doc: "Index of the design in the study.".to_owned(),
         role: "index",
         direction: String::new(),
+        end: None,
         words: None,
         values: Packed::U64(designs.to_vec()),
         scenarios: None,
@@ -227,6 +231,7 @@ fn label_column<'r>(name: &str, cells: impl Iterator<Item = &'r str> + Clone) ->
         doc: LABEL.to_owned(),
         role: "label",
         direction: String::new(),
+        end: None,
         values: Packed::U32(cells.map(place).collect()),
         words: Some(words.into_iter().map(str::to_owned).collect()),
         scenarios: None,
@@ -258,6 +263,7 @@ fn input_column<'r>(study: &Study, axis: &Axis, column: usize, input: usize, cel
         doc: table.doc.clone(),
         role: "design",
         direction: String::new(),
+        end: None,
         words,
         values,
         scenarios: None,
@@ -288,6 +294,7 @@ impl Shown {
                 Role::Report => "report",
             },
             direction: direction(study, column),
+            end: column.end().filter(|_| column.over.is_worst()),
             words: None,
             values,
             scenarios: Some(scenarios),
@@ -297,7 +304,7 @@ impl Shown {
     fn describe(&self) -> Value {
         json!({
             "name": self.name, "unit": self.unit, "doc": self.doc, "role": self.role, "direction": self.direction,
-            "type": self.values.kind(), "words": self.words, "scenario": self.scenarios.is_some(),
+            "end": self.end.map(Worse::word), "type": self.values.kind(), "words": self.words, "scenario": self.scenarios.is_some(),
         })
     }
 }

@@ -1,7 +1,8 @@
 //! What the page of a study in work is told: as the page of a result has it, step by step, with the numbers as they are in memory.
 
 use super::front::{ShownFront, of_rows};
-use super::{constraints_json, inputs, model_json, objectives_json, scenario_inputs};
+use super::inputs::{drawn, inputs};
+use super::{constraints_json, model_json, objectives_json, scenario_inputs};
 use crate::certify::objective_columns;
 use crate::export::ideal_and_knee;
 use crate::live::{Live, LiveCounts, LiveFront};
@@ -66,6 +67,7 @@ pub fn study(live: &Live, plan: &Plan, text: &str, command: &str, evaluate: &str
             "feasible": null,
         },
         "inputs": inputs(study),
+        "drawn": drawn(study),
         "command": command,
         "evaluate": evaluate,
         "notes": study.remarks(),

@@ -5,10 +5,12 @@
 
 mod front;
 mod influence;
+mod inputs;
 #[cfg(feature = "cli")]
 pub mod live;
 mod page;
 mod papers;
+pub mod sections;
 pub mod slices;
 mod summary;
 
@@ -24,7 +26,7 @@ use crate::reading::{Folder, STUDY, changed, json_of, picture_of, text_of};
 use crate::reduce::Reported;
 use crate::screen::Control;
 use crate::study::{Axis, Study, number, value_of};
-use crate::table::written;
+use inputs::{drawn, inputs};
 use serde_json::{Map, Value, json};
 use std::path::Path;
 use std::time::Duration;
@@ -127,10 +129,12 @@ pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
         },
         "run": json_of(folder, RUN).ok().filter(summary::is_run),
         "inputs": inputs(study),
+        "drawn": drawn(study),
         "objectives": objectives,
         "constraints": constraints,
         "front": front.as_ref().map(|it| with_knee(it, &summary)),
         "around": around,
+        "sections": front.as_ref().map(|it| sections::of_front(plan, &it.designs)),
         "scenarios": scenarios.map(|numbers| scenario_inputs(plan, numbers)),
         "evaluate": evaluate,
         "tally": summary["tally"],
@@ -188,59 +192,6 @@ fn with_knee(front: &front::ShownFront, summary: &Value) -> Value {
     json["knee"] = knee.and_then(|knee| front.designs.iter().position(|&it| it == knee)).into();
     json["ideal"] = summary["ideal"].clone();
     json
-}
-
-/// Every input with its role in the study, and its value if no axis sets it.
-fn inputs(study: &Study) -> Vec<Value> {
-    let model = &study.model;
-    let sets = |axes: &[Axis], input: usize| axes.iter().any(|axis| axis.inputs().contains(&input));
-    let role = |input| match () {
-        () if sets(&study.design, input) => "design",
-        () if sets(&study.operation, input) => "operation",
-        () if sets(&study.uncertainty, input) => "uncertainty",
-        () => "fixed",
-    };
-    let described = |(number, input): (usize, &crate::models::Input)| {
-        let mut described = json!({
-            "name": input.name, "unit": input.unit.symbol, "symbol": input.symbol, "doc": input.doc, "role": role(number),
-            "only_for": input.only_for,
-        });
-        match role(number) {
-            "fixed" => described["value"] = value_of(model, number, study.fixed[number]),
-            _ => {
-                described["over"] = over(study, number).into();
-                if let Some((least, largest)) = ends(study, number) {
-                    (described["least"], described["largest"]) = (least.into(), largest.into());
-                }
-            }
-        }
-        described
-    };
-    model.inputs.iter().enumerate().map(described).collect()
-}
-
-/// The least and the largest number that an axis gives an input; `None` for one of words.
-fn ends(study: &Study, input: usize) -> Option<(f64, f64)> {
-    let axes = study.design.iter().chain(&study.operation).chain(&study.uncertainty);
-    let (axis, column) = axes.filter_map(|axis| Some((axis, axis.inputs().iter().position(|&it| it == input)?))).next()?;
-    let table = &study.model.inputs[input];
-    let (least, largest) = axis.ends(column);
-    (!table.is_enumeration() && table.word_for(least).is_none() && table.word_for(largest).is_none()).then_some((least, largest))
-}
-
-/// The values that an axis gives an input, as text: its ends, or its words.
-fn over(study: &Study, input: usize) -> String {
-    let axes = study.design.iter().chain(&study.operation).chain(&study.uncertainty);
-    let found = axes.filter_map(|axis| Some((axis, axis.inputs().iter().position(|&it| it == input)?))).next();
-    let Some((axis, column)) = found else { return String::new() };
-    let table = &study.model.inputs[input];
-    let (least, largest) = axis.ends(column);
-    if table.is_enumeration() {
-        let mut words: Vec<_> = (0..axis.count()).map(|level| written(table, axis.value(column, level))).collect();
-        words.dedup();
-        return words.join(", ");
-    }
-    if least == largest { written(table, least) } else { format!("{} to {}", written(table, least), written(table, largest)) }
 }
 
 /// The inputs of some scenarios.

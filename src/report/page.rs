@@ -14,6 +14,7 @@ const SCRIPTS: &[&str] = &[
     include_str!("page/colour.js"),
     include_str!("page/raster.js"),
     include_str!("page/save.js"),
+    include_str!("page/rows.js"),
     include_str!("page/pins.js"),
     include_str!("page/choose/ranking.js"),
     include_str!("page/choose/stability.js"),

@@ -1,11 +1,11 @@
-//! What is around a design, for a page: the values of objectives and constraints along each input that is chosen, all else as it is.
+//! What is around a design, for a page: the values of objectives and constraints along each axis, all else as it is.
 //!
 //! The page of a study in work asks for it design by design. The page of a result holds it for the knee only, within bounds that hold on
 //! every machine, so that its bytes do too.
 
 use crate::certify::{self, Column, Role};
 use crate::error::Result;
-use crate::live::around::{PLACES, Slice, around, sliced};
+use crate::live::around::{PLACES, Slice, around, most_designs, sliced};
 use crate::models::Effort;
 use crate::plan::Plan;
 use crate::screen::Control;
@@ -24,7 +24,6 @@ pub fn told(plan: &Plan, columns: &[Column], slices: &[Slice]) -> Value {
     let study = &plan.study;
     let named = columns.iter().map(|it| json!({ "name": it.name, "unit": it.unit(study), "doc": it.doc(study) }));
     let slices = slices.iter().map(|slice| {
-        let input = &study.model.inputs[slice.input];
         let lines = (0..columns.len()).map(|at| {
             let of = |it: Option<f64>| it.filter(|it| it.is_finite()).map(number);
             let values = slice.rows.iter().map(|row| of(row.columns[at].value).unwrap_or(Value::Null));
@@ -33,7 +32,7 @@ pub fn told(plan: &Plan, columns: &[Column], slices: &[Slice]) -> Value {
         });
         let status = |row: &certify::Row| (row.without_result > 0).then(|| row.status.reason(&study.model).to_owned());
         json!({
-            "input": input.name, "unit": input.unit.symbol, "own": number(slice.own), "integer": input.integer,
+            "input": slice.name, "unit": slice.unit, "own": number(slice.own), "words": slice.words,
             "at": slice.values.iter().map(|&it| number(it)).collect::<Vec<_>>(),
             "feasible": slice.rows.iter().map(|row| row.feasible).collect::<Vec<_>>(),
             "status": slice.rows.iter().map(status).collect::<Vec<_>>(), "lines": lines.collect::<Vec<_>>(),
@@ -47,14 +46,14 @@ pub fn told(plan: &Plan, columns: &[Column], slices: &[Slice]) -> Value {
 /// # Errors
 /// [`Error::Stopped`](crate::error::Error::Stopped) after `control.stop`.
 pub fn of_knee(plan: &Plan, knee: u64, threads: usize, control: &Control) -> Result<Value> {
-    let axes = sliced(plan, &plan.space.inputs(knee, 0)).len() as u64;
+    let axes = sliced(plan).count() as u64;
     if axes == 0 {
         return Ok(Value::Null);
     }
     let columns = certify::columns(&plan.study);
     let judged = columns.iter().filter(|it| it.role != Role::Report).count() as u64;
     let Effort { prepare, finish } = plan.effort();
-    let designs = |places: u64| axes * (places + 1);
+    let designs = |places: u64| axes * most_designs(places);
     #[allow(clippy::cast_precision_loss, reason = "an estimate")]
     let fits = |&places: &u64| (prepare + finish) * designs(places) as f64 <= MOST_SECONDS && designs(places) * judged <= MOST_NUMBERS;
     let is_proven = columns.iter().any(|it| plan.study.is_proven(it.quantity));

@@ -360,7 +360,14 @@ fn designs_that_a_first_front_lacks_stay_pinned_and_on_the_card() {
     browser.evaluate("beltspace.change({ 'constraints.stress_margin.min': String(Math.max(...beltspace.page.front.columns.find((it) => it.name === 'stress_margin').values) - 1e-9) })");
     answered(&mut browser);
     browser.wait("document.querySelector('#card').hidden && beltspace.page.state.card === null && beltspace.page.state.awaited === null");
-    browser.wait("!location.hash.includes('d=') && !location.hash.includes('p=')");
+    // What was pinned before the change stays pinned, and is in the address with the changes that it is of.
+    browser.wait("!location.hash.includes('d=') && location.hash.includes('~')");
+    let hash = browser.text("location.hash");
+    browser.go_to_address(&format!("{address}/#"));
+    browser.wait("beltspace.page.pins().length === 0");
+    browser.go_to_address(&format!("{address}/{hash}"));
+    browser.wait(&format!("beltspace.page?.pins().length === {}", pinned.split(',').count()));
+    assert_eq!(browser.text(pins), pinned);
     assert_eq!(browser.complaints, Vec::<String>::new());
 }
 

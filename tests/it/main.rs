@@ -66,6 +66,8 @@ mod report_page_drawn;
 mod report_page_others;
 /// That page on paper.
 mod report_page_print;
+/// What that page lets a reader reach and save.
+mod report_page_reach;
 /// Independent second implementations of the models, and printed golden values.
 mod second;
 /// Which input matters: shares of the variance.

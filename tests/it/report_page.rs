@@ -173,7 +173,11 @@ fn axes_are_brushed_turned_and_moved_and_a_point_is_reached_with_the_keyboard() 
     // The lower half of the first axis.
     let name = browser.text("beltspace.state.parallel[0]");
     let [left, top, width, height] = browser.rectangle(&format!("#parallel .axis[data-name={name:?}] .overlay"));
-    browser.drag([left + width / 2.0, top + 0.5 * height], [left + width / 2.0, top + 0.98 * height]);
+    // The axis spans the range that was searched, wherever the front stands on it: to its median.
+    let column = format!("beltspace.page.front.byName.get({name:?})");
+    let scale = format!("((value) => {{ const [low, high] = beltspace.page.domain({column}); return (high - value) / (high - low); }})");
+    let middle = browser.number(&format!("{scale}(({column}.low + {column}.high) / 2)"));
+    browser.drag([left + width / 2.0, top + 10.0 + middle * (height - 20.0)], [left + width / 2.0, top + 0.98 * height]);
     browser.wait("beltspace.state.axes.size === 1");
     let range: [f64; 2] = serde_json::from_value(browser.evaluate(&format!("beltspace.state.axes.get({name:?})"))).expect("two ends");
     let expected = front.iter().filter(|row| (range[0]..=range[1]).contains(&number(&row[&name]))).count();

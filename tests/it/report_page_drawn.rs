@@ -226,7 +226,8 @@ fn the_knee_has_slices_and_words_that_hold() {
     assert!(said.contains("stress_margin is too low") && said.contains("the end of its axis"), "{said}");
     assert!(said.contains("beltspace explore"), "{said}");
     assert!(browser.number("document.querySelectorAll('#around svg.slice .limit').length") >= 4.0);
-    assert!(browser.number("document.querySelectorAll('#around svg.slice .switch').length") >= 1.0);
+    // Where scenarios change places by rounding only, no switch is drawn; a timing belt has real ones.
+    assert_eq!(browser.number("document.querySelectorAll('#around svg.slice .switch').length"), 0.0);
     browser.evaluate("document.querySelector('#around').scrollIntoView()");
     browser.picture("metal-cvt-slices");
     assert_eq!(browser.complaints, Vec::<String>::new());

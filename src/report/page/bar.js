@@ -9,20 +9,32 @@
       const words = column.words.filter((_, i) => i >= low && i <= high);
       return `${name} ${words.length ? words.join(", ") : "none"}`;
     }
-    return `${name} ${page.short(low)} to ${page.short(high)}${column.unit ? ` ${column.unit}` : ""}`;
+    return `${name} ${page.short(low)} to ${page.short(high)}${column.unit ? ` ${page.unit(column.unit)}` : ""}`;
   };
 
   // Ranges within which the front would be another.
   const doubtfulRanges = () => {
     const { state } = page;
     const ranges = [...state.axes, ...[...state.cells.values()].flatMap(({ x, y, xRange, yRange }) => [[x, xRange], [y, yRange]])];
-    return ranges.filter(([name, range]) => !page.front.byName.get(name).words && page.front.byName.get(name).role !== "label" && !page.isOfFront(name, range));
+    return ranges.filter(([name, range]) => !page.isOfFront(name, range));
   };
 
-  // The bounds that such ranges stand for, without those that hold for the whole front.
+  // The bounds that such ranges stand for, without those that hold for the whole front. A value that is the lowest over the scenarios can
+  // have a lower bound only: an upper one would be on the highest.
   const boundsOf = ([name, [low, high]]) => {
-    const column = page.front.byName.get(name);
-    return { name, ...(low > column.low ? { min: low } : {}), ...(high < column.high ? { max: high } : {}) };
+    const { words, role, end, low: least, high: most } = page.front.byName.get(name);
+    if (words) return { name };
+    const may = (which) => role === "design" || end === which;
+    return { name, ...(low > least && may("lowest") ? { min: low } : {}), ...(high < most && may("highest") ? { max: high } : {}) };
+  };
+
+  // Ends of ranges that no constraint stands for.
+  const withoutBound = ([name, [low, high]]) => {
+    const { words, role, end, low: least, high: most } = page.front.byName.get(name);
+    if (words || role === "design") return null;
+    const left = [low > least && end !== "lowest" ? "at least" : "", high < most && end !== "highest" ? "at most" : ""].filter(Boolean);
+    if (!left.length) return null;
+    return end ? `${name} is the ${end} over the scenarios: a constraint “${left.join(", ")}” would be on the ${end === "lowest" ? "highest" : "lowest"}. ` : null;
   };
 
   const remedy = (doubtful) => {
@@ -56,7 +68,7 @@
     note.hidden = !doubtful.length;
     if (!doubtful.length) return;
     const names = [...new Set(doubtful.map(([name]) => name))].join(", ");
-    note.replaceChildren(`Only designs of the front are here. Within a range of ${names} other designs may be the best, which are beaten now. `, ...remedy(doubtful));
+    note.replaceChildren(`Only designs of the front are here. Within a range of ${names} other designs may be the best, which are beaten now. `, ...doubtful.map(withoutBound).filter(Boolean), ...remedy(doubtful));
   };
 
   const groups = { label: "Labels", design: "Design inputs", objective: "Objectives", constraint: "Constraints", report: "Report columns", output: "Other outputs" };

@@ -22,11 +22,14 @@ page.short = (value) => {
   const size = Math.abs(value);
   if (size !== 0 && (size < 1e-4 || size >= 1e9)) return String(Number(value.toPrecision(4))).replace(/^-/, "−").replace("e-", "e−");
   const text = size >= 1000 ? String(Math.round(size)) : String(Number(size.toPrecision(4)));
-  return (value < 0 ? "−" : "") + (size >= 9999.5 ? page.count(text) : text);
+  return (value < 0 ? "−" : "") + (size >= 1000 ? page.count(text) : text);
 };
 
 // Units as people write them.
-page.unit = (unit) => ({ Nm: "N m", deg: "°" })[unit] ?? unit ?? "";
+page.unit = (unit) => ({ Nm: "N m", deg: "°" })[unit] ?? (unit ?? "").replace(/^um\b/, "µm");
+
+// Numbers in a text of the program, grouped as all others are.
+page.grouped = (text) => text.replace(/(?<![\w.-])\d{5,}(?![\w-])/g, (digits) => page.count(digits));
 
 // The shortest text that reads back as the same number, in f32 for columns that are stored so.
 page.full = (value, type) => {
@@ -42,7 +45,11 @@ page.full = (value, type) => {
   return String(value);
 };
 
-page.count = (n) => String(n).replace(/\B(?=(\d{3})+$)/g, "\u202f");
+// Groups of three from 10 000 on.
+page.count = (n) => {
+  const text = String(n);
+  return text.length < 5 ? text : text.replace(/\B(?=(\d{3})+$)/g, "\u202f");
+};
 
 page.percent = (part, of) => {
   if (!of) return "–";
@@ -55,6 +62,13 @@ page.seconds = (s) => {
   if (s < 1) return `${Number((s * 1000).toPrecision(3))} ms`;
   if (s < 120) return `${Number(s.toPrecision(3))} s`;
   return s < 7200 ? `${Number((s / 60).toPrecision(3))} min` : `${Number((s / 3600).toPrecision(3))} h`;
+};
+
+// A name as the axes of the pictures have it: words, and the unit in brackets in place of the last ones.
+page.axisName = (name, unit) => {
+  const suffix = `_${(unit ?? "").replace("/", "_per_").replace("µ", "u").replace(/[ ·]/g, "")}`;
+  const stem = unit && name.endsWith(suffix) && name.length > suffix.length ? name.slice(0, -suffix.length) : name;
+  return stem.replace(/_/g, " ") + (unit ? ` [${page.unit(unit)}]` : "");
 };
 
 page.withUnit = (name, unit) => (unit ? `${name} [${page.unit(unit)}]` : name);

@@ -24,7 +24,7 @@
     const { scenarios } = page.data;
     const values = scenarios && scenarios.rows ? scenarios.rows[String(number)] : null;
     if (!values) return "";
-    return scenarios.columns.map(({ name, unit }, i) => `${name} ${page.short(values[i])}${unit && typeof values[i] === "number" ? ` ${unit}` : ""}`).join(", ");
+    return scenarios.columns.map(({ name, unit }, i) => `${name} ${page.short(values[i])}${unit && typeof values[i] === "number" ? ` ${page.unit(unit)}` : ""}`).join(", ");
   };
 
   const scenarioCell = (column, row) => {
@@ -40,11 +40,12 @@
   const inputs = (row) => {
     const { front, data } = page;
     const line = (name, cell, doc) => page.element("tr", {}, page.element("th", { scope: "row", title: doc }, page.breakable(name)), cell);
+    const drawn = (data.inputs || []).filter((input) => input.role === "drawn").map((input) => line(input.name, page.element("td", { class: "number" }, input.over, input.unit && !input.over.startsWith("times") ? page.element("span", { class: "unit" }, ` ${page.unit(input.unit)}`) : null), input.doc));
     const chosen = front.shown.filter((column) => column.role === "label" || column.role === "design").map((column) => line(column.name, columnCell(column, row), column.doc));
     const fixed = (data.inputs || []).filter((input) => input.role === "fixed").map((input) => line(input.name, valueCell(input.name, page.full(input.value), page.short(input.value), typeof input.value === "number" ? input.unit : ""), input.doc));
     const ranged = (data.inputs || []).filter((input) => input.role === "operation" || input.role === "uncertainty").map((input) => line(input.name, page.element("td", { class: "number" }, input.over || rangeInScenarios(input.name), input.unit ? page.element("span", { class: "unit" }, ` ${page.unit(input.unit)}`) : null), input.doc));
     const group = (title, lines) => (lines.length ? [page.element("h4", {}, title), table("values", lines)] : []);
-    return section("Inputs", group("chosen", chosen), group("varied over the scenarios", ranged), group("fixed", fixed));
+    return section("Inputs", group("chosen", chosen), group("varied over the scenarios", ranged), group("drawn from a distribution", drawn), group("fixed", fixed));
   };
 
   const rangeInScenarios = (name) => {
@@ -146,12 +147,17 @@
     }
   };
 
+  const evaluateOf = (design) => {
+    const { evaluate } = page.data;
+    // The last one, because a folder may contain the same text.
+    const at = evaluate.lastIndexOf("{design}");
+    return evaluate.slice(0, at) + design + evaluate.slice(at + "{design}".length);
+  };
+
   const commands = (row) => {
     const { data, front } = page;
     if (!data.evaluate) return null;
-    // The last one, because a folder may contain the same text.
-    const at = data.evaluate.lastIndexOf("{design}");
-    const whole = data.evaluate.slice(0, at) + page.full(page.designOf(row)) + data.evaluate.slice(at + "{design}".length);
+    const whole = evaluateOf(page.full(page.designOf(row)));
     const column = front.objectives.map((objective) => objective.column).find((one) => one.scenarios && one.scenarios[row] !== page.noScenario);
     const parts = [command("every output of this design, in f64", whole, "evaluate")];
     if (column) parts.push(command(`in the worst scenario of ${column.name}`, `${whole} --scenario ${column.scenarios[row]}`, "evaluate-scenario"));
@@ -167,11 +173,12 @@
       for (let i = row + by; i >= 0 && i < front.rows; i += by) if (page.mask[i]) return true;
       return false;
     };
+    const study = page.element("p", { class: "print-only sheet-study" }, page.data.title);
     const title = page.element("h2", { id: "card-title" }, named(row));
     const place = page.element("p", { class: "muted" }, `row ${page.count(row + 1)} of ${page.count(front.rows)} of the front`, page.mask[row] ? "" : ", not selected");
     const pinned = page.isPinned(row);
     const buttons = page.element("div", { class: "card-buttons no-print" }, button("card-pin", pinned ? "Unpin this design (p)" : "Pin this design, to compare it (p)", pinned ? "Unpin" : "Pin", () => page.pin(row), !pinned && !page.canPin()), button("card-print", "Print a data sheet of this design", "Print", () => page.printSheet()), button("card-previous", "Previous design (left arrow)", "‹", () => step(-1), !any(-1)), button("card-next", "Next design (right arrow)", "›", () => step(1), !any(1)), button("card-close", "Close (Esc)", "×", page.closeCard));
-    return [page.element("div", { class: "card-head" }, page.element("div", {}, title, place), buttons), objectives(row), margins(row), page.tradeoffSection(row), page.driveSection(row), inputs(row), outputs(row), page.data.kind === "live" ? page.element("section", { id: "all-outputs" }) : null, commands(row)].filter(Boolean);
+    return [page.element("div", { class: "card-head" }, page.element("div", {}, study, title, place), buttons), objectives(row), margins(row), page.tradeoffSection(row), page.driveSection(row), inputs(row), outputs(row), page.data.kind === "live" ? page.element("section", { id: "all-outputs" }) : null, commands(row)].filter(Boolean);
   };
 
   // In a wide window the card takes room from the plots.
@@ -187,8 +194,22 @@
     if (again && again.isConnected) again.focus({ preventScroll: true });
   };
 
+  // A design that is not on the front: what a table or a map says of it, and the command that computes everything.
+  page.openDesign = (design, known) => {
+    const row = page.front ? page.rowOf(String(design)) : -1;
+    if (row >= 0) return page.openCard(row);
+    const head = page.element("div", { class: "card-head" }, page.element("div", {}, page.element("h2", { id: "card-title" }, `Design ${design}`), page.element("p", { class: "muted" }, "not on the front")), page.element("div", { class: "card-buttons no-print" }, page.element("button", { type: "button", id: "card-close", "aria-label": "Close (Esc)", title: "Close (Esc)", click: page.closeCard }, "×")));
+    const line = ({ name, unit, text, full }) => page.element("tr", {}, page.element("th", { scope: "row" }, page.breakable(name)), valueCell(name, full, text, text === "" || !Number.isFinite(Number(full)) ? "" : unit));
+    const evaluate = page.data.evaluate ? section("Evaluate it", page.element("p", { class: "hint" }, "Run it in the folder in which this page was made."), command("every output of this design, in f64", evaluateOf(String(design)), "evaluate")) : null;
+    return show(null, [head, section("What is known of it", table("values", known.map(line))), evaluate].filter(Boolean), true);
+  };
+
   page.openCard = (row, takesFocus = true) => {
     if (!page.front || !(row >= 0 && row < page.front.rows)) return;
+    show(row, build(row), takesFocus);
+  };
+
+  const show = (row, children, takesFocus) => {
     const card = page.byId("card");
     const fresh = card.hidden;
     const within = card.contains(document.activeElement) ? document.activeElement.id : "";
@@ -197,7 +218,7 @@
     page.state.card = row;
     page.state.awaited = null;
     card.inert = false;
-    card.replaceChildren(...build(row));
+    card.replaceChildren(...children);
     card.hidden = false;
     document.body.classList.add("with-card");
     const again = within && page.byId(within);

@@ -8,7 +8,7 @@
     page.byId("columns").setAttribute("aria-expanded", String(open));
     if (open) {
       build();
-      chooser.querySelector("input").focus();
+      chooser.querySelector("input").focus({ preventScroll: true });
     } else page.byId("columns").focus();
   };
 

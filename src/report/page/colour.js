@@ -9,6 +9,14 @@
   page.ramp = rampOf;
   page.rampPixels = (ramp) => Uint32Array.from({ length: STEPS }, (_, i) => page.pixel(ramp(i / (STEPS - 1))));
 
+  // Words have colours that can be told apart, of which each has a contrast of 4.5 on the background.
+  const WORDS = {
+    light: ["#0072b2", "#c44601", "#00795c", "#9c4a8a", "#8a6d00", "#3a3a3a", "#5b3fd6", "#c0003a"],
+    dark: ["#56b4e9", "#e69f00", "#2fcb9f", "#e08fc4", "#f0e442", "#d0d0d0", "#a99bff", "#ff7a90"],
+  };
+  page.isCategory = (column) => Boolean(column.words) && column.words.length <= WORDS.light.length;
+  const wordColours = (column) => (page.isCategory(column) ? WORDS[page.dark() ? "dark" : "light"] : null);
+
   const placeOf = (column) => {
     const count = column.words ? column.words.length - 1 : 0;
     if (column.words) return (value) => (count > 0 ? value / count : 0.5);
@@ -27,9 +35,14 @@
     const column = front.byName.get(state.colour);
     if (!column) pixels.fill(none);
     else {
+      const words = wordColours(column)?.map(page.pixel);
       const table = page.rampPixels(rampOf());
       const place = placeOf(column);
       for (let i = 0; i < pixels.length; i++) {
+        if (words) {
+          pixels[i] = words[column.values[i]] ?? none;
+          continue;
+        }
         const t = place(column.values[i]);
         pixels[i] = t >= 0 ? table[Math.min(STEPS - 1, Math.round(t * (STEPS - 1)))] : none;
       }
@@ -38,16 +51,15 @@
     return pixels;
   };
 
-  page.gradient = (ramp) => {
-    const stops = d3.range(0, 1.0001, 0.1).map((t) => ramp(t));
-    return `linear-gradient(to right, ${stops.join(",")})`;
-  };
+  const stopsOf = (ramp) => d3.range(0, 1.0001, 0.1).map((t) => ramp(t));
 
   // A horizontal bar with its ticks: an SVG axis below a strip of CSS gradient.
   page.colourBar = (title, low, high, ramp, width = 240) => {
     const bar = page.element("div", { class: "colour-bar", role: "img", "aria-label": `Colour: ${title}` });
     const strip = page.element("div", { class: "strip" });
-    strip.style.background = page.gradient(ramp);
+    const stops = stopsOf(ramp);
+    strip.style.background = `linear-gradient(to right, ${stops.join(",")})`;
+    strip.dataset.stops = JSON.stringify(stops);
     strip.style.width = `${width}px`;
     bar.append(page.element("div", { class: "bar-title" }, title), strip);
     if (Number.isFinite(low) && high > low) {
@@ -78,7 +90,11 @@
     const [a, b] = scale.domain();
     const size = Math.max(Math.abs(a), Math.abs(b));
     if (size >= 1e7 || (size < 1e-3 && size > 0)) return d3.format("~e");
-    return (value) => format(value).replace(/,/g, size >= 1e4 ? "\u202f" : "");
+    return (value) => {
+      const text = format(value).replace(/,/g, "");
+      const whole = text.match(/\d+/)?.[0] ?? "";
+      return text.replace(whole, page.count(whole));
+    };
   };
 
   page.legend = () => {
@@ -90,7 +106,7 @@
     const place = placeOf(column);
     const swatch = (word, i) => {
       const square = page.element("span", { class: "swatch" });
-      square.style.background = ramp(place(i));
+      square.style.background = wordColours(column)?.[i] ?? ramp(place(i));
       return page.element("span", { class: "word" }, square, word);
     };
     return page.element("div", { class: "colour-bar" }, page.element("div", { class: "bar-title" }, title), page.element("div", { class: "words" }, column.words.map(swatch)));

@@ -44,10 +44,20 @@
     return column;
   };
 
-  // What an axis spans: a little more than the values; a constant column gets a range around it.
+  // The values, the range in which an input was searched, and limits that are not far from the values.
+  const NEAR = 0.5; // of the span of the values
+  const endsOf = ({ low, high, ...column }) => {
+    const searched = page.searchedOf(column) || [];
+    const near = page.limitsOf(column).filter((it) => it >= low - NEAR * (high - low) && it <= high + NEAR * (high - low));
+    return [Math.min(low, ...searched, ...near), Math.max(high, ...searched, ...near)];
+  };
+
+  // What an axis spans: a little more than that; a constant column gets a range around it.
   page.domain = (column) => {
     if (column.words) return [-0.5, column.words.length - 0.5];
     if (Number.isNaN(column.low)) return [0, 1];
+    const [low, high] = endsOf(column);
+    if (low !== column.low || high !== column.high) return [low - (high - low) * 0.04, high + (high - low) * 0.04];
     const span = column.high - column.low;
     if (!(span > Math.abs(column.high) * 1e-12)) {
       const around = Math.abs(column.low) * 0.05 || 1;
@@ -104,7 +114,9 @@
   // What an axis of the scatter matrix spans: the front with the sample, the old front and other results behind it.
   page.ghost = null;
   page.wideDomain = (column) => {
-    const behind = [page.sample, page.ghost, ...page.others].map((layer) => layer && layer.byName.get(column.name)).filter((it) => it && !Number.isNaN(it.low));
+    // The sample of a study in work comes and goes: the axes stay where they are.
+    const sample = page.data.kind === "live" ? null : page.sample;
+    const behind = [sample, page.ghost, ...page.others].map((layer) => layer && layer.byName.get(column.name)).filter((it) => it && !Number.isNaN(it.low));
     if (!behind.length || column.words || Number.isNaN(column.low)) return page.domain(column);
     return page.domain({ ...column, low: Math.min(column.low, ...behind.map((it) => it.low)), high: Math.max(column.high, ...behind.map((it) => it.high)) });
   };

@@ -48,7 +48,7 @@
     const title = figure.title || figure.id;
     paper.querySelector("svg")?.setAttribute("aria-label", title);
     const button = page.element("button", { type: "button", class: "no-print", click: () => enlarge(paper, title) }, "Enlarge");
-    const head = page.element("div", { class: "title-line" }, page.element("strong", {}, title), button);
+    const head = page.element("div", { class: "title-line" }, page.element("strong", {}, title), page.element("div", { class: "save-buttons no-print" }, page.saveButtonsOf(title, figure.id, () => paper), button));
     const caption = page.element("figcaption", {}, head, figure.caption ? page.element("div", {}, figure.caption) : null, figure.csv ? page.element("div", { class: "muted" }, `numbers: ${figure.csv}`) : null);
     return page.element("figure", { class: "figure", id: `figure-${figure.id}`, "data-figure": figure.id }, caption, paper);
   };

@@ -14,13 +14,13 @@
     svg.append("g").attr("class", "bars-selected").selectAll("path").data(designs).join("path").attr("d", bar);
     svg.append("g").attr("class", "tick-axis").attr("transform", `translate(0,${HEIGHT - MARGIN.bottom})`).call(d3.axisBottom(x).ticks(6).tickSizeOuter(0).tickSize(4).tickFormat(page.tick(x, 6)));
     svg.append("g").attr("class", "tick-axis").attr("transform", `translate(${MARGIN.left},0)`).call(d3.axisLeft(y).ticks(4).tickSizeOuter(0).tickSize(4).tickFormat((value) => (Number.isInteger(value) ? page.count(value) : "")));
-    svg.append("text").attr("class", "axis-title").attr("x", (MARGIN.left + WIDTH - MARGIN.right) / 2).attr("y", HEIGHT - 8).attr("text-anchor", "middle").text(page.withUnit(of, unit));
+    svg.append("text").attr("class", "axis-title").attr("x", (MARGIN.left + WIDTH - MARGIN.right) / 2).attr("y", HEIGHT - 8).attr("text-anchor", "middle").text(page.axisName(of, unit));
     svg.append("text").attr("class", "axis-title").attr("transform", `translate(13,${(HEIGHT - MARGIN.bottom + MARGIN.top) / 2})rotate(-90)`).attr("text-anchor", "middle").text("feasible designs");
     // The pointer is tested over the full height, so that a low bar is as easy to hit.
     const hit = (event) => {
       const value = x.invert(d3.pointer(event, svg.node())[0]);
       const i = from.findIndex((low, k) => value >= low && value <= to[k]);
-      page.tip(event, i < 0 ? "" : `${page.short(from[i])} to ${page.short(to[i])}${unit ? ` ${unit}` : ""}: ${page.count(designs[i])} designs`);
+      page.tip(event, i < 0 ? "" : `${page.short(from[i])} to ${page.short(to[i])}${unit ? ` ${page.unit(unit)}` : ""}: ${page.count(designs[i])} designs`);
     };
     svg.on("pointermove", hit).on("pointerleave", (event) => page.tip(event, ""));
     return svg.node();
@@ -30,8 +30,9 @@
     const { of, doc, below, above, designs } = histogram;
     const total = d3.sum(designs);
     const outside = [below ? `${page.count(below)} below` : "", above ? `${page.count(above)} above` : ""].filter(Boolean).join(", ");
-    const caption = page.element("figcaption", {}, page.element("strong", {}, of), doc ? ` ${doc}` : "", page.element("div", { class: "muted" }, `${page.count(total)} designs in the range${outside ? `, ${outside} it` : ", none outside"}.`));
-    return page.element("figure", { class: "figure", "data-histogram": of }, caption, total ? draw(histogram) : page.element("p", { class: "notice" }, "No feasible design in this range."));
+    const plot = total ? draw(histogram) : page.element("p", { class: "notice" }, "No feasible design in this range.");
+    const caption = page.element("figcaption", {}, page.element("div", { class: "title-line" }, page.element("strong", {}, of), total ? page.saveButtonsOf(`the histogram of ${of}`, `histogram-${of}`, () => plot) : null), doc ? ` ${doc}` : "", page.element("div", { class: "muted" }, `${page.count(total)} designs in the range${outside ? `, ${outside} it` : ", none outside"}.`));
+    return page.element("figure", { class: "figure", "data-histogram": of }, caption, plot);
   };
 
   page.startHistograms = () => {

@@ -37,18 +37,27 @@
       const factor = ((to - from) / (high - low)) * ratio;
       return Float32Array.from(column.values, (value) => (value - low) * factor + from * ratio);
     });
-    order = order && order.length === page.front.rows ? order : shuffled(page.front.rows);
     plot = { context, image, width, height, ys, pixels: new Uint32Array(image.data.buffer), base: new Uint32Array(width * height) };
     plot.xs = axes.map((axis) => axis.x * ratio);
     plot.baseDone = 0; // how many unselected lines are in the base already
     page.redrawLines("all");
   };
 
-  // The more lines, the fainter each.
-  const coverFor = (count) => Math.round(256 * Math.max(0.1, Math.min(0.9, 22 / Math.sqrt(count || 1))));
+  // Each line can be told from the ground; of a crowd, where lines lie over one another, the more the fainter each.
+  const CROWD = 3000;
+  const coverFor = (count) => (count <= CROWD ? 256 : Math.round(256 * Math.max(0.1, Math.min(0.9, 22 / Math.sqrt(count)))));
+
+  // Few lines are drawn so soon that the best can come last; of many the first slice is to be a sample.
+  const MOST_ORDERED = 4000;
+  const ordered = () => {
+    const { rows } = page.front;
+    const best = rows <= MOST_ORDERED ? page.paintOrder() : null;
+    return best ?? (order && order.length === rows ? order : shuffled(rows));
+  };
 
   page.redrawLines = (what) => {
     if (!plot) return;
+    order = ordered();
     const mine = ++run;
     if (what === "all") {
       plot.base.fill(page.pixel(page.variable("--plot")));
@@ -57,7 +66,7 @@
     const everything = page.selectedCount === page.front.rows;
     const rows = everything ? order : order.filter((row) => page.mask[row]);
     const faint = page.pixel(page.variable("--faint"));
-    const faintCover = Math.round(coverFor(page.front.rows) * 0.8);
+    const faintCover = coverFor(page.front.rows);
     const cover = coverFor(rows.length);
     const colours = page.colours();
     const { width, height, xs, ys } = plot;

@@ -5,14 +5,29 @@
 
   const shorten = (text) => (text !== "" && Number.isFinite(Number(text)) ? page.short(Number(text)) : text);
 
+  // Which lines are of the design that all views show, by its number.
+  const markCurrent = (body) => {
+    const row = page.state.current ?? page.state.card;
+    const design = row === null || !page.front ? null : page.designOf(row);
+    for (const line of body.rows) line.classList.toggle("is-current", line.dataset.row === design);
+  };
+
   const block = (id, title, hint, { columns, units, rows, of = rows.length, labels = [] }) => {
     // A label may look like a number, such as 007, and stays as it is.
     const words = columns.map((name, at) => labels.includes(name) || rows.some((row) => row[at] !== "" && !Number.isFinite(Number(row[at]))));
     // On paper the numbers of scenarios would take the room of the values.
     const kind = (at) => (words[at] ? "" : columns[at].endsWith("_scenario") ? "number of-scenario" : "number");
-    const head = columns.map((name, at) => page.element("th", { scope: "col", class: kind(at) }, page.breakable(name), units && units[at] ? page.element("span", { class: "unit" }, units[at]) : null));
-    const line = (row) => page.element("tr", { class: row[columns.indexOf("feasible")] === "no" ? "infeasible" : null }, row.map((text, at) => page.element("td", { class: kind(at), title: text }, labels.includes(columns[at]) ? text : shorten(text))));
-    const table = page.element("table", {}, page.element("thead", {}, page.element("tr", {}, head)), page.element("tbody", {}, rows.slice(0, MOST).map(line)));
+    const head = columns.map((name, at) => page.element("th", { scope: "col", class: kind(at) }, page.breakable(name), units && units[at] ? page.element("span", { class: "unit" }, page.unit(units[at])) : null));
+    const index = columns.indexOf("design_index");
+    const shown = (text, at) => (at === index || labels.includes(columns[at]) ? text : shorten(text));
+    const line = (row) => page.element("tr", { class: row[columns.indexOf("feasible")] === "no" ? "infeasible" : null, "data-row": index < 0 ? null : row[index], tabindex: index < 0 ? null : -1 }, row.map((text, at) => page.element("td", { class: kind(at), title: text }, shown(text, at))));
+    const body = page.element("tbody", {}, rows.slice(0, MOST).map(line));
+    const table = page.element("table", { class: index < 0 ? null : "opens" }, page.element("thead", {}, page.element("tr", {}, head)), body);
+    if (index >= 0) {
+      const known = (row) => columns.map((name, at) => ({ name, unit: units ? units[at] : "", text: shown(row[at], at), full: row[at] })).filter((_, at) => at !== index && !columns[at].endsWith("_scenario"));
+      page.openableRows(body, (at) => page.openDesign(at.dataset.row, known(rows[at.sectionRowIndex])))();
+      for (const event of ["current", "card"]) page.events.on(`${event}.${id}`, () => markCurrent(body));
+    }
     const rest = of > MOST ? ` The first ${MOST} of ${page.count(of)} rows are shown.` : "";
     return page.element("section", { id, "data-testid": id, "aria-labelledby": `${id}-title` }, page.element("h2", { id: `${id}-title` }, title), page.element("p", { class: "hint" }, hint + rest), page.element("div", { class: "scroll tall", tabindex: 0, role: "region", "aria-label": `${title}, the table` }, table));
   };

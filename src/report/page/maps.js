@@ -40,13 +40,15 @@
     const image = context.createImageData(canvas.width, canvas.height);
     const pixels = new Uint32Array(image.data.buffer);
     const table = page.rampPixels(page.areaRamp());
-    const none = page.pixel(page.variable("--absent"));
+    // Hatched, as no colour of the scale could be told from the ground with certainty.
+    const [ground, stroke] = ["--absent", "--muted"].map((name) => page.pixel(page.variable(name)));
+    const none = (x, y) => ((x + y) % 7 < 1 ? stroke : ground);
     const span = high - low;
     for (let y = 0; y < canvas.height; y++)
       for (let x = 0; x < canvas.width; x++) {
         const value = values[yCells[y] * columns + xCells[x]];
         const t = span > 0 ? (value - low) / span : 0.5;
-        pixels[y * canvas.width + x] = Number.isNaN(value) ? none : table[Math.round(255 * Math.max(0, Math.min(1, t)))];
+        pixels[y * canvas.width + x] = Number.isNaN(value) ? none(x, y) : table[Math.round(255 * Math.max(0, Math.min(1, t)))];
       }
     context.putImageData(image, 0, 0);
   };
@@ -108,13 +110,13 @@
     svg.append("g").attr("class", "tick-axis").attr("transform", `translate(0,${HEIGHT - MARGIN.bottom})`).call(ticksFor(d3.axisBottom, map.x, x, 7));
     const left = svg.append("g").attr("class", "tick-axis").attr("transform", `translate(${MARGIN.left},0)`).call(ticksFor(d3.axisLeft, map.y, y, 6));
     if (y.words) page.shortenWords(left, 9);
-    svg.append("text").attr("class", "axis-title").attr("x", MARGIN.left + inner.width / 2).attr("y", HEIGHT - 10).attr("text-anchor", "middle").text(page.withUnit(map.x.name, map.x.unit));
-    svg.append("text").attr("class", "axis-title").attr("transform", `translate(14,${MARGIN.top + inner.height / 2})rotate(-90)`).attr("text-anchor", "middle").text(page.withUnit(map.y.name, map.y.unit));
+    svg.append("text").attr("class", "axis-title").attr("x", MARGIN.left + inner.width / 2).attr("y", HEIGHT - 10).attr("text-anchor", "middle").text(page.axisName(map.x.name, map.x.unit));
+    svg.append("text").attr("class", "axis-title").attr("transform", `translate(14,${MARGIN.top + inner.height / 2})rotate(-90)`).attr("text-anchor", "middle").text(page.axisName(map.y.name, map.y.unit));
     const lines = map.contours && map.contours.length ? drawContours(svg, map, x, y) : [];
     const marker = svg.append("rect").attr("class", "map-cell").attr("display", "none");
     const show = (column, row) => {
       const at = row * columns + column;
-      const part = (name, value, unit) => `${name} ${page.short(value)}${unit ? ` ${unit}` : ""}`;
+      const part = (name, value, unit) => `${name} ${page.short(value)}${unit ? ` ${page.unit(unit)}` : ""}`;
       const value = Number.isNaN(values[at]) ? "no feasible design" : part(map.value.name, values[at], map.value.unit);
       const design = indices && indices[at] !== NO_DESIGN ? `, best design ${indices[at]}` : "";
       readout.textContent = `${part(map.x.name, map.x.values[column], map.x.unit)}, ${part(map.y.name, map.y.values[row], map.y.unit)}: ${value}${design}`;
@@ -136,23 +138,56 @@
       readout.textContent = "\u00a0";
     };
     svg.on("pointerleave", hide);
+    const open = ([column, row]) => {
+      const at = row * columns + column;
+      const design = indices ? indices[at] : NO_DESIGN;
+      if (design === NO_DESIGN || Number.isNaN(values[at])) return;
+      const entry = ({ name, unit }, value) => ({ name, unit, text: page.short(value), full: page.full(value) });
+      page.openDesign(String(design), [entry(map.x, map.x.values[column]), entry(map.y, map.y.values[row]), entry(map.value, values[at])]);
+    };
+    if (indices) svg.on("click", () => marker.attr("display") !== "none" && open(place)).classed("opens-card", true);
     stage.addEventListener("keydown", (event) => {
+      if (event.key === "Enter" && indices) return open(place);
       const move = { ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
       if (!move) return;
       event.preventDefault();
       place = [Math.max(0, Math.min(columns - 1, place[0] + move[0])), Math.max(0, Math.min(map.y.values.length - 1, place[1] + move[1]))];
       show(...place);
     });
+    // The current design and those that are pinned, where the map is over inputs that are chosen.
+    const designs = svg.append("g").attr("class", "marks");
+    const spot = (kind, of) => {
+      const place = [[x, of(map.x.name)], [y, of(map.y.name)]].map(([axis, value]) => (typeof value === "number" ? axis.scale(value) : NaN));
+      return place.every(Number.isFinite) ? designs.append("circle").attr("class", kind).attr("cx", place[0]).attr("cy", place[1]) : null;
+    };
+    const mark = () => {
+      designs.selectAll("*").remove();
+      for (const pin of page.pins()) {
+        const dot = spot("pin-dot", (name) => (pin.values.get(name)?.role === "design" && !pin.values.get(name).words ? pin.values.get(name).value : null));
+        if (dot) designs.append("text").attr("class", "pin-text").attr("x", dot.attr("cx")).attr("y", Number(dot.attr("cy")) + 3.5).attr("text-anchor", "middle").text(pin.letter);
+        dot?.attr("r", 7);
+      }
+      const row = page.state.current ?? page.state.card;
+      const ofRow = (name) => {
+        const column = page.front.byName.get(name);
+        return column && column.role === "design" && !column.words ? column.values[row] : null;
+      };
+      if (page.front && row !== null) spot("current", ofRow)?.attr("r", 6);
+    };
+    for (const event of ["current", "card", "pins"]) page.events.on(`${event}.map${figure.dataset.map}`, mark);
     readout.setAttribute("aria-live", "polite");
-    figure.append(legend, stage, readout);
+    const plate = page.element("div", { class: "map-plate" }, legend, stage);
+    figure.querySelector(".title-line").append(page.saveButtonsOf(`the map of ${map.value.name}`, `map-${map.value.name}`, () => plate));
+    figure.append(plate, readout);
     paint();
+    mark();
     page.events.on(`theme.map${figure.dataset.map}`, paint);
   };
 
   const figureOf = (map, number) => {
     const best = { min: "the least of the feasible designs", max: "the largest of the feasible designs", share: "the share of designs that are feasible" }[map.best] || "";
     const others = (page.data.inputs || []).some(({ name, role }) => role === "design" && name !== map.x.name && name !== map.y.name);
-    const caption = page.element("figcaption", {}, page.element("strong", {}, map.title || `${map.value.name} over ${map.x.name} and ${map.y.name}`), map.value.doc ? ` ${map.value.doc}` : "", page.element("div", { class: "muted" }, `In each cell ${best}${others ? " over all other inputs" : ""}.`));
+    const caption = page.element("figcaption", {}, page.element("div", { class: "title-line" }, page.element("strong", {}, map.title || `${map.value.name} over ${map.x.name} and ${map.y.name}`)), map.value.doc ? ` ${map.value.doc}` : "", page.element("div", { class: "muted" }, `In each cell ${best}${others ? " over all other inputs" : ""}. Hatched: no feasible design.${map.cells && map.cells.indices ? " A click opens the design of a cell." : ""}`));
     return page.element("figure", { class: "figure map", "data-map": number, "data-testid": `map-${map.value.name}` }, caption);
   };
 

@@ -10,7 +10,8 @@
   const sizeFor = (width, count) => {
     const across = count - 1;
     const room = (width - LEFT - GAP * across) / across;
-    if (across === 1) return Math.max(220, Math.min(page.printing ? 340 : 460, width - LEFT - 330));
+    // One cell has the values of the current design beside it, or below where there is no room.
+    if (across === 1) return width < 700 && !page.printing ? Math.max(220, Math.min(440, width - LEFT - 16)) : Math.max(220, Math.min(page.printing ? 340 : 460, width - LEFT - 330));
     // On paper it stands on the first page, below the question.
     if (page.printing) return Math.max(96, Math.min(room, (490 - TOP - BOTTOM - GAP * across) / across));
     return Math.max(96, Math.min(across === 2 ? 330 : 264, room));
@@ -145,6 +146,13 @@
 
   const label = (column) => page.withUnit(column.name, column.unit) + (column.goal ? ` (${column.goal})` : "");
 
+  // The title of an axis in the room that there is.
+  const titleOf = (column, room) => {
+    const name = page.axisName(column.name, column.unit);
+    const wide = column.goal ? `${name}, ${column.goal === "min" ? "lower" : "higher"} is better` : name;
+    return wide.length * 6.4 <= room ? wide : name + (column.goal ? ` (${column.goal})` : "");
+  };
+
   // On an axis of words every word has a tick.
   page.axisOf = (orient, column, scale, count) => {
     const axis = orient(scale).tickSizeOuter(0).tickSize(4).tickPadding(4);
@@ -178,12 +186,12 @@
     group.append("rect").attr("class", "frame").attr("width", size).attr("height", size);
     if (last) {
       cell.xAxis = group.append("g").attr("class", "tick-axis").attr("transform", `translate(0,${size})`);
-      const title = group.append("text").attr("class", "axis-title").attr("x", size / 2).attr("y", size + 37).attr("text-anchor", "middle").text(label(cell.x));
+      const title = group.append("text").attr("class", "axis-title").attr("x", size / 2).attr("y", size + 37).attr("text-anchor", "middle").text(titleOf(cell.x, size + GAP - 4));
       fit(title, size + GAP - 4);
     }
     if (first) {
       cell.yAxis = group.append("g").attr("class", "tick-axis");
-      const title = group.append("text").attr("class", "axis-title").attr("transform", `translate(-60,${size / 2})rotate(-90)`).attr("text-anchor", "middle").text(label(cell.y));
+      const title = group.append("text").attr("class", "axis-title").attr("transform", `translate(-60,${size / 2})rotate(-90)`).attr("text-anchor", "middle").text(titleOf(cell.y, size + GAP - 4));
       fit(title, size + GAP - 4);
     }
     drawAxes(cell);
@@ -205,6 +213,8 @@
       const mark = cell.marks.append("path").attr("class", "ideal").attr("d", `M${ix - 6},${iy}h12M${ix},${iy - 6}v12`);
       mark.append("title").text("ideal: the best value of both, which no single design reaches");
     }
+    if (cell.xAxis) page.markEnds(cell.marks, cell.x, cell.xScale, (at) => `M${at},${size - 5}v10`, (at, first) => `M${at},${size - 5}l${first ? -8 : 8},5l${first ? 8 : -8},5z`, [0, size]);
+    if (cell.yAxis) page.markEnds(cell.marks, cell.y, cell.yScale, (at) => `M-5,${at}h10`, (at, up) => `M-5,${at}l5,${up ? -8 : 8}l5,${up ? 8 : -8}z`, [0, size]);
     const chosen = page.chosenRow();
     if (chosen !== null && chosen !== undefined) {
       const [x, y] = [clip(cell.xScale, cell.x.values[chosen]), clip(cell.yScale, cell.y.values[chosen])];
@@ -272,6 +282,7 @@
       if (steps[event.key]) page.setCurrent(page.nextInOrder(steps[event.key][0].name, current, steps[event.key][1]));
       else if (event.key === "Enter" && current !== null) page.openCard(current);
       else return;
+      page.announce(page.state.current);
       event.preventDefault();
       event.stopPropagation();
     });
@@ -313,6 +324,7 @@
     const extent = Math.round(size * ratio);
     const colours = page.colours();
     const everything = page.selectedCount === page.front.rows;
+    const order = page.paintOrder();
     for (const cell of cells) {
       if (all) {
         cell.base.fill(ground);
@@ -331,7 +343,7 @@
       if (everything && cell.ground) cell.pixels.set(cell.ground);
       else if (everything) cell.pixels.fill(ground);
       else cell.pixels.set(cell.base);
-      page.drawPoints(cell.pixels, extent, extent, cell.xs, cell.ys, page.mask, everything ? null : 1, colours, disc);
+      page.drawPoints(cell.pixels, extent, extent, cell.xs, cell.ys, page.mask, everything ? null : 1, colours, disc, order);
       context.putImageData(cell.image, Math.round(cell.left * ratio), Math.round(cell.top * ratio));
     }
     page.timings.matrixDraw = performance.now() - start;
@@ -348,7 +360,7 @@
   };
 
   page.startMatrix = () => {
-    page.saveButtons("matrix-title", "front");
+    page.saveButtons(page.byId("matrix-title"), "front", () => page.byId("splom"));
     layout();
     page.events.on("columns.matrix", (what) => what === "order" || layout());
     page.events.on("layout.matrix", layout);
@@ -361,7 +373,10 @@
       showCurrent();
     };
     page.events.on("pins.matrix", again);
-    page.events.on("choice.matrix", () => page.schedule("marks", again));
+    page.events.on("choice.matrix", () => {
+      page.schedule("marks", again);
+      page.schedule("matrix", () => draw(false));
+    });
     page.events.on("others.matrix", refresh);
     page.events.on("theme.matrix", () => draw(true));
     page.events.on("colour.matrix", () => page.schedule("matrix", () => draw(false)));

@@ -21,7 +21,7 @@
         "tr",
         {},
         page.element("th", { scope: "row", title: column.doc }, of),
-        page.element("td", {}, column.unit || ""),
+        page.element("td", {}, page.unit(column.unit)),
         page.element("td", {}, goal),
         value(ideal[of], page.short(ideal[of])),
         chosen === null ? null : value(knee, page.valueText(column, chosen)),
@@ -38,13 +38,21 @@
   };
 
   // What is asked: bounds, and what the drive must survive.
-  const question = () => {
-    const { constraints, inputs } = page.data;
-    const bound = ({ of, bounds }) => page.element("tr", {}, page.element("th", { scope: "row" }, page.breakable(of)), page.element("td", {}, bounds));
-    const over = (input) => page.element("tr", {}, page.element("th", { scope: "row", title: input.doc }, page.breakable(input.name)), page.element("td", {}, `${input.over}${input.unit ? ` ${page.unit(input.unit)}` : ""}`));
+  const question = (withGoals) => {
+    const { constraints, inputs, drawn, objectives: asked } = page.data;
+    const bound = ({ of, bounds }) => page.element("tr", {}, page.element("th", { scope: "row" }, page.breakable(of)), page.element("td", {}, page.grouped(bounds)));
+    const over = (input) => page.element("tr", {}, page.element("th", { scope: "row", title: input.doc }, page.breakable(input.name)), page.element("td", {}, `${page.grouped(input.over)}${input.unit && !input.over.startsWith("times") ? ` ${page.unit(input.unit)}` : ""}`));
     const varied = (inputs || []).filter((input) => ["operation", "uncertainty"].includes(input.role));
     const body = (title, lines) => (lines.length ? page.element("tbody", {}, page.element("tr", { class: "group" }, page.element("th", { colspan: 2, scope: "rowgroup" }, title)), lines) : null);
-    const parts = [body("must hold", (constraints || []).map(bound)), body("in every scenario of", varied.map(over))].filter(Boolean);
+    const laws = (inputs || []).filter((input) => input.role === "drawn");
+    const goal = ({ of, goal }) => page.element("tr", {}, page.element("th", { scope: "row" }, page.breakable(of)), page.element("td", {}, goal === "min" ? "as low as possible" : "as high as possible"));
+    const parts = [
+      withGoals ? body("asked for", (asked || []).map(goal)) : null,
+      body("must hold", (constraints || []).map(bound)),
+      drawn ? body("every draw must keep", drawn.constraints.map(bound)) : null,
+      body(drawn ? "in every operating case of" : "in every scenario of", varied.map(over)),
+      body("drawn from a distribution", laws.map(over)),
+    ].filter(Boolean);
     return parts.length ? page.element("table", { class: "question", "data-testid": "question" }, parts) : null;
   };
 
@@ -52,7 +60,7 @@
     const chosen = page.chosenRow() ?? null;
     const word = page.isWeighed() ? "the first" : "the knee";
     const open = chosen === null ? null : page.element("button", { type: "button", id: "open-knee", "data-testid": "open-knee", class: "primary", click: () => page.openCard(page.chosenRow()) }, `Open ${word}: design ${page.full(page.designOf(chosen))}`);
-    return page.element("div", { class: "goals" }, [objectives(), question(), open].filter(Boolean));
+    return page.element("div", { class: "goals" }, [objectives(), question(false), open].filter(Boolean));
   };
   page.showGoals = () => page.byId("overview").querySelector(".goals")?.replaceWith(goals());
 
@@ -63,7 +71,8 @@
     const facts = [];
     if (study) {
       facts.push(fact("designs", page.count(study.designs), "designs"));
-      facts.push(fact("scenarios each", page.count(study.scenarios), "scenarios"));
+      if (data.drawn) facts.push(fact(data.drawn.cases > 1 ? `draws each, in ${page.count(data.drawn.cases)} operating cases` : "draws each", page.count(data.drawn.draws), "draws"));
+      if (!data.drawn || study.scenarios > 1) facts.push(fact("scenarios each", page.count(study.scenarios), "scenarios"));
       const known = study.feasible !== null && study.feasible !== undefined;
       facts.push(fact("feasible in all", known ? `${page.count(study.feasible)} (${page.percent(study.feasible, study.designs)})` : "…", "feasible", known ? null : "counted once nothing is changed for a moment"));
     }
@@ -78,7 +87,7 @@
       data.feasible_file ? page.element("p", { class: "hint", "data-testid": "feasible-file" }, `All feasible designs are in ${data.feasible_file} beside this page's result.`) : "",
       data.sensitivity ? page.element("p", { class: "notice" }, `Which input matters: ${data.sensitivity}.`) : "",
       (data.notes || []).map((note) => page.element("p", { class: "notice" }, note)),
-      front && front.rows && front.objectives.length ? goals() : "",
+      front && front.rows && front.objectives.length ? goals() : page.element("div", { class: "goals" }, [question(true)].filter(Boolean)),
     ];
     page.byId("overview").replaceChildren(...parts.flat().filter((part) => part !== ""));
   };
@@ -96,7 +105,7 @@
   };
 
   const inputTable = (inputs) => {
-    const line = (input) => page.element("tr", {}, [input.name, input.symbol || "", input.role, input.role === "fixed" ? page.short(input.value) : input.over || "", input.unit || "", input.doc || ""].map((text, i) => page.element("td", { class: i === 3 ? "number" : "" }, text)));
+    const line = (input) => page.element("tr", {}, [input.name, input.symbol || "", input.role, input.role === "fixed" ? page.short(input.value) : page.grouped(input.over || ""), page.unit(input.unit), input.doc || ""].map((text, i) => page.element("td", { class: i === 3 ? "number" : "" }, text)));
     const head = ["input", "symbol", "role", "value", "unit", "meaning"].map((name) => page.element("th", { scope: "col" }, name));
     return page.element("div", { class: "scroll" }, page.element("table", { class: "inputs" }, page.element("thead", {}, page.element("tr", {}, head)), page.element("tbody", {}, inputs.map(line))));
   };

@@ -1,8 +1,10 @@
 // Parallel coordinates: the axes, their brushes and titles. The lines are drawn in lines.js.
 {
   const HEIGHT = 300;
+  const LEAST = 62; // px from axis to axis
   const PAD = 10;
-  const HEAD = 92; // room for titles and buttons
+  const NARROW = 74; // px: narrower axes have smaller titles of more lines
+  const headOfStep = (step) => (step < NARROW ? 112 : 92); // room for titles and buttons
   let axes = []; // { column, x, scale, group, brush }
   let stage, svg, width;
 
@@ -15,7 +17,7 @@
   const showConstant = () => {
     const { front } = page;
     const same = front.shown.filter((column) => column.role === "design" && column.low === column.high && !page.state.parallel.includes(column.name));
-    const texts = same.map((column) => `${column.name} ${page.valueText(column, 0)}${column.unit && !column.words ? ` ${column.unit}` : ""}`);
+    const texts = same.map((column) => `${column.name} ${page.valueText(column, 0)}${column.unit && !column.words ? ` ${page.unit(column.unit)}` : ""}`);
     page.byId("constant").textContent = texts.length ? `The same for every design of the front: ${texts.join(", ")}.` : "";
   };
 
@@ -24,21 +26,23 @@
     const box = page.byId("parallel");
     const focused = document.activeElement?.closest?.(".axis-head button")?.dataset.focus;
     axes = [];
-    page.byId("parallel-section").hidden = false;
+    page.byId("parallel-section").hidden = !front.rows;
+    if (!front.rows) return;
     if (!state.parallel.length) {
       box.replaceChildren(page.element("p", { class: "notice" }, "No axis is chosen."));
       page.layoutLines(null);
       return;
     }
     showConstant();
-    width = Math.floor(Math.max(page.layoutWidth(box), page.printing ? 0 : state.parallel.length * 78));
+    width = Math.floor(Math.max(page.layoutWidth(box), page.printing ? 0 : state.parallel.length * LEAST));
     const xs = d3.scalePoint(state.parallel, [0, width]).padding(0.5);
     const canvas = page.element("canvas", { "aria-hidden": "true" });
     svg = d3.create("svg").attr("width", width).attr("height", HEIGHT + 4);
     stage = page.element("div", { class: "stage" }, canvas, svg.node());
     stage.style.width = `${width}px`;
-    stage.style.height = `${HEAD + HEIGHT + 4}px`;
-    canvas.style.top = svg.node().style.top = `${HEAD}px`;
+    const head = headOfStep(xs.step());
+    stage.style.height = `${head + HEIGHT + 4}px`;
+    canvas.style.top = svg.node().style.top = `${head}px`;
     for (const name of state.parallel) {
       const column = front.byName.get(name);
       const axis = { column, x: xs(name), scale: scaleOf(column) };
@@ -49,6 +53,7 @@
     box.replaceChildren(stage);
     page.layoutLines({ canvas, width, height: HEIGHT, axes });
     syncBrushes();
+    showPins();
     showCurrent();
     if (focused) box.querySelector(`[data-focus="${CSS.escape(focused)}"]`)?.focus();
   };
@@ -59,11 +64,14 @@
     // The words of the first axis are to its right: there is no room to its left.
     const side = column.words && page.state.parallel[0] === column.name ? d3.axisRight : d3.axisLeft;
     const ticks = group.append("g").attr("class", "tick-axis halo").call(page.axisOf(side, column, scale, 6));
-    if (column.words) page.shortenWords(ticks, 11);
+    // Those of the first axis end before the numbers of the next one.
+    const room = page.state.parallel[0] === column.name ? Math.max(5, Math.floor((width / page.state.parallel.length - 46) / 6)) : 11;
+    if (column.words) page.shortenWords(ticks, room);
     for (const limit of page.limitsOf(column)) {
       const at = scale(limit);
       if (at >= 0 && at <= HEIGHT) group.append("path").attr("class", "limit").attr("d", `M-9,${at}h18`).append("title").text(`limit of ${column.name}: ${page.short(limit)}`);
     }
+    page.markEnds(group, column, scale, (at) => `M-5,${at}h10`, (at, up) => `M-5,${at}l5,${up ? -8 : 8}l5,${up ? 8 : -8}z`, [0, HEIGHT]);
     axis.dot = group.append("circle").attr("class", "current").attr("r", 4).attr("display", "none");
     axis.brush = d3.brushY().extent([[-9, 0], [9, HEIGHT]]).handleSize(8);
     axis.group = group.append("g").attr("class", "brush").call(axis.brush);
@@ -78,6 +86,15 @@
       page.setCurrent(nearestOn(axis, y));
     });
     group.on("pointerleave", () => page.setCurrent(null));
+  };
+
+  // Ends of the searched range as bars across the axis, limits beyond its ends as arrows.
+  page.markEnds = (group, column, scale, bar, arrow, [top, bottom]) => {
+    for (const end of page.searchedOf(column) || []) group.append("path").attr("class", "range-end").attr("d", bar(scale(end))).append("title").text(`end of the searched range: ${page.short(end)}`);
+    for (const limit of page.limitsOf(column)) {
+      const at = scale(limit);
+      if (at < top || at > bottom) group.append("path").attr("class", "limit-beyond").attr("d", arrow(at < top ? top + 8 : bottom - 8, at < top)).append("title").text(`limit of ${column.name}: ${page.short(limit)}, beyond this axis`);
+    }
   };
 
   const nearestOn = ({ column, scale }, y) => {
@@ -107,7 +124,7 @@
       button("invert", "Reverse:", "⇅", false, () => page.invertAxis(column.name), String(inverted)),
       button("right", "Move to the right:", "›", place === state.parallel.length - 1, () => page.moveAxis(column.name, place + 1)),
     );
-    const head = page.element("div", { class: "axis-head", "data-axis": column.name }, title, sub, buttons);
+    const head = page.element("div", { class: `axis-head${step < NARROW ? " narrow" : ""}`, "data-axis": column.name }, title, sub, buttons);
     head.style.left = `${axis.x - step / 2}px`;
     head.style.width = `${step}px`;
     dragBy(title, head, axis, step);
@@ -170,8 +187,24 @@
     svg.insert("path", ".axis").attr("class", "current-line").attr("d", line(axes));
   };
 
+  // Pinned designs as lines with their letters.
+  const showPins = () => {
+    if (!svg) return;
+    svg.selectAll(".pinned").remove();
+    for (const pin of page.pins()) {
+      const places = axes.map((axis) => [axis.x, axis.scale(pin.values.get(axis.column.name)?.value)]).filter(([, y]) => Number.isFinite(y) && y >= 0 && y <= HEIGHT);
+      if (!places.length) continue;
+      const group = svg.insert("g", ".axis").attr("class", "pinned");
+      group.append("path").attr("class", "pin-line").attr("d", d3.line()(places));
+      for (const [x, y] of places) group.append("circle").attr("class", "pin-dot").attr("r", 2.5).attr("cx", x).attr("cy", y);
+      const [x, y] = places[places.length - 1];
+      group.append("circle").attr("class", "pin-dot").attr("r", 7).attr("cx", x + 14).attr("cy", y);
+      group.append("text").attr("class", "pin-text").attr("x", x + 14).attr("y", y + 3.5).attr("text-anchor", "middle").text(pin.letter);
+    }
+  };
+
   page.startParallel = () => {
-    page.saveButtons("parallel-title", "designs");
+    page.saveButtons(page.byId("parallel-title"), "designs");
     layout();
     page.events.on("columns.parallel", layout);
     page.events.on("layout.parallel", layout);
@@ -187,6 +220,7 @@
     });
     page.events.on("colour.parallel", () => page.redrawLines("brush"));
     page.events.on("theme.parallel", () => page.redrawLines("all"));
+    page.events.on("pins.parallel", showPins);
     page.events.on("current.parallel", showCurrent);
     page.events.on("card.parallel", showCurrent);
   };

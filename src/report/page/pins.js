@@ -11,9 +11,9 @@
   const columnsOf = () => page.front.shown.filter((column) => column.role !== "output");
 
   // What is known of a design is kept with its pin: another front may not have it any more.
+  page.pinEntry = (column, value, text) => [column.name, { value, text, unit: column.unit, role: column.role, words: Boolean(column.words), goal: column.goal }];
   const pinOf = (row) => {
-    const columns = page.front.shown;
-    const entries = columns.map((column) => [column.name, { value: column.values[row], text: page.valueText(column, row), unit: column.unit, role: column.role, words: Boolean(column.words), goal: column.goal }]);
+    const entries = page.front.shown.map((column) => page.pinEntry(column, column.values[row], page.valueText(column, row)));
     return { design: page.designOf(row), letter: free(), values: new Map(entries), set: shownSet() };
   };
 
@@ -26,6 +26,7 @@
   const askedSet = () => (page.changeList ? page.changeList() : []);
   const isOf = (pin, set) => String(pin.set) === String(set);
 
+  page.letterOf = (row) => pins.find((pin) => pin.design === page.designOf(row) && isOf(pin, shownSet()))?.letter;
   page.isPinned = (row) => pins.some((pin) => pin.design === page.designOf(row) && isOf(pin, shownSet()));
 
   page.pin = (row) => {
@@ -39,14 +40,33 @@
     page.events.call("pins");
   };
 
-  // In the address by their designs.
-  page.pinsText = () => [...pins, ...awaited].filter((pin) => isOf(pin, askedSet())).map((pin) => pin.design).join(",");
+  // In the address by their designs; those of other changes with these behind a tilde.
+  const changesOf = (pin) => (isOf(pin, askedSet()) ? "" : `~${pin.set.map(encodeURIComponent).join(";")}`);
+  page.pinsText = () => [...pins, ...awaited].map((pin) => `${pin.design}${changesOf(pin)}`).join(",");
   page.readPins = (text) => {
     pins = [];
-    const isHere = (design) => page.front && page.rowOf(design) >= 0;
-    const designs = [...new Set((text || "").split(",").filter(Boolean))].filter((design) => page.awaits() || isHere(design));
-    awaited = designs.slice(0, MOST).map((design, i) => ({ design, letter: LETTERS[i], set: askedSet() }));
+    const isHere = ({ design, set }) => (isOf({ set }, askedSet()) ? page.awaits() || (page.front && page.rowOf(design) >= 0) : Boolean(page.askPin));
+    const given = [...new Set((text || "").split(",").filter(Boolean))].map((entry) => {
+      const [design, changes] = entry.split("~");
+      return { design, set: changes === undefined ? askedSet() : changes.split(";").filter(Boolean).map(page.decoded) };
+    });
+    awaited = given.filter(isHere).slice(0, MOST).map((pin, i) => ({ ...pin, letter: LETTERS[i] }));
     adoptAwaited();
+    page.events.call("pins");
+    if (page.askPin) awaited.filter((pin) => !isOf(pin, askedSet())).forEach(askOther);
+  };
+
+  // A pin of other changes is on no front that comes: the engine says what it is.
+  const askOther = async (pin) => {
+    try {
+      const values = await page.askPin(pin);
+      if (!awaited.includes(pin)) return;
+      awaited = awaited.filter((other) => other !== pin);
+      pins = [...pins, { ...pin, values }].sort((a, b) => d3.ascending(a.letter, b.letter));
+    } catch {
+      // Its changes are not the study's any more.
+      awaited = awaited.filter((other) => other !== pin);
+    }
     page.events.call("pins");
   };
 

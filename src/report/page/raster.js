@@ -24,29 +24,32 @@
   };
 
   // The same for discs of whole pixels only: each point is read once, which matters above ten thousand points.
-  const drawSolid = (target, width, height, xs, ys, mask, wanted, colourOf, disc) => {
+  const drawSolid = (target, width, height, xs, ys, mask, wanted, colourOf, disc, order) => {
     const single = typeof colourOf === "number";
     const offsets = disc.map(({ dx, dy }) => dy * width + dx);
     const reach = Math.max(...disc.flatMap(({ dx, dy }) => [Math.abs(dx), Math.abs(dy)]));
-    // The first rows are the best of the first objective: they are painted last, over the others.
-    for (let i = xs.length - 1; i >= 0; i--) {
+    // Without an order the first rows, which are the best of the first objective, are painted last, over the others.
+    for (let k = xs.length - 1; k >= 0; k--) {
+      const i = order ? order[xs.length - 1 - k] : k;
       if (wanted !== null && mask[i] !== wanted) continue;
       const x = xs[i];
       const y = ys[i];
       if (x < reach || y < reach || x >= width - reach || y >= height - reach) continue;
       const at = y * width + x;
       const colour = single ? colourOf : colourOf[i];
-      for (let k = 0; k < offsets.length; k++) target[at + offsets[k]] = colour;
+      for (let spot = 0; spot < offsets.length; spot++) target[at + offsets[spot]] = colour;
     }
   };
 
-  // Points with mask[row] === wanted (all for wanted null); xs and ys hold pixels, negative for an absent value.
-  page.drawPoints = (target, width, height, xs, ys, mask, wanted, colourOf, disc) => {
+  // Points with mask[row] === wanted (all for wanted null); xs and ys hold pixels, negative for an absent value. `order`: the rows, those that
+  // lie over the others last.
+  page.drawPoints = (target, width, height, xs, ys, mask, wanted, colourOf, disc, order = null) => {
     const single = typeof colourOf === "number";
-    if (disc.every(({ cover }) => cover >= 256)) return drawSolid(target, width, height, xs, ys, mask, wanted, colourOf, disc);
+    if (disc.every(({ cover }) => cover >= 256)) return drawSolid(target, width, height, xs, ys, mask, wanted, colourOf, disc, order);
     for (const { dx, dy, cover } of disc) {
       const offset = dy * width + dx;
-      for (let i = xs.length - 1; i >= 0; i--) {
+      for (let k = xs.length - 1; k >= 0; k--) {
+        const i = order ? order[xs.length - 1 - k] : k;
         if (wanted !== null && mask[i] !== wanted) continue;
         const x = xs[i];
         const y = ys[i];

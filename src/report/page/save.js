@@ -1,9 +1,16 @@
-// A plot as a file: SVG with the points as a picture in it, or PNG.
+// What is drawn on the page as a file: SVG, with what stands on canvases as pictures in it, or PNG.
 {
-  const STYLES = ["fill", "fill-opacity", "stroke", "stroke-width", "stroke-opacity", "stroke-dasharray", "font-family", "font-size", "font-weight", "text-anchor", "opacity"];
+  const STYLES = (
+    "fill fill-opacity fill-rule stroke stroke-width stroke-opacity stroke-dasharray stroke-linecap stroke-linejoin paint-order " +
+    "font-family font-size font-weight font-style text-anchor dominant-baseline opacity"
+  ).split(" ");
+  const LEFT_OUT = ".no-print, .offscreen, .brush, .current, .current-line, .map-cell, title, desc";
 
-  // A copy that needs no style sheet.
-  const copied = (svg) => {
+  const escape = (text) => text.replace(/&/g, "&amp;").replace(/</g, "&lt;");
+  const near = (number) => Number(number.toFixed(2));
+
+  // A copy that needs no style sheet, as large as it is shown.
+  const copied = (svg, { x, y, width, height }) => {
     const copy = svg.cloneNode(true);
     const from = [svg, ...svg.querySelectorAll("*")];
     const to = [copy, ...copy.querySelectorAll("*")];
@@ -11,38 +18,79 @@
       const style = getComputedStyle(element);
       if (style.display === "none") to[i].setAttribute("display", "none");
       for (const name of STYLES) to[i].setAttribute(name, style.getPropertyValue(name));
+      to[i].removeAttribute("style");
     });
-    copy.querySelectorAll(".brush, .current").forEach((element) => element.remove());
-    return copy;
+    copy.querySelectorAll(LEFT_OUT).forEach((element) => element.remove());
+    if (!copy.getAttribute("viewBox")) copy.setAttribute("viewBox", `0 0 ${near(width)} ${near(height)}`);
+    for (const [name, value] of Object.entries({ x, y, width, height })) copy.setAttribute(name, near(value));
+    copy.setAttribute("overflow", "visible");
+    return new XMLSerializer().serializeToString(copy);
   };
 
-  // A stage has one canvas with the points below one SVG; the heads of parallel axes are text beside them.
-  page.pictureOf = (stage) => {
-    const [width, height] = [stage.clientWidth, stage.clientHeight];
-    const place = (element) => {
-      const [a, b] = [element.getBoundingClientRect(), stage.getBoundingClientRect()];
-      return [a.left - b.left, a.top - b.top, a.width, a.height];
+  // The lines of a text as the page breaks it: { text, left, right, top, bottom }.
+  const linesOf = (node) => {
+    const range = document.createRange();
+    const lines = [];
+    for (let i = 0; i < node.length; i++) {
+      range.setStart(node, i);
+      range.setEnd(node, i + 1);
+      const [at] = range.getClientRects();
+      const isSpace = /\s/.test(node.data[i]);
+      if (!at || !at.width) continue;
+      const last = lines[lines.length - 1];
+      const goesOn = last && Math.abs(last.top - at.top) < 2;
+      if (goesOn && isSpace) last.spaces += " ";
+      else if (goesOn) Object.assign(last, { text: last.text + last.spaces + node.data[i], spaces: "", right: at.right });
+      else if (!isSpace) lines.push({ text: node.data[i], spaces: "", left: at.left, right: at.right, top: at.top, bottom: at.bottom });
+    }
+    return lines;
+  };
+
+  // Everything in a box: canvases, SVGs, coloured areas and words.
+  page.pictureOf = (box) => {
+    const origin = box.getBoundingClientRect();
+    const parts = [];
+    let [width, height] = [origin.width, origin.height];
+    const placeOf = (rect) => {
+      const place = { x: rect.left - origin.left, y: rect.top - origin.top, width: rect.width, height: rect.height };
+      [width, height] = [Math.max(width, place.x + place.width), Math.max(height, place.y + place.height)];
+      return place;
     };
-    const parts = [`<rect width="${width}" height="${height}" fill="${page.variable("--ground")}"/>`];
-    for (const canvas of stage.querySelectorAll("canvas")) {
-      const [x, y, w, h] = place(canvas);
-      parts.push(`<image x="${x}" y="${y}" width="${w}" height="${h}" href="${canvas.toDataURL()}"/>`);
-    }
-    for (const svg of stage.querySelectorAll("svg")) {
-      const [x, y] = place(svg);
-      parts.push(`<g transform="translate(${x},${y})">${new XMLSerializer().serializeToString(copied(svg))}</g>`);
-    }
-    const escape = (text) => text.replace(/&/g, "&amp;").replace(/</g, "&lt;");
-    for (const head of stage.querySelectorAll(".axis-name, .axis-unit")) {
-      const [x, y, w, h] = place(head);
-      const style = getComputedStyle(head);
-      parts.push(`<text x="${x + w / 2}" y="${y + h - 4}" text-anchor="middle" fill="${style.color}" font-family="sans-serif" font-size="10">${escape(head.textContent)}</text>`);
-    }
-    return { width, height, text: `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" viewBox="0 0 ${width} ${height}">${parts.join("")}</svg>` };
+    const text = (node) => {
+      const style = getComputedStyle(node.parentElement);
+      const size = parseFloat(style.fontSize);
+      for (const line of linesOf(node)) {
+        const { x, y, width: long, height: high } = placeOf({ left: line.left, top: line.top, width: line.right - line.left, height: line.bottom - line.top });
+        parts.push(`<text x="${near(x)}" y="${near(y + high / 2 + 0.35 * size)}" textLength="${near(long)}" lengthAdjust="spacingAndGlyphs" fill="${style.color}" font-family="${style.fontFamily.replace(/"/g, "'")}" font-size="${size}" font-weight="${style.fontWeight}">${escape(line.text)}</text>`);
+      }
+    };
+    const visit = (element) => {
+      if (element.matches(LEFT_OUT)) return;
+      const style = getComputedStyle(element);
+      const rect = element.getBoundingClientRect();
+      if (style.display === "none" || style.visibility === "hidden") return;
+      if (element.localName === "svg") return void parts.push(copied(element, placeOf(rect)));
+      const { x, y, width: wide, height: high } = rect.width && rect.height ? placeOf(rect) : {};
+      if (element.localName === "canvas") return void (wide && parts.push(`<image x="${near(x)}" y="${near(y)}" width="${near(wide)}" height="${near(high)}" href="${element.toDataURL()}"/>`));
+      if (wide && element.dataset.stops) {
+        const stops = JSON.parse(element.dataset.stops);
+        const id = `gradient-${parts.length}`;
+        parts.push(`<linearGradient id="${id}">${stops.map((colour, i) => `<stop offset="${i / (stops.length - 1)}" stop-color="${colour}"/>`).join("")}</linearGradient>`);
+        parts.push(`<rect x="${near(x)}" y="${near(y)}" width="${near(wide)}" height="${near(high)}" fill="url(#${id})"/>`);
+      } else if (wide && d3.color(style.backgroundColor)?.opacity > 0) parts.push(`<rect x="${near(x)}" y="${near(y)}" width="${near(wide)}" height="${near(high)}" fill="${style.backgroundColor}"/>`);
+      for (const child of element.childNodes) {
+        if (child.nodeType === Node.TEXT_NODE) text(child);
+        else if (child.nodeType === Node.ELEMENT_NODE) visit(child);
+      }
+    };
+    visit(box);
+    [width, height] = [Math.ceil(width), Math.ceil(height)];
+    const ground = `<rect width="${width}" height="${height}" fill="${page.variable("--ground")}"/>`;
+    return { width, height, text: `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" viewBox="0 0 ${width} ${height}">${ground}${parts.join("")}</svg>` };
   };
 
-  const save = async (stage, name, kind) => {
-    const { width, height, text } = page.pictureOf(stage);
+  const save = async (box, name, kind) => {
+    const { width, height, text } = page.pictureOf(box);
     if (kind === "svg") return page.download(`${name}.svg`, "image/svg+xml", text);
     const image = new Image();
     const address = URL.createObjectURL(new Blob([text], { type: "image/svg+xml" }));
@@ -57,14 +105,20 @@
     return page.download(`${name}.png`, "image/png", blob);
   };
 
-  // Buttons beside the title of a section.
-  page.saveButtons = (id, name) => {
-    const title = typeof id === "string" ? page.byId(id) : id;
-    if (!title || title.parentNode.querySelector(".save-buttons")) return;
-    const stage = () => title.closest("section").querySelector(".stage");
-    const button = (kind) => page.element("button", { type: "button", "data-testid": `${kind} ${name}`, "aria-label": `Save ${title.textContent} as ${kind.toUpperCase()}`, click: () => stage() && save(stage(), name, kind) }, kind.toUpperCase());
+  // The name of a file may have no sign that some system forbids.
+  const fileName = (name) => name.replace(/[^A-Za-z0-9_.-]+/g, "-");
+
+  // Two buttons that save what `boxOf` finds; `what` says what that is.
+  page.saveButtonsOf = (what, name, boxOf) => {
+    const button = (kind) => page.element("button", { type: "button", "data-testid": `${kind} ${name}`, "aria-label": `Save ${what} as ${kind.toUpperCase()}`, click: () => boxOf() && save(boxOf(), fileName(name), kind) }, kind.toUpperCase());
+    return page.element("div", { class: "save-buttons no-print" }, button("svg"), button("png"));
+  };
+
+  // The same beside the title of a section; of its stage, if nothing else is said.
+  page.saveButtons = (title, name, boxOf = () => title.closest("section").querySelector(".stage")) => {
+    if (!title || title.parentNode.querySelector(":scope > .save-buttons")) return;
     const line = page.element("div", { class: "title-line" });
     title.replaceWith(line);
-    line.append(title, page.element("div", { class: "save-buttons no-print" }, button("svg"), button("png")));
+    line.append(title, page.saveButtonsOf(title.textContent, name, boxOf));
   };
 }

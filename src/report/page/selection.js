@@ -34,7 +34,9 @@
     const judged = front.shown.filter((column) => ["objective", "constraint", "report"].includes(column.role));
     state.parallel = [...new Set([...names(varied), ...names(judged)])].slice(0, MOST_AXES);
     state.inverted = new Set();
-    state.colour = objectives[0] ?? state.parallel[0] ?? null;
+    // Categories are what a colour tells best; without one, the first objective, which sorts the front.
+    const category = front.shown.find((column) => ["design", "label"].includes(column.role) && page.isCategory(column) && column.low < column.high);
+    state.colour = category?.name ?? objectives[0] ?? state.parallel[0] ?? null;
     state.axes = new Map();
     state.cells = new Map();
     page.mask = new Uint8Array(front.rows).fill(1);
@@ -98,8 +100,14 @@
 
   // The bounds of the constraints on a column.
   page.limitsOf = (column) => {
-    const bounds = page.front.constraints.filter((it) => it.column === column).flatMap(({ min, above, max, below }) => [min, above, max, below]);
+    const bounds = page.front.constraints.filter((it) => it.column.name === column.name).flatMap(({ min, above, max, below }) => [min, above, max, below]);
     return bounds.filter((it) => it !== null && it !== undefined);
+  };
+
+  // The range in which an input was searched; null for all else.
+  page.searchedOf = (column) => {
+    const input = column.role === "design" && !column.words ? (page.data.inputs || []).find((it) => it.name === column.name) : null;
+    return input && Number.isFinite(input.least) && Number.isFinite(input.largest) && input.least < input.largest ? [input.least, input.largest] : null;
   };
 
   // Which end of its axis a design stands on: "lower", "upper" or "".

@@ -2,7 +2,8 @@
 {
   const WIDTH = 196;
   const HEIGHT = 92;
-  const PAD = { left: 44, right: 16, top: 8, bottom: 20 };
+  const PAD = { right: 16, top: 8, bottom: 20 };
+  const DIGIT = 6.4; // px of a digit of the ticks
   // How far the input can go from the design's own value before it is infeasible: the last feasible place on either side and the next one.
   const reach = ({ at, feasible, own }) => {
     const here = at.indexOf(own);
@@ -30,8 +31,20 @@
     return "infeasible";
   };
 
+  // Words have no order: which of them are feasible too.
+  const wordsText = (slice, columns) => {
+    const here = slice.at.indexOf(slice.own);
+    const others = slice.words.map((word, i) => ({ word, i })).filter(({ i }) => i !== here);
+    const good = others.filter(({ i }) => slice.feasible[i]).map(({ word }) => word);
+    const told = good.length > 6 ? `${page.count(good.length)} of ${page.count(others.length)} others` : good.join("; ");
+    const bad = others.find(({ i }) => !slice.feasible[i]);
+    const lines = [`now ${slice.words[here]}`, slice.feasible[here] ? `feasible too: ${told || "none of the others"}` : "this design is infeasible"];
+    return bad ? [...lines, `with ${bad.word} ${failsAt(slice, columns, bad.i)}`] : lines;
+  };
+
   // How far until infeasible, in words.
   const reachText = (slice, columns) => {
+    if (slice.words) return wordsText(slice, columns);
     const found = reach(slice);
     const unit = slice.unit ? ` ${page.unit(slice.unit)}` : "";
     if (!found) return "this design is infeasible";
@@ -67,28 +80,41 @@
     return [`leaves unchanged ${told.map(each).join(", ")}`];
   };
 
+  // As many ticks as have room beside each other.
+  const ticksOf = (x, format) => [3, 2, 1].map((count) => x.ticks(count)).find((ticks) => ticks.length < 2 || x(ticks[1]) - x(ticks[0]) > 12 + (DIGIT * (format(ticks[0]).length + format(ticks[1]).length)) / 2) ?? x.ticks(3).slice(0, 1);
+
   const chart = (slice, column, line) => {
     const values = valuesOf(line);
     const limits = limitsOf(column.name);
     const finite = values.filter(Number.isFinite);
     const [least, most] = d3.extent(finite);
     const [low, high] = d3.extent([...finite, ...limits.filter((it) => it >= least - (most - least) && it <= most + (most - least))]);
-    const x = d3.scaleLinear([slice.at[0], slice.at[slice.at.length - 1]], [PAD.left, WIDTH - PAD.right]);
     const y = d3.scaleLinear(low === high ? [low - (Math.abs(low) || 1) * 0.1, high + (Math.abs(high) || 1) * 0.1] : [low, high], [HEIGHT - PAD.bottom, PAD.top]).nice(3);
+    const ofY = page.tick(y, 3);
+    // The numbers beside the axis have the room that they need.
+    const left = 8 + DIGIT * Math.max(4, d3.max(y.ticks(3), (tick) => ofY(tick).length));
+    const ends = [slice.at[0], slice.at[slice.at.length - 1]];
+    const pad = slice.words ? (ends[1] - ends[0]) * 0.06 || 1 : 0;
+    const x = d3.scaleLinear([ends[0] - pad, ends[1] + pad], [left, WIDTH - PAD.right]);
     const svg = d3.create("svg").attr("class", "slice").attr("viewBox", `0 0 ${WIDTH} ${HEIGHT}`).attr("width", WIDTH).attr("height", HEIGHT).attr("role", "img");
     svg.attr("aria-label", `${column.name} over ${slice.input}: ${page.short(finite[0])} to ${page.short(finite[finite.length - 1])}`);
-    svg.append("g").attr("class", "tick-axis").attr("transform", `translate(0,${HEIGHT - PAD.bottom})`).call(d3.axisBottom(x).ticks(3).tickSizeOuter(0).tickSize(3).tickFormat(page.tick(x, 3)));
-    svg.append("g").attr("class", "tick-axis").attr("transform", `translate(${PAD.left},0)`).call(d3.axisLeft(y).ticks(3).tickSizeOuter(0).tickSize(3).tickFormat(page.tick(y, 3)));
+    const ofX = page.tick(x, 3);
+    const bottom = d3.axisBottom(x).tickSizeOuter(0).tickSize(3);
+    const across = svg.append("g").attr("class", "tick-axis").attr("transform", `translate(0,${HEIGHT - PAD.bottom})`);
+    across.call(slice.words ? bottom.tickValues([]) : bottom.tickValues(ticksOf(x, ofX)).tickFormat(ofX));
+    // At the ends they stay within the plot: neither cut off nor over those of the other axis.
+    across.selectAll(".tick text").attr("text-anchor", (tick) => (x(tick) < left + 14 ? "start" : x(tick) > WIDTH - PAD.right - 6 ? "end" : "middle"));
+    svg.append("g").attr("class", "tick-axis").attr("transform", `translate(${left},0)`).call(d3.axisLeft(y).ticks(3).tickSizeOuter(0).tickSize(3).tickFormat(ofY));
     // Where the design would be infeasible.
-    const half = (i) => (i < 0 ? slice.at[0] : i >= slice.at.length - 1 ? slice.at[slice.at.length - 1] : (slice.at[i] + slice.at[i + 1]) / 2);
+    const half = (i) => (i < 0 ? x.domain()[0] : i >= slice.at.length - 1 ? x.domain()[1] : (slice.at[i] + slice.at[i + 1]) / 2);
     slice.feasible.forEach((is, i) => is || svg.append("rect").attr("class", "no-go").attr("x", x(half(i - 1))).attr("width", Math.max(0, x(half(i)) - x(half(i - 1)))).attr("y", PAD.top).attr("height", HEIGHT - PAD.top - PAD.bottom));
-    for (const limit of limits) if (limit >= y.domain()[0] && limit <= y.domain()[1]) svg.append("path").attr("class", "limit").attr("d", `M${PAD.left},${y(limit)}H${WIDTH - PAD.right}`);
+    for (const limit of limits) if (limit >= y.domain()[0] && limit <= y.domain()[1]) svg.append("path").attr("class", "limit").attr("d", `M${left},${y(limit)}H${WIDTH - PAD.right}`);
     const path = d3.line((_, i) => x(slice.at[i]), (value) => y(value)).defined(Number.isFinite);
-    if (slice.at.length === 1) svg.append("circle").attr("class", "own").attr("r", 3).attr("cx", x(slice.at[0])).attr("cy", y(values[0]));
+    if (slice.words) values.forEach((value, i) => Number.isFinite(value) && svg.append("circle").attr("class", "slice-dot").attr("r", 2.5).attr("cx", x(slice.at[i])).attr("cy", y(value)).append("title").text(`${slice.words[i]}: ${page.short(value)}`));
     else svg.append("path").attr("class", "slice-line").attr("d", path(values));
     // Where another scenario becomes the worst.
     line.scenarios.forEach((scenario, i) => {
-      if (i > 0 && scenario !== null && line.scenarios[i - 1] !== null && scenario !== line.scenarios[i - 1] && Number.isFinite(values[i])) {
+      if (i > 0 && !slice.words && scenario !== null && line.scenarios[i - 1] !== null && scenario !== line.scenarios[i - 1] && Number.isFinite(values[i])) {
         svg.append("path").attr("class", "switch").attr("d", `M${x(half(i - 1))},${y((values[i] + values[i - 1]) / 2) - 5}v10`).append("title").text(`from here on the worst scenario is #${scenario}`);
       }
     });
@@ -102,7 +128,9 @@
     const cell = (slice, column, line) => (isSame(line) ? null : page.element("figure", { class: "slice-cell" }, caption(column), chart(slice, column, line)));
     const text = (slice) => [reachText(slice, columns), sameText(slice, columns)].flat().map((line) => page.element("div", { class: "unit" }, line));
     const row = (slice) => page.element("div", { class: "slice-row" }, page.element("div", { class: "slice-head" }, page.element("h3", {}, page.breakable(slice.input)), text(slice)), page.element("div", { class: "slice-cells" }, slice.lines.map((line, i) => cell(slice, columns[i], line))));
-    box.replaceChildren(page.element("div", { class: "slices", "data-testid": "slices" }, slices.map(row)), page.element("p", { class: "hint" }, "Dot: this design. Dashed: a limit. Shaded: infeasible. A tick on a line: another scenario becomes the worst."));
+    const list = page.element("div", { class: "slices", "data-testid": "slices" }, slices.map(row));
+    const hint = page.element("p", { class: "hint" }, "Along each axis of the study, all else as it is. Dot: this design. Dashed: a limit. Shaded: infeasible. A tick on a line: another scenario becomes the worst.");
+    box.replaceChildren(page.element("div", { class: "title-line" }, hint, page.saveButtonsOf("what is around the design", "around", () => list)), list);
   };
 
   // The page of a result holds those of the knee only.

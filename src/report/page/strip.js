@@ -23,7 +23,7 @@
     svg.append("path").attr("class", "rug").attr("d", d3.map(page.front.rows > 4000 ? [] : column.values, (value) => (Number.isFinite(value) ? `M${scale(value)},${HEIGHT - 10}v8` : "")).join(""));
     svg.append("g").attr("class", "tick-axis").attr("transform", `translate(0,${HEIGHT})`).call(page.axisOf(d3.axisBottom, column, scale, 8));
     svg.append("g").attr("class", "tick-axis").attr("transform", `translate(${MARGIN.left},0)`).call(d3.axisLeft(top).ticks(Math.min(4, top.domain()[1])).tickSize(4).tickFormat(d3.format("~d")));
-    svg.append("text").attr("class", "axis-title").attr("x", (width + MARGIN.left) / 2).attr("y", HEIGHT + 38).attr("text-anchor", "middle").text(page.withUnit(column.name, column.unit) + (column.goal ? ` (${column.goal})` : ""));
+    svg.append("text").attr("class", "axis-title").attr("x", (width + MARGIN.left) / 2).attr("y", HEIGHT + 38).attr("text-anchor", "middle").text(page.axisName(column.name, column.unit) + (column.goal ? `, ${column.goal === "min" ? "lower" : "higher"} is better` : ""));
     svg.append("text").attr("class", "axis-title").attr("transform", `translate(22,${HEIGHT / 2})rotate(-90)`).attr("text-anchor", "middle").text("designs on the front");
     const current = svg.append("path").attr("class", "strip-current");
     const group = svg.append("g").attr("class", "cell").attr("data-x", column.name).attr("tabindex", 0).attr("role", "application");

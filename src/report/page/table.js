@@ -1,8 +1,9 @@
 // The selected designs as a table, sortable by each column, and as CSV with every digit.
 {
   const MOST = 200;
+  const PRINTED = 40; // as the style of printed pages has it
   let sort = { name: null, down: false };
-  let body, note, heads;
+  let body, note, heads, oneStop;
 
   const columnsShown = () => {
     const { front, state } = page;
@@ -54,12 +55,15 @@
     const rows = sortedRows();
     const knee = page.chosenRow();
     const line = (row) => {
-      const cell = (column) => page.element("td", { class: column.words ? "" : "number" }, page.valueText(column, row), column === page.front.index && row === knee ? page.element("span", { class: "mark" }, ` ${page.chosenWord()}`) : null);
-      return page.element("tr", { "data-row": row, class: row === knee ? "is-knee" : "", tabindex: 0, "aria-label": `design ${page.designOf(row)}: open its card` }, columns.map(cell));
+      const cell = (column) => page.element("td", { class: column.words ? "" : "number" }, page.valueText(column, row), column === page.front.index ? [page.letterOf(row) ? page.element("span", { class: "pin-letter" }, page.letterOf(row)) : null, row === knee ? page.element("span", { class: "mark" }, ` ${page.chosenWord()}`) : null].filter(Boolean) : []);
+      return page.element("tr", { "data-row": row, class: row === knee ? "is-knee" : "", tabindex: -1, "aria-label": `design ${page.designOf(row)}: open its card` }, columns.map(cell));
     };
     body.replaceChildren(...rows.slice(0, MOST).map(line));
-    note.textContent = rows.length > MOST ? `The first ${MOST} of ${page.count(rows.length)} are shown; the CSV has them all.` : rows.length ? "" : "No design is in all of the selected ranges.";
+    const first = (most) => (rows.length > most ? `The first ${most} of ${page.count(rows.length)} are shown; the CSV has them all.` : "");
+    const said = rows.length ? first(MOST) : "No design is in all of the selected ranges.";
+    note.replaceChildren(page.element("span", { class: "no-print" }, said), page.element("span", { class: "print-only" }, first(PRINTED)));
     page.byId("csv").disabled = !rows.length;
+    oneStop();
     markCurrent();
   };
 
@@ -84,15 +88,7 @@
     const csv = page.element("button", { type: "button", id: "csv", "data-testid": "csv", class: "no-print", click: save }, "Download as CSV");
     const scroll = page.element("div", { class: "scroll tall" }, page.element("table", { id: "designs", "data-testid": "designs" }, page.element("thead", {}, heads), body));
     section.append(page.element("div", { class: "title-line" }, page.element("h2", { id: "table-title" }, "Selected designs"), csv), note, scroll);
-    body.addEventListener("click", (event) => rowAt(event) !== null && page.openCard(rowAt(event)));
-    body.addEventListener("keydown", (event) => {
-      const row = rowAt(event);
-      const next = { ArrowDown: "nextElementSibling", ArrowUp: "previousElementSibling" }[event.key];
-      if (next) event.target.closest("tr")[next]?.focus();
-      else if (event.key === "Enter" && row !== null) page.openCard(row);
-      else return;
-      event.preventDefault();
-    });
+    oneStop = page.openableRows(body, (line) => page.openCard(Number(line.dataset.row)));
     body.addEventListener("pointerover", (event) => page.setCurrent(rowAt(event)));
     body.addEventListener("pointerleave", () => page.setCurrent(null));
     body.addEventListener("focusin", (event) => page.setCurrent(rowAt(event)));
@@ -103,6 +99,7 @@
     page.events.on("columns.table", later);
     page.events.on("front.table", later);
     page.events.on("choice.table", later);
+    page.events.on("pins.rows", later);
     page.events.on("current.table", markCurrent);
     page.events.on("card.table", markCurrent);
   };

@@ -3,7 +3,7 @@
   // Every reason for which a design of the sample failed: a status of the model or a constraint, the most frequent first.
   const reasons = (tally) => {
     const states = Object.entries(tally.status || {}).map(([reason, failed]) => ({ text: reason, failed, only: 0, constraint: false }));
-    const bounds = (tally.constraints || []).map(({ of, bounds, violated, only }) => ({ text: `${of} ${bounds}`, of, bounds, failed: violated, only, constraint: true }));
+    const bounds = (tally.constraints || []).map(({ of, bounds, violated, only }) => ({ text: `${of} ${page.grouped(bounds)}`, of, bounds, failed: violated, only, constraint: true }));
     return [...states, ...bounds].sort((a, b) => b.failed - a.failed);
   };
 
@@ -22,24 +22,26 @@
         fill.style.width = `${(100 * part) / sampled}%`;
         meter.append(fill);
       }
-      const kind = constraint ? "constraint" : "no result";
+      const kind = constraint ? "constraint" : "impossible";
       return page.element("tr", { "data-reason": text }, page.element("th", { scope: "row" }, text), page.element("td", { class: "muted" }, kind), page.element("td", { class: "bar-cell" }, meter), page.element("td", { class: "number" }, page.percent(failed, sampled)), page.element("td", { class: "number" }, constraint ? page.percent(only, sampled) : "–"));
     };
     const head = [["reason", ""], ["kind", ""], ["share", ""], ["fails", "number"], ["alone", "number"]].map(([name, kind]) => page.element("th", { scope: "col", class: kind }, name));
     const table = page.element("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Reasons and their shares" }, page.element("table", { class: "tally" }, page.element("thead", {}, page.element("tr", {}, head)), page.element("tbody", {}, shown.map(line))));
+    const heading = page.element("h2", { id }, title);
     section.append(
-      page.element("h2", { id }, title),
+      heading,
       page.element("p", { class: "hint" }, `Of ${whole === sampled ? "all" : "a fixed sample of"} ${page.count(sampled)} ${one}s, ${page.count(tally.feasible)} (${page.percent(tally.feasible, sampled)}) ${good}. One ${one} may fail for several reasons; “alone” counts those that fail this constraint and nothing else.`),
       shown.length ? table : page.element("p", {}, `No ${one} fails.`),
-      never.length ? page.element("p", { class: "hint" }, `No ${one} fails: ${never.join(", ")}.`) : "",
+      shown.length && never.length ? page.element("p", { class: "hint" }, `No ${one} fails: ${never.join(", ")}.`) : "",
     );
+    if (shown.length) page.saveButtons(heading, id.replace("-title", ""), () => table.firstChild);
   };
 
   const sentences = (tally) => {
     const all = reasons(tally).filter((reason) => reason.failed > 0);
     const [first] = all;
     if (!first) return ["No single constraint or status excludes every design of the sample, but together they do: no design keeps all of them in all scenarios."];
-    const count = `${page.count(first.failed)} of ${page.count(tally.sampled)} sampled designs (${page.percent(first.failed, tally.sampled)})`;
+    const count = `${page.count(first.failed)} of ${page.count(tally.sampled)} ${page.data.study && page.data.study.designs === tally.sampled ? "" : "sampled "}designs (${page.percent(first.failed, tally.sampled)})`;
     const said = [first.constraint ? `The most frequent reason: ${count} violate the constraint “${first.text}”.` : `The most frequent reason: ${count} have the status “${first.text}”.`];
     const alone = all.filter((reason) => reason.only > 0).sort((a, b) => b.only - a.only);
     if (alone.length) said.push(`What to relax: ${alone.map((reason) => `“${reason.text}”, which alone excludes ${page.count(reason.only)} designs (${page.percent(reason.only, tally.sampled)})`).join("; ")}. These designs keep all other constraints.`);
@@ -50,7 +52,7 @@
 
   // How far off feasibility is, ends of axes on which the front stands, quantities below zero that no constraint forbids.
   const drawFindings = (place, findings) => {
-    const list = page.element("ul", { class: "findings", "data-testid": "findings" }, findings.map((text) => page.element("li", {}, text)));
+    const list = page.element("ul", { class: "findings", "data-testid": "findings" }, findings.map((text) => page.element("li", {}, page.grouped(text))));
     place.append(page.element("h2", {}, "Findings"), list);
   };
 

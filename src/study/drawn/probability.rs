@@ -10,6 +10,7 @@ use super::law::LawText;
 use super::statistic::{ConfirmedEnd, OverDraws, Statistic, StatisticKind};
 use crate::models::Model;
 use crate::probability::{Distribution, Draws, Effect, ProbabilityProblem, Sampling};
+use crate::table::short;
 use crate::tape::Set;
 use std::sync::Arc;
 
@@ -65,7 +66,26 @@ pub struct UncertainInput {
     pub distribution: Distribution,
 }
 
+/// A mean that is this small beside the standard deviation is what rounding leaves of zero.
+const ROUNDING: f64 = 1e-12;
+
 impl UncertainInput {
+    /// The distribution in words: its name, where it is cut off, its mean and standard deviation.
+    pub fn in_words(&self) -> String {
+        let ends = [("below", self.law.from), ("above", self.law.to)];
+        let ends: Vec<String> = ends.iter().filter_map(|(word, end)| Some(format!("{word} {}", short((*end)?)))).collect();
+        let cut = if ends.is_empty() { String::new() } else { format!(", cut off {}", ends.join(" and ")) };
+        let (mean, sd) = (self.distribution.mean(), self.distribution.sd());
+        // Numbers that cancel leave a rest of their rounding errors.
+        let mean = if mean.abs() < ROUNDING * sd { 0.0 } else { mean };
+        let law = format!("{}{cut}: mean {}, sd {}", self.law.name(), short(mean), short(sd));
+        match self.effect {
+            Effect::Is => law,
+            Effect::Times => format!("times {law}"),
+            Effect::Plus => format!("plus {law}"),
+        }
+    }
+
     /// What a drawn number does to the value of `input`.
     pub fn acts(&self) -> Effect {
         if self.in_model { Effect::Is } else { self.effect }

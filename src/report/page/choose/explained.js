@@ -36,9 +36,11 @@
 
   const put = (...children) => {
     const section = page.byId("explained");
+    const title = page.element("h2", { id: "explained-title" }, "Which axis explains what, over the feasible designs");
     section.hidden = false;
     section.dataset.old = "no";
-    section.replaceChildren(page.element("h2", { id: "explained-title" }, "Which axis explains what, over the feasible designs"), ...children.filter(Boolean));
+    section.replaceChildren(title, ...children.filter(Boolean));
+    if (section.querySelector("table")) page.saveButtons(title, "importance", () => section.querySelector("table"));
   };
 
   const table = ({ axes, columns }) => {

@@ -69,9 +69,17 @@
     page.others = [...page.others, other];
     legend();
     page.events.call("others");
-    other.counts = await page.compareFronts(other, () => !page.others.includes(other));
-    legend();
+    await compare(other);
     return null;
+  };
+
+  // Counts anew for the front that is shown; who is overtaken by another front gives up.
+  const compare = async (other) => {
+    const { front } = page;
+    const counts = await page.compareFronts(other, () => !page.others.includes(other) || page.front !== front);
+    if (page.front !== front || !counts) return;
+    other.counts = counts;
+    legend();
   };
 
   const addAll = async (files) => {
@@ -102,5 +110,11 @@
       addAll([...event.dataTransfer.files]);
     });
     legend();
+    const again = page.afterPause(400, () => page.others.forEach(compare));
+    page.events.on("front.others", () => {
+      for (const other of page.others) other.counts = null;
+      if (page.others.length) legend();
+      again();
+    });
   };
 }

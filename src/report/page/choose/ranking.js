@@ -104,6 +104,16 @@
     return known;
   };
 
+  // Rows with the best last, as they are painted; null where there are so many that ordering them would be felt.
+  const MOST_ORDERED = 20000;
+  let painted = null;
+  page.paintOrder = () => {
+    if (page.front.rows > MOST_ORDERED || !page.front.objectives.length) return null;
+    const found = page.ranking();
+    if (painted?.of !== found) painted = { of: found, order: Uint32Array.from(found.scores.keys()).sort((a, b) => found.scores[b] - found.scores[a] || b - a) };
+    return painted.order;
+  };
+
   // The design that stands for the whole front, and what it is called.
   page.chosenRow = () => (page.isWeighed() ? page.ranking().order[0] : page.front && page.front.knee);
   page.chosenWord = () => (page.isWeighed() ? "first by weights" : "knee");

@@ -50,11 +50,11 @@
     return { goals, rates };
   };
 
-  // A small step of an objective: one of what is counted, 1 % of the value, or of the range where values come near 0.
+  // A small step of an objective: one of what is counted, 1 % of the value, or of the range where values come near 0 or hardly differ.
   page.smallStep = ({ column }, row) => {
     if (column.whole) return { step: 1, of: "" };
     const [least, most] = [Math.min(Math.abs(column.low), Math.abs(column.high)), Math.max(Math.abs(column.low), Math.abs(column.high))];
-    if (column.low * column.high > 0 && least >= LOCAL * most) return { step: Math.abs(column.values[row]) / 100, of: "1 %" };
+    if (column.low * column.high > 0 && least >= LOCAL * most && 0.02 * most <= column.high - column.low) return { step: Math.abs(column.values[row]) / 100, of: "1 %" };
     return { step: (column.high - column.low) / 100, of: "1 % of its range" };
   };
 

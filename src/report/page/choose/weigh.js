@@ -36,7 +36,7 @@
   const build = () => {
     const section = page.byId("weigh");
     const goals = page.goals();
-    section.hidden = goals.length < 2;
+    section.hidden = goals.length < 2 || !page.front.rows;
     section.dataset.goals = goals.map(({ name, goal }) => `${name} ${goal}`).join();
     controls = [];
     if (section.hidden) return section.replaceChildren();

@@ -9,6 +9,7 @@
     pulley: (row) => page.drawPulley(row, true),
   };
   const STEPS = 200;
+  page.knownSections = new WeakMap(); // front -> row -> outline, of a study in work
   let ratioShown = null; // stays from one card to the next
 
   const table = ({ heads, units, lines }) => {
@@ -62,6 +63,14 @@
       input.addEventListener("keydown", (event) => event.key.startsWith("Arrow") && event.stopPropagation());
       slider = page.element("div", { class: "drive-slider no-print" }, page.element("label", { for: "drive-ratio" }, "ratio"), input, said);
     }
+    // What is told later, such as the section of a pulley, is drawn in its place.
+    page.knowSection = (of, outline) => {
+      page.knownSections.set(page.front, new Map([[of, outline]]));
+      if (of !== row || !stage.isConnected) return;
+      const next = draw(row, shown);
+      stage.replaceChildren(next.node);
+      rest.replaceChildren(...parts(next).slice(1).filter(Boolean));
+    };
     const made = section(slider, stage, rest);
     page.saveButtons(title, `drive-${page.designOf(row)}`);
     return made;

@@ -3,6 +3,21 @@
   // Where the model has no dimensions of the groove: of the mean radius.
   const WIDTH = 0.2;
 
+  // The section of a design as lines of (z, r), if the page knows it.
+  const outlineOf = (row) => {
+    const { sections } = page.data;
+    const found = page.knownSections.get(page.front)?.get(row) ?? sections?.outlines[sections.of[page.designOf(row)]];
+    return found ? found.map((part) => d3.range(0, part.length, 2).map((i) => [part[i], part[i + 1]])) : null;
+  };
+
+  // Above and below the axis, with the mean radius across it; `at` is where it begins.
+  const drawOutline = (sheet, outline, at, broad, radius) => {
+    for (const side of [1, -1]) {
+      for (const part of outline) sheet.polygon("pulley-body cut", part.map(([z, r]) => [at + z, side * r]));
+      sheet.polygon("hidden-line", [[at, side * radius], [at + broad, side * radius]], false);
+    }
+  };
+
   const dimensions = (reader, whole, radius, tangent) => {
     if (whole) {
       const [width, above, below, rim, bore, bracket] = ["groove_width_mm", "groove_height_mm", "floor_depth_mm", "rim_height_mm", "bore_diameter_mm", "bracket_diameter_mm"].map(reader.number);
@@ -23,12 +38,14 @@
     const half = (height) => Math.max(0, top / 2 - (above - height) * tangent);
     const outer = radius + above + rim;
     const floor = radius - below;
-    const land = reader.chosen(count > 1 ? "distance between the grooves" : "thickness of the rim beside the groove", 0.18 * top, `${page.short(0.18 * top)} mm, 0.18 of the groove's width`);
+    const outline = whole ? outlineOf(row) : null;
+    const [least, most] = outline ? d3.extent(outline.flat(), ([z]) => z) : [0, 0];
+    const land = outline ? 0.18 * top : reader.chosen(count > 1 ? "distance between the grooves" : "thickness of the rim beside the groove", 0.18 * top, `${page.short(0.18 * top)} mm, 0.18 of the groove's width`);
     const under = 0.12 * outer;
-    if (known) reader.notes.push("what lies between groove and bore, which is dashed");
+    if (known && !outline) reader.notes.push("what lies between groove and bore, which is dashed");
     // The section beside the front view, at the same height, as a drawing has it: the groove's place in the section is where it is cut.
     const pitch = top + land;
-    const broad = count * pitch + land;
+    const broad = outline ? most - least : count * pitch + land;
     const away = outer + 0.22 * outer;
     const title = `V-belt pulley${count > 1 ? ` with ${count} grooves` : ""}, to scale`;
     const description = `Mean radius ${page.short(radius)} mm, groove angle ${page.short(groove)}°, wrap ${page.short(wrap)}°, outer radius ${page.short(outer)} mm.`;
@@ -48,6 +65,7 @@
     sheet.radius(0, 0, radius, -60);
     sheet.label(polar(0.45 * radius, -60), `mean r ${page.short(radius)} mm`, [10, 10], "start");
     // Section of the rim, above and below the axis.
+    if (outline) drawOutline(sheet, outline.map((part) => part.map(([z, r]) => [z - least, r])), away, broad, radius);
     const profile = [];
     profile.push([0, floor - under], [0, outer]);
     for (let at = 0; at < count; at++) {
@@ -56,7 +74,7 @@
       profile.push([middle - edge, outer], [middle - edge, radius + above], [middle - half(-below), floor], [middle + half(-below), floor], [middle + edge, radius + above], [middle + edge, outer]);
     }
     profile.push([broad, outer], [broad, floor - under]);
-    for (const side of [1, -1]) {
+    for (const side of outline ? [] : [1, -1]) {
       sheet.polygon("pulley-body cut", profile.map(([z, r]) => [away + z, side * r]));
       for (let at = 0; at < count; at++) {
         const middle = away + land + top / 2 + at * pitch;

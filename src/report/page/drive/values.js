@@ -8,6 +8,7 @@
     const input = ofInput(name);
     if (column && column.role === "design") return column.words || !Number.isFinite(column.values[row]) ? null : { name, value: column.values[row], from: "design", least: input?.least, largest: input?.largest };
     if (input && input.role === "fixed") return typeof input.value === "number" ? { name, value: input.value, from: "fixed" } : null;
+    if (input && input.role === "drawn" && typeof input.value === "number") return { name, value: input.value, from: "drawn" };
     if (input && Number.isFinite(input.least)) return { name, value: (input.least + input.largest) / 2, from: "varied", least: input.least, largest: input.largest };
     return column && !column.words && Number.isFinite(column.values[row]) ? { name, value: column.values[row], from: "output" } : null;
   };
@@ -20,6 +21,7 @@
       const found = page.quantityOf(name, row);
       if (!found) missing.push(name);
       else if (found.from === "varied" && found.least !== found.largest) notes.push(`${name}: it varies over the scenarios from ${page.short(found.least)} to ${page.short(found.largest)} and is drawn at ${page.short(found.value)}`);
+      else if (found.from === "drawn") notes.push(`${name}: it has a distribution and is shown at its mean, ${page.short(found.value)}`);
       return found ? found.value : NaN;
     };
     // A length that the model has not: the value of a rule, which is told.

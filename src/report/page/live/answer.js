@@ -62,6 +62,8 @@
     const { state } = page;
     const design = page.front && state.card !== null ? page.designOf(state.card) : state.awaited;
     page.front = page.frontOf(data, told.front, buffer);
+    // It is of what was asked before.
+    if (!sameList(page.shownSet, question.set)) page.sample = null;
     page.shownSet = question.set;
     page.ghost = page.byId("ghost").checked ? ghostOf : null;
     page.adoptFront();
@@ -93,6 +95,7 @@
     page.applySelection();
     page.startBar();
     page.startPins();
+    page.startOthers();
     page.startWeigh();
     page.startMatrix();
     page.startStrip();
@@ -129,7 +132,8 @@
       page.data.study.feasible = told.feasible ?? undefined;
       page.startOverview();
       page.startTally();
-      page.feasible = told.sample ? page.sampleOf(told.sample, buffer) : null;
+      page.feasible = page.sample = told.sample ? page.sampleOf(told.sample, buffer) : null;
+      page.events.call("others");
       page.showExplained();
       const share = told.feasible === null ? `${page.percent(told.tally.feasible, told.tally.sampled)} of a sample are feasible` : `${page.count(told.feasible)} of ${page.count(page.data.study.designs)} designs are feasible`;
       say(`exact: ${page.count(page.front.rows)} designs on the front; ${share}`, "exact");

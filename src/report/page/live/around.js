@@ -33,6 +33,7 @@
     try {
       const told = await page.askOnce("/design", { set, design });
       if (page.state.card === null || page.designOf(page.state.card) !== design || !page.byId("all-outputs")) return;
+      if (told.section) page.knowSection(row, told.section);
       const known = new Set(page.front.shown.map((column) => column.name));
       const lines = told.outputs.filter((output) => !known.has(output.name)).map((output) =>
         page.element("tr", {}, page.element("th", { scope: "row", title: output.doc }, page.breakable(output.name)), page.element("td", { class: "number" }, page.element("span", { "data-name": output.name, "data-value": page.full(output.value), title: page.full(output.value) }, page.short(output.value)), page.element("span", { class: "unit" }, output.value === null ? "" : ` ${page.unit(output.unit)}`)), page.element("td", { class: "scenario" }, output.scenario === null ? "" : `#${output.scenario}`)),
@@ -41,6 +42,17 @@
     } catch (error) {
       box.replaceChildren(page.element("p", { class: "notice" }, error.message));
     }
+  };
+
+  // What a pinned design of other changes is made of, and what that gives.
+  page.askPin = async ({ design, set }) => {
+    const told = await page.askOnce("/design", { set, design });
+    const values = new Map([...Object.entries(told.inputs), ...told.outputs.map(({ name, value }) => [name, value ?? NaN])]);
+    const entry = (column) => {
+      const value = values.get(column.name);
+      return page.pinEntry(column, column.words ? column.words.indexOf(value) : value, page.short(value));
+    };
+    return new Map(page.front.shown.filter((column) => values.has(column.name)).map(entry));
   };
 
   page.startAround = () => {

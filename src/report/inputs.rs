@@ -1,0 +1,72 @@
+//! What the page says of the inputs: their roles, their values, and of those that are drawn their distributions.
+
+use crate::models::Input;
+use crate::study::{Axis, Constraint, Probability, Study, UncertainInput, value_of};
+use crate::table::{short, written};
+use serde_json::{Value, json};
+
+/// Every input with its role in the study, and its value if nothing varies it.
+pub fn inputs(study: &Study) -> Vec<Value> {
+    study.model.inputs.iter().enumerate().map(|(number, input)| described(study, number, input)).collect()
+}
+
+fn described(study: &Study, number: usize, input: &Input) -> Value {
+    let mut described = json!({
+        "name": input.name, "unit": input.unit.symbol, "symbol": input.symbol, "doc": input.doc, "only_for": input.only_for,
+    });
+    let drive = study.probability.as_deref().map(|it| &it.drive);
+    let of_drive = drive.and_then(|it| Some((&it.operation[..], it.model.input(&input.name)?)));
+    let axes = [("design", &study.design[..]), ("operation", &study.operation), ("uncertainty", &study.uncertainty)];
+    let axes = axes.map(|(role, axes)| (role, axes, number));
+    let axes = axes.into_iter().chain(of_drive.map(|(axes, number)| ("operation", axes, number)));
+    let found = axes.filter_map(|(role, axes, number)| Some((role, column_of(axes, number)?))).next();
+    if let Some((role, (axis, column))) = found {
+        (described["role"], described["over"]) = (role.into(), over(input, axis, column).into());
+        let (least, largest) = axis.ends(column);
+        if !input.is_enumeration() && input.word_for(least).is_none() && input.word_for(largest).is_none() {
+            (described["least"], described["largest"]) = (least.into(), largest.into());
+        }
+    } else if let Some(law) = law_of(study.probability.as_deref(), &input.name) {
+        (described["role"], described["over"]) = ("drawn".into(), law.in_words().into());
+        // Where a picture needs one value: what is in the middle of the draws.
+        let middle = law.distribution.mean();
+        described["value"] = value_of(&study.model, number, law.effect.of(study.fixed[number], middle));
+    } else {
+        (described["role"], described["value"]) = ("fixed".into(), value_of(&study.model, number, study.fixed[number]));
+    }
+    described
+}
+
+/// The distribution of an input, or of its tolerance.
+fn law_of<'p>(probability: Option<&'p Probability>, name: &str) -> Option<&'p UncertainInput> {
+    probability?.inputs.iter().find(|it| it.name == name)
+}
+
+fn column_of(axes: &[Axis], input: usize) -> Option<(&Axis, usize)> {
+    axes.iter().find_map(|axis| Some((axis, axis.inputs().iter().position(|&it| it == input)?)))
+}
+
+/// The values that an axis gives an input, as text: its ends, or its words.
+fn over(input: &Input, axis: &Axis, column: usize) -> String {
+    let (least, largest) = axis.ends(column);
+    if input.is_enumeration() {
+        let mut words: Vec<_> = (0..axis.count()).map(|level| written(input, axis.value(column, level))).collect();
+        words.dedup();
+        return words.join(", ");
+    }
+    // The last of many steps may end in digits of rounding.
+    let text = |value: f64| if input.word_for(value).is_some() { written(input, value) } else { short(value) };
+    if least == largest { text(least) } else { format!("{} to {}", text(least), text(largest)) }
+}
+
+/// What every draw must keep, in how many operating cases, and how many draws there are; `null` without distributions.
+pub fn drawn(study: &Study) -> Value {
+    let Some(probability) = study.probability.as_deref() else { return Value::Null };
+    let drive = &probability.drive;
+    let constraint = |it: &Constraint| json!({ "of": it.name(&drive.model), "bounds": it.in_words() });
+    json!({
+        "draws": probability.draws, "confirm": probability.confirm,
+        "cases": drive.operation.iter().map(Axis::count).product::<u64>(),
+        "constraints": drive.constraints.iter().map(constraint).collect::<Vec<_>>(),
+    })
+}

@@ -1,0 +1,133 @@
+//! What the page of a result lets a reader reach: every chart as a file, every listed design as a card, each table by one stop of the tab key;
+//! and that it says no more than it knows.
+
+use crate::browser::Browser;
+use crate::report_page::Swept;
+
+/// A picture that the page would save, or why there is none.
+fn saved(browser: &mut Browser, selector: &str) -> String {
+    browser.text(&format!("beltspace.page.pictureOf(document.querySelector({selector:?})).text"))
+}
+
+#[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored report_page --test-threads 1"]
+fn every_chart_can_be_saved_with_its_words() {
+    let swept = Swept::shipped("metal-cvt");
+    let mut browser = Browser::open(&swept.page(), "");
+    browser.evaluate("beltspace.openCard(beltspace.data.front.knee)");
+    // Every canvas and SVG of the page is within reach of a button.
+    let lost = "[...document.querySelectorAll('#main svg, #main canvas, #card svg')].filter((it) => it.getClientRects().length \
+                && !it.closest('section').querySelector('.save-buttons')).map((it) => it.closest('[id]').id)";
+    assert_eq!(browser.evaluate(lost), serde_json::json!([]));
+    let charts = [
+        ("#splom", "axial force upper [N]"),
+        ("#parallel .stage", "groove_"),
+        (".drive-stage", "156 mm"),
+        ("#around .slices", "band_"),
+        (".tally", "stress_margin at least 0"),
+        ("#histograms .figure", "axial force upper"),
+        (".map-plate", "reserve"),
+    ];
+    for (selector, words) in charts {
+        let picture = saved(&mut browser, selector);
+        assert!(picture.contains(words) && picture.contains("</svg>"), "{selector} without {words}: {} bytes", picture.len());
+        // It stands alone: nothing in it needs the page's style.
+        assert!(!picture.contains("class=\"save-buttons") && !picture.contains("var(--"), "{selector}");
+    }
+    // Words with a halo are painted over it, also without the page.
+    assert!(saved(&mut browser, ".drive-stage").contains("paint-order=\"stroke"));
+    assert!(saved(&mut browser, "#splom").contains("linearGradient"), "the colour bar");
+    assert_eq!(browser.complaints, Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored report_page --test-threads 1"]
+fn listed_designs_and_cells_of_maps_open_cards_and_a_table_is_one_stop() {
+    let swept = Swept::shipped("metal-cvt");
+    let mut browser = Browser::open(&swept.page(), "");
+    for table in ["#designs", "#top table"] {
+        assert_eq!(browser.number(&format!("document.querySelectorAll({:?}).length", format!("{table} [tabindex='0']"))), 1.0, "{table}");
+    }
+    let title = "document.querySelector('#card-title').textContent";
+    browser.evaluate("document.querySelector('#top tbody tr:nth-child(3)').click()");
+    let design = browser.text("document.querySelector('#top tbody tr:nth-child(3)').dataset.row");
+    assert!(browser.text(title).starts_with(&format!("Design {design}")));
+    // One that is beaten by others has a card too, of what the table says.
+    browser.evaluate("beltspace.closeCard()");
+    browser.evaluate("beltspace.page.openDesign('1', [{ name: 'band_count', unit: '', text: '6', full: '6' }])");
+    assert!(browser.text("document.querySelector('#card').innerText").contains("not on the front"));
+    assert!(browser.text("document.querySelector('#evaluate').textContent").ends_with("--design 1"));
+    browser.evaluate("beltspace.closeCard()");
+    // A cell of the map, with the keyboard.
+    browser.evaluate("document.querySelector('.map-stage').scrollIntoView({ block: 'center' })");
+    browser.evaluate("document.querySelector('.map-stage').focus()");
+    // The upper right corner, where belts are clamped hard.
+    for _ in 0..60 {
+        browser.key("ArrowUp", 38);
+        browser.key("ArrowRight", 39);
+    }
+    let said = browser.text("document.querySelector('.map-readout').textContent");
+    let best = said.rsplit("best design ").next().filter(|it| it.parse::<u64>().is_ok()).expect("a design").to_owned();
+    browser.key("Enter", 13);
+    browser.wait(&format!("!document.querySelector('#card').hidden && {title}.startsWith('Design {best}')"));
+    assert_eq!(browser.complaints, Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored report_page --test-threads 1"]
+fn a_range_becomes_a_constraint_only_where_that_asks_the_same() {
+    let swept = Swept::shipped("metal-cvt");
+    let mut browser = Browser::open(&swept.page(), "");
+    // What is shown is the lowest slip margin of the scenarios: an upper bound would be on the highest.
+    browser.evaluate("beltspace.brushAxis('slip_margin', [0.1, 0.2])");
+    browser.wait("document.querySelector('#brush-note').innerText.includes('constraints.slip_margin')");
+    let note = browser.text("document.querySelector('#brush-note').innerText");
+    assert!(note.contains("constraints.slip_margin.min=0.1") && !note.contains("slip_margin.max"), "{note}");
+    assert!(note.contains("slip_margin is the lowest over the scenarios"), "{note}");
+    // Inputs are the same in every scenario.
+    browser.evaluate("beltspace.clear()");
+    browser.evaluate("beltspace.brushAxis('reserve', [1.45, 1.62])");
+    browser.wait("document.querySelector('#brush-note').innerText.includes('reserve.min=1.45')");
+    assert!(browser.text("document.querySelector('#brush-note').innerText").contains("reserve.max=1.62"));
+    assert_eq!(browser.complaints, Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored report_page --test-threads 1"]
+fn what_is_drawn_and_in_which_cases_is_in_the_header_and_on_the_card() {
+    let swept = Swept::shipped("push-belt-yield");
+    let mut browser = Browser::open(&swept.page(), "");
+    let question = browser.text("document.querySelector('[data-testid=question]').innerText");
+    for words in ["every draw must keep", "slip_margin", "at most 75\u{202f}000", "in every operating case of", "0.5 to 2", "normal"] {
+        assert!(question.contains(words), "{words} is not in {question}");
+    }
+    browser.evaluate("beltspace.openCard(0)");
+    let card = browser.text("document.querySelector('#card').innerText");
+    assert!(card.contains("drawn from a distribution") && card.contains("plus normal: mean 0, sd 0.3"), "{card}");
+    // It is drawn over all ratios of its cases.
+    let ends = "[...document.querySelectorAll('[data-testid=drive-ratio]')].length";
+    assert_eq!(browser.number(ends), 1.0);
+    assert!(card.contains("friction: it has a distribution") || !card.contains("friction: it varies"), "{card}");
+    assert_eq!(browser.complaints, Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored report_page --test-threads 1"]
+fn views_of_the_same_designs_stand_side_by_side_on_a_laptop() {
+    let swept = Swept::shipped("metal-cvt");
+    let mut browser = Browser::open(&swept.page(), "");
+    browser.resize(1366, 768);
+    browser.wait("document.querySelector('#views').getBoundingClientRect().height < 700");
+    let places = "[...document.querySelectorAll('#views > section')].map((it) => it.getBoundingClientRect()).map((it) => [it.left, it.top, it.right, it.height])";
+    let [one, other]: [[f64; 4]; 2] = serde_json::from_value(browser.evaluate(places)).expect("two views");
+    assert!(other[0] >= one[2] && other[1] == one[1] && other[2] <= 1366.0, "{one:?} {other:?}");
+    assert!(one[3].max(other[3]) < 768.0 - 46.0, "{one:?} {other:?}");
+    // A pinned design is in every view.
+    browser.evaluate("beltspace.page.pin(0)");
+    for view in ["#splom .pin-dot", "#parallel .pin-line", "#designs .pin-letter", ".map-stage .pin-dot"] {
+        browser.wait(&format!("document.querySelector({view:?})"));
+    }
+    // Axes of inputs have the ends of what was searched.
+    assert_eq!(browser.number("document.querySelectorAll('#parallel .axis[data-name=band_thickness_mm] .range-end').length"), 2.0);
+    assert_eq!(browser.complaints, Vec::<String>::new());
+}
