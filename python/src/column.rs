@@ -10,6 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyList, PyString};
 use std::collections::HashMap;
 use std::ffi::{CStr, c_int, c_void};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Values of a column.
@@ -149,15 +150,15 @@ impl Column {
         })
     }
 
-    /// As the library has it.
-    pub fn table_column(&self) -> TableColumn {
+    /// Some of its rows, as the library has them.
+    pub fn table_column(&self, rows: Range<usize>) -> TableColumn {
         let data = match &self.values {
-            Values::Numbers(values) => Data::Number(values.iter().map(|it| (!it.is_nan()).then_some(*it)).collect()),
+            Values::Numbers(values) => Data::Number(values[rows].iter().map(|it| (!it.is_nan()).then_some(*it)).collect()),
             Values::Whole(values, nulls) => {
                 let present = |row: usize| nulls.as_ref().is_none_or(|nulls| nulls.is_valid(row));
-                Data::Whole(values.iter().enumerate().map(|(row, it)| present(row).then_some(*it)).collect())
+                Data::Whole(rows.map(|row| present(row).then_some(values[row])).collect())
             }
-            texts => Data::Text((0..texts.rows()).map(|row| texts.text(row).unwrap_or_default().to_owned()).collect()),
+            texts => Data::Text(rows.map(|row| texts.text(row).unwrap_or_default().to_owned()).collect()),
         };
         TableColumn {
             unit: self.unit.clone(),

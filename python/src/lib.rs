@@ -26,6 +26,7 @@ fn run_program(py: Python<'_>, words: Vec<OsString>) -> u8 {
 /// The module.
 #[pymodule]
 fn _beltspace(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    waiting::note_main_thread(module.py())?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<column::Column>()?;
     module.add_class::<model::Model>()?;

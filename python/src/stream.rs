@@ -4,15 +4,21 @@ use crate::arrow_out;
 use crate::column::Column;
 use crate::errors::raised;
 use crate::table::Table;
-use crate::waiting::supervised;
+use crate::waiting::{Interpreter, is_main_thread, note_main_thread, supervised};
 use arrow_array::{RecordBatch, RecordBatchReader};
 use arrow_schema::{ArrowError, SchemaRef};
 use beltspace::Control;
 use beltspace::run::{FeasibleCursor, FeasibleRows};
+use pyo3::exceptions::PyKeyboardInterrupt;
+use pyo3::ffi;
 use pyo3::prelude::*;
 use pyo3::types::PyCapsule;
 use std::sync::atomic::Ordering;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// A table that is computed block by block while it is read; it may be read again and again.
 #[pyclass(module = "beltspace", frozen)]
@@ -28,6 +34,41 @@ impl RowStream {
 
     fn header(&self) -> Vec<Column> {
         self.rows.header().columns.into_iter().map(Column::new).collect()
+    }
+
+    /// What another package makes of the rows. Where a signal has stopped them, that package can only tell that something went wrong.
+    fn read_by<'py>(&self, py: Python<'py>, package: &str, maker: &str) -> PyResult<Bound<'py, PyAny>> {
+        let raised = Raised::default();
+        let reading = RowReading { rows: self.rows.clone(), threads: self.threads, raised: raised.clone() };
+        let made = py.import(package)?.call_method1(maker, (reading,));
+        made.map_err(|error| locked(&raised).take().unwrap_or(error))
+    }
+
+    fn arrow<'py>(&self, py: Python<'py>, raised: Option<Raised>) -> PyResult<Bound<'py, PyCapsule>> {
+        note_main_thread(py)?;
+        let schema = arrow_out::schema(self.header().iter());
+        let batches = ArrowBatches { rows: self.rows.clone(), threads: self.threads, cursor: self.rows.cursor(), schema, raised };
+        arrow_out::capsule(py, Box::new(batches))
+    }
+}
+
+/// What a signal has raised while rows were read.
+type Raised = Arc<Mutex<Option<PyErr>>>;
+
+/// The rows for one reader in a method of ours, which raises what a signal has raised.
+#[pyclass(module = "beltspace", frozen)]
+struct RowReading {
+    rows: Arc<FeasibleRows>,
+    threads: usize,
+    raised: Raised,
+}
+
+#[pymethods]
+impl RowReading {
+    #[pyo3(signature = (requested_schema = None))]
+    fn __arrow_c_stream__<'py>(&self, py: Python<'py>, requested_schema: Option<Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyCapsule>> {
+        drop(requested_schema);
+        RowStream::new(self.rows.clone(), self.threads).arrow(py, Some(self.raised.clone()))
     }
 }
 
@@ -57,7 +98,8 @@ impl RowStream {
 
     /// The rows as tables of 65 536 rows, the last one shorter; each is computed when it is asked for.
     fn __iter__(&self) -> TableBatches {
-        TableBatches { rows: self.rows.clone(), threads: self.threads, cursor: Mutex::new(self.rows.cursor()) }
+        let cursor = Mutex::new(self.rows.cursor());
+        TableBatches { rows: self.rows.clone(), threads: self.threads, cursor, returned: Mutex::default() }
     }
 
     /// All rows as a table, in memory.
@@ -75,12 +117,12 @@ impl RowStream {
 
     /// All rows as a polars DataFrame, in memory; polars must be installed.
     fn to_polars<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        slf.py().import("polars")?.call_method1("DataFrame", (slf,))
+        slf.get().read_by(slf.py(), "polars", "DataFrame")
     }
 
     /// All rows as a pyarrow Table, in memory; pyarrow must be installed.
     fn to_pyarrow<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        slf.py().import("pyarrow")?.call_method1("table", (slf,))
+        slf.get().read_by(slf.py(), "pyarrow", "table")
     }
 
     /// The rows as a stream of Arrow batches, each computed when it is asked for. It may be called again and again.
@@ -88,9 +130,7 @@ impl RowStream {
     fn __arrow_c_stream__<'py>(&self, py: Python<'py>, requested_schema: Option<Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyCapsule>> {
         // What is asked for is a wish, and a producer may always give what it has.
         drop(requested_schema);
-        let schema = arrow_out::schema(self.header().iter());
-        let batches = ArrowBatches { rows: self.rows.clone(), threads: self.threads, cursor: self.rows.cursor(), schema };
-        arrow_out::capsule(py, Box::new(batches))
+        self.arrow(py, None)
     }
 
     /// Names and kinds of the columns as Arrow has them.
@@ -109,6 +149,8 @@ pub struct TableBatches {
     rows: Arc<FeasibleRows>,
     threads: usize,
     cursor: Mutex<FeasibleCursor>,
+    /// Tables that were ready when a signal came: the next ones.
+    returned: Mutex<Vec<beltspace::Table>>,
 }
 
 #[pymethods]
@@ -118,28 +160,80 @@ impl TableBatches {
     }
 
     fn __next__(&self, py: Python<'_>) -> PyResult<Option<Table>> {
-        let control = Control::default();
+        if let Some(table) = locked(&self.returned).pop() {
+            return Table::new(py, table).map(Some);
+        }
+        let (control, made) = (Control::default(), Mutex::new(None));
         // Two threads that share an iterator get different tables.
-        let work = || self.rows.next(&mut self.cursor.lock().unwrap_or_else(PoisonError::into_inner), self.threads, &control);
-        let next = supervised(py, || control.stop.store(true, Ordering::Relaxed), |_| Ok(()), work)?;
-        next.map_err(|error| raised(py, error))?.map(|table| Table::new(py, table)).transpose()
+        let work = || {
+            let next = self.rows.next(&mut locked(&self.cursor), self.threads, &control);
+            *locked(&made) = Some(next);
+        };
+        let ended = supervised(py, || control.stop.store(true, Ordering::Relaxed), |_| Ok(()), work);
+        let next = made.into_inner().unwrap_or_else(PoisonError::into_inner);
+        match (ended, next) {
+            (Ok(()), Some(next)) => next.map_err(|error| raised(py, error))?.map(|table| Table::new(py, table)).transpose(),
+            (Ok(()), None) => Ok(None),
+            (Err(error), next) => {
+                // Who goes on after Ctrl-C misses nothing.
+                locked(&self.returned).extend(next.and_then(Result::ok).flatten());
+                Err(error)
+            }
+        }
     }
 }
 
-/// The same for Arrow, which asks without the interpreter.
+/// The same for Arrow, which asks with the interpreter or without it, on whatever thread it likes.
 struct ArrowBatches {
     rows: Arc<FeasibleRows>,
     threads: usize,
     cursor: FeasibleCursor,
     schema: SchemaRef,
+    /// Where a method of ours waits for what a signal raises.
+    raised: Option<Raised>,
+}
+
+impl ArrowBatches {
+    /// The next rows. On the main thread signals are looked at, which nobody else can do meanwhile. Other threads never ask for the
+    /// interpreter: the thread that has it may be waiting for these rows.
+    fn next_table(&mut self) -> Result<Option<beltspace::Table>, ArrowError> {
+        let Self { rows, threads, cursor, .. } = self;
+        let control = Control::default();
+        let mut work = || rows.next(cursor, *threads, &control);
+        let next = if is_main_thread() {
+            let interpreter = Interpreter::take();
+            let py = interpreter.python();
+            let stop = || control.stop.store(true, Ordering::Relaxed);
+            // First those that came between two blocks, each of which may take less time than it is waited for.
+            match py.check_signals().and_then(|()| supervised(py, stop, |_| Ok(()), work)) {
+                Ok(next) => next,
+                Err(error) => return Err(self.stopped(py, error)),
+            }
+        } else {
+            work()
+        };
+        next.map_err(|error| ArrowError::ExternalError(Box::new(error)))
+    }
+
+    /// The reader is told that something went wrong. What was raised goes to who waits for it; without anybody Ctrl-C comes once more, as
+    /// soon as Python runs again.
+    fn stopped(&self, py: Python<'_>, error: PyErr) -> ArrowError {
+        let told = ArrowError::ComputeError(format!("the rows were not read to their end: {error}"));
+        match &self.raised {
+            Some(raised) => *locked(raised) = Some(error),
+            // SAFETY: it may be called at any time; the interpreter is held.
+            None if error.is_instance_of::<PyKeyboardInterrupt>(py) => unsafe { ffi::PyErr_SetInterrupt() },
+            None => {}
+        }
+        told
+    }
 }
 
 impl Iterator for ArrowBatches {
     type Item = Result<RecordBatch, ArrowError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        let next = self.rows.next(&mut self.cursor, self.threads, &Control::default());
-        let table = next.map_err(|error| ArrowError::ExternalError(Box::new(error))).transpose()?;
+        let table = self.next_table().transpose()?;
         Some(table.and_then(|table| {
             let columns: Vec<Column> = table.columns.into_iter().map(Column::new).collect();
             arrow_out::batch(columns.iter(), columns.first().map_or(0, Column::rows))

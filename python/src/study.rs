@@ -5,7 +5,7 @@ use crate::model::{Model, cores};
 use crate::result::SweepResult;
 use crate::rows::GivenTable;
 use crate::table::Table;
-use crate::waiting::{stage, supervised};
+use crate::waiting::{left_alone, stage, supervised};
 use beltspace::batch::{BatchTarget, GivenColumns};
 use beltspace::models::Models;
 use beltspace::plan::Plan;
@@ -164,7 +164,8 @@ impl Study {
     #[pyo3(signature = (*, threads = None))]
     fn check<'py>(&self, py: Python<'py>, threads: Option<usize>) -> PyResult<Bound<'py, PyDict>> {
         let threads = threads.unwrap_or_else(cores);
-        let outlook = supervised(py, || {}, |_| Ok(()), || self.study.outlook(threads))?;
+        let study = self.study.clone();
+        let outlook = left_alone(py, move || study.outlook(threads))?;
         let told = PyDict::new(py);
         told.set_item("designs", outlook.designs)?;
         told.set_item("scenarios", outlook.scenarios)?;
@@ -212,7 +213,8 @@ impl Study {
                 return Ok(());
             }
             let (what, done, total) = stage(&control, designs);
-            follower.call1((what, done, total)).map(drop)
+            // Of a stage of which it is not known yet how much there is, nothing can be told.
+            if total == 0 { Ok(()) } else { follower.call1((what, done, total)).map(drop) }
         };
         let stop = || control.stop.store(true, Ordering::Relaxed);
         let swept = supervised(py, stop, tell, || study.sweep(options));

@@ -2,12 +2,18 @@
 
 use crate::arrow_out;
 use crate::column::Column;
+use crate::waiting::supervised;
 use pyo3::exceptions::{PyIndexError, PyKeyError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyCapsule, PyDict, PyList};
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Rows and columns that a notebook shows at most.
 const SHOWN: (usize, usize) = (10, 12);
+
+/// Rows that become CSV before it is asked whether to stop.
+const CSV_ROWS: usize = 8192;
 
 /// A table of results: columns of equal length.
 #[pyclass(module = "beltspace", frozen)]
@@ -124,8 +130,23 @@ impl Table {
 
     /// The bytes that the program writes for this table, as CSV.
     fn to_csv<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let columns = self.columns.iter().map(|column| column.get().table_column()).collect();
-        Ok(PyBytes::new(py, &beltspace::Table { columns }.csv()))
+        let columns: Vec<&Column> = self.columns.iter().map(Py::get).collect();
+        let part =
+            |rows: Range<usize>| beltspace::Table { columns: columns.iter().map(|it| it.table_column(rows.clone())).collect() }.csv();
+        let stop = AtomicBool::new(false);
+        let work = || {
+            let mut bytes = part(0..0);
+            let header = bytes.len();
+            for first in (0..self.rows).step_by(CSV_ROWS) {
+                if stop.load(Ordering::Relaxed) {
+                    break;
+                }
+                bytes.extend_from_slice(&part(first..self.rows.min(first + CSV_ROWS))[header..]);
+            }
+            bytes
+        };
+        let bytes = supervised(py, || stop.store(true, Ordering::Relaxed), |_| Ok(()), work)?;
+        Ok(PyBytes::new(py, &bytes))
     }
 
     /// The rows as a stream of Arrow batches. It may be called again and again.

@@ -1,8 +1,11 @@
 """Feasible designs as a stream: the same rows as in one table, again and again, without more memory than a few blocks take."""
 
+import contextlib
 import os
+import signal
 import threading
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -107,3 +110,106 @@ def test_reading_takes_the_memory_of_a_few_blocks(long: beltspace.RowStream) -> 
     with Watch() as watch:
         kept = list(long)
     assert len(kept) > 4 and watch.most > few + (24 << 20)
+
+
+@contextlib.contextmanager
+def ctrl_c_after(seconds: float) -> Iterator[list[float]]:
+    """Ctrl-C so many seconds from now; the list gets the time when it came."""
+    sent: list[float] = []
+
+    def send() -> None:
+        sent.append(time.perf_counter())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    timer = threading.Timer(seconds, send)
+    timer.start()
+    try:
+        yield sent
+    finally:
+        timer.join()
+
+
+def read_by_pyarrow(rows: beltspace.RowStream) -> None:
+    """Reads without beltspace further up: pyarrow's own error comes first, and Ctrl-C once more where Python runs again."""
+    pyarrow = pytest.importorskip("pyarrow")
+    reader = pyarrow.RecordBatchReader.from_stream(rows)
+    try:
+        reader.read_all()
+    except pyarrow.ArrowInvalid as error:
+        assert "the rows were not read to their end: KeyboardInterrupt" in str(error)
+        time.sleep(1.0)
+
+
+READERS = {
+    "to_pyarrow": lambda rows: rows.to_pyarrow(),
+    "to_polars": lambda rows: rows.to_polars(),
+    "to_pandas": lambda rows: rows.to_pandas(),
+    "to_table": lambda rows: rows.to_table(),
+    "from_stream": read_by_pyarrow,
+}
+
+
+@pytest.fixture(scope="module")
+def slow() -> beltspace.RowStream:
+    """Rows of which each has many scenarios: all take seconds."""
+    loads = "power_kW = { from = 1, to = 10, count = 40 }"
+    feasible = beltspace.Study.from_toml(LONG.replace("power_kW = [10]", loads)).sweep().feasible
+    assert feasible is not None
+    return feasible
+
+
+@pytest.mark.parametrize("reader", READERS)
+def test_ctrl_c_ends_whoever_reads(slow: beltspace.RowStream, reader: str) -> None:
+    with ctrl_c_after(0.3) as sent:
+        with pytest.raises(KeyboardInterrupt):
+            READERS[reader](slow)
+        took = time.perf_counter() - sent[0]
+    assert took < 0.2, f"Ctrl-C took {took:.3f} s"
+
+
+def test_threads_that_are_not_the_main_one_read_too(long: beltspace.RowStream) -> None:
+    pyarrow = pytest.importorskip("pyarrow")
+    read: list[int] = []
+    threads = [threading.Thread(target=lambda: read.append(pyarrow.table(long).num_rows)) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    read.append(len(long.to_polars()))
+    for thread in threads:
+        thread.join()
+    assert read == [long.num_rows] * 3
+
+
+def test_who_reads_on_after_ctrl_c_misses_nothing(slow: beltspace.RowStream) -> None:
+    tables, indices, stopped = iter(slow), [], 0
+    for wait in (0.05, 0.1, 0.15):
+        with pytest.raises(KeyboardInterrupt), ctrl_c_after(wait):
+            while True:
+                indices.append(next(tables)["design_index"])
+        stopped += 1
+    indices += [table["design_index"] for table in tables]
+    index = np.concatenate(indices)
+    assert stopped == 3 and len(index) == len(slow) and (np.diff(index.astype(np.int64)) > 0).all()
+
+
+def test_csv_is_written_without_the_interpreter_and_ends_with_ctrl_c(long: beltspace.RowStream) -> None:
+    table = long.to_table()
+    counted, ended = 0, threading.Event()
+
+    def count() -> None:
+        nonlocal counted
+        while not ended.is_set():
+            counted += 1
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    csv = table.to_csv()
+    ended.set()
+    thread.join()
+    assert counted > 20 and csv.count(b"\n") == len(table) + 1
+    with ctrl_c_after(0.1) as sent:
+        with pytest.raises(KeyboardInterrupt):
+            for _ in range(20):
+                table.to_csv()
+        took = time.perf_counter() - sent[0]
+    assert took < 0.2, f"Ctrl-C took {took:.3f} s"

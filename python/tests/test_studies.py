@@ -99,6 +99,32 @@ def test_ctrl_c_ends_a_sweep_at_once(root: Path) -> None:
     assert took < 0.2, f"Ctrl-C took {took:.3f} s"
 
 
+def test_ctrl_c_ends_a_check_at_once(root: Path) -> None:
+    study = big(root)
+    for _ in range(3):
+        sent: list[float] = []
+
+        def send(sent: list[float] = sent) -> None:
+            sent.append(time.perf_counter())
+            os.kill(os.getpid(), signal.SIGINT)
+
+        timer = threading.Timer(0.05, send)
+        timer.start()
+        with pytest.raises(KeyboardInterrupt):
+            while True:
+                study.check()
+        took = time.perf_counter() - sent[0]
+        timer.join()
+        assert took < 0.2, f"Ctrl-C took {took:.3f} s"
+
+
+def test_progress_is_told_of_what_is_known(study: beltspace.Study) -> None:
+    shares: list[float] = []
+    for _ in range(20):
+        study.sweep(progress=lambda what, done, total: shares.append(done / total))
+    assert all(0 <= it <= 1 for it in shares)
+
+
 def test_other_threads_run_during_a_sweep(root: Path) -> None:
     study = big(root)
     counted = 0
@@ -130,7 +156,7 @@ def test_other_threads_run_during_a_sweep(root: Path) -> None:
         thread.join()
     assert counted > 20
     done = [it[1] for it in told if it[0] == "judging designs"]
-    assert done == sorted(done) and all(0 <= it[1] <= it[2] for it in told)
+    assert done == sorted(done) and all(0 <= it[1] <= it[2] and it[2] > 0 for it in told)
 
 
 def test_a_bar_is_shown_and_goes(root: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:

@@ -58,9 +58,13 @@ impl FeasibleRows {
     /// The table of the next rows, 65 536 or the last ones, certified; `None` where there are no more. `control` can stop it.
     ///
     /// # Errors
-    /// [`Error::Disagreement`] if the f64 reference finds a design infeasible; [`Error::Stopped`] after `control.stop`.
+    /// [`Error::Disagreement`] if the f64 reference finds a design infeasible; [`Error::Stopped`] after `control.stop`. The cursor stands
+    /// where it stood then, so that the same rows can be asked for again.
     pub fn next(&self, cursor: &mut FeasibleCursor, threads: usize, control: &Control) -> Result<Option<Table>> {
-        next_block(&self.plan, &self.columns, &self.list, cursor, threads, control)
+        let mut ahead = cursor.clone();
+        let table = next_block(&self.plan, &self.columns, &self.list, &mut ahead, threads, control)?;
+        *cursor = ahead;
+        Ok(table)
     }
 
     /// The whole table in memory.
