@@ -45,16 +45,16 @@ impl Values {
     }
 }
 
-/// A column of a table.
+/// A column of a table. `numpy.asarray(column)` is a view of its memory.
 #[pyclass(module = "beltspace", frozen)]
 pub struct Column {
-    /// Name, which ends in the unit.
+    /// Its name, which ends in its unit, such as `axial_force_N`.
     #[pyo3(get)]
     name: String,
-    /// Unit; empty for plain numbers and texts.
+    /// Its unit, such as `N`; empty for plain numbers and texts.
     #[pyo3(get)]
     unit: String,
-    /// Why the column is there.
+    /// `design`, `objective`, `constraint`, `report`, `label`, `index`, `output`, ...; several with commas between them.
     #[pyo3(get)]
     role: String,
     /// `min` or `max` for an objective, the bounds in words for a constraint, else empty.
@@ -187,8 +187,8 @@ impl Column {
         format!("<beltspace.Column {}: {} rows{unit}>", self.name, self.rows())
     }
 
-    /// The values as a numpy array. Numbers and indices are a read-only view of the column's memory; texts, and indices of which some are
-    /// absent (then NaN), are copied.
+    /// The values as an array: a read-only view of numbers and indices; a copy of texts, and of indices of which some are absent (then
+    /// NaN).
     fn to_numpy<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let py = slf.py();
         let numpy = py.import("numpy")?;

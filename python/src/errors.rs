@@ -11,6 +11,27 @@ fn exception<'py>(py: Python<'py>, name: &str, arguments: impl pyo3::call::PyCal
     made.map_or_else(|error| error, |made| PyErr::from_value(made))
 }
 
+/// Options of the command line that messages advise, and what one writes in Python.
+const OPTIONS: [(&str, &str); 12] = [
+    ("--engine cpu", "engine=\"cpu\""),
+    ("--engine gpu", "engine=\"gpu\""),
+    ("--method bounds", "method=\"bounds\""),
+    ("--method exhaustive", "method=\"exhaustive\""),
+    ("--engine", "engine"),
+    ("--method", "method"),
+    ("--adapter", "adapter"),
+    ("--threads", "threads"),
+    ("--feasible", "feasible=True"),
+    ("--set replaces", "with_values replaces"),
+    ("--set gives", "with_values gives"),
+    ("--set ", "with_values: "),
+];
+
+/// A message as it is told in Python.
+fn told(message: &str) -> String {
+    OPTIONS.iter().fold(message.to_owned(), |text, (option, here)| text.replace(option, here))
+}
+
 /// The exception for an error.
 pub fn raised(py: Python<'_>, error: Error) -> PyErr {
     match error {
@@ -26,15 +47,15 @@ pub fn raised(py: Python<'_>, error: Error) -> PyErr {
         Error::Disagreement(_) => PyRuntimeError::new_err(error.to_string()),
         other => {
             let name = if other.exit_code() == 2 { "RequestError" } else { "RunError" };
-            exception(py, name, (other.to_string(),))
+            exception(py, name, (told(&other.to_string()),))
         }
     }
 }
 
 /// The exception for what is wrong with a study or a model.
 pub fn of_study(py: Python<'_>, errors: &StudyErrors) -> PyErr {
-    let problems: Vec<_> = errors.problems.iter().map(|it| (it.file.clone(), it.line, it.column, it.message.clone())).collect();
-    exception(py, "StudyError", (errors.to_string(), problems))
+    let problems: Vec<_> = errors.problems.iter().map(|it| (it.file.clone(), it.line, it.column, told(&it.message))).collect();
+    exception(py, "StudyError", (told(&errors.to_string()), problems))
 }
 
 /// The exception for a wrong request.

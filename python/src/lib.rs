@@ -12,6 +12,7 @@ mod rows;
 mod stream;
 mod study;
 mod table;
+mod threads;
 mod waiting;
 
 use pyo3::prelude::*;

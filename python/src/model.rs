@@ -5,47 +5,60 @@ use crate::errors::{of_study, raised, request};
 use crate::memory::ColumnRoom;
 use crate::rows::GivenTable;
 use crate::table::Table;
+use crate::threads;
 use crate::waiting::supervised;
 use beltspace::batch::{BatchTarget, GivenColumns};
 use beltspace::models::{ManyOptions, Model as BeltModel, Models, ResultColumns, Status, all, find};
 use beltspace::study::{parse_model, read_model};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyString};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A model: inputs, outputs and the formulas between them.
+///
+/// `Model("metal-cvt")` is one that comes with beltspace, `Model("my-drive.toml")` that of a file, and `Model(name, formulas, ...)` one of
+/// formulas; the parts are those of a model's file (docs/models-in-a-file.md).
+///
+/// name: of the model, or the path of its file; a text without formulas is a path where it ends in ".toml".
+/// formulas: texts by the name of what they give, which ends in its unit.
+/// inputs: by name, which ends in the unit: `default`, `valid`, `doc` and what else a model's file says of an input.
+/// outputs: names of the formulas that are outputs, None for all.
+///
+/// The other parts are `conditions`, `curves`, `presets`, `base`, `units`, `summary`, `source` and `limits`.
+///
+/// RequestError if parts are given without formulas or a base; StudyError tells all mistakes with line and column in the text that is made
+/// of the parts; OSError if the file cannot be read.
 #[pyclass(module = "beltspace", frozen)]
 pub struct Model {
     pub model: Arc<BeltModel>,
-    /// The text of its file; empty for a model of the program.
+    /// The text of its file; empty for a model of the program, and for that of a study.
     text: String,
 }
 
 impl Model {
-    pub fn named(py: Python<'_>, name: &str) -> PyResult<Arc<BeltModel>> {
-        if let Some(model) = find(name) {
-            return Ok(model);
+    /// The model that is meant by a name or by the path of its file.
+    fn read(name: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let py = name.py();
+        if let Ok(text) = name.cast::<PyString>() {
+            let name = text.extract::<String>()?;
+            if let Some(model) = find(&name) {
+                return Ok(model.into());
+            }
+            if !name.ends_with(".toml") {
+                let names: Vec<&str> = all().iter().map(|model| model.name.as_str()).collect();
+                return Err(request(py, format!("unknown model \"{name}\"; models are: {}", names.join(", "))));
+            }
         }
-        if name.ends_with(".toml") {
-            return read_model(Path::new(name)).map_err(|error| raised(py, error));
-        }
-        let names: Vec<&str> = all().iter().map(|model| model.name.as_str()).collect();
-        Err(request(py, format!("unknown model \"{name}\"; models are: {}", names.join(", "))))
+        Self::from_file(py, name.extract()?)
     }
 
     /// The model that is meant by a name, a path or a model.
     fn meant(model: &Bound<'_, PyAny>) -> PyResult<Arc<BeltModel>> {
-        if let Ok(model) = model.cast::<Self>() {
-            return Ok(model.get().model.clone());
-        }
-        match model.cast::<PyString>() {
-            Ok(name) => Self::named(model.py(), &name.extract::<String>()?),
-            Err(_) => {
-                let path: PathBuf = model.extract()?;
-                read_model(&path).map_err(|error| raised(model.py(), error))
-            }
+        match model.cast::<Self>() {
+            Ok(model) => Ok(model.get().model.clone()),
+            Err(_) => Ok(Self::read(model)?.model),
         }
     }
 }
@@ -59,25 +72,42 @@ impl From<Arc<BeltModel>> for Model {
 #[pymethods]
 impl Model {
     #[new]
-    #[pyo3(signature = (name, formulas = None, /, **parts))]
-    fn new(py: Python<'_>, name: &str, formulas: Option<Bound<'_, PyAny>>, parts: Option<Bound<'_, PyDict>>) -> PyResult<Self> {
-        let Some(formulas) = formulas else {
-            return Ok(Self { model: Self::named(py, name)?, text: String::new() });
-        };
-        let parts = parts.unwrap_or_else(|| PyDict::new(py));
-        parts.set_item("formulas", formulas)?;
-        let text: String = py.import("beltspace._toml")?.call_method1("text_of_model", (parts,))?.extract()?;
-        Self::from_toml(py, &text, name, None)
+    #[pyo3(signature = (name, /, formulas = None, **parts))]
+    fn new(
+        py: Python<'_>,
+        name: &Bound<'_, PyAny>,
+        formulas: Option<Bound<'_, PyAny>>,
+        parts: Option<Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
+        let given = PyDict::new(py);
+        for (part, content) in parts.iter().flatten().chain(formulas.map(|it| (PyString::new(py, "formulas").into_any(), it))) {
+            if !content.is_none() {
+                given.set_item(part, content)?;
+            }
+        }
+        // What is based on another model needs no formulas.
+        if !given.contains("formulas")? && !given.contains("base")? {
+            if given.is_empty() {
+                return Self::read(name);
+            }
+            let parts: Vec<String> = given.keys().extract()?;
+            let parts = parts.join(", ");
+            let told = format!("Model({}) reads a model, which {parts} cannot change; give formulas, or base, to write one", name.repr()?);
+            return Err(request(py, told));
+        }
+        let text: String = py.import("beltspace._toml")?.call_method1("text_of_model", (given,))?.extract()?;
+        Self::from_toml(py, &text, &name.extract::<String>()?, None)
     }
 
-    /// Reads the file of a model; its name is that of the file.
+    /// Reads the file of a model; its name is that of the file. StudyError tells all mistakes; OSError if it cannot be read.
     #[staticmethod]
     fn from_file(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let model = read_model(&path).map_err(|error| raised(py, error))?;
         Ok(Self { text: std::fs::read_to_string(&path)?, model })
     }
 
-    /// Reads a model from the text of a file; `folder` is what paths of CSV files are relative to.
+    /// Reads a model from the text of a file, under that name; `folder` is what paths of CSV files are relative to, by default the current
+    /// one. StudyError tells all mistakes.
     #[staticmethod]
     #[pyo3(signature = (text, name, folder = None))]
     fn from_toml(py: Python<'_>, text: &str, name: &str, folder: Option<PathBuf>) -> PyResult<Self> {
@@ -98,19 +128,19 @@ impl Model {
         &self.model.summary
     }
 
-    /// What it does not say.
+    /// What the model does not say.
     #[getter]
     fn limits(&self) -> &str {
         &self.model.limits
     }
 
-    /// The text of its file; empty for a model of the program.
+    /// The text of its file; empty for a model of the program, and for that of a study.
     #[getter]
     fn text(&self) -> &str {
         &self.text
     }
 
-    /// Its inputs by name: unit, default, valid range, the range that its source covers, words, description.
+    /// By name: `unit`, `default`, `valid` (in words), `usual` (the range that its source covers), `integer`, `words`, `description`.
     #[getter]
     fn inputs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
@@ -131,7 +161,7 @@ impl Model {
         Ok(dict)
     }
 
-    /// Its outputs by name: unit and description.
+    /// By name: `unit`, `description`.
     #[getter]
     fn outputs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
@@ -150,13 +180,26 @@ impl Model {
     }
 }
 
-/// The models that come with beltspace.
+/// Names of the models that come with beltspace.
 #[pyfunction]
 pub fn models(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
     PyList::new(py, all().iter().map(|model| model.name.as_str()))
 }
 
-/// Evaluates a model for every row of a table.
+/// Evaluates a model in f64 for every row of a table.
+///
+/// model: a `Model`, the name of one that comes with beltspace, or the path of a model's file.
+/// table: columns named like inputs, in the units that the names end in: a dictionary of arrays, or a table of pandas, polars, pyarrow or
+///     DuckDB. A single value stands for every row, and inputs without a column have their defaults. Texts such as "limit" or "0.25 in" are
+///     read as in a study.
+/// outputs: names of the outputs that are wanted, None for all; fewer take less time.
+/// threads: 1 to 4096, None for one on each core.
+///
+/// Returns a table with a column for each output, in the unit that its name ends in, and `status`: "ok", "overflow", or the first condition
+/// of the model that the row does not meet. A number that a failed condition invalidates is NaN (null in Arrow).
+///
+/// RequestError, with row and column, if a cell is empty (null, NaN, masked) or beyond the input's valid range, and if a name or the number
+/// of threads is wrong. The interpreter lock is released meanwhile; Ctrl-C ends the work and raises KeyboardInterrupt.
 #[pyfunction]
 #[pyo3(signature = (model, table, *, outputs = None, threads = None))]
 pub fn evaluate(
@@ -164,16 +207,16 @@ pub fn evaluate(
     model: &Bound<'_, PyAny>,
     table: &Bound<'_, PyAny>,
     outputs: Option<Vec<String>>,
-    threads: Option<usize>,
+    threads: Option<Bound<'_, PyAny>>,
 ) -> PyResult<Table> {
     let model = Model::meant(model)?;
     let table = GivenTable::new(table)?;
     let wanted = outputs.map(|names| names.iter().map(|name| output(py, &model, name)).collect::<PyResult<Vec<_>>>()).transpose()?;
     let stop = AtomicBool::new(false);
-    let (of_model, threads) = (model.clone(), threads.unwrap_or_else(cores));
+    let (of_model, threads) = (model.clone(), threads::threads(threads.as_ref())?);
     let numbers: Vec<usize> = wanted.unwrap_or_else(|| (0..model.outputs.len()).collect());
     let work = || {
-        let mut target = BatchTarget::of_model(of_model.clone(), of_model.defaults(), Vec::new());
+        let mut target = BatchTarget::of_model(of_model.clone(), of_model.defaults(), Vec::new()).without_options();
         let given = GivenColumns::new(&mut target, table.columns(), threads)?;
         let options = ManyOptions::default().threads(threads).stop(&stop).outputs(&numbers);
         let mut statuses = vec![0_u16; given.rows()];
@@ -212,9 +255,4 @@ fn status_column(model: &BeltModel, statuses: Vec<u16>) -> Column {
         String::new(),
         "Is it ok, and if not, why?".to_owned(),
     )
-}
-
-/// Threads if nobody says how many.
-pub fn cores() -> usize {
-    std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
 }

@@ -9,7 +9,7 @@ use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// The result of a sweep.
+/// The result of a sweep: the same on every engine, by every method, on any number of threads. In a notebook it shows the front.
 #[pyclass(name = "Result", module = "beltspace", frozen)]
 pub struct SweepResult {
     /// Designs of the study.
@@ -21,40 +21,42 @@ pub struct SweepResult {
     /// Designs that keep all constraints in all scenarios.
     #[pyo3(get)]
     feasible_designs: u64,
-    /// The exact Pareto front.
+    /// The exact Pareto front, best of the first objective first: inputs, and every objective, constraint and report column at its worst
+    /// scenario. Without objectives it has no rows.
     #[pyo3(get)]
     front: Py<Table>,
-    /// The best designs by one quantity.
+    /// The best designs by one quantity, if the study asks for them.
     #[pyo3(get)]
     top: Option<Py<Table>>,
-    /// A sample of the feasible designs.
+    /// A sample of the feasible designs, if the study asks for it.
     #[pyo3(get)]
     sample: Option<Py<Table>>,
-    /// All feasible designs, block by block.
+    /// All feasible designs in the order of their indices, if the study or the sweep asks for them: a stream, as there may be more than the
+    /// memory holds.
     #[pyo3(get)]
     feasible: Option<Py<RowStream>>,
-    /// Every design.
+    /// Every design, feasible or not, if the study asks for it.
     #[pyo3(get)]
     variants: Option<Py<Table>>,
-    /// Histograms by name.
+    /// The bins of each histogram, by the name of its file.
     #[pyo3(get)]
     histograms: Py<PyDict>,
-    /// Maps by name.
+    /// The cells of each map, likewise.
     #[pyo3(get)]
     maps: Py<PyDict>,
-    /// Contours of maps by name.
+    /// The vertices of the contours of each map that has some, likewise.
     #[pyo3(get)]
     contours: Py<PyDict>,
-    /// The engine: "cpu" or "gpu".
+    /// What judged the designs.
     #[pyo3(get)]
     engine: &'static str,
-    /// How designs were judged.
+    /// `exhaustive`, `bounds`, or both if bounds were given up.
     #[pyo3(get)]
     method: &'static str,
-    /// How long the sweep took, in s.
+    /// How long the designs took, in s.
     #[pyo3(get)]
     seconds: f64,
-    /// Remarks on the run.
+    /// Remarks on the run, such as why a GPU was not taken.
     #[pyo3(get)]
     remarks: Vec<String>,
     /// Row of the knee in the front.
@@ -98,7 +100,7 @@ impl SweepResult {
 
 #[pymethods]
 impl SweepResult {
-    /// What `summary.json` says, as a dictionary.
+    /// What `summary.json` says: counts, ideal, knee, extremes, what limits feasibility, findings.
     #[getter]
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let parsed = serde_json::from_str(&self.summary_json).map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
@@ -111,13 +113,13 @@ impl SweepResult {
         &self.summary_json
     }
 
-    /// The knee of the front as a dictionary; None without a front.
+    /// The design of the front that is nearest to the ideal; None without a front.
     #[getter]
     fn knee<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         self.knee.map(|row| self.front.bind(py).call_method1("row", (row,))).transpose()
     }
 
-    /// The picture of the front as SVG; None if the study has no objectives.
+    /// The picture of the front; None if the study has no objectives.
     fn svg(&self, py: Python<'_>) -> Option<String> {
         py.detach(|| self.picture.svg())
     }

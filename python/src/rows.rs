@@ -4,6 +4,7 @@ use crate::arrow_in;
 use crate::errors::request;
 use beltspace::batch::{ColumnCells, RowCell};
 use pyo3::buffer::PyBuffer;
+use pyo3::exceptions::PyImportError;
 use pyo3::prelude::*;
 use pyo3::types::{PyMapping, PyString};
 
@@ -17,27 +18,38 @@ pub struct GivenTable {
 impl GivenTable {
     /// Reads a table.
     pub fn new(table: &Bound<'_, PyAny>) -> PyResult<Self> {
-        if let Some(columns) = arrow_in::columns(table)? {
-            return Ok(Self { columns, held: Vec::new() });
-        }
         let py = table.py();
-        let Ok(mapping) = table.cast::<PyMapping>() else {
-            let kind = table.get_type().name()?;
-            return Err(request(
-                py,
-                format!("a {kind} is no table; give a dictionary of numpy arrays, or a table of pandas, polars, pyarrow or DuckDB"),
-            ));
-        };
+        match arrow_in::columns(table) {
+            Ok(Some(columns)) => return Ok(Self { columns, held: Vec::new() }),
+            // pandas speaks Arrow by pyarrow alone. Without it the columns are arrays of numpy.
+            Err(error) if error.is_instance_of::<PyImportError>(py) && table.hasattr("columns")? => {
+                let mut given = Self { columns: Vec::new(), held: Vec::new() };
+                for name in table.getattr("columns")?.try_iter()? {
+                    let name = name?;
+                    given.take(&name, &table.get_item(&name)?.call_method0("to_numpy")?)?;
+                }
+                return Ok(given);
+            }
+            Err(error) if error.is_instance_of::<PyImportError>(py) => return Err(no_table(table)),
+            Err(error) => return Err(error),
+            Ok(None) => {}
+        }
+        let Ok(mapping) = table.cast::<PyMapping>() else { return Err(no_table(table)) };
         let mut given = Self { columns: Vec::new(), held: Vec::new() };
         for item in mapping.items()?.iter() {
             let (name, values): (Bound<'_, PyAny>, Bound<'_, PyAny>) = item.extract()?;
-            let Ok(name) = name.extract::<String>() else {
-                return Err(request(py, format!("a column is named by a text, not by {}", name.repr()?)));
-            };
-            let cells = given.cells(&name, &values)?;
-            given.columns.push((name, cells));
+            given.take(&name, &values)?;
         }
         Ok(given)
+    }
+
+    fn take(&mut self, name: &Bound<'_, PyAny>, values: &Bound<'_, PyAny>) -> PyResult<()> {
+        let Ok(text) = name.extract::<String>() else {
+            return Err(request(name.py(), format!("a column is named by a text, not by {}", name.repr()?)));
+        };
+        let cells = self.cells(&text, values)?;
+        self.columns.push((text, cells));
+        Ok(())
     }
 
     /// The columns, which borrow from this.
@@ -51,6 +63,9 @@ impl GivenTable {
             return Ok(ColumnCells::Same(RowCell::Text(text.extract()?)));
         }
         let numpy = py.import("numpy")?;
+        if let Some(row) = masked(&numpy, values)? {
+            return Err(empty_cell(py, row, name));
+        }
         let array = numpy.call_method1("asarray", (values,))?;
         let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
         let dimensions: usize = array.getattr("ndim")?.extract()?;
@@ -60,11 +75,14 @@ impl GivenTable {
         match (kind.as_str(), dimensions) {
             ("f" | "i" | "u" | "b", 0) => Ok(ColumnCells::Same(RowCell::Number(array.call_method0("item")?.extract()?))),
             ("f" | "i" | "u" | "b", _) => {
-                let numbers = numpy.call_method1("ascontiguousarray", (array, "float64"))?;
-                self.borrowed(PyBuffer::<f64>::get(&numbers)?)
+                // In one piece and aligned: what is so already is not copied.
+                let numbers = numpy.call_method1("require", (array, "float64", ["C", "ALIGNED"]))?;
+                let buffer = PyBuffer::<f64>::get(&numbers);
+                self.borrowed(buffer.map_err(|error| request(py, format!("column \"{name}\" cannot be read: {error}")))?)
             }
             ("U" | "O", 1) => {
-                let texts: PyResult<Vec<String>> = array.call_method0("tolist")?.try_iter()?.map(|it| it?.str()?.extract()).collect();
+                let cells = array.call_method0("tolist")?;
+                let texts: PyResult<Vec<String>> = cells.try_iter()?.enumerate().map(|(row, cell)| text(&cell?, row, name)).collect();
                 Ok(ColumnCells::Texts(texts?))
             }
             _ => Err(request(py, format!("column \"{name}\": {} is neither numbers nor texts", array.getattr("dtype")?))),
@@ -82,5 +100,44 @@ impl GivenTable {
         // array while it is evaluated; who does gets rows of both, from arithmetic alone.
         let numbers: &'static [f64] = unsafe { std::slice::from_raw_parts(start, count) };
         Ok(ColumnCells::Numbers(numbers.into()))
+    }
+}
+
+/// What is no table, and what would be one.
+pub fn no_table(table: &Bound<'_, PyAny>) -> PyErr {
+    let kind = table.get_type().name().map_or_else(|_| "value".to_owned(), |it| it.to_string());
+    request(
+        table.py(),
+        format!(
+            "a {kind} is no table, whose columns are named like inputs; give a dictionary of numpy arrays, or a table of pandas, polars, \
+             pyarrow or DuckDB"
+        ),
+    )
+}
+
+/// A cell without a value.
+pub fn empty_cell(py: Python<'_>, row: usize, column: &str) -> PyErr {
+    request(py, format!("row {row}, column \"{column}\": the cell is empty; give a value"))
+}
+
+/// The first row that numpy has masked; a masked scalar is its own.
+fn masked(numpy: &Bound<'_, PyModule>, values: &Bound<'_, PyAny>) -> PyResult<Option<usize>> {
+    let ma = numpy.getattr("ma")?;
+    if !ma.call_method1("is_masked", (values,))?.is_truthy()? {
+        return Ok(None);
+    }
+    let mask = numpy.call_method1("ravel", (ma.call_method1("getmaskarray", (values,))?,))?;
+    mask.call_method0("argmax")?.extract().map(Some)
+}
+
+/// A cell of an array of objects as a text.
+fn text(cell: &Bound<'_, PyAny>, row: usize, column: &str) -> PyResult<String> {
+    // The last two are what pandas has for absent values.
+    if cell.is_none() || ["NAType", "NaTType"].contains(&cell.get_type().name()?.to_str()?) {
+        return Err(empty_cell(cell.py(), row, column));
+    }
+    match cell.extract::<bool>() {
+        Ok(truth) => Ok(u8::from(truth).to_string()),
+        Err(_) => cell.str()?.extract(),
     }
 }

@@ -20,7 +20,9 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A table that is computed block by block while it is read; it may be read again and again.
+/// A table that may be longer than the memory. Its rows are computed while they are read, 65 536 at a time, and it may be read again and
+/// again: `for table in rows`, `polars.DataFrame(rows)`, `pyarrow.RecordBatchReader.from_stream(rows)`. Ctrl-C ends the reading and raises
+///     KeyboardInterrupt; who reads a stream of Arrow may tell an error of its own first.
 #[pyclass(module = "beltspace", frozen)]
 pub struct RowStream {
     rows: Arc<FeasibleRows>,
@@ -96,7 +98,8 @@ impl RowStream {
         usize::try_from(self.rows.rows()).unwrap_or(usize::MAX)
     }
 
-    /// The rows as tables of 65 536 rows, the last one shorter; each is computed when it is asked for.
+    /// The rows as tables of 65 536 rows, the last one shorter; each is computed when it is asked for. RuntimeError if the f64 reference
+    /// does not agree with the sweep. Who reads on after Ctrl-C misses no rows.
     fn __iter__(&self) -> TableBatches {
         let cursor = Mutex::new(self.rows.cursor());
         TableBatches { rows: self.rows.clone(), threads: self.threads, cursor, returned: Mutex::default() }
@@ -143,7 +146,7 @@ impl RowStream {
     }
 }
 
-/// The tables of a stream, one after the other.
+/// The tables of a `RowStream`, one after the other.
 #[pyclass(module = "beltspace", frozen)]
 pub struct TableBatches {
     rows: Arc<FeasibleRows>,

@@ -1,10 +1,11 @@
 //! Studies.
 
 use crate::errors::{raised, request};
-use crate::model::{Model, cores};
+use crate::model::Model;
 use crate::result::SweepResult;
 use crate::rows::GivenTable;
 use crate::table::Table;
+use crate::threads::threads;
 use crate::waiting::{left_alone, stage, supervised};
 use beltspace::batch::{BatchTarget, GivenColumns};
 use beltspace::models::Models;
@@ -16,7 +17,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-/// A study: what is chosen, what must be survived, what nobody knows exactly, what is asked.
+/// A study: what is chosen, what must be survived, what nobody knows exactly, and what is asked.
 #[pyclass(module = "beltspace", frozen)]
 pub struct Study {
     study: BeltStudy,
@@ -58,9 +59,27 @@ fn word<T: Copy>(py: Python<'_>, what: &str, given: &str, words: &[(&str, T)]) -
     })
 }
 
+/// A layer of Mesa's Vulkan drivers looks for a display and complains on standard error if there is none. It chooses among graphics cards,
+/// which beltspace does itself, so it is switched off, as the program does. Python changes the environment: it alone may do so while there
+/// are threads.
+fn keep_the_loader_quiet(py: Python<'_>) -> PyResult<()> {
+    if cfg!(target_os = "linux") {
+        let environment = py.import("os")?.getattr("environ")?;
+        if !environment.contains("XDG_RUNTIME_DIR")? && !environment.contains("NODEVICE_SELECT")? {
+            environment.set_item("NODEVICE_SELECT", "1")?;
+        }
+    }
+    Ok(())
+}
+
 #[pymethods]
 impl Study {
     /// Reads a study file.
+    ///
+    /// path: of the file; paths in it are relative to its folder.
+    /// models: models of one's own that it may name.
+    ///
+    /// StudyError tells all mistakes with line and column; OSError if the file cannot be read.
     #[staticmethod]
     #[pyo3(signature = (path, *, models = None))]
     fn from_file(py: Python<'_>, path: PathBuf, models: Option<Vec<PyRef<'_, Model>>>) -> PyResult<Self> {
@@ -74,7 +93,12 @@ impl Study {
         Self::parsed(py, &text, source, &[])
     }
 
-    /// Reads a study from the text of a file; `folder` is what paths of other files are relative to.
+    /// Reads a study from the text of a file.
+    ///
+    /// folder: what paths of other files are relative to, by default the current one.
+    /// models: models of one's own that it may name.
+    ///
+    /// StudyError tells all mistakes with line and column.
     #[staticmethod]
     #[pyo3(signature = (text, *, folder = None, models = None))]
     fn from_toml(py: Python<'_>, text: &str, folder: Option<PathBuf>, models: Option<Vec<PyRef<'_, Model>>>) -> PyResult<Self> {
@@ -83,7 +107,14 @@ impl Study {
         Self::parsed(py, text, source, &[])
     }
 
-    /// Reads a study from a dictionary with the tables and keys of a study file; its model may be a `Model`.
+    /// Reads a study from a dictionary with the tables and keys of a study file.
+    ///
+    /// study: the order of its keys is that of the axes; its model may be a `Model`.
+    /// folder: what paths of other files are relative to, by default the current one.
+    /// models: models of one's own that it may name.
+    ///
+    /// StudyError tells all mistakes, with line and column in the text that is made of the dictionary; TypeError if a value has no form in
+    /// a study.
     #[staticmethod]
     #[pyo3(signature = (study, *, folder = None, models = None))]
     fn from_dict(
@@ -108,6 +139,10 @@ impl Study {
     }
 
     /// The same study with values in place of what gives some inputs: an axis, a fixed value or a formula.
+    ///
+    /// values: numbers in the unit that the input's name ends in, or texts as in a study file, such as "25 mm".
+    ///
+    /// RequestError if there is no such input or its value is wrong.
     #[pyo3(signature = (**values))]
     fn with_values(&self, py: Python<'_>, values: Option<Bound<'_, PyDict>>) -> PyResult<Self> {
         let mut set = Vec::new();
@@ -123,7 +158,7 @@ impl Study {
         &self.study.title
     }
 
-    /// Its text: a study file.
+    /// The text of its file.
     #[getter]
     fn text(&self) -> &str {
         &self.text
@@ -153,17 +188,24 @@ impl Study {
         self.scenarios
     }
 
-    /// Names of the inputs that are chosen.
+    /// Names of the inputs that are chosen, in the order of the study.
     #[getter]
     fn design(&self) -> Vec<&str> {
         let inputs = self.study.design.iter().flat_map(|axis| axis.inputs());
         inputs.map(|&input| self.study.model.inputs[input].name.as_str()).collect()
     }
 
-    /// What is known of the study before it runs.
+    /// What `beltspace check` tells, without running the study.
+    ///
+    /// threads: 1 to 4096, None for one on each core.
+    ///
+    /// Returns a dictionary: `designs`, `scenarios`, `evaluations`, `seconds` (about how long a sweep takes that judges each design),
+    /// `method`, `memory_MB`, `front` (about how many designs) and `warnings`, a list of sentences.
+    ///
+    /// RequestError if the number of threads is wrong. Ctrl-C raises KeyboardInterrupt at once.
     #[pyo3(signature = (*, threads = None))]
-    fn check<'py>(&self, py: Python<'py>, threads: Option<usize>) -> PyResult<Bound<'py, PyDict>> {
-        let threads = threads.unwrap_or_else(cores);
+    fn check<'py>(&self, py: Python<'py>, threads: Option<Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyDict>> {
+        let threads = self::threads(threads.as_ref())?;
         let study = self.study.clone();
         let outlook = left_alone(py, move || study.outlook(threads))?;
         let told = PyDict::new(py);
@@ -179,14 +221,28 @@ impl Study {
         Ok(told)
     }
 
-    /// Judges every design in every scenario.
+    /// Judges every design in every scenario, and computes what is reported once more in f64.
+    ///
+    /// progress: True shows a bar (of tqdm, if it is installed). A function is called every 50 ms with what is done, how much of it, and
+    ///     how much there is, which is more than 0; what it raises ends the sweep.
+    /// threads: 1 to 4096, None for one on each core.
+    /// engine: "cpu", "gpu", or "auto", which takes a GPU where that is faster. The result is the same.
+    /// method: "exhaustive" judges each design, "bounds" whole boxes of them, "auto" what is faster. The result is the same.
+    /// adapter: a part of a GPU's name, where there are several.
+    /// feasible: also keep every feasible design, as if the study asked for it.
+    ///
+    /// Returns the result, whose tables have the units that the names of their columns end in.
+    ///
+    /// RequestError if a word, the adapter or the number of threads is wrong, or the study cannot be served so; RunError if a front does
+    /// not fit into memory or a GPU fails. The interpreter lock is released meanwhile; Ctrl-C ends the sweep, of which nothing is kept, and
+    /// raises KeyboardInterrupt.
     #[pyo3(signature = (*, progress = None, threads = None, engine = "auto", method = "auto", adapter = None, feasible = false))]
     #[allow(clippy::too_many_arguments, reason = "each has a name in Python")]
     fn sweep(
         &self,
         py: Python<'_>,
         progress: Option<Bound<'_, PyAny>>,
-        threads: Option<usize>,
+        threads: Option<Bound<'_, PyAny>>,
         engine: &str,
         method: &str,
         adapter: Option<String>,
@@ -195,8 +251,12 @@ impl Study {
         let engine = word(py, "engine", engine, &[("auto", Engine::Auto), ("cpu", Engine::Cpu), ("gpu", Engine::Gpu)])?;
         let methods = [("auto", Judging::Auto), ("exhaustive", Judging::Exhaustive), ("bounds", Judging::Bounds)];
         let method = word(py, "method", method, &methods)?;
+        let threads = self::threads(threads.as_ref())?;
+        if engine != Engine::Cpu {
+            keep_the_loader_quiet(py)?;
+        }
         let control = Arc::new(Control::default());
-        let mut options = Options::default().engine(engine).judging(method).threads(threads.unwrap_or_else(cores)).control(control.clone());
+        let mut options = Options::default().engine(engine).judging(method).threads(threads).control(control.clone());
         options.adapter = adapter;
         let study = if feasible && !self.study.report.feasible {
             let mut study = self.study.clone();
@@ -221,17 +281,28 @@ impl Study {
         if !follower.is_none() {
             follower.call_method0("close")?;
         }
-        SweepResult::new(py, swept?.map_err(|error| raised(py, error))?, threads.unwrap_or_else(cores))
+        SweepResult::new(py, swept?.map_err(|error| raised(py, error))?, threads)
     }
 
-    /// The worst of every row of a table over the scenarios of the study; a row is a design.
+    /// The worst of every row over the scenarios of the study, for an optimiser: a row is a design.
+    ///
+    /// table: a column for every input that the study chooses, in the unit that its name ends in, on the levels of the study or between
+    ///     them. It takes the forms that `evaluate` takes.
+    /// threads: 1 to 4096, None for one on each core.
+    ///
+    /// Returns a table with the given inputs; every objective, constraint and report column at its worst, with the scenario where that is;
+    /// the margin of each constraint, negative where it is violated; `feasible` ("yes" or "no"); and `status`: "ok", or why not in the
+    /// first scenario that fails. Numbers that there are none of are NaN (null in Arrow).
+    ///
+    /// RequestError, with row and column, if a cell is empty (null, NaN, masked) or beyond the input's valid range, and if a name or the
+    /// number of threads is wrong. The interpreter lock is released meanwhile; Ctrl-C ends the work and raises KeyboardInterrupt.
     #[pyo3(signature = (table, *, threads = None))]
-    fn worst(&self, py: Python<'_>, table: &Bound<'_, PyAny>, threads: Option<usize>) -> PyResult<Table> {
+    fn worst(&self, py: Python<'_>, table: &Bound<'_, PyAny>, threads: Option<Bound<'_, PyAny>>) -> PyResult<Table> {
         let table = GivenTable::new(table)?;
         let control = Control::default();
-        let threads = threads.unwrap_or_else(cores);
+        let threads = self::threads(threads.as_ref())?;
         let work = || {
-            let mut target = BatchTarget::of_study(self.study.clone(), Vec::new());
+            let mut target = BatchTarget::of_study(self.study.clone(), Vec::new()).without_options();
             let given = GivenColumns::new(&mut target, table.columns(), threads)?;
             target.worst_of_each(&given, threads, &control)
         };

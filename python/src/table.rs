@@ -15,7 +15,7 @@ const SHOWN: (usize, usize) = (10, 12);
 /// Rows that become CSV before it is asked whether to stop.
 const CSV_ROWS: usize = 8192;
 
-/// A table of results: columns of equal length.
+/// Columns of equal length. It speaks the Arrow PyCapsule interface: `polars.DataFrame(table)`, `pyarrow.table(table)`.
 #[pyclass(module = "beltspace", frozen)]
 pub struct Table {
     columns: Vec<Py<Column>>,
@@ -69,7 +69,7 @@ impl Table {
         PyList::new(py, self.columns.iter().map(|column| column.bind(py)))
     }
 
-    /// The column of that name, with its unit, role and description.
+    /// The column of that name; KeyError if there is none.
     fn column(&self, py: Python<'_>, name: &str) -> PyResult<Py<Column>> {
         self.find(name).map(|column| column.clone_ref(py))
     }
@@ -91,7 +91,7 @@ impl Table {
         PyList::new(py, self.column_names())?.call_method0("__iter__")
     }
 
-    /// A row as a dictionary; rows count from 0, negative ones from the end.
+    /// A row as a dictionary; rows count from 0, negative ones from the end. IndexError beyond.
     fn row<'py>(&self, py: Python<'py>, row: isize) -> PyResult<Bound<'py, PyDict>> {
         let at = if row < 0 { row + self.rows as isize } else { row };
         if at < 0 || at as usize >= self.rows {
@@ -104,7 +104,7 @@ impl Table {
         Ok(dict)
     }
 
-    /// Every column as a numpy array, by name.
+    /// Every column as an array, by name.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
         for column in &self.columns {
@@ -128,7 +128,8 @@ impl Table {
         slf.py().import("pyarrow")?.call_method1("table", (slf,))
     }
 
-    /// The bytes that the program writes for this table, as CSV.
+    /// The bytes that the program writes for this table, as CSV: a header, the shortest numbers, nothing for absent values. The interpreter
+    /// lock is released meanwhile; Ctrl-C raises KeyboardInterrupt.
     fn to_csv<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let columns: Vec<&Column> = self.columns.iter().map(Py::get).collect();
         let part =

@@ -76,6 +76,8 @@ def test_the_program_comes_with_the_wheel(tmp_path: Path) -> None:
     assert run("--version").stdout.decode().strip() == f"beltspace {beltspace.__version__}"
     module = subprocess.run([sys.executable, "-m", "beltspace", "models"], capture_output=True, check=True)
     assert module.stdout == run("models").stdout
+    helped = subprocess.run([sys.executable, "-m", "beltspace", "--help"], capture_output=True, check=True)
+    assert b"Usage: beltspace " in helped.stdout and helped.stdout == run("--help").stdout
     wrong = run("check", "nowhere.toml", cwd=tmp_path)
     assert wrong.returncode == 2 and b"cannot read study nowhere.toml" in wrong.stderr
     assert run("no-such-command").returncode == 2

@@ -1,5 +1,6 @@
 """Stubs and docstrings hold what they promise."""
 
+import ast
 import inspect
 import subprocess
 import sys
@@ -49,3 +50,42 @@ def test_everything_public_is_described() -> None:
             if not member.startswith("_") and callable(value):
                 assert inspect.getdoc(value), f"{name}.{member}"
     assert _beltspace.__version__ == beltspace.__version__
+
+
+def described() -> dict[str, str]:
+    """What the stubs say of each class, function and method, by its name."""
+    tree = ast.parse((HERE.parent / "package" / "beltspace" / "_beltspace.pyi").read_text())
+    found: dict[str, str] = {}
+    for node in tree.body:
+        if isinstance(node, ast.ClassDef | ast.FunctionDef):
+            members = [it for it in node.body if isinstance(it, ast.FunctionDef)] if isinstance(node, ast.ClassDef) else []
+            named = {node.name: ast.get_docstring(node)}
+            # Python has words of its own for __iter__ and the like.
+            named |= {f"{node.name}.{it.name}": ast.get_docstring(it) for it in members if not it.name.startswith("__")}
+            found |= {name: text for name, text in named.items() if text}
+    return found
+
+
+def test_help_says_what_the_stubs_say() -> None:
+    texts = described()
+    assert len(texts) > 60 and {"evaluate", "Study.sweep", "Model", "Result.front", "Table.to_csv"} <= set(texts)
+    for name, text in texts.items():
+        thing: object = _beltspace
+        for part in name.split("."):
+            thing = inspect.getattr_static(thing, part) if isinstance(thing, type) else getattr(thing, part)
+        told = inspect.getdoc(getattr(thing, "__func__", thing))
+        # Lines may be of another length.
+        assert told and told.split() == text.split(), name
+
+
+def test_help_tells_parameters_units_errors_and_absent_values() -> None:
+    for thing in (beltspace.evaluate, beltspace.Study.sweep, beltspace.Study.worst, beltspace.Study.check):
+        told = inspect.getdoc(thing) or ""
+        for name in list(inspect.signature(thing).parameters):
+            assert name == "self" or f"\n{name}: " in told, (thing, name)
+        assert "RequestError" in told and "Returns " in told
+    for thing in (beltspace.evaluate, beltspace.Study.worst):
+        assert all(it in (inspect.getdoc(thing) or "") for it in ("NaN", "status", "unit"))
+    assert str(inspect.signature(beltspace.evaluate)) == "(model, table, *, outputs=None, threads=None)"
+    sweep = "(self, /, *, progress=None, threads=None, engine='auto', method='auto', adapter=None, feasible=False)"
+    assert str(inspect.signature(beltspace.Study.sweep)) == sweep

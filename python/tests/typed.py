@@ -1,5 +1,6 @@
 """A user's program, for mypy only."""
 
+from pathlib import Path
 from typing import assert_type
 
 import numpy as np
@@ -14,6 +15,8 @@ force: np.ndarray[tuple[int, ...], np.dtype[np.float64]] = result.front["axial_f
 found = beltspace.evaluate("metal-cvt", {"band_count": np.arange(6, 9), "torque_Nm": 150.0, "traction": "limit"}, outputs=["axial_force_N"])
 again = study.worst(found)
 brake = beltspace.Model("brake", {"torque_Nm": "force_N * radius_mm"}, inputs={"force_N": {"default": 1.0}}, outputs=["torque_Nm"])
+winch = beltspace.Model("winch", formulas={"torque_Nm": "force_N * radius_mm"}, inputs={"force_N": {"default": 1.0}})
+of_file = beltspace.Model(Path("drive.toml"))
 try:
     beltspace.Study.from_file("study.toml")
 except beltspace.StudyError as error:

@@ -19,6 +19,8 @@ pub struct BatchTarget {
     kind: BatchKind,
     /// Names that `--set` gives: no column may give them too.
     set: Vec<String>,
+    /// Was it asked for on the command line, whose options messages may name?
+    has_options: bool,
 }
 
 #[derive(Debug)]
@@ -35,13 +37,18 @@ type RowColumns = (Vec<TableColumn>, Vec<TableColumn>);
 impl BatchTarget {
     /// A model, where inputs without a column have these values; `set` names those of them that the user gave.
     pub fn of_model(model: Arc<Model>, inputs: Vec<f64>, set: Vec<String>) -> Self {
-        Self { model, kind: BatchKind::Model(inputs), set }
+        Self { model, kind: BatchKind::Model(inputs), set, has_options: true }
     }
 
     /// A study, every row of which is a design; `set` names inputs whose values the user gave.
     pub fn of_study(study: Study, set: Vec<String>) -> Self {
         let columns = certify::columns(&study);
-        Self { model: study.model.clone(), kind: BatchKind::Study(Box::new(study), columns), set }
+        Self { model: study.model.clone(), kind: BatchKind::Study(Box::new(study), columns), set, has_options: true }
+    }
+
+    /// The same for who has no command line: messages name no options of it.
+    pub fn without_options(self) -> Self {
+        Self { has_options: false, ..self }
     }
 
     /// The model.
@@ -56,9 +63,14 @@ impl BatchTarget {
             return Err("--set gives it too; keep one of the two".to_owned());
         }
         let Some(input) = model.input(name) else {
-            let carry = format!("--carry {name} takes it along as it is");
+            let (carry, drop) = if self.has_options {
+                let carry = format!("--carry {name} takes it along as it is");
+                (carry.clone(), format!("drop the column, or {carry}"))
+            } else {
+                ("drop the column".to_owned(), "drop the column".to_owned())
+            };
             if model.output(name).is_some() {
-                return Err(format!("it is a result and no input; drop the column, or {carry}"));
+                return Err(format!("it is a result and no input; {drop}"));
             }
             let names: Vec<&str> = model.inputs.iter().map(|it| it.name.as_str()).collect();
             return Err(format!("{} has no such input; {}", model.name, remedy(name, &names, || carry.clone())));
@@ -75,10 +87,9 @@ impl BatchTarget {
     /// Says which inputs have a column.
     pub(super) fn given(&mut self, given: &[usize]) -> Result<()> {
         if given.is_empty() {
-            return Err(refusal(format!(
-                "there is no column with the values of an input; inputs are those of beltspace models {}",
-                self.model.name
-            )));
+            let names = || self.model.inputs.iter().map(|it| it.name.as_str()).collect::<Vec<_>>().join(", ");
+            let inputs = if self.has_options { format!("those of beltspace models {}", self.model.name) } else { names() };
+            return Err(refusal(format!("there is no column with the values of an input; inputs are {inputs}")));
         }
         let BatchKind::Study(study, _) = &mut self.kind else { return Ok(()) };
         let mut missing = Vec::new();
@@ -94,10 +105,11 @@ impl BatchTarget {
         study.sample = None;
         match &missing[..] {
             [] => Ok(()),
-            [first, ..] => Err(refusal(format!(
-                "the rows must say what the study chooses: there is no column {}; add it, or give one value with --set {first}=...",
-                missing.join(", ")
-            ))),
+            [first, ..] => {
+                let option = if self.has_options { format!(", or give one value with --set {first}=...") } else { String::new() };
+                let missing = missing.join(", ");
+                Err(refusal(format!("the rows must say what the study chooses: there is no column {missing}; add it{option}")))
+            }
         }
     }
 

@@ -22,7 +22,7 @@ for every row. Any table that speaks Arrow will do: of pandas, polars, pyarrow, 
 
 Array: TypeAlias = npt.NDArray[Any]
 Progress: TypeAlias = Callable[[str, int, int], object]
-"""Told what is done, how much of it, and how much there is."""
+"""Told what is done, how much of it, and how much there is, which is more than 0."""
 
 @final
 class Column:
@@ -78,13 +78,14 @@ class Table:
     def to_dict(self) -> dict[str, Array]:
         """Every column as an array, by name."""
     def to_pandas(self) -> Any:
-        """As a pandas DataFrame; pandas must be installed."""
+        """As a pandas DataFrame; pandas must be installed. Index columns of which a cell is absent are floats."""
     def to_polars(self) -> Any:
         """As a polars DataFrame; polars must be installed."""
     def to_pyarrow(self) -> Any:
         """As a pyarrow Table; pyarrow must be installed."""
     def to_csv(self) -> bytes:
-        """The bytes that the program writes for this table."""
+        """The bytes that the program writes for this table, as CSV: a header, the shortest numbers, nothing for absent values. The
+        interpreter lock is released meanwhile; Ctrl-C raises KeyboardInterrupt."""
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object: ...
     def __arrow_c_schema__(self) -> object: ...
     def _repr_html_(self) -> str: ...
@@ -92,7 +93,8 @@ class Table:
 @final
 class RowStream:
     """A table that may be longer than the memory. Its rows are computed while they are read, 65 536 at a time, and it may be read again and
-    again: `for table in rows`, `polars.DataFrame(rows)`, `pyarrow.RecordBatchReader.from_stream(rows)`."""
+    again: `for table in rows`, `polars.DataFrame(rows)`, `pyarrow.RecordBatchReader.from_stream(rows)`. Ctrl-C ends the reading and raises
+    KeyboardInterrupt; who reads a stream of Arrow may tell an error of its own first."""
 
     @property
     def num_rows(self) -> int:
@@ -105,7 +107,8 @@ class RowStream:
         """Names of the columns, which end in their units."""
     def __len__(self) -> int: ...
     def __iter__(self) -> TableBatches:
-        """The rows as tables of 65 536 rows, the last one shorter. RunError if the f64 reference does not agree with the sweep."""
+        """The rows as tables of 65 536 rows, the last one shorter; each is computed when it is asked for. RuntimeError if the f64
+        reference does not agree with the sweep. Who reads on after Ctrl-C misses no rows."""
     def to_table(self) -> Table:
         """All rows as a table, in memory."""
     def to_pandas(self) -> Any:
@@ -130,13 +133,23 @@ class Model:
 
     `Model("metal-cvt")` is one that comes with beltspace, `Model("my-drive.toml")` that of a file, and `Model(name, formulas, ...)` one of
     formulas; the parts are those of a model's file (docs/models-in-a-file.md).
+
+    name: of the model, or the path of its file; a text without formulas is a path where it ends in ".toml".
+    formulas: texts by the name of what they give, which ends in its unit.
+    inputs: by name, which ends in the unit: `default`, `valid`, `doc` and what else a model's file says of an input.
+    outputs: names of the formulas that are outputs, None for all.
+
+    The other parts are `conditions`, `curves`, `presets`, `base`, `units`, `summary`, `source` and `limits`.
+
+    RequestError if parts are given without formulas or a base; StudyError tells all mistakes with line and column in the text that is
+    made of the parts; OSError if the file cannot be read.
     """
 
     def __new__(
         cls,
-        name: str,
-        formulas: Mapping[str, str | Mapping[str, Any]] | None = None,
+        name: str | os.PathLike[str],
         /,
+        formulas: Mapping[str, str | Mapping[str, Any]] | None = None,
         *,
         inputs: Mapping[str, Mapping[str, Any]] | None = None,
         outputs: Sequence[str] | Mapping[str, str | Mapping[str, Any]] | None = None,
@@ -151,20 +164,23 @@ class Model:
     ) -> Model: ...
     @staticmethod
     def from_file(path: str | os.PathLike[str]) -> Model:
-        """Reads the file of a model; its name is that of the file."""
+        """Reads the file of a model; its name is that of the file. StudyError tells all mistakes; OSError if it cannot be read."""
     @staticmethod
     def from_toml(text: str, name: str, folder: str | os.PathLike[str] | None = None) -> Model:
-        """Reads a model from the text of a file; `folder` is what paths of CSV files are relative to."""
+        """Reads a model from the text of a file, under that name; `folder` is what paths of CSV files are relative to, by default the
+        current one. StudyError tells all mistakes."""
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """Its name."""
     @property
-    def summary(self) -> str: ...
+    def summary(self) -> str:
+        """What it is, in a sentence."""
     @property
     def limits(self) -> str:
         """What the model does not say."""
     @property
     def text(self) -> str:
-        """The text of its file; empty for a model of the program."""
+        """The text of its file; empty for a model of the program, and for that of a study."""
     @property
     def inputs(self) -> dict[str, dict[str, Any]]:
         """By name: `unit`, `default`, `valid` (in words), `usual` (the range that its source covers), `integer`, `words`, `description`."""
@@ -221,7 +237,8 @@ class Result:
     def knee(self) -> dict[str, float | int | str | None] | None:
         """The design of the front that is nearest to the ideal; None without a front."""
     @property
-    def engine(self) -> Literal["cpu", "gpu"]: ...
+    def engine(self) -> Literal["cpu", "gpu"]:
+        """What judged the designs."""
     @property
     def method(self) -> str:
         """`exhaustive`, `bounds`, or both if bounds were given up."""
@@ -241,21 +258,45 @@ class Study:
 
     @staticmethod
     def from_file(path: str | os.PathLike[str], *, models: Sequence[Model] | None = None) -> Study:
-        """Reads a study file. StudyError tells all mistakes with line and column; OSError if the file cannot be read."""
+        """Reads a study file.
+
+        path: of the file; paths in it are relative to its folder.
+        models: models of one's own that it may name.
+
+        StudyError tells all mistakes with line and column; OSError if the file cannot be read.
+        """
     @staticmethod
     def from_toml(text: str, *, folder: str | os.PathLike[str] | None = None, models: Sequence[Model] | None = None) -> Study:
-        """Reads a study from the text of a file. `folder` is what paths of other files are relative to, by default the current one;
-        `models` are models of one's own that it may name."""
+        """Reads a study from the text of a file.
+
+        folder: what paths of other files are relative to, by default the current one.
+        models: models of one's own that it may name.
+
+        StudyError tells all mistakes with line and column.
+        """
     @staticmethod
     def from_dict(
         study: Mapping[str, Any], *, folder: str | os.PathLike[str] | None = None, models: Sequence[Model] | None = None
     ) -> Study:
-        """Reads a study from a dictionary with the tables and keys of a study file; its model may be a `Model`. Lines and columns of
-        mistakes are those of the text that is made of it."""
+        """Reads a study from a dictionary with the tables and keys of a study file.
+
+        study: the order of its keys is that of the axes; its model may be a `Model`.
+        folder: what paths of other files are relative to, by default the current one.
+        models: models of one's own that it may name.
+
+        StudyError tells all mistakes, with line and column in the text that is made of the dictionary; TypeError if a value has no form
+        in a study.
+        """
     def with_values(self, **values: float | str) -> Study:
-        """The same study with values in place of what gives some inputs: an axis, a fixed value or a formula."""
+        """The same study with values in place of what gives some inputs: an axis, a fixed value or a formula.
+
+        values: numbers in the unit that the input's name ends in, or texts as in a study file, such as "25 mm".
+
+        RequestError if there is no such input or its value is wrong.
+        """
     @property
-    def title(self) -> str: ...
+    def title(self) -> str:
+        """Its title."""
     @property
     def text(self) -> str:
         """The text of its file."""
@@ -263,7 +304,8 @@ class Study:
     def hash(self) -> str:
         """The hash of its content, as in the files of a result."""
     @property
-    def model(self) -> Model: ...
+    def model(self) -> Model:
+        """Its model."""
     @property
     def designs(self) -> int:
         """How many designs it has."""
@@ -274,8 +316,15 @@ class Study:
     def design(self) -> list[str]:
         """Names of the inputs that are chosen, in the order of the study."""
     def check(self, *, threads: int | None = None) -> dict[str, Any]:
-        """What `beltspace check` tells, without running the study: `designs`, `scenarios`, `evaluations`, `seconds` (about how long a sweep takes
-        that judges each design), `method`, `memory_MB`, `front` (about how many designs) and `warnings`."""
+        """What `beltspace check` tells, without running the study.
+
+        threads: 1 to 4096, None for one on each core.
+
+        Returns a dictionary: `designs`, `scenarios`, `evaluations`, `seconds` (about how long a sweep takes that judges each design),
+        `method`, `memory_MB`, `front` (about how many designs) and `warnings`, a list of sentences.
+
+        RequestError if the number of threads is wrong. Ctrl-C raises KeyboardInterrupt at once.
+        """
     def sweep(
         self,
         *,
@@ -288,20 +337,52 @@ class Study:
     ) -> Result:
         """Judges every design in every scenario, and computes what is reported once more in f64.
 
-        The interpreter lock is released meanwhile; Ctrl-C ends the sweep and raises KeyboardInterrupt. `progress=True` shows a bar (of tqdm, if it is
-        installed); a function is called every 50 ms with what is done, how much of it, and how much there is. `adapter` is a part of a GPU's
-        name. `feasible=True` also keeps every feasible design.
+        progress: True shows a bar (of tqdm, if it is installed). A function is called every 50 ms with what is done, how much of it,
+            and how much there is, which is more than 0; what it raises ends the sweep.
+        threads: 1 to 4096, None for one on each core.
+        engine: "cpu", "gpu", or "auto", which takes a GPU where that is faster. The result is the same.
+        method: "exhaustive" judges each design, "bounds" whole boxes of them, "auto" what is faster. The result is the same.
+        adapter: a part of a GPU's name, where there are several.
+        feasible: also keep every feasible design, as if the study asked for it.
+
+        Returns the result, whose tables have the units that the names of their columns end in.
+
+        RequestError if a word, the adapter or the number of threads is wrong, or the study cannot be served so; RunError if a front
+        does not fit into memory or a GPU fails. The interpreter lock is released meanwhile; Ctrl-C ends the sweep, of which nothing is
+        kept, and raises KeyboardInterrupt.
         """
     def worst(self, table: Rows, *, threads: int | None = None) -> Table:
-        """The worst of every row over the scenarios, for an optimiser: a row is a design and gives every input that the study chooses, on
-        its levels or between them. The table has the given inputs, every objective, constraint and report column with its scenario, the margin of
-        each constraint (negative where it is violated), `feasible` ("yes" or "no") and `status`."""
+        """The worst of every row over the scenarios of the study, for an optimiser: a row is a design.
 
-def evaluate(model: Model | str | os.PathLike[str], table: Rows, *, outputs: Sequence[str] | None = None, threads: int | None = None) -> Table:
-    """Evaluates a model in f64 for every row of a table: its outputs, in the units that their names end in, and `status`.
+        table: a column for every input that the study chooses, in the unit that its name ends in, on the levels of the study or
+            between them. It takes the forms that `evaluate` takes.
+        threads: 1 to 4096, None for one on each core.
 
-    Inputs without a column have their defaults. `outputs` names those that are wanted; fewer take less time. Values beyond an input's
-    valid range are refused with row and column.
+        Returns a table with the given inputs; every objective, constraint and report column at its worst, with the scenario where that
+        is; the margin of each constraint, negative where it is violated; `feasible` ("yes" or "no"); and `status`: "ok", or why not
+        in the first scenario that fails. Numbers that there are none of are NaN (null in Arrow).
+
+        RequestError, with row and column, if a cell is empty (null, NaN, masked) or beyond the input's valid range, and if a name or the
+        number of threads is wrong. The interpreter lock is released meanwhile; Ctrl-C ends the work and raises KeyboardInterrupt.
+        """
+
+def evaluate(
+    model: Model | str | os.PathLike[str], table: Rows, *, outputs: Sequence[str] | None = None, threads: int | None = None
+) -> Table:
+    """Evaluates a model in f64 for every row of a table.
+
+    model: a `Model`, the name of one that comes with beltspace, or the path of a model's file.
+    table: columns named like inputs, in the units that the names end in: a dictionary of arrays, or a table of pandas, polars,
+        pyarrow or DuckDB. A single value stands for every row, and inputs without a column have their defaults. Texts such as
+        "limit" or "0.25 in" are read as in a study.
+    outputs: names of the outputs that are wanted, None for all; fewer take less time.
+    threads: 1 to 4096, None for one on each core.
+
+    Returns a table with a column for each output, in the unit that its name ends in, and `status`: "ok", "overflow", or the first
+    condition of the model that the row does not meet. A number that a failed condition invalidates is NaN (null in Arrow).
+
+    RequestError, with row and column, if a cell is empty (null, NaN, masked) or beyond the input's valid range, and if a name or the
+    number of threads is wrong. The interpreter lock is released meanwhile; Ctrl-C ends the work and raises KeyboardInterrupt.
     """
 
 def models() -> list[str]:
