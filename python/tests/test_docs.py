@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = Path(sys.executable).with_name("beltspace")
 
 
-PAGES = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]
+PAGES = [ROOT / "README.md", ROOT / "python" / "README.md", *(ROOT / "docs").rglob("*.md")]
 
 
 @pytest.mark.parametrize("page", sorted(str(path.relative_to(ROOT)) for path in PAGES if "```python" in path.read_text()))
@@ -28,6 +28,11 @@ def test_the_python_of_a_page_runs(page: str, monkeypatch: pytest.MonkeyPatch) -
     for block in blocks:
         exec(compile(block, page, "exec"), names)
     assert blocks
+
+
+def test_what_the_readme_names_is_there() -> None:
+    named = re.findall(r"`((?:docs|python)/[^` ]*)`", (ROOT / "python" / "README.md").read_text())
+    assert len(named) > 4 and all((ROOT / path).exists() for path in named)
 
 
 def test_exit_codes_are_as_told(tmp_path: Path) -> None:

@@ -5,7 +5,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+
+import beltspace
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 
@@ -47,3 +50,13 @@ def test_salib_finds_what_decides() -> None:
     told = dict(re.findall(r"(\w+): first order ([\d.-]+)", run("sobol_indices.py")))
     assert float(told["torque_Nm"]) > float(told["friction"])
     assert 0.8 < sum(map(float, told.values())) < 1.1
+
+
+def test_openmdao_finds_the_best_of_a_fine_grid() -> None:
+    pytest.importorskip("openmdao")
+    told = {name: float(value) for name, value in re.findall(r"(\w+) = ([\d.]+)", run("openmdao_component.py"))}
+    thickness, angle = (it.ravel() for it in np.meshgrid(np.linspace(0.1, 0.4, 301), np.linspace(18, 30, 241)))
+    rows = {"band_thickness_mm": thickness, "groove_angle_deg": angle, "torque_Nm": 150.0, "band_count": 9}
+    found = beltspace.evaluate("metal-cvt", rows, outputs=["axial_force_N", "stress_margin"])
+    best = found["axial_force_N"][found["stress_margin"] >= 0.3].min()
+    assert 0.299 <= told["stress_margin"] <= 0.301 and abs(told["axial_force_N"] / best - 1) < 1e-3, (told, best)
