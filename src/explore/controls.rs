@@ -126,7 +126,8 @@ fn described_input(input: &Input) -> Value {
 
 /// Between which ends a slider runs: what the source covers and what the study says, within what the formula accepts.
 fn span(control: &mut Value, input: &Input, least: f64, largest: f64) {
-    let (usual_low, usual_high) = input.usual;
+    // A variable of the study without a range of its own has the widest that there is, over which no slider could run.
+    let (usual_low, usual_high) = if (input.usual.1 - input.usual.0).is_finite() { input.usual } else { (f64::NAN, f64::NAN) };
     let width = if input.word_for(least).is_some() || input.word_for(largest).is_some() { 0.0 } else { largest - least };
     let (mut low, mut high) = (usual_low.min(least), usual_high.max(largest));
     if width > 0.0 || !usual_low.is_finite() || !usual_high.is_finite() {

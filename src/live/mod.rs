@@ -28,6 +28,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
+use toml::de::{DeTable, DeValue};
 
 /// Where the exact front takes longer than this, a coarse one is told first.
 pub const NOTICED: Duration = Duration::from_millis(50);
@@ -134,7 +135,9 @@ impl Live {
     /// # Errors
     /// As [`Study::parse_set`]; [`Error::Request`] if it has no objective, so that there is no front.
     pub fn study(&self, set: &[String]) -> Result<(Study, String)> {
-        let (study, text) = Study::parse_set(&Models::new(), &self.text, &self.file, &self.folder, set)?;
+        let read = |text: &str| Study::parse_set(&Models::new(), text, &self.file, &self.folder, set);
+        // A map may say no more what it shows once its objective does not count, or have too many cells. Nobody looks at maps here.
+        let (study, text) = read(&self.text).or_else(|error| without_maps(&self.text).and_then(|text| read(&text).ok()).ok_or(error))?;
         if study.objectives.is_empty() {
             return Err(Error::Request(
                 "the study has no objective, so that there is no front to look at; name one in [objectives]".to_owned(),
@@ -311,6 +314,14 @@ impl Live {
         let findings = Findings::of(plan, feasible.unwrap_or(1), front, self.threads, control)?;
         tell(LiveAnswer::Counted(Box::new(LiveCounts { feasible, sample, tally, findings })))
     }
+}
+
+/// The text of a study with no maps, if it has some.
+fn without_maps(text: &str) -> Option<String> {
+    let tree = DeTable::parse(text).ok()?;
+    let DeValue::Table(report) = tree.get_ref().get("report")?.get_ref() else { return None };
+    let (name, maps) = report.iter().find(|(name, _)| name.get_ref() == "maps")?;
+    Some(format!("{}{}", &text[..name.span().start], &text[maps.span().end..]))
 }
 
 /// How long a search of so many seconds rests once it has told a coarse front: on a machine with few cores nobody draws it while all of

@@ -16,10 +16,10 @@ use crate::plan::{Plan, Tracked};
 use crate::reduce::{Points, Reduction};
 use crate::screen::{Control, CpuEngine, Tables};
 use crate::study::{Constraint, Quantity, Study};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 /// Scenarios that join a working set at a time: those that most designs ask for.
@@ -112,6 +112,8 @@ pub struct FrontSearch<'p> {
     shown: Plan,
     shown_tables: Tables,
     places: Vec<Vec<usize>>,
+    /// The same without what is only reported, which may have no value for a design that is feasible all the same.
+    judging: OnceLock<(Plan, Tables, Vec<Vec<usize>>)>,
     /// Judges single designs, where the formula allows it.
     lanes: Option<ScenarioLanes>,
     /// Designs with their values over all scenarios, whether they keep those bounds or not: of the study before, and new ones.
@@ -155,9 +157,7 @@ impl<'p> FrontSearch<'p> {
     pub fn new(plan: &'p Plan, threads: usize, control: &'p Control, before: JudgedRows) -> Self {
         let columns = certify::columns(&plan.study);
         // What a study confirms with fresh draws is no output of the sweep.
-        let is_output = |column: &&Column| plan.study.confirmed(column.quantity).is_none();
-        let followed: Vec<Tracked> = columns.iter().filter(is_output).flat_map(Column::followed).collect();
-        let shown = Plan::following(without_bounds(&plan.study), &followed);
+        let shown = Plan::following(without_bounds(&plan.study), &followed(plan, &columns, |_| true));
         let free = Some(free_plan(&plan.study)).filter(|free| Self::allows_working_set(plan) && is_kept(free));
         let free = free.map(|free| {
             let tables = Tables::new(&free);
@@ -165,8 +165,7 @@ impl<'p> FrontSearch<'p> {
         });
         let table = before.table;
         let judged_before = if before.hash == shown.study.hash() { before.rows } else { Arc::default() };
-        let place = |wanted: &Tracked| shown.tracked.iter().position(|(it, _)| it == wanted);
-        let places = columns.iter().map(|column| column.followed().iter().filter_map(place).collect()).collect();
+        let places = places_of(&shown, &columns);
         Self {
             plan,
             tables: Tables::new(plan),
@@ -174,6 +173,7 @@ impl<'p> FrontSearch<'p> {
             lanes: ScenarioLanes::new(&shown),
             shown,
             places,
+            judging: OnceLock::new(),
             reduction: Reduction::of_front(plan),
             columns,
             threads: threads.max(1),
@@ -245,9 +245,26 @@ impl<'p> FrontSearch<'p> {
     /// # Errors
     /// [`Error::Stopped`] after `control.stop`.
     pub fn in_few(&self, set: &WorkingSet, points: &Points) -> Result<Vec<Row>> {
-        let mut rows = self.screened(&self.shown, &self.shown_tables, &set.chosen(self.plan), &points.indices, &self.places)?;
+        let chosen = set.chosen(self.plan);
+        let mut rows = self.screened(&self.shown, &self.shown_tables, &chosen, &points.indices, &self.places)?;
+        if rows.len() < points.indices.len() {
+            let found: FxHashSet<u64> = rows.iter().map(|row| row.index).collect();
+            let missing: Vec<u64> = points.indices.iter().copied().filter(|design| !found.contains(design)).collect();
+            rows.extend(self.judged_without_report(&chosen, &missing)?);
+        }
         certify::sort_front(self.plan, &self.columns, &mut rows);
         Ok(rows)
+    }
+
+    /// Designs of which a column of the report has no value in some scenario, without these columns.
+    fn judged_without_report(&self, chosen: &[(u64, u64)], designs: &[u64]) -> Result<Vec<Row>> {
+        let (plan, tables, places) = self.judging.get_or_init(|| {
+            let followed = followed(self.plan, &self.columns, |column| column.role != Role::Report);
+            let plan = Plan::following(without_bounds(&self.plan.study), &followed);
+            let (tables, places) = (Tables::new(&plan), places_of(&plan, &self.columns));
+            (plan, tables, places)
+        });
+        self.screened(plan, tables, chosen, designs, places)
     }
 
     /// Does a design keep the bounds of the study?
@@ -489,10 +506,9 @@ impl<'p> FrontSearch<'p> {
         let mut rows: Vec<Row> = designs.iter().filter_map(|&design| self.judged_row(design).cloned()).collect();
         let missing = new(self);
         if !missing.is_empty() {
-            // Some columns may have no value for a design that is feasible all the same.
-            let place = |wanted: &Tracked| self.plan.tracked.iter().position(|(it, _)| it == wanted);
-            let places: Vec<Vec<usize>> = self.columns.iter().map(|column| column.followed().iter().filter_map(place).collect()).collect();
-            rows.extend(self.screened(self.plan, &self.tables, &[], &missing, &places)?);
+            let found = self.judged_without_report(&[], &missing)?;
+            self.judged.extend(found.iter().map(|row| (row.index, row.clone())));
+            rows.extend(found);
         }
         Ok(rows)
     }
@@ -567,6 +583,18 @@ impl<'p> FrontSearch<'p> {
         let all = points.indices.iter().zip(points.keys.chunks(objectives.len().max(1)));
         all.filter(is_wrong).map(|(&design, _)| design).collect()
     }
+}
+
+/// The worst values that the columns of some roles come from, without what a study confirms with fresh draws, which is no output of the sweep.
+fn followed(plan: &Plan, columns: &[Column], is_wanted: impl Fn(&Column) -> bool) -> Vec<Tracked> {
+    let is_output = |column: &&Column| plan.study.confirmed(column.quantity).is_none() && is_wanted(column);
+    columns.iter().filter(is_output).flat_map(Column::followed).collect()
+}
+
+/// Of each column: where the values that it comes from stand among those that a plan follows.
+fn places_of(plan: &Plan, columns: &[Column]) -> Vec<Vec<usize>> {
+    let place = |wanted: &Tracked| plan.tracked.iter().position(|(it, _)| it == wanted);
+    columns.iter().map(|column| column.followed().iter().filter_map(place).collect()).collect()
 }
 
 /// The study without the bounds of constraints that have one: the worst value is the same whatever the bound is, so that designs are held

@@ -100,6 +100,31 @@ fn the_front_found_in_a_few_scenarios_is_that_of_the_whole_sweep() {
 }
 
 #[test]
+fn a_column_of_the_report_without_a_value_takes_no_design_away() {
+    // Where nothing is asked of the drive there is no clamping safety; the objective is a mean, or the worst.
+    let shipped = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/studies/variator-pressure.toml")).expect("a study");
+    for text in [shipped.clone(), shipped.replace(", over_scenarios = \"mean\"", "")] {
+        let study = Study::parse(&text).unwrap_or_else(|errors| panic!("{errors}"));
+        let (designs, columns) = swept(&study);
+        let safety = &columns.iter().find(|(name, _)| name == "clamping_safety").expect("a column").1;
+        assert!(designs.len() > 50 && study.report.columns.len() == 4, "{} {}", designs.len(), safety.len());
+        let plan = Plan::new(study);
+        let control = Control::default();
+        let mut search = FrontSearch::new(&plan, 2, &control, JudgedRows::default());
+        let set = search.first_set().expect("nobody stops it");
+        let mut seen_early = 0;
+        let found = search.exact(set, &mut |search, set, points, _| {
+            seen_early += search.in_few(set, points)?.len();
+            Ok(())
+        });
+        let (rows, _) = found.expect("it is found");
+        assert_eq!(rows.iter().map(|row| row.index).collect::<Vec<_>>(), designs);
+        assert!(seen_early > 0, "the first idea has them too");
+        search.certified(&rows).expect("the reference agrees");
+    }
+}
+
+#[test]
 fn a_working_set_that_lacks_what_matters_is_filled_up() {
     let study = Study::parse(BELT).expect("it is right");
     let plan = Plan::new(study.clone());
@@ -214,4 +239,16 @@ fn an_answer_comes_in_steps_and_ends_when_it_is_stopped() {
         1,
     );
     assert!(none.study(&[]).is_err_and(|error| error.to_string().contains("no objective")));
+}
+
+#[test]
+fn a_map_that_no_longer_says_what_it_shows_does_not_stand_in_the_way() {
+    let text = BELT.to_owned() + "maps = [{ x = \"traction\", y = \"groove_angle_deg\", value = \"axial_force_N\" }]\n";
+    let live = Live::new(text, "belt.toml".to_owned(), PathBuf::from("."), 1);
+    let (study, text) = live.study(&["objectives.axial_force_N=off".to_owned()]).expect("it can be asked");
+    assert!(study.report.maps.is_empty() && !text.contains("maps"));
+    assert_eq!(live.study(&[]).expect("as it is").0.report.maps.len(), 1);
+    // What else is wrong is told as it is.
+    let error = live.study(&["strength_MPa=-5".to_owned()]).expect_err("no such strength");
+    assert!(error.to_string().contains("strength_MPa"), "{error}");
 }

@@ -69,7 +69,8 @@
     if (findings && !none) drawFindings(place, findings);
     const lead = page.byId("lead");
     lead.hidden = !none;
-    if (!none) return;
+    // Of a study in work it goes back where it was once something is feasible again.
+    if (!none) return void page.byId("explained").after(page.byId("tally"));
     lead.replaceChildren(page.element("h2", {}, "No design is feasible: what limits it"), ...(tally ? sentences(tally) : ["The result does not say why."]).map((text) => page.element("p", {}, text)));
     if (findings) drawFindings(lead, findings);
     if (tally) lead.after(page.byId("tally"));

@@ -33,11 +33,14 @@
     return page.element("tr", {}, page.element("th", { scope: "row", title: column.doc }, page.breakable(name), page.element("span", { class: "unit" }, ` ${goal.goal}`)), page.element("td", { class: "weight" }, slider, " ", share), page.element("td", { class: "weight" }, field, unit ? page.element("span", { class: "unit" }, ` ${unit}`) : null), best);
   };
 
+  // What the section is built for: other goals, or a first design after none, ask for another.
+  const keyOf = () => `${page.front.rows > 0} ${page.goals().map(({ name, goal }) => `${name} ${goal}`).join()}`;
+
   const build = () => {
     const section = page.byId("weigh");
     const goals = page.goals();
     section.hidden = goals.length < 2 || !page.front.rows;
-    section.dataset.goals = goals.map(({ name, goal }) => `${name} ${goal}`).join();
+    section.dataset.goals = keyOf();
     controls = [];
     if (section.hidden) return section.replaceChildren();
     const head = [["objective", ""], ["weight", ""], ["wished value", ""], ["best on the front", "number"]].map(([text, style]) => page.element("th", { scope: "col", class: style }, text));
@@ -114,7 +117,7 @@
 
   let waiting = 0;
   const update = () => {
-    if (page.byId("weigh").dataset.goals !== page.goals().map(({ name, goal }) => `${name} ${goal}`).join()) build();
+    if (page.byId("weigh").dataset.goals !== keyOf()) build();
     if (!controls.length || !page.front.rows) return null;
     controls.forEach(({ sync }, at) => sync(at));
     page.byId("near").value = kind;

@@ -215,6 +215,7 @@
     page.timings.answers = [];
     page.timings.fews = [];
     let settled = 0;
+    let computing = 0;
     const rest = page.afterPause(400, () => document.body.classList.remove("moves"));
     page.events.on("changes.answer", () => {
       document.body.classList.add("moves");
@@ -222,6 +223,9 @@
       // A ghost of what was there before the first of several changes in a row.
       if (performance.now() - settled > 600) keepGhost();
       settled = performance.now();
+      // What is shown is of the question before from now on; where the answer comes at once nobody reads it.
+      clearTimeout(computing);
+      computing = setTimeout(() => !page.isAnswered() && say(page.front ? "computing …; what is shown is of the study before the change" : "computing …", "coarse"), 250);
       wanted = { set: page.changeList(), eventAt: page.eventAt ?? null };
       page.eventAt = null;
       next();

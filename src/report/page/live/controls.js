@@ -28,7 +28,8 @@
     const by = step || (integer ? 1 : niceStep(span.high - span.low));
     const start = step ? value - Math.floor((value - span.low) / by) * by : Math.ceil(span.low / by - 1e-9) * by;
     const id = `control ${part}`;
-    const slider = page.element("input", { type: "range", min: tidy(start), max: tidy(Math.max(span.high, start + by)), step: step || integer ? tidy(by) : "any", "aria-label": `${name}, ${label}`, "data-part": part, tabindex: 0 });
+    const ends = [tidy(start), tidy(Math.max(span.high, start + by))];
+    const slider = page.element("input", { type: "range", min: ends[0], max: ends[1], step: step || integer ? tidy(by) : "any", "aria-label": `${name}, ${label}`, "data-part": part, tabindex: 0 });
     const field = page.element("input", { type: "number", step: "any", id, "data-part": part, "aria-label": `${name}, ${label}${unit ? `, in ${unit}` : ""}` });
     slider.addEventListener("input", (event) => {
       page.eventAt = event.timeStamp;
@@ -51,13 +52,12 @@
       sync: () => {
         const now = read();
         if (document.activeElement !== field) field.value = String(now);
-        if (Number(slider.value) !== now) {
-          if (now < Number(slider.min)) slider.min = now;
-          if (now > Number(slider.max)) slider.max = now;
-          slider.value = now;
-        }
-        line.classList.toggle("changed", now !== original);
-        back.hidden = now === original;
+        // A value beyond its ends stretches a slider only as long as it stands.
+        slider.min = Math.min(ends[0], now);
+        slider.max = Math.max(ends[1], now);
+        if (Number(slider.value) !== now) slider.value = now;
+        line.classList.toggle("changed", now !== original && !Number.isNaN(original));
+        back.hidden = now === original || Number.isNaN(original);
       },
     });
     return line;
@@ -110,8 +110,9 @@
 
   const added = (part, key) => {
     const name = part.split(".")[1];
-    const line = single({ name, unit: "", low: null, high: null }, `${part}.${key}`, NaN, BOUNDS[key]);
-    return line;
+    const column = page.front && page.front.byName.get(name);
+    const [low, high] = column ? page.domain(column) : [null, null];
+    return single({ name, unit: column ? column.unit : "", low, high }, `${part}.${key}`, NaN, BOUNDS[key]);
   };
 
   const objective = (control) => {
@@ -133,7 +134,16 @@
     if (form === "rows") return page.element("div", { class: "block" }, heading(control, page.element("span", { class: "muted" }, ` ${page.count(control.rows)} rows, as the file has them`)));
     if (form === "list") {
       if (control.values.some((value) => typeof value === "string")) return page.element("div", { class: "block" }, heading(control, page.element("span", { class: "muted" }, ` ${control.values.join(", ")}`)));
-      const now = () => (page.changedValue(part) === undefined ? control.values : JSON.parse(page.changedValue(part)));
+      // What stands in the address may be no list.
+      const given = (text) => {
+        try {
+          const list = JSON.parse(text);
+          return Array.isArray(list) && list.length === control.values.length ? list : control.values;
+        } catch {
+          return control.values;
+        }
+      };
+      const now = () => (page.changedValue(part) === undefined ? control.values : given(page.changedValue(part)));
       const lines = control.values.map((original, at) =>
         numberControl({
           ...control,
