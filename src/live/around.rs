@@ -53,13 +53,13 @@ pub fn most_designs(places: u64) -> u64 {
 pub fn around(plan: &Plan, design: u64, most: u64, threads: usize, control: &Control) -> Result<(Vec<Column>, Vec<Slice>)> {
     let study = &plan.study;
     let columns: Vec<Column> = certify::columns(study).into_iter().filter(|it| it.role != Role::Report).collect();
-    let line = Line { study, inputs: plan.space.inputs(design, 0), columns: &columns, threads, control };
+    let line = DesignLine { study, inputs: plan.space.inputs(design, 0), columns: &columns, threads, control };
     let slices = sliced(plan).map(|axis| line.slice(axis, most)).collect::<Result<Vec<_>>>()?;
     Ok((columns, slices))
 }
 
 /// How designs along a line through one are judged.
-struct Line<'a> {
+struct DesignLine<'a> {
     study: &'a Study,
     inputs: Vec<f64>,
     columns: &'a [Column],
@@ -67,7 +67,7 @@ struct Line<'a> {
     control: &'a Control,
 }
 
-impl Line<'_> {
+impl DesignLine<'_> {
     fn slice(&self, axis: &Axis, most: u64) -> Result<Slice> {
         let model = &self.study.model;
         match axis {
@@ -117,7 +117,7 @@ impl Line<'_> {
     /// Along numbers: some of them, and from the design on to either side the last feasible one and the one after it.
     fn along_levels(&self, axis: &Axis, levels: &Levels, most: u64) -> Result<(Vec<f64>, Vec<Row>)> {
         let own = self.inputs[axis.inputs()[0]];
-        let places = Places::new(levels, own);
+        let places = AxisPlaces::new(levels, own);
         let mut values = places.some(most);
         let judged = |values: &[f64]| self.judged(axis, &values.iter().map(|&it| vec![it]).collect::<Vec<_>>());
         let mut rows = judged(&values)?;
@@ -184,14 +184,14 @@ fn spread(count: usize, most: u64, own: usize) -> Vec<usize> {
 }
 
 /// Where a design may stand on an axis of numbers.
-enum Places {
+enum AxisPlaces {
     /// On one of these, from the least.
     Levels { levels: Vec<f64>, own: usize },
     /// Anywhere.
     Between { low: f64, high: f64, log: bool, own: f64 },
 }
 
-impl Places {
+impl AxisPlaces {
     fn new(levels: &Levels, own: f64) -> Self {
         if levels.count() > MOST_LEVELS || matches!(levels, Levels::Continuous { .. }) {
             let (low, high) = levels.ends();
@@ -294,11 +294,11 @@ mod tests {
     #[test]
     fn places_are_levels_and_those_beside_the_design_are_there() {
         let levels = Levels::Step { from: 0.0, step: 1.0, count: 1000, log: false };
-        let values = Places::new(&levels, 401.0).some(33);
+        let values = AxisPlaces::new(&levels, 401.0).some(33);
         assert!([400.0, 401.0, 402.0, 0.0, 999.0].iter().all(|it| values.contains(it)) && values.iter().all(|it| it.fract() == 0.0));
         assert_eq!(spread(5, 33, 2), [0, 1, 2, 3, 4]);
         assert_eq!(spread(100, 3, 7), [0, 7, 50, 99]);
-        let anywhere = Places::new(&Levels::Continuous { from: 1.0, to: 100.0, log: true }, 10.0);
+        let anywhere = AxisPlaces::new(&Levels::Continuous { from: 1.0, to: 100.0, log: true }, 10.0);
         assert_eq!(anywhere.between(1.0, 100.0), Some(10.0));
     }
 

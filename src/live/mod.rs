@@ -5,6 +5,7 @@
 //! others are not. [`search::FrontSearch`] finds the front without judging every design in every scenario.
 
 pub mod around;
+mod followed;
 pub mod lanes;
 pub mod search;
 pub mod table;

@@ -6,16 +6,17 @@
 //! the front: it fails in the working set, or one of them beats it there, and over all scenarios it only gets worse. Where one is not, the
 //! scenarios that say so join the working set, and the search goes on.
 
+use super::followed::{followed, places_of, without_bounds};
 use super::lanes::ScenarioLanes;
 use super::table::{WorstTable, free_plan, is_kept};
 use crate::certify::{self, AtWorst, Column, Role, Row};
 use crate::error::{Error, Result};
 use crate::keys::KeyRule;
 use crate::parallel::on_threads;
-use crate::plan::{Plan, Tracked};
+use crate::plan::Plan;
 use crate::reduce::{Points, Reduction};
 use crate::screen::{Control, CpuEngine, Tables};
-use crate::study::{Constraint, Quantity, Study};
+use crate::study::{Constraint, Quantity};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -583,32 +584,6 @@ impl<'p> FrontSearch<'p> {
         let all = points.indices.iter().zip(points.keys.chunks(objectives.len().max(1)));
         all.filter(is_wrong).map(|(&design, _)| design).collect()
     }
-}
-
-/// The worst values that the columns of some roles come from, without what a study confirms with fresh draws, which is no output of the sweep.
-fn followed(plan: &Plan, columns: &[Column], is_wanted: impl Fn(&Column) -> bool) -> Vec<Tracked> {
-    let is_output = |column: &&Column| plan.study.confirmed(column.quantity).is_none() && is_wanted(column);
-    columns.iter().filter(is_output).flat_map(Column::followed).collect()
-}
-
-/// Of each column: where the values that it comes from stand among those that a plan follows.
-fn places_of(plan: &Plan, columns: &[Column]) -> Vec<Vec<usize>> {
-    let place = |wanted: &Tracked| plan.tracked.iter().position(|(it, _)| it == wanted);
-    columns.iter().map(|column| column.followed().iter().filter_map(place).collect()).collect()
-}
-
-/// The study without the bounds of constraints that have one: the worst value is the same whatever the bound is, so that designs are held
-/// against it later. Of two bounds the worst value depends on both.
-fn without_bounds(study: &Study) -> Study {
-    let mut free = study.clone();
-    for constraint in free.constraints.iter_mut().filter(|it| it.over.is_worst()) {
-        match (&mut constraint.low, &mut constraint.high) {
-            (Some(low), None) => *low = (f64::MIN, false),
-            (None, Some(high)) => *high = (f64::MAX, false),
-            _ => {}
-        }
-    }
-    free
 }
 
 /// Rows and places cut into about so many parts.
