@@ -4,10 +4,10 @@
 
 use crate::certify::{self, margin_columns};
 use crate::error::Result;
-use crate::models::Input;
+use crate::models::{Input, Model};
 use crate::plan::Plan;
 use crate::screen::Control;
-use crate::study::{Axis, Goal, Levels, Study, entry_names, number, value_of};
+use crate::study::{Axis, Constraint, Drive, Goal, Levels, Study, entry_names, number, value_of};
 use crate::table::written;
 use serde_json::{Map, Value, json};
 
@@ -39,7 +39,9 @@ pub fn controls(plan: &Plan, text: &str, threads: usize, control: &Control) -> R
 fn constraints(plan: &Plan, text: &str, threads: usize, control: &Control) -> Result<Vec<Value>> {
     let study = &plan.study;
     let names = entry_names(text, "constraints");
-    // Of a study with distributions some constraints are those of a draw, which are not among these.
+    if let Some(probability) = &study.probability {
+        return Ok(of_draws(study, &probability.drive, &names));
+    }
     if names.len() != study.constraints.len() {
         return Ok(Vec::new());
     }
@@ -48,19 +50,40 @@ fn constraints(plan: &Plan, text: &str, threads: usize, control: &Control) -> Re
     let each = study.constraints.iter().zip(names).enumerate().map(|(at, (constraint, name))| {
         let values = rows.iter().filter_map(|row| row.columns[at].value).filter(|it| it.is_finite());
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), it| (low.min(it), high.max(it)));
-        let mut bounds = Map::new();
-        for (bound, inclusive, exclusive) in [(constraint.low, "min", "above"), (constraint.high, "max", "below")] {
-            if let Some((bound, excluded)) = bound {
-                bounds.insert(if excluded { exclusive } else { inclusive }.to_owned(), number(bound));
-            }
-        }
-        json!({
-            "part": format!("constraints.{name}"), "name": name, "of": constraint.name(&study.model),
-            "unit": study.unit_over(constraint.quantity, constraint.over), "doc": constraint.quantity.doc(&study.model),
-            "bounds": bounds, "low": finite(low), "high": finite(high),
-        })
+        let unit = study.unit_over(constraint.quantity, constraint.over);
+        bound_control(&study.model, constraint, &name, &unit, [finite(low), finite(high)])
     });
     Ok(each.collect())
+}
+
+/// Of a study with distributions: what every draw must keep, and how many draws must.
+fn of_draws(study: &Study, drive: &Drive, names: &[String]) -> Vec<Value> {
+    let each = names.iter().filter_map(|name| {
+        let of = |model: &Model, constraints: &'_ [Constraint]| constraints.iter().find(|it| it.name(model) == *name).copied();
+        if let Some(constraint) = of(&drive.model, &drive.constraints) {
+            return Some(bound_control(&drive.model, &constraint, name, &drive.unit_of(&constraint), [Value::Null, Value::Null]));
+        }
+        // The study bounds the share of the draws that choose designs under a name of its own.
+        let constraint = of(&study.model, &study.constraints).or_else(|| match &study.constraints[..] {
+            [only] => Some(*only),
+            _ => None,
+        })?;
+        Some(bound_control(&study.model, &constraint, name, "", [number(0.5), number(1.0)]))
+    });
+    each.collect()
+}
+
+fn bound_control(model: &Model, constraint: &Constraint, name: &str, unit: &str, [low, high]: [Value; 2]) -> Value {
+    let mut bounds = Map::new();
+    for (bound, inclusive, exclusive) in [(constraint.low, "min", "above"), (constraint.high, "max", "below")] {
+        if let Some((bound, excluded)) = bound {
+            bounds.insert(if excluded { exclusive } else { inclusive }.to_owned(), number(bound));
+        }
+    }
+    json!({
+        "part": format!("constraints.{name}"), "name": name, "of": constraint.name(model), "unit": unit,
+        "doc": constraint.quantity.doc(model), "bounds": bounds, "low": low, "high": high,
+    })
 }
 
 fn finite(value: f64) -> Value {
@@ -162,4 +185,42 @@ fn fixed(study: &Study, given: &[String]) -> Vec<Value> {
         .collect();
     controls.sort_by_key(|control| control["given"] != true);
     controls
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shipped(name: &str) -> Value {
+        let text = std::fs::read_to_string(format!("{}/studies/{name}.toml", env!("CARGO_MANIFEST_DIR"))).expect("a study");
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("studies");
+        let study = Study::parse_in(&text, name, &folder).unwrap_or_else(|errors| panic!("{errors}"));
+        controls(&Plan::new(study), &text, 2, &Control::default()).expect("controls")
+    }
+
+    #[test]
+    fn what_every_draw_must_keep_has_sliders_too() {
+        let told = shipped("push-belt-yield");
+        let parts: Vec<_> =
+            told["constraints"].as_array().expect("a list").iter().map(|it| (it["part"].clone(), it["bounds"].clone())).collect();
+        let wanted = [
+            ("constraints.slip_margin", json!({ "min": 0.0 })),
+            ("constraints.stress_margin", json!({ "min": 0.0 })),
+            ("constraints.axial_force_upper_N", json!({ "max": 75000.0 })),
+            ("constraints.yield", json!({ "min": 0.999 })),
+        ];
+        assert_eq!(parts, wanted.map(|(part, bounds)| (json!(part), bounds)));
+        assert_eq!(told["constraints"][2]["unit"], "N");
+    }
+
+    #[test]
+    fn a_variable_of_the_study_has_a_slider_with_ends() {
+        let told = shipped("push-belt-duty");
+        let own = told["fixed"].as_array().expect("a list").iter().find(|it| it["name"] == "endurance_MPa").expect("a variable");
+        let value = own["value"].as_f64().expect("a number");
+        for end in ["low", "high"] {
+            // Without an end the page takes one as far from the value as that is from zero.
+            assert!(own[end].as_f64().is_none_or(|it| it.abs() < 1e3 * value), "{own}");
+        }
+    }
 }

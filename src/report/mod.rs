@@ -10,7 +10,7 @@ mod inputs;
 pub mod live;
 mod page;
 mod papers;
-pub mod sections;
+pub(crate) mod sections;
 pub mod slices;
 mod summary;
 

@@ -28,8 +28,8 @@ page.short = (value) => {
 // Units as people write them.
 page.unit = (unit) => ({ Nm: "N m", deg: "°" })[unit] ?? (unit ?? "").replace(/^um\b/, "µm");
 
-// Numbers in a text of the program, grouped as all others are.
-page.grouped = (text) => text.replace(/(?<![\w.-])\d{5,}(?![\w-])/g, (digits) => page.count(digits));
+// Numbers in a text of the program, grouped as all others are; those of designs stay whole.
+page.grouped = (text) => text.replace(/(?<![\w.-]|design )\d{5,}(?![\w-])/g, (digits) => page.count(digits));
 
 // The shortest text that reads back as the same number, in f32 for columns that are stored so.
 page.full = (value, type) => {
