@@ -204,9 +204,9 @@ mod tests {
         let parts: Vec<_> =
             told["constraints"].as_array().expect("a list").iter().map(|it| (it["part"].clone(), it["bounds"].clone())).collect();
         let wanted = [
-            ("constraints.slip_margin", json!({ "min": 0.0 })),
-            ("constraints.stress_margin", json!({ "min": 0.0 })),
-            ("constraints.axial_force_upper_N", json!({ "max": 75000.0 })),
+            ("constraints.slip_margin", json!({ "min": 0 })),
+            ("constraints.stress_margin", json!({ "min": 0 })),
+            ("constraints.axial_force_upper_N", json!({ "max": 75000 })),
             ("constraints.yield", json!({ "min": 0.999 })),
         ];
         assert_eq!(parts, wanted.map(|(part, bounds)| (json!(part), bounds)));
