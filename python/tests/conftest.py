@@ -1,5 +1,9 @@
 """What the tests share."""
 
+import contextlib
+import threading
+import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -36,6 +40,25 @@ feasible = true
 histograms = [{ of = "axial_force_upper_N", from = 0, to = 120000, bins = 60 }]
 maps = [{ x = "band_thickness_mm", y = "groove_angle_deg", value = "axial_force_upper_N" }]
 """
+
+
+@contextlib.contextmanager
+def another_thread() -> Iterator[list[int]]:
+    """Another thread of Python, which counts every ms as long as it may run."""
+    counted, ended = [0], threading.Event()
+
+    def count() -> None:
+        while not ended.is_set():
+            counted[0] += 1
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    try:
+        yield counted
+    finally:
+        ended.set()
+        thread.join()
 
 
 @pytest.fixture(scope="session")

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 import beltspace
-from conftest import STUDY
+from conftest import STUDY, another_thread
 
 BROKEN = """model = "metal-cvt"
 [design]
@@ -127,7 +127,6 @@ def test_progress_is_told_of_what_is_known(study: beltspace.Study) -> None:
 
 def test_other_threads_run_during_a_sweep(root: Path) -> None:
     study = big(root)
-    counted = 0
     told: list[tuple[str, int, int]] = []
 
     class Enough(Exception):
@@ -138,23 +137,9 @@ def test_other_threads_run_during_a_sweep(root: Path) -> None:
         if what == "judging designs" and len({it[1] for it in told}) > 4:
             raise Enough
 
-    ended = threading.Event()
-
-    def count() -> None:
-        nonlocal counted
-        while not ended.is_set():
-            counted += 1
-            time.sleep(0.001)
-
-    thread = threading.Thread(target=count)
-    thread.start()
-    try:
-        with pytest.raises(Enough):
-            study.sweep(progress=follow, method="exhaustive")
-    finally:
-        ended.set()
-        thread.join()
-    assert counted > 20
+    with another_thread() as counted, pytest.raises(Enough):
+        study.sweep(progress=follow, method="exhaustive")
+    assert counted[0] > 20
     done = [it[1] for it in told if it[0] == "judging designs"]
     assert done == sorted(done) and all(0 <= it[1] <= it[2] and it[2] > 0 for it in told)
 

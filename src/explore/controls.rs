@@ -13,6 +13,8 @@ use serde_json::{Map, Value, json};
 
 /// Designs that tell which values a constraint meets.
 const SEEN: u64 = 32;
+/// What a study file calls the share of draws that hold.
+const YIELD: &str = "yield";
 /// Most values of a list that have a field each.
 const MOST_VALUES: usize = 8;
 
@@ -63,9 +65,10 @@ fn of_draws(study: &Study, drive: &Drive, names: &[String]) -> Vec<Value> {
         if let Some(constraint) = of(&drive.model, &drive.constraints) {
             return Some(bound_control(&drive.model, &constraint, name, &drive.unit_of(&constraint), [Value::Null, Value::Null]));
         }
-        // The study bounds the share of the draws that choose designs under a name of its own.
+        // The yield of the file is bounded as that of the draws that choose designs, which has a name of its own. A constraint that the file
+        // calls something else has no slider: which one it is cannot be told.
         let constraint = of(&study.model, &study.constraints).or_else(|| match &study.constraints[..] {
-            [only] => Some(*only),
+            [only] if name == YIELD => Some(*only),
             _ => None,
         })?;
         Some(bound_control(&study.model, &constraint, name, "", [number(0.5), number(1.0)]))
@@ -211,6 +214,17 @@ mod tests {
         ];
         assert_eq!(parts, wanted.map(|(part, bounds)| (json!(part), bounds)));
         assert_eq!(told["constraints"][2]["unit"], "N");
+    }
+
+    #[test]
+    fn a_constraint_of_draws_under_another_name_has_no_slider_of_the_yield() {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("studies");
+        let text = std::fs::read_to_string(folder.join("push-belt-yield.toml")).expect("a study");
+        let text = text.replace("slip_margin         = { min = 0 } ", "no_slip = { of = \"slip_margin\", min = 0 } ");
+        let study = Study::parse_in(&text, "study.toml", &folder).unwrap_or_else(|errors| panic!("{errors}"));
+        let told = controls(&Plan::new(study), &text, 2, &Control::default()).expect("controls");
+        let parts: Vec<_> = told["constraints"].as_array().expect("a list").iter().map(|it| it["part"].clone()).collect();
+        assert!(text.contains("no_slip") && !parts.contains(&json!("constraints.no_slip")) && parts.len() == 3, "{parts:?}");
     }
 
     #[test]

@@ -122,7 +122,7 @@ impl DesignLine<'_> {
         let judged = |values: &[f64]| self.judged(axis, &values.iter().map(|&it| vec![it]).collect::<Vec<_>>());
         let mut rows = judged(&values)?;
         for _ in 0..places.halvings() {
-            let here = values.iter().position(|it| it.to_bits() == own.to_bits()).unwrap_or(0);
+            let here = values.iter().position(|it| *it == own).unwrap_or(0);
             let further: Vec<f64> =
                 edges(&rows, here).into_iter().flatten().filter_map(|(a, b)| places.between(values[a], values[b])).collect();
             if further.is_empty() {
@@ -202,7 +202,7 @@ impl AxisPlaces {
         let mut all: Vec<f64> = (0..levels.count()).map(|level| levels.value(level)).chain([own]).collect();
         all.sort_by(f64::total_cmp);
         all.dedup();
-        let place = all.iter().position(|it| it.to_bits() == own.to_bits()).unwrap_or(0);
+        let place = all.iter().position(|it| *it == own).unwrap_or(0);
         Self::Levels { levels: all, own: place }
     }
 
@@ -298,6 +298,9 @@ mod tests {
         assert!([400.0, 401.0, 402.0, 0.0, 999.0].iter().all(|it| values.contains(it)) && values.iter().all(|it| it.fract() == 0.0));
         assert_eq!(spread(5, 33, 2), [0, 1, 2, 3, 4]);
         assert_eq!(spread(100, 3, 7), [0, 7, 50, 99]);
+        // A zero is one place, whichever sign it has.
+        let around_zero = AxisPlaces::new(&Levels::List(vec![-1.0, 0.0, 1.0]), -0.0);
+        assert!(matches!(around_zero, AxisPlaces::Levels { ref levels, own: 1 } if levels.len() == 3));
         let anywhere = AxisPlaces::new(&Levels::Continuous { from: 1.0, to: 100.0, log: true }, 10.0);
         assert_eq!(anywhere.between(1.0, 100.0), Some(10.0));
     }

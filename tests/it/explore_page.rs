@@ -248,6 +248,9 @@ fn changes_are_undone_shared_saved_and_compared() {
     browser.wait("document.querySelector('#all-outputs table')");
     // Findings come after the plots, which stay where they are; beside the card the button covers nothing.
     browser.wait("document.querySelector('#tally .findings li')");
+    // A sample of the feasible designs lies behind the front, and another result may be laid over it.
+    browser.wait("!document.querySelector('#sample').hidden && document.querySelector('#sample').innerText.includes('behind the front')");
+    assert_eq!(browser.number("document.querySelectorAll('#others button[data-testid=load-other]').length"), 1.0);
     let covered = "(() => { const of = (it) => it.getBoundingClientRect(); const own = of(document.querySelector('#open-knee')); \
          return [...document.querySelectorAll('#overview dl, #overview p, #overview li, #overview h1, #overview summary, #live')].filter((it) => it.checkVisibility()).map((it) => [it, of(it)]) \
          .filter(([, it]) => it.left < own.right && own.left < it.right && it.top < own.bottom && own.top < it.bottom) \

@@ -107,7 +107,7 @@ fn what_is_drawn_and_in_which_cases_is_in_the_header_and_on_the_card() {
     // It is drawn over all ratios of its cases.
     let ends = "[...document.querySelectorAll('[data-testid=drive-ratio]')].length";
     assert_eq!(browser.number(ends), 1.0);
-    assert!(card.contains("friction: it has a distribution") || !card.contains("friction: it varies"), "{card}");
+    assert!(card.contains("belt_length_mm: it has a distribution and is shown at its mean, 613"), "{card}");
     assert_eq!(browser.complaints, Vec::<String>::new());
 }
 

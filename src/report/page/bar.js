@@ -20,18 +20,19 @@
   };
 
   // The bounds that such ranges stand for, without those that hold for the whole front. A value that is the lowest over the scenarios can
-  // have a lower bound only: an upper one would be on the highest.
+  // have a lower bound only: an upper one would be on the highest. In a single scenario both are the same.
+  const isSingle = () => page.data.study?.scenarios === 1 && !page.data.drawn;
   const boundsOf = ([name, [low, high]]) => {
     const { words, role, end, low: least, high: most } = page.front.byName.get(name);
     if (words) return { name };
-    const may = (which) => role === "design" || end === which;
+    const may = (which) => role === "design" || isSingle() || end === which;
     return { name, ...(low > least && may("lowest") ? { min: low } : {}), ...(high < most && may("highest") ? { max: high } : {}) };
   };
 
   // Ends of ranges that no constraint stands for.
   const withoutBound = ([name, [low, high]]) => {
     const { words, role, end, low: least, high: most } = page.front.byName.get(name);
-    if (words || role === "design") return null;
+    if (words || role === "design" || isSingle()) return null;
     const left = [low > least && end !== "lowest" ? "at least" : "", high < most && end !== "highest" ? "at most" : ""].filter(Boolean);
     if (!left.length) return null;
     return end ? `${name} is the ${end} over the scenarios: a constraint “${left.join(", ")}” would be on the ${end === "lowest" ? "highest" : "lowest"}. ` : null;

@@ -100,7 +100,7 @@
 
   // The bounds of the constraints on a column.
   page.limitsOf = (column) => {
-    const bounds = page.front.constraints.filter((it) => it.column.name === column.name).flatMap(({ min, above, max, below }) => [min, above, max, below]);
+    const bounds = page.front.constraints.filter((it) => it.column?.name === column.name).flatMap(({ min, above, max, below }) => [min, above, max, below]);
     return bounds.filter((it) => it !== null && it !== undefined);
   };
 

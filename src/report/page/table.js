@@ -61,7 +61,7 @@
     body.replaceChildren(...rows.slice(0, MOST).map(line));
     const first = (most) => (rows.length > most ? `The first ${most} of ${page.count(rows.length)} are shown; the CSV has them all.` : "");
     const said = rows.length ? first(MOST) : "No design is in all of the selected ranges.";
-    note.replaceChildren(page.element("span", { class: "no-print" }, said), page.element("span", { class: "print-only" }, first(PRINTED)));
+    note.replaceChildren(page.element("span", { class: "no-print" }, said), page.element("span", { class: "print-only" }, rows.length ? first(PRINTED) : said));
     page.byId("csv").disabled = !rows.length;
     oneStop();
     markCurrent();

@@ -223,9 +223,12 @@
       // A ghost of what was there before the first of several changes in a row.
       if (performance.now() - settled > 600) keepGhost();
       settled = performance.now();
-      // What is shown is of the question before from now on; where the answer comes at once nobody reads it.
+      // Until a first front comes, what is shown is of the question before. Where it comes at once nobody has to be told.
       clearTimeout(computing);
-      computing = setTimeout(() => !page.isAnswered() && say(page.front ? "computing …; what is shown is of the study before the change" : "computing …", "coarse"), 250);
+      computing = setTimeout(() => {
+        const isOld = page.front && !sameList(page.shownSet, page.changeList());
+        if (isOld && !page.isAnswered()) say("computing …; what is shown is of the study before the change", "coarse");
+      }, 250);
       wanted = { set: page.changeList(), eventAt: page.eventAt ?? null };
       page.eventAt = null;
       next();
