@@ -32,9 +32,36 @@ pub struct ScenarioLanes {
     conditions: Vec<(usize, usize)>,
     /// What constraints and columns are about, each once.
     asked: Vec<Quantity>,
-    /// By scenario, of each input that the scenario sets: its number, and its values in its unit and in SI.
-    inputs: Vec<(usize, Vec<f64>, Vec<f64>)>,
+    /// Inputs that scenarios set.
+    inputs: Set,
     scenarios: usize,
+}
+
+/// Some scenarios, one after the other.
+struct LaneScenarios {
+    lanes: Range<usize>,
+    /// Of each input that they set: its number, and its values in its unit and in SI.
+    inputs: Vec<(usize, Vec<f64>, Vec<f64>)>,
+}
+
+impl LaneScenarios {
+    fn new(plan: &Plan, set: Set, lanes: Range<usize>) -> Self {
+        let mut values = plan.study.fixed.clone();
+        let mut inputs: Vec<(usize, Vec<f64>, Vec<f64>)> = set.iter().map(|input| (input, Vec::new(), Vec::new())).collect();
+        for scenario in lanes.clone() {
+            plan.space.scenarios.set(scenario as u64, &mut values);
+            for (input, own, si) in &mut inputs {
+                own.push(values[*input]);
+                si.push(input_to_si(&plan.study.model.inputs[*input], values[*input]));
+            }
+        }
+        Self { lanes, inputs }
+    }
+
+    /// The values of an input in its unit and in SI, if they set it.
+    fn values(&self, input: usize) -> Option<(&[f64], &[f64])> {
+        self.inputs.iter().find(|(it, ..)| *it == input).map(|(_, own, si)| (own.as_slice(), si.as_slice()))
+    }
 }
 
 impl ScenarioLanes {
@@ -64,15 +91,6 @@ impl ScenarioLanes {
         let (shared, own) = list.needed_by(&results).into_iter().partition(|node| turning[*node as usize].is_empty());
         let count = usize::try_from(plan.scenarios()).ok()?;
         let outputs = formula.fields().outputs.len();
-        let mut values = study.fixed.clone();
-        let mut inputs: Vec<(usize, Vec<f64>, Vec<f64>)> = scenarios.iter().map(|input| (input, Vec::new(), Vec::new())).collect();
-        for scenario in 0..plan.scenarios() {
-            plan.space.scenarios.set(scenario, &mut values);
-            for (input, own, si) in &mut inputs {
-                own.push(values[*input]);
-                si.push(input_to_si(&model.inputs[*input], values[*input]));
-            }
-        }
         let conditions = mattering.into_iter().map(|condition| (condition, outputs + condition)).collect();
         let mut asked: Vec<Quantity> = Vec::new();
         for quantity in study.constraints.iter().map(|it| it.quantity).chain(plan.tracked.iter().map(|(it, _)| it.quantity)) {
@@ -80,7 +98,7 @@ impl ScenarioLanes {
                 asked.push(quantity);
             }
         }
-        Some(Self { list, of_scenario, shared, own, turning, conditions, asked, inputs, scenarios: count })
+        Some(Self { list, of_scenario, shared, own, turning, conditions, asked, inputs: scenarios, scenarios: count })
     }
 
     /// The feasible ones of some designs with their worst values, in any order. A design of which a followed value is absent somewhere is left
@@ -90,8 +108,11 @@ impl ScenarioLanes {
         let own: Vec<Vec<f64>> = designs.iter().map(|&design| plan.space.inputs(design, 0)).collect();
         let mut worst: Vec<Option<Vec<(f64, AtWorst)>>> = designs.iter().map(|_| Some(vec![Column::nothing(); columns.len()])).collect();
         for first in (0..self.scenarios).step_by(CHUNK) {
-            let lanes = first..self.scenarios.min(first + CHUNK);
-            numbers.begin(lanes.len());
+            if stop.load(Ordering::Relaxed) {
+                return Vec::new();
+            }
+            let lanes = LaneScenarios::new(plan, self.inputs, first..self.scenarios.min(first + CHUNK));
+            numbers.begin(lanes.lanes.len());
             self.fill(plan, self.shared.iter(), &plan.study.fixed, &lanes, &mut numbers);
             let mut last: Option<&[f64]> = None;
             for (inputs, slot) in own.iter().zip(&mut worst) {
@@ -121,14 +142,14 @@ impl ScenarioLanes {
         plan: &Plan,
         nodes: impl Iterator<Item = &'n Node>,
         inputs: &[f64],
-        lanes: &Range<usize>,
+        lanes: &LaneScenarios,
         numbers: &mut NodeColumns,
     ) {
         for &node in nodes {
             let at = node as usize;
             match self.list.operations[at] {
-                Operation::Input(input) => match self.inputs.iter().find(|(it, ..)| *it == usize::from(input)) {
-                    Some((_, _, si)) => numbers.fill(node, |to| to.copy_from_slice(&si[lanes.clone()])),
+                Operation::Input(input) => match lanes.values(usize::from(input)) {
+                    Some((_, si)) => numbers.fill(node, |to| to.copy_from_slice(si)),
                     None => numbers.slots[at] = input_to_si(&plan.study.model.inputs[usize::from(input)], inputs[usize::from(input)]),
                 },
                 _ if self.of_scenario[at] => numbers.compute(&self.list, node, |node| self.of_scenario[node as usize]),
@@ -143,7 +164,7 @@ impl ScenarioLanes {
         plan: &Plan,
         columns: &[Column],
         inputs: &[f64],
-        lanes: &Range<usize>,
+        lanes: &LaneScenarios,
         numbers: &NodeColumns,
         worst: &mut [(f64, AtWorst)],
     ) -> bool {
@@ -162,8 +183,8 @@ impl ScenarioLanes {
             }
         }
         let values = |quantity: Quantity| match quantity {
-            Quantity::Input(input) => match self.inputs.iter().find(|(it, ..)| *it == input) {
-                Some((_, own, _)) => ColumnValue::Each(&own[lanes.clone()]),
+            Quantity::Input(input) => match lanes.values(input) {
+                Some((own, _)) => ColumnValue::Each(own),
                 None => ColumnValue::One(inputs[input]),
             },
             Quantity::Output(output) => result(output),

@@ -5,6 +5,7 @@
 //! others are not. [`search::FrontSearch`] finds the front without judging every design in every scenario.
 
 pub mod around;
+mod coarse;
 mod followed;
 pub mod lanes;
 pub mod search;
@@ -33,14 +34,8 @@ use toml::de::{DeTable, DeValue};
 
 /// Where the exact front takes longer than this, a coarse one is told first.
 pub const NOTICED: Duration = Duration::from_millis(50);
-/// Seconds that a coarse front may take.
-const COARSELY: f64 = 0.02;
 /// How many times as long a design of a coarser grid takes, as long as nothing else is known.
 const SLOWNESS: f64 = 3.0;
-/// Fewest designs of a coarse front.
-const FEW: u64 = 2000;
-/// Seconds after which a page has drawn a coarse front.
-const DRAWN: f64 = 0.1;
 /// What takes every design waits this long, for somebody who drags a slider on.
 const PAUSE: Duration = Duration::from_millis(250);
 /// Seconds that counting feasible designs may take; beyond, the sample alone is told.
@@ -97,8 +92,10 @@ pub struct LiveFront<'a> {
     pub columns: &'a [Column],
     /// The designs, best of the first objective first.
     pub rows: &'a [Row],
-    /// Designs that were looked at, and scenarios in which all of them were.
+    /// Designs that were looked at, in how many draws each if that was not in all, and scenarios in which all of them were.
     pub looked_at: u64,
+    /// Likewise.
+    pub draws: Option<u64>,
     /// Likewise.
     pub scenarios: u64,
     /// How long it took.
@@ -178,18 +175,21 @@ impl Live {
         let held = |it: &Mutex<FxHashMap<Vec<u64>, WorkingSet>>| it.lock().unwrap_or_else(PoisonError::into_inner).get(&shape).cloned();
         let before = self.judged.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let mut search = FrontSearch::new(plan, self.threads, control, before);
+        let seeds = coarse::seeds(plan, self.threads);
         let set = match held(&self.sets) {
-            Some(set) => search.adopted(set)?,
-            None => search.first_set()?,
+            Some(set) => search.adopted(set, seeds)?,
+            None => search.first_set(seeds)?,
         };
-        let expected = self.expected(plan, set.count(plan.scenarios()));
+        let is_known = self.pace().swept.is_some();
+        let drawn = if is_known { None } else { coarse::drawn_seconds(plan, self.threads, control)? };
+        let expected = drawn.unwrap_or_else(|| self.expected(plan, set.count(plan.scenarios())));
         // Where only bounds have moved, the exact front comes soon.
         let is_long = expected > NOTICED.as_secs_f64() && !search.knows_all_in(&set);
-        if is_long && self.coarse(&mut search, &set, expected, start, tell)? {
-            pause(control, to_be_seen(expected))?;
+        if is_long && self.coarse(&mut search, &set, expected, start, control, tell)? {
+            pause(control, coarse::to_be_seen(expected))?;
         }
         let designs = plan.designs();
-        let (rows, set) = if expected > LONG && refusal(plan).is_none() {
+        let (rows, set) = if is_by_bounds(plan, expected) {
             // Of very many designs most are settled in boxes.
             (search.feasible_of(&self.by_bounds(plan, control)?)?, WorkingSet::default())
         } else {
@@ -201,8 +201,15 @@ impl Live {
                     return Ok(());
                 }
                 let (rows, scenarios) = (search.in_few(set, points)?, set.count(plan.scenarios()));
-                let front =
-                    LiveFront { plan, columns: search.columns(), rows: &rows, looked_at: designs, scenarios, took: start.elapsed() };
+                let front = LiveFront {
+                    plan,
+                    columns: search.columns(),
+                    rows: &rows,
+                    looked_at: designs,
+                    draws: None,
+                    scenarios,
+                    took: start.elapsed(),
+                };
                 tell(LiveAnswer::Few(front))
             })?
         };
@@ -211,46 +218,24 @@ impl Live {
             self.note(plan, scenarios, search.times());
             self.sets.lock().unwrap_or_else(PoisonError::into_inner).insert(shape, set);
         }
-        let front = LiveFront { plan, columns: search.columns(), rows: &rows, looked_at: designs, scenarios, took: start.elapsed() };
+        let front =
+            LiveFront { plan, columns: search.columns(), rows: &rows, looked_at: designs, draws: None, scenarios, took: start.elapsed() };
         tell(LiveAnswer::Exact(front))?;
         *self.judged.lock().unwrap_or_else(PoisonError::into_inner) = search.judged();
         pause(control, PAUSE)?;
         // Now there is time for the reference, which also says in which scenario each value is the worst.
         let certified = search.certified(&rows)?;
-        let front =
-            LiveFront { plan, columns: search.columns(), rows: &certified, looked_at: plan.designs(), scenarios, took: start.elapsed() };
+        let front = LiveFront {
+            plan,
+            columns: search.columns(),
+            rows: &certified,
+            looked_at: plan.designs(),
+            draws: None,
+            scenarios,
+            took: start.elapsed(),
+        };
         tell(LiveAnswer::Certified(front))?;
         self.count(plan, &rows, control, tell)
-    }
-
-    /// Tells the front of a coarser grid; false if there is none.
-    fn coarse(
-        &self,
-        search: &mut FrontSearch<'_>,
-        set: &WorkingSet,
-        expected: f64,
-        start: Instant,
-        tell: &mut dyn FnMut(LiveAnswer<'_>) -> Result<()>,
-    ) -> Result<bool> {
-        let plan = search.plan();
-        let slowness = self.pace().slowness;
-        #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "about so many")]
-        let most = ((COARSELY / (expected * slowness) * plan.designs() as f64) as u64).max(FEW);
-        if most >= plan.designs() {
-            return Ok(false);
-        }
-        let begun = Instant::now();
-        let (points, looked_at) = search.coarse(set, most)?;
-        #[allow(clippy::cast_precision_loss, reason = "an estimate")]
-        let found = begun.elapsed().as_secs_f64() / (expected * looked_at as f64 / plan.designs() as f64);
-        // Halfway, so that a moment in which the machine has something else to do does not count in full.
-        self.change_pace(|pace| pace.slowness = (slowness * found).sqrt().clamp(1.0, 1e3));
-        let rows = search.in_few(set, &points)?;
-        let scenarios = set.count(plan.scenarios());
-        let front = LiveFront { plan, columns: search.columns(), rows: &rows, looked_at, scenarios, took: start.elapsed() };
-        let rest = Duration::try_from_secs_f64(expected).unwrap_or(Duration::MAX / 4) + to_be_seen(expected);
-        tell(LiveAnswer::Coarse(front, start.elapsed() + rest))?;
-        Ok(true)
     }
 
     /// The front by bounds, left where they do not pay.
@@ -317,18 +302,17 @@ impl Live {
     }
 }
 
+/// Does the front come by bounds, where judging every design takes so many seconds?
+fn is_by_bounds(plan: &Plan, expected: f64) -> bool {
+    expected > LONG && refusal(plan).is_none()
+}
+
 /// The text of a study with no maps, if it has some.
 fn without_maps(text: &str) -> Option<String> {
     let tree = DeTable::parse(text).ok()?;
     let DeValue::Table(report) = tree.get_ref().get("report")?.get_ref() else { return None };
     let (name, maps) = report.iter().find(|(name, _)| name.get_ref() == "maps")?;
     Some(format!("{}{}", &text[..name.span().start], &text[maps.span().end..]))
-}
-
-/// How long a search of so many seconds rests once it has told a coarse front: on a machine with few cores nobody draws it while all of
-/// them search on.
-fn to_be_seen(expected: f64) -> Duration {
-    Duration::from_secs_f64((0.1 * expected).min(DRAWN))
 }
 
 /// Waits for somebody who drags a slider on.

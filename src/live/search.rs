@@ -29,6 +29,8 @@ const MOST_NEW: usize = 24;
 const WORTH: f64 = 0.3;
 /// Designs that a first working set is made from.
 const SEEDS: u64 = 48;
+/// Fewer say nothing.
+const FEWEST_SEEDS: u64 = 4;
 /// Designs that say which scenarios are missing.
 const MOST_ASKED: usize = 12;
 /// Stands for a scenario that is not known.
@@ -59,7 +61,7 @@ pub struct WorkingSet {
 
 impl WorkingSet {
     /// All scenarios.
-    fn all() -> Self {
+    pub(super) fn all() -> Self {
         Self { scenarios: Vec::new(), is_all: true }
     }
 
@@ -302,18 +304,24 @@ impl<'p> FrontSearch<'p> {
         Ok(certified)
     }
 
-    /// A working set for a plan of which nothing is known: the scenarios that are the worst for some of its designs.
+    /// A working set for a plan of which nothing is known: the scenarios that are the worst for some of its designs, at most so many; where
+    /// too few would say anything, a coarse grid of scenarios.
     ///
     /// # Errors
     /// [`Error::Stopped`] after `control.stop`.
-    pub fn first_set(&mut self) -> Result<WorkingSet> {
+    pub fn first_set(&mut self, seeds: u64) -> Result<WorkingSet> {
         let of = self.plan.scenarios();
         let mut set = WorkingSet::default();
         if !Self::allows_working_set(self.plan) {
             return Ok(WorkingSet::all());
         }
-        let designs: Vec<u64> = (0..SEEDS.min(self.plan.designs())).map(|step| self.plan.design_at(self.plan.spread(step))).collect();
-        let asked = self.asked_by(&designs)?;
+        let count = SEEDS.min(self.plan.designs());
+        let asked = if seeds < FEWEST_SEEDS.min(count) {
+            coarse_scenarios(self.plan).map(|scenario| (scenario, 1)).collect()
+        } else {
+            let designs: Vec<u64> = (0..count.min(seeds)).map(|step| self.plan.design_at(self.plan.spread(step))).collect();
+            self.asked_by(&designs)?
+        };
         set.take(&asked, of);
         Ok(set)
     }
@@ -324,13 +332,13 @@ impl<'p> FrontSearch<'p> {
         WorkingSet { scenarios: vec![scenario], is_all: false }
     }
 
-    /// A working set that served a plan like this one, or another if it cannot serve this one.
+    /// A working set that served a plan like this one, or a first one of so many designs if it cannot serve this one.
     ///
     /// # Errors
     /// [`Error::Stopped`] after `control.stop`.
-    pub fn adopted(&mut self, set: WorkingSet) -> Result<WorkingSet> {
+    pub fn adopted(&mut self, set: WorkingSet, seeds: u64) -> Result<WorkingSet> {
         let fits = set.scenarios.last().is_some_and(|&last| last < self.plan.scenarios());
-        if fits && Self::allows_working_set(self.plan) { Ok(set) } else { self.first_set() }
+        if fits && Self::allows_working_set(self.plan) { Ok(set) } else { self.first_set(seeds) }
     }
 
     fn asked_by(&mut self, designs: &[u64]) -> Result<BTreeMap<u64, usize>> {
@@ -389,18 +397,18 @@ impl<'p> FrontSearch<'p> {
     pub fn coarse(&mut self, set: &WorkingSet, most: u64) -> Result<(Points, u64)> {
         match self.free.as_ref().map(|(free, _)| free.fast.count()) {
             Some(width) if width <= most => self.begin_table(set, most / width),
-            _ => Ok((self.coarse_grid(set, most)?, most)),
+            _ => self.coarse_grid(set, most),
         }
     }
 
     /// The same without a table.
     ///
     /// Most of the time goes into designs that enter a front and are beaten later; so the front of a grid that is coarser still comes first.
-    pub(super) fn coarse_grid(&self, set: &WorkingSet, most: u64) -> Result<Points> {
-        let seen = if most / COARSER < FEW { Points::default() } else { self.coarse_grid(set, most / COARSER)? };
+    pub(super) fn coarse_grid(&self, set: &WorkingSet, most: u64) -> Result<(Points, u64)> {
+        let seen = if most / COARSER < FEW { Points::default() } else { self.coarse_grid(set, most / COARSER)?.0 };
         let fast = self.plan.fast.coarse(most.isqrt().max(most / self.plan.slow.count().max(1)));
         let slow = self.plan.slow.coarse((most / fast.len().max(1) as u64).max(1));
-        self.front_in(set, &slow, &fast, seen)
+        Ok((self.front_in(set, &slow, &fast, seen)?, (slow.len() * fast.len()) as u64))
     }
 
     /// The front of a coarse grid of at most so many rows out of the table, which is begun if need be, and how many designs these are; none
@@ -442,7 +450,7 @@ impl<'p> FrontSearch<'p> {
                 Some(points) => points,
                 None => {
                     // What a few designs leave nothing of need not be kept until the end.
-                    let seen = self.coarse_grid(&set, FEW)?;
+                    let (seen, _) = self.coarse_grid(&set, FEW)?;
                     self.front_in(&set, &rows, &places, seen)?
                 }
             };
@@ -584,6 +592,14 @@ impl<'p> FrontSearch<'p> {
         let all = points.indices.iter().zip(points.keys.chunks(objectives.len().max(1)));
         all.filter(is_wrong).map(|(&design, _)| design).collect()
     }
+}
+
+/// A few scenarios of a plan: first and last levels of its axes, as far as they fit.
+fn coarse_scenarios(plan: &Plan) -> impl Iterator<Item = u64> {
+    let fast = plan.fast_scenarios.coarse(MOST_NEW.isqrt() as u64);
+    let slow = plan.slow_scenarios.coarse((MOST_NEW / fast.len()) as u64);
+    let number = |slow: u64, fast: u64| plan.slow_scenarios.source_index(slow) + plan.fast_scenarios.source_index(fast);
+    slow.into_iter().flat_map(move |slow| fast.clone().into_iter().map(move |fast| number(slow, fast)))
 }
 
 /// Rows and places cut into about so many parts.

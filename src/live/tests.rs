@@ -80,7 +80,7 @@ fn the_front_found_in_a_few_scenarios_is_that_of_the_whole_sweep() {
         let plan = Plan::new(study);
         let control = Control::default();
         let mut search = FrontSearch::new(&plan, 2, &control, JudgedRows::default());
-        let set = search.first_set().expect("nobody stops it");
+        let set = search.first_set(u64::MAX).expect("nobody stops it");
         let (rows, set) = search.exact(set, &mut |_, _, _, _| Ok(())).expect("it is found");
         assert_eq!(rows.iter().map(|row| row.index).collect::<Vec<_>>(), designs, "{edits:?}");
         assert_eq!(designs.is_empty(), edits.iter().any(|(_, to)| to.contains("min = 9")), "{edits:?}: {designs:?}");
@@ -111,7 +111,7 @@ fn a_column_of_the_report_without_a_value_takes_no_design_away() {
         let plan = Plan::new(study);
         let control = Control::default();
         let mut search = FrontSearch::new(&plan, 2, &control, JudgedRows::default());
-        let set = search.first_set().expect("nobody stops it");
+        let set = search.first_set(u64::MAX).expect("nobody stops it");
         let mut seen_early = 0;
         let found = search.exact(set, &mut |search, set, points, _| {
             seen_early += search.in_few(set, points)?.len();
@@ -132,12 +132,71 @@ fn a_working_set_that_lacks_what_matters_is_filled_up() {
     let mut search = FrontSearch::new(&plan, 2, &control, JudgedRows::default());
     // The mildest scenario alone: the front there is another one.
     let mildest = search.only(plan.scenarios() - 1);
-    let in_few = search.coarse_grid(&mildest, plan.designs()).expect("nobody stops it");
+    let (in_few, _) = search.coarse_grid(&mildest, plan.designs()).expect("nobody stops it");
     let (rows, set) = search.exact(mildest, &mut |_, _, _, _| Ok(())).expect("it is found");
     let designs: Vec<u64> = rows.iter().map(|row| row.index).collect();
     assert!(!designs.is_empty() && in_few.indices.len() != designs.len());
     assert_eq!(designs, swept(&study).0);
     assert!(set.count(plan.scenarios()) > 1);
+}
+
+#[test]
+fn where_no_design_can_be_judged_in_time_a_search_begins_with_the_ends_of_the_scenario_axes() {
+    // Levels enough that a single design over all scenarios takes longer than a first idea may.
+    let dense = changed(&[("count = 13, spacing = \"log\"", "count = 9001"), ("to = 0.095, count = 4", "to = 0.095, count = 301")]);
+    let plan = Plan::new(Study::parse(&dense).expect("it is right"));
+    assert_eq!(super::coarse::seeds(&plan, 2), 0);
+    let control = Control::default();
+    let mut search = FrontSearch::new(&plan, 2, &control, JudgedRows::default());
+    let set = search.first_set(0).expect("nobody stops it");
+    let inputs = |scenario: u64, name: &str| {
+        let mut values = plan.study.fixed.clone();
+        plan.space.scenarios.set(scenario, &mut values);
+        values[plan.study.model.input(name).expect("an input")]
+    };
+    let chosen = set.chosen(&plan);
+    let numbers: Vec<u64> =
+        chosen.iter().map(|&(slow, fast)| plan.slow_scenarios.source_index(slow) + plan.fast_scenarios.source_index(fast)).collect();
+    assert!((4..=24).contains(&numbers.len()), "{numbers:?}");
+    for (name, end) in [("ratio", 0.5), ("ratio", 2.0), ("friction", 0.065), ("friction", 0.095), ("torque_Nm", 50.0), ("torque_Nm", 150.0)] {
+        assert!(numbers.iter().any(|&it| inputs(it, name) == end), "{name} {end}");
+    }
+    // With few scenarios the same beginning leads to the same front.
+    let study = Study::parse(BELT).expect("it is right");
+    let plan = Plan::new(study.clone());
+    let mut search = FrontSearch::new(&plan, 2, &control, JudgedRows::default());
+    let set = search.first_set(0).expect("nobody stops it");
+    let (rows, _) = search.exact(set, &mut |_, _, _, _| Ok(())).expect("it is found");
+    assert_eq!(rows.iter().map(|row| row.index).collect::<Vec<_>>(), swept(&study).0);
+}
+
+#[test]
+fn a_study_whose_designs_take_long_has_first_ideas_of_few_of_them_or_of_few_draws() {
+    let first = |name: &str, sets: &[&str]| {
+        let text = std::fs::read_to_string(format!("{}/studies/{name}.toml", env!("CARGO_MANIFEST_DIR"))).expect("a study");
+        let live = Live::new(text, name.to_owned(), PathBuf::from("."), 2);
+        let sets: Vec<String> = sets.iter().map(|&it| it.to_owned()).collect();
+        let plan = Plan::new(live.study(&sets).expect("it is right").0);
+        let control = Control::default();
+        let mut found = None;
+        let stopped = live.answer(&plan, &control, &mut |step| {
+            let LiveAnswer::Coarse(front, after) = step else { panic!("{name} has no first idea") };
+            assert!(!front.rows.is_empty() && after.as_secs_f64() > 0.0, "{name}");
+            found = Some((front.looked_at, front.draws, front.columns.len()));
+            control.stop.store(true, Ordering::Relaxed);
+            Ok(())
+        });
+        assert!(matches!(stopped, Err(Error::Stopped { .. })), "{name}: {stopped:?}");
+        (plan, found.expect("it was told"))
+    };
+    let (plan, (looked_at, draws, _)) = first("pulley-design", &[]);
+    assert!((4..plan.designs() / 50).contains(&looked_at), "{looked_at}");
+    assert_eq!(draws, None);
+    // The last draws are far more than can be looked at while somebody waits for a first picture.
+    let (plan, (_, draws, columns)) = first("push-belt-yield", &[]);
+    let all = plan.study.probability.as_ref().expect("it is drawn").draws;
+    assert!(draws.is_some_and(|draws| (256..all / 2).contains(&draws)), "{draws:?}");
+    assert_eq!(columns, certify::columns(&plan.study).len());
 }
 
 #[test]
@@ -147,7 +206,7 @@ fn a_coarse_front_is_that_of_the_designs_that_were_looked_at() {
         let plan = Plan::new(Study::parse(&changed(edits)).expect("it is right"));
         let control = Control::default();
         let mut search = FrontSearch::new(&plan, 2, &control, JudgedRows::default());
-        let set = search.first_set().expect("nobody stops it");
+        let set = search.first_set(u64::MAX).expect("nobody stops it");
         let most = plan.designs() / 5;
         let (points, looked_at) = search.coarse(&set, most).expect("nobody stops it");
         // The rows of the table that is begun, spread over all: one of eight at most.
@@ -198,7 +257,7 @@ fn what_was_judged_serves_again_where_only_bounds_differ() {
         let plan = Plan::new(study);
         let mut search = FrontSearch::new(&plan, 2, &control, before);
         assert_eq!(search.judged().is_empty(), !serves, "{edits:?}");
-        let set = search.first_set().expect("nobody stops it");
+        let set = search.first_set(u64::MAX).expect("nobody stops it");
         let (rows, _) = search.exact(set, &mut |_, _, _, _| Ok(())).expect("it is found");
         assert_eq!(rows.iter().map(|row| row.index).collect::<Vec<_>>(), designs, "{edits:?}");
         assert!(!designs.is_empty(), "{edits:?}");

@@ -36,6 +36,7 @@ pub fn front(found: &LiveFront<'_>) -> (Value, Vec<u8>) {
         "scenarios": scenario_inputs(plan, &scenarios),
         "front": front,
         "looked_at": found.looked_at,
+        "draws": found.draws,
         "in_scenarios": found.scenarios,
         "seconds": found.took.as_secs_f64(),
     });

@@ -1,5 +1,6 @@
 //! The model whose outputs are yields and statistics over the draws.
 
+use super::super::Study;
 use super::super::spectrum::{OverScenarios, unit_over};
 use super::cases::OperatingCases;
 use super::confirm::FreshDraws;
@@ -9,7 +10,7 @@ use super::probability::{Drive, Probability};
 use super::statistic::{AskedQuantity, ConfirmedEnd, SCREENED, Statistic, StatisticKind};
 use crate::interned::interned;
 use crate::models::{Condition, Model, Output, Worse};
-use crate::probability::{ProbabilityProblem, REPLICATES};
+use crate::probability::{ProbabilityProblem, REPLICATES, Sampling};
 use crate::units::{NONE, Unit};
 use std::sync::Arc;
 
@@ -41,6 +42,15 @@ impl Probability {
             Requirements(constraints.clone()),
             Asking(self.statistics.clone(), fresh),
         ))
+    }
+}
+
+impl Study {
+    /// The same with so many draws, each for itself: a first idea of what many say. `None` where nothing is drawn.
+    pub(crate) fn with_draws(&self, draws: u64) -> Option<Self> {
+        let few = Probability { draws, sampling: Sampling::Random, ..(**self.probability.as_ref()?).clone() };
+        let model = Arc::new(few.model().ok()?);
+        Some(Self { model, probability: Some(Arc::new(few)), ..self.clone() })
     }
 }
 

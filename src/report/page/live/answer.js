@@ -160,8 +160,9 @@
       return;
     }
     if (told.kind === "coarse") {
-      say(`a first idea, of ${page.count(told.looked_at)} designs; the exact front follows …`, "coarse");
-      page.timings.coarse = performance.now();
+      say(`a first idea, of ${page.count(told.looked_at)} designs${told.draws ? ` in ${page.count(told.draws)} draws each` : ""}; the exact front follows …`, "coarse");
+      if (!question.hasIdea) page.timings.coarse = performance.now();
+      question.hasIdea = true;
       question.isLong = 1000 * told.exact_after > PATIENCE;
       return next();
     }
@@ -189,7 +190,7 @@
     // An exact answer is there, or it has taken too long.
     if (current && !current.exact && !current.isLong && performance.now() - current.since < PATIENCE) return;
     if (current) current.abort.abort();
-    const question = { ...wanted, abort: new AbortController(), since: performance.now(), exact: false, isLong: false };
+    const question = { ...wanted, abort: new AbortController(), since: performance.now(), exact: false, isLong: false, hasIdea: false };
     wanted = null;
     current = question;
     page.ask("/answer", { set: question.set }, (told, buffer) => part(question, told, buffer), question.abort.signal).then(
