@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::models::{Input, Model};
 use crate::plan::Plan;
 use crate::screen::Control;
-use crate::study::{Axis, Constraint, Drive, Goal, Levels, Study, entry_names, number, value_of};
+use crate::study::{Axis, Constraint, Drive, Goal, Levels, Study, entry_leaves, entry_names, number, value_of};
 use crate::table::written;
 use serde_json::{Map, Value, json};
 
@@ -15,8 +15,9 @@ use serde_json::{Map, Value, json};
 const SEEN: u64 = 32;
 /// What a study file calls the share of draws that hold.
 const YIELD: &str = "yield";
-/// Most values of a list that have a field each.
-const MOST_VALUES: usize = 8;
+/// Most values of a list, and of rows, that can be changed.
+const MOST_VALUES: usize = 100;
+const MOST_CELLS: usize = 400;
 
 /// The controls of a study as its file has it.
 ///
@@ -24,17 +25,48 @@ const MOST_VALUES: usize = 8;
 /// [`Error::Stopped`](crate::error::Error::Stopped) after `control.stop`.
 pub fn controls(plan: &Plan, text: &str, threads: usize, control: &Control) -> Result<Value> {
     let study = &plan.study;
-    let axes = |table: &str, axes: &[Axis]| -> Vec<Value> { axes.iter().map(|axis| axis_control(study, table, axis)).collect() };
+    let axes = |table: &str, axes: &[Axis]| -> Vec<Value> { axes.iter().map(|axis| axis_control(study, text, table, axis)).collect() };
     Ok(json!({
         "constraints": constraints(plan, text, threads, control)?,
         "objectives": objectives(study, text),
-        "operation": axes("operation", &study.operation),
+        "operation": axes("operation", operation(study)),
         "uncertainty": axes("uncertainty", &study.uncertainty),
         "design": axes("design", &study.design),
         "fixed": fixed(study, &entry_names(text, "fixed")),
         "formulas": entry_names(text, "formulas"),
-        "drawn": study.probability.as_ref().map_or_else(Vec::new, |it| it.inputs.iter().map(|it| it.name.clone()).collect::<Vec<_>>()),
+        "drawn": drawn(study, text),
     }))
+}
+
+/// The operating cases: what is drawn is drawn in all of them.
+fn operation(study: &Study) -> &[Axis] {
+    study.probability.as_ref().map_or(&study.operation, |it| &it.drive.operation)
+}
+
+/// The distributions of a study and the number of draws, each with what can be set of it.
+fn drawn(study: &Study, text: &str) -> Vec<Value> {
+    let Some(probability) = &study.probability else { return Vec::new() };
+    let names = probability.inputs.iter().map(|it| (it.name.as_str(), format!("uncertainty.{}", it.name)));
+    let laws = names.map(|(name, part)| {
+        let model = &probability.drive.model;
+        let input = model.input(name).map(|it| &model.inputs[it]);
+        let numbers: Vec<_> = entry_leaves(text, "uncertainty", name).into_iter().filter(|(_, value)| value.is_number()).collect();
+        let law = numbers.first().map_or_else(String::new, |(keys, _)| keys[..keys.len() - 1].join(" "));
+        let fields = numbers.iter().map(|(keys, value)| {
+            let last = keys.last().map_or("", String::as_str);
+            let label = if last.parse::<usize>().is_ok() { format!("value {last}") } else { last.to_owned() };
+            json!({ "part": format!("{part}.{}", keys.join(".")), "label": label, "value": value })
+        });
+        json!({
+            "law": law, "name": name, "unit": input.map_or("", |it| it.unit.symbol), "doc": input.map_or("", |it| &it.doc),
+            "fields": fields.collect::<Vec<_>>(),
+        })
+    });
+    let draws = json!({
+        "law": "", "name": "draws", "unit": "", "doc": "How many draws choose designs.",
+        "fields": [{ "part": "probability.draws", "label": "of each design", "value": probability.draws, "low": 256, "high": (4 * probability.draws).max(1024), "integer": true }],
+    });
+    laws.chain([draws]).collect()
 }
 
 /// Each constraint with its bounds, and with what it meets among designs from all over the study.
@@ -42,7 +74,7 @@ fn constraints(plan: &Plan, text: &str, threads: usize, control: &Control) -> Re
     let study = &plan.study;
     let names = entry_names(text, "constraints");
     if let Some(probability) = &study.probability {
-        return Ok(of_draws(study, &probability.drive, &names));
+        return Ok(of_draws(study, &probability.drive, text, &names));
     }
     if names.len() != study.constraints.len() {
         return Ok(Vec::new());
@@ -59,16 +91,22 @@ fn constraints(plan: &Plan, text: &str, threads: usize, control: &Control) -> Re
 }
 
 /// Of a study with distributions: what every draw must keep, and how many draws must.
-fn of_draws(study: &Study, drive: &Drive, names: &[String]) -> Vec<Value> {
+fn of_draws(study: &Study, drive: &Drive, text: &str, names: &[String]) -> Vec<Value> {
     let each = names.iter().filter_map(|name| {
-        let of = |model: &Model, constraints: &'_ [Constraint]| constraints.iter().find(|it| it.name(model) == *name).copied();
+        let own = entry_leaves(text, "constraints", name);
+        let given = own.iter().find(|(keys, _)| *keys == ["of"]).and_then(|(_, of)| of.as_str());
+        let asked = given.unwrap_or(name);
+        let of = |model: &Model, constraints: &'_ [Constraint]| {
+            let mut found = constraints.iter().filter(|it| it.name(model) == asked);
+            // Of two on the same quantity it cannot be told which is which.
+            found.next().filter(|_| found.next().is_none()).copied()
+        };
         if let Some(constraint) = of(&drive.model, &drive.constraints) {
             return Some(bound_control(&drive.model, &constraint, name, &drive.unit_of(&constraint), [Value::Null, Value::Null]));
         }
-        // The yield of the file is bounded as that of the draws that choose designs, which has a name of its own. A constraint that the file
-        // calls something else has no slider: which one it is cannot be told.
+        // The yield of the file is bounded as that of the draws that choose designs, which has a name of its own.
         let constraint = of(&study.model, &study.constraints).or_else(|| match &study.constraints[..] {
-            [only] if name == YIELD => Some(*only),
+            [only] if asked == YIELD => Some(*only),
             _ => None,
         })?;
         Some(bound_control(&study.model, &constraint, name, "", [number(0.5), number(1.0)]))
@@ -106,11 +144,12 @@ fn objectives(study: &Study, text: &str) -> Vec<Value> {
     each.collect()
 }
 
-fn axis_control(study: &Study, table: &str, axis: &Axis) -> Value {
+fn axis_control(study: &Study, text: &str, table: &str, axis: &Axis) -> Value {
     let model = &study.model;
     let names: Vec<&str> = axis.inputs().iter().map(|&input| model.inputs[input].name.as_str()).collect();
     let (Axis::Single { input, levels }, false) = (axis, axis.inputs().len() != 1) else {
-        return json!({ "form": "rows", "name": names.join(", "), "rows": axis.count(), "table": table });
+        let told = json!({ "form": "rows", "name": names.join(", "), "rows": axis.count(), "table": table });
+        return rows_control(study, text, table, &names).unwrap_or(told);
     };
     let described = &model.inputs[*input];
     let mut control = described_input(described);
@@ -143,6 +182,34 @@ fn axis_control(study: &Study, table: &str, axis: &Axis) -> Value {
     control
 }
 
+/// The rows of an axis that sets these inputs, if they stand in the file and are not too many: the keys of each row with its values.
+fn rows_control(study: &Study, text: &str, table: &str, names: &[&str]) -> Option<Value> {
+    let model = &study.model;
+    entry_names(text, table).into_iter().find_map(|entry| {
+        let cells = entry_leaves(text, table, &entry);
+        let mut columns: Vec<&str> = Vec::new();
+        for (keys, _) in &cells {
+            let [_, column] = keys.as_slice() else { return None };
+            if !columns.contains(&column.as_str()) {
+                columns.push(column);
+            }
+        }
+        if !names.iter().all(|name| columns.contains(name)) || cells.len() > MOST_CELLS {
+            return None;
+        }
+        let last = cells.last().and_then(|(keys, _)| keys[0].parse::<usize>().ok())?;
+        let mut rows = vec![Map::new(); last];
+        for (keys, value) in &cells {
+            rows[keys[0].parse::<usize>().ok()? - 1].insert(keys[1].clone(), value.clone());
+        }
+        let described = |name: &&str| model.input(name).map_or_else(|| json!({ "name": name }), |it| described_input(&model.inputs[it]));
+        Some(json!({
+            "form": "table", "table": table, "part": format!("{table}.{entry}"), "name": names.join(", "), "rows": rows,
+            "columns": columns.iter().map(described).collect::<Vec<_>>(),
+        }))
+    })
+}
+
 fn described_input(input: &Input) -> Value {
     json!({
         "name": input.name, "unit": input.unit.symbol, "symbol": input.symbol, "doc": input.doc, "integer": input.integer,
@@ -167,7 +234,7 @@ fn span(control: &mut Value, input: &Input, least: f64, largest: f64) {
 /// Every input that has one value; those that the file gives come first.
 fn fixed(study: &Study, given: &[String]) -> Vec<Value> {
     let model = &study.model;
-    let axes = || study.design.iter().chain(&study.operation).chain(&study.uncertainty);
+    let axes = || study.design.iter().chain(operation(study)).chain(&study.uncertainty);
     let drawn = |name: &str| study.probability.as_ref().is_some_and(|it| it.inputs.iter().any(|it| it.name == name));
     let single =
         (0..model.inputs.len()).filter(|input| !axes().any(|axis| axis.inputs().contains(input)) && !drawn(&model.inputs[*input].name));
@@ -217,14 +284,43 @@ mod tests {
     }
 
     #[test]
-    fn a_constraint_of_draws_under_another_name_has_no_slider_of_the_yield() {
+    fn rows_distributions_and_draws_have_parts_that_can_be_set() {
+        let told = shipped("push-belt-yield");
+        let cases = &told["operation"][0];
+        assert_eq!((&cases["form"], &cases["part"]), (&json!("table"), &json!("operation.cases")));
+        assert_eq!(cases["rows"][3], json!({ "asked_Nm": 150, "driver_speed_rpm": 4000, "ratio": 0.5 }));
+        assert_eq!(cases["columns"][1]["unit"], "rpm");
+        let parts: Vec<_> =
+            told["drawn"].as_array().expect("a list").iter().flat_map(|it| it["fields"].as_array().expect("a list")).collect();
+        let part = |name: &str| parts.iter().find(|it| it["part"] == name).map(|it| it["value"].clone());
+        assert_eq!(part("uncertainty.friction.normal.mean"), Some(json!(0.08)));
+        assert_eq!(part("uncertainty.belt_length_mm.plus.normal.sd"), Some(json!(0.3)));
+        assert_eq!(part("uncertainty.torque_share.triangular.3"), Some(json!(1.05)));
+        assert_eq!(part("probability.draws"), Some(json!(10000)));
+        // Each of them can be set as it is.
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("studies");
+        let text = std::fs::read_to_string(folder.join("push-belt-yield.toml")).expect("a study");
+        let set: Vec<String> = parts.iter().map(|it| format!("{}={}", it["part"].as_str().expect("a text"), it["value"])).collect();
+        let models = crate::models::Models::new();
+        let (study, _) = Study::parse_set(&models, &text, "study.toml", &folder, &set).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(study.hash(), Study::parse_in(&text, "study.toml", &folder).expect("it is right").hash());
+        // A design axis of rows has words in it; a catalogue in a file of its own has none that can be set.
+        let told = shipped("pulley-design");
+        assert_eq!(told["design"][0]["rows"][23]["section"], "pressed-cup");
+        assert_eq!(shipped("catalogue-v-belts")["design"].as_array().expect("a list").iter().filter(|it| it["form"] == "rows").count(), 1);
+    }
+
+    #[test]
+    fn a_constraint_of_draws_under_another_name_has_its_own_slider() {
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("studies");
         let text = std::fs::read_to_string(folder.join("push-belt-yield.toml")).expect("a study");
         let text = text.replace("slip_margin         = { min = 0 } ", "no_slip = { of = \"slip_margin\", min = 0 } ");
         let study = Study::parse_in(&text, "study.toml", &folder).unwrap_or_else(|errors| panic!("{errors}"));
         let told = controls(&Plan::new(study), &text, 2, &Control::default()).expect("controls");
         let parts: Vec<_> = told["constraints"].as_array().expect("a list").iter().map(|it| it["part"].clone()).collect();
-        assert!(text.contains("no_slip") && !parts.contains(&json!("constraints.no_slip")) && parts.len() == 3, "{parts:?}");
+        assert!(text.contains("no_slip") && parts.contains(&json!("constraints.no_slip")) && parts.len() == 4, "{parts:?}");
+        let own = told["constraints"].as_array().expect("a list").iter().find(|it| it["name"] == "no_slip").expect("it is there");
+        assert_eq!((&own["of"], &own["bounds"]), (&json!("slip_margin"), &json!({ "min": 0 })));
     }
 
     #[test]

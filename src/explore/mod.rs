@@ -32,7 +32,8 @@ pub type CommandWords = Box<dyn Fn(&str, &[String]) -> String + Send + Sync>;
 /// A server for one study.
 pub struct Explorer {
     live: Live,
-    /// The changes that a page begins with.
+    /// The text of the file, and what the command sets in it: the study that a page begins with.
+    file_text: String,
     begin: Vec<String>,
     words: CommandWords,
     listener: TcpListener,
@@ -45,7 +46,7 @@ pub struct Explorer {
 }
 
 impl Explorer {
-    /// Listens on a port of this machine; 0: any that is free. A page begins with these changes.
+    /// Listens on a port of this machine; 0: any that is free. A page begins with the study as these changes leave it.
     ///
     /// # Errors
     /// [`Error::Request`] if the study is wrong or the port is taken.
@@ -56,9 +57,10 @@ impl Explorer {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(wrong)?;
         let port = listener.local_addr().map_err(wrong)?.port();
         let gate = Gate::new(port).map_err(Error::io(Path::new("random numbers")))?;
-        live.study(begin)?;
+        let (file_text, text) = (live.text().to_owned(), live.study(begin)?.1);
         Ok(Self {
-            live,
+            live: live.with_text(text),
+            file_text,
             begin: begin.to_vec(),
             words,
             listener,

@@ -7,10 +7,11 @@ use crate::certify;
 use crate::error::{Error, Result};
 use crate::live::LiveAnswer;
 use crate::live::around::{PLACES, around};
+use crate::models::Models;
 use crate::plan::Plan;
 use crate::report::{live as told, sections, slices};
 use crate::screen::Control;
-use crate::study::{Axis, Quantity, ReportColumn, number, value_of};
+use crate::study::{Axis, Quantity, ReportColumn, Study, number, value_of};
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 use std::io;
@@ -23,6 +24,8 @@ use std::time::Duration;
 const JSON: &str = "application/json";
 /// Parts of an answer: of each the lengths of its JSON and of its numbers, in four bytes each, then both.
 const PARTS: &str = "application/octet-stream";
+/// Stands before a command that needs the study as a file.
+const NO_COMMAND: &str = "# no options say all of these changes; save the study as study.toml, then\n";
 /// Most changes of a study.
 const MOST_CHANGES: usize = 200;
 /// How often it is seen whether the browser still waits.
@@ -131,14 +134,28 @@ impl Explorer {
         let (study, text) = self.live.study(&[])?;
         let plan = Plan::new(study);
         let mut told = self.described(&plan, &text, &question.set);
-        told["begin"] = json!(self.begin);
         told["controls"] = controls(&plan, &text, self.live.threads(), control)?;
         tell((told, Vec::new()))
     }
 
     fn described(&self, plan: &Plan, text: &str, set: &[String]) -> Value {
-        let evaluate = (self.words)("eval", set) + " --design {design}";
-        told::study(&self.live, plan, text, &(self.words)("sweep", set), &evaluate)
+        let (command, evaluate) = self.commands(plan, set).map_or_else(
+            || (format!("{NO_COMMAND} beltspace sweep study.toml"), format!("{NO_COMMAND} beltspace eval study.toml --design {{design}}")),
+            |set| ((self.words)("sweep", &set), (self.words)("eval", &set) + " --design {design}"),
+        );
+        told::study(&self.live, plan, text, &command, &evaluate)
+    }
+
+    /// What the file's study must be set to for that of a page; `None` if no options say it.
+    fn commands(&self, plan: &Plan, set: &[String]) -> Option<Vec<String>> {
+        if self.begin.is_empty() {
+            return Some(set.to_vec());
+        }
+        let name = |it: &str| it.split('=').next().map(|name| name.trim().trim_start_matches("fixed.").to_owned());
+        let is_changed = |it: &&String| set.iter().any(|other| name(other) == name(it));
+        let all: Vec<String> = self.begin.iter().filter(|it| !is_changed(it)).chain(set).cloned().collect();
+        let study = Study::parse_set(&Models::new(), &self.file_text, self.live.file(), self.live.folder(), &all);
+        study.is_ok_and(|(study, _)| study.hash() == plan.study.hash()).then_some(all)
     }
 
     fn answer(&self, question: &Question, control: &Control, tell: &mut dyn FnMut(ToldPart) -> Result<()>) -> Result<()> {

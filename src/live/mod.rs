@@ -144,7 +144,13 @@ impl Live {
         Ok((study, text))
     }
 
-    /// The text of the file.
+    /// The same for another text.
+    #[must_use]
+    pub fn with_text(self, text: String) -> Self {
+        Self::new(text, self.file, self.folder, self.threads)
+    }
+
+    /// The text of the study.
     pub fn text(&self) -> &str {
         &self.text
     }

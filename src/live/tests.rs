@@ -158,7 +158,8 @@ fn where_no_design_can_be_judged_in_time_a_search_begins_with_the_ends_of_the_sc
     let numbers: Vec<u64> =
         chosen.iter().map(|&(slow, fast)| plan.slow_scenarios.source_index(slow) + plan.fast_scenarios.source_index(fast)).collect();
     assert!((4..=24).contains(&numbers.len()), "{numbers:?}");
-    for (name, end) in [("ratio", 0.5), ("ratio", 2.0), ("friction", 0.065), ("friction", 0.095), ("torque_Nm", 50.0), ("torque_Nm", 150.0)] {
+    for (name, end) in [("ratio", 0.5), ("ratio", 2.0), ("friction", 0.065), ("friction", 0.095), ("torque_Nm", 50.0), ("torque_Nm", 150.0)]
+    {
         assert!(numbers.iter().any(|&it| inputs(it, name) == end), "{name} {end}");
     }
     // With few scenarios the same beginning leads to the same front.

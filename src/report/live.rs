@@ -9,7 +9,7 @@ use crate::live::{Live, LiveCounts, LiveFront};
 use crate::models::OVERFLOW;
 use crate::plan::Plan;
 use crate::reading::sample::ShownSample;
-use crate::study::number;
+use crate::study::{number, with_whole_paths};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
 use std::time::Duration;
@@ -66,6 +66,8 @@ pub fn study(live: &Live, plan: &Plan, text: &str, command: &str, evaluate: &str
         "study": {
             "file": live.file(), "text": text, "hash": study.hash(), "designs": plan.designs(), "scenarios": plan.scenarios(),
             "feasible": null,
+            // Where its files are told from the root on, so that it can be saved anywhere.
+            "saved": with_whole_paths(text, live.folder()),
         },
         "inputs": inputs(study),
         "drawn": drawn(study),

@@ -61,6 +61,8 @@ const SCRIPTS: &[&str] = &[
 const LIVE_SCRIPTS: &[&str] = &[
     include_str!("page/live/stream.js"),
     include_str!("page/live/changes.js"),
+    include_str!("page/live/fields.js"),
+    include_str!("page/live/rows.js"),
     include_str!("page/live/controls.js"),
     include_str!("page/live/around.js"),
     include_str!("page/live/answer.js"),

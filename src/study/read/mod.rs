@@ -61,7 +61,7 @@ pub(super) use model_file::KEYS as MODEL_KEYS;
 pub use model_file::{FileKind, file_kind, parse_model, read_model};
 pub(super) use model_file::{ModelText, read_model_text};
 #[cfg(feature = "cli")]
-pub(crate) use part::entry_names;
+pub(crate) use part::{entry_leaves, entry_names, with_whole_paths};
 pub(super) use quantities::MOST_OBJECTIVES;
 pub(super) use range::check_levels;
 pub(super) use report::{BINS, FRONT_BUDGET, MOST_CELLS, MOST_FEASIBLE, MOST_SAMPLE, MOST_TOP, MOST_VARIANTS};
@@ -382,6 +382,11 @@ fn read_study_of(model: Option<Arc<Model>>, top: &TomlTable<'_>, problems: &Prob
     })
 }
 
+/// Is a model's name that of a file?
+fn is_model_file(name: &str) -> bool {
+    name.ends_with(".toml")
+}
+
 /// The model that the file names.
 fn model_named(models: &Models, top: &TomlTable<'_>, problems: &Problems<'_>, folder: &Path) -> Option<Arc<Model>> {
     let names = || list(models.iter().map(|model| model.name.as_str()));
@@ -390,7 +395,7 @@ fn model_named(models: &Models, top: &TomlTable<'_>, problems: &Problems<'_>, fo
         return None;
     };
     let name = text(entry.node, problems, "model")?;
-    if name.ends_with(".toml") {
+    if is_model_file(&name) {
         return model_file::named_model(models, &name, entry.node.at, problems, folder);
     }
     let model = models.find(&name);

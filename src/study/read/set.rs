@@ -203,7 +203,10 @@ fn edited(settings: &[StudySetting], top: &TomlTable<'_>, text: &str, models: &M
         }
         if let Some((table, axis)) = joint_axis(name, top, folder, &is_input) {
             let why = format!("{} is set by the rows of \"{axis}\" in [{table}]", setting.name);
-            problems.push(format!("{}: {why}; --set replaces the axis of one input: change the rows", setting.told()));
+            problems.push(format!(
+                "{}: {why}; --set replaces the axis of one input: give each row its value, as {table}.{axis}.1.{name}",
+                setting.told()
+            ));
             continue;
         }
         if entry("formulas").is_some() && !is_input(name) {
@@ -231,7 +234,7 @@ fn edited(settings: &[StudySetting], top: &TomlTable<'_>, text: &str, models: &M
     if !problems.is_empty() {
         return Err(refusal(problems));
     }
-    for table in ["fixed", "constraints", "objectives", "report"] {
+    for table in ["fixed", "constraints", "objectives", "probability", "report"] {
         let (at, before, after) = place_in(table, top, text);
         let of_table = new.iter().filter(|&&number| settings[number].table == table && settings[number].leads(settings, &new));
         for (count, &number) in of_table.enumerate() {
@@ -242,6 +245,11 @@ fn edited(settings: &[StudySetting], top: &TomlTable<'_>, text: &str, models: &M
     }
     let unread = unread(settings, top, text, &is_input);
     edits.extend(unread.iter().map(|entry| Edit { writes: None, ..left_out(entry, text) }));
+    edits.sort_by_key(|edit| edit.range.start);
+    if edits.windows(2).any(|pair| pair[0].range.end > pair[1].range.start) {
+        let told = settings.iter().map(StudySetting::told).collect::<Vec<_>>().join(" and ");
+        return Err(refusal(vec![format!("{told}: one of them is a part of what another sets; keep one of the two")]));
+    }
     let edited = applied(edits, text, settings.len());
     let gone: Vec<&str> = unread.iter().map(|entry| entry.key).collect();
     if is_as_meant(&edited.text, top, settings, &gone) {
@@ -269,7 +277,7 @@ fn unread<'n>(settings: &[StudySetting], top: &TomlTable<'n>, text: &str, is_inp
 fn new_line(number: usize, settings: &[StudySetting], new: &[usize]) -> String {
     let Some(part) = &settings[number].part else { return line_of(&settings[number]) };
     let beside = new.iter().filter_map(|&it| Some((settings[it].part.as_ref()?, &settings[it])));
-    let keys: Vec<_> = beside.filter(|(it, _)| it.is_beside(part)).map(|(it, setting)| (it.key(), setting.in_toml())).collect();
+    let keys: Vec<_> = beside.filter(|(it, _)| it.is_beside(part)).map(|(it, setting)| (it.new_key(), setting.in_toml())).collect();
     part.line(&keys)
 }
 
@@ -296,9 +304,8 @@ fn joint_axis(name: &str, top: &TomlTable<'_>, folder: &Path, is_input: &dyn Fn(
     })
 }
 
-fn applied(mut edits: Vec<Edit>, text: &str, settings: usize) -> EditedText {
-    // In order; where several are put in at one place they keep theirs.
-    edits.sort_by_key(|edit| edit.range.start);
+/// Makes edits that are in order; where several are put in at one place they keep theirs.
+fn applied(edits: Vec<Edit>, text: &str, settings: usize) -> EditedText {
     let mut edited = EditedText { text: String::new(), places: vec![0..0; settings], lines: Vec::new() };
     let mut done = 0;
     for Edit { range, with, writes } in edits {

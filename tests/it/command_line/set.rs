@@ -155,7 +155,7 @@ fn what_cannot_be_set_is_told_by_its_name() {
     let joint = "model = \"metal-cvt\"\n[design]\nband_count = [6, 7]\n[operation]\ncases = [{ ratio = 1, torque_Nm = 50 }, { ratio = 2, torque_Nm = 60 }]\n[objectives]\naxial_force_N = \"min\"\n";
     write(folder.path(), "study.toml", joint);
     let said = ask(folder.path(), "check study.toml --set torque_Nm=70").refusal(2);
-    let told = "torque_Nm is set by the rows of \"cases\" in [operation]; --set replaces the axis of one input: change the rows";
+    let told = "torque_Nm is set by the rows of \"cases\" in [operation]; --set replaces the axis of one input: give each row its value, as operation.cases.1.torque_Nm";
     assert_eq!(said, format!("error: --set torque_Nm=70: {told}\n"));
     write(folder.path(), "loads.csv", "ratio,torque_Nm\n1,50\n2,60\n");
     write(
@@ -195,6 +195,7 @@ fn a_part_of_a_study_that_is_set_is_as_if_it_was_written_so() {
             &[("to = 30", "to = 29"), ("to = 2.0, count = 3", "to = 2.0, count = 4")],
         ),
         (&["operation.torque_Nm=[50, 140]"], &[("[50, 150]", "[50, 140]")]),
+        (&["operation.torque_Nm.2=140"], &[("[50, 150]", "[50, 140]")]),
         (&["uncertainty.friction=[0.07]", "fixed.strength_MPa=700"], &[("[0.065, 0.095]", "[0.07]"), ("= 800", "= 700")]),
         // Together with an input.
         (&["strength_MPa=700", "design.band_count.from=7"], &[("= 800", "= 700"), ("from = 6", "from = 7")]),
@@ -205,24 +206,66 @@ fn a_part_of_a_study_that_is_set_is_as_if_it_was_written_so() {
     }
 }
 
+/// Rows of cases, parameters of distributions and the number of draws.
+#[test]
+fn rows_and_distributions_have_parts_too() {
+    let drawn = "model = \"metal-cvt\"\n[design]\nband_count = [8, 9]\ntraction = [0.4, 0.5]\n[operation]\ncases = [{ ratio = 1, torque_Nm = 50 }, { ratio = 2, torque_Nm = 60 }]\n\
+        [uncertainty]\nfriction = { normal = { mean = 0.08, sd = 0.005 }, from = 0.06, to = 0.1 }\nbelt_length_mm = { plus = { triangular = [-1, 0, 1] } }\n\
+        [probability]\ndraws = 512\nconfirm = 1000\n[constraints]\nslip_margin = { min = 0 }\n[objectives]\nyield = \"max\"\nband_count = \"min\"\n";
+    let by_hand = |text: &str| described(folder_with("study.toml", text).path(), &[]);
+    for (set, edits) in [
+        (&["operation.cases.2.torque_Nm=65"][..], &[("torque_Nm = 60", "torque_Nm = 65")][..]),
+        (
+            &["operation.cases.1.ratio=0.8", "operation.cases.1.torque_Nm=55"],
+            &[("ratio = 1, torque_Nm = 50", "ratio = 0.8, torque_Nm = 55")],
+        ),
+        (
+            &["uncertainty.friction.normal.sd=0.004", "uncertainty.friction.to=0.09"],
+            &[("sd = 0.005", "sd = 0.004"), ("to = 0.1", "to = 0.09")],
+        ),
+        (&["uncertainty.belt_length_mm.plus.triangular.3=2"], &[("[-1, 0, 1]", "[-1, 0, 2]")]),
+        (&["probability.draws=1024", "probability.seed=7"], &[("draws = 512\nconfirm = 1000", "draws = 1024\nconfirm = 1000\nseed = 7")]),
+    ] {
+        let folder = folder_with("study.toml", drawn);
+        let words: Vec<&str> = set.iter().flat_map(|it| ["--set", it]).collect();
+        assert_eq!(described(folder.path(), &words), by_hand(&changed(drawn, edits)), "{set:?}");
+    }
+    let folder = folder_with("study.toml", drawn);
+    for (set, told) in [
+        ("operation.cases.3.ratio=1", "\"3\" cannot be set; cases of [operation] has 2 values or rows, numbered from 1"),
+        ("operation.cases.1.friction=1", "\"friction\" cannot be set; keys are ratio, torque_Nm"),
+        ("operation.cases.1=1", "it has parts of its own, each of which can be set: ratio, torque_Nm"),
+        ("operation.cases.1.ratio.from=1", "\"from\" cannot be set: ratio is the number 1"),
+        ("uncertainty.friction.normal.mode=1", "\"mode\" cannot be set; keys are mean, sd"),
+        ("uncertainty.friction.csv=a.csv", "\"csv\" cannot be set"),
+    ] {
+        let said = ask_words(folder.path(), &["check", "study.toml", "--set", set]).refusal(2);
+        assert!(said.starts_with(&format!("error: --set {set}: ")) && said.contains(told), "{set}: {said}");
+    }
+}
+
 #[test]
 fn a_part_that_cannot_be_set_is_told_by_its_name() {
     let folder = folder_with("study.toml", SMALL);
     for (set, told) in [
         (
             "report.top=1",
-            "there is nothing to set in \"report\"; parts of a study begin with one of design, operation, uncertainty, fixed, constraints, objectives",
+            "there is nothing to set in \"report\"; parts of a study begin with one of design, operation, uncertainty, fixed, constraints, objectives, probability",
         ),
         ("design.ratio.to=3", "the study has no ratio in [design]"),
         ("design.band_count.csv=rows.csv", "\"csv\" cannot be set; keys are from, to, count, step, spacing"),
         ("design.band_count={ csv = \"rows.csv\" }", "\"{ csv = \"rows.csv\" }\" is not a number with a unit; write for example \"12\""),
         ("operation.torque_Nm=[[1]]", "write a list of numbers or words, such as [50, 150]"),
         ("operation.torque_Nm=[1], x = [2", "write a list of numbers or words, such as [50, 150]"),
-        ("operation.torque_Nm.from=1", "torque_Nm of [operation] is a list, which has no keys; give all of it a new value"),
+        ("operation.torque_Nm.from=1", "\"from\" cannot be set; torque_Nm of [operation] has 2 values or rows, numbered from 1"),
         ("constraints.slip_margin=3", "wanted bounds such as { min = 0 }"),
         ("constraints.axial_force_N=off", "the study has no axial_force_N in [constraints]"),
         ("constraints.slip_margin.min=x", "\"x\""),
         ("objectives.stress_margin=up", "unknown goal \"up\""),
+        ("operation.torque_Nm.3=160", "\"3\" cannot be set; torque_Nm of [operation] has 2 values or rows, numbered from 1"),
+        ("design.band_count.spacingg=log", "\"spacingg\" cannot be set; keys are from, to, count, step, spacing"),
+        ("probability.method=sobol", "\"method\" cannot be set; of [probability] these can: draws, confirm, seed"),
+        ("probability.draws=1000", "[probability]"),
         ("fixed.strength_MPa.min=1", "\"min\" cannot be set; write fixed.strength_MPa=VALUE"),
     ] {
         let said = ask_words(folder.path(), &["check", "study.toml", "--set", set]).refusal(2);
@@ -230,6 +273,11 @@ fn a_part_that_cannot_be_set_is_told_by_its_name() {
     }
     let twice = ask(folder.path(), "check study.toml --set design.band_count.to=9 --set design.band_count.to=10").refusal(2);
     assert_eq!(twice, "error: --set gives design.band_count.to twice; keep one of the two\n");
+    for (whole, part) in [("operation.torque_Nm=[60]", "operation.torque_Nm.1=70"), ("friction=0.08", "uncertainty.friction.1=0.07")] {
+        let said = ask_words(folder.path(), &["check", "study.toml", "--set", whole, "--set", part]).refusal(2);
+        let told = format!("--set {whole} and --set {part}: one of them is a part of what another sets; keep one of the two");
+        assert_eq!(said, format!("error: {told}\n"));
+    }
     // A bound that leaves nothing is told where it was set.
     let said = ask(folder.path(), "check study.toml --set constraints.stress_margin.min=2").refusal(2);
     assert!(said.contains("without --set constraints.stress_margin.min=2 the study is right"), "{said}");

@@ -37,9 +37,9 @@
   const describe = (told) => {
     const { data } = page;
     if (!told.study) return;
-    const { controls, begin } = data;
+    const { controls } = data;
     const feasible = sameList(told.study.study.hash, data.study && data.study.hash) ? data.study.feasible : null;
-    Object.assign(data, told.study, { controls, begin });
+    Object.assign(data, told.study, { controls });
     data.study.feasible = feasible;
   };
 

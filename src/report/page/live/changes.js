@@ -43,8 +43,13 @@
   page.undoChange = () => step(undo, redo);
   page.redoChange = () => step(redo, undo);
 
+  const asMap = (list) => new Map(list.map((text) => [text.slice(0, text.indexOf("=")), text.slice(text.indexOf("=") + 1)]));
+
+  // Those of the address that was opened: there is nothing before them to go back to.
+  page.beginChanges = (list) => (changed = asMap(list));
+
   page.resetChanges = (list = []) => {
-    const next = new Map(list.map((text) => [text.slice(0, text.indexOf("=")), text.slice(text.indexOf("=") + 1)]));
+    const next = asMap(list);
     if (String([...next]) === String([...changed])) return false;
     undo.push(changed);
     redo = [];

@@ -5,11 +5,13 @@
     objectives: "Objectives",
     operation: "Operation",
     uncertainty: "Uncertainty",
+    drawn: "Distributions",
     design: "Design axes",
     fixed: "Fixed values",
   };
+  const MOST_FIELDS = 8; // of a list
   const BOUNDS = { min: "at least", max: "at most", above: "above", below: "below" };
-  const controls = []; // { part, sync }
+  const { controlParts: controls, controlHeading: heading, tidy } = page;
 
   // A round number near a step of which a slider has about two hundred.
   const niceStep = (span) => {
@@ -17,8 +19,6 @@
     const ten = 10 ** Math.floor(Math.log10(rough));
     return [1, 2, 5, 10].find((it) => it * ten >= rough * 0.999) * ten;
   };
-
-  const tidy = (value) => Number(Number(value).toPrecision(12));
 
   // A number with its slider. `read` gives the value in force, `write` changes it.
   const numberControl = ({ part, label, name, unit, low, high, integer, step, read, write, original }) => {
@@ -30,7 +30,7 @@
     const id = `control ${part}`;
     const ends = [tidy(start), tidy(Math.max(span.high, start + by))];
     const slider = page.element("input", { type: "range", min: ends[0], max: ends[1], step: step || integer ? tidy(by) : "any", "aria-label": `${name}, ${label}`, "data-part": part, tabindex: 0 });
-    const field = page.element("input", { type: "number", step: "any", id, "data-part": part, "aria-label": `${name}, ${label}${unit ? `, in ${unit}` : ""}` });
+    const field = page.numberField({ id, part, label: `${name}, ${label}${unit ? `, in ${unit}` : ""}`, step: tidy(by), read, write: (value) => write(value, null) });
     slider.addEventListener("input", (event) => {
       page.eventAt = event.timeStamp;
       const raw = Number(slider.value);
@@ -39,19 +39,13 @@
       write(chosen, part);
     });
     slider.addEventListener("change", page.endGesture);
-    field.addEventListener("change", (event) => {
-      page.eventAt = event.timeStamp;
-      const text = field.value.trim();
-      if (text === "" || !Number.isFinite(Number(text))) field.value = read();
-      else write(Number(text), null);
-    });
     const back = page.element("button", { type: "button", class: "back", title: `Back to ${page.short(original)}`, "aria-label": `${name}, ${label}: back to ${page.short(original)}`, click: () => write(original, null) }, "↺");
     const line = page.element("div", { class: "control" }, page.element("label", { for: id }, label), slider, page.element("span", { class: "entry" }, field, page.element("span", { class: "unit" }, page.unit(unit)), back));
     controls.push({
       part,
       sync: () => {
         const now = read();
-        if (document.activeElement !== field) field.value = String(now);
+        field.sync();
         // A value beyond its ends stretches a slider only as long as it stands.
         slider.min = Math.min(ends[0], now);
         slider.max = Math.max(ends[1], now);
@@ -65,8 +59,6 @@
 
   const put = (part, value, original, drag) => page.change({ [part]: value === original ? null : value }, drag);
   const valueOf = (part, original) => (page.changedValue(part) === undefined ? original : Number(page.changedValue(part)));
-
-  const heading = ({ name, doc, unit }, ...more) => page.element("div", { class: "control-name", title: doc }, page.element("span", {}, page.breakable(name)), unit ? page.element("span", { class: "unit" }, page.unit(unit)) : null, more);
 
   const single = (control, part, original, label, more = {}) =>
     numberControl({
@@ -94,9 +86,12 @@
       const pad = ((control.high ?? original) - (control.low ?? original)) * 0.1 || Math.abs(original) * 0.5 || 1;
       return single({ ...control, low: Math.min(original, control.low ?? original) - pad, high: Math.max(original, control.high ?? original) + pad }, `${control.part}.${key}`, original, BOUNDS[key]);
     });
+    // Bounds that were moved are there again when it counts again.
+    let moved = {};
     const off = (without) => {
-      const parts = Object.fromEntries(Object.keys(control.bounds).map((key) => [`${control.part}.${key}`, null]));
-      page.change({ ...(without ? parts : {}), [control.part]: without ? "off" : null });
+      const parts = Object.keys(control.bounds).map((key) => `${control.part}.${key}`);
+      if (without) moved = Object.fromEntries(parts.map((part) => [part, page.changedValue(part) ?? null]));
+      page.change(without ? { ...Object.fromEntries(parts.map((part) => [part, null])), [control.part]: "off" } : { ...moved, [control.part]: null });
     };
     return page.element("div", { class: "block", "data-control": control.part }, heading(control, toggle(control.part, control.name, off)), lines);
   };
@@ -131,9 +126,12 @@
 
   const axis = (control) => {
     const { part, form } = control;
+    if (form === "table") return page.tableControl(control);
     if (form === "rows") return page.element("div", { class: "block" }, heading(control, page.element("span", { class: "muted" }, ` ${page.count(control.rows)} rows, as the file has them`)));
     if (form === "list") {
+      if (control.values.every((value) => control.words.includes(value))) return page.wordsControl(control);
       if (control.values.some((value) => typeof value === "string")) return page.element("div", { class: "block" }, heading(control, page.element("span", { class: "muted" }, ` ${control.values.join(", ")}`)));
+      if (control.values.length > MOST_FIELDS) return page.listControl(control);
       // What stands in the address may be no list.
       const given = (text) => {
         try {
@@ -160,9 +158,13 @@
       return page.element("div", { class: "block", "data-control": part }, heading(control), lines);
     }
     const lines = [];
-    for (const [key, label] of [["from", "from"], ["to", "to"]]) {
-      const step = control.step && !control.integer ? control.step : null;
-      lines.push(single(control, `${part}.${key}`, tidy(control[key]), label, { step }));
+    const step = control.step && !control.integer ? control.step : null;
+    const end = (key) => valueOf(`${part}.${key}`, tidy(control[key]));
+    for (const key of ["from", "to"]) {
+      const original = tidy(control[key]);
+      // A slider stops where the other end is.
+      const within = (value, drag) => (drag === null ? value : key === "from" ? Math.min(value, end("to")) : Math.max(value, end("from")));
+      lines.push(single(control, `${part}.${key}`, original, key, { step, write: (value, drag) => put(`${part}.${key}`, within(value, drag), original, drag) }));
     }
     if (control.count && !control.step) lines.push(single({ ...control, unit: "", low: 1, high: Math.max(control.count * 2, 41), integer: true }, `${part}.count`, control.count, "levels"));
     const levels = control.integer ? null : control.step ? page.element("span", { class: "muted" }, ` in steps of ${page.short(control.step)}`) : control.log ? page.element("span", { class: "muted" }, " log") : null;
@@ -172,12 +174,32 @@
   const fixed = (control) => {
     const { part, value, words } = control;
     const block = (...children) => page.element("div", { class: "block", "data-control": part }, heading(control), children);
+    if (words.length && !control.only_words) return wordOrNumber(control);
     if (typeof value !== "string") return block(single(control, part, value, "value"));
-    if (!control.only_words) return page.element("div", { class: "block one-line", "data-control": part }, heading(control), page.element("span", { class: "muted" }, value));
-    const select = page.element("select", { "data-part": part, "aria-label": control.name }, words.map((word) => page.element("option", { value: word }, word)));
-    select.addEventListener("change", (event) => ((page.eventAt = event.timeStamp), put(part, select.value, value, null)));
-    controls.push({ part, sync: () => (select.value = page.changedValue(part) ?? value) });
+    const select = page.wordSelect({ part, label: control.name, words, read: () => page.changedValue(part) ?? value, write: (word) => put(part, word, value, null) });
     return page.element("div", { class: "block one-line", "data-control": part }, heading(control), select);
+  };
+
+  // A number, or a word in place of one.
+  const wordOrNumber = (control) => {
+    const { part, value, words } = control;
+    const NUMBER = "a number";
+    const now = () => page.changedValue(part) ?? value;
+    const word = () => (words.includes(now()) ? now() : NUMBER);
+    let last = typeof value === "number" ? value : tidy(control.low ?? 0);
+    const line = single(control, part, value, "value", {
+      original: typeof value === "number" ? value : NaN,
+      read: () => (word() === NUMBER ? (last = Number(now())) : last),
+    });
+    const select = page.wordSelect({ part, label: control.name, words: [...words, NUMBER], read: word, write: (chosen) => put(part, chosen === NUMBER ? last : chosen, value, null) });
+    controls.push({ part, sync: () => (line.hidden = word() !== NUMBER) });
+    return page.element("div", { class: "block", "data-control": part }, heading(control, select), line);
+  };
+
+  // A distribution: the numbers in it.
+  const law = (control) => {
+    const line = ({ part, label, value, low, high, integer }) => single({ name: control.name, unit: "", low, high, integer }, part, value, label);
+    return page.element("div", { class: "block", "data-control": control.fields[0]?.part }, heading(control, page.element("span", { class: "muted" }, ` ${control.law}`)), control.fields.map(line));
   };
 
   const group = (key, list, build, open) => {
@@ -219,19 +241,20 @@
     const given = of.fixed.filter((it) => it.given);
     const others = of.fixed.filter((it) => !it.given);
     const further = others.length ? page.element("details", { "data-group": "others" }, page.element("summary", {}, "Other inputs, at their defaults", page.element("span", { class: "muted" }, ` ${others.length}`)), others.map(fixed)) : null;
-    const asItIs = [...of.formulas.map((name) => `${name}: a formula`), ...of.drawn.map((name) => `${name}: drawn from a distribution`)];
+    const asItIs = of.formulas.map((name) => `${name}: a formula`);
     box.replaceChildren(
       page.element(
         "div",
         { class: "controls-head" },
         page.element("h2", {}, "Change the study"),
-        page.element("div", { class: "controls-buttons" }, button("undo", "Undo (Ctrl+Z)", "↶", page.undoChange), button("redo", "Do it again (Ctrl+Y)", "↷", page.redoChange), button("reset", "Reset to the study as its file has it", "Reset", () => page.resetChanges())),
+        page.element("div", { class: "controls-buttons" }, button("undo", "Undo (Ctrl+Z)", "↶", page.undoChange), button("redo", "Do it again (Ctrl+Y)", "↷", page.redoChange), button("reset", "Reset to the study as this page was started with", "Reset", () => page.resetChanges())),
       ),
       ...[
         group("constraints", of.constraints, constraint, true),
         page.element("div", { id: "added" }),
         group("operation", of.operation, axis, true),
         group("uncertainty", of.uncertainty, axis, true),
+        group("drawn", of.drawn, law, true),
         group("fixed", given, fixed, true),
         group("design", of.design, axis, of.design.length < 5),
         group("objectives", of.objectives, objective, false),
@@ -244,9 +267,9 @@
     page.events.on("changes.controls", sync);
     document.addEventListener("keydown", (event) => {
       if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
-      const typing = event.target.tagName === "INPUT" && event.target.type === "number";
       const key = event.key.toLowerCase();
-      if (typing) return;
+      // What is being typed has an undo of its own.
+      if (event.target.dataset?.typed) return;
       if (key === "z" && !event.shiftKey) page.undoChange();
       else if (key === "y" || (key === "z" && event.shiftKey)) page.redoChange();
       else return;

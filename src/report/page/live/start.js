@@ -3,7 +3,7 @@
   const save = () => {
     const { study } = page.data;
     const name = study.file.split(/[\\/]/).pop().replace(/\.toml$/, "");
-    page.download(`${name}-explored.toml`, "application/toml", study.text);
+    page.download(`${name}-explored.toml`, "application/toml", study.saved);
   };
 
   const bar = () => {
@@ -29,7 +29,7 @@
     page.startOverview();
     bar();
     const given = page.changesOfAddress();
-    page.resetChanges(given.length ? given : page.data.begin);
+    page.beginChanges(given);
     page.startControls();
     page.startAnswers();
     page.timings.firstPaint = performance.now();
