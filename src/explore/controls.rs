@@ -64,7 +64,7 @@ fn drawn(study: &Study, text: &str) -> Vec<Value> {
     });
     let draws = json!({
         "law": "", "name": "draws", "unit": "", "doc": "How many draws choose designs.",
-        "fields": [{ "part": "probability.draws", "label": "of each design", "value": probability.draws, "low": 256, "high": (4 * probability.draws).max(1024), "integer": true }],
+        "fields": [{ "part": "probability.draws", "label": "number", "value": probability.draws, "low": 256, "high": (4 * probability.draws).max(1024), "integer": true }],
     });
     laws.chain([draws]).collect()
 }
@@ -255,6 +255,21 @@ fn fixed(study: &Study, given: &[String]) -> Vec<Value> {
         .collect();
     controls.sort_by_key(|control| control["given"] != true);
     controls
+}
+
+/// Ranges of the numbers that a file fixes, as wide as their sliders.
+pub fn fixed_ranges(study: &Study, text: &str) -> Vec<Axis> {
+    let given = entry_names(text, "fixed");
+    let controls = fixed(study, &given);
+    let range = |control: &Value| {
+        let input = study.model.input(control["name"].as_str()?)?;
+        let ends = (control["low"].as_f64()?, control["high"].as_f64()?);
+        let is_number = control["value"].is_number() && !study.model.inputs[input].integer;
+        let value = study.fixed[input];
+        let is_range = is_number && ends.0 < ends.1 && (ends.0..=ends.1).contains(&value);
+        is_range.then_some(Axis::Single { input, levels: Levels::Continuous { from: ends.0, to: ends.1, log: false } })
+    };
+    controls.iter().filter(|it| it["given"] == true).filter_map(range).collect()
 }
 
 #[cfg(test)]

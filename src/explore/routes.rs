@@ -1,12 +1,12 @@
 //! The fixed addresses of the server.
 
 use super::Explorer;
-use super::controls::controls;
+use super::controls::{controls, fixed_ranges};
 use super::http::{Connection, HttpRequest, Reply, begin_chunks, write_chunk};
 use crate::certify;
 use crate::error::{Error, Result};
 use crate::live::LiveAnswer;
-use crate::live::around::{PLACES, around};
+use crate::live::around::{PLACES, around_with};
 use crate::models::Models;
 use crate::plan::Plan;
 use crate::report::{live as told, sections, slices};
@@ -26,6 +26,8 @@ const JSON: &str = "application/json";
 const PARTS: &str = "application/octet-stream";
 /// Stands before a command that needs the study as a file.
 const NO_COMMAND: &str = "# no options say all of these changes; save the study as study.toml, then\n";
+/// Seconds of a thread that slices over fixed values may take.
+const MOST_SECONDS: f64 = 2.0;
 /// Most changes of a study.
 const MOST_CHANGES: usize = 200;
 /// How often it is seen whether the browser still waits.
@@ -179,19 +181,20 @@ impl Explorer {
         })
     }
 
-    /// The plan of a question and the design that it is about.
-    fn asked_design(&self, question: &Question) -> Result<(Plan, u64)> {
-        let plan = Plan::new(self.live.study(&question.set)?.0);
+    /// The plan of a question, the design that it is about, and the text of the study.
+    fn asked_design(&self, question: &Question) -> Result<(Plan, u64, String)> {
+        let (study, text) = self.live.study(&question.set)?;
+        let plan = Plan::new(study);
         let design = question.design.as_deref().and_then(|it| it.parse().ok()).filter(|&it: &u64| it < plan.designs());
         match design {
-            Some(design) => Ok((plan, design)),
+            Some(design) => Ok((plan, design, text)),
             None => Err(Error::Request(format!("there is no such design; the study's designs are 0 to {}", plan.designs() - 1))),
         }
     }
 
     /// Every output of a design at its worst scenario.
     fn design(&self, question: &Question, control: &Control, tell: &mut dyn FnMut(ToldPart) -> Result<()>) -> Result<()> {
-        let (plan, design) = self.asked_design(question)?;
+        let (plan, design, _) = self.asked_design(question)?;
         let mut everything = plan.study.clone();
         let further = (0..everything.model.outputs.len()).map(|output| ReportColumn::from(Quantity::Output(output)));
         everything.report.columns.extend(further.filter(|it| !plan.study.is_proven(it.of)));
@@ -216,10 +219,20 @@ impl Explorer {
 
     /// What is around a design.
     fn around(&self, question: &Question, control: &Control, tell: &mut dyn FnMut(ToldPart) -> Result<()>) -> Result<()> {
-        let (plan, design) = self.asked_design(question)?;
-        let (columns, slices) = around(&plan, design, PLACES, self.live.threads(), control)?;
+        let (plan, design, text) = self.asked_design(question)?;
+        let fixed = fixed_ranges(&plan.study, &text);
+        // Seconds of a thread.
+        #[allow(clippy::cast_precision_loss, reason = "an estimate")]
+        let takes = |places: u64| {
+            let effort = plan.effort();
+            (effort.prepare + effort.finish) * (places * fixed.len() as u64) as f64
+        };
+        let further = if takes(PLACES) < MOST_SECONDS { &fixed[..] } else { &[] };
+        let (columns, slices) = around_with(&plan, design, PLACES, further, self.live.threads(), control)?;
         let mut told = slices::told(&plan, &columns, &slices);
         told["kind"] = "around".into();
+        // Those of fixed values come last.
+        told["fixed"] = further.len().into();
         tell((told, Vec::new()))
     }
 }

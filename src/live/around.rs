@@ -51,10 +51,25 @@ pub fn most_designs(places: u64) -> u64 {
 /// # Errors
 /// [`Error::Stopped`](crate::error::Error::Stopped) after `control.stop`.
 pub fn around(plan: &Plan, design: u64, most: u64, threads: usize, control: &Control) -> Result<(Vec<Column>, Vec<Slice>)> {
+    around_with(plan, design, most, &[], threads, control)
+}
+
+/// The same, and slices along further axes: over inputs that the study fixes.
+///
+/// # Errors
+/// As [`around`].
+pub fn around_with(
+    plan: &Plan,
+    design: u64,
+    most: u64,
+    further: &[Axis],
+    threads: usize,
+    control: &Control,
+) -> Result<(Vec<Column>, Vec<Slice>)> {
     let study = &plan.study;
     let columns: Vec<Column> = certify::columns(study).into_iter().filter(|it| it.role != Role::Report).collect();
     let line = DesignLine { study, inputs: plan.space.inputs(design, 0), columns: &columns, threads, control };
-    let slices = sliced(plan).map(|axis| line.slice(axis, most)).collect::<Result<Vec<_>>>()?;
+    let slices = sliced(plan).chain(further).map(|axis| line.slice(axis, most)).collect::<Result<Vec<_>>>()?;
     Ok((columns, slices))
 }
 

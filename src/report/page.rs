@@ -26,6 +26,7 @@ const SCRIPTS: &[&str] = &[
     include_str!("page/choose/other_read.js"),
     include_str!("page/choose/others.js"),
     include_str!("page/matrix.js"),
+    include_str!("page/yields.js"),
     include_str!("page/readout.js"),
     include_str!("page/strip.js"),
     include_str!("page/lines.js"),

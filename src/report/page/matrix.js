@@ -233,6 +233,7 @@
       cell.marks.append("circle").attr("class", "pin-dot").attr("r", 7).attr("cx", x).attr("cy", y);
       cell.marks.append("text").attr("class", "pin-text").attr("x", x).attr("y", y + 3.5).attr("text-anchor", "middle").text(pin.letter);
     }
+    cell.interval = cell.marks.append("path").attr("class", "interval");
     cell.current = cell.marks.append("circle").attr("class", "current").attr("r", 6).attr("display", "none");
   };
 
@@ -356,6 +357,7 @@
       const shown = Number.isFinite(x) && Number.isFinite(y);
       cell.current.attr("display", shown ? null : "none");
       if (shown) cell.current.attr("cx", x).attr("cy", y);
+      cell.interval.attr("d", shown ? page.intervalPath(row, { ...cell, size }) : null);
     }
   };
 

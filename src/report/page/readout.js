@@ -27,10 +27,11 @@
       const what = state.current !== null ? "pointed at" : state.card !== null ? "card" : page.chosenWord();
       const mark = row === page.chosenRow() && what !== page.chosenWord() ? `${what}, ${page.chosenWord()}` : what;
       const labels = front.shown.filter((column) => column.role === "label").map((column) => column.name);
-      const names = [...new Set([...labels, ...state.matrix, ...state.parallel])].slice(0, 18 + labels.length);
+      const all = [...new Set([...labels, ...state.matrix, ...state.parallel])];
+      const names = page.withoutEnds(all, row).slice(0, 18 + labels.length);
       const entry = (name) => {
         const column = front.byName.get(name);
-        const value = page.element("dd", {}, page.valueText(column, row), column.words || !column.unit || Number.isNaN(column.values[row]) ? "" : ` ${page.unit(column.unit)}`, page.endOf(column, row) ? page.element("span", { class: "end", title: `at the ${page.endOf(column, row)} end of its range` }, page.endOf(column, row) === "upper" ? " ⤒" : " ⤓") : null);
+        const value = page.element("dd", {}, page.valueText(column, row), column.words || !column.unit || Number.isNaN(column.values[row]) ? "" : ` ${page.unit(column.unit)}`, page.intervalText(column, row), page.endOf(column, row) ? page.element("span", { class: "end", title: `at the ${page.endOf(column, row)} end of its range` }, page.endOf(column, row) === "upper" ? " ⤒" : " ⤓") : null);
         return page.element("div", {}, page.element("dt", { title: column.doc }, name), value);
       };
       children.push(page.element("div", { class: "readout-title" }, page.element("strong", {}, `design ${page.full(page.designOf(row))}`), ` (${mark})`));

@@ -167,6 +167,7 @@
       return next();
     }
     question.exact = true;
+    if (sameList(question.set, page.changeList())) document.body.classList.remove("older");
     answered++;
     const n = page.front.rows;
     say(n ? `exact: ${page.count(n)} designs on the front, in ${seconds(told.seconds)}` : "no design is feasible; looking for what stands in the way …", n ? "exact" : "none");
@@ -219,7 +220,7 @@
     let computing = 0;
     const rest = page.afterPause(400, () => document.body.classList.remove("moves"));
     page.events.on("changes.answer", () => {
-      document.body.classList.add("moves");
+      document.body.classList.add("moves", "older");
       rest();
       // A ghost of what was there before the first of several changes in a row.
       if (performance.now() - settled > 600) keepGhost();

@@ -159,11 +159,12 @@
     }
     const lines = [];
     const step = control.step && !control.integer ? control.step : null;
+    const gap = step ?? (control.integer ? 1 : niceStep((control.high ?? control.to) - (control.low ?? control.from)));
     const end = (key) => valueOf(`${part}.${key}`, tidy(control[key]));
     for (const key of ["from", "to"]) {
       const original = tidy(control[key]);
-      // A slider stops where the other end is.
-      const within = (value, drag) => (drag === null ? value : key === "from" ? Math.min(value, end("to")) : Math.max(value, end("from")));
+      // A slider stops before the other end.
+      const within = (value, drag) => (drag === null ? value : key === "from" ? Math.min(value, tidy(end("to") - gap)) : Math.max(value, tidy(end("from") + gap)));
       lines.push(single(control, `${part}.${key}`, original, key, { step, write: (value, drag) => put(`${part}.${key}`, within(value, drag), original, drag) }));
     }
     if (control.count && !control.step) lines.push(single({ ...control, unit: "", low: 1, high: Math.max(control.count * 2, 41), integer: true }, `${part}.count`, control.count, "levels"));

@@ -1,0 +1,213 @@
+//! The controls of `beltspace explore` in Chromium: fields for rows, words, lists, distributions, and what people type into them.
+
+use crate::browser::Browser;
+use crate::explore_page::{COUNT, Explored, SMALL, answered, differs, open, study_file};
+
+/// Types a number into the field of a part, as a person does who leaves the field with Enter; what the field complains about, and what is in it.
+fn typed(browser: &mut Browser, part: &str, text: &str) -> String {
+    browser.evaluate(COUNT);
+    let field = format!("document.querySelector('#controls input[type=text][data-part=\"{part}\"]')");
+    browser.evaluate(&format!(
+        "(() => {{ const f = {field}; f.focus(); f.value = '{text}'; f.dispatchEvent(new Event('input', {{ bubbles: true }})); \
+         f.dispatchEvent(new Event('change', {{ bubbles: true }})); }})()"
+    ));
+    let told = browser.evaluate(&format!("(() => {{ const f = {field}; return f.validationMessage + '|' + f.value; }})()"));
+    told.as_str().expect("a text").to_owned()
+}
+
+fn changes(browser: &mut Browser) -> Vec<String> {
+    serde_json::from_value(browser.evaluate("beltspace.page.changeList()")).expect("texts")
+}
+
+/// Presses Ctrl+Z where the cursor is.
+fn undo(browser: &mut Browser) {
+    browser.evaluate(COUNT);
+    browser.evaluate("document.activeElement.dispatchEvent(new KeyboardEvent('keydown', { key: 'z', ctrlKey: true, bubbles: true }))");
+    answered(browser);
+}
+
+const DRAWN: &str = r#"
+model = "metal-cvt"
+[design]
+band_count        = { from = 6, to = 12 }
+band_thickness_mm = { from = 0.14, to = 0.2, step = 0.02 }
+traction          = [0.3, 0.35, 0.4]
+[operation]
+cases = [{ ratio = 0.5, torque_Nm = 70 }, { ratio = 2, torque_Nm = 120 }]
+[uncertainty]
+friction       = { normal = { mean = 0.08, sd = 0.005 }, from = 0.06, to = 0.1 }
+belt_length_mm = { plus = { triangular = [-1, 0, 1] } }
+[probability]
+draws   = 512
+confirm = 1000
+[fixed]
+strength_MPa = 800
+[constraints]
+no_slip = { of = "slip_margin", min = 0 }
+yield   = { min = 0.5 }
+[objectives]
+axial_force_N = { goal = "min", over_draws = { quantile = 0.9 } }
+yield         = "max"
+"#;
+
+#[test]
+#[ignore = "needs the browser of the Debian package chromium"]
+fn rows_and_distributions_are_changed_in_fields_and_the_front_is_that_of_a_fresh_sweep() {
+    let (folder, file) = study_file(DRAWN);
+    let explored = Explored::new(&file, &[]);
+    let mut browser = open(&explored);
+    for (part, text) in [
+        ("operation.cases.2.torque_Nm", "110"),
+        ("uncertainty.friction.normal.sd", "0.004"),
+        ("uncertainty.belt_length_mm.plus.triangular.3", "1.5"),
+        ("probability.draws", "600"),
+        ("constraints.no_slip.min", "0.01"),
+    ] {
+        assert_eq!(typed(&mut browser, part, text), format!("|{text}"), "{part}");
+        answered(&mut browser);
+        assert!(changes(&mut browser).contains(&format!("{part}={text}")), "{part}");
+        // What fresh draws say comes with the certified front.
+        browser.wait("beltspace.timings.certified === beltspace.timings.answered");
+        let wrong = differs(&mut browser, DRAWN, folder.path());
+        assert_eq!(wrong, None, "{part}");
+    }
+    assert!(browser.evaluate("beltspace.page.front.rows").as_u64() > Some(0));
+    // What is drawn has no slider as if it were fixed.
+    let twice = browser
+        .evaluate("['torque_Nm', 'ratio', 'friction'].filter((name) => document.querySelector(`#controls [data-part=\"${name}\"]`))");
+    assert_eq!(twice, serde_json::json!([]));
+}
+
+#[test]
+#[ignore = "needs the browser of the Debian package chromium"]
+fn what_people_type_is_taken_as_it_is_meant_or_refused() {
+    let (_folder, file) = study_file(SMALL);
+    let explored = Explored::new(&file, &[]);
+    let mut browser = open(&explored);
+    let part = "constraints.slip_margin.min";
+    assert_eq!(typed(&mut browser, part, "0,05"), "|0.05");
+    answered(&mut browser);
+    assert_eq!(changes(&mut browser), ["constraints.slip_margin.min=0.05"]);
+    // Thousands, or a decimal comma? Nothing changes, and what was typed stays to be mended.
+    for text in ["1,500", "x", "1..5"] {
+        let told = typed(&mut browser, part, text);
+        assert!(told.starts_with("This is no number") && told.ends_with(&format!("|{text}")), "{told}");
+        assert_eq!(changes(&mut browser), ["constraints.slip_margin.min=0.05"]);
+    }
+    assert_eq!(typed(&mut browser, "strength_MPa", "1 000"), "|1000");
+    answered(&mut browser);
+    // Undone from within the field.
+    undo(&mut browser);
+    assert_eq!(changes(&mut browser), ["constraints.slip_margin.min=0.05"]);
+    let field = "document.querySelector('#controls input[type=text][data-part=\"strength_MPa\"]').value";
+    assert_eq!(browser.evaluate(field), "800");
+    // A constraint that counts again has the bound that it had.
+    let click = "document.querySelector('#controls [data-control=\"constraints.slip_margin\"] input[type=checkbox]').click()";
+    for wanted in ["constraints.slip_margin=off", "constraints.slip_margin.min=0.05"] {
+        browser.evaluate(COUNT);
+        browser.evaluate(click);
+        answered(&mut browser);
+        assert_eq!(changes(&mut browser), [wanted]);
+    }
+    // Another page at this address has nothing to undo.
+    browser.wait("location.hash.includes('slip_margin') && !location.hash.includes('strength')");
+    let address = browser.evaluate("location.href");
+    drop(browser);
+    let mut browser =
+        Browser::open_at(&(explored.address.clone() + address.as_str().and_then(|it| it.find('#').map(|at| &it[at..])).expect("changes")));
+    answered(&mut browser);
+    assert_eq!(changes(&mut browser), ["constraints.slip_margin.min=0.05"]);
+    assert_eq!(browser.evaluate("document.querySelector('#undo').disabled"), true);
+    // The slider of one end of an axis stops where the other end is.
+    browser.evaluate(COUNT);
+    browser.evaluate(
+        "(() => { const s = document.querySelector('#controls input[type=range][data-part=\"design.groove_angle_deg.from\"]'); \
+         s.value = s.max; s.dispatchEvent(new Event('input', { bubbles: true })); s.dispatchEvent(new Event('change', { bubbles: true })); })()",
+    );
+    answered(&mut browser);
+    assert!(changes(&mut browser).contains(&"design.groove_angle_deg.from=29.9".to_owned()), "{:?}", changes(&mut browser));
+}
+
+#[test]
+#[ignore = "needs the browser of the Debian package chromium"]
+fn words_and_long_lists_are_chosen_from() {
+    let text = SMALL.replace("torque_Nm = [50, 150]", "torque_Nm = [50, 60, 70, 80, 90, 100, 110, 120, 150]");
+    let (folder, file) = study_file(&text);
+    let explored = Explored::new(&file, &[]);
+    let mut browser = open(&explored);
+    let told = typed(&mut browser, "operation.torque_Nm", "50 100; 140");
+    assert!(told.starts_with('|'), "{told}");
+    answered(&mut browser);
+    assert_eq!(changes(&mut browser), ["operation.torque_Nm=[50, 100, 140]"]);
+    assert_eq!(differs(&mut browser, &text, folder.path()), None);
+    // Words of a pulley that are levels, and a word in place of a number.
+    let text = "model = \"pulley-load\"\n[design]\nwidth_known = [1]\n";
+    drop(browser);
+    let text = text
+        .replace("width_known = [1]", "tensioning = [\"fixed-centres\", \"slack\"]\nmean_radius_mm = { from = 50, to = 90, step = 10 }")
+        + "[operation]\ncases = [{ power_kW = 2, speed_rpm = 1450 }]\n[fixed]\ninstalled_tension_N = 300\n\
+           [objectives]\nmean_radius_mm = \"min\"\nfriction_margin = \"max\"\n\
+           [report]\ncolumns = [\"tight_tension_N\", \"resultant_force_N\", \"torque_Nm\"]\n";
+    let (folder, file) = study_file(&text);
+    let explored = Explored::new(&file, &[]);
+    let mut browser = open(&explored);
+    let click = "document.querySelector('#controls input[type=checkbox][data-part=\"design.tensioning\"][value=\"slack\"]').click()";
+    browser.evaluate(COUNT);
+    browser.evaluate(click);
+    answered(&mut browser);
+    assert_eq!(changes(&mut browser), ["design.tensioning=[\"fixed-centres\"]"]);
+    assert_eq!(differs(&mut browser, &text, folder.path()), None);
+}
+
+#[test]
+#[ignore = "needs the browser of the Debian package chromium"]
+fn a_page_begins_with_what_the_command_sets_and_its_saved_study_runs_anywhere() {
+    let text = SMALL.replace("[design]\n", "[design]\ncases = { csv = \"widths.csv\" }\n");
+    let (folder, file) = study_file(&text);
+    std::fs::write(folder.path().join("widths.csv"), "band_width_mm,belt_length_mm\n9,703\n9.5,703\n").expect("it can be written");
+    // A whole axis is replaced, and a bound.
+    let set = ["--set", "friction=0.08", "--set", "constraints.slip_margin.min=0.02"];
+    let explored = Explored::new(&file, &set);
+    let mut browser = open(&explored);
+    assert_eq!(changes(&mut browser), Vec::<String>::new());
+    let field = |part: &str| format!("document.querySelector('#controls input[type=text][data-part=\"{part}\"]')?.value ?? null");
+    assert_eq!(browser.evaluate(&field("constraints.slip_margin.min")), "0.02");
+    assert_eq!(browser.evaluate(&field("friction")), "0.08");
+    assert_eq!(browser.evaluate(&field("uncertainty.friction.from")), serde_json::Value::Null);
+    assert_eq!(typed(&mut browser, "constraints.slip_margin.min", "0.03"), "|0.03");
+    answered(&mut browser);
+    browser.wait("document.querySelector('#command').textContent.endsWith('--set friction=0.08 --set constraints.slip_margin.min=0.03')");
+    // The downloaded study finds the rows wherever it stands.
+    let saved = browser.evaluate("beltspace.page.data.study.saved");
+    let elsewhere = tempfile::tempdir().expect("there is room");
+    let study = beltspace::Study::parse_in(saved.as_str().expect("a text"), "study.toml", elsewhere.path());
+    let hash = browser.evaluate("beltspace.page.data.study.hash");
+    assert_eq!(study.expect("it is right").hash(), hash.as_str().expect("a text"));
+    let shown = browser.evaluate("beltspace.page.data.study.text");
+    assert!(shown.as_str().is_some_and(|text| text.contains("csv = \"widths.csv\"")), "{shown}");
+}
+
+#[test]
+#[ignore = "needs the browser of the Debian package chromium"]
+fn slices_go_over_fixed_values_too_and_the_yield_stands_with_its_interval() {
+    let (_folder, file) = study_file(DRAWN);
+    let explored = Explored::new(&file, &[]);
+    let mut browser = open(&explored);
+    browser
+        .wait("beltspace.page.front.byName.has('yield_low') && beltspace.page.front.byName.get('yield_low').values.some(Number.isFinite)");
+    browser.evaluate("beltspace.openCard(0)");
+    browser.wait("[...document.querySelectorAll('.slice-row h3')].some((it) => it.textContent === 'strength_MPa')");
+    // They come behind those of the axes, under a heading of their own.
+    let order = browser
+        .evaluate("[...document.querySelectorAll('.slices > *')].map((it) => it.querySelector('h3')?.textContent ?? it.textContent)");
+    let order: Vec<String> = serde_json::from_value(order).expect("texts");
+    let place = |name: &str| order.iter().position(|it| it == name).unwrap_or_else(|| panic!("{name} in {order:?}"));
+    assert!(place("band_count") < place("If a fixed value were another") && place("If a fixed value were another") < place("strength_MPa"));
+    let told = browser.evaluate("document.querySelector('#readout').textContent");
+    let ends = browser.evaluate(
+        "['yield_low', 'yield_high'].map((name) => beltspace.page.short(beltspace.page.front.byName.get(name).values[0])).join(' to ')",
+    );
+    assert!(told.as_str().is_some_and(|told| told.contains(ends.as_str().expect("a text"))), "{told} has no {ends}");
+    let drawn = browser.evaluate("[...document.querySelectorAll('path.interval')].filter((it) => it.getAttribute('d')).length");
+    assert!(drawn.as_u64() > Some(0), "the interval is drawn through the design");
+}
