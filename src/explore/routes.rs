@@ -9,7 +9,7 @@ use crate::live::LiveAnswer;
 use crate::live::around::{PLACES, around_with};
 use crate::models::Models;
 use crate::plan::Plan;
-use crate::report::{live as told, sections, slices};
+use crate::report::{givens, live as told, sections, slices};
 use crate::screen::Control;
 use crate::study::{Axis, Quantity, ReportColumn, Study, number, value_of};
 use serde::Deserialize;
@@ -213,6 +213,7 @@ impl Explorer {
             "kind": "design", "design": design.to_string(), "inputs": inputs, "outputs": named.collect::<Vec<_>>(), "feasible": row.feasible,
             "status": row.status.reason(model), "without_result": row.without_result,
             "scenarios": told::scenarios(&plan, &scenarios), "section": sections::of_design(&plan, design),
+            "givens": givens::of_design(&plan, design),
         });
         tell((told, Vec::new()))
     }

@@ -4,6 +4,7 @@
 //! against the study, and every other output at its worst scenario.
 
 mod front;
+pub(crate) mod givens;
 mod influence;
 mod inputs;
 #[cfg(feature = "cli")]
@@ -134,6 +135,7 @@ pub fn of_result(request: &Request<'_>, control: &Control) -> Result<Page> {
         "constraints": constraints,
         "front": front.as_ref().map(|it| with_knee(it, &summary)),
         "around": around,
+        "givens": front.as_ref().map(|it| givens::of_front(plan, &it.designs)),
         "sections": front.as_ref().map(|it| sections::of_front(plan, &it.designs)),
         "scenarios": scenarios.map(|numbers| scenario_inputs(plan, numbers)),
         "evaluate": evaluate,

@@ -145,6 +145,31 @@ fn belts_and_pulleys_without_a_ratio_are_drawn_to_scale() {
     assert_eq!(browser.complaints, Vec::<String>::new());
 }
 
+/// What formulas of the study give stands nowhere on the page but for this; also where tolerances are drawn.
+#[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored report_page --test-threads 1"]
+fn a_drive_whose_dimensions_follow_from_formulas_is_drawn() {
+    let plain = "model = \"timing-belt\"\n[design]\npulley_teeth = [36, 44]\ntight_tension_N = [400, 440]\n[operation]\npulley_speed_rpm = [800, 5000]\n\
+        [formulas]\ntip_radius_mm = \"pulley_teeth * pitch_mm / (2 * pi) - pitch_line_mm\"\nteeth_in_mesh = \"floor(pulley_teeth / 2)\"\n\
+        land_half_angle_deg = \"64.8[deg] / pulley_teeth\"\nspace_half_angle_deg = \"115.2[deg] / pulley_teeth\"\n\
+        [objectives]\npulley_teeth = \"min\"\n";
+    let drawn_too = plain.replace(
+        "[formulas]",
+        "[uncertainty]\nfriction = { uniform = [0.3, 0.55] }\n[probability]\ndraws = 256\nconfirm = 500\n[formulas]",
+    );
+    for text in [plain.to_owned() + "tight_tension_N = \"max\"\n", drawn_too + "yield = \"max\"\n"] {
+        let swept = Swept::text(&text);
+        let mut browser = Browser::open(&swept.page(), "");
+        let found = drawn(&mut browser, 0);
+        let teeth = browser.number("beltspace.page.front.byName.get('pulley_teeth').values[0]");
+        let tip = teeth * 9.525 / std::f64::consts::TAU - 0.686;
+        let told = browser.text("document.querySelector('#card svg.drive').textContent");
+        let shown = browser.text(&format!("beltspace.page.short({tip})"));
+        assert!(told.contains(&format!("tip r {shown} mm")), "{teeth} teeth: {told}");
+        assert!(found["text"].as_str().is_some_and(|it| it.contains(&format!("{} teeth in mesh", (teeth / 2.0).floor()))), "{found}");
+    }
+}
+
 const OWN: &str = r#"summary = "Two rollers"
 source = "geometry"
 [inputs]

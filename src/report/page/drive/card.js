@@ -24,6 +24,15 @@
     lines ? table(lines) : null,
   ];
 
+  // What is told later of a design, such as the section of a pulley or what formulas give: its drawing is made anew.
+  let redraw = null;
+  page.knowMore = (row, { section, givens }) => {
+    if (section) page.knownSections.set(page.front, new Map([[row, section]]));
+    if (givens && Object.keys(givens).length) page.knownGivens.set(page.front, new Map([[row, givens]]));
+    else if (!section) return;
+    redraw?.(row);
+  };
+
   page.driveSection = (row) => {
     const draw = DRAWINGS[page.data.model && page.data.model.drive];
     if (!draw || !page.front) return null;
@@ -36,7 +45,11 @@
     const section = (...children) => page.element("section", { class: "drive-section", "data-testid": "drive", "aria-labelledby": "drive-title" }, page.element("div", {}, title), children);
     if (first.none) return section(page.element("p", { class: "hint" }, `Not drawn: ${first.none}.`));
     // An input that a formula gives may be nowhere on the page.
-    if (first.missing) return section(page.element("p", { class: "hint" }, `Not drawn: the page does not know ${first.missing.join(", ")} of this design.`));
+    if (first.missing) {
+      const made = section(page.element("p", { class: "hint" }, `Not drawn: the page does not know ${first.missing.join(", ")} of this design.`));
+      redraw = (of) => of === row && made.isConnected && made.replaceWith(page.driveSection(row));
+      return made;
+    }
     const stage = page.element("div", { class: "stage drive-stage" }, first.node);
     const rest = page.element("div", {}, parts(first).slice(1).filter(Boolean));
     const show = (value) => {
@@ -63,14 +76,7 @@
       input.addEventListener("keydown", (event) => event.key.startsWith("Arrow") && event.stopPropagation());
       slider = page.element("div", { class: "drive-slider no-print" }, page.element("label", { for: "drive-ratio" }, "ratio"), input, said);
     }
-    // What is told later, such as the section of a pulley, is drawn in its place.
-    page.knowSection = (of, outline) => {
-      page.knownSections.set(page.front, new Map([[of, outline]]));
-      if (of !== row || !stage.isConnected) return;
-      const next = draw(row, shown);
-      stage.replaceChildren(next.node);
-      rest.replaceChildren(...parts(next).slice(1).filter(Boolean));
-    };
+    redraw = (of) => of === row && stage.isConnected && show(shown);
     const made = section(slider, stage, rest);
     page.saveButtons(title, `drive-${page.designOf(row)}`);
     return made;

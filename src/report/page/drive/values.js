@@ -2,6 +2,15 @@
 {
   const ofInput = (name) => (page.data.inputs || []).find((input) => input.name === name);
 
+  // What formulas of the study give a design, if the page knows it: { name: value }.
+  page.knownGivens = new WeakMap(); // front -> row -> values, of a study in work
+  const givenOf = (name, row) => {
+    const known = page.knownGivens.get(page.front)?.get(row);
+    if (known) return known[name];
+    const { givens } = page.data;
+    return givens?.of[page.designOf(row)]?.[givens.names.indexOf(name)];
+  };
+
   // A number with its unit, where it comes from and, where it varies over the scenarios, its ends; `null` if there is no such number.
   page.quantityOf = (name, row) => {
     const column = page.front.byName.get(name);
@@ -10,7 +19,9 @@
     if (input && input.role === "fixed") return typeof input.value === "number" ? { name, value: input.value, from: "fixed" } : null;
     if (input && input.role === "drawn" && typeof input.value === "number") return { name, value: input.value, from: "drawn" };
     if (input && Number.isFinite(input.least)) return { name, value: (input.least + input.largest) / 2, from: "varied", least: input.least, largest: input.largest };
-    return column && !column.words && Number.isFinite(column.values[row]) ? { name, value: column.values[row], from: "output" } : null;
+    if (column && !column.words && Number.isFinite(column.values[row])) return { name, value: column.values[row], from: "output" };
+    const given = givenOf(name, row);
+    return Number.isFinite(given) ? { name, value: given, from: "given" } : null;
   };
 
   // Reads the quantities of a drawing one after the other. `notes` says which lengths stand on a rule, not on the design.

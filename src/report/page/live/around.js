@@ -33,7 +33,7 @@
     try {
       const told = await page.askOnce("/design", { set, design });
       if (page.state.card === null || page.designOf(page.state.card) !== design || !page.byId("all-outputs")) return;
-      if (told.section) page.knowSection?.(row, told.section);
+      page.knowMore(row, told);
       const known = new Set(page.front.shown.map((column) => column.name));
       const lines = told.outputs.filter((output) => !known.has(output.name)).map((output) =>
         page.element("tr", {}, page.element("th", { scope: "row", title: output.doc }, page.breakable(output.name)), page.element("td", { class: "number" }, page.element("span", { "data-name": output.name, "data-value": page.full(output.value), title: page.full(output.value) }, page.short(output.value)), page.element("span", { class: "unit" }, output.value === null ? "" : ` ${page.unit(output.unit)}`)), page.element("td", { class: "scenario" }, output.scenario === null ? "" : `#${output.scenario}`)),
