@@ -4,6 +4,7 @@
 
 use crate::certify::{self, margin_columns};
 use crate::error::Result;
+use crate::live::around::GivenRange;
 use crate::models::{Input, Model};
 use crate::plan::Plan;
 use crate::screen::Control;
@@ -257,8 +258,20 @@ fn fixed(study: &Study, given: &[String]) -> Vec<Value> {
     controls
 }
 
-/// Ranges of the numbers that a file fixes, as wide as their sliders.
-pub fn fixed_ranges(study: &Study, text: &str) -> Vec<Axis> {
+/// What a study gives every design, as far as its sliders go: loads, and the numbers that the file fixes.
+pub fn given_ranges(study: &Study, text: &str) -> Vec<GivenRange> {
+    let load = |(number, axis): (usize, &Axis)| {
+        let control = axis_control(study, text, "operation", axis);
+        let input = study.model.input(control["part"].as_str()?.strip_prefix("operation.")?)?;
+        let to = control["high"].as_f64()?;
+        let is_range = !study.model.inputs[input].integer && to > axis.ends(0).1;
+        is_range.then_some(GivenRange::Load(number, to))
+    };
+    let loads = study.operation.iter().enumerate().filter_map(load);
+    loads.chain(fixed_ranges(study, text).into_iter().map(GivenRange::Fixed)).collect()
+}
+
+fn fixed_ranges(study: &Study, text: &str) -> Vec<Axis> {
     let given = entry_names(text, "fixed");
     let controls = fixed(study, &given);
     let range = |control: &Value| {

@@ -1,7 +1,7 @@
 //! The fixed addresses of the server.
 
 use super::Explorer;
-use super::controls::{controls, fixed_ranges};
+use super::controls::{controls, given_ranges};
 use super::http::{Connection, HttpRequest, Reply, begin_chunks, write_chunk};
 use crate::certify;
 use crate::error::{Error, Result};
@@ -26,7 +26,7 @@ const JSON: &str = "application/json";
 const PARTS: &str = "application/octet-stream";
 /// Stands before a command that needs the study as a file.
 const NO_COMMAND: &str = "# no options say all of these changes; save the study as study.toml, then\n";
-/// Seconds of a thread that slices over fixed values may take.
+/// Seconds of a thread that slices over what the study gives may take.
 const MOST_SECONDS: f64 = 2.0;
 /// Most changes of a study.
 const MOST_CHANGES: usize = 200;
@@ -221,19 +221,19 @@ impl Explorer {
     /// What is around a design.
     fn around(&self, question: &Question, control: &Control, tell: &mut dyn FnMut(ToldPart) -> Result<()>) -> Result<()> {
         let (plan, design, text) = self.asked_design(question)?;
-        let fixed = fixed_ranges(&plan.study, &text);
+        let given = given_ranges(&plan.study, &text);
         // Seconds of a thread.
         #[allow(clippy::cast_precision_loss, reason = "an estimate")]
         let takes = |places: u64| {
             let effort = plan.effort();
-            (effort.prepare + effort.finish) * (places * fixed.len() as u64) as f64
+            (effort.prepare + effort.finish) * (places * given.len() as u64) as f64
         };
-        let further = if takes(PLACES) < MOST_SECONDS { &fixed[..] } else { &[] };
-        let (columns, slices) = around_with(&plan, design, PLACES, further, self.live.threads(), control)?;
+        let given = if takes(PLACES) < MOST_SECONDS { &given[..] } else { &[] };
+        let (columns, slices) = around_with(&plan, design, PLACES, given, self.live.threads(), control)?;
         let mut told = slices::told(&plan, &columns, &slices);
         told["kind"] = "around".into();
-        // Those of fixed values come last.
-        told["fixed"] = further.len().into();
+        // Those over what the study gives come last.
+        told["given"] = given.len().into();
         tell((told, Vec::new()))
     }
 }

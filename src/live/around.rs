@@ -54,7 +54,16 @@ pub fn around(plan: &Plan, design: u64, most: u64, threads: usize, control: &Con
     around_with(plan, design, most, &[], threads, control)
 }
 
-/// The same, and slices along further axes: over inputs that the study fixes.
+/// What a study gives every design, varied: how far can it go?
+#[derive(Clone, Debug)]
+pub enum GivenRange {
+    /// An input that the study fixes, over the levels of this axis.
+    Fixed(Axis),
+    /// The largest value of an operation axis, by its number: from the least value of the axis to this one.
+    Load(usize, f64),
+}
+
+/// The same, and slices over what the study gives.
 ///
 /// # Errors
 /// As [`around`].
@@ -62,14 +71,19 @@ pub fn around_with(
     plan: &Plan,
     design: u64,
     most: u64,
-    further: &[Axis],
+    given: &[GivenRange],
     threads: usize,
     control: &Control,
 ) -> Result<(Vec<Column>, Vec<Slice>)> {
     let study = &plan.study;
     let columns: Vec<Column> = certify::columns(study).into_iter().filter(|it| it.role != Role::Report).collect();
     let line = DesignLine { study, inputs: plan.space.inputs(design, 0), columns: &columns, threads, control };
-    let slices = sliced(plan).chain(further).map(|axis| line.slice(axis, most)).collect::<Result<Vec<_>>>()?;
+    let own = sliced(plan).map(|axis| line.slice(axis, most));
+    let given = given.iter().map(|it| match it {
+        GivenRange::Fixed(axis) => line.slice(axis, most),
+        GivenRange::Load(axis, to) => line.load(*axis, *to, most),
+    });
+    let slices = own.chain(given).collect::<Result<Vec<_>>>()?;
     Ok((columns, slices))
 }
 
@@ -132,27 +146,74 @@ impl DesignLine<'_> {
     /// Along numbers: some of them, and from the design on to either side the last feasible one and the one after it.
     fn along_levels(&self, axis: &Axis, levels: &Levels, most: u64) -> Result<(Vec<f64>, Vec<Row>)> {
         let own = self.inputs[axis.inputs()[0]];
-        let places = AxisPlaces::new(levels, own);
-        let mut values = places.some(most);
-        let judged = |values: &[f64]| self.judged(axis, &values.iter().map(|&it| vec![it]).collect::<Vec<_>>());
-        let mut rows = judged(&values)?;
-        for _ in 0..places.halvings() {
-            let here = values.iter().position(|it| *it == own).unwrap_or(0);
-            let further: Vec<f64> =
-                edges(&rows, here).into_iter().flatten().filter_map(|(a, b)| places.between(values[a], values[b])).collect();
-            if further.is_empty() {
-                break;
-            }
-            let found = judged(&further)?;
-            let mut all: Vec<(f64, Row)> = values.into_iter().zip(rows).chain(further.into_iter().zip(found)).collect();
-            all.sort_by(|a, b| a.0.total_cmp(&b.0));
-            (values, rows) = all.into_iter().unzip();
-        }
-        let line = self.along(axis, &values.iter().map(|&it| vec![it]).collect::<Vec<_>>());
-        certify::keep_scenarios(&Plan::new(line), self.columns, &mut rows, self.control);
-        Ok((values, rows))
+        let rows = |values: &[f64]| values.iter().map(|&it| vec![it]).collect::<Vec<_>>();
+        let (values, mut found) = along_places(&AxisPlaces::new(levels, own), own, most, |values| self.judged(axis, &rows(values)))?;
+        let line = self.along(axis, &rows(&values));
+        certify::keep_scenarios(&Plan::new(line), self.columns, &mut found, self.control);
+        Ok((values, found))
     }
 
+    /// Over the largest value of an operation axis. The scenarios are others at each place, so that each is a study of its own.
+    fn load(&self, number: usize, to: f64, most: u64) -> Result<Slice> {
+        let study = self.study;
+        let axis = &study.operation[number];
+        let input = axis.inputs()[0];
+        let (least, largest) = axis.ends(0);
+        let first = &study.design[0];
+        let alone = self.along(first, &[first.inputs().iter().map(|&it| self.inputs[it]).collect()]);
+        let judged = |values: &[f64]| {
+            let each = values.iter().map(|&value| {
+                let mut operation = study.operation.clone();
+                operation[number] = with_largest(axis, value);
+                let plan = Plan::new(Study { operation, ..alone.clone() });
+                Ok(certify::rows(&plan, self.columns, &[0], 1, self.control)?.remove(0))
+            });
+            each.collect::<Result<Vec<Row>>>()
+        };
+        let places = AxisPlaces::Between { low: least, high: to, log: false, own: largest };
+        let (values, rows) = along_places(&places, largest, most, judged)?;
+        let described = &study.model.inputs[input];
+        let (name, unit) = (format!("{}, the largest", described.name), described.unit.symbol.to_owned());
+        Ok(Slice { name, unit, own: largest, values, words: None, rows })
+    }
+}
+
+/// An axis of numbers with another largest value: what was the largest goes there.
+fn with_largest(axis: &Axis, value: f64) -> Axis {
+    let Axis::Single { input, levels } = axis else { return axis.clone() };
+    let (_, largest) = levels.ends();
+    let moved = |it: f64| if it == largest { value } else { it };
+    let levels = match levels {
+        Levels::List(values) => Levels::List(values.iter().map(|&it| moved(it)).collect()),
+        Levels::Even { from, to, count, log } => Levels::Even { from: moved(*from), to: moved(*to), count: *count, log: *log },
+        Levels::Step { count, log, .. } => {
+            Levels::Even { from: moved(levels.value(0)), to: moved(levels.value(count - 1)), count: *count, log: *log }
+        }
+        Levels::Continuous { .. } => levels.clone(),
+    };
+    Axis::Single { input: *input, levels }
+}
+
+/// Some places of an axis, the ends of what is feasible to either side of the own one among them, and the design at each.
+fn along_places(places: &AxisPlaces, own: f64, most: u64, judged: impl Fn(&[f64]) -> Result<Vec<Row>>) -> Result<(Vec<f64>, Vec<Row>)> {
+    let mut values = places.some(most);
+    let mut rows = judged(&values)?;
+    for _ in 0..places.halvings() {
+        let here = values.iter().position(|it| *it == own).unwrap_or(0);
+        let further: Vec<f64> =
+            edges(&rows, here).into_iter().flatten().filter_map(|(a, b)| places.between(values[a], values[b])).collect();
+        if further.is_empty() {
+            break;
+        }
+        let found = judged(&further)?;
+        let mut all: Vec<(f64, Row)> = values.into_iter().zip(rows).chain(further.into_iter().zip(found)).collect();
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        (values, rows) = all.into_iter().unzip();
+    }
+    Ok((values, rows))
+}
+
+impl DesignLine<'_> {
     fn judged(&self, axis: &Axis, rows: &[Vec<f64>]) -> Result<Vec<Row>> {
         let line = Plan::new(self.along(axis, rows));
         let designs: Vec<u64> = (0..line.designs()).collect();
@@ -304,6 +365,34 @@ mod tests {
         assert!(line[at - 1].0 == slice.values[last] && line[at - 1].1 && !line[at].1, "{:?}", &line[at - 1..=at]);
         // The slice over the bands has their two levels, and no other.
         assert_eq!(slices[1].values, [6.0, 9.0]);
+    }
+
+    #[test]
+    fn the_largest_load_that_a_design_bears_is_found() {
+        let text = "[design]\nband_thickness_mm = [0.15, 0.2]\n[operation]\ntorque_Nm = [50, 100]\nratio = { from = 0.5, to = 2, count = 5 }\n[fixed]\nstrength_MPa = 900\ntraction = 0.3\n\
+                    [constraints]\nstress_margin = { min = 0 }\n[objectives]\naxial_force_N = \"min\"\n";
+        let study = |torque: f64| {
+            let text = text.replace("[50, 100]", &format!("[50, {torque:?}]"));
+            study_of(&crate::models::find("metal-cvt").expect("it is a model"), &text).expect("the study is right")
+        };
+        let plan = Plan::new(study(100.0));
+        let control = Control::default();
+        let given = [GivenRange::Load(0, 400.0), GivenRange::Load(1, 2.5)];
+        let (columns, slices) = around_with(&plan, 1, PLACES, &given, 2, &control).expect("slices");
+        let slice = &slices[1];
+        assert_eq!((slice.name.as_str(), slice.own, slices.len()), ("torque_Nm, the largest", 100.0, 3));
+        // Each place is the study that has this load, its own place that of the study.
+        for (value, row) in slice.values.iter().zip(&slice.rows) {
+            let alone = &certify::rows(&Plan::new(study(*value)), &columns, &[1], 1, &control).expect("a row")[0];
+            let bits = |row: &Row| row.columns.iter().map(|at| at.value.map(f64::to_bits)).collect::<Vec<_>>();
+            assert_eq!((bits(row), row.feasible), (bits(alone), alone.feasible), "{value} N m");
+        }
+        let here = slice.values.iter().position(|it| *it == slice.own).expect("its own place");
+        let [down, up] = edges(&slice.rows, here);
+        assert!(down.is_none() && up.is_some_and(|(last, next)| slice.values[next] - slice.values[last] < 0.2), "{:?}", slice.values);
+        // The end of a range stretches it.
+        assert_eq!(slices[2].values[0], 0.5);
+        assert_eq!(slices[2].values.last(), Some(&2.5));
     }
 
     #[test]

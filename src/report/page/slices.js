@@ -51,7 +51,7 @@
     const way = (word, { last, next }) => {
       const free = Math.abs(slice.at[last] - slice.own);
       const end = `${page.short(slice.at[last])}${unit}`;
-      if (next === null) return free === 0 ? `${word}: it is at the end of its ${slice.isFixed ? "slider" : "axis"}` : `${word} by ${page.short(free)} to ${end}, the end of its ${slice.isFixed ? "slider" : "axis"}`;
+      if (next === null) return free === 0 ? `${word}: it is at the end of its ${slice.isGiven ? "slider" : "axis"}` : `${word} by ${page.short(free)} to ${end}, the end of its ${slice.isGiven ? "slider" : "axis"}`;
       const fails = `at ${page.short(slice.at[next])}${unit} ${failsAt(slice, columns, next)}`;
       return free === 0 ? `${word}: not at all, ${fails}` : `${word} by ${page.short(free)} to ${end}; ${fails}`;
     };
@@ -123,13 +123,13 @@
     return svg.node();
   };
 
-  page.drawSlices = (box, { columns, slices, fixed = 0 }) => {
+  page.drawSlices = (box, { columns, slices, given = 0 }) => {
     const caption = (column) => page.element("figcaption", { title: column.doc }, page.breakable(column.name), column.unit ? page.element("span", { class: "unit" }, ` ${page.unit(column.unit)}`) : null);
     const cell = (slice, column, line) => (isSame(line) ? null : page.element("figure", { class: "slice-cell" }, caption(column), chart(slice, column, line)));
     const text = (slice) => [reachText(slice, columns), sameText(slice, columns)].flat().map((line) => page.element("div", { class: "unit" }, line));
-    slices.forEach((slice, i) => (slice.isFixed = i >= slices.length - fixed));
+    slices.forEach((slice, i) => (slice.isGiven = i >= slices.length - given));
     const row = (slice) => page.element("div", { class: "slice-row" }, page.element("div", { class: "slice-head" }, page.element("h3", {}, page.breakable(slice.input)), text(slice)), page.element("div", { class: "slice-cells" }, slice.lines.map((line, i) => cell(slice, columns[i], line))));
-    const list = page.element("div", { class: "slices", "data-testid": "slices" }, slices.flatMap((slice, i) => [fixed > 0 && i === slices.length - fixed ? page.element("h3", { class: "slice-group" }, "If a fixed value were another") : [], row(slice)].flat()));
+    const list = page.element("div", { class: "slices", "data-testid": "slices" }, slices.flatMap((slice, i) => [given > 0 && i === slices.length - given ? page.element("h3", { class: "slice-group" }, "If what the study gives were another") : [], row(slice)].flat()));
     const hint = page.element("p", { class: "hint" }, "Along each axis of the study, all else as it is. Dot: this design. Dashed: a limit. Shaded: infeasible. A tick on a line: another scenario becomes the worst.");
     box.replaceChildren(page.element("div", { class: "title-line" }, hint, page.saveButtonsOf("what is around the design", "around", () => list)), list);
   };

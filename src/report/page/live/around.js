@@ -4,13 +4,13 @@
 
   const ask = async () => {
     const section = page.byId("around");
-    const row = page.state.card ?? (page.front ? page.front.knee : null);
+    const row = page.state.card ?? (page.front ? page.chosenRow() : null);
     if (asking) asking.abort();
     if (page.state.awaited !== null) return null;
     if (row === null || row === undefined) return (section.hidden = true);
     section.hidden = false;
     const design = page.designOf(row);
-    const title = `Around design ${design}${page.state.card === null ? " (knee)" : ""}`;
+    const title = `Around design ${design}${page.state.card === null ? ` (${page.chosenWord()})` : ""}`;
     const box = section.querySelector(".around-box") || page.element("div", { class: "around-box" });
     section.replaceChildren(page.element("h2", { id: "around-title" }, title), box);
     asking = new AbortController();
@@ -71,6 +71,7 @@
       later(500);
       laterOutputs(500);
     });
+    page.events.on("choice.around", () => later(60));
     page.events.on("pins.around", () => laterOutputs(0));
     page.events.on("card.around", () => {
       later(60);
