@@ -226,7 +226,9 @@ fn a_design_and_what_is_around_it() {
     let mut client = Client::new(server());
     client.send("/around", r#"{"design": "5"}"#, "");
     let around = client.until("around").pop().expect("it is told");
-    assert_eq!(around["slices"].as_array().map(Vec::len), Some(2), "{around}");
+    let inputs: Vec<_> = around["slices"].as_array().expect("a list").iter().map(|it| it["input"].clone()).collect();
+    assert_eq!(inputs, ["band_count", "band_thickness_mm", "ratio, the largest", "friction"], "{around}");
+    assert_eq!(around["given"], 2);
     let mut client = Client::new(server());
     client.send("/around", r#"{"design": "63"}"#, "");
     assert!(client.until("error")[0]["message"].as_str().is_some_and(|it| it.contains("0 to 62")));

@@ -171,7 +171,9 @@ impl DesignLine<'_> {
             each.collect::<Result<Vec<Row>>>()
         };
         let places = AxisPlaces::Between { low: least, high: to, log: false, own: largest };
-        let (values, rows) = along_places(&places, largest, most, judged)?;
+        let (values, mut rows) = along_places(&places, largest, most, judged)?;
+        // Scenarios of one number are others at each place: whether another one becomes the worst cannot be told by them.
+        rows.iter_mut().flat_map(|row| &mut row.columns).for_each(|at| at.scenario = 0);
         let described = &study.model.inputs[input];
         let (name, unit) = (format!("{}, the largest", described.name), described.unit.symbol.to_owned());
         Ok(Slice { name, unit, own: largest, values, words: None, rows })
@@ -382,7 +384,9 @@ mod tests {
         let slice = &slices[1];
         assert_eq!((slice.name.as_str(), slice.own, slices.len()), ("torque_Nm, the largest", 100.0, 3));
         // Each place is the study that has this load, its own place that of the study.
-        for (value, row) in slice.values.iter().zip(&slice.rows) {
+        assert_eq!(slice.values[0], 50.0);
+        // A study may not list a load twice.
+        for (value, row) in slice.values.iter().zip(&slice.rows).skip(1) {
             let alone = &certify::rows(&Plan::new(study(*value)), &columns, &[1], 1, &control).expect("a row")[0];
             let bits = |row: &Row| row.columns.iter().map(|at| at.value.map(f64::to_bits)).collect::<Vec<_>>();
             assert_eq!((bits(row), row.feasible), (bits(alone), alone.feasible), "{value} N m");

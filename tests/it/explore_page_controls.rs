@@ -228,8 +228,8 @@ fn slices_go_over_fixed_values_too_and_the_yield_stands_with_its_interval() {
     let order: Vec<String> = serde_json::from_value(order).expect("texts");
     let place = |name: &str| order.iter().position(|it| it == name).unwrap_or_else(|| panic!("{name} in {order:?}"));
     assert!(
-        place("band_count") < place("If what the study gives were another")
-            && place("If what the study gives were another") < place("strength_MPa")
+        place("band_count") < place("With other loads and fixed values")
+            && place("With other loads and fixed values") < place("strength_MPa")
     );
     // Operating cases of what is drawn are no loads of the study.
     assert!(!order.iter().any(|it| it.contains("the largest")), "{order:?}");

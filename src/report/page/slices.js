@@ -129,7 +129,7 @@
     const text = (slice) => [reachText(slice, columns), sameText(slice, columns)].flat().map((line) => page.element("div", { class: "unit" }, line));
     slices.forEach((slice, i) => (slice.isGiven = i >= slices.length - given));
     const row = (slice) => page.element("div", { class: "slice-row" }, page.element("div", { class: "slice-head" }, page.element("h3", {}, page.breakable(slice.input)), text(slice)), page.element("div", { class: "slice-cells" }, slice.lines.map((line, i) => cell(slice, columns[i], line))));
-    const list = page.element("div", { class: "slices", "data-testid": "slices" }, slices.flatMap((slice, i) => [given > 0 && i === slices.length - given ? page.element("h3", { class: "slice-group" }, "If what the study gives were another") : [], row(slice)].flat()));
+    const list = page.element("div", { class: "slices", "data-testid": "slices" }, slices.flatMap((slice, i) => [given > 0 && i === slices.length - given ? page.element("h3", { class: "slice-group" }, "With other loads and fixed values") : [], row(slice)].flat()));
     const hint = page.element("p", { class: "hint" }, "Along each axis of the study, all else as it is. Dot: this design. Dashed: a limit. Shaded: infeasible. A tick on a line: another scenario becomes the worst.");
     box.replaceChildren(page.element("div", { class: "title-line" }, hint, page.saveButtonsOf("what is around the design", "around", () => list)), list);
   };
