@@ -13,6 +13,8 @@ const SCRIPTS: &[&str] = &[
     include_str!("page/selection.js"),
     include_str!("page/colour.js"),
     include_str!("page/raster.js"),
+    include_str!("page/crowd.js"),
+    include_str!("page/axes.js"),
     include_str!("page/save.js"),
     include_str!("page/rows.js"),
     include_str!("page/pins.js"),

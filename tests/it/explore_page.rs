@@ -459,11 +459,11 @@ pub fn axe() -> Option<String> {
     Some(std::fs::read_to_string(folder.path().join("node_modules/axe-core/axe.min.js")).expect("it is installed"))
 }
 
-/// The least contrast of the marks that are drawn on the plots: of every colour of the scale, of points behind and of unselected ones.
+/// The least contrast of the marks that are drawn on the plots: of every colour of both scales, of points behind and of unselected ones.
 pub const CONTRAST: &str = "(() => { const light = (c) => { const { r, g, b } = d3.rgb(c); const f = (v) => (v /= 255) <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; \
      return 0.2126 * f(r) + 0.7152 * f(g) + 0.0722 * f(b); }; const p = beltspace.page; const ground = light(p.variable('--plot')); \
      const ratio = (c) => { const l = light(c); return (Math.max(l, ground) + 0.05) / (Math.min(l, ground) + 0.05); }; \
-     const marks = [...d3.range(0, 1.001, 0.02).map(p.ramp()), ...['--sample', '--ghost', '--faint', '--muted', '--knee', '--ink', '--accent', '--other-square', '--other-cross', '--other-diamond'].map(p.variable)]; \
+     const marks = [...[p.ramp(), p.areaRamp()].flatMap((ramp) => d3.range(0, 1.001, 0.02).map(ramp)), ...['--sample', '--ghost', '--faint', '--muted', '--knee', '--ink', '--accent', '--other-square', '--other-cross', '--other-diamond'].map(p.variable)]; \
      return Math.min(...marks.map(ratio)); })()";
 
 #[test]

@@ -61,6 +61,8 @@ mod readme;
 mod report_page;
 /// The same: weights, trade-offs, what explains the feasible designs.
 mod report_page_choose;
+/// The same: many points and lines, and what lies over what.
+mod report_page_crowds;
 /// The drive drawn to scale and the slices of the knee, on that page.
 mod report_page_drawn;
 /// The same: other results over it.

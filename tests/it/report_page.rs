@@ -2,9 +2,7 @@
 //! full stage of the checks, and a missing browser is a failure.
 
 use crate::browser::Browser;
-use crate::random::Random;
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use tempfile::TempDir;
@@ -72,7 +70,7 @@ fn card_differs(browser: &mut Browser, table: &BTreeMap<String, String>) -> Opti
 }
 
 /// Drags over an area of a cell of the matrix, given in fractions of its width and height.
-fn brush(browser: &mut Browser, x: &str, y: &str, from: [f64; 2], to: [f64; 2]) {
+pub fn brush(browser: &mut Browser, x: &str, y: &str, from: [f64; 2], to: [f64; 2]) {
     let [left, top, width, height] = browser.rectangle(&format!(".cell[data-x={x:?}][data-y={y:?}] .overlay"));
     let place = |part: [f64; 2]| [left + part[0] * width, top + part[1] * height];
     browser.drag(place(from), place(to));
@@ -303,42 +301,6 @@ fn labels_stand_in_the_table_the_card_the_readout_and_what_is_selected() {
     assert_eq!(selected, front.iter().filter(|row| row["part_no"] == "007").count() as f64);
     browser.picture("labels");
     assert_eq!(browser.complaints, Vec::<String>::new());
-}
-
-#[test]
-#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored report_page --test-threads 1"]
-fn a_hundred_thousand_points_are_brushed() {
-    // Points of a sphere dominate each other nowhere: every row of a catalogue is on the front.
-    let folder = tempfile::tempdir().expect("there is room");
-    let random = &mut Random::new(1);
-    let mut rows = String::from("power_kW,slack_tension_N\n");
-    let points = 100_000;
-    for at in 0..points {
-        // More power and less slack tension: each row gives up some of one for the other.
-        let part = (f64::from(at) + random.unit()) / f64::from(points);
-        writeln!(rows, "{},{}", 1.0 + 4.0 * part, 400.0 + 300.0 * part).expect("text grows");
-    }
-    std::fs::write(folder.path().join("rows.csv"), rows).expect("it can be written");
-    let text = "model = \"pulley-load\"\ntitle = \"A catalogue of 100 000 drives\"\n[design]\ncases = { csv = \"rows.csv\" }\n\
-                [objectives]\npower_kW = \"max\"\nslack_tension_N = \"min\"\n[report]\n\
-                columns = [\"torque_Nm\", \"resultant_force_N\", \"friction_used\", \"tight_tension_N\"]\n";
-    std::fs::write(folder.path().join("catalogue.toml"), text).expect("it can be written");
-    let swept = Swept::of(folder.path().join("catalogue.toml").to_str().expect("a path of characters"));
-    assert_eq!(swept.front().len(), points as usize);
-    let mut browser = Browser::open(&swept.page(), "");
-    let loaded = browser.number("beltspace.timings.firstPaint");
-    brush(&mut browser, "power_kW", "slack_tension_N", [0.1, 0.1], [0.5, 0.95]);
-    let selected = browser.number("beltspace.selected().length");
-    assert!(selected > 1000.0 && selected < 99_000.0, "{selected}");
-    let update = browser.number(
-        "(() => { const start = performance.now(); beltspace.brushAxis('power_kW', [2, 3]); return performance.now() - start; })()",
-    );
-    let draw = browser.number("beltspace.timings.matrixDraw");
-    eprintln!(
-        "100 000 designs: brushable {loaded:.0} ms after navigation began; a brush takes {update:.0} ms, the matrix {draw:.0} ms to draw"
-    );
-    browser.picture("hundred-thousand");
-    assert!(browser.complaints.is_empty(), "{:#?}", browser.complaints);
 }
 
 #[test]

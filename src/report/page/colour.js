@@ -3,11 +3,11 @@
   const STEPS = 256;
   // Plasma without the end that is hard to see on the background: marks have a contrast of 3 at least.
   const rampOf = () => (page.dark() ? (t) => d3.interpolatePlasma(0.42 + 0.58 * t) : (t) => d3.interpolatePlasma(0.61 * t));
-  // Areas need no such contrast: they have more of the scale.
-  page.areaRamp = () => (page.dark() ? (t) => d3.interpolateViridis(0.22 + 0.78 * t) : (t) => d3.interpolateViridis(0.9 * t));
+  // Areas have another scale, of the same contrast.
+  page.areaRamp = () => (page.dark() ? (t) => d3.interpolateViridis(0.37 + 0.63 * t) : (t) => d3.interpolateViridis(0.57 * t));
 
   page.ramp = rampOf;
-  page.rampPixels = (ramp) => Uint32Array.from({ length: STEPS }, (_, i) => page.pixel(ramp(i / (STEPS - 1))));
+  page.rampPixels = (ramp) => Uint32Array.from(stopsOf(ramp, STEPS), page.pixel);
 
   // Words have colours that can be told apart, of which each has a contrast of 4.5 on the background.
   const WORDS = {
@@ -24,34 +24,33 @@
     return (value) => (span > 0 ? (value - column.low) / span : 0.5);
   };
 
-  // Pixel colours of all rows, computed again when the column or the theme changes.
-  let cache = { key: null, pixels: null, front: null };
-  page.colours = () => {
+  // The palette, whose last colour is that of absent values, and the place in it of each row's colour; computed again when the column or the
+  // theme changes.
+  let cache = { key: null };
+  page.paints = () => {
     const { front, state } = page;
     const key = `${state.colour} ${page.dark()}`;
-    if (cache.key === key && cache.front === front) return cache.pixels;
-    const none = page.pixel(page.variable("--muted"));
-    const pixels = new Uint32Array(front.rows);
+    if (cache.key === key && cache.front === front) return cache;
     const column = front.byName.get(state.colour);
-    if (!column) pixels.fill(none);
-    else {
-      const words = wordColours(column)?.map(page.pixel);
-      const table = page.rampPixels(rampOf());
-      const place = placeOf(column);
-      for (let i = 0; i < pixels.length; i++) {
-        if (words) {
-          pixels[i] = words[column.values[i]] ?? none;
-          continue;
-        }
-        const t = place(column.values[i]);
-        pixels[i] = t >= 0 ? table[Math.min(STEPS - 1, Math.round(t * (STEPS - 1)))] : none;
-      }
+    const words = column && wordColours(column);
+    const palette = [...(column ? words ?? stopsOf(rampOf(), STEPS) : []), page.variable("--muted")];
+    const none = palette.length - 1;
+    const index = new Uint16Array(front.rows).fill(none);
+    const place = column && placeOf(column);
+    for (let i = 0; column && i < index.length; i++) {
+      const value = column.values[i];
+      const t = words ? 0 : place(value);
+      if (words && value < none) index[i] = value;
+      else if (!words && t >= 0) index[i] = Math.min(STEPS - 1, Math.round(t * (STEPS - 1)));
     }
-    cache = { key, pixels, front };
-    return pixels;
+    const pixels = palette.map(page.pixel);
+    cache = { key, front, palette, index, pixels: Uint32Array.from(index, (at) => pixels[at]) };
+    return cache;
   };
 
-  const stopsOf = (ramp) => d3.range(0, 1.0001, 0.1).map((t) => ramp(t));
+  page.colours = () => page.paints().pixels;
+
+  const stopsOf = (ramp, count = 11) => d3.range(count).map((i) => ramp(i / (count - 1)));
 
   // A horizontal bar with its ticks: an SVG axis below a strip of CSS gradient.
   page.colourBar = (title, low, high, ramp, width = 240) => {
@@ -97,9 +96,7 @@
     };
   };
 
-  page.legend = () => {
-    const column = page.front.byName.get(page.state.colour);
-    if (!column) return page.element("div", {});
+  const legendOf = (column) => {
     const title = page.withUnit(column.name, column.unit);
     const ramp = rampOf();
     if (!column.words) return page.colourBar(title, column.low, column.high, ramp);
@@ -110,5 +107,12 @@
       return page.element("span", { class: "word" }, square, word);
     };
     return page.element("div", { class: "colour-bar" }, page.element("div", { class: "bar-title" }, title), page.element("div", { class: "words" }, column.words.map(swatch)));
+  };
+
+  page.legend = () => {
+    const column = page.front.byName.get(page.state.colour);
+    const bar = column ? legendOf(column) : page.element("div", {});
+    if (page.isCrowdOfPoints()) page.crowdKey(bar);
+    return bar;
   };
 }

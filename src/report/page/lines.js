@@ -40,12 +40,11 @@
     plot = { context, image, width, height, ys, pixels: new Uint32Array(image.data.buffer), base: new Uint32Array(width * height) };
     plot.xs = axes.map((axis) => axis.x * ratio);
     plot.baseDone = 0; // how many unselected lines are in the base already
+    const crowdOf = (count) => (page.isCrowdOfLines(count) ? page.crowd(width, height) : null);
+    [plot.crowd, plot.crowdBehind] = [crowdOf(page.front.rows), crowdOf(page.front.rows)];
+    plot.finish = 0; // ms that bringing a slice to the screen took
     page.redrawLines("all");
   };
-
-  // Each line can be told from the ground; of a crowd, where lines lie over one another, the more the fainter each.
-  const CROWD = 3000;
-  const coverFor = (count) => (count <= CROWD ? 256 : Math.round(256 * Math.max(0.1, Math.min(0.9, 22 / Math.sqrt(count)))));
 
   // Few lines are drawn so soon that the best can come last; of many the first slice is to be a sample.
   const MOST_ORDERED = 4000;
@@ -61,19 +60,23 @@
     const mine = ++run;
     if (what === "all") {
       plot.base.fill(page.pixel(page.variable("--plot")));
+      plot.crowdBehind?.clear();
       plot.baseDone = 0;
     }
     const everything = page.selectedCount === page.front.rows;
     const rows = everything ? order : order.filter((row) => page.mask[row]);
     const faint = page.pixel(page.variable("--faint"));
-    const faintCover = coverFor(page.front.rows);
-    const cover = coverFor(rows.length);
     const colours = page.colours();
-    const { width, height, xs, ys } = plot;
+    const { index } = page.paints();
+    const { width, height, xs, ys, crowdBehind } = plot;
+    // Each of few lines has its colour; of a crowd, the more lie in one place the more its colour differs from the ground.
+    const crowd = page.isCrowdOfLines(rows.length) ? plot.crowd : null;
+    const shades = crowd && page.shades();
     let done = 0;
     const restart = () => {
       if (everything) plot.pixels.fill(page.pixel(page.variable("--plot")));
       else plot.pixels.set(plot.base);
+      crowd?.clear();
       done = 0;
     };
     // All lines are drawn, faint, below those of a selection, once per layout. Until they are complete, each slice draws
@@ -81,25 +84,31 @@
     const drawUnder = (over) => {
       while (plot.baseDone < order.length && !over()) {
         const to = Math.min(order.length, plot.baseDone + CHUNK);
-        page.drawLines(plot.base, width, height, order, plot.baseDone, to, xs, ys, faint, faintCover);
+        if (crowdBehind) crowdBehind.addLines(order, plot.baseDone, to, xs, ys, null);
+        else page.drawLines(plot.base, width, height, order, plot.baseDone, to, xs, ys, faint);
         plot.baseDone = to;
       }
+      crowdBehind?.paint(plot.base, page.faintShades(), false);
       restart();
     };
     const slice = () => {
       if (mine !== run || !plot) return;
       const start = performance.now();
-      const over = () => !page.printing && performance.now() - start > SLICE;
+      const over = () => !page.printing && performance.now() - start > SLICE - plot.finish;
       const under = () => !everything && plot.baseDone < order.length;
       if (under()) drawUnder(over);
       else if (!done) restart();
       while (done < rows.length && (!over() || done === 0)) {
         const to = Math.min(rows.length, done + CHUNK);
-        page.drawLines(plot.pixels, width, height, rows, done, to, xs, ys, colours, cover);
+        if (crowd) crowd.addLines(rows, done, to, xs, ys, index);
+        else page.drawLines(plot.pixels, width, height, rows, done, to, xs, ys, colours);
         done = to;
       }
       if (under()) done = 0;
+      const drawn = performance.now();
+      crowd?.paint(plot.pixels, shades, false, crowd.most, !everything);
       plot.context.putImageData(plot.image, 0, 0);
+      plot.finish = Math.min(SLICE / 2, performance.now() - drawn);
       page.timings.linesSlice = performance.now() - start;
       if (done < rows.length || under()) again();
       else page.timings.linesDone = performance.now();

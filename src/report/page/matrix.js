@@ -4,8 +4,11 @@
   const LEFT = 74;
   const BOTTOM = 50;
   const TOP = 8;
+  const LEAST = 76; // px of a cell
   let cells = []; // { x, y, left, top, xs, ys, image, base, brush, group }
   let canvas, svg, size, ratio, disc, dot;
+  let crowd = null; // of the cell that is drawn, where there are many points
+  let densest; // of all points of all cells
 
   const sizeFor = (width, count) => {
     const across = count - 1;
@@ -14,7 +17,7 @@
     if (across === 1) return width < 700 && !page.printing ? Math.max(220, Math.min(440, width - LEFT - 16)) : Math.max(220, Math.min(page.printing ? 340 : 460, width - LEFT - 330));
     // On paper it stands on the first page, below the question.
     if (page.printing) return Math.max(96, Math.min(room, (490 - TOP - BOTTOM - GAP * across) / across));
-    return Math.max(96, Math.min(across === 2 ? 330 : 264, room));
+    return Math.max(LEAST, Math.min(across === 2 ? 330 : 264, room));
   };
 
   // Converts values to whole device pixels of a cell; -1 for an absent value.
@@ -104,13 +107,14 @@
     const across = names.length - 1;
     size = Math.floor(sizeFor(width, names.length));
     ratio = Math.min(2, window.devicePixelRatio || 1);
-    const total = { width: LEFT + across * (size + GAP), height: TOP + across * (size + GAP) - GAP + BOTTOM };
+    const columns = names.map((name) => front.byName.get(name));
+    const lines = Math.max(...columns.slice(0, -1).map((column) => xTitle(column).lines.length));
+    const total = { width: LEFT + across * (size + GAP), height: TOP + across * (size + GAP) - GAP + BOTTOM + 13 * (lines - 1) };
     const extent = Math.round(size * ratio);
     canvas = page.element("canvas", { width: Math.ceil(total.width * ratio), height: Math.ceil(total.height * ratio), "aria-hidden": "true" });
     canvas.style.width = `${canvas.width / ratio}px`;
     canvas.style.height = `${canvas.height / ratio}px`;
     svg = d3.create("svg").attr("width", total.width).attr("height", total.height);
-    const columns = names.map((name) => front.byName.get(name));
     const xs = columns.map((column) => pixelsOf(column, false));
     const ys = columns.map((column) => pixelsOf(column, true));
     const context = canvas.getContext("2d");
@@ -131,10 +135,12 @@
     stage.style.width = `${total.width}px`;
     stage.style.height = `${total.height}px`;
     box.append(stage, readout);
-    // The upper right of the triangle is free for the colour bar and the values of the current point.
-    const free = across === 1 ? 300 : Math.min(420, width - LEFT - size - GAP - 16);
-    readout.style.width = `${free}px`;
-    if (across > 1) readout.style.maxHeight = `${size + (across > 2 ? 0 : -4)}px`;
+    // The upper right of the triangle is free for the colour bar and the values of the current point; where that is too small they stand below.
+    const free = Math.min(420, width - LEFT - size - GAP - 16);
+    const isCorner = across > 1 && size >= 140 && free >= 200 && !page.printing;
+    readout.className = isCorner ? "corner" : across > 1 ? "below" : "";
+    readout.style.width = isCorner ? `${free}px` : across > 1 ? "100%" : "300px";
+    if (isCorner) readout.style.maxHeight = `${size + (across > 2 ? 0 : -4)}px`;
     draw(true);
     nameSample();
     syncBrushes();
@@ -143,25 +149,6 @@
   };
 
   const discOf = (rows) => page.disc((rows > 20000 ? 0.7 / ratio : rows > 4000 ? 1.6 : rows > 300 ? 2.4 : 3.4) * ratio);
-
-  const label = (column) => page.withUnit(column.name, column.unit) + (column.goal ? ` (${column.goal})` : "");
-
-  // The title of an axis in the room that there is.
-  const titleOf = (column, room) => {
-    const name = page.axisName(column.name, column.unit);
-    const wide = column.goal ? `${name}, ${column.goal === "min" ? "lower" : "higher"} is better` : name;
-    return wide.length * 6.4 <= room ? wide : name + (column.goal ? ` (${column.goal})` : "");
-  };
-
-  // On an axis of words every word has a tick.
-  page.axisOf = (orient, column, scale, count) => {
-    const axis = orient(scale).tickSizeOuter(0).tickSize(4).tickPadding(4);
-    if (column.words) return axis.tickValues(d3.range(column.words.length)).tickFormat((i) => column.words[i]);
-    if (Number.isNaN(column.low)) return axis.tickValues([]);
-    if (column.low === column.high) return axis.tickValues([column.low]).tickFormat(page.short);
-    const ticks = scale.ticks(count);
-    return axis.tickValues(column.whole ? ticks.filter(Number.isInteger) : ticks).tickFormat(page.tick(scale, count));
-  };
 
   const drawAxes = (cell) => {
     const ticks = Math.max(2, Math.floor(size / 62));
@@ -175,24 +162,21 @@
     }
   };
 
-  const fit = (text, room) => {
-    if (text.node().getComputedTextLength && text.text().length * 6.4 > room) text.attr("textLength", room).attr("lengthAdjust", "spacingAndGlyphs");
-  };
+  const xTitle = (column) => page.axisTitle(column, size + GAP - 4, 3);
 
   const addCell = (cell, first, last) => {
     const group = svg.append("g").attr("class", "cell").attr("transform", `translate(${cell.left},${cell.top})`);
     group.attr("data-x", cell.x.name).attr("data-y", cell.y.name).attr("tabindex", 0).attr("role", "application");
-    group.attr("aria-label", `${label(cell.y)} over ${label(cell.x)}: arrow keys go from design to design, Enter opens the card`);
+    group.attr("aria-label", `${page.axisLabel(cell.y)} over ${page.axisLabel(cell.x)}: arrow keys go from design to design, Enter opens the card`);
     group.append("rect").attr("class", "frame").attr("width", size).attr("height", size);
     if (last) {
       cell.xAxis = group.append("g").attr("class", "tick-axis").attr("transform", `translate(0,${size})`);
-      const title = group.append("text").attr("class", "axis-title").attr("x", size / 2).attr("y", size + 37).attr("text-anchor", "middle").text(titleOf(cell.x, size + GAP - 4));
-      fit(title, size + GAP - 4);
+      page.writeTitle(group.append("text").attr("class", "axis-title").attr("y", size + 37), xTitle(cell.x), size / 2);
     }
     if (first) {
       cell.yAxis = group.append("g").attr("class", "tick-axis");
-      const title = group.append("text").attr("class", "axis-title").attr("transform", `translate(-60,${size / 2})rotate(-90)`).attr("text-anchor", "middle").text(titleOf(cell.y, size + GAP - 4));
-      fit(title, size + GAP - 4);
+      const title = page.axisTitle(cell.y, size + GAP - 4, 2);
+      page.writeTitle(group.append("text").attr("class", "axis-title").attr("transform", `translate(${title.lines.length > 1 ? -64 : -60},${size / 2})rotate(-90)`), title);
     }
     drawAxes(cell);
     cell.marks = group.append("g").attr("class", "marks");
@@ -306,16 +290,39 @@
     }
   };
 
+  const fill = (cell, wanted, index) => {
+    crowd.clear();
+    crowd.addPoints(cell.xs, cell.ys, page.mask, wanted, index);
+    return crowd.most;
+  };
+
   // The unselected points of all rows are drawn once per layout, in a pause or with the first brush; a brush then only adds the selected ones.
   const drawUnselected = () => {
-    const faint = page.pixel(page.variable("--faint"));
+    const waiting = cells.filter((it) => !it.isBased);
+    if (!waiting.length) return;
     const extent = Math.round(size * ratio);
-    for (const cell of cells.filter((it) => !it.isBased)) {
-      page.drawPoints(cell.base, extent, extent, cell.xs, cell.ys, page.mask, null, faint, disc);
+    const faint = page.pixel(page.variable("--faint"));
+    const shades = crowd && page.faintShades();
+    for (const cell of waiting) {
+      if (crowd) {
+        fill(cell, null, null);
+        crowd.paint(cell.base, shades, true, densest);
+      } else page.drawPoints(cell.base, extent, extent, cell.xs, cell.ys, page.mask, null, faint, disc);
       cell.isBased = true;
     }
   };
   const drawUnselectedLater = page.afterPause(300, () => page.front.rows && drawUnselected());
+
+  // What lies behind the points of the front.
+  const drawBehind = (cell, extent, ground) => {
+    const points = (at, colour, mark) => page.drawPoints(cell.base, extent, extent, at.xs, at.ys, null, null, page.pixel(colour), mark);
+    cell.base.fill(ground);
+    if (cell.behind) points(cell.behind, page.variable("--sample"), dot);
+    if (cell.ghost) points(cell.ghost, page.variable("--ghost"), disc);
+    for (const { other, at } of cell.others) points(at, page.otherColour(other), page.otherMark(other, ratio));
+    if (cell.ground) cell.ground.set(cell.base);
+    cell.isBased = false;
+  };
 
   const draw = (all) => {
     if (!cells.length) return;
@@ -326,25 +333,23 @@
     const colours = page.colours();
     const everything = page.selectedCount === page.front.rows;
     const order = page.paintOrder();
-    for (const cell of cells) {
-      if (all) {
-        cell.base.fill(ground);
-        if (cell.behind) {
-          page.drawPoints(cell.base, extent, extent, cell.behind.xs, cell.behind.ys, null, null, page.pixel(page.variable("--sample")), dot);
-        }
-        if (cell.ghost) page.drawPoints(cell.base, extent, extent, cell.ghost.xs, cell.ghost.ys, null, null, page.pixel(page.variable("--ghost")), disc);
-        for (const { other, at } of cell.others) page.drawPoints(cell.base, extent, extent, at.xs, at.ys, null, null, page.pixel(page.otherColour(other)), page.otherMark(other, ratio));
-        if (cell.ground) cell.ground.set(cell.base);
-        cell.isBased = false;
-      }
+    if (all) {
+      for (const cell of cells) drawBehind(cell, extent, ground);
+      crowd = page.isCrowdOfPoints() ? page.crowd(extent, extent) : null;
+      densest = crowd && Math.max(...cells.map((cell) => fill(cell, null, null)));
     }
     if (!everything) drawUnselected();
     else if (all) drawUnselectedLater();
+    const shades = crowd && page.shades();
     for (const cell of cells) {
       if (everything && cell.ground) cell.pixels.set(cell.ground);
       else if (everything) cell.pixels.fill(ground);
       else cell.pixels.set(cell.base);
-      page.drawPoints(cell.pixels, extent, extent, cell.xs, cell.ys, page.mask, everything ? null : 1, colours, disc, order);
+      const wanted = everything ? null : 1;
+      if (crowd) {
+        fill(cell, wanted, page.paints().index);
+        crowd.paint(cell.pixels, shades, true, densest, !everything);
+      } else page.drawPoints(cell.pixels, extent, extent, cell.xs, cell.ys, page.mask, wanted, colours, disc, order);
       context.putImageData(cell.image, Math.round(cell.left * ratio), Math.round(cell.top * ratio));
     }
     page.timings.matrixDraw = performance.now() - start;

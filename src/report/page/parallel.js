@@ -1,9 +1,10 @@
 // Parallel coordinates: the axes, their brushes and titles. The lines are drawn in lines.js.
 {
   const HEIGHT = 300;
-  const LEAST = 62; // px from axis to axis
+  const LEAST = 51; // px from axis to axis
   const PAD = 10;
   const NARROW = 74; // px: narrower axes have smaller titles of more lines
+  const TIGHT = 60; // px: and here of even smaller letters
   const headOfStep = (step) => (step < NARROW ? 112 : 92); // room for titles and buttons
   let axes = []; // { column, x, scale, group, brush }
   let stage, svg, width;
@@ -11,6 +12,10 @@
   const scaleOf = (column) => {
     const range = page.state.inverted.has(column.name) ? [PAD, HEIGHT - PAD] : [HEIGHT - PAD, PAD];
     return d3.scaleLinear(page.domain(column), range);
+  };
+
+  const nameCrowd = () => {
+    page.byId("crowd-hint").textContent = page.isCrowdOfLines(page.front.rows) ? ` ${page.denser()}: more lines in one place.` : "";
   };
 
   // A column that is the same for every design on the front has no axis; its value is written above.
@@ -51,6 +56,7 @@
       axes.push(axis);
     }
     box.replaceChildren(stage);
+    nameCrowd();
     page.layoutLines({ canvas, width, height: HEIGHT, axes });
     syncBrushes();
     showPins();
@@ -124,7 +130,7 @@
       button("invert", "Reverse:", "⇅", false, () => page.invertAxis(column.name), String(inverted)),
       button("right", "Move to the right:", "›", place === state.parallel.length - 1, () => page.moveAxis(column.name, place + 1)),
     );
-    const head = page.element("div", { class: `axis-head${step < NARROW ? " narrow" : ""}`, "data-axis": column.name }, title, sub, buttons);
+    const head = page.element("div", { class: `axis-head${step < NARROW ? " narrow" : ""}${step < TIGHT ? " tight" : ""}`, "data-axis": column.name }, title, sub, buttons);
     head.style.left = `${axis.x - step / 2}px`;
     head.style.width = `${step}px`;
     dragBy(title, head, axis, step);
@@ -219,7 +225,10 @@
       page.redrawLines("brush");
     });
     page.events.on("colour.parallel", () => page.redrawLines("brush"));
-    page.events.on("theme.parallel", () => page.redrawLines("all"));
+    page.events.on("theme.parallel", () => {
+      nameCrowd();
+      page.redrawLines("all");
+    });
     page.events.on("pins.parallel", showPins);
     page.events.on("current.parallel", showCurrent);
     page.events.on("card.parallel", showCurrent);

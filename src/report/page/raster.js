@@ -1,7 +1,7 @@
 // Points and lines drawn into the pixels of an ImageData. Without a GPU this is many times faster than canvas paths,
 // and as fast in every browser.
 {
-  // A disc as offsets with their coverage of 0 to 256, the fully covered ones first.
+  // A disc as offsets with their coverage of 0 to 256.
   page.disc = (radius) => {
     // Many points: two by two pixels, without mixing.
     if (radius < 1) return [[0, 0], [1, 0], [0, 1], [1, 1]].map(([dx, dy]) => ({ dx, dy, cover: 256 }));
@@ -23,46 +23,32 @@
     return (0xff000000 | rb | g) >>> 0;
   };
 
-  // The same for discs of whole pixels only: each point is read once, which matters above ten thousand points.
-  const drawSolid = (target, width, height, xs, ys, mask, wanted, colourOf, disc, order) => {
+  // Points with mask[row] === wanted (all for wanted null); xs and ys hold pixels, negative for an absent value. `order`: the rows, those that
+  // lie over the others last; each is painted whole before the next one.
+  page.drawPoints = (target, width, height, xs, ys, mask, wanted, colourOf, disc, order = null) => {
     const single = typeof colourOf === "number";
     const offsets = disc.map(({ dx, dy }) => dy * width + dx);
     const reach = Math.max(...disc.flatMap(({ dx, dy }) => [Math.abs(dx), Math.abs(dy)]));
-    // Without an order the first rows, which are the best of the first objective, are painted last, over the others.
+    // Without an order the first rows, which are the best of the first objective, are painted last.
     for (let k = xs.length - 1; k >= 0; k--) {
       const i = order ? order[xs.length - 1 - k] : k;
       if (wanted !== null && mask[i] !== wanted) continue;
       const x = xs[i];
       const y = ys[i];
-      if (x < reach || y < reach || x >= width - reach || y >= height - reach) continue;
-      const at = y * width + x;
+      if (x < 0 || y < 0) continue;
+      const isInside = x >= reach && y >= reach && x < width - reach && y < height - reach;
       const colour = single ? colourOf : colourOf[i];
-      for (let spot = 0; spot < offsets.length; spot++) target[at + offsets[spot]] = colour;
-    }
-  };
-
-  // Points with mask[row] === wanted (all for wanted null); xs and ys hold pixels, negative for an absent value. `order`: the rows, those that
-  // lie over the others last.
-  page.drawPoints = (target, width, height, xs, ys, mask, wanted, colourOf, disc, order = null) => {
-    const single = typeof colourOf === "number";
-    if (disc.every(({ cover }) => cover >= 256)) return drawSolid(target, width, height, xs, ys, mask, wanted, colourOf, disc, order);
-    for (const { dx, dy, cover } of disc) {
-      const offset = dy * width + dx;
-      for (let k = xs.length - 1; k >= 0; k--) {
-        const i = order ? order[xs.length - 1 - k] : k;
-        if (wanted !== null && mask[i] !== wanted) continue;
-        const x = xs[i];
-        const y = ys[i];
-        if (x < 0 || y < 0 || x + dx < 0 || x + dx >= width || y + dy < 0 || y + dy >= height) continue;
-        const at = y * width + x + offset;
-        const colour = single ? colourOf : colourOf[i];
+      for (let spot = 0; spot < offsets.length; spot++) {
+        const { dx, dy, cover } = disc[spot];
+        if (!isInside && (x + dx < 0 || y + dy < 0 || x + dx >= width || y + dy >= height)) continue;
+        const at = y * width + x + offsets[spot];
         target[at] = cover >= 256 ? colour : mix(target[at], colour, cover);
       }
     }
   };
 
   // One straight line with smooth edges (Wu): along the longer direction, two pixels per step share the coverage.
-  const drawLine = (target, width, height, x0, y0, x1, y1, colour, cover) => {
+  const drawLine = (target, width, height, x0, y0, x1, y1, colour) => {
     const steep = Math.abs(y1 - y0) > Math.abs(x1 - x0);
     if (steep) [x0, y0, x1, y1] = [y0, x0, y1, x1];
     if (x0 > x1) [x0, y0, x1, y1] = [x1, y1, x0, y0];
@@ -78,14 +64,14 @@
       if (whole < 0 || whole >= limit) continue;
       const part = b - whole;
       const at = a * along + whole * across;
-      const lower = (cover * part) | 0;
-      target[at] = mix(target[at], colour, cover - lower);
+      const lower = (256 * part) | 0;
+      target[at] = mix(target[at], colour, 256 - lower);
       target[at + across] = mix(target[at + across], colour, lower);
     }
   };
 
   // Polylines over the axes at xs for rows[from..to); ys[axis][row] in pixels, NaN breaks the line.
-  page.drawLines = (target, width, height, rows, from, to, xs, ys, colourOf, cover) => {
+  page.drawLines = (target, width, height, rows, from, to, xs, ys, colourOf) => {
     const single = typeof colourOf === "number";
     for (let i = from; i < to; i++) {
       const row = rows[i];
@@ -93,7 +79,7 @@
       for (let axis = 1; axis < xs.length; axis++) {
         const y0 = ys[axis - 1][row];
         const y1 = ys[axis][row];
-        if (y0 >= 0 && y1 >= 0) drawLine(target, width, height, xs[axis - 1], y0, xs[axis], y1, colour, cover);
+        if (y0 >= 0 && y1 >= 0) drawLine(target, width, height, xs[axis - 1], y0, xs[axis], y1, colour);
       }
     }
   };

@@ -1,0 +1,54 @@
+// Titles and ticks of the axes of cells and of other plots.
+{
+  page.axisLabel = (column) => page.withUnit(column.name, column.unit) + (column.goal ? ` (${column.goal})` : "");
+
+  const pen = document.createElement("canvas").getContext("2d");
+  const widthOf = (text, size) => {
+    pen.font = `${size}px ${getComputedStyle(document.body).fontFamily}`;
+    return pen.measureText(text).width;
+  };
+
+  // Words in as few lines as hold them.
+  const broken = (text, room, size) =>
+    text.split(" ").reduce((lines, word) => {
+      const longer = lines.length ? `${lines[lines.length - 1]} ${word}` : word;
+      if (lines.length && widthOf(longer, size) <= room) lines[lines.length - 1] = longer;
+      else lines.push(word);
+      return lines;
+    }, []);
+
+  // The title of an axis in the room that there is: { lines, size }. Letters are made smaller, never narrower; what still has no room is cut off.
+  const SIZES = [12, 11, 10, 9.5];
+  page.axisTitle = (column, room, most) => {
+    const name = page.axisName(column.name, column.unit);
+    const wide = column.goal ? `${name}, ${column.goal === "min" ? "lower" : "higher"} is better` : name;
+    if (widthOf(wide, SIZES[0]) <= room) return { lines: [wide], size: SIZES[0], whole: wide };
+    const whole = name + (column.goal ? ` (${column.goal})` : "");
+    const least = SIZES[SIZES.length - 1];
+    const size = SIZES.find((it) => broken(whole, room, it).every((line, at) => at < most && widthOf(line, it) <= room)) ?? least;
+    const lines = broken(whole, room, size);
+    const cut = (line, isEnd) => {
+      if (widthOf(line, size) <= room && !isEnd) return line;
+      while (line.length > 1 && widthOf(`${line}…`, size) > room) line = line.slice(0, -1);
+      return `${line}…`;
+    };
+    return { lines: lines.slice(0, most).map((line, at) => cut(line, at === most - 1 && lines.length > most)), size, whole };
+  };
+
+  // The lines of a title below one another, as the text of an SVG.
+  page.writeTitle = (text, { lines, size, whole }, x = 0) => {
+    text.attr("text-anchor", "middle").style("font-size", `${size}px`);
+    lines.forEach((line, at) => text.append("tspan").attr("x", x).attr("dy", at ? "1.1em" : 0).text(line));
+    if (lines.join(" ") !== whole) text.append("title").text(whole);
+  };
+
+  // On an axis of words every word has a tick.
+  page.axisOf = (orient, column, scale, count) => {
+    const axis = orient(scale).tickSizeOuter(0).tickSize(4).tickPadding(4);
+    if (column.words) return axis.tickValues(d3.range(column.words.length)).tickFormat((i) => column.words[i]);
+    if (Number.isNaN(column.low)) return axis.tickValues([]);
+    if (column.low === column.high) return axis.tickValues([column.low]).tickFormat(page.short);
+    const ticks = scale.ticks(count);
+    return axis.tickValues(column.whole ? ticks.filter(Number.isInteger) : ticks).tickFormat(page.tick(scale, count));
+  };
+}
