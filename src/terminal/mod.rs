@@ -30,10 +30,12 @@ pub fn report_error(error: &Error) {
     let _ = writeln!(std::io::stderr(), "{} {}", style.apply_to("error:"), harmless(&error.to_string(), false));
 }
 
-/// Prints a remark to standard error.
+/// Prints a remark to standard error, as wide as the terminal is if it is one.
 pub fn remark(kind: &str, text: &str) {
     let style = Style::new().for_stderr().yellow().bold();
-    let _ = writeln!(std::io::stderr(), "{} {}", style.apply_to(format!("{kind}:")), harmless(text, false));
+    let line = format!("{} {}", style.apply_to(format!("{kind}:")), harmless(text, false));
+    let line = if std::io::stderr().is_terminal() { filled(&line, usize::from(console::Term::stderr().size().1)) } else { line };
+    let _ = writeln!(std::io::stderr(), "{line}");
 }
 
 /// Text from a file, such as a title, on one line, with the characters that control a terminal escaped.

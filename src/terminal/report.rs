@@ -7,7 +7,7 @@ use beltspace::influence::{InfluenceMethod, InfluenceReport, QuantityVerdict};
 use beltspace::models::OVERFLOW;
 use beltspace::study::{Axis, Goal};
 use std::path::{Path, PathBuf};
-use textplots::{Chart, Plot, Shape};
+use textplots::{Chart, LabelBuilder, LabelFormat, Plot, Shape};
 
 /// Designs of the front that are shown.
 const SHOWN: usize = 8;
@@ -241,6 +241,13 @@ fn ranking(report: &InfluenceReport) -> &'static str {
     }
 }
 
+/// Digits behind the point with which both ends of an axis, and what is a tenth of it apart, read as different numbers.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number from 0 to 9")]
+fn digits_between(low: f32, high: f32) -> usize {
+    let span = high - low;
+    if span > 0.0 { (1.0 - span.log10()).ceil().clamp(0.0, 9.0) as usize } else { 1 }
+}
+
 /// A front of two objectives as a picture of characters, where the terminal is wide enough.
 #[allow(clippy::cast_possible_truncation, reason = "a picture of a few hundred dots")]
 fn plot(outcome: &Certified<'_>) -> String {
@@ -259,7 +266,12 @@ fn plot(outcome: &Certified<'_>) -> String {
     let dots = u32::try_from(2 * (columns - 12)).unwrap_or(120);
     let shape = Shape::Points(&points);
     let mut chart = Chart::new(dots, 48, low, high);
-    let chart = chart.lineplot(&shape);
+    let (bottom, top) = points.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), point| (low.min(point.1), high.max(point.1)));
+    let label = |low: f32, high: f32| {
+        let digits = digits_between(low, high);
+        LabelFormat::Custom(Box::new(move |value| format!("{value:.digits$}")))
+    };
+    let chart = chart.lineplot(&shape).x_label_format(label(low, high)).y_label_format(label(bottom, top));
     chart.borders();
     chart.axis();
     chart.figures();
@@ -269,4 +281,23 @@ fn plot(outcome: &Certified<'_>) -> String {
         dim(&format!("{} upwards", name(1))),
         dim(&format!("{:>width$}", name(0), width = columns.saturating_sub(14)))
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ends_of_an_axis_read_as_different_numbers() {
+        for (low, high, ends) in [
+            (0.9995, 1.0, ["0.99950", "1.00000"]),
+            (0.4, 2.0, ["0.4", "2.0"]),
+            (58_138.0, 75_000.0, ["58138", "75000"]),
+            (3.0, 4.0, ["3.0", "4.0"]),
+        ] {
+            let digits = digits_between(low, high);
+            assert_eq!([low, high].map(|it| format!("{it:.digits$}")), ends);
+        }
+        assert_eq!(digits_between(2.0, 2.0), 1);
+    }
 }

@@ -23,6 +23,37 @@ fn too_wide(text: &str) -> Vec<String> {
     wide.filter(|line| line.split_whitespace().all(|word| word.len() < WIDTH - 10)).map(str::to_owned).collect()
 }
 
+/// What a command says on standard error where that is a terminal.
+fn said_in_terminal(folder: &Path, columns: usize, words: &str) -> String {
+    let program = env!("CARGO_BIN_EXE_beltspace");
+    let line = format!("stty rows 24 cols {columns} && '{program}' {words} > told");
+    let output = Command::new("script").args(["-qec", &line, "/dev/null"]).current_dir(folder).output().expect("script is there");
+    assert!(output.status.success(), "{words}: {}", String::from_utf8_lossy(&output.stdout));
+    console::strip_ansi_codes(&String::from_utf8(output.stdout).expect("text")).replace('\r', "")
+}
+
+#[test]
+#[ignore = "needs a terminal: cargo test --test it -- --ignored terminal_width"]
+fn notes_are_no_wider_than_the_terminal() {
+    let folder = tempfile::tempdir().expect("there is room");
+    let folder = folder.path();
+    fs::write(folder.join("grooves.csv"), "band_count,where_it_was_found\n8,here\n9,there\n").expect("it can be written");
+    let study = "model = \"metal-cvt\"\n[design]\ncases = { csv = \"grooves.csv\", unused = \"ok\" }\n[objectives]\nmax_stress_MPa = \"min\"\n";
+    fs::write(folder.join("study.toml"), study).expect("it can be written");
+    let words = "sweep study.toml --out r --force";
+    let note = |columns| {
+        let said = said_in_terminal(folder, columns, words);
+        let begin = said.find("note: ").unwrap_or_else(|| panic!("no note: {said}"));
+        said[begin..].to_owned()
+    };
+    let (wide, narrow) = (note(300), note(60));
+    assert!(wide.lines().next().is_some_and(|line| line.len() > 60), "{wide}");
+    assert!(narrow.lines().all(|line| console::measure_text_width(line) <= 60), "{narrow}");
+    // No word is lost.
+    let sentence: Vec<&str> = wide.lines().next().expect("a line").split_whitespace().collect();
+    assert!(narrow.split_whitespace().collect::<Vec<_>>().starts_with(&sentence), "{narrow}");
+}
+
 const STUDY: &str = r#"model = "metal-cvt"
 title = "A push belt with a title that is longer than a terminal is wide, so that it has to be broken between its words"
 [design]
