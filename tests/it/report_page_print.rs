@@ -68,6 +68,31 @@ fn the_page_is_printed_without_broken_numbers_and_half_empty_pages() {
 }
 
 #[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored report_page --test-threads 1"]
+fn no_sheet_of_any_study_is_half_empty_and_no_title_is_broken_inside_a_word() {
+    for name in ["metal-cvt", "pulley-thickness", "timing-design"] {
+        let swept = Swept::shipped(name);
+        let mut browser = Browser::open(&swept.page(), "");
+        let file = swept.folder.path().join("page.pdf");
+        std::fs::write(&file, browser.paper()).expect("it can be written");
+        let filled = filled(&file);
+        eprintln!("{name}: {} pages, filled to {filled:.2?}", filled.len());
+        assert!(filled[..filled.len() - 1].iter().all(|&it| it > 0.55), "{name}: {filled:?}");
+        // The front stands below the question, on the first sheet.
+        let path = file.to_str().expect("a path of characters");
+        assert!(read_by("pdftotext", &["-layout", "-f", "1", "-l", "1", path, "-"]).contains("Pareto front"), "{name}");
+        let whole = read_by("pdftotext", &["-layout", "-f", "1", "-l", "2", path, "-"]);
+        let axes: Vec<String> = serde_json::from_value(browser.evaluate("beltspace.state.parallel")).expect("names");
+        for part in axes.iter().flat_map(|it| it.split_inclusive('_')) {
+            assert!(whole.split_whitespace().any(|word| word.contains(part)), "{name}: {part} is broken");
+        }
+        // What was made for paper is gone again.
+        assert_eq!(browser.text("document.documentElement.className"), "");
+        assert_eq!(browser.complaints, Vec::<String>::new());
+    }
+}
+
+#[test]
 fn ink_is_found_where_it_is() {
     let mut page = b"P5\n4 10\n255\n".to_vec();
     page.extend([255; 40]);

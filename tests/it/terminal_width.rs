@@ -38,7 +38,8 @@ fn notes_are_no_wider_than_the_terminal() {
     let folder = tempfile::tempdir().expect("there is room");
     let folder = folder.path();
     fs::write(folder.join("grooves.csv"), "band_count,where_it_was_found\n8,here\n9,there\n").expect("it can be written");
-    let study = "model = \"metal-cvt\"\n[design]\ncases = { csv = \"grooves.csv\", unused = \"ok\" }\n[objectives]\nmax_stress_MPa = \"min\"\n";
+    let study =
+        "model = \"metal-cvt\"\n[design]\ncases = { csv = \"grooves.csv\", unused = \"ok\" }\n[objectives]\nmax_stress_MPa = \"min\"\n";
     fs::write(folder.join("study.toml"), study).expect("it can be written");
     let words = "sweep study.toml --out r --force";
     let note = |columns| {

@@ -3,20 +3,25 @@
   const GAP = 14;
   const LEFT = 74;
   const BOTTOM = 50;
+  const TITLES = BOTTOM + 26; // where they have three lines
   const TOP = 8;
   const LEAST = 76; // px of a cell
   let cells = []; // { x, y, left, top, xs, ys, image, base, brush, group }
   let canvas, svg, size, ratio, disc, dot;
-  let crowd = null; // of the cell that is drawn, where there are many points
-  let densest; // of all points of all cells
+  let crowd = null; // of the cell that is drawn
+  let densest; // of all cells
 
   const sizeFor = (width, count) => {
     const across = count - 1;
     const room = (width - LEFT - GAP * across) / across;
     // One cell has the values of the current design beside it, or below where there is no room.
     if (across === 1) return width < 700 && !page.printing ? Math.max(220, Math.min(440, width - LEFT - 16)) : Math.max(220, Math.min(page.printing ? 340 : 460, width - LEFT - 330));
-    // On paper it stands on the first page, below the question.
-    if (page.printing) return Math.max(96, Math.min(room, (490 - TOP - BOTTOM - GAP * across) / across));
+    // On paper it stands on the first page, below the question, if there is room for cells that can be read.
+    if (page.printing) {
+      const around = TOP + TITLES + GAP * across;
+      const left = page.sheetLeft(page.byId("splom"));
+      return Math.max(LEAST, Math.min(room, ((left < across * LEAST + around ? 490 : Math.min(490, left)) - around) / across));
+    }
     return Math.max(LEAST, Math.min(across === 2 ? 330 : 264, room));
   };
 
@@ -330,7 +335,7 @@
     const context = canvas.getContext("2d");
     const ground = page.pixel(page.variable("--plot"));
     const extent = Math.round(size * ratio);
-    const colours = page.colours();
+    const { index, pixels: colours } = page.paints();
     const everything = page.selectedCount === page.front.rows;
     const order = page.paintOrder();
     if (all) {
@@ -347,7 +352,7 @@
       else cell.pixels.set(cell.base);
       const wanted = everything ? null : 1;
       if (crowd) {
-        fill(cell, wanted, page.paints().index);
+        fill(cell, wanted, index);
         crowd.paint(cell.pixels, shades, true, densest, !everything);
       } else page.drawPoints(cell.pixels, extent, extent, cell.xs, cell.ys, page.mask, wanted, colours, disc, order);
       context.putImageData(cell.image, Math.round(cell.left * ratio), Math.round(cell.top * ratio));

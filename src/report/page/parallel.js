@@ -5,7 +5,7 @@
   const PAD = 10;
   const NARROW = 74; // px: narrower axes have smaller titles of more lines
   const TIGHT = 60; // px: and here of even smaller letters
-  const headOfStep = (step) => (step < NARROW ? 112 : 92); // room for titles and buttons
+  const headOfStep = (step) => (page.printing ? 62 : step < NARROW ? 112 : 92); // room for titles and, but on paper, buttons
   let axes = []; // { column, x, scale, group, brush }
   let stage, svg, width;
 

@@ -1,6 +1,7 @@
 // Light and dark theme, the width of the layout, and printing: always light, at the width of a sheet.
 {
   const SHEET = 680; // px of a printed line on A4 and letter paper
+  const SHEET_HEIGHT = 940;
   const system = window.matchMedia("(prefers-color-scheme: dark)");
   page.printing = false;
 
@@ -31,9 +32,14 @@
     const study = document.querySelector("#study details");
     if (study) [study.open, page.studyOpen] = on ? [true, study.open] : [page.studyOpen, false];
     document.documentElement.dataset.theme = page.dark() ? "dark" : "light";
+    // As wide as on paper, so that what stands on the first sheet can be measured.
+    document.documentElement.classList.toggle("on-paper", on);
     page.events.call("layout");
     page.events.call("theme");
   };
+
+  // What is left of the first sheet below the top of an element.
+  page.sheetLeft = (element) => SHEET_HEIGHT - (element.getBoundingClientRect().top - page.byId("main").getBoundingClientRect().top);
 
   page.startTheme = () => {
     system.addEventListener("change", () => page.state.theme || page.applyTheme());
