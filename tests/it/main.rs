@@ -23,8 +23,9 @@ mod every_function;
 mod explore_page;
 /// The same: weights, trade-offs, what explains the feasible designs.
 mod explore_page_choose;
-/// The same, on screens of several sizes.
+/// The same: controls, and what is typed into them.
 mod explore_page_controls;
+/// The same, on screens of several sizes.
 mod explore_page_laptop;
 mod explore_page_pace;
 /// What a result says besides its numbers, by brute force.
