@@ -59,7 +59,8 @@
     let waiting = 0;
     const later = (wait) => {
       clearTimeout(waiting);
-      waiting = setTimeout(ask, wait);
+      // The front comes first.
+      waiting = setTimeout(() => (page.isAnswered() ? ask() : later(wait)), wait);
     };
     // The card is drawn anew with another front and with each pin: its list of outputs too.
     let outputs = 0;
@@ -67,6 +68,11 @@
       clearTimeout(outputs);
       outputs = setTimeout(askOutputs, wait);
     };
+    // What was around the design before a change keeps nobody waiting.
+    page.events.on("changes.around", () => {
+      if (asking) asking.abort();
+      later(500);
+    });
     page.events.on("front.around", () => {
       later(500);
       laterOutputs(500);
