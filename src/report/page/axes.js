@@ -17,8 +17,8 @@
       return lines;
     }, []);
 
-  // The title of an axis in the room that there is: { lines, size, whole }. Letters are made smaller, never narrower; what still has no room
-  // is cut off.
+  // The title of an axis in the room that there is: { lines, size, whole }. Letters are made smaller, never narrower; what still has
+  // no room is cut off.
   const SIZES = [12, 11, 10, 9.5];
   page.axisTitle = (column, room, most) => {
     const name = page.axisName(column.name, column.unit);

@@ -24,8 +24,8 @@
     return (value) => (span > 0 ? (value - column.low) / span : 0.5);
   };
 
-  // The palette, whose last colour is that of absent values, and the place in it of each row's colour; computed again when the column or the
-  // theme changes.
+  // The palette, whose last colour is that of absent values, and the place in it of each row's colour; computed again when the column or
+  // the theme changes.
   let cache = { key: null };
   page.paints = () => {
     const { front, state } = page;

@@ -140,7 +140,7 @@
     stage.style.width = `${total.width}px`;
     stage.style.height = `${total.height}px`;
     box.append(stage, readout);
-    // The upper right of the triangle is free for the colour bar and the values of the current point; where that is too small they stand below.
+    // The upper right of the triangle is free for the colour bar and the values of the current point; where it is too small they are below.
     const free = Math.min(420, width - LEFT - size - GAP - 16);
     const isCorner = across > 1 && size >= 140 && free >= 200 && !page.printing;
     readout.className = isCorner ? "corner" : across > 1 ? "below" : "";
