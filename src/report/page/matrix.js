@@ -181,7 +181,7 @@
     if (first) {
       cell.yAxis = group.append("g").attr("class", "tick-axis");
       const title = page.axisTitle(cell.y, size + GAP - 4, 2);
-      page.writeTitle(group.append("text").attr("class", "axis-title").attr("transform", `translate(${title.lines.length > 1 ? -64 : -60},${size / 2})rotate(-90)`), title);
+      page.writeTitle(group.append("text").attr("class", "axis-title").attr("transform", `translate(${title.lines.length > 1 ? -62 : -60},${size / 2})rotate(-90)`), title);
     }
     drawAxes(cell);
     cell.marks = group.append("g").attr("class", "marks");
