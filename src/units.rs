@@ -284,6 +284,11 @@ pub fn parse_value(text: &str, wanted: Unit) -> Result<f64, UnitError> {
     if name.is_empty() {
         return Ok(value);
     }
+    // A decimal comma, or thousands.
+    if name.starts_with([',', '.']) {
+        let written = if text.contains(',') && text.contains('.') { text.replace(',', "") } else { text.replace(',', ".") };
+        return Err(UnitError::NoNumber { text: text.to_owned(), example: format!("\"{written}\"") });
+    }
     let known = || {
         let of_dimension = UNITS.iter().filter(|(unit, _)| unit.dimension == wanted.dimension && !unit.symbol.is_empty());
         let symbols: Vec<_> = of_dimension.map(|(unit, _)| unit.symbol).collect();

@@ -5,7 +5,7 @@ use crate::error::Result;
 #[cfg(feature = "parquet")]
 use crate::error::brief;
 use crate::table::stream::BLOCK_ROWS;
-use std::io::Read;
+use std::io::{BufRead, BufReader, Read};
 
 /// A cell as it was read.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,7 +33,8 @@ pub struct RowReader {
 }
 
 enum RowSource {
-    Csv(csv::Reader<Box<dyn Read>>),
+    /// With the lines that its positions lag behind.
+    Csv(csv::Reader<Box<dyn Read>>, u64),
     #[cfg(feature = "parquet")]
     Parquet(Box<parquet::record::reader::RowIter<'static>>, u64),
 }
@@ -44,15 +45,20 @@ impl RowReader {
     /// # Errors
     /// [`Error::Request`](crate::Error::Request) if this is no CSV.
     pub fn csv(name: &str, text: Box<dyn Read>) -> Result<Self> {
+        let mut text = BufReader::new(text);
+        // With line ends of Windows a record begins, for the reader, between the two bytes of the one before.
+        let lag =
+            u64::from(text.fill_buf().is_ok_and(|begin| begin.split(|it| *it == b'\n').next().is_some_and(|line| line.ends_with(b"\r"))));
+        let text: Box<dyn Read> = Box::new(text);
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text);
-        let header: Vec<String> = reader.headers().map_err(|error| broken(name, error))?.iter().map(str::to_owned).collect();
+        let header: Vec<String> = reader.headers().map_err(|error| broken(name, 0, error))?.iter().map(str::to_owned).collect();
         // Spreadsheets begin a file with a mark that nobody sees.
         let header: Vec<String> = header.iter().map(|it| it.trim_start_matches('\u{feff}').to_owned()).collect();
         if header.iter().any(|it| it.contains([';', '\t'])) {
             return Err(refusal(format!("{name}:1: the columns are not separated by commas; save the file with commas")));
         }
         let numeric = vec![false; header.len()];
-        Ok(Self { name: name.to_owned(), header, numeric, source: RowSource::Csv(reader) })
+        Ok(Self { name: name.to_owned(), header, numeric, source: RowSource::Csv(reader, lag) })
     }
 
     /// Rows of a Parquet file.
@@ -89,12 +95,12 @@ impl RowReader {
         let mut block = RawBlock { places: Vec::new(), columns: vec![Vec::new(); self.header.len()] };
         while block.places.len() < BLOCK_ROWS {
             match &mut self.source {
-                RowSource::Csv(reader) => {
+                RowSource::Csv(reader, lag) => {
                     let mut record = csv::StringRecord::new();
-                    if !reader.read_record(&mut record).map_err(|error| broken(&self.name, error))? {
+                    if !reader.read_record(&mut record).map_err(|error| broken(&self.name, *lag, error))? {
                         break;
                     }
-                    block.places.push(record.position().map_or(0, csv::Position::line));
+                    block.places.push(*lag + record.position().map_or(0, csv::Position::line));
                     for (column, cell) in block.columns.iter_mut().zip(&record) {
                         column.push(RowCell::Text(cell.to_owned()));
                     }
@@ -124,7 +130,7 @@ impl RowReader {
     pub(super) fn place(&self, place: u64, column: usize) -> String {
         let name = &self.header[column];
         match self.source {
-            RowSource::Csv(_) => format!("{}:{place}: column \"{name}\"", self.name),
+            RowSource::Csv(..) => format!("{}:{place}: column \"{name}\"", self.name),
             #[cfg(feature = "parquet")]
             RowSource::Parquet(..) => format!("{}: row {place}, column \"{name}\"", self.name),
         }
@@ -136,8 +142,8 @@ impl RowReader {
     }
 }
 
-fn broken(name: &str, error: csv::Error) -> crate::Error {
-    let line = error.position().map_or(1, csv::Position::line);
+fn broken(name: &str, lag: u64, error: csv::Error) -> crate::Error {
+    let line = lag + error.position().map_or(1, csv::Position::line);
     let why = match error.into_kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
             format!("the row has {len} cells, the header {expected_len}; give every row the same")

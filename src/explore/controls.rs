@@ -8,7 +8,7 @@ use crate::live::around::GivenRange;
 use crate::models::{Input, Model};
 use crate::plan::Plan;
 use crate::screen::Control;
-use crate::study::{Axis, Constraint, Drive, Goal, Levels, Study, entry_leaves, entry_names, number, value_of};
+use crate::study::{Axis, Constraint, Drive, Goal, Levels, Study, entry_leaves, entry_names, number, quoted_key, value_of};
 use crate::table::written;
 use serde_json::{Map, Value, json};
 
@@ -123,7 +123,7 @@ fn bound_control(model: &Model, constraint: &Constraint, name: &str, unit: &str,
         }
     }
     json!({
-        "part": format!("constraints.{name}"), "name": name, "of": constraint.name(model), "unit": unit,
+        "part": format!("constraints.{}", quoted_key(name)), "name": name, "of": constraint.name(model), "unit": unit,
         "doc": constraint.quantity.doc(model), "bounds": bounds, "low": low, "high": high,
     })
 }

@@ -131,3 +131,24 @@ fn views_of_the_same_designs_stand_side_by_side_on_a_laptop() {
     assert_eq!(browser.number("document.querySelectorAll('#parallel .axis[data-name=band_thickness_mm] .range-end').length"), 2.0);
     assert_eq!(browser.complaints, Vec::<String>::new());
 }
+
+#[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored report_page --test-threads 1"]
+fn numbers_below_the_cells_do_not_touch() {
+    let text = "model = \"metal-cvt\"\n[design]\nband_thickness_mm = { from = 0.1, to = 0.3, count = 9 }\nband_count = { from = 6, to = 14 }\n\
+        traction = { from = 0.3, to = 0.5, count = 7 }\n[objectives]\naxial_force_N = \"min\"\nstress_margin = \"max\"\nslip_margin = \"max\"\n\
+        band_count = \"min\"\nband_thickness_mm = \"max\"\n";
+    let swept = Swept::text(text);
+    let mut browser = Browser::open(&swept.page(), "");
+    let touching = "(() => { const boxes = [...document.querySelectorAll('#splom .tick-axis[transform] .tick text')].filter((it) => it.textContent) \
+        .map((it) => ({ text: it.textContent, ...it.getBoundingClientRect().toJSON() })); \
+        const pairs = boxes.flatMap((a, i) => boxes.slice(i + 1).filter((b) => a.left < b.right + 1 && b.left < a.right + 1 && a.top < b.bottom && b.top < a.bottom) \
+        .map((b) => `${a.text} and ${b.text}`)); return { count: boxes.length, pairs }; })()";
+    for width in [1000, 1366] {
+        browser.resize(width, 900);
+        browser.wait("document.querySelectorAll('#splom .tick-axis[transform] .tick text').length > 8");
+        let found = browser.evaluate(touching);
+        assert!(found["count"].as_u64() > Some(8), "{width}: {found}");
+        assert_eq!(found["pairs"], serde_json::json!([]), "{width}");
+    }
+}

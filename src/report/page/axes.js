@@ -43,6 +43,21 @@
     if (lines.join(" ") !== whole) text.append("title").text(whole);
   };
 
+  // Numbers below an axis of so many pixels: those at its ends stay within it, and one that would touch the one before is left out.
+  page.keepTicksApart = (axis, length) => {
+    let taken = -Infinity;
+    axis.selectAll(".tick").each(function () {
+      const text = d3.select(this).select("text");
+      const at = Number(/[-\d.]+/.exec(this.getAttribute("transform"))[0]);
+      const wide = widthOf(text.text(), 12);
+      const anchor = at < wide / 2 - 4 ? "start" : at > length - wide / 2 + 4 ? "end" : "middle";
+      const left = at - wide * { start: 0, middle: 0.5, end: 1 }[anchor];
+      text.attr("text-anchor", anchor);
+      if (left < taken + 5) text.text("");
+      else taken = left + wide;
+    });
+  };
+
   // On an axis of words every word has a tick.
   page.axisOf = (orient, column, scale, count) => {
     const axis = orient(scale).tickSizeOuter(0).tickSize(4).tickPadding(4);

@@ -160,6 +160,7 @@
     if (cell.xAxis) {
       cell.xAxis.call(page.axisOf(d3.axisBottom, cell.x, cell.xScale, ticks));
       if (cell.x.words) page.tiltWords(cell.xAxis, size / cell.x.words.length);
+      else page.keepTicksApart(cell.xAxis, size);
     }
     if (cell.yAxis) {
       cell.yAxis.call(page.axisOf(d3.axisLeft, cell.y, cell.yScale, ticks));

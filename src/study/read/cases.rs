@@ -4,7 +4,7 @@ use super::super::axis::Axis;
 use super::super::label::flaw_of_text;
 use super::super::limits::{MOST_ROWS, MOST_VALUES};
 use super::Reader;
-use super::csv_file::{csv_builder, csv_text};
+use super::csv_file::{csv_builder, csv_text, record_line};
 use super::roles::{AxisClaim, AxisRole};
 use super::table::{Entry, Lines, TomlNode, TomlTable, list, shortened};
 use super::value::input_text;
@@ -448,18 +448,5 @@ impl Reader<'_> {
         };
         let then = if told.ends_with('?') { "" } else { ";" };
         format!("{told}{then} unused = \"ok\" beside csv leaves the column out")
-    }
-}
-
-/// Line number of a record, which starts after blank lines and comments that the reader has skipped.
-fn record_line(lines: &Lines<'_>, text: &str, record: &csv::StringRecord) -> usize {
-    let start = record.position().map_or(0, |position| usize::try_from(position.byte()).unwrap_or(0)).min(text.len());
-    let mut at = start;
-    loop {
-        at += text.as_bytes()[at..].iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).count();
-        if text.as_bytes().get(at) != Some(&b'#') {
-            return lines.index(at) + 1;
-        }
-        at += text.as_bytes()[at..].iter().take_while(|byte| **byte != b'\n').count();
     }
 }

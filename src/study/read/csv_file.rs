@@ -1,6 +1,6 @@
 //! CSV files that a study or a model names.
 
-use super::table::shortened;
+use super::table::{Lines, shortened};
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -36,4 +36,17 @@ pub(super) fn csv_builder() -> csv::ReaderBuilder {
     let mut builder = csv::ReaderBuilder::new();
     builder.trim(csv::Trim::All).comment(Some(b'#'));
     builder
+}
+
+/// Line number of a record, which starts after blank lines and comments that the reader has skipped.
+pub(super) fn record_line(lines: &Lines<'_>, text: &str, record: &csv::StringRecord) -> usize {
+    let start = record.position().map_or(0, |position| usize::try_from(position.byte()).unwrap_or(0)).min(text.len());
+    let mut at = start;
+    loop {
+        at += text.as_bytes()[at..].iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).count();
+        if text.as_bytes().get(at) != Some(&b'#') {
+            return lines.index(at) + 1;
+        }
+        at += text.as_bytes()[at..].iter().take_while(|byte| **byte != b'\n').count();
+    }
 }

@@ -2,10 +2,10 @@
 //!
 //! The file of a model has the same three.
 
-use super::csv_file::{csv_builder, csv_text};
+use super::csv_file::{csv_builder, csv_text, record_line};
 use super::labels::DeclaredLabel;
 use super::roles::PRESET;
-use super::table::{Entry, Problems, TomlNode, TomlTable, list, shortened};
+use super::table::{Entry, Lines, Problems, TomlNode, TomlTable, list, shortened};
 use super::tolerance::{ModelToleranceEntry, tolerances};
 use super::value::truth;
 use super::weights::weighted_cases;
@@ -195,7 +195,7 @@ type PointsWithLines = (Vec<(f64, f64)>, Vec<usize>);
 /// The points of a curve, or a line and what is wrong there.
 fn points(text: &str, x: &str, y: &str) -> Result<PointsWithLines, (usize, String)> {
     let mut reader = csv_builder().from_reader(text.as_bytes());
-    let line_of = |record: &csv::StringRecord| record.position().map_or(1, |position| position.line() as usize);
+    let ends = Lines::new(text);
     let wrong = |error: csv::Error| (error.position().map_or(1, |position| position.line() as usize), format!("this is not CSV: {error}"));
     let header = reader.headers().map_err(wrong)?.clone();
     let column = |name: &str| {
@@ -206,7 +206,7 @@ fn points(text: &str, x: &str, y: &str) -> Result<PointsWithLines, (usize, Strin
     let (mut points, mut lines) = (Vec::new(), Vec::new());
     for record in reader.records() {
         let record = record.map_err(wrong)?;
-        let line = line_of(&record);
+        let line = record_line(&ends, text, &record);
         let number = |column: usize| {
             let cell = &record[column];
             cell.parse::<f64>().map_err(|_| (line, format!("\"{}\" in column \"{}\" is no number", shortened(cell), &header[column])))

@@ -1,9 +1,9 @@
 //! Distributions of `[uncertainty]`.
 
 use super::super::drawn::{LawText, NamedLaw, UncertainInput};
-use super::csv_file::{csv_builder, csv_text};
+use super::csv_file::{csv_builder, csv_text, record_line};
 use super::roles::{AxisClaim, AxisRole};
-use super::table::{Entry, TomlNode, TomlTable, list, shortened};
+use super::table::{Entry, Lines, TomlNode, TomlTable, list, shortened};
 use super::value::measured;
 use super::{Reader, text};
 use crate::likeness::closest;
@@ -229,6 +229,7 @@ impl Reader<'_> {
         let tell = |line: usize, message: String| {
             self.problems.add_in(table.at, &file, line, 1, format!("{label}: {message}"));
         };
+        let lines = Lines::new(&content);
         let mut reader = csv_builder().from_reader(content.as_bytes());
         let header = reader.headers().map_err(|error| tell(1, format!("this is not CSV: {error}"))).ok()?.clone();
         let Some(place) = header.iter().position(|it| it == name) else {
@@ -238,7 +239,7 @@ impl Reader<'_> {
         let mut values = Vec::new();
         for record in reader.records() {
             let record = record.map_err(|error| tell(1, format!("this is not CSV: {error}"))).ok()?;
-            let line = record.position().map_or(1, |position| position.line() as usize);
+            let line = record_line(&lines, &content, &record);
             match record[place].parse::<f64>() {
                 Ok(value) if value.is_finite() => values.push(value + 0.0),
                 _ => {

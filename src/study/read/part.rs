@@ -47,16 +47,22 @@ pub(super) struct StudyPart {
 impl StudyPart {
     /// Reads `TABLE.ENTRY` or `TABLE.ENTRY.KEY`; `None` for a name without a dot, which is that of an input.
     pub(super) fn read(path: &str) -> Option<Result<Self, String>> {
-        let (table, rest) = path.split_once('.')?;
-        let mut names = rest.split('.');
-        let entry = names.next().unwrap_or_default();
-        let inner: Vec<String> = names.map(str::to_owned).collect();
+        let mut names = dotted(path)?.into_iter();
+        let (table, entry) = (names.next()?, names.next()?);
+        let (table, entry) = (table.as_str(), entry.as_str());
+        let inner: Vec<String> = names.collect();
         let Some((table, keys)) = TABLES.iter().find(|(name, _)| *name == table) else {
             let tables = TABLES.map(|(name, _)| name).join(", ");
             return Some(Err(format!("there is nothing to set in \"{}\"; parts of a study begin with one of {tables}", shortened(table))));
         };
-        if !is_name(entry) {
+        // Constraints may be called anything.
+        if !is_name(entry) && *table != "constraints" {
             return Some(Err(format!("\"{}\" is no name; write {table}.NAME or {table}.NAME.KEY", shortened(entry))));
+        }
+        if *table == "constraints" && inner.len() > 1 {
+            let (last, name) = (inner.last().map_or("", String::as_str), format!("{entry}.{}", inner[..inner.len() - 1].join(".")));
+            let name = shortened(&name);
+            return Some(Err(format!("a constraint has one key; if its name is \"{name}\", write {table}.\"{name}\".{last}")));
         }
         if *table == "probability" && !DRAWING.contains(&entry) {
             return Some(Err(format!("\"{}\" cannot be set; of [probability] these can: {}", shortened(entry), DRAWING.join(", "))));
@@ -101,6 +107,9 @@ impl StudyPart {
             };
         };
         if self.is_off(value) {
+            if text[..entry.key_at].trim_end().ends_with(['[', '.']) && entry.node.table().is_some() {
+                return Ok(Some(without_table(&entry, text)));
+            }
             return Ok(Some(left_out(&entry, text)));
         }
         if keys.is_empty() {
@@ -122,7 +131,8 @@ impl StudyPart {
     pub(super) fn line(&self, written: &[(Option<&str>, String)]) -> String {
         let keys = written.iter().map(|(key, value)| key.map_or_else(|| value.clone(), |key| format!("{key} = {value}")));
         let keys = keys.collect::<Vec<_>>().join(", ");
-        if self.keys.is_empty() { format!("{} = {keys}", self.entry) } else { format!("{} = {{ {keys} }}", self.entry) }
+        let name = quoted_key(&self.entry);
+        if self.keys.is_empty() { format!("{name} = {keys}") } else { format!("{name} = {{ {keys} }}") }
     }
 
     /// What leads a new entry's value within it.
@@ -157,6 +167,40 @@ impl StudyPart {
     }
 }
 
+/// A table with a header of its own, such as `[constraints.slip_margin]`, as comments.
+fn without_table(entry: &Entry<'_>, text: &str) -> Edit {
+    let start = text[..entry.key_at].rfind('\n').map_or(0, |at| at + 1);
+    let last = entry.node.table().and_then(|table| table.entries.last().map(|it| it.node.end));
+    let end = last.unwrap_or(entry.key_at).max(entry.key_at);
+    let range = start..text[end..].find('\n').map_or(text.len(), |at| end + at);
+    Edit { with: format!("# {}", text[range.clone()].replace('\n', "\n# ")), range, writes: None }
+}
+
+/// The names and numbers of a path, which may be written as TOML writes a key: `constraints."a b".min`. `None` without a dot.
+fn dotted(path: &str) -> Option<Vec<String>> {
+    if !path.contains(['"', '\'']) {
+        return path.contains('.').then(|| path.split('.').map(str::to_owned).collect());
+    }
+    let text = format!("{path} = 0");
+    let tree = DeTable::parse(&text).ok()?;
+    let mut names = Vec::new();
+    let mut table = tree.get_ref();
+    loop {
+        let (name, value) = table.iter().next()?;
+        names.push(name.get_ref().to_string());
+        match value.get_ref().as_table() {
+            Some(inner) => table = inner,
+            None => return (names.len() > 1).then_some(names),
+        }
+    }
+}
+
+/// A key as a study file has it.
+pub(crate) fn quoted_key(name: &str) -> String {
+    let is_bare = !name.is_empty() && name.chars().all(|it| it.is_ascii_alphanumeric() || it == '_' || it == '-');
+    if is_bare { name.to_owned() } else { Value::from(name).to_string() }
+}
+
 /// The place in a list of so many that a number from 1 stands for.
 fn number_of(key: &str, count: usize) -> Option<usize> {
     key.parse::<usize>().ok().filter(|it| (1..=count).contains(it)).map(|it| it - 1)
@@ -168,10 +212,14 @@ fn within<'n>(entry: &Entry<'n>, table: &str, keys: &[String]) -> Result<TomlNod
     for (depth, key) in keys.iter().enumerate() {
         let told = || shortened(key);
         if let Some(inner) = node.table() {
-            let known = inner.get(key).filter(|_| inner.get(FILE).is_none());
-            let own: Vec<&str> = inner.entries.iter().map(|it| it.key).filter(|it| depth > 0 || !AXIS.contains(it)).collect();
-            let keys: Vec<&str> = if depth == 0 { AXIS.iter().copied().chain(own).collect() } else { own };
-            node = known.map(|it| it.node).ok_or_else(|| format!("\"{}\" cannot be set; keys are {}", told(), keys.join(", ")))?;
+            if let Some(file) = inner.get(FILE) {
+                return Err(format!("\"{}\" cannot be set: its rows are in {}; change them there", told(), file.node.found()));
+            }
+            // A range has further keys; what has parts, such as a distribution, has its own.
+            let is_range = depth == 0 && inner.entries.iter().all(|it| it.node.table().is_none() && it.node.list().is_none());
+            let own = inner.entries.iter().map(|it| it.key).filter(|it| !is_range || !AXIS.contains(it));
+            let keys: Vec<&str> = if is_range { AXIS.iter().copied().chain(own).collect() } else { own.collect() };
+            node = inner.get(key).map(|it| it.node).ok_or_else(|| format!("\"{}\" cannot be set; keys are {}", told(), keys.join(", ")))?;
         } else if let Some(mut list) = node.list() {
             let count = list.len();
             let place = number_of(key, count);

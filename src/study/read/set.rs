@@ -117,8 +117,8 @@ struct EditedText {
     text: String,
     /// Of each setting: where it stands.
     places: Vec<Range<usize>>,
-    /// Lines that were put in, in order.
-    lines: Vec<Range<usize>>,
+    /// Of each edit the line where it ends, and how many lines there are more than before.
+    lines: Vec<(usize, isize)>,
 }
 
 impl Study {
@@ -201,8 +201,16 @@ fn edited(settings: &[StudySetting], top: &TomlTable<'_>, text: &str, models: &M
             }
             continue;
         }
-        if let Some((table, axis)) = joint_axis(name, top, folder, &is_input) {
+        if let Some((table, axis, file)) = joint_axis(name, top, folder, &is_input) {
             let why = format!("{} is set by the rows of \"{axis}\" in [{table}]", setting.name);
+            if let Some(file) = file {
+                problems.push(format!(
+                    "{}: {why}; --set replaces the axis of one input: change the rows in \"{}\"",
+                    setting.told(),
+                    shortened(&file)
+                ));
+                continue;
+            }
             problems.push(format!(
                 "{}: {why}; --set replaces the axis of one input: give each row its value, as {table}.{axis}.1.{name}",
                 setting.told()
@@ -285,13 +293,23 @@ fn line_of(setting: &StudySetting) -> String {
     format!("{} = {}", setting.name, setting.in_toml())
 }
 
-/// The table and the name of the joint axis that sets an input.
-fn joint_axis(name: &str, top: &TomlTable<'_>, folder: &Path, is_input: &dyn Fn(&str) -> bool) -> Option<(&'static str, String)> {
+/// The CSV file that an entry takes its rows from.
+fn file_of(entry: &Entry<'_>) -> Option<String> {
+    entry.node.table().and_then(|table| Some(table.get("csv")?.node.value.as_str()?.to_owned()))
+}
+
+/// The table and the name of the joint axis that sets an input, and the file that its rows stand in if they do.
+fn joint_axis(
+    name: &str,
+    top: &TomlTable<'_>,
+    folder: &Path,
+    is_input: &dyn Fn(&str) -> bool,
+) -> Option<(&'static str, String, Option<String>)> {
     let names_it = |entry: &Entry<'_>| {
         if let Some(mut rows) = entry.node.list() {
             return rows.any(|row| row.table().is_some_and(|row| row.get(name).is_some()));
         }
-        let file = entry.node.table().and_then(|table| Some(table.get("csv")?.node.value.as_str()?.to_owned()));
+        let file = file_of(entry);
         // A file that cannot be read is reported when the study is.
         let Some(text) = file.and_then(|file| csv_text(folder, &file, "study").ok()) else { return false };
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
@@ -300,7 +318,7 @@ fn joint_axis(name: &str, top: &TomlTable<'_>, folder: &Path, is_input: &dyn Fn(
     GIVING.iter().find_map(|&table| {
         let entries = top.get(table)?.node.table()?.entries;
         let joint = entries.into_iter().find(|it| it.key.starts_with("cases") && !is_input(it.key) && names_it(it));
-        joint.map(|entry| (table, entry.key.to_owned()))
+        joint.map(|entry| (table, entry.key.to_owned(), file_of(&entry)))
     })
 }
 
@@ -311,11 +329,10 @@ fn applied(edits: Vec<Edit>, text: &str, settings: usize) -> EditedText {
     for Edit { range, with, writes } in edits {
         edited.text.push_str(&text[done..range.start]);
         let start = edited.text.len();
-        if range.is_empty() {
-            let line = edited.text.matches('\n').count();
-            edited.lines.push(line..line + with.matches('\n').count());
-        }
+        let count = |text: &str| text.matches('\n').count();
         edited.text.push_str(&with);
+        #[allow(clippy::cast_possible_wrap, reason = "a text has no more lines than bytes")]
+        edited.lines.push((count(&edited.text), count(&with) as isize - count(&text[range.clone()]) as isize));
         if let Some(setting) = writes {
             edited.places[setting] = start..edited.text.len();
         }
@@ -391,8 +408,8 @@ fn explained(errors: StudyErrors, settings: &[StudySetting], edited: &EditedText
             of_settings.push(format!("{}: {message}", settings[number].told()));
             continue;
         }
-        let put_in = edited.lines.iter().filter(|lines| lines.end < problem.line).map(Range::len).sum::<usize>();
-        let line = problem.line - put_in;
+        let put_in = edited.lines.iter().filter(|(end, _)| *end < problem.line).map(|it| it.1).sum::<isize>();
+        let line = problem.line.saturating_add_signed(-put_in);
         let message = if right { format!("{}; without {told} the study is right", problem.message) } else { problem.message };
         of_file.push(Problem { line, message, ..problem });
     }

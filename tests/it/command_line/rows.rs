@@ -141,9 +141,17 @@ fn rows_of_a_study_are_its_designs() {
 }
 
 /// Rows, what else is asked, and what is said.
-const WRONG: [(&str, &str, &str); 14] = [
+const WRONG: [(&str, &str, &str); 17] = [
     ("friction,torque_Nm\n0.1,50\n-1,50\n", "", "rows.csv:3: column \"friction\": -1 is out of range; it must be greater than 0"),
     ("friction\n0.1\nfast\n", "", "rows.csv:3: column \"friction\": \"fast\" is not a number with a unit; write for example \"12\""),
+    // Line ends of Windows, and decimal commas.
+    ("friction\r\n0.1\r\nfast\r\n", "", "rows.csv:3: column \"friction\": \"fast\" is not a number with a unit; write for example \"12\""),
+    ("friction,ratio\r\n0.1,1\r\n0.1\r\n", "", "rows.csv:3: the row has 1 cells, the header 2; give every row the same"),
+    (
+        "strength_MPa\n\"700,5\"\n",
+        "",
+        "rows.csv:2: column \"strength_MPa\": \"700,5\" is not a number with a unit; write for example \"700.5\"",
+    ),
     ("friction,ratio\n0.1,\n", "", "rows.csv:2: column \"ratio\": the cell is empty; give a value"),
     ("friction\nnan\n", "", "rows.csv:2: column \"friction\": NaN is out of range; it must be greater than 0"),
     ("band_count\n7.5\n", "", "rows.csv:2: column \"band_count\": 7.5 is not a whole number; use 7 or 8"),

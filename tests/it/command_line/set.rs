@@ -163,7 +163,11 @@ fn what_cannot_be_set_is_told_by_its_name() {
         "study.toml",
         &changed(joint, &[("[{ ratio = 1, torque_Nm = 50 }, { ratio = 2, torque_Nm = 60 }]", "{ csv = \"loads.csv\" }")]),
     );
+    let told =
+        "torque_Nm is set by the rows of \"cases\" in [operation]; --set replaces the axis of one input: change the rows in \"loads.csv\"";
     assert_eq!(ask(folder.path(), "check study.toml --set torque_Nm=70").refusal(2), format!("error: --set torque_Nm=70: {told}\n"));
+    let said = ask(folder.path(), "check study.toml --set operation.cases.1.torque_Nm=70").refusal(2);
+    assert!(said.contains("\"1\" cannot be set: its rows are in the text \"loads.csv\"; change them there"), "{said}");
 }
 
 /// Parts of the study: what is set, and what a person would write in its place.
@@ -238,10 +242,50 @@ fn rows_and_distributions_have_parts_too() {
         ("operation.cases.1.ratio.from=1", "\"from\" cannot be set: ratio is the number 1"),
         ("uncertainty.friction.normal.mode=1", "\"mode\" cannot be set; keys are mean, sd"),
         ("uncertainty.friction.csv=a.csv", "\"csv\" cannot be set"),
+        ("uncertainty.friction.sd=0.1", "\"sd\" cannot be set; keys are normal, from, to"),
+        (
+            "constraints.slip.margin.min=1",
+            "a constraint has one key; if its name is \"slip.margin\", write constraints.\"slip.margin\".min",
+        ),
     ] {
         let said = ask_words(folder.path(), &["check", "study.toml", "--set", set]).refusal(2);
         assert!(said.starts_with(&format!("error: --set {set}: ")) && said.contains(told), "{set}: {said}");
     }
+}
+
+/// Constraints may be called anything, and stand under a header of their own.
+#[test]
+fn constraints_of_every_name_and_form_can_be_set() {
+    let by_hand = |text: &str| described(folder_with("study.toml", text).path(), &[]);
+    let labelled = changed(
+        SMALL,
+        &[(
+            "slip_margin   = { min = 0 }",
+            "no-slip = { of = \"slip_margin\", min = 0 }\n\"größte Kraft\" = { of = \"axial_force_N\", max = 90000 }\n\"a.b\" = { of = \"max_stress_MPa\", max = 900 }",
+        )],
+    );
+    for (set, from, to) in [
+        ("constraints.no-slip.min=0.1", "of = \"slip_margin\", min = 0", "of = \"slip_margin\", min = 0.1"),
+        ("constraints.\"größte Kraft\".max=80000", "max = 90000", "max = 80000"),
+        ("constraints.\"a.b\".max=850", "max = 900 }", "max = 850 }"),
+    ] {
+        let folder = folder_with("study.toml", &labelled);
+        assert_eq!(described(folder.path(), &["--set", set]), by_hand(&changed(&labelled, &[(from, to)])), "{set}");
+    }
+    // Under a header, with a comment behind it.
+    let table = SMALL.replace("slip_margin   = { min = 0 }\n", "") + "\n[constraints.slip_margin]\nmin = 0\n# the end\n";
+    let folder = folder_with("study.toml", &table);
+    let without = by_hand(&SMALL.replace("slip_margin   = { min = 0 }\n", ""));
+    assert_eq!(described(folder.path(), &["--set", "constraints.slip_margin=off"]), without);
+    // Lines after a list that was longer keep their numbers.
+    let long = changed(
+        SMALL,
+        &[("torque_Nm = [50, 150]", "torque_Nm = [\n  50,\n  150,\n]"), ("axial_force_N = \"min\"", "axial_farce_N = \"min\"")],
+    );
+    write(folder.path(), "study.toml", &long);
+    let at = 1 + long[..long.find("axial_farce").expect("it is there")].matches('\n').count();
+    let said = ask(folder.path(), "check study.toml --set operation.torque_Nm=[60]").refusal(2);
+    assert!(said.starts_with(&format!("error: study.toml:{at}:1: ")), "{at}: {said}");
 }
 
 #[test]
