@@ -10,8 +10,8 @@ const MOST_NUMBERS: usize = 20_000;
 /// Seconds of an evaluation that takes long.
 const LONG: f64 = 1e-4;
 
-/// The given inputs of a design by their names, as far as they are the same in its first and last scenario: its dimensions. Of a drawn drive as
-/// it is designed.
+/// The given inputs of a design by their names, as far as they are the same in its first and last scenario: its dimensions. Of a drawn
+/// drive as it is designed.
 pub fn of_design(plan: &Plan, design: u64) -> Map<String, Value> {
     let model = drawn_model(plan);
     let places = places(model);
@@ -23,8 +23,8 @@ pub fn of_design(plan: &Plan, design: u64) -> Map<String, Value> {
     places.iter().filter_map(same).map(|(place, value)| (model.outputs[place].name.clone(), number(value))).collect()
 }
 
-/// Those of the designs of a front: their names, and of each design its numbers; `null` where no formula gives such an input. Where they would be
-/// too many the last designs have none.
+/// Those of the designs of a front: their names, and of each design its numbers; `null` where no formula gives such an input. Where they
+/// would be too many the last designs have none.
 pub fn of_front(plan: &Plan, designs: &[u64]) -> Value {
     let names: Vec<String> = designs.first().map_or_else(Vec::new, |&design| of_design(plan, design).into_iter().map(|it| it.0).collect());
     if names.is_empty() {

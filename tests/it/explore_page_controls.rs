@@ -3,7 +3,7 @@
 use crate::browser::Browser;
 use crate::explore_page::{COUNT, Explored, SMALL, answered, differs, open, study_file};
 
-/// Types a number into the field of a part, as a person does who leaves the field with Enter; what the field complains about, and what is in it.
+/// Types a number into the field of a part, as a person does who leaves it with Enter: what the field complains about, and what is in it.
 fn typed(browser: &mut Browser, part: &str, text: &str) -> String {
     browser.evaluate(COUNT);
     let field = format!("document.querySelector('#controls input[type=text][data-part=\"{part}\"]')");

@@ -23,8 +23,8 @@
     return (0xff000000 | rb | g) >>> 0;
   };
 
-  // Points with mask[row] === wanted (all for wanted null); xs and ys hold pixels, negative for an absent value. `order`: the rows, those that
-  // lie over the others last; each is painted whole before the next one.
+  // Points with mask[row] === wanted (all for wanted null); xs and ys hold pixels, negative for an absent value. `order`: the rows,
+  // those that lie over the others last; each is painted whole before the next one.
   page.drawPoints = (target, width, height, xs, ys, mask, wanted, colourOf, disc, order = null) => {
     const single = typeof colourOf === "number";
     const offsets = disc.map(({ dx, dy }) => dy * width + dx);

@@ -277,7 +277,8 @@ pub(crate) fn entry_names(text: &str, table: &str) -> Vec<String> {
 #[cfg(feature = "cli")]
 pub(crate) type EntryLeaf = (Vec<String>, Value);
 
-/// What can be set of an entry of a table that is written as rows, lists or keys: numbers and texts, in file order. None of it if a file has it.
+/// What can be set of an entry of a table that is written as rows, lists or keys: numbers and texts, in file order. Nothing of what stands
+/// in a file of its own.
 #[cfg(feature = "cli")]
 pub(crate) fn entry_leaves(text: &str, table: &str, entry: &str) -> Vec<EntryLeaf> {
     fn walk(node: TomlNode<'_>, keys: &mut Vec<String>, found: &mut Vec<EntryLeaf>) {
