@@ -11,7 +11,7 @@ use beltspace::batch::{BatchTarget, GivenColumns};
 use beltspace::models::{ManyOptions, Model as BeltModel, Models, ResultColumns, Status, all, find};
 use beltspace::study::{parse_model, read_model};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList, PyString};
+use pyo3::types::{PyDict, PyList, PyString, PyTuple};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -35,6 +35,8 @@ pub struct Model {
     pub model: Arc<BeltModel>,
     /// The text of its file; empty for a model of the program, and for that of a study.
     text: String,
+    /// What paths in the text are relative to.
+    folder: PathBuf,
 }
 
 impl Model {
@@ -65,7 +67,7 @@ impl Model {
 
 impl From<Arc<BeltModel>> for Model {
     fn from(model: Arc<BeltModel>) -> Self {
-        Self { model, text: String::new() }
+        Self { model, text: String::new(), folder: PathBuf::new() }
     }
 }
 
@@ -103,7 +105,8 @@ impl Model {
     #[staticmethod]
     fn from_file(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let model = read_model(&path).map_err(|error| raised(py, error))?;
-        Ok(Self { text: std::fs::read_to_string(&path)?, model })
+        let folder = path.parent().map(PathBuf::from).unwrap_or_default();
+        Ok(Self { text: std::fs::read_to_string(&path)?, model, folder })
     }
 
     /// Reads a model from the text of a file, under that name; `folder` is what paths of CSV files are relative to, by default the current
@@ -113,7 +116,7 @@ impl Model {
     fn from_toml(py: Python<'_>, text: &str, name: &str, folder: Option<PathBuf>) -> PyResult<Self> {
         let folder = folder.unwrap_or_default();
         let model = parse_model(&Models::new(), name, text, name, &folder).map_err(|errors| of_study(py, &errors))?;
-        Ok(Self { model, text: text.to_owned() })
+        Ok(Self { model, text: text.to_owned(), folder })
     }
 
     /// Its name.
@@ -172,6 +175,25 @@ impl Model {
             dict.set_item(&output.name, about)?;
         }
         Ok(dict)
+    }
+
+    /// For `pickle`: how it is made again. RequestError for a model of one's own that was taken from a study, whose text is not known.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let class = py.get_type::<Self>();
+        let name = &self.model.name;
+        if !self.text.is_empty() {
+            let folder = std::path::absolute(self.folder.join("."))?;
+            return Ok((class.getattr("from_toml")?, (&self.text, name, folder).into_pyobject(py)?));
+        }
+        if find(name).is_some() {
+            return Ok((class.into_any(), (name,).into_pyobject(py)?));
+        }
+        Err(request(
+            py,
+            format!(
+                "the model {name} was taken from a study, so that its text is not known; pickle the study, or the Model that it was given"
+            ),
+        ))
     }
 
     fn __repr__(&self) -> String {

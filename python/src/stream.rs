@@ -173,6 +173,8 @@ impl TableBatches {
             *locked(&made) = Some(next);
         };
         let ended = supervised(py, || control.stop.store(true, Ordering::Relaxed), |_| Ok(()), work);
+        // A signal that came since the last look would take the rows away on their way back.
+        let ended = ended.and_then(|()| py.check_signals());
         let next = made.into_inner().unwrap_or_else(PoisonError::into_inner);
         match (ended, next) {
             (Ok(()), Some(next)) => next.map_err(|error| raised(py, error))?.map(|table| Table::new(py, table)).transpose(),

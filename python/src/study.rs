@@ -12,7 +12,7 @@ use beltspace::models::Models;
 use beltspace::plan::Plan;
 use beltspace::{Control, Engine, Judging, Options, Study as BeltStudy};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyMapping};
+use pyo3::types::{PyDict, PyMapping, PyTuple};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -35,20 +35,26 @@ struct Source {
     /// What paths of other files are relative to.
     folder: PathBuf,
     models: Models,
+    /// The models of one's own.
+    own: Arc<Vec<Py<Model>>>,
 }
 
 impl Study {
     fn parsed(py: Python<'_>, text: &str, source: Source, set: &[String]) -> PyResult<Self> {
-        let Source { file, folder, models } = &source;
+        let Source { file, folder, models, .. } = &source;
         let (study, text) = BeltStudy::parse_set(models, text, file, folder, set).map_err(|error| raised(py, error))?;
         let plan = Plan::new(study.clone());
         Ok(Self { study, designs: plan.designs(), scenarios: plan.scenarios(), text, source })
     }
 }
 
-/// The models of one's own that a study may name.
-fn own_models(py: Python<'_>, models: Option<Vec<PyRef<'_, Model>>>) -> PyResult<Models> {
-    models.into_iter().flatten().try_fold(Models::new(), |known, model| known.with(model.model.clone())).map_err(|error| raised(py, error))
+impl Source {
+    /// With the models of one's own that the study may name.
+    fn new(py: Python<'_>, file: String, folder: PathBuf, own: Option<Vec<Py<Model>>>) -> PyResult<Self> {
+        let own = Arc::new(own.unwrap_or_default());
+        let models = own.iter().try_fold(Models::new(), |known, model| known.with(model.get().model.clone()));
+        Ok(Self { file, folder, models: models.map_err(|error| raised(py, error))?, own })
+    }
 }
 
 /// One of a few words.
@@ -82,14 +88,14 @@ impl Study {
     /// StudyError tells all mistakes with line and column; OSError if the file cannot be read.
     #[staticmethod]
     #[pyo3(signature = (path, *, models = None))]
-    fn from_file(py: Python<'_>, path: PathBuf, models: Option<Vec<PyRef<'_, Model>>>) -> PyResult<Self> {
+    fn from_file(py: Python<'_>, path: PathBuf, models: Option<Vec<Py<Model>>>) -> PyResult<Self> {
         // What cannot be read is told as of any study.
         let text = match std::fs::read(&path).map(String::from_utf8) {
             Ok(Ok(text)) => text,
             _ => return BeltStudy::read(&path).map_err(|error| raised(py, error)).map(|_| unreachable!("it could not be read")),
         };
         let folder = path.parent().map(PathBuf::from).unwrap_or_default();
-        let source = Source { file: path.display().to_string(), folder, models: own_models(py, models)? };
+        let source = Source::new(py, path.display().to_string(), folder, models)?;
         Self::parsed(py, &text, source, &[])
     }
 
@@ -101,9 +107,9 @@ impl Study {
     /// StudyError tells all mistakes with line and column.
     #[staticmethod]
     #[pyo3(signature = (text, *, folder = None, models = None))]
-    fn from_toml(py: Python<'_>, text: &str, folder: Option<PathBuf>, models: Option<Vec<PyRef<'_, Model>>>) -> PyResult<Self> {
+    fn from_toml(py: Python<'_>, text: &str, folder: Option<PathBuf>, models: Option<Vec<Py<Model>>>) -> PyResult<Self> {
         let folder = folder.unwrap_or_else(|| PathBuf::from("."));
-        let source = Source { file: "study".to_owned(), folder, models: own_models(py, models)? };
+        let source = Source::new(py, "study".to_owned(), folder, models)?;
         Self::parsed(py, text, source, &[])
     }
 
@@ -117,21 +123,16 @@ impl Study {
     /// a study.
     #[staticmethod]
     #[pyo3(signature = (study, *, folder = None, models = None))]
-    fn from_dict(
-        py: Python<'_>,
-        study: &Bound<'_, PyMapping>,
-        folder: Option<PathBuf>,
-        models: Option<Vec<PyRef<'_, Model>>>,
-    ) -> PyResult<Self> {
+    fn from_dict(py: Python<'_>, study: &Bound<'_, PyMapping>, folder: Option<PathBuf>, models: Option<Vec<Py<Model>>>) -> PyResult<Self> {
         let mut models = models.unwrap_or_default();
         let study = py.import("builtins")?.getattr("dict")?.call1((study,))?.cast_into::<PyDict>()?;
         if let Some(model) = study.get_item("model")?
             && let Ok(model) = model.cast::<Model>()
         {
-            let model = model.borrow();
-            study.set_item("model", &model.model.name)?;
-            if beltspace::models::find(&model.model.name).is_none() {
-                models.push(model);
+            let name = &model.get().model.name;
+            study.set_item("model", name)?;
+            if beltspace::models::find(name).is_none() {
+                models.push(model.clone().unbind());
             }
         }
         let text: String = py.import("beltspace._toml")?.call_method1("text_of_study", (study,))?.extract()?;
@@ -308,6 +309,20 @@ impl Study {
         };
         let found = supervised(py, || control.stop.store(true, Ordering::Relaxed), |_| Ok(()), work)?;
         Table::new(py, found.map_err(|error| raised(py, error))?)
+    }
+
+    /// For `pickle`, as worker processes need it: how it is made again.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let Source { file, folder, own, .. } = &self.source;
+        // Another process may work in another folder.
+        let folder = std::path::absolute(folder.join("."))?;
+        let own: Vec<Bound<'py, Model>> = own.iter().map(|model| model.bind(py).clone()).collect();
+        Ok((py.get_type::<Self>().getattr("_restored")?, (&self.text, file, folder, own).into_pyobject(py)?))
+    }
+
+    #[staticmethod]
+    fn _restored(py: Python<'_>, text: &str, file: String, folder: PathBuf, own: Vec<Py<Model>>) -> PyResult<Self> {
+        Self::parsed(py, text, Source::new(py, file, folder, Some(own))?, &[])
     }
 
     fn __repr__(&self) -> String {

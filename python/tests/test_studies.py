@@ -1,5 +1,7 @@
 """Studies from files, texts and dictionaries, what is wrong with them, and how they are stopped."""
 
+import concurrent.futures
+import multiprocessing
 import os
 import pickle
 import signal
@@ -182,3 +184,31 @@ def test_a_study_is_checked_without_running(root: Path) -> None:
     assert told["method"].startswith(("every design", "bounds"))
     beyond = study.with_values(strength_MPa=5000).check()["warnings"]
     assert any("strength_MPa = 5000 lies outside" in it for it in beyond), beyond
+
+
+def test_worker_processes_take_studies_and_models(study: beltspace.Study, tmp_path: Path) -> None:
+    changed = study.with_values(band_count=8)
+    again = pickle.loads(pickle.dumps(changed))
+    assert (again.hash, again.text, again.designs) == (changed.hash, changed.text, changed.designs)
+    # With a model of one's own that reads a curve beside it, from another folder.
+    (tmp_path / "pull.csv").write_text("speed_m_per_s,pull_N\n0,100\n10,60\n")
+    text = """
+[inputs]
+speed_m_per_s = { default = 5, valid = { min = 0 }, doc = "Speed." }
+
+[curves]
+pull = { csv = "pull.csv", x = "speed_m_per_s", y = "pull_N" }
+
+[formulas]
+power_W = "pull(speed_m_per_s) * speed_m_per_s"
+"""
+    model = beltspace.Model.from_toml(text, "tug", tmp_path)
+    own = beltspace.Study.from_dict({"model": model, "design": {"speed_m_per_s": [2, 5]}, "objectives": {"power_W": "max"}})
+    kept = pickle.dumps((model, own, beltspace.Model("metal-cvt")))
+    model_again, own_again, shipped = pickle.loads(kept)
+    assert own_again.hash == own.hash and shipped.name == "metal-cvt"
+    assert beltspace.evaluate(model_again, {"speed_m_per_s": [5.0]})["power_W"][0] == 400.0
+    with pytest.raises(beltspace.RequestError, match="the model tug was taken from a study"):
+        pickle.dumps(own.model)
+    with concurrent.futures.ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:
+        assert pool.submit(own.check, threads=1).result(timeout=60)["designs"] == 2
