@@ -18,6 +18,13 @@ pub fn short(value: f64) -> String {
     plain(rounded)
 }
 
+/// A number as sentences and pages tell it: four significant digits, and from a thousand on a whole number.
+pub fn brief(value: f64) -> String {
+    let magnitude = value.abs();
+    let rounded = if (1e3..1e9).contains(&magnitude) { value.round() } else { format!("{value:.3e}").parse().unwrap_or(value) };
+    plain(rounded)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -29,6 +36,15 @@ mod tests {
         for (value, text) in cases {
             assert_eq!(plain(value), text);
             assert_eq!(text.parse::<f64>().unwrap(), value);
+        }
+    }
+
+    #[test]
+    fn sentences_have_four_digits() {
+        let cases =
+            [(0.0, "0"), (-0.41746, "-0.4175"), (12.3456, "12.35"), (999.96, "1000"), (58_137.64, "58138"), (-1.23456e-7, "-1.235e-7")];
+        for (value, text) in cases {
+            assert_eq!(brief(value), text);
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::models::Effort;
 use crate::plan::Plan;
 use crate::screen::Control;
 use crate::study::{Axis, Quantity, Study, number};
-use crate::table::short;
+use crate::table::{brief, short};
 use serde_json::{Value, json};
 use std::sync::atomic::Ordering;
 
@@ -69,7 +69,7 @@ impl BelowZero {
     pub(super) fn in_words(&self, study: &Study) -> String {
         let name = self.quantity.name(&study.model);
         let unit = self.quantity.unit(&study.model);
-        let least = format!("{} {unit}", short(self.least));
+        let least = format!("{} {unit}", brief(self.least));
         format!(
             "{name} falls below zero in {} of {} designs of the front (least {}, design {}), and no constraint forbids it",
             self.designs,
@@ -101,7 +101,11 @@ pub(super) fn ends(plan: &Plan, front: &[Row]) -> Vec<FrontEnd> {
         }
         let (low, high) = axis.ends(0);
         for (value, upper) in [(low, false), (high, true)] {
-            let is_limit = if upper { table.valid.high == value } else { table.valid.low == value };
+            let next = if upper { value + 1.0 } else { value - 1.0 };
+            let is_limit = match table.integer {
+                true => !table.valid.contains(next),
+                false => value == if upper { table.valid.high } else { table.valid.low },
+            };
             let designs = front.iter().filter(|row| row.inputs[input] == value).count() as u64;
             if low < high && !is_limit && table.word_for(value).is_none() && designs > 0 && 2 * designs >= front.len() as u64 {
                 found.push(FrontEnd { input, upper, value, designs, of: front.len() as u64 });

@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::plan::Plan;
 use crate::screen::{Control, sample};
 use crate::study::{Constraint, Study, number};
-use crate::table::short;
+use crate::table::{brief, plain, short};
 use serde_json::{Value, json};
 use std::sync::atomic::Ordering;
 
@@ -93,10 +93,15 @@ impl Infeasible {
             let unit = &study.unit_over(constraint.quantity, constraint.over);
             let mut parts = Vec::new();
             if let Some(best) = reach.best.filter(|it| !constraint.holds(it.value)) {
-                parts.push(format!("the best {} has {} ({})", of(&best), quantity(best.value, unit), named(best.design)));
+                parts.push(format!(
+                    "the best {} has {} ({})",
+                    of(&best),
+                    with_unit(&missing(constraint, best.value), unit),
+                    named(best.design)
+                ));
             }
             if let Some(first) = reach.first.filter(|it| !constraint.holds(it.value)) {
-                let bound = quantity(letting_through(constraint, first.value), unit);
+                let bound = with_unit(&letting_through(constraint, first.value), unit);
                 let kept = if study.constraints.len() > 1 { " that keeps all else" } else { "" };
                 let which = if first.exact { "the first design" } else { "the first design of the sample" };
                 parts.push(format!("a bound of {bound} lets {which}{kept} through ({})", named(first.design)));
@@ -108,7 +113,7 @@ impl Infeasible {
         if let Some(nearest) = self.nearest.as_ref().filter(|it| it.without_result == 0) {
             let misses = study.constraints.iter().zip(&nearest.values).filter(|(it, value)| !value.is_some_and(|value| it.holds(value)));
             let misses = misses.map(|(it, value)| {
-                let value = value.map_or("has no value".to_owned(), |value| format!("is {}", short(value)));
+                let value = value.map_or("has no value".to_owned(), |value| format!("is {}", missing(it, value)));
                 format!("{} {value}, wanted {}", it.name(model), it.in_words())
             });
             let misses: Vec<_> = misses.collect();
@@ -159,19 +164,24 @@ fn named(design: u64) -> String {
     format!("design {design}")
 }
 
-fn quantity(value: f64, unit: &str) -> String {
-    format!("{} {unit}", short(value)).trim_end().to_owned()
+fn with_unit(value: &str, unit: &str) -> String {
+    format!("{value} {unit}").trim_end().to_owned()
 }
 
-/// A bound in at most six digits that this value keeps.
-fn letting_through(constraint: &Constraint, value: f64) -> f64 {
+/// A value that misses its constraint, in as few digits as show that it does.
+fn missing(constraint: &Constraint, value: f64) -> String {
+    let shows = |text: &String| text.parse().is_ok_and(|told| !constraint.holds(told));
+    [brief(value), short(value)].into_iter().find(shows).unwrap_or_else(|| plain(value))
+}
+
+/// A bound in few digits that this value keeps.
+fn letting_through(constraint: &Constraint, value: f64) -> String {
     let is_least = constraint.margin(value) == constraint.low.map_or(f64::INFINITY, |(bound, _)| value - bound);
-    let keeps = |bound: f64| if is_least { value >= bound } else { value <= bound };
-    let rounded: f64 = short(value).parse().unwrap_or(value);
+    let keeps = |text: &String| text.parse().is_ok_and(|bound: f64| if is_least { value >= bound } else { value <= bound });
     // One step of the last digit beyond is enough, whatever the rounding did.
-    let step = 10f64.powf(value.abs().log10().floor() - 5.0);
-    let beyond: f64 = short(if is_least { rounded - step } else { rounded + step }).parse().unwrap_or(value);
-    [rounded, beyond].into_iter().find(|&bound| keeps(bound)).unwrap_or(value)
+    let step = 10f64.powf((value.abs().log10().floor() - 3.0).min(0.0));
+    let beyond = brief(if is_least { value - step } else { value + step });
+    [brief(value), beyond].into_iter().find(keeps).unwrap_or_else(|| plain(value))
 }
 
 /// A constraint with its unit, such as `stress_margin at least 0`.

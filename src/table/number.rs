@@ -1,6 +1,6 @@
 //! Values of inputs as text.
 
-pub use crate::decimal::{plain, short};
+pub use crate::decimal::{brief, plain, short};
 use crate::models::Input;
 
 /// A value of an input as people write it.
