@@ -30,18 +30,13 @@ pub fn controls(plan: &Plan, text: &str, threads: usize, control: &Control) -> R
     Ok(json!({
         "constraints": constraints(plan, text, threads, control)?,
         "objectives": objectives(study, text),
-        "operation": axes("operation", operation(study)),
+        "operation": axes("operation", study.operating()),
         "uncertainty": axes("uncertainty", &study.uncertainty),
         "design": axes("design", &study.design),
         "fixed": fixed(study, &entry_names(text, "fixed")),
         "formulas": entry_names(text, "formulas"),
         "drawn": drawn(study, text),
     }))
-}
-
-/// The operating cases: what is drawn is drawn in all of them.
-fn operation(study: &Study) -> &[Axis] {
-    study.probability.as_ref().map_or(&study.operation, |it| &it.drive.operation)
 }
 
 /// The distributions of a study and the number of draws, each with what can be set of it.
@@ -235,7 +230,7 @@ fn span(control: &mut Value, input: &Input, least: f64, largest: f64) {
 /// Every input that has one value; those that the file gives come first.
 fn fixed(study: &Study, given: &[String]) -> Vec<Value> {
     let model = &study.model;
-    let axes = || study.design.iter().chain(operation(study)).chain(&study.uncertainty);
+    let axes = || study.design.iter().chain(study.operating()).chain(&study.uncertainty);
     let drawn = |name: &str| study.probability.as_ref().is_some_and(|it| it.inputs.iter().any(|it| it.name == name));
     let single =
         (0..model.inputs.len()).filter(|input| !axes().any(|axis| axis.inputs().contains(input)) && !drawn(&model.inputs[*input].name));
@@ -260,14 +255,18 @@ fn fixed(study: &Study, given: &[String]) -> Vec<Value> {
 
 /// What a study gives every design, as far as its sliders go: loads, and the numbers that the file fixes.
 pub fn given_ranges(study: &Study, text: &str) -> Vec<GivenRange> {
-    let load = |(number, axis): (usize, &Axis)| {
-        let control = axis_control(study, text, "operation", axis);
-        let input = study.model.input(control["part"].as_str()?.strip_prefix("operation.")?)?;
+    let load = |axis: usize, (column, &input): (usize, &usize)| {
+        let described = &study.model.inputs[input];
+        let (least, largest) = study.operating()[axis].ends(column);
+        let mut control = described_input(described);
+        span(&mut control, described, least, largest);
         let to = control["high"].as_f64()?;
-        let is_range = !study.model.inputs[input].integer && to > axis.ends(0).1;
-        is_range.then_some(GivenRange::Load(number, to))
+        let has_words = [least, largest].into_iter().any(|it| described.word_for(it).is_some());
+        let is_range = !described.integer && !described.is_enumeration() && !has_words && to > largest;
+        is_range.then_some(GivenRange::Load { axis, input, to })
     };
-    let loads = study.operation.iter().enumerate().filter_map(load);
+    let of_axis = |(axis, it): (usize, &Axis)| it.inputs().iter().enumerate().filter_map(|it| load(axis, it)).collect::<Vec<_>>();
+    let loads = study.operating().iter().enumerate().flat_map(of_axis);
     loads.chain(fixed_ranges(study, text).into_iter().map(GivenRange::Fixed)).collect()
 }
 

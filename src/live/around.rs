@@ -1,7 +1,8 @@
 //! What is around a design: along each axis of the study, the values of objectives and constraints, all else as it is.
 
 use crate::certify::{self, Column, Role, Row};
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::parallel::one_after_another;
 use crate::plan::Plan;
 use crate::screen::Control;
 use crate::study::{Axis, Levels, Report, Study};
@@ -59,8 +60,15 @@ pub fn around(plan: &Plan, design: u64, most: u64, threads: usize, control: &Con
 pub enum GivenRange {
     /// An input that the study fixes, over the levels of this axis.
     Fixed(Axis),
-    /// The largest value of an operation axis, by its number: from the least value of the axis to this one.
-    Load(usize, f64),
+    /// The largest value of an input over the operating cases, from the least one on.
+    Load {
+        /// Number of the axis of the operating cases.
+        axis: usize,
+        /// The input.
+        input: usize,
+        /// Up to here.
+        to: f64,
+    },
 }
 
 /// The same, and slices over what the study gives.
@@ -81,7 +89,7 @@ pub fn around_with(
     let own = sliced(plan).map(|axis| line.slice(axis, most));
     let given = given.iter().map(|it| match it {
         GivenRange::Fixed(axis) => line.slice(axis, most),
-        GivenRange::Load(axis, to) => line.load(*axis, *to, most),
+        GivenRange::Load { axis, input, to } => line.load(*axis, *input, *to, most),
     });
     let slices = own.chain(given).collect::<Result<Vec<_>>>()?;
     Ok((columns, slices))
@@ -153,22 +161,23 @@ impl DesignLine<'_> {
         Ok((values, found))
     }
 
-    /// Over the largest value of an operation axis. The scenarios are others at each place, so that each is a study of its own.
-    fn load(&self, number: usize, to: f64, most: u64) -> Result<Slice> {
+    /// Over the largest value of an input in the operating cases. These are others at each place, so that each is a study of its own.
+    fn load(&self, number: usize, input: usize, to: f64, most: u64) -> Result<Slice> {
         let study = self.study;
-        let axis = &study.operation[number];
-        let input = axis.inputs()[0];
-        let (least, largest) = axis.ends(0);
+        let axis = &study.operating()[number];
+        let column = axis.inputs().iter().position(|it| *it == input).unwrap_or(0);
+        let (least, largest) = axis.ends(column);
         let first = &study.design[0];
         let alone = self.along(first, &[first.inputs().iter().map(|&it| self.inputs[it]).collect()]);
         let judged = |values: &[f64]| {
-            let each = values.iter().map(|&value| {
-                let mut operation = study.operation.clone();
-                operation[number] = with_largest(axis, value);
-                let plan = Plan::new(Study { operation, ..alone.clone() });
+            let row = |value: f64| {
+                let mut operation = study.operating().to_vec();
+                operation[number] = with_largest(axis, column, value);
+                let plan = Plan::new(alone.with_operating(operation).map_err(Error::Request)?);
                 Ok(certify::rows(&plan, self.columns, &[0], 1, self.control)?.remove(0))
-            });
-            each.collect::<Result<Vec<Row>>>()
+            };
+            let each = one_after_another(values.to_vec(), self.threads, || (), |(), value| row(value));
+            each.into_iter().collect::<Result<Vec<Row>>>()
         };
         let places = AxisPlaces::Between { low: least, high: to, log: false, own: largest };
         let (values, mut rows) = along_places(&places, largest, most, judged)?;
@@ -180,11 +189,17 @@ impl DesignLine<'_> {
     }
 }
 
-/// An axis of numbers with another largest value: what was the largest goes there.
-fn with_largest(axis: &Axis, value: f64) -> Axis {
-    let Axis::Single { input, levels } = axis else { return axis.clone() };
-    let (_, largest) = levels.ends();
+/// An axis with another largest value of one of its inputs: what was the largest goes there.
+fn with_largest(axis: &Axis, column: usize, value: f64) -> Axis {
+    let (_, largest) = axis.ends(column);
     let moved = |it: f64| if it == largest { value } else { it };
+    let (input, levels) = match axis {
+        Axis::Single { input, levels } => (input, levels),
+        Axis::Joint { inputs, rows } => {
+            let other = |row: &Vec<f64>| row.iter().enumerate().map(|(at, &it)| if at == column { moved(it) } else { it }).collect();
+            return Axis::Joint { inputs: inputs.clone(), rows: rows.iter().map(other).collect() };
+        }
+    };
     let levels = match levels {
         Levels::List(values) => Levels::List(values.iter().map(|&it| moved(it)).collect()),
         Levels::Even { from, to, count, log } => Levels::Even { from: moved(*from), to: moved(*to), count: *count, log: *log },
@@ -379,7 +394,8 @@ mod tests {
         };
         let plan = Plan::new(study(100.0));
         let control = Control::default();
-        let given = [GivenRange::Load(0, 400.0), GivenRange::Load(1, 2.5)];
+        let load = |axis: usize, to: f64| GivenRange::Load { axis, input: plan.study.operation[axis].inputs()[0], to };
+        let given = [load(0, 400.0), load(1, 2.5)];
         let (columns, slices) = around_with(&plan, 1, PLACES, &given, 2, &control).expect("slices");
         let slice = &slices[1];
         assert_eq!((slice.name.as_str(), slice.own, slices.len()), ("torque_Nm, the largest", 100.0, 3));
@@ -397,6 +413,32 @@ mod tests {
         // The end of a range stretches it.
         assert_eq!(slices[2].values[0], 0.5);
         assert_eq!(slices[2].values.last(), Some(&2.5));
+    }
+
+    #[test]
+    fn where_something_is_drawn_a_load_is_that_of_every_draw() {
+        let text = "[design]\nband_thickness_mm = [0.15, 0.2]\n[operation]\ncases = [{ torque_Nm = 50, ratio = 0.5 }, { torque_Nm = 100, ratio = 2 }, { torque_Nm = 100, ratio = 1 }]\n\
+                    [uncertainty]\nfriction = { normal = { mean = 0.09, sd = 0.005 } }\n[probability]\ndraws = 256\n[fixed]\nstrength_MPa = 900\ntraction = 0.3\n\
+                    [constraints]\nstress_margin = { min = 0 }\nyield = { min = 0.5 }\n[objectives]\nyield = \"max\"\n";
+        let study = |torque: f64| {
+            let text = text.replace("torque_Nm = 100", &format!("torque_Nm = {torque:?}"));
+            study_of(&crate::models::find("metal-cvt").expect("it is a model"), &text).expect("the study is right")
+        };
+        let plan = Plan::new(study(100.0));
+        let control = Control::default();
+        let input = plan.study.model.input("torque_Nm").expect("it is an input");
+        let given = [GivenRange::Load { axis: 0, input, to: 400.0 }];
+        let (columns, slices) = around_with(&plan, 1, 9, &given, 2, &control).expect("slices");
+        let slice = &slices[1];
+        assert_eq!((slice.name.as_str(), slice.own), ("torque_Nm, the largest", 100.0));
+        let mut yields = std::collections::BTreeSet::new();
+        for (value, row) in slice.values.iter().zip(&slice.rows) {
+            let alone = &certify::rows(&Plan::new(study(*value)), &columns, &[1], 1, &control).expect("a row")[0];
+            let bits = |row: &Row| row.columns.iter().map(|at| at.value.map(f64::to_bits)).collect::<Vec<_>>();
+            assert_eq!((bits(row), row.feasible), (bits(alone), alone.feasible), "{value} N m");
+            yields.insert(bits(row));
+        }
+        assert!(yields.len() > 1, "more torque must cost yield");
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The model whose outputs are yields and statistics over the draws.
 
 use super::super::Study;
+use super::super::axis::Axis;
 use super::super::spectrum::{OverScenarios, unit_over};
 use super::cases::OperatingCases;
 use super::confirm::FreshDraws;
@@ -51,6 +52,21 @@ impl Study {
         let few = Probability { draws, sampling: Sampling::Random, ..(**self.probability.as_ref()?).clone() };
         let model = Arc::new(few.model().ok()?);
         Some(Self { model, probability: Some(Arc::new(few)), ..self.clone() })
+    }
+
+    /// The axes of the operating cases: scenarios of the study, or where something is drawn what every draw must survive.
+    pub(crate) fn operating(&self) -> &[Axis] {
+        self.probability.as_ref().map_or(&self.operation, |it| &it.drive.operation)
+    }
+
+    /// The same with other operating cases on as many axes.
+    ///
+    /// # Errors
+    /// If they are too many for each draw.
+    pub(crate) fn with_operating(&self, operation: Vec<Axis>) -> Result<Self, String> {
+        let Some(probability) = &self.probability else { return Ok(Self { operation, ..self.clone() }) };
+        let other = Probability { drive: Drive { operation, ..probability.drive.clone() }, ..(**probability).clone() };
+        Ok(Self { model: Arc::new(other.model()?), probability: Some(Arc::new(other)), ..self.clone() })
     }
 }
 
