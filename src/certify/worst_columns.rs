@@ -53,6 +53,8 @@ struct WorstColumns<'p> {
     judge: ColumnJudge,
     list: List,
     each: Vec<bool>,
+    /// Of each output that is computed, with the conditions that take it away, and of each condition behind them: its axes.
+    results: Vec<AxisSet>,
     /// Of each axis: the operations that change when it or one further inside turns; and those that must be computed once.
     turns: Vec<Vec<Node>>,
     once: Vec<Node>,
@@ -91,7 +93,15 @@ impl<'p> WorstColumns<'p> {
         let once = needed.iter().copied().filter(|node| !reads(node, 0)).collect();
         let each = sets.iter().map(|it| it.designs).collect();
         let judge = ColumnJudge::new(model, &outputs, |output| plan.used_outputs().contains(output));
-        Some(Self { plan, columns, designs, axes, outputs, judge, list, each, turns, once })
+        let mut results: Vec<AxisSet> =
+            list.results.iter().map(|node| node.map_or_else(AxisSet::default, |it| sets[it as usize])).collect();
+        for place in 0..outputs.len() {
+            for &condition in judge.takers(place) {
+                let taker = results[outputs.len() + condition];
+                results[place] |= taker;
+            }
+        }
+        Some(Self { plan, columns, designs, axes, outputs, judge, list, each, results, turns, once })
     }
 
     /// The rows of a chunk of designs, from the first; `None` if it was stopped.
@@ -107,7 +117,7 @@ impl<'p> WorstColumns<'p> {
         let mut room = JudgeRoom::default();
         let mut statuses = vec![0; count];
         let mut outputs = vec![vec![0.0; count]; self.outputs.len()];
-        let mut turned = 0;
+        let (mut turned, mut is_first) = (0, true);
         loop {
             if control.stop.load(Ordering::Relaxed) {
                 return None;
@@ -119,20 +129,23 @@ impl<'p> WorstColumns<'p> {
                 let node = self.list.results[place].expect("every result is asked for");
                 numbers.value(node, |node| self.each[node as usize])
             };
+            let is_same = |place: usize| !is_first && self.results[place].axes >> turned == 0;
+            let new = |place: usize| (!is_same(place)).then(|| result(place));
             let mut places: Vec<&mut [f64]> = outputs.iter_mut().map(Vec::as_mut_slice).collect();
-            self.judge.judge(model, |condition| result(conditions + condition), result, &mut statuses, &mut places, &mut room);
+            self.judge.judge(model, |condition| new(conditions + condition), new, &mut statuses, &mut places, &mut room);
             let scenario = steps.iter().zip(&self.axes).map(|(&step, (axis, stride))| level(axis, step) * stride).sum();
             let value = |quantity: Quantity| match quantity {
                 Quantity::Output(output) => {
                     let place = self.outputs.iter().position(|&it| it == output).expect("it is computed");
-                    ColumnValue::Each(&outputs[place])
+                    (ColumnValue::Each(&outputs[place]), is_same(place))
                 }
                 Quantity::Input(input) => match self.designs.inputs.iter().position(|&it| it == input) {
-                    Some(column) => ColumnValue::Each(&self.designs.values[column][first..first + count]),
-                    None => ColumnValue::One(inputs[input]),
+                    Some(column) => (ColumnValue::Each(&self.designs.values[column][first..first + count]), !is_first),
+                    None => (ColumnValue::One(inputs[input]), false),
                 },
             };
             found.take(scenario, &statuses, value);
+            is_first = false;
             // The next scenario: the innermost axis turns fastest.
             let Some(axis) = (0..steps.len()).rev().find(|&axis| steps[axis] + 1 < self.axes[axis].0.count()) else { break };
             steps[axis] += 1;
@@ -370,6 +383,25 @@ mod tests {
         }
         assert!(served.len() >= 6, "{served:?}");
         assert!(served.iter().filter(|it| it.1).count() >= 4, "some hold and some do not: {served:?}");
+    }
+
+    #[test]
+    fn what_does_not_change_with_the_scenario_overflows_in_each() {
+        // With 14 bands both do: one whatever the scenario, one at the highest ratio only.
+        let text = "model = \"metal-cvt\"\n[design]\nband_count = { from = 6, to = 14 }\n[operation]\nratio = [0.5, 2, 1]\n[uncertainty]\nfriction = [0.07, 0.08, 0.09]\n[fixed]\ntraction = 0.4\n\
+                    [formulas]\nhuge = \"1e306 * band_count ^ 2\"\nrising = \"5e305 * ratio * band_count ^ 2\"\n\
+                    [constraints]\nhuge = { max = 1.5e308 }\nrising = { max = 1.6e308 }\n[objectives]\naxial_force_N = \"min\"\n";
+        let plan = Plan::new(Study::parse(text).expect("it is right"));
+        let columns = certify::all_columns(&plan.study);
+        let inputs: Vec<usize> = plan.study.design.iter().flat_map(|axis| axis.inputs().to_vec()).collect();
+        let values: Vec<f64> = (6..=14).map(f64::from).collect();
+        let designs = DesignColumns { inputs: &inputs, values: &[&values] };
+        let control = Control::default();
+        let together = rows_of_columns(&plan, &columns, designs, 1, &control).expect("it is served").expect("nobody stops it");
+        let alone = certify::one_by_one(&plan, &columns, &(0..9).collect::<Vec<_>>(), 1, &control).expect("nobody stops it");
+        assert_eq!(together, alone);
+        let missing: Vec<u64> = together.iter().map(|row| row.without_result).collect();
+        assert_eq!(missing, [0, 0, 0, 0, 0, 0, 0, 0, 9]);
     }
 
     #[test]

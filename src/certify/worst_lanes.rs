@@ -48,11 +48,13 @@ struct WorstLanes {
     value: Vec<f64>,
     scenario: Vec<u64>,
     complete: Vec<u64>,
+    /// The scenario that was taken in last.
+    last: u64,
 }
 
 impl<'p> FoundWorst<'p> {
     pub(super) fn new(plan: &'p Plan, columns: &'p [Column], count: usize) -> Self {
-        let lanes = |_: &Column| WorstLanes { value: vec![f64::NAN; count], scenario: vec![0; count], complete: vec![YES; count] };
+        let lanes = |_: &Column| WorstLanes::new(count);
         let constraints = &plan.study.constraints;
         let mut asked: Vec<Quantity> = Vec::new();
         for quantity in plan.tracked.iter().map(|(it, _)| it.quantity).chain(constraints.iter().map(|it| it.quantity)) {
@@ -97,19 +99,26 @@ impl<'p> FoundWorst<'p> {
         }
     }
 
-    /// Takes in a scenario; statuses as their numbers.
-    pub(super) fn take<'c>(&mut self, scenario: u64, statuses: &[u16], value: impl Fn(Quantity) -> ColumnValue<'c>) {
+    /// Takes in a scenario; statuses as their numbers, and each value with whether it is that of the scenario before.
+    pub(super) fn take<'c>(&mut self, scenario: u64, statuses: &[u16], value: impl Fn(Quantity) -> (ColumnValue<'c>, bool)) {
         let Self { columns, asked, decides, held, feasible, without_result, first_without, not_ok, status, worst, has, room, .. } = self;
         judge(statuses, scenario, has, not_ok, status);
         for &quantity in &*asked {
-            if let ColumnValue::Each(values) = value(quantity) {
+            if let (ColumnValue::Each(values), _) = value(quantity) {
                 keep_finite(has, values);
             }
         }
         for ((column, lanes), &decides) in columns.iter().zip(worst).zip(&*decides) {
             let values = match value(column.quantity) {
-                ColumnValue::Each(values) => values,
-                ColumnValue::One(value) => {
+                // What was taken in with an earlier scenario changes nothing.
+                (ColumnValue::Each(values), true) if lanes.last < scenario => {
+                    if decides {
+                        keep_finite(has, values);
+                    }
+                    continue;
+                }
+                (ColumnValue::Each(values), _) => values,
+                (ColumnValue::One(value), _) => {
                     room.fill(value);
                     &*room
                 }
@@ -118,7 +127,7 @@ impl<'p> FoundWorst<'p> {
         }
         count_missing(has, scenario, without_result, first_without, feasible);
         for constraint in &*held {
-            match value(constraint.quantity) {
+            match value(constraint.quantity).0 {
                 ColumnValue::Each(values) => {
                     let (low, high) = constraint.ends();
                     keep_between(feasible, values, low, high);
@@ -145,8 +154,13 @@ impl<'p> FoundWorst<'p> {
 }
 
 impl WorstLanes {
+    fn new(count: usize) -> Self {
+        Self { value: vec![f64::NAN; count], scenario: vec![0; count], complete: vec![YES; count], last: NEVER }
+    }
+
     /// Takes in the values of a scenario; `has` loses the lanes whose value is not finite, if it is given.
     fn take(&mut self, worst: Worst, values: &[f64], scenario: u64, has: Option<&mut [u64]>) {
+        self.last = scenario;
         match worst {
             Worst::End(Worse::Higher) => take_highest(self, values, scenario, has),
             Worst::End(Worse::Lower) => take_lowest(self, values, scenario, has),
@@ -269,7 +283,7 @@ mod tests {
             (seed >> 33) % below
         };
         for worst in kinds {
-            let mut lanes = WorstLanes { value: vec![f64::NAN; count], scenario: vec![0; count], complete: vec![YES; count] };
+            let mut lanes = WorstLanes::new(count);
             let mut alone = vec![(f64::NEG_INFINITY, AtWorst { value: None, scenario: 0 }); count];
             let mut complete = vec![true; count];
             // Scenarios out of order, most of them mild; some lanes are nothing or infinite for a while.

@@ -18,9 +18,9 @@ const PIECE: f64 = 0.1;
 const LARGEST: u64 = 1 << 16;
 /// How long `--method auto` measures, and how long first, which is enough where judging every design takes far less than [`SHORT`].
 const BRIEFLY: Duration = Duration::from_millis(100);
-const GLANCE: Duration = Duration::from_millis(10);
+const GLANCE: Duration = Duration::from_millis(4);
 /// There is no glance at a model by which a thread judges fewer designs than this in its time.
-const GLANCED_AT: f64 = 100.0;
+const GLANCED_AT: f64 = 40.0;
 /// A glance is enough if by it all designs take less than this part of [`SHORT`].
 const GLANCED: f64 = 0.25;
 /// It may have met nothing but rows that fail at once: so the model too must say that all designs take less than this many times [`SHORT`].

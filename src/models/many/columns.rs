@@ -93,9 +93,9 @@ impl RecordedColumns {
                 });
             });
             let judged = &mut judged[..count];
-            let margin = |condition: usize| columns.result(list, wanted.len() + condition);
+            let margin = |condition: usize| Some(columns.result(list, wanted.len() + condition));
             let mut outputs: Vec<&mut [f64]> = outputs.iter_mut().map(|column| &mut column[start..start + count]).collect();
-            self.judge.judge(model, margin, |place| columns.result(list, place), judged, &mut outputs, &mut room);
+            self.judge.judge(model, margin, |place| Some(columns.result(list, place)), judged, &mut outputs, &mut room);
             statuses[start..][..count].iter_mut().zip(judged).for_each(|(status, judged)| *status = S::from(Status::of_number(*judged)));
         }
     }

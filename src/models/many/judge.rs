@@ -20,6 +20,8 @@ pub(crate) struct JudgeRoom {
     failed: Vec<(bool, Vec<bool>)>,
     /// Where an output is taken away.
     gone: Vec<bool>,
+    /// Of each output that is asked for: has it overflown somewhere, and is that a status?
+    overflown: Vec<bool>,
 }
 
 /// An output that is asked for.
@@ -46,27 +48,35 @@ impl ColumnJudge {
         Self { outputs: outputs.iter().map(judged).collect() }
     }
 
-    /// Judges a chunk: `margin` of each condition and `value` of each output asked for, in SI units. Outputs are written in their units, NaN
-    /// where they have no meaning; statuses as their numbers, which go side by side in vectors.
+    /// The conditions that take an output away, given by its place among those asked for.
+    pub fn takers(&self, place: usize) -> &[usize] {
+        &self.outputs[place].takers
+    }
+
+    /// Judges a chunk: `margin` of each condition and `value` of each output asked for, in SI units. Outputs are written in their units,
+    /// NaN where they have no meaning; statuses as their numbers, which go side by side in vectors. Where there is no margin or no value it
+    /// is what it was the last time, with this room; so is an output, as it was written then.
     pub fn judge<'c>(
         &self,
         model: &Model,
-        margin: impl Fn(usize) -> ColumnValue<'c>,
-        value: impl Fn(usize) -> ColumnValue<'c>,
+        margin: impl Fn(usize) -> Option<ColumnValue<'c>>,
+        value: impl Fn(usize) -> Option<ColumnValue<'c>>,
         statuses: &mut [u16],
         outputs: &mut [&mut [f64]],
         room: &mut JudgeRoom,
     ) {
         let count = statuses.len();
         statuses.fill(OK);
-        let JudgeRoom { failed, gone } = room;
+        let JudgeRoom { failed, gone, overflown } = room;
         failed.resize_with(model.conditions.len(), Default::default);
         gone.resize(count, false);
+        overflown.resize(self.outputs.len(), false);
         for (number, ((any, rows), condition)) in failed.iter_mut().zip(&model.conditions).enumerate() {
             rows.resize(count, false);
             *any = match margin(number) {
-                ColumnValue::Each(margins) => failures(margins, condition.strict, rows),
-                ColumnValue::One(margin) => {
+                None => *any,
+                Some(ColumnValue::Each(margins)) => failures(margins, condition.strict, rows),
+                Some(ColumnValue::One(margin)) => {
                     let fails = failures(&[margin], condition.strict, &mut [false]);
                     rows.fill(fails);
                     fails
@@ -79,26 +89,32 @@ impl ColumnJudge {
                 write_marked(statuses, rows, Status::failed(number).into());
             }
         }
-        for (place, (column, output)) in outputs.iter_mut().zip(&self.outputs).enumerate() {
+        for (place, ((column, output), overflown)) in outputs.iter_mut().zip(&self.outputs).zip(overflown).enumerate() {
             let unit = model.outputs[output.number].unit;
             let (multiply, divide) = unit.factors();
-            let finite = match value(place) {
-                ColumnValue::One(value) => {
+            let new = value(place);
+            let is_new = new.is_some();
+            let settled = match new {
+                None => !*overflown,
+                Some(ColumnValue::One(value)) => {
                     let value = unit.from_si(value);
                     column.fill(value);
                     value.is_finite()
                 }
-                ColumnValue::Each(values) => converted(values, (divide, multiply), column),
+                Some(ColumnValue::Each(values)) => converted(values, (divide, multiply), column),
             };
             let mut takers = output.takers.iter().map(|&it| &failed[it]).filter(|(any, _)| *any).map(|(_, rows)| rows);
+            *overflown &= !is_new;
             match takers.next() {
-                None if finite => continue,
+                _ if settled && !is_new => continue,
+                None if settled => continue,
                 None => gone.fill(false),
                 Some(first) => gone.copy_from_slice(first),
             }
             takers.for_each(|rows| join(gone, rows));
             // What no condition takes away and is absent all the same has overflowed.
-            if clear(column, gone) && output.counts {
+            *overflown |= is_new && clear(column, gone) && output.counts;
+            if *overflown {
                 let rows = column.iter().zip(&*gone).zip(&mut *statuses);
                 for ((_, _), status) in rows.filter(|((value, gone), status)| value.is_nan() && !**gone && **status == OK) {
                     *status = Status::Overflow.into();
