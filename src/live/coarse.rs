@@ -1,15 +1,18 @@
 //! The first idea of an answer that takes long: fewer designs, fewer draws of each, fewer scenarios.
 
-use super::search::{FrontSearch, JudgedRows, WorkingSet};
+use super::search::{FrontSearch, JudgedRows, WorkingSet, coarse_places};
 use super::{Live, LiveAnswer, LiveFront, NOTICED, is_by_bounds};
+use crate::certify::{Row, objective_columns};
 use crate::error::Result;
+use crate::keys::KeyRule;
 use crate::plan::Plan;
+use crate::reduce::{Points, beats};
 use crate::screen::Control;
 use std::time::{Duration, Instant};
 
 /// Seconds that it may take.
 const COARSELY: f64 = 0.02;
-/// Designs that it has, where they take no longer; and those that it always has.
+/// Designs that it has, where they take no longer; and those that it always has, as of fewer often none is feasible. Each thread has one.
 const FEW: u64 = 2000;
 const FEWEST: u64 = 4;
 /// Each further idea has so many times the designs of the one before, as long as the last is no more than a share of all.
@@ -35,28 +38,35 @@ impl Live {
     ) -> Result<bool> {
         let plan = search.plan();
         let rest = Duration::try_from_secs_f64(expected).unwrap_or(Duration::MAX / 4) + to_be_seen(expected);
-        let mut tell_of = |search: &FrontSearch<'_>, points: &_, looked_at, draws| {
-            let rows = search.in_few(set, points)?;
+        let mut tell_of = |search: &FrontSearch<'_>, rows: &[Row], looked_at, draws| {
             let scenarios = set.count(plan.scenarios());
             let (plan, columns) = (search.plan(), search.columns());
-            let front = LiveFront { plan, columns, rows: &rows, looked_at, draws, scenarios, took: start.elapsed() };
+            let front = LiveFront { plan, columns, rows, looked_at, draws, scenarios, took: start.elapsed() };
             tell(LiveAnswer::Coarse(front, start.elapsed() + rest))
         };
         if let Some((few_draws, draws, expected)) = with_few_draws(plan, expected) {
             let mut search = FrontSearch::new(&few_draws, self.threads, control, JudgedRows::default());
-            let most = at_least(plan, expected).min(plan.designs());
+            let most = self.at_least(plan, expected).min(plan.designs());
             let (points, looked_at) = search.coarse(set, most)?;
-            tell_of(&search, &points, looked_at, Some(draws))?;
+            tell_of(&search, &search.in_few(set, &points)?, looked_at, Some(draws))?;
             return Ok(true);
         }
         let slowness = self.pace().slowness;
-        let most = share(plan, COARSELY / (expected * slowness)).max(at_least(plan, expected));
+        let most = share(plan, COARSELY / (expected * slowness)).max(self.at_least(plan, expected));
         if most >= plan.designs() {
             return Ok(false);
         }
         // Where somebody waits for seconds, what is seen gets better meanwhile. Bounds take no longer for more designs.
         let largest = if is_by_bounds(plan, expected) { 0 } else { plan.designs() / MOST_SHARE };
         let mut size = most;
+        if most <= self.fewest() {
+            let (rows, looked_at) = search.best_of_grid(set, most)?;
+            tell_of(search, &rows, looked_at, None)?;
+            if size.saturating_mul(FINER) > largest {
+                return Ok(true);
+            }
+            size *= FINER;
+        }
         loop {
             let is_last = size.saturating_mul(FINER) > largest;
             let begun = Instant::now();
@@ -68,12 +78,47 @@ impl Live {
                 // Halfway, so that a moment in which the machine has something else to do does not count in full.
                 self.change_pace(|pace| pace.slowness = (slowness * found).sqrt().clamp(1.0, 1e3));
             }
-            tell_of(search, &points, looked_at, None)?;
+            tell_of(search, &search.in_few(set, &points)?, looked_at, None)?;
             if is_last {
                 return Ok(true);
             }
             size *= FINER;
         }
+    }
+
+    /// The designs that a first idea has at least, where all of them take `expected` seconds.
+    fn at_least(&self, plan: &Plan, expected: f64) -> u64 {
+        share(plan, COARSELY / expected).clamp(self.fewest(), FEW)
+    }
+
+    fn fewest(&self) -> u64 {
+        FEWEST.max(self.threads as u64).min(FEW)
+    }
+}
+
+impl FrontSearch<'_> {
+    /// The best of at most so many designs of a coarser grid, with their values in a working set, and how many were looked at. Each is
+    /// judged only once: a single one may take long.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`](crate::error::Error::Stopped) after `control.stop`.
+    pub(super) fn best_of_grid(&self, set: &WorkingSet, most: u64) -> Result<(Vec<Row>, u64)> {
+        let plan = self.plan();
+        let (slow, fast) = coarse_places(plan, most);
+        let design = |&slow: &u64, fast: u64| plan.slow.source_index(slow) + plan.fast.source_index(fast);
+        let indices: Vec<u64> = slow.iter().flat_map(|slow| fast.iter().map(move |&fast| design(slow, fast))).collect();
+        let looked_at = indices.len() as u64;
+        let mut rows = self.in_few(set, &Points { indices, keys: Vec::new() })?;
+        rows.retain(|row| self.holds(row));
+        let rules: Vec<_> = plan.study.objectives.iter().map(KeyRule::from).collect();
+        let places = objective_columns(&plan.study, self.columns());
+        let key = |row: &Row| -> Vec<f64> {
+            rules.iter().zip(&places).map(|(rule, &place)| rule.key(row.columns[place].value.unwrap_or(f64::NAN))).collect()
+        };
+        let keys: Vec<(Vec<f64>, u64)> = rows.iter().map(|row| (key(row), row.index)).collect();
+        let mut is_best = keys.iter().map(|own| !keys.iter().any(|other| beats(&other.0, other.1, &own.0, own.1)));
+        rows.retain(|_| is_best.next().unwrap_or(true));
+        Ok((rows, looked_at))
     }
 }
 
@@ -81,11 +126,6 @@ impl Live {
 #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "about so many")]
 fn share(plan: &Plan, share: f64) -> u64 {
     (share * plan.designs() as f64) as u64
-}
-
-/// The designs that a first idea has at least, where all of them take `expected` seconds.
-fn at_least(plan: &Plan, expected: f64) -> u64 {
-    share(plan, COARSELY / expected).clamp(FEWEST, FEW)
 }
 
 /// Seconds that all designs take where they are drawn, measured with few draws of a few; `None` if nothing is drawn.

@@ -406,8 +406,7 @@ impl<'p> FrontSearch<'p> {
     /// Most of the time goes into designs that enter a front and are beaten later; so the front of a grid that is coarser still comes first.
     pub(super) fn coarse_grid(&self, set: &WorkingSet, most: u64) -> Result<(Points, u64)> {
         let seen = if most / COARSER < FEW { Points::default() } else { self.coarse_grid(set, most / COARSER)?.0 };
-        let fast = self.plan.fast.coarse(most.isqrt().max(most / self.plan.slow.count().max(1)));
-        let slow = self.plan.slow.coarse((most / fast.len().max(1) as u64).max(1));
+        let (slow, fast) = coarse_places(self.plan, most);
         Ok((self.front_in(set, &slow, &fast, seen)?, (slow.len() * fast.len()) as u64))
     }
 
@@ -600,6 +599,13 @@ fn coarse_scenarios(plan: &Plan) -> impl Iterator<Item = u64> {
     let slow = plan.slow_scenarios.coarse((MOST_NEW / fast.len()) as u64);
     let number = |slow: u64, fast: u64| plan.slow_scenarios.source_index(slow) + plan.fast_scenarios.source_index(fast);
     slow.into_iter().flat_map(move |slow| fast.clone().into_iter().map(move |fast| number(slow, fast)))
+}
+
+/// The rows and places of a grid of at most so many designs.
+pub(super) fn coarse_places(plan: &Plan, most: u64) -> (Vec<u64>, Vec<u64>) {
+    let fast = plan.fast.coarse(most.isqrt().max(most / plan.slow.count().max(1)));
+    let slow = plan.slow.coarse((most / fast.len().max(1) as u64).max(1));
+    (slow, fast)
 }
 
 /// Rows and places cut into about so many parts.

@@ -239,6 +239,10 @@ fn a_coarse_front_is_that_of_the_designs_that_were_looked_at() {
         found.sort_unstable();
         assert_eq!(found, wanted, "{edits:?}");
         compared += usize::from(found.len() > 3 && found.len() < feasible.len());
+        // Judged once each, the designs of a grid have the same best ones.
+        let (points, of) = search.coarse_grid(&set, most).expect("nobody stops it");
+        let few = search.in_few(&set, &points).expect("nobody stops it");
+        assert_eq!(search.best_of_grid(&set, most).expect("nobody stops it"), (few, of), "{edits:?}");
     }
     assert!(compared > 0, "of each a few designs are left, or all of them");
 }
