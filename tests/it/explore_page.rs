@@ -18,13 +18,16 @@ pub struct Explored {
 
 impl Explored {
     pub fn new(study: &Path, words: &[&str]) -> Self {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        Self::in_folder(Path::new(env!("CARGO_MANIFEST_DIR")), study, words)
+    }
+
+    pub fn in_folder(folder: &Path, study: &Path, words: &[&str]) -> Self {
         let mut process = Command::new(env!("CARGO_BIN_EXE_beltspace"))
             .arg("explore")
             .arg(study)
             .arg("--no-browser")
             .args(words)
-            .current_dir(root)
+            .current_dir(folder)
             .stdout(Stdio::piped())
             .spawn()
             .expect("the program starts");

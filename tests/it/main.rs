@@ -42,6 +42,8 @@ mod mutations;
 mod numbers;
 /// A model made at run time.
 mod own_model;
+/// The pictures of pages in README and manual.
+mod pages_in_docs;
 /// The papers' figures and tables, computed again.
 mod papers;
 /// The models against their second implementation.

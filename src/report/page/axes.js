@@ -20,10 +20,13 @@
   // The title of an axis in the room that there is: { lines, size, whole }. Letters are made smaller, never narrower; what still has
   // no room is cut off.
   const SIZES = [12, 11, 10, 9.5];
-  page.axisTitle = (column, room, most) => {
+  const wordyTitle = (column) => page.axisName(column.name, column.unit) + (column.goal ? `, ${column.goal === "min" ? "lower" : "higher"} is better` : "");
+  page.hasRoomForWords = (column, room) => widthOf(wordyTitle(column), SIZES[0]) <= room;
+  // `wordy`: the goal in words if they have room.
+  page.axisTitle = (column, room, most, wordy = true) => {
     const name = page.axisName(column.name, column.unit);
-    const wide = column.goal ? `${name}, ${column.goal === "min" ? "lower" : "higher"} is better` : name;
-    if (widthOf(wide, SIZES[0]) <= room) return { lines: [wide], size: SIZES[0], whole: wide };
+    const wide = wordyTitle(column);
+    if ((wordy || !column.goal) && page.hasRoomForWords(column, room)) return { lines: [wide], size: SIZES[0], whole: wide };
     const whole = name + (column.goal ? ` (${column.goal})` : "");
     const least = SIZES[SIZES.length - 1];
     const size = SIZES.find((it) => broken(whole, room, it).every((line, at) => at < most && widthOf(line, it) <= room)) ?? least;

@@ -113,7 +113,8 @@
     size = Math.floor(sizeFor(width, names.length));
     ratio = Math.min(2, window.devicePixelRatio || 1);
     const columns = names.map((name) => front.byName.get(name));
-    const lines = Math.max(...columns.slice(0, -1).map((column) => xTitle(column).lines.length));
+    wordy = columns.every((column) => page.hasRoomForWords(column, titleRoom()));
+    const lines = Math.max(...columns.slice(0, -1).map((column) => titleOf(column, 3).lines.length));
     const total = { width: LEFT + across * (size + GAP), height: TOP + across * (size + GAP) - GAP + BOTTOM + 13 * (lines - 1) };
     const extent = Math.round(size * ratio);
     canvas = page.element("canvas", { width: Math.ceil(total.width * ratio), height: Math.ceil(total.height * ratio), "aria-hidden": "true" });
@@ -142,7 +143,7 @@
     box.append(stage, readout);
     // The upper right of the triangle is free for the colour bar and the values of the current point; where it is too small they are below.
     const free = Math.min(420, width - LEFT - size - GAP - 16);
-    const isCorner = across > 1 && size >= 140 && free >= 200 && !page.printing;
+    const isCorner = across > 1 && size >= 190 && free >= 200 && !page.printing;
     readout.className = isCorner ? "corner" : across > 1 ? "below" : "";
     readout.style.width = isCorner ? `${free}px` : across > 1 ? "100%" : "300px";
     if (isCorner) readout.style.maxHeight = `${size + (across > 2 ? 0 : -4)}px`;
@@ -168,7 +169,10 @@
     }
   };
 
-  const xTitle = (column) => page.axisTitle(column, size + GAP - 4, 3);
+  // All titles of a matrix say the goals in words, or none does.
+  let wordy = false;
+  const titleRoom = () => size + GAP - 4;
+  const titleOf = (column, most) => page.axisTitle(column, titleRoom(), most, wordy);
 
   const addCell = (cell, first, last) => {
     const group = svg.append("g").attr("class", "cell").attr("transform", `translate(${cell.left},${cell.top})`);
@@ -177,11 +181,11 @@
     group.append("rect").attr("class", "frame").attr("width", size).attr("height", size);
     if (last) {
       cell.xAxis = group.append("g").attr("class", "tick-axis").attr("transform", `translate(0,${size})`);
-      page.writeTitle(group.append("text").attr("class", "axis-title").attr("y", size + 37), xTitle(cell.x), size / 2);
+      page.writeTitle(group.append("text").attr("class", "axis-title").attr("y", size + 37), titleOf(cell.x, 3), size / 2);
     }
     if (first) {
       cell.yAxis = group.append("g").attr("class", "tick-axis");
-      const title = page.axisTitle(cell.y, size + GAP - 4, 2);
+      const title = titleOf(cell.y, 2);
       page.writeTitle(group.append("text").attr("class", "axis-title").attr("transform", `translate(${title.lines.length > 1 ? -62 : -60},${size / 2})rotate(-90)`), title);
     }
     drawAxes(cell);
