@@ -2,7 +2,7 @@
 
 use super::{draws, read_study_with, threads};
 use crate::cli;
-use crate::terminal::{self, TextGrid, bold, grouped, scaled, span};
+use crate::terminal::{self, TextGrid, bold, counted, grouped, scaled, span};
 use beltspace::error::{Error, Result};
 use beltspace::memory::{Needs, large_files, most_feasible};
 use beltspace::plan::Plan;
@@ -61,7 +61,7 @@ pub fn run(request: &cli::CheckArgs) -> Result<()> {
     // The sample that shows what limits feasibility and a list of all designs are judged a second time.
     let listed = if study.report.variants || study.report.feasible { designs } else { 0 };
     let seconds = [designs, designs.min(model.sample), listed].iter().map(|&judged| speed.of(judged, cores)).sum();
-    let rate = format!("on {cores} threads, {}designs/s ({})", scaled(speed.of(1, cores).recip()), speed.how());
+    let rate = format!("on {}, {}designs/s ({})", counted(cores as u64, "thread"), scaled(speed.of(1, cores).recip()), speed.how());
     let one_by_one = format!("about {} plus the time for the front, {rate}", span(seconds));
     let (method, expected) = match why_every_design(&plan, speed.of(designs, cores)) {
         Some(why) => (format!("every design: {why}"), one_by_one),
@@ -82,7 +82,7 @@ pub fn run(request: &cli::CheckArgs) -> Result<()> {
     fact("method", method);
     let needs = Needs::of(&plan, cores, true);
     let front =
-        if study.objectives.is_empty() { String::new() } else { format!(", with about {} designs on the front", grouped(needs.front)) };
+        if study.objectives.is_empty() { String::new() } else { format!(", with about {} on the front", counted(needs.front, "design")) };
     fact("memory", format!("about {} MB{front}", needs.run.div_ceil(1_000_000)));
     if let Some(size) = feasible_file(&plan) {
         fact("feasible file", size);
@@ -122,7 +122,7 @@ fn by_bounds(trial: Option<BoundsTrial>, seconds: f64, one_by_one: &str) -> Stri
 pub(super) fn feasible_file(plan: &Plan) -> Option<String> {
     let (rows, bytes) = most_feasible(plan)?;
     let size = grouped((rows * bytes).div_ceil(1_000_000));
-    Some(format!("{FEASIBLE_FILE}, at most {} designs x {bytes} bytes = {size} MB", grouped(rows)))
+    Some(format!("{FEASIBLE_FILE}, at most {} x {bytes} bytes = {size} MB", counted(rows, "design")))
 }
 
 fn ends(plan: &Plan, axis: &Axis, column: usize, input: usize) -> String {

@@ -1,7 +1,7 @@
 //! Draws of a study with distributions: what they are like, as a table, and one of them evaluated.
 
 use crate::cli;
-use crate::terminal::{TextGrid, grouped, short};
+use crate::terminal::{TextGrid, counted, grouped, short};
 use beltspace::bounds::{EnclosureProblem, YieldBounds};
 use beltspace::error::{Error, Result};
 use beltspace::files::{MOVE, refuse_foreign, replace};
@@ -37,7 +37,7 @@ pub fn axes(probability: &Probability, grid: &mut TextGrid) {
 /// What else `check` says of the draws.
 pub fn facts(probability: &Probability, mut fact: impl FnMut(&str, String)) -> Result<()> {
     let cases: u64 = probability.drive.operation.iter().map(Axis::count).product();
-    let of_cases = if cases == 1 { String::new() } else { format!(", each in {} operating cases", grouped(cases)) };
+    let of_cases = if cases == 1 { String::new() } else { format!(", each in {}", counted(cases, "operating case")) };
     fact("draws", format!("{}{of_cases}; {} fresh ones judge what is reported", grouped(probability.draws), grouped(probability.confirm)));
     if !probability.correlation.is_empty() {
         let drawn = columns(probability, probability.draws.min(SHOWN))?;

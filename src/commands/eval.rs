@@ -3,7 +3,7 @@
 use super::settings::{inputs_of, no_preset};
 use super::{CommandTarget, draws, read_study, read_study_what_if, rows, target};
 use crate::cli;
-use crate::terminal::{self, TextGrid, bold, dim, grouped, short};
+use crate::terminal::{self, TextGrid, bold, counted, dim, short};
 use beltspace::certify;
 use beltspace::error::{Error, Result};
 use beltspace::export::pulley;
@@ -352,13 +352,14 @@ fn print_worst(plan: &Plan, design: u64, number_of: u64, request: &cli::EvalArgs
         margins.row([constraint.name(model), constraint.in_words(), verdict, "margin".to_owned(), margin]);
     }
     let not_ok = failed.first().map_or(String::new(), |(scenario, _)| {
-        format!(" in scenario {scenario} ({} of {} scenarios are not ok)", failed.len(), plan.scenarios())
+        let are = if failed.len() == 1 { "is" } else { "are" };
+        format!(" in scenario {scenario} ({} of {} {are} not ok)", failed.len(), counted(plan.scenarios(), "scenario"))
     });
     let with = if request.set.is_empty() { String::new() } else { format!(" with {}", request.set.join(", ")) };
     let of_all = match &study.probability {
-        None => format!("worst of {} scenarios", plan.scenarios()),
-        Some(it) if it.levels == 1 => format!("over {} draws", grouped(it.draws)),
-        Some(it) => format!("over {} draws, worst of {} levels", grouped(it.draws), grouped(it.levels)),
+        None => format!("worst of {}", counted(plan.scenarios(), "scenario")),
+        Some(it) if it.levels == 1 => format!("over {}", counted(it.draws, "draw")),
+        Some(it) => format!("over {}, worst of {}", counted(it.draws, "draw"), counted(it.levels, "level")),
     };
     terminal::tell(&format!(
         "{} {number_of}{with}, {of_all}\n\n{}\n{}\n{}\n{}\n{}\n{}\n{} {status}{not_ok}\n{} {}\n",

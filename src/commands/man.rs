@@ -21,7 +21,7 @@ pub fn run(dir: Option<&Path>) -> Result<()> {
         let file = dir.join(format!("{name}.1"));
         std::fs::write(&file, page(command.clone(), name)?).map_err(Error::io(&file))?;
     }
-    terminal::print(&format!("{} pages in {}\n", pages.len(), dir.display()))
+    terminal::print(&format!("{} in {}\n", terminal::counted(pages.len() as u64, "page"), dir.display()))
 }
 
 /// A page in the form that `man` reads.

@@ -59,7 +59,7 @@ pub fn run(request: &cli::MergeArgs) -> Result<()> {
         designs: plan.designs(),
         scenarios: plan.scenarios(),
         time: start.elapsed(),
-        origin: format!("merged from {count} shards; the time is that of merging"),
+        origin: format!("merged from {}; the time is that of merging", terminal::counted(count as u64, "shard")),
         certified: outcome.certified(),
         device: None,
         method: MethodRecord {

@@ -46,8 +46,7 @@ pub fn run(request: &cli::EvalArgs, rows: &Path) -> Result<()> {
     });
     let count = count?;
     written?;
-    let rows = if count == 1 { "row" } else { "rows" };
-    terminal::print(&format!("{} {rows}, in {}\n", terminal::grouped(count), out.display()))
+    terminal::print(&format!("{}, in {}\n", terminal::counted(count, "row"), out.display()))
 }
 
 /// What the rows are evaluated by.

@@ -192,9 +192,9 @@ fn finish_shard(plan: &Plan, out: &Path, shard: Shard, quiet: bool) -> Result<()
     }
     let range = shard.range(plan.designs());
     terminal::tell(&format!(
-        "shard {shard} of \"{}\": {} designs, in {}\nmerge the shards with: beltspace merge DIR... --out DIR\n",
+        "shard {shard} of \"{}\": {}, in {}\nmerge the shards with: beltspace merge DIR... --out DIR\n",
         terminal::told(&plan.study.title),
-        terminal::grouped(range.end - range.start),
+        terminal::counted(range.end - range.start, "design"),
         out.display(),
     ))
 }

@@ -2,7 +2,7 @@
 
 use super::{CommandTarget, engine, read_study, target, threads};
 use crate::cli;
-use crate::terminal::{self, TextGrid, bold, grouped};
+use crate::terminal::{self, TextGrid, bold, counted, grouped};
 use beltspace::error::{Error, Result};
 use beltspace::gpu::PointKernel;
 use beltspace::models::Model;
@@ -87,9 +87,9 @@ fn page(what: &str, device: &Trusted, report: &VerifyReport, swept: Option<&Rech
     fact("adapter", device.adapter.in_words());
     fact("points", grouped(report.points));
     fact("unsure", format!("{}, for f64 to decide", grouped(report.unsure)));
-    fact("flips", format!("{} sure decisions were wrong", grouped(report.flips)));
+    fact("flips", format!("{} {} wrong", counted(report.flips, "sure decision"), if report.flips == 1 { "was" } else { "were" }));
     if let Some(swept) = swept {
-        fact("tiles", format!("{} designs swept and judged again in f64: values, counts and survivors agree", grouped(swept.designs)));
+        fact("tiles", format!("{} swept and judged again in f64: values, counts and survivors agree", counted(swept.designs, "design")));
     }
     let kept = if report.require().is_ok() { "all error bounds hold" } else { "an error bound or a decision is wrong" };
     format!(

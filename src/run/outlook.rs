@@ -72,11 +72,12 @@ pub fn warnings(plan: &Plan) -> Vec<String> {
     let mut warnings = study.left_out.clone();
     for axis in plan.inert_axes() {
         let axis = &study.design[axis];
-        warnings.push(format!(
-            "{} changes nothing that the study asks for: its {} levels only multiply the work and add equal designs",
-            name(axis),
-            grouped(axis.count())
-        ));
+        let levels = if axis.count() == 1 {
+            String::new()
+        } else {
+            format!(": its {} levels only multiply the work and add equal designs", grouped(axis.count()))
+        };
+        warnings.push(format!("{} changes nothing that the study asks for{levels}", name(axis)));
     }
     let roles = study.design.iter().chain(&study.operation).chain(&study.uncertainty);
     let mut set = Set::EMPTY;

@@ -7,7 +7,7 @@ pub(crate) mod parquet;
 pub mod stream;
 
 pub use csv::write as csv_text;
-pub use number::{brief, grouped, plain, short, written};
+pub use number::{brief, counted, grouped, plain, short, written};
 
 /// Values of one column.
 #[derive(Clone, Debug, PartialEq)]

@@ -20,3 +20,8 @@ pub fn grouped(number: u64) -> String {
     }
     text
 }
+
+/// So many of what has this name in the singular: `1 design`, `20 615 771 designs`.
+pub fn counted(count: u64, one: &str) -> String {
+    format!("{} {one}{}", grouped(count), if count == 1 { "" } else { "s" })
+}

@@ -7,7 +7,7 @@ pub mod report;
 
 use beltspace::error::{Error, Result};
 pub use beltspace::sweep::costs::span;
-pub use beltspace::table::{grouped, short};
+pub use beltspace::table::{counted, grouped, short};
 use console::Style;
 use fill::filled;
 pub use grid::TextGrid;
@@ -146,6 +146,7 @@ mod tests {
     fn numbers_read_well() {
         assert_eq!(grouped(20_615_771), "20 615 771");
         assert_eq!(grouped(1827), "1827");
+        assert_eq!([0, 1, 20_000].map(|it| counted(it, "design")), ["0 designs", "1 design", "20 000 designs"]);
         assert_eq!(scaled(1.2345e9), "1.23 G");
         assert_eq!(scaled(42.0), "42.0 ");
         assert_eq!(short(0.1 + 0.2), "0.3");

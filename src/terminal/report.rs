@@ -1,6 +1,6 @@
 //! The summary of a sweep on the terminal.
 
-use super::{TextGrid, bold, dim, grouped, scaled, short, span, width};
+use super::{TextGrid, bold, counted, dim, grouped, scaled, short, span, width};
 use beltspace::certify::Row;
 use beltspace::export::{Certified, Confirmed, RunRecord, Summary};
 use beltspace::influence::{InfluenceMethod, InfluenceReport, QuantityVerdict};
@@ -26,9 +26,9 @@ pub fn summary(outcome: &Certified<'_>, record: &RunRecord, out: &Path, page: Op
         "designs",
         match plan.scenarios() {
             1 if record.designs == 0 => format!("{designs}, all judged before this run"),
-            scenarios if record.designs == 0 => format!("{designs} x {} scenarios, all judged before this run", grouped(scenarios)),
+            scenarios if record.designs == 0 => format!("{designs} x {}, all judged before this run", counted(scenarios, "scenario")),
             scenarios => {
-                let of = if scenarios == 1 { String::new() } else { format!(" x {} scenarios", grouped(scenarios)) };
+                let of = if scenarios == 1 { String::new() } else { format!(" x {}", counted(scenarios, "scenario")) };
                 // Draws and operating cases are evaluations too.
                 let judged = match plan.evaluations() {
                     1 => String::new(),
@@ -40,32 +40,32 @@ pub fn summary(outcome: &Certified<'_>, record: &RunRecord, out: &Path, page: Op
     );
     fact("feasible", format!("{} ({} %)", grouped(feasible), short((share * 100.0).round() / 100.0)));
     if let Some(certificate) = &record.method.certificate {
-        let [boxes, evaluations] = [certificate.boxes(), certificate.evaluations()].map(grouped);
-        fact("bounds", format!("{boxes} boxes and {evaluations} evaluations settled every design; run.json counts them by rule"));
+        let evaluations = counted(certificate.evaluations(), "evaluation");
+        let boxes = if certificate.boxes() == 1 { "1 box".to_owned() } else { format!("{} boxes", grouped(certificate.boxes())) };
+        fact("bounds", format!("{boxes} and {evaluations} settled every design; run.json counts them by rule"));
     }
     if let Some(left) = &record.method.left {
-        let (counted, judged) = (grouped(left.counted), grouped(left.judged));
-        let spent = span(left.forecast.spent);
-        fact("bounds", format!("given up after {spent} ({}), with {counted} designs settled; {judged} were judged one by one", left.at));
+        let (settled, judged) = (counted(left.counted, "design"), grouped(left.judged));
+        let (spent, were) = (span(left.forecast.spent), if left.judged == 1 { "was" } else { "were" });
+        fact("bounds", format!("given up after {spent} ({}), with {settled} settled; {judged} {were} judged one by one", left.at));
     }
     if let Some(device) = &record.device {
-        let count = |name: &str| grouped(device[name].as_u64().unwrap_or(0));
+        let count = |name: &str| device[name].as_u64().unwrap_or(0);
         let compared = grouped(device["compared_with_f64"]["designs"].as_u64().unwrap_or(0));
         let name = device["adapter"].as_str().unwrap_or_default();
         fact(
             "GPU",
             format!(
-                "{name}: {} designs left to f64, {} of them unsure; {compared} compared with f64",
-                count("survivors"),
-                count("unsure_designs")
+                "{name}: {} left to f64, {} of them unsure; {compared} compared with f64",
+                counted(count("survivors"), "design"),
+                grouped(count("unsure_designs"))
             ),
         );
     }
     if !study.objectives.is_empty() {
         let designs = match outcome.front.len() {
             0 => "empty".to_owned(),
-            1 => "1 design".to_owned(),
-            count => format!("{} designs, each", grouped(count as u64)),
+            count => counted(count as u64, "design") + if count > 1 { ", each" } else { "" },
         };
         let certified = if outcome.front.is_empty() { "" } else { " certified in f64 over every scenario" };
         fact("front", format!("{designs}{certified}"));
@@ -73,11 +73,12 @@ pub fn summary(outcome: &Certified<'_>, record: &RunRecord, out: &Path, page: Op
     let confirmed = Confirmed::of(outcome);
     if let Some(Confirmed { draws, designs, wanted, together, .. }) = confirmed {
         let kept = wanted.map_or(String::new(), |(wanted, kept)| {
-            format!("{} of {} designs keep a yield of {wanted} in ", grouped(kept), grouped(designs))
+            let keep = if kept == 1 { "keeps" } else { "keep" };
+            format!("{} of {} {keep} a yield of {wanted} in ", grouped(kept), counted(designs, "design"))
         });
         let have = if designs == 1 { "it has".to_owned() } else { format!("all {} have", grouped(designs)) };
         let all = format!("{have} {} or more with 99 % confidence", short(together));
-        fact("confirmed", format!("{kept}{} fresh draws; {all}", grouped(draws)));
+        fact("confirmed", format!("{kept}{}; {all}", counted(draws, "fresh draw")));
     }
     let mut text = format!("{}\n\n{}", bold(&super::told(&study.title)), facts.indented(0));
     text.push_str(&limits(outcome));
@@ -117,7 +118,7 @@ fn limits(outcome: &Certified<'_>) -> String {
     let what = if tally.sampled == outcome.plan.designs() {
         "of all designs".to_owned()
     } else {
-        format!("of a sample of {} designs", grouped(tally.sampled))
+        format!("of a sample of {}", counted(tally.sampled, "design"))
     };
     listed(&format!("{} {what}", bold("what limits feasibility,")), reasons, tally.sampled) + &draw_limits(outcome)
 }
@@ -132,7 +133,7 @@ fn draw_limits(outcome: &Certified<'_>) -> String {
         reasons.push((violated, only, format!("{} {} {unit}", constraint.name(&drive.model), constraint.in_words()).trim_end().to_owned()));
     }
     let what =
-        if drawn.sampled == drawn.of { "of all draws".to_owned() } else { format!("of a sample of {} draws", grouped(drawn.sampled)) };
+        if drawn.sampled == drawn.of { "of all draws".to_owned() } else { format!("of a sample of {}", counted(drawn.sampled, "draw")) };
     listed(&format!("{} {what}", bold("what draws fail at,")), reasons, drawn.sampled)
 }
 

@@ -6,7 +6,7 @@ mod sizing;
 use super::sweep::{default_out, files_of};
 use super::{described, read_study_with};
 use crate::cli::{self, Cli, Command};
-use crate::terminal::{self, TextGrid, bold, grouped, quoted, span};
+use crate::terminal::{self, TextGrid, bold, counted, grouped, quoted, span};
 use beltspace::checkpoint::Saved;
 use beltspace::directory::Contents;
 use beltspace::error::{Error, Result};
@@ -175,12 +175,10 @@ fn summary(plan: &Plan, work: &Work, (bounds, how): (bool, &str), scripts: &scri
 fn remark(plan: &Plan, work: &Work, request: &cli::SlurmArgs, shards: u64) {
     if let Some(asked) = request.shards.filter(|&asked| asked > shards) {
         let (short, long) = (span(work.of_own(asked)), span(work.of_own(shards)));
-        let (them, word) = (grouped(asked), if shards == 1 { "shard" } else { "shards" });
+        let (them, fewer) = (grouped(asked), counted(shards, "shard"));
         terminal::remark(
             "warning",
-            &format!(
-                "{them} shards would take about {short} each; {shards} {word} of about {long} written instead (--shortest 0 keeps {them})"
-            ),
+            &format!("{them} shards would take about {short} each; {fewer} of about {long} written instead (--shortest 0 keeps {them})"),
         );
     } else if !request.quiet && work.of_all() < f64::from(request.shortest) {
         let whole = span(work.of_all());

@@ -1,6 +1,7 @@
 //! The scripts. The lines that differ between the schedulers stand side by side.
 
 use super::Scheduler;
+use crate::terminal::counted;
 use std::fmt::Write as _;
 
 /// The contents of the scripts. Paths and words are quoted for a shell.
@@ -111,7 +112,7 @@ impl ScriptContents {
             Scheduler::Pbs => String::new(),
         };
         let (array_number, merge_number) = (number("array"), number("merge"));
-        let what = if *shards == 1 { "1 shard".to_owned() } else { format!("{shards} shards") };
+        let what = counted(*shards, "shard");
         format!(
             "#!/bin/bash\n# Submits the shards of \"{}\", and the job that puts them together once all of them have succeeded.\n\
              # After a failure submit again: finished shards cost nothing, the others go on from their checkpoints.\n\

@@ -40,6 +40,25 @@ fn check_says_how_large_a_study_is_and_what_is_odd() {
 }
 
 #[test]
+fn what_there_is_one_of_is_said_so() {
+    let one = "model = \"metal-cvt\"\n[design]\nband_count = [9]\nstrength_MPa = [800]\n[operation]\nratio = [1, 2]\n[fixed]\n\
+               traction = 0.4\n[constraints]\nslip_margin = { min = 0 }\n[objectives]\naxial_force_N = \"min\"\n";
+    let folder = folder_with("one.toml", one);
+    for (line, expected) in [
+        ("check one.toml", "about 1 design on the front"),
+        ("check one.toml", "warning: strength_MPa changes nothing that the study asks for\n"),
+        ("sweep one.toml --threads 1 --no-report", "front     1 design certified"),
+        ("eval one.toml --design 0", "design 0, worst of 2 scenarios"),
+        ("sweep one.toml --shard 1/1 --out shard", "1 design, in shard"),
+    ] {
+        let text = ask(folder.path(), line).text();
+        assert!(text.contains(expected), "{line}: {text}");
+        let plural = |name: &str| text.contains(&format!(" 1 {name}s"));
+        assert!(!["design", "scenario", "thread", "level", "draw"].into_iter().any(plural), "{line}: {text}");
+    }
+}
+
+#[test]
 fn a_result_has_all_its_files_and_columns() {
     let folder = folder_with("small.toml", SMALL);
     let answer = ask(folder.path(), "sweep small.toml");
