@@ -4,6 +4,7 @@
 use crate::models::input_to_si;
 use crate::plan::Plan;
 use crate::space::SpaceDimension;
+use crate::study::TOGETHER;
 use std::ops::Range;
 
 /// Most axes of designs and scenarios together.
@@ -134,13 +135,25 @@ impl BoxAxis {
 }
 
 impl Axes {
+    /// Why the axes of a plan are too many or too long, if they are.
+    pub fn problem(plan: &Plan) -> Option<String> {
+        let all = || plan.slow.dimensions().chain(plan.fast.dimensions()).chain(plan.space.scenarios.dimensions());
+        let count = all().count();
+        if count > AXES {
+            return Some(format!("it has {count} axes, and bounds take {AXES} at most"));
+        }
+        let (long, _) = all().find(|(it, _)| it.count() > LEVELS)?;
+        let names = long.inputs().iter().map(|&input| plan.study.model.inputs[input].name.as_str()).collect::<Vec<_>>().join(TOGETHER);
+        Some(format!("{names} has {} levels, and bounds take {LEVELS} at most", long.count()))
+    }
+
     /// The axes of a plan; `None` if there are too many, or one has too many levels.
     pub fn new(plan: &Plan) -> Option<Self> {
-        let designs: Vec<_> = plan.slow.dimensions().chain(plan.fast.dimensions()).collect();
-        let scenarios: Vec<_> = plan.space.scenarios.dimensions().collect();
-        if designs.len() + scenarios.len() > AXES || designs.iter().chain(&scenarios).any(|(it, _)| it.count() > LEVELS) {
+        if Self::problem(plan).is_some() {
             return None;
         }
+        let designs: Vec<_> = plan.slow.dimensions().chain(plan.fast.dimensions()).collect();
+        let scenarios: Vec<_> = plan.space.scenarios.dimensions().collect();
         let count = designs.len();
         let mut steps = vec![1; count];
         for axis in (1..count).rev() {
@@ -259,6 +272,21 @@ fn axis(plan: &Plan, dimension: &SpaceDimension, stride: u64) -> BoxAxis {
 mod tests {
     use super::*;
     use crate::study::study_of;
+
+    #[test]
+    fn of_too_many_axes_and_too_many_levels_only_what_applies_is_told() {
+        let model = crate::models::find("timing-belt").expect("it is a model");
+        let plain = model.inputs.iter().filter(|it| it.words.is_empty() && !it.integer);
+        let axes: Vec<String> = plain.map(|it| format!("{} = [{:?}, {:?}]\n", it.name, it.usual.0, it.usual.1)).collect();
+        let problem = |axes: String| {
+            let text = format!("[design]\n{axes}[objectives]\nlift_speed_rpm = \"max\"\n");
+            Axes::problem(&Plan::new(study_of(&model, &text).expect("the study is right")))
+        };
+        assert_eq!(problem(axes[..AXES].concat()), None);
+        assert_eq!(problem(axes[..=AXES].concat()).as_deref(), Some("it has 17 axes, and bounds take 16 at most"));
+        let long = format!("friction = {{ from = 0.2, to = 0.4, count = {} }}\n", LEVELS + 1);
+        assert_eq!(problem(long).as_deref(), Some("friction has 1048577 levels, and bounds take 1048576 at most"));
+    }
 
     #[test]
     fn the_boxes_of_a_range_are_its_positions_in_order() {

@@ -81,10 +81,7 @@ pub fn refusal(plan: &Plan) -> Option<String> {
     if study.report.variants {
         return Some("variants in [report] lists every design".to_owned());
     }
-    if Axes::new(plan).is_none() {
-        return Some(format!("it has more than {} axes, or an axis of more than {} levels", axes::AXES, axes::LEVELS));
-    }
-    None
+    Axes::problem(plan)
 }
 
 /// Most cells of a map: every thread may meet all of them.

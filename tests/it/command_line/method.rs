@@ -43,6 +43,7 @@ fn bounds_refuse_what_asks_for_every_design_and_say_what_to_do() {
                 &[("to = 30, count = 13", "to = 30, count = 1025"), ("to = 0.30, count = 21", "to = 0.30, count = 1024")],
             ),
         ),
+        ("groove_angle_deg has 2000000 levels, and bounds take 1048576 at most;", changed(plain, &[("count = 13", "count = 2000000")])),
         ("[sample]", sampled("method = \"sobol\"\ncount = 1000")),
         ("cases in [design]", cases),
         ("pulley is no formula", pulley),
