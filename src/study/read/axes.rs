@@ -180,10 +180,13 @@ impl Reader<'_> {
         let by_formula = |name: &str| top.get("formulas")?.node.table()?.get(name).map(|entry| entry.key_at);
         let place = |name: &str| claim(name).map(|claim| claim.at).or_else(|| by_formula(name));
         let beside = match place(&input) {
-            Some(at) => format!("{input}, line {}", self.problems.line_number(at)),
-            None => format!("{input}, which the model gives"),
+            Some(at) if by_formula(&input) == Some(at) => {
+                format!("{input}, which the formula in line {} gives and", self.problems.line_number(at))
+            }
+            Some(at) => format!("{input}, line {},", self.problems.line_number(at)),
+            None => format!("{input}, which the model gives and"),
         };
         let at = place(&other).or_else(|| place(&input)).unwrap_or(0);
-        self.problems.add(at, format!("\"{other}\" cannot be given beside {beside}, which takes its place; drop one of the two"));
+        self.problems.add(at, format!("\"{other}\" cannot be given beside {beside} which takes its place; drop one of the two"));
     }
 }

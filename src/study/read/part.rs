@@ -33,7 +33,9 @@ const DRAWING: &[&str] = &["draws", "confirm", "seed"];
 const FILE: &str = "csv";
 const AXIS: &[&str] = &["from", "to", "count", "step", "spacing"];
 /// What takes an entry out.
-const OFF: &str = "off";
+pub(super) const OFF: &str = "off";
+/// What that is for.
+pub(super) const OFF_TAKES_OUT: &str = "\"off\" takes out a whole constraint or objective, as constraints.NAME=off";
 
 /// Where a value goes.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -111,6 +113,13 @@ impl StudyPart {
                 return Ok(Some(without_table(&entry, text)));
             }
             return Ok(Some(left_out(&entry, text)));
+        }
+        if value == OFF {
+            let remedy = match *table {
+                "constraints" | "objectives" => format!("write {table}.{}=off, or give {} another value", quoted_key(name), keys.join(".")),
+                _ => "give another value".to_owned(),
+            };
+            return Err(format!("{OFF_TAKES_OUT}; {remedy}"));
         }
         if keys.is_empty() {
             return here(entry.node.at..entry.node.end, written.to_owned());

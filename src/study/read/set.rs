@@ -5,14 +5,15 @@
 //! keep their order; where a line is put in, problems in the lines after it are told at their place in the user's file.
 
 use super::csv_file::csv_text;
-use super::formulas::GIVING;
+use super::formulas::{GIVING, given};
 use super::law::tolerance;
-use super::part::{StudyPart, written};
+use super::part::{OFF, OFF_TAKES_OUT, StudyPart, written};
 use super::place::{Edit, left_out, place_in, span};
-use super::table::{Entry, Lines, TomlTable, shortened};
+use super::table::{Entry, Lines, TomlNode, TomlTable, shortened};
+use super::weights::weighted_cases;
 use super::{Problem, StudyErrors};
 use crate::error::{Error, Result};
-use crate::models::{Models, is_name};
+use crate::models::{Model, Models, is_name};
 use crate::study::Study;
 use serde_json::{Map, Value};
 use std::ops::Range;
@@ -95,6 +96,21 @@ impl StudySetting {
         first.is_some_and(|it| it.name == self.name)
     }
 
+    /// Why an input cannot be given what is not one value of it.
+    fn beyond_one_value<'n>(&self, entry: &dyn Fn(&str) -> Option<Entry<'n>>, model: Option<&Model>) -> Option<String> {
+        let Self { name, value, .. } = self;
+        if value.starts_with('[') {
+            let axis = GIVING.iter().find(|table| entry(table).is_some_and(|it| !is_tolerance(&it)));
+            let remedy = match axis.filter(|it| **it != "fixed") {
+                Some(table) => format!("--set {table}.{name}={}", shortened(value)),
+                None => format!("{name} = {} in [operation] or [design] of the study", shortened(value)),
+            };
+            return Some(format!("a name alone takes one value, and several are an axis; write {remedy}"));
+        }
+        let is_word = || model.is_some_and(|it| it.input(name).is_some_and(|at| it.inputs[at].value_of(value).is_some()));
+        (value == OFF && !is_word()).then(|| format!("{OFF_TAKES_OUT}; an input needs a value"))
+    }
+
     fn told(&self) -> String {
         if self.is_of_report() {
             return "--feasible".to_owned();
@@ -153,7 +169,7 @@ impl Study {
             Ok(study) => Ok((study, edited.text)),
             Err(errors) => {
                 let right = Self::parse_with(models, text, file, folder).is_ok();
-                Err(explained(errors, &settings, &edited, right))
+                Err(explained(errors, file, &settings, &edited, right))
             }
         }
     }
@@ -182,6 +198,8 @@ fn edited(settings: &[StudySetting], top: &TomlTable<'_>, text: &str, models: &M
     let model = top.get("model").and_then(|entry| models.find(entry.node.value.as_str()?));
     let is_input = |name: &str| model.as_ref().is_some_and(|model| model.input(name).is_some());
     let (mut edits, mut new, mut problems) = (Vec::new(), Vec::new(), Vec::new());
+    let lines = Lines::new(text);
+    let replaced: Vec<&str> = settings.iter().filter(|it| it.part.is_none()).map(|it| it.name.as_str()).collect();
     for (number, setting) in settings.iter().enumerate() {
         let name = setting.name.as_str();
         let entry = |table: &str| top.get(table)?.node.table()?.entries.into_iter().find(|entry| entry.key == name);
@@ -217,8 +235,22 @@ fn edited(settings: &[StudySetting], top: &TomlTable<'_>, text: &str, models: &M
             ));
             continue;
         }
-        if entry("formulas").is_some() && !is_input(name) {
-            problems.push(format!("{}: {name} is what a formula gives; only inputs and variables can be set", setting.told()));
+        if let Some(formula) = entry("formulas") {
+            let line = lines.position(formula.key_at).0;
+            if !is_input(name) {
+                problems.push(format!(
+                    "{}: {name} is what the formula in line {line} gives; only inputs and variables can be set: change the formula, or set what it reads",
+                    setting.told()
+                ));
+                continue;
+            }
+            if let Some(why) = left_without_reader(top, folder, &lines, &replaced, &is_input) {
+                problems.push(format!("{}: the formula in line {line} gives {name}, and {why}", setting.told()));
+                continue;
+            }
+        }
+        if let Some(why) = setting.beyond_one_value(&entry, model.as_deref()) {
+            problems.push(format!("{}: {why}", setting.told()));
             continue;
         }
         if !is_name(name) {
@@ -251,7 +283,7 @@ fn edited(settings: &[StudySetting], top: &TomlTable<'_>, text: &str, models: &M
             edits.push(Edit { range: at..at, with: format!("{before}{line}{after}"), writes: Some(number) });
         }
     }
-    let unread = unread(settings, top, text, &is_input);
+    let unread = unread(settings, top, &is_input);
     edits.extend(unread.iter().map(|entry| Edit { writes: None, ..left_out(entry, text) }));
     edits.sort_by_key(|edit| edit.range.start);
     if edits.windows(2).any(|pair| pair[0].range.end > pair[1].range.start) {
@@ -268,17 +300,44 @@ fn edited(settings: &[StudySetting], top: &TomlTable<'_>, text: &str, models: &M
 }
 
 /// Fixed variables that nothing reads but formulas which a setting replaces: they go with these.
-fn unread<'n>(settings: &[StudySetting], top: &TomlTable<'n>, text: &str, is_input: &dyn Fn(&str) -> bool) -> Vec<Entry<'n>> {
-    let entries = |table: &str| top.get(table).and_then(|entry| entry.node.table()).map_or_else(Vec::new, |table| table.entries);
-    let is_set = |entry: &Entry<'_>| settings.iter().any(|it| it.name == entry.key);
-    let replaced: Vec<&str> = entries("formulas").iter().filter(|entry| is_set(entry)).map(|entry| &text[span(entry)]).collect();
-    let count = |name: &str, text: &str| text.split(|it: char| !it.is_ascii_alphanumeric() && it != '_').filter(|it| *it == name).count();
-    let is_unread = |entry: &Entry<'_>| {
-        let of_replaced: usize = replaced.iter().map(|text| count(entry.key, text)).sum();
-        let elsewhere = count(entry.key, text) - count(entry.key, &text[span(entry)]);
-        of_replaced > 0 && of_replaced == elsewhere && !is_set(entry) && !is_input(entry.key)
+fn unread<'n>(settings: &[StudySetting], top: &TomlTable<'n>, is_input: &dyn Fn(&str) -> bool) -> Vec<Entry<'n>> {
+    let is_set = |name: &str| settings.iter().any(|it| it.name == name);
+    let replaced: Vec<&str> = settings.iter().map(|it| it.name.as_str()).collect();
+    let is_unread = |entry: &Entry<'_>| !is_set(entry.key) && !is_input(entry.key) && read_by_none_but(top, &replaced, entry.key);
+    entries_of(top, "fixed").into_iter().filter(is_unread).collect()
+}
+
+fn entries_of<'n>(top: &TomlTable<'n>, table: &str) -> Vec<Entry<'n>> {
+    top.get(table).and_then(|entry| entry.node.table()).map_or_else(Vec::new, |table| table.entries)
+}
+
+/// Do some of these formulas read a name, and no other one?
+fn read_by_none_but(top: &TomlTable<'_>, formulas: &[&str], name: &str) -> bool {
+    let formula_text = |entry: &Entry<'_>| {
+        let node = entry.node.table().and_then(|parts| parts.get("is").map(|it| it.node)).unwrap_or(entry.node);
+        node.value.as_str().unwrap_or_default().to_owned()
     };
-    entries("fixed").into_iter().filter(is_unread).collect()
+    let reads = |entry: &Entry<'_>| formula_text(entry).split(|it: char| !it.is_ascii_alphanumeric() && it != '_').any(|it| it == name);
+    let (of_them, others): (Vec<_>, Vec<_>) =
+        entries_of(top, "formulas").into_iter().filter(reads).partition(|it| formulas.contains(&it.key));
+    !of_them.is_empty() && others.is_empty()
+}
+
+/// What is wrong with replacing these formulas: the study varies something that nothing would read any more.
+fn left_without_reader(
+    top: &TomlTable<'_>,
+    folder: &Path,
+    lines: &Lines<'_>,
+    replaced: &[&str],
+    is_input: &dyn Fn(&str) -> bool,
+) -> Option<String> {
+    let is_fixed = |name: &str| entries_of(top, "fixed").iter().any(|it| it.key == name);
+    let lost = |(name, _): &(String, usize)| !is_input(name) && !is_fixed(name) && read_by_none_but(top, replaced, name);
+    let (name, at) = given(top, folder).into_iter().find(lost)?;
+    let line = lines.position(at).0;
+    let own = GIVING.iter().find(|table| entries_of(top, table).iter().any(|it| it.key == name));
+    let instead = own.map_or(String::new(), |table| format!("set {table}.{name}=[VALUE] instead, or "));
+    Some(format!("nothing else reads {name} of line {line}; {instead}take that formula and {name} out of the study"))
 }
 
 /// The line of a new entry, which may have several keys.
@@ -293,23 +352,28 @@ fn line_of(setting: &StudySetting) -> String {
     format!("{} = {}", setting.name, setting.in_toml())
 }
 
-/// The CSV file that an entry takes its rows from.
-fn file_of(entry: &Entry<'_>) -> Option<String> {
-    entry.node.table().and_then(|table| Some(table.get("csv")?.node.value.as_str()?.to_owned()))
+/// The CSV file that cases take their rows from.
+fn file_of(cases: TomlNode<'_>) -> Option<String> {
+    cases.table().and_then(|table| Some(table.get("csv")?.node.value.as_str()?.to_owned()))
 }
 
-/// The table and the name of the joint axis that sets an input, and the file that its rows stand in if they do.
-fn joint_axis(
+/// The table and the path of the rows that set an input, and the file that they stand in if they do.
+fn joint_axis<'n>(
     name: &str,
-    top: &TomlTable<'_>,
+    top: &TomlTable<'n>,
     folder: &Path,
     is_input: &dyn Fn(&str) -> bool,
 ) -> Option<(&'static str, String, Option<String>)> {
-    let names_it = |entry: &Entry<'_>| {
-        if let Some(mut rows) = entry.node.list() {
+    // Cases with weights stand within their axis.
+    let cases_of = |entry: &Entry<'n>| match weighted_cases(entry) {
+        Some(weighted) => Some((format!("{}.cases", entry.key), weighted.get("cases")?.node)),
+        None => entry.key.starts_with("cases").then(|| (entry.key.to_owned(), entry.node)),
+    };
+    let names_it = |cases: TomlNode<'_>| {
+        if let Some(mut rows) = cases.list() {
             return rows.any(|row| row.table().is_some_and(|row| row.get(name).is_some()));
         }
-        let file = file_of(entry);
+        let file = file_of(cases);
         // A file that cannot be read is reported when the study is.
         let Some(text) = file.and_then(|file| csv_text(folder, &file, "study").ok()) else { return false };
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
@@ -317,8 +381,9 @@ fn joint_axis(
     };
     GIVING.iter().find_map(|&table| {
         let entries = top.get(table)?.node.table()?.entries;
-        let joint = entries.into_iter().find(|it| it.key.starts_with("cases") && !is_input(it.key) && names_it(it));
-        joint.map(|entry| (table, entry.key.to_owned(), file_of(&entry)))
+        let joint = entries.into_iter().filter(|it| !is_input(it.key)).filter_map(|it| cases_of(&it));
+        let (path, cases) = joint.into_iter().find(|(_, cases)| names_it(*cases))?;
+        Some((table, path, file_of(cases)))
     })
 }
 
@@ -392,15 +457,35 @@ fn unplaced(value: &DeValue<'_>) -> Value {
     }
 }
 
+/// A message with other numbers of the lines that it names.
+fn with_lines(message: &str, other: impl Fn(usize) -> usize) -> String {
+    const LINE: &str = " line ";
+    let mut parts = message.split(LINE);
+    let mut told = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let digits = part.find(|it: char| !it.is_ascii_digit()).unwrap_or(part.len());
+        let line = part[..digits].parse().map_or_else(|_| part[..digits].to_owned(), |line| other(line).to_string());
+        told.push_str(&format!("{LINE}{line}{}", &part[digits..]));
+    }
+    told
+}
+
 /// Problems of the edited text, told where the user can change them: those of a setting by its name, others at their place in the file.
-fn explained(errors: StudyErrors, settings: &[StudySetting], edited: &EditedText, right: bool) -> Error {
+fn explained(errors: StudyErrors, file: &str, settings: &[StudySetting], edited: &EditedText, right: bool) -> Error {
     let lines = Lines::new(&edited.text);
     let places: Vec<_> = edited.places.iter().map(|it| (lines.position(it.start), lines.position(it.end))).collect();
     let told = settings.iter().map(StudySetting::told).collect::<Vec<_>>().join(" ");
     let (mut of_settings, mut of_file) = (Vec::new(), Vec::new());
+    let own_line = |line: usize| {
+        let put_in = edited.lines.iter().filter(|(end, _)| *end < line).map(|it| it.1).sum::<isize>();
+        line.saturating_add_signed(-put_in)
+    };
     for problem in errors.problems {
         let at = (problem.line, problem.column);
-        if let Some(number) = places.iter().position(|(from, to)| (from..=to).contains(&&at)) {
+        // A CSV file has its own lines.
+        let is_own = problem.file == file;
+        let problem = if is_own { Problem { message: with_lines(&problem.message, own_line), ..problem } } else { problem };
+        if let Some(number) = places.iter().position(|(from, to)| is_own && (from..=to).contains(&&at)) {
             let name = settings[number].part.as_ref().map_or(&settings[number].name, |part| &part.entry);
             let labels = ["fixed input", "axis", "constraint", "objective"].map(|what| format!("{what} \"{name}\": "));
             let labels = labels.iter().map(String::as_str).chain(["feasible: "]);
@@ -408,9 +493,12 @@ fn explained(errors: StudyErrors, settings: &[StudySetting], edited: &EditedText
             of_settings.push(format!("{}: {message}", settings[number].told()));
             continue;
         }
-        let put_in = edited.lines.iter().filter(|(end, _)| *end < problem.line).map(|it| it.1).sum::<isize>();
-        let line = problem.line.saturating_add_signed(-put_in);
-        let message = if right { format!("{}; without {told} the study is right", problem.message) } else { problem.message };
+        let line = if is_own { own_line(problem.line) } else { problem.line };
+        let is_lost_axis =
+            |it: &&StudySetting| it.part.is_none() && problem.message.contains(&format!("\"{}\" is no design axis", it.name));
+        let axis = settings.iter().find(is_lost_axis);
+        let stays = axis.map_or(String::new(), |it| format!("; --set design.{}=[{}] keeps it as an axis", it.name, shortened(&it.value)));
+        let message = if right { format!("{}; without {told} the study is right{stays}", problem.message) } else { problem.message };
         of_file.push(Problem { line, message, ..problem });
     }
     if of_settings.is_empty() { StudyErrors { problems: of_file }.into() } else { refusal(of_settings) }

@@ -89,7 +89,11 @@ fn a_formula_that_gives_an_input_goes_and_a_variable_stays_one() {
     let own = described(folder.path(), &["--set", "belt_price_EUR_per_kg=13"]);
     assert!(own.contains("\"belt_price_EUR_per_kg\": 13"), "{own}");
     let said = ask(folder.path(), "check study.toml --set cost_EUR=3").refusal(2);
-    assert_eq!(said, "error: --set cost_EUR=3: cost_EUR is what a formula gives; only inputs and variables can be set\n");
+    let line = 1 + COST[..COST.find("\ncost_EUR").expect("it is a formula")].matches('\n').count() + 1;
+    let told = format!(
+        "cost_EUR is what the formula in line {line} gives; only inputs and variables can be set: change the formula, or set what it reads"
+    );
+    assert_eq!(said, format!("error: --set cost_EUR=3: {told}\n"));
 }
 
 #[test]
@@ -103,14 +107,41 @@ fn what_only_a_formula_read_goes_with_it() {
     let own = described(folder.path(), &["--set", "torque_Nm=50"]);
     write(folder.path(), "study.toml", &study("[fixed]\nstrength_MPa = 700\ntorque_Nm = 50\n", ""));
     assert_eq!(own, described(folder.path(), &[]));
+    // Wherever else the name stands in the text.
+    let noted = study("[fixed]\nshare = 2\n", "# torque and its share\ntorque_Nm = { is = \"20[N m] * share\" }\n");
+    write(folder.path(), "study.toml", &noted);
+    assert!(!described(folder.path(), &["--set", "torque_Nm=50"]).contains("share"));
     // What another formula reads stays.
     let formulas = "torque_Nm = \"20[N m] * share\"\nlost_W = \"share * 3[W]\"\n";
     write(folder.path(), "study.toml", &study("[fixed]\nshare = 2\n", formulas));
     assert!(described(folder.path(), &["--set", "torque_Nm=50"]).contains("\"share\": 2"));
 }
 
+#[test]
+fn a_formula_without_which_an_axis_means_nothing_stays() {
+    let folder = folder_with("study.toml", include_str!("../../../studies/metal-cvt.toml"));
+    let line = |start: &str| {
+        let text = read(&folder.path().join("study.toml"));
+        1 + text.lines().position(|it| it.starts_with(start)).expect("it has such a line")
+    };
+    let (formula, axis) = (line("clamping_force_N ="), line("reserve "));
+    let told = format!(
+        "the formula in line {formula} gives clamping_force_N, and nothing else reads reserve of line {axis}; set design.reserve=[VALUE] \
+         instead, or take that formula and reserve out of the study"
+    );
+    for line in ["check study.toml", "eval study.toml --design 5"] {
+        let said = ask(folder.path(), &format!("{line} --set clamping_force_N=20000")).refusal(2);
+        assert_eq!(said, format!("error: --set clamping_force_N=20000: {told}\n"));
+    }
+    // What it advises works, and keeps the map over that axis.
+    ask(folder.path(), "check study.toml --set design.reserve=[1.4]").text();
+    let said = ask(folder.path(), "check study.toml --set traction=0.4").refusal(2);
+    let beside = format!("clamping_force_N, which the formula in line {formula} gives and which takes its place; drop one of the two");
+    assert_eq!(said, format!("error: --set traction=0.4: \"traction\" cannot be given beside {beside}\n"));
+}
+
 /// What is set in [`SMALL`], and all that is said of it.
-const WRONG: [(&str, &str); 11] = [
+const WRONG: [(&str, &str); 14] = [
     ("ratio", "--set \"ratio\": write NAME=VALUE"),
     ("ratio=", "--set \"ratio=\": write NAME=VALUE"),
     ("frictoin=0.1", "--set frictoin=0.1: metal-cvt has no input \"frictoin\"; did you mean \"friction\"?"),
@@ -126,7 +157,19 @@ const WRONG: [(&str, &str); 11] = [
     ("band_count=7.5", "--set band_count=7.5: 7.5 is not a whole number; use 7 or 8"),
     (
         "band_count=9",
-        "study.toml:28:36: maps: \"band_count\" is no design axis; choose one of [design], or put it there; without --set band_count=9 the study is right",
+        "study.toml:28:36: maps: \"band_count\" is no design axis; choose one of [design], or put it there; without --set band_count=9 the study is right; --set design.band_count=[9] keeps it as an axis",
+    ),
+    (
+        "torque_Nm=[150,160]",
+        "--set torque_Nm=[150,160]: a name alone takes one value, and several are an axis; write --set operation.torque_Nm=[150,160]",
+    ),
+    (
+        "strength_MPa=[700,800]",
+        "--set strength_MPa=[700,800]: a name alone takes one value, and several are an axis; write strength_MPa = [700,800] in [operation] or [design] of the study",
+    ),
+    (
+        "friction=off",
+        "--set friction=off: \"off\" takes out a whole constraint or objective, as constraints.NAME=off; an input needs a value",
     ),
 ];
 
@@ -166,6 +209,16 @@ fn what_cannot_be_set_is_told_by_its_name() {
     let told =
         "torque_Nm is set by the rows of \"cases\" in [operation]; --set replaces the axis of one input: change the rows in \"loads.csv\"";
     assert_eq!(ask(folder.path(), "check study.toml --set torque_Nm=70").refusal(2), format!("error: --set torque_Nm=70: {told}\n"));
+    write(
+        folder.path(),
+        "study.toml",
+        &changed(joint, &[("cases = [", "duty = { weight = \"h\", cases = ["), ("60 }]", "60, h = 2 }] }"), ("50 }", "50, h = 1 }")]),
+    );
+    let told = "torque_Nm is set by the rows of \"duty.cases\" in [operation]; --set replaces the axis of one input: give each row its value, as operation.duty.cases.1.torque_Nm";
+    assert_eq!(ask(folder.path(), "check study.toml --set torque_Nm=70").refusal(2), format!("error: --set torque_Nm=70: {told}\n"));
+    ask(folder.path(), "check study.toml --set operation.duty.cases.1.torque_Nm=70 --set operation.duty.cases.1.h=3").text();
+    let by_file = changed(joint, &[("[{ ratio = 1, torque_Nm = 50 }, { ratio = 2, torque_Nm = 60 }]", "{ csv = \"loads.csv\" }")]);
+    write(folder.path(), "study.toml", &by_file);
     let said = ask(folder.path(), "check study.toml --set operation.cases.1.torque_Nm=70").refusal(2);
     assert!(said.contains("\"1\" cannot be set: its rows are in the text \"loads.csv\"; change them there"), "{said}");
 }
@@ -305,6 +358,8 @@ fn a_part_that_cannot_be_set_is_told_by_its_name() {
         ("constraints.slip_margin=3", "wanted bounds such as { min = 0 }"),
         ("constraints.axial_force_N=off", "the study has no axial_force_N in [constraints]"),
         ("constraints.slip_margin.min=x", "\"x\""),
+        ("constraints.slip_margin.min=off", "write constraints.slip_margin=off, or give min another value"),
+        ("operation.ratio=off", "\"off\" takes out a whole constraint or objective, as constraints.NAME=off; give another value"),
         ("objectives.stress_margin=up", "unknown goal \"up\""),
         ("operation.torque_Nm.3=160", "\"3\" cannot be set; torque_Nm of [operation] has 2 values or rows, numbered from 1"),
         ("design.band_count.spacingg=log", "\"spacingg\" cannot be set; keys are from, to, count, step, spacing"),
@@ -397,7 +452,8 @@ fn what_takes_the_place_of_an_input_cannot_be_given_beside_it() {
     write(at, "study.toml", &by_formula);
     let given = by_formula.lines().position(|line| line.starts_with("clamping_force_N")).expect("there is a formula") + 1;
     let said = ask(at, "check study.toml").refusal(2);
-    let expected = format!("error: study.toml:{line}:1: \"traction\" cannot be given beside clamping_force_N, line {given}, {told}\n");
+    let beside = format!("clamping_force_N, which the formula in line {given} gives and {told}");
+    let expected = format!("error: study.toml:{line}:1: \"traction\" cannot be given beside {beside}\n");
     assert_eq!(said, expected);
     // The other way about, and in a row of cases.
     write(at, "study.toml", &changed(&by_formula, &[("traction          = { from = 0.30, to = 0.50, count = 5 }\n", "")]));
