@@ -100,6 +100,10 @@ impl Infeasible {
                     named(best.design)
                 ));
             }
+            // The share of designs that fail it is below all of them then; the rest is in the way of another constraint.
+            if reach.best.is_some_and(|it| constraint.holds(it.value)) && reach.first.is_some_and(|it| !constraint.holds(it.value)) {
+                parts.push("some designs keep it, but none of them keeps all else".to_owned());
+            }
             if let Some(first) = reach.first.filter(|it| !constraint.holds(it.value)) {
                 let bound = with_unit(&letting_through(constraint, first.value), unit);
                 let kept = if study.constraints.len() > 1 { " that keeps all else" } else { "" };

@@ -138,20 +138,29 @@ fn draw_limits(outcome: &Certified<'_>) -> String {
 }
 
 /// Reasons with how many of `all` fail for them, and how many for nothing else, worst first.
-#[allow(clippy::cast_precision_loss, reason = "shares for people")]
 fn listed(head: &str, mut reasons: Vec<(u64, u64, String)>, all: u64) -> String {
     reasons.retain(|(count, ..)| *count > 0);
     reasons.sort_by_key(|(count, ..)| std::cmp::Reverse(*count));
     if reasons.is_empty() {
         return String::new();
     }
-    let percent = |count: u64| format!("{:.1} %", 100.0 * count as f64 / all as f64);
     let mut grid = TextGrid::default();
     for (count, only, reason) in reasons {
-        let alone = if only > 0 { dim(&format!("(alone: {})", percent(only))) } else { String::new() };
-        grid.row([reason, format!("fails {}", percent(count)), alone]);
+        let alone = if only > 0 { dim(&format!("(alone: {})", share(only, all))) } else { String::new() };
+        grid.row([reason, format!("fails {}", share(count, all)), alone]);
     }
     format!("\n{head}\n{}", grid.indented(2))
+}
+
+/// A share in percent with one digit; 0 and 100 are none and all.
+#[allow(clippy::cast_precision_loss, reason = "a share for people")]
+fn share(count: u64, all: u64) -> String {
+    let percent = format!("{:.1}", 100.0 * count as f64 / all as f64);
+    match percent.as_str() {
+        "0.0" if count > 0 => "<0.1 %".to_owned(),
+        "100.0" if count < all => ">99.9 %".to_owned(),
+        _ => format!("{percent} %"),
+    }
 }
 
 /// A label as it is listed: a long one is cut off, and the tables have all of it.
@@ -287,6 +296,12 @@ fn plot(outcome: &Certified<'_>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_share_of_nearly_all_is_not_all() {
+        let shares = [0, 1, 500, 9999, 10_000].map(|count| share(count, 10_000));
+        assert_eq!(shares, ["0.0 %", "<0.1 %", "5.0 %", ">99.9 %", "100.0 %"]);
+    }
 
     #[test]
     fn the_ends_of_an_axis_read_as_different_numbers() {
