@@ -1,6 +1,6 @@
 //! `beltspace check`: checks a study and estimates its run.
 
-use super::{draws, read_study_with, threads};
+use super::{draws, read_study_with, tell_short_ranges, threads};
 use crate::cli;
 use crate::terminal::{self, TextGrid, bold, counted, grouped, scaled, span};
 use beltspace::error::{Error, Result};
@@ -22,6 +22,7 @@ pub fn run(request: &cli::CheckArgs) -> Result<()> {
     let (study, _) = read_study_with(&request.study, StudyEdits { set: &request.set, feasible: request.feasible })?;
     let plan = Plan::new(study);
     let study = &plan.study;
+    tell_short_ranges(study);
     let model = &study.model;
     let (designs, scenarios) = (plan.designs(), plan.scenarios());
     let name = |axis: &Axis| axis.inputs().iter().map(|&input| model.inputs[input].name.as_str()).collect::<Vec<_>>().join(" + ");

@@ -1,6 +1,6 @@
 //! `beltspace explore`: a page that answers while its sliders move.
 
-use super::{threads, unreadable};
+use super::{tell_short_ranges, threads, unreadable};
 use crate::cli;
 use crate::terminal::{self, quoted, quoted_word};
 use beltspace::error::{Error, Result};
@@ -13,7 +13,9 @@ pub fn run(request: &cli::ExploreArgs) -> Result<()> {
     let text = std::fs::read_to_string(path).map_err(Error::io(path)).map_err(unreadable)?;
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
     let live = Live::new(text, path.display().to_string(), folder, threads(request.threads));
-    live.study(&request.set)?.0.left_out.iter().for_each(|left_out| terminal::remark("note", left_out));
+    let study = live.study(&request.set)?.0;
+    study.left_out.iter().for_each(|left_out| terminal::remark("note", left_out));
+    tell_short_ranges(&study);
     let study = quoted(path);
     let words = move |command: &str, set: &[String]| {
         let set: String = set.iter().map(|it| format!(" --set {}", quoted_word(it))).collect();

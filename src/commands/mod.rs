@@ -124,6 +124,11 @@ fn read_study_what_if(path: &Path, set: &[String]) -> Result<Study> {
     Study::read_what_if(path, set).map_err(unreadable)
 }
 
+/// Tells ranges of a study whose steps end before they do.
+fn tell_short_ranges(study: &Study) {
+    study.short_ranges.iter().for_each(|it| terminal::remark("note", it));
+}
+
 fn unreadable(error: Error) -> Error {
     match error {
         Error::Io { path, source } => Error::Request(format!("cannot read study {}: {source}", path.display())),

@@ -1,7 +1,7 @@
 //! `beltspace sweep`: judges every design of a study and writes the result.
 
 use super::check::feasible_file;
-use super::{engine, read_study_with, report as page, sensitivity, threads};
+use super::{engine, read_study_with, report as page, sensitivity, tell_short_ranges, threads};
 use crate::cli;
 use crate::terminal::{self, progress::Bar, report};
 use beltspace::checkpoint::{Checkpoint, Saved};
@@ -49,6 +49,7 @@ pub fn run(request: &cli::SweepArgs) -> Result<()> {
     contents.refuse_to_overwrite(&files, request.force, request.resume)?;
     let mut warn = |text: &str| terminal::remark("warning", text);
     plan.study.left_out.iter().for_each(|left_out| terminal::remark("note", left_out));
+    tell_short_ranges(&plan.study);
     let engine = method.engine(request.engine, on_a_device);
     let device = device::choose_tried(&plan, engine, request.engine, request.adapter.as_deref(), wrong, &mut warn)?;
     let control = Arc::new(Control::default());

@@ -36,7 +36,7 @@ pub struct Outlook {
     pub memory: u64,
     /// About how many designs are on the front.
     pub front: u64,
-    /// What a person should know, one sentence each.
+    /// What a person should know, one sentence each: also ranges whose steps end early.
     pub warnings: Vec<String>,
 }
 
@@ -58,7 +58,7 @@ impl Study {
             why_every_design: why_every_design(&plan, seconds),
             memory: needs.run,
             front: needs.front,
-            warnings: warnings(&plan),
+            warnings: self.short_ranges.iter().cloned().chain(warnings(&plan)).collect(),
         }
     }
 }

@@ -282,6 +282,8 @@ pub struct Study {
     /// What was left out of catalogues because nothing uses it, in a sentence for each. Told when the study is read, and no part of its
     /// description.
     pub left_out: Vec<String>,
+    /// Ranges whose steps end before `to`, in a sentence for each. Told when the study is read, and no part of its description.
+    pub short_ranges: Vec<String>,
 }
 
 impl Study {

@@ -273,6 +273,8 @@ struct Reader<'a> {
     top: &'a TomlTable<'a>,
     /// What was left out of catalogues.
     left_out: RefCell<Vec<String>>,
+    /// Ranges whose steps end before their end.
+    short_ranges: RefCell<Vec<String>>,
 }
 
 /// Walks the whole file. `None` if a problem was reported that leaves no study.
@@ -310,6 +312,7 @@ fn read_study_of(model: Option<Arc<Model>>, top: &TomlTable<'_>, problems: &Prob
         meanings: None,
         top,
         left_out: RefCell::default(),
+        short_ranges: RefCell::default(),
     };
     let axes = |role: AxisRole| section(top, role.name(), problems).map_or_else(Vec::new, |table| reader.axes(role, &table));
     let (design, operation, uncertainty) = (axes(AxisRole::Design), axes(AxisRole::Operation), axes(AxisRole::Uncertainty));
@@ -329,7 +332,7 @@ fn read_study_of(model: Option<Arc<Model>>, top: &TomlTable<'_>, problems: &Prob
         reader.probability(top, &drawn::DriveParts { operation: &operation, uncertainty: &uncertainty, fixed: &fixed });
         let (constraints, objectives, report) = reader.asked_of_designs(top, &design, &fixed);
         let spectrum = reader.spectrum.take();
-        let (labels, left_out) = (reader.labels.take(), reader.left_out.take());
+        let (labels, left_out, short_ranges) = (reader.labels.take(), reader.left_out.take(), reader.short_ranges.take());
         let probability = None;
         return checked(Study {
             model,
@@ -346,6 +349,7 @@ fn read_study_of(model: Option<Arc<Model>>, top: &TomlTable<'_>, problems: &Prob
             objectives,
             report,
             left_out,
+            short_ranges,
         });
     }
     if reader.uncertain.borrow().is_empty() {
@@ -360,7 +364,7 @@ fn read_study_of(model: Option<Arc<Model>>, top: &TomlTable<'_>, problems: &Prob
     let reader = Reader { model: &outer, meanings: Some((meanings, &probability)), ..reader };
     let (constraints, objectives, mut report) = reader.asked_of_designs(top, &design, &fixed);
     report.columns.extend(drawn::confirmed_columns(&probability));
-    let (labels, left_out) = (reader.labels.take(), reader.left_out.take());
+    let (labels, left_out, short_ranges) = (reader.labels.take(), reader.left_out.take(), reader.short_ranges.take());
     drop(reader);
     let probability = Some(Arc::new(probability));
     let (operation, spectrum) = (Vec::new(), None);
@@ -379,6 +383,7 @@ fn read_study_of(model: Option<Arc<Model>>, top: &TomlTable<'_>, problems: &Prob
         objectives,
         report,
         left_out,
+        short_ranges,
     })
 }
 

@@ -7,6 +7,7 @@ use super::table::TomlTable;
 use super::value::{checked, input_number, measured, shown, shown_in, whole};
 use super::{MOST_LEVELS, Reader, choice};
 use crate::models::Input;
+use crate::table::short;
 use crate::units::NONE;
 
 /// Neighbouring levels closer than this, relative to the larger end, would round to the same number.
@@ -137,6 +138,7 @@ impl Reader<'_> {
         });
         let levels = levels.map_err(|error| problems.add(table.at, format!("{label}: {error}"))).ok().flatten()?;
         within(&levels, input).map_err(|error| problems.add(table.at, format!("{label}: {error}"))).ok()?;
+        self.short_ranges.borrow_mut().extend(short_of(ends, &levels, input));
         Some(levels)
     }
 
@@ -158,6 +160,23 @@ impl Reader<'_> {
             _ => Err(format!("a range needs count or step, such as {example}; only [design] can be sampled")),
         }
     }
+}
+
+/// What is said of steps that end before the range does.
+fn short_of(RangeEnds { from, to, log }: RangeEnds, levels: &Levels, input: &Input) -> Option<String> {
+    let Levels::Step { step, count, .. } = *levels else { return None };
+    let last = levels.value(count - 1);
+    // What rounding leaves is no gap.
+    let gap = RangeEnds { from: last, to, log }.width();
+    if gap <= 1e-6 * step + if log { SLACK } else { SLACK * to.abs() } {
+        return None;
+    }
+    let [from, to, last, step] = [from, to, last, step].map(short);
+    let (steps, divides) = if log { ("decades", "the decades of the range") } else { ("steps", "the range") };
+    let name = &input.name;
+    Some(format!(
+        "{name}: {steps} of {step} from {from} end at {last}, before to = {to}; use a step that divides {divides}, count in place of step, or to = {last}"
+    ))
 }
 
 /// A step must be greater than 0, and a whole number for an integer input.

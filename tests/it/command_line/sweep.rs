@@ -40,6 +40,34 @@ fn check_says_how_large_a_study_is_and_what_is_odd() {
 }
 
 #[test]
+fn steps_that_end_before_the_range_are_told_on_standard_error() {
+    let study = |range: &str| changed(SMALL, &[("{ from = 0.10, to = 0.30, count = 21 }", range)]);
+    let told = "note: band_thickness_mm: steps of 0.07 from 0.1 end at 0.24, before to = 0.3; use a step that divides the range, \
+                count in place of step, or to = 0.24\n";
+    for (range, note) in [
+        ("{ from = 0.10, to = 0.30, step = 0.07 }", told),
+        ("{ from = 0.10, to = 0.24, step = 0.07 }", ""),
+        ("{ from = 0.10, to = 0.30, step = 0.005 }", ""),
+        ("{ from = 0.10, to = 0.1000003, step = 0.0000001 }", ""),
+        (
+            "{ from = 0.10, to = 0.30, step = 0.2, spacing = \"log\" }",
+            "note: band_thickness_mm: decades of 0.2 from 0.1 end at 0.251189, before to = 0.3; use a step that divides the decades of \
+             the range, count in place of step, or to = 0.251189\n",
+        ),
+    ] {
+        let folder = folder_with("small.toml", &study(range));
+        for line in ["check small.toml", "sweep small.toml --no-report --out out"] {
+            let answer = ask(folder.path(), line);
+            assert_eq!((answer.code, answer.err.as_str()), (Some(0), note), "{line}, {range}");
+        }
+        let out = files(&folder.path().join("out"));
+        for (name, bytes) in out {
+            assert!(!String::from_utf8_lossy(&bytes.unwrap_or_default()).contains("before to ="), "{name}");
+        }
+    }
+}
+
+#[test]
 fn what_there_is_one_of_is_said_so() {
     let one = "model = \"metal-cvt\"\n[design]\nband_count = [9]\nstrength_MPa = [800]\n[operation]\nratio = [1, 2]\n[fixed]\n\
                traction = 0.4\n[constraints]\nslip_margin = { min = 0 }\n[objectives]\naxial_force_N = \"min\"\n";
