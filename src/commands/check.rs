@@ -17,6 +17,8 @@ use std::time::Duration;
 const TRIAL: Duration = Duration::from_millis(300);
 /// And how long bounds are tried, where the sweep would begin by them.
 const TRIAL_OF_BOUNDS: Duration = Duration::from_millis(1500);
+/// Seconds from which on a run is warned of.
+const A_DAY: f64 = 86_400.0;
 
 pub fn run(request: &cli::CheckArgs) -> Result<()> {
     let (study, _) = read_study_with(&request.study, StudyEdits { set: &request.set, feasible: request.feasible })?;
@@ -64,14 +66,20 @@ pub fn run(request: &cli::CheckArgs) -> Result<()> {
     let seconds = [designs, designs.min(model.sample), listed].iter().map(|&judged| speed.of(judged, cores)).sum();
     let rate = format!("on {}, {}designs/s ({})", counted(cores as u64, "thread"), scaled(speed.of(1, cores).recip()), speed.how());
     let one_by_one = format!("about {} plus the time for the front, {rate}", span(seconds));
+    let mut by_trial = f64::INFINITY;
     let (method, expected) = match why_every_design(&plan, speed.of(designs, cores)) {
         Some(why) => (format!("every design: {why}"), one_by_one),
         None => {
             let left = span(PATIENCE * seconds);
             let method = format!("bounds; if they are not faster, every design after at most about {left}, {rate}");
-            (method, by_bounds(try_bounds(&plan, cores, TRIAL_OF_BOUNDS), seconds, &one_by_one))
+            let trial = try_bounds(&plan, cores, TRIAL_OF_BOUNDS);
+            by_trial = trial.as_ref().map_or(f64::INFINITY, BoundsTrial::expected);
+            (method, by_bounds(trial, seconds, &one_by_one))
         }
     };
+    if by_trial > A_DAY {
+        warn_of_days(designs, seconds, cores, by_trial.is_finite());
+    }
     let mut facts = TextGrid::default();
     let mut fact = |what: &str, value: String| facts.row([bold(what), value]);
     fact("model", format!("{}: {}", model.name, model.summary));
@@ -100,6 +108,24 @@ pub fn run(request: &cli::CheckArgs) -> Result<()> {
         text.push_str(&format!("{} {warning}\n", bold("warning:")));
     }
     terminal::tell(&text)
+}
+
+/// Warns of a run that is expected to take more than a day, if bounds do not settle it sooner.
+pub(super) fn warn_of_days(designs: u64, seconds: f64, threads: usize, by_bounds: bool) {
+    if seconds <= A_DAY {
+        return;
+    }
+    let sooner = if by_bounds { ", if bounds do not settle them sooner" } else { "" };
+    terminal::remark(
+        "warning",
+        &format!(
+            "judging all {} takes about {} on {}{sooner}; larger steps and narrower axes make fewer designs, [sample] draws some of them, \
+             fewer levels in [operation] and [uncertainty] make each cheaper, and beltspace slurm divides the work among machines",
+            counted(designs, "design"),
+            span(seconds),
+            counted(threads as u64, "thread"),
+        ),
+    );
 }
 
 /// How long the method that begins by bounds is expected to take, where judging one by one takes so many `seconds`.

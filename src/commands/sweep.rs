@@ -1,6 +1,6 @@
 //! `beltspace sweep`: judges every design of a study and writes the result.
 
-use super::check::feasible_file;
+use super::check::{feasible_file, warn_of_days};
 use super::{engine, read_study_with, report as page, sensitivity, tell_short_ranges, threads};
 use crate::cli;
 use crate::terminal::{self, progress::Bar, report};
@@ -12,8 +12,9 @@ use beltspace::influence::InfluenceSubject;
 use beltspace::names::{CHECKPOINT, PAGE};
 use beltspace::plan::Plan;
 use beltspace::result_files::result_files;
+use beltspace::run::device;
 use beltspace::run::judge::{How, Judged, judge, record_of};
-use beltspace::run::{device, method};
+use beltspace::run::method::{self, Chosen};
 use beltspace::study::{Study, StudyEdits, StudyErrors};
 use beltspace::sweep::costs::Speed;
 use beltspace::sweep::{Control, Settings};
@@ -22,6 +23,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
+
+/// Seconds that a sweep may take by what the model says, of which no measurement makes a day.
+const SURELY_SHORT: f64 = 600.0;
 
 pub fn run(request: &cli::SweepArgs) -> Result<()> {
     let shard = request.shard.unwrap_or(Shard::WHOLE);
@@ -39,6 +43,9 @@ pub fn run(request: &cli::SweepArgs) -> Result<()> {
     let on_a_device = device::is_expected(&plan, request.engine, request.adapter.as_deref());
     let speed = || if on_a_device { device::about(Speed::quick(&plan, threads)) } else { Speed::quick(&plan, threads) };
     let method = method::choose(&plan, request.method, request.engine, request.adapter.as_deref(), threads, speed)?;
+    if !request.resume && !request.quiet {
+        warn_if_long(&plan, &method, shard, threads, on_a_device);
+    }
     // Claimed before anything is done, and held to the end.
     let taken = directory::claim(&out, &terminal::command_line())?;
     let contents = Contents::of(&out)?;
@@ -98,6 +105,21 @@ pub fn run(request: &cli::SweepArgs) -> Result<()> {
     let page =
         if request.no_report { None } else { Some(page::beside(&plan, &out, &named(request), record.time, settings.threads, &control)?) };
     if request.quiet { Ok(()) } else { terminal::tell(&report::summary(&outcome, &record, &out, page.as_ref())) }
+}
+
+/// Warns of a sweep that will take days.
+#[allow(clippy::cast_precision_loss, reason = "an estimate")]
+fn warn_if_long(plan: &Plan, method: &Chosen, shard: Shard, threads: usize, on_a_device: bool) {
+    // Bounds that were asked for stay, and nobody knows how long they take.
+    if method.bounds && method.leaves.is_none() {
+        return;
+    }
+    let range = shard.range(plan.designs());
+    let designs = range.end - range.start;
+    let told = || Speed::told(plan);
+    let measured = || if told().of(designs, threads) < SURELY_SHORT { told() } else { Speed::quick(plan, threads) };
+    let speed = method.leaves.unwrap_or_else(|| if on_a_device { device::about(measured()) } else { measured() });
+    warn_of_days(designs, speed.of(designs, threads), threads, method.bounds);
 }
 
 /// The study of the checkpoint in `out`, which has the rows and labels of every table that it names. It goes on where such a table is no

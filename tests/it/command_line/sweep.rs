@@ -1,9 +1,11 @@
 //! `check`, `sweep` and the result directory.
 
-use super::{Csv, SMALL, ask, changed, files, folder_with, json_of, read, same_result, small_result, write};
+use super::{Csv, SMALL, ask, changed, files, folder_with, json_of, program, read, same_result, small_result, write};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::RowAccessor;
+use std::io::{BufRead, BufReader};
 use std::path::Path;
+use std::process::Stdio;
 
 /// Every cell is empty, a word, or the shortest text of a finite number.
 fn assert_numbers_are_plain(folder: &Path) {
@@ -64,6 +66,28 @@ fn steps_that_end_before_the_range_are_told_on_standard_error() {
         for (name, bytes) in out {
             assert!(!String::from_utf8_lossy(&bytes.unwrap_or_default()).contains("before to ="), "{name}");
         }
+    }
+}
+
+#[test]
+fn a_run_of_days_is_warned_of_and_begins() {
+    let finer = [("count = 13", "count = 13000"), ("count = 21", "count = 21000"), ("to = 0.50, count = 5", "to = 0.50, count = 5000")];
+    let study = changed(&SMALL[..SMALL.find("maps = ").expect("it has maps")], &finer);
+    let folder = folder_with("small.toml", &study);
+    let begins = "warning: judging all 12 285 000 000 000 designs takes about ";
+    let checked = ask(folder.path(), "check small.toml");
+    let warned = |text: &str| text.starts_with(begins) && text.contains(" on ") && text.contains("; larger steps and narrower axes make");
+    assert!(checked.code == Some(0) && warned(&checked.err), "{}", checked.err);
+    let words = ["sweep", "small.toml", "--method", "exhaustive", "--no-report"];
+    let mut sweep = program(folder.path(), &words).stderr(Stdio::piped()).stdout(Stdio::null()).spawn().expect("it starts");
+    let mut line = String::new();
+    BufReader::new(sweep.stderr.take().expect("it is piped")).read_line(&mut line).expect("it is text");
+    assert!(sweep.try_wait().expect("it is a child").is_none(), "the sweep goes on");
+    sweep.kill().and_then(|()| sweep.wait()).expect("it can be ended");
+    assert!(warned(&line), "{line}");
+    let short = folder_with("small.toml", SMALL);
+    for line in ["check small.toml", "sweep small.toml --no-report"] {
+        assert_eq!(ask(short.path(), line).err, "", "{line}");
     }
 }
 
