@@ -120,7 +120,7 @@ pub struct ExportArgs {
     #[arg(long, conflicts_with = "design")]
     pub preset: Option<String>,
     /// Design of a study, by its index
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = design_number)]
     pub design: Option<u64>,
     /// Scenario of a study, by its index
     #[arg(long, value_name = "K", requires = "design")]
@@ -146,7 +146,7 @@ pub struct EvalArgs {
     #[arg(long, conflicts_with = "design")]
     pub preset: Option<String>,
     /// Design of a study, by its index
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = design_number)]
     pub design: Option<u64>,
     /// Scenario of a study, by its index; without it the worst over all scenarios
     #[arg(long, value_name = "K", requires = "design")]
@@ -268,7 +268,7 @@ pub struct SensitivityArgs {
     #[arg(long, value_name = "NAME=VALUE")]
     pub set: Vec<String>,
     /// Design whose uncertainty is looked at, by its index [default: the only one]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = design_number)]
     pub design: Option<u64>,
     /// What varies [default: uncertainty if the study has some]
     #[arg(long, value_enum)]
@@ -429,4 +429,10 @@ pub struct ReproduceArgs {
     /// Print nothing but errors
     #[arg(long)]
     pub quiet: bool,
+}
+
+/// The number of a design.
+fn design_number(text: &str) -> Result<u64, String> {
+    let wanted = "designs are named by their numbers: sweep prints that of the knee, and front.csv has them in the column design_index";
+    text.parse().map_err(|_| wanted.to_owned())
 }

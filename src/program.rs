@@ -2,6 +2,7 @@
 
 use crate::{cli, commands, terminal};
 use clap::Parser;
+use clap::error::{ContextKind, ContextValue};
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::OnceLock;
@@ -42,7 +43,7 @@ pub(crate) fn path() -> std::io::Result<PathBuf> {
 }
 
 fn run(words: Vec<OsString>) -> u8 {
-    let cli = cli::Cli::parse_from(words);
+    let cli = cli::Cli::try_parse_from(words).unwrap_or_else(|error| wrong_words(&error));
     keep_the_loader_quiet();
     match commands::run(cli.command) {
         Ok(()) => 0,
@@ -51,6 +52,18 @@ fn run(words: Vec<OsString>) -> u8 {
             error.exit_code()
         }
     }
+}
+
+/// Ends the process with what is wrong with its words, or with the help that was asked for.
+fn wrong_words(error: &clap::Error) -> ! {
+    // If even this cannot be written, nothing is left to do.
+    let _ = error.print();
+    if let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand)
+        && let Some(meant) = commands::meant_by(word)
+    {
+        terminal::remark("hint", &meant);
+    }
+    std::process::exit(error.exit_code())
 }
 
 /// A layer of Mesa's Vulkan drivers looks for a display and complains on standard error if there is none. It chooses among graphics cards,

@@ -4,7 +4,7 @@ use crate::cli;
 use crate::terminal::{TextGrid, counted, grouped, short};
 use beltspace::bounds::{EnclosureProblem, YieldBounds};
 use beltspace::error::{Error, Result};
-use beltspace::files::{MOVE, refuse_foreign, replace};
+use beltspace::files::{MOVE, refuse_foreign, refuse_without_folder, replace};
 use beltspace::plan::Plan;
 use beltspace::probability::{Effect, Enclosure, pearson, spearman};
 use beltspace::study::{Axis, Probability, Study, UncertainInput};
@@ -54,6 +54,7 @@ pub fn facts(probability: &Probability, mut fact: impl FnMut(&str, String)) -> R
 pub fn write(probability: &Probability, path: &Path) -> Result<()> {
     let names: Vec<String> = probability.inputs.iter().map(column_name).collect();
     let header = format!("draw,{}\n", names.join(","));
+    refuse_without_folder(path)?;
     refuse_foreign(path, MOVE, |head| head.starts_with(&header))?;
     let drawn = columns(probability, probability.draws)?;
     let number = TableColumn::index("draw", "Number of the draw.", (0..probability.draws).map(Some));

@@ -7,7 +7,7 @@ use crate::terminal::{self, TextGrid, bold, counted, dim, short};
 use beltspace::certify;
 use beltspace::error::{Error, Result};
 use beltspace::export::pulley;
-use beltspace::files::{MOVE, refuse_foreign, replace};
+use beltspace::files::{MOVE, refuse_foreign, refuse_without_folder, replace};
 use beltspace::models::{self, Evaluation, Evaluator, Model, Profile, Status, evaluate};
 use beltspace::names::is_picture;
 use beltspace::pictures::{self, PlotQuantity, Series};
@@ -172,6 +172,7 @@ fn along_the_belt(model: &Model, inputs: &[f64], evaluation: &Evaluation, reques
 
 /// `--profile` and `--plot` replace files that such a request wrote before, and no others.
 fn refuse_foreign_files(model: &Model, request: &cli::EvalArgs) -> Result<()> {
+    [&request.profile, &request.plot].into_iter().flatten().try_for_each(|path| refuse_without_folder(path))?;
     if let Some(path) = &request.profile {
         let headers: Vec<String> = models::all()
             .iter()

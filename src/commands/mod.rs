@@ -27,6 +27,7 @@ use crate::cli::{Cli, Command};
 use crate::terminal;
 use beltspace::error::{Error, Result};
 use beltspace::models::Model;
+use beltspace::names::MARK;
 use beltspace::parallel::to_be_had;
 use beltspace::study::{FileKind, Study, StudyEdits, file_kind, read_model};
 use clap::CommandFactory;
@@ -61,6 +62,18 @@ pub fn run(command: Command) -> Result<()> {
             terminal::print(&String::from_utf8_lossy(&script))
         }
     }
+}
+
+/// What a person probably meant who named a file where a command stands.
+pub fn meant_by(word: &str) -> Option<String> {
+    let path = Path::new(word);
+    if !path.extension().is_some_and(|it| it == "toml") && !path.is_file() {
+        return None;
+    }
+    let file = terminal::quoted(path);
+    let is_model = std::fs::read_to_string(path).is_ok_and(|text| file_kind(&text) == FileKind::Model);
+    let command = if is_model { "models" } else { "sweep" };
+    Some(format!("a command comes first: beltspace {command} {file}"))
 }
 
 /// The model of that name.
@@ -131,6 +144,17 @@ fn tell_short_ranges(study: &Study) {
 
 fn unreadable(error: Error) -> Error {
     match error {
+        Error::Io { path, .. } if path.join(MARK).is_file() => {
+            let named = |name: &str| terminal::quoted(&path.join(name));
+            Error::Request(format!(
+                "cannot read study {}: it is the directory of a result; give the study in it, {}, or {} with --set; beltspace report {} \
+                 writes its page again",
+                path.display(),
+                named("study.json"),
+                named("study.toml"),
+                terminal::quoted(&path),
+            ))
+        }
         Error::Io { path, source } => Error::Request(format!("cannot read study {}: {source}", path.display())),
         other => other,
     }

@@ -4,7 +4,7 @@ use super::threads;
 use crate::cli;
 use crate::terminal::{self, quoted};
 use beltspace::error::{Error, Result};
-use beltspace::files::{Reading, refuse_foreign, replace};
+use beltspace::files::{Reading, refuse_foreign, refuse_without_folder, replace};
 use beltspace::names::{PAGE, is_page};
 use beltspace::plan::Plan;
 use beltspace::report::{Page, Request, of_result, study_of};
@@ -45,16 +45,13 @@ pub fn run(request: &cli::ReportArgs) -> Result<()> {
 /// The page must be an HTML file, and replaces only another page.
 fn refuse_to_replace(file: &Path, force: bool) -> Result<()> {
     let refuse = |problem: &str| Err(Error::Request(format!("{}: {problem}", file.display())));
-    let folder = file.parent().filter(|it| !it.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if file.is_dir() {
         return refuse("it is a directory; name a file, such as report.html in it");
     }
     if !file.extension().is_some_and(|it| it.eq_ignore_ascii_case("html") || it.eq_ignore_ascii_case("htm")) {
         return refuse("a page is an HTML file; give it a name that ends in .html");
     }
-    if !folder.is_dir() {
-        return refuse(&format!("there is no directory {}; make it, or name another file", folder.display()));
-    }
+    refuse_without_folder(file)?;
     if force {
         return Ok(());
     }

@@ -6,7 +6,7 @@ use crate::cli;
 use crate::terminal;
 use beltspace::batch::{BatchTarget, RowReader, evaluate_rows};
 use beltspace::error::{Error, Result};
-use beltspace::files::{is_there, open, replace_with};
+use beltspace::files::{is_there, open, refuse_without_folder, replace_with};
 use beltspace::table::stream::{TableForm, TableStream};
 use std::io::{ErrorKind, Seek, Write};
 use std::path::Path;
@@ -18,6 +18,9 @@ pub fn run(request: &cli::EvalArgs, rows: &Path) -> Result<()> {
     let target = target_of(request)?;
     let out = request.out.as_path();
     let form = form_of(out)?;
+    if out != Path::new(STREAM) {
+        refuse_without_folder(out)?;
+    }
     if out != Path::new(STREAM) && is_there(out) && !request.force {
         return Err(Error::Request(format!("{} is there already; name another, or replace it with --force", out.display())));
     }

@@ -45,7 +45,30 @@ pub fn replace_with(path: &Path, write: impl FnOnce(&mut dyn Write) -> std::io::
         file.persist(path)?;
         Ok(())
     };
-    done().map_err(Error::io(path))
+    done().map_err(|error| Error::io(path)(without_temporary_name(error, path)))
+}
+
+/// The error without the name of the temporary file, which nobody has given.
+fn without_temporary_name(error: std::io::Error, path: &Path) -> std::io::Error {
+    let folder = parent(path);
+    if error.kind() == std::io::ErrorKind::NotFound && !folder.is_dir() {
+        return std::io::Error::new(error.kind(), no_folder(folder));
+    }
+    let inner = error.get_ref().and_then(std::error::Error::source).and_then(|it| it.downcast_ref::<std::io::Error>());
+    inner.and_then(std::io::Error::raw_os_error).map_or(error, std::io::Error::from_raw_os_error)
+}
+
+fn no_folder(folder: &Path) -> String {
+    format!("there is no directory {}; make it, or name another file", folder.display())
+}
+
+/// Refuses the name of a file in a directory that is not there, before any work is done for it.
+///
+/// # Errors
+/// [`Error::Request`] that names both.
+pub fn refuse_without_folder(path: &Path) -> Result<()> {
+    let folder = parent(path);
+    if folder.is_dir() { Ok(()) } else { Err(Error::Request(format!("{}: {}", path.display(), no_folder(folder)))) }
 }
 
 /// A new temporary file beside the one of that name, with a unique name.
@@ -193,6 +216,12 @@ mod tests {
         assert_eq!(folder.path().read_dir().expect("it can be listed").count(), 1, "nothing is left behind");
         replace(&path, b"new").expect("it can be written");
         assert_eq!(fs::read(&path).expect("it is there"), b"new");
+        let nowhere = folder.path().join("none/front.csv");
+        let told = replace(&nowhere, b"new").expect_err("there is no such directory").to_string();
+        assert_eq!(
+            told,
+            format!("{}: there is no directory {}; make it, or name another file", nowhere.display(), folder.path().join("none").display())
+        );
     }
 
     #[test]

@@ -8,6 +8,8 @@ use std::process::Stdio;
 const WRONG: &[(&str, &str)] = &[
     ("", "Usage: beltspace <COMMAND>"),
     ("swep small.toml", "unrecognized subcommand 'swep'"),
+    ("small.toml", "hint: a command comes first: beltspace sweep small.toml"),
+    ("'my belt.toml'", "hint: a command comes first: beltspace sweep 'my belt.toml'"),
     ("help", "unrecognized subcommand 'help'"),
     ("--colour", "unexpected argument '--colour'"),
     ("models rubber", "unknown model \"rubber\"; models are: rubber-cvt, metal-cvt, timing-belt, pulley-load, pulley"),
@@ -47,6 +49,19 @@ const WRONG: &[(&str, &str)] = &[
     ("eval small.toml --preset sport", "--preset is for models; a study names its own"),
     ("eval small.toml --design 12285", "there is no design 12285; the study's designs are 0 to 12284"),
     ("eval small.toml --design 99999999999999999999", "invalid value '99999999999999999999' for '--design <N>'"),
+    ("eval small.toml --design knee", "front.csv has them in the column design_index"),
+    (
+        "eval done --design 0",
+        "cannot read study done: it is the directory of a result; give the study in it, done/study.json, or done/study.toml with --set",
+    ),
+    ("sweep done", "beltspace report done writes its page again"),
+    ("explore done --no-browser", "it is the directory of a result"),
+    (
+        "eval timing-belt --profile nowhere/teeth.csv",
+        "error: nowhere/teeth.csv: there is no directory nowhere; make it, or name another file",
+    ),
+    ("eval timing-belt --plot nowhere/teeth.svg", "error: nowhere/teeth.svg: there is no directory nowhere"),
+    ("eval metal-cvt --table rows.csv --out nowhere/rows.csv", "error: nowhere/rows.csv: there is no directory nowhere"),
     ("eval small.toml --design 1.5", "invalid value '1.5' for '--design <N>'"),
     ("eval small.toml --design 0 --scenario 12", "there is no scenario 12; the study's scenarios are 0 to 11"),
     ("eval metal-cvt --out rows.csv", "--table <ROWS>"),
@@ -114,6 +129,7 @@ fn every_wrong_request_exits_2_and_says_what_is_wrong() {
     let broken = "model = \"metal-cvt\"\n[design]\ngroove_angel_deg = [18, 20]\n[objectives]\naxial_farce_N = \"min\"\n";
     write(folder.path(), "broken.toml", broken);
     write(folder.path(), "empty.toml", "");
+    write(folder.path(), "rows.csv", "torque_Nm\n100\n");
     write(folder.path(), "pulley.toml", &ask(folder.path(), "models pulley --study").text());
     std::fs::write(folder.path().join("binary.toml"), [0xff, 0xfe, 0x00]).expect("files can be written");
     ask(folder.path(), "sweep small.toml --out done").text();
