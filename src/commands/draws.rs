@@ -1,14 +1,15 @@
 //! Draws of a study with distributions: what they are like, as a table, and one of them evaluated.
 
 use crate::cli;
-use crate::terminal::{TextGrid, counted, grouped, short};
+use crate::terminal::{TextGrid, bold, counted, grouped, short};
 use beltspace::bounds::{EnclosureProblem, YieldBounds};
 use beltspace::error::{Error, Result};
 use beltspace::files::{MOVE, refuse_foreign, refuse_without_folder, replace};
 use beltspace::plan::Plan;
 use beltspace::probability::{Effect, Enclosure, pearson, spearman};
-use beltspace::study::{Axis, Probability, Study, UncertainInput};
+use beltspace::study::{Axis, Probability, Study, UncertainInput, value_of};
 use beltspace::table::{Data, Table, TableColumn, csv_text};
+use serde_json::{Map, Value, json};
 use std::path::Path;
 
 /// Most draws that correlations are shown of.
@@ -92,6 +93,53 @@ pub fn drive(plan: &Plan, design: u64, request: &cli::EvalArgs) -> Result<(Plan,
         }
     }
     Ok((one, scenario, inputs))
+}
+
+/// The operating cases of a draw, by the numbers by which `--scenario` shows them: the inputs that differ, and their values.
+pub struct DrawnCases {
+    one: Plan,
+    inputs: Vec<usize>,
+    design: u64,
+}
+
+impl DrawnCases {
+    /// Those of a design; `None` if the study draws nothing or there is only one.
+    pub fn of(plan: &Plan, design: u64) -> Option<Self> {
+        plan.study.probability.as_ref()?;
+        let one = Plan::new(plan.study.of_one_draw());
+        let axes = one.study.operation.iter().chain(&one.study.uncertainty);
+        let inputs = axes.flat_map(|axis| axis.inputs()).copied().collect();
+        (one.scenarios() > 1).then_some(Self { one, inputs, design })
+    }
+
+    fn values(&self, scenario: u64) -> impl Iterator<Item = (usize, f64)> {
+        let inputs = self.one.space.inputs(self.design, scenario);
+        self.inputs.iter().map(move |&input| (input, inputs[input]))
+    }
+
+    /// As a table for people; of very many the first ones.
+    pub fn table(&self) -> String {
+        const SHOWN: u64 = 24;
+        let model = &self.one.study.model;
+        let mut grid = TextGrid::default();
+        grid.row(std::iter::once(String::new()).chain(self.inputs.iter().map(|&input| model.inputs[input].name.clone())));
+        let count = self.one.scenarios();
+        for scenario in 0..count.min(SHOWN) {
+            let text = |(input, value): (usize, f64)| model.inputs[input].word_for(value).map_or_else(|| short(value), str::to_owned);
+            grid.row(std::iter::once(scenario.to_string()).chain(self.values(scenario).map(text)));
+        }
+        let more = if count > SHOWN { format!("  ... and {} more\n", grouped(count - SHOWN)) } else { String::new() };
+        format!("\n{}, of which --scenario K shows one\n{}{more}", bold("operating cases of a draw"), grid.indented(2))
+    }
+
+    /// The same for programs, all of them.
+    pub fn to_json(&self) -> Value {
+        let model = &self.one.study.model;
+        let inputs = |scenario| -> Map<String, Value> {
+            self.values(scenario).map(|(input, value)| (model.inputs[input].name.clone(), value_of(model, input, value))).collect()
+        };
+        (0..self.one.scenarios()).map(|scenario| json!({ "scenario": scenario, "inputs": inputs(scenario) })).collect()
+    }
 }
 
 /// Proven bounds of a design's yield, if the study asks for them, in words.

@@ -1,12 +1,13 @@
 //! `beltspace eval`: evaluates one design of a model or of a study.
 
 use super::settings::{inputs_of, no_preset};
-use super::{CommandTarget, draws, read_study, read_study_what_if, rows, target};
+use super::{CommandTarget, draws, read_study, read_study_what_if, rows, target, threads};
 use crate::cli;
+use crate::terminal::report::draw_limits;
 use crate::terminal::{self, TextGrid, bold, counted, dim, short};
 use beltspace::certify;
 use beltspace::error::{Error, Result};
-use beltspace::export::pulley;
+use beltspace::export::{DrawnTally, pulley};
 use beltspace::files::{MOVE, refuse_foreign, refuse_without_folder, replace};
 use beltspace::models::{self, Evaluation, Evaluator, Model, Profile, Status, evaluate};
 use beltspace::names::is_picture;
@@ -72,13 +73,13 @@ fn print_one(model: &Model, inputs: &[f64], of_study: Option<ShownDesign<'_>>, r
     if let Some(ShownDesign { plan, design, .. }) = of_study {
         label_rows(plan, design, &mut table);
     }
-    for (input, &value) in model.inputs.iter().zip(inputs) {
+    for (number, (input, &value)) in model.inputs.iter().zip(inputs).enumerate() {
         let text = match input.word_for(value) {
             _ if model.is_replaced(&input.name, inputs) => "-".to_owned(),
             Some(word) => word.to_owned(),
             None => short(value),
         };
-        table.row([input.name.to_owned(), text, dim(&input.doc)]);
+        table.row([input.name.to_owned(), text, dim(&doc_of(model, number, |other| Some(inputs[other])))]);
     }
     let mut results = TextGrid::default();
     for (output, value) in model.outputs.iter().zip(&evaluation.outputs) {
@@ -97,6 +98,12 @@ fn print_one(model: &Model, inputs: &[f64], of_study: Option<ShownDesign<'_>>, r
         results.indented(2),
         bold("status")
     ))
+}
+
+/// What an input is, and that it is not read where the words of other inputs say so.
+fn doc_of(model: &Model, input: usize, value: impl Fn(usize) -> Option<f64>) -> String {
+    let doc = &model.inputs[input].doc;
+    if model.is_unread(input, value) { format!("Not read here. {doc}") } else { doc.clone() }
 }
 
 /// The labels of a design, before its inputs.
@@ -284,6 +291,8 @@ fn print_worst(plan: &Plan, design: u64, number_of: u64, request: &cli::EvalArgs
     }
     let inputs = (0..model.inputs.len()).filter(|input| !varied.contains(input));
     let enclosed = draws::enclosed(study, design)?;
+    let failing = DrawnTally::of_design(plan, design, threads(None), &Control::default())?;
+    let cases = draws::DrawnCases::of(plan, design);
     let at_worst = |name: &str, suffix: &str| {
         let name = format!("{name}{suffix}");
         columns.iter().position(|column| column.name == name).map(|at| row.columns[at])
@@ -321,6 +330,12 @@ fn print_worst(plan: &Plan, design: u64, number_of: u64, request: &cli::EvalArgs
         if !request.set.is_empty() {
             object["set"] = json!(request.set);
         }
+        if let Some(failing) = failing {
+            object["draws_fail_at"] = failing.to_json(plan, "this design");
+        }
+        if let Some(cases) = cases {
+            object["cases_of_a_draw"] = cases.to_json();
+        }
         return terminal::print(&format!("{object:#}\n"));
     }
     let mut table = TextGrid::default();
@@ -328,7 +343,8 @@ fn print_worst(plan: &Plan, design: u64, number_of: u64, request: &cli::EvalArgs
     for input in inputs {
         let value = row.inputs[input];
         let text = model.inputs[input].word_for(value).map_or_else(|| short(value), str::to_owned);
-        table.row([model.inputs[input].name.to_owned(), text, dim(&model.inputs[input].doc)]);
+        let known = |other: usize| (!varied.contains(&other)).then_some(row.inputs[other]);
+        table.row([model.inputs[input].name.to_owned(), text, dim(&doc_of(model, input, known))]);
     }
     let mut results = TextGrid::default();
     results.row(["", "worst", "in scenario", ""].map(str::to_owned));
@@ -363,7 +379,7 @@ fn print_worst(plan: &Plan, design: u64, number_of: u64, request: &cli::EvalArgs
         Some(it) => format!("over {}, worst of {}", counted(it.draws, "draw"), counted(it.levels, "level")),
     };
     terminal::tell(&format!(
-        "{} {number_of}{with}, {of_all}\n\n{}\n{}\n{}\n{}\n{}\n{}\n{} {status}{not_ok}\n{} {}\n",
+        "{} {number_of}{with}, {of_all}\n\n{}\n{}\n{}\n{}\n{}\n{}\n{} {status}{not_ok}\n{} {}\n{}{}",
         bold("design"),
         bold("inputs"),
         table.indented(2),
@@ -374,5 +390,7 @@ fn print_worst(plan: &Plan, design: u64, number_of: u64, request: &cli::EvalArgs
         bold("status"),
         bold("feasible"),
         if row.feasible { "yes" } else { "no" },
+        failing.map_or_else(String::new, |it| draw_limits(&it, study)),
+        cases.map_or_else(String::new, |it| it.table()),
     ))
 }

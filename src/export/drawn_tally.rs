@@ -5,9 +5,10 @@ use crate::models::fill_si;
 use crate::parallel::on_threads;
 use crate::plan::Plan;
 use crate::screen::{Control, sample};
-use crate::study::{DrawFailures, DrawnKernel, NO_SUCH_DRIVE};
+use crate::study::{DrawFailures, DrawnKernel, NO_SUCH_DRIVE, Probability};
 use crate::tape::Set;
 use serde_json::{Map, Value, json};
+use std::ops::Range;
 use std::sync::atomic::Ordering;
 
 /// Evaluations of the drive that counting may take, and the least number of draws that are looked at.
@@ -36,12 +37,28 @@ impl DrawnTally {
     /// [`Error::Stopped`] after `control.stop`.
     pub fn new(plan: &Plan, threads: usize, control: &Control) -> Result<Option<Self>> {
         let Some(probability) = &plan.study.probability else { return Ok(None) };
+        let of = plan.designs().saturating_mul(probability.draws);
+        Self::of_draws(plan, probability, 0..of, threads, control).map(Some)
+    }
+
+    /// The same over the draws of one design.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] after `control.stop`.
+    pub fn of_design(plan: &Plan, design: u64, threads: usize, control: &Control) -> Result<Option<Self>> {
+        let Some(probability) = &plan.study.probability else { return Ok(None) };
+        let first = design * probability.draws;
+        Self::of_draws(plan, probability, first..first + probability.draws, threads, control).map(Some)
+    }
+
+    /// Counts over a sample of a range of the draws of all designs, which stand one design behind the other.
+    fn of_draws(plan: &Plan, probability: &Probability, range: Range<u64>, threads: usize, control: &Control) -> Result<Self> {
         let drive = probability.drawn(None).map_err(|problem| Error::Request(problem.to_string()))?;
         let kernel = DrawnKernel::new(drive);
         let scenarios = plan.scenarios();
         let each = scenarios.saturating_mul(probability.evaluations() / probability.draws.max(1)).max(1);
-        let of = plan.designs().saturating_mul(probability.draws);
-        let chosen: Vec<u64> = sample(of, (EVALUATIONS / each).max(LEAST)).collect();
+        let of = range.end - range.start;
+        let chosen: Vec<u64> = sample(of, (EVALUATIONS / each).max(LEAST)).map(|number| range.start + number).collect();
         let share = chosen.len().div_ceil(threads.max(1)).max(1);
         let parts = on_threads(chosen.chunks(share), |part| {
             let mut found = Vec::with_capacity(part.len());
@@ -68,18 +85,18 @@ impl DrawnTally {
             (count(&|it| it.constraints.contains(number)), count(&|it| *it == alone))
         });
         let holding = count(&|it| it.is_none());
-        Ok(Some(Self { sampled: found.len() as u64, of, holding, statuses, constraints: constraints.collect() }))
+        Ok(Self { sampled: found.len() as u64, of, holding, statuses, constraints: constraints.collect() })
     }
 
-    /// For `summary.json`.
-    pub(super) fn to_json(&self, plan: &Plan) -> Value {
+    /// For `summary.json`, and for one design: `whose` draws they are.
+    pub(crate) fn to_json(&self, plan: &Plan, whose: &str) -> Value {
         let Some(probability) = &plan.study.probability else { return Value::Null };
         let drive = &probability.drive;
         let constraints = drive.constraints.iter().zip(&self.constraints).map(|(constraint, (violated, only))| {
             json!({ "of": constraint.name(&drive.model), "bounds": constraint.in_words(), "violated": violated, "only": only })
         });
         json!({
-            "of": "a fixed sample of the draws of all designs; one draw may count in several places",
+            "of": format!("a fixed sample of the draws of {whose}; one draw may count in several places"),
             "draws": self.of, "sampled": self.sampled, "feasible": self.holding,
             "status": self.statuses.iter().map(|(reason, count)| (reason.clone(), json!(count))).collect::<Map<_, _>>(),
             "constraints": constraints.collect::<Vec<_>>(),

@@ -102,7 +102,7 @@ impl<'a> Summary<'a> {
             },
         });
         if let Some(drawn) = &self.outcome.drawn {
-            summary["draws"] = drawn.to_json(plan);
+            summary["draws"] = drawn.to_json(plan, "all designs");
         }
         if let Some(confirmed) = Confirmed::of(self.outcome) {
             summary["confirmed"] = confirmed.to_json();

@@ -169,11 +169,19 @@ impl Model {
     /// A sentence on an input that is set and not read, for the values of those inputs that have one only.
     pub fn unread(&self, input: usize, value: impl Fn(usize) -> Option<f64>) -> Option<String> {
         let Input { name, only_for, .. } = &self.inputs[input];
-        let only_for = only_for.as_ref()?;
-        let decides = self.input(&only_for.input)?;
-        let word = self.inputs[decides].word_for(value(decides)?)?;
-        let unread = only_for.words.iter().all(|it| it != word);
-        unread.then(|| format!("{name} is set, but it is read for {} only", only_for.in_words()))
+        let only_for = only_for.as_ref().filter(|_| self.is_unread(input, value))?;
+        Some(format!("{name} is set, but it is read for {} only", only_for.in_words()))
+    }
+
+    /// Is an input not read, for the values of those inputs that have one only?
+    pub(crate) fn is_unread(&self, input: usize, value: impl Fn(usize) -> Option<f64>) -> bool {
+        let decided = || {
+            let only_for = self.inputs[input].only_for.as_ref()?;
+            let decides = self.input(&only_for.input)?;
+            let word = self.inputs[decides].word_for(value(decides)?)?;
+            Some(only_for.words.iter().all(|it| it != word))
+        };
+        decided().unwrap_or(false)
     }
 
     /// What inputs in their units say against each other, though the formula takes them.

@@ -2,10 +2,10 @@
 
 use super::{TextGrid, bold, counted, dim, grouped, scaled, short, span, width};
 use beltspace::certify::Row;
-use beltspace::export::{Certified, Confirmed, RunRecord, Summary};
+use beltspace::export::{Certified, Confirmed, DrawnTally, RunRecord, Summary};
 use beltspace::influence::{InfluenceMethod, InfluenceReport, QuantityVerdict};
 use beltspace::models::OVERFLOW;
-use beltspace::study::{Axis, Goal};
+use beltspace::study::{Axis, Goal, Study};
 use std::path::{Path, PathBuf};
 use textplots::{Chart, LabelBuilder, LabelFormat, Plot, Shape};
 
@@ -120,12 +120,13 @@ fn limits(outcome: &Certified<'_>) -> String {
     } else {
         format!("of a sample of {}", counted(tally.sampled, "design"))
     };
-    listed(&format!("{} {what}", bold("what limits feasibility,")), reasons, tally.sampled) + &draw_limits(outcome)
+    listed(&format!("{} {what}", bold("what limits feasibility,")), reasons, tally.sampled)
+        + &outcome.drawn.as_ref().map_or_else(String::new, |drawn| draw_limits(drawn, study))
 }
 
 /// What draws fail at, worst first.
-fn draw_limits(outcome: &Certified<'_>) -> String {
-    let Some((drawn, probability)) = outcome.drawn.as_ref().zip(outcome.plan.study.probability.as_ref()) else { return String::new() };
+pub fn draw_limits(drawn: &DrawnTally, study: &Study) -> String {
+    let Some(probability) = &study.probability else { return String::new() };
     let drive = &probability.drive;
     let mut reasons: Vec<(u64, u64, String)> = drawn.statuses.iter().map(|(reason, count)| (*count, 0, reason.clone())).collect();
     for (constraint, &(violated, only)) in drive.constraints.iter().zip(&drawn.constraints) {

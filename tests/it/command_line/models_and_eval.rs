@@ -369,6 +369,57 @@ fn a_design_of_a_study_is_what_the_front_says() {
     );
 }
 
+/// A share of draws that is too small says nothing of what fails, and a case of a draw has its number in no file.
+#[test]
+fn a_design_whose_draws_fail_says_at_what_and_in_which_cases_it_can_be_looked_at() {
+    let study = "model = \"metal-cvt\"\n[design]\nband_count = [8, 9]\n[operation]\ncases = [{ ratio = 1, torque_Nm = 60 }, { ratio = 2, \
+        torque_Nm = 80 }]\n[uncertainty]\nfriction = { normal = { mean = 0.08, sd = 0.005 }, from = 0.06, to = 0.1 }\n[probability]\n\
+        draws = 512\nconfirm = 1000\n[fixed]\nclamping_force_N = 20000\nstrength_MPa = 650\n[constraints]\nslip_margin = { min = 0.1 }\n\
+        stress_margin = { min = 0 }\nyield = { min = 0.99 }\n[objectives]\nyield = \"max\"\n";
+    let folder = folder_with("study.toml", study);
+    let found = ask(folder.path(), "eval study.toml --design 0 --json").json();
+    let failing = &found["draws_fail_at"];
+    let count = |of: &Value| of.as_u64().expect("a count");
+    assert_eq!((count(&failing["draws"]), count(&failing["sampled"])), (512, 512));
+    let screened = found["outputs"]["yield_screened"]["value"].as_f64().expect("a yield");
+    assert_eq!(count(&failing["feasible"]) as f64 / 512.0, screened);
+    let slipping = failing["constraints"].as_array().expect("constraints").iter().find(|it| it["of"] == "slip_margin").expect("it is one");
+    let share = 100.0 * count(&slipping["violated"]) as f64 / 512.0;
+    assert!(share > 0.0 && share < 100.0 && screened > 0.0 && screened < 0.99, "{failing}");
+    let text = ask(folder.path(), "eval study.toml --design 0").text();
+    let after = text.split_once("what draws fail at, of all draws\n").expect("it says so").1;
+    let line = after.lines().find(|line| line.trim_start().starts_with("slip_margin at least 0.1")).expect("it is named");
+    assert!(line.contains(&format!("fails {share:.1} %")), "{line}");
+    // A case has the number by which it is shown.
+    let cases = found["cases_of_a_draw"].as_array().expect("cases");
+    assert_eq!(cases.len(), 2);
+    for (number, case) in cases.iter().enumerate() {
+        let shown = ask(folder.path(), &format!("eval study.toml --design 0 --scenario {number} --json")).json();
+        for name in ["ratio", "torque_Nm"] {
+            assert_eq!(case["inputs"][name], shown["inputs"][name], "{case}");
+        }
+    }
+    assert!(after.contains("operating cases of a draw, of which --scenario K shows one\n"), "{after}");
+    let rows: Vec<Vec<&str>> = after.lines().map(|line| line.split_whitespace().collect()).collect();
+    assert!(rows.contains(&vec!["ratio", "torque_Nm"]) && rows.contains(&vec!["1", "2", "80"]), "{after}");
+}
+
+#[test]
+fn an_input_that_is_not_read_says_so() {
+    let model = ask(here(), "models pulley --json").json();
+    let text = ask(here(), "eval pulley --set section=machined").text();
+    let mut unread = 0;
+    for input in model["inputs"].as_array().expect("inputs") {
+        let name = input["name"].as_str().expect("a name");
+        let line = text.lines().find(|line| line.split_whitespace().next() == Some(name)).expect("it is listed");
+        let words = input["only_for"]["words"].as_array();
+        let expected = input["only_for"]["input"] == "section" && words.is_some_and(|words| !words.contains(&"machined".into()));
+        assert!(input["only_for"].is_null() || line.contains("Not read here.") == expected, "{line}");
+        unread += usize::from(expected);
+    }
+    assert!(unread > 2, "some inputs are for other sections");
+}
+
 #[test]
 fn a_profile_of_a_study_wants_a_scenario() {
     let study = ask(here(), "models pulley-load --study").text();

@@ -69,6 +69,15 @@ fn draws_are_counted_by_what_they_fail_at() {
         let seen: BTreeMap<String, u64> = tally.statuses.iter().filter(|it| it.1 > 0).cloned().collect();
         assert_eq!((seen, &tally.constraints), (statuses.clone(), &constraints));
     }
+    // Those of each design are together those of all.
+    let plan = Plan::new(study);
+    let each = (0..plan.designs()).map(|design| DrawnTally::of_design(&plan, design, 2, &Control::default()).expect("it is counted"));
+    let each: Vec<DrawnTally> = each.map(|it| it.expect("there are draws")).collect();
+    let total = |of: &dyn Fn(&DrawnTally) -> u64| each.iter().map(of).sum::<u64>();
+    assert_eq!((total(&|it| it.of), total(&|it| it.sampled), total(&|it| it.holding)), (510, 510, holding));
+    for (number, (violated, alone)) in constraints.into_iter().enumerate() {
+        assert_eq!((total(&|it| it.constraints[number].0), total(&|it| it.constraints[number].1)), (violated, alone));
+    }
 }
 
 #[test]
