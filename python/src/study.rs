@@ -104,10 +104,17 @@ impl Study {
     /// folder: what paths of other files are relative to, by default the current one.
     /// models: models of one's own that it may name.
     ///
-    /// StudyError tells all mistakes with line and column.
+    /// StudyError tells all mistakes with line and column; RequestError if it is the name of a file.
     #[staticmethod]
     #[pyo3(signature = (text, *, folder = None, models = None))]
     fn from_toml(py: Python<'_>, text: &str, folder: Option<PathBuf>, models: Option<Vec<Py<Model>>>) -> PyResult<Self> {
+        if !text.contains(['\n', '=']) && text.trim_end().ends_with(".toml") {
+            let name = text.trim_end();
+            return Err(request(
+                py,
+                format!("from_toml takes the text of a study, and \"{name}\" is the name of a file; use Study.from_file"),
+            ));
+        }
         let folder = folder.unwrap_or_else(|| PathBuf::from("."));
         let source = Source::new(py, "study".to_owned(), folder, models)?;
         Self::parsed(py, text, source, &[])

@@ -68,6 +68,11 @@ def test_values_replace_what_gives_an_input(study: beltspace.Study) -> None:
         study.with_values(torque=100)
 
 
+def test_a_name_is_not_taken_for_the_text() -> None:
+    with pytest.raises(beltspace.RequestError, match='"my.toml" is the name of a file; use Study.from_file'):
+        beltspace.Study.from_toml("my.toml")
+
+
 def test_wrong_words_are_refused(study: beltspace.Study) -> None:
     with pytest.raises(beltspace.RequestError, match='engine: unknown word "fpga"; write "auto" or "cpu" or "gpu"'):
         study.sweep(engine="fpga")  # type: ignore[arg-type]

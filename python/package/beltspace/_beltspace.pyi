@@ -272,7 +272,7 @@ class Study:
         folder: what paths of other files are relative to, by default the current one.
         models: models of one's own that it may name.
 
-        StudyError tells all mistakes with line and column.
+        StudyError tells all mistakes with line and column; RequestError if it is the name of a file.
         """
     @staticmethod
     def from_dict(
