@@ -261,6 +261,19 @@ pub enum UnitError {
     },
 }
 
+/// Every unit by what it measures, each with the ways to write it, the first of which names use.
+pub(crate) fn by_dimension() -> Vec<(&'static str, Vec<&'static [&'static str]>)> {
+    let mut found: Vec<(&'static str, Vec<&'static [&'static str]>)> = Vec::new();
+    for (unit, names) in UNITS {
+        let names: &[&str] = if names[0].is_empty() { &names[1..] } else { names };
+        match found.iter_mut().find(|(what, _)| *what == unit.dimension.name()) {
+            Some((_, units)) => units.push(names),
+            None => found.push((unit.dimension.name(), vec![names])),
+        }
+    }
+    found
+}
+
 /// Reads a text such as `"0.25 in"`, `"12 lbf"` or `"200 rad/s"` and returns its value in `wanted`.
 ///
 /// A number without a unit is taken to be in `wanted` already.

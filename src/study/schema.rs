@@ -3,6 +3,7 @@
 //! Which keys a table takes comes from the reader. A schema sees the form only: names of a model, units and ranges are for the reader.
 
 use super::read::{DISCRETE, LAWS, LEFT_OUT, LISTED, MODEL_KEYS, PARAMETERS, keys};
+use crate::units::by_dimension;
 use serde_json::{Map, Value, json};
 
 /// A key of a table: its name, what its value is, and what it means.
@@ -460,10 +461,24 @@ pub fn study_reference() -> String {
     rows(&schema, &mut page);
     sections(&schema, PAGES, &mut page);
     page.push_str("\nWhat the parameters of a distribution mean is told in [probability](probability.md).\n");
+    page.push_str(&units());
     page.push_str("\n## The file of a model\n\nIts form is what `beltspace schema --model` prints; formulas and curves are those of a study. See [models in a file](models-in-a-file.md).\n\n");
     let model = of_model();
     rows(&model, &mut page);
     sections(&model, MODEL_PAGES, &mut page);
+    page
+}
+
+/// The units that values may be given in.
+fn units() -> String {
+    let mut page = "\n## Units\n\nA value with a unit is converted to the unit that the name ends in, which must measure the same: \
+        `\"0.25 in\"` for a name in `_mm`. In formulas a number with a unit stands as `14[EUR/kg]`; see [formulas](formulas.md).\n\n\
+        | what | units, and other ways to write them |\n|---|---|\n"
+        .to_owned();
+    for (what, units) in by_dimension() {
+        let written = units.iter().map(|names| names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" or "));
+        page.push_str(&format!("| {what} | {} |\n", written.collect::<Vec<_>>().join(", ")));
+    }
     page
 }
 
