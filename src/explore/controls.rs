@@ -215,11 +215,17 @@ fn described_input(input: &Input) -> Value {
 
 /// Between which ends a slider runs: what the source covers and what the study says, within what the formula accepts.
 fn span(control: &mut Value, input: &Input, least: f64, largest: f64) {
-    // A variable of the study without a range of its own has the widest that there is, over which no slider could run.
-    let (usual_low, usual_high) = if (input.usual.1 - input.usual.0).is_finite() { input.usual } else { (f64::NAN, f64::NAN) };
     let width = if input.word_for(least).is_some() || input.word_for(largest).is_some() { 0.0 } else { largest - least };
+    let (usual_low, usual_high) = if (input.usual.1 - input.usual.0).is_finite() {
+        input.usual
+    } else {
+        // A variable of the study without a range of its own: as far again, and not through zero.
+        let reach = if width > 0.0 { width } else { largest.abs() };
+        let low = least - reach;
+        (if least >= 0.0 { low.max(0.0) } else { low }, largest + reach)
+    };
     let (mut low, mut high) = (usual_low.min(least), usual_high.max(largest));
-    if width > 0.0 || !usual_low.is_finite() || !usual_high.is_finite() {
+    if width > 0.0 {
         (low, high) = (low.max(least - 2.0 * width), high.min(largest + 2.0 * width).max(largest));
     }
     let inside = |value: f64, towards: f64| if input.valid.contains(value) { value } else { towards };
@@ -308,6 +314,21 @@ mod tests {
         ];
         assert_eq!(parts, wanted.map(|(part, bounds)| (json!(part), bounds)));
         assert_eq!(told["constraints"][2]["unit"], "N");
+    }
+
+    #[test]
+    fn sliders_of_variables_go_beyond_what_the_file_gives() {
+        let text = "model = \"metal-cvt\"\n[design]\nband_count = [6, 9]\n[operation]\nasked_Nm = [70, 150]\n[fixed]\nshare = 1.1\ntraction = 0.4\n\
+                    [formulas]\ntorque_Nm = \"asked_Nm * share\"\n[objectives]\naxial_force_N = \"min\"\n";
+        let study = Study::parse(text).unwrap_or_else(|errors| panic!("{errors}"));
+        let told = controls(&Plan::new(study.clone()), text, 2, &Control::default()).expect("controls");
+        let ends = |control: &Value| (control["low"].as_f64().expect("a number"), control["high"].as_f64().expect("a number"));
+        assert_eq!(ends(&told["operation"][0]), (0.0, 230.0));
+        let share = told["fixed"].as_array().and_then(|all| all.iter().find(|it| it["name"] == "share")).expect("it is fixed");
+        assert_eq!(ends(share), (0.0, 2.2));
+        // So are the slices over them.
+        let given = given_ranges(&study, text);
+        assert!(matches!(given[..], [GivenRange::Load { axis: 0, to: 230.0, .. }, GivenRange::Fixed(_), ..]), "{given:?}");
     }
 
     #[test]

@@ -169,11 +169,12 @@ impl DesignLine<'_> {
         let (least, largest) = axis.ends(column);
         let first = &study.design[0];
         let alone = self.along(first, &[first.inputs().iter().map(|&it| self.inputs[it]).collect()]);
+        let drawn = study.drawn_columns().map_err(Error::Request)?;
         let judged = |values: &[f64]| {
             let row = |value: f64| {
                 let mut operation = study.operating().to_vec();
                 operation[number] = with_largest(axis, column, value);
-                let plan = Plan::new(alone.with_operating(operation).map_err(Error::Request)?);
+                let plan = Plan::new(alone.with_operating(operation, &drawn).map_err(Error::Request)?);
                 Ok(certify::rows(&plan, self.columns, &[0], 1, self.control)?.remove(0))
             };
             let each = one_after_another(values.to_vec(), self.threads, || (), |(), value| row(value));

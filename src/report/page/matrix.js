@@ -143,7 +143,7 @@
     box.append(stage, readout);
     // The upper right of the triangle is free for the colour bar and the values of the current point; where it is too small they are below.
     const free = Math.min(420, width - LEFT - size - GAP - 16);
-    const isCorner = across > 1 && size >= 190 && free >= 200 && !page.printing;
+    const isCorner = across > 1 && size >= 140 && free >= 200 && !page.printing;
     readout.className = isCorner ? "corner" : across > 1 ? "below" : "";
     readout.style.width = isCorner ? `${free}px` : across > 1 ? "100%" : "300px";
     if (isCorner) readout.style.maxHeight = `${size + (across > 2 ? 0 : -4)}px`;

@@ -33,16 +33,15 @@ impl Probability {
     /// The drive with the draws that choose designs, and those that judge what they have chosen.
     pub(crate) fn drawn(&self, fresh: Option<FreshDraws>) -> Result<DrawnDrive, ProbabilityProblem> {
         let draws = self.choosing()?;
+        Ok(self.drive_of(draws.columns(0..draws.count()), fresh))
+    }
+
+    fn drive_of(&self, columns: Vec<Vec<f64>>, fresh: Option<FreshDraws>) -> DrawnDrive {
         let Drive { model: base, operation, spectrum, constraints } = &self.drive;
         let drawn = self.inputs.iter().map(|it| (it.input, it.acts())).collect();
-        Ok(DrawnDrive::new(
-            base.clone(),
-            drawn,
-            draws.columns(0..draws.count()),
-            OperatingCases::new(operation, spectrum.as_ref()),
-            Requirements(constraints.clone()),
-            Asking(self.statistics.clone(), fresh),
-        ))
+        let cases = OperatingCases::new(operation, spectrum.as_ref());
+        let asking = Asking(self.statistics.clone(), fresh);
+        DrawnDrive::new(base.clone(), drawn, columns, cases, Requirements(constraints.clone()), asking)
     }
 }
 
@@ -59,14 +58,26 @@ impl Study {
         self.probability.as_ref().map_or(&self.operation, |it| &it.drive.operation)
     }
 
-    /// The same with other operating cases on as many axes.
+    /// The draws that choose, a column for each input that is drawn; none where nothing is.
+    pub(crate) fn drawn_columns(&self) -> Result<Vec<Vec<f64>>, String> {
+        let Some(probability) = &self.probability else { return Ok(Vec::new()) };
+        let draws = probability.choosing().map_err(|problem| problem.to_string())?;
+        Ok(draws.columns(0..draws.count()))
+    }
+
+    /// The same with other operating cases on as many axes; `drawn` are its [`Study::drawn_columns`]. It has no fresh draws, so that nothing
+    /// can be confirmed.
     ///
     /// # Errors
     /// If they are too many for each draw.
-    pub(crate) fn with_operating(&self, operation: Vec<Axis>) -> Result<Self, String> {
+    pub(crate) fn with_operating(&self, operation: Vec<Axis>, drawn: &[Vec<f64>]) -> Result<Self, String> {
         let Some(probability) = &self.probability else { return Ok(Self { operation, ..self.clone() }) };
         let other = Probability { drive: Drive { operation, ..probability.drive.clone() }, ..(**probability).clone() };
-        Ok(Self { model: Arc::new(other.model()?), probability: Some(Arc::new(other)), ..self.clone() })
+        if let Some(flaw) = other.flaw() {
+            return Err(flaw);
+        }
+        let model = model(&other, DrawnKernel::new(other.drive_of(drawn.to_vec(), None)));
+        Ok(Self { model: Arc::new(model), probability: Some(Arc::new(other)), ..self.clone() })
     }
 }
 
