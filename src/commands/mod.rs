@@ -67,7 +67,7 @@ pub fn run(command: Command) -> Result<()> {
 /// What a person probably meant who named a file where a command stands.
 pub fn meant_by(word: &str) -> Option<String> {
     let path = Path::new(word);
-    if !path.extension().is_some_and(|it| it == "toml") && !path.is_file() {
+    if path.extension().is_none_or(|it| it != "toml") && !path.is_file() {
         return None;
     }
     let file = terminal::quoted(path);
