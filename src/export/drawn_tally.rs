@@ -37,8 +37,7 @@ impl DrawnTally {
     /// [`Error::Stopped`] after `control.stop`.
     pub fn new(plan: &Plan, threads: usize, control: &Control) -> Result<Option<Self>> {
         let Some(probability) = &plan.study.probability else { return Ok(None) };
-        let of = plan.designs().saturating_mul(probability.draws);
-        Self::of_draws(plan, probability, 0..of, threads, control).map(Some)
+        Self::of_designs(plan, probability, 0..plan.designs(), threads, control).map(Some)
     }
 
     /// The same over the draws of one design.
@@ -47,18 +46,17 @@ impl DrawnTally {
     /// [`Error::Stopped`] after `control.stop`.
     pub fn of_design(plan: &Plan, design: u64, threads: usize, control: &Control) -> Result<Option<Self>> {
         let Some(probability) = &plan.study.probability else { return Ok(None) };
-        let first = design * probability.draws;
-        Self::of_draws(plan, probability, first..first + probability.draws, threads, control).map(Some)
+        Self::of_designs(plan, probability, design..design + 1, threads, control).map(Some)
     }
 
-    /// Counts over a sample of a range of the draws of all designs, which stand one design behind the other.
-    fn of_draws(plan: &Plan, probability: &Probability, range: Range<u64>, threads: usize, control: &Control) -> Result<Self> {
+    /// Counts over a sample of the draws of some designs, which stand one design behind the other.
+    fn of_designs(plan: &Plan, probability: &Probability, designs: Range<u64>, threads: usize, control: &Control) -> Result<Self> {
         let drive = probability.drawn(None).map_err(|problem| Error::Request(problem.to_string()))?;
         let kernel = DrawnKernel::new(drive);
         let scenarios = plan.scenarios();
         let each = scenarios.saturating_mul(probability.evaluations() / probability.draws.max(1)).max(1);
-        let of = range.end - range.start;
-        let chosen: Vec<u64> = sample(of, (EVALUATIONS / each).max(LEAST)).map(|number| range.start + number).collect();
+        let of = (designs.end - designs.start).saturating_mul(probability.draws);
+        let chosen: Vec<u64> = sample(of, (EVALUATIONS / each).max(LEAST)).collect();
         let share = chosen.len().div_ceil(threads.max(1)).max(1);
         let parts = on_threads(chosen.chunks(share), |part| {
             let mut found = Vec::with_capacity(part.len());
@@ -66,7 +64,8 @@ impl DrawnTally {
                 if control.stop.load(Ordering::Relaxed) {
                     break;
                 }
-                found.push(failures(plan, &kernel, number / probability.draws, (number % probability.draws) as usize));
+                let (design, draw) = (designs.start + number / probability.draws, number % probability.draws);
+                found.push(failures(plan, &kernel, design, draw as usize));
             }
             found
         });
