@@ -42,17 +42,29 @@
     return bad ? [...lines, `with ${bad.word} ${failsAt(slice, columns, bad.i)}`] : lines;
   };
 
+  // Two numbers that differ, in as few digits as show it.
+  const toldApart = (a, b) => {
+    if (b === null || page.short(a) !== page.short(b)) return [page.short(a), b === null ? "" : page.short(b)];
+    const digits = [5, 6, 7, 8, 9, 10, 12].find((it) => Number(a.toPrecision(it)) !== Number(b.toPrecision(it))) ?? 17;
+    return [a, b].map((it) => page.full(Number(it.toPrecision(digits))));
+  };
+
   // How far until infeasible, in words.
   const reachText = (slice, columns) => {
     if (slice.words) return wordsText(slice, columns);
     const found = reach(slice);
     const unit = slice.unit ? ` ${page.unit(slice.unit)}` : "";
     if (!found) return "this design is infeasible";
+    // Of loads the largest is looked at, from the least one on; of fixed values as far as their sliders go.
+    const isLoad = slice.isGiven && slice.input.endsWith(", the largest");
     const way = (word, { last, next }) => {
       const free = Math.abs(slice.at[last] - slice.own);
-      const end = `${page.short(slice.at[last])}${unit}`;
-      if (next === null) return free === 0 ? `${word}: it is at the end of its ${slice.isGiven ? "slider" : "axis"}` : `${word} by ${page.short(free)} to ${end}, the end of its ${slice.isGiven ? "slider" : "axis"}`;
-      const fails = `at ${page.short(slice.at[next])}${unit} ${failsAt(slice, columns, next)}`;
+      const [shown, beyond] = toldApart(slice.at[last], next === null ? null : slice.at[next]);
+      const end = `${shown}${unit}`;
+      if (next === null && isLoad && word === "down") return free === 0 ? `${word}: not looked at, it is the least load` : `${word} by ${page.short(free)} to ${end}, the least load`;
+      if (next === null && slice.isGiven) return free === 0 ? `${word}: not looked at` : `${word} by ${page.short(free)} to ${end}, as far as this looks`;
+      if (next === null) return free === 0 ? `${word}: it is at the end of its axis` : `${word} by ${page.short(free)} to ${end}, the end of its axis`;
+      const fails = `at ${beyond}${unit} ${failsAt(slice, columns, next)}`;
       return free === 0 ? `${word}: not at all, ${fails}` : `${word} by ${page.short(free)} to ${end}; ${fails}`;
     };
     return [`now ${page.short(slice.own)}${unit}`, way("down", found.down), way("up", found.up)];

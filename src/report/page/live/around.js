@@ -13,6 +13,7 @@
     const title = `Around design ${design}${page.state.card === null ? ` (${page.chosenWord()})` : ""}`;
     const box = section.querySelector(".around-box") || page.element("div", { class: "around-box" });
     section.replaceChildren(page.element("h2", { id: "around-title" }, title), box);
+    if (!box.hasChildNodes()) box.append(page.element("p", { class: "hint" }, "being computed"));
     asking = new AbortController();
     try {
       page.drawSlices(box, await page.askOnce("/around", { set: page.changeList(), design }, asking.signal));

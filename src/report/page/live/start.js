@@ -13,7 +13,7 @@
     const copy = page.element("button", { type: "button", class: "no-print", "data-testid": "copy-command", click: () => page.copyText(page.byId("command").textContent) }, "Copy command");
     live.replaceChildren(
       page.element("p", { id: "live-text", role: "status", "aria-live": "polite" }, "asking the engine …"),
-      page.element("div", { class: "controls no-print" }, page.element("label", {}, ghost, " old front"), copy, page.element("button", { type: "button", id: "save", "data-testid": "save", click: save }, "Save as study")),
+      page.element("div", { class: "controls no-print" }, page.element("label", {}, ghost, " old front ", page.element("span", { class: "ghost-dot", "aria-hidden": "true" })), copy, page.element("button", { type: "button", id: "save", "data-testid": "save", click: save }, "Save as study")),
       page.element("code", { id: "command", "data-testid": "command", tabindex: 0 }),
     );
   };
