@@ -10,6 +10,8 @@ use crate::table::written;
 
 /// Places along an axis.
 pub const PLACES: u64 = 33;
+/// The same over a load where something is drawn: each place prepares the formula of its draws anew.
+const DRAWN_PLACES: u64 = 9;
 /// Times that the end of what is feasible is looked for between two places: of 33 places over 1e6 levels that finds the very level.
 const HALVINGS: usize = 16;
 /// The same where an axis has no levels.
@@ -180,6 +182,7 @@ impl DesignLine<'_> {
             let each = one_after_another(values.to_vec(), self.threads, || (), |(), value| row(value));
             each.into_iter().collect::<Result<Vec<Row>>>()
         };
+        let most = if study.probability.is_some() { most.min(DRAWN_PLACES) } else { most };
         let places = AxisPlaces::Between { low: least, high: to, log: false, own: largest };
         let (values, mut rows) = along_places(&places, largest, most, judged)?;
         // Scenarios of one number are others at each place: whether another one becomes the worst cannot be told by them.
