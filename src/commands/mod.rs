@@ -71,7 +71,9 @@ pub fn meant_by(word: &str) -> Option<String> {
         return None;
     }
     let file = terminal::quoted(path);
-    let is_model = std::fs::read_to_string(path).is_ok_and(|text| file_kind(&text) == FileKind::Model);
+    // Whatever was named, a hint must not wait for it or fill the memory.
+    let is_small = std::fs::metadata(path).is_ok_and(|it| it.is_file() && it.len() < 1 << 20);
+    let is_model = is_small && std::fs::read_to_string(path).is_ok_and(|text| file_kind(&text) == FileKind::Model);
     let command = if is_model { "models" } else { "sweep" };
     Some(format!("a command comes first: beltspace {command} {file}"))
 }

@@ -266,10 +266,12 @@ pub fn given_ranges(study: &Study, text: &str) -> Vec<GivenRange> {
         let (least, largest) = study.operating()[axis].ends(column);
         let mut control = described_input(described);
         span(&mut control, described, least, largest);
+        // The largest of several loads is not below the others; a single one may be any.
+        let from = if least < largest { least } else { control["low"].as_f64()? };
         let to = control["high"].as_f64()?;
         let has_words = [least, largest].into_iter().any(|it| described.word_for(it).is_some());
         let is_range = !described.integer && !described.is_enumeration() && !has_words && to > largest;
-        is_range.then_some(GivenRange::Load { axis, input, to })
+        is_range.then_some(GivenRange::Load { axis, input, from, to })
     };
     let of_axis = |(axis, it): (usize, &Axis)| it.inputs().iter().enumerate().filter_map(|it| load(axis, it)).collect::<Vec<_>>();
     let loads = study.operating().iter().enumerate().flat_map(of_axis);
@@ -320,15 +322,18 @@ mod tests {
     fn sliders_of_variables_go_beyond_what_the_file_gives() {
         let text = "model = \"metal-cvt\"\n[design]\nband_count = [6, 9]\n[operation]\nasked_Nm = [70, 150]\n[fixed]\nshare = 1.1\ntraction = 0.4\n\
                     [formulas]\ntorque_Nm = \"asked_Nm * share\"\n[objectives]\naxial_force_N = \"min\"\n";
-        let study = Study::parse(text).unwrap_or_else(|errors| panic!("{errors}"));
+        let study_of_text = |text: &str| Study::parse(text).unwrap_or_else(|errors| panic!("{errors}"));
+        let study = study_of_text(text);
         let told = controls(&Plan::new(study.clone()), text, 2, &Control::default()).expect("controls");
         let ends = |control: &Value| (control["low"].as_f64().expect("a number"), control["high"].as_f64().expect("a number"));
         assert_eq!(ends(&told["operation"][0]), (0.0, 230.0));
         let share = told["fixed"].as_array().and_then(|all| all.iter().find(|it| it["name"] == "share")).expect("it is fixed");
         assert_eq!(ends(share), (0.0, 2.2));
-        // So are the slices over them.
+        // So do the slices over them; of a single load they look at less of it, too.
+        let single = study_of_text(&text.replace("[70, 150]", "[150]"));
+        assert!(matches!(given_ranges(&single, text)[0], GivenRange::Load { from: 0.0, to: 300.0, .. }));
         let given = given_ranges(&study, text);
-        assert!(matches!(given[..], [GivenRange::Load { axis: 0, to: 230.0, .. }, GivenRange::Fixed(_), ..]), "{given:?}");
+        assert!(matches!(given[..], [GivenRange::Load { axis: 0, from: 70.0, to: 230.0, .. }, GivenRange::Fixed(_), ..]), "{given:?}");
     }
 
     #[test]

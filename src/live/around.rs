@@ -62,13 +62,15 @@ pub fn around(plan: &Plan, design: u64, most: u64, threads: usize, control: &Con
 pub enum GivenRange {
     /// An input that the study fixes, over the levels of this axis.
     Fixed(Axis),
-    /// The largest value of an input over the operating cases, from the least one on.
+    /// The largest value of an input over the operating cases.
     Load {
         /// Number of the axis of the operating cases.
         axis: usize,
         /// The input.
         input: usize,
-        /// Up to here.
+        /// Least value that is looked at: that of the cases if they have several.
+        from: f64,
+        /// Largest value that is looked at.
         to: f64,
     },
 }
@@ -91,7 +93,7 @@ pub fn around_with(
     let own = sliced(plan).map(|axis| line.slice(axis, most));
     let given = given.iter().map(|it| match it {
         GivenRange::Fixed(axis) => line.slice(axis, most),
-        GivenRange::Load { axis, input, to } => line.load(*axis, *input, *to, most),
+        GivenRange::Load { axis, input, from, to } => line.load(*axis, *input, (*from, *to), most),
     });
     let slices = own.chain(given).collect::<Result<Vec<_>>>()?;
     Ok((columns, slices))
@@ -164,7 +166,7 @@ impl DesignLine<'_> {
     }
 
     /// Over the largest value of an input in the operating cases. These are others at each place, so that each is a study of its own.
-    fn load(&self, number: usize, input: usize, to: f64, most: u64) -> Result<Slice> {
+    fn load(&self, number: usize, input: usize, (low, high): (f64, f64), most: u64) -> Result<Slice> {
         let study = self.study;
         let axis = &study.operating()[number];
         let column = axis.inputs().iter().position(|it| *it == input).unwrap_or(0);
@@ -183,12 +185,13 @@ impl DesignLine<'_> {
             each.into_iter().collect::<Result<Vec<Row>>>()
         };
         let most = if study.probability.is_some() { most.min(DRAWN_PLACES) } else { most };
-        let places = AxisPlaces::Between { low: least, high: to, log: false, own: largest };
+        let places = AxisPlaces::Between { low, high, log: false, own: largest };
         let (values, mut rows) = along_places(&places, largest, most, judged)?;
         // Scenarios of one number are others at each place: whether another one becomes the worst cannot be told by them.
         rows.iter_mut().flat_map(|row| &mut row.columns).for_each(|at| at.scenario = 0);
         let described = &study.model.inputs[input];
-        let (name, unit) = (format!("{}, the largest", described.name), described.unit.symbol.to_owned());
+        let which = if least < largest { ", the largest" } else { "" };
+        let (name, unit) = (format!("{}{which}", described.name), described.unit.symbol.to_owned());
         Ok(Slice { name, unit, own: largest, values, words: None, rows })
     }
 }
@@ -398,8 +401,8 @@ mod tests {
         };
         let plan = Plan::new(study(100.0));
         let control = Control::default();
-        let load = |axis: usize, to: f64| GivenRange::Load { axis, input: plan.study.operation[axis].inputs()[0], to };
-        let given = [load(0, 400.0), load(1, 2.5)];
+        let load = |axis: usize, from: f64, to: f64| GivenRange::Load { axis, input: plan.study.operation[axis].inputs()[0], from, to };
+        let given = [load(0, 50.0, 400.0), load(1, 0.5, 2.5)];
         let (columns, slices) = around_with(&plan, 1, PLACES, &given, 2, &control).expect("slices");
         let slice = &slices[1];
         assert_eq!((slice.name.as_str(), slice.own, slices.len()), ("torque_Nm, the largest", 100.0, 3));
@@ -431,7 +434,7 @@ mod tests {
         let plan = Plan::new(study(100.0));
         let control = Control::default();
         let input = plan.study.model.input("torque_Nm").expect("it is an input");
-        let given = [GivenRange::Load { axis: 0, input, to: 400.0 }];
+        let given = [GivenRange::Load { axis: 0, input, from: 50.0, to: 400.0 }];
         let (columns, slices) = around_with(&plan, 1, 9, &given, 2, &control).expect("slices");
         let slice = &slices[1];
         assert_eq!((slice.name.as_str(), slice.own), ("torque_Nm, the largest", 100.0));

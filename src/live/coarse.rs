@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 /// Seconds that it may take.
 const COARSELY: f64 = 0.02;
-/// Designs that it has, where they take no longer; and those that it always has, as of fewer often none is feasible. Each thread has one.
+/// Most designs that it has; and fewest: of still fewer often none is feasible. With more threads each has one.
 const FEW: u64 = 2000;
 const FEWEST: u64 = 4;
 /// Each further idea has so many times the designs of the one before, as long as the last is no more than a share of all.
@@ -59,26 +59,23 @@ impl Live {
         // Where somebody waits for seconds, what is seen gets better meanwhile. Bounds take no longer for more designs.
         let largest = if is_by_bounds(plan, expected) { 0 } else { plan.designs() / MOST_SHARE };
         let mut size = most;
-        if most <= self.fewest() {
-            let (rows, looked_at) = search.best_of_grid(set, most)?;
-            tell_of(search, &rows, looked_at, None)?;
-            if size.saturating_mul(FINER) > largest {
-                return Ok(true);
-            }
-            size *= FINER;
-        }
         loop {
             let is_last = size.saturating_mul(FINER) > largest;
-            let begun = Instant::now();
-            // What the last one finds serves the exact front too.
-            let (points, looked_at) = if is_last { search.coarse(set, size)? } else { search.coarse_grid(set, size)? };
-            if size == most {
-                #[allow(clippy::cast_precision_loss, reason = "an estimate")]
-                let found = begun.elapsed().as_secs_f64() / (expected * looked_at as f64 / plan.designs() as f64);
-                // Halfway, so that a moment in which the machine has something else to do does not count in full.
-                self.change_pace(|pace| pace.slowness = (slowness * found).sqrt().clamp(1.0, 1e3));
-            }
-            tell_of(search, &search.in_few(set, &points)?, looked_at, None)?;
+            let (rows, looked_at) = if size <= self.fewest() {
+                search.best_of_grid(set, size)?
+            } else {
+                let begun = Instant::now();
+                // What the last one finds serves the exact front too.
+                let (points, looked_at) = if is_last { search.coarse(set, size)? } else { search.coarse_grid(set, size)? };
+                if size == most {
+                    #[allow(clippy::cast_precision_loss, reason = "an estimate")]
+                    let found = begun.elapsed().as_secs_f64() / (expected * looked_at as f64 / plan.designs() as f64);
+                    // Halfway, so that a moment in which the machine has something else to do does not count in full.
+                    self.change_pace(|pace| pace.slowness = (slowness * found).sqrt().clamp(1.0, 1e3));
+                }
+                (search.in_few(set, &points)?, looked_at)
+            };
+            tell_of(search, &rows, looked_at, None)?;
             if is_last {
                 return Ok(true);
             }

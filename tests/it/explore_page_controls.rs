@@ -233,6 +233,19 @@ fn slices_go_over_fixed_values_too_and_the_yield_stands_with_its_interval() {
     );
     // Loads that every draw must survive too.
     assert!(place("With other loads and fixed values") < place("torque_Nm, the largest"), "{order:?}");
+    let said = browser.text("document.querySelector('.slices').textContent");
+    assert!(said.contains("the least load") && !said.contains("end of its slider"), "{said}");
+    // The last feasible value and the next one are not the same number.
+    browser.evaluate(
+        "(() => { const box = document.createElement('div'); box.id = 'apart'; document.body.append(box); \
+         beltspace.page.drawSlices(box, { columns: [{ name: 'margin', unit: '', doc: '' }], slices: [{ input: 'speed_rpm', unit: 'rpm', \
+         own: 1450, words: null, at: [1431.9, 1432.1, 1450], feasible: [false, true, true], status: [null, null, null], \
+         lines: [{ values: [-1, 1, 2], scenarios: [0, 0, 0] }] }] }); })()",
+    );
+    let said = browser.text("document.querySelector('#apart').textContent");
+    assert!(said.contains("to 1432.1 rpm; at 1431.9 rpm "), "{said}");
+    // However long the value, the name beside it is whole.
+    assert_eq!(browser.evaluate("[...document.querySelectorAll('#readout dt')].every((it) => it.scrollWidth <= it.clientWidth)"), true);
     let told = browser.evaluate("document.querySelector('#readout').textContent");
     let ends = browser.evaluate(
         "['yield_low', 'yield_high'].map((name) => beltspace.page.short(beltspace.page.front.byName.get(name).values[0])).join(' to ')",

@@ -33,6 +33,9 @@ fn titles_are_clear(browser: &mut Browser) {
         "Math.min(...[...document.querySelectorAll('#splom .axis-title, #parallel .axis-name')].map((it) => parseFloat(getComputedStyle(it).fontSize)))",
     );
     assert!(least >= 9.0, "{least} px");
+    // All of them say the goals in words, or none does.
+    let words = "new Set([...document.querySelectorAll('#splom .axis-title')].map((it) => it.textContent.includes('is better'))).size";
+    assert_eq!(browser.number(words), 1.0);
     let titles = boxes(browser, "#splom .axis-title");
     let [stage] = boxes(browser, "#splom .stage")[..] else { panic!("one matrix") };
     assert!(titles.len() >= 4, "{titles:?}");

@@ -6,31 +6,26 @@
 //! the front: it fails in the working set, or one of them beats it there, and over all scenarios it only gets worse. Where one is not, the
 //! scenarios that say so join the working set, and the search goes on.
 
+mod judging;
+mod working_set;
+
+pub use working_set::WorkingSet;
+
 use super::followed::{followed, places_of, without_bounds};
 use super::lanes::ScenarioLanes;
 use super::table::{WorstTable, free_plan, is_kept};
-use crate::certify::{self, AtWorst, Column, Role, Row};
+use crate::certify::{self, Column, Row};
 use crate::error::{Error, Result};
 use crate::keys::KeyRule;
 use crate::parallel::on_threads;
 use crate::plan::Plan;
 use crate::reduce::{Points, Reduction};
 use crate::screen::{Control, CpuEngine, Tables};
-use crate::study::{Constraint, Quantity};
-use rustc_hash::{FxHashMap, FxHashSet};
-use std::collections::BTreeMap;
+use rustc_hash::FxHashMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
-/// Scenarios that join a working set at a time: those that most designs ask for.
-const MOST_NEW: usize = 24;
-/// A working set larger than this fraction of all scenarios is not worth it.
-const WORTH: f64 = 0.3;
-/// Designs that a first working set is made from.
-const SEEDS: u64 = 48;
-/// Fewer say nothing.
-const FEWEST_SEEDS: u64 = 4;
 /// Designs that say which scenarios are missing.
 const MOST_ASKED: usize = 12;
 /// Stands for a scenario that is not known.
@@ -41,63 +36,10 @@ const FEW: u64 = 2000;
 const COARSER: u64 = 32;
 /// The coarse grid of a table has at most one of so many rows.
 const COARSE_SHARE: u64 = 8;
-/// So many designs must be judged at a time for their pace to be known.
-const TELLING: usize = 50;
 /// Most designs that are kept for the next study.
 const MOST_KEPT: usize = 100_000;
 /// Parts that the designs are cut into, per thread.
 const PARTS: usize = 24;
-/// Parts that the designs of a front are cut into, per thread.
-const SCREENED_PARTS: usize = 6;
-/// The same where each is judged over all scenarios at once; every part computes once more what all designs share.
-const LANE_PARTS: usize = 4;
-
-/// The scenarios in which every design is judged, sorted; none stands for all.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct WorkingSet {
-    scenarios: Vec<u64>,
-    is_all: bool,
-}
-
-impl WorkingSet {
-    /// All scenarios.
-    pub(super) fn all() -> Self {
-        Self { scenarios: Vec::new(), is_all: true }
-    }
-
-    /// Number of scenarios, of so many.
-    pub fn count(&self, of: u64) -> u64 {
-        if self.is_all { of } else { self.scenarios.len() as u64 }
-    }
-
-    /// As slow and fast scenarios of a plan.
-    pub(super) fn chosen(&self, plan: &Plan) -> Vec<(u64, u64)> {
-        let place = |&scenario: &u64| (plan.slow_scenarios.index_of(scenario), plan.fast_scenarios.index_of(scenario));
-        let mut chosen: Vec<_> = self.scenarios.iter().map(place).collect();
-        chosen.sort_unstable();
-        chosen
-    }
-
-    /// Takes scenarios in; those that are asked for most often, if there are many. Tells whether there was a new one.
-    fn take(&mut self, asked: &BTreeMap<u64, usize>, of: u64) -> bool {
-        let mut new: Vec<_> = asked.iter().filter(|(scenario, _)| !self.scenarios.contains(scenario)).collect();
-        new.sort_by_key(|&(&scenario, &count)| (std::cmp::Reverse(count), scenario));
-        self.scenarios.extend(new.iter().take(MOST_NEW).map(|(scenario, _)| **scenario));
-        self.scenarios.sort_unstable();
-        #[allow(clippy::cast_precision_loss, reason = "a rule of thumb")]
-        if self.scenarios.len() as f64 > WORTH * of as f64 {
-            *self = Self::all();
-        }
-        !new.is_empty()
-    }
-}
-
-impl JudgedRows {
-    /// Is there nothing that serves?
-    pub fn is_empty(&self) -> bool {
-        self.rows.is_empty()
-    }
-}
 
 /// Looks for the front of a plan.
 #[derive(Debug)]
@@ -149,6 +91,13 @@ pub struct JudgedRows {
     table: Option<Arc<WorstTable>>,
 }
 
+impl JudgedRows {
+    /// Is there nothing that serves?
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+}
+
 /// Designs to judge: the same places of each row.
 struct SearchPart<'a> {
     rows: &'a [u64],
@@ -191,11 +140,6 @@ impl<'p> FrontSearch<'p> {
         }
     }
 
-    /// Does the front follow from single scenarios? Means, sums and draws need them all.
-    pub fn allows_working_set(plan: &Plan) -> bool {
-        !plan.study.decides_by_spectrum() && plan.study.probability.is_none()
-    }
-
     /// The columns of the rows that it finds.
     pub fn columns(&self) -> &[Column] {
         &self.columns
@@ -230,143 +174,6 @@ impl<'p> FrontSearch<'p> {
     /// The plan.
     pub fn plan(&self) -> &'p Plan {
         self.plan
-    }
-
-    /// The rows of the feasible ones of some designs, as [`FrontSearch::exact`] gives them.
-    ///
-    /// # Errors
-    /// [`Error::Stopped`] after `control.stop`.
-    pub fn feasible_of(&mut self, points: &Points) -> Result<Vec<Row>> {
-        let mut rows = self.judge_in_all(&points.indices)?;
-        rows.retain(|row| self.holds(row));
-        certify::sort_front(self.plan, &self.columns, &mut rows);
-        Ok(rows)
-    }
-
-    /// The front in a working set, with the values there.
-    ///
-    /// # Errors
-    /// [`Error::Stopped`] after `control.stop`.
-    pub fn in_few(&self, set: &WorkingSet, points: &Points) -> Result<Vec<Row>> {
-        let chosen = set.chosen(self.plan);
-        let mut rows = self.screened(&self.shown, &self.shown_tables, &chosen, &points.indices, &self.places)?;
-        if rows.len() < points.indices.len() {
-            let found: FxHashSet<u64> = rows.iter().map(|row| row.index).collect();
-            let missing: Vec<u64> = points.indices.iter().copied().filter(|design| !found.contains(design)).collect();
-            rows.extend(self.judged_without_report(&chosen, &missing)?);
-        }
-        certify::sort_front(self.plan, &self.columns, &mut rows);
-        Ok(rows)
-    }
-
-    /// Designs of which a column of the report has no value in some scenario, without these columns.
-    fn judged_without_report(&self, chosen: &[(u64, u64)], designs: &[u64]) -> Result<Vec<Row>> {
-        let (plan, tables, places) = self.judging.get_or_init(|| {
-            let followed = followed(self.plan, &self.columns, |column| column.role != Role::Report);
-            let plan = Plan::following(without_bounds(&self.plan.study), &followed);
-            let (tables, places) = (Tables::new(&plan), places_of(&plan, &self.columns));
-            (plan, tables, places)
-        });
-        self.screened(plan, tables, chosen, designs, places)
-    }
-
-    /// Does a design keep the bounds of the study?
-    pub(super) fn holds(&self, row: &Row) -> bool {
-        let place = |it: &Constraint| certify::constraint_column(&self.columns, it, &it.name(&self.plan.study.model));
-        self.plan.study.constraints.iter().all(|it| {
-            let value = match (certify::design_input(&self.plan.study, it.quantity), it.quantity) {
-                (Some(_), Quantity::Input(input)) => Some(row.inputs[input]),
-                _ => place(it).and_then(|place| row.columns[place].value),
-            };
-            value.is_some_and(|value| it.holds(value))
-        })
-    }
-
-    /// The same rows by the f64 reference, with the scenario of each value.
-    ///
-    /// # Errors
-    /// [`Error::Stopped`] after `control.stop`; [`Error::Disagreement`] if it finds another value.
-    pub fn certified(&self, rows: &[Row]) -> Result<Vec<Row>> {
-        let designs: Vec<u64> = rows.iter().map(|row| row.index).collect();
-        let certified = certify::rows(self.plan, &self.columns, &designs, self.threads, self.control)?;
-        for (seen, row) in rows.iter().zip(&certified) {
-            certify::check_feasible(row)?;
-            for ((column, seen), at) in self.columns.iter().zip(&seen.columns).zip(&row.columns) {
-                if seen.value.is_some() && seen.value != at.value {
-                    let name = &column.name;
-                    return Err(Error::Disagreement(format!(
-                        "{name} of design {}: the search found {:?}, the f64 reference gives {:?}",
-                        row.index, seen.value, at.value
-                    )));
-                }
-            }
-        }
-        Ok(certified)
-    }
-
-    /// A working set for a plan of which nothing is known: the scenarios that are the worst for some of its designs, at most so many; where
-    /// too few would say anything, a coarse grid of scenarios.
-    ///
-    /// # Errors
-    /// [`Error::Stopped`] after `control.stop`.
-    pub fn first_set(&mut self, seeds: u64) -> Result<WorkingSet> {
-        let of = self.plan.scenarios();
-        let mut set = WorkingSet::default();
-        if !Self::allows_working_set(self.plan) {
-            return Ok(WorkingSet::all());
-        }
-        let count = SEEDS.min(self.plan.designs());
-        let asked = if seeds < FEWEST_SEEDS.min(count) {
-            coarse_scenarios(self.plan).map(|scenario| (scenario, 1)).collect()
-        } else {
-            let designs: Vec<u64> = (0..count.min(seeds)).map(|step| self.plan.design_at(self.plan.spread(step))).collect();
-            self.asked_by(&designs)?
-        };
-        set.take(&asked, of);
-        Ok(set)
-    }
-
-    /// One scenario as the working set.
-    #[cfg(test)]
-    pub(super) fn only(&self, scenario: u64) -> WorkingSet {
-        WorkingSet { scenarios: vec![scenario], is_all: false }
-    }
-
-    /// A working set that served a plan like this one, or a first one of so many designs if it cannot serve this one.
-    ///
-    /// # Errors
-    /// [`Error::Stopped`] after `control.stop`.
-    pub fn adopted(&mut self, set: WorkingSet, seeds: u64) -> Result<WorkingSet> {
-        let fits = set.scenarios.last().is_some_and(|&last| last < self.plan.scenarios());
-        if fits && Self::allows_working_set(self.plan) { Ok(set) } else { self.first_set(seeds) }
-    }
-
-    fn asked_by(&mut self, designs: &[u64]) -> Result<BTreeMap<u64, usize>> {
-        self.look_up(designs)?;
-        let mut asked = BTreeMap::new();
-        for design in designs {
-            self.worst_of(&self.known[design], &mut asked);
-        }
-        Ok(asked)
-    }
-
-    /// The scenarios in which a design is at its worst.
-    fn worst_of(&self, row: &Row, asked: &mut BTreeMap<u64, usize>) {
-        if let Some(scenario) = row.first_without {
-            *asked.entry(scenario).or_default() += 1;
-        }
-        let judged = self.columns.iter().zip(&row.columns).filter(|(column, _)| column.role != Role::Report);
-        for (_, at) in judged.filter(|(_, at)| at.value.is_some()) {
-            *asked.entry(at.scenario).or_default() += 1;
-        }
-    }
-
-    /// Computes designs by the f64 reference, unless that was done.
-    fn look_up(&mut self, designs: &[u64]) -> Result<()> {
-        let new: Vec<u64> = designs.iter().copied().filter(|design| !self.known.contains_key(design)).collect();
-        let rows = certify::rows(self.plan, &self.columns, &new, self.threads, self.control)?;
-        self.known.extend(rows.into_iter().map(|row| (row.index, row)));
-        Ok(())
     }
 
     /// The front of some designs in a working set: rows of the slow axes and places of the fast ones; `seen` may be a part of it.
@@ -466,7 +273,7 @@ impl<'p> FrontSearch<'p> {
                 certify::sort_front(self.plan, &self.columns, &mut front);
                 return Ok((front, set));
             }
-            if set.is_all {
+            if set.is_all() {
                 let problem = format!("{} designs of the front have other values when they are judged alone", wrong.len());
                 return Err(Error::Disagreement(problem));
             }
@@ -497,82 +304,8 @@ impl<'p> FrontSearch<'p> {
         Ok(points)
     }
 
-    /// Designs with their values over all scenarios, without those that have none in some; of feasible ones all are there.
-    #[allow(clippy::cast_precision_loss, reason = "an estimate")]
-    fn judge_in_all(&mut self, designs: &[u64]) -> Result<Vec<Row>> {
-        let new = |it: &Self| -> Vec<u64> { designs.iter().copied().filter(|&design| it.judged_row(design).is_none()).collect() };
-        let missing = new(self);
-        let start = Instant::now();
-        let found = match &self.lanes {
-            Some(lanes) => self.in_lanes(lanes, &missing)?,
-            None => self.screened(&self.shown, &self.shown_tables, &[], &missing, &self.places)?,
-        };
-        if missing.len() >= TELLING {
-            self.times.judged = Some(start.elapsed().as_secs_f64() / (missing.len() as f64 * self.plan.scenarios() as f64));
-        }
-        self.judged.extend(found.into_iter().map(|row| (row.index, row)));
-        let mut rows: Vec<Row> = designs.iter().filter_map(|&design| self.judged_row(design).cloned()).collect();
-        let missing = new(self);
-        if !missing.is_empty() {
-            let found = self.judged_without_report(&[], &missing)?;
-            self.judged.extend(found.iter().map(|row| (row.index, row.clone())));
-            rows.extend(found);
-        }
-        Ok(rows)
-    }
-
-    /// The feasible ones of some designs, each over all scenarios at once.
-    fn in_lanes(&self, lanes: &ScenarioLanes, designs: &[u64]) -> Result<Vec<Row>> {
-        let mut positions: Vec<u64> = designs.iter().map(|&design| self.shown.position_of(design)).collect();
-        positions.sort_unstable();
-        let designs: Vec<u64> = positions.into_iter().map(|position| self.shown.design_at(position)).collect();
-        self.in_parts(&designs, LANE_PARTS, |parts| {
-            parts.flat_map(|part| lanes.judge(&self.shown, &self.columns, part, &self.control.stop)).collect()
-        })
-    }
-
     fn go_on(&self) -> Result<()> {
         if self.control.stop.load(Ordering::Relaxed) { Err(Error::Stopped { kept: None }) } else { Ok(()) }
-    }
-
-    /// The feasible ones of some designs, with the values that a plan follows.
-    fn screened(&self, plan: &Plan, tables: &Tables, chosen: &[(u64, u64)], designs: &[u64], places: &[Vec<usize>]) -> Result<Vec<Row>> {
-        // Designs of a row, and rows that share much, next to each other.
-        let mut positions: Vec<u64> = designs.iter().map(|&design| plan.position_of(design)).collect();
-        positions.sort_unstable();
-        self.in_parts(&positions, SCREENED_PARTS, |parts| {
-            let mut engine = CpuEngine::new(plan, tables).stopping_on(&self.control.stop);
-            let mut rows = Vec::new();
-            for part in parts {
-                engine.screen_some_in(chosen, part, |block| {
-                    for lane in block.feasible() {
-                        let value = |(column, places): (&Column, &Vec<usize>)| {
-                            let values = places.iter().map(|&place| block.column(place)[lane] + 0.0);
-                            AtWorst { value: column.worst_of(values), scenario: UNKNOWN }
-                        };
-                        let columns: Vec<_> = self.columns.iter().zip(places).map(value).collect();
-                        rows.push(Row::seen(plan, block.index(lane), columns));
-                    }
-                });
-            }
-            rows
-        })
-    }
-
-    /// What `work` makes of some designs, or positions of designs, cut into so many parts per thread: it is given those that one thread
-    /// takes, one after the other, so that no thread waits long for another one.
-    fn in_parts<'a>(
-        &self,
-        designs: &'a [u64],
-        count: usize,
-        work: impl Fn(&mut dyn Iterator<Item = &'a [u64]>) -> Vec<Row> + Sync,
-    ) -> Result<Vec<Row>> {
-        let parts: Vec<&[u64]> = designs.chunks(designs.len().div_ceil(count * self.threads).max(1)).collect();
-        let (next, stop) = (AtomicUsize::new(0), &self.control.stop);
-        let take = || parts.get(next.fetch_add(1, Ordering::Relaxed)).filter(|_| !stop.load(Ordering::Relaxed)).copied();
-        let found = on_threads(0..self.threads, |_| work(&mut std::iter::from_fn(take)));
-        self.go_on()?;
-        Ok(found.into_iter().flatten().collect())
     }
 
     /// The designs of a front in a working set of which all scenarios say something else.
@@ -591,14 +324,6 @@ impl<'p> FrontSearch<'p> {
         let all = points.indices.iter().zip(points.keys.chunks(objectives.len().max(1)));
         all.filter(is_wrong).map(|(&design, _)| design).collect()
     }
-}
-
-/// A few scenarios of a plan: first and last levels of its axes, as far as they fit.
-fn coarse_scenarios(plan: &Plan) -> impl Iterator<Item = u64> {
-    let fast = plan.fast_scenarios.coarse(MOST_NEW.isqrt() as u64);
-    let slow = plan.slow_scenarios.coarse((MOST_NEW / fast.len()) as u64);
-    let number = |slow: u64, fast: u64| plan.slow_scenarios.source_index(slow) + plan.fast_scenarios.source_index(fast);
-    slow.into_iter().flat_map(move |slow| fast.clone().into_iter().map(move |fast| number(slow, fast)))
 }
 
 /// The rows and places of a grid of at most so many designs.
