@@ -13,8 +13,6 @@ use std::sync::atomic::Ordering;
 /// Most designs of a front that are looked at for values below zero, and the seconds of one thread, by what the model says, that it may take.
 const LOOKED_AT: usize = 1000;
 const SECONDS: f64 = 0.5;
-/// Fewer levels than this are a choice between a few things, not a range that could go on.
-const LEVELS: u64 = 3;
 
 /// An end of a design axis on which half of the front or more stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,7 +94,7 @@ pub(super) fn ends(plan: &Plan, front: &[Row]) -> Vec<FrontEnd> {
     for (number, axis) in study.design.iter().enumerate() {
         let Axis::Single { input, .. } = *axis else { continue };
         let table = &study.model.inputs[input];
-        if axis.count() < LEVELS || inert.contains(&number) || table.is_enumeration() {
+        if !axis.is_range() || inert.contains(&number) || table.is_enumeration() {
             continue;
         }
         let (low, high) = axis.ends(0);

@@ -5,8 +5,9 @@ use crate::error::{Error, Result};
 use crate::parallel::one_after_another;
 use crate::plan::Plan;
 use crate::screen::Control;
-use crate::study::{Axis, Levels, Report, Study};
+use crate::study::{Axis, Label, Levels, Report, Study, TOGETHER};
 use crate::table::written;
+use std::collections::HashSet;
 
 /// Places along an axis.
 pub const PLACES: u64 = 33;
@@ -18,7 +19,7 @@ const HALVINGS: usize = 16;
 const HALVINGS_BETWEEN: usize = 6;
 /// Axes with more levels are taken for ranges.
 const MOST_LEVELS: u64 = 1 << 20;
-/// Inputs that the name of a row of a catalogue says.
+/// Inputs that the name of a row without labels says.
 const NAMED: usize = 3;
 
 /// Designs that differ along one axis.
@@ -127,8 +128,42 @@ impl DesignLine<'_> {
                 let rows: Vec<Vec<f64>> = values.iter().map(|&value| vec![value]).collect();
                 self.along_rows(axis, &rows, most).map(|slice| Slice { name, ..slice })
             }
-            Axis::Joint { rows, .. } => self.along_rows(axis, rows, most).map(|slice| Slice { name: axis.name(model), ..slice }),
+            Axis::Joint { inputs, rows } => {
+                let (name, names) = self.row_names(axis, inputs, rows);
+                self.along_rows(axis, rows, most).map(|slice| {
+                    let words = names.map(|names| slice.values.iter().map(|&row| names[row as usize].clone()).collect());
+                    Slice { name, words: words.or(slice.words), ..slice }
+                })
+            }
         }
+    }
+
+    /// What an axis of rows is called, and its rows where they have labels: the texts of these, and as many inputs as tell apart those that
+    /// have the same texts.
+    fn row_names(&self, axis: &Axis, inputs: &[usize], rows: &[Vec<f64>]) -> (String, Option<Vec<String>>) {
+        let study = self.study;
+        let labels: Vec<&Label> = study.labels_of(axis).collect();
+        if labels.is_empty() {
+            return (axis.name(&study.model), None);
+        }
+        let mut heads: Vec<&str> = labels.iter().map(|it| it.name.as_str()).collect();
+        let text = |row: usize| labels.iter().map(|it| it.texts[row].as_str()).collect::<Vec<_>>().join(", ");
+        let mut names: Vec<String> = (0..rows.len()).map(text).collect();
+        let distinct = |names: &[String]| names.iter().collect::<HashSet<_>>().len();
+        for (column, &input) in inputs.iter().enumerate() {
+            let told = distinct(&names);
+            if told == names.len() {
+                break;
+            }
+            let described = &study.model.inputs[input];
+            let longer: Vec<String> =
+                names.iter().zip(rows).map(|(name, row)| format!("{name}, {}", written(described, row[column]))).collect();
+            if distinct(&longer) > told {
+                names = longer;
+                heads.push(&described.name);
+            }
+        }
+        (heads.join(TOGETHER), Some(names))
     }
 
     /// Along rows without an order.
@@ -471,6 +506,24 @@ mod tests {
         let words: Vec<_> = slices.iter().map(|it| (it.name.as_str(), it.words.clone().expect("words"), it.rows.len())).collect();
         assert_eq!(words[0], ("band_count + band_thickness_mm", vec!["6, 0.2".to_owned(), "9, 0.15".to_owned()], 2));
         assert_eq!(words[1], ("traction", vec!["limit".to_owned(), "0.3".to_owned()], 2));
+    }
+
+    #[test]
+    fn rows_with_labels_are_called_by_them_and_by_what_tells_them_apart() {
+        let text = |maker: &str| {
+            format!(
+                "labels = [\"grade\", \"maker\"]\n[design]\ncases = [{{ grade = \"thin\", maker = \"one\", band_thickness_mm = 0.2, band_count = 6 }}, \
+                 {{ grade = \"thin\", maker = \"{maker}\", band_thickness_mm = 0.2, band_count = 9 }}]\n[objectives]\naxial_force_N = \"min\"\n"
+            )
+        };
+        let told = |maker: &str| {
+            let study = study_of(&crate::models::find("metal-cvt").expect("it is a model"), &text(maker)).expect("the study is right");
+            let (_, slices) = around(&Plan::new(study), 0, PLACES, 1, &Control::default()).expect("slices");
+            (slices[0].name.clone(), slices[0].words.clone().expect("words"))
+        };
+        assert_eq!(told("two"), ("grade + maker".to_owned(), vec!["thin, one".to_owned(), "thin, two".to_owned()]));
+        // The thickness is the same and tells nothing.
+        assert_eq!(told("one"), ("grade + maker + band_count".to_owned(), vec!["thin, one, 6".to_owned(), "thin, one, 9".to_owned()]));
     }
 
     #[test]

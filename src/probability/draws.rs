@@ -311,4 +311,13 @@ impl Effect {
             Self::Plus => nominal + drawn,
         }
     }
+
+    /// A distribution in words, with what it does before it.
+    pub(crate) fn before(self, law: &str) -> String {
+        match self {
+            Self::Is => law.to_owned(),
+            Self::Times => format!("times {law}"),
+            Self::Plus => format!("plus {law}"),
+        }
+    }
 }

@@ -23,11 +23,17 @@ fn described(study: &Study, number: usize, input: &Input) -> Value {
     if let Some((role, (axis, column))) = found {
         (described["role"], described["over"]) = (role.into(), over(input, axis, column).into());
         let (least, largest) = axis.ends(column);
-        if !input.is_enumeration() && input.word_for(least).is_none() && input.word_for(largest).is_none() {
+        // Rows of a catalogue, and a choice between two, are no range that has ends.
+        let is_range = role != "design" || axis.is_range();
+        if role == "design" && study.labels_of(axis).next().is_some() {
+            described["labelled"] = true.into();
+        }
+        if is_range && !input.is_enumeration() && input.word_for(least).is_none() && input.word_for(largest).is_none() {
             (described["least"], described["largest"]) = (least.into(), largest.into());
         }
     } else if let Some(law) = law_of(study.probability.as_deref(), &input.name) {
-        (described["role"], described["over"]) = ("drawn".into(), law.in_words().into());
+        (described["role"], described["over"]) = ("drawn".into(), law.as_given().into());
+        described["drawn"] = law.in_words().into();
         // Where a picture needs one value: what is in the middle of the draws.
         let middle = law.distribution.mean();
         described["value"] = value_of(&study.model, number, law.effect.of(study.fixed[number], middle));
@@ -69,4 +75,24 @@ pub fn drawn(study: &Study) -> Value {
         "cases": drive.operation.iter().map(Axis::count).product::<u64>(),
         "constraints": drive.constraints.iter().map(constraint).collect::<Vec<_>>(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::study_of;
+
+    #[test]
+    fn only_ranges_have_ends() {
+        let text = "[design]\ncases = [{ band_count = 6, band_thickness_mm = 0.2 }, { band_count = 9, band_thickness_mm = 0.15 }]\n\
+                    strength_MPa = [800, 900]\ngroove_angle_deg = [20, 22, 24]\n[operation]\ntorque_Nm = [50, 100]\n[objectives]\naxial_force_N = \"min\"\n";
+        let study = study_of(&crate::models::find("metal-cvt").expect("it is a model"), text).expect("the study is right");
+        let ends: Vec<_> = inputs(&study)
+            .iter()
+            .filter_map(|it| Some((it["name"].as_str()?.to_owned(), it.get("least")?.as_f64()?, it["largest"].as_f64()?)))
+            .collect();
+        let of = |name: &str, least: f64, largest: f64| (name.to_owned(), least, largest);
+        assert_eq!(ends.len(), 2, "{ends:?}");
+        assert!(ends.contains(&of("groove_angle_deg", 20.0, 24.0)) && ends.contains(&of("torque_Nm", 50.0, 100.0)), "{ends:?}");
+    }
 }

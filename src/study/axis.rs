@@ -7,6 +7,8 @@ use serde::{Deserialize, Serialize};
 pub(crate) const TOGETHER: &str = " + ";
 /// Inputs of a joint axis that its name lists.
 const NAMED: usize = 3;
+/// Fewer levels than this are a choice between a few things, not a range that could go on.
+const LEAST_OF_A_RANGE: u64 = 3;
 
 /// The levels of one input, computed from their index: an axis of a billion levels takes no memory.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -115,6 +117,11 @@ impl Axis {
             Self::Single { levels, .. } => levels.count(),
             Self::Joint { rows, .. } => rows.len() as u64,
         }
+    }
+
+    /// Is it a range of one input, which could go on? Rows are none, and fewer levels are a choice between a few things.
+    pub(crate) fn is_range(&self) -> bool {
+        matches!(self, Self::Single { levels, .. } if levels.count() >= LEAST_OF_A_RANGE || matches!(levels, Levels::Continuous { .. }))
     }
 
     /// The inputs that the axis sets.

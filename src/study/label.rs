@@ -1,5 +1,7 @@
 //! Labels: text columns of catalogues, carried along with the designs and read by no formula.
 
+use super::Study;
+use super::axis::Axis;
 use crate::models::Model;
 use crate::names::YIELDS;
 
@@ -20,6 +22,14 @@ pub struct Label {
     pub axis: usize,
     /// One text per row of the axis, as it stands in the catalogue.
     pub texts: Vec<String>,
+}
+
+impl Study {
+    /// The labels of one of the study's own design axes.
+    pub(crate) fn labels_of(&self, axis: &Axis) -> impl Iterator<Item = &Label> {
+        let number = self.design.iter().position(|it| std::ptr::eq(it, axis));
+        self.labels.iter().filter(move |it| Some(it.axis) == number)
+    }
 }
 
 /// Why a label cannot have this name; the sentence follows the name.

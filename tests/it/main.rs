@@ -64,6 +64,8 @@ mod random;
 mod readme;
 /// The page of a result, in a browser.
 mod report_page;
+/// The same: designs that come from a catalogue, many axes and many pins.
+mod report_page_catalogues;
 /// The same: weights, trade-offs, what explains the feasible designs.
 mod report_page_choose;
 /// The same: many points and lines, and what lies over what.

@@ -51,6 +51,14 @@ fn the_page_is_printed_without_broken_numbers_and_half_empty_pages() {
         assert!(whole.split_whitespace().any(|it| it == index), "{index} is broken");
     }
     assert!(whole.contains("Around design") && whole.contains("clamping_force_N = "), "{whole}");
+    // The list of single designs is whole, from its first column to its last.
+    let listed = whole.split_once("Best single designs").expect("the list is printed").1;
+    for row in swept.table("top.csv") {
+        let columns = row.keys().filter(|it| !it.ends_with("_scenario")).count();
+        let line =
+            listed.lines().find(|line| line.split_whitespace().next() == Some(&row["design_index"])).expect("each design has a line");
+        assert_eq!(line.split("  ").filter(|it| !it.is_empty()).count(), columns, "{line}");
+    }
     let filled = filled(&file);
     eprintln!("{} pages, filled to {filled:.2?}", filled.len());
     assert!((3..=8).contains(&filled.len()), "{filled:?}");

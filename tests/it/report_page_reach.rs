@@ -103,7 +103,7 @@ fn what_is_drawn_and_in_which_cases_is_in_the_header_and_on_the_card() {
     }
     browser.evaluate("beltspace.openCard(0)");
     let card = browser.text("document.querySelector('#card').innerText");
-    assert!(card.contains("drawn from a distribution") && card.contains("plus normal: mean 0, sd 0.3"), "{card}");
+    assert!(card.contains("drawn from a distribution") && card.contains("plus normal mean 0, sd 0.3"), "{card}");
     // It is drawn over all ratios of its cases.
     let ends = "[...document.querySelectorAll('[data-testid=drive-ratio]')].length";
     assert_eq!(browser.number(ends), 1.0);

@@ -67,7 +67,9 @@
     if (column.words) return axis.tickValues(d3.range(column.words.length)).tickFormat((i) => column.words[i]);
     if (Number.isNaN(column.low)) return axis.tickValues([]);
     if (column.low === column.high) return axis.tickValues([column.low]).tickFormat(page.short);
+    // A whole number has no digits after its point, however few of them there are.
     const ticks = scale.ticks(count);
-    return axis.tickValues(column.whole ? ticks.filter(Number.isInteger) : ticks).tickFormat(page.tick(scale, count));
+    const isFine = column.whole && ticks.some((tick) => !Number.isInteger(tick));
+    return axis.tickValues(column.whole ? ticks.filter(Number.isInteger) : ticks).tickFormat(isFine ? page.count : page.tick(scale, count));
   };
 }

@@ -40,7 +40,7 @@
   const inputs = (row) => {
     const { front, data } = page;
     const line = (name, cell, doc) => page.element("tr", {}, page.element("th", { scope: "row", title: doc }, page.breakable(name)), cell);
-    const drawn = (data.inputs || []).filter((input) => input.role === "drawn").map((input) => line(input.name, page.element("td", { class: "number" }, input.over, input.unit && !input.over.startsWith("times") ? page.element("span", { class: "unit" }, ` ${page.unit(input.unit)}`) : null), input.doc));
+    const drawn = (data.inputs || []).filter((input) => input.role === "drawn").map((input) => line(input.name, page.element("td", { class: "number", title: input.drawn }, page.grouped(input.over), input.unit && !input.over.startsWith("times") ? page.element("span", { class: "unit" }, ` ${page.unit(input.unit)}`) : null), input.doc));
     const chosen = front.shown.filter((column) => column.role === "label" || column.role === "design").map((column) => line(column.name, columnCell(column, row), column.doc));
     const fixed = (data.inputs || []).filter((input) => input.role === "fixed").map((input) => line(input.name, valueCell(input.name, page.full(input.value), page.short(input.value), typeof input.value === "number" ? input.unit : ""), input.doc));
     const ranged = (data.inputs || []).filter((input) => input.role === "operation" || input.role === "uncertainty").map((input) => line(input.name, page.element("td", { class: "number" }, input.over || rangeInScenarios(input.name), input.unit ? page.element("span", { class: "unit" }, ` ${page.unit(input.unit)}`) : null), input.doc));

@@ -53,7 +53,7 @@
   const stopsOf = (ramp, count = 11) => d3.range(count).map((i) => ramp(i / (count - 1)));
 
   // A horizontal bar with its ticks: an SVG axis below a strip of CSS gradient.
-  page.colourBar = (title, low, high, ramp, width = 240) => {
+  page.colourBar = (title, low, high, ramp, width) => {
     const bar = page.element("div", { class: "colour-bar", role: "img", "aria-label": `Colour: ${title}` });
     const strip = page.element("div", { class: "strip" });
     const stops = stopsOf(ramp);
@@ -96,10 +96,11 @@
     };
   };
 
-  const legendOf = (column) => {
+  const BAR = 240; // px
+  const legendOf = (column, room) => {
     const title = page.withUnit(column.name, column.unit);
     const ramp = rampOf();
-    if (!column.words) return page.colourBar(title, column.low, column.high, ramp);
+    if (!column.words) return page.colourBar(title, column.low, column.high, ramp, Math.min(BAR, room));
     const place = placeOf(column);
     const swatch = (word, i) => {
       const square = page.element("span", { class: "swatch" });
@@ -109,9 +110,10 @@
     return page.element("div", { class: "colour-bar" }, page.element("div", { class: "bar-title" }, title), page.element("div", { class: "words" }, column.words.map(swatch)));
   };
 
-  page.legend = () => {
+  // In so many px.
+  page.legend = (room) => {
     const column = page.front.byName.get(page.state.colour);
-    const bar = column ? legendOf(column) : page.element("div", {});
+    const bar = column ? legendOf(column, room) : page.element("div", {});
     if (page.isCrowdOfPoints()) page.crowdKey(bar);
     return bar;
   };

@@ -2,6 +2,8 @@
 {
   // More rows than a reader would scroll through are only in the file.
   const MOST = 1000;
+  const PRINTED = 40; // of designs; as in style.css
+  const SHEET = 160; // columns that a sheet has room for, times the size of their letters in px
 
   const shorten = (text) => (text !== "" && Number.isFinite(Number(text)) ? page.short(Number(text)) : text);
 
@@ -23,13 +25,16 @@
     const line = (row) => page.element("tr", { class: row[columns.indexOf("feasible")] === "no" ? "infeasible" : null, "data-row": index < 0 ? null : row[index], tabindex: index < 0 ? null : -1 }, row.map((text, at) => page.element("td", { class: kind(at), title: text }, shown(text, at))));
     const body = page.element("tbody", {}, rows.slice(0, MOST).map(line));
     const table = page.element("table", { class: index < 0 ? null : "opens" }, page.element("thead", {}, page.element("tr", {}, head)), body);
+    // On paper all columns stand beside each other: letters are as large as their number allows.
+    table.style.setProperty("--printed", `${Math.min(8, SHEET / columns.filter((_, at) => kind(at) !== "number of-scenario").length).toFixed(1)}px`);
     if (index >= 0) {
       const known = (row) => columns.map((name, at) => ({ name, unit: units ? units[at] : "", text: shown(row[at], at), full: row[at] })).filter((_, at) => at !== index && !columns[at].endsWith("_scenario"));
       page.openableRows(body, (at) => page.openDesign(at.dataset.row, known(rows[at.sectionRowIndex])))();
       for (const event of ["current", "card"]) page.events.on(`${event}.${id}`, () => markCurrent(body));
     }
-    const rest = of > MOST ? ` The first ${MOST} of ${page.count(of)} rows are shown.` : "";
-    return page.element("section", { id, "data-testid": id, "aria-labelledby": `${id}-title` }, page.element("h2", { id: `${id}-title` }, title), page.element("p", { class: "hint" }, hint + rest), page.element("div", { class: "scroll tall", tabindex: 0, role: "region", "aria-label": `${title}, the table` }, table));
+    const rest = (most, kind) => (of > most ? page.element("span", { class: kind }, ` The first ${most} of ${page.count(of)} rows are shown.`) : null);
+    const paper = index < 0 ? rest(MOST, "print-only") : rest(PRINTED, "print-only");
+    return page.element("section", { id, "data-testid": id, "aria-labelledby": `${id}-title` }, page.element("h2", { id: `${id}-title` }, title), page.element("p", { class: "hint" }, hint, rest(MOST, "no-print"), paper), page.element("div", { class: "scroll tall", tabindex: 0, role: "region", "aria-label": `${title}, the table` }, table));
   };
 
   page.startLists = () => {
@@ -37,7 +42,10 @@
     const found = [];
     if (top && top.rows.length) found.push(block("top", "Best single designs", `The best of all feasible designs by ${top.by || "one quantity"}, on the front or not. File: top.csv.`, top));
     if (variants && variants.rows.length) found.push(block("variants", "Every design", "Feasible or not, each value at its worst scenario. File: variants.csv.", variants));
-    page.byId("tally").after(...found);
+    // On paper a map would leave half a sheet empty below them.
+    const place = () => page.byId(page.printing ? "maps" : "tally").after(...found);
+    place();
+    page.events.on("layout.lists", place);
     page.byId("study").before(...(tables || []).map((table) => block(`table-${table.id}`, `${table.group}: ${table.title}`, `${table.caption} (${table.csv})`, table)));
   };
 }

@@ -156,23 +156,24 @@
     });
     // The current design and those that are pinned, where the map is over inputs that are chosen.
     const designs = svg.append("g").attr("class", "marks");
-    const spot = (kind, of) => {
+    const placeOf = (of) => {
       const place = [[x, of(map.x.name)], [y, of(map.y.name)]].map(([axis, value]) => (typeof value === "number" ? axis.scale(value) : NaN));
-      return place.every(Number.isFinite) ? designs.append("circle").attr("class", kind).attr("cx", place[0]).attr("cy", place[1]) : null;
+      return place.every(Number.isFinite) ? place : null;
     };
     const mark = () => {
       designs.selectAll("*").remove();
-      for (const pin of page.pins()) {
-        const dot = spot("pin-dot", (name) => (pin.values.get(name)?.role === "design" && !pin.values.get(name).words ? pin.values.get(name).value : null));
-        if (dot) designs.append("text").attr("class", "pin-text").attr("x", dot.attr("cx")).attr("y", Number(dot.attr("cy")) + 3.5).attr("text-anchor", "middle").text(pin.letter);
-        dot?.attr("r", 7);
-      }
+      const pins = page.pins().map((pin) => {
+        const place = placeOf((name) => (pin.values.get(name)?.role === "design" && !pin.values.get(name).words ? pin.values.get(name).value : null));
+        return place && { letter: pin.letter, x: place[0], y: place[1] };
+      });
+      page.drawLetters(designs, pins.filter(Boolean), [MARGIN.left, MARGIN.top, WIDTH - MARGIN.right, HEIGHT - MARGIN.bottom]);
       const row = page.state.current ?? page.state.card;
       const ofRow = (name) => {
         const column = page.front.byName.get(name);
         return column && column.role === "design" && !column.words ? column.values[row] : null;
       };
-      if (page.front && row !== null) spot("current", ofRow)?.attr("r", 6);
+      const current = page.front && row !== null ? placeOf(ofRow) : null;
+      if (current) designs.append("circle").attr("class", "current").attr("r", 6).attr("cx", current[0]).attr("cy", current[1]);
     };
     for (const event of ["current", "card", "pins"]) page.events.on(`${event}.map${figure.dataset.map}`, mark);
     readout.setAttribute("aria-live", "polite");

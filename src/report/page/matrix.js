@@ -221,12 +221,9 @@
         if (Number.isFinite(at)) cell.marks.append("path").attr("class", "limit").attr("d", path(at)).append("title").text(`limit of ${column.name}: ${page.short(limit)}`);
       }
     }
-    for (const pin of page.pins()) {
-      const [x, y] = [clip(cell.xScale, pin.values.get(cell.x.name)?.value), clip(cell.yScale, pin.values.get(cell.y.name)?.value)];
-      if (!Number.isFinite(x) || !Number.isFinite(y)) continue;
-      cell.marks.append("circle").attr("class", "pin-dot").attr("r", 7).attr("cx", x).attr("cy", y);
-      cell.marks.append("text").attr("class", "pin-text").attr("x", x).attr("y", y + 3.5).attr("text-anchor", "middle").text(pin.letter);
-    }
+    const valueOf = (pin, column) => pin.values.get(column.name)?.value;
+    const pins = page.pins().map((pin) => ({ letter: pin.letter, x: clip(cell.xScale, valueOf(pin, cell.x)), y: clip(cell.yScale, valueOf(pin, cell.y)) }));
+    page.drawLetters(cell.marks, pins.filter(({ x, y }) => Number.isFinite(x) && Number.isFinite(y)), [0, 0, size, size]);
     cell.interval = cell.marks.append("path").attr("class", "interval");
     cell.current = cell.marks.append("circle").attr("class", "current").attr("r", 6).attr("display", "none");
   };

@@ -41,7 +41,7 @@
   const question = (withGoals) => {
     const { constraints, inputs, drawn, objectives: asked } = page.data;
     const bound = ({ of, bounds }) => page.element("tr", {}, page.element("th", { scope: "row" }, page.breakable(of)), page.element("td", {}, page.grouped(bounds)));
-    const over = (input) => page.element("tr", {}, page.element("th", { scope: "row", title: input.doc }, page.breakable(input.name)), page.element("td", {}, `${page.grouped(input.over)}${input.unit && !input.over.startsWith("times") ? ` ${page.unit(input.unit)}` : ""}`));
+    const over = (input) => page.element("tr", {}, page.element("th", { scope: "row", title: input.doc }, page.breakable(input.name)), page.element("td", { title: input.drawn }, `${page.grouped(input.over)}${input.unit && !input.over.startsWith("times") ? ` ${page.unit(input.unit)}` : ""}`));
     const varied = (inputs || []).filter((input) => ["operation", "uncertainty"].includes(input.role));
     const body = (title, lines) => (lines.length ? page.element("tbody", {}, page.element("tr", { class: "group" }, page.element("th", { colspan: 2, scope: "rowgroup" }, title)), lines) : null);
     const laws = (inputs || []).filter((input) => input.role === "drawn");

@@ -1,7 +1,7 @@
 // Parallel coordinates: the axes, their brushes and titles. The lines are drawn in lines.js.
 {
   const HEIGHT = 300;
-  const LEAST = 51; // px from axis to axis
+  const LEAST = 60; // px from axis to axis
   const PAD = 10;
   const NARROW = 74; // px: narrower axes have smaller titles of more lines
   const TIGHT = 60; // px: and here of even smaller letters
@@ -122,7 +122,8 @@
       page.element("button", { type: "button", "aria-label": `${label} ${column.name}`, title: label, disabled, click, "aria-pressed": pressed, "data-focus": `${what} ${column.name}` }, text);
     const role = column.goal ? column.goal : column.role === "design" ? "input" : "";
     const title = page.element("div", { class: "axis-name", title: `${column.doc || column.name}${column.unit ? ` [${column.unit}]` : ""}` }, page.breakable(column.name));
-    const sub = page.element("div", { class: "axis-unit" }, [column.unit ? `[${page.unit(column.unit)}]` : "", role].filter(Boolean).join(" "));
+    const words = [column.unit ? `[${page.unit(column.unit)}]` : "", role].filter(Boolean);
+    const sub = page.element("div", { class: "axis-unit" }, words.flatMap((word, i) => [i ? " " : "", page.element("span", {}, word)]));
     const buttons = page.element(
       "div",
       { class: "axis-buttons no-print" },
@@ -197,6 +198,7 @@
   const showPins = () => {
     if (!svg) return;
     svg.selectAll(".pinned").remove();
+    const ends = [];
     for (const pin of page.pins()) {
       const places = axes.map((axis) => [axis.x, axis.scale(pin.values.get(axis.column.name)?.value)]).filter(([, y]) => Number.isFinite(y) && y >= 0 && y <= HEIGHT);
       if (!places.length) continue;
@@ -204,9 +206,10 @@
       group.append("path").attr("class", "pin-line").attr("d", d3.line()(places));
       for (const [x, y] of places) group.append("circle").attr("class", "pin-dot").attr("r", 2.5).attr("cx", x).attr("cy", y);
       const [x, y] = places[places.length - 1];
-      group.append("circle").attr("class", "pin-dot").attr("r", 7).attr("cx", x + 14).attr("cy", y);
-      group.append("text").attr("class", "pin-text").attr("x", x + 14).attr("y", y + 3.5).attr("text-anchor", "middle").text(pin.letter);
+      ends.push({ letter: pin.letter, x, y });
     }
+    // To the right of the axes, where no lines are.
+    page.drawLetters(svg.append("g").attr("class", "pinned"), ends, [width - width / axes.length / 2 + 11, 8, width - 8, HEIGHT - 6], 14);
   };
 
   page.startParallel = () => {

@@ -22,7 +22,7 @@
     if (!readout) return;
     const { state, front } = page;
     const row = state.current ?? state.card ?? page.chosenRow();
-    const children = [page.legend()];
+    const children = [page.legend(page.layoutWidth(readout) || Infinity)];
     if (row !== null && row !== undefined) {
       const what = state.current !== null ? "pointed at" : state.card !== null ? "card" : page.chosenWord();
       const mark = row === page.chosenRow() && what !== page.chosenWord() ? `${what}, ${page.chosenWord()}` : what;

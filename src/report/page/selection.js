@@ -32,7 +32,11 @@
     const varied = inputs.filter((column) => !(column.low === column.high) || front.rows < 2);
     state.leftOut = names(inputs.filter((column) => !varied.includes(column)));
     const judged = front.shown.filter((column) => ["objective", "constraint", "report"].includes(column.role));
-    state.parallel = [...new Set([...names(varied), ...names(judged)])].slice(0, MOST_AXES);
+    // Where rows of a catalogue have labels, these say what the design is, and the numbers of the row come after all else.
+    const labels = front.shown.filter((column) => column.role === "label" && page.isCategory(column) && column.low < column.high);
+    const ofRow = new Set((page.data.inputs || []).filter((input) => input.labelled).map((input) => input.name));
+    const [last, first] = [true, false].map((is) => varied.filter((column) => ofRow.has(column.name) === is));
+    state.parallel = [...new Set([...names(labels), ...names(first), ...names(judged), ...names(last)])].slice(0, MOST_AXES);
     state.inverted = new Set();
     // Categories are what a colour tells best; without one, the first objective, which sorts the front.
     const category = front.shown.find((column) => ["design", "label"].includes(column.role) && page.isCategory(column) && column.low < column.high);

@@ -39,7 +39,7 @@
     const told = good.length > 6 ? `${page.count(good.length)} of ${page.count(others.length)} others` : good.join("; ");
     const bad = others.find(({ i }) => !slice.feasible[i]);
     const lines = [`now ${slice.words[here]}`, slice.feasible[here] ? `feasible too: ${told || "none of the others"}` : "this design is infeasible"];
-    return bad ? [...lines, `with ${bad.word} ${failsAt(slice, columns, bad.i)}`] : lines;
+    return bad ? [...lines, `with ${bad.word}: ${failsAt(slice, columns, bad.i)}`] : lines;
   };
 
   // Two numbers that differ, in as few digits as show it.

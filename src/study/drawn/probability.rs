@@ -72,18 +72,17 @@ const ROUNDING: f64 = 1e-12;
 impl UncertainInput {
     /// The distribution in words: its name, where it is cut off, its mean and standard deviation.
     pub fn in_words(&self) -> String {
-        let ends = [("below", self.law.from), ("above", self.law.to)];
-        let ends: Vec<String> = ends.iter().filter_map(|(word, end)| Some(format!("{word} {}", short((*end)?)))).collect();
-        let cut = if ends.is_empty() { String::new() } else { format!(", cut off {}", ends.join(" and ")) };
         let (mean, sd) = (self.distribution.mean(), self.distribution.sd());
         // Numbers that cancel leave a rest of their rounding errors.
         let mean = if mean.abs() < ROUNDING * sd { 0.0 } else { mean };
-        let law = format!("{}{cut}: mean {}, sd {}", self.law.name(), short(mean), short(sd));
-        match self.effect {
-            Effect::Is => law,
-            Effect::Times => format!("times {law}"),
-            Effect::Plus => format!("plus {law}"),
-        }
+        let law = format!("{}{}: mean {}, sd {}", self.law.name(), self.law.cut_in_words(), short(mean), short(sd));
+        self.effect.before(&law)
+    }
+
+    /// The distribution as the study gives it: its name, its parameters and where it is cut off.
+    pub fn as_given(&self) -> String {
+        let law = format!("{} {}{}", self.law.name(), self.law.law.parameters(), self.law.cut_in_words());
+        self.effect.before(&law)
     }
 
     /// What a drawn number does to the value of `input`.

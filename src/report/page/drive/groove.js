@@ -1,7 +1,8 @@
 // A V-belt pulley: seen along its shaft with the arc of contact, and the section of its rim with the grooves.
 {
-  // Where the model has no dimensions of the groove: of the mean radius.
+  // Where the model has no dimensions of the groove: its width of the mean radius, its depth to either side of that of its width.
   const WIDTH = 0.2;
+  const DEPTH = 0.4;
 
   // The section of a design as lines of (z, r), if the page knows it.
   const outlineOf = (row) => {
@@ -23,10 +24,12 @@
       const [width, above, below, rim, bore, bracket] = ["groove_width_mm", "groove_height_mm", "floor_depth_mm", "rim_height_mm", "bore_diameter_mm", "bracket_diameter_mm"].map(reader.number);
       return { top: width, above, below, rim, bore: bore / 2, bracket: bracket / 2, known: true };
     }
-    const middle = reader.chosen("width of a groove at the mean radius", WIDTH * radius, `${page.short(WIDTH * radius)} mm, 0.2 of it`);
-    reader.notes.push("depth of the groove, 0.4 of its width to either side of the mean radius", "rim and bore");
-    const above = 0.4 * middle;
-    return { top: middle + 2 * above * tangent, above, below: above, rim: 0.06 * middle, bore: 0.3 * radius, bracket: null, known: false };
+    // A catalogue may say how wide the groove is at its top.
+    const top = reader.known("groove_width_mm");
+    const middle = top === null ? reader.chosen("width of a groove at the mean radius", WIDTH * radius, `${page.short(WIDTH * radius)} mm, ${WIDTH} of it`) : top / (1 + 2 * DEPTH * tangent);
+    reader.notes.push(`depth of the groove, ${DEPTH} of its width to either side of the mean radius`, "rim and bore");
+    const above = DEPTH * middle;
+    return { top: top ?? middle + 2 * above * tangent, above, below: above, rim: 0.06 * middle, bore: 0.3 * radius, bracket: null, known: false };
   };
 
   page.drawPulley = (row, whole) => {
@@ -48,8 +51,8 @@
     const broad = outline ? most - least : count * pitch + land;
     const away = outer + 0.22 * outer;
     const title = `V-belt pulley${count > 1 ? ` with ${count} grooves` : ""}, to scale`;
-    const description = `Mean radius ${page.short(radius)} mm, groove angle ${page.short(groove)}°, wrap ${page.short(wrap)}°, outer radius ${page.short(outer)} mm.`;
-    const sheet = page.sheetOf({ left: -outer, right: away + broad, top: outer, bottom: -outer }, { left: 12, right: 84, top: 30, bottom: 36 }, { title, description });
+    const description = `Mean radius ${page.short(radius)} mm, groove angle ${page.short(groove)}°, wrap ${page.short(wrap)}°${known ? `, outer radius ${page.short(outer)} mm` : ""}.`;
+    const sheet = page.sheetOf({ left: -outer, right: away + broad, top: outer, bottom: -outer }, { left: 12, right: known ? 84 : 12, top: 30, bottom: 36 }, { title, description });
     // Front view.
     sheet.circle("pulley-body", 0, 0, outer);
     sheet.circle("ghost-circle", 0, 0, radius);
@@ -85,11 +88,13 @@
     }
     sheet.line("axis-line", [away - 0.06 * outer, 0], [away + broad + 0.06 * outer, 0]);
     sheet.label([away + broad / 2, outer], `groove ${page.short(groove)}°`, [0, -16]);
-    sheet.upright([away + broad, 0], [away + broad, outer], 12, `r ${page.short(outer)} mm`);
+    // What stands on a rule has no dimension.
+    if (known) sheet.upright([away + broad, 0], [away + broad, outer], 12, `r ${page.short(outer)} mm`);
     sheet.bar();
     const entry = (name, value, unit) => ({ name, cells: [page.short(value), unit] });
     const own = known ? [entry("groove at its top", top, "mm"), entry("floor radius", floor, "mm"), entry("bore", 2 * bore, "mm"), entry("bracket", 2 * bracket, "mm")] : [];
-    const table = { heads: ["", "value", "unit"], units: ["", "", ""], lines: [entry("groove angle", groove, "°"), entry("mean radius", radius, "mm"), ...(known ? [entry("outer radius", outer, "mm")] : []), entry("grooves", count, ""), ...own] };
+    const ofCatalogue = !known && reader.known("groove_width_mm") !== null ? [entry("groove at its top", top, "mm")] : [];
+    const table = { heads: ["", "value", "unit"], units: ["", "", ""], lines: [entry("groove angle", groove, "°"), entry("mean radius", radius, "mm"), ...(known ? [entry("outer radius", outer, "mm")] : []), entry("grooves", count, ""), ...ofCatalogue, ...own] };
     return { node: sheet.node(), notes: reader.notes, table, key: bracket === null ? "Dashed: mean radius." : "Dashed: mean radius, bracket." };
   };
 }

@@ -40,6 +40,8 @@
       notes.push(`${what}, ${rule}`);
       return value;
     };
-    return { number, chosen, notes, missing };
+    // A length that a study may have, though the model has not.
+    const known = (name) => page.quantityOf(name, row)?.value ?? null;
+    return { number, known, chosen, notes, missing };
   };
 }
