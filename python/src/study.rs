@@ -292,6 +292,15 @@ impl Study {
         SweepResult::new(py, swept?.map_err(|error| raised(py, error))?, threads)
     }
 
+    /// Every scenario in which designs are judged: its number, its inputs in the units that their names end in, and its weight if the study
+    /// has weights; as `scenarios.csv` of the program has them.
+    ///
+    /// RequestError if there are more than 2e7 scenarios.
+    fn scenario_table(&self, py: Python<'_>) -> PyResult<Table> {
+        let table = py.detach(|| self.study.scenario_table()).map_err(|error| raised(py, error))?;
+        Table::new(py, table)
+    }
+
     /// The worst of every row over the scenarios of the study, for an optimiser: a row is a design.
     ///
     /// table: a column for every input that the study chooses, in the unit that its name ends in, on the levels of the study or between

@@ -51,6 +51,12 @@ def test_the_feasible_designs_are_those_of_the_program(written: Path, result: be
     assert all(ours[name].combine_chunks().equals(theirs[name].combine_chunks()) for name in ours.column_names)
 
 
+@pytest.mark.parametrize("name", ["metal-cvt", "push-belt-duty", "push-belt-yield", "catalogue-v-belts", "timing-map"])
+def test_scenarios_are_those_of_the_program(root: Path, name: str) -> None:
+    table = beltspace.Study.from_file(root / "studies" / f"{name}.toml").scenario_table()
+    assert table.to_csv() == (root / "results" / "studies" / name / "scenarios.csv").read_bytes()
+
+
 @pytest.mark.parametrize("name", ["metal-cvt", "camshaft-torque", "scooter-variator", "catalogue-v-belts", "push-belt-duty"])
 def test_shipped_studies_give_the_committed_fronts(root: Path, name: str) -> None:
     result = beltspace.Study.from_file(root / "studies" / f"{name}.toml").sweep()

@@ -11,6 +11,7 @@ mod influence;
 mod pictures;
 #[cfg(feature = "pictures")]
 pub mod pulley;
+mod scenarios;
 mod summary;
 pub(crate) mod tables;
 #[cfg(test)]
@@ -236,7 +237,7 @@ impl Part<'_> {
     fn write(&self, out: &mut dyn Write) -> Result<()> {
         match self {
             Self::Bytes(bytes) => out.write_all(bytes).map_err(Error::io(Path::new("result"))),
-            Self::Scenarios(plan) => csv::scenarios(plan, out).map_err(Error::io(Path::new("result"))),
+            Self::Scenarios(plan) => scenarios::write(plan, out).map_err(Error::io(Path::new("result"))),
             Self::Feasible(outcome, list, threads, control) => feasible::write(outcome, list, *threads, control, out),
         }
     }

@@ -351,6 +351,12 @@ class Study:
         does not fit into memory or a GPU fails. The interpreter lock is released meanwhile; Ctrl-C ends the sweep, of which nothing is
         kept, and raises KeyboardInterrupt.
         """
+    def scenario_table(self) -> Table:
+        """Every scenario in which designs are judged: its number, its inputs in the units that their names end in, and its weight if the
+        study has weights; as `scenarios.csv` of the program has them.
+
+        RequestError if there are more than 2e7 scenarios.
+        """
     def worst(self, table: Rows, *, threads: int | None = None) -> Table:
         """The worst of every row over the scenarios of the study, for an optimiser: a row is a design.
 
