@@ -133,7 +133,7 @@ fn objectives(study: &Study, text: &str) -> Vec<Value> {
         json!({
             "part": format!("objectives.{name}"), "name": name, "goal": if it.goal == Goal::Min { "min" } else { "max" },
             // What is written as a table has a key for it.
-            "plain": it.resolution.is_none() && it.over.is_worst() && name == it.quantity.name(&study.model),
+            "plain": entry_leaves(text, "objectives", &name).iter().all(|(keys, _)| keys.is_empty()),
             "doc": it.quantity.doc(&study.model), "unit": study.unit_over(it.quantity, it.over),
         })
     });

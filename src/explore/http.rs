@@ -54,6 +54,8 @@ pub struct Connection {
     pub stream: TcpStream,
     read: Vec<u8>,
     patience: Duration,
+    /// Nothing was asked on it yet.
+    is_new: bool,
 }
 
 impl Connection {
@@ -64,7 +66,7 @@ impl Connection {
     pub fn new(stream: TcpStream, patience: Duration) -> io::Result<Self> {
         stream.set_nodelay(true)?;
         stream.set_write_timeout(Some(patience))?;
-        Ok(Self { stream, read: Vec::new(), patience })
+        Ok(Self { stream, read: Vec::new(), patience, is_new: true })
     }
 
     /// The next request.
@@ -80,6 +82,7 @@ impl Connection {
                 }
                 asked.body = self.read[head..head + length].to_vec();
                 self.read.drain(..head + length);
+                self.is_new = false;
                 return Ok(asked);
             }
             if self.read.len() > MOST_HEAD {
@@ -91,7 +94,9 @@ impl Connection {
 
     /// Reads what is there; the time for a request runs from its first byte.
     fn more(&mut self, deadline: &mut Option<Instant>) -> Result<(), NoRequest> {
-        let left = deadline.map_or(SILENCE, |it| it.saturating_duration_since(Instant::now()));
+        // Whoever connects and says nothing keeps others out.
+        let silence = if self.is_new { self.patience } else { SILENCE };
+        let left = deadline.map_or(silence, |it| it.saturating_duration_since(Instant::now()));
         if left.is_zero() {
             return Err(NoRequest::Wrong(408, "the request took too long"));
         }

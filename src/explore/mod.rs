@@ -14,6 +14,7 @@ mod tests;
 use crate::error::{Error, Result};
 use crate::live::Live;
 use crate::screen::Control;
+use crate::study::Study;
 use gate::Gate;
 use http::{Connection, NoRequest, PATIENCE, Reply};
 use std::collections::BTreeMap;
@@ -40,6 +41,8 @@ pub struct Explorer {
     gate: Gate,
     port: u16,
     patience: Duration,
+    /// Has the study maps, as its file has it?
+    has_maps: bool,
     connections: AtomicUsize,
     /// By the number that a tab has given itself: what it waits for.
     tabs: Mutex<BTreeMap<u64, Arc<Control>>>,
@@ -58,6 +61,8 @@ impl Explorer {
         let port = listener.local_addr().map_err(wrong)?.port();
         let gate = Gate::new(port).map_err(Error::io(Path::new("random numbers")))?;
         let (file_text, text) = (live.text().to_owned(), live.study(begin)?.1);
+        let of_file = Study::parse_in(&file_text, live.file(), live.folder());
+        let has_maps = of_file.is_ok_and(|study| !study.report.maps.is_empty());
         Ok(Self {
             live: live.with_text(text),
             file_text,
@@ -67,6 +72,7 @@ impl Explorer {
             gate,
             port,
             patience: PATIENCE,
+            has_maps,
             connections: AtomicUsize::new(0),
             tabs: Mutex::default(),
         })

@@ -26,6 +26,8 @@ const JSON: &str = "application/json";
 const PARTS: &str = "application/octet-stream";
 /// Stands before a command that needs the study as a file.
 const NO_COMMAND: &str = "# no options say all of these changes; save the study as study.toml, then\n";
+const MAPS_LEFT_OUT: &str =
+    "The maps of the study are left out: one of them shows an objective that does not count now, or has too many cells.";
 /// Seconds of a thread that slices over what the study gives may take.
 const MOST_SECONDS: f64 = 2.0;
 /// Most changes of a study.
@@ -64,7 +66,7 @@ impl Explorer {
                     None => reply(Reply::text(404, "there is nothing at this address")),
                 };
             }
-            ("POST", "/start" | "/answer" | "/design" | "/around") => {}
+            ("POST", "/start" | "/study" | "/answer" | "/design" | "/around") => {}
             ("POST", _) => return reply(Reply::text(404, "there is nothing at this address")),
             _ => return reply(Reply::text(405, "GET and POST are what this server understands")),
         }
@@ -103,6 +105,7 @@ impl Explorer {
                 };
                 let done = match path {
                     "/start" => self.start(question, control, &mut tell),
+                    "/study" => self.study(question, &mut tell),
                     "/answer" => self.answer(question, control, &mut tell),
                     "/design" => self.design(question, control, &mut tell),
                     _ => self.around(question, control, &mut tell),
@@ -140,17 +143,27 @@ impl Explorer {
         tell((told, Vec::new()))
     }
 
+    /// The study with its changes, and the command that says it.
+    fn study(&self, question: &Question, tell: &mut dyn FnMut(ToldPart) -> Result<()>) -> Result<()> {
+        let (study, text) = self.live.study(&question.set)?;
+        tell((self.described(&Plan::new(study), &text, &question.set), Vec::new()))
+    }
+
     fn described(&self, plan: &Plan, text: &str, set: &[String]) -> Value {
         let (command, evaluate) = self.commands(plan, set).map_or_else(
             || (format!("{NO_COMMAND} beltspace sweep study.toml"), format!("{NO_COMMAND} beltspace eval study.toml --design {{design}}")),
             |set| ((self.words)("sweep", &set), (self.words)("eval", &set) + " --design {design}"),
         );
-        told::study(&self.live, plan, text, &command, &evaluate)
+        let mut told = told::study(&self.live, plan, text, &command, &evaluate);
+        if self.lacks_maps(plan) {
+            told["notes"].as_array_mut().expect("they are a list").push(MAPS_LEFT_OUT.into());
+        }
+        told
     }
 
     /// What the file's study must be set to for that of a page; `None` if no options say it.
     fn commands(&self, plan: &Plan, set: &[String]) -> Option<Vec<String>> {
-        if self.begin.is_empty() {
+        if self.begin.is_empty() && !self.lacks_maps(plan) {
             return Some(set.to_vec());
         }
         let name = |it: &str| it.split('=').next().map(|name| name.trim().trim_start_matches("fixed.").to_owned());
@@ -158,6 +171,11 @@ impl Explorer {
         let all: Vec<String> = self.begin.iter().filter(|it| !is_changed(it)).chain(set).cloned().collect();
         let study = Study::parse_set(&Models::new(), &self.file_text, self.live.file(), self.live.folder(), &all);
         study.is_ok_and(|(study, _)| study.hash() == plan.study.hash()).then_some(all)
+    }
+
+    /// Were maps of the file left out, which the changed study cannot have?
+    fn lacks_maps(&self, plan: &Plan) -> bool {
+        plan.study.report.maps.is_empty() && self.has_maps
     }
 
     fn answer(&self, question: &Question, control: &Control, tell: &mut dyn FnMut(ToldPart) -> Result<()>) -> Result<()> {

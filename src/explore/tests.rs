@@ -269,6 +269,38 @@ fn a_tab_that_closes_ends_its_work_and_a_new_question_ends_the_old_one_of_its_ta
 }
 
 #[test]
+fn the_study_is_told_as_it_is_changed_whatever_was_answered() {
+    let maps = "[report]\nmaps = [{ x = \"band_count\", y = \"band_thickness_mm\", value = \"torque_capacity_Nm\" }]\n";
+    let explorer = started(&format!("{SMALL}{maps}"), Duration::from_secs(10));
+    let told = |set: &str| {
+        let mut client = Client::new(explorer);
+        client.send("/study", &format!(r#"{{"set": [{set}]}}"#), "");
+        client.until("live").remove(0)
+    };
+    let text = |told: &Value, path: &str| told.pointer(path).and_then(Value::as_str).expect("a text").to_owned();
+    let changed = told(r#""constraints.capacity_axial_force_N.max=50000""#);
+    assert!(text(&changed, "/study/saved").contains("capacity_axial_force_N = { max = 50000 }"));
+    assert!(text(&changed, "/command").ends_with("constraints.capacity_axial_force_N.max=50000"));
+    assert_eq!(changed["notes"], serde_json::json!([]));
+    // No option says that the study has no map any more, and the page says that it has none.
+    let without = told(r#""objectives.torque_capacity_Nm=off""#);
+    assert!(text(&without, "/command").starts_with("# no options say"), "{without}");
+    assert!(text(&without, "/notes/0").starts_with("The maps of the study are left out"), "{without}");
+}
+
+#[test]
+fn the_goal_of_a_yield_is_changed_as_it_is_written() {
+    let text = "model = \"metal-cvt\"\n[design]\nband_count = [6, 9]\n[operation]\ntorque_Nm = [50, 100]\n\
+        [uncertainty]\nfriction = { normal = { mean = 0.09, sd = 0.005 } }\n[probability]\ndraws = 64\n[constraints]\nslip_margin = { min = 0 }\n\
+        [objectives]\nyield = \"max\"\naxial_force_N = { goal = \"min\", over_draws = \"mean\" }\n";
+    let mut client = Client::new(started(text, Duration::from_secs(10)));
+    client.send("/start", "{}", "");
+    let told = client.until("live").remove(0);
+    let plain = |at: usize| told["controls"]["objectives"][at]["plain"].clone();
+    assert_eq!((plain(0), plain(1)), (true.into(), false.into()), "{}", told["controls"]["objectives"]);
+}
+
+#[test]
 fn large_slow_and_many_requests_are_turned_away() {
     let explorer = started(SMALL, Duration::from_millis(200));
     let mut client = Client::new(explorer);

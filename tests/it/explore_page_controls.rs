@@ -214,6 +214,29 @@ fn a_page_begins_with_what_the_command_sets_and_its_saved_study_runs_anywhere() 
 
 #[test]
 #[ignore = "needs the browser of the Debian package chromium"]
+fn what_is_saved_and_copied_is_the_study_as_it_is_changed_now() {
+    let (_folder, file) = study_file(SMALL);
+    let explored = Explored::new(&file, &[]);
+    let mut browser = open(&explored);
+    browser.evaluate(
+        "beltspace.page.download = (name, type, text) => (window.saved = text); beltspace.page.copyText = (text) => (window.copied = text)",
+    );
+    // Pressed before any answer can be there.
+    browser.evaluate("beltspace.change({ 'constraints.slip_margin.min': '0.0475' }), document.querySelector('#save').click(), document.querySelector('[data-testid=copy-command]').click()");
+    browser.wait("window.saved && window.copied");
+    let (saved, copied) = (browser.text("window.saved"), browser.text("window.copied"));
+    assert!(
+        saved.contains("min = 0.0475") && copied.ends_with("--set constraints.slip_margin.min=0.0475"),
+        "{saved} {copied}"
+    );
+    // A change that nothing can answer is not left out in silence.
+    browser.evaluate("window.saved = null, beltspace.change({ 'operation.no_such_input': '1' }), document.querySelector('#save').click()");
+    browser.wait("document.querySelector('#live-text').textContent.startsWith('not saved: ')");
+    assert_eq!(browser.evaluate("window.saved"), serde_json::Value::Null);
+}
+
+#[test]
+#[ignore = "needs the browser of the Debian package chromium"]
 fn slices_go_over_fixed_values_too_and_the_yield_stands_with_its_interval() {
     let (_folder, file) = study_file(DRAWN);
     let explored = Explored::new(&file, &[]);

@@ -6,7 +6,7 @@ use crate::report_page::Swept;
 
 /// A picture that the page would save, or why there is none.
 fn saved(browser: &mut Browser, selector: &str) -> String {
-    browser.text(&format!("beltspace.page.pictureOf(document.querySelector({selector:?})).text"))
+    browser.text(&format!("beltspace.page.pictureOf([document.querySelector({selector:?})]).text"))
 }
 
 #[test]
@@ -70,6 +70,33 @@ fn listed_designs_and_cells_of_maps_open_cards_and_a_table_is_one_stop() {
     let best = said.rsplit("best design ").next().filter(|it| it.parse::<u64>().is_ok()).expect("a design").to_owned();
     browser.key("Enter", 13);
     browser.wait(&format!("!document.querySelector('#card').hidden && {title}.startsWith('Design {best}')"));
+    assert_eq!(browser.complaints, Vec::<String>::new());
+}
+
+#[test]
+#[ignore = "drives the page in Chromium: cargo test --test it -- --ignored report_page --test-threads 1"]
+fn a_saved_picture_has_of_a_list_what_the_page_shows_of_it_and_the_names_of_other_results() {
+    let swept = Swept::shipped("metal-cvt");
+    let mut browser = Browser::open(&swept.page(), "");
+    browser.resize(1400, 900);
+    browser.wait("document.querySelector('#readout.corner')");
+    let words = browser.evaluate(
+        "(() => { const { page } = beltspace; const end = document.querySelector('#readout').getBoundingClientRect().bottom; \
+         const svg = page.pictureOf([document.querySelector('#splom')]).text; \
+         const names = [...document.querySelectorAll('#readout dt')].map((it) => ({ name: it.textContent, hidden: it.getBoundingClientRect().bottom > end + 1 })); \
+         const drawn = ({ name }) => svg.includes(`>${name}<`); \
+         return { hidden: names.filter((it) => it.hidden).length, wrong: names.filter((it) => drawn(it) === it.hidden).map((it) => it.name) }; })()",
+    );
+    assert!(words["hidden"].as_u64() > Some(3), "{words}");
+    assert_eq!(words["wrong"], serde_json::json!([]));
+    let csv = std::fs::read_to_string(swept.file("front.csv")).expect("a table");
+    browser.evaluate(&format!("beltspace.page.addOther(new File([{}], 'another.csv'))", serde_json::json!(csv)));
+    browser.evaluate("beltspace.page.download = (name, type, text) => (window.saved = text)");
+    browser.wait("document.querySelector('#others li')");
+    browser.evaluate("document.querySelector('[data-testid=\"svg front\"]').click()");
+    browser.wait("window.saved");
+    assert!(browser.text("window.saved").contains("another.csv"));
+    browser.picture("front-beside-another");
     assert_eq!(browser.complaints, Vec::<String>::new());
 }
 

@@ -188,7 +188,7 @@
   const figureOf = (map, number) => {
     const best = { min: "the least of the feasible designs", max: "the largest of the feasible designs", share: "the share of designs that are feasible" }[map.best] || "";
     const others = (page.data.inputs || []).some(({ name, role }) => role === "design" && name !== map.x.name && name !== map.y.name);
-    const caption = page.element("figcaption", {}, page.element("div", { class: "title-line" }, page.element("strong", {}, map.title || `${map.value.name} over ${map.x.name} and ${map.y.name}`)), map.value.doc ? ` ${map.value.doc}` : "", page.element("div", { class: "muted" }, `In each cell ${best}${others ? " over all other inputs" : ""}. Hatched: no feasible design.${map.cells && map.cells.indices ? " A click opens the design of a cell." : ""}`));
+    const caption = page.element("figcaption", {}, page.element("div", { class: "title-line" }, page.element("strong", {}, map.title || `${map.value.name} over ${map.x.name} and ${map.y.name}`)), map.value.doc ? ` ${map.value.doc}` : "", page.element("div", { class: "muted" }, `In each cell ${best}${others ? " over all other inputs" : ""}. Hatched: no feasible design.${map.cells && map.cells.indices && page.data.study?.feasible !== 0 ? " A click opens the design of a cell." : ""}`));
     return page.element("figure", { class: "figure map", "data-map": number, "data-testid": `map-${map.value.name}` }, caption);
   };
 

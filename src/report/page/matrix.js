@@ -374,7 +374,9 @@
   };
 
   page.startMatrix = () => {
-    page.saveButtons(page.byId("matrix-title"), "front", () => page.byId("splom"));
+    // With what stands above it of a sample and of other results.
+    const boxes = () => ["sample", "others", "splom"].map(page.byId).filter((box) => box && !box.hidden && (box.id !== "others" || page.others.length));
+    page.saveButtons(page.byId("matrix-title"), "front", boxes);
     layout();
     page.events.on("columns.matrix", (what) => what === "order" || layout());
     page.events.on("layout.matrix", layout);

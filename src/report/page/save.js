@@ -46,9 +46,18 @@
     return lines;
   };
 
-  // Everything in a box: canvases, SVGs, coloured areas and words.
-  page.pictureOf = (box) => {
-    const origin = box.getBoundingClientRect();
+  // What of a place a box shows that scrolls or cuts off.
+  const shownOf = (element, style, clip) => {
+    if (style.overflowY === "visible" || element.scrollHeight <= element.clientHeight + 1) return clip;
+    const { top, bottom } = element.getBoundingClientRect();
+    return { top: Math.max(top, clip.top), bottom: Math.min(bottom, clip.bottom) };
+  };
+
+  // Everything in some boxes, which stand below one another: canvases, SVGs, coloured areas and words.
+  page.pictureOf = (boxes) => {
+    const rects = boxes.map((box) => box.getBoundingClientRect());
+    const [left, right, top, bottom] = [d3.min(rects, (it) => it.left), d3.max(rects, (it) => it.right), d3.min(rects, (it) => it.top), d3.max(rects, (it) => it.bottom)];
+    const origin = { left, top, width: right - left, height: bottom - top };
     const parts = [];
     let [width, height] = [origin.width, origin.height];
     const placeOf = (rect) => {
@@ -56,19 +65,21 @@
       [width, height] = [Math.max(width, place.x + place.width), Math.max(height, place.y + place.height)];
       return place;
     };
-    const text = (node) => {
+    const text = (node, clip) => {
       const style = getComputedStyle(node.parentElement);
       const size = parseFloat(style.fontSize);
-      for (const line of linesOf(node)) {
+      for (const line of linesOf(node).filter((it) => it.top >= clip.top && it.bottom <= clip.bottom)) {
         const { x, y, width: long, height: high } = placeOf({ left: line.left, top: line.top, width: line.right - line.left, height: line.bottom - line.top });
         parts.push(`<text x="${near(x)}" y="${near(y + high / 2 + 0.35 * size)}" textLength="${near(long)}" lengthAdjust="spacingAndGlyphs" fill="${style.color}" font-family="${style.fontFamily.replace(/"/g, "'")}" font-size="${size}" font-weight="${style.fontWeight}">${escape(line.text)}</text>`);
       }
     };
-    const visit = (element) => {
+    const visit = (element, outer) => {
       if (element.matches(LEFT_OUT)) return;
       const style = getComputedStyle(element);
       const rect = element.getBoundingClientRect();
       if (style.display === "none" || style.visibility === "hidden") return;
+      if (rect.height && (rect.top >= outer.bottom || rect.bottom <= outer.top)) return;
+      const clip = shownOf(element, style, outer);
       if (element.localName === "svg") return void parts.push(copied(element, placeOf(rect)));
       const { x, y, width: wide, height: high } = rect.width && rect.height ? placeOf(rect) : {};
       if (element.localName === "canvas") return void (wide && parts.push(`<image x="${near(x)}" y="${near(y)}" width="${near(wide)}" height="${near(high)}" href="${element.toDataURL()}"/>`));
@@ -79,18 +90,18 @@
         parts.push(`<rect x="${near(x)}" y="${near(y)}" width="${near(wide)}" height="${near(high)}" fill="url(#${id})"/>`);
       } else if (wide && d3.color(style.backgroundColor)?.opacity > 0) parts.push(`<rect x="${near(x)}" y="${near(y)}" width="${near(wide)}" height="${near(high)}" fill="${style.backgroundColor}"/>`);
       for (const child of element.childNodes) {
-        if (child.nodeType === Node.TEXT_NODE) text(child);
-        else if (child.nodeType === Node.ELEMENT_NODE) visit(child);
+        if (child.nodeType === Node.TEXT_NODE) text(child, clip);
+        else if (child.nodeType === Node.ELEMENT_NODE) visit(child, clip);
       }
     };
-    visit(box);
+    boxes.forEach((box) => visit(box, { top: -Infinity, bottom: Infinity }));
     [width, height] = [Math.ceil(width), Math.ceil(height)];
     const ground = `<rect width="${width}" height="${height}" fill="${page.variable("--ground")}"/>`;
     return { width, height, text: `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" viewBox="0 0 ${width} ${height}">${ground}${parts.join("")}</svg>` };
   };
 
-  const save = async (box, name, kind) => {
-    const { width, height, text } = page.pictureOf(box);
+  const save = async (boxes, name, kind) => {
+    const { width, height, text } = page.pictureOf(boxes);
     if (kind === "svg") return page.download(`${name}.svg`, "image/svg+xml", text);
     const image = new Image();
     const address = URL.createObjectURL(new Blob([text], { type: "image/svg+xml" }));
@@ -108,9 +119,9 @@
   // The name of a file may have no sign that some system forbids.
   const fileName = (name) => name.replace(/[^A-Za-z0-9_.-]+/g, "-");
 
-  // Two buttons that save what `boxOf` finds; `what` says what that is.
+  // Two buttons that save what `boxOf` finds, a box or several; `what` says what that is.
   page.saveButtonsOf = (what, name, boxOf) => {
-    const button = (kind) => page.element("button", { type: "button", "data-testid": `${kind} ${name}`, "aria-label": `Save ${what} as ${kind.toUpperCase()}`, click: () => boxOf() && save(boxOf(), fileName(name), kind) }, kind.toUpperCase());
+    const button = (kind) => page.element("button", { type: "button", "data-testid": `${kind} ${name}`, "aria-label": `Save ${what} as ${kind.toUpperCase()}`, click: () => boxOf() && save([boxOf()].flat(), fileName(name), kind) }, kind.toUpperCase());
     return page.element("div", { class: "save-buttons no-print" }, button("svg"), button("png"));
   };
 

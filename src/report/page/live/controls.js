@@ -167,7 +167,7 @@
       const within = (value, drag) => (drag === null ? value : key === "from" ? Math.min(value, tidy(end("to") - gap)) : Math.max(value, tidy(end("from") + gap)));
       lines.push(single(control, `${part}.${key}`, original, key, { step, write: (value, drag) => put(`${part}.${key}`, within(value, drag), original, drag) }));
     }
-    if (control.count && !control.step) lines.push(single({ ...control, unit: "", low: 1, high: Math.max(control.count * 2, 41), integer: true }, `${part}.count`, control.count, "levels"));
+    if (control.count && !control.step) lines.push(single({ ...control, unit: "", low: control.from === control.to ? 1 : 2, high: Math.max(control.count * 2, 41), integer: true }, `${part}.count`, control.count, "levels"));
     const levels = control.integer ? null : control.step ? page.element("span", { class: "muted" }, ` in steps of ${page.short(control.step)}`) : control.log ? page.element("span", { class: "muted" }, " log") : null;
     return page.element("div", { class: "block", "data-control": part }, heading(control, levels), lines);
   };

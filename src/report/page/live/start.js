@@ -1,16 +1,27 @@
 // The page of a study in work.
 {
-  const save = () => {
-    const { study } = page.data;
+  // What is shown may still be of the study before: the engine is asked for the study as it is changed now, and says why there is none.
+  const withStudy = (what, use) => async () => {
+    try {
+      use(await page.askOnce("/study", { set: page.changeList() }));
+    } catch (error) {
+      page.sayLive(`${what}: ${error.message}`, "error");
+    }
+  };
+  const save = withStudy("not saved", ({ study }) => {
     const name = study.file.split(/[\\/]/).pop().replace(/\.toml$/, "");
     page.download(`${name}-explored.toml`, "application/toml", study.saved);
-  };
+  });
+  const copyCommand = withStudy("not copied", ({ command }) => {
+    page.byId("command").textContent = command;
+    return page.copyText(command);
+  });
 
   const bar = () => {
     const live = page.byId("live");
     live.hidden = false;
     const ghost = page.element("input", { type: "checkbox", id: "ghost", checked: true, change: (event) => page.showGhost(event.target.checked) });
-    const copy = page.element("button", { type: "button", class: "no-print", "data-testid": "copy-command", click: () => page.copyText(page.byId("command").textContent) }, "Copy command");
+    const copy = page.element("button", { type: "button", class: "no-print", "data-testid": "copy-command", click: copyCommand }, "Copy command");
     live.replaceChildren(
       page.element("p", { id: "live-text", role: "status", "aria-live": "polite" }, "asking the engine …"),
       page.element("div", { class: "controls no-print" }, page.element("label", {}, ghost, " old front ", page.element("span", { class: "ghost-dot", "aria-hidden": "true" })), copy, page.element("button", { type: "button", id: "save", "data-testid": "save", click: save }, "Save as study")),
