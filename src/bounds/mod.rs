@@ -344,7 +344,7 @@ impl BoundedStudy {
         let beyond = if largest { f64::NEG_INFINITY } else { f64::INFINITY };
         let mut best =
             held.map_or(BestPair { largest, value: beyond, index: u64::MAX }, |it| BestPair { largest, value: it.value, index: it.index });
-        let mut planned = Vec::new();
+        let (mut planned, mut feasible) = (Vec::new(), 0);
         for spans in roots {
             searched.boxes += 1;
             let open = all_open(&self.requirements, &self.axes);
@@ -369,12 +369,15 @@ impl BoundedStudy {
             let count = |part: &Spans| {
                 let mut own = best;
                 let mut pairs = Pairs::new(&self.tape, &self.axes, stop);
-                pairs.count(&pairing, part, &instances, Some((open.len(), &mut own)));
-                (own, pairs.evaluated)
+                let found = pairs.count(&pairing, part, &instances, Some((open.len(), &mut own)));
+                (own, pairs.evaluated, found)
             };
+            // Of the axes that nothing asked for depends on, each level has as many.
+            let each = self.axes.count(&spans) / pairing.size(&spans);
             let counted = on_threads(&parts, count);
-            for (own, evaluations) in counted {
+            for (own, evaluations, found) in counted {
                 searched.evaluations += evaluations;
+                feasible += each * found;
                 if best.beats(own.value, own.index) {
                     best = own;
                 }
@@ -384,6 +387,7 @@ impl BoundedStudy {
         if stop.load(Ordering::Relaxed) {
             return Some(searched);
         }
+        searched.counted = Some(feasible);
         if best.index < u64::MAX && held.is_none_or(|held| held.index != best.index) {
             let mut reducers = reduction.start();
             let position = [self.position_of(best.index)];

@@ -65,6 +65,11 @@ impl Pairing {
         matches!(self.roles[role], PairRole::Both(_))
     }
 
+    /// How many designs of a box differ along the axes of both groups and those that they share.
+    pub fn size(&self, spans: &Spans) -> u64 {
+        [&self.outer, &self.first, &self.second].into_iter().flatten().map(|&axis| spans[axis].count()).product()
+    }
+
     /// Splits a box into about that many parts which cost no more when they are counted apart.
     pub fn parts(&self, spans: &Spans, count: usize) -> Vec<Spans> {
         let Some(&axis) = self.outer.iter().max_by_key(|&&axis| spans[axis].count()) else { return vec![*spans] };

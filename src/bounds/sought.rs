@@ -71,6 +71,8 @@ pub struct Searched {
     pub boxes: u64,
     /// Designs judged in f64, those that were tried as rivals among them.
     pub evaluations: u64,
+    /// The feasible designs, where all of them were counted on the way.
+    pub counted: Option<u64>,
 }
 
 impl Searched {

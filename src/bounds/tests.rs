@@ -148,3 +148,28 @@ fn bounds_of_one_operation_in_two_units_are_not_mixed_up() {
     let (own, si) = (most(NumberSource::Node(node, Some(unit))), most(NumberSource::Node(node, None)));
     assert!(own.is_finite() && (own / unit.from_si(si) - 1.0).abs() < 1e-12 && (own / si - 1.0).abs() > 1.0, "{own} {si}");
 }
+
+#[test]
+fn a_search_by_pairs_counts_the_feasible_designs_on_its_way() {
+    // Nothing that is asked for depends on the torque. The bound is on the very end that is sought.
+    let text = "[design]\nfriction = { from = 0.06, to = 0.12, count = 23 }\ngroove_angle_deg = { from = 18, to = 30, count = 21 }\n\
+        ratio = { from = 0.5, to = 2, count = 20 }\nband_thickness_mm = { from = 0.1, to = 0.4, count = 19 }\nband_count = { from = 4, to = 14 }\n\
+        torque_Nm = [50, 70, 90]\n[fixed]\ntraction = \"limit\"\n\
+        [constraints]\ncapacity_axial_force_N = { max = 30000 }\ntorque_capacity_Nm = { above = 0 }\n\
+        [objectives]\ntorque_capacity_Nm = \"max\"\ncapacity_axial_force_N = \"min\"\n";
+    let plan = Plan::new(study_of(&find("metal-cvt").expect("it is a model"), text).expect("the study is right"));
+    let layout = BoundedStudy::new(&plan).expect("bounds serve it");
+    let (tables, stop) = (Tables::new(&plan), AtomicBool::new(false));
+    let reduction = Reduction::new(&plan, &[]);
+    let whole = 0..plan.designs();
+    let job = SearchJob { plan: &plan, reduction: &reduction, range: &whole, stop: &stop, progress: &|_| () };
+    let mut workers = vec![layout.worker(&plan, &tables, &stop), layout.worker(&plan, &tables, &stop)];
+    let mut found = reduction.start();
+    let sought = Sought::Extreme { objective: 1, largest: true };
+    let searched = layout.search(job, sought, &mut workers, &mut found).expect("nobody stops it");
+    let mut every = reduction.start();
+    CpuEngine::new(&plan, &tables).screen(whole.clone(), |block| reduction.absorb(&mut every, block));
+    assert!(every.feasible > 0 && every.feasible < plan.designs() && every.feasible.is_multiple_of(3), "{}", every.feasible);
+    assert_eq!((searched.counted, searched.designs()), (Some(every.feasible), plan.designs()));
+    assert_eq!(found.extremes.largest[1], every.extremes.largest[1]);
+}

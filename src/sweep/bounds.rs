@@ -206,8 +206,11 @@ fn settle_watched(
     let what = if BoundedStudy::tallies(plan).is_empty() { "count" } else { "counts" };
     control.settles(format!("{what}, {passes} of {passes}"));
     watch.counts();
-    let shared = Mutex::new(work);
     let tallies = BoundedStudy::tallies(plan);
+    if tallies.is_empty() && designs == whole.end - whole.start {
+        take_counted(job, &mut certificate, work)?;
+    }
+    let shared = Mutex::new(work);
     let settled = on_threads(0..options.threads.max(1), |_| count_on_thread(job, layout, &tallies, &shared, watch));
     certificate.tallies = tallies.iter().map(|tally| (tally.in_words(plan), Settled::default())).collect();
     for settled in &settled {
@@ -287,6 +290,21 @@ fn search(
         }
     }
     true
+}
+
+/// Takes the number of feasible designs from a search that has counted all of them on its way.
+fn take_counted(job: SweepJob<'_>, certificate: &mut Certificate, work: &mut SweepWork<'_>) -> Result<()> {
+    let found = certificate.searches.iter().find_map(|(_, it)| it.counted.map(|feasible| (*it, feasible)));
+    let Some((searched, mut feasible)) = found else { return Ok(()) };
+    certificate.count = Settled { infeasible: searched.infeasible, pairs: searched.pairs, ..Settled::default() };
+    while let Some(range) = work.todo.first() {
+        let range = work.todo.take(range.end - range.start).unwrap_or(range);
+        let mut counted = job.reduction.start();
+        counted.feasible = std::mem::take(&mut feasible);
+        work.reducers.merge(counted.into_fresh());
+        work.finish(job.plan, range)?;
+    }
+    Ok(())
 }
 
 /// Counts ranges until there are none left: the feasible designs, then those of each tally. Returns how each of them was settled.

@@ -225,10 +225,7 @@ fn what_is_saved_and_copied_is_the_study_as_it_is_changed_now() {
     browser.evaluate("beltspace.change({ 'constraints.slip_margin.min': '0.0475' }), document.querySelector('#save').click(), document.querySelector('[data-testid=copy-command]').click()");
     browser.wait("window.saved && window.copied");
     let (saved, copied) = (browser.text("window.saved"), browser.text("window.copied"));
-    assert!(
-        saved.contains("min = 0.0475") && copied.ends_with("--set constraints.slip_margin.min=0.0475"),
-        "{saved} {copied}"
-    );
+    assert!(saved.contains("min = 0.0475") && copied.ends_with("--set constraints.slip_margin.min=0.0475"), "{saved} {copied}");
     // A change that nothing can answer is not left out in silence.
     browser.evaluate("window.saved = null, beltspace.change({ 'operation.no_such_input': '1' }), document.querySelector('#save').click()");
     browser.wait("document.querySelector('#live-text').textContent.startsWith('not saved: ')");

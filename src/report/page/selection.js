@@ -32,7 +32,7 @@
     const varied = inputs.filter((column) => !(column.low === column.high) || front.rows < 2);
     state.leftOut = names(inputs.filter((column) => !varied.includes(column)));
     const judged = front.shown.filter((column) => ["objective", "constraint", "report"].includes(column.role));
-    // Where rows of a catalogue have labels, these say what the design is, and the numbers of the row come after all else.
+    // Where rows of a catalogue have labels, these say what the design is; the numbers of the row come after all else.
     const labels = front.shown.filter((column) => column.role === "label" && page.isCategory(column) && column.low < column.high);
     const ofRow = new Set((page.data.inputs || []).filter((input) => input.labelled).map((input) => input.name));
     const [last, first] = [true, false].map((is) => varied.filter((column) => ofRow.has(column.name) === is));
