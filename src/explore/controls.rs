@@ -144,7 +144,10 @@ fn axis_control(study: &Study, text: &str, table: &str, axis: &Axis) -> Value {
     let model = &study.model;
     let names: Vec<&str> = axis.inputs().iter().map(|&input| model.inputs[input].name.as_str()).collect();
     let (Axis::Single { input, levels }, false) = (axis, axis.inputs().len() != 1) else {
-        let told = json!({ "form": "rows", "name": names.join(", "), "rows": axis.count(), "table": table });
+        // Rows of a catalogue go by their labels.
+        let labels: Vec<&str> = study.labels_of(axis).map(|it| it.name.as_str()).collect();
+        let name = if labels.is_empty() { &names } else { &labels }.join(", ");
+        let told = json!({ "form": "rows", "name": name, "rows": axis.count(), "table": table });
         return rows_control(study, text, table, &names).unwrap_or(told);
     };
     let described = &model.inputs[*input];

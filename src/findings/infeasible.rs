@@ -91,6 +91,12 @@ impl Infeasible {
         for (constraint, reach) in study.constraints.iter().zip(&self.reach) {
             let what = constraint_in_words(study, constraint);
             let unit = &study.unit_over(constraint.quantity, constraint.over);
+            // A bound of 0 on a yield would ask for nothing: what draws fail at is what stands in the way.
+            let is_share = study.probability.as_ref().is_some_and(|it| it.is_share(constraint.quantity));
+            if let Some(best) = reach.best.filter(|it| is_share && it.value == 0.0 && !constraint.holds(0.0)) {
+                sentences.push(format!("{what}: of the best {} not one draw holds; what draws fail at stands in the way", of(&best)));
+                continue;
+            }
             let mut parts = Vec::new();
             if let Some(best) = reach.best.filter(|it| !constraint.holds(it.value)) {
                 parts.push(format!(
@@ -240,4 +246,28 @@ fn nearest(study: &Study, rows: Vec<Row>) -> Option<Nearest> {
         values: row.columns.iter().map(|at| at.value).collect(),
         without_result: row.without_result,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::study_of;
+
+    #[test]
+    fn a_yield_of_nothing_is_told_as_such() {
+        let text = |least: f64| {
+            format!(
+                "[design]\nband_count = [6, 9]\n[operation]\ntorque_Nm = [50, 100]\n[uncertainty]\nfriction = {{ normal = {{ mean = 0.09, sd = 0.005 }} }}\n\
+                 [fixed]\ntraction = 0.3\n[probability]\ndraws = 64\n[constraints]\nslip_margin = {{ min = {least} }}\nyield = {{ min = 0.9 }}\n[objectives]\nyield = \"max\"\n"
+            )
+        };
+        let said = |least: f64| {
+            let plan =
+                Plan::new(study_of(&crate::models::find("metal-cvt").expect("it is a model"), &text(least)).expect("the study is right"));
+            Infeasible::of(&plan, 1, &Control::default()).expect("nobody stops it").in_words(&plan.study)
+        };
+        let none = said(1e6);
+        assert!(none[0].contains("at least 0.9: of the best of all designs not one draw holds"), "{none:?}");
+        assert!(!none.iter().any(|it| it.contains("a bound of 0 ")), "{none:?}");
+    }
 }

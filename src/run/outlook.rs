@@ -4,7 +4,7 @@ use crate::memory::Needs;
 use crate::models::Set;
 use crate::parallel::to_be_had;
 use crate::plan::Plan;
-use crate::study::{Axis, Constraint, StatisticKind, Study};
+use crate::study::{Axis, Constraint, Study};
 use crate::sweep::costs::{Speed, why_every_design};
 use crate::table::{grouped, short};
 use std::time::Duration;
@@ -129,9 +129,7 @@ fn few_draws(study: &Study) -> Vec<String> {
     let Some(probability) = &study.probability else { return Vec::new() };
     let warning = |constraint: &Constraint| {
         let name = constraint.name(&study.model);
-        let kind = probability.statistics[constraint.quantity.output()?].kind;
-        let is_share = matches!(kind, StatisticKind::Yield | StatisticKind::YieldOf(_));
-        let wanted = constraint.low.map(|it| it.0).filter(|it| is_share && *it > 0.0)?;
+        let wanted = constraint.low.map(|it| it.0).filter(|it| probability.is_share(constraint.quantity) && *it > 0.0)?;
         let misses = probability.draws as f64 * (1.0 - wanted);
         if wanted >= 1.0 || misses >= FEW {
             return None;

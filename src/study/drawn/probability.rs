@@ -126,6 +126,12 @@ impl Probability {
         spectrum.as_ref().is_some_and(|it| !fits(it)).then(|| "the weights do not fit the operating cases".to_owned())
     }
 
+    /// Is it the share of the draws that hold, or that keep one constraint?
+    pub(crate) fn is_share(&self, quantity: Quantity) -> bool {
+        let kind = quantity.output().map(|it| self.statistics[it].kind);
+        matches!(kind, Some(StatisticKind::Yield | StatisticKind::YieldOf(_)))
+    }
+
     /// What is told of chosen designs by this output, if it is of that kind.
     pub fn confirmed(&self, quantity: Quantity) -> Option<ConfirmedEnd> {
         match self.statistics.get(quantity.output()?)?.kind {
