@@ -3,7 +3,6 @@ import argparse
 import csv
 import json
 import os
-import re
 import shutil
 import subprocess
 import tempfile
@@ -11,49 +10,30 @@ import time
 from datetime import date
 from pathlib import Path
 
-from pulley_measures import SECTIONS
+from pulley_measures import SECTIONS, processor
+from refined import CVT, cvt, grid
 
 # The last revision before the work on speed whose formulas give the present numbers.
 REVISION = "0af84d2"
-GRID = Path("studies/metal-grid.toml").read_text()
-CVT = Path("benches/studies/metal-cvt-traction.toml").read_text()
 EIGHT = Path("benches/studies/eight-axes.toml").read_text()
-
-
-def grid(levels):
-    """metal-grid with so many levels on its four continuous axes: 11 levels^4 designs."""
-    return GRID.replace("count = 37", f"count = {levels}")
-
-
-def cvt(angle, thickness, traction):
-    """The traction study finer, without histogram and map, with a front that stays small."""
-    text = CVT
-    for old, new in (("count = 61 }", f"count = {angle} }}"), ("step = 0.005 }", f"count = {thickness} }}"),
-                     ("count = 11 }", f"count = {traction} }}"),
-                     ('axial_force_N = "min"', 'axial_force_N = { goal = "min", resolution = 100 }'),
-                     ('stress_margin = "max"', 'stress_margin = { goal = "max", resolution = 0.01 }'),
-                     ('slip_margin   = "max"', 'slip_margin   = { goal = "max", resolution = 0.01 }')):
-        if text.count(old) != 1:
-            raise SystemExit(f"benches/studies/metal-cvt-traction.toml has changed: {old} stands in it {text.count(old)} times")
-        text = text.replace(old, new)
-    return re.sub(r"(?m)^(histograms|maps) .*\n", "", text)
-
+# Of the axial force in N and of both margins: without them the front of four objectives would grow as the grid does.
+RESOLUTIONS = [100, 0.01, 0.01]
 
 # What is measured, its study, options, how often it runs, and whether --short runs it.
 CASES = [
     ("whole command with its page: traction study", CVT, [], 15, True),
     ("every design: metal-grid, 1.0e9 designs", grid(98), ["--method", "exhaustive"], 3, False),
     ("every design: metal-grid, 1.0e10 designs", grid(174), ["--method", "exhaustive"], 1, False),
-    ("every design: traction study, 1.9e6 designs in 434 scenarios", cvt(121, 81, 21), ["--method", "exhaustive"], 3, False),
-    ("every design: traction study, 1.1e8 designs in 434 scenarios", cvt(481, 321, 81), ["--method", "exhaustive"], 1, False),
+    ("every design: traction study, 1.9e6 designs in 434 scenarios", cvt(RESOLUTIONS, 121, 81, 21), ["--method", "exhaustive"], 3, False),
+    ("every design: traction study, 1.1e8 designs in 434 scenarios", cvt(RESOLUTIONS, 481, 321, 81), ["--method", "exhaustive"], 1, False),
     ("every design: eight axes in 42 scenarios", EIGHT, ["--method", "exhaustive"], 5, True),
     ("bounds: eight axes in 42 scenarios", EIGHT, ["--method", "bounds"], 3, True),
-    ("bounds: traction study, 1.1e8 designs in 434 scenarios", cvt(481, 321, 81), ["--method", "bounds"], 1, False),
+    ("bounds: traction study, 1.1e8 designs in 434 scenarios", cvt(RESOLUTIONS, 481, 321, 81), ["--method", "bounds"], 1, False),
     ("bounds: metal-grid, 1.08e12 designs", grid(560), ["--method", "bounds"], 1, False),
     ("400 sections of pulleys: pressed cup", SECTIONS.format(preset="pressed-cup", thin=1.4, thick=2.4, count=40), ["--method", "exhaustive"], 3, False),
     ("400 sections of pulleys: double groove", SECTIONS.format(preset="double-groove", thin=1.6, thick=2.4, count=40), ["--method", "exhaustive"], 3, False),
     ("device: metal-grid, 1.0e9 designs", grid(98), ["--method", "exhaustive", "--engine", "gpu"], 1, False),
-    ("device: traction study, 1.9e6 designs in 434 scenarios", cvt(121, 81, 21), ["--method", "exhaustive", "--engine", "gpu"], 1, False),
+    ("device: traction study, 1.9e6 designs in 434 scenarios", cvt(RESOLUTIONS, 121, 81, 21), ["--method", "exhaustive", "--engine", "gpu"], 1, False),
 ]
 
 
@@ -126,8 +106,7 @@ def main():
             row = one(case, programs, folder)
             rows.append(row)
             print(f"{row['case']:<62} {row['earlier_processor_s']:9.3f} s  {row['processor_s']:8.3f} s  {row['times_faster']:6.2f} times", flush=True)
-    machine = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), "")
-    record = {"date": date.today().isoformat(), "machine": machine, "cores": os.cpu_count(), "revision": given.revision,
+    record = {"date": date.today().isoformat(), "machine": processor(), "cores": os.cpu_count(), "revision": given.revision,
               "command": "benches/before", "cases": rows}
     if given.out:
         given.out.write_text(json.dumps(record, indent=1) + "\n")

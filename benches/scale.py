@@ -8,7 +8,6 @@ import json
 import math
 import os
 import platform
-import re
 import subprocess
 import sys
 import tempfile
@@ -21,6 +20,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parent))
 import measures  # noqa: E402
 import metal_grid  # noqa: E402
+import refined  # noqa: E402
 from peak import largest_memory, peak_of  # noqa: E402
 
 # Levels of the four continuous axes of metal-grid: 1e7, 1e8, ... 1e12 designs.
@@ -37,7 +37,6 @@ LARGEST = {
     "every design, lavapipe": (98, 98, "a software device shows that answers agree, not how fast one is"),
     "bounds": (560, 560, "nothing"),
 }
-CVT = Path("benches/studies/metal-cvt-traction.toml").read_text()
 # Levels of groove angle, thickness and traction: all levels of the shipped study (61, 41, 11) are among them.
 CVT_LEVELS = ((61, 41, 11), (121, 81, 21), (481, 321, 81), (2101, 1401, 381))
 # Of axial_force_N, stress_margin and slip_margin: without them the front of four objectives would grow as the grid does.
@@ -141,7 +140,7 @@ def grid(program, levels, long, limit, folder, problems):
     """metal-grid with this many levels, by every method that can."""
     designs = 11 * levels**4
     study = folder / f"metal-grid-{levels}.toml"
-    study.write_text(measures.STUDY.replace("count = 37", f"count = {levels}"))
+    study.write_text(refined.grid(levels))
     rows, fronts, folders = {}, {}, {}
     for name in (*PEERS, *OWN):
         largest = LARGEST[name][1 if long else 0]
@@ -168,29 +167,10 @@ def grid(program, levels, long, limit, folder, problems):
     return {"levels": levels, "designs": designs, "largest_difference": worst, "methods": rows}
 
 
-def cvt_study(resolutions, angle, thickness, traction):
-    """The study benches/studies/metal-cvt-traction.toml, finer, without its histogram and its map; without resolutions the front of four objectives
-    would be as large as the grid."""
-    force, stress, slip = resolutions
-    text, changes = CVT, (
-        ("count = 61 }", f"count = {angle} }}"),
-        ("step = 0.005 }", f"count = {thickness} }}"),
-        ("count = 11 }", f"count = {traction} }}"),
-        ('axial_force_N = "min"', f'axial_force_N = {{ goal = "min", resolution = {force} }}'),
-        ('stress_margin = "max"', f'stress_margin = {{ goal = "max", resolution = {stress} }}'),
-        ('slip_margin   = "max"', f'slip_margin   = {{ goal = "max", resolution = {slip} }}'),
-    )
-    for old, new in changes:
-        if text.count(old) != 1:
-            sys.exit(f"benches/studies/metal-cvt-traction.toml has changed: {old} stands in it {text.count(old)} times")
-        text = text.replace(old, new)
-    return re.sub(r"(?m)^(histograms|maps) .*\n", "", text)
-
-
 def cvt(program, levels, resolutions, limit, folder, problems):
     """metal-cvt, finer, by bounds; up to 1e9 designs also design by design."""
     study = folder / f"metal-cvt-{levels[0]}.toml"
-    study.write_text(cvt_study(resolutions, *levels))
+    study.write_text(refined.cvt(resolutions, *levels))
     designs = 9 * math.prod(levels)
     rows, folders = {}, {}
     for name in ("every design, processor", "bounds"):
@@ -417,7 +397,7 @@ def main():
 
 def write_study(folder):
     study = folder / "small.toml"
-    study.write_text(measures.STUDY.replace("count = 37", "count = 10"))
+    study.write_text(refined.grid(10))
     return study
 
 
