@@ -5,6 +5,7 @@ import json
 import os
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
 from datetime import date
@@ -45,7 +46,7 @@ def built(revision, folder):
     target = Path("target/before").absolute()
     subprocess.run(["cargo", "build", "--release", "--locked", "--quiet", "--bin", "beltspace"], cwd=source, check=True,
                    env={**os.environ, "CARGO_TARGET_DIR": str(target)})
-    return shutil.copy(target / "release" / "beltspace", folder / "earlier")
+    return shutil.copy(target / "release" / "beltspace", folder / "program")
 
 
 def run(program, study, options, out):
@@ -107,7 +108,7 @@ def main():
             rows.append(row)
             print(f"{row['case']:<62} {row['earlier_processor_s']:9.3f} s  {row['processor_s']:8.3f} s  {row['times_faster']:6.2f} times", flush=True)
     record = {"date": date.today().isoformat(), "machine": processor(), "cores": os.cpu_count(), "revision": given.revision,
-              "command": "benches/before", "cases": rows}
+              "command": " ".join(["benches/before", *sys.argv[2:]]), "cases": rows}
     if given.out:
         given.out.write_text(json.dumps(record, indent=1) + "\n")
 

@@ -18,9 +18,9 @@ const SCENARIO: f64 = 2e-7;
 /// and at most so many in all: one bound may settle many cells.
 const CELL: f64 = 5e-4;
 const CELLS: f64 = 1e-2;
-/// Where it is not yet known which scenarios are the worst, each further part of them has bounds of its own, in a box and in all that
-/// are cut from it, while the engine drops most designs after a few scenarios: so many times the bounds of a part. Between 16 and 256
-/// studies take about as long.
+/// Scenarios that may be the worst are bounded in parts, each by itself, in a box and again in every box cut from it; the engine drops
+/// most designs after a few scenarios. For each part beyond the first a leaf may take so many times as long as the bounds of one part.
+/// Factors of 16 to 256 took about the same time.
 const FURTHER: f64 = 64.0;
 /// Most scenarios of a leaf that are listed: of more, all are looked at.
 const CHOSEN: u64 = 1 << 12;

@@ -16,19 +16,20 @@ const AT_A_TIME: u64 = 4096;
 /// Some scenarios with their inputs in the units of the model, and their weight if the study has weights.
 fn table(plan: &Plan, numbers: Range<u64>) -> Table {
     let study = &plan.study;
+    let axes = study.operation.iter().chain(&study.uncertainty);
+    let inputs: Vec<_> = axes.flat_map(|axis| axis.inputs().iter().enumerate().map(move |(place, &input)| (axis, place, input))).collect();
+    let mut values = vec![Vec::new(); inputs.len()];
+    let mut all = study.fixed.clone();
+    for scenario in numbers.clone() {
+        plan.space.scenarios.set(scenario, &mut all);
+        values.iter_mut().zip(&inputs).for_each(|(column, &(.., input))| column.push(all[input]));
+    }
     let mut columns = vec![TableColumn::index("scenario", "Number of the scenario.", numbers.clone().map(Some))];
-    for axis in study.operation.iter().chain(&study.uncertainty) {
-        for (place, &input) in axis.inputs().iter().enumerate() {
-            let described = &study.model.inputs[input];
-            let has_words = described.is_enumeration() || axis.has_number(place, |it| described.word_for(it).is_some());
-            let mut values = study.fixed.clone();
-            let value = |scenario| {
-                plan.space.scenarios.set(scenario, &mut values);
-                values[input]
-            };
-            let column = input_column(described, numbers.clone().map(value), has_words);
-            columns.push(TableColumn { role: "scenario".to_owned(), ..column });
-        }
+    for (&(axis, place, input), values) in inputs.iter().zip(values) {
+        let described = &study.model.inputs[input];
+        let has_words = described.is_enumeration() || axis.has_number(place, |it| described.word_for(it).is_some());
+        let column = input_column(described, values.into_iter(), has_words);
+        columns.push(TableColumn { role: "scenario".to_owned(), ..column });
     }
     if let Some((spectrum, weights)) = plan.listed_weights() {
         let doc = format!("Weight of the case of {}.", spectrum.name);
@@ -88,6 +89,12 @@ mod tests {
         assert_eq!(written, csv::write(&whole));
         let words = whole.columns.iter().map(|it| it.name.as_str()).collect::<Vec<_>>();
         assert_eq!(words, ["scenario", "torque_Nm", "ratio", "traction"]);
+        let many = study_of(
+            &crate::models::find("metal-cvt").expect("it is a model"),
+            &text.replace("count = 101", "count = 5001").replace("count = 50 ", "count = 5000 "),
+        );
+        let refused = many.expect("the study is right").scenario_table().expect_err("there are 5e7");
+        assert!(refused.to_string().contains("has 50010000 scenarios, and a table of them at most 20000000"), "{refused}");
         assert!(written.starts_with(b"scenario,torque_Nm,ratio,traction\n0,50,0.5,limit\n1,50,0.5,0.3\n2,50,"));
     }
 }

@@ -91,10 +91,11 @@ impl Infeasible {
         for (constraint, reach) in study.constraints.iter().zip(&self.reach) {
             let what = constraint_in_words(study, constraint);
             let unit = &study.unit_over(constraint.quantity, constraint.over);
-            // A bound of 0 on a yield would ask for nothing: what draws fail at is what stands in the way.
+            // A bound of 0 on a yield would ask for nothing.
             let is_share = study.probability.as_ref().is_some_and(|it| it.is_share(constraint.quantity));
             if let Some(best) = reach.best.filter(|it| is_share && it.value == 0.0 && !constraint.holds(0.0)) {
-                sentences.push(format!("{what}: of the best {} not one draw holds; what draws fail at stands in the way", of(&best)));
+                let which = if best.exact { "" } else { " of the sample" };
+                sentences.push(format!("{what}: no draw of any design{which} holds; relax what the draws fail at"));
                 continue;
             }
             let mut parts = Vec::new();
@@ -267,7 +268,12 @@ mod tests {
             Infeasible::of(&plan, 1, &Control::default()).expect("nobody stops it").in_words(&plan.study)
         };
         let none = said(1e6);
-        assert!(none[0].contains("at least 0.9: of the best of all designs not one draw holds"), "{none:?}");
+        assert!(none[0].contains("at least 0.9: no draw of any design holds; relax what the draws fail at"), "{none:?}");
         assert!(!none.iter().any(|it| it.contains("a bound of 0 ")), "{none:?}");
+        let some = said(0.5);
+        assert!(
+            some[0].contains("at least 0.9: the best of all designs has 0.8125") && some[0].contains("a bound of 0.8125 lets"),
+            "{some:?}"
+        );
     }
 }

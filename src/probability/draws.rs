@@ -312,8 +312,8 @@ impl Effect {
         }
     }
 
-    /// A distribution in words, with what it does before it.
-    pub(crate) fn before(self, law: &str) -> String {
+    /// A distribution in words, after "times" or "plus" if it is a tolerance.
+    pub(crate) fn in_words_with(self, law: &str) -> String {
         match self {
             Self::Is => law.to_owned(),
             Self::Times => format!("times {law}"),

@@ -207,8 +207,8 @@ fn settle_watched(
     control.settles(format!("{what}, {passes} of {passes}"));
     watch.counts();
     let tallies = BoundedStudy::tallies(plan);
-    if tallies.is_empty() && designs == whole.end - whole.start {
-        take_counted(job, &mut certificate, work)?;
+    if tallies.is_empty() {
+        take_counted(job, whole, &mut certificate, work)?;
     }
     let shared = Mutex::new(work);
     let settled = on_threads(0..options.threads.max(1), |_| count_on_thread(job, layout, &tallies, &shared, watch));
@@ -292,19 +292,16 @@ fn search(
     true
 }
 
-/// Takes the number of feasible designs from a search that has counted all of them on its way.
-fn take_counted(job: SweepJob<'_>, certificate: &mut Certificate, work: &mut SweepWork<'_>) -> Result<()> {
+/// Takes the number of feasible designs from a search that has counted all of them on its way, if one has.
+fn take_counted(job: SweepJob<'_>, whole: &Range<u64>, certificate: &mut Certificate, work: &mut SweepWork<'_>) -> Result<()> {
     let found = certificate.searches.iter().find_map(|(_, it)| it.counted.map(|feasible| (*it, feasible)));
-    let Some((searched, mut feasible)) = found else { return Ok(()) };
+    let (Some((searched, feasible)), Some(range)) = (found, work.todo.first().filter(|it| it == whole)) else { return Ok(()) };
     certificate.count = Settled { infeasible: searched.infeasible, pairs: searched.pairs, ..Settled::default() };
-    while let Some(range) = work.todo.first() {
-        let range = work.todo.take(range.end - range.start).unwrap_or(range);
-        let mut counted = job.reduction.start();
-        counted.feasible = std::mem::take(&mut feasible);
-        work.reducers.merge(counted.into_fresh());
-        work.finish(job.plan, range)?;
-    }
-    Ok(())
+    let mut counted = job.reduction.start();
+    counted.feasible = feasible;
+    work.todo.take(range.end - range.start);
+    work.reducers.merge(counted.into_fresh());
+    work.finish(job.plan, range)
 }
 
 /// Counts ranges until there are none left: the feasible designs, then those of each tally. Returns how each of them was settled.

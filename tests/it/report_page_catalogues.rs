@@ -44,10 +44,11 @@ fn rows_of_a_catalogue_are_called_by_their_labels_and_are_no_ranges() {
 fn titles_of_many_axes_do_not_touch() {
     let swept = Swept::shipped("catalogue-v-belts");
     let mut browser = Browser::open(&swept.page(), "");
+    // Words less than 4 px apart read as one.
     let touching = "(() => { const boxes = [...document.querySelectorAll('.axis-head :is(.axis-name, .axis-unit span)')].map((it) => { \
         const range = document.createRange(); range.selectNodeContents(it); return [...range.getClientRects()].map((box) => ({ text: it.textContent, of: it.closest('.axis-head').dataset.axis, \
         left: box.left, right: box.right, top: box.top, bottom: box.bottom })); }).flat().filter((it) => it.right > it.left); \
-        const pairs = boxes.flatMap((a, i) => boxes.slice(i + 1).filter((b) => a.of !== b.of && a.left < b.right + 1 && b.left < a.right + 1 && a.top < b.bottom - 1 && b.top < a.bottom - 1) \
+        const pairs = boxes.flatMap((a, i) => boxes.slice(i + 1).filter((b) => a.of !== b.of && a.left < b.right + 4 && b.left < a.right + 4 && a.top < b.bottom - 1 && b.top < a.bottom - 1) \
         .map((b) => `${a.text} and ${b.text}`)); return { count: boxes.length, pairs }; })()";
     for width in [390, 1366, 1920] {
         browser.resize(width, 900);

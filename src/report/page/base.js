@@ -54,7 +54,7 @@ page.count = (n) => {
 page.percent = (part, of) => {
   if (!of) return "–";
   const share = (100 * part) / of;
-  if (part < of && share > 99.95) return "> 99.9 %";
+  if (part < of && share >= 99.95) return "> 99.9 %";
   if (part > 0 && share < 0.01) return "< 0.01 %";
   return `${share.toFixed(share >= 10 || share === 0 ? 1 : 2)} %`;
 };

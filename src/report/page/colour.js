@@ -110,7 +110,7 @@
     return page.element("div", { class: "colour-bar" }, page.element("div", { class: "bar-title" }, title), page.element("div", { class: "words" }, column.words.map(swatch)));
   };
 
-  // In so many px.
+  // At most so many px wide.
   page.legend = (room) => {
     const column = page.front.byName.get(page.state.colour);
     const bar = column ? legendOf(column, room) : page.element("div", {});

@@ -2,8 +2,7 @@
 {
   // More rows than a reader would scroll through are only in the file.
   const MOST = 1000;
-  const PRINTED = 40; // of designs; as in style.css
-  const SHEET = 160; // columns that a sheet has room for, times the size of their letters in px
+  const SHEET = 160; // px of letters beside each other: 20 columns have room in letters of 8 px
 
   const shorten = (text) => (text !== "" && Number.isFinite(Number(text)) ? page.short(Number(text)) : text);
 
@@ -33,7 +32,7 @@
       for (const event of ["current", "card"]) page.events.on(`${event}.${id}`, () => markCurrent(body));
     }
     const rest = (most, kind) => (of > most ? page.element("span", { class: kind }, ` The first ${most} of ${page.count(of)} rows are shown.`) : null);
-    const paper = index < 0 ? rest(MOST, "print-only") : rest(PRINTED, "print-only");
+    const paper = index < 0 ? rest(MOST, "print-only") : rest(page.mostPrinted, "print-only");
     return page.element("section", { id, "data-testid": id, "aria-labelledby": `${id}-title` }, page.element("h2", { id: `${id}-title` }, title), page.element("p", { class: "hint" }, hint, rest(MOST, "no-print"), paper), page.element("div", { class: "scroll tall", tabindex: 0, role: "region", "aria-label": `${title}, the table` }, table));
   };
 

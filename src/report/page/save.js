@@ -46,7 +46,7 @@
     return lines;
   };
 
-  // What of a place a box shows that scrolls or cuts off.
+  // From where to where a box can be seen: what scrolls or is cut off shows a part of itself only.
   const shownOf = (element, style, clip) => {
     if (style.overflowY === "visible" || element.scrollHeight <= element.clientHeight + 1) return clip;
     const { top, bottom } = element.getBoundingClientRect();

@@ -1,7 +1,7 @@
 // The selected designs as a table, sortable by each column, and as CSV with every digit.
 {
   const MOST = 200;
-  const PRINTED = 40; // as the style of printed pages has it
+  page.mostPrinted = 40; // rows of designs, as the style of printed pages has it
   let sort = { name: null, down: false };
   let body, note, heads, oneStop;
 
@@ -61,7 +61,7 @@
     body.replaceChildren(...rows.slice(0, MOST).map(line));
     const first = (most) => (rows.length > most ? `The first ${most} of ${page.count(rows.length)} are shown; the CSV has them all.` : "");
     const said = rows.length ? first(MOST) : "No design is in all of the selected ranges.";
-    note.replaceChildren(page.element("span", { class: "no-print" }, said), page.element("span", { class: "print-only" }, rows.length ? first(PRINTED) : said));
+    note.replaceChildren(page.element("span", { class: "no-print" }, said), page.element("span", { class: "print-only" }, rows.length ? first(page.mostPrinted) : said));
     page.byId("csv").disabled = !rows.length;
     oneStop();
     markCurrent();

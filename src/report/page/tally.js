@@ -45,7 +45,7 @@
     const said = [first.constraint ? `The most frequent reason: ${count} violate the constraint “${first.text}”.` : `The most frequent reason: ${count} have the status “${first.text}”.`];
     const { draws } = page.data;
     const [worst] = draws ? reasons(draws).filter((reason) => reason.constraint && reason.failed > 0) : [];
-    if (worst) said.push(`A yield is what its draws leave: ${page.percent(worst.failed, draws.sampled)} of them fail at “${worst.text}”.`);
+    if (worst) said.push(`Of the draws, ${page.percent(worst.failed, draws.sampled)} fail at “${worst.text}”.`);
     const alone = all.filter((reason) => reason.only > 0).sort((a, b) => b.only - a.only);
     if (alone.length) said.push(`What to relax: ${alone.map((reason) => `“${reason.text}”, which alone excludes ${page.count(reason.only)} designs (${page.percent(reason.only, tally.sampled)})`).join("; ")}. These designs keep all other constraints.`);
     else if (first.constraint) said.push("No design is excluded by one constraint alone, so relaxing one is not enough. Relax several, widen the ranges of the design inputs, or ask for fewer operating points.");

@@ -76,13 +76,13 @@ impl UncertainInput {
         // Numbers that cancel leave a rest of their rounding errors.
         let mean = if mean.abs() < ROUNDING * sd { 0.0 } else { mean };
         let law = format!("{}{}: mean {}, sd {}", self.law.name(), self.law.cut_in_words(), short(mean), short(sd));
-        self.effect.before(&law)
+        self.effect.in_words_with(&law)
     }
 
     /// The distribution as the study gives it: its name, its parameters and where it is cut off.
     pub fn as_given(&self) -> String {
         let law = format!("{} {}{}", self.law.name(), self.law.law.parameters(), self.law.cut_in_words());
-        self.effect.before(&law)
+        self.effect.in_words_with(&law)
     }
 
     /// What a drawn number does to the value of `input`.

@@ -1,6 +1,7 @@
 // A V-belt pulley: seen along its shaft with the arc of contact, and the section of its rim with the grooves.
 {
-  // Where the model has no dimensions of the groove: its width of the mean radius, its depth to either side of that of its width.
+  // Where the model has no dimensions of the groove: its width as a share of the mean radius, its depth to either side of that radius as a
+  // share of its width.
   const WIDTH = 0.2;
   const DEPTH = 0.4;
 
