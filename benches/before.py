@@ -34,7 +34,9 @@ CASES = [
     ("400 sections of pulleys: pressed cup", SECTIONS.format(preset="pressed-cup", thin=1.4, thick=2.4, count=40), ["--method", "exhaustive"], 3, False),
     ("400 sections of pulleys: double groove", SECTIONS.format(preset="double-groove", thin=1.6, thick=2.4, count=40), ["--method", "exhaustive"], 3, False),
     ("device: metal-grid, 1.0e9 designs", grid(98), ["--method", "exhaustive", "--engine", "gpu"], 1, False),
+    ("device: metal-grid, 1.0e10 designs", grid(174), ["--method", "exhaustive", "--engine", "gpu"], 1, False),
     ("device: traction study, 1.9e6 designs in 434 scenarios", cvt(RESOLUTIONS, 121, 81, 21), ["--method", "exhaustive", "--engine", "gpu"], 1, False),
+    ("device: traction study, 1.1e8 designs in 434 scenarios", cvt(RESOLUTIONS, 481, 321, 81), ["--method", "exhaustive", "--engine", "gpu"], 1, False),
 ]
 
 

@@ -8,6 +8,7 @@ import json
 import math
 import os
 import platform
+import re
 import statistics
 import subprocess
 import sys
@@ -25,10 +26,8 @@ import pulley_measures  # noqa: E402
 import timing_measures  # noqa: E402
 
 STUDY = Path("studies/metal-grid.toml").read_text()
-# Designs per second of the device kernel's inner loop if only its arithmetic took time: about 130 operations on f32 per design
-# (10 for the values, the rest for bounds, decisions and 16 comparisons with the front), at 67e9 operations/s, which lavapipe was
-# measured to make on two cores. Bytes do not count: a row's 1100 designs share what is loaded.
-FLOOR = 67e9 / 130
+# Operations on f32 per second that lavapipe was measured to make on two cores.
+ARITHMETIC = 67e9
 
 
 def sweep(program, levels, folder, engine="cpu"):
@@ -44,6 +43,14 @@ def sweep(program, levels, folder, engine="cpu"):
     if process.returncode:
         sys.exit(f"{command}: exit code {process.returncode}")
     return out, time.perf_counter() - start, peak
+
+
+def operations(program, levels, folder):
+    """Operations of the device's kernel, as it counts them in its text: for a run of designs, the designs of a run, for a design alone."""
+    kernel = folder / f"metal-grid-{levels}.wgsl"
+    subprocess.run([program, "sweep", folder / f"metal-grid-{levels}.toml", "--emit-shader", kernel], check=True, stdout=subprocess.DEVNULL)
+    line = kernel.read_text().splitlines()[1]
+    return [int(number) for number in re.fullmatch(r".*: (\d+) for a run of up to (\d+) designs, (\d+) for a design that .*", line).groups()]
 
 
 def front_of(out):
@@ -81,19 +88,23 @@ def on_device(program, levels, folder, expected=None):
                 sys.exit(f"{levels} levels: {file.name} differs between --engine gpu and --engine cpu")
     run = json.loads((out / "run.json").read_text())
     device = run["device"]
+    each, length, alone = operations(program, levels, folder)
+    # If only the arithmetic of the inner loops took time.
+    per_design = each / length + alone * device["judged_singly"] / device["designs"]
     return {"designs": run["designs"], "seconds": seconds, "sweep_seconds": run["seconds"], "designs_per_second": run["designs"] / seconds,
             "peak_MB": peak, "adapter": device["adapter"], "driver": device["driver"], "tiles": device["tiles"],
             "unsure_designs": device["unsure_designs"], "survivors": device["survivors"],
             "survivors_per_tile": device["survivors"] / device["tiles"],
-            "share_of_floor": run["designs"] / run["seconds"] / FLOOR}
+            "operations_per_run": each, "designs_of_a_run": length, "operations_alone": alone, "judged_singly": device["judged_singly"],
+            "operations_per_design": per_design, "share_of_floor": run["designs"] / run["seconds"] * per_design / ARITHMETIC}
 
 
 def large(program, folder):
-    """1e10 designs: whole command, and the peak memory of the child."""
+    """1e10 designs: whole command, the peak memory of the child, and the same on a device."""
     out, seconds, peak = sweep(program, 174, folder)
     summary = json.loads((out / "summary.json").read_text())
     return {"designs": summary["designs"], "feasible": summary["feasible"], "front": summary["front"], "seconds": seconds,
-            "designs_per_second": summary["designs"] / seconds, "peak_MB": peak}
+            "designs_per_second": summary["designs"] / seconds, "peak_MB": peak, "gpu": on_device(program, 174, folder, out)}
 
 
 def answers(program):
@@ -142,6 +153,7 @@ def main():
         row = record["large"]
         print(f"metal-grid {row['designs']:>12} designs  feasible {row['feasible']}  front {row['front']}  {row['seconds']:.1f} s  "
               f"{row['designs_per_second']:.3g} designs/s  peak memory {row['peak_MB']:.0f} MB")
+        print_device(row["gpu"])
     timing_measures.show(record["timing_belt"])
     pulley_measures.show(record["pulley"])
     print("answers: " + ", ".join(f"{command} {ms:.1f} ms" for command, ms in record["answers_ms"].items()))
@@ -150,8 +162,8 @@ def main():
 
 def print_device(row, end=""):
     print(f"  --engine gpu on {row['adapter']}: {row['designs']} designs in {row['seconds']:.2f} s  {row['designs_per_second']:.3g} designs/s, "
-          f"{100 * row['share_of_floor']:.0f} % of the floor  unsure {row['unsure_designs']}  survivors per tile "
-          f"{row['survivors_per_tile']:.0f}  peak memory {row['peak_MB']:.0f} MB{end}")
+          f"{row['operations_per_design']:.1f} operations a design  {100 * row['share_of_floor']:.0f} % of the floor  unsure "
+          f"{row['unsure_designs']}  survivors {row['survivors']}  peak memory {row['peak_MB']:.0f} MB{end}")
 
 
 def write(out, record):

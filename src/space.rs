@@ -159,6 +159,15 @@ impl Product {
         chosen
     }
 
+    /// The combinations that differ from one along a single dimension, by so many levels.
+    pub fn beside(&self, index: u64, levels: u64) -> impl Iterator<Item = u64> {
+        self.places.iter().flat_map(move |place| {
+            let digit = place.digit(index);
+            let others = [digit.checked_sub(levels), digit.checked_add(levels).filter(|&it| it < place.count)];
+            others.into_iter().flatten().map(move |other| index - digit * place.stride + other * place.stride)
+        })
+    }
+
     /// The index of combination `index` in the study's order, less what the other dimensions contribute.
     pub fn source_index(&self, index: u64) -> u64 {
         self.places.iter().map(|place| place.digit(index) * place.source_stride).sum()
@@ -249,6 +258,17 @@ mod tests {
     use super::*;
     use crate::plan::Plan;
     use crate::study::{Levels, Study};
+
+    #[test]
+    fn combinations_beside_one_differ_along_one_dimension() {
+        let axis = |input, count: u64| {
+            SpaceDimension::Axis(Axis::Single { input, levels: Levels::List((0..count).map(|level| level as f64).collect()) })
+        };
+        let product = Product::new([axis(0, 3), axis(1, 5), axis(2, 1)].into_iter()).expect("so few fit");
+        // Level 0 of the first and 3 of the second.
+        let beside = |levels| product.beside(3, levels).collect::<Vec<_>>();
+        assert_eq!([beside(1), beside(2), beside(4)], [vec![8, 2, 4], vec![13, 1], vec![]]);
+    }
 
     #[test]
     fn a_coarser_grid_of_very_many_axes_is_no_larger() {

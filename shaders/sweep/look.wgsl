@@ -26,7 +26,7 @@ fn closer_look(lane: Lane, horizon: Horizon, index: vec2<u32>, local: vec3<u32>)
     var why = 0u;
     if OBJECTIVES > 0u {
         let keys = keys_of(lane);
-        var beaten = beaten_by_dominators(keys, horizon) || beaten_by_table(keys);
+        var beaten = beaten_by_dominators(keys, horizon) || beaten_by_table(keys) || beaten_by_front(keys);
         if USES_ROW_DOMINATORS && !beaten {
             beaten = beaten_in_the_row(keys, local);
         }
@@ -70,15 +70,15 @@ fn append(row: u32, lane: u32, why: u32, judged: Lane) {
     }
 }
 
-// The closer look at the lanes of a block, `step` apart from `start` on. How many are surely feasible, and how many are for f64 to count.
+// The closer look at the lanes of a block, which `lane_at` finds from `first`. How many are surely feasible, and how many are for f64 to
+// count.
 fn look_closer(
     seen: Seen,
     row: u32,
     state: RowState,
     held: Prepared,
     horizon: Horizon,
-    start: u32,
-    step: u32,
+    first: u32,
     kept: ptr<function, array<Lane, KEPT>>,
     local: vec3<u32>,
 ) -> vec2<u32> {
@@ -88,7 +88,7 @@ fn look_closer(
     while flagged != 0u {
         let i = firstTrailingBit(flagged);
         flagged &= flagged - 1u;
-        let lane = start + i * step;
+        let lane = lane_at(state, first, i);
         let place = digits_of_lane(lane);
         var judged: Lane;
         if KEEPS {
@@ -101,7 +101,7 @@ fn look_closer(
         var why = IS_UNSURE;
         if counted {
             if judged.verdict == YES && enters_histograms(judged) {
-                why = closer_look(judged, horizon, wide_add(state.index, index_of_lane(place)), local);
+                why = closer_look(judged, horizon, wide_add(state.index, index_of_lane(lane)), local);
                 why |= enter_maps(judged, state, place);
             } else {
                 // Not sure any more, or its bin is not: f64 counts the whole design.

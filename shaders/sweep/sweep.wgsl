@@ -41,7 +41,7 @@ fn sweep(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) 
             }
             workgroupBarrier();
         }
-        counted += look_closer(seen, at, state, held, horizon, start, 1u, &kept, local);
+        counted += look_closer(seen, at, state, held, horizon, start, &kept, local);
         if USES_ROW_DOMINATORS {
             workgroupBarrier();
         }

@@ -14,7 +14,8 @@ struct Tile {
     index: vec2<u32>,
     // First level of the outermost dimension's window.
     window: u32,
-    unused: u32,
+    // Room for open runs behind the rows.
+    open_room: u32,
     // Position of the first row along each slow dimension; of the outermost one within its window of levels.
     digits: array<vec4<u32>, DIGIT_VECTORS>,
 }
@@ -33,6 +34,8 @@ struct KnownUniform {
     table: vec4<f32>,
     // The largest place, two words, that may still be part of a sample of feasible designs.
     last_place: vec4<u32>,
+    // How many points of the front stand behind the look-up table.
+    points: vec4<u32>,
 }
 
 @group(0) @binding(0) var<uniform> tile: Tile;

@@ -22,4 +22,4 @@ pub(crate) use device::{Buffer, Wait};
 #[doc(hidden)]
 pub use points::PointKernel;
 pub(crate) use program::Program;
-pub(crate) use source::{model_prelude, model_source, stages_source, stages_source_64, structure, tables};
+pub(crate) use source::{model_prelude, model_source, onwards_source, stages_source, stages_source_64, structure, tables};

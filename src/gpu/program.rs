@@ -154,11 +154,23 @@ impl Program {
     /// # Panics
     /// If the entry point was not compiled.
     pub(crate) fn dispatch(&self, encoder: &mut wgpu::CommandEncoder, entry: &str, bound: &wgpu::BindGroup, groups: [u32; 2]) {
+        self.pass(encoder, entry, bound).dispatch_workgroups(groups[0], groups[1], 1);
+    }
+
+    /// The same over as many workgroups as the first three words of a buffer say by then.
+    ///
+    /// # Panics
+    /// If the entry point was not compiled.
+    pub(crate) fn dispatch_counted(&self, encoder: &mut wgpu::CommandEncoder, entry: &str, bound: &wgpu::BindGroup, groups: &Buffer) {
+        self.pass(encoder, entry, bound).dispatch_workgroups_indirect(groups, 0);
+    }
+
+    fn pass<'e>(&self, encoder: &'e mut wgpu::CommandEncoder, entry: &str, bound: &wgpu::BindGroup) -> wgpu::ComputePass<'e> {
         let (_, pipeline) = self.pipelines.iter().find(|(name, _)| name == entry).expect("the entry point was compiled");
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         pass.set_pipeline(pipeline);
         pass.set_bind_group(0, bound, &[]);
-        pass.dispatch_workgroups(groups[0], groups[1], 1);
+        pass
     }
 }
 

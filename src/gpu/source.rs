@@ -2,7 +2,7 @@
 
 use super::constants::{common_constants, constants_64};
 use crate::models::{Fields, Model, Set};
-use crate::tape::{Recordable, StageLists, wgsl};
+use crate::tape::{Onwards, Recordable, StageLists, wgsl};
 use std::collections::HashSet;
 use std::fmt::Write;
 
@@ -87,6 +87,12 @@ fn equations(model: &Model) -> Vec<&str> {
 /// The same from lists of its formula.
 pub fn stages_source(model: &Model, fields: &Fields, lists: &StageLists) -> String {
     wgsl::stages_text(&wgsl::OWN, fields, lists, &equations(model))
+}
+
+/// The second stage of a formula from one number on: the functions `conditions_onwards` and `finish_onwards`.
+pub fn onwards_source(model: &Model, fields: &Fields, onwards: &Onwards) -> String {
+    let names = wgsl::StageNames { conditions: "conditions_onwards", finish: "finish_onwards", ..wgsl::OWN };
+    wgsl::onwards(&names, fields, onwards, &equations(model))
 }
 
 /// A structure of `Real`s.

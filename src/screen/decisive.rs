@@ -127,6 +127,12 @@ impl Decisive {
         self.scalars.extend(scalars);
     }
 
+    /// The scenarios that decide about the row, by the order in which they were added.
+    #[cfg(feature = "gpu")]
+    pub(super) fn kept(&self) -> &[usize] {
+        &self.kept
+    }
+
     /// How many scenarios decide about the row.
     pub(super) fn count(&self) -> usize {
         self.kept.len()

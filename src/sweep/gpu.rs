@@ -1,5 +1,6 @@
 //! The sweep on a device: tiles judged there, survivors in f64 here, one host thread that keeps the answers.
 
+use super::beside::look_beside_front;
 use super::recheck::{Recheck, Recheckable};
 use super::{Control, HEAD_START_TIME, Settings, SweepJob, SweepWork, Swept, head_start, look_around};
 use crate::checkpoint::{Checkpoint, Progress};
@@ -43,7 +44,7 @@ impl DeviceRecord {
     pub fn to_json(&self) -> serde_json::Value {
         serde_json::json!({
             "designs": self.designs, "unsure_designs": self.unsure, "survivors": self.survivors,
-            "survivors_evaluated_in_f64": self.evaluated, "tiles": self.tiles, "repeated_tiles": self.repeated,
+            "judged_singly": self.singly, "survivors_evaluated_in_f64": self.evaluated, "tiles": self.tiles, "repeated_tiles": self.repeated,
             "seconds_waiting": self.waiting.as_secs_f64(), "compared_with_f64": self.recheck.to_json(),
         })
     }
@@ -56,6 +57,8 @@ pub struct DeviceRecord {
     pub designs: u64,
     /// Of these, designs that were unsure, and that f64 decided.
     pub unsure: u64,
+    /// Designs that were judged singly: no run of neighbours settled them.
+    pub singly: u64,
     /// Designs that came back for f64, the unsure ones among them.
     pub survivors: u64,
     /// Of these, designs that f64 had to evaluate.
@@ -101,8 +104,12 @@ pub(super) fn go_on(
     let SweepJob { plan, tables, reduction, options, control } = job;
     let start = Instant::now();
     let mut engine = GpuEngine::new(plan, &reduction.histogram_ranges(), &on.device, on.limited_loops, &on.wrong)?;
+    engine.look_for_scenarios(tables, options.threads);
     let whole = job.whole();
     let mut seen = look_around(job, &whole, HEAD_START_TIME);
+    if !on.wrong.is_blind() {
+        look_beside_front(job, &whole, HEAD_START_TIME / 2.0, &mut seen);
+    }
     let progress = progress.unwrap_or_else(|| Progress { done: Ranges::default(), state: head_start(reduction, &mut seen) });
     let mut work = SweepWork::new(job, progress, checkpoint);
     let designs = work.todo.count();
@@ -144,6 +151,7 @@ pub(super) fn go_on(
 /// As [`sweep_on_device`].
 pub fn recheck_on_device(plan: &Plan, tables: &Tables, reduction: &Reduction, threads: usize, on: &OnDevice) -> Result<Recheck> {
     let mut engine = GpuEngine::new(plan, &reduction.histogram_ranges(), &on.device, on.limited_loops, &on.wrong)?;
+    engine.look_for_scenarios(tables, threads);
     let whole = 0..plan.designs();
     let job = SweepJob { plan, tables, reduction, options: &Settings { threads, ..Settings::default() }, control: &Control::default() };
     let answers = answers(&mut look_around(job, &whole, HEAD_START_TIME));
@@ -246,9 +254,10 @@ impl Run<'_, '_> {
 
     /// Adds what the device counted, and decides in f64 what it could not.
     fn take_in(&mut self, work: &mut SweepWork<'_>, counts: &TileCounts, survivors: &Survivors) -> Result<()> {
-        let TileCounts { sure, unsure, reported } = counts;
+        let TileCounts { sure, unsure, singly, reported } = counts;
         self.reduction.add_counts(&mut work.reducers, *sure, reported);
         self.record.unsure += unsure;
+        self.record.singly += singly;
         self.record.survivors += survivors.len() as u64;
         // The front has grown since the tile was started, and the tile has met the best of its cells: most of what survived is
         // behind them by now.

@@ -5,6 +5,8 @@
 //! and the result does not depend on how the work was cut. For the sweep on a GPU see `sweep_on_device`.
 
 mod auto;
+#[cfg(feature = "gpu")]
+mod beside;
 mod bounds;
 pub mod costs;
 #[cfg(feature = "gpu")]

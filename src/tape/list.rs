@@ -182,13 +182,18 @@ impl List {
     /// The value of every operation that is not [`List::inner`], given those of the inputs; `unknown` for what loops leave.
     pub fn values<R: Real>(&self, inputs: &[R], unknown: R) -> Vec<R> {
         let mut slots = vec![unknown; self.operations.len()];
-        for (node, operation) in self.operations.iter().enumerate().filter(|(node, _)| !self.inner[*node]) {
+        self.refill(inputs, |_| true, &mut slots);
+        slots
+    }
+
+    /// Computes some of these again, where only inputs that they depend on have changed.
+    pub fn refill<R: Real>(&self, inputs: &[R], changes: impl Fn(usize) -> bool, slots: &mut [R]) {
+        for (node, operation) in self.operations.iter().enumerate().filter(|(node, _)| !self.inner[*node] && changes(*node)) {
             match *operation {
                 Operation::Input(input) => slots[node] = inputs[input as usize],
-                _ => self.compute(node as Node, &mut slots),
+                _ => self.compute(node as Node, slots),
             }
         }
-        slots
     }
 
     /// Computes one operation from its operands; what inputs are is the caller's business.

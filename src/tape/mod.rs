@@ -36,7 +36,7 @@ pub use list_columns::{LIST_CHUNK, ListColumns};
 pub use record::{Known, Loops, Recording, Trace};
 pub use rolled::{FormulaTable, ListLoop, Rolled, RolledLoop, Store};
 pub use set::Set;
-pub use settled::{SettledStages, StageLists};
+pub use settled::{Onwards, SettledStages, StageLists};
 pub use stages::{Fields, First, Reads, Recordable, Second, Whole};
 pub use steps::{Step, Steps};
 

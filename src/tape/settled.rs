@@ -46,7 +46,27 @@ pub struct SettledStages {
     pub reads: Reads,
     /// The names of the values, with what passes between these stages.
     pub fields: Fields,
+    /// The second stage from one number on, if one was chosen.
+    pub onwards: Option<Onwards>,
 }
+
+/// The second stage of a formula from one number on: all that changes quickly comes in by this number.
+#[derive(Clone, Debug)]
+pub struct Onwards {
+    /// What the number is made of; its one result.
+    pub number: List,
+    /// Inputs that it depends on.
+    pub inputs: Set,
+    /// Its name, a field behind those that pass between the stages.
+    pub field: &'static str,
+    /// Margins of the conditions, as in [`StageLists`], that read the number instead of making it.
+    pub conditions: List,
+    /// The same of the outputs.
+    pub finish: List,
+}
+
+/// Chooses a number of a second stage, given its list and which inputs of the formula each operation depends on.
+pub type Choice<'a> = &'a dyn Fn(&List, &[Set]) -> Option<Node>;
 
 /// Most numbers that the first stage may pass on. A formula that would need more is divided as it was written.
 const MOST_PASSED: usize = 200;
@@ -56,10 +76,29 @@ impl SettledStages {
     ///
     /// What depends on slow inputs alone is the first stage, unless the formula has loops or tables: then it is divided as it was written.
     pub fn divided(formula: &dyn Recordable, known: &[Known], wanted: Set, conditions: &[(usize, bool)], slow: Set) -> Self {
-        Self::by_inputs(formula, known, wanted, conditions, slow).unwrap_or_else(|| Self::new(formula, known, wanted, conditions))
+        Self::divided_with(formula, known, wanted, conditions, slow, &|_, _| None)
     }
 
-    fn by_inputs(formula: &dyn Recordable, known: &[Known], wanted: Set, conditions: &[(usize, bool)], slow: Set) -> Option<Self> {
+    /// The same; the second stage is also given from the number on that `choice` takes, if it takes one.
+    pub fn divided_with(
+        formula: &dyn Recordable,
+        known: &[Known],
+        wanted: Set,
+        conditions: &[(usize, bool)],
+        slow: Set,
+        choice: Choice<'_>,
+    ) -> Self {
+        Self::by_inputs(formula, known, wanted, conditions, slow, choice).unwrap_or_else(|| Self::new(formula, known, wanted, conditions))
+    }
+
+    fn by_inputs(
+        formula: &dyn Recordable,
+        known: &[Known],
+        wanted: Set,
+        conditions: &[(usize, bool)],
+        slow: Set,
+        choice: Choice<'_>,
+    ) -> Option<Self> {
         let own = formula.fields();
         let (first, second) = formula.stages(wanted, Set::ALL);
         let is_plain = |it: &Recording| it.loops.is_empty() && it.tables.is_empty();
@@ -81,17 +120,35 @@ impl SettledStages {
         }
         // A structure in WGSL has at least one field.
         let is_none = passed.is_empty();
-        let names: Vec<_> = (0..passed.len().max(1)).map(|number| interned(&format!("k{number}"))).collect();
-        let fields = Fields { prepared: interned_list(&names), ..own };
-        let first = List::cut(&settled, &passed.iter().copied().map(Some).chain(is_none.then_some(None)).collect::<Vec<_>>());
+        let mut names: Vec<_> = (0..passed.len().max(1)).map(|number| interned(&format!("k{number}"))).collect();
+        let mut first: Vec<_> = passed.iter().copied().map(Some).chain(is_none.then_some(None)).collect();
+        let all = [&outputs[..], &margins].concat();
+        let inputs_of = by_node(&settled, &all, |list| list.dependencies(|input| Set::one(input.into())));
+        let before = settled.clone();
         let mut second = settled;
         for (number, node) in passed.into_iter().enumerate() {
             let input = u16::try_from(own.inputs.len() + number).expect("there are few");
             second.operations[node as usize] = Operation::Input(input);
         }
         let [conditions, finish] = [&margins, &outputs].map(|nodes| List::cut(&second, nodes));
+        let list = List::cut(&second, &all);
+        let nodes: Vec<usize> = needed(&second, &all).iter().enumerate().filter(|(_, needed)| **needed).map(|(node, _)| node).collect();
+        let inputs: Vec<Set> = nodes.iter().map(|&node| inputs_of[node]).collect();
+        let onwards = choice(&list, &inputs).map(|chosen| {
+            let node = nodes[chosen as usize];
+            let field = interned(&format!("k{}", names.len()));
+            let number = List::cut(&second, &[Some(node as Node)]);
+            let input = u16::try_from(own.inputs.len() + names.len()).expect("there are few");
+            second.operations[node] = Operation::Input(input);
+            names.push(field);
+            first.push(None);
+            let [conditions, finish] = [&margins, &outputs].map(|nodes| List::cut(&second, nodes));
+            Onwards { number, inputs: inputs_of[node], field, conditions, finish }
+        });
+        let fields = Fields { prepared: interned_list(&names), ..own };
+        let first = List::cut(&before, &first);
         let reads = Reads::of_lists(&fields, &[&conditions, &finish]);
-        Some(Self { lists: StageLists { first, conditions, finish }, open, reads, fields })
+        Some(Self { lists: StageLists { first, conditions, finish }, open, reads, fields, onwards })
     }
 
     /// For these outputs and these conditions, of each of which is told whether its margin must be greater than zero (else at least zero).
@@ -123,7 +180,7 @@ impl SettledStages {
         let is_passed = |field: usize| reads.prepared.contains(field) || field >= fields.prepared.len();
         let passed = prepared.iter().enumerate().map(|(field, &(node, _))| node.filter(|_| is_passed(field)));
         let first = List::cut(&first, &passed.collect::<Vec<_>>());
-        Self { lists: StageLists { first, conditions, finish }, open, reads, fields }
+        Self { lists: StageLists { first, conditions, finish }, open, reads, fields, onwards: None }
     }
 }
 
@@ -170,6 +227,13 @@ fn passed_on(recording: &Recording, results: &[Option<Node>], slow: Set) -> Vec<
     let needed = needed(recording, results);
     let nodes = (0..recording.operations.len()).filter(|&node| needed[node]);
     nodes.zip(passed).filter(|&(_, is_passed)| is_passed).map(|(node, _)| node as Node).collect()
+}
+
+/// What a list that is cut to some results has for each of its operations, by the recording's.
+fn by_node<T: Clone + Default>(recording: &Recording, results: &[Option<Node>], each: impl Fn(&List) -> Vec<T>) -> Vec<T> {
+    let mut of_list = each(&List::cut(recording, results)).into_iter();
+    let needed = needed(recording, results);
+    needed.into_iter().map(|needed| if needed { of_list.next().expect("the list has it") } else { T::default() }).collect()
 }
 
 /// A recording in which every choice that is sure where inputs have these ranges is what was chosen, with what each result is then and the

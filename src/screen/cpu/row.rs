@@ -38,6 +38,16 @@ impl CpuEngine<'_> {
         done
     }
 
+    /// The scenarios that decide about the designs of a row, each as its slow one times the number of fast ones plus its fast one; `None`
+    /// where the row is infeasible or all may decide.
+    #[cfg(feature = "gpu")]
+    pub(in crate::screen) fn decisive_scenarios(&mut self, row: u64) -> Option<Vec<u32>> {
+        self.ahead = self.plan.fast.count();
+        let is_feasible = self.enter_row(row) && self.row_feasible;
+        let (_, decisive) = self.numbers.as_ref().filter(|_| is_feasible)?;
+        Some(decisive.kept().iter().map(|&scenario| scenario as u32).collect())
+    }
+
     /// Begins to look for the scenarios that decide about a row's designs; false where that cannot be done.
     pub(in crate::screen) fn begin_scenarios(&mut self) -> bool {
         self.numbers.as_mut().is_some_and(|(_, decisive)| {

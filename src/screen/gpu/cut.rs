@@ -1,18 +1,19 @@
 //! How the work of a tile is cut into invocations: lanes of a row in blocks, or in runs along one axis.
 
-use super::constants::LANE_BITS;
+use super::constants::MOST_GROUPS as MOST_GROUPS_U32;
 use super::layout::{FastDimension, LIST};
 use crate::gpu::WORKGROUP;
 use crate::models::Set;
 use crate::plan::{Plan, Source};
 use crate::space::SpaceDimension;
-use crate::tape::{Operation, StageLists};
+use crate::tape::{List, Operation};
 
 /// Most loop iterations of one invocation: some drivers end it after 65 535 without a word.
 pub const MOST_ITERATIONS: u64 = 55_000;
 /// Most workgroups of a dispatch along either side.
-pub const MOST_GROUPS: u64 = 65_535;
-/// Lanes of a block: their answers are the bits of one word.
+pub const MOST_GROUPS: u64 = MOST_GROUPS_U32 as u64;
+/// Lanes of a block: their answers are the bits of one word. Also most lanes of a run: the longer, the fewer runs there are, and the more of
+/// them are open.
 const BLOCK: u64 = 32;
 /// Lanes of one invocation where a design takes a single evaluation: what a row needs is then loaded rarely.
 const MANY_LANES: u64 = 256;
@@ -20,7 +21,7 @@ const MANY_LANES: u64 = 256;
 const GROUP: [u64; 2] = [4, 2];
 /// Least levels of an axis along which runs lie.
 const LEAST_LEVELS: u64 = 8;
-/// Most runs that an invocation takes: their numbers stand in the workgroup's memory.
+/// Most runs that an invocation of the first pass takes: those that are open stand in the workgroup's memory.
 const MOST_TURNS: u64 = 16;
 /// Evaluations of a small study.
 const SMALL: u64 = 20_000_000;
@@ -41,28 +42,52 @@ pub struct Cut {
     pub group_chunks: u64,
 }
 
-/// Runs: lanes that differ in one fast axis alone, which are judged together first.
+/// Runs: lanes with results that are near each other, which are judged together first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Runs {
-    /// The fast dimension along which they lie.
-    pub dimension: usize,
+    /// What neighbours in a run have in common.
+    pub along: RunsAlong,
     /// Most lanes of a run.
     pub length: u64,
-    /// Distance of its neighbours among the lanes.
-    pub step: u64,
     /// Runs of a row.
     pub of_row: u64,
-    /// Runs of one row that a workgroup takes.
-    pub at_once: u64,
-    /// Rows of a workgroup.
-    pub rows: u64,
+    /// Runs that an invocation of the first pass takes, all of one row.
+    pub each: u64,
+}
+
+/// What neighbours in a run have in common.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RunsAlong {
+    /// They differ in one fast axis alone.
+    Axis {
+        /// The fast dimension.
+        dimension: usize,
+        /// Their distance among the lanes.
+        step: u64,
+    },
+    /// They are next to each other in the order of the one number that lanes differ by.
+    Order,
 }
 
 /// Do the bounds of a formula's second stage hold however large those of its inputs are? What the bound of a root and of a number from a
 /// table says holds near their values only.
-pub fn covers_ranges(lists: &StageLists) -> bool {
+pub fn covers_ranges(lists: [&List; 2]) -> bool {
     let is_near = |operation: &Operation| matches!(operation, Operation::Root(_) | Operation::Rolled(_));
-    [&lists.conditions, &lists.finish].into_iter().all(|list| !list.operations.iter().any(is_near))
+    lists.into_iter().all(|list| !list.operations.iter().any(is_near))
+}
+
+/// Which runs a device is given: those along an axis cost a software device more than they save.
+#[derive(Clone, Copy, Debug)]
+pub struct RunKinds {
+    /// RunsAlong an axis.
+    pub axis: bool,
+    /// In the order of the one number that lanes differ by.
+    pub order: bool,
+}
+
+impl RunKinds {
+    /// All.
+    pub const ALL: Self = Self { axis: true, order: true };
 }
 
 impl Runs {
@@ -79,29 +104,44 @@ impl Runs {
         let (dimension, (axis, _)) = axes.max_by_key(|(_, (it, _))| it.count)?;
         let length = axis.count.div_ceil(axis.count.div_ceil(BLOCK));
         let of_row = plan.fast.count() / axis.count * axis.count.div_ceil(length);
-        let (shared, alone) = Cut::iterations(plan, own, cut.keeps);
-        let turns = MOST_ITERATIONS / ((1 + length.div_ceil(cut.group)) * shared + length * alone);
-        let most = turns.min(MOST_TURNS) * u64::from(WORKGROUP);
-        if most == 0 {
+        Self::cut(plan, RunsAlong::Axis { dimension, step: axis.lane_stride }, length, of_row, cut, own)
+    }
+
+    /// Runs of lanes next to each other in their order.
+    pub fn in_order(plan: &Plan, cut: Cut, own: u64) -> Option<Self> {
+        if cut.group == 1 || row_dominators(plan) {
             return None;
         }
-        let at_once = of_row.min(most);
-        Some(Self { dimension, length, step: axis.lane_stride, of_row, at_once, rows: most / at_once })
+        let lanes = plan.fast.count();
+        let length = lanes.div_ceil(lanes.div_ceil(BLOCK));
+        Self::cut(plan, RunsAlong::Order, length, lanes.div_ceil(length), cut, own)
     }
 
-    /// Most lanes of a row that one dispatch can take.
-    pub fn widest(self) -> u64 {
-        (MOST_GROUPS * self.at_once).min(1 << LANE_BITS)
+    fn cut(plan: &Plan, along: RunsAlong, length: u64, of_row: u64, cut: Cut, own: u64) -> Option<Self> {
+        let (shared, alone) = Cut::iterations(plan, own, cut.keeps);
+        if length.div_ceil(cut.group) * shared + length * alone > MOST_ITERATIONS {
+            return None;
+        }
+        let each = (MOST_ITERATIONS / (shared + alone)).min(MOST_TURNS);
+        // Of equal size, so that the last invocation of a row does not idle.
+        let each = of_row.div_ceil(of_row.div_ceil(each));
+        let runs = Self { along, length, of_row, each };
+        (runs.chunks() <= MOST_GROUPS * u64::from(WORKGROUP)).then_some(runs)
     }
 
-    /// Workgroups that cover `rows` rows.
+    /// Invocations of the first pass that share a row.
+    pub fn chunks(self) -> u64 {
+        self.of_row.div_ceil(self.each)
+    }
+
+    /// Most rows that one dispatch can take.
+    pub fn most_rows(self) -> u64 {
+        MOST_GROUPS * u64::from(WORKGROUP) / self.chunks()
+    }
+
+    /// Workgroups of the first pass that cover `rows` rows.
     pub fn groups(self, rows: u64) -> [u32; 2] {
-        [rows.div_ceil(self.rows), self.of_row.div_ceil(self.at_once)].map(|groups| groups as u32)
-    }
-
-    /// Runs that an invocation takes.
-    pub fn turns(self) -> u64 {
-        (self.rows * self.at_once).div_ceil(WORKGROUP.into())
+        [(rows * self.chunks()).div_ceil(WORKGROUP.into()) as u32, 1]
     }
 }
 
@@ -199,15 +239,19 @@ mod tests {
             ] {
                 let plan = study(model, axis, objective, scenarios);
                 for grouped in [false, true] {
-                    let Ok(layout) = KernelLayout::new(&plan, true, grouped, true) else { continue };
+                    let Ok(layout) = KernelLayout::new(&plan, true, grouped, RunKinds::ALL) else { continue };
                     let cut = layout.cut;
                     let (shared, alone) = Cut::iterations(&plan, layout.fields.iterations, cut.keeps);
                     let iterations = cut.lanes_each.div_ceil(cut.group) * shared + cut.lanes_each * alone;
                     // What one lane takes may pass the target by its closer look.
                     assert!(iterations <= MOST_ITERATIONS + 200, "{model}, {scenarios} scenarios: {cut:?} takes {iterations} iterations");
                     if let Some(runs) = layout.runs {
-                        let each = (1 + runs.length.div_ceil(cut.group)) * shared + runs.length * alone;
-                        assert!(runs.turns() * each <= MOST_ITERATIONS, "{model}, {scenarios} scenarios: {runs:?} of {each} iterations");
+                        for iterations in [runs.each * (shared + alone), runs.length.div_ceil(cut.group) * shared + runs.length * alone] {
+                            assert!(
+                                iterations <= MOST_ITERATIONS,
+                                "{model}, {scenarios} scenarios: {runs:?} takes {iterations} iterations"
+                            );
+                        }
                         in_runs += 1;
                     }
                     accepted += 1;

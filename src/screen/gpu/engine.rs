@@ -2,21 +2,24 @@
 
 use super::constants::Level;
 use super::constants::{
-    APPENDED, DIGIT_VECTORS, FIRST_REPORTED, IS_UNSURE, LANE_BITS, MAY_BE_END, MAY_BE_FRONT, MAY_BE_IN_MAP, SCENARIO_PER_LANE,
-    SCENARIO_PER_ROW, SURE, SURVIVOR_HEAD, UNDECIDED,
+    APPENDED, DIGIT_VECTORS, FIRST_REPORTED, GROUPS, IS_UNSURE, LANE_BITS, MAY_BE_END, MAY_BE_FRONT, MAY_BE_IN_MAP, OPEN,
+    SCENARIO_PER_LANE, SCENARIO_PER_ROW, SINGLY, SURE, SURVIVOR_HEAD, UNDECIDED,
 };
-use super::cut::MOST_GROUPS;
+use super::cut::{MOST_GROUPS, RunKinds};
 use super::held::histogram_beyond_f32;
 use super::held::refuse;
-use super::kernel::{self, Coordinate, ENTRIES, check_words, coordinates, survivor_words, text};
+use super::kernel::{self, Coordinate, check_words, coordinates, entries, survivor_words, text};
 use super::known::{self, KnownUniform};
 use super::layout::{KernelLayout, push_level};
+use super::row_scenarios::RowScenarios;
+use super::wrong::Wrong;
 use crate::decision::Decision;
 use crate::error::Result;
 use crate::gpu::constants::{UNSURE, YES};
 use crate::gpu::{Buffer, Device, Program, WORKGROUP, Wait};
 use crate::plan::Plan;
 use crate::reduce::{Answers, MOST_OBJECTIVES, ReducerNeeds, Reported};
+use crate::screen::Tables;
 use crate::study::{Best, Quantity};
 use crate::tape::RunningError;
 use bytemuck::{Pod, Zeroable};
@@ -27,8 +30,6 @@ use std::ops::Range;
 const PREPARED_BYTES: u64 = 64 << 20;
 /// Least survivors that come back with the counts. As many come as twice those of the tile before; more take a second trip.
 const LEAST_TRIP: u64 = 1 << 14;
-/// Room for survivors of a tile.
-const CAPACITY: u64 = 1 << 20;
 /// Most designs of a tile: counts and places are 32-bit numbers.
 const MOST_DESIGNS: u64 = 1 << 31;
 /// Evaluations of a first dispatch.
@@ -44,7 +45,7 @@ pub(super) struct Tile {
     capacity: u32,
     index: [u32; 2],
     window: u32,
-    unused: u32,
+    open_room: u32,
     digits: [u32; 4 * DIGIT_VECTORS as usize],
 }
 
@@ -57,7 +58,7 @@ impl Tile {
         ("capacity", offset_of!(Tile, capacity)),
         ("index", offset_of!(Tile, index)),
         ("window", offset_of!(Tile, window)),
-        ("unused", offset_of!(Tile, unused)),
+        ("open_room", offset_of!(Tile, open_room)),
         ("digits", offset_of!(Tile, digits)),
     ];
 }
@@ -129,6 +130,8 @@ pub struct TileCounts {
     pub sure: u64,
     /// Designs that f64 must decide.
     pub unsure: u64,
+    /// Designs that were judged singly: no run that they are in settled them.
+    pub singly: u64,
     /// What each reducer asks to be counted.
     pub reported: Vec<Vec<u32>>,
 }
@@ -181,6 +184,13 @@ pub struct GpuEngine<'p> {
     levels: Buffer,
     zeros: Buffer,
     cells: Buffer,
+    /// Room for open runs.
+    open_room: u64,
+    /// The workgroups that judge open runs.
+    groups: Buffer,
+    /// What finds the scenarios that decide about a row, where rows are told, and where these stand.
+    row_scenarios: Option<RowScenarios<'p>>,
+    decisive: Buffer,
     slots: Vec<Slot>,
     next: usize,
     /// Levels of the outermost slow dimension that the device has.
@@ -195,68 +205,6 @@ pub struct GpuEngine<'p> {
     trip: u64,
 }
 
-/// Faults put into a kernel on purpose: `--perturb` and the tests show that they are noticed.
-#[derive(Clone, Debug, Default)]
-pub struct Wrong {
-    /// Outputs that come out wrong by this fraction of their value.
-    pub perturb: Vec<(usize, f64)>,
-    /// Pieces of the kernel's text to be replaced.
-    #[cfg(feature = "testing")]
-    pub replace: Vec<(String, String)>,
-    /// Judge lanes in groups also where the study is small, and in runs also on a software device.
-    #[cfg(feature = "testing")]
-    pub grouped: bool,
-    /// Room for survivors, if not the usual.
-    #[cfg(feature = "testing")]
-    pub capacity: Option<u64>,
-}
-
-#[cfg(feature = "testing")]
-impl Wrong {
-    /// These outputs come out wrong by these fractions.
-    pub fn by(perturb: Vec<(usize, f64)>) -> Self {
-        Self { perturb, ..Self::default() }
-    }
-
-    fn text(&self, mut source: String) -> String {
-        for (piece, other) in &self.replace {
-            assert!(source.contains(piece), "the kernel has no {piece}");
-            source = source.replace(piece, other);
-        }
-        source
-    }
-
-    fn is_grouped(&self) -> bool {
-        self.grouped
-    }
-
-    fn capacity(&self) -> u64 {
-        self.capacity.unwrap_or(CAPACITY)
-    }
-}
-
-/// Where nothing is tested, a kernel is what it is.
-#[cfg(not(feature = "testing"))]
-#[allow(clippy::unused_self, reason = "as where it is tested")]
-impl Wrong {
-    /// These outputs come out wrong by these fractions.
-    pub fn by(perturb: Vec<(usize, f64)>) -> Self {
-        Self { perturb }
-    }
-
-    fn text(&self, source: String) -> String {
-        source
-    }
-
-    fn is_grouped(&self) -> bool {
-        false
-    }
-
-    fn capacity(&self) -> u64 {
-        CAPACITY
-    }
-}
-
 impl<'p> GpuEngine<'p> {
     /// An engine for a plan. `ranges`: of the study's histograms. `limited_loops`: does the driver end long loops?
     ///
@@ -265,10 +213,17 @@ impl<'p> GpuEngine<'p> {
     /// [`Error::Gpu`](crate::error::Error::Gpu) if the device fails.
     pub fn new(plan: &'p Plan, ranges: &[(f64, f64)], device: &Device, limited_loops: bool, wrong: &Wrong) -> Result<Self> {
         supports_report(plan)?;
-        let layout = KernelLayout::new(plan, limited_loops, wrong.is_grouped(), device.is_hardware || wrong.is_grouped())?;
+        let mut kinds = RunKinds { axis: device.is_hardware || wrong.is_grouped(), order: true };
+        let mut layout = KernelLayout::new(plan, limited_loops, wrong.is_grouped(), kinds)?;
+        let mut sorted_lanes = layout.sorted_lanes(plan);
+        if sorted_lanes.is_none() {
+            kinds.order = false;
+            layout = KernelLayout::new(plan, limited_loops, wrong.is_grouped(), kinds)?;
+            sorted_lanes = Some(Vec::new());
+        }
         supports_histograms(plan, ranges)?;
         let source = wrong.text(kernel_text(plan, &layout, ranges, device.has_f64(), &wrong.perturb));
-        let program = Program::new(device, &source, ENTRIES)?;
+        let program = Program::new(device, &source, &entries(&layout))?;
         program.require_structure("Tile", size_of::<Tile>(), &Tile::MEMBERS)?;
         program.require_structure("KnownUniform", size_of::<KnownUniform>(), &KnownUniform::MEMBERS)?;
         let coordinates = coordinates(plan, &layout);
@@ -278,11 +233,14 @@ impl<'p> GpuEngine<'p> {
         // The window holds the levels of the outermost dimension that a tile's rows can touch.
         let inner: u64 = layout.slow.iter().skip(1).map(|it| it.count).product();
         let row_words = 3 + plan.study.report.maps.len() as u64 + 2 * (plan.tracked.len() + layout.row_inputs.len()) as u64;
-        let row_bytes = layout.prepared_bytes().max(4 * row_words);
+        let row_words = row_words + u64::from(layout.sorted.is_some());
+        let row_scenarios = layout.tells_scenarios.then(|| RowScenarios::new(plan));
+        let scenario_words = if row_scenarios.is_some() { RowScenarios::words(plan, 1) } else { 0 };
+        let row_bytes = layout.prepared_bytes().max(4 * row_words).max(4 * scenario_words);
         let outermost = layout.slow.first().map_or(1, |it| it.count);
         let columns = layout.slow.first().map_or(1, |it| it.inputs.len()) as u64;
-        let level_rows = (PREPARED_BYTES.min(binding) / 16).saturating_sub(layout.levels.len() as u64) / columns;
-        let most_rows = (PREPARED_BYTES.min(binding) / row_bytes).min(level_rows.saturating_sub(2).max(1).saturating_mul(inner));
+        let level_rows = (PREPARED_BYTES.min(binding / 2) / 16).saturating_sub(layout.levels.len() as u64) / columns;
+        let most_rows = (PREPARED_BYTES.min(binding / 2) / row_bytes).min(level_rows.saturating_sub(2).max(1).saturating_mul(inner));
         let most_rows = most_rows.clamp(1, 1 << 21).min(plan.slow.count());
         let window_room = (most_rows / inner.max(1) + 2).min(outermost);
         let levels = device.buffer("levels", (layout.levels.len() as u64 + window_room * columns) * 16, storage);
@@ -301,10 +259,15 @@ impl<'p> GpuEngine<'p> {
         let steady: &[Level] = if layout.steady.is_empty() { &[[0.0; 4]] } else { &layout.steady };
         let steady = if layout.steady_is_uniform() { device.uniform("steady", steady) } else { device.storage("steady", steady) };
         let prepared = device.buffer("prepared", most_rows * layout.prepared_bytes(), storage);
-        let rows = device.buffer("rows", most_rows * row_words * 4, storage);
+        let open_room = if layout.runs.is_some() { wrong.open_runs().min(binding / 4 - most_rows * row_words) } else { 0 };
+        let rows = device.buffer("rows", 4 * (most_rows * row_words + open_room), storage);
+        let groups = device.buffer("groups", 12, wgpu::BufferUsages::INDIRECT);
         let cells = device.buffer("cells", value_cells * 4, storage);
+        let scenario_words = if row_scenarios.is_some() { RowScenarios::words(plan, most_rows) } else { 0 };
+        let decisive = device.buffer("decisive", 4 * scenario_words, storage);
+        let sorted_lanes = device.storage("sorted_lanes", &sorted_lanes.unwrap_or_default());
         let zeros = device.storage("zeros", &vec![0u32; count_words as usize]);
-        let list = known::known(plan, &coordinates, |_| false, &Answers::default()).1.len() as u64;
+        let list = known::room(&coordinates);
         let slots = (0..2).map(|_| {
             let tile = device.buffer("tile", size_of::<Tile>() as u64, wgpu::BufferUsages::UNIFORM);
             let known = device.buffer("known", size_of::<KnownUniform>() as u64, wgpu::BufferUsages::UNIFORM);
@@ -324,6 +287,8 @@ impl<'p> GpuEngine<'p> {
                 ("survivors", &survivors),
                 ("dominator_table", &dominator_table),
                 ("cells", &cells),
+                ("sorted_lanes", &sorted_lanes),
+                ("decisive", &decisive),
             ]);
             Slot { tile, known, dominator_table, counts, survivors, landing, bound }
         });
@@ -338,6 +303,10 @@ impl<'p> GpuEngine<'p> {
             levels,
             zeros,
             cells,
+            open_room,
+            groups,
+            row_scenarios,
+            decisive,
             slots,
             next: 0,
             window: 0..0,
@@ -348,6 +317,13 @@ impl<'p> GpuEngine<'p> {
             most_rows,
             trip: LEAST_TRIP,
         })
+    }
+
+    /// From now on rows are told which scenarios decide about their designs, where so many threads find that out.
+    pub fn look_for_scenarios(&mut self, tables: &'p Tables, threads: usize) {
+        if let Some(scenarios) = &mut self.row_scenarios {
+            scenarios.set_hosts(self.plan, tables, threads);
+        }
     }
 
     /// Designs of a first dispatch, of whose speed nothing is known yet: it must not look hung.
@@ -390,7 +366,14 @@ impl<'p> GpuEngine<'p> {
         let wait = self.device.submit(|encoder| {
             encoder.copy_buffer_to_buffer(&self.zeros, 0, &it.counts, 0, counts);
             self.first_stage(encoder, it, &rows);
-            self.program.dispatch(encoder, "sweep", &it.bound, groups);
+            if self.layout.runs.is_some() {
+                self.program.dispatch(encoder, "judge_runs", &it.bound, groups);
+                self.program.dispatch(encoder, "count_groups", &it.bound, [1, 1]);
+                encoder.copy_buffer_to_buffer(&it.counts, u64::from(GROUPS) * 4, &self.groups, 0, 12);
+                self.program.dispatch_counted(encoder, "sweep", &it.bound, &self.groups);
+            } else {
+                self.program.dispatch(encoder, "sweep", &it.bound, groups);
+            }
             encoder.copy_buffer_to_buffer(&it.counts, 0, &it.landing, 0, counts);
             encoder.copy_buffer_to_buffer(&it.survivors, 0, &it.landing, counts, trip);
         });
@@ -412,6 +395,7 @@ impl<'p> GpuEngine<'p> {
         let mut tile = Tile::zeroed();
         tile.rows = (rows.end - rows.start) as u32;
         (tile.first_lane, tile.last_lane) = (lanes.start as u32, lanes.end as u32);
+        tile.open_room = self.open_room as u32;
         tile.capacity = (self.slots[slot].survivors.size() / (4 * survivor_words(self.plan) as u64)) as u32;
         if let Some(&outermost) = digits.first() {
             let last = self.plan.slow.digits(rows.end - 1)[0];
@@ -425,6 +409,9 @@ impl<'p> GpuEngine<'p> {
             tile.window = self.window.start as u32;
         }
         self.device.write(&self.slots[slot].tile, 0, &[tile]);
+        if let Some(scenarios) = &mut self.row_scenarios {
+            self.device.write(&self.decisive, 0, &scenarios.of_rows(rows.clone()));
+        }
         let groups = self.layout.groups(rows.end - rows.start, lanes.end - lanes.start);
         (rows, groups)
     }
@@ -457,7 +444,7 @@ impl<'p> GpuEngine<'p> {
         let counts = landed;
         let appended = counts[APPENDED as usize] as usize;
         self.trip = (2 * appended as u64).max(LEAST_TRIP);
-        if appended as u64 > slot.survivors.size() / (4 * words as u64) {
+        if appended as u64 > slot.survivors.size() / (4 * words as u64) || u64::from(counts[OPEN as usize]) > self.open_room {
             return Ok(None);
         }
         let records =
@@ -469,7 +456,9 @@ impl<'p> GpuEngine<'p> {
             taken.to_vec()
         };
         let reported = self.counted.iter().map(|&words| take(words)).collect();
-        let counts = TileCounts { sure: counts[SURE as usize].into(), unsure: counts[UNDECIDED as usize].into(), reported };
+        let designs = tile.range.end - tile.range.start;
+        let singly = if self.layout.runs.is_some() { counts[SINGLY as usize].into() } else { designs };
+        let counts = TileCounts { sure: counts[SURE as usize].into(), unsure: counts[UNDECIDED as usize].into(), singly, reported };
         let (width, objectives) = (self.plan.fast.count(), self.plan.study.objectives.len());
         Ok(Some((counts, Survivors { records, words, first_row: tile.rows.start, width, objectives })))
     }
@@ -539,7 +528,7 @@ pub fn supports(plan: &Plan, limited_loops: bool) -> Result<()> {
     let given = plan.study.report.histograms.iter().map(|it| it.range.unwrap_or((0.0, 1.0))).collect::<Vec<_>>();
     supports_report(plan)?;
     supports_histograms(plan, &given)?;
-    KernelLayout::new(plan, limited_loops, false, false).map(|_| ())
+    KernelLayout::new(plan, limited_loops, false, RunKinds::ALL).map(|_| ())
 }
 
 /// Does the study ask for nothing but worst values, counts and candidates?
@@ -566,7 +555,7 @@ pub fn supports_histograms(plan: &Plan, ranges: &[(f64, f64)]) -> Result<()> {
 pub fn kernel_of(plan: &Plan, ranges: &[(f64, f64)], perturb: &[(usize, f64)]) -> Result<String> {
     supports_report(plan)?;
     supports_histograms(plan, ranges)?;
-    Ok(kernel_text(plan, &KernelLayout::new(plan, true, false, false)?, ranges, false, perturb))
+    Ok(kernel_text(plan, &KernelLayout::new(plan, true, false, RunKinds { axis: false, order: true })?, ranges, false, perturb))
 }
 
 fn kernel_text(plan: &Plan, layout: &KernelLayout, ranges: &[(f64, f64)], f64: bool, perturb: &[(usize, f64)]) -> String {

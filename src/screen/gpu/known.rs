@@ -2,8 +2,8 @@
 
 use super::constants::DOMINATORS;
 use super::held::on_device;
-use super::kernel::{Coordinate, bins, round_up, threshold, uses_table};
-use super::layout::{LIST, sign};
+use super::kernel::{Coordinate, bins, looks_through_front, round_up, threshold, uses_table};
+use super::layout::{LIST, POINTS, sign};
 use crate::plan::Plan;
 use crate::reduce::{Answers, MOST_OBJECTIVES};
 use crate::study::{Goal, Quantity};
@@ -21,11 +21,12 @@ pub struct KnownUniform {
     extreme_indices: [[u32; 4]; MOST_OBJECTIVES],
     table: [f32; 4],
     last_place: [u32; 4],
+    points: [u32; 4],
 }
 
 impl KnownUniform {
     /// Its members as the kernel must have them.
-    pub(super) const MEMBERS: [(&'static str, usize); 7] = [
+    pub(super) const MEMBERS: [(&'static str, usize); 8] = [
         ("dominators", offset_of!(KnownUniform, dominators)),
         ("top", offset_of!(KnownUniform, top)),
         ("top_index", offset_of!(KnownUniform, top_index)),
@@ -33,6 +34,7 @@ impl KnownUniform {
         ("extreme_indices", offset_of!(KnownUniform, extreme_indices)),
         ("table", offset_of!(KnownUniform, table)),
         ("last_place", offset_of!(KnownUniform, last_place)),
+        ("points", offset_of!(KnownUniform, points)),
     ];
 }
 
@@ -97,8 +99,13 @@ pub fn known(plan: &Plan, coordinates: &[Coordinate], is_exact: impl Fn(Quantity
     }
     known.last_place[..2].copy_from_slice(&halves(answers.last_place.unwrap_or(u64::MAX)));
     let list = if uses_table(coordinates) {
-        let (place, cells) = table(&points, bins(coordinates) as usize, dimensions);
+        let (place, mut cells) = table(&points, bins(coordinates) as usize, dimensions);
         known.table = place;
+        if looks_through_front(coordinates) {
+            let listed = chosen(&points, POINTS);
+            known.points[0] = listed.len() as u32;
+            cells.extend(listed.into_iter().flatten());
+        }
         cells
     } else {
         let mut list = vec![f32::INFINITY; LIST * dimensions.max(1)];
@@ -108,6 +115,14 @@ pub fn known(plan: &Plan, coordinates: &[Coordinate], is_exact: impl Fn(Quantity
         list
     };
     (known, list)
+}
+
+/// Most numbers that [`known`] gives beside the uniform.
+pub fn room(coordinates: &[Coordinate]) -> u64 {
+    let dimensions = coordinates.len().max(1);
+    let points = if looks_through_front(coordinates) { POINTS } else { 0 };
+    let table = if uses_table(coordinates) { bins(coordinates).pow(dimensions as u32 - 1) } else { (LIST * dimensions) as u64 };
+    table + (points * dimensions) as u64
 }
 
 /// Points spread over the front: for each coordinate in turn those at even ranks of it, so that none lies far from one of them.

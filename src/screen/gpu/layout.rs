@@ -2,20 +2,24 @@
 //! invocations, `cut` says.
 
 use super::constants::{LANE_BITS, Level, WINDOW};
-use super::cut::{Cut, MOST_GROUPS, MOST_ITERATIONS, Runs, covers_ranges};
+use super::cut::{Cut, MOST_GROUPS, MOST_ITERATIONS, RunKinds, Runs, covers_ranges};
 use super::drawn::DrawnOnDevice;
 use super::held::{beyond_f32, refuse};
+use super::row_scenarios::RowScenarios;
+use super::sorted::{SortedLane, SortedLanes, chosen};
 use crate::error::Result;
 use crate::models::{Fields, Set, Worse, input_to_si};
 use crate::plan::{Plan, knowns};
 use crate::space::{Product, SpaceDimension};
 use crate::study::{Axis, Goal, Levels, Quantity};
-use crate::tape::{SettledStages, nearest_f32};
+use crate::tape::{List, SettledStages, nearest_f32};
 
 /// Points in the list that the closer look compares with, where no table serves.
 pub const LIST: usize = 64;
 /// Bins of the look-up table along its one or two coordinates.
 pub const BINS: [u64; 2] = [65_536, 256];
+/// Most points of a front of two objectives that the closer look searches.
+pub const POINTS: usize = 1 << 16;
 /// Entries of a uniform buffer that every device has.
 const UNIFORM_ENTRIES: usize = 4096;
 
@@ -141,15 +145,18 @@ pub struct KernelLayout {
     pub cut: Cut,
     /// Runs of lanes, if the second stage judges these first.
     pub runs: Option<Runs>,
+    /// The lanes in order, if runs lie along it.
+    pub sorted: Option<SortedLanes>,
+    /// Is a row told which scenarios decide about its designs? Else all are looked at.
+    pub tells_scenarios: bool,
 }
 
 impl KernelLayout {
-    /// Lays out a study. `grouped`: lanes are judged in groups even where the study is small; `in_runs`: and these in runs first, which on a
-    /// software device takes longer than it saves.
+    /// Lays out a study. `grouped`: lanes are judged in groups, and these in runs first, even where the study is small; `kinds`: of runs.
     ///
     /// # Errors
     /// [`Error::NotOnDevice`] if it cannot be screened on a device, and why.
-    pub fn new(plan: &Plan, limited_loops: bool, grouped: bool, in_runs: bool) -> Result<Self> {
+    pub fn new(plan: &Plan, limited_loops: bool, grouped: bool, kinds: RunKinds) -> Result<Self> {
         let model = &plan.study.model;
         let used = plan.used_outputs();
         let known = knowns(&plan.study, &plan.space);
@@ -160,7 +167,8 @@ impl KernelLayout {
                 let asked: Vec<_> = asked.map(|&it| (it, model.conditions[it].strict)).collect();
                 let fast = plan.fast.inputs() | plan.fast_scenarios.inputs();
                 let slow: Set = (0..model.inputs.len()).filter(|&input| !fast.contains(input)).collect();
-                let own = SettledStages::divided(model.on_device()?, &known, used, &asked, slow);
+                let choice = |list: &List, inputs: &[Set]| if kinds.order { chosen(plan, list, inputs) } else { None };
+                let own = SettledStages::divided_with(model.on_device()?, &known, used, &asked, slow, &choice);
                 (own.fields, own.reads, FormulaOnDevice::Own(Box::new(own)))
             }
         };
@@ -247,10 +255,18 @@ impl KernelLayout {
         }
         let slow_inputs = plan.slow.inputs();
         let cut = Cut::new(plan, fields.iterations, grouped);
-        let runs = match &formula {
-            FormulaOnDevice::Own(own) if in_runs && covers_ranges(&own.lists) => Runs::new(plan, &fast, asked, cut, fields.iterations),
-            _ => None,
-        };
+        let tells_scenarios = matches!(formula, FormulaOnDevice::Own(_)) && RowScenarios::serve(plan);
+        let (mut runs, mut sorted) = (None, None);
+        if let FormulaOnDevice::Own(own) = &formula {
+            if let Some(onwards) = own.onwards.as_ref().filter(|it| covers_ranges([&it.conditions, &it.finish])) {
+                runs = Runs::in_order(plan, cut, fields.iterations);
+                sorted = SortedLanes::new(plan, onwards, grouped).filter(|_| runs.is_some());
+            }
+            if sorted.is_none() {
+                let serves = kinds.axis && covers_ranges([&own.lists.conditions, &own.lists.finish]);
+                runs = if serves { Runs::new(plan, &fast, asked, cut, fields.iterations) } else { None };
+            }
+        }
         Ok(Self {
             fields,
             formula,
@@ -268,24 +284,34 @@ impl KernelLayout {
             represented,
             cut,
             runs,
+            sorted,
+            tells_scenarios,
         })
     }
 
     /// Most lanes of a row that one dispatch can take.
     pub fn widest(&self) -> u64 {
-        self.runs.map_or(self.cut.widest(), Runs::widest)
+        if self.runs.is_some() { 1 << LANE_BITS } else { self.cut.widest() }
     }
 
     /// Most rows that one dispatch can take.
     pub fn most_rows(&self) -> u64 {
-        MOST_GROUPS * self.runs.map_or(self.cut.group_rows, |runs| runs.rows)
+        self.runs.map_or(MOST_GROUPS * self.cut.group_rows, Runs::most_rows)
     }
 
-    /// Workgroups that cover `rows` rows and `lanes` lanes.
+    /// Workgroups that cover `rows` rows and `lanes` lanes; where there are runs, of the pass that judges these.
     pub fn groups(&self, rows: u64, lanes: u64) -> [u32; 2] {
         match self.runs {
             Some(runs) => runs.groups(rows),
             None => self.cut.groups(rows, lanes),
+        }
+    }
+
+    /// The lanes of all columns in their order, none where no runs lie along it; `None` if they have no order.
+    pub fn sorted_lanes(&self, plan: &Plan) -> Option<Vec<SortedLane>> {
+        match (&self.sorted, &self.formula) {
+            (Some(sorted), FormulaOnDevice::Own(own)) => sorted.made(plan, own),
+            _ => Some(Vec::new()),
         }
     }
 

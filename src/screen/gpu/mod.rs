@@ -11,9 +11,13 @@ mod held;
 mod kernel;
 mod known;
 mod layout;
+mod row_scenarios;
+mod sorted;
 mod texts;
+mod wrong;
 
 pub use crate::reduce::Answers;
-pub use engine::{Checked, GpuEngine, InFlight, Survivor, Survivors, TileCounts, Wrong, kernel_of, supports, supports_histograms};
+pub use engine::{Checked, GpuEngine, InFlight, Survivor, Survivors, TileCounts, kernel_of, supports, supports_histograms};
 pub(crate) use held::on_device;
 pub(crate) use kernel::value_maps;
+pub use wrong::Wrong;

@@ -1,10 +1,11 @@
 //! From the number that a row's designs are sorted by to a result.
 
+use crate::models::Set;
 use crate::tape::{Binary, List, Node, Operation, Step, Steps, Unary};
 use crate::units::Unit;
 
 /// Longest chain that is followed.
-pub(super) const LONGEST: usize = 24;
+const LONGEST: usize = 24;
 
 /// From the number to a result.
 #[derive(Debug)]
@@ -17,8 +18,32 @@ pub(super) struct RowChain {
     unit: Option<Unit>,
 }
 
+/// The number by which what differs between the designs of a row comes into all results.
+pub(in crate::screen) struct RowChannel {
+    /// The operation that makes it.
+    pub node: Node,
+    /// From each result down to what it is made of.
+    pub paths: Vec<Vec<Node>>,
+}
+
+impl RowChannel {
+    /// `None` if there is no such number. `over_lanes`: which operations differ within a row; `columns`: what each one depends on beside
+    /// that, for each combination of which there is a column of numbers.
+    pub(in crate::screen) fn new(list: &List, results: &[Node], over_lanes: &[bool], columns: &[Set]) -> Option<Self> {
+        let paths: Vec<Vec<Node>> = results.iter().map(|&node| path(list, node, over_lanes)).collect();
+        let start = *paths.first()?.last()?;
+        if !paths.iter().all(|path| path.last() == Some(&start) && path.len() <= LONGEST) {
+            return None;
+        }
+        // Further up on the way that all have in common there is less left to compute, as long as that takes no more columns.
+        let serves = |&&node: &&Node| paths.iter().all(|path| path.contains(&node)) && columns[node as usize] == columns[start as usize];
+        let node = *paths[0].iter().find(serves)?;
+        Some(Self { node, paths })
+    }
+}
+
 /// From a result down to the first number that more than one operand makes different for each design; the result first.
-pub(super) fn path(list: &List, result: Node, over_lanes: &[bool]) -> Vec<Node> {
+fn path(list: &List, result: Node, over_lanes: &[bool]) -> Vec<Node> {
     let mut path = vec![result];
     let mut node = result;
     while path.len() <= LONGEST {

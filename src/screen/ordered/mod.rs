@@ -27,7 +27,11 @@ use crate::plan::{Plan, Source, knowns};
 use crate::reduce::{FreeObjectives, slice_bytes};
 use crate::study::{Best, Constraint};
 use crate::tape::{LaneList, List, Node};
-use chain::{LONGEST, RowChain, chain, path};
+#[cfg(feature = "gpu")]
+pub(super) use chain::RowChannel;
+#[cfg(not(feature = "gpu"))]
+use chain::RowChannel;
+use chain::{RowChain, chain};
 use std::collections::HashSet;
 use std::sync::OnceLock;
 
@@ -80,19 +84,8 @@ impl OrderedRows {
             return None;
         }
         let over_lanes = over_lanes(plan, list);
-        let paths: Vec<Vec<Node>> = list.asked().iter().map(|&node| path(list.list(), node, &over_lanes)).collect();
-        let start = *paths.first()?.last()?;
-        if !paths.iter().all(|path| path.last() == Some(&start) && path.len() <= LONGEST) {
-            return None;
-        }
-        // Further up on the way that all have in common there is less left to compute, as long as that takes no more columns.
         let depends = slow_dimensions(plan, list);
-        let mut channel = start;
-        for &node in paths[0].iter().rev() {
-            if paths.iter().all(|path| path.contains(&node)) && depends[node as usize] == depends[start as usize] {
-                channel = node;
-            }
-        }
+        let RowChannel { node: channel, paths } = RowChannel::new(list.list(), list.asked(), &over_lanes, &depends)?;
         let mut dimensions = Vec::new();
         let mut columns = 1u64;
         for (dimension, count) in plan.slow.dimensions().map(|(it, _)| it.count()).enumerate() {

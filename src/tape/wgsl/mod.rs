@@ -7,7 +7,7 @@
 
 mod loops;
 
-use super::{Binary, Fields, List, ListRoot, Node, Operation, Recordable, Rolled, Root, StageLists, Unary, nearest_f32};
+use super::{Binary, Fields, List, ListRoot, Node, Onwards, Operation, Recordable, Rolled, Root, StageLists, Unary, nearest_f32};
 
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
@@ -140,8 +140,25 @@ fn first_stage(names: &StageNames, fields: &Fields, list: &List, precision: Prec
     writer.text()
 }
 
-/// The text of the second stage.
+/// The text of a second stage.
 pub fn second_stage(names: &StageNames, fields: &Fields, lists: &StageLists, equations: &[&str]) -> String {
+    second_stage_of(names, fields, [&lists.conditions, &lists.finish], equations, None)
+}
+
+/// The text of a second stage from one number on.
+pub fn onwards(names: &StageNames, fields: &Fields, onwards: &Onwards, equations: &[&str]) -> String {
+    let passed = fields.prepared.iter().position(|field| *field == onwards.field).expect("the number is one of the fields");
+    let number = u16::try_from(fields.inputs.len() + passed).expect("there are few");
+    second_stage_of(names, fields, [&onwards.conditions, &onwards.finish], equations, Some(number))
+}
+
+fn second_stage_of(
+    names: &StageNames,
+    fields: &Fields,
+    [of_margins, of_outputs]: [&List; 2],
+    equations: &[&str],
+    plateau: Option<u16>,
+) -> String {
     let StageNames { prepared, conditions: of_conditions, count, finish: of_finish, outputs, .. } = names;
     let inputs = fields.inputs.len();
     let fields_passed: Vec<(usize, usize)> = fields.places().collect();
@@ -159,8 +176,8 @@ pub fn second_stage(names: &StageNames, fields: &Fields, lists: &StageLists, equ
         },
     };
     let margin = |number: usize| Assignment { to: format!("margins[{number}]"), name: "", equation: "" };
-    let lines: Vec<Assignment> = (0..lists.conditions.results.len()).map(margin).collect();
-    let mut conditions = Writer::new(of_conditions, fields, &lists.conditions, &leaf, &lines);
+    let lines: Vec<Assignment> = (0..of_margins.results.len()).map(margin).collect();
+    let mut conditions = Writer { plateau, ..Writer::new(of_conditions, fields, of_margins, &leaf, &lines) };
     let margins = format!("array<Real, {count}>");
     let head = format!("{of_conditions}(p: {prepared}, i: Inputs) -> {margins}");
     conditions.function(&head, &format!("var margins: {margins};"), &lines, "return margins;");
@@ -170,7 +187,7 @@ pub fn second_stage(names: &StageNames, fields: &Fields, lists: &StageLists, equ
         equation: equations.get(number).copied().unwrap_or_default(),
     };
     let lines: Vec<Assignment> = fields.outputs.iter().enumerate().map(line).collect();
-    let mut finish = Writer::new(of_finish, fields, &lists.finish, &leaf, &lines);
+    let mut finish = Writer { plateau, ..Writer::new(of_finish, fields, of_outputs, &leaf, &lines) };
     let head = format!("{of_finish}(p: {prepared}, i: Inputs) -> {outputs}");
     finish.function(&head, &format!("var out: {outputs};"), &lines, "return out;");
     conditions.text() + &finish.text()
@@ -197,6 +214,8 @@ struct Writer<'a> {
     tables: HashMap<usize, &'static str>,
     /// Loops that are written already.
     written: HashSet<u8>,
+    /// An input that may be exactly zero.
+    plateau: Option<u16>,
     /// How often each number is read.
     reads: Vec<u32>,
     /// What each number that is kept is called.
@@ -243,7 +262,21 @@ impl<'a> Writer<'a> {
         let tables = fields.tables.iter().map(|&(table, _)| table).chain(list.tables.iter().map(|table| table.name));
         let taken = TAKEN.iter().copied().chain(tables).map(str::to_owned).collect();
         let (roots, text, tables, written, names, given) = Default::default();
-        let mut writer = Self { stage, precision: Precision::Single, list, leaf, tables, written, reads, names, given, taken, roots, text };
+        let mut writer = Self {
+            stage,
+            precision: Precision::Single,
+            list,
+            leaf,
+            tables,
+            written,
+            plateau: None,
+            reads,
+            names,
+            given,
+            taken,
+            roots,
+            text,
+        };
         for (node, name) in list.names.iter().enumerate() {
             if let Some((name, _)) = name {
                 writer.call(node as Node, name);
@@ -340,6 +373,7 @@ impl<'a> Writer<'a> {
     fn may_be_zero(&self, node: Node) -> bool {
         let is_zero = |node: Node| self.list.operations[node as usize] == Operation::Constant(0);
         match self.list.operations[node as usize] {
+            Operation::Input(input) => self.plateau == Some(input),
             Operation::Binary(Binary::Max | Binary::Min, a, b) => is_zero(a) || is_zero(b),
             Operation::Binary(Binary::Mul, a, b) => self.may_be_zero(a) || self.may_be_zero(b),
             _ => false,
@@ -409,6 +443,7 @@ impl<'a> Writer<'a> {
             leaf: self.leaf,
             tables: HashMap::new(),
             written: HashSet::new(),
+            plateau: self.plateau,
             reads: self.reads.clone(),
             names: self.names.clone(),
             given: HashMap::new(),

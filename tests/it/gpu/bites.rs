@@ -1,6 +1,6 @@
 //! Every check is given a wrong answer and must notice it.
 
-use super::{Prepared, RUNS, SMALL, device, larger, long_runs, wrong};
+use super::{Prepared, RUNS, SMALL, along_axis, device, larger, long_runs, wrong};
 use beltspace::error::Error;
 use beltspace::gpu::PointKernel;
 use beltspace::models::{self, Model, find};
@@ -145,13 +145,42 @@ fn a_wrong_first_stage_in_f64_is_noticed() {
 
 #[test]
 fn runs_that_are_judged_too_narrowly_are_noticed() {
+    let axis = along_axis(RUNS);
+    // As if a run's lanes were all like its middle.
+    let narrow = ("let reach = 0.5 * abs(b.value - a.value)", "let reach = 0.0 * abs(b.value - a.value)");
+    let fewer = ("counted.x += run.last - run.first;", "counted.x += run.last - run.first - 1u;");
+    let settled = ("return !beaten || may_be_extreme(judged, horizon);", "return false;");
+    for (text, (piece, other)) in [(RUNS, narrow), (&axis, narrow), (RUNS, fewer), (&axis, fewer), (RUNS, settled)] {
+        let replace = vec![(piece.to_owned(), other.to_owned())];
+        let on = wrong(Wrong { grouped: true, blind: true, replace, ..Wrong::default() });
+        let result = Prepared::parse(text).on(&on);
+        assert!(matches!(&result, Err(Error::ErrorBound(_))), "{piece}, {text}: {:?}", result.map(|_| ()));
+    }
+}
+
+#[test]
+fn scenarios_that_decide_and_are_left_out_are_noticed() {
+    for (piece, other) in
+        [("let last = decisive[row + 1u];", "let last = decisive[row] + 1u;"), ("let q = decisive[place] / FAST_SCENARIOS;", "let q = 0u;")]
+    {
+        let on = wrong(Wrong { replace: vec![(piece.to_owned(), other.to_owned())], ..Wrong::default() });
+        let result = Prepared::parse(SMALL[0]).on(&on);
+        assert!(matches!(&result, Err(Error::ErrorBound(_))), "{piece}: {:?}", result.map(|_| ()));
+    }
+}
+
+#[test]
+fn lanes_in_a_wrong_order_are_noticed() {
     for (piece, other) in [
-        // As if a run's lanes were all like its middle.
-        ("let reach = 0.5 * abs(b.value - a.value)", "let reach = 0.0 * abs(b.value - a.value)"),
-        ("counted.x += run.last - run.first;", "counted.x += run.last - run.first - 1u;"),
-        ("return !beaten || may_be_extreme(judged, horizon);", "return false;"),
+        // Each lane with the number of the next one, or of another row's.
+        ("sorted_lanes[state.column + place].x", "sorted_lanes[state.column + place + 1u].x"),
+        ("sorted_lanes[state.column + place].y", "sorted_lanes[place + 1u].y"),
+        ("let last = min(first + RUN_LENGTH, WIDTH) - 1u;", "let last = first;"),
+        // All points of the front are taken to be beyond a design, or none.
+        ("if low == 0u { return false; }", "return true;"),
     ] {
-        let on = wrong(Wrong { grouped: true, replace: vec![(piece.to_owned(), other.to_owned())], ..Wrong::default() });
+        let replace = vec![(piece.to_owned(), other.to_owned())];
+        let on = wrong(Wrong { grouped: true, blind: true, replace, ..Wrong::default() });
         let result = Prepared::parse(RUNS).on(&on);
         assert!(matches!(&result, Err(Error::ErrorBound(_))), "{piece}: {:?}", result.map(|_| ()));
     }
@@ -159,13 +188,15 @@ fn runs_that_are_judged_too_narrowly_are_noticed() {
 
 #[test]
 fn a_run_that_two_tiles_share_is_counted_once() {
-    let study = Prepared::parse(&long_runs());
-    let expected = study.on_cpu();
-    for (piece, other) in [
-        ("let before = max(tile.first_lane, run.first_lane) - run.first_lane;", "let before = 0u;"),
-        ("let until = max(tile.last_lane, run.first_lane) - run.first_lane;", "let until = RUN_LENGTH * RUN_STEP;"),
-        ("seen.sure &= here;", "seen.sure &= 0xffffffffu;"),
+    let [in_order, axis] = [long_runs(), along_axis(&long_runs())].map(|text| Prepared::parse(&text));
+    for (study, piece, other) in [
+        (&axis, "let before = max(tile.first_lane, run.first_lane) - run.first_lane;", "let before = 0u;"),
+        (&axis, "let until = max(tile.last_lane, run.first_lane) - run.first_lane;", "let until = RUN_LENGTH * RUN_STEP;"),
+        (&axis, "seen.sure &= here;", "seen.sure &= 0xffffffffu;"),
+        (&in_order, "seen.sure &= here;", "seen.sure &= 0xffffffffu;"),
+        (&in_order, "return tile.first_lane == 0u && tile.last_lane == WIDTH;", "return true;"),
     ] {
+        let expected = study.on_cpu();
         let on = wrong(Wrong { grouped: true, replace: vec![(piece.to_owned(), other.to_owned())], ..Wrong::default() });
         if let Ok((state, _)) = study.on(&on) {
             assert_ne!(state.feasible, expected.feasible, "{piece}: nobody objects");

@@ -1,6 +1,6 @@
 //! The device compared with the CPU: the same answers, however a sweep is divided, interrupted or continued on the other engine.
 
-use super::{Prepared, RUNS, SMALL, assert_same, device, larger, long_runs, open, shipped, wrong};
+use super::{Prepared, RUNS, SMALL, along_axis, assert_same, device, larger, long_runs, open, shipped, wrong};
 use beltspace::checkpoint::{Checkpoint, Saved};
 use beltspace::error::Error;
 use beltspace::files::Claim;
@@ -44,7 +44,7 @@ fn shipped_studies_give_the_same_answers_and_few_designs_are_unsure() {
 
 #[test]
 fn designs_judged_in_runs_give_the_same_answers() {
-    let several = RUNS.replace("[fixed]", "[operation]\nstrength_MPa = [480, 500]\n[fixed]");
+    let mapped = format!("{RUNS}[report]\nmaps = [{{ x = \"friction\", y = \"ratio\", value = \"torque_capacity_Nm\" }}]\n");
     let reported = format!("{RUNS}[report]\ntop = {{ by = \"torque_capacity_Nm\", count = 20 }}\n");
     let counted = format!("{RUNS}[report]\nhistograms = [{{ of = \"torque_capacity_Nm\", bins = 12 }}]\nsample = 50\n");
     let logarithmic = RUNS.replace(
@@ -52,14 +52,38 @@ fn designs_judged_in_runs_give_the_same_answers() {
         "band_thickness_mm = { from = 0.4, to = 0.1, count = 90, spacing = \"log\" }",
     );
     let long = long_runs();
-    for text in [RUNS, &several, &reported, &counted, &logarithmic, &long] {
-        let study = Prepared::parse(text);
-        // The kernel must have runs to be told so.
-        let runs = vec![("const RUN_LENGTH".to_owned(), "const RUN_LENGTH".to_owned())];
+    let all = [RUNS, &reported, &counted, &logarithmic, &long];
+    let in_order = all.iter().map(|&text| (text.to_owned(), "const WIDTH"));
+    let along_axis = all.iter().map(|text| along_axis(text)).chain([mapped]).map(|text| (text, "const RUN_STEP"));
+    for (text, piece) in in_order.chain(along_axis) {
+        let study = Prepared::parse(&text);
+        // The kernel must have such runs to be told so.
+        let runs = vec![(piece.to_owned(), piece.to_owned())];
         let (state, record) = study.on(&wrong(Wrong { grouped: true, replace: runs, ..Wrong::default() })).expect("the device works");
-        assert_same(&state, &study.on_cpu(), text);
+        assert_same(&state, &study.on_cpu(), &text);
         assert_eq!(record.designs, study.plan.designs());
         assert!(record.unsure * 10_000 < record.designs, "{record:?}");
+    }
+}
+
+#[test]
+fn runs_in_order_leave_few_designs_to_be_judged_singly_and_fewer_to_f64() {
+    let text = RUNS.replace("count = 150 }", "count = 1500 }");
+    let study = Prepared::parse(&text);
+    let (state, record) = study.on(&wrong(Wrong { grouped: true, ..Wrong::default() })).expect("the device works");
+    assert_same(&state, &study.on_cpu(), &text);
+    assert!(record.singly > 0 && record.singly * 10 < record.designs, "{record:?}");
+    assert!(record.survivors > 0 && record.survivors * 1000 < record.designs, "{record:?}");
+}
+
+#[test]
+fn a_tile_with_too_many_open_runs_is_repeated_in_parts() {
+    for text in [RUNS.to_owned(), along_axis(RUNS)] {
+        let study = Prepared::parse(&text);
+        let on = wrong(Wrong { grouped: true, open_runs: Some(100), ..Wrong::default() });
+        let (state, record) = study.on(&on).expect("the device works");
+        assert!(record.repeated > 0, "{record:?}");
+        assert_same(&state, &study.on_cpu(), "in parts");
     }
 }
 

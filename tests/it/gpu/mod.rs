@@ -129,7 +129,7 @@ fn larger() -> String {
     SMALL[0].replace("count = 13 }", "count = 97 }").replace("count = 21 }", "count = 101 }")
 }
 
-/// A study with an axis of many levels that nothing asks for by itself: its designs can be judged in runs.
+/// A study whose rows have one order, and an axis of many levels that nothing asks for by itself: its designs can be judged in runs.
 const RUNS: &str = r#"model = "metal-cvt"
 [design]
 friction = { from = 0.06, to = 0.12, count = 9 }
@@ -157,6 +157,12 @@ fn long_runs() -> String {
     let text = fewer(text, "to = 30, count = 7 }", "to = 30, count = 2 }");
     let text = fewer(text, "to = 2.0, count = 11 }", "to = 2.0, count = 3 }");
     fewer(text, "count = 150 }", "count = 9001 }")
+}
+
+/// The same study where runs lie along the long axis: over scenarios rows have no order.
+fn along_axis(text: &str) -> String {
+    assert!(text.contains("[fixed]\n"), "{text}");
+    text.replace("[fixed]\n", "[operation]\nstrength_MPa = [480, 500]\n[fixed]\n")
 }
 
 /// One study per model with all that a report may have, small enough to be swept in a moment.

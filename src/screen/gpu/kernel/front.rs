@@ -50,7 +50,7 @@ impl Prelude<'_> {
         self.function("horizon() -> Horizon", &lines);
         let mut dominators = vec!["var beaten = false;".to_owned()];
         if objectives.len() == 2 && !mixed {
-            // Along a curve the dominators are sorted: the last one that is not beyond the first coordinate is the best.
+            // RunsAlong a curve the dominators are sorted: the last one that is not beyond the first coordinate is the best.
             dominators = vec!["var least = infinity();".to_owned()];
             for dominator in 0..DOMINATORS {
                 dominators.push(format!("least = select(least, horizon.n{dominator}_1, horizon.n{dominator}_0 <= keys.k0.x);"));
@@ -61,6 +61,9 @@ impl Prelude<'_> {
                 let of = |number: usize| format!("horizon.n{dominator}_{number}");
                 dominators.push(format!("beaten = beaten || ({});", compare(&of)));
             }
+        }
+        if self.looks_up_at_once() {
+            dominators = vec!["let beaten = false;".to_owned()];
         }
         dominators.push("return beaten;".to_owned());
         self.function("beaten_by_dominators(keys: Keys, horizon: Horizon) -> bool", &dominators);
@@ -86,6 +89,24 @@ impl Prelude<'_> {
             ]
         };
         self.function("beaten_by_table(keys: Keys) -> bool", &table);
+
+        let mut front = vec!["return false;".to_owned()];
+        if looks_through_front(&self.coordinates) {
+            let first = bins(&self.coordinates);
+            let point = |at: &str, number: usize| format!("dominator_table[{}u + 2u * {at}]", first + number as u64);
+            // Of all points that are not beyond the first coordinate the last one has the least second coordinate.
+            front = vec![
+                "var low = 0u;".to_owned(),
+                "var high = known.points.x;".to_owned(),
+                "while low < high {".to_owned(),
+                "    let middle = (low + high) / 2u;".to_owned(),
+                format!("    if {} <= keys.k0.x {{ low = middle + 1u; }} else {{ high = middle; }}", point("middle", 0)),
+                "}".to_owned(),
+                "if low == 0u { return false; }".to_owned(),
+                format!("return {};", compare(&|number| point("(low - 1u)", number))),
+            ];
+        }
+        self.function("beaten_by_front(keys: Keys) -> bool", &front);
 
         // Upper ends of the objectives that differ within a row.
         let differing: Vec<usize> = (0..objectives.len()).filter(|&at| !plan.tracked[plan.objectives[at]].1.is_row()).collect();
@@ -141,6 +162,11 @@ impl Prelude<'_> {
         }
     }
 
+    /// Do all lanes meet the look-up table? Where runs have settled what is far behind the front, some dominators beat few of the others.
+    fn looks_up_at_once(&self) -> bool {
+        self.layout.runs.is_some() && uses_table(&self.coordinates)
+    }
+
     /// Top list and extremes. A tie with what is known is lost by the higher index; only a known end that f32 holds shows ties.
     pub(super) fn others(&mut self) {
         let plan = self.plan;
@@ -183,6 +209,8 @@ impl Prelude<'_> {
         self.function("is_known_extreme(lane: Lane, horizon: Horizon, index: vec2<u32>) -> bool", &unknown);
         let front = if study.objectives.is_empty() {
             "false"
+        } else if self.looks_up_at_once() {
+            "!beaten_by_table(keys_of(lane)) || may_be_extreme(lane, horizon)"
         } else {
             "!beaten_by_dominators(keys_of(lane), horizon) || may_be_extreme(lane, horizon)"
         };

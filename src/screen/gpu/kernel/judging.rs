@@ -13,33 +13,40 @@ struct JudgingText<'a> {
     members: &'a [u64],
     /// The line from one member's digits to the next one's.
     next: &'a str,
-    /// The function that sets the inputs at digits.
+    /// The line that sets the inputs of a member, or the number that takes their place.
     set: &'a str,
+    /// The function that judges a lane in one scenario.
+    judge: &'a str,
 }
 
 impl Prelude<'_> {
     /// Conditions, constraints and worst values in one scenario, of rows and of lanes.
     pub(super) fn judging(&mut self, perturb: &[(usize, f64)]) {
         let plan = self.plan;
-        let mut wrong = vec!["var out = finish(prepared, inputs);".to_owned()];
-        for &(output, part) in perturb {
-            let field = self.output(output);
-            wrong.push(format!("out.{field}.value *= {};", literal((1.0 + part) as f32)));
+        let onwards = if self.layout.sorted.is_some() { "_onwards" } else { "" };
+        for name in if onwards.is_empty() { vec![""] } else { vec!["", onwards] } {
+            let mut wrong = vec![format!("var out = finish{name}(prepared, inputs);")];
+            for &(output, part) in perturb {
+                let field = self.output(output);
+                wrong.push(format!("out.{field}.value *= {};", literal((1.0 + part) as f32)));
+            }
+            wrong.push("return out;".to_owned());
+            self.function(&format!("finish_perturbed{name}(prepared: Prepared, inputs: Inputs) -> Outputs"), &wrong);
         }
-        wrong.push("return out;".to_owned());
-        self.function("finish_perturbed(prepared: Prepared, inputs: Inputs) -> Outputs", &wrong);
         for (number, constraint) in plan.study.constraints.iter().enumerate() {
             if matches!(constraint.quantity, Quantity::Output(_)) {
                 let lines = keep(plan, constraint);
                 self.function(&format!("keeps_{number}(number: Real) -> u32"), &lines);
             }
         }
-        for (name, state, conditions, row) in
-            [("judge_row", "RowState", &plan.row_conditions, true), ("judge_lane", "Lane", &plan.lane_conditions, false)]
+        let of_rows = ("judge_row", "RowState", &plan.row_conditions, true, "");
+        let of_lanes = ("judge_lane", "Lane", &plan.lane_conditions, false, "");
+        let sorted = ("judge_lane_onwards", "Lane", &plan.lane_conditions, false, onwards);
+        for (name, state, conditions, row, onwards) in [of_rows, of_lanes, sorted].into_iter().take(if onwards.is_empty() { 2 } else { 3 })
         {
             let mut lines = vec![
-                "let out = finish_perturbed(prepared, inputs);".to_owned(),
-                "let margins = conditions(prepared, inputs);".to_owned(),
+                format!("let out = finish_perturbed{onwards}(prepared, inputs);"),
+                format!("let margins = conditions{onwards}(prepared, inputs);"),
                 "var verdict = (*state).verdict;".to_owned(),
             ];
             for &number in conditions.iter().filter(|&&number| self.layout.asks(number)) {
@@ -81,7 +88,15 @@ impl Prelude<'_> {
         put!(self, "}}\n");
         let of_group = format!("return Group({});", all.iter().map(|it| format!("l{it}")).collect::<Vec<_>>().join(", "));
         // Beyond the last lane the members of a group repeat earlier ones or leave the axis; nobody looks at them.
-        let one = JudgingText { name: "judge", at: "digits: Digits", begin: "", members: &all[..1], next: "", set: "set_lane" };
+        let one = JudgingText {
+            name: "judge",
+            at: "digits: Digits",
+            begin: "",
+            members: &all[..1],
+            next: "",
+            set: "set_lane(&inputs, d{member});",
+            judge: "judge_lane",
+        };
         let group = JudgingText {
             name: "judge_group",
             at: "first: u32",
@@ -97,10 +112,24 @@ impl Prelude<'_> {
             next: "digits = along(digits, 1u);",
             ..group
         };
-        let run = JudgingText { name: "judge_run", set: "set_run", ..one };
-        let runs = if self.layout.runs.is_some() { vec![along, run] } else { Vec::new() };
+        let run = JudgingText { name: "judge_digits", set: "set_run(&inputs, d{member});", ..one };
+        let onwards = JudgingText { name: "judge_onwards", set: "", judge: "judge_lane_onwards", ..one };
+        let number = self.sorted_by().map(|field| format!("prepared.{field} = sorted_number(state, first + {{member}}u);"));
+        let in_order = JudgingText {
+            name: "judge_sorted",
+            begin: "var digits: Digits;",
+            next: "",
+            set: number.as_deref().unwrap_or_default(),
+            judge: "judge_lane_onwards",
+            ..group
+        };
+        let runs = match self.layout.runs.map(|it| it.along) {
+            Some(RunsAlong::Axis { .. }) => vec![along, run],
+            Some(RunsAlong::Order) => vec![onwards, in_order],
+            None => Vec::new(),
+        };
         for judged in [one, group].into_iter().chain(runs) {
-            let JudgingText { name, at, begin, members, next, set } = judged;
+            let JudgingText { name, at, begin, members, next, .. } = judged;
             let mut lines = vec!["var inputs = fixed_inputs();".to_owned(), "set_row_inputs(&inputs, state);".to_owned()];
             if !begin.is_empty() {
                 lines.insert(0, begin.to_owned());
@@ -112,7 +141,7 @@ impl Prelude<'_> {
                     lines.push(next.to_owned());
                 }
             }
-            lines.extend(self.scenario_loops(members, set));
+            lines.extend(self.scenario_loops(judged));
             let (kind, result) = if begin.is_empty() { ("Lane", "return l0;") } else { ("Group", of_group.as_str()) };
             lines.push(result.to_owned());
             self.function(&format!("{name}(row: u32, state: RowState, held: Prepared, {at}) -> {kind}"), &lines);
@@ -128,13 +157,15 @@ impl Prelude<'_> {
         self.function("check_group(group: Group, row: u32, state: RowState, first: u32, lanes: u32)", &check.collect::<Vec<_>>());
     }
 
-    fn scenario_loops(&self, members: &[u64], set: &str) -> Vec<String> {
+    fn scenario_loops(&self, JudgingText { members, set, judge, .. }: JudgingText<'_>) -> Vec<String> {
         let (plan, layout) = (self.plan, self.layout);
         if plan.lane_outputs.is_empty() && plan.lane_conditions.is_empty() {
             return Vec::new();
         }
         let once = |name: &str, index: &str| format!("set_{name}_scenario(&inputs, {index});");
-        let each = members.iter().flat_map(|it| [format!("{set}(&inputs, d{it});"), format!("judge_lane(prepared, inputs, &l{it});")]);
+        let lines = |it: &u64| [set.replace("{member}", &it.to_string()), format!("{judge}(prepared, inputs, &l{it});")];
+        let each = members.iter().flat_map(lines);
+        let told: Vec<String> = each.clone().collect();
         let mut inner: Vec<String> = Vec::new();
         if layout.fast_scenarios.count == 1 {
             inner.push(once("fast", "0u"));
@@ -145,18 +176,26 @@ impl Prelude<'_> {
             inner.extend(each.map(|line| format!("    {line}")));
             inner.push("}".to_owned());
         }
-        if layout.slow_scenarios.count == 1 {
-            let mut lines = vec!["let prepared = held;".to_owned(), once("slow", "0u")];
+        if layout.slow_scenarios.count == 1 && !layout.tells_scenarios {
+            let mut lines = vec!["var prepared = held;".to_owned(), once("slow", "0u")];
             lines.extend(inner);
             return lines;
         }
         let verdicts = members.iter().map(|it| format!("l{it}.verdict"));
         let best = verdicts.reduce(|a, b| format!("max({a}, {b})")).expect("a group has a member");
-        let mut lines = vec![
-            "for (var q = 0u; q < SLOW_SCENARIOS; q++) {".to_owned(),
-            "    let prepared = load_prepared(q, row);".to_owned(),
-            format!("    {}", once("slow", "q")),
-        ];
+        let mut lines = if layout.tells_scenarios {
+            vec![
+                "let last = decisive[row + 1u];".to_owned(),
+                "for (var place = decisive[row]; place < last; place++) {".to_owned(),
+                "    let q = decisive[place] / FAST_SCENARIOS;".to_owned(),
+                format!("    {}", once("fast", "decisive[place] % FAST_SCENARIOS")),
+            ]
+        } else {
+            vec!["for (var q = 0u; q < SLOW_SCENARIOS; q++) {".to_owned()]
+        };
+        lines.push("    let prepared = load_prepared(q, row);".to_owned());
+        lines.push(format!("    {}", once("slow", "q")));
+        let inner = if layout.tells_scenarios { told } else { inner };
         lines.extend(inner.into_iter().map(|line| format!("    {line}")));
         lines.push(format!("    if {best} == NO {{ break; }}"));
         lines.push("}".to_owned());

@@ -14,7 +14,7 @@ impl Prelude<'_> {
         }
         put!(self, "}}\n");
         let mut of_lane = vec!["var digits: Digits;".to_owned()];
-        let mut index = vec!["var index = vec2<u32>(0u, 0u);".to_owned()];
+        let mut index = vec!["let digits = digits_of_lane(lane);".to_owned(), "var index = vec2<u32>(0u, 0u);".to_owned()];
         for (number, it) in fast.iter().enumerate() {
             // Beyond the last lane the outermost digit runs on; nothing reads it.
             of_lane.push(format!("digits.d{number} = lane / {}u % {}u;", it.lane_stride, it.count));
@@ -27,7 +27,7 @@ impl Prelude<'_> {
         of_lane.push("return digits;".to_owned());
         index.push("return index;".to_owned());
         self.function("digits_of_lane(lane: u32) -> Digits", &of_lane);
-        self.function("index_of_lane(digits: Digits) -> vec2<u32>", &index);
+        self.function("index_of_lane(lane: u32) -> vec2<u32>", &index);
         let mut advance = Vec::new();
         for (number, it) in fast.iter().enumerate().rev() {
             let step = if number + 1 == fast.len() { "1u".to_owned() } else { format!("select(0u, 1u, carry{})", number + 1) };

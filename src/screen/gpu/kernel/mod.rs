@@ -18,21 +18,29 @@ mod rows;
 mod runs;
 
 use super::constants::{DOMINATORS, FIRST_REPORTED, NEWTON_STEPS_OF_DRAWS, SURVIVOR_HEAD, sweep_constants};
-use super::cut::row_dominators;
+use super::cut::{RunsAlong, row_dominators};
 use super::held::on_device;
 use super::layout::{BINS, FormulaOnDevice, KernelLayout, LIST, Values, scenario_worst, sign};
 use super::texts::{keep_between, least_bad, literal};
 use crate::gpu::constants::declare;
-use crate::gpu::{model_prelude, source, stages_source, stages_source_64, tables};
-use crate::models::{CONDITION_BOUND_FACTOR, Worse};
+use crate::gpu::{WORKGROUP, model_prelude, onwards_source, source, stages_source, stages_source_64, tables};
+use crate::models::{CONDITION_BOUND_FACTOR, Model, Worse};
 use crate::plan::{Plan, Source};
 use crate::reduce::Shuffle;
 use crate::study::{Best, Constraint, Goal, MapSpec, Objective, Quantity};
 use crate::tape::nearest_f32;
 use std::fmt::Write;
 
-/// Entry points of the kernel.
-pub const ENTRIES: &[&str] = &["prepare_rows", "judge_rows", "sweep", "check"];
+/// Entry points of every kernel.
+const ENTRIES: &[&str] = &["prepare_rows", "judge_rows", "sweep", "check"];
+/// Those before `sweep` where lanes are judged in runs first.
+const ENTRIES_OF_RUNS: &[&str] = &["judge_runs", "count_groups"];
+
+/// Entry points of a study's kernel.
+pub fn entries(layout: &KernelLayout) -> Vec<&'static str> {
+    let of_runs = if layout.runs.is_some() { ENTRIES_OF_RUNS } else { &[] };
+    [ENTRIES, of_runs].concat()
+}
 
 /// How a design is compared by an objective on the device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,6 +72,11 @@ pub fn coordinates(plan: &Plan, layout: &KernelLayout) -> Vec<Coordinate> {
 /// Does the look-up table serve: two or three coordinates, none of steps, of which many designs share one?
 pub fn uses_table(coordinates: &[Coordinate]) -> bool {
     matches!(coordinates.len(), 2 | 3) && !coordinates.contains(&Coordinate::Stepped)
+}
+
+/// Does the closer look search the front itself? RunsAlong a curve that is a matter of halving.
+pub fn looks_through_front(coordinates: &[Coordinate]) -> bool {
+    uses_table(coordinates) && coordinates.len() == 2
 }
 
 /// Bins along each coordinate of the table.
@@ -111,6 +124,8 @@ pub fn text(plan: &Plan, layout: &KernelLayout, f64: bool, perturb: &[(usize, f6
     prelude.passing();
     prelude.lanes();
     prelude.runs();
+    prelude.sorted();
+    prelude.scenarios();
     prelude.judging(perturb);
     prelude.front();
     prelude.others();
@@ -122,10 +137,13 @@ pub fn text(plan: &Plan, layout: &KernelLayout, f64: bool, perturb: &[(usize, f6
         FormulaOnDevice::Drawn(drawn) => (source::common_with(NEWTON_STEPS_OF_DRAWS), drawn.text.clone()),
     };
     let around_first_stage = if f64 { include_str!("../../../../shaders/sweep/first-stage-64.wgsl") } else { "" };
-    let second_stage = match layout.runs {
-        Some(_) => include_str!("../../../../shaders/sweep/runs.wgsl"),
-        None => include_str!("../../../../shaders/sweep/sweep.wgsl"),
+    let runs = include_str!("../../../../shaders/sweep/runs.wgsl");
+    let second_stage = match layout.runs.map(|it| it.along) {
+        None => include_str!("../../../../shaders/sweep/sweep.wgsl").to_owned(),
+        Some(RunsAlong::Axis { .. }) => include_str!("../../../../shaders/sweep/runs-along-axis.wgsl").to_owned() + "\n" + runs,
+        Some(RunsAlong::Order) => include_str!("../../../../shaders/sweep/runs-in-order.wgsl").to_owned() + "\n" + runs,
     };
+    let of_model = of_model + &onwards(model, layout);
     [
         &common,
         &sweep_constants(),
@@ -140,10 +158,20 @@ pub fn text(plan: &Plan, layout: &KernelLayout, f64: bool, perturb: &[(usize, f6
         &prelude.text,
         include_str!("../../../../shaders/sweep/prepare.wgsl"),
         include_str!("../../../../shaders/sweep/look.wgsl"),
-        second_stage,
+        &second_stage,
         include_str!("../../../../shaders/sweep/check.wgsl"),
     ]
     .join("\n")
+}
+
+/// The second stage from the number on that lanes are sorted by.
+fn onwards(model: &Model, layout: &KernelLayout) -> String {
+    match (&layout.formula, &layout.sorted) {
+        (FormulaOnDevice::Own(own), Some(_)) => {
+            own.onwards.as_ref().map_or_else(String::new, |it| onwards_source(model, &layout.fields, it))
+        }
+        _ => String::new(),
+    }
 }
 
 /// The tables that pass between the stages.

@@ -13,6 +13,12 @@ pub(super) struct Stage {
     number: fn(f64) -> String,
 }
 
+/// The position of a row along a slow dimension. The outermost digit counts from the window's first level.
+fn slow_digit(number: usize) -> String {
+    let base = if number == 0 { " + tile.window" } else { "" };
+    format!("(digits[{number}]{base})")
+}
+
 impl Prelude<'_> {
     /// f32, then f64 if that is what the first stage computes in.
     fn stages(&self) -> Vec<Stage> {
@@ -145,11 +151,16 @@ impl Prelude<'_> {
         let maps = plan.study.report.maps.len();
         put!(self, "struct RowState {{\n    verdict: u32,\n    index: vec2<u32>,");
         (0..maps).for_each(|map| put!(self, "    cell{map}: u32,"));
+        if layout.sorted.is_some() {
+            put!(self, "    // Where its lanes begin among the sorted ones.");
+            put!(self, "    column: u32,");
+        }
         tracked.iter().for_each(|at| put!(self, "    t{at}: Real,"));
         layout.row_inputs.iter().for_each(|&input| put!(self, "    {}: Real,", self.input(input)));
         put!(self, "}}\n");
         let mut words = vec!["verdict".to_owned(), "index.x".to_owned(), "index.y".to_owned()];
         words.extend((0..maps).map(|map| format!("cell{map}")));
+        words.extend(layout.sorted.iter().map(|_| "column".to_owned()));
         let whole = words.len();
         words.extend(tracked.iter().flat_map(|at| [format!("t{at}.value"), format!("t{at}.bound")]));
         words.extend(layout.row_inputs.iter().flat_map(|&it| ["value", "bound"].map(|part| format!("{}.{part}", self.input(it)))));
@@ -178,6 +189,10 @@ impl Prelude<'_> {
         for map in 0..maps {
             start.push(format!("state.cell{map} = {};", self.cell_of_row(map)));
         }
+        if let Some(sorted) = &layout.sorted {
+            let terms = sorted.dimensions.iter().map(|&(number, distance)| format!("{} * {distance}u", slow_digit(number)));
+            start.push(format!("state.column = {};", terms.reduce(|a, b| format!("{a} + {b}")).unwrap_or_else(|| "0u".to_owned())));
+        }
         for &at in &tracked {
             start.push(format!("state.t{at} = {};", self.row_start(at)));
         }
@@ -190,9 +205,7 @@ impl Prelude<'_> {
     pub(super) fn cell_of_row(&self, map: usize) -> String {
         let terms = self.map_terms(map).into_iter().filter_map(|(stride, count, factor)| {
             let number = self.layout.slow.iter().position(|it| (it.stride, it.count) == (stride, count))?;
-            // The outermost digit counts from the window's first level.
-            let base = if number == 0 { " + tile.window" } else { "" };
-            Some(format!("(digits[{number}]{base}) * {factor}u"))
+            Some(format!("{} * {factor}u", slow_digit(number)))
         });
         let terms: Vec<_> = terms.collect();
         if terms.is_empty() { "0u".to_owned() } else { terms.join(" + ") }
