@@ -23,9 +23,10 @@ fn near(value: f32) -> Real {
     return Real(value, abs(value) * ROUNDING);
 }
 
-// Any number between two others: the middle, with half of their distance as the bound.
+// Any number between two others: the middle, with half of their distance as the bound, and a little more for what rounds in the bounds that
+// are made of it.
 fn between(a: Real, b: Real) -> Real {
-    let reach = 0.5 * abs(b.value - a.value) + 2.0 * ROUNDING * (abs(a.value) + abs(b.value)) + FLUSH;
+    let reach = 0.5001 * abs(b.value - a.value) + 2.0 * ROUNDING * (abs(a.value) + abs(b.value)) + FLUSH;
     return Real(0.5 * a.value + 0.5 * b.value, reach + max(a.bound, b.bound));
 }
 
@@ -52,7 +53,9 @@ fn is_zero(a: Real) -> bool {
 // The same where a number may be exactly zero, and the product with it: a plateau is known to be one.
 fn mul_or_zero(a: Real, b: Real) -> Real {
     let product = mul(a, b);
-    return Real(product.value, select(product.bound, 0.0, is_zero(a) || is_zero(b)));
+    // Not where the other one may have no value.
+    let is_exact = (is_zero(a) && b.bound < infinity()) || (is_zero(b) && a.bound < infinity());
+    return Real(product.value, select(product.bound, 0.0, is_exact));
 }
 
 fn square(a: Real) -> Real {

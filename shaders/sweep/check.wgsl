@@ -2,24 +2,26 @@
 
 @compute @workgroup_size(WORKGROUP)
 fn check(@builtin(global_invocation_id) id: vec3<u32>) {
-    let lanes = tile.last_lane - tile.first_lane;
-    let groups = (lanes + GROUP - 1u) / GROUP;
+    let groups = (checked_lanes() + GROUP - 1u) / GROUP;
     let row = id.x / groups;
     if row >= tile.rows {
         return;
     }
     let first = id.x % groups * GROUP;
     let state = load_row(row);
-    let group = judge_group(row, state, hold_prepared(row), tile.first_lane + first);
-    check_group(group, row, state, first, lanes);
+    let group = checked_group(row, state, hold_prepared(row), first);
+    check_group(group, row, state, first);
 }
 
-fn check_lane(judged: Lane, row: u32, state: RowState, at: u32, lanes: u32) {
-    if at >= lanes {
+fn check_lane(judged: Lane, row: u32, state: RowState, at: u32) {
+    if at >= checked_lanes() {
         return;
     }
-    let lane = tile.first_lane + at;
-    let word = (row * lanes + at) * CHECK_WORDS;
+    let lane = checked_lane(state, at);
+    if lane < tile.first_lane || lane >= tile.last_lane {
+        return;
+    }
+    let word = (row * (tile.last_lane - tile.first_lane) + lane - tile.first_lane) * CHECK_WORDS;
     survivors[word] = judged.verdict;
     write_worst(word + 1u, judged);
     // Any scenario will do, as long as all of them come up.

@@ -94,7 +94,7 @@ fn look_closer(
         if KEEPS {
             judged = (*kept)[i % KEPT];
         } else {
-            judged = judge(row, state, held, place);
+            judged = judge_at(row, state, held, first, i);
         }
         // What the first look counted decides which list a design is in: judged again it may round otherwise.
         let counted = ((seen.sure >> i) & 1u) == 1u;

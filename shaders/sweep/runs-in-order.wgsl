@@ -27,9 +27,9 @@ fn is_counted() -> bool {
 
 // The numbers between two, which may be the same one.
 fn stretch(a: Real, b: Real) -> Real {
-    var all = between(a, b);
-    all.bound = select(all.bound, a.bound, a.value == b.value);
-    return all;
+    let all = between(a, b);
+    let same = a.value == b.value;
+    return Real(select(all.value, a.value, same), select(all.bound, a.bound, same));
 }
 
 fn judge_run(run: Run, state: RowState, held: Prepared) -> Lane {
@@ -44,6 +44,24 @@ fn judge_in_run(run: Run, state: RowState, held: Prepared, at: u32) -> Group {
 // What `lane_at` counts from.
 fn first_of(run: Run, begin: u32) -> u32 {
     return run.number * RUN_LENGTH + begin;
+}
+
+// A lane by its place, judged again.
+fn judge_at(row: u32, state: RowState, held: Prepared, first: u32, i: u32) -> Lane {
+    return judge_sorted(row, state, held, first + i).l0;
+}
+
+// What the comparison with f64 judges: all places, of which a tile may have any.
+fn checked_lanes() -> u32 {
+    return WIDTH;
+}
+
+fn checked_group(row: u32, state: RowState, held: Prepared, at: u32) -> Group {
+    return judge_sorted(row, state, held, at);
+}
+
+fn checked_lane(state: RowState, at: u32) -> u32 {
+    return sorted_lane(state, at);
 }
 
 fn lane_at(state: RowState, first: u32, i: u32) -> u32 {

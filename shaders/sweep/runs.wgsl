@@ -4,7 +4,7 @@
 // A first pass judges the runs and lists those that are open; a second one has an invocation for each of these. Within one pass the
 // invocations that meet a settled run would wait for their neighbours, and a software device would compute what it then drops.
 
-// The open runs of a workgroup, and how many lanes they have.
+// The open runs of a workgroup, and how many lanes they have, where that is known by now.
 var<workgroup> open_runs: array<u32, OPEN_RUNS>;
 var<workgroup> open_count: atomic<u32>;
 var<workgroup> open_lanes: atomic<u32>;
@@ -46,7 +46,7 @@ fn judge_runs(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invoc
             if judged.verdict != NO {
                 if judged.verdict == UNSURE || LOOK_AT_ALL || !is_counted() || may_be_part(judged, horizon) {
                     open_runs[atomicAdd(&open_count, 1u)] = at * RUNS + number;
-                    atomicAdd(&open_lanes, run.last - run.first);
+                    atomicAdd(&open_lanes, select(0u, run.last - run.first, is_counted()));
                 } else {
                     counted.x += run.last - run.first;
                 }
@@ -103,6 +103,9 @@ fn sweep(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation
             look_at_group(group, horizon, i, end - begin, &seen, &none, &kept);
         }
         let here = lanes_here(run, state, begin);
+        if !is_counted() {
+            atomicAdd(&counts[SINGLY], countOneBits(here));
+        }
         seen.sure &= here;
         seen.flagged &= here;
         counted += look_closer(seen, run.row, state, held, horizon, first_of(run, begin), &kept, local);

@@ -101,7 +101,8 @@ pub fn adapters() -> Vec<Adapter> {
     wanted.flags = wgpu::InstanceFlags::empty();
     let instance = wgpu::Instance::new(wanted);
     let found = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
-    let computes = |adapter: &wgpu::Adapter| adapter.get_downlevel_capabilities().flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS);
+    let needed = wgpu::DownlevelFlags::COMPUTE_SHADERS | wgpu::DownlevelFlags::INDIRECT_EXECUTION;
+    let computes = |adapter: &wgpu::Adapter| adapter.get_downlevel_capabilities().flags.contains(needed);
     let mut adapters: Vec<_> = found.into_iter().filter(computes).map(Adapter::new).collect();
     adapters.sort_by_key(|adapter| adapter.kind);
     adapters

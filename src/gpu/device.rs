@@ -41,8 +41,8 @@ impl Device {
         let refused = |problem: String| Error::Gpu { device: adapter.name.clone(), problem };
         let limits = adapter.adapter.limits();
         // wgpu does not compare workgroup memory with the limit, and an old driver may have less than WebGPU's least.
-        if limits.max_storage_buffers_per_shader_stage < 9 || limits.max_compute_invocations_per_workgroup < 256 {
-            return Err(refused("it has fewer than 9 storage buffers or 256 invocations per workgroup".to_owned()));
+        if limits.max_storage_buffers_per_shader_stage < 8 || limits.max_compute_invocations_per_workgroup < 256 {
+            return Err(refused("it has fewer than 8 storage buffers or 256 invocations per workgroup".to_owned()));
         }
         let f64 = adapter.adapter.features() & wgpu::Features::SHADER_F64;
         let wanted = wgpu::DeviceDescriptor {

@@ -7,8 +7,9 @@
 mod adapter;
 pub(crate) mod constants;
 mod device;
+pub(crate) mod operations;
 mod points;
-pub(crate) mod program;
+mod program;
 
 #[doc(hidden)]
 pub mod self_test;
@@ -19,6 +20,7 @@ pub(crate) use constants::{WORKGROUP, shared_constants};
 #[doc(hidden)]
 pub use device::Device;
 pub(crate) use device::{Buffer, Wait};
+pub(crate) use operations::Operations;
 #[doc(hidden)]
 pub use points::PointKernel;
 pub(crate) use program::Program;

@@ -30,10 +30,18 @@ pub(crate) struct Program {
 /// # Errors
 /// What is wrong with the text, with a line of it.
 fn parse(source: &str) -> std::result::Result<naga::Module, String> {
+    parsed(source).map(|(module, _)| module)
+}
+
+/// The same with what the validation has found out of it.
+///
+/// # Errors
+/// As [`parse`].
+pub(super) fn parsed(source: &str) -> std::result::Result<(naga::Module, naga::valid::ModuleInfo), String> {
     let module = naga::front::wgsl::parse_str(source).map_err(|error| error.emit_to_string(source))?;
     let mut validator = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::FLOAT64);
-    validator.validate(&module).map_err(|error| error.emit_to_string(source))?;
-    Ok(module)
+    let info = validator.validate(&module).map_err(|error| error.emit_to_string(source))?;
+    Ok((module, info))
 }
 
 /// The bindings that a kernel declares.

@@ -127,7 +127,7 @@ impl Decisive {
         self.scalars.extend(scalars);
     }
 
-    /// The scenarios that decide about the row, by the order in which they were added.
+    /// The scenarios that decide about the row, as numbers in the order in which they were added.
     #[cfg(feature = "gpu")]
     pub(super) fn kept(&self) -> &[usize] {
         &self.kept

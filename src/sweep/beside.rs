@@ -5,6 +5,7 @@ use crate::reduce::Reducers;
 use crate::screen::CpuEngine;
 use std::collections::HashSet;
 use std::ops::Range;
+use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 /// How many levels away, largest first.
@@ -35,7 +36,7 @@ pub(super) fn look_beside_front(job: SweepJob<'_>, whole: &Range<u64>, seconds: 
             if whole.contains(&first) && whole.contains(&last) && met.insert(row) {
                 engine.screen_for(first..last + 1, reduction, seen);
             }
-            if start.elapsed().as_secs_f64() > seconds {
+            if control.stop.load(Ordering::Relaxed) || start.elapsed().as_secs_f64() > seconds {
                 return;
             }
         }

@@ -107,7 +107,8 @@ pub(super) fn go_on(
     engine.look_for_scenarios(tables, options.threads);
     let whole = job.whole();
     let mut seen = look_around(job, &whole, HEAD_START_TIME);
-    if !on.wrong.is_blind() {
+    // A sweep that goes on knows its own front.
+    if progress.is_none() && !on.wrong.is_blind() {
         look_beside_front(job, &whole, HEAD_START_TIME / 2.0, &mut seen);
     }
     let progress = progress.unwrap_or_else(|| Progress { done: Ranges::default(), state: head_start(reduction, &mut seen) });
@@ -211,7 +212,7 @@ impl Run<'_, '_> {
             let designs = range.end - range.start;
             let Some((counts, survivors)) = found else {
                 if designs == 1 {
-                    return Err(self.engine.device().error("one design has more survivors than there is room for"));
+                    return Err(self.engine.device().error("one design has more survivors or open runs than there is room for"));
                 }
                 self.record.repeated += 1;
                 most = (designs / 2).max(1);

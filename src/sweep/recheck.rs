@@ -85,8 +85,8 @@ pub struct Recheckable {
     states: Vec<State>,
 }
 
-/// Tiles spread over a range: all of it if it is small.
-fn tiles(plan: &Plan, whole: &Range<u64>) -> Vec<Range<u64>> {
+/// Tiles spread over a range: all of it if it is small. `by_rows`: each with a whole row at least, as far as the range has one there.
+fn tiles(plan: &Plan, whole: &Range<u64>, by_rows: bool) -> Vec<Range<u64>> {
     let designs = whole.end - whole.start;
     // A design with draws takes as long as many without.
     let least = if plan.study.probability.is_some() { LEAST_DESIGNS.min(plan.study.model.sample) } else { LEAST_DESIGNS };
@@ -94,7 +94,7 @@ fn tiles(plan: &Plan, whole: &Range<u64>) -> Vec<Range<u64>> {
         return if designs == 0 { Vec::new() } else { vec![whole.clone()] };
     }
     let size = least.div_ceil(TILES);
-    let stratum = designs / TILES;
+    let (stratum, width) = (designs / TILES, plan.fast.count());
     // Another run of another study looks elsewhere; the same study is compared at the same places.
     let seed = plan.study.hash().bytes().fold(0, |seed, byte| mix(seed ^ u64::from(byte)));
     (0..TILES)
@@ -102,6 +102,8 @@ fn tiles(plan: &Plan, whole: &Range<u64>) -> Vec<Range<u64>> {
             let first = whole.start + number * stratum;
             let room = stratum.saturating_sub(size).max(1);
             let start = first + mix(seed ^ number) % room;
+            let start = if by_rows { (start / width * width).max(whole.start) } else { start };
+            let size = if by_rows { size.max(width) } else { size };
             start..(start + size).min(whole.end)
         })
         .collect()
@@ -122,7 +124,7 @@ impl Recheckable {
         threads: usize,
     ) -> Result<Self> {
         let mut found = Self { report: Recheck::default(), states: Vec::new() };
-        for range in tiles(plan, whole) {
+        for range in tiles(plan, whole, engine.judges_rows()) {
             let checked = engine.check(&range)?;
             let used = engine.used_outputs();
             let share = checked.len().div_ceil(threads.max(1)).max(1);

@@ -1,4 +1,4 @@
-//! How the work of a tile is cut into invocations: lanes of a row in blocks, or in runs along one axis.
+//! How the work of a tile is cut into invocations: lanes of a row in blocks or in runs.
 
 use super::constants::MOST_GROUPS as MOST_GROUPS_U32;
 use super::layout::{FastDimension, LIST};
@@ -25,6 +25,7 @@ const LEAST_LEVELS: u64 = 8;
 const MOST_TURNS: u64 = 16;
 /// Evaluations of a small study.
 const SMALL: u64 = 20_000_000;
+
 /// How work is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cut {
@@ -76,18 +77,20 @@ pub fn covers_ranges(lists: [&List; 2]) -> bool {
     lists.into_iter().all(|list| !list.operations.iter().any(is_near))
 }
 
-/// Which runs a device is given: those along an axis cost a software device more than they save.
+/// What a device is given where a study allows it.
 #[derive(Clone, Copy, Debug)]
-pub struct RunKinds {
-    /// RunsAlong an axis.
+pub struct Extras {
+    /// Runs along an axis: they cost a software device more than they save.
     pub axis: bool,
-    /// In the order of the one number that lanes differ by.
+    /// Runs in the order of the one number that lanes differ by.
     pub order: bool,
+    /// The scenarios that decide about a row.
+    pub scenarios: bool,
 }
 
-impl RunKinds {
+impl Extras {
     /// All.
-    pub const ALL: Self = Self { axis: true, order: true };
+    pub const ALL: Self = Self { axis: true, order: true, scenarios: true };
 }
 
 impl Runs {
@@ -239,7 +242,7 @@ mod tests {
             ] {
                 let plan = study(model, axis, objective, scenarios);
                 for grouped in [false, true] {
-                    let Ok(layout) = KernelLayout::new(&plan, true, grouped, RunKinds::ALL) else { continue };
+                    let Ok(layout) = KernelLayout::new(&plan, true, grouped, Extras::ALL) else { continue };
                     let cut = layout.cut;
                     let (shared, alone) = Cut::iterations(&plan, layout.fields.iterations, cut.keeps);
                     let iterations = cut.lanes_each.div_ceil(cut.group) * shared + cut.lanes_each * alone;

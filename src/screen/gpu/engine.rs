@@ -5,7 +5,7 @@ use super::constants::{
     APPENDED, DIGIT_VECTORS, FIRST_REPORTED, GROUPS, IS_UNSURE, LANE_BITS, MAY_BE_END, MAY_BE_FRONT, MAY_BE_IN_MAP, OPEN,
     SCENARIO_PER_LANE, SCENARIO_PER_ROW, SINGLY, SURE, SURVIVOR_HEAD, UNDECIDED,
 };
-use super::cut::{MOST_GROUPS, RunKinds};
+use super::cut::{Extras, MOST_GROUPS};
 use super::held::histogram_beyond_f32;
 use super::held::refuse;
 use super::kernel::{self, Coordinate, check_words, coordinates, entries, survivor_words, text};
@@ -213,14 +213,10 @@ impl<'p> GpuEngine<'p> {
     /// [`Error::Gpu`](crate::error::Error::Gpu) if the device fails.
     pub fn new(plan: &'p Plan, ranges: &[(f64, f64)], device: &Device, limited_loops: bool, wrong: &Wrong) -> Result<Self> {
         supports_report(plan)?;
-        let mut kinds = RunKinds { axis: device.is_hardware || wrong.is_grouped(), order: true };
-        let mut layout = KernelLayout::new(plan, limited_loops, wrong.is_grouped(), kinds)?;
-        let mut sorted_lanes = layout.sorted_lanes(plan);
-        if sorted_lanes.is_none() {
-            kinds.order = false;
-            layout = KernelLayout::new(plan, limited_loops, wrong.is_grouped(), kinds)?;
-            sorted_lanes = Some(Vec::new());
-        }
+        // Sorted lanes and scenarios stand in a ninth storage buffer; WebGPU promises eight.
+        let has_room = device.limits.max_storage_buffers_per_shader_stage > 8;
+        let extras = Extras { axis: device.is_hardware || wrong.is_grouped(), order: has_room, scenarios: has_room };
+        let (layout, sorted_lanes) = KernelLayout::with_lanes(plan, limited_loops, wrong.is_grouped(), extras)?;
         supports_histograms(plan, ranges)?;
         let source = wrong.text(kernel_text(plan, &layout, ranges, device.has_f64(), &wrong.perturb));
         let program = Program::new(device, &source, &entries(&layout))?;
@@ -265,7 +261,7 @@ impl<'p> GpuEngine<'p> {
         let cells = device.buffer("cells", value_cells * 4, storage);
         let scenario_words = if row_scenarios.is_some() { RowScenarios::words(plan, most_rows) } else { 0 };
         let decisive = device.buffer("decisive", 4 * scenario_words, storage);
-        let sorted_lanes = device.storage("sorted_lanes", &sorted_lanes.unwrap_or_default());
+        let sorted_lanes = device.storage("sorted_lanes", &sorted_lanes);
         let zeros = device.storage("zeros", &vec![0u32; count_words as usize]);
         let list = known::room(&coordinates);
         let slots = (0..2).map(|_| {
@@ -478,7 +474,7 @@ impl<'p> GpuEngine<'p> {
             let designs = part.end - part.start;
             let wait = self.device.submit(|encoder| {
                 self.first_stage(encoder, slot, &rows);
-                let lanes = designs / (rows.end - rows.start);
+                let lanes = if self.layout.sorted.is_some() { self.plan.fast.count() } else { designs / (rows.end - rows.start) };
                 let groups = (rows.end - rows.start) * lanes.div_ceil(self.layout.cut.group);
                 self.program.dispatch(encoder, "check", &slot.bound, [groups.div_ceil(WORKGROUP.into()) as u32, 1]);
             });
@@ -509,6 +505,11 @@ impl<'p> GpuEngine<'p> {
         Checked { verdict, worst, asked: numbers.collect(), scenario: (u64::from(scenario / fast), u64::from(scenario % fast)) }
     }
 
+    /// Does it judge stretches of a row that stand anywhere in it? Then it is whole rows that say how it does.
+    pub fn judges_rows(&self) -> bool {
+        self.layout.sorted.is_some()
+    }
+
     /// The used outputs, in the order of [`Checked::asked`].
     pub fn used_outputs(&self) -> Vec<usize> {
         self.plan.used_outputs().iter().collect()
@@ -528,7 +529,7 @@ pub fn supports(plan: &Plan, limited_loops: bool) -> Result<()> {
     let given = plan.study.report.histograms.iter().map(|it| it.range.unwrap_or((0.0, 1.0))).collect::<Vec<_>>();
     supports_report(plan)?;
     supports_histograms(plan, &given)?;
-    KernelLayout::new(plan, limited_loops, false, RunKinds::ALL).map(|_| ())
+    KernelLayout::new(plan, limited_loops, false, Extras::ALL).map(|_| ())
 }
 
 /// Does the study ask for nothing but worst values, counts and candidates?
@@ -548,14 +549,17 @@ pub fn supports_histograms(plan: &Plan, ranges: &[(f64, f64)]) -> Result<()> {
     histogram_beyond_f32(plan, ranges).map_or(Ok(()), |why| Err(refuse(why)))
 }
 
-/// The kernel that a study is screened with, as it would be on a driver that ends long loops.
+/// The kernel that a study is screened with, as it would be on a software driver that ends long loops; in its first line, how many operations
+/// its designs take.
 ///
 /// # Errors
 /// [`Error::NotOnDevice`](crate::error::Error::NotOnDevice) if the study cannot be screened on a device.
 pub fn kernel_of(plan: &Plan, ranges: &[(f64, f64)], perturb: &[(usize, f64)]) -> Result<String> {
     supports_report(plan)?;
     supports_histograms(plan, ranges)?;
-    Ok(kernel_text(plan, &KernelLayout::new(plan, true, false, RunKinds { axis: false, order: true })?, ranges, false, perturb))
+    let (layout, _) = KernelLayout::with_lanes(plan, true, false, Extras { axis: false, ..Extras::ALL })?;
+    let text = kernel_text(plan, &layout, ranges, false, perturb);
+    Ok(kernel::operations_line(&layout, &text) + &text)
 }
 
 fn kernel_text(plan: &Plan, layout: &KernelLayout, ranges: &[(f64, f64)], f64: bool, perturb: &[(usize, f64)]) -> String {

@@ -2,7 +2,7 @@
 //! invocations, `cut` says.
 
 use super::constants::{LANE_BITS, Level, WINDOW};
-use super::cut::{Cut, MOST_GROUPS, MOST_ITERATIONS, RunKinds, Runs, covers_ranges};
+use super::cut::{Cut, Extras, MOST_GROUPS, MOST_ITERATIONS, Runs, covers_ranges};
 use super::drawn::DrawnOnDevice;
 use super::held::{beyond_f32, refuse};
 use super::row_scenarios::RowScenarios;
@@ -152,11 +152,12 @@ pub struct KernelLayout {
 }
 
 impl KernelLayout {
-    /// Lays out a study. `grouped`: lanes are judged in groups, and these in runs first, even where the study is small; `kinds`: of runs.
+    /// Lays out a study. `grouped`: lanes are judged in groups, and these in runs first, even where the study is small; `extras`: what else the device is
+    /// given.
     ///
     /// # Errors
     /// [`Error::NotOnDevice`] if it cannot be screened on a device, and why.
-    pub fn new(plan: &Plan, limited_loops: bool, grouped: bool, kinds: RunKinds) -> Result<Self> {
+    pub fn new(plan: &Plan, limited_loops: bool, grouped: bool, extras: Extras) -> Result<Self> {
         let model = &plan.study.model;
         let used = plan.used_outputs();
         let known = knowns(&plan.study, &plan.space);
@@ -167,7 +168,7 @@ impl KernelLayout {
                 let asked: Vec<_> = asked.map(|&it| (it, model.conditions[it].strict)).collect();
                 let fast = plan.fast.inputs() | plan.fast_scenarios.inputs();
                 let slow: Set = (0..model.inputs.len()).filter(|&input| !fast.contains(input)).collect();
-                let choice = |list: &List, inputs: &[Set]| if kinds.order { chosen(plan, list, inputs) } else { None };
+                let choice = |list: &List, inputs: &[Set]| if extras.order { chosen(plan, list, inputs) } else { None };
                 let own = SettledStages::divided_with(model.on_device()?, &known, used, &asked, slow, &choice);
                 (own.fields, own.reads, FormulaOnDevice::Own(Box::new(own)))
             }
@@ -255,7 +256,7 @@ impl KernelLayout {
         }
         let slow_inputs = plan.slow.inputs();
         let cut = Cut::new(plan, fields.iterations, grouped);
-        let tells_scenarios = matches!(formula, FormulaOnDevice::Own(_)) && RowScenarios::serve(plan);
+        let tells_scenarios = extras.scenarios && matches!(formula, FormulaOnDevice::Own(_)) && RowScenarios::serve(plan);
         let (mut runs, mut sorted) = (None, None);
         if let FormulaOnDevice::Own(own) = &formula {
             if let Some(onwards) = own.onwards.as_ref().filter(|it| covers_ranges([&it.conditions, &it.finish])) {
@@ -263,7 +264,7 @@ impl KernelLayout {
                 sorted = SortedLanes::new(plan, onwards, grouped).filter(|_| runs.is_some());
             }
             if sorted.is_none() {
-                let serves = kinds.axis && covers_ranges([&own.lists.conditions, &own.lists.finish]);
+                let serves = extras.axis && covers_ranges([&own.lists.conditions, &own.lists.finish]);
                 runs = if serves { Runs::new(plan, &fast, asked, cut, fields.iterations) } else { None };
             }
         }
@@ -307,8 +308,19 @@ impl KernelLayout {
         }
     }
 
-    /// The lanes of all columns in their order, none where no runs lie along it; `None` if they have no order.
-    pub fn sorted_lanes(&self, plan: &Plan) -> Option<Vec<SortedLane>> {
+    /// The same with its lanes in order, none where no runs lie along it: a study whose lanes turn out to have no order goes without.
+    ///
+    /// # Errors
+    /// As [`KernelLayout::new`].
+    pub fn with_lanes(plan: &Plan, limited_loops: bool, grouped: bool, extras: Extras) -> Result<(Self, Vec<SortedLane>)> {
+        let layout = Self::new(plan, limited_loops, grouped, extras)?;
+        match layout.sorted_lanes(plan) {
+            Some(lanes) => Ok((layout, lanes)),
+            None => Ok((Self::new(plan, limited_loops, grouped, Extras { order: false, ..extras })?, Vec::new())),
+        }
+    }
+
+    fn sorted_lanes(&self, plan: &Plan) -> Option<Vec<SortedLane>> {
         match (&self.sorted, &self.formula) {
             (Some(sorted), FormulaOnDevice::Own(own)) => sorted.made(plan, own),
             _ => Some(Vec::new()),

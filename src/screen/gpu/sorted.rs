@@ -6,7 +6,7 @@
 
 use super::held::holds;
 use crate::models::{Set, to_si};
-use crate::plan::{Plan, Source};
+use crate::plan::{FAST_DESIGNS, Plan, Source};
 use crate::screen::ordered::RowChannel;
 use crate::tape::{List, Node, Onwards, SettledStages, nearest_f32};
 
@@ -14,6 +14,9 @@ use crate::tape::{List, Node, Onwards, SettledStages, nearest_f32};
 const MOST_ENTRIES: u64 = 1 << 22;
 /// Fewest designs for each of them: sorting must cost less than it saves.
 const LEAST_DESIGNS: u64 = 64;
+
+/// Numbers nearer to zero than this have error bounds that a device may take for zero.
+const LEAST_NUMBER: f64 = 1e-30;
 
 /// A lane in its order: the bits of its number in f32, and which lane it is.
 pub type SortedLane = [u32; 2];
@@ -31,7 +34,11 @@ pub struct SortedLanes {
 pub fn chosen(plan: &Plan, list: &List, inputs: &[Set]) -> Option<Node> {
     let fast = plan.fast.inputs();
     let asks_lanes = plan.constraints.iter().chain(plan.tracked.iter().map(|(_, source)| source));
-    if plan.scenarios() != 1 || !plan.study.report.maps.is_empty() || asks_lanes.clone().any(|it| matches!(it, Source::LaneInput(_))) {
+    if plan.scenarios() != 1
+        || plan.fast.count() > FAST_DESIGNS
+        || !plan.study.report.maps.is_empty()
+        || asks_lanes.clone().any(|it| matches!(it, Source::LaneInput(_)))
+    {
         return None;
     }
     let over_lanes: Vec<bool> = inputs.iter().map(|set| set.meets(fast)).collect();
@@ -84,7 +91,7 @@ impl SortedLanes {
                 fast.iter().zip(own).for_each(|(&input, &value)| inputs[input] = value);
                 onwards.number.refill(&inputs, |node| varies[node], &mut numbers);
                 let number = numbers[result as usize];
-                if !holds(number) {
+                if !holds(number) || (number != 0.0 && number.abs() < LEAST_NUMBER) {
                     return None;
                 }
                 places.push((number, lane));
@@ -115,7 +122,7 @@ impl SortedLanes {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::screen::gpu::cut::RunKinds;
+    use crate::screen::gpu::cut::Extras;
     use crate::screen::gpu::layout::{FormulaOnDevice, KernelLayout};
     use crate::study::Study;
     use std::path::Path;
@@ -136,7 +143,7 @@ capacity_axial_force_N = "min"
 
     fn layout(text: &str) -> (Plan, KernelLayout) {
         let plan = Plan::new(Study::parse_in(text, "test.toml", Path::new(".")).unwrap_or_else(|errors| panic!("{errors}")));
-        let layout = KernelLayout::new(&plan, true, true, RunKinds::ALL).expect("a device serves it");
+        let layout = KernelLayout::new(&plan, true, true, Extras::ALL).expect("a device serves it");
         (plan, layout)
     }
 

@@ -147,7 +147,7 @@ fn a_wrong_first_stage_in_f64_is_noticed() {
 fn runs_that_are_judged_too_narrowly_are_noticed() {
     let axis = along_axis(RUNS);
     // As if a run's lanes were all like its middle.
-    let narrow = ("let reach = 0.5 * abs(b.value - a.value)", "let reach = 0.0 * abs(b.value - a.value)");
+    let narrow = ("let reach = 0.5001 * abs(b.value - a.value)", "let reach = 0.0 * abs(b.value - a.value)");
     let fewer = ("counted.x += run.last - run.first;", "counted.x += run.last - run.first - 1u;");
     let settled = ("return !beaten || may_be_extreme(judged, horizon);", "return false;");
     for (text, (piece, other)) in [(RUNS, narrow), (&axis, narrow), (RUNS, fewer), (&axis, fewer), (RUNS, settled)] {

@@ -108,6 +108,10 @@ fn the_kernel_can_be_read() {
     ] {
         assert!(kernel.contains(piece), "{piece}");
     }
+    let counted =
+        kernel.lines().nth(1).and_then(|line| line.strip_prefix("// Operations in the inner loops, a loop within them counted once: "));
+    let count = counted.and_then(|it| it.strip_suffix(" for a design.")?.parse::<u64>().ok());
+    assert!(count.is_some_and(|count| (100..1000).contains(&count)), "{counted:?}");
     assert!(!folder.path().join("results").exists(), "nothing else is written");
 }
 

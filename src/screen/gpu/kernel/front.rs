@@ -50,7 +50,7 @@ impl Prelude<'_> {
         self.function("horizon() -> Horizon", &lines);
         let mut dominators = vec!["var beaten = false;".to_owned()];
         if objectives.len() == 2 && !mixed {
-            // RunsAlong a curve the dominators are sorted: the last one that is not beyond the first coordinate is the best.
+            // Along a curve the dominators are sorted: the last one that is not beyond the first coordinate is the best.
             dominators = vec!["var least = infinity();".to_owned()];
             for dominator in 0..DOMINATORS {
                 dominators.push(format!("least = select(least, horizon.n{dominator}_1, horizon.n{dominator}_0 <= keys.k0.x);"));

@@ -153,8 +153,8 @@ impl Prelude<'_> {
             "look_at_group(group: Group, horizon: Horizon, i: u32, count: u32, seen: ptr<function, Seen>, row_dominator: ptr<function, RowDominator>, kept: ptr<function, array<Lane, KEPT>>)",
             &lines,
         );
-        let check = all.iter().map(|it| format!("check_lane(group.l{it}, row, state, first + {it}u, lanes);"));
-        self.function("check_group(group: Group, row: u32, state: RowState, first: u32, lanes: u32)", &check.collect::<Vec<_>>());
+        let check = all.iter().map(|it| format!("check_lane(group.l{it}, row, state, first + {it}u);"));
+        self.function("check_group(group: Group, row: u32, state: RowState, first: u32)", &check.collect::<Vec<_>>());
     }
 
     fn scenario_loops(&self, JudgingText { members, set, judge, .. }: JudgingText<'_>) -> Vec<String> {

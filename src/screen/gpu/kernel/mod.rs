@@ -23,7 +23,7 @@ use super::held::on_device;
 use super::layout::{BINS, FormulaOnDevice, KernelLayout, LIST, Values, scenario_worst, sign};
 use super::texts::{keep_between, least_bad, literal};
 use crate::gpu::constants::declare;
-use crate::gpu::{WORKGROUP, model_prelude, onwards_source, source, stages_source, stages_source_64, tables};
+use crate::gpu::{Operations, WORKGROUP, model_prelude, onwards_source, source, stages_source, stages_source_64, tables};
 use crate::models::{CONDITION_BOUND_FACTOR, Model, Worse};
 use crate::plan::{Plan, Source};
 use crate::reduce::Shuffle;
@@ -74,7 +74,7 @@ pub fn uses_table(coordinates: &[Coordinate]) -> bool {
     matches!(coordinates.len(), 2 | 3) && !coordinates.contains(&Coordinate::Stepped)
 }
 
-/// Does the closer look search the front itself? RunsAlong a curve that is a matter of halving.
+/// Does the closer look search the front itself? Along a curve that is a matter of halving.
 pub fn looks_through_front(coordinates: &[Coordinate]) -> bool {
     uses_table(coordinates) && coordinates.len() == 2
 }
@@ -137,11 +137,11 @@ pub fn text(plan: &Plan, layout: &KernelLayout, f64: bool, perturb: &[(usize, f6
         FormulaOnDevice::Drawn(drawn) => (source::common_with(NEWTON_STEPS_OF_DRAWS), drawn.text.clone()),
     };
     let around_first_stage = if f64 { include_str!("../../../../shaders/sweep/first-stage-64.wgsl") } else { "" };
-    let runs = include_str!("../../../../shaders/sweep/runs.wgsl");
+    let (by_lane, runs) = (include_str!("../../../../shaders/sweep/by-lane.wgsl"), include_str!("../../../../shaders/sweep/runs.wgsl"));
     let second_stage = match layout.runs.map(|it| it.along) {
-        None => include_str!("../../../../shaders/sweep/sweep.wgsl").to_owned(),
-        Some(RunsAlong::Axis { .. }) => include_str!("../../../../shaders/sweep/runs-along-axis.wgsl").to_owned() + "\n" + runs,
-        Some(RunsAlong::Order) => include_str!("../../../../shaders/sweep/runs-in-order.wgsl").to_owned() + "\n" + runs,
+        None => [by_lane, include_str!("../../../../shaders/sweep/sweep.wgsl")].join("\n"),
+        Some(RunsAlong::Axis { .. }) => [by_lane, include_str!("../../../../shaders/sweep/runs-along-axis.wgsl"), runs].join("\n"),
+        Some(RunsAlong::Order) => [include_str!("../../../../shaders/sweep/runs-in-order.wgsl"), runs].join("\n"),
     };
     let of_model = of_model + &onwards(model, layout);
     [
@@ -162,6 +162,24 @@ pub fn text(plan: &Plan, layout: &KernelLayout, f64: bool, perturb: &[(usize, f6
         include_str!("../../../../shaders/sweep/check.wgsl"),
     ]
     .join("\n")
+}
+
+/// How many operations the inner loops of a kernel take, counted in its text.
+pub fn operations_line(layout: &KernelLayout, text: &str) -> String {
+    let operations = Operations::of(text);
+    let count = |functions: &[&str]| functions.iter().map(|name| operations.in_function(name)).sum::<u64>();
+    let group = layout.cut.group;
+    let singly = |judge: &str| count(&[judge, "look_at_group"]).div_ceil(group);
+    let counts = match layout.runs {
+        Some(runs) => format!(
+            "{} for a run of up to {} designs, {} for a design that is judged singly",
+            count(&["run_of", "judge_run", "may_be_part"]),
+            runs.length,
+            singly("judge_in_run")
+        ),
+        None => format!("{} for a design", singly("judge_group")),
+    };
+    format!("// Operations in the inner loops, a loop within them counted once: {counts}.\n")
 }
 
 /// The second stage from the number on that lanes are sorted by.
