@@ -152,8 +152,8 @@ pub struct KernelLayout {
 }
 
 impl KernelLayout {
-    /// Lays out a study. `grouped`: lanes are judged in groups, and these in runs first, even where the study is small; `extras`: what else the device is
-    /// given.
+    /// Lays out a study. `grouped`: lanes are judged in groups, and these in runs first, even where the study is small; `extras`: what else the
+    /// device is given.
     ///
     /// # Errors
     /// [`Error::NotOnDevice`] if it cannot be screened on a device, and why.
