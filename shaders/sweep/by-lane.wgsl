@@ -1,4 +1,4 @@
-// Where lanes stand by their number: a lane judged again, and what the comparison with f64 judges.
+// For lanes that are not sorted: how one is judged again, and which ones the comparison with f64 judges.
 
 fn judge_at(row: u32, state: RowState, held: Prepared, first: u32, i: u32) -> Lane {
     return judge(row, state, held, digits_of_lane(lane_at(state, first, i)));

@@ -290,25 +290,7 @@ impl KernelLayout {
         })
     }
 
-    /// Most lanes of a row that one dispatch can take.
-    pub fn widest(&self) -> u64 {
-        if self.runs.is_some() { 1 << LANE_BITS } else { self.cut.widest() }
-    }
-
-    /// Most rows that one dispatch can take.
-    pub fn most_rows(&self) -> u64 {
-        self.runs.map_or(MOST_GROUPS * self.cut.group_rows, Runs::most_rows)
-    }
-
-    /// Workgroups that cover `rows` rows and `lanes` lanes; where there are runs, of the pass that judges these.
-    pub fn groups(&self, rows: u64, lanes: u64) -> [u32; 2] {
-        match self.runs {
-            Some(runs) => runs.groups(rows),
-            None => self.cut.groups(rows, lanes),
-        }
-    }
-
-    /// The same with its lanes in order, none where no runs lie along it: a study whose lanes turn out to have no order goes without.
+    /// The same, with the sorted lanes that it needs; none where no runs lie in their order, or where they turn out to have none.
     ///
     /// # Errors
     /// As [`KernelLayout::new`].
@@ -324,6 +306,24 @@ impl KernelLayout {
         match (&self.sorted, &self.formula) {
             (Some(sorted), FormulaOnDevice::Own(own)) => sorted.made(plan, own),
             _ => Some(Vec::new()),
+        }
+    }
+
+    /// Most lanes of a row that one dispatch can take.
+    pub fn widest(&self) -> u64 {
+        if self.runs.is_some() { 1 << LANE_BITS } else { self.cut.widest() }
+    }
+
+    /// Most rows that one dispatch can take.
+    pub fn most_rows(&self) -> u64 {
+        self.runs.map_or(MOST_GROUPS * self.cut.group_rows, Runs::most_rows)
+    }
+
+    /// Workgroups that cover `rows` rows and `lanes` lanes; where there are runs, of the pass that judges these.
+    pub fn groups(&self, rows: u64, lanes: u64) -> [u32; 2] {
+        match self.runs {
+            Some(runs) => runs.groups(rows),
+            None => self.cut.groups(rows, lanes),
         }
     }
 

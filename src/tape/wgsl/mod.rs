@@ -5,15 +5,16 @@
 //! What the formula names, and what is read more than once, stands in a line of its own. A root is found in plain f32, and its bound
 //! comes from one evaluation of its function there.
 
+mod calls;
+mod lines;
 mod loops;
 
-use super::{Binary, Fields, List, ListRoot, Node, Onwards, Operation, Recordable, Rolled, Root, StageLists, Unary, nearest_f32};
+use super::{Binary, Fields, List, ListRoot, Node, Onwards, Operation, Recordable, Rolled, Root, StageLists};
+use calls::{bounded_binary, bounded_unary, constant, plain_binary, plain_unary};
+use lines::put;
 
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
-
-/// A line that is longer is cut into several.
-const WIDE: usize = 110;
 
 /// What the functions of every kernel are called, and what WGSL keeps for itself: no number may be.
 const TAKEN: &[&str] = &[
@@ -493,133 +494,5 @@ impl<'a> Writer<'a> {
 
     fn text(self) -> String {
         self.roots + &self.text
-    }
-}
-
-/// A line with the equation behind it, broken where it is too wide.
-fn put(text: &mut String, indent: &str, line: &str, equation: &str) {
-    let line = if line.len() > WIDE { broken(line, indent.trim_start_matches('\n')) } else { line.to_owned() };
-    let behind = if equation.is_empty() { String::new() } else { format!(" // {equation}") };
-    writeln!(text, "{indent}{line}{behind}").expect("a text takes everything");
-}
-
-/// The outermost call of a long line with each of its arguments in a line of its own.
-fn broken(line: &str, indent: &str) -> String {
-    let Some(open) = line.find('(') else { return line.to_owned() };
-    let Some(close) = line.rfind(')') else { return line.to_owned() };
-    // Parentheses that only group have no arguments, and no comma may stand behind what they hold.
-    if !line[..open].ends_with(|before: char| before.is_ascii_alphanumeric() || before == '_') {
-        return line.to_owned();
-    }
-    let (mut depth, mut from, mut parts) = (0, open + 1, Vec::new());
-    for (at, byte) in line.bytes().enumerate().take(close).skip(open + 1) {
-        match byte {
-            b'(' => depth += 1,
-            b')' => depth -= 1,
-            b',' if depth == 0 => {
-                parts.push(line[from..at].trim());
-                from = at + 1;
-            }
-            _ => {}
-        }
-    }
-    parts.push(line[from..close].trim());
-    let inner = format!("{indent}    ");
-    let parts: String = parts
-        .iter()
-        .map(|part| {
-            let part = if part.len() > WIDE { broken(part, &inner) } else { (*part).to_owned() };
-            format!("{inner}{part},\n")
-        })
-        .collect();
-    format!("{}(\n{parts}{indent}){}", &line[..open], &line[close + 1..])
-}
-
-/// A constant: exact in f32, or with what f32 loses of it.
-fn constant(value: f64, arithmetic: Arithmetic, precision: Precision) -> String {
-    if precision == Precision::Double {
-        return match arithmetic {
-            Arithmetic::Plain if value < 0.0 => format!("({value:?}lf)"),
-            Arithmetic::Plain => format!("{value:?}lf"),
-            Arithmetic::Bounded => format!("constant({value:?}lf)"),
-        };
-    }
-    let (near, bound) = nearest_f32(value);
-    match arithmetic {
-        Arithmetic::Plain if near < 0.0 => format!("({near:?})"),
-        Arithmetic::Plain => format!("{near:?}"),
-        Arithmetic::Bounded if bound == 0.0 => format!("constant({near:?})"),
-        Arithmetic::Bounded => format!("Real({near:?}, {bound:?})"),
-    }
-}
-
-fn bounded_unary(operation: Unary, a: &str) -> String {
-    match operation {
-        Unary::Neg => format!("neg({a})"),
-        Unary::Sqrt => format!("sqrt_({a})"),
-        Unary::Abs => format!("abs_({a})"),
-        Unary::ExpM1 => format!("exp_m1_({a})"),
-        Unary::Ln1p => format!("ln_1p_({a})"),
-        Unary::Sin => format!("sin_({a})"),
-        Unary::Cos => format!("cos_({a})"),
-        Unary::Asin => format!("asin_({a})"),
-        Unary::Floor => format!("floor_({a})"),
-        Unary::Scale(1) => format!("twice({a})"),
-        Unary::Scale(-1) => format!("half({a})"),
-        Unary::Scale(power) => format!("scaled_({a}, {:?})", 2f32.powi(power.into())),
-    }
-}
-
-fn plain_unary(operation: Unary, a: &str) -> String {
-    match operation {
-        Unary::Neg => format!("(-{a})"),
-        // As with bounds: rounding may take a number that is zero below it.
-        Unary::Sqrt => format!("sqrt(max({a}, 0.0))"),
-        Unary::Abs => format!("abs({a})"),
-        Unary::ExpM1 => format!("exp_m1({a})"),
-        Unary::Ln1p => format!("ln_1p({a})"),
-        Unary::Sin => format!("sine({a})"),
-        Unary::Cos => format!("cosine({a})"),
-        Unary::Asin => format!("arc_sine({a})"),
-        Unary::Floor => format!("floor({a})"),
-        Unary::Scale(power) => format!("({:?} * {a})", 2f32.powi(power.into())),
-    }
-}
-
-fn bounded_binary(operation: Binary, a: &str, b: &str) -> String {
-    let name = match operation {
-        Binary::Add => "add",
-        Binary::Sub => "sub",
-        Binary::Mul => "mul",
-        Binary::Div => "div",
-        Binary::Min => "min_",
-        Binary::Max => "max_",
-        Binary::PlusWhole => "plus_whole",
-    };
-    format!("{name}({a}, {b})")
-}
-
-fn plain_binary(operation: Binary, a: &str, b: &str) -> String {
-    match operation {
-        Binary::Add | Binary::PlusWhole => format!("({a} + {b})"),
-        Binary::Sub => format!("({a} - {b})"),
-        Binary::Mul => format!("({a} * {b})"),
-        Binary::Div => format!("({a} / {b})"),
-        Binary::Min => format!("min({a}, {b})"),
-        Binary::Max => format!("max({a}, {b})"),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::broken;
-
-    #[test]
-    fn calls_are_broken_and_parentheses_that_group_are_not() {
-        let long = format!("(2.0 * arc_sine({})) + n24", "max(n1, n2) + ".repeat(9) + "n3");
-        assert_eq!(broken(&format!("({long})"), "    "), format!("({long})"));
-        let call = format!("let n = select(n1, ({long}), n2 >= 0.0);");
-        let lines = format!("let n = select(\n        n1,\n        ({long}),\n        n2 >= 0.0,\n    );");
-        assert_eq!(broken(&call, "    "), lines);
     }
 }

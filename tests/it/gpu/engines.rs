@@ -63,6 +63,8 @@ fn designs_judged_in_runs_give_the_same_answers() {
         assert_same(&state, &study.on_cpu(), &text);
         assert_eq!(record.designs, study.plan.designs());
         assert!(record.unsure * 10_000 < record.designs, "{record:?}");
+        // Tiles that share a row count their own lanes alone.
+        assert!((1..=record.designs).contains(&record.singly), "{record:?}");
     }
 }
 

@@ -89,7 +89,7 @@ impl Prelude<'_> {
         }
     }
 
-    /// Judging a stretch of sorted lanes: what reads the number that they differ by gets all that these have.
+    /// What a run of sorted lanes is judged from: the number that they differ by, with a bound that covers all of theirs.
     pub(super) fn sorted(&mut self) {
         let Some(field) = self.sorted_by() else { return };
         let lines = [
