@@ -228,8 +228,17 @@ fn what_is_saved_and_copied_is_the_study_as_it_is_changed_now() {
     assert!(saved.contains("min = 0.0475") && copied.ends_with("--set constraints.slip_margin.min=0.0475"), "{saved} {copied}");
     // A change that nothing can answer is not left out in silence.
     browser.evaluate("window.saved = null, beltspace.change({ 'operation.no_such_input': '1' }), document.querySelector('#save').click()");
-    browser.wait("document.querySelector('#live-text').textContent.startsWith('not saved: ')");
+    browser.wait("document.querySelector('#done').textContent.startsWith('not saved: ') && beltspace.page.isAnswered()");
     assert_eq!(browser.evaluate("window.saved"), serde_json::Value::Null);
+    // The engine's own line, which came with it or after it, left it alone.
+    assert!(browser.text("document.querySelector('#done').textContent").contains("operation.no_such_input"));
+    assert!(browser.text("document.querySelector('#live-text').textContent").contains("operation.no_such_input"));
+    // The next change puts it away; what is saved then has its name.
+    browser.evaluate("beltspace.change({ 'operation.no_such_input': null })");
+    assert_eq!(browser.text("document.querySelector('#done').textContent"), "");
+    browser.evaluate("document.querySelector('#save').click()");
+    browser.wait("window.saved");
+    browser.wait("document.querySelector('#done').textContent.startsWith('saved as ')");
 }
 
 #[test]

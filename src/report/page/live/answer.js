@@ -19,8 +19,6 @@
     page.byId("live").dataset.kind = kind;
   };
 
-  page.sayLive = say;
-
   const sameList = (a, b) => String(a) === String(b);
 
   // The old front, as the one before the change that is being made.

@@ -1,20 +1,23 @@
 // The page of a study in work.
 {
+  // What a button did stands beside it until the study changes; the line above is the engine's, which may say more at any moment.
+  const sayDone = (text) => (page.byId("done").textContent = text);
   // What is shown may still be of the study before: the engine is asked for the study as it is changed now, and says why there is none.
-  const withStudy = (what, use) => async () => {
+  const withStudy = (failed, use) => async () => {
     try {
-      use(await page.askOnce("/study", { set: page.changeList() }));
+      sayDone(await use(await page.askOnce("/study", { set: page.changeList() })));
     } catch (error) {
-      page.sayLive(`${what}: ${error.message}`, "error");
+      sayDone(`${failed}: ${error.message}`);
     }
   };
   const save = withStudy("not saved", ({ study }) => {
-    const name = study.file.split(/[\\/]/).pop().replace(/\.toml$/, "");
-    page.download(`${name}-explored.toml`, "application/toml", study.saved);
+    const name = `${study.file.split(/[\\/]/).pop().replace(/\.toml$/, "")}-explored.toml`;
+    page.download(name, "application/toml", study.saved);
+    return `saved as ${name}`;
   });
-  const copyCommand = withStudy("not copied", ({ command }) => {
+  const copyCommand = withStudy("not copied", async ({ command }) => {
     page.byId("command").textContent = command;
-    return page.copyText(command);
+    return (await page.copyText(command)) ? "copied" : "select the text to copy it";
   });
 
   const bar = () => {
@@ -24,7 +27,7 @@
     const copy = page.element("button", { type: "button", class: "no-print", "data-testid": "copy-command", click: copyCommand }, "Copy command");
     live.replaceChildren(
       page.element("p", { id: "live-text", role: "status", "aria-live": "polite" }, "asking the engine …"),
-      page.element("div", { class: "controls no-print" }, page.element("label", {}, ghost, " old front ", page.element("span", { class: "ghost-dot", "aria-hidden": "true" })), copy, page.element("button", { type: "button", id: "save", "data-testid": "save", click: save }, "Save as study")),
+      page.element("div", { class: "controls no-print" }, page.element("label", {}, ghost, " old front ", page.element("span", { class: "ghost-dot", "aria-hidden": "true" })), copy, page.element("button", { type: "button", id: "save", "data-testid": "save", click: save }, "Save as study"), page.element("span", { id: "done", role: "status" })),
       page.element("code", { id: "command", "data-testid": "command", tabindex: 0 }),
     );
   };
@@ -39,6 +42,7 @@
     page.data.study.feasible = null;
     page.startOverview();
     bar();
+    page.events.on("changes.done", () => sayDone(""));
     const given = page.changesOfAddress();
     page.beginChanges(given);
     page.startControls();
