@@ -34,15 +34,33 @@ fn further_parts(waiting: &Waiting) -> usize {
 impl BoxSearch<'_> {
     /// Is a box judged whole? Bounds of its parts would take about as long.
     pub(super) fn is_leaf(&self, waiting: &Waiting) -> bool {
-        let size = self.axes.count(&waiting.spans);
-        let places: u64 =
-            self.axes.steps.iter().zip(&waiting.spans.0).filter(|(step, _)| **step < self.row).map(|(_, span)| span.count()).product();
-        let rows = (size / places) as f64;
-        let time = self.time(rows, size as f64, self.chosen_count(waiting)) + places as f64 * PLACE;
+        let (rows, designs) = self.rows_and_designs(&waiting.spans);
+        let time = self.time(rows, designs, self.chosen_count(waiting)) + self.places(&waiting.spans) as f64 * PLACE;
         // A single row has nothing in common with others that bounds could use.
         let own = if rows > 1.0 { LEAF } else { ROW };
         let of_cells = self.cells.map_or(0.0, |cells| (cells.count(&waiting.spans) as f64 * CELL).min(CELLS));
-        size == 1 || time <= own.max(self.bounding).max(of_cells).max(self.bounding * FURTHER * further_parts(waiting) as f64)
+        designs == 1.0 || time <= own.max(self.bounding).max(of_cells).max(self.bounding * FURTHER * further_parts(waiting) as f64)
+    }
+
+    /// Is the box of a leaf judged for all searches at once? That takes no longer than each of them judging what is left of it.
+    pub(super) fn is_judged_for_all(&self, left: &Waiting, spans: &Spans) -> bool {
+        let time = |spans: &Spans, chosen| {
+            let (rows, designs) = self.rows_and_designs(spans);
+            self.time(rows, designs, chosen)
+        };
+        let searches = (1 + self.followers) as f64;
+        time(spans, self.plan.scenarios()) <= searches * time(&left.spans, self.chosen_count(left))
+    }
+
+    /// How many rows and designs a box has.
+    fn rows_and_designs(&self, spans: &Spans) -> (f64, f64) {
+        let size = self.axes.count(spans);
+        ((size / self.places(spans)) as f64, size as f64)
+    }
+
+    /// How many designs of each row a box has.
+    fn places(&self, spans: &Spans) -> u64 {
+        self.axes.steps.iter().zip(&spans.0).filter(|(step, _)| **step < self.row).map(|(_, span)| span.count()).product()
     }
 
     /// Seconds that it takes to judge designs in some of the scenarios.

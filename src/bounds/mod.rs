@@ -19,6 +19,7 @@ mod queue;
 mod requirement;
 mod rival;
 mod search;
+mod shared;
 mod sorted;
 mod sought;
 mod staircase;
@@ -30,6 +31,7 @@ pub(crate) mod yields;
 
 pub use count::{BoxCounter, Settled};
 pub use search::Worker;
+pub use shared::Shared;
 pub use sought::{Searched, Sought};
 pub use yields::{EnclosureProblem, YieldBounds, YieldInput, enclose_yield};
 
@@ -48,6 +50,7 @@ use pairs::{BestPair, Pairs};
 use requirement::{NumberSource, Test, requirements};
 use search::BoxSearch;
 use serde_json::{Value, json};
+use shared::Rest;
 use sought::{ObjectiveProduct, QuotientLimit, Target};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -212,24 +215,19 @@ impl BoundedStudy {
     /// Searches a range of positions and takes what it finds into `found`; `None` if it was stopped, or the front has more than
     /// [`BoundedStudy::most_points`], or it took more than [`BoundedStudy::most_boxes`].
     pub fn search(&self, job: SearchJob<'_>, sought: Sought, workers: &mut [Worker<'_>], found: &mut Reducers) -> Option<Searched> {
-        let SearchJob { plan, range, stop, progress, .. } = job;
-        let roots = self.axes.boxes(range);
-        if let Some(searched) = self.extreme_of_pairs(job, sought, &self.targets(plan, sought)[0], &roots, workers, found) {
-            progress(range.end - range.start);
-            return (!stop.load(Ordering::Relaxed)).then_some(searched);
-        }
-        self.search_boxes(job, sought, &roots, workers, found)
+        self.search_sharing(job, sought, &mut Shared::default(), workers, found)
     }
 
-    /// Searches boxes.
+    /// Searches boxes, and may judge some of them for searches that follow.
     fn search_boxes(
         &self,
         job: SearchJob<'_>,
         sought: Sought,
         roots: &[Spans],
+        followers: u64,
         workers: &mut [Worker<'_>],
         found: &mut Reducers,
-    ) -> Option<Searched> {
+    ) -> Option<(Searched, Option<Rest>)> {
         let SearchJob { plan, reduction, range, stop, progress } = job;
         let targets = self.targets(plan, sought);
         let search = BoxSearch {
@@ -249,6 +247,7 @@ impl BoundedStudy {
             row: plan.fast.count(),
             most_points: self.most_points,
             most_boxes: self.most_boxes,
+            followers,
         };
         search.run(roots, workers, found)
     }
@@ -450,6 +449,11 @@ impl Certificate {
     /// Evaluations in f64 in all.
     pub fn evaluations(&self) -> u64 {
         self.counts().map(|it| it.evaluations).sum::<u64>() + self.searches.iter().map(|(_, it)| it.evaluations).sum::<u64>()
+    }
+
+    /// Have bounds settled any of the designs that were counted?
+    pub fn is_count_bounded(&self) -> bool {
+        self.counts().any(|it| it.evaluated < it.designs())
     }
 
     /// All that was counted.

@@ -12,6 +12,7 @@ use super::count::varying;
 use super::open::{BetterEnds, Bounded, Decided, add_pull, all_open, decide, is_infeasible, over, worst_of};
 use super::queue::{Queue, Waiting};
 use super::rival::Rival;
+use super::shared::Rest;
 use super::sought::{ObjectiveProduct, QuotientLimit, Searched, Sought, Target};
 use super::staircase::Fit;
 use crate::models::Effort;
@@ -78,6 +79,8 @@ pub struct BoxSearch<'a> {
     pub most_points: u64,
     /// Boxes at which it is given up.
     pub most_boxes: u64,
+    /// Searches that follow and look for something in the same designs.
+    pub followers: u64,
 }
 
 /// What a thread works with.
@@ -118,9 +121,17 @@ impl BoxView {
     }
 }
 
+/// The box that was cut in two.
+fn cut_into([first, second]: &[Waiting; 2]) -> Spans {
+    let mut spans = first.spans;
+    spans.0.iter_mut().zip(&second.spans.0).for_each(|(span, other)| span.high = other.high);
+    spans
+}
+
 impl BoxSearch<'_> {
-    /// Searches boxes and takes what it finds into `found`; `None` if it was stopped or given up.
-    pub fn run(&self, roots: &[Spans], workers: &mut [Worker<'_>], found: &mut Reducers) -> Option<Searched> {
+    /// Searches boxes and takes what it finds into `found`. With what is left to the searches that follow, unless that is too much. `None` if
+    /// it was stopped or given up.
+    pub fn run(&self, roots: &[Spans], workers: &mut [Worker<'_>], found: &mut Reducers) -> Option<(Searched, Option<Rest>)> {
         let root = |spans: &Spans| Waiting {
             spans: *spans,
             open: all_open(self.requirements, self.axes),
@@ -130,9 +141,11 @@ impl BoxSearch<'_> {
         let mut queue = Queue::new();
         roots.iter().map(root).for_each(|root| queue.push(root));
         let mut total = Searched::default();
+        let mut rest = (self.followers > 0).then(Rest::default);
         while !queue.is_empty() {
             let batch = queue.pop((found.front.len() / 4).clamp(*BATCH.start(), *BATCH.end()));
-            let (next, settled) = self.look_at(&batch, workers, found);
+            let (next, settled) = self.look_at(&batch, workers, found, &mut rest);
+            rest = rest.filter(|rest| !rest.is_too_much());
             if self.stop.load(Ordering::Relaxed) || found.front.len() as u64 > self.most_points {
                 return None;
             }
@@ -142,11 +155,17 @@ impl BoxSearch<'_> {
             }
             next.into_iter().for_each(|part| queue.push(part));
         }
-        Some(total)
+        Some((total, rest))
     }
 
-    /// Looks at a batch of boxes on all threads; returns their parts.
-    fn look_at(&self, batch: &[Waiting], workers: &mut [Worker<'_>], found: &mut Reducers) -> (Vec<Waiting>, Searched) {
+    /// Looks at a batch of boxes on all threads; returns their parts. What is left to others is added to `rest`, if that is kept.
+    fn look_at(
+        &self,
+        batch: &[Waiting],
+        workers: &mut [Worker<'_>],
+        found: &mut Reducers,
+        rest: &mut Option<Rest>,
+    ) -> (Vec<Waiting>, Searched) {
         let known = found.front.points().clone();
         let rival = Rival::new(self, found);
         // Threads take boxes a share at a time, each starting with what is known: it drops most of what it judges there and then.
@@ -163,16 +182,21 @@ impl BoxSearch<'_> {
             own
         };
         let mut reducers: Vec<Reducers> = workers.iter().take(shares.len()).map(|_| start()).collect();
+        let is_shared = rest.is_some();
         let parts = on_threads(workers.iter_mut().zip(&mut reducers), |(worker, reducers)| {
-            let mut own = Vec::new();
+            let (mut own, mut left) = (Vec::new(), is_shared.then(Rest::default));
             loop {
                 let share = taken.fetch_add(1, Ordering::Relaxed);
-                let Some(part) = shares.get(share) else { return own };
-                let (next, settled) = self.look_at_part(part, worker, &rival, reducers, is_first);
+                let Some(part) = shares.get(share) else { return (own, left) };
+                let (next, settled) = self.look_at_part(part, worker, &rival, reducers, is_first, left.as_mut());
                 (self.progress)(settled.designs());
                 own.push((share, (next, settled)));
             }
         });
+        let (parts, left): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
+        if let Some(rest) = rest {
+            left.iter().flatten().for_each(|left| rest.add(left));
+        }
         let mut parts: Vec<_> = parts.into_iter().flatten().collect();
         // In the order of the boxes, whoever took them.
         parts.sort_unstable_by_key(|(share, _)| *share);
@@ -194,6 +218,7 @@ impl BoxSearch<'_> {
         rival: &Rival<'_>,
         reducers: &mut Reducers,
         is_first: bool,
+        mut rest: Option<&mut Rest>,
     ) -> (Vec<Waiting>, Searched) {
         let mut settled = Searched::default();
         let mut next = Vec::new();
@@ -205,26 +230,33 @@ impl BoxSearch<'_> {
             settled.boxes += 1;
             let size = self.axes.count(&waiting.spans);
             match self.fate(waiting, rival, &mut worker.bounder) {
-                Fate::Infeasible => settled.infeasible += size,
-                Fate::Beaten => settled.beaten += size,
-                Fate::Leaf(left) => {
-                    let own = self.axes.count(&left.spans);
-                    settled.evaluated += own;
-                    settled.evaluations += own;
-                    settled.beaten += size - own;
-                    let (rows, places) = self.axes.rows(&left.spans, self.row);
-                    let chosen = self.chosen(&left);
-                    worker.engine.screen_rows(&rows, &places, &chosen, |block| match self.sought {
-                        _ if chosen.is_empty() => self.reduction.absorb_counted(reducers, block),
-                        // Of anything else the block may not hold the worst.
-                        Sought::Front => self.reduction.absorb_objectives(reducers, block),
-                        Sought::Top => self.reduction.absorb_top(reducers, block),
-                        Sought::Cells(number) => self.reduction.absorb_cells(reducers, block, number),
-                        Sought::Extreme { objective, .. } => self.reduction.absorb_objective(reducers, block, objective),
-                    });
+                Fate::Infeasible => {
+                    settled.infeasible += size;
+                    rest.iter_mut().for_each(|rest| rest.infeasible += size);
                 }
+                Fate::Beaten => {
+                    settled.beaten += size;
+                    rest.iter_mut().for_each(|rest| rest.boxes.push(waiting.spans));
+                }
+                Fate::Leaf(left) => match &mut rest {
+                    Some(rest) if self.is_judged_for_all(&left, &waiting.spans) => {
+                        settled.evaluated += size;
+                        settled.evaluations += size;
+                        rest.judged += size;
+                        rest.feasible += self.judge_for_all(&waiting.spans, worker, reducers);
+                    }
+                    _ => {
+                        rest.iter_mut().for_each(|rest| rest.boxes.push(waiting.spans));
+                        let own = self.axes.count(&left.spans);
+                        settled.evaluated += own;
+                        settled.evaluations += own;
+                        settled.beaten += size - own;
+                        self.judge(&left, worker, reducers);
+                    }
+                },
                 Fate::Cut(parts, tries) => {
                     settled.beaten += size - parts.iter().map(|part| self.axes.count(&part.spans)).sum::<u64>();
+                    rest.iter_mut().for_each(|rest| rest.add_all_but(&cut_into(&parts), &waiting.spans, self.axes));
                     if is_first {
                         rows.extend(tries.map(|position| position / self.row));
                     } else if size > WORTH_A_TRY {
@@ -247,6 +279,31 @@ impl BoxSearch<'_> {
             worker.engine.screen(range, |block| self.reduction.absorb_counted(reducers, block));
         }
         (next, settled)
+    }
+
+    /// Judges the designs of a leaf in the scenarios that decide about what is sought.
+    fn judge(&self, leaf: &Waiting, worker: &mut Worker<'_>, reducers: &mut Reducers) {
+        let (rows, places) = self.axes.rows(&leaf.spans, self.row);
+        let chosen = self.chosen(leaf);
+        worker.engine.screen_rows(&rows, &places, &chosen, |block| match self.sought {
+            _ if chosen.is_empty() => self.reduction.absorb_counted(reducers, block),
+            // Of anything else the block may not hold the worst.
+            Sought::Front => self.reduction.absorb_objectives(reducers, block),
+            Sought::Top => self.reduction.absorb_top(reducers, block),
+            Sought::Cells(number) => self.reduction.absorb_cells(reducers, block, number),
+            Sought::Extreme { objective, .. } => self.reduction.absorb_objective(reducers, block, objective),
+        });
+    }
+
+    /// Judges the designs of a box in every scenario, for all searches; how many are feasible.
+    fn judge_for_all(&self, spans: &Spans, worker: &mut Worker<'_>, reducers: &mut Reducers) -> u64 {
+        let (rows, places) = self.axes.rows(spans, self.row);
+        let mut feasible = 0;
+        worker.engine.screen_rows(&rows, &places, &[], |block| {
+            feasible += block.feasible_count;
+            self.reduction.absorb_counted(reducers, block);
+        });
+        feasible
     }
 
     /// What is to be done with a box.

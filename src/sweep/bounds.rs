@@ -6,7 +6,7 @@
 use super::costs::{Forecast, ranges_for_trial};
 use super::watch::{Leaving, OFTEN, Teller, Watch};
 use super::{Control, Settings, SweepJob, SweepWork, Swept};
-use crate::bounds::{BoundedStudy, BoxCounter, BoxTally, Certificate, SearchJob, Settled, Worker, in_words, refusal};
+use crate::bounds::{BoundedStudy, BoxCounter, BoxTally, Certificate, SearchJob, Settled, Shared, Worker, in_words, refusal};
 use crate::checkpoint::Checkpoint;
 use crate::error::{Error, Result};
 use crate::parallel::{on_threads, with_beside};
@@ -190,7 +190,8 @@ fn settle_watched(
     }
     let designs = work.todo.count();
     let mut certificate = Certificate::default();
-    let searched = search(job, layout, whole, work, watch, &mut certificate);
+    let mut shared = if options.shares_judged { BoundedStudy::shared(plan) } else { Shared::default() };
+    let searched = search(job, layout, whole, &mut shared, work, watch, &mut certificate);
     let state = work.reducers.state();
     work.save(&state)?;
     options.check_memory(plan, state.front.len())?;
@@ -208,10 +209,11 @@ fn settle_watched(
     watch.counts();
     let tallies = BoundedStudy::tallies(plan);
     if tallies.is_empty() {
-        take_counted(job, whole, &mut certificate, work)?;
+        take_counted(job, layout, whole, &shared, watch, &mut certificate, work)?;
     }
+    let is_judged = layout.has_judged_most(&shared);
     let shared = Mutex::new(work);
-    let settled = on_threads(0..options.threads.max(1), |_| count_on_thread(job, layout, &tallies, &shared, watch));
+    let settled = on_threads(0..options.threads.max(1), |_| count_on_thread(job, layout, &tallies, is_judged, &shared, watch));
     certificate.tallies = tallies.iter().map(|tally| (tally.in_words(plan), Settled::default())).collect();
     for settled in &settled {
         let counts = std::iter::once(&mut certificate.count).chain(certificate.tallies.iter_mut().map(|(_, it)| it));
@@ -230,7 +232,8 @@ fn settle_watched(
         return Ok(Settling::Left(Remains { forecast, at: at(), counted, found: Some(state) }));
     }
     adds_up(&certificate, designs, whole.end - whole.start)?;
-    certificate.compared = compare(job, layout, whole, &state)?;
+    let is_bounded = certificate.is_count_bounded();
+    certificate.compared = compare(job, layout, whole, &state, is_bounded)?;
     control.done.store(whole.end - whole.start, Ordering::Relaxed);
     Ok(Settling::Done(state, certificate))
 }
@@ -272,6 +275,7 @@ fn search(
     job: SweepJob<'_>,
     layout: &BoundedStudy,
     whole: &Range<u64>,
+    shared: &mut Shared,
     work: &mut SweepWork<'_>,
     watch: &Watch<'_>,
     certificate: &mut Certificate,
@@ -284,7 +288,7 @@ fn search(
     for (number, sought) in all.into_iter().enumerate() {
         control.settles(format!("{}, {} of {passes}", in_words(plan, sought), number + 1));
         let search = SearchJob { plan, reduction, range: whole, stop: watch.stop(), progress: &progress };
-        match layout.search(search, sought, &mut workers, &mut work.reducers) {
+        match layout.search_sharing(search, sought, shared, &mut workers, &mut work.reducers) {
             Some(searched) => certificate.searches.push((in_words(plan, sought), searched)),
             None => return false,
         }
@@ -292,11 +296,25 @@ fn search(
     true
 }
 
-/// Takes the number of feasible designs from a search that has counted all of them on its way, if one has.
-fn take_counted(job: SweepJob<'_>, whole: &Range<u64>, certificate: &mut Certificate, work: &mut SweepWork<'_>) -> Result<()> {
-    let found = certificate.searches.iter().find_map(|(_, it)| it.counted.map(|feasible| (*it, feasible)));
-    let (Some((searched, feasible)), Some(range)) = (found, work.todo.first().filter(|it| it == whole)) else { return Ok(()) };
-    certificate.count = Settled { infeasible: searched.infeasible, pairs: searched.pairs, ..Settled::default() };
+/// Takes the number of feasible designs from a search that has counted all of them on its way, if one has; or counts what the searches
+/// have left, if that is little.
+fn take_counted(
+    job: SweepJob<'_>,
+    layout: &BoundedStudy,
+    whole: &Range<u64>,
+    shared: &Shared,
+    watch: &Watch<'_>,
+    certificate: &mut Certificate,
+    work: &mut SweepWork<'_>,
+) -> Result<()> {
+    let Some(range) = work.todo.first().filter(|it| it == whole) else { return Ok(()) };
+    let counted = certificate.searches.iter().find_map(|(_, it)| {
+        let settled = Settled { infeasible: it.infeasible, pairs: it.pairs, evaluated: it.evaluated, ..Settled::default() };
+        it.counted.map(|feasible| (feasible, settled))
+    });
+    let count_rest = || layout.count_rest(shared, job.options.threads.max(1), watch.stop());
+    let Some((feasible, settled)) = counted.or_else(count_rest) else { return Ok(()) };
+    certificate.count = settled;
     let mut counted = job.reduction.start();
     counted.feasible = feasible;
     work.todo.take(range.end - range.start);
@@ -304,18 +322,21 @@ fn take_counted(job: SweepJob<'_>, whole: &Range<u64>, certificate: &mut Certifi
     work.finish(job.plan, range)
 }
 
-/// Counts ranges until there are none left: the feasible designs, then those of each tally. Returns how each of them was settled.
+/// Counts ranges until there are none left: the feasible designs, then those of each tally; or judges them, where that is known to be
+/// faster. Returns how each of them was settled.
 fn count_on_thread(
     job: SweepJob<'_>,
     layout: &BoundedStudy,
     tallies: &[BoxTally],
+    is_judged: bool,
     work: &Mutex<&mut SweepWork<'_>>,
     watch: &Watch<'_>,
 ) -> Vec<Settled> {
-    let SweepJob { plan, reduction, options, .. } = job;
+    let SweepJob { plan, tables, reduction, options, .. } = job;
     let teller = Teller::new(watch);
     let settle = |designs: u64| teller.settle(designs);
     let mut counter = layout.counter(watch.stop()).telling(&settle);
+    let mut engine = is_judged.then(|| CpuEngine::new(plan, tables).stopping_on(watch.stop()));
     let lock = || work.lock().unwrap_or_else(PoisonError::into_inner);
     let all = options.shard.range(plan.designs());
     let least = (all.end - all.start) / PARTS;
@@ -334,7 +355,11 @@ fn count_on_thread(
             work.todo.take(end - first.start).unwrap_or(first)
         };
         let start = Instant::now();
-        match count_range(plan, layout, tallies, &mut counter, &range, reduction.start()) {
+        let counted = match &mut engine {
+            Some(engine) => Ok(judge_range(reduction, tallies, engine, &range, &settle)),
+            None => count_range(plan, layout, tallies, &mut counter, &range, reduction.start()),
+        };
+        match counted {
             Ok(Some((counted, own))) => {
                 settled.iter_mut().zip(&own).for_each(|(all, own)| all.add(own));
                 teller.tell();
@@ -384,6 +409,27 @@ fn count_range(
     Ok(Some((into, settled)))
 }
 
+/// The same by judging every design of the range.
+fn judge_range(
+    reduction: &Reduction,
+    tallies: &[BoxTally],
+    engine: &mut CpuEngine<'_>,
+    range: &Range<u64>,
+    told: &dyn Fn(u64),
+) -> Option<(Reducers, Vec<Settled>)> {
+    let mut judged = reduction.start();
+    let end = engine.screen(range.clone(), |block| reduction.absorb_reported(&mut judged, block));
+    if end < range.end {
+        return None;
+    }
+    let designs = range.end - range.start;
+    told(designs * (tallies.len() as u64 + 1));
+    let each = Settled { evaluated: designs, ..Settled::default() };
+    // They are judged for the count, and the tallies share that.
+    let count = Settled { evaluations: designs, ..each };
+    Some((judged, std::iter::once(count).chain(tallies.iter().map(|_| each)).collect()))
+}
+
 fn hand_over(plan: &Plan, range: Range<u64>, counted: Reducers, time: Duration, work: &mut SweepWork<'_>) {
     work.rate = Some((range.end - range.start) as f64 / time.as_secs_f64().max(1e-6));
     work.reducers.merge(counted.into_fresh());
@@ -407,8 +453,9 @@ fn adds_up(certificate: &Certificate, counted: u64, searched: u64) -> Result<()>
     }
 }
 
-/// Judges random ranges design by design: all counts must be the same, and no design may be better than what was found.
-fn compare(job: SweepJob<'_>, layout: &BoundedStudy, whole: &Range<u64>, state: &State) -> Result<u64> {
+/// Judges random ranges design by design: all counts must be the same, where bounds have their part in them, and no design may be better
+/// than what was found.
+fn compare(job: SweepJob<'_>, layout: &BoundedStudy, whole: &Range<u64>, state: &State, is_count_bounded: bool) -> Result<u64> {
     let SweepJob { plan, tables, reduction, control, .. } = job;
     let size = whole.end - whole.start;
     let affordable = (COMPARED_TIME / plan.seconds_per_design().max(1e-12)) as u64;
@@ -423,13 +470,18 @@ fn compare(job: SweepJob<'_>, layout: &BoundedStudy, whole: &Range<u64>, state: 
         let range = whole.start + spread..whole.start + spread + length;
         let mut judged = reduction.start();
         engine.screen(range.clone(), |block| reduction.absorb(&mut judged, block));
-        let counted = count_range(plan, layout, &tallies, &mut counter, &range, reduction.start())?;
-        let Some((counted, _)) = counted.filter(|_| !control.stop.load(Ordering::Relaxed)) else { return Err(stopped()) };
-        let feasible = Some(("feasible designs", counted.feasible, judged.feasible)).filter(|(_, counted, judged)| counted != judged);
-        if let Some((what, counted, judged)) = feasible.or_else(|| counted.reported.miscounts(&judged.reported)) {
-            return Err(Error::Disagreement(format!(
-                "at positions {range:?} bounds counted {counted} {what}, one by one they are {judged}"
-            )));
+        let counted = match is_count_bounded {
+            true => count_range(plan, layout, &tallies, &mut counter, &range, reduction.start())?.map(|(counted, _)| Some(counted)),
+            false => Some(None),
+        };
+        let Some(counted) = counted.filter(|_| !control.stop.load(Ordering::Relaxed)) else { return Err(stopped()) };
+        if let Some(counted) = counted {
+            let feasible = Some(("feasible designs", counted.feasible, judged.feasible)).filter(|(_, counted, judged)| counted != judged);
+            if let Some((what, counted, judged)) = feasible.or_else(|| counted.reported.miscounts(&judged.reported)) {
+                return Err(Error::Disagreement(format!(
+                    "at positions {range:?} bounds counted {counted} {what}, one by one they are {judged}"
+                )));
+            }
         }
         known.merge(judged.into_fresh());
         compared += length;

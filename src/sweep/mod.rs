@@ -55,12 +55,21 @@ pub struct Settings {
     pub shard: Shard,
     /// Bytes that the front may take while it is looked for.
     pub front_bytes: u64,
+    /// By bounds: may a search judge designs for those that follow? Otherwise each judges its own, which takes longer and finds the same.
+    pub shares_judged: bool,
 }
 
 impl Default for Settings {
     fn default() -> Self {
         let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-        Self { threads, tile: 1 << 16, chunk: Duration::from_millis(500), shard: Shard::WHOLE, front_bytes: FRONT_BYTES }
+        Self {
+            threads,
+            tile: 1 << 16,
+            chunk: Duration::from_millis(500),
+            shard: Shard::WHOLE,
+            front_bytes: FRONT_BYTES,
+            shares_judged: true,
+        }
     }
 }
 

@@ -215,7 +215,8 @@ top = { by = "peak_tooth_load_N", count = 1000 }
 fn a_study_that_bounds_cannot_settle_is_judged() {
     let plan = Plan::new(parse(SLOW));
     let pipeline = Pipeline::new(&plan, SLOW);
-    let options = Settings { threads: 2, ..Settings::default() };
+    // Judged once for all searches, the designs would be done sooner than bounds are left.
+    let options = Settings { threads: 2, shares_judged: false, ..Settings::default() };
     // As if judging it took a little more than a second: with less, bounds would not be tried.
     let swept_as_if = |seconds: f64| {
         let rule = taking(2.0 * seconds / plan.designs() as f64);

@@ -132,6 +132,9 @@ fn check(seed: u64, draft: &Draft, text: &str, coverage: &mut Coverage) -> Resul
     let threads = random.whole(2, 3);
     let (state, _) = ways::whole(&pipeline, threads)?;
     differs("several threads", &state)?;
+    let (state, shared) = ways::whole_shared(&pipeline, threads)?;
+    differs("what searches share", &state)?;
+    cover_shared(&certificate, &shared, coverage);
     // Folders and checkpoints are synced to the disk, which takes most of the time.
     if full() || seed.is_multiple_of(3) {
         differs("shards", &ways::sharded(&pipeline, random, folder.path()))?;
@@ -214,7 +217,29 @@ const EVERY_FEATURE: &[&str] = &[
     "search: infeasible boxes",
     "search: beaten boxes",
     "search: evaluated",
+    "judged for all",
+    "judged for all, then counted",
+    "in part judged for all",
+    "tallies judged",
 ];
+
+/// Counts what the searches of a study had in common, beside its certificate where each is by itself.
+fn cover_shared(alone: &Certificate, shared: &Certificate, coverage: &mut Coverage) {
+    let mut note = |feature: &str, there: bool| {
+        if there {
+            *coverage.entry(feature.to_owned()).or_default() += 1;
+        }
+    };
+    let boxes: Vec<u64> = shared.searches.iter().map(|(_, it)| it.boxes).collect();
+    let others = boxes.get(1..).unwrap_or_default();
+    note("judged for all", !others.is_empty() && others.iter().all(|&boxes| boxes == 0));
+    note(
+        "in part judged for all",
+        shared.searches.iter().zip(&alone.searches).skip(1).any(|((_, it), (_, own))| it.boxes > 0 && it.evaluations < own.evaluations),
+    );
+    note("judged for all, then counted", shared.tallies.is_empty() && shared.count.boxes == 0 && shared.count.evaluated > 0);
+    note("tallies judged", shared.tallies.iter().zip(&alone.tallies).any(|((_, it), (_, own))| it.boxes == 0 && own.boxes > 0));
+}
 
 /// Counts what a study had, and by which rules its designs were settled.
 fn cover(draft: &Draft, plan: &Plan, state: &State, certificate: &Certificate, text: &str, coverage: &mut Coverage) {

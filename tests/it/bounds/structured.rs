@@ -33,7 +33,7 @@ fn compare(text: &str, least: u64) -> Certificate {
     let result = guarded(|| {
         let (state, found) = plain_difference(&pipeline)?.ok_or("the front is over the budget")?;
         let folder = tempfile::tempdir().expect("a folder can be made");
-        let (state_by_bounds, _) = super::ways::whole(&pipeline, 3)?;
+        let (state_by_bounds, _) = super::ways::whole_shared(&pipeline, 3)?;
         let expected = pipeline.write(state, 1, &folder.path().join("expected"));
         let written = pipeline.write(state_by_bounds, 2, &folder.path().join("found"));
         certificate = Some(found);
@@ -59,6 +59,28 @@ fn the_plain_grid_on_fewer_and_on_all_levels() {
         let certificate = compare(&text, 20_000_000);
         pays(&certificate, 37u64.pow(4) * 11);
     }
+}
+
+/// Where bounds settle little, designs are judged once for all that is sought, and only what is left is looked at again.
+#[test]
+fn searches_and_counts_share_what_is_judged() {
+    let shared = |text: &str| {
+        compare(text, 200_000);
+        let plan = Plan::new(parse(text));
+        super::ways::whole_shared(&Pipeline::new(&plan, text), 2).expect("it ends").1
+    };
+    let eight = shared(&changed(&shipped("eight-axes.toml"), &[("count = 6", "count = 5")]));
+    let looks: Vec<u64> = eight.searches.iter().map(|(_, it)| it.evaluations).collect();
+    assert!(looks[0] >= 450_000 && looks[1..].iter().all(|&it| it == 0), "{looks:?}");
+    assert_eq!((eight.count.boxes, eight.count.evaluations), (0, 0));
+    let grid = changed(&shipped("metal-grid.toml"), &[("count = 37", "count = 20")]);
+    let left = shared(&grid);
+    let boxes: Vec<u64> = left.searches.iter().map(|(_, it)| it.boxes).collect();
+    assert!(boxes[0] > 4 * boxes[1] && boxes[1] > 0, "{boxes:?}");
+    assert!(left.count.boxes > 0 && left.count.evaluated > left.count.designs() / 2, "{:?}", left.count);
+    // What nothing but every design tells is judged too.
+    let tallied = shared(&(grid + "[report]\nhistograms = [{ of = \"torque_capacity_Nm\", from = 10, to = 200, bins = 30 }]\n"));
+    assert_eq!((tallied.tallies[0].1.boxes, tallied.tallies[0].1.evaluated), (0, 20u64.pow(4) * 11));
 }
 
 /// A histogram and the cells of a map, each counted as pairs of two groups of axes.

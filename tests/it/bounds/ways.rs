@@ -97,9 +97,17 @@ pub fn one_by_one(pipeline: &Pipeline<'_>, options: &Settings, checkpoint: Optio
     sweep(pipeline.plan, &pipeline.tables, &pipeline.reduction, options, checkpoint, control)
 }
 
-/// The whole study by bounds, its certificate checked.
+/// The whole study by bounds, its certificate checked: each search by itself.
 pub fn whole(pipeline: &Pipeline<'_>, threads: usize) -> Result<(State, Certificate), String> {
-    let options = Settings { threads, ..Settings::default() };
+    whole_by(pipeline, Settings { threads, shares_judged: false, ..Settings::default() })
+}
+
+/// The same, where a search judges designs for those that follow.
+pub fn whole_shared(pipeline: &Pipeline<'_>, threads: usize) -> Result<(State, Certificate), String> {
+    whole_by(pipeline, Settings { threads, ..Settings::default() })
+}
+
+fn whole_by(pipeline: &Pipeline<'_>, options: Settings) -> Result<(State, Certificate), String> {
     let (swept, certificate) = by_bounds(pipeline, &options, None, &Control::default()).map_err(|error| error.to_string())?;
     let designs = pipeline.plan.designs();
     match unaccounted(pipeline.plan, &certificate, designs, designs) {
