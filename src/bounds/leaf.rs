@@ -42,13 +42,13 @@ impl BoxSearch<'_> {
         designs == 1.0 || time <= own.max(self.bounding).max(of_cells).max(self.bounding * FURTHER * further_parts(waiting) as f64)
     }
 
-    /// Is the box of a leaf judged for all searches at once? That takes no longer than each of them judging what is left of it.
+    /// Is the box of a leaf judged for all searches at once? Yes, where that takes no longer than if each of them judged what is left of it.
     pub(super) fn is_judged_for_all(&self, left: &Waiting, spans: &Spans) -> bool {
         let time = |spans: &Spans, chosen| {
             let (rows, designs) = self.rows_and_designs(spans);
             self.time(rows, designs, chosen)
         };
-        let searches = (1 + self.followers) as f64;
+        let searches = (1 + self.followed.map_or(0, |it| it.0)) as f64;
         time(spans, self.plan.scenarios()) <= searches * time(&left.spans, self.chosen_count(left))
     }
 

@@ -218,13 +218,13 @@ impl BoundedStudy {
         self.search_sharing(job, sought, &mut Shared::default(), workers, found)
     }
 
-    /// Searches boxes, and may judge some of them for searches that follow.
+    /// Searches boxes; where so many searches follow, it may judge some boxes for them too, and tells of how many designs.
     fn search_boxes(
         &self,
         job: SearchJob<'_>,
         sought: Sought,
         roots: &[Spans],
-        followers: u64,
+        followed: Option<(u64, &(dyn Fn(u64) + Sync))>,
         workers: &mut [Worker<'_>],
         found: &mut Reducers,
     ) -> Option<(Searched, Option<Rest>)> {
@@ -247,7 +247,7 @@ impl BoundedStudy {
             row: plan.fast.count(),
             most_points: self.most_points,
             most_boxes: self.most_boxes,
-            followers,
+            followed,
         };
         search.run(roots, workers, found)
     }
@@ -451,9 +451,9 @@ impl Certificate {
         self.counts().map(|it| it.evaluations).sum::<u64>() + self.searches.iter().map(|(_, it)| it.evaluations).sum::<u64>()
     }
 
-    /// Have bounds settled any of the designs that were counted?
+    /// Have bounds a part in what was counted? Otherwise every design was judged by the engine.
     pub fn is_count_bounded(&self) -> bool {
-        self.counts().any(|it| it.evaluated < it.designs())
+        self.counts().any(|it| it.boxes > 0 || it.evaluated < it.designs())
     }
 
     /// All that was counted.

@@ -79,8 +79,8 @@ pub struct BoxSearch<'a> {
     pub most_points: u64,
     /// Boxes at which it is given up.
     pub most_boxes: u64,
-    /// Searches that follow and look for something in the same designs.
-    pub followers: u64,
+    /// How many searches follow that look for something in the same designs; is told how many designs were settled for them too.
+    pub followed: Option<(u64, &'a (dyn Fn(u64) + Sync))>,
 }
 
 /// What a thread works with.
@@ -129,8 +129,8 @@ fn cut_into([first, second]: &[Waiting; 2]) -> Spans {
 }
 
 impl BoxSearch<'_> {
-    /// Searches boxes and takes what it finds into `found`. With what is left to the searches that follow, unless that is too much. `None` if
-    /// it was stopped or given up.
+    /// Searches boxes and takes what it finds into `found`. With what is left to the searches that follow, unless none do or that is too
+    /// much. `None` if it was stopped or given up.
     pub fn run(&self, roots: &[Spans], workers: &mut [Worker<'_>], found: &mut Reducers) -> Option<(Searched, Option<Rest>)> {
         let root = |spans: &Spans| Waiting {
             spans: *spans,
@@ -141,7 +141,7 @@ impl BoxSearch<'_> {
         let mut queue = Queue::new();
         roots.iter().map(root).for_each(|root| queue.push(root));
         let mut total = Searched::default();
-        let mut rest = (self.followers > 0).then(Rest::default);
+        let mut rest = self.followed.map(|_| Rest::default());
         while !queue.is_empty() {
             let batch = queue.pop((found.front.len() / 4).clamp(*BATCH.start(), *BATCH.end()));
             let (next, settled) = self.look_at(&batch, workers, found, &mut rest);
@@ -184,26 +184,29 @@ impl BoxSearch<'_> {
         let mut reducers: Vec<Reducers> = workers.iter().take(shares.len()).map(|_| start()).collect();
         let is_shared = rest.is_some();
         let parts = on_threads(workers.iter_mut().zip(&mut reducers), |(worker, reducers)| {
-            let (mut own, mut left) = (Vec::new(), is_shared.then(Rest::default));
+            let mut own = Vec::new();
             loop {
                 let share = taken.fetch_add(1, Ordering::Relaxed);
-                let Some(part) = shares.get(share) else { return (own, left) };
+                let Some(part) = shares.get(share) else { return own };
+                let mut left = is_shared.then(Rest::default);
                 let (next, settled) = self.look_at_part(part, worker, &rival, reducers, is_first, left.as_mut());
                 (self.progress)(settled.designs());
-                own.push((share, (next, settled)));
+                if let (Some((_, ahead)), Some(left)) = (self.followed, &left) {
+                    ahead(left.settled());
+                }
+                own.push((share, (next, settled, left)));
             }
         });
-        let (parts, left): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
-        if let Some(rest) = rest {
-            left.iter().flatten().for_each(|left| rest.add(left));
-        }
         let mut parts: Vec<_> = parts.into_iter().flatten().collect();
         // In the order of the boxes, whoever took them.
         parts.sort_unstable_by_key(|(share, _)| *share);
         let (mut next, mut settled) = (Vec::new(), Searched::default());
-        for (_, (parts, own)) in parts {
+        for (_, (parts, own, left)) in parts {
             next.extend(parts);
             settled.add(&own);
+            if let (Some(rest), Some(left)) = (rest.as_mut(), &left) {
+                rest.add(left);
+            }
         }
         for reducers in reducers {
             found.merge(reducers.into_fresh());
@@ -232,7 +235,7 @@ impl BoxSearch<'_> {
             match self.fate(waiting, rival, &mut worker.bounder) {
                 Fate::Infeasible => {
                     settled.infeasible += size;
-                    rest.iter_mut().for_each(|rest| rest.infeasible += size);
+                    rest.iter_mut().for_each(|rest| rest.add_infeasible(&waiting.spans, size));
                 }
                 Fate::Beaten => {
                     settled.beaten += size;

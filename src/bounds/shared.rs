@@ -1,55 +1,97 @@
 //! What several searches of the same designs share.
 //!
-//! Where bounds settle little, each search would judge the same designs again. So a search judges its last boxes for all that follow, in
-//! every scenario, where that takes no longer than each of them judging such a box in the few that decide for it; it notes which boxes are
-//! left. The next ones, and the count of feasible designs, look at those only.
+//! Where bounds settle little, each search would judge the same designs again. So the search for an extreme judges its last boxes for all that
+//! follow, in every scenario, where that takes no longer than if each of them judged such a box in the few that decide for it; it notes which
+//! boxes are left. The next ones, and the count of feasible designs, look at those only. The search for the front comes first and judges
+//! for itself: it judges many designs that the others settle by bounds.
 
 use super::axes::{Axes, Span, Spans};
+use super::open::all_open;
 use super::sought::Searched;
 use super::{BoundedStudy, SearchJob, Settled, Sought, Worker};
-use crate::bounds::open::all_open;
 use crate::parallel::on_threads;
 use crate::plan::Plan;
 use crate::reduce::Reducers;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 
 /// Boxes that are noted. Where there are more, bounds settle many designs, and the next search is as soon done from the start.
 const MOST_BOXES: usize = 1 << 10;
+/// Boxes that surely violate a requirement of which designs are judged all the same, and designs of each.
+const SAMPLED: usize = 64;
+/// Boxes that the rest is cut into, per thread, to be counted.
+const PARTS: usize = 8;
 
 /// What the searches of a study have in common.
 #[derive(Debug, Default)]
 pub struct Shared {
-    /// Searches that are to come and look for something in the same designs.
-    pub searches: u64,
+    /// Searches to come that look for something in the same designs.
+    searches: u64,
     /// What those before have left.
     pub(super) rest: Option<Rest>,
+    /// Designs that were told for searches to come: these need not tell them again.
+    ahead: AtomicU64,
 }
 
-/// What a search leaves to those that follow.
+impl Shared {
+    /// For all searches of a plan.
+    pub fn new(plan: &Plan) -> Self {
+        let searches = BoundedStudy::sought(plan).into_iter().filter(|it| shares(*it)).count() as u64;
+        Self { searches, ..Self::default() }
+    }
+
+    /// Tells `progress` of designs, unless that was done ahead.
+    fn tell(&self, designs: u64, progress: &dyn Fn(u64)) {
+        let less = |ahead: u64| Some(ahead - ahead.min(designs));
+        let ahead = self.ahead.fetch_update(Ordering::Relaxed, Ordering::Relaxed, less).unwrap_or_else(|ahead| ahead);
+        progress(designs - ahead.min(designs));
+    }
+
+    /// Tells `progress` of designs for all searches to come.
+    fn tell_ahead(&self, designs: u64, progress: &dyn Fn(u64)) {
+        self.ahead.fetch_add(designs * self.searches, Ordering::Relaxed);
+        progress(designs * self.searches);
+    }
+}
+
+/// Does a search share what it judges? Maps are too large to be carried along.
+fn shares(sought: Sought) -> bool {
+    matches!(sought, Sought::Top | Sought::Extreme { .. })
+}
+
+/// What searches leave to those that follow.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rest {
-    /// Boxes that may hold something that it did not look for.
+    /// Boxes that may hold something that was not looked for.
     pub boxes: Vec<Spans>,
-    /// Designs of boxes that surely violate a requirement.
+    /// Designs of boxes that surely violate a requirement, and some of these boxes.
     pub infeasible: u64,
+    violating: Vec<Spans>,
     /// Designs that were judged for all, and the feasible ones among them.
     pub judged: u64,
     pub feasible: u64,
 }
 
 impl Rest {
-    /// Adds what another thread has left.
-    pub fn add(&mut self, other: &Self) {
-        self.boxes.extend(&other.boxes);
-        self.infeasible += other.infeasible;
-        self.judged += other.judged;
-        self.feasible += other.feasible;
+    /// Adds a box that surely violates a requirement.
+    pub fn add_infeasible(&mut self, spans: &Spans, designs: u64) {
+        self.infeasible += designs;
+        if self.violating.len() < SAMPLED {
+            self.violating.push(*spans);
+        }
     }
 
-    /// Adds what an earlier search settled.
-    pub fn take_over(&mut self, earlier: Option<&Self>) {
-        let Some(earlier) = earlier else { return };
+    /// Adds what another part of a search has left.
+    pub fn add(&mut self, other: &Self) {
+        self.boxes.extend(&other.boxes);
+        self.add_settled(other);
+    }
+
+    /// Adds what an earlier search has settled.
+    fn add_settled(&mut self, earlier: &Self) {
         self.infeasible += earlier.infeasible;
+        let room = SAMPLED.saturating_sub(self.violating.len());
+        self.violating.extend(earlier.violating.iter().take(room));
         self.judged += earlier.judged;
         self.feasible += earlier.feasible;
     }
@@ -79,24 +121,32 @@ impl Rest {
         self.boxes.len() > MOST_BOXES
     }
 
+    /// Designs that need not be looked at any more.
+    pub fn settled(&self) -> u64 {
+        self.infeasible + self.judged
+    }
+
     /// Designs that are left.
-    pub fn left(&self, axes: &Axes) -> u64 {
+    fn left(&self, axes: &Axes) -> u64 {
         self.boxes.iter().map(|spans| axes.count(spans)).sum()
     }
 
-    /// What the first search settled for one that follows.
-    pub fn settled(&self) -> Searched {
-        Searched { infeasible: self.infeasible, evaluated: self.judged, ..Searched::default() }
+    /// The boxes, cut so that so many threads are done together.
+    fn cut_for(&self, threads: usize, axes: &Axes) -> Vec<Spans> {
+        let mut boxes = self.boxes.clone();
+        while boxes.len() < PARTS * threads {
+            let Some(at) = (0..boxes.len()).max_by_key(|&at| axes.count(&boxes[at])).filter(|&at| axes.count(&boxes[at]) > 1) else {
+                break;
+            };
+            let spans = boxes.swap_remove(at);
+            let axis = (0..axes.designs).max_by_key(|&axis| spans[axis].count()).expect("a box of more than one design has an axis");
+            boxes.extend(spans.halves(axis));
+        }
+        boxes
     }
 }
 
 impl BoundedStudy {
-    /// What the searches of a study have in common: each of them judges designs for those that follow.
-    pub fn shared(plan: &Plan) -> Shared {
-        let searches = Self::sought(plan).into_iter().filter(|it| !matches!(it, Sought::Cells(_))).count() as u64;
-        Shared { searches, rest: None }
-    }
-
     /// As [`BoundedStudy::search`], one after the other with what they share.
     pub fn search_sharing(
         &self,
@@ -106,32 +156,42 @@ impl BoundedStudy {
         workers: &mut [Worker<'_>],
         found: &mut Reducers,
     ) -> Option<Searched> {
-        let SearchJob { plan, range, stop, progress, .. } = job;
-        let mut roots = self.axes.boxes(range);
-        if matches!(sought, Sought::Cells(_)) {
-            // Maps are large: they are not carried along by another search.
-            return Some(self.search_boxes(job, sought, &roots, 0, workers, found)?.0);
+        let SearchJob { plan, range, stop, .. } = job;
+        let whole = self.axes.boxes(range);
+        if !shares(sought) {
+            return Some(self.search_boxes(job, sought, &whole, None, workers, found)?.0);
         }
         shared.searches = shared.searches.saturating_sub(1);
-        let (mut settled, mut feasible) = (Searched::default(), 0);
-        if let Some(rest) = &shared.rest {
-            (settled, feasible) = (rest.settled(), rest.feasible);
-            roots.clone_from(&rest.boxes);
-            progress(settled.designs());
-            if roots.is_empty() {
-                return (!stop.load(Ordering::Relaxed)).then_some(settled);
-            }
+        let told = |designs: u64| shared.tell(designs, job.progress);
+        let telling = SearchJob { progress: &told, ..job };
+        let going_on = |searched: Searched| (!stop.load(Ordering::Relaxed)).then_some(searched);
+        let earlier = shared.rest.clone().unwrap_or_default();
+        let settled = Searched { infeasible: earlier.infeasible, evaluated: earlier.judged, ..Searched::default() };
+        let roots = if shared.rest.is_some() { &earlier.boxes } else { &whole };
+        if roots.is_empty() {
+            told(settled.designs());
+            return going_on(settled);
         }
-        if let Some(mut searched) = self.extreme_of_pairs(job, sought, &self.targets(plan, sought)[0], &roots, workers, found) {
-            progress(range.end - range.start - settled.designs());
+        let target = &self.targets(plan, sought)[0];
+        if let Some(mut searched) = self.extreme_of_pairs(telling, sought, target, roots, workers, found) {
+            told(range.end - range.start);
             searched.add(&settled);
-            searched.counted = searched.counted.map(|counted| counted + feasible);
-            return (!stop.load(Ordering::Relaxed)).then_some(searched);
+            searched.counted = searched.counted.map(|counted| counted + earlier.feasible);
+            return going_on(searched);
         }
-        let (mut searched, rest) = self.search_boxes(job, sought, &roots, shared.searches, workers, found)?;
+        // What is left may be no pairs although the whole is.
+        let by_pairs = shared.rest.is_some().then(|| self.extreme_of_pairs(telling, sought, target, &whole, workers, found));
+        if let Some(searched) = by_pairs.flatten() {
+            told(range.end - range.start);
+            return going_on(searched);
+        }
+        told(settled.designs());
+        let ahead = |designs: u64| shared.tell_ahead(designs, job.progress);
+        let followed = (shared.searches > 0).then_some((shared.searches, &ahead as &(dyn Fn(u64) + Sync)));
+        let (mut searched, rest) = self.search_boxes(telling, sought, roots, followed, workers, found)?;
         searched.add(&settled);
         if let Some(mut rest) = rest {
-            rest.take_over(shared.rest.as_ref());
+            rest.add_settled(&earlier);
             searched.counted = rest.boxes.is_empty().then_some(rest.feasible);
             // Where most is left, the whole is as soon searched as its parts.
             if rest.left(&self.axes) <= (range.end - range.start) / 2 {
@@ -141,20 +201,22 @@ impl BoundedStudy {
         Some(searched)
     }
 
-    /// Have searches judged at least as many designs as they have left? Then bounds settle little.
-    pub fn has_judged_most(&self, shared: &Shared) -> bool {
-        shared.rest.as_ref().is_some_and(|rest| rest.left(&self.axes) <= rest.judged)
+    /// Have searches judged at least half of the designs of a range one by one?
+    pub fn has_judged_most(&self, shared: &Shared, range: &Range<u64>) -> bool {
+        shared.rest.as_ref().is_some_and(|rest| rest.judged >= (range.end - range.start).div_ceil(2))
     }
 
-    /// The feasible designs: those that searches have judged, and those of what they have left, which is counted. `None` if they left more
-    /// than they judged, which parts of a range had better be counted of, or it was stopped.
-    pub fn count_rest(&self, shared: &Shared, threads: usize, stop: &AtomicBool) -> Option<(u64, Settled)> {
-        let rest = shared.rest.as_ref().filter(|_| self.has_judged_most(shared))?;
-        let taken = AtomicUsize::new(0);
+    /// The feasible designs: those that searches have judged, and those of what they have left, which is counted; `told` how many were
+    /// settled. `None` if more were left than judged, so that the count may take long and is better made range by range, or if it was stopped.
+    pub fn count_rest(&self, shared: &Shared, threads: usize, stop: &AtomicBool, told: &(dyn Fn(u64) + Sync)) -> Option<(u64, Settled)> {
+        let rest = shared.rest.as_ref().filter(|rest| rest.left(&self.axes) <= rest.judged)?;
+        told(rest.settled());
+        let (boxes, taken) = (rest.cut_for(threads, &self.axes), AtomicUsize::new(0));
         let counted = on_threads(0..threads, |_| {
             let (mut counter, mut total) = (self.counter(stop), 0);
-            while let Some(spans) = rest.boxes.get(taken.fetch_add(1, Ordering::Relaxed)) {
+            while let Some(spans) = boxes.get(taken.fetch_add(1, Ordering::Relaxed)) {
                 total += counter.count(spans, &all_open(&self.requirements, &self.axes))?;
+                told(self.axes.count(spans));
             }
             Some((total, counter.settled))
         });
@@ -166,5 +228,20 @@ impl BoundedStudy {
             settled.add(&how);
         }
         Some((feasible, settled))
+    }
+
+    /// Positions of some designs that searches have settled as infeasible for all.
+    pub fn sample_of_infeasible(&self, shared: &Shared) -> Vec<u64> {
+        let boxes = shared.rest.iter().flat_map(|rest| &rest.violating);
+        let mut positions: Vec<u64> = boxes
+            .flat_map(|spans| {
+                let size = self.axes.count(spans);
+                let some = size.min(SAMPLED as u64);
+                (0..some).map(move |it| self.axes.first_position(&spans.at(0..self.axes.designs, it * (size / some))))
+            })
+            .collect();
+        positions.sort_unstable();
+        positions.dedup();
+        positions
     }
 }

@@ -23,7 +23,7 @@ impl BoundedStudy {
             let Sought::Cells(number) = sought else { continue };
             let start = Instant::now();
             let (parts, tried) = self.part_of_cells(self.maps[number], job.range, share);
-            self.search_boxes(job, sought, &parts, 0, &mut workers, &mut scratch)?;
+            self.search_boxes(job, sought, &parts, None, &mut workers, &mut scratch)?;
             expected += start.elapsed().as_secs_f64() / tried;
         }
         for tally in Self::tallies(job.plan) {

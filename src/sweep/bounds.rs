@@ -5,7 +5,7 @@
 
 use super::costs::{Forecast, ranges_for_trial};
 use super::watch::{Leaving, OFTEN, Teller, Watch};
-use super::{Control, Settings, SweepJob, SweepWork, Swept};
+use super::{Control, Settings, SweepJob, SweepWork, Swept, run_thread};
 use crate::bounds::{BoundedStudy, BoxCounter, BoxTally, Certificate, SearchJob, Settled, Shared, Worker, in_words, refusal};
 use crate::checkpoint::Checkpoint;
 use crate::error::{Error, Result};
@@ -15,7 +15,7 @@ use crate::reduce::{Reducers, Reduction, State};
 use crate::screen::{CpuEngine, Tables};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// How long a range should take to count: what a killed run loses per thread.
@@ -190,7 +190,7 @@ fn settle_watched(
     }
     let designs = work.todo.count();
     let mut certificate = Certificate::default();
-    let mut shared = if options.shares_judged { BoundedStudy::shared(plan) } else { Shared::default() };
+    let mut shared = if options.shares_judged { Shared::new(plan) } else { Shared::default() };
     let searched = search(job, layout, whole, &mut shared, work, watch, &mut certificate);
     let state = work.reducers.state();
     work.save(&state)?;
@@ -211,15 +211,20 @@ fn settle_watched(
     if tallies.is_empty() {
         take_counted(job, layout, whole, &shared, watch, &mut certificate, work)?;
     }
-    let is_judged = layout.has_judged_most(&shared);
-    let shared = Mutex::new(work);
-    let settled = on_threads(0..options.threads.max(1), |_| count_on_thread(job, layout, &tallies, is_judged, &shared, watch));
+    work.known = Arc::new(work.reducers.front.points().clone());
+    let todo = Mutex::new(work);
+    // Where bounds may be left it was tried whether histograms and maps are counted faster by boxes.
+    let is_judged = !watch.may_leave() && !tallies.is_empty() && layout.has_judged_most(&shared, whole);
+    let settled = on_threads(0..options.threads.max(1), |_| match is_judged {
+        true => judge_on_thread(job, &tallies, &todo, watch),
+        false => count_on_thread(job, layout, &tallies, &todo, watch),
+    });
     certificate.tallies = tallies.iter().map(|tally| (tally.in_words(plan), Settled::default())).collect();
     for settled in &settled {
         let counts = std::iter::once(&mut certificate.count).chain(certificate.tallies.iter_mut().map(|(_, it)| it));
         counts.zip(settled).for_each(|(count, own)| count.add(own));
     }
-    let work = shared.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let work = todo.into_inner().unwrap_or_else(PoisonError::into_inner);
     if let Some(failure) = work.failure.take() {
         return Err(failure);
     }
@@ -232,8 +237,9 @@ fn settle_watched(
         return Ok(Settling::Left(Remains { forecast, at: at(), counted, found: Some(state) }));
     }
     adds_up(&certificate, designs, whole.end - whole.start)?;
-    let is_bounded = certificate.is_count_bounded();
-    certificate.compared = compare(job, layout, whole, &state, is_bounded)?;
+    // What an earlier run has counted, it may have counted by bounds.
+    let is_bounded = certificate.is_count_bounded() || designs < whole.end - whole.start;
+    certificate.compared = compare(job, layout, whole, &state, is_bounded)? + none_is_feasible(job, &layout.sample_of_infeasible(&shared))?;
     control.done.store(whole.end - whole.start, Ordering::Relaxed);
     Ok(Settling::Done(state, certificate))
 }
@@ -312,7 +318,7 @@ fn take_counted(
         let settled = Settled { infeasible: it.infeasible, pairs: it.pairs, evaluated: it.evaluated, ..Settled::default() };
         it.counted.map(|feasible| (feasible, settled))
     });
-    let count_rest = || layout.count_rest(shared, job.options.threads.max(1), watch.stop());
+    let count_rest = || layout.count_rest(shared, job.options.threads.max(1), watch.stop(), &|designs| watch.settle(designs));
     let Some((feasible, settled)) = counted.or_else(count_rest) else { return Ok(()) };
     certificate.count = settled;
     let mut counted = job.reduction.start();
@@ -322,21 +328,27 @@ fn take_counted(
     work.finish(job.plan, range)
 }
 
-/// Counts ranges until there are none left: the feasible designs, then those of each tally; or judges them, where that is known to be
-/// faster. Returns how each of them was settled.
+/// Judges ranges design by design until there are none left, for all counts together: where searches have judged most designs, boxes would
+/// settle little of the tallies too.
+fn judge_on_thread(job: SweepJob<'_>, tallies: &[BoxTally], work: &Mutex<&mut SweepWork<'_>>, watch: &Watch<'_>) -> Vec<Settled> {
+    let counts = tallies.len() as u64 + 1;
+    let judged = run_thread(job, work, &|designs| watch.settle(designs * counts));
+    let each = Settled { evaluated: judged, ..Settled::default() };
+    std::iter::once(Settled { evaluations: judged, ..each }).chain(tallies.iter().map(|_| each)).collect()
+}
+
+/// Counts ranges until there are none left: the feasible designs, then those of each tally. Returns how each of them was settled.
 fn count_on_thread(
     job: SweepJob<'_>,
     layout: &BoundedStudy,
     tallies: &[BoxTally],
-    is_judged: bool,
     work: &Mutex<&mut SweepWork<'_>>,
     watch: &Watch<'_>,
 ) -> Vec<Settled> {
-    let SweepJob { plan, tables, reduction, options, .. } = job;
+    let SweepJob { plan, reduction, options, .. } = job;
     let teller = Teller::new(watch);
     let settle = |designs: u64| teller.settle(designs);
     let mut counter = layout.counter(watch.stop()).telling(&settle);
-    let mut engine = is_judged.then(|| CpuEngine::new(plan, tables).stopping_on(watch.stop()));
     let lock = || work.lock().unwrap_or_else(PoisonError::into_inner);
     let all = options.shard.range(plan.designs());
     let least = (all.end - all.start) / PARTS;
@@ -355,11 +367,7 @@ fn count_on_thread(
             work.todo.take(end - first.start).unwrap_or(first)
         };
         let start = Instant::now();
-        let counted = match &mut engine {
-            Some(engine) => Ok(judge_range(reduction, tallies, engine, &range, &settle)),
-            None => count_range(plan, layout, tallies, &mut counter, &range, reduction.start()),
-        };
-        match counted {
+        match count_range(plan, layout, tallies, &mut counter, &range, reduction.start()) {
             Ok(Some((counted, own))) => {
                 settled.iter_mut().zip(&own).for_each(|(all, own)| all.add(own));
                 teller.tell();
@@ -407,27 +415,6 @@ fn count_range(
         settled.push(since(counter));
     }
     Ok(Some((into, settled)))
-}
-
-/// The same by judging every design of the range.
-fn judge_range(
-    reduction: &Reduction,
-    tallies: &[BoxTally],
-    engine: &mut CpuEngine<'_>,
-    range: &Range<u64>,
-    told: &dyn Fn(u64),
-) -> Option<(Reducers, Vec<Settled>)> {
-    let mut judged = reduction.start();
-    let end = engine.screen(range.clone(), |block| reduction.absorb_reported(&mut judged, block));
-    if end < range.end {
-        return None;
-    }
-    let designs = range.end - range.start;
-    told(designs * (tallies.len() as u64 + 1));
-    let each = Settled { evaluated: designs, ..Settled::default() };
-    // They are judged for the count, and the tallies share that.
-    let count = Settled { evaluations: designs, ..each };
-    Some((judged, std::iter::once(count).chain(tallies.iter().map(|_| each)).collect()))
 }
 
 fn hand_over(plan: &Plan, range: Range<u64>, counted: Reducers, time: Duration, work: &mut SweepWork<'_>) {
@@ -490,4 +477,39 @@ fn compare(job: SweepJob<'_>, layout: &BoundedStudy, whole: &Range<u64>, state: 
         return Err(Error::Disagreement("designs judged one by one are better than what bounds found".to_owned()));
     }
     Ok(compared)
+}
+
+/// Judges designs that bounds hold to be infeasible; returns how many.
+fn none_is_feasible(job: SweepJob<'_>, positions: &[u64]) -> Result<u64> {
+    let SweepJob { plan, tables, control, .. } = job;
+    let mut feasible = 0;
+    CpuEngine::new(plan, tables).stopping_on(&control.stop).screen_some(positions, |block| feasible += block.feasible_count);
+    match feasible {
+        0 => Ok(positions.len() as u64),
+        _ => Err(Error::Disagreement(format!("of {} designs that bounds hold to be infeasible {feasible} are feasible", positions.len()))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::models::find;
+    use crate::study::study_of;
+
+    #[test]
+    fn a_feasible_design_in_a_box_held_to_be_infeasible_is_noticed() {
+        let text = "[design]\npower_kW = { from = 1, to = 3, count = 9 }\nspeed_rpm = { from = 1000, to = 4000, count = 16 }\n\
+                    [constraints]\nfriction_margin = { min = 0 }\n[objectives]\nresultant_force_N = \"min\"\n";
+        let plan = Plan::new(study_of(&find("pulley-load").expect("it is a model"), text).expect("the study is right"));
+        let (tables, control) = (Tables::new(&plan), Control::default());
+        let (reduction, options) = (Reduction::new(&plan, &[]), Settings::default());
+        let job = SweepJob { plan: &plan, tables: &tables, reduction: &reduction, options: &options, control: &control };
+        let feasible_at = |position: u64| none_is_feasible(job, &[position]).is_err();
+        let (feasible, infeasible): (Vec<u64>, Vec<u64>) = (0..plan.designs()).partition(|&position| feasible_at(position));
+        assert!(!feasible.is_empty() && !infeasible.is_empty());
+        assert_eq!(none_is_feasible(job, &infeasible).expect("none is"), infeasible.len() as u64);
+        let all: Vec<u64> = (0..plan.designs()).collect();
+        let error = none_is_feasible(job, &all).expect_err("some are").to_string();
+        assert!(error.contains(&format!("of 144 designs that bounds hold to be infeasible {} are feasible", feasible.len())), "{error}");
+    }
 }

@@ -39,7 +39,7 @@ use crate::reduce::{FRONT_BYTES, Points, Reducers, Reduction, State, most_points
 use crate::screen::{BLOCK, CpuEngine, Tables};
 use crate::tiles::{Ranges, Shard};
 use std::sync::atomic::Ordering;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// How to run; nothing here changes a result.
@@ -55,7 +55,7 @@ pub struct Settings {
     pub shard: Shard,
     /// Bytes that the front may take while it is looked for.
     pub front_bytes: u64,
-    /// By bounds: may a search judge designs for those that follow? Otherwise each judges its own, which takes longer and finds the same.
+    /// By bounds: may a search judge designs for those that follow? Otherwise each judges its own and finds the same.
     pub shares_judged: bool,
 }
 
@@ -268,11 +268,13 @@ pub fn sweep(
 }
 
 /// Judges what is left to do, design by design.
-fn judge(job: SweepJob<'_>, work: SweepWork<'_>) -> Result<State> {
+fn judge(job: SweepJob<'_>, mut work: SweepWork<'_>) -> Result<State> {
     let SweepJob { plan, options, control, .. } = job;
-    let work = Mutex::new(work);
-    on_threads(0..options.threads.max(1), |_| run_thread(job, &work));
-    let mut work = work.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let shared = Mutex::new(&mut work);
+    let told = |designs: u64| {
+        control.done.fetch_add(designs, Ordering::Relaxed);
+    };
+    on_threads(0..options.threads.max(1), |_| run_thread(job, &shared, &told));
     if let Some(failure) = work.failure {
         return Err(failure);
     }
@@ -337,13 +339,15 @@ fn least_tile(plan: &Plan) -> u64 {
     block.min((LONGEST_TILE / plan.seconds_per_design()) as u64).max(1)
 }
 
-fn run_thread(job: SweepJob<'_>, work: &Mutex<SweepWork<'_>>) {
+/// Judges designs until there are none left; `told` how many. Returns how many it was in all.
+fn run_thread(job: SweepJob<'_>, work: &Mutex<&mut SweepWork<'_>>, told: &dyn Fn(u64)) -> u64 {
     let SweepJob { plan, tables, reduction, options, control } = job;
     let mut engine = CpuEngine::new(plan, tables).stopping_on(&control.stop);
     let least = least_tile(plan).min(options.tile);
     let tile_at = |rate: f64| ((rate * TILE_TIME.as_secs_f64()) as u64).clamp(least, options.tile);
     let lock = || work.lock().unwrap_or_else(PoisonError::into_inner);
     let row = plan.fast.count();
+    let mut all = 0;
     loop {
         let (chunk, known, planned, mut tile) = {
             let mut work = lock();
@@ -360,11 +364,11 @@ fn run_thread(job: SweepJob<'_>, work: &Mutex<SweepWork<'_>>) {
                 None => FIRST_CHUNK,
             };
             if control.stop.load(Ordering::Relaxed) || work.failure.is_some() {
-                return;
+                return all;
             }
             match work.todo.take(if size > row { size.next_multiple_of(row) } else { size }) {
                 Some(chunk) => (chunk, Arc::clone(&work.known), seconds, tile),
-                None => return,
+                None => return all,
             }
         };
         let start = Instant::now();
@@ -374,7 +378,7 @@ fn run_thread(job: SweepJob<'_>, work: &Mutex<SweepWork<'_>>) {
         while position < chunk.end && !control.stop.load(Ordering::Relaxed) {
             let end = chunk.end.min(tile_end(position, tile, row));
             let judged = engine.screen_for(position..end, reduction, &mut reducers);
-            control.done.fetch_add(judged - position, Ordering::Relaxed);
+            told(judged - position);
             position = judged;
             let seconds = start.elapsed().as_secs_f64();
             if seconds > PATIENCE * planned {
@@ -382,19 +386,13 @@ fn run_thread(job: SweepJob<'_>, work: &Mutex<SweepWork<'_>>) {
             }
             tile = tile_at((position - chunk.start) as f64 / seconds.max(1e-9));
         }
-        hand_over(plan, chunk.start..position, chunk.end, reducers, start.elapsed(), lock());
+        all += position - chunk.start;
+        hand_over(plan, chunk.start..position, chunk.end, reducers, start.elapsed(), &mut lock());
     }
 }
 
 /// Merges a finished chunk (or the part of it that was finished when the run was stopped, or patience was lost with it) and keeps the checkpoint.
-fn hand_over(
-    plan: &Plan,
-    finished: std::ops::Range<u64>,
-    chunk_end: u64,
-    reducers: Reducers,
-    time: Duration,
-    mut work: MutexGuard<'_, SweepWork<'_>>,
-) {
+fn hand_over(plan: &Plan, finished: std::ops::Range<u64>, chunk_end: u64, reducers: Reducers, time: Duration, work: &mut SweepWork<'_>) {
     if finished.end < chunk_end {
         work.todo.add(finished.end..chunk_end);
     }

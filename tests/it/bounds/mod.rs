@@ -231,7 +231,8 @@ fn cover_shared(alone: &Certificate, shared: &Certificate, coverage: &mut Covera
         }
     };
     let boxes: Vec<u64> = shared.searches.iter().map(|(_, it)| it.boxes).collect();
-    let others = boxes.get(1..).unwrap_or_default();
+    // The first looks for the front, by itself; the second judges for those that follow.
+    let others = boxes.get(2..).unwrap_or_default();
     note("judged for all", !others.is_empty() && others.iter().all(|&boxes| boxes == 0));
     note(
         "in part judged for all",

@@ -71,16 +71,17 @@ fn searches_and_counts_share_what_is_judged() {
     };
     let eight = shared(&changed(&shipped("eight-axes.toml"), &[("count = 6", "count = 5")]));
     let looks: Vec<u64> = eight.searches.iter().map(|(_, it)| it.evaluations).collect();
-    assert!(looks[0] >= 450_000 && looks[1..].iter().all(|&it| it == 0), "{looks:?}");
+    // The front is searched first, and for itself.
+    assert!(looks[1] >= 450_000 && looks[2..].iter().all(|&it| it == 0), "{looks:?}");
     assert_eq!((eight.count.boxes, eight.count.evaluations), (0, 0));
-    let grid = changed(&shipped("metal-grid.toml"), &[("count = 37", "count = 20")]);
+    let grid = changed(&shipped("metal-grid.toml"), &[("count = 37", "count = 14"), ("max = 30000", "max = 10000")]);
     let left = shared(&grid);
     let boxes: Vec<u64> = left.searches.iter().map(|(_, it)| it.boxes).collect();
-    assert!(boxes[0] > 4 * boxes[1] && boxes[1] > 0, "{boxes:?}");
-    assert!(left.count.boxes > 0 && left.count.evaluated > left.count.designs() / 2, "{:?}", left.count);
+    assert!(boxes[1] > 2 * boxes[3] && boxes[3] > 0, "{boxes:?}");
+    assert!(left.count.boxes > 0 && left.count.boxes < boxes[1] && left.count.evaluated > left.count.designs() / 2, "{:?}", left.count);
     // What nothing but every design tells is judged too.
     let tallied = shared(&(grid + "[report]\nhistograms = [{ of = \"torque_capacity_Nm\", from = 10, to = 200, bins = 30 }]\n"));
-    assert_eq!((tallied.tallies[0].1.boxes, tallied.tallies[0].1.evaluated), (0, 20u64.pow(4) * 11));
+    assert_eq!((tallied.tallies[0].1.boxes, tallied.tallies[0].1.evaluated), (0, 14u64.pow(4) * 11));
 }
 
 /// A histogram and the cells of a map, each counted as pairs of two groups of axes.
