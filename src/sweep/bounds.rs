@@ -499,7 +499,7 @@ mod tests {
     #[test]
     fn a_feasible_design_in_a_box_held_to_be_infeasible_is_noticed() {
         let text = "[design]\npower_kW = { from = 1, to = 3, count = 9 }\nspeed_rpm = { from = 1000, to = 4000, count = 16 }\n\
-                    [constraints]\nfriction_margin = { min = 0 }\n[objectives]\nresultant_force_N = \"min\"\n";
+                    [constraints]\nspeed_rpm = { min = 2000 }\n[objectives]\nresultant_force_N = \"min\"\n";
         let plan = Plan::new(study_of(&find("pulley-load").expect("it is a model"), text).expect("the study is right"));
         let (tables, control) = (Tables::new(&plan), Control::default());
         let (reduction, options) = (Reduction::new(&plan, &[]), Settings::default());
