@@ -48,7 +48,7 @@ impl BoxSearch<'_> {
             let (rows, designs) = self.rows_and_designs(spans);
             self.time(rows, designs, chosen)
         };
-        let searches = (1 + self.followed.map_or(0, |it| it.0)) as f64;
+        let searches = (1 + self.followers.map_or(0, |it| it.searches)) as f64;
         time(spans, self.plan.scenarios()) <= searches * time(&left.spans, self.chosen_count(left))
     }
 

@@ -50,7 +50,7 @@ use pairs::{BestPair, Pairs};
 use requirement::{NumberSource, Test, requirements};
 use search::BoxSearch;
 use serde_json::{Value, json};
-use shared::Rest;
+use shared::{Followers, Rest};
 use sought::{ObjectiveProduct, QuotientLimit, Target};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -215,16 +215,16 @@ impl BoundedStudy {
     /// Searches a range of positions and takes what it finds into `found`; `None` if it was stopped, or the front has more than
     /// [`BoundedStudy::most_points`], or it took more than [`BoundedStudy::most_boxes`].
     pub fn search(&self, job: SearchJob<'_>, sought: Sought, workers: &mut [Worker<'_>], found: &mut Reducers) -> Option<Searched> {
-        self.search_sharing(job, sought, &mut Shared::default(), workers, found)
+        self.search_sharing(job, sought, &mut Shared::nothing(), workers, found)
     }
 
-    /// Searches boxes; where so many searches follow, it may judge some boxes for them too, and tells of how many designs.
+    /// Searches boxes; where others follow, it may judge some for them too.
     fn search_boxes(
         &self,
         job: SearchJob<'_>,
         sought: Sought,
         roots: &[Spans],
-        followed: Option<(u64, &(dyn Fn(u64) + Sync))>,
+        followers: Option<Followers<'_>>,
         workers: &mut [Worker<'_>],
         found: &mut Reducers,
     ) -> Option<(Searched, Option<Rest>)> {
@@ -247,7 +247,7 @@ impl BoundedStudy {
             row: plan.fast.count(),
             most_points: self.most_points,
             most_boxes: self.most_boxes,
-            followed,
+            followers,
         };
         search.run(roots, workers, found)
     }

@@ -12,7 +12,7 @@ use super::count::varying;
 use super::open::{BetterEnds, Bounded, Decided, add_pull, all_open, decide, is_infeasible, over, worst_of};
 use super::queue::{Queue, Waiting};
 use super::rival::Rival;
-use super::shared::Rest;
+use super::shared::{Followers, Rest};
 use super::sought::{ObjectiveProduct, QuotientLimit, Searched, Sought, Target};
 use super::staircase::Fit;
 use crate::models::Effort;
@@ -79,8 +79,8 @@ pub struct BoxSearch<'a> {
     pub most_points: u64,
     /// Boxes at which it is given up.
     pub most_boxes: u64,
-    /// How many searches follow that look for something in the same designs; is told how many designs were settled for them too.
-    pub followed: Option<(u64, &'a (dyn Fn(u64) + Sync))>,
+    /// Searches that follow and look for something in the same designs.
+    pub followers: Option<Followers<'a>>,
 }
 
 /// What a thread works with.
@@ -141,11 +141,11 @@ impl BoxSearch<'_> {
         let mut queue = Queue::new();
         roots.iter().map(root).for_each(|root| queue.push(root));
         let mut total = Searched::default();
-        let mut rest = self.followed.map(|_| Rest::default());
+        let mut rest = self.followers.map(|_| Rest::default());
         while !queue.is_empty() {
             let batch = queue.pop((found.front.len() / 4).clamp(*BATCH.start(), *BATCH.end()));
             let (next, settled) = self.look_at(&batch, workers, found, &mut rest);
-            rest = rest.filter(|rest| !rest.is_too_much());
+            rest = rest.filter(|rest| self.followers.is_some_and(|it| rest.boxes.len() <= it.most_boxes));
             if self.stop.load(Ordering::Relaxed) || found.front.len() as u64 > self.most_points {
                 return None;
             }
@@ -191,8 +191,8 @@ impl BoxSearch<'_> {
                 let mut left = is_shared.then(Rest::default);
                 let (next, settled) = self.look_at_part(part, worker, &rival, reducers, is_first, left.as_mut());
                 (self.progress)(settled.designs());
-                if let (Some((_, ahead)), Some(left)) = (self.followed, &left) {
-                    ahead(left.settled());
+                if let (Some(followers), Some(left)) = (self.followers, &left) {
+                    (followers.told)(left.settled());
                 }
                 own.push((share, (next, settled, left)));
             }

@@ -17,40 +17,46 @@ use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 
 /// Boxes that are noted. Where there are more, bounds settle many designs, and the next search is as soon done from the start.
 const MOST_BOXES: usize = 1 << 10;
+/// Of what searches have left at most this share of all designs is counted in one piece: that is lost where it is stopped.
+const COUNTED_SHARE: u64 = 4;
 /// Boxes that surely violate a requirement of which designs are judged all the same, and designs of each.
 const SAMPLED: usize = 64;
 /// Boxes that the rest is cut into, per thread, to be counted.
 const PARTS: usize = 8;
 
 /// What the searches of a study have in common.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Shared {
     /// Searches to come that look for something in the same designs.
     searches: u64,
-    /// What those before have left.
+    /// What those before have left, and the most boxes of that.
     pub(super) rest: Option<Rest>,
-    /// Designs that were told for searches to come: these need not tell them again.
-    ahead: AtomicU64,
+    pub(super) most_boxes: usize,
+    /// Designs of which progress was told for each search to come: it need not tell them again.
+    ahead: u64,
+}
+
+/// What a search judges for others.
+#[derive(Clone, Copy)]
+pub struct Followers<'a> {
+    /// How many searches follow.
+    pub searches: u64,
+    /// Most boxes that are noted for them.
+    pub most_boxes: usize,
+    /// Is told how many designs were settled for each of them.
+    pub told: &'a (dyn Fn(u64) + Sync),
 }
 
 impl Shared {
     /// For all searches of a plan.
     pub fn new(plan: &Plan) -> Self {
         let searches = BoundedStudy::sought(plan).into_iter().filter(|it| shares(*it)).count() as u64;
-        Self { searches, ..Self::default() }
+        Self { searches, ..Self::nothing() }
     }
 
-    /// Tells `progress` of designs, unless that was done ahead.
-    fn tell(&self, designs: u64, progress: &dyn Fn(u64)) {
-        let less = |ahead: u64| Some(ahead - ahead.min(designs));
-        let ahead = self.ahead.fetch_update(Ordering::Relaxed, Ordering::Relaxed, less).unwrap_or_else(|ahead| ahead);
-        progress(designs - ahead.min(designs));
-    }
-
-    /// Tells `progress` of designs for all searches to come.
-    fn tell_ahead(&self, designs: u64, progress: &dyn Fn(u64)) {
-        self.ahead.fetch_add(designs * self.searches, Ordering::Relaxed);
-        progress(designs * self.searches);
+    /// Nothing: for a search by itself.
+    pub fn nothing() -> Self {
+        Self { searches: 0, rest: None, most_boxes: MOST_BOXES, ahead: 0 }
     }
 }
 
@@ -116,12 +122,7 @@ impl Rest {
         }
     }
 
-    /// Are there too many boxes to be of use?
-    pub fn is_too_much(&self) -> bool {
-        self.boxes.len() > MOST_BOXES
-    }
-
-    /// Designs that need not be looked at any more.
+    /// Designs that nobody needs to look at any more.
     pub fn settled(&self) -> u64 {
         self.infeasible + self.judged
     }
@@ -162,39 +163,44 @@ impl BoundedStudy {
             return Some(self.search_boxes(job, sought, &whole, None, workers, found)?.0);
         }
         shared.searches = shared.searches.saturating_sub(1);
-        let told = |designs: u64| shared.tell(designs, job.progress);
+        // Every search tells of all designs once, some of them ahead.
+        let size = range.end - range.start;
+        let already = AtomicU64::new(shared.ahead);
+        let told = |designs: u64| {
+            let less = |already: u64| Some(already - already.min(designs));
+            let already = already.fetch_update(Ordering::Relaxed, Ordering::Relaxed, less).unwrap_or_else(|already| already);
+            (job.progress)(designs - already.min(designs));
+        };
         let telling = SearchJob { progress: &told, ..job };
         let going_on = |searched: Searched| (!stop.load(Ordering::Relaxed)).then_some(searched);
         let earlier = shared.rest.clone().unwrap_or_default();
         let settled = Searched { infeasible: earlier.infeasible, evaluated: earlier.judged, ..Searched::default() };
         let roots = if shared.rest.is_some() { &earlier.boxes } else { &whole };
         if roots.is_empty() {
-            told(settled.designs());
+            told(size);
             return going_on(settled);
         }
-        let target = &self.targets(plan, sought)[0];
-        if let Some(mut searched) = self.extreme_of_pairs(telling, sought, target, roots, workers, found) {
-            told(range.end - range.start);
-            searched.add(&settled);
-            searched.counted = searched.counted.map(|counted| counted + earlier.feasible);
-            return going_on(searched);
-        }
-        // What is left may be no pairs although the whole is.
-        let by_pairs = shared.rest.is_some().then(|| self.extreme_of_pairs(telling, sought, target, &whole, workers, found));
-        if let Some(searched) = by_pairs.flatten() {
-            told(range.end - range.start);
+        // The whole may be pairs although its parts are not.
+        if let Some(searched) = self.extreme_of_pairs(telling, sought, &self.targets(plan, sought)[0], &whole, workers, found) {
+            told(size);
             return going_on(searched);
         }
         told(settled.designs());
-        let ahead = |designs: u64| shared.tell_ahead(designs, job.progress);
-        let followed = (shared.searches > 0).then_some((shared.searches, &ahead as &(dyn Fn(u64) + Sync)));
-        let (mut searched, rest) = self.search_boxes(telling, sought, roots, followed, workers, found)?;
+        let (searches, ahead) = (shared.searches, AtomicU64::new(shared.ahead));
+        let tell_ahead = |designs: u64| {
+            let more = |ahead: u64| Some(size.min(ahead.saturating_add(designs)));
+            let ahead = ahead.fetch_update(Ordering::Relaxed, Ordering::Relaxed, more).unwrap_or_else(|ahead| ahead);
+            (0..searches).for_each(|_| (job.progress)(designs.min(size - ahead)));
+        };
+        let followers = (searches > 0).then_some(Followers { searches, most_boxes: shared.most_boxes, told: &tell_ahead });
+        let (mut searched, rest) = self.search_boxes(telling, sought, roots, followers, workers, found)?;
+        shared.ahead = ahead.into_inner();
         searched.add(&settled);
         if let Some(mut rest) = rest {
             rest.add_settled(&earlier);
             searched.counted = rest.boxes.is_empty().then_some(rest.feasible);
             // Where most is left, the whole is as soon searched as its parts.
-            if rest.left(&self.axes) <= (range.end - range.start) / 2 {
+            if rest.left(&self.axes) <= size / 2 {
                 shared.rest = Some(rest);
             }
         }
@@ -206,11 +212,18 @@ impl BoundedStudy {
         shared.rest.as_ref().is_some_and(|rest| rest.judged >= (range.end - range.start).div_ceil(2))
     }
 
-    /// The feasible designs: those that searches have judged, and those of what they have left, which is counted; `told` how many were
-    /// settled. `None` if more were left than judged, so that the count may take long and is better made range by range, or if it was stopped.
-    pub fn count_rest(&self, shared: &Shared, threads: usize, stop: &AtomicBool, told: &(dyn Fn(u64) + Sync)) -> Option<(u64, Settled)> {
-        let rest = shared.rest.as_ref().filter(|rest| rest.left(&self.axes) <= rest.judged)?;
-        told(rest.settled());
+    /// The feasible designs of a range: those that searches have judged, and those of what they have left, which is counted; `told` how many
+    /// these are. `None` if more are left, which had better be counted piece by piece, or if it was stopped.
+    pub fn count_rest(
+        &self,
+        shared: &Shared,
+        range: &Range<u64>,
+        threads: usize,
+        stop: &AtomicBool,
+        told: &(dyn Fn(u64) + Sync),
+    ) -> Option<(u64, Settled)> {
+        let most = (range.end - range.start) / COUNTED_SHARE;
+        let rest = shared.rest.as_ref().filter(|rest| rest.left(&self.axes) <= rest.judged.min(most))?;
         let (boxes, taken) = (rest.cut_for(threads, &self.axes), AtomicUsize::new(0));
         let counted = on_threads(0..threads, |_| {
             let (mut counter, mut total) = (self.counter(stop), 0);

@@ -103,12 +103,6 @@ impl Reduction {
         reducers.reported.absorb(block);
     }
 
-    /// Takes in a block of designs whose front and extremes were found elsewhere: for the counts and what the report asks for.
-    pub fn absorb_reported(&self, reducers: &mut Reducers, block: &Block<'_>) {
-        reducers.feasible += block.feasible_count;
-        reducers.reported.absorb(block);
-    }
-
     /// Takes in a block of designs that were counted elsewhere: for the front, the extremes and what asks for candidates.
     pub fn absorb_counted(&self, reducers: &mut Reducers, block: &Block<'_>) {
         self.absorb_objectives(reducers, block);

@@ -190,7 +190,7 @@ fn settle_watched(
     }
     let designs = work.todo.count();
     let mut certificate = Certificate::default();
-    let mut shared = if options.shares_judged { Shared::new(plan) } else { Shared::default() };
+    let mut shared = if options.shares_judged { Shared::new(plan) } else { Shared::nothing() };
     let searched = search(job, layout, whole, &mut shared, work, watch, &mut certificate);
     let state = work.reducers.state();
     work.save(&state)?;
@@ -213,7 +213,7 @@ fn settle_watched(
     }
     work.known = Arc::new(work.reducers.front.points().clone());
     let todo = Mutex::new(work);
-    // Where bounds may be left it was tried whether histograms and maps are counted faster by boxes.
+    // Where bounds may be left, a trial has decided about histograms and maps already.
     let is_judged = !watch.may_leave() && !tallies.is_empty() && layout.has_judged_most(&shared, whole);
     let settled = on_threads(0..options.threads.max(1), |_| match is_judged {
         true => judge_on_thread(job, &tallies, &todo, watch),
@@ -318,7 +318,7 @@ fn take_counted(
         let settled = Settled { infeasible: it.infeasible, pairs: it.pairs, evaluated: it.evaluated, ..Settled::default() };
         it.counted.map(|feasible| (feasible, settled))
     });
-    let count_rest = || layout.count_rest(shared, job.options.threads.max(1), watch.stop(), &|designs| watch.settle(designs));
+    let count_rest = || layout.count_rest(shared, whole, job.options.threads.max(1), watch.stop(), &|designs| watch.settle(designs));
     let Some((feasible, settled)) = counted.or_else(count_rest) else { return Ok(()) };
     certificate.count = settled;
     let mut counted = job.reduction.start();
@@ -479,11 +479,16 @@ fn compare(job: SweepJob<'_>, layout: &BoundedStudy, whole: &Range<u64>, state: 
     Ok(compared)
 }
 
-/// Judges designs that bounds hold to be infeasible; returns how many.
+/// Judges designs that bounds hold to be infeasible, as many as there is time for; returns how many.
 fn none_is_feasible(job: SweepJob<'_>, positions: &[u64]) -> Result<u64> {
     let SweepJob { plan, tables, control, .. } = job;
+    let affordable = (COMPARED_TIME / plan.seconds_per_design().max(1e-12)) as usize;
+    let positions: Vec<u64> = positions.iter().copied().step_by(positions.len().div_ceil(affordable.max(1)).max(1)).collect();
     let mut feasible = 0;
-    CpuEngine::new(plan, tables).stopping_on(&control.stop).screen_some(positions, |block| feasible += block.feasible_count);
+    CpuEngine::new(plan, tables).stopping_on(&control.stop).screen_some(&positions, |block| feasible += block.feasible_count);
+    if control.stop.load(Ordering::Relaxed) {
+        return Err(stopped());
+    }
     match feasible {
         0 => Ok(positions.len() as u64),
         _ => Err(Error::Disagreement(format!("of {} designs that bounds hold to be infeasible {feasible} are feasible", positions.len()))),

@@ -233,12 +233,22 @@ fn what_is_saved_and_copied_is_the_study_as_it_is_changed_now() {
     // The engine's own line, which came with it or after it, left it alone.
     assert!(browser.text("document.querySelector('#done').textContent").contains("operation.no_such_input"));
     assert!(browser.text("document.querySelector('#live-text').textContent").contains("operation.no_such_input"));
-    // The next change puts it away; what is saved then has its name.
+    assert_eq!(browser.text("document.querySelector('#done').dataset.kind"), "error");
+    // The next change puts it away; then it tells the name of what is saved.
     browser.evaluate("beltspace.change({ 'operation.no_such_input': null })");
     assert_eq!(browser.text("document.querySelector('#done').textContent"), "");
     browser.evaluate("document.querySelector('#save').click()");
     browser.wait("window.saved");
-    browser.wait("document.querySelector('#done').textContent.startsWith('saved as ')");
+    browser.wait("document.querySelector('#done').textContent === 'saved as study-explored.toml'");
+    // Nothing moves above the plots, and nothing is said of a study that has changed meanwhile.
+    let place = "(() => { const at = document.querySelector('#save').getBoundingClientRect(); return [at.left, at.top, document.querySelector('#live').offsetHeight].join(); })()";
+    let said = browser.text(place);
+    browser.evaluate(
+        "document.querySelector('#save').click(), beltspace.change({ 'constraints.slip_margin.min': '0.05' }), window.saved = null",
+    );
+    browser.wait("window.saved && beltspace.page.isAnswered()");
+    assert_eq!(browser.text("document.querySelector('#done').textContent"), "");
+    assert_eq!(browser.text(place), said);
 }
 
 #[test]

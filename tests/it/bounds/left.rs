@@ -119,7 +119,8 @@ fn whenever_bounds_are_left_the_files_are_the_same() {
     }
     // Eight passes: front, best, four extremes, the best of a map's cells; and three counts together.
     assert!(phases[0].0.starts_with("front, 1 of 8") && phases[1].0.starts_with("front, 1 of 8"), "{phases:?}");
-    assert!(phases[2].0.ends_with(", 5 of 8") && phases[..4].iter().all(|it| !it.1), "{phases:?}");
+    // What a search judges for those that follow is told at once, so that it is left a little sooner than in the middle of all.
+    assert!(phases[2].0 == "largest resultant_force_N, 4 of 8" && phases[..4].iter().all(|it| !it.1), "{phases:?}");
     assert_eq!(phases[3].0, "map of resultant_force_N, 7 of 8", "{phases:?}");
     assert_eq!(phases[4], ("counts, 8 of 8".to_owned(), true), "what is counted is kept");
 }

@@ -1,13 +1,20 @@
 // The page of a study in work.
 {
-  // What a button did stands beside it until the study changes; the line above is the engine's, which may say more at any moment.
-  const sayDone = (text) => (page.byId("done").textContent = text);
+  // What a button did stands in front of the command until the study changes; the line above is the engine's, which may say more at any moment.
+  const sayDone = (text, kind = "done") => {
+    const done = page.byId("done");
+    done.textContent = text;
+    done.dataset.kind = kind;
+  };
   // What is shown may still be of the study before: the engine is asked for the study as it is changed now, and says why there is none.
   const withStudy = (failed, use) => async () => {
+    const set = page.changeList();
+    const sayOfIt = (text, kind) => String(page.changeList()) === String(set) && sayDone(text, kind);
+    sayDone("");
     try {
-      sayDone(await use(await page.askOnce("/study", { set: page.changeList() })));
+      sayOfIt(await use(await page.askOnce("/study", { set })));
     } catch (error) {
-      sayDone(`${failed}: ${error.message}`);
+      sayOfIt(`${failed}: ${error.message}`, "error");
     }
   };
   const save = withStudy("not saved", ({ study }) => {
@@ -17,7 +24,7 @@
   });
   const copyCommand = withStudy("not copied", async ({ command }) => {
     page.byId("command").textContent = command;
-    return (await page.copyText(command)) ? "copied" : "select the text to copy it";
+    return (await page.copyText(command)) ? "command copied" : "select the command to copy it";
   });
 
   const bar = () => {
@@ -27,8 +34,8 @@
     const copy = page.element("button", { type: "button", class: "no-print", "data-testid": "copy-command", click: copyCommand }, "Copy command");
     live.replaceChildren(
       page.element("p", { id: "live-text", role: "status", "aria-live": "polite" }, "asking the engine …"),
-      page.element("div", { class: "controls no-print" }, page.element("label", {}, ghost, " old front ", page.element("span", { class: "ghost-dot", "aria-hidden": "true" })), copy, page.element("button", { type: "button", id: "save", "data-testid": "save", click: save }, "Save as study"), page.element("span", { id: "done", role: "status" })),
-      page.element("code", { id: "command", "data-testid": "command", tabindex: 0 }),
+      page.element("div", { class: "controls no-print" }, page.element("label", {}, ghost, " old front ", page.element("span", { class: "ghost-dot", "aria-hidden": "true" })), copy, page.element("button", { type: "button", id: "save", "data-testid": "save", click: save }, "Save as study")),
+      page.element("div", { class: "command-line" }, page.element("span", { id: "done", class: "no-print", role: "status" }), page.element("code", { id: "command", "data-testid": "command", tabindex: 0 })),
     );
   };
 
