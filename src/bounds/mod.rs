@@ -215,7 +215,7 @@ impl BoundedStudy {
     /// Searches a range of positions and takes what it finds into `found`; `None` if it was stopped, or the front has more than
     /// [`BoundedStudy::most_points`], or it took more than [`BoundedStudy::most_boxes`].
     pub fn search(&self, job: SearchJob<'_>, sought: Sought, workers: &mut [Worker<'_>], found: &mut Reducers) -> Option<Searched> {
-        self.search_sharing(job, sought, &mut Shared::nothing(), workers, found)
+        self.search_sharing(job, sought, &mut Shared::alone(), workers, found)
     }
 
     /// Searches boxes; where others follow, it may judge some for them too.

@@ -129,8 +129,8 @@ fn cut_into([first, second]: &[Waiting; 2]) -> Spans {
 }
 
 impl BoxSearch<'_> {
-    /// Searches boxes and takes what it finds into `found`. With what is left to the searches that follow, unless none do or that is too
-    /// much. `None` if it was stopped or given up.
+    /// Searches boxes and takes what it finds into `found`. Returns besides what it leaves to the searches that follow; nothing if none do, or
+    /// if that is too many boxes. `None` if it was stopped or given up.
     pub fn run(&self, roots: &[Spans], workers: &mut [Worker<'_>], found: &mut Reducers) -> Option<(Searched, Option<Rest>)> {
         let root = |spans: &Spans| Waiting {
             spans: *spans,

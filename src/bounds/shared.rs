@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 
 /// Boxes that are noted. Where there are more, bounds settle many designs, and the next search is as soon done from the start.
 const MOST_BOXES: usize = 1 << 10;
-/// Of what searches have left at most this share of all designs is counted in one piece: that is lost where it is stopped.
+/// What searches have left is counted in one piece, which is lost if it is stopped, only where it is at most one in so many designs.
 const COUNTED_SHARE: u64 = 4;
 /// Boxes that surely violate a requirement of which designs are judged all the same, and designs of each.
 const SAMPLED: usize = 64;
@@ -36,7 +36,7 @@ pub struct Shared {
     ahead: u64,
 }
 
-/// What a search judges for others.
+/// The searches that follow one which judges designs for them too.
 #[derive(Clone, Copy)]
 pub struct Followers<'a> {
     /// How many searches follow.
@@ -51,11 +51,11 @@ impl Shared {
     /// For all searches of a plan.
     pub fn new(plan: &Plan) -> Self {
         let searches = BoundedStudy::sought(plan).into_iter().filter(|it| shares(*it)).count() as u64;
-        Self { searches, ..Self::nothing() }
+        Self { searches, ..Self::alone() }
     }
 
-    /// Nothing: for a search by itself.
-    pub fn nothing() -> Self {
+    /// For a search by itself.
+    pub fn alone() -> Self {
         Self { searches: 0, rest: None, most_boxes: MOST_BOXES, ahead: 0 }
     }
 }
@@ -132,7 +132,7 @@ impl Rest {
         self.boxes.iter().map(|spans| axes.count(spans)).sum()
     }
 
-    /// The boxes, cut so that so many threads are done together.
+    /// The boxes, the large ones cut so that all threads have work until the end.
     fn cut_for(&self, threads: usize, axes: &Axes) -> Vec<Spans> {
         let mut boxes = self.boxes.clone();
         while boxes.len() < PARTS * threads {
@@ -148,7 +148,7 @@ impl Rest {
 }
 
 impl BoundedStudy {
-    /// As [`BoundedStudy::search`], one after the other with what they share.
+    /// As [`BoundedStudy::search`], for all that is sought in turn: what one search has judged for others is in `shared`.
     pub fn search_sharing(
         &self,
         job: SearchJob<'_>,
@@ -212,8 +212,8 @@ impl BoundedStudy {
         shared.rest.as_ref().is_some_and(|rest| rest.judged >= (range.end - range.start).div_ceil(2))
     }
 
-    /// The feasible designs of a range: those that searches have judged, and those of what they have left, which is counted; `told` how many
-    /// these are. `None` if more are left, which had better be counted piece by piece, or if it was stopped.
+    /// The feasible designs of a range: those that searches have judged, and those of what they have left, which is counted; `told` is told how
+    /// many designs that settles. `None` if so much is left that it is better counted piece by piece, or if it was stopped.
     pub fn count_rest(
         &self,
         shared: &Shared,

@@ -190,7 +190,7 @@ fn settle_watched(
     }
     let designs = work.todo.count();
     let mut certificate = Certificate::default();
-    let mut shared = if options.shares_judged { Shared::new(plan) } else { Shared::nothing() };
+    let mut shared = if options.shares_judged { Shared::new(plan) } else { Shared::alone() };
     let searched = search(job, layout, whole, &mut shared, work, watch, &mut certificate);
     let state = work.reducers.state();
     work.save(&state)?;
@@ -513,6 +513,11 @@ mod tests {
         let (feasible, infeasible): (Vec<u64>, Vec<u64>) = (0..plan.designs()).partition(|&position| feasible_at(position));
         assert!(!feasible.is_empty() && !infeasible.is_empty());
         assert_eq!(none_is_feasible(job, &infeasible).expect("none is"), infeasible.len() as u64);
+        // Who stops it is not told that all is well.
+        let stopped = Control::default();
+        stopped.stop.store(true, Ordering::Relaxed);
+        let ended = none_is_feasible(SweepJob { control: &stopped, ..job }, &infeasible);
+        assert!(matches!(ended, Err(Error::Stopped { .. })), "{ended:?}");
         let all: Vec<u64> = (0..plan.designs()).collect();
         let error = none_is_feasible(job, &all).expect_err("some are").to_string();
         assert!(error.contains(&format!("of 144 designs that bounds hold to be infeasible {} are feasible", feasible.len())), "{error}");
